@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# `make demo` and `make test` start from nothing (Debian 12): they install, build and run.
+SHELL := bash
+BIN := build/release
+DATA ?=
+CAMERA ?=
+PREFIX ?= /usr/local
+FUZZ_SECONDS ?= 60
+export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
+
+.PHONY: demo test bench accuracy format check asan fuzz install build deps
+
+demo: build  ## a rendered landing, or with DATA=<folder> [CAMERA=<file>] your own images
+	scripts/demo $(BIN) "$(DATA)" "$(CAMERA)"
+
+test: build
+	ctest --preset release -j $$(nproc)
+
+bench: build  ## speed
+	@for program in $(BIN)/bench/*_benchmark; do echo "== $$program"; $$program || exit; done
+
+accuracy: build  ## errors against truth
+	@for program in $(BIN)/bench/*accuracy; do echo "== $$program"; $$program || exit; done
+
+format:
+	scripts/check-format --fix
+
+check: deps  ## format, layers, clang-tidy on every source
+	scripts/check-format
+	scripts/check-layers
+	cmake --preset tidy
+	cmake --build --preset tidy -- -k 0
+
+asan: deps  ## the unit tests with the address and undefined-behaviour sanitizers
+	cmake --preset asan
+	cmake --build --preset asan
+	ctest --preset asan -j $$(nproc)
+
+fuzz: deps  ## every fuzz target for FUZZ_SECONDS
+	cmake --preset asan
+	cmake --build --preset asan --target fuzzers
+	scripts/fuzz build/asan/fuzz $(FUZZ_SECONDS)
+
+install: build
+	cmake --install $(BIN) --prefix $(PREFIX)
+
+build: deps
+	cmake --preset release
+	cmake --build --preset release
+
+deps:
+	scripts/install-deps

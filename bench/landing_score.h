@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kestrel/landing/landing_pattern_detector.h"
+#include "landing_frames.h"
+
+namespace kestrel {
+
+enum class LandingOutcome {
+  kFound,   // the pattern is there and was found where it is
+  kMissed,  // the pattern is there and was not found
+  kWrong,   // something else was taken for the pattern
+  kQuiet,   // no pattern, and none was found
+};
+
+// What a detector made of one frame.
+struct LandingScore {
+  std::string name;
+  std::string group;
+  PatternTruth truth = PatternTruth::kUnknown;
+  LandingOutcome outcome = LandingOutcome::kQuiet;
+  double ring_radius_px = 0;
+  double altitude_m = 0;
+  Eigen::Vector2d detected_px = Eigen::Vector2d::Zero();  // where the detection is
+  double quality = 0;                                     // of the detection
+  double center_error_px = 0;                             // found, kWhole
+  double position_error = 0;  // found, pose known: over the true distance
+  double nees = 0;            // found, pose known: squared position error over covariance
+  LandingStage reached{};
+  std::string reason;
+};
+
+// Found is a centre within max(4 px, 0.15 ring radii) of the true one. Of a ring that is cut by the
+// border only the part in the image is known: found is a pose whose projected ring lies within
+// max(2 px, 0.05 ring radii), root mean square, of the annotated one there.
+LandingScore ScoreLanding(const LandingFrame& frame, const LandingReport& report,
+                          const CameraModel& camera, const LandingPattern& pattern);
+
+// What a detector is told before it sees a frame.
+enum class HintKind { kNone, kAttitude };
+LandingHint HintFor(const LandingFrame& frame, HintKind kind);
+
+// Scores the frames 0 ... count - 1 that 'make_frame' makes, on 'threads' threads with a workspace
+// each; 'sees' (if any) is called for each frame, by one thread at a time. Results are in order.
+std::vector<LandingScore> ScoreFrames(
+    const LandingPatternDetector& detector, std::size_t count, int threads, HintKind hint,
+    const std::function<LandingFrame(std::size_t)>& make_frame,
+    const std::function<void(const LandingFrame&, const LandingScore&)>& sees = {});
+
+// Heights of the camera above the pattern by which results are reported, metres.
+struct AltitudeBin {
+  double min_m;
+  double max_m;
+  std::string Name() const;
+  bool Contains(double altitude_m) const { return altitude_m >= min_m && altitude_m < max_m; }
+};
+inline constexpr std::array<AltitudeBin, 5> kAltitudeBins{
+    {{0.35, 1}, {1, 2}, {2, 6}, {6, 9}, {9, 14}}};
+
+// Sums up scores.
+class LandingTally {
+ public:
+  LandingTally() = default;
+  explicit LandingTally(std::span<const LandingScore> scores);
+  void Add(const LandingScore& score);
+
+  int frames = 0;  // kWhole
+  int found = 0;
+  int wrong = 0;  // something else in a frame with the pattern
+  int partial = 0;
+  int partial_found = 0;  // right or wrong
+  int partial_right = 0;
+  int negatives = 0;
+  int false_detections = 0;  // in negatives
+  std::vector<double> center_errors_px;
+  std::vector<double> position_errors;
+  std::vector<double> nees;
+
+  double FoundShare() const { return frames == 0 ? 1 : static_cast<double>(found) / frames; }
+};
+
+// Value below which the part 'p' (0 to 1) of 'values' lies; 0 without values.
+double Quantile(std::vector<double> values, double p);
+double Mean(std::span<const double> values);
+
+}  // namespace kestrel

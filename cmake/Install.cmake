@@ -1,0 +1,23 @@
+# `cmake --install` puts the command, the rooms as static libraries and their headers in place, and
+# the package that `find_package(kestrel)` finds. The room cli belongs to the command alone.
+include(CMakePackageConfigHelpers)
+
+get_property(rooms GLOBAL PROPERTY KESTREL_ROOMS)
+list(REMOVE_ITEM rooms kestrel_cli)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/kestrel)
+
+install(TARGETS ${rooms} EXPORT kestrel)
+install(EXPORT kestrel NAMESPACE kestrel:: FILE kestrelTargets.cmake DESTINATION ${package_dir})
+install(
+  DIRECTORY src/kestrel
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  FILES_MATCHING
+  PATTERN "*.h"
+  PATTERN "test_*.h" EXCLUDE
+  PATTERN "cli" EXCLUDE)
+
+configure_package_config_file(cmake/kestrelConfig.cmake.in kestrelConfig.cmake
+                              INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(kestrelConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/kestrelConfig.cmake
+              ${PROJECT_BINARY_DIR}/kestrelConfigVersion.cmake DESTINATION ${package_dir})

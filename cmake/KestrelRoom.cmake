@@ -1,0 +1,35 @@
+# kestrel_room(NAME SOURCES ... [TESTS ...] [PUBLIC ...] [PRIVATE ...] [TEST_LINKS ...])
+#
+# One library per room of src/kestrel, `kestrel_<name>` (alias `kestrel::<name>`). PUBLIC names the
+# rooms and libraries that its headers use: these links are the arrows between the rooms, and
+# scripts/check-layers holds the includes to them. TESTS become one test binary per room.
+function(kestrel_room name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;TESTS;PUBLIC;PRIVATE;TEST_LINKS" ${ARGN})
+  set(target kestrel_${name})
+  if(ARG_SOURCES)
+    add_library(${target} STATIC ${ARG_SOURCES})
+    set(scope PUBLIC)
+    target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Werror)
+  else()
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+    target_link_libraries(${target} INTERFACE ${ARG_PUBLIC})
+  endif()
+  add_library(kestrel::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(${target} ${scope} cxx_std_20)
+  target_include_directories(
+    ${target} ${scope} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  set_property(GLOBAL APPEND PROPERTY KESTREL_ROOMS ${target})
+  if(KESTREL_BUILD_TESTS AND ARG_TESTS)
+    add_executable(${target}_test ${ARG_TESTS})
+    target_link_libraries(
+      ${target}_test PRIVATE ${target} ${ARG_TEST_LINKS} GTest::gmock GTest::gtest_main)
+    target_compile_options(${target}_test PRIVATE -Wall -Wextra -Werror)
+    target_compile_definitions(
+      ${target}_test PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
+    gtest_discover_tests(${target}_test TEST_PREFIX ${name}/ DISCOVERY_MODE PRE_TEST
+                         PROPERTIES TIMEOUT 600)
+  endif()
+endfunction()

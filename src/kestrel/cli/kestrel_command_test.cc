@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs the binary `kestrel` as a user does: what it writes, what it says, how it exits.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <numbers>
+#include <string>
+#include <sys/wait.h>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/videoio.hpp>
+
+#include "kestrel/base/read_file.h"
+#include "kestrel/pipeline/test_pattern.h"
+#include "kestrel/recording/test_files.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+constexpr char kSensor[] = R"(sensor_type: camera
+T_BS:
+  cols: 4
+  rows: 4
+  data: [0, -1, 0, 0, -1, 0, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1]
+rate_hz: 10
+resolution: [640, 480]
+camera_model: pinhole
+intrinsics: [400, 400, 319.5, 239.5]
+distortion_model: none
+distortion_coefficients: []
+)";
+constexpr char kPoses[] =
+    "#timestamp [ns],p_WB_W_x [m],p_WB_W_y [m],p_WB_W_z [m],q_WB_w [],q_WB_x [],q_WB_y [],q_WB_z "
+    "[]\n"
+    "100000000,5,6,3,1,0,0,0\n200000000,5,6,3,1,0,0,0\n";
+
+struct Outcome {
+  int status;
+  std::string out;
+  std::string err;
+};
+
+auto Lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
+
+class KestrelCommandTest : public ::testing::Test {
+ protected:
+  Outcome Run(const std::string& arguments) const {
+    const std::string out = folder_ / "stdout";
+    const std::string err = folder_ / "stderr";
+    const int status = std::system(
+        fmt::format("{} {} >'{}' 2>'{}' </dev/null", KESTREL_COMMAND, arguments, out, err).c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadFile(out), ReadFile(err)};
+  }
+  // Exit status 1 and one line on stderr that has 'words' in it.
+  void ExpectInputError(const std::string& arguments, const std::string& words) const {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 1) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(words)) << arguments;
+    EXPECT_EQ(Lines(outcome.err), 1) << outcome.err;
+  }
+  // A pattern 1 m in diameter, 3 m below the camera; two frames and their poses.
+  std::string WriteRecording() const {
+    const RigidTransform camera_from_pattern = {
+        Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX())),
+        {0.3, 0.2, 3}};
+    const CameraModel camera({640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}});
+    const cv::Mat image = DrawPattern(camera, LandingPattern(), camera_from_pattern);
+    folder_.WriteImage("flight/mav0/cam0/data/100000000.png", image);
+    folder_.WriteImage("flight/mav0/cam0/data/200000000.png", cv::Mat(480, 640, CV_8UC1, 90));
+    folder_.Write("flight/mav0/cam0/data.csv",
+                  "#timestamp [ns],filename\n100000000,100000000.png\n200000000,200000000.png\n");
+    folder_.Write("flight/mav0/cam0/sensor.yaml", kSensor);
+    folder_.Write("flight/mav0/nav0/data.csv", kPoses);
+    return folder_ / "flight";
+  }
+
+  TestFolder folder_;
+};
+
+TEST_F(KestrelCommandTest, HelpAndVersion) {
+  for (const char* arguments : {"help", "--help"}) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("Run the landing pipeline"));
+  }
+  for (const char* arguments : {"help land", "land --help"}) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("--altitude"));
+  }
+  const Outcome version = Run("--version");
+  EXPECT_EQ(version.status, 0);
+  EXPECT_THAT(version.out, StartsWith("kestrel 0."));
+}
+
+TEST_F(KestrelCommandTest, WrongUsageIsStatusTwo) {
+  for (const char* arguments :
+       {"", "fly", "help fly", "land", "land a.png --altitude nan", "land a.png --altitude -1",
+        "land a.png --clock-offset inf", "land a.png --annotate", "land a.png --colour",
+        "land a.png --output o --annotate=gif"}) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_THAT(outcome.err, Not(IsEmpty())) << arguments;
+    EXPECT_THAT(outcome.out, IsEmpty()) << arguments;
+  }
+}
+
+TEST_F(KestrelCommandTest, ConfigReadsBackToItself) {
+  const Outcome first = Run("config --set landing.detector.min_ring_px=9.5");
+  EXPECT_EQ(first.status, 0);
+  const Outcome again = Run("config --config " + folder_.Write("c.yaml", first.out));
+  EXPECT_EQ(again.out, first.out);
+  EXPECT_THAT(again.out, HasSubstr("min_ring_px: 9.5 "));
+}
+
+TEST_F(KestrelCommandTest, LandsOnARecording) {
+  const std::string output = folder_ / "out";
+  const Outcome outcome =
+      Run("land " + WriteRecording() + " --output " + output + " --annotate=images");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_THAT(outcome.err, HasSubstr("2 frames, pattern found in 1, detect_ms median"));
+  const std::string csv = ReadFile(output + "/landing_detections.csv");
+  EXPECT_EQ(Lines(csv), 3);
+  EXPECT_THAT(csv, HasSubstr("\nmav0/cam0/data/100000000.png,100000000,1,"));
+  EXPECT_THAT(csv, HasSubstr("\nmav0/cam0/data/200000000.png,200000000,0,,,"));
+  for (const char* name : {"100000000", "200000000"}) {
+    const std::string image = output + "/annotated/mav0/cam0/data/" + name + ".png";
+    EXPECT_EQ(cv::imread(image).size(), cv::Size(640, 480));
+  }
+}
+
+TEST_F(KestrelCommandTest, SaysWhereThePatternIsInTheWorld) {
+  const Outcome outcome = Run("land --still " + WriteRecording());
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::string row = outcome.out.substr(outcome.out.find('\n') + 1);
+  std::vector<std::string> cells;
+  for (std::size_t end = 0; (end = row.find(',')) != std::string::npos; row.erase(0, end + 1)) {
+    cells.push_back(row.substr(0, end));
+  }
+  ASSERT_GE(cells.size(), 14u) << outcome.out;
+  EXPECT_NEAR(std::stod(cells[3]), 319.5 + 40, 0.2);             // u_px
+  EXPECT_NEAR(std::stod(cells[4]), 239.5 + 400 * 0.2 / 3, 0.2);  // v_px
+  EXPECT_NEAR(std::stod(cells[9]), 3, 0.03);                     // p_CP_C_z_m
+  EXPECT_NEAR(std::stod(cells[10]), 5 - 0.2, 0.03);              // p_WP_W_x_m
+  EXPECT_NEAR(std::stod(cells[11]), 6 - 0.3, 0.03);              // p_WP_W_y_m
+  EXPECT_NEAR(std::stod(cells[12]), 0, 0.03);                    // p_WP_W_z_m
+}
+
+TEST_F(KestrelCommandTest, WritesAnAnnotatedVideo) {
+  const std::string output = folder_ / "out";
+  const Outcome outcome = Run("land --annotate " + WriteRecording() + " --output " + output);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(std::filesystem::exists(output + "/annotated.mp4"),
+            std::filesystem::exists(output + "/annotated.avi"));
+}
+
+TEST_F(KestrelCommandTest, ReplacesResultsOnlyWithForce) {
+  const std::string arguments = "land " + WriteRecording() + " --output " + (folder_ / "out");
+  EXPECT_EQ(Run(arguments).status, 0);
+  ExpectInputError(arguments, "landing_detections.csv: exists already");
+  EXPECT_EQ(Run(arguments + " --force").status, 0);
+}
+
+TEST_F(KestrelCommandTest, CtrlCEndsCleanly) {
+  const std::string camera = folder_.Write("camera.yaml", kSensor);
+  std::string images;
+  for (int i = 0; i < 3000; ++i) images += " a.png";
+  folder_.WriteImage("a.png", NoiseImage(640, 480, CV_8UC1));
+  const std::string script = fmt::format(
+      "cd '{}'; {} land --camera camera.yaml{} >rows 2>said & pid=$!; "
+      "until [ \"$(wc -l <rows)\" -gt 3 ]; do sleep 0.01; done; kill -INT $pid; wait $pid",
+      folder_.path(), KESTREL_COMMAND, images);
+  const int status = std::system(script.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  const std::string rows = ReadFile(folder_ / "rows");
+  EXPECT_TRUE(rows.ends_with('\n'));
+  EXPECT_LT(Lines(rows), 3001);
+  EXPECT_THAT(ReadFile(folder_ / "said"),
+              StartsWith(fmt::format("{} frames, pattern found in", Lines(rows) - 1)));
+}
+
+TEST_F(KestrelCommandTest, SourceAtFaultIsNamed) {
+  const std::string camera = " --camera " + folder_.Write("camera.yaml", kSensor);
+  const std::string image = folder_.WriteImage("a.png", NoiseImage(640, 480, CV_8UC1));
+  ExpectInputError("land nowhere.png" + camera, "nowhere.png: no such file");
+  ExpectInputError("land " + image, "no calibration");
+  const std::string deep = folder_.WriteImage("deep.png", cv::Mat(480, 640, CV_16UC1));
+  const std::string tiny = folder_.WriteImage("tiny.png", cv::Mat(1, 1, CV_8UC1));
+  const std::string wide = folder_.WriteImage("wide.png", cv::Mat(2, 20000, CV_8UC1));
+  TestFolder::CutOff(image, 0.5);
+  for (const auto& [source, words] :
+       {std::pair(deep, "deep.png: is a 16-bit image, expected 8 bits"),
+        std::pair(tiny, "has 1 x 1 px, but the calibration is for 640 x 480"),
+        std::pair(wide, "has 20000 x 2 px, but the calibration is for 640 x 480"),
+        std::pair(image, "a.png: the image file is cut off")}) {
+    const Outcome outcome = Run("land " + source + camera);
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_THAT(outcome.err, HasSubstr(words));
+  }
+}
+
+TEST_F(KestrelCommandTest, VideoThatEndsEarlyGivesItsFramesAndSaysSo) {
+  const std::string camera = " --camera " + folder_.Write("camera.yaml", kSensor);
+  const std::string video = folder_ / "flight.avi";
+  cv::VideoWriter writer(video, cv::CAP_OPENCV_MJPEG, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'),
+                         30, cv::Size(640, 480));
+  for (int i = 0; i < 20; ++i) writer.write(NoiseImage(640, 480, CV_8UC3, i));
+  writer.release();
+  TestFolder::CutOff(video, 0.5);
+  const Outcome outcome = Run("land " + video + camera);
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("flight.avi: the video ends after"));
+  EXPECT_GT(Lines(outcome.out), 5);
+}
+
+TEST_F(KestrelCommandTest, RecordingAtFaultIsNamed) {
+  const std::string recording = WriteRecording();
+  folder_.Write("flight/mav0/nav0/data.csv", std::string(kPoses) + "150000000,5,6,3,1,0,0,0\n");
+  ExpectInputError("land " + recording, "nav0/data.csv: line 4: timestamp 150000000 out of order");
+}
+
+TEST_F(KestrelCommandTest, CalibrationAtFaultIsNamed) {
+  const std::string recording = WriteRecording();
+  std::string sensor = kSensor;
+  sensor.replace(sensor.find("[400,"), 5, "[.nan,");
+  ExpectInputError("land " + recording + " --camera " + folder_.Write("nan.yaml", sensor),
+                   "nan.yaml");
+}
+
+TEST_F(KestrelCommandTest, OutputFolderThatCannotBeMadeIsNamed) {
+  const std::string recording = WriteRecording();
+  ExpectInputError("land " + recording + " --output " + folder_.Write("file", "") + "/out",
+                   "file/out: cannot be made");
+}
+
+TEST_F(KestrelCommandTest, MisspeltOptionNamesTheNearest) {
+  const std::string recording = WriteRecording();
+  const std::string config = folder_.Write("c.yaml", "landing:\n  hint_sigma: 1\n");
+  ExpectInputError("land " + recording + " --config " + config,
+                   "c.yaml:2: unknown key 'landing.hint_sigma', did you mean "
+                   "'landing.hint_sigma_m'?");
+  ExpectInputError("land " + recording + " --set landing.hint_sigmam=1", "did you mean");
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/cli/kestrel_options.h"
+
+#include "kestrel/base/options.h"
+
+namespace kestrel {
+
+std::vector<std::string> KestrelOptions::Validate() const {
+  std::vector<std::string> violations;
+  for (const std::string& violation : landing.Validate()) {
+    violations.push_back("landing." + violation);
+  }
+  return violations;
+}
+
+KestrelOptions ReadKestrelOptions(const std::string& config_file,
+                                  const std::vector<std::string>& settings) {
+  KestrelOptions options;
+  if (!config_file.empty()) ReadOptions(config_file, &options);
+  for (const std::string& setting : settings) SetOption(setting, &options);
+  RequireValid(options);
+  return options;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kestrel/pipeline/landing_pipeline.h"
+
+namespace kestrel {
+
+// The options of all subcommands: what `kestrel config` prints and --config reads.
+struct KestrelOptions {
+  LandingPipelineOptions landing;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor.Group("landing", self.landing);
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// Defaults, changed by the file (if not empty) and then by the settings "key=value". Throws
+// InputError when one of them is at fault or the result is not valid.
+KestrelOptions ReadKestrelOptions(const std::string& config_file,
+                                  const std::vector<std::string>& settings);
+
+}  // namespace kestrel

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdlib>
+#include <exception>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <opencv2/core/utils/logger.hpp>
+
+#include "kestrel/cli/config_command.h"
+#include "kestrel/cli/help_command.h"
+#include "kestrel/cli/land_command.h"
+
+namespace {
+
+constexpr int kInputAtFault = 1;
+constexpr int kWrongUsage = 2;
+
+// What is wrong is said once and in our words; the decoders' own messages would bury it.
+void SilenceDecoders() {
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", /*replace=*/0);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  SilenceDecoders();
+  CLI::App app("Kestrel gives UAVs eyes for landing on moving targets.", "kestrel");
+  app.set_version_flag("--version", "kestrel " KESTREL_VERSION);
+  app.require_subcommand(1);
+  kestrel::AddLandCommand(&app);
+  kestrel::AddConfigCommand(&app);
+  kestrel::AddHelpCommand(&app);
+  try {
+    app.parse(argc, argv);
+    return EXIT_SUCCESS;
+  } catch (const CLI::Success& wanted) {  // help, version
+    return app.exit(wanted);
+  } catch (const CLI::ParseError& error) {
+    app.exit(error);
+    return kWrongUsage;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "kestrel: {}\n", error.what());
+    return kInputAtFault;
+  }
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+
+namespace kestrel {
+
+// A line on stderr that shows how far a run is; nothing where stderr is no terminal.
+class ProgressBar {
+ public:
+  explicit ProgressBar(std::optional<std::size_t> total);
+  ~ProgressBar();  // takes the line away
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  void Show(std::size_t done);
+
+ private:
+  bool is_terminal_;
+  std::optional<std::size_t> total_;
+  std::chrono::steady_clock::time_point last_shown_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/geometry/cone.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+namespace kestrel {
+namespace {
+
+// Rotation whose rows are an orthonormal base with 'axis' as the third.
+Eigen::Matrix3d BaseAround(const Eigen::Vector3d& axis) {
+  Eigen::Matrix3d base;
+  base.row(2) = axis.normalized();
+  base.row(0) = axis.unitOrthogonal();
+  base.row(1) = base.row(2).cross(base.row(0));
+  return base;
+}
+
+}  // namespace
+
+Eigen::Vector2d Cone::HalfAngles() const {
+  const Eigen::Vector3d l =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+  const double axis = std::max(0.0, -l(0));
+  return {std::atan2(std::sqrt(axis), std::sqrt(std::max(0.0, l(1)))),
+          std::atan2(std::sqrt(axis), std::sqrt(std::max(0.0, l(2))))};
+}
+
+std::optional<Cone> FitCone(std::span<const Eigen::Vector3d> rays) {
+  if (rays.size() < 6) return std::nullopt;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& ray : rays) mean += ray;
+  if (mean.norm() < 1e-6 * static_cast<double>(rays.size())) return std::nullopt;
+  const Eigen::Matrix3d tangent_from_camera = BaseAround(mean);
+
+  // Scatter of the quadratic (x^2, xy, y^2) and linear (x, y, 1) parts of the design matrix; the
+  // plane is scaled so that the points are of the order of one.
+  double spread = 0;
+  for (const Eigen::Vector3d& ray : rays) {
+    const Eigen::Vector3d p = tangent_from_camera * ray;
+    if (p.z() < 0.05) return std::nullopt;
+    spread += (p.head<2>() / p.z()).squaredNorm();
+  }
+  const double scale = std::sqrt(static_cast<double>(rays.size()) / std::max(spread, 1e-18));
+  Eigen::Matrix3d s1 = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d s2 = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d s3 = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& ray : rays) {
+    const Eigen::Vector3d p = tangent_from_camera * ray;
+    const double x = scale * p.x() / p.z();
+    const double y = scale * p.y() / p.z();
+    const Eigen::Vector3d quadratic(x * x, x * y, y * y);
+    const Eigen::Vector3d linear(x, y, 1);
+    s1 += quadratic * quadratic.transpose();
+    s2 += quadratic * linear.transpose();
+    s3 += linear * linear.transpose();
+  }
+  if (std::abs(s3.determinant()) < 1e-12) return std::nullopt;
+  const Eigen::Matrix3d t = -s3.inverse() * s2.transpose();
+  const Eigen::Matrix3d m = s1 + s2 * t;
+  // Inverse of the constraint matrix of 4 a c - b^2 = 1, applied to m.
+  Eigen::Matrix3d constrained;
+  constrained.row(0) = 0.5 * m.row(2);
+  constrained.row(1) = -m.row(1);
+  constrained.row(2) = 0.5 * m.row(0);
+  const Eigen::EigenSolver<Eigen::Matrix3d> solver(constrained);
+  if (solver.info() != Eigen::Success) return std::nullopt;
+  const Eigen::Matrix3d vectors = solver.eigenvectors().real();
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d a = vectors.col(i);
+    if (4 * a(0) * a(2) - a(1) * a(1) <= 0) continue;
+    const Eigen::Vector3d b = t * a;
+    Eigen::Matrix3d conic;
+    conic << a(0) * scale * scale, 0.5 * a(1) * scale * scale, 0.5 * b(0) * scale,
+        0.5 * a(1) * scale * scale, a(2) * scale * scale, 0.5 * b(1) * scale,  //
+        0.5 * b(0) * scale, 0.5 * b(1) * scale, b(2);
+    if (a(0) + a(2) < 0) conic = -conic;
+    if (!(conic.determinant() < 0)) return std::nullopt;  // an empty or degenerate conic
+    Cone cone;
+    cone.matrix = tangent_from_camera.transpose() * conic * tangent_from_camera;
+    cone.matrix /= cone.matrix.norm();
+    return cone;
+  }
+  return std::nullopt;
+}
+
+std::array<CirclePose, 2> CirclePosesFromCone(const Cone& cone, double radius,
+                                              const Eigen::Vector3d& toward) {
+  // In the eigenframe the cone is l1 x^2 + l2 y^2 + l3 z^2 = 0 with l1 >= l2 > 0 > l3. The planes
+  // that cut it in circles are parallel to the y axis.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(cone.matrix);
+  const double l3 = solver.eigenvalues()(0);
+  const double l2 = solver.eigenvalues()(1);
+  const double l1 = solver.eigenvalues()(2);
+  const Eigen::Vector3d e1 = solver.eigenvectors().col(2);
+  Eigen::Vector3d e3 = solver.eigenvectors().col(0);
+  if (e3.dot(toward) < 0) e3 = -e3;
+  const double sine = std::sqrt(std::max(0.0, (l1 - l2) / (l1 - l3)));
+  const double cosine = std::sqrt(std::max(0.0, (l2 - l3) / (l1 - l3)));
+  const double depth = radius / std::sqrt(std::max(1e-300, -l1 * l3));
+  std::array<CirclePose, 2> poses;
+  for (int i = 0; i < 2; ++i) {
+    const double sign = i == 0 ? 1.0 : -1.0;
+    poses[i].normal = -sign * sine * e1 - cosine * e3;
+    poses[i].center = depth * (sign * l3 * sine * e1 + l1 * cosine * e3);
+  }
+  return poses;
+}
+
+}  // namespace kestrel

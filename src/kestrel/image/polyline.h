@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace kestrel {
+
+// A straight piece of a polyline: its end points on the line fitted to all points of the piece.
+struct LineSegment {
+  Eigen::Vector2d start;
+  Eigen::Vector2d end;
+
+  double length() const { return (end - start).norm(); }
+  Eigen::Vector2d direction() const { return (end - start).normalized(); }
+};
+
+// Breaks a curve into straight pieces (split and merge; Ramer 1972, Pavlidis and Horowitz 1974):
+// splits where a point is farther than 'tolerance' from the chord, then merges neighbours that one
+// line explains within the tolerance. Keeps those of at least 'min_length'. The curve is taken as
+// closed when 'closed'. Appends to 'segments'; 'breaks' is scratch memory. Unit: that of the
+// points.
+void SplitAndMerge(std::span<const Eigen::Vector2d> points, bool closed, double tolerance,
+                   double min_length, std::vector<std::size_t>* breaks,
+                   std::vector<LineSegment>* segments);
+
+}  // namespace kestrel

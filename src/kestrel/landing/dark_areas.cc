@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/landing/dark_areas.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "kestrel/image/border_moments.h"
+#include "kestrel/landing/pattern_view.h"
+
+namespace kestrel {
+namespace {
+
+// What a small ring that has grown together with something beside it still has.
+constexpr double kLeastEllipticity = 0.6;
+constexpr double kMinAxisRatio = 0.15;
+
+}  // namespace
+
+std::optional<DarkArea> TestDarkArea(const BorderTracer& tracer, const Border& border,
+                                     double min_minor_px) {
+  const int width = border.max.x - border.min.x;
+  const int height = border.max.y - border.min.y;
+  if (std::min(width, height) < kMinAxisRatio * std::max(width, height)) return std::nullopt;
+  // The border of a convex outline is as long as its bounding box is around; noise may add some.
+  if (static_cast<double>(border.count) > 2.6 * (width + height)) return std::nullopt;
+  const RegionMoments moments = ComputeBorderMoments(tracer.begin(border), border.count);
+  const double ellipticity = moments.Ellipticity();
+  if (ellipticity < kLeastEllipticity) return std::nullopt;
+  DarkArea area;
+  area.ellipticity = ellipticity;
+  area.outline = EllipseFromMoments(moments);
+  if (2 * area.outline.semi_minor < min_minor_px) return std::nullopt;
+  area.edge = border.signed_area > 0 ? RingEdge::kOuter : RingEdge::kInner;
+  return area;
+}
+
+double RingContrast(const cv::Mat& image, const Ellipse& outer_edge,
+                    const LandingPattern& pattern) {
+  constexpr int kDirections = 24;
+  const double radius = pattern.outer_radius_m();
+  const double ring = 0.5 * (radius + pattern.inner_radius_m()) / radius;
+  const double outside =
+      1 + 0.7 * std::min(pattern.ring_width_m / radius, 0.5 * pattern.board_size_m / radius - 1);
+  const double inside = 0.65 * pattern.inner_radius_m() / radius;
+  std::array<float, kDirections> contrast;
+  std::array<float, kDirections> inner_contrast;
+  int seen = 0;
+  for (int i = 0; i < kDirections; ++i) {
+    const double t = i * 2 * std::numbers::pi / kDirections;
+    const auto gray = [&](double scale) {
+      const Eigen::Vector2f place = outer_edge.At(t, scale).cast<float>();
+      return SampleGray(image, place.x(), place.y());
+    };
+    const float dark = gray(ring), bright = gray(outside), center = gray(inside);
+    if (dark < 0 || bright < 0 || center < 0) continue;
+    contrast[seen] = bright - dark;
+    inner_contrast[seen++] = center - dark;
+  }
+  if (2 * seen < kDirections) return 0;
+  std::sort(contrast.begin(), contrast.begin() + seen);
+  // The quarter of the directions with the least contrast may show anything.
+  const float least = contrast[seen / 4];
+  if (least < std::max(3.0f, 0.2f * contrast[seen / 2])) return 0;
+  // Inside, arms and white quadrants alternate: a quarter of the directions must show white.
+  const auto upper = inner_contrast.begin() + seen - seen / 4;
+  std::nth_element(inner_contrast.begin(), upper, inner_contrast.begin() + seen);
+  if (*upper < 0.2f * contrast[seen / 2]) return 0;
+  return least;
+}
+
+double BoardContrast(const cv::Mat& image, const Ellipse& outer_edge) {
+  constexpr int kDirections = 24;
+  std::array<float, kDirections> contrast;
+  for (int i = 0; i < kDirections; ++i) {
+    const double t = i * 2 * std::numbers::pi / kDirections;
+    const auto gray = [&](double scale) {
+      const Eigen::Vector2f place = outer_edge.At(t, scale).cast<float>();
+      return SampleGray(image, place.x(), place.y());
+    };
+    const float white = gray(1.35);
+    contrast[i] = white < 0 ? 0 : white - std::min({gray(0.8), gray(0.95), gray(1.1)});
+  }
+  const auto middle = contrast.begin() + kDirections / 2;
+  std::nth_element(contrast.begin(), middle, contrast.end());
+  return *middle > 2 ? *middle : 0;
+}
+
+}  // namespace kestrel

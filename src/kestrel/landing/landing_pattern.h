@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace kestrel {
+
+// Dimensions of the landing pattern: a black ring and, inside of it, a black X of two arms at right
+// angles, on a white board. Defaults: the MBZIRC 2017 board. Metres.
+//
+// Frame P: origin where the arms meet, x along one arm, z up out of the printed face.
+struct LandingPattern {
+  double outer_diameter_m = 1.0;    // of the ring
+  double ring_width_m = 0.1;        // outer minus inner radius
+  double arm_width_m = 0.1;         // across the arm
+  double arm_half_length_m = 0.38;  // from the centre to the end of an arm; at least the inner
+                                    // radius when the arms touch the ring
+  double board_size_m = 1.5;        // side of the white square around the ring
+
+  double outer_radius_m() const { return 0.5 * outer_diameter_m; }
+  double inner_radius_m() const { return outer_radius_m() - ring_width_m; }
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("outer_diameter_m", self.outer_diameter_m, "m", "outer diameter of the black ring");
+    visitor("ring_width_m", self.ring_width_m, "m", "width of the black ring");
+    visitor("arm_width_m", self.arm_width_m, "m", "width of an arm of the cross");
+    visitor(
+        "arm_half_length_m", self.arm_half_length_m, "m",
+        "from the centre to the end of an arm; the inner radius or more if it touches the ring");
+    visitor("board_size_m", self.board_size_m, "m", "side of the white board");
+  }
+  // Every violation in words; empty when the pattern can exist.
+  std::vector<std::string> Validate() const;
+};
+
+}  // namespace kestrel

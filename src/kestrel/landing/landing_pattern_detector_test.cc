@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/landing/landing_pattern_detector.h"
+
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/base/error.h"
+#include "kestrel/landing/test_prints.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::HasSubstr;
+
+class LandingPatternDetectorTest : public ::testing::Test {
+ protected:
+  cv::Mat Draw(const Print& print, const RigidTransform& pose) const {
+    return DrawPrint(camera_, pattern_, print, pose);
+  }
+  LandingReport Detect(const cv::Mat& image, const LandingHint& hint = {}) {
+    return detector_.Detect(image, hint, workspace_);
+  }
+
+  const LandingPattern pattern_{};
+  const CameraModel camera_ = TestPrintCamera();
+  const LandingPatternDetector detector_{camera_, {}};
+  LandingWorkspace workspace_;
+  const RigidTransform pose_ = PrintPose({0.15, -0.1, 3}, 0.25, 1, 0.3);
+  const cv::Mat image_ = DrawPrint(camera_, pattern_, SpokedPrint(pattern_, 4), pose_);
+};
+
+// What two reports of one image must share: all but the times.
+void ExpectSame(const LandingReport& a, const LandingReport& b) {
+  EXPECT_EQ(a.reached, b.reached);
+  EXPECT_EQ(a.reason, b.reason);
+  EXPECT_EQ(a.candidates, b.candidates);
+  ASSERT_EQ(a.detection.has_value(), b.detection.has_value());
+  if (!a.detection) return;
+  EXPECT_EQ(a.detection->center_px, b.detection->center_px);
+  EXPECT_EQ(a.detection->camera_from_pattern.translation,
+            b.detection->camera_from_pattern.translation);
+  EXPECT_EQ(a.detection->covariance, b.detection->covariance);
+  EXPECT_EQ(a.detection->quality, b.detection->quality);
+  EXPECT_EQ(a.detection->method, b.detection->method);
+}
+
+TEST_F(LandingPatternDetectorTest, FindsThePatternAtAllSizes) {
+  struct Case {
+    double distance;
+    CrossMethod method;
+  };
+  for (const Case& c : {Case{1.1, CrossMethod::kLines}, Case{3, CrossMethod::kThinning},
+                        Case{9, CrossMethod::kQuadrants}}) {
+    const RigidTransform truth =
+        PrintPose({0.03 * c.distance, 0.02 * c.distance, c.distance}, 0.1, 2, 0.5);
+    const LandingReport report = Detect(Draw(SpokedPrint(pattern_, 4), truth));
+    ASSERT_TRUE(report.detection) << c.distance << " m: " << report.reason;
+    EXPECT_EQ(report.reached, LandingStage::kFound);
+    EXPECT_EQ(report.reason, "");
+    const LandingDetection& detection = *report.detection;
+    EXPECT_EQ(detection.method, c.method) << ToString(detection.method);
+    EXPECT_LT(PoseError(detection.camera_from_pattern, truth).head<3>().norm(), 0.02 * c.distance);
+    Eigen::Vector2d center;
+    camera_.Project(truth.translation, &center);
+    EXPECT_LT((detection.center_px - center).norm(), 0.2);
+    EXPECT_NEAR(detection.ring_semi_major_px, 110 / c.distance, 0.08 * 110 / c.distance + 0.7);
+    EXPECT_GT(detection.quality, 0.8);
+    EXPECT_LE(detection.quality, 1);
+  }
+}
+
+TEST_F(LandingPatternDetectorTest, OtherSignsAreNotThePattern) {
+  const Print empty = [this](double x, double y) { return IsRing(pattern_, x, y); };
+  const Print cross_only = [this](double x, double y) {
+    return IsSpoke(x, y, 4, 0.05, pattern_.arm_half_length_m);
+  };
+  const Print off_center = [this](double x, double y) {
+    return IsRing(pattern_, x, y) ||
+           (std::hypot(x, y) < 0.4 && IsSpoke(x - 0.2, y, 4, 0.05, pattern_.arm_half_length_m));
+  };
+  const std::vector<Print> signs{SpokedPrint(pattern_, 2),
+                                 SpokedPrint(pattern_, 3),
+                                 SpokedPrint(pattern_, 5),
+                                 SpokedPrint(pattern_, 6),
+                                 SpokedPrint(pattern_, 8),
+                                 empty,
+                                 cross_only,
+                                 off_center};
+  for (const double distance : {1.4, 3.0, 6.0, 9.0}) {
+    for (std::size_t i = 0; i < signs.size(); ++i) {
+      const RigidTransform pose = PrintPose({0.1, 0.05, distance}, 0.2, 1, 0.4);
+      // Higher than a cross alone is looked for.
+      LandingHint hint;
+      hint.altitude_m = std::max(distance, 3.0);
+      const LandingReport report = Detect(Draw(signs[i], pose), hint);
+      EXPECT_FALSE(report.detection) << "sign " << i << " at " << distance << " m";
+      EXPECT_NE(report.reason, "");
+    }
+  }
+}
+
+TEST_F(LandingPatternDetectorTest, AFlatImageFallsAtTheFirstStages) {
+  const LandingReport report = Detect(cv::Mat(240, 320, CV_8UC1, cv::Scalar(100)));
+  EXPECT_FALSE(report.detection);
+  EXPECT_EQ(report.reached, LandingStage::kBinarize);
+  EXPECT_EQ(report.candidates[static_cast<int>(LandingStage::kRing)], 0);
+}
+
+TEST_F(LandingPatternDetectorTest, AnImageThatIsNotTheCamerasIsAnswered) {
+  for (const cv::Mat& image : {cv::Mat(240, 320, CV_8UC3), cv::Mat(240, 319, CV_8UC1),
+                               cv::Mat(240, 320, CV_16UC1), cv::Mat()}) {
+    const LandingReport report = Detect(image);
+    EXPECT_FALSE(report.detection);
+    EXPECT_EQ(report.reached, LandingStage::kBinarize);
+    EXPECT_THAT(std::string(report.reason), HasSubstr("not 8-bit gray"));
+  }
+}
+
+TEST_F(LandingPatternDetectorTest, SameImageSameReport) {
+  const LandingReport first = Detect(image_);
+  ASSERT_TRUE(first.detection);
+  // Whatever the workspace saw in between.
+  Random random(1);
+  Detect(AddNoise(image_, 60, &random));
+  Detect(cv::Mat(240, 320, CV_8UC1, cv::Scalar(0)));
+  ExpectSame(Detect(image_), first);
+  LandingWorkspace fresh;
+  ExpectSame(detector_.Detect(image_, {}, fresh), first);
+}
+
+TEST_F(LandingPatternDetectorTest, ThreadsShareADetector) {
+  std::vector<cv::Mat> images;
+  Random random(2);
+  for (int i = 0; i < 8; ++i) {
+    images.push_back(AddNoise(Draw(SpokedPrint(pattern_, i % 4 == 3 ? 3 : 4),
+                                   PrintPose({0.1 * i - 0.4, 0.1, 1.5 + 0.7 * i}, 0.1, i, 0.2 * i)),
+                              3, &random));
+  }
+  std::array<std::vector<LandingReport>, 3> reports;
+  const auto run = [&](std::vector<LandingReport>* into) {
+    LandingWorkspace workspace;
+    for (int round = 0; round < 3; ++round) {
+      for (const cv::Mat& image : images) {
+        into->push_back(detector_.Detect(image, {}, workspace));
+      }
+    }
+  };
+  run(&reports[0]);
+  std::thread one(run, &reports[1]), two(run, &reports[2]);
+  one.join();
+  two.join();
+  for (std::size_t i = 0; i < reports[0].size(); ++i) {
+    ExpectSame(reports[1][i], reports[0][i]);
+    ExpectSame(reports[2][i], reports[0][i]);
+  }
+}
+
+TEST_F(LandingPatternDetectorTest, AHintSaysWhereToLook) {
+  LandingHint hint;
+  hint.center_in_camera = pose_.translation;
+  hint.center_sigma_m = 0.2;
+  EXPECT_TRUE(Detect(image_, hint).detection);
+  // To the side: what is searched does not hold the pattern.
+  hint.center_in_camera = Eigen::Vector3d(-4, 0.1, 6);
+  hint.center_sigma_m = 0.1;
+  EXPECT_FALSE(Detect(image_, hint).detection);
+  // Out of the image.
+  hint.center_in_camera = Eigen::Vector3d(40, 0, 3);
+  const LandingReport outside = Detect(image_, hint);
+  EXPECT_FALSE(outside.detection);
+  EXPECT_EQ(outside.reached, LandingStage::kBinarize);
+  EXPECT_THAT(std::string(outside.reason), HasSubstr("out of the image"));
+  hint.center_in_camera = Eigen::Vector3d(0, 0, -3);
+  EXPECT_FALSE(Detect(image_, hint).detection);
+}
+
+TEST_F(LandingPatternDetectorTest, AHintSaysHowFar) {
+  LandingHint hint;
+  hint.altitude_m = 3;
+  EXPECT_TRUE(Detect(image_, hint).detection);
+  hint.altitude_m = 9;
+  EXPECT_FALSE(Detect(image_, hint).detection);
+  hint.altitude_m.reset();
+  hint.center_in_camera = 3 * pose_.translation;
+  hint.center_sigma_m = 0.1;
+  EXPECT_FALSE(Detect(image_, hint).detection);
+}
+
+TEST_F(LandingPatternDetectorTest, TheAttitudeResolvesTheMirrorPose) {
+  Random random(3);
+  for (int trial = 0; trial < 6; ++trial) {
+    const RigidTransform truth =
+        PrintPose({0.2, 0.1, 7}, 0.5, random.Uniform(0, 6), random.Uniform(0, 6));
+    const Eigen::Vector3d up = truth.rotation * Eigen::Vector3d::UnitZ();
+    LandingHint hint;
+    hint.up_in_camera = up;
+    const LandingReport report =
+        Detect(AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 2, &random), hint);
+    ASSERT_TRUE(report.detection) << trial << ": " << report.reason;
+    const Eigen::Vector3d found =
+        report.detection->camera_from_pattern.rotation * Eigen::Vector3d::UnitZ();
+    EXPECT_GT(found.dot(up), 0.95) << trial;
+  }
+}
+
+TEST_F(LandingPatternDetectorTest, StagesAreCountedAndTimed) {
+  const LandingReport report = Detect(image_);
+  ASSERT_TRUE(report.detection);
+  for (const LandingStage stage :
+       {LandingStage::kAreas, LandingStage::kRing, LandingStage::kCross, LandingStage::kMatch,
+        LandingStage::kLocate, LandingStage::kFound}) {
+    EXPECT_GT(report.candidates[static_cast<int>(stage)], 0) << ToString(stage);
+  }
+  EXPECT_GT(std::accumulate(report.stage_ns.begin(), report.stage_ns.end(), std::int64_t{0}), 0);
+}
+
+TEST(LandingPatternDetectorOptions, EveryViolationIsNamed) {
+  LandingPatternDetectorOptions options;
+  EXPECT_TRUE(options.Validate().empty());
+  options.pattern.board_size_m = 0.2;
+  options.min_ring_px = 1;
+  options.min_quality = NAN;
+  options.max_partial_altitude_m = -1;
+  EXPECT_EQ(options.Validate().size(), 4u);
+  const CameraModel camera = TestPrintCamera();
+  try {
+    LandingPatternDetector detector(camera, options);
+    FAIL();
+  } catch (const InputError& error) {
+    for (const char* key :
+         {"board_size_m", "min_ring_px", "min_quality", "max_partial_altitude_m"}) {
+      EXPECT_THAT(error.what(), HasSubstr(key));
+    }
+  }
+}
+
+TEST(LandingStage, HasANameEach) {
+  EXPECT_STREQ(ToString(LandingStage::kBinarize), "binarize");
+  EXPECT_STREQ(ToString(LandingStage::kFound), "found");
+  EXPECT_STREQ(ToString(CrossMethod::kPartial), "partial");
+  EXPECT_STREQ(ToString(CrossMethod::kQuadrants), "quadrants");
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/landing/pattern_locator.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "kestrel/landing/pattern_view.h"
+
+namespace kestrel {
+namespace {
+
+constexpr int kMaxReach = 12;        // px
+constexpr double kOnEdgePx = 1.0;    // offset of an edge that is the outline's own
+constexpr double kEdgeSigma = 0.12;  // px, of an edge that fits perfectly
+
+// Offset (px) along the unit vector 'normal' from 'at' to the steepest rise of brightness within
+// 'reach' pixels. Nothing when there is none, or the image does not show the whole search.
+std::optional<double> FindEdge(const cv::Mat& image, const Eigen::Vector2d& at,
+                               const Eigen::Vector2d& normal, int reach, float min_step) {
+  std::array<float, 2 * kMaxReach + 4> gray;
+  const int count = 2 * reach + 4;
+  const Eigen::Vector2d first = at - (reach + 1.5) * normal;
+  const Eigen::Vector2d last = at + (reach + 1.5) * normal;
+  if (std::min(first.x(), last.x()) < 0 || std::min(first.y(), last.y()) < 0 ||
+      std::max(first.x(), last.x()) > image.cols - 1 ||
+      std::max(first.y(), last.y()) > image.rows - 1) {
+    return std::nullopt;
+  }
+  Eigen::Vector2f place = first.cast<float>();
+  const Eigen::Vector2f step = normal.cast<float>();
+  for (int i = 0; i < count; ++i, place += step) {
+    gray[i] = SampleGray(image, place.x(), place.y());
+  }
+  // Rise between neighbours; the one at index i lies at offset i - reach - 1.
+  int best = -1;
+  float best_rise = min_step;
+  for (int i = 1; i + 2 < count; ++i) {
+    const float rise = gray[i + 1] - gray[i];
+    if (rise > best_rise) {
+      best_rise = rise;
+      best = i;
+    }
+  }
+  if (best < 0) return std::nullopt;
+  const double before = gray[best] - gray[best - 1];
+  const double here = best_rise;
+  const double after = gray[best + 2] - gray[best + 1];
+  const double curvature = before - 2 * here + after;
+  const double shift =
+      curvature < 0 ? std::clamp(0.5 * (before - after) / curvature, -0.5, 0.5) : 0;
+  return best - reach - 1 + shift;
+}
+
+}  // namespace
+
+// Normal equations of the pose, and the statistics of the residuals that made them.
+struct PatternLocator::Normal {
+  Eigen::Matrix<double, 6, 6> h = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
+  double weighted_squares = 0;
+  double weights = 0;
+  int in_image = 0;
+  int used = 0;
+  std::array<int, 8> part_places{};  // by part: all, in the image, used
+  std::array<int, 8> part_in_image{};
+  std::array<int, 8> part_used{};
+  std::array<float, 512> magnitudes;  // of all residuals that were found
+  int found = 0;
+};
+
+PatternLocator::PatternLocator(const CameraModel& camera, const LandingPattern& pattern)
+    : camera_(camera), pattern_(pattern) {
+  AddCircle(pattern.outer_radius_m(), 1, 56, 0);
+  AddCircle(pattern.inner_radius_m(), -1, 40, 0.8 * pattern.arm_width_m);
+  AddArms();
+}
+
+// 'sign': 1 when the white lies outside. Points nearer than 'arm_clearance' to the axis of an arm
+// are left out: there the outline may be broken.
+void PatternLocator::AddCircle(double radius, double sign, int count, double arm_clearance) {
+  for (int i = 0; i < count; ++i) {
+    const double angle = (i + 0.5) * 2 * std::numbers::pi / count;
+    const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+    const Eigen::Vector2d point = radius * direction;
+    if (std::min(std::abs(point.x()), std::abs(point.y())) < arm_clearance) continue;
+    const int quarter = static_cast<int>(std::floor(angle / (std::numbers::pi / 2) + 0.5)) % 4;
+    places_.push_back({point, sign * direction, 4 + quarter});
+  }
+}
+
+void PatternLocator::AddArms() {
+  const double half_width = 0.5 * pattern_.arm_width_m;
+  const double first = 1.6 * pattern_.arm_width_m;
+  const double last =
+      std::min(pattern_.arm_half_length_m, pattern_.inner_radius_m()) - 0.8 * pattern_.arm_width_m;
+  constexpr int kPerSide = 6;
+  for (int arm = 0; arm < 4; ++arm) {
+    const double angle = arm * std::numbers::pi / 2;
+    const Eigen::Vector2d along(std::cos(angle), std::sin(angle));
+    const Eigen::Vector2d across(-along.y(), along.x());
+    for (int i = 0; i < kPerSide; ++i) {
+      const double reach = first + (last - first) * i / (kPerSide - 1);
+      for (const double side : {1.0, -1.0}) {
+        places_.push_back({reach * along + side * half_width * across, side * across, arm});
+      }
+    }
+  }
+}
+
+// Adds what each place says to the normal equations, weighted by Tukey's function of its residual
+// with the given scale.
+void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose, double reach_px,
+                                double min_step, double scale_px, Normal* normal) const {
+  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
+  const Eigen::Matrix<double, 3, 2> plane = rotation.leftCols<2>();
+  const int reach = std::clamp(static_cast<int>(std::ceil(reach_px)), 1, kMaxReach);
+  Eigen::Matrix<double, 2, 3> d_pixel;
+  for (const Place& place : places_) {
+    ++normal->part_places[place.part];
+    const Eigen::Vector3d from_center = plane * place.point;
+    Eigen::Vector2d pixel;
+    if (camera_.Project(from_center + pose.translation, &pixel, &d_pixel) !=
+        ProjectionStatus::kOk) {
+      continue;
+    }
+    ++normal->in_image;
+    ++normal->part_in_image[place.part];
+    const Eigen::Matrix2d d_plane = d_pixel * plane;
+    // Normal of the outline in the image: at right angles to the image of its tangent.
+    const Eigen::Vector2d tangent = d_plane * Eigen::Vector2d(-place.normal.y(), place.normal.x());
+    Eigen::Vector2d across(-tangent.y(), tangent.x());
+    if (across.dot(d_plane * place.normal) < 0) across = -across;
+    across.normalize();
+    const std::optional<double> offset =
+        FindEdge(image, pixel, across, reach, static_cast<float>(min_step));
+    if (!offset) continue;
+    if (normal->found < static_cast<int>(normal->magnitudes.size())) {
+      normal->magnitudes[normal->found++] = static_cast<float>(std::abs(*offset));
+    }
+    const double ratio = *offset / (4 * scale_px);
+    if (std::abs(ratio) >= 1) continue;
+    const double weight = (1 - ratio * ratio) * (1 - ratio * ratio);
+    Eigen::Matrix<double, 6, 1> jacobian;
+    const Eigen::Vector3d d_point = d_pixel.transpose() * across;
+    jacobian.head<3>() = d_point;
+    jacobian.tail<3>() = from_center.cross(d_point);
+    normal->h.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
+    normal->g += weight * *offset * jacobian;
+    normal->weighted_squares += weight * *offset * *offset;
+    normal->weights += weight;
+    ++normal->used;
+    normal->part_used[place.part] += std::abs(*offset) <= kOnEdgePx;
+  }
+}
+
+std::optional<PatternLocation> PatternLocator::Locate(const cv::Mat& image,
+                                                      const RigidTransform& initial,
+                                                      double reach_px, double min_step,
+                                                      int iterations) const {
+  PatternLocation location;
+  location.camera_from_pattern = initial;
+  RigidTransform& pose = location.camera_from_pattern;
+  double scale = std::max(1.0, 0.5 * reach_px);
+  double reach = reach_px;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    Normal normal;
+    Accumulate(image, pose, reach, min_step, scale, &normal);
+    if (normal.used < 12) return std::nullopt;
+    const auto solver = normal.h.selfadjointView<Eigen::Lower>().ldlt();
+    const Eigen::Matrix<double, 6, 1> step = solver.solve(normal.g);
+    if (!step.allFinite()) return std::nullopt;
+    pose.translation += step.head<3>();
+    const double angle = step.tail<3>().norm();
+    if (angle > 1) return std::nullopt;
+    if (angle > 1e-12) {
+      pose.rotation =
+          (Eigen::Quaterniond(Eigen::AngleAxisd(angle, step.tail<3>() / angle)) * pose.rotation)
+              .normalized();
+    }
+    // Robust scale of the residuals (median of their magnitudes).
+    const auto middle = normal.magnitudes.begin() + normal.found / 2;
+    std::nth_element(normal.magnitudes.begin(), middle, normal.magnitudes.begin() + normal.found);
+    scale = std::clamp(1.4826 * static_cast<double>(*middle), 0.25, scale);
+    reach = std::clamp(3 * scale, 1.5, reach);
+    if (iteration + 1 < iterations) continue;
+
+    const double variance =
+        std::max(kEdgeSigma * kEdgeSigma, normal.weighted_squares / normal.weights);
+    location.covariance = variance * solver.solve(Eigen::Matrix<double, 6, 6>::Identity().eval());
+    location.edge_rms_px = std::sqrt(normal.weighted_squares / normal.weights);
+    location.edge_share = static_cast<double>(normal.used) / std::max(1, normal.in_image);
+    location.edges = normal.used;
+    for (int part = 0; part < 8; ++part) {
+      const int seen = normal.part_in_image[part];
+      const double share = 3 * seen < normal.part_places[part]
+                               ? -1.0
+                               : static_cast<double>(normal.part_used[part]) / seen;
+      (part < 4 ? location.arm_share : location.ring_share)[part % 4] = share;
+    }
+  }
+  if (!location.covariance.allFinite()) return std::nullopt;
+  return location;
+}
+
+}  // namespace kestrel

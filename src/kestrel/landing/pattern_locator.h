@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "kestrel/camera/camera_model.h"
+#include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/landing/landing_pattern.h"
+
+namespace kestrel {
+
+// Pose of the pattern that explains the edges of its ring and cross, in the image itself.
+struct PatternLocation {
+  RigidTransform camera_from_pattern;
+  // Of the pose error: translation in the camera frame (m), then rotation vector in the camera
+  // frame about the pattern's centre (rad).
+  Eigen::Matrix<double, 6, 6> covariance;
+  double edge_rms_px = 0;  // of the edges used, from the projected pattern
+  double edge_share = 0;   // share of the pattern's edges in the image that were found there
+  int edges = 0;           // how many were used
+  // The same share for each arm and for the ring around it; negative when the image shows less than
+  // a third of it.
+  std::array<double, 4> arm_share{};
+  std::array<double, 4> ring_share{};
+};
+
+// Refines a pose from the edges (model-based pose estimation, after Drummond and Cipolla 2002): the
+// outlines of ring and arms are projected through the lens, the edge nearest to each of their
+// points is looked for along the normal, to a fraction of a pixel, and the pose that brings them
+// together is found by Gauss-Newton with robust weights.
+class PatternLocator {
+ public:
+  PatternLocator(const CameraModel& camera, const LandingPattern& pattern);
+
+  // 'image': CV_8UC1 of the camera. 'initial': a pose whose outlines are within 'reach_px' of the
+  // edges. 'min_step': gray values per pixel below which a change is no edge. Nothing when too few
+  // edges are found to fix the six parameters. Does not allocate.
+  std::optional<PatternLocation> Locate(const cv::Mat& image, const RigidTransform& initial,
+                                        double reach_px, double min_step, int iterations) const;
+
+ private:
+  // A point of an outline and the unit normal that points from black to white, in the plane.
+  struct Place {
+    Eigen::Vector2d point;
+    Eigen::Vector2d normal;
+    int part;  // 0 to 3: arm, 4 to 7: ring around it
+  };
+  struct Normal;
+
+  void AddCircle(double radius, double sign, int count, double arm_clearance);
+  void AddArms();
+  void Accumulate(const cv::Mat& image, const RigidTransform& pose, double reach_px,
+                  double min_step, double scale_px, Normal* normal) const;
+
+  CameraModel camera_;
+  LandingPattern pattern_;
+  std::vector<Place> places_;
+};
+
+}  // namespace kestrel

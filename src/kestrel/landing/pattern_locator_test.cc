@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/landing/pattern_locator.h"
+
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <gtest/gtest.h>
+
+#include "kestrel/landing/test_prints.h"
+
+namespace kestrel {
+namespace {
+
+class PatternLocatorTest : public ::testing::Test {
+ protected:
+  cv::Mat Draw(const RigidTransform& pose) const {
+    return DrawPrint(camera_, pattern_, SpokedPrint(pattern_, 4), pose);
+  }
+  Eigen::Vector2d Center(const RigidTransform& pose) const {
+    Eigen::Vector2d pixel(-1e9, -1e9);
+    camera_.Project(pose.translation, &pixel);
+    return pixel;
+  }
+  // A pose some pixels away.
+  RigidTransform Disturb(const RigidTransform& pose, Random* random) const {
+    RigidTransform disturbed = pose;
+    for (int k = 0; k < 3; ++k) disturbed.translation(k) += 0.01 * random->Uniform(-1, 1);
+    const Eigen::Vector3d turn{random->Normal(), random->Normal(), random->Normal()};
+    disturbed.rotation = Eigen::AngleAxisd(0.03, turn.normalized()) * disturbed.rotation;
+    return disturbed;
+  }
+
+  const LandingPattern pattern_{};
+  const CameraModel camera_ = TestPrintCamera();
+  const PatternLocator locator_{camera_, pattern_};
+};
+
+TEST_F(PatternLocatorTest, RecoversThePose) {
+  Random random(1);
+  for (int trial = 0; trial < 12; ++trial) {
+    const double distance = random.Uniform(1.3, 3);
+    const RigidTransform truth =
+        PrintPose({random.Uniform(-0.15, 0.15), random.Uniform(-0.1, 0.1), distance},
+                  random.Uniform(0, 0.5), random.Uniform(0, 6), random.Uniform(0, 6));
+    const cv::Mat image = Draw(truth);
+    const auto location = locator_.Locate(image, Disturb(truth, &random), 5, 10, 6);
+    ASSERT_TRUE(location);
+    EXPECT_LT((Center(location->camera_from_pattern) - Center(truth)).norm(), 0.05) << trial;
+    const auto error = PoseError(location->camera_from_pattern, truth);
+    EXPECT_LT(error.head<3>().norm(), 0.003 * distance) << trial;
+    EXPECT_LT(error.tail<3>().norm(), 0.03) << trial;
+    EXPECT_LT(location->edge_rms_px, 0.2);
+    EXPECT_GT(location->edge_share, 0.9);
+    for (int k = 0; k < 4; ++k) {
+      EXPECT_GT(location->arm_share[k], 0.8);
+      EXPECT_GT(location->ring_share[k], 0.8);
+    }
+  }
+}
+
+TEST_F(PatternLocatorTest, TheCovarianceIsThatOfTheErrors) {
+  Random random(2);
+  const RigidTransform truth = PrintPose({0.1, -0.05, 1.8}, 0.35, 0.8, 0.4);
+  const cv::Mat image = Draw(truth);
+  constexpr int kTrials = 100;
+  double sum = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const auto location =
+        locator_.Locate(AddNoise(image, 12, &random), Disturb(truth, &random), 4, 30, 6);
+    ASSERT_TRUE(location);
+    const auto error = PoseError(location->camera_from_pattern, truth);
+    sum += error.dot(location->covariance.ldlt().solve(error)) / 6;
+  }
+  const double ratio = std::sqrt(sum / kTrials);  // of errors and standard deviations
+  EXPECT_GT(ratio, 1.0 / 3);
+  EXPECT_LT(ratio, 3);
+}
+
+TEST_F(PatternLocatorTest, APartOutOfViewSaysNothing) {
+  Random random(3);
+  const RigidTransform truth = PrintPose({1.05, 0, 1.6}, 0, 0, 0);
+  const auto location = locator_.Locate(Draw(truth), Disturb(truth, &random), 5, 10, 6);
+  ASSERT_TRUE(location);
+  EXPECT_LT((Center(location->camera_from_pattern) - Center(truth)).norm(), 0.2);
+  EXPECT_LT(location->arm_share[0], 0);
+  EXPECT_GT(location->arm_share[2], 0.8);
+}
+
+TEST_F(PatternLocatorTest, WithoutEdgesThereIsNoPose) {
+  const RigidTransform pose = PrintPose({0, 0, 2}, 0, 0, 0);
+  EXPECT_FALSE(locator_.Locate(cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)), pose, 5, 10, 4));
+  EXPECT_FALSE(locator_.Locate(Draw(pose), PrintPose({0, 0, -2}, 0, 0, 0), 5, 10, 4));
+}
+
+}  // namespace
+}  // namespace kestrel

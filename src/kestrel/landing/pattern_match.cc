@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/landing/pattern_match.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace kestrel {
+namespace {
+
+constexpr int kRingPlaces = 48;
+// A contrast counts when it has at least this share of the print's contrast in its quarter.
+constexpr double kShare = 0.35;
+// Directions of the places in a quadrant, degrees from the arm before it, and their radii, inner
+// radii of the ring.
+constexpr int kQuadrantTurns = 7;
+constexpr std::array<double, kQuadrantTurns> kQuadrantAngles{27, 33, 39, 45, 51, 57, 63};
+constexpr std::array<double, 3> kQuadrantRadii{0.45, 0.6, 0.75};
+constexpr float kUnseen = -1e9f;
+constexpr double kMissingArm = 0.3;
+
+struct Tally {
+  int agreed = 0;
+  int seen = 0;
+  int all = 0;
+
+  double Share() const {
+    return 3 * seen < all ? -1.0 : static_cast<double>(agreed) / std::max(seen, 1);
+  }
+};
+
+template <typename Values>
+double Median(Values* values, std::size_t count) {
+  if (count == 0) return 0;
+  std::nth_element(values->begin(), values->begin() + count / 2, values->begin() + count);
+  return (*values)[count / 2];
+}
+
+// The shares of the quarters that can be seen.
+struct KnownShares {
+  explicit KnownShares(const std::array<double, 4>& shares) {
+    for (const double share : shares) {
+      if (share < 0) continue;
+      worst = std::min(worst, share);
+      sum += share;
+      ++count;
+    }
+  }
+  double worst = 1;
+  double sum = 0;
+  int count = 0;
+};
+
+}  // namespace
+
+double PatternMatch::RingShare() const {
+  const KnownShares rings(ring);
+  if (rings.count == 0) return 1;
+  return rings.count > 1 ? (rings.sum - rings.worst) / (rings.count - 1) : rings.worst;
+}
+
+double PatternMatch::Quality() const {
+  const KnownShares arms(arm);
+  const KnownShares quadrants(quadrant);
+  if (arms.count == 0 || quadrants.count == 0 || spokes >= 2) return 0;
+  const double least =
+      std::min({arms.sum / arms.count, quadrants.sum / quadrants.count, RingShare()});
+  return std::max(0.0, least - kMissingArm * (1 - arms.worst));
+}
+
+PatternMatcher::PatternMatcher(const LandingPattern& pattern) {
+  const double outer = pattern.outer_radius_m();
+  const double inner = pattern.inner_radius_m();
+  const double middle = 0.5 * (outer + inner);
+  const double margin = 0.5 * pattern.board_size_m - outer;
+  const double outside = outer + std::min(0.8 * pattern.ring_width_m, 0.6 * margin);
+  extent_m_ = outside * 1.02;
+  const auto at = [](double radius, double angle) {
+    return Place{static_cast<float>(radius * std::cos(angle)),
+                 static_cast<float>(radius * std::sin(angle))};
+  };
+  // In the frame of an arm: along it and across.
+  const auto beside = [](int quarter, double along, double across) {
+    const double angle = quarter * std::numbers::pi / 2;
+    return Place{static_cast<float>(along * std::cos(angle) - across * std::sin(angle)),
+                 static_cast<float>(along * std::sin(angle) + across * std::cos(angle))};
+  };
+  for (int i = 0; i < kRingPlaces; ++i) {
+    const double angle = (i + 0.5) * 2 * std::numbers::pi / kRingPlaces;
+    const int quarter = static_cast<int>(std::floor(angle / (std::numbers::pi / 2) + 0.5)) % 4;
+    const Place bright = at(outside, angle);
+    const Place dark = at(middle, angle);
+    ring_.push_back({quarter, {dark, dark}, {bright, bright}});
+  }
+  const double reach = std::min(pattern.arm_half_length_m, inner) - 0.5 * pattern.arm_width_m;
+  const double side = 1.15 * pattern.arm_width_m;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    for (int i = 0; i < 10; ++i) {
+      const double along = side + 0.02 + (reach - side - 0.02) * i / 9;
+      const Place dark = beside(quarter, along, 0);
+      arms_.push_back(
+          {quarter, {dark, dark}, {beside(quarter, along, side), beside(quarter, along, -side)}});
+    }
+    // From half a quadrant before the arm to half a quadrant behind it.
+    for (int i = 0; i < kQuadrantTurns; ++i) {
+      const double angle = (quarter + kQuadrantAngles[i] / 90) * std::numbers::pi / 2;
+      for (const double radius : kQuadrantRadii) {
+        const Place bright = at(radius * inner, angle);
+        quadrants_.push_back({(quarter + (kQuadrantAngles[i] > 45 ? 1 : 0)) % 4,
+                              {at(middle, angle), beside(quarter, radius * inner, 0)},
+                              {bright, bright}});
+      }
+    }
+  }
+}
+
+double PatternMatcher::RingContrast(const cv::Mat& image, const PatternView& view) const {
+  std::array<float, kRingPlaces> known;
+  std::size_t count = 0;
+  for (const Contrast& contrast : ring_) {
+    const float dark = view.Sample(image, contrast.dark[0].x, contrast.dark[0].y);
+    const float bright = view.Sample(image, contrast.bright[0].x, contrast.bright[0].y);
+    if (dark >= 0 && bright >= 0) known[count++] = bright - dark;
+  }
+  return count < kRingPlaces / 6 ? 0 : Median(&known, count);
+}
+
+PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view) const {
+  PatternMatch match;
+  std::array<Tally, 4> arm, quadrant, ring;
+  // Difference of a contrast; far below zero where the image does not show it.
+  const auto darker = [&](const std::array<Place, 2>& places) {
+    const float first = view.Sample(image, places[0].x, places[0].y);
+    if (places[0].x == places[1].x && places[0].y == places[1].y) return first;
+    return std::min(first, view.Sample(image, places[1].x, places[1].y));
+  };
+  const auto difference = [&](const Contrast& contrast) {
+    const float dark = darker(contrast.dark);
+    const float bright = darker(contrast.bright);
+    return dark < 0 || bright < 0 ? kUnseen : bright - dark;
+  };
+
+  // The print's contrast in each quarter, which shadow and haze may make different, is that of the
+  // ring; but not less than a third of what it is over the whole ring. Where the ring is out of
+  // view it is that of the arms.
+  std::array<float, kRingPlaces> of_ring;
+  std::array<float, kRingPlaces> known;
+  std::size_t count = 0;
+  std::array<std::array<float, kRingPlaces>, 4> of_quarter;
+  std::array<std::size_t, 4> quarter_count{};
+  for (std::size_t i = 0; i < ring_.size(); ++i) {
+    of_ring[i] = difference(ring_[i]);
+    if (of_ring[i] == kUnseen) continue;
+    known[count++] = of_ring[i];
+    const int q = ring_[i].quarter;
+    of_quarter[q][quarter_count[q]++] = of_ring[i];
+  }
+  if (count < kRingPlaces / 6) {
+    count = 0;
+    for (const Contrast& contrast : arms_) {
+      if (count == known.size()) break;
+      if (const float value = difference(contrast); value != kUnseen) known[count++] = value;
+    }
+  }
+  match.contrast = Median(&known, count);
+  if (match.contrast < 2) return match;
+  std::array<double, 4> least;
+  for (int q = 0; q < 4; ++q) {
+    const double local =
+        quarter_count[q] == 0 ? match.contrast : Median(&of_quarter[q], quarter_count[q]);
+    least[q] = kShare * std::clamp(local, match.contrast / 3, match.contrast);
+  }
+
+  int seen = 0, all = 0;
+  const auto count_in = [&](const Contrast& contrast, float value, std::array<Tally, 4>* tallies) {
+    Tally& tally = (*tallies)[contrast.quarter];
+    ++tally.all;
+    ++all;
+    if (value == kUnseen) return;
+    ++tally.seen;
+    ++seen;
+    tally.agreed += value >= least[contrast.quarter];
+  };
+  for (std::size_t i = 0; i < ring_.size(); ++i) count_in(ring_[i], of_ring[i], &ring);
+  for (const Contrast& contrast : arms_) count_in(contrast, difference(contrast), &arm);
+  std::size_t place = 0;
+  for (int q = 0; q < 4; ++q) {
+    bool spoke = false;
+    for (int turn = 0; turn < kQuadrantTurns; ++turn) {
+      int dark = 0;
+      for (std::size_t radius = 0; radius < kQuadrantRadii.size(); ++radius, ++place) {
+        const Contrast& contrast = quadrants_[place];
+        const float value = difference(contrast);
+        count_in(contrast, value, &quadrant);
+        dark += value != kUnseen && value < least[contrast.quarter];
+      }
+      spoke |= dark == static_cast<int>(kQuadrantRadii.size());
+    }
+    match.spokes += spoke;
+  }
+  for (int q = 0; q < 4; ++q) {
+    match.arm[q] = arm[q].Share();
+    match.quadrant[q] = quadrant[q].Share();
+    match.ring[q] = ring[q].Share();
+  }
+  match.seen = static_cast<double>(seen) / all;
+  return match;
+}
+
+}  // namespace kestrel

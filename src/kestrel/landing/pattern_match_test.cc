@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/landing/pattern_match.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "kestrel/landing/test_prints.h"
+
+namespace kestrel {
+namespace {
+
+constexpr double kMinQuality = 0.65;  // the default of the detector
+
+class PatternMatcherTest : public ::testing::Test {
+ protected:
+  PatternMatch Match(const cv::Mat& image, const RigidTransform& pose) const {
+    return matcher_.Match(image, PatternView(camera_, pose, matcher_.extent_m(), {}));
+  }
+  cv::Mat Draw(const Print& print) const { return DrawPrint(camera_, pattern_, print, pose_); }
+
+  const LandingPattern pattern_{};
+  const CameraModel camera_ = TestPrintCamera();
+  const PatternMatcher matcher_{pattern_};
+  const RigidTransform pose_ = PrintPose({0.1, -0.05, 2.5}, 0.4, 1, 0.3);
+  const cv::Mat pattern_image_ = DrawPrint(camera_, pattern_, SpokedPrint(pattern_, 4), pose_);
+};
+
+TEST_F(PatternMatcherTest, ThePatternAgreesEverywhere) {
+  const PatternMatch match = Match(pattern_image_, pose_);
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_GT(match.arm[k], 0.9);
+    EXPECT_GT(match.quadrant[k], 0.95);
+    EXPECT_GT(match.ring[k], 0.95);
+  }
+  EXPECT_EQ(match.seen, 1);
+  EXPECT_EQ(match.spokes, 0);
+  EXPECT_NEAR(match.contrast, 160, 25);
+  EXPECT_GT(match.Quality(), 0.9);
+}
+
+TEST_F(PatternMatcherTest, TheDirectionOfTheArmsMatters) {
+  const RigidTransform turned = PrintPose({0.1, -0.05, 2.5}, 0.4, 1, 0.3 + 0.785);
+  EXPECT_LT(Match(pattern_image_, turned).Quality(), 0.3);
+}
+
+TEST_F(PatternMatcherTest, OtherFiguresInTheRingDoNotAgree) {
+  for (const int spokes : {1, 2, 3, 5, 6, 8}) {
+    EXPECT_LT(Match(Draw(SpokedPrint(pattern_, spokes)), pose_).Quality(), kMinQuality) << spokes;
+  }
+  const Print empty = [this](double x, double y) { return IsRing(pattern_, x, y); };
+  EXPECT_LT(Match(Draw(empty), pose_).Quality(), kMinQuality);
+  const Print full = [this](double x, double y) {
+    return std::hypot(x, y) < pattern_.outer_radius_m();
+  };
+  EXPECT_LT(Match(Draw(full), pose_).Quality(), kMinQuality);
+}
+
+TEST_F(PatternMatcherTest, AMissingArmIsSeen) {
+  const Print three = [this](double x, double y) {
+    return SpokedPrint(pattern_, 4)(x, y) && !(x > 0.06 && std::abs(y) < 0.06 && x < 0.39);
+  };
+  const PatternMatch match = Match(Draw(three), pose_);
+  EXPECT_LT(match.arm[0], 0.2);
+  EXPECT_GT(match.arm[1], 0.9);
+  EXPECT_LT(match.Quality(), kMinQuality);
+}
+
+TEST_F(PatternMatcherTest, AShadowOverAHalfCostsLittle) {
+  cv::Mat shaded = pattern_image_.clone();
+  cv::Mat left = shaded.colRange(0, 168);
+  left.convertTo(left, CV_8UC1, 0.6);
+  EXPECT_GT(Match(shaded, pose_).Quality(), 0.8);
+}
+
+TEST_F(PatternMatcherTest, WithoutContrastThereIsNoQuality) {
+  const PatternMatch match = Match(cv::Mat(240, 320, CV_8UC1, cv::Scalar(100)), pose_);
+  EXPECT_EQ(match.Quality(), 0);
+}
+
+TEST_F(PatternMatcherTest, QuartersOutOfViewSayNothing) {
+  const RigidTransform aside = PrintPose({1.55, 0, 2.2}, 0, 0, 0);
+  const PatternMatch match =
+      Match(DrawPrint(camera_, pattern_, SpokedPrint(pattern_, 4), aside), aside);
+  EXPECT_LT(match.arm[0], 0);
+  EXPECT_LT(match.ring[0], 0);
+  EXPECT_GT(match.arm[2], 0.9);
+  EXPECT_LT(match.seen, 0.75);
+  EXPECT_GT(match.Quality(), 0.85);
+}
+
+TEST(PatternMatch, QualityIsThatOfTheWorstKind) {
+  PatternMatch match;
+  match.arm = {1, 1, 1, 1};
+  match.quadrant = {0.5, 0.5, 0.5, 0.5};
+  match.ring = {1, 1, 1, 0};  // one quarter of the ring may be lost
+  EXPECT_DOUBLE_EQ(match.Quality(), 0.5);
+  match.quadrant = {1, 1, 1, 1};
+  EXPECT_DOUBLE_EQ(match.Quality(), 1);
+  match.arm = {1, 1, 1, 0};  // an arm may not
+  EXPECT_DOUBLE_EQ(match.Quality(), 0.75 - 0.3);
+  match.arm = {-1, -1, -1, -1};
+  EXPECT_EQ(match.Quality(), 0);
+  match.arm = {1, 1, 1, 1};
+  match.spokes = 2;
+  EXPECT_EQ(match.Quality(), 0);
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/landing/pattern_view.h"
+
+#include <gtest/gtest.h>
+
+#include "kestrel/camera/test_cameras.h"
+#include "kestrel/landing/test_prints.h"
+
+namespace kestrel {
+namespace {
+
+TEST(SampleGray, InterpolatesAndEndsWithTheImage) {
+  cv::Mat image(5, 7, CV_8UC1);
+  for (int y = 0; y < 5; ++y) {
+    for (int x = 0; x < 7; ++x) {
+      image.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(10 * x + 20 * y);
+    }
+  }
+  for (const float y : {0.f, 0.25f, 2.5f, 4.f}) {
+    for (const float x : {0.f, 1.75f, 5.5f, 6.f}) {
+      EXPECT_FLOAT_EQ(SampleGray(image, x, y), 10 * x + 20 * y);
+    }
+  }
+  EXPECT_LT(SampleGray(image, -0.01f, 2), 0);
+  EXPECT_LT(SampleGray(image, 6.01f, 2), 0);
+  EXPECT_LT(SampleGray(image, 2, 4.01f), 0);
+  EXPECT_LT(SampleGray(image, NAN, 2), 0);
+  EXPECT_FLOAT_EQ(SampleGray(image(cv::Rect(2, 1, 3, 3)), 1, 1), 70) << "rows are strided";
+}
+
+TEST(ImageRegion, PixelsOfALevelAreCentredOnThoseTheyAreMadeOf) {
+  const ImageRegion region{{64, 32}, 2};
+  EXPECT_EQ(region.FromFull({65.5, 33.5}), Eigen::Vector2d(0, 0));
+  EXPECT_EQ(region.ToFull({0, 0}), Eigen::Vector2d(65.5, 33.5));
+  const Eigen::Vector2d pixel(123.4, 56.7);
+  EXPECT_LT((region.ToFull(region.FromFull(pixel)) - pixel).norm(), 1e-12);
+}
+
+TEST(PatternView, AgreesWithTheProjection) {
+  Random random(1);
+  for (const CameraIntrinsics& intrinsics : {PaperCamera(), EurocCamera()}) {
+    const CameraModel camera(intrinsics);
+    for (int trial = 0; trial < 50; ++trial) {
+      const RigidTransform pose =
+          PrintPose({random.Uniform(-1, 1), random.Uniform(-0.6, 0.6), random.Uniform(2, 6)},
+                    random.Uniform(0, 0.6), random.Uniform(0, 6), random.Uniform(0, 6));
+      const ImageRegion region{{32, 64}, trial % 3};
+      const PatternView view(camera, pose, 0.6, region);
+      ASSERT_TRUE(view.valid());
+      for (int i = 0; i < 50; ++i) {
+        const double x = random.Uniform(-0.6, 0.6), y = random.Uniform(-0.6, 0.6);
+        Eigen::Vector2d pixel;
+        camera.Project(pose * Eigen::Vector3d(x, y, 0), &pixel);
+        const Eigen::Vector2f seen = view.Pixel(static_cast<float>(x), static_cast<float>(y));
+        EXPECT_LT((seen.cast<double>() - region.FromFull(pixel)).norm(), 0.4 / region.scale());
+      }
+    }
+  }
+}
+
+TEST(PatternView, IsNotValidBehindTheCamera) {
+  const CameraModel camera = TestPrintCamera();
+  EXPECT_TRUE(PatternView(camera, PrintPose({0, 0, 2}, 0, 0, 0), 0.6, {}).valid());
+  EXPECT_FALSE(PatternView(camera, PrintPose({0, 0, -2}, 0, 0, 0), 0.6, {}).valid());
+  EXPECT_FALSE(PatternView(camera, PrintPose({0, 0, 0.3}, 1.4, 0, 0), 0.6, {}).valid());
+}
+
+}  // namespace
+}  // namespace kestrel

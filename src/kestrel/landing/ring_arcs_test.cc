@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/landing/ring_arcs.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "kestrel/landing/ring_fit.h"
+#include "kestrel/landing/test_prints.h"
+
+namespace kestrel {
+namespace {
+
+class FindArcRingsTest : public ::testing::Test {
+ protected:
+  // Traces a figure in pixels of the camera's image and looks for rings.
+  const std::vector<ArcRing>& Find(const Print& is_dark, double min_coverage = 0.25) {
+    BinaryImage binary;
+    binary.dark.Reset(320, 240);
+    binary.bright.Reset(320, 240);
+    for (int y = 0; y < 240; ++y) {
+      for (int x = 0; x < 320; ++x) {
+        binary.bright.Set(x, y);
+        if (is_dark(x, y)) binary.dark.Set(x, y);
+      }
+    }
+    BorderTracer tracer;
+    tracer.Trace(binary, cv::Rect(0, 0, 320, 240), BorderLimits{});
+    const double tolerance = 0.7 / camera_.intrinsics().fx_px;
+    FindArcRings(tracer, rays_, {}, tolerance, min_coverage, &workspace_);
+    return workspace_.rings;
+  }
+  static bool OnRing(double x, double y) {
+    const double r = std::hypot(x - 150, y - 110);
+    return r > 48 && r < 60;
+  }
+  void ExpectCircle(const ArcRing& ring) const {
+    const double radius_px = ring.edge == RingEdge::kOuter ? 60 : 48;
+    Eigen::Vector3d expected;
+    camera_.Unproject({150, 110}, &expected);
+    const auto poses = CirclePosesFromCone(ring.cone, 1, ring.toward);
+    EXPECT_LT((poses[0].center.normalized() - expected).norm() * 220, 2) << "pixels";
+    EXPECT_NEAR(std::tan(ring.cone.HalfAngles().x()) * 220, radius_px, 2.5);
+  }
+
+  const CameraModel camera_ = TestPrintCamera();
+  const RayTable rays_{camera_};
+  RingArcsWorkspace workspace_;
+};
+
+TEST_F(FindArcRingsTest, AWholeRingIsCovered) {
+  const auto& rings = Find(OnRing);
+  ASSERT_EQ(rings.size(), 2u) << "its two edges";
+  for (const ArcRing& ring : rings) {
+    EXPECT_GT(ring.coverage, 0.9);
+    ExpectCircle(ring);
+  }
+}
+
+TEST_F(FindArcRingsTest, ABrokenRingIsPutTogether) {
+  // Cut by a wedge and by a bar: three arcs of each edge.
+  const auto& rings = Find([](double x, double y) {
+    return OnRing(x, y) && std::abs(y - 130) > 5 &&
+           !(x > 150 && std::abs(x - 150) > y - 100 && y > 100 && y < 125);
+  });
+  ASSERT_FALSE(rings.empty());
+  EXPECT_GT(rings[0].coverage, 0.6);
+  for (const ArcRing& ring : rings) ExpectCircle(ring);
+}
+
+TEST_F(FindArcRingsTest, ARingGrownTogetherWithSomethingIsFound) {
+  const auto& rings = Find([](double x, double y) {
+    return OnRing(x, y) || (x > 150 && x < 300 && y > 160 && y < 230);
+  });
+  bool outer = false;
+  for (const ArcRing& ring : rings) {
+    if (ring.edge != RingEdge::kOuter) continue;
+    outer = true;
+    ExpectCircle(ring);
+    EXPECT_LT(ring.coverage, 0.95);
+  }
+  EXPECT_TRUE(outer);
+}
+
+TEST_F(FindArcRingsTest, CoverageIsAskedFor) {
+  // A third of the ring.
+  const Print third = [](double x, double y) { return OnRing(x, y) && y < 82; };
+  const auto& rings = Find(third, 0.6);
+  EXPECT_TRUE(rings.empty());
+  ASSERT_FALSE(Find(third, 0.2).empty());
+  EXPECT_LT(workspace_.rings[0].coverage, 0.5);
+}
+
+TEST_F(FindArcRingsTest, StraightLinesHaveNoArcs) {
+  EXPECT_TRUE(Find([](double x, double y) {
+                return x > 60 && x < 200 && y > 60 && y < 160 &&
+                       !(x > 90 && x < 170 && y > 90 && y < 130);
+              }).empty());
+}
+
+}  // namespace
+}  // namespace kestrel

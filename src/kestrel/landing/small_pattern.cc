@@ -1,0 +1,481 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/landing/small_pattern.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "kestrel/landing/pattern_pose.h"
+
+namespace kestrel {
+namespace {
+
+constexpr double kGoodLensBlurPx = 0.7;  // of optics and pixels, standard deviation
+constexpr double kMinBlurPx = 0.4;
+constexpr double kMaxBlurPx = 1.2;
+constexpr int kUnknowns = 11;         // pose, blur, white, contrast, two slopes of the light
+constexpr double kBlurSpread = 0.35;  // of the blur's logarithm over lenses
+constexpr double kMinContrast = 2;
+constexpr double kMaxWhite = 600;  // gray value of white under the strongest overexposure
+constexpr double kSaturated = 254;
+constexpr std::size_t kMinPixels = 30;
+constexpr int kMaxSide = 72;  // of the box around the print, pixels
+
+// A gray value where the image cuts off what is brighter: then it is what is expected.
+double SeenGray(double gray, double expected) {
+  return gray >= kSaturated && expected > gray ? expected : gray;
+}
+
+// Blurred step from 0 to 1 over a distance in units of the blur's standard deviation: the integral
+// of the biweight kernel of variance one, which is near to a Gaussian and ends at 2.65.
+struct Step {
+  double value;
+  double slope;
+};
+Step BlurredStep(double z) {
+  constexpr double kReach = 2.6457513110645906;  // sqrt(7)
+  const double t = std::clamp(z / kReach, -1.0, 1.0);
+  const double square = t * t;
+  const double rest = 1 - square;
+  return {0.5 + t * (15.0 / 16 - square * (10.0 / 16 - square * 3.0 / 16)),
+          15.0 / 16 * rest * rest / kReach};
+}
+
+// A blurred stroke: where a distance lies between two limits.
+struct Stroke {
+  double value = 0;
+  double by_distance = 0;  // derivative
+  double by_log_blur = 0;
+};
+Stroke BlurredStroke(double distance, double low, double high, double blur) {
+  const double z_low = (distance - low) / blur;
+  const double z_high = (distance - high) / blur;
+  const Step a = BlurredStep(z_low);
+  const Step b = BlurredStep(z_high);
+  return {a.value - b.value, (a.slope - b.slope) / blur, b.slope * z_high - a.slope * z_low};
+}
+
+// Where rays meet the plane of a pose.
+struct PlaneMap {
+  explicit PlaneMap(const RigidTransform& camera_from_pattern)
+      : rotation(camera_from_pattern.rotation.toRotationMatrix()),
+        translation(camera_from_pattern.translation) {
+    Eigen::Matrix3d basis;
+    basis << rotation.col(0), rotation.col(1), translation;
+    inverse = basis.inverse();
+  }
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d translation;
+  Eigen::Matrix3d inverse;  // ray to homogeneous plane coordinates
+};
+
+using PlanePoint = SmallPatternWorkspace::PlanePoint;
+
+PlanePoint Intersect(const PlaneMap& map, const SmallPatternWorkspace::Pixel& pixel) {
+  const Eigen::Vector3d h = map.inverse * pixel.ray;
+  const Eigen::Vector3d hu = map.inverse * pixel.d_ray_du;
+  const Eigen::Vector3d hv = map.inverse * pixel.d_ray_dv;
+  const double w = 1 / h.z();
+  PlanePoint point{h.x() * w, h.y() * w, {}};
+  point.by_pixel << (hu.x() - point.x * hu.z()) * w, (hv.x() - point.x * hv.z()) * w,
+      (hu.y() - point.y * hu.z()) * w, (hv.y() - point.y * hv.z()) * w;
+  return point;
+}
+
+}  // namespace
+
+// How dark the blurred print is at a point of its plane, 0 white to 1 black.
+struct SmallPatternFitter::Darkness {
+  double value;
+  double by_x, by_y;  // per metre
+  double by_log_blur;
+  double ring;                 // of the ring alone
+  std::array<double, 2> arms;  // of the arms along x and along y
+};
+
+SmallPatternFitter::SmallPatternFitter(const CameraModel& camera, const RayTable& rays,
+                                       const LandingPattern& pattern)
+    : camera_(camera), rays_(rays), pattern_(pattern) {
+  const double margin = 0.5 * pattern.board_size_m - pattern.outer_radius_m();
+  extent_m_ = pattern.outer_radius_m() + std::min(1.0 * pattern.ring_width_m, 0.6 * margin);
+}
+
+SmallPatternFitter::Darkness SmallPatternFitter::Evaluate(double x, double y,
+                                                          const Eigen::Matrix2d& d_plane,
+                                                          double blur_px) const {
+  const double r = std::max(std::hypot(x, y), 1e-9);
+  const Eigen::Vector2d radial(x / r, y / r);
+  const double blur_r = blur_px * (d_plane.transpose() * radial).norm();
+  const double blur_x = blur_px * d_plane.row(0).norm();
+  const double blur_y = blur_px * d_plane.row(1).norm();
+  const double half_width = 0.5 * pattern_.arm_width_m;
+  const double length = pattern_.arm_half_length_m;
+  const Stroke ring =
+      BlurredStroke(r, pattern_.inner_radius_m(), pattern_.outer_radius_m(), blur_r);
+  const Stroke x_across = BlurredStroke(y, -half_width, half_width, blur_y);
+  const Stroke x_along = BlurredStroke(x, -length, length, blur_x);
+  const Stroke y_across = BlurredStroke(x, -half_width, half_width, blur_x);
+  const Stroke y_along = BlurredStroke(y, -length, length, blur_y);
+  const double arm_x = x_across.value * x_along.value;
+  const double arm_y = y_across.value * y_along.value;
+  const double no_ring = 1 - ring.value, no_x = 1 - arm_x, no_y = 1 - arm_y;
+
+  Darkness dark;
+  dark.ring = ring.value;
+  dark.arms = {arm_x, arm_y};
+  dark.value = 1 - no_ring * no_x * no_y;
+  const double by_r = no_x * no_y * ring.by_distance;
+  const double by_arm_x = no_ring * no_y;
+  const double by_arm_y = no_ring * no_x;
+  dark.by_x = by_r * radial.x() + by_arm_x * x_across.value * x_along.by_distance +
+              by_arm_y * y_across.by_distance * y_along.value;
+  dark.by_y = by_r * radial.y() + by_arm_x * x_across.by_distance * x_along.value +
+              by_arm_y * y_across.value * y_along.by_distance;
+  dark.by_log_blur =
+      no_x * no_y * ring.by_log_blur +
+      by_arm_x * (x_across.by_log_blur * x_along.value + x_across.value * x_along.by_log_blur) +
+      by_arm_y * (y_across.by_log_blur * y_along.value + y_across.value * y_along.by_log_blur);
+  return dark;
+}
+
+void SmallPatternWorkspace::Reserve() {
+  constexpr std::size_t kMost = static_cast<std::size_t>(kMaxSide + 1) * (kMaxSide + 1);
+  pixels.reserve(kMost);
+  points.reserve(kMost);
+}
+
+// Collects the pixels that show the disc of the print and the white around it under 'pose'.
+bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose,
+                                SmallPatternWorkspace* workspace) const {
+  workspace->pixels.clear();
+  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
+  Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
+  for (int i = 0; i < 8; ++i) {
+    const double angle = i * 0.7853981633974483;
+    // The corners of an octagon around the circle.
+    const double reach = extent_m_ * 1.0823922;
+    Eigen::Vector2d pixel;
+    if (camera_.Project(pose.translation + reach * (std::cos(angle) * rotation.col(0) +
+                                                    std::sin(angle) * rotation.col(1)),
+                        &pixel) == ProjectionStatus::kOutsideModel) {
+      return false;
+    }
+    low = low.cwiseMin(pixel);
+    high = high.cwiseMax(pixel);
+  }
+  const int x0 = std::max(0, static_cast<int>(std::floor(low.x())));
+  const int y0 = std::max(0, static_cast<int>(std::floor(low.y())));
+  const int x1 = std::min(image.cols - 1, static_cast<int>(std::ceil(high.x())));
+  const int y1 = std::min(image.rows - 1, static_cast<int>(std::ceil(high.y())));
+  if (x1 - x0 < 4 || y1 - y0 < 4 || x1 - x0 > kMaxSide || y1 - y0 > kMaxSide) return false;
+  const PlaneMap map(pose);
+  for (int y = y0; y <= y1; ++y) {
+    const std::uint8_t* row = image.ptr(y);
+    for (int x = x0; x <= x1; ++x) {
+      const auto u = static_cast<float>(x), v = static_cast<float>(y);
+      SmallPatternWorkspace::Pixel pixel;
+      pixel.ray = rays_.Ray(u, v).cast<double>();
+      const Eigen::Vector3d h = map.inverse * pixel.ray;
+      if (!(h.z() > 0) || h.head<2>().squaredNorm() > extent_m_ * extent_m_ * h.z() * h.z()) {
+        continue;
+      }
+      pixel.d_ray_du = (rays_.Ray(u + 1, v) - rays_.Ray(u - 1, v)).cast<double>() / 2;
+      pixel.d_ray_dv = (rays_.Ray(u, v + 1) - rays_.Ray(u, v - 1)).cast<double>() / 2;
+      pixel.gray = row[x];
+      workspace->pixels.push_back(pixel);
+    }
+  }
+  return workspace->pixels.size() >= kMinPixels;
+}
+
+// Darkness of the arm along 'along', metres.
+double SmallPatternFitter::ArmDarkness(double along, double across, double blur_along,
+                                       double blur_across) const {
+  const double half_width = 0.5 * pattern_.arm_width_m;
+  const double length = pattern_.arm_half_length_m;
+  const auto step = [](double distance, double blur) { return BlurredStep(distance / blur).value; };
+  const double width =
+      step(across + half_width, blur_across) - step(across - half_width, blur_across);
+  if (width <= 0) return 0;
+  return width * (step(along + length, blur_along) - step(along - length, blur_along));
+}
+
+SmallPatternFitter::Start SmallPatternFitter::FindStart(const cv::Mat& image,
+                                                        const CirclePose& ring,
+                                                        std::span<const double> scales,
+                                                        std::optional<double> arm_angle,
+                                                        SmallPatternWorkspace* workspace) const {
+  // Over a right angle: within 7.5 degrees of every direction.
+  const int turns = arm_angle ? 1 : 6;
+  Start best{{}, -1};
+  for (const double scale : scales) {
+    CirclePose scaled = ring;
+    scaled.center /= scale;  // farther away is smaller
+    const RigidTransform unturned = PatternPose(scaled, 0);
+    if (!Gather(image, unturned, workspace)) continue;
+    const PlaneMap map(unturned);
+    workspace->points.clear();
+    double g = 0, gg = 0;
+    for (const auto& pixel : workspace->pixels) {
+      PlanePoint point = Intersect(map, pixel);
+      // The ring looks the same however it is turned.
+      const double r = std::max(std::hypot(point.x, point.y), 1e-9);
+      const double blur_r =
+          kGoodLensBlurPx *
+          (point.by_pixel.transpose() * Eigen::Vector2d(point.x / r, point.y / r)).norm();
+      point.ring =
+          BlurredStroke(r, pattern_.inner_radius_m(), pattern_.outer_radius_m(), blur_r).value;
+      workspace->points.push_back(point);
+      g += pixel.gray;
+      gg += pixel.gray * pixel.gray;
+    }
+    const auto n = static_cast<double>(workspace->pixels.size());
+    for (int turn = 0; turn < turns; ++turn) {
+      const double angle = arm_angle.value_or(0) + turn * (std::numbers::pi / 2) / turns;
+      const Eigen::Matrix2d turned = Eigen::Rotation2Dd(-angle).toRotationMatrix();
+      double d = 0, dd = 0, gd = 0;
+      for (std::size_t i = 0; i < workspace->points.size(); ++i) {
+        const PlanePoint& point = workspace->points[i];
+        const Eigen::Vector2d place = turned * Eigen::Vector2d(point.x, point.y);
+        const Eigen::Matrix2d by_pixel = turned * point.by_pixel;
+        const double blur_x = kGoodLensBlurPx * by_pixel.row(0).norm();
+        const double blur_y = kGoodLensBlurPx * by_pixel.row(1).norm();
+        const double arms = (1 - ArmDarkness(place.x(), place.y(), blur_x, blur_y)) *
+                            (1 - ArmDarkness(place.y(), place.x(), blur_y, blur_x));
+        const double dark = 1 - (1 - point.ring) * arms;
+        d += dark;
+        dd += dark * dark;
+        gd += workspace->pixels[i].gray * dark;
+      }
+      const double variance = (gg - g * g / n) * (dd - d * d / n);
+      const double correlation = variance > 0 ? -(gd - g * d / n) / std::sqrt(variance) : -1;
+      if (correlation > best.correlation) best = {PatternPose(scaled, angle), correlation};
+    }
+    // What looks nothing like the print does not for being a little smaller.
+    if (best.correlation < 0.1) break;
+  }
+  return best;
+}
+
+// The unknowns of a fit.
+struct SmallPatternFitter::State {
+  RigidTransform pose;
+  double blur_px = kGoodLensBlurPx;
+  double white = 255;   // gray value, which the image may cut off
+  double contrast = 0;  // white minus black
+
+  Eigen::Vector2d slope{0, 0};  // of the light over the print, gray values per metre
+
+  double Gray(const PlanePoint& point, const Darkness& dark) const {
+    return white + slope.x() * point.x + slope.y() * point.y - contrast * dark.value;
+  }
+};
+
+// Normal equations of a state for small changes of pose (translation, then rotation about the
+// centre), logarithm of the blur, white, contrast and slopes; and the residuals that made them.
+struct SmallPatternFitter::System {
+  Eigen::Matrix<double, kUnknowns, kUnknowns> h =
+      Eigen::Matrix<double, kUnknowns, kUnknowns>::Zero();
+  Eigen::Matrix<double, kUnknowns, 1> b = Eigen::Matrix<double, kUnknowns, 1>::Zero();
+  struct Zone {
+    double squares = 0;
+    int count = 0;
+    double Rms() const { return std::sqrt(squares / std::max(1, count)); }
+  };
+  std::array<Zone, 3> zones;  // inside of the ring, ring, white
+  double squares = 0;         // of the residuals
+  double sum = 0;             // of the gray values
+  double sum_squares = 0;
+  double count = 0;
+
+  double variance() const { return squares / std::max(1.0, count - kUnknowns); }
+  double correlation() const {
+    const double about_mean = sum_squares - sum * sum / count;
+    return std::sqrt(std::max(0.0, 1 - squares / std::max(about_mean, 1e-9)));
+  }
+};
+
+// The gray values of black and white under a pose, by linear regression.
+void SmallPatternFitter::MeasureLevels(const SmallPatternWorkspace& workspace, State* state) const {
+  const PlaneMap map(state->pose);
+  double n = 0, g = 0, d = 0, dd = 0, gd = 0;
+  for (const auto& pixel : workspace.pixels) {
+    const PlanePoint point = Intersect(map, pixel);
+    const double dark = Evaluate(point.x, point.y, point.by_pixel, state->blur_px).value;
+    ++n;
+    g += pixel.gray;
+    d += dark;
+    dd += dark * dark;
+    gd += pixel.gray * dark;
+  }
+  const double spread = dd - d * d / n;
+  state->contrast = spread > 1e-9 ? -(gd - g * d / n) / spread : 0;
+  state->white = (g + state->contrast * d) / n;
+}
+
+SmallPatternFitter::System SmallPatternFitter::Linearize(const SmallPatternWorkspace& workspace,
+                                                         const State& state) const {
+  const PlaneMap map(state.pose);
+  const Eigen::Vector3d normal = map.rotation.col(2);
+  const double inner = pattern_.inner_radius_m();
+  const double outer = pattern_.outer_radius_m() + 0.35 * pattern_.ring_width_m;
+  System system;
+  for (const auto& pixel : workspace.pixels) {
+    const PlanePoint point = Intersect(map, pixel);
+    const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
+    const double expected = state.Gray(point, dark);
+    const double gray = SeenGray(pixel.gray, expected);
+    const double residual = gray - expected;
+    ++system.count;
+    system.sum += gray;
+    system.sum_squares += gray * gray;
+    system.squares += residual * residual;
+    const double radius = std::hypot(point.x, point.y);
+    System::Zone& zone = system.zones[radius < inner ? 0 : radius < outer ? 1 : 2];
+    zone.squares += residual * residual;
+    ++zone.count;
+    if (gray != pixel.gray) continue;  // cut off: says nothing about small changes
+    // A moved plane point stays on the ray of its pixel: what is left of the motion within the
+    // plane, along the ray, moves the print under the pixel the other way.
+    const Eigen::Vector3d from_center =
+        point.x * map.rotation.col(0) + point.y * map.rotation.col(1);
+    const Eigen::Vector3d shear = normal / normal.dot(pixel.ray);
+    const Eigen::Vector3d bx = map.rotation.col(0) - map.rotation.col(0).dot(pixel.ray) * shear;
+    const Eigen::Vector3d by = map.rotation.col(1) - map.rotation.col(1).dot(pixel.ray) * shear;
+    const Eigen::Vector3d d_point = state.contrast * (dark.by_x * bx + dark.by_y * by);
+    Eigen::Matrix<double, kUnknowns, 1> jacobian;
+    jacobian.head<3>() = d_point;
+    jacobian.segment<3>(3) = from_center.cross(d_point);
+    jacobian(6) = -state.contrast * dark.by_log_blur;
+    jacobian(7) = 1;
+    jacobian(8) = -dark.value;
+    jacobian(9) = point.x;
+    jacobian(10) = point.y;
+    system.h.selfadjointView<Eigen::Lower>().rankUpdate(jacobian);
+    system.b += jacobian * residual;
+  }
+  system.h.triangularView<Eigen::StrictlyUpper>() = system.h.transpose();
+  return system;
+}
+
+// One Gauss-Newton step; false when it leads nowhere.
+bool SmallPatternFitter::Improve(const System& system, State* state) const {
+  // The blur of a lens is known to some extent, white hardly where the image cuts it off, and the
+  // direction of a small plane hardly at all: priors keep them from taking what the other
+  // parameters explain.
+  Eigen::Matrix<double, kUnknowns, kUnknowns> h = system.h;
+  Eigen::Matrix<double, kUnknowns, 1> b = system.b;
+  const double blur_weight = system.variance() / (kBlurSpread * kBlurSpread);
+  h(6, 6) += blur_weight;
+  b(6) -= blur_weight * std::log(state->blur_px / kGoodLensBlurPx);
+  for (int i = 0; i < 6; ++i) h(i, i) *= 1.001;
+  h(7, 7) += 0.01 * system.count;
+  h(9, 9) += 1e-6 * system.count;
+  h(10, 10) += 1e-6 * system.count;
+  const Eigen::Matrix<double, kUnknowns, 1> step = h.ldlt().solve(b);
+  if (!step.allFinite()) return false;
+  RigidTransform& pose = state->pose;
+  const double angle = step.segment<3>(3).norm();
+  if (angle > 0.8 || step.head<3>().norm() > 0.5 * pose.translation.norm()) return false;
+  pose.translation += step.head<3>();
+  if (angle > 1e-12) {
+    pose.rotation =
+        (Eigen::Quaterniond(Eigen::AngleAxisd(angle, step.segment<3>(3) / angle)) * pose.rotation)
+            .normalized();
+  }
+  state->blur_px =
+      std::clamp(state->blur_px * std::exp(std::clamp(step(6), -0.5, 0.5)), kMinBlurPx, kMaxBlurPx);
+  state->white += step(7);
+  state->contrast += step(8);
+  state->slope += step.tail<2>();
+  return state->contrast >= kMinContrast && state->white < kMaxWhite &&
+         (pose.rotation * Eigen::Vector3d::UnitZ()).dot(pose.translation) < 0;
+}
+
+std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
+    const cv::Mat& image, const RigidTransform& initial, int iterations,
+    SmallPatternWorkspace* workspace) const {
+  if (!Gather(image, initial, workspace)) return std::nullopt;
+  State state;
+  state.pose = initial;
+  MeasureLevels(*workspace, &state);
+  if (state.contrast < kMinContrast) return std::nullopt;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    if (!Improve(Linearize(*workspace, state), &state)) return std::nullopt;
+  }
+  const System system = Linearize(*workspace, state);
+  const Eigen::Matrix<double, kUnknowns, kUnknowns> covariance =
+      system.variance() *
+      system.h.ldlt().solve(Eigen::Matrix<double, kUnknowns, kUnknowns>::Identity());
+  if (!covariance.allFinite()) return std::nullopt;
+  Fit fit;
+  fit.location.camera_from_pattern = state.pose;
+  fit.location.covariance = covariance.topLeftCorner<6, 6>();
+  fit.inside_residual = system.zones[0].Rms() / state.contrast;
+  fit.ring_residual = system.zones[1].Rms() / state.contrast;
+  fit.white_residual = system.zones[2].Rms() / state.contrast;
+  fit.correlation = system.correlation();
+  fit.match.contrast = state.contrast;
+  MeasureParts(*workspace, state, &fit.match);
+  return fit;
+}
+
+// Fits an amplitude to the ring's quarters, to each half arm and to the white of each quadrant, on
+// top of white that may change evenly over the print, and compares them with the print's contrast.
+void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, const State& state,
+                                      PatternMatch* match) const {
+  constexpr int kParts = 15;  // 4 of the ring, 4 half arms, 4 quadrants, white and its slopes
+  using Vector = Eigen::Matrix<double, kParts, 1>;
+  using Matrix = Eigen::Matrix<double, kParts, kParts>;
+  Matrix h = Matrix::Zero();
+  Vector b = Vector::Zero();
+  const PlaneMap map(state.pose);
+  const double inner = pattern_.inner_radius_m();
+  for (const auto& pixel : workspace.pixels) {
+    const PlanePoint point = Intersect(map, pixel);
+    const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
+    const double along_x = std::abs(point.x) > std::abs(point.y) ? 1 : 0;
+    const int quarter = along_x > 0 ? (point.x > 0 ? 0 : 2) : (point.y > 0 ? 1 : 3);
+    const int quadrant = point.x > 0 ? (point.y > 0 ? 0 : 3) : (point.y > 0 ? 1 : 2);
+    const double radius = std::hypot(point.x, point.y);
+    Vector basis = Vector::Zero();
+    basis(quarter) = dark.ring;
+    basis(4 + quarter) = std::max(dark.arms[0], dark.arms[1]) * (1 - dark.ring);
+    if (radius < inner) basis(8 + quadrant) = 1 - dark.value;
+    basis(12) = 1;
+    basis(13) = point.x;
+    basis(14) = point.y;
+    h.selfadjointView<Eigen::Lower>().rankUpdate(basis);
+    // Cut off where the print should be darker than that: it is as good as white.
+    const double expected = state.Gray(point, dark);
+    const bool missing = pixel.gray >= kSaturated && expected <= pixel.gray;
+    b += basis * (missing ? std::max(state.white, pixel.gray) : SeenGray(pixel.gray, expected));
+  }
+  // Parts that the image does not show get no amplitude instead of a wild one.
+  const Vector weight = h.diagonal();
+  for (int i = 0; i < kParts; ++i) h(i, i) += 1e-3 + 0.002 * h(i, i);
+  const Vector amplitude = h.selfadjointView<Eigen::Lower>().ldlt().solve(b);
+  const auto share = [&](double value) { return std::clamp(value / match->contrast, 0.0, 1.0); };
+  // A part of which the image shows less than a third of what it shows of its like is not seen.
+  const auto seen = [&](int first, int k) {
+    return 3 * weight(first + k) >= weight.segment<4>(first).maxCoeff();
+  };
+  int parts_seen = 0;
+  for (int k = 0; k < 4; ++k) {
+    const int before = (k + 3) % 4;
+    match->ring[k] = seen(0, k) ? share(-amplitude(k)) : -1;
+    match->arm[k] = seen(4, k) ? share(-amplitude(4 + k)) : -1;
+    // Quarter k has half of quadrant k and half of the one before.
+    match->quadrant[k] = seen(8, k) && seen(8, before)
+                             ? 1 - 0.5 * (share(-amplitude(8 + k)) + share(-amplitude(8 + before)))
+                             : -1;
+    parts_seen += seen(0, k) + seen(4, k) + seen(8, k);
+  }
+  match->seen = parts_seen / 12.0;
+}
+
+}  // namespace kestrel

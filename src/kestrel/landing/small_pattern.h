@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "kestrel/camera/ray_table.h"
+#include "kestrel/geometry/cone.h"
+#include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/landing/landing_pattern.h"
+#include "kestrel/landing/pattern_locator.h"
+#include "kestrel/landing/pattern_match.h"
+
+namespace kestrel {
+
+// Memory of SmallPatternFitter, which does not allocate once it is reserved.
+struct SmallPatternWorkspace {
+  struct Pixel {
+    Eigen::Vector3d ray;
+    Eigen::Vector3d d_ray_du;  // per pixel
+    Eigen::Vector3d d_ray_dv;
+    double gray;
+  };
+  std::vector<Pixel> pixels;
+  struct PlanePoint {
+    double x, y;
+    Eigen::Matrix2d by_pixel;  // d(x, y) / d(u, v), metres per pixel
+    double ring = 0;           // darkness of the ring there
+  };
+  std::vector<PlanePoint> points;  // of the pixels, under one pose
+
+  void Reserve();
+};
+
+// Verifies and locates a pattern whose strokes are no wider than the blur of the image, so that
+// their edges cannot be found one by one: fits the blurred print itself to the gray values (direct
+// alignment, after Lucas and Kanade 1981). Unknowns are the pose, the blur, and the gray values of
+// black and white.
+class SmallPatternFitter {
+ public:
+  // 'camera' must outlive the fitter.
+  SmallPatternFitter(const CameraModel& camera, const RayTable& rays,
+                     const LandingPattern& pattern);
+
+  struct Fit {
+    PatternLocation location;  // without edges
+    PatternMatch match;        // amplitudes of arms, white quadrants and ring instead of shares
+    double correlation;        // of the image with the fitted print, -1 to 1
+    // Residuals (root of their mean square, share of the contrast) inside of the ring, where the
+    // cross is, on the ring, and on the white around it.
+    double inside_residual;
+    double ring_residual;
+    double white_residual;
+  };
+
+  struct Start {
+    RigidTransform camera_from_pattern;
+    double correlation;  // -1 to 1, of the image with the print blurred by a good lens
+  };
+  // The best start for Refine among all directions of the arms and the given sizes: the ring lies
+  // as 'ring' in all of them, and is 'scales' times smaller. 'arm_angle': the direction of an arm
+  // where it is known (as for PatternPose). Does not allocate.
+  Start FindStart(const cv::Mat& image, const CirclePose& ring, std::span<const double> scales,
+                  std::optional<double> arm_angle, SmallPatternWorkspace* workspace) const;
+
+  // Refines 'initial', which must be within about a stroke's width. Nothing when the image shows
+  // too little of the print or the fit does not converge. Does not allocate.
+  std::optional<Fit> Refine(const cv::Mat& image, const RigidTransform& initial, int iterations,
+                            SmallPatternWorkspace* workspace) const;
+
+ private:
+  struct Darkness;
+  struct State;
+  struct System;
+  bool Gather(const cv::Mat& image, const RigidTransform& pose,
+              SmallPatternWorkspace* workspace) const;
+  Darkness Evaluate(double x, double y, const Eigen::Matrix2d& d_plane, double blur_px) const;
+  double ArmDarkness(double along, double across, double blur_along, double blur_across) const;
+  void MeasureLevels(const SmallPatternWorkspace& workspace, State* state) const;
+  System Linearize(const SmallPatternWorkspace& workspace, const State& state) const;
+  bool Improve(const System& system, State* state) const;
+  void MeasureParts(const SmallPatternWorkspace& workspace, const State& state,
+                    PatternMatch* match) const;
+
+  const CameraModel& camera_;
+  const RayTable& rays_;
+  LandingPattern pattern_;
+  double extent_m_;
+};
+
+}  // namespace kestrel

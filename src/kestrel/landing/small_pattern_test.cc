@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/landing/small_pattern.h"
+
+#include <array>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "kestrel/landing/test_prints.h"
+
+namespace kestrel {
+namespace {
+
+class SmallPatternTest : public ::testing::Test {
+ protected:
+  static constexpr std::array<double, 1> kOneScale{1.0};
+
+  static RigidTransform PoseOf(double diameter_px, Random* random) {
+    const double distance = 220 / diameter_px;
+    return PrintPose(
+        {random->Uniform(-0.2, 0.2) * distance, random->Uniform(-0.2, 0.2) * distance, distance},
+        random->Uniform(0, 0.3), random->Uniform(0, 6), random->Uniform(0, 6));
+  }
+  // Fits from the ring of 'truth', its distance off by 3 %.
+  std::optional<SmallPatternFitter::Fit> Fit(const cv::Mat& image, const RigidTransform& truth) {
+    const CirclePose ring{1.03 * truth.translation, truth.rotation * Eigen::Vector3d::UnitZ()};
+    const auto start = fitter_.FindStart(image, ring, kOneScale, std::nullopt, &workspace_);
+    return fitter_.Refine(image, start.camera_from_pattern, 8, &workspace_);
+  }
+  cv::Mat Draw(const Print& print, const RigidTransform& pose) const {
+    return DrawPrint(camera_, pattern_, print, pose);
+  }
+
+  const LandingPattern pattern_{};
+  const CameraModel camera_ = TestPrintCamera();
+  const RayTable rays_{camera_};
+  const SmallPatternFitter fitter_{camera_, rays_, pattern_};
+  SmallPatternWorkspace workspace_;
+};
+
+TEST_F(SmallPatternTest, LocatesRingsOf13To28Pixels) {
+  Random random(1);
+  for (int diameter_px = 13; diameter_px <= 28; ++diameter_px) {
+    const RigidTransform truth = PoseOf(diameter_px, &random);
+    const cv::Mat image = AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 2, &random);
+    const auto fit = Fit(image, truth);
+    ASSERT_TRUE(fit) << diameter_px;
+    const Eigen::Vector3d& found = fit->location.camera_from_pattern.translation;
+    const double distance = truth.translation.norm();
+    EXPECT_LT((found / found.norm() - truth.translation / distance).norm() * 220, 0.15)
+        << "pixels, ring of " << diameter_px;
+    EXPECT_NEAR(found.norm() / distance, 1, 0.02) << diameter_px;
+    EXPECT_GT(fit->correlation, 0.95) << diameter_px;
+    EXPECT_GT(fit->match.Quality(), 0.75) << diameter_px;
+    const double arm = PoseError(fit->location.camera_from_pattern, truth)
+                           .tail<3>()
+                           .dot(truth.rotation * Eigen::Vector3d::UnitZ());
+    EXPECT_LT(std::abs(arm), 0.1) << diameter_px;
+  }
+}
+
+TEST_F(SmallPatternTest, OtherFiguresInTheRingFitWorse) {
+  Random random(2);
+  const Print empty = [this](double x, double y) { return IsRing(pattern_, x, y); };
+  for (const int diameter_px : {16, 20, 24, 28}) {
+    const RigidTransform truth = PoseOf(diameter_px, &random);
+    for (const Print& print : {SpokedPrint(pattern_, 2), SpokedPrint(pattern_, 3),
+                               SpokedPrint(pattern_, 5), SpokedPrint(pattern_, 8), empty}) {
+      const auto fit = Fit(Draw(print, truth), truth);
+      EXPECT_LT(fit ? fit->match.Quality() : 0, 0.75) << diameter_px;
+    }
+  }
+}
+
+TEST_F(SmallPatternTest, TheCovarianceIsThatOfTheErrors) {
+  Random random(3);
+  const RigidTransform truth = PoseOf(22, &random);
+  const cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
+  constexpr int kTrials = 100;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const auto fit = Fit(AddNoise(image, 6, &random), truth);
+    ASSERT_TRUE(fit);
+    const auto error = PoseError(fit->location.camera_from_pattern, truth);
+    for (int k = 0; k < 3; ++k) sum(k) += error(k) * error(k) / fit->location.covariance(k, k);
+  }
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_GT(std::sqrt(sum(k) / kTrials), 1.0 / 3) << k;
+    EXPECT_LT(std::sqrt(sum(k) / kTrials), 3) << k;
+  }
+}
+
+TEST_F(SmallPatternTest, OverexposureDoesNotMoveIt) {
+  Random random(4);
+  const RigidTransform truth = PoseOf(24, &random);
+  cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
+  image.convertTo(image, CV_8UC1, 1.9, 0);  // white at 380, cut off
+  const auto fit = Fit(image, truth);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->location.camera_from_pattern.translation.norm() / truth.translation.norm(), 1,
+              0.03);
+}
+
+TEST_F(SmallPatternTest, AFlatImageFitsNothing) {
+  const RigidTransform pose = PrintPose({0, 0, 10}, 0, 0, 0);
+  EXPECT_FALSE(fitter_.Refine(cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)), pose, 8, &workspace_));
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/navigation/pose_history.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kestrel {
+namespace {
+
+bool IsValid(const RigidTransform& pose) {
+  return pose.translation.allFinite() && std::abs(pose.rotation.norm() - 1) < 0.01;
+}
+
+RigidTransform Interpolate(const RigidTransform& from, const RigidTransform& to, double part) {
+  return {from.rotation.slerp(part, to.rotation),
+          from.translation + part * (to.translation - from.translation)};
+}
+
+}  // namespace
+
+PoseHistory::PoseHistory(std::size_t capacity, Duration max_gap)
+    : ring_(std::max<std::size_t>(capacity, 1)), max_gap_(max_gap) {}
+
+PoseStatus PoseHistory::Add(const PoseSample& sample) {
+  if (!IsValid(sample.world_from_body)) return PoseStatus::kInvalid;
+  if (size_ > 0 && sample.time <= At(size_ - 1).time) return PoseStatus::kOutOfOrder;
+  PoseSample& slot = ring_[(first_ + size_) % ring_.size()];
+  slot = sample;
+  slot.world_from_body.rotation.normalize();
+  if (size_ < ring_.size()) {
+    ++size_;
+  } else {
+    first_ = (first_ + 1) % ring_.size();
+  }
+  return PoseStatus::kOk;
+}
+
+std::optional<RigidTransform> PoseHistory::Lookup(Time time) const {
+  std::size_t begin = 0;  // the first sample that is not before 'time', by bisection
+  for (std::size_t end = size_; begin < end;) {
+    const std::size_t middle = begin + (end - begin) / 2;
+    if (At(middle).time < time) {
+      begin = middle + 1;
+    } else {
+      end = middle;
+    }
+  }
+  if (begin == size_) return std::nullopt;
+  const PoseSample& after = At(begin);
+  if (after.time == time) return after.world_from_body;
+  if (begin == 0) return std::nullopt;
+  const PoseSample& before = At(begin - 1);
+  if (after.time - before.time > max_gap_) return std::nullopt;
+  const double part = ToSeconds(time - before.time) / ToSeconds(after.time - before.time);
+  return Interpolate(before.world_from_body, after.world_from_body, part);
+}
+
+}  // namespace kestrel

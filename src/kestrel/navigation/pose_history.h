@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "kestrel/base/time.h"
+#include "kestrel/geometry/rigid_transform.h"
+
+namespace kestrel {
+
+// Where the body (FLU) was in the world (ENU) at an instant of the navigation's clock.
+struct PoseSample {
+  Time time;
+  RigidTransform world_from_body;
+};
+
+enum class PoseStatus {
+  kOk,
+  kOutOfOrder,  // not later than the newest sample
+  kInvalid,     // not finite, or the rotation is no unit quaternion (to 1 %)
+};
+
+// The last poses of the UAV, in order of time, and where it was between them. Bounded: the oldest
+// sample makes room for the newest. Allocates at construction only; never throws afterwards.
+class PoseHistory {
+ public:
+  // Keeps up to 'capacity' samples (at least 1). Between two samples that are further apart than
+  // 'max_gap' there is no pose: the navigation was away, and a guess would pass for a measurement.
+  PoseHistory(std::size_t capacity, Duration max_gap);
+
+  // A sample that is refused leaves the history as it was.
+  PoseStatus Add(const PoseSample& sample);
+
+  // Whether Lookup has an answer.
+  bool Has(Time time) const { return Lookup(time).has_value(); }
+
+  // 'world_from_body' at 'time': the sample itself, or between its neighbours the translation by
+  // straight line and the rotation by the shortest arc (slerp). Nothing outside of the samples.
+  std::optional<RigidTransform> Lookup(Time time) const;
+
+  std::size_t size() const { return size_; }
+  std::size_t capacity() const { return ring_.size(); }
+
+ private:
+  const PoseSample& At(std::size_t i) const { return ring_[(first_ + i) % ring_.size()]; }
+
+  std::vector<PoseSample> ring_;
+  Duration max_gap_;
+  std::size_t first_ = 0;  // index of the oldest sample in the ring
+  std::size_t size_ = 0;
+};
+
+}  // namespace kestrel

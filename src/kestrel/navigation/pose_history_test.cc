@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/navigation/pose_history.h"
+
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace kestrel {
+namespace {
+
+constexpr Duration kMaxGap = std::chrono::seconds(1);
+
+Time At(double seconds) { return Time(DurationFromSeconds(seconds)); }
+
+PoseSample Sample(double seconds, double x, double yaw = 0) {
+  return {At(seconds),
+          {Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ())), {x, 0, 0}}};
+}
+
+TEST(PoseHistory, EmptyHistoryHasNothing) {
+  const PoseHistory history(4, kMaxGap);
+  EXPECT_FALSE(history.Has(At(0)));
+}
+
+TEST(PoseHistory, AnswersWithinTheSamplesOnly) {
+  PoseHistory history(4, kMaxGap);
+  history.Add(Sample(1.0, 1));
+  history.Add(Sample(2.0, 2));
+  EXPECT_FALSE(history.Has(At(0.999)));
+  EXPECT_TRUE(history.Has(At(1.0)));
+  EXPECT_TRUE(history.Has(At(1.5)));
+  EXPECT_TRUE(history.Has(At(2.0)));
+  EXPECT_FALSE(history.Has(At(2.001)));
+}
+
+TEST(PoseHistory, InterpolatesLineAndShortestArc) {
+  PoseHistory history(4, kMaxGap);
+  PoseSample from = Sample(0, 10, -0.2);
+  PoseSample to = Sample(1, 14, 0.6);
+  to.world_from_body.rotation.coeffs() *= -1;  // the same rotation, the other quaternion
+  history.Add(from);
+  history.Add(to);
+  const auto pose = history.Lookup(At(0.25));
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR(pose->translation.x(), 11, 1e-12);
+  const Eigen::Vector3d x_axis = pose->rotation * Eigen::Vector3d::UnitX();
+  EXPECT_NEAR(std::atan2(x_axis.y(), x_axis.x()), 0.0, 1e-12);
+}
+
+TEST(PoseHistory, DropsTheOldestWhenFull) {
+  PoseHistory history(3, kMaxGap);
+  for (int i = 0; i < 8; ++i) {
+    ASSERT_EQ(history.Add(Sample(0.1 * i, i)), PoseStatus::kOk);
+    EXPECT_LE(history.size(), 3u);
+  }
+  EXPECT_FALSE(history.Has(At(0.4)));
+  for (int i = 5; i < 8; ++i) {
+    const auto pose = history.Lookup(At(0.1 * i));
+    ASSERT_TRUE(pose) << i;
+    EXPECT_EQ(pose->translation.x(), i);
+  }
+  EXPECT_NEAR(history.Lookup(At(0.65))->translation.x(), 6.5, 1e-9);
+}
+
+TEST(PoseHistory, RefusesWhatIsNotLater) {
+  PoseHistory history(4, kMaxGap);
+  history.Add(Sample(1.0, 1));
+  EXPECT_EQ(history.Add(Sample(1.0, 5)), PoseStatus::kOutOfOrder);
+  EXPECT_EQ(history.Add(Sample(0.5, 5)), PoseStatus::kOutOfOrder);
+  EXPECT_EQ(history.size(), 1u);
+  EXPECT_EQ(history.Lookup(At(1.0))->translation.x(), 1);
+}
+
+TEST(PoseHistory, RefusesWhatIsNoPose) {
+  PoseHistory history(4, kMaxGap);
+  PoseSample sample = Sample(1.0, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(history.Add(sample), PoseStatus::kInvalid);
+  sample = Sample(1.0, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(history.Add(sample), PoseStatus::kInvalid);
+  sample = Sample(1.0, 0);
+  sample.world_from_body.rotation.coeffs().setZero();
+  EXPECT_EQ(history.Add(sample), PoseStatus::kInvalid);
+  sample.world_from_body.rotation.w() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(history.Add(sample), PoseStatus::kInvalid);
+  EXPECT_EQ(history.size(), 0u);
+}
+
+TEST(PoseHistory, DoesNotBridgeAGap) {
+  PoseHistory history(4, kMaxGap);
+  history.Add(Sample(0, 0));
+  history.Add(Sample(1.5, 1));
+  EXPECT_TRUE(history.Has(At(0)));
+  EXPECT_TRUE(history.Has(At(1.5)));
+  EXPECT_FALSE(history.Has(At(0.1)));
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/pipeline/landing_pipeline.h"
+
+#include <chrono>
+
+#include "kestrel/base/options.h"
+#include "kestrel/pipeline/world_location.h"
+
+namespace kestrel {
+namespace {
+
+const LandingPipelineOptions& Checked(const LandingPipelineOptions& options) {
+  RequireValid(options);
+  return options;
+}
+
+}  // namespace
+
+std::vector<std::string> LandingPipelineOptions::Validate() const {
+  std::vector<std::string> violations;
+  for (const std::string& violation : detector.Validate()) {
+    violations.push_back("detector." + violation);
+  }
+  const auto require = [&](bool holds, const char* rule) {
+    if (!holds) violations.push_back(rule);
+  };
+  require(hint_sigma_m > 0, "hint_sigma_m must be positive");
+  require(hint_speed_mps >= 0, "hint_speed_mps must not be negative");
+  require(hint_age_s >= 0, "hint_age_s must not be negative");
+  require(pose_capacity >= 2, "pose_capacity must be at least 2");
+  require(pose_gap_s > 0 && pose_gap_s < 1e6, "pose_gap_s must be positive and below 1e6");
+  return violations;
+}
+
+const char* ToString(PositionMethod method) {
+  return method == PositionMethod::kSize ? "size" : "altitude";
+}
+
+LandingPipeline::LandingPipeline(const CameraCalibration& calibration,
+                                 const LandingPipelineOptions& options)
+    : options_(Checked(options)),
+      body_from_camera_(calibration.body_from_camera),
+      clock_offset_(calibration.clock_offset.value_or(Duration::zero())),
+      detector_(CameraModel(calibration.intrinsics), options.detector),
+      poses_(options.pose_capacity, DurationFromSeconds(options.pose_gap_s)) {}
+
+LandingObservation LandingPipeline::Process(const cv::Mat& image, Time time) {
+  LandingObservation observation;
+  observation.time = time;
+  observation.world_from_camera = WorldFromCamera(time);
+  Detect(image, &observation);
+  LocateInWorld(&observation);
+  Remember(observation);
+  return observation;
+}
+
+void LandingPipeline::Detect(const cv::Mat& image, LandingObservation* observation) {
+  LandingHint hint = MakeHint(*observation);
+  const auto start = std::chrono::steady_clock::now();
+  observation->report = detector_.Detect(image, hint, workspace_);
+  if (!observation->report.detection && hint.center_in_camera) {
+    hint.center_in_camera.reset();
+    observation->report = detector_.Detect(image, hint, workspace_);
+  }
+  observation->detect_time = std::chrono::steady_clock::now() - start;
+}
+
+std::optional<RigidTransform> LandingPipeline::WorldFromCamera(Time time) const {
+  if (!body_from_camera_) return std::nullopt;
+  const std::optional<RigidTransform> world_from_body = poses_.Lookup(time + clock_offset_);
+  if (!world_from_body) return std::nullopt;
+  return *world_from_body * *body_from_camera_;
+}
+
+LandingHint LandingPipeline::MakeHint(const LandingObservation& observation) const {
+  LandingHint hint;
+  hint.altitude_m = altitude_m_;
+  if (const auto& world_from_camera = observation.world_from_camera) {
+    const double altitude_m = world_from_camera->translation.z() - options_.target_height_m;
+    hint.altitude_m.reset();
+    if (options_.altitude_hint && altitude_m > 0) hint.altitude_m = altitude_m;
+    hint.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  }
+  if (!options_.still) AddLastSighting(observation, &hint);
+  return hint;
+}
+
+void LandingPipeline::AddLastSighting(const LandingObservation& observation,
+                                      LandingHint* hint) const {
+  if (!last_) return;
+  const auto& world_from_camera = observation.world_from_camera;
+  if (last_->is_in_world && !world_from_camera) return;
+  const double age_s = ToSeconds(observation.time - last_->time);
+  if (age_s < 0 || age_s > options_.hint_age_s) return;
+  hint->center_in_camera =
+      last_->is_in_world ? world_from_camera->Inverse() * last_->center : last_->center;
+  hint->center_sigma_m = options_.hint_sigma_m + options_.hint_speed_mps * age_s;
+}
+
+void LandingPipeline::LocateInWorld(LandingObservation* observation) const {
+  const auto& detection = observation->report.detection;
+  const auto& world_from_camera = observation->world_from_camera;
+  if (!detection || !world_from_camera) return;
+  const RigidTransform world_from_pattern = *world_from_camera * detection->camera_from_pattern;
+  observation->yaw_in_world = PatternYaw(world_from_pattern);
+  observation->center_in_world = world_from_pattern.translation;
+  if (!options_.position_by_altitude) return;
+  Eigen::Vector3d ray_in_camera;
+  if (detector_.camera().Unproject(detection->center_px, &ray_in_camera) ==
+      ProjectionStatus::kOutsideModel) {
+    return;
+  }
+  const auto by_altitude =
+      LocateByAltitude(ray_in_camera, *world_from_camera, options_.target_height_m);
+  if (!by_altitude) return;
+  observation->center_in_world = by_altitude;
+  observation->position_method = PositionMethod::kAltitude;
+}
+
+void LandingPipeline::Remember(const LandingObservation& observation) {
+  last_.reset();
+  const auto& detection = observation.report.detection;
+  if (!detection) return;
+  const Eigen::Vector3d& center_in_camera = detection->camera_from_pattern.translation;
+  const auto& world_from_camera = observation.world_from_camera;
+  last_ = {observation.time,
+           world_from_camera ? *world_from_camera * center_in_camera : center_in_camera,
+           world_from_camera.has_value()};
+}
+
+}  // namespace kestrel

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "kestrel/base/time.h"
+#include "kestrel/camera/calibration.h"
+#include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/landing/landing_pattern_detector.h"
+#include "kestrel/navigation/pose_history.h"
+
+namespace kestrel {
+
+struct LandingPipelineOptions {
+  LandingPatternDetectorOptions detector;
+  // Frames have nothing to do with each other: no state is carried from one to the next.
+  bool still = false;
+  // The world position from the camera's altitude (paper, eq. 3) instead of from the pattern's size
+  // in the image. Better only where the altitude is known to a few cm and the pattern is small.
+  bool position_by_altitude = false;
+  // Height of the pattern's face above the world's z = 0. With it the navigation's z becomes the
+  // height above the pattern, for the hint and for position_by_altitude.
+  double target_height_m = 0;
+  // Tell the detector the height above the pattern that the navigation reports. Switch off where
+  // the world's z is no height above ground.
+  bool altitude_hint = true;
+  // Where the pattern is searched for after a frame in which it was found: standard deviation per
+  // axis of the last position, and its growth with the speed of the target (and, without poses, of
+  // the camera). Where it is not found there, and after hint_age_s, the whole image is searched.
+  double hint_sigma_m = 0.2;
+  double hint_speed_mps = 5;
+  double hint_age_s = 0.5;
+  // How many poses are kept, and the longest gap between two of them that is interpolated.
+  int pose_capacity = 1000;
+  double pose_gap_s = 0.5;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor.Group("detector", self.detector);
+    visitor("still", self.still, "", "frames have nothing to do with each other");
+    visitor("position_by_altitude", self.position_by_altitude, "",
+            "world position from the altitude instead of from the pattern's size");
+    visitor("target_height_m", self.target_height_m, "m",
+            "height of the pattern above the world's z = 0");
+    visitor("altitude_hint", self.altitude_hint, "",
+            "tell the detector the height that the navigation reports");
+    visitor("hint_sigma_m", self.hint_sigma_m, "m",
+            "after a detection: how far from it to search, standard deviation");
+    visitor("hint_speed_mps", self.hint_speed_mps, "m/s", "growth of that with time");
+    visitor("hint_age_s", self.hint_age_s, "s", "a detection older than this is no hint");
+    visitor("pose_capacity", self.pose_capacity, "1", "how many poses are kept");
+    visitor("pose_gap_s", self.pose_gap_s, "s", "longest gap between poses that is interpolated");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// How a position in the world was found (paper, section 2.5).
+enum class PositionMethod { kSize, kAltitude };
+const char* ToString(PositionMethod method);  // "size", "altitude"
+
+// What one frame said.
+struct LandingObservation {
+  Time time;                                        // of the frame, on the clock of the images
+  LandingReport report;                             // the detection in the camera frame, or why not
+  std::optional<RigidTransform> world_from_camera;  // when there was a pose for this time
+  // With a detection and a pose: the pattern's centre in the world (ENU, m), by what it was found,
+  // and the yaw of the pattern, see PatternYaw.
+  std::optional<Eigen::Vector3d> center_in_world;
+  PositionMethod position_method = PositionMethod::kSize;
+  std::optional<double> yaw_in_world;
+  Duration detect_time{};  // of LandingPatternDetector::Detect alone (both calls, if it took two)
+};
+
+// From an image to where the landing pattern is in the world: pose history, mount and clock offset,
+// hint, detector. One thread at a time.
+class LandingPipeline {
+ public:
+  // Throws InputError when the calibration or the options are not valid.
+  LandingPipeline(const CameraCalibration& calibration, const LandingPipelineOptions& options);
+
+  // A pose from the navigation, on its clock; the one after a frame's time should come before the
+  // frame, or the frame has no pose.
+  PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
+
+  // Height (m) of the camera above the pattern, for frames without a pose; nothing: not known.
+  void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
+
+  // 'image': CV_8UC1 of the camera's size; 'time' on the clock of the images. Does not throw, and
+  // does not allocate once it has warmed up.
+  LandingObservation Process(const cv::Mat& image, Time time);
+
+  const LandingPatternDetector& detector() const { return detector_; }
+  const LandingPipelineOptions& options() const { return options_; }
+
+ private:
+  // Where the pattern was seen last; in the world when there was a pose, else in the camera.
+  struct Sighting {
+    Time time;
+    Eigen::Vector3d center;
+    bool is_in_world;
+  };
+
+  void Detect(const cv::Mat& image, LandingObservation* observation);
+  std::optional<RigidTransform> WorldFromCamera(Time time) const;
+  LandingHint MakeHint(const LandingObservation& observation) const;
+  void AddLastSighting(const LandingObservation& observation, LandingHint* hint) const;
+  void LocateInWorld(LandingObservation* observation) const;
+  void Remember(const LandingObservation& observation);
+
+  LandingPipelineOptions options_;
+  std::optional<RigidTransform> body_from_camera_;
+  Duration clock_offset_;
+  LandingPatternDetector detector_;
+  LandingWorkspace workspace_;
+  PoseHistory poses_;
+  std::optional<double> altitude_m_;
+  std::optional<Sighting> last_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/pipeline/landing_pipeline.h"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/base/error.h"
+#include "kestrel/base/options.h"
+#include "kestrel/pipeline/test_pattern.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+Eigen::Quaterniond Rotation(double angle, const Eigen::Vector3d& axis) {
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized()));
+}
+
+// A camera that looks down, a little tilted, from a UAV above a pattern on the ground.
+class LandingPipelineTest : public ::testing::Test {
+ protected:
+  LandingPipelineTest() {
+    calibration_.intrinsics = {640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}};
+    calibration_.body_from_camera = RigidTransform{
+        Eigen::Quaterniond((Eigen::Matrix3d() << 0, -1, 0, -1, 0, 0, 0, 0, -1).finished()),
+        {0.13, 0.02, -0.05}};
+  }
+
+  RigidTransform CameraFromPattern() const {
+    const RigidTransform world_from_camera = world_from_body_ * *calibration_.body_from_camera;
+    return world_from_camera.Inverse() * world_from_pattern_;
+  }
+  cv::Mat Draw() const {
+    return DrawPattern(CameraModel(calibration_.intrinsics), options_.detector.pattern,
+                       CameraFromPattern());
+  }
+  LandingObservation ProcessWithPose(const LandingPipelineOptions& options) const {
+    LandingPipeline pipeline(calibration_, options);
+    EXPECT_EQ(pipeline.AddPose({kTime + Duration(5), world_from_body_}), PoseStatus::kOk);
+    return pipeline.Process(Draw(), kTime);
+  }
+
+  static constexpr Time kTime = TimeFromNanoseconds(1'000'000'000);
+  CameraCalibration calibration_;
+  LandingPipelineOptions options_;
+  RigidTransform world_from_body_ = {
+      Rotation(0.4, Eigen::Vector3d::UnitZ()) * Rotation(0.15, {1, 2, 0}), {10, 20, 3.5}};
+  RigidTransform world_from_pattern_ = {Rotation(0.3, Eigen::Vector3d::UnitZ()), {10.2, 20.1, 0.5}};
+};
+
+TEST_F(LandingPipelineTest, WithoutPoseItKnowsThePositionInTheCameraOnly) {
+  LandingPipeline pipeline(calibration_, options_);
+  const LandingObservation observation = pipeline.Process(Draw(), kTime);
+  ASSERT_TRUE(observation.report.detection) << observation.report.reason;
+  const Eigen::Vector3d center = observation.report.detection->camera_from_pattern.translation;
+  EXPECT_LT((center - CameraFromPattern().translation).norm(), 0.03);
+  EXPECT_FALSE(observation.center_in_world);
+  EXPECT_FALSE(observation.yaw_in_world);
+  EXPECT_GT(observation.detect_time.count(), 0);
+}
+
+TEST_F(LandingPipelineTest, LocatesInTheWorldBySize) {
+  calibration_.clock_offset = Duration(5);
+  options_.target_height_m = 0.5;
+  const LandingObservation observation = ProcessWithPose(options_);
+  ASSERT_TRUE(observation.center_in_world);
+  EXPECT_EQ(observation.position_method, PositionMethod::kSize);
+  EXPECT_LT((*observation.center_in_world - world_from_pattern_.translation).norm(), 0.03);
+  EXPECT_NEAR(*observation.yaw_in_world, 0.3, 0.02);
+}
+
+TEST_F(LandingPipelineTest, LocatesInTheWorldByAltitude) {
+  calibration_.clock_offset = Duration(5);
+  options_.position_by_altitude = true;
+  options_.target_height_m = 0.5;
+  const LandingObservation observation = ProcessWithPose(options_);
+  ASSERT_TRUE(observation.center_in_world);
+  EXPECT_EQ(observation.position_method, PositionMethod::kAltitude);
+  EXPECT_NEAR(observation.center_in_world->z(), 0.5, 1e-12);
+  EXPECT_LT((*observation.center_in_world - world_from_pattern_.translation).norm(), 0.02);
+}
+
+TEST_F(LandingPipelineTest, FallsBackToSizeWhereTheAltitudeSaysNothing) {
+  calibration_.clock_offset = Duration(5);
+  options_.position_by_altitude = true;
+  options_.target_height_m = 50;  // above the camera
+  const LandingObservation observation = ProcessWithPose(options_);
+  ASSERT_TRUE(observation.center_in_world);
+  EXPECT_EQ(observation.position_method, PositionMethod::kSize);
+}
+
+TEST_F(LandingPipelineTest, PoseIsTakenAtTheNavigationsTimeOfTheFrame) {
+  calibration_.clock_offset = Duration(0);
+  EXPECT_FALSE(ProcessWithPose(options_).world_from_camera);  // the only pose is 5 ns later
+  calibration_.clock_offset = Duration(5);
+  EXPECT_TRUE(ProcessWithPose(options_).world_from_camera);
+}
+
+TEST_F(LandingPipelineTest, WithoutMountThereIsNoWorld) {
+  calibration_.body_from_camera.reset();
+  calibration_.clock_offset = Duration(5);
+  const LandingObservation observation = ProcessWithPose(options_);
+  EXPECT_TRUE(observation.report.detection);
+  EXPECT_FALSE(observation.center_in_world);
+}
+
+TEST_F(LandingPipelineTest, FindsThePatternAgainWhereverItJumps) {
+  LandingPipeline pipeline(calibration_, options_);
+  for (int i = 0; i < 6; ++i) {
+    world_from_pattern_.translation.x() = 10.2 + (i % 2 == 0 ? 0.6 : -0.6);
+    const auto observation = pipeline.Process(Draw(), kTime + i * Duration(33'000'000));
+    ASSERT_TRUE(observation.report.detection) << i;
+    const Eigen::Vector3d center = observation.report.detection->camera_from_pattern.translation;
+    EXPECT_LT((center - CameraFromPattern().translation).norm(), 0.04) << i;
+  }
+}
+
+TEST_F(LandingPipelineTest, ImageOfAnotherSizeIsAMissWithAReason) {
+  LandingPipeline pipeline(calibration_, options_);
+  for (const cv::Size size : {cv::Size(1, 1), cv::Size(20000, 2), cv::Size(480, 640)}) {
+    const auto observation = pipeline.Process(cv::Mat(size, CV_8UC1, 100), kTime);
+    EXPECT_FALSE(observation.report.detection);
+    EXPECT_FALSE(observation.report.reason.empty());
+  }
+}
+
+TEST_F(LandingPipelineTest, OptionsAndCalibrationAreChecked) {
+  options_.hint_sigma_m = 0;
+  options_.pose_gap_s = std::numeric_limits<double>::quiet_NaN();
+  options_.detector.min_quality = 2;
+  EXPECT_THAT(options_.Validate(), Contains(HasSubstr("hint_sigma_m")));
+  EXPECT_THAT(options_.Validate(), Contains(HasSubstr("pose_gap_s")));
+  EXPECT_THAT(options_.Validate(), Contains(HasSubstr("detector.min_quality")));
+  EXPECT_THROW(LandingPipeline(calibration_, options_), InputError);
+  calibration_.intrinsics.fx_px = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(LandingPipeline(calibration_, LandingPipelineOptions()), InputError);
+}
+
+TEST_F(LandingPipelineTest, OptionsReadBackAsTheyArePrinted) {
+  options_.detector.pattern.outer_diameter_m = 0.6;
+  options_.position_by_altitude = true;
+  LandingPipelineOptions again;
+  ReadOptionFields(PrintOptions(options_), "printed", FieldsOf(again));
+  EXPECT_EQ(PrintOptions(again), PrintOptions(options_));
+  EXPECT_EQ(again.detector.pattern.outer_diameter_m, 0.6);
+}
+
+}  // namespace
+}  // namespace kestrel

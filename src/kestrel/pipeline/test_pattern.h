@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "kestrel/camera/camera_model.h"
+#include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/landing/landing_pattern.h"
+
+namespace kestrel {
+
+// Gray of the board at a point of the plane z = 0 of the pattern's frame; gray ground around it.
+inline double PatternGray(const LandingPattern& pattern, double x, double y) {
+  const double radius = std::hypot(x, y);
+  const auto is_arm = [&](double along, double across) {
+    return std::abs(along) < pattern.arm_half_length_m &&
+           std::abs(across) < pattern.arm_width_m / 2;
+  };
+  const bool is_ring = radius > pattern.inner_radius_m() && radius < pattern.outer_radius_m();
+  if (is_ring || is_arm(x, y) || is_arm(y, x)) return 30;
+  return std::max(std::abs(x), std::abs(y)) < pattern.board_size_m / 2 ? 220 : 120;
+}
+
+// The pattern as the camera sees it: 3 x 3 rays a pixel, then a little blur as of a lens.
+inline cv::Mat DrawPattern(const CameraModel& camera, const LandingPattern& pattern,
+                           const RigidTransform& camera_from_pattern) {
+  constexpr int kRays = 3;
+  const RigidTransform pattern_from_camera = camera_from_pattern.Inverse();
+  cv::Mat image(camera.height_px(), camera.width_px(), CV_8UC1);
+  image.forEach<std::uint8_t>([&](std::uint8_t& gray, const int* position) {
+    double sum = 0;
+    for (int i = 0; i < kRays * kRays; ++i) {
+      const int column = i % kRays;
+      const int row = i / kRays;
+      const Eigen::Vector2d pixel(position[1] + (column + 0.5) / kRays - 0.5,
+                                  position[0] + (row + 0.5) / kRays - 0.5);
+      Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
+      camera.Unproject(pixel, &ray);
+      ray = pattern_from_camera.rotation * ray;
+      const Eigen::Vector3d& origin = pattern_from_camera.translation;
+      const Eigen::Vector3d point = origin - origin.z() / ray.z() * ray;
+      sum += PatternGray(pattern, point.x(), point.y());
+    }
+    gray = cv::saturate_cast<std::uint8_t>(sum / (kRays * kRays));
+  });
+  cv::GaussianBlur(image, image, cv::Size(), 0.6);
+  return image;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kestrel/navigation/pose_history.h"
+#include "kestrel/recording/frame.h"
+
+namespace kestrel {
+
+// Frames per second where a source does not say: images that are just files.
+inline constexpr double kNominalRateHz = 30;
+
+// Where frames come from, one after the other.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+
+  // Fills 'frame' with the next image; false at the end. Frames are in order of time. Throws
+  // InputError when an image is missing, broken or of a kind that is not read (16 bits), and at the
+  // end of a video that ends before it should.
+  virtual bool Next(Frame* frame) = 0;
+
+  // How many frames there are, when that is known; of a video it is what the container says.
+  virtual std::optional<std::size_t> frame_count() const = 0;
+  virtual double rate_hz() const = 0;
+
+  // The source's own calibration file; empty if it has none.
+  virtual std::string calibration_file() const { return ""; }
+  // What the navigation reported, on its own clock, in order of time; empty if it said nothing.
+  virtual std::vector<PoseSample> poses() const { return {}; }
+};
+
+}  // namespace kestrel

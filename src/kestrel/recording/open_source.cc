@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/recording/open_source.h"
+
+#include <filesystem>
+
+#include "kestrel/base/error.h"
+#include "kestrel/recording/euroc_recording.h"
+#include "kestrel/recording/file_kind.h"
+#include "kestrel/recording/image_sequence.h"
+#include "kestrel/recording/video_source.h"
+
+namespace kestrel {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool Exists(const std::string& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+std::unique_ptr<FrameSource> OpenFolder(const std::string& folder) {
+  if (FindEurocRoot(folder)) return std::make_unique<ImageSequence>(OpenEurocRecording(folder));
+  return std::make_unique<ImageSequence>(OpenImageFolder(folder));
+}
+
+std::unique_ptr<FrameSource> OpenFile(const std::string& path) {
+  switch (FileKindOf(path)) {
+    case FileKind::kImage:
+      return std::make_unique<ImageSequence>(OpenImageFiles({path}));
+    case FileKind::kVideo:
+      return std::make_unique<VideoSource>(OpenVideoFile(path));
+    case FileKind::kOther:
+      break;
+  }
+  throw InputError(path + ": by its name neither an image nor a video, expected one or a folder");
+}
+
+std::unique_ptr<FrameSource> OpenOne(const std::string& source) {
+  const bool exists = Exists(source);
+  const bool is_pipeline = !exists && source.find('!') != std::string::npos;
+  if (source.starts_with(kVideoDevice) || is_pipeline) {
+    return std::make_unique<VideoSource>(OpenCamera(source));
+  }
+  if (!exists) throw InputError(source + ": no such file or folder");
+  return fs::is_directory(source) ? OpenFolder(source) : OpenFile(source);
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> OpenSource(const std::vector<std::string>& arguments) {
+  if (arguments.empty()) throw InputError("no source given");
+  if (arguments.size() == 1) return OpenOne(arguments.front());
+  for (const std::string& argument : arguments) {
+    if (!Exists(argument)) throw InputError(argument + ": no such file");
+    if (fs::is_directory(argument) || FileKindOf(argument) != FileKind::kImage) {
+      throw InputError(argument +
+                       ": is no image; of several sources every one must be an image file");
+    }
+  }
+  return std::make_unique<ImageSequence>(OpenImageFiles(arguments));
+}
+
+}  // namespace kestrel

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kestrel/recording/frame_source.h"
+
+namespace kestrel {
+
+// The source that the arguments are: a recording folder (EuRoC), a folder of images, one or more
+// image files, a video file, a camera (/dev/video0) or a GStreamer pipeline. Throws InputError that
+// says what is wrong with them.
+std::unique_ptr<FrameSource> OpenSource(const std::vector<std::string>& arguments);
+
+}  // namespace kestrel

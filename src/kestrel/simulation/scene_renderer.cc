@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/simulation/scene_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include "kestrel/base/error.h"
+#include "kestrel/base/options.h"
+#include "kestrel/base/random.h"
+#include "kestrel/simulation/ground_texture.h"
+
+namespace kestrel {
+namespace {
+
+// A pixel with an edge is cut into cells, each with its own ray. Where the plane moves during the
+// exposure, every cell is seen at several times: only whole grids of cells leave an edge in place.
+constexpr int kCellsPerSideStill = 4;
+constexpr int kCellsPerSideMoving = 2;
+constexpr int kTimesMoving = 12;
+
+// Rays that fall on the plane flatter than this (sine of the angle) see the sky: the plane ends at
+// the horizon, a thousand camera heights away.
+constexpr double kHorizonSine = 1e-3;
+
+constexpr double kRimWidthDeg = 0.7;  // of the soft edge of the lens circle
+
+double DegFromRad(double angle) { return angle * 180 / std::numbers::pi; }
+
+// Part of a box 'width' wide around a point at 'distance' outside of a straight edge that lies
+// inside of it.
+double Coverage(double distance, double width) {
+  return std::clamp(0.5 - distance / std::max(width, 1e-12), 0.0, 1.0);
+}
+
+void RequireIn(double value, double low, double high, const std::string& key,
+               std::vector<std::string>* violations) {
+  if (!(value >= low && value <= high)) {
+    violations->push_back(fmt::format("{} is {}, expected {} to {}", key, value, low, high));
+  }
+}
+
+void RequireNotNegative(double value, const std::string& key,
+                        std::vector<std::string>* violations) {
+  if (!(value >= 0 && std::isfinite(value))) {
+    violations->push_back(fmt::format("{} is {}, expected 0 or more", key, value));
+  }
+}
+
+void RequireFinite(double norm, const std::string& key, std::vector<std::string>* violations) {
+  if (!std::isfinite(norm)) violations->push_back(fmt::format("{} is not finite", key));
+}
+
+// A camera pose as the plane sees it.
+struct PlaneView {
+  Eigen::Matrix3d pattern_from_camera;
+  Eigen::Vector3d camera_in_pattern;
+
+  explicit PlaneView(const RigidTransform& camera_from_pattern)
+      : pattern_from_camera(camera_from_pattern.rotation.conjugate().toRotationMatrix()),
+        camera_in_pattern(camera_from_pattern.Inverse().translation) {}
+
+  // Where a ray of any length meets the plane, or false when it does not.
+  bool Hit(const Eigen::Vector3d& ray_in_camera, Eigen::Vector2d* point) const {
+    const Eigen::Vector3d ray = pattern_from_camera * ray_in_camera;
+    if (ray.z() > -kHorizonSine) return false;
+    *point = camera_in_pattern.head<2>() - (camera_in_pattern.z() / ray.z()) * ray.head<2>();
+    return true;
+  }
+};
+
+// The plane's pose at a moment of the exposure, 'time' from its middle.
+RigidTransform PoseAt(const RigidTransform& camera_from_pattern, const ImagingOptions& imaging,
+                      double time) {
+  const Eigen::Vector3d turn = time * imaging.angular_velocity_in_camera;
+  const double angle = turn.norm();
+  const Eigen::Quaterniond rotation(angle > 0 ? Eigen::AngleAxisd(angle, turn / angle)
+                                              : Eigen::AngleAxisd::Identity());
+  return {rotation * camera_from_pattern.rotation,
+          camera_from_pattern.translation + time * imaging.velocity_in_camera};
+}
+
+// Gray values of radiances in units of white, with noise.
+cv::Mat Expose(const ImagingOptions& imaging, const cv::Mat& radiance) {
+  constexpr double kShotNoiseGray = 100;  // gray value at which 'shot_noise' is given
+  Random random(imaging.noise_seed);
+  cv::Mat image(radiance.size(), CV_8UC1);
+  const double range = imaging.white_level - imaging.black_level;
+  for (int v = 0; v < image.rows; ++v) {
+    for (int u = 0; u < image.cols; ++u) {
+      const double light = range * radiance.at<float>(v, u);
+      const double shot = imaging.shot_noise * std::sqrt(light / kShotNoiseGray);
+      const double noise = std::sqrt(imaging.read_noise * imaging.read_noise + shot * shot);
+      const double gray = imaging.black_level + light + (noise > 0 ? noise * random.Normal() : 0);
+      image.at<std::uint8_t>(v, u) = cv::saturate_cast<std::uint8_t>(gray);
+    }
+  }
+  return image;
+}
+
+void CheckPose(const RigidTransform& camera_from_pattern) {
+  const double height = camera_from_pattern.Inverse().translation.z();
+  if (!(height > 0 && std::isfinite(height))) {
+    throw InputError(
+        fmt::format("camera_from_pattern puts the camera {} m above the pattern's plane, expected "
+                    "a positive height",
+                    height));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> Scene::Validate() const {
+  std::vector<std::string> violations;
+  RequireIn(ground_reflectance, 0, 1, "ground_reflectance", &violations);
+  RequireIn(ground_texture, 0, 1, "ground_texture", &violations);
+  RequireNotNegative(sky_radiance, "sky_radiance", &violations);
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    RequireIn(layers[i].reflectance, 0, 1, fmt::format("layers[{}].reflectance", i), &violations);
+    RequireIn(layers[i].texture, 0, 1, fmt::format("layers[{}].texture", i), &violations);
+  }
+  for (std::size_t i = 0; i < shadows.size(); ++i) {
+    RequireIn(shadows[i].transmission, 0, 1, fmt::format("shadows[{}].transmission", i),
+              &violations);
+    RequireNotNegative(shadows[i].penumbra_m, fmt::format("shadows[{}].penumbra_m", i),
+                       &violations);
+  }
+  for (std::size_t i = 0; i < glares.size(); ++i) {
+    RequireIn(glares[i].sigma_m, 1e-3, 1e3, fmt::format("glares[{}].sigma_m", i), &violations);
+    RequireNotNegative(glares[i].strength, fmt::format("glares[{}].strength", i), &violations);
+  }
+  return violations;
+}
+
+std::vector<std::string> LensOptions::Validate() const {
+  std::vector<std::string> violations;
+  RequireIn(half_angle_deg, 1, 180, "half_angle_deg", &violations);
+  RequireIn(vignette, 0, 1, "vignette", &violations);
+  RequireIn(airframe_radiance, 0, 1, "airframe_radiance", &violations);
+  return violations;
+}
+
+std::vector<std::string> ImagingOptions::Validate() const {
+  std::vector<std::string> violations;
+  RequireIn(black_level, 0, 255, "black_level", &violations);
+  RequireIn(white_level, 0, 255, "white_level", &violations);
+  if (!(white_level > black_level)) {
+    violations.push_back(fmt::format("white_level is {}, expected more than black_level, {}",
+                                     white_level, black_level));
+  }
+  RequireIn(blur_sigma_px, 0, 20, "blur_sigma_px", &violations);
+  RequireFinite(gradient.norm(), "gradient", &violations);
+  RequireIn(haze, 0, 1, "haze", &violations);
+  RequireNotNegative(haze_radiance, "haze_radiance", &violations);
+  RequireNotNegative(read_noise, "read_noise", &violations);
+  RequireNotNegative(shot_noise, "shot_noise", &violations);
+  RequireNotNegative(exposure_s, "exposure_s", &violations);
+  RequireFinite(velocity_in_camera.norm(), "velocity_in_camera", &violations);
+  RequireFinite(angular_velocity_in_camera.norm(), "angular_velocity_in_camera", &violations);
+  return violations;
+}
+
+// The radiance of single pixels of one picture.
+class SceneRenderer::PlanePainter {
+ public:
+  PlanePainter(const Scene& scene, const RigidTransform& camera_from_pattern,
+               const ImagingOptions& imaging)
+      : scene_(scene), texture_(scene.texture_seed), middle_(camera_from_pattern) {
+    const bool moving = imaging.exposure_s > 0 && !(imaging.velocity_in_camera.isZero() &&
+                                                    imaging.angular_velocity_in_camera.isZero());
+    cells_per_side_ = moving ? kCellsPerSideMoving : kCellsPerSideStill;
+    const int times = moving ? kTimesMoving : 1;
+    for (int i = 0; i < times; ++i) {
+      const double time = ((i + 0.5) / times - 0.5) * imaging.exposure_s;
+      const RigidTransform pose = PoseAt(camera_from_pattern, imaging, time);
+      CheckPose(pose);
+      views_.emplace_back(pose);
+    }
+  }
+
+  // 'rays': of the upper left, upper right, lower left and lower right corner of the pixel.
+  double Radiance(const std::array<Eigen::Vector3d, 4>& rays) const {
+    const std::optional<Footprint> footprint = FootprintOf(rays);
+    if (!footprint) return ManyRays(rays);
+    if (footprint->sky) return scene_.sky_radiance;
+    if (HasEdgeWithin(footprint->center, footprint->radius)) return ManyRays(rays);
+    const double texture = texture_.At(footprint->center, footprint->size);
+    return RadianceAt(footprint->center, *footprint, texture);
+  }
+
+ private:
+  // What a pixel sees of the plane.
+  struct Footprint {
+    bool sky = false;
+    Eigen::Vector2d center{0, 0};
+    Eigen::Vector2d right{0, 0};  // from one pixel to its right neighbour
+    Eigen::Vector2d down{0, 0};
+    double size = 0;    // geometric mean of its sides
+    double radius = 0;  // of the circle that holds it during the whole exposure
+  };
+
+  // Nothing when the pixel sees the horizon.
+  std::optional<Footprint> FootprintOf(const std::array<Eigen::Vector3d, 4>& rays) const {
+    std::array<Eigen::Vector2d, 4> corners;
+    int hits = 0;
+    for (int i = 0; i < 4; ++i) hits += middle_.Hit(rays[i], &corners[i]);
+    if (hits == 0) return Footprint{.sky = true};
+    if (hits < 4) return std::nullopt;
+    Footprint footprint;
+    footprint.center = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+    footprint.right = 0.5 * (corners[1] + corners[3] - corners[0] - corners[2]);
+    footprint.down = 0.5 * (corners[2] + corners[3] - corners[0] - corners[1]);
+    footprint.size = std::sqrt(std::abs(footprint.right.x() * footprint.down.y() -
+                                        footprint.right.y() * footprint.down.x()));
+    for (const Eigen::Vector2d& corner : corners) {
+      footprint.radius = std::max(footprint.radius, (corner - footprint.center).norm());
+    }
+    footprint.radius += 0.5 * MotionOf(rays[0]);
+    return footprint;
+  }
+
+  // How far the point under a ray moves over the plane during the exposure.
+  double MotionOf(const Eigen::Vector3d& ray) const {
+    Eigen::Vector2d from;
+    Eigen::Vector2d to;
+    if (!views_.front().Hit(ray, &from) || !views_.back().Hit(ray, &to)) return 0;
+    return (to - from).norm();
+  }
+
+  bool HasEdgeWithin(const Eigen::Vector2d& center, double radius) const {
+    const auto near_layer = [&](const PaintLayer& layer) {
+      return std::abs(layer.shape.NearestEdge(center).distance) < radius;
+    };
+    const auto near_shadow = [&](const Shadow& shadow) {
+      const double reach = radius + 0.5 * shadow.penumbra_m;
+      return std::abs(shadow.shape.NearestEdge(center).distance) < reach;
+    };
+    return std::any_of(scene_.layers.begin(), scene_.layers.end(), near_layer) ||
+           std::any_of(scene_.shadows.begin(), scene_.shadows.end(), near_shadow);
+  }
+
+  double ManyRays(const std::array<Eigen::Vector3d, 4>& rays) const {
+    Footprint cell = FootprintOf(rays).value_or(Footprint{});
+    const double texture = texture_.At(cell.center, cell.size);
+    cell.right /= cells_per_side_;
+    cell.down /= cells_per_side_;
+    double sum = 0;
+    for (int i = 0; i < cells_per_side_ * cells_per_side_; ++i) {
+      const int column = i % cells_per_side_;
+      const int row = i / cells_per_side_;
+      const double x = (column + 0.5) / cells_per_side_;
+      const double y = (row + 0.5) / cells_per_side_;
+      const Eigen::Vector3d ray =
+          (1 - y) * ((1 - x) * rays[0] + x * rays[1]) + y * ((1 - x) * rays[2] + x * rays[3]);
+      for (const PlaneView& view : views_) {
+        Eigen::Vector2d point;
+        sum += view.Hit(ray, &point) ? RadianceAt(point, cell, texture) : scene_.sky_radiance;
+      }
+    }
+    return sum / (cells_per_side_ * cells_per_side_ * static_cast<double>(views_.size()));
+  }
+
+  double RadianceAt(const Eigen::Vector2d& point, const Footprint& cell, double texture) const {
+    double reflectance = scene_.ground_reflectance * (1 + scene_.ground_texture * texture);
+    for (const PaintLayer& layer : scene_.layers) {
+      const double cover = CoverOf(layer.shape, point, cell, 0);
+      reflectance += cover * (layer.reflectance * (1 + layer.texture * texture) - reflectance);
+    }
+    double light = 1;
+    for (const Shadow& shadow : scene_.shadows) {
+      const double cover = CoverOf(shadow.shape, point, cell, shadow.penumbra_m);
+      light *= 1 - cover * (1 - shadow.transmission);
+    }
+    double glare = 0;
+    for (const Glare& spot : scene_.glares) {
+      const double distance = (point - spot.center).norm() / spot.sigma_m;
+      glare += spot.strength * std::exp(-0.5 * distance * distance);
+    }
+    return std::max(reflectance, 0.0) * light + glare;
+  }
+
+  // The edge is a ramp as wide as the cell is across the edge.
+  static double CoverOf(const Drawing& shape, const Eigen::Vector2d& point, const Footprint& cell,
+                        double min_width) {
+    const Drawing::Edge edge = shape.NearestEdge(point);
+    const Eigen::Vector2d width(cell.right.dot(edge.normal), cell.down.dot(edge.normal));
+    return Coverage(edge.distance, std::max(width.norm(), min_width));
+  }
+
+  const Scene& scene_;
+  GroundTexture texture_;
+  PlaneView middle_;
+  std::vector<PlaneView> views_;  // at several times of the exposure, in order
+  int cells_per_side_ = 1;
+};
+
+SceneRenderer::SceneRenderer(const CameraModel& camera, const LensOptions& lens)
+    : camera_(camera), lens_(lens) {
+  RequireValid(lens);
+  const int columns = camera.width_px() + 1;
+  const int rows = camera.height_px() + 1;
+  corner_rays_.assign(static_cast<std::size_t>(columns) * rows, Eigen::Vector3f::Zero());
+  for (int i = 0; i < columns * rows; ++i) {
+    const int column = i % columns;
+    const int row = i / columns;
+    const Eigen::Vector2d corner(column - 0.5, row - 0.5);
+    Eigen::Vector3d ray;
+    if (camera.Unproject(corner, &ray) != ProjectionStatus::kOutsideModel) {
+      corner_rays_[i] = ray.cast<float>();
+    }
+  }
+  lens_gain_.create(camera.height_px(), camera.width_px(), CV_32F);
+  airframe_cover_.create(camera.height_px(), camera.width_px(), CV_32F);
+  for (int v = 0; v < camera.height_px(); ++v) {
+    for (int u = 0; u < camera.width_px(); ++u) {
+      lens_gain_.at<float>(v, u) = static_cast<float>(LensGain(u, v));
+      const double airframe_distance = lens.airframe.NearestEdge({u, v}).distance;
+      airframe_cover_.at<float>(v, u) = static_cast<float>(Coverage(airframe_distance, 1));
+    }
+  }
+}
+
+double SceneRenderer::LensGain(int u, int v) const {
+  const std::array<Eigen::Vector3d, 4> rays = PixelCorners(u, v);
+  for (const Eigen::Vector3d& ray : rays) {
+    if (ray.isZero()) return 0;
+  }
+  const Eigen::Vector3d center = (rays[0] + rays[1] + rays[2] + rays[3]).normalized();
+  const double angle_deg = DegFromRad(std::atan2(center.head<2>().norm(), center.z()));
+  const double rim = Coverage(angle_deg - lens_.half_angle_deg, kRimWidthDeg);
+  return rim * (1 - lens_.vignette * std::pow(angle_deg / lens_.half_angle_deg, 4));
+}
+
+// The rays of the upper left, upper right, lower left and lower right corner of a pixel.
+std::array<Eigen::Vector3d, 4> SceneRenderer::PixelCorners(int u, int v) const {
+  const std::size_t stride = camera_.width_px() + 1;
+  const Eigen::Vector3f* upper = corner_rays_.data() + v * stride + u;
+  const Eigen::Vector3f* lower = upper + stride;
+  return {upper[0].cast<double>(), upper[1].cast<double>(), lower[0].cast<double>(),
+          lower[1].cast<double>()};
+}
+
+cv::Mat SceneRenderer::Render(const Scene& scene, const RigidTransform& camera_from_pattern,
+                              const ImagingOptions& imaging) const {
+  RequireValid(scene);
+  RequireValid(imaging);
+  CheckPose(camera_from_pattern);
+  cv::Mat radiance = PaintRadiance(scene, camera_from_pattern, imaging);
+  PassLens(imaging, &radiance);
+  return Expose(imaging, radiance);
+}
+
+cv::Mat SceneRenderer::PaintRadiance(const Scene& scene, const RigidTransform& camera_from_pattern,
+                                     const ImagingOptions& imaging) const {
+  const PlanePainter painter(scene, camera_from_pattern, imaging);
+  cv::Mat radiance(camera_.height_px(), camera_.width_px(), CV_32F, cv::Scalar(0));
+  for (int v = 0; v < radiance.rows; ++v) {
+    for (int u = 0; u < radiance.cols; ++u) {
+      if (lens_gain_.at<float>(v, u) <= 0) continue;
+      radiance.at<float>(v, u) = static_cast<float>(painter.Radiance(PixelCorners(u, v)));
+    }
+  }
+  return radiance;
+}
+
+void SceneRenderer::PassLens(const ImagingOptions& imaging, cv::Mat* radiance) const {
+  for (int v = 0; v < radiance->rows; ++v) {
+    for (int u = 0; u < radiance->cols; ++u) {
+      float& value = radiance->at<float>(v, u);
+      const double hazy = value + imaging.haze * (imaging.haze_radiance - value);
+      const double cover = airframe_cover_.at<float>(v, u);
+      const double seen = hazy + cover * (lens_.airframe_radiance - hazy);
+      const double light = 1 + imaging.gradient.x() * ((u + 0.5) / radiance->cols - 0.5) +
+                           imaging.gradient.y() * ((v + 0.5) / radiance->rows - 0.5);
+      value = static_cast<float>(seen * std::max(light, 0.0) * lens_gain_.at<float>(v, u));
+    }
+  }
+  if (imaging.blur_sigma_px > 0) {
+    cv::GaussianBlur(*radiance, *radiance, cv::Size(), imaging.blur_sigma_px, imaging.blur_sigma_px,
+                     cv::BORDER_REPLICATE);
+  }
+}
+
+}  // namespace kestrel
