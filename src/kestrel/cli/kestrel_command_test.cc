@@ -19,7 +19,6 @@
 namespace kestrel {
 namespace {
 
-using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -202,7 +201,7 @@ TEST_F(KestrelCommandTest, SourceAtFaultIsNamed) {
         std::pair(tiny, "has 1 x 1 px, but the calibration is for 640 x 480"),
         std::pair(wide, "has 20000 x 2 px, but the calibration is for 640 x 480"),
         std::pair(image, "a.png: the image file is cut off")}) {
-    const Outcome outcome = Run("land " + source + camera);
+    const Outcome outcome = Run(fmt::format("land {}{}", source, camera));
     EXPECT_EQ(outcome.status, 1);
     EXPECT_THAT(outcome.err, HasSubstr(words));
   }
