@@ -69,7 +69,11 @@ class Painter {
         moment_step_s_(moment_step_s),
         middle_(middle),
         sun_color_(InChannels<kChannels>(world.light.sun_color)),
-        sky_color_(InChannels<kChannels>(world.light.sky_color)) {}
+        sky_color_(InChannels<kChannels>(world.light.sky_color)),
+        map_middle_(0.5f * static_cast<float>(world.ground.map->width_px())),
+        map_per_m_(static_cast<float>(world.ground.map->width_px() / world.ground.map_size_m)),
+        detail_per_m_(
+            static_cast<float>(world.ground.detail->width_px() / world.ground.detail_size_m)) {}
 
   void StartTile(std::size_t tile) {
     surfaces_ = view_.SurfacesIn(tile);
@@ -79,6 +83,7 @@ class Painter {
   void StartPixel(float pixel_angle) {
     pixel_angle_ = pixel_angle;
     level_of_ = -1;
+    shade_of_ = -1;
   }
 
   Color LightOf(const Vector3f& ray, int moment, const Vector2f& sun_jitter) {
@@ -119,28 +124,25 @@ class Painter {
                           0.5f * (1 - on.y() / on.z()) * mask.height_px(), 0)[0] < 0.5f;
   }
 
-  // Sets the side (m) of what the pixel sees of the surface, and the paint's level for that.
+  // Sets the paint's level for what the pixel sees of the surface.
   void FindLevel(const Hit& hit) {
     if (level_of_ == hit.seen) return;
     level_of_ = hit.seen;
     const SeenSurface& seen = view_.seen(hit.seen);
     const float sine = std::max(static_cast<float>(seen.plane_distance) * hit.w, 1e-3f);
-    footprint_m_ = kRayFootprint * pixel_angle_ / (hit.w * std::sqrt(sine));
+    const float footprint_m = kRayFootprint * pixel_angle_ / (hit.w * std::sqrt(sine));
     const Texture& paint = hit.seen == 0 ? *world_.ground.map : *seen.surface->paint;
-    level_ = paint.LevelOf(footprint_m_ / static_cast<float>(seen.pixel_size_m));
+    level_ = paint.LevelOf(footprint_m / static_cast<float>(seen.pixel_size_m));
     if (hit.seen > 0) return;
-    const Texture& detail = *world_.ground.detail;
-    const float per_m = static_cast<float>(detail.width_px() / world_.ground.detail_size_m);
-    detail_level_ = detail.LevelOf(footprint_m_ * per_m);
+    detail_level_ = world_.ground.detail->LevelOf(footprint_m * detail_per_m_);
   }
 
   Color GroundPaint(const Hit& hit) {
     FindLevel(hit);
     const Ground& ground = world_.ground;
-    const auto per_m = static_cast<float>(ground.map->width_px() / ground.map_size_m);
-    const float half = 0.5f * static_cast<float>(ground.map->width_px());
-    Color paint = ground.map->Sample<kChannels>(half + per_m * hit.x, half - per_m * hit.y, level_);
-    constexpr int kEvenLevel = 7;  // from here on the detail is the same everywhere
+    Color paint = ground.map->Sample<kChannels>(map_middle_ + map_per_m_ * hit.x,
+                                                map_middle_ - map_per_m_ * hit.y, level_);
+    constexpr int kEvenLevel = 5;  // from here on the detail is the same everywhere
     if (detail_level_ < kEvenLevel) {
       const auto scale = static_cast<float>(ground.detail->width_px() / ground.detail_size_m);
       paint *=
@@ -157,17 +159,10 @@ class Painter {
                                    level_);
   }
 
-  // Part of the sun that gets to a point.
-  float Sunlit(const Hit& hit, int moment, const Vector2f& jitter) const {
+  // Part of the sun that gets to a point past what is in the world.
+  float Sunlit(const Hit& hit, int moment, const Vector2f& jitter) {
     const SeenSurface& seen = view_.seen(hit.seen);
-    float light = 1;
-    if (world_.ground.sunlit) {
-      const Texture& sunlit = *world_.ground.sunlit;
-      const Vector2f at = seen.ground_from_point * Vector3f(hit.x, hit.y, 1);
-      const auto per_m = static_cast<float>(sunlit.width_px() / world_.ground.map_size_m);
-      const float half = 0.5f * static_cast<float>(sunlit.width_px());
-      light = sunlit.Sample<1>(half + per_m * at.x(), half - per_m * at.y(), 0)[0];
-    }
+    float light = FarShade(hit);
     const float time_s = static_cast<float>(moment - middle_) * moment_step_s_;
     if (hit.seen == 0) {
       for (const int k : ground_shadows_) {
@@ -179,6 +174,18 @@ class Painter {
       }
     }
     return light;
+  }
+
+  // The same past what is far away. Its edges are soft: one look a pixel is enough.
+  float FarShade(const Hit& hit) {
+    if (!world_.ground.sunlit || shade_of_ == hit.seen) return shade_;
+    shade_of_ = hit.seen;
+    const Texture& sunlit = *world_.ground.sunlit;
+    const Vector2f at = view_.seen(hit.seen).ground_from_point * Vector3f(hit.x, hit.y, 1);
+    const auto per_m = static_cast<float>(sunlit.width_px() / world_.ground.map_size_m);
+    const float half = 0.5f * static_cast<float>(sunlit.width_px());
+    shade_ = sunlit.Sample<1>(half + per_m * at.x(), half - per_m * at.y(), 0)[0];
+    return shade_;
   }
 
   // The blurred mirror image of the sun.
@@ -217,13 +224,17 @@ class Painter {
   int middle_;
   Color sun_color_;
   Color sky_color_;
+  float map_middle_;  // px
+  float map_per_m_;   // px
+  float detail_per_m_;
   std::span<const int> surfaces_;
   std::span<const int> ground_shadows_;
   float pixel_angle_ = 0;
   int level_of_ = -1;  // the surface that the values below are of
-  float footprint_m_ = 0;
   int level_ = 0;
   int detail_level_ = 0;
+  int shade_of_ = -1;  // the surface that FarShade is known of
+  float shade_ = 1;
 };
 
 // Side of a pixel as an angle, from the rays of its corners.
@@ -292,7 +303,8 @@ cv::Mat FrameRenderer::RenderChannels(double time_s, const Motion& world_from_ca
           const int moment =
               std::min(static_cast<int>(first + place.z() * per_exposure), moments - 1);
           sum += painter.LightOf(ray, moment, kSunDisc[(bits + 8 * k + k / 8) % 64]);
-          place = (place + kStep).unaryExpr(&Fraction);
+          place += kStep;
+          place -= (place.array() >= 1).cast<float>().matrix();
         }
         Eigen::Map<Light<kChannels>>(image.ptr<float>(v) + kChannels * u) =
             sum / static_cast<float>(shutter_.rays_per_pixel);

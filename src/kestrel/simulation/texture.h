@@ -62,6 +62,7 @@ class Texture {
 extern const std::array<float, 256> kReflectanceOfCode;
 
 inline int Texture::Fold(int i, int size, Beyond beyond) {
+  if (static_cast<unsigned>(i) < static_cast<unsigned>(size)) return i;
   switch (beyond) {
     case Beyond::kRepeat:
       return i & (size - 1);
@@ -69,7 +70,7 @@ inline int Texture::Fold(int i, int size, Beyond beyond) {
       i &= 2 * size - 1;
       return i < size ? i : 2 * size - 1 - i;
     default:
-      return i < 0 ? 0 : (i < size ? i : size - 1);
+      return i < 0 ? 0 : size - 1;
   }
 }
 
@@ -85,7 +86,7 @@ Light<kChannels> Texture::Sample(float x, float y, int level) const {
   const float lower_part = row - static_cast<float>(top);
   const int x0 = kChannels * Fold(left, image.width, beyond_);
   const int x1 = kChannels * Fold(left + 1, image.width, beyond_);
-  const std::size_t stride = static_cast<std::size_t>(kChannels) * image.width;
+  const std::ptrdiff_t stride = kChannels * static_cast<std::ptrdiff_t>(image.width);
   const std::uint8_t* upper = image.codes.data() + stride * Fold(top, image.height, beyond_);
   const std::uint8_t* lower = image.codes.data() + stride * Fold(top + 1, image.height, beyond_);
   Light<kChannels> light;
