@@ -32,14 +32,16 @@ constexpr double kMinCrossCorrelation = 0.7;
 constexpr double kMaxOtherSpokes = 0.55;
 constexpr double kMaxFrameCorners = 0.14;
 constexpr double kMaxBoardDarkness = 0.35;
-constexpr double kSmallMargin = 0.08;           // of the quality of a small pattern
-constexpr double kMinCorrelation = 0.35;        // of a start of a small pattern
-constexpr double kSureCorrelation = 0.6;        // of a start that quadrants give
-constexpr double kMinFittedCorrelation = 0.72;  // of a small pattern
+constexpr double kSmallMargin = 0.08;            // of the quality of a small pattern
+constexpr double kMinCorrelation = 0.35;         // of a start of a small pattern
+constexpr double kSureCorrelation = 0.6;         // of a start that quadrants give
+constexpr double kMinCorrelationOfEither = 0.7;  // of the poses of a small pattern
+constexpr double kMinFittedCorrelation = 0.82;   // of a small pattern
 // Candidates of a pass that are looked at, those of the highest contrast: a bound of the time that
 // a frame full of texture costs.
 constexpr std::size_t kMaxCandidates = 6;
 constexpr std::size_t kMaxCollected = 512;
+constexpr std::size_t kMaxTested = 64;  // small rings that are remembered
 constexpr std::array<double, 1> kOneScale{1.0};
 // Edges and contrasts of the ring that are where a circle has them: a frame of another shape has
 // some of them.
@@ -144,10 +146,12 @@ void LandingSearch::MakeRoom() {
   buffers_.cross_lines.Reserve();
   buffers_.partial.Reserve(most_points);
   buffers_.small.Reserve();
+  buffers_.tested.reserve(kMaxTested);
 }
 
 LandingReport LandingSearch::Run() {
   MakeRoom();
+  buffers_.tested.clear();
   report_.reason = "no outline that could be a ring";
   if (!ChooseRegion()) {
     report_.reason = "the hint points out of the image";
@@ -461,10 +465,12 @@ void LandingSearch::TestRing(const RingFit& ring, const Eigen::Vector2d& diamete
     Reach(LandingStage::kCross, "no cross inside of the ring");
     const std::array<bool, 2> allowed = LevelEnough(ring);
     for (int i = 0; i < 2; ++i) {
+      if (allowed[i]) hypotheses[i] = TestPose(ring.poses[i], diameters_px.x());
+    }
+    const bool none = !hypotheses[0] && !hypotheses[1];
+    for (int i = 0; i < 2 && none; ++i) {
       if (!allowed[i]) continue;
-      hypotheses[i] = TestPose(ring.poses[i], diameters_px.x());
-      if (!hypotheses[i])
-        hypotheses[i] = TestRefinedPose(ring.poses[i], diameters_px.x(), reach_px);
+      hypotheses[i] = TestRefinedPose(ring.poses[i], diameters_px.x(), reach_px);
     }
   }
   if (hypotheses[0] && hypotheses[1]) {
@@ -564,6 +570,26 @@ std::optional<double> LandingSearch::ArmAngleByQuadrants(const CirclePose& pose)
   return cross->arm_angle;
 }
 
+// Whether nearly the same small ring was tested before, as another pass saw it; notes it if not.
+bool LandingSearch::WasTested(const RingFit& ring, const Eigen::Vector2d& diameters_px) {
+  constexpr double kSamePlace = 0.12;  // of its diameters
+  constexpr double kSameSize = 0.1;
+  SmallRingPlace place{Eigen::Vector2d::Zero(), diameters_px};
+  if (models_.camera.Project(ring.poses[0].center, &place.center) ==
+      ProjectionStatus::kOutsideModel) {
+    return true;
+  }
+  const auto same = [&](const SmallRingPlace& other) {
+    return (place.center - other.center).norm() < kSamePlace * diameters_px.y() &&
+           ((place.diameters - other.diameters).array().abs() < kSameSize * place.diameters.array())
+               .all();
+  };
+  std::vector<SmallRingPlace>& tested = buffers_.tested;
+  if (std::any_of(tested.begin(), tested.end(), same)) return true;
+  if (tested.size() < tested.capacity()) tested.push_back(place);
+  return false;
+}
+
 // Rings whose strokes are no wider than the blur: the print is fitted as a whole. The ring may be
 // smaller than it was seen by the given factors.
 void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
@@ -573,6 +599,7 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
   }
   StageTimer timer(&report_, LandingStage::kCross);
   Reach(LandingStage::kCross, "no cross inside of the ring");
+  if (WasTested(ring, diameters_px)) return;
   const std::array<bool, 2> allowed = LevelEnough(ring);
   for (int i = 0; i < 2; ++i) {
     if (!allowed[i]) continue;
@@ -588,8 +615,9 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
     constexpr int kIterations = 8;
     const auto fit =
         models_.small.Refine(image_, start.camera_from_pattern, kIterations, &buffers_.small);
-    if (!fit || !Agrees(start.camera_from_pattern, fit->location.camera_from_pattern,
-                        models_.options.pattern.outer_radius_m())) {
+    if (!fit || fit->correlation < kMinCorrelationOfEither) return;
+    if (!Agrees(start.camera_from_pattern, fit->location.camera_from_pattern,
+                models_.options.pattern.outer_radius_m())) {
       continue;
     }
     const double quality = fit->match.Quality();

@@ -53,6 +53,12 @@ struct RingCandidate {
   double contrast = 0;               // of ring and white, gray values
 };
 
+// A small ring, seen in one pass or another: pixels at full resolution.
+struct SmallRingPlace {
+  Eigen::Vector2d center;
+  Eigen::Vector2d diameters;
+};
+
 struct LandingWorkspace::Buffers {
   static constexpr std::size_t kPasses = 6;
 
@@ -69,6 +75,7 @@ struct LandingWorkspace::Buffers {
   CrossLinesWorkspace cross_lines;
   PartialPatternWorkspace partial;
   SmallPatternWorkspace small;
+  std::vector<SmallRingPlace> tested;  // small rings of this image
 };
 
 // The search of one image: runs the stages on candidates and keeps the best.
@@ -125,6 +132,7 @@ class LandingSearch {
   void TestRing(const RingFit& ring, const Eigen::Vector2d& diameters_px, double reach_px);
   void TestSmallRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
                      std::span<const double> scales);
+  bool WasTested(const RingFit& ring, const Eigen::Vector2d& diameters_px);
   std::optional<double> ArmAngleByQuadrants(const CirclePose& pose);
   std::array<bool, 2> LevelEnough(const RingFit& ring) const;
   std::optional<VerifiedCross> VerifyCross(const cv::Mat& image, const PatternView& view,

@@ -24,10 +24,16 @@ constexpr double kBlurSpread = 0.35;  // of the blur's logarithm over lenses
 constexpr double kMinContrast = 2;
 constexpr double kMaxWhite = 600;  // gray value of white under the strongest overexposure
 constexpr double kSaturated = 254;
+constexpr double kMinRingCorrelation = 0.2;  // of a start, ring and white alone
 // Standard deviations of the residuals beyond which one is an outlier, and the least of these,
 // share of the contrast: no print is perfect.
 constexpr double kOutlier = 2.5;
 constexpr double kLeastNoise = 0.05;
+// What looks so little like the print after so many steps never will.
+constexpr int kLateStart = 3;
+constexpr double kMinLateCorrelation = 0.6;
+// Pixels of a box around the print beyond which every second one is enough.
+constexpr int kManyPixels = 1200;
 constexpr std::size_t kMinPixels = 30;
 constexpr int kMaxSide = 128;  // of the box around the print, pixels
 
@@ -158,7 +164,7 @@ void SmallPatternWorkspace::Reserve() {
 
 // Collects the pixels, each 'stride'-th of each 'stride'-th row, that show the disc of the print
 // and the white around it under 'pose'.
-bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose, int stride,
+bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose,
                                 SmallPatternWorkspace* workspace) const {
   workspace->pixels.clear();
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
@@ -181,6 +187,8 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
   const int x1 = std::min(image.cols - 1, static_cast<int>(std::ceil(high.x())));
   const int y1 = std::min(image.rows - 1, static_cast<int>(std::ceil(high.y())));
   if (x1 - x0 < 4 || y1 - y0 < 4 || x1 - x0 > kMaxSide || y1 - y0 > kMaxSide) return false;
+  const int stride =
+      1 + static_cast<int>(std::sqrt((x1 - x0) * (y1 - y0) / static_cast<double>(kManyPixels)));
   const PlaneMap map(pose);
   for (int y = y0; y <= y1; y += stride) {
     const std::uint8_t* row = image.ptr(y);
@@ -213,59 +221,98 @@ double SmallPatternFitter::ArmDarkness(double along, double across, double blur_
   return width * (step(along + length, blur_along) - step(along - length, blur_along));
 }
 
+// Sums for the correlation of gray values with how dark a print is there.
+class DarknessCorrelation {
+ public:
+  void Add(double gray, double dark) {
+    ++n_;
+    g_ += gray;
+    gg_ += gray * gray;
+    d_ += dark;
+    dd_ += dark * dark;
+    gd_ += gray * dark;
+  }
+  // 1 when the image is bright where the print is not dark; -1 without any contrast.
+  double value() const {
+    const double variance = (gg_ - g_ * g_ / n_) * (dd_ - d_ * d_ / n_);
+    return variance > 0 ? -(gd_ - g_ * d_ / n_) / std::sqrt(variance) : -1;
+  }
+
+ private:
+  double n_ = 0, g_ = 0, gg_ = 0, d_ = 0, dd_ = 0, gd_ = 0;
+};
+
+// Correlation of ring and white with the image when the ring lies as 'unturned'; fills the points
+// of the workspace. The ring looks the same however it is turned.
+double SmallPatternFitter::CorrelateRing(const RigidTransform& unturned,
+                                         SmallPatternWorkspace* workspace) const {
+  const PlaneMap map(unturned);
+  const double inner = pattern_.inner_radius_m();
+  workspace->points.clear();
+  DarknessCorrelation correlation;
+  for (const auto& pixel : workspace->pixels) {
+    PlanePoint point = Intersect(map, pixel);
+    const double r = std::max(std::hypot(point.x, point.y), 1e-9);
+    const double blur_r =
+        kGoodLensBlurPx *
+        (point.by_pixel.transpose() * Eigen::Vector2d(point.x / r, point.y / r)).norm();
+    point.ring = BlurredStroke(r, inner, pattern_.outer_radius_m(), blur_r).value;
+    workspace->points.push_back(point);
+    if (r > inner) correlation.Add(pixel.gray, point.ring);
+  }
+  return correlation.value();
+}
+
+// Correlation of the print with the image when it is turned by 'angle' in the plane of the points.
+double SmallPatternFitter::CorrelatePrint(double angle,
+                                          const SmallPatternWorkspace& workspace) const {
+  const Eigen::Matrix2d turned = Eigen::Rotation2Dd(-angle).toRotationMatrix();
+  DarknessCorrelation correlation;
+  for (std::size_t i = 0; i < workspace.points.size(); ++i) {
+    const PlanePoint& point = workspace.points[i];
+    const Eigen::Vector2d place = turned * Eigen::Vector2d(point.x, point.y);
+    const Eigen::Matrix2d by_pixel = turned * point.by_pixel;
+    const double blur_x = kGoodLensBlurPx * by_pixel.row(0).norm();
+    const double blur_y = kGoodLensBlurPx * by_pixel.row(1).norm();
+    const double arms = (1 - ArmDarkness(place.x(), place.y(), blur_x, blur_y)) *
+                        (1 - ArmDarkness(place.y(), place.x(), blur_y, blur_x));
+    correlation.Add(workspace.pixels[i].gray, 1 - (1 - point.ring) * arms);
+  }
+  return correlation.value();
+}
+
 SmallPatternFitter::Start SmallPatternFitter::FindStart(const cv::Mat& image,
                                                         const CirclePose& ring,
                                                         std::span<const double> scales,
                                                         std::optional<double> arm_angle,
                                                         SmallPatternWorkspace* workspace) const {
+  Start best{{}, -1};
+  double best_ring = -1, best_scale = 0;
+  double last_scale = 0;
+  const auto scaled = [&ring](double scale) {
+    return CirclePose{ring.center / scale, ring.normal};  // farther away is smaller
+  };
+  const auto look_at = [&](double scale) {
+    const RigidTransform unturned = PatternPose(scaled(scale), 0);
+    last_scale = scale;
+    return Gather(image, unturned, workspace) ? CorrelateRing(unturned, workspace) : -1.0;
+  };
+  for (const double scale : scales) {
+    const double correlation = look_at(scale);
+    if (correlation > best_ring) {
+      best_ring = correlation;
+      best_scale = scale;
+    }
+  }
+  if (best_ring < kMinRingCorrelation) return best;
+  if (last_scale != best_scale) look_at(best_scale);
   // Over a right angle: within 7.5 degrees of every direction.
   const int turns = arm_angle ? 1 : 6;
-  Start best{{}, -1};
-  for (const double scale : scales) {
-    CirclePose scaled = ring;
-    scaled.center /= scale;  // farther away is smaller
-    const RigidTransform unturned = PatternPose(scaled, 0);
-    if (!Gather(image, unturned, 1, workspace)) continue;
-    const PlaneMap map(unturned);
-    workspace->points.clear();
-    double g = 0, gg = 0;
-    for (const auto& pixel : workspace->pixels) {
-      PlanePoint point = Intersect(map, pixel);
-      // The ring looks the same however it is turned.
-      const double r = std::max(std::hypot(point.x, point.y), 1e-9);
-      const double blur_r =
-          kGoodLensBlurPx *
-          (point.by_pixel.transpose() * Eigen::Vector2d(point.x / r, point.y / r)).norm();
-      point.ring =
-          BlurredStroke(r, pattern_.inner_radius_m(), pattern_.outer_radius_m(), blur_r).value;
-      workspace->points.push_back(point);
-      g += pixel.gray;
-      gg += pixel.gray * pixel.gray;
-    }
-    const auto n = static_cast<double>(workspace->pixels.size());
-    for (int turn = 0; turn < turns; ++turn) {
-      const double angle = arm_angle.value_or(0) + turn * (std::numbers::pi / 2) / turns;
-      const Eigen::Matrix2d turned = Eigen::Rotation2Dd(-angle).toRotationMatrix();
-      double d = 0, dd = 0, gd = 0;
-      for (std::size_t i = 0; i < workspace->points.size(); ++i) {
-        const PlanePoint& point = workspace->points[i];
-        const Eigen::Vector2d place = turned * Eigen::Vector2d(point.x, point.y);
-        const Eigen::Matrix2d by_pixel = turned * point.by_pixel;
-        const double blur_x = kGoodLensBlurPx * by_pixel.row(0).norm();
-        const double blur_y = kGoodLensBlurPx * by_pixel.row(1).norm();
-        const double arms = (1 - ArmDarkness(place.x(), place.y(), blur_x, blur_y)) *
-                            (1 - ArmDarkness(place.y(), place.x(), blur_y, blur_x));
-        const double dark = 1 - (1 - point.ring) * arms;
-        d += dark;
-        dd += dark * dark;
-        gd += workspace->pixels[i].gray * dark;
-      }
-      const double variance = (gg - g * g / n) * (dd - d * d / n);
-      const double correlation = variance > 0 ? -(gd - g * d / n) / std::sqrt(variance) : -1;
-      if (correlation > best.correlation) best = {PatternPose(scaled, angle), correlation};
-    }
-    // What looks nothing like the print does not for being a little smaller.
-    if (best.correlation < 0.1) break;
+  for (int turn = 0; turn < turns; ++turn) {
+    const double angle = arm_angle.value_or(0) + turn * (std::numbers::pi / 2) / turns;
+    const double correlation = CorrelatePrint(angle, *workspace);
+    if (correlation > best.correlation)
+      best = {PatternPose(scaled(best_scale), angle), correlation};
   }
   return best;
 }
@@ -419,7 +466,7 @@ bool SmallPatternFitter::Improve(const System& system, State* state) const {
 std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
     const cv::Mat& image, const RigidTransform& initial, int iterations,
     SmallPatternWorkspace* workspace) const {
-  if (!Gather(image, initial, 1, workspace)) return std::nullopt;
+  if (!Gather(image, initial, workspace)) return std::nullopt;
   State state;
   state.pose = initial;
   MeasureLevels(*workspace, &state);
@@ -428,6 +475,7 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   double limit = kMaxWhite;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     const System system = Linearize(state, limit, workspace);
+    if (iteration == kLateStart && system.correlation() < kMinLateCorrelation) return std::nullopt;
     if (!Improve(system, &state)) return std::nullopt;
     if (2 * iteration >= iterations) {
       limit = kOutlier * std::max(system.robust_scale, kLeastNoise * state.contrast);
@@ -453,15 +501,7 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
 
 std::optional<SmallPatternFitter::OtherSigns> SmallPatternFitter::Inspect(
     const cv::Mat& image, const RigidTransform& pose, SmallPatternWorkspace* workspace) const {
-  Eigen::Matrix<double, 2, 3> d_pixel;
-  Eigen::Vector2d pixel;
-  if (camera_.Project(pose.translation, &pixel, &d_pixel) != ProjectionStatus::kOk) {
-    return std::nullopt;
-  }
-  const double diameter_px = 2 * pattern_.outer_radius_m() * d_pixel.col(0).norm();
-  constexpr double kEnoughPx = 30;  // across the ring
-  const int stride = std::max(1, static_cast<int>(diameter_px / kEnoughPx));
-  if (!Gather(image, pose, stride, workspace)) return std::nullopt;
+  if (!Gather(image, pose, workspace)) return std::nullopt;
   State state;
   state.pose = pose;
   MeasureLevels(*workspace, &state);

@@ -92,9 +92,11 @@ class SmallPatternFitter {
   struct Darkness;
   struct State;
   struct System;
-  bool Gather(const cv::Mat& image, const RigidTransform& pose, int stride,
+  bool Gather(const cv::Mat& image, const RigidTransform& pose,
               SmallPatternWorkspace* workspace) const;
   Darkness Evaluate(double x, double y, const Eigen::Matrix2d& d_plane, double blur_px) const;
+  double CorrelateRing(const RigidTransform& unturned, SmallPatternWorkspace* workspace) const;
+  double CorrelatePrint(double angle, const SmallPatternWorkspace& workspace) const;
   double ArmDarkness(double along, double across, double blur_along, double blur_across) const;
   void MeasureLevels(const SmallPatternWorkspace& workspace, State* state) const;
   System Linearize(const State& state, double limit, SmallPatternWorkspace* workspace) const;
