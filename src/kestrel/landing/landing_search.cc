@@ -93,6 +93,17 @@ bool IsOtherSign(const SmallPatternFitter::OtherSigns& others) {
          others.board_darkness > kMaxBoardDarkness;
 }
 
+// Covariance of the position (m^2) that no residual tells of: the print is as large as it should be
+// to a fraction, and the lens as calibrated to a part of a pixel.
+Eigen::Matrix3d SystematicError(const Eigen::Vector3d& position, double focal_px) {
+  constexpr double kPrintError = 0.002;  // of its dimensions
+  constexpr double kCalibrationErrorPx = 0.03;
+  const double across = kCalibrationErrorPx / focal_px;
+  const Eigen::Matrix3d along = position * position.transpose();
+  return kPrintError * kPrintError * along +
+         across * across * (position.squaredNorm() * Eigen::Matrix3d::Identity() - along);
+}
+
 // What is asked of the quality of a small pattern beyond that of a near one.
 double SmallMargin(const Eigen::Vector2d& diameters_px) {
   return kSmallMargin * std::clamp((36 - std::sqrt(diameters_px.prod())) / 16, 0.0, 1.0);
@@ -677,6 +688,8 @@ void LandingSearch::Keep(const PatternLocation& location, CrossMethod method, do
   LandingDetection detection;
   detection.camera_from_pattern = location.camera_from_pattern;
   detection.covariance = location.covariance;
+  detection.covariance.topLeftCorner<3, 3>() +=
+      SystematicError(location.camera_from_pattern.translation, focal_px_);
   detection.method = method;
   detection.quality = quality;
   detection.ring_semi_major_px = 0.5 * diameters_px.x();
