@@ -17,6 +17,7 @@ namespace {
 
 constexpr int kMaxReach = 12;        // px
 constexpr double kOnEdgePx = 1.0;    // offset of an edge that is the outline's own
+constexpr double kLensBlurPx = 0.7;  // of optics and pixels, standard deviation
 constexpr double kEdgeSigma = 0.12;  // px, of an edge that fits perfectly
 
 // Offset (px) along the unit vector 'normal' from 'at' to the steepest rise of brightness within
@@ -57,6 +58,21 @@ std::optional<double> FindEdge(const cv::Mat& image, const Eigen::Vector2d& at,
   return best - reach - 1 + shift;
 }
 
+// Moves a pose by a translation and a rotation vector about its origin; false when that is no small
+// change.
+bool Move(const Eigen::Matrix<double, 6, 1>& step, RigidTransform* pose) {
+  if (!step.allFinite()) return false;
+  const double angle = step.tail<3>().norm();
+  if (angle > 1) return false;
+  pose->translation += step.head<3>();
+  if (angle > 1e-12) {
+    pose->rotation =
+        (Eigen::Quaterniond(Eigen::AngleAxisd(angle, step.tail<3>() / angle)) * pose->rotation)
+            .normalized();
+  }
+  return true;
+}
+
 }  // namespace
 
 // Normal equations of the pose, and the statistics of the residuals that made them.
@@ -72,12 +88,20 @@ struct PatternLocator::Normal {
   std::array<int, 8> part_used{};
   std::array<float, 512> magnitudes;  // of all residuals that were found
   int found = 0;
+
+  // Standard deviation of the residuals by the median of their magnitudes.
+  double RobustScale() {
+    const auto middle = magnitudes.begin() + found / 2;
+    std::nth_element(magnitudes.begin(), middle, magnitudes.begin() + found);
+    return 1.4826 * static_cast<double>(*middle);
+  }
 };
 
 PatternLocator::PatternLocator(const CameraModel& camera, const LandingPattern& pattern)
     : camera_(camera), pattern_(pattern) {
   AddCircle(pattern.outer_radius_m(), 1, 56, 0);
   AddCircle(pattern.inner_radius_m(), -1, 40, 0.8 * pattern.arm_width_m);
+  ring_places_ = places_.size();
   AddArms();
 }
 
@@ -90,7 +114,7 @@ void PatternLocator::AddCircle(double radius, double sign, int count, double arm
     const Eigen::Vector2d point = radius * direction;
     if (std::min(std::abs(point.x()), std::abs(point.y())) < arm_clearance) continue;
     const int quarter = static_cast<int>(std::floor(angle / (std::numbers::pi / 2) + 0.5)) % 4;
-    places_.push_back({point, sign * direction, 4 + quarter});
+    places_.push_back({point, sign * direction, 4 + quarter, sign / radius});
   }
 }
 
@@ -107,7 +131,7 @@ void PatternLocator::AddArms() {
     for (int i = 0; i < kPerSide; ++i) {
       const double reach = first + (last - first) * i / (kPerSide - 1);
       for (const double side : {1.0, -1.0}) {
-        places_.push_back({reach * along + side * half_width * across, side * across, arm});
+        places_.push_back({reach * along + side * half_width * across, side * across, arm, 0});
       }
     }
   }
@@ -115,13 +139,14 @@ void PatternLocator::AddArms() {
 
 // Adds what each place says to the normal equations, weighted by Tukey's function of its residual
 // with the given scale.
-void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose, double reach_px,
-                                double min_step, double scale_px, Normal* normal) const {
+void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose,
+                                std::span<const Place> places, double reach_px, double min_step,
+                                double scale_px, Normal* normal) const {
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   const Eigen::Matrix<double, 3, 2> plane = rotation.leftCols<2>();
   const int reach = std::clamp(static_cast<int>(std::ceil(reach_px)), 1, kMaxReach);
   Eigen::Matrix<double, 2, 3> d_pixel;
-  for (const Place& place : places_) {
+  for (const Place& place : places) {
     ++normal->part_places[place.part];
     const Eigen::Vector3d from_center = plane * place.point;
     Eigen::Vector2d pixel;
@@ -137,9 +162,13 @@ void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose
     Eigen::Vector2d across(-tangent.y(), tangent.x());
     if (across.dot(d_plane * place.normal) < 0) across = -across;
     across.normalize();
-    const std::optional<double> offset =
+    std::optional<double> offset =
         FindEdge(image, pixel, across, reach, static_cast<float>(min_step));
     if (!offset) continue;
+    // Blur moves a bent edge towards the middle of the bend.
+    const double shrink = 0.5 * kLensBlurPx * kLensBlurPx * place.curvature *
+                          std::abs(d_plane.determinant()) / std::pow(tangent.norm(), 3);
+    *offset += shrink;
     if (normal->found < static_cast<int>(normal->magnitudes.size())) {
       normal->magnitudes[normal->found++] = static_cast<float>(std::abs(*offset));
     }
@@ -170,23 +199,11 @@ std::optional<PatternLocation> PatternLocator::Locate(const cv::Mat& image,
   double reach = reach_px;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     Normal normal;
-    Accumulate(image, pose, reach, min_step, scale, &normal);
+    Accumulate(image, pose, places_, reach, min_step, scale, &normal);
     if (normal.used < 12) return std::nullopt;
     const auto solver = normal.h.selfadjointView<Eigen::Lower>().ldlt();
-    const Eigen::Matrix<double, 6, 1> step = solver.solve(normal.g);
-    if (!step.allFinite()) return std::nullopt;
-    pose.translation += step.head<3>();
-    const double angle = step.tail<3>().norm();
-    if (angle > 1) return std::nullopt;
-    if (angle > 1e-12) {
-      pose.rotation =
-          (Eigen::Quaterniond(Eigen::AngleAxisd(angle, step.tail<3>() / angle)) * pose.rotation)
-              .normalized();
-    }
-    // Robust scale of the residuals (median of their magnitudes).
-    const auto middle = normal.magnitudes.begin() + normal.found / 2;
-    std::nth_element(normal.magnitudes.begin(), middle, normal.magnitudes.begin() + normal.found);
-    scale = std::clamp(1.4826 * static_cast<double>(*middle), 0.25, scale);
+    if (!Move(solver.solve(normal.g), &pose)) return std::nullopt;
+    scale = std::clamp(normal.RobustScale(), 0.25, scale);
     reach = std::clamp(3 * scale, 1.5, reach);
     if (iteration + 1 < iterations) continue;
 
@@ -198,7 +215,7 @@ std::optional<PatternLocation> PatternLocator::Locate(const cv::Mat& image,
     location.edges = normal.used;
     for (int part = 0; part < 8; ++part) {
       const int seen = normal.part_in_image[part];
-      const double share = 3 * seen < normal.part_places[part]
+      const double share = 4 * seen < normal.part_places[part]
                                ? -1.0
                                : static_cast<double>(normal.part_used[part]) / seen;
       (part < 4 ? location.arm_share : location.ring_share)[part % 4] = share;
@@ -206,6 +223,31 @@ std::optional<PatternLocation> PatternLocator::Locate(const cv::Mat& image,
   }
   if (!location.covariance.allFinite()) return std::nullopt;
   return location;
+}
+
+std::optional<RigidTransform> PatternLocator::LocateRing(const cv::Mat& image,
+                                                         const RigidTransform& initial,
+                                                         double reach_px, double min_step,
+                                                         int iterations) const {
+  RigidTransform pose = initial;
+  double scale = std::max(1.0, 0.5 * reach_px);
+  double reach = reach_px;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    Normal normal;
+    Accumulate(image, pose, std::span(places_).first(ring_places_), reach, min_step, scale,
+               &normal);
+    if (normal.used < 12) return std::nullopt;
+    // A ring says nothing about turns in its plane, and a short arc little about its far side.
+    normal.h.diagonal() *= 1 + 1e-4;
+    const double weight = 1e-6 * normal.h.diagonal().tail<3>().maxCoeff();
+    for (int i = 3; i < 6; ++i) normal.h(i, i) += weight;
+    if (!Move(normal.h.selfadjointView<Eigen::Lower>().ldlt().solve(normal.g), &pose)) {
+      return std::nullopt;
+    }
+    scale = std::clamp(normal.RobustScale(), 0.25, scale);
+    reach = std::clamp(3 * scale, 1.5, reach);
+  }
+  return pose;
 }
 
 }  // namespace kestrel
