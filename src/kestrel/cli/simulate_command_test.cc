@@ -12,7 +12,7 @@ class SimulateCommandTest : public CommandTest {
  protected:
   // Options of a flight that is quickly rendered.
   static constexpr const char* kSmall =
-      " --set frames=2 --set ground.map_px=256 --set shutter.rays_per_pixel=4";
+      " --set frames=2 --set rate_hz=1 --set ground.map_px=256 --set shutter.rays_per_pixel=4";
 };
 
 TEST_F(SimulateCommandTest, LandsOnWhatItSimulates) {
@@ -24,7 +24,7 @@ TEST_F(SimulateCommandTest, LandsOnWhatItSimulates) {
   const Outcome landed = Run("land " + flight);
   EXPECT_EQ(landed.status, 0) << landed.err;
   EXPECT_THAT(landed.err, HasSubstr("2 frames, pattern found in 2"));
-  ExpectInputError("simulate landing --seed 2 --output " + flight + kSmall,
+  ExpectInputError("simulate landing --scenario calm --seed 2 --output " + flight + kSmall,
                    "exists already; --force replaces it");
 }
 
