@@ -10,6 +10,7 @@
 #include "kestrel/cli/evaluate_command.h"
 #include "kestrel/cli/help_command.h"
 #include "kestrel/cli/land_command.h"
+#include "kestrel/cli/simulate_command.h"
 
 namespace {
 
@@ -30,6 +31,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "kestrel " KESTREL_VERSION);
   app.require_subcommand(1);
   kestrel::AddLandCommand(&app);
+  kestrel::AddSimulateCommand(&app);
   kestrel::AddEvaluateCommand(&app);
   kestrel::AddConfigCommand(&app);
   kestrel::AddHelpCommand(&app);

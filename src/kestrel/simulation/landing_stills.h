@@ -61,10 +61,10 @@ struct LookalikeStill {
   std::vector<std::string> names;  // of the look-alikes in it, at least one
 };
 
-// Part (0 to 1) of the area of ring and cross that shows in the renderer's image: inside of it and
-// of the lens circle, not behind the airframe.
+// Part (0 to 1) of the area of ring and cross that shows in the image: inside of it and of the lens
+// circle, not behind the airframe.
 double VisibleFraction(const LandingPattern& pattern, const RigidTransform& camera_from_pattern,
-                       const SceneRenderer& renderer);
+                       const Lens& lens);
 
 // Makes random stills: any yaw, tilt and place in the lens circle, random ground, light, shadow,
 // glare, haze, wear, blur, motion and noise, all as strong as an eye can still see through. The
