@@ -112,6 +112,7 @@ class TrackSink {
     has_begun_ = has_begun_ || observation.fate;
     if (!has_begun_) return;
     WriteLine(TrackCsvRow(observation), kTrack, &track_);
+    if (observation.track_state == TrackState::kSearching) return;
     for (const Duration horizon : horizons_) {
       const auto prediction = tracker.Predict(observation.time + horizon);
       if (!prediction) continue;

@@ -94,6 +94,7 @@ std::vector<std::string> TargetTrackerOptions::Validate() const {
   require_positive(start_speed_sigma_mps, "start_speed_sigma_mps must be positive");
   require(start_turn_sigma_radps >= 0 && start_turn_sigma_radps < 1e3,
           "start_turn_sigma_radps must be 0 to 1000");
+  require(shared_sigma_m >= 0 && shared_sigma_m < 100, "shared_sigma_m must be 0 to 100");
   require_positive(gate, "gate must be positive");
   require(restart_count >= 1, "restart_count must be at least 1");
   require_positive(max_speed_mps, "max_speed_mps must be positive");
@@ -209,7 +210,9 @@ std::optional<TargetEstimate> TargetTracker::Predict(Time time) const {
   if (count == 0) return std::nullopt;
   const Entry& entry = entries_[count - 1];
   if (ToSeconds(time - entry.measurement.time) > options_.lost_after_s) return std::nullopt;
-  const TargetEstimate estimate{time, PredictFrom(entry, time)};
+  TargetEstimate estimate{time, PredictFrom(entry, time)};
+  estimate.motion.covariance.diagonal().head<3>().array() +=
+      options_.shared_sigma_m * options_.shared_sigma_m;
   const bool is_known =
       estimate.motion.mean.allFinite() && estimate.position_sigma_m() <= options_.lost_sigma_m;
   return is_known ? std::optional(estimate) : std::nullopt;

@@ -59,6 +59,9 @@ struct TargetTrackerOptions {
   // change.
   double start_speed_sigma_mps = 6;
   double start_turn_sigma_radps = 0.3;
+  // Error of the position, per axis, that all measurements share, as the bias of the navigation: it
+  // is not filtered away, but in the covariance of every estimate.
+  double shared_sigma_m = 0.025;
   // Squared Mahalanobis distance beyond which a measurement is not the target's: 16.3 is passed by
   // one true measurement in a thousand.
   double gate = 16.3;
@@ -68,7 +71,7 @@ struct TargetTrackerOptions {
   double max_speed_mps = 15;
   // Measurements that make a track; time without one after which it is predicted, then lost; and
   // standard deviation of the position at which it is lost.
-  int confirm_count = 3;
+  int confirm_count = 5;
   double predict_after_s = 0.15;
   double lost_after_s = 3;
   double lost_sigma_m = 3;
@@ -88,6 +91,8 @@ struct TargetTrackerOptions {
             "speed of a new track, standard deviation");
     visitor("start_turn_sigma_radps", self.start_turn_sigma_radps, "rad/s",
             "turn rate of a new track, standard deviation");
+    visitor("shared_sigma_m", self.shared_sigma_m, "m",
+            "error that all measurements share, as the bias of the navigation, per axis");
     visitor("gate", self.gate, "1", "squared Mahalanobis distance of the furthest measurement");
     visitor("restart_count", self.restart_count, "1",
             "measurements in a row outside of the gate that start a new track");

@@ -126,10 +126,21 @@ TEST(TargetTracker, OnCurvesItPredictsTwiceAsWellAsConstantVelocity) {
 }
 
 TEST(TargetTracker, ItsCovarianceIsNotTooSmall) {
+  TargetTrackerOptions options;
+  options.shared_sigma_m = 0;
   for (const auto& path : {Standing, Straight, Circle, FigureOfEight}) {
-    const Errors errors = Follow(path, {});
+    const Errors errors = Follow(path, options);
     EXPECT_LT(Rms(errors.nees), 6);  // of a chi-square of 3: 3.9
   }
+}
+
+TEST(TargetTracker, WhatAllMeasurementsShareStaysUncertain) {
+  TargetTrackerOptions options;
+  options.shared_sigma_m = 0.5;
+  TargetTracker tracker(options);
+  Sensor sensor(Standing);
+  for (int i = 0; i < 300; ++i) tracker.Add(sensor.Measure(i / 30.0));
+  EXPECT_NEAR(tracker.Predict(At(10))->position_sigma_m(), 0.5, 0.01);
 }
 
 TEST(TargetTracker, BridgesADropout) {
@@ -150,8 +161,7 @@ TEST(TargetTracker, LifeFromSearchingToLost) {
   EXPECT_FALSE(tracker.Predict(At(0)));
   EXPECT_EQ(tracker.Add(sensor.Measure(0)), MeasurementFate::kStarted);
   EXPECT_EQ(tracker.StateAt(At(0)), TrackState::kSearching);
-  tracker.Add(sensor.Measure(0.05));
-  tracker.Add(sensor.Measure(0.1));
+  for (const double t : {0.025, 0.05, 0.075, 0.1}) tracker.Add(sensor.Measure(t));
   EXPECT_EQ(tracker.StateAt(At(0.1)), TrackState::kTracking);
   EXPECT_EQ(tracker.StateAt(At(3.2)), TrackState::kLost);
   EXPECT_FALSE(tracker.Predict(At(3.2)));
