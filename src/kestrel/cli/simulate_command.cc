@@ -77,7 +77,7 @@ void RunLanding(const SimulateArguments& arguments) {
     return;
   }
   Render(
-      PlanLandingFlight(options, FindCamera(arguments.camera, PaperCalibration()), arguments.seed),
+      PlanLanding(options, FindCamera(arguments.camera, PaperCalibration()), arguments.seed),
       arguments);
 }
 

@@ -99,6 +99,15 @@ class Painter {
     return Hazy(light, hit.w, ray);
   }
 
+  // What the lens scatters of the sun, in a pixel that looks along 'ray'.
+  Color Flare(const Vector3f& ray) const {
+    if (world_.light.flare <= 0) return Color::Zero();
+    constexpr float kWidth2 = 0.12f * 0.12f;  // squared angle at which it has faded to a half
+    const Vector3f to_sun = world_.light.to_sun.cast<float>();
+    const float angle2 = 2 * (1 - to_sun.dot(view_.WorldFromCamera(middle_) * ray.normalized()));
+    return static_cast<float>(world_.light.flare) / (1 + angle2 / kWidth2) * sun_color_;
+  }
+
  private:
   Hit FirstHit(const Vector3f& ray, int moment) const {
     Hit hit;
@@ -190,10 +199,10 @@ class Painter {
 
   // The blurred mirror image of the sun.
   float Glare(const SeenSurface& seen, const Vector3f& ray_in_world) const {
-    constexpr float kLobe = 0.012f;  // one minus the cosine at which it has faded to 1 / e
     const Vector3f mirrored = ray_in_world - 2 * seen.normal.dot(ray_in_world) * seen.normal;
     const float cosine = mirrored.dot(world_.light.to_sun.cast<float>());
-    return seen.surface->gloss * std::exp((cosine - 1) / kLobe);
+    const float width = seen.surface->gloss_width;
+    return seen.surface->gloss * std::exp(2 * (cosine - 1) / (width * width));
   }
 
   Color Sky(const Vector3f& ray_in_world) const {
@@ -307,7 +316,7 @@ cv::Mat FrameRenderer::RenderChannels(double time_s, const Motion& world_from_ca
           place -= (place.array() >= 1).cast<float>().matrix();
         }
         Eigen::Map<Light<kChannels>>(image.ptr<float>(v) + kChannels * u) =
-            sum / static_cast<float>(shutter_.rays_per_pixel);
+            sum / static_cast<float>(shutter_.rays_per_pixel) + painter.Flare(corners[0]);
       }
     }
   }

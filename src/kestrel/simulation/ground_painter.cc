@@ -68,11 +68,12 @@ GroundPainter::GroundPainter(const std::string& material, const GroundSize& size
   const GroundMaterial& ground = FindGroundMaterial(material);
   constexpr double kLargest_m = 9;
   const cv::Size map_size(size.map_px, size.map_px);
-  map_ = Painted(ground.color, ground.map_variation,
+  const Color color = random->Uniform(0.75, 1.6) * ground.color;
+  map_ = Painted(color, ground.map_variation,
                  FractalNoise(map_size, kLargest_m * per_m_, 7, 2.5, random->Bits()));
   detail_ = DetailOf(ground, size.detail_px, size.detail_size_m, random->Bits());
   paved_ = ground.paved;
-  marking_ = Gray(random->Uniform(0.5, 0.75));
+  marking_ = Gray(random->Uniform(0.55, 0.85));
 }
 
 cv::Point GroundPainter::ToMap(const Vector2d& point) const {
@@ -293,9 +294,9 @@ namespace {
 std::shared_ptr<const Texture> MakeSunlit(Random* random) {
   constexpr int kSize_px = 1024;
   cv::Mat lit(kSize_px, kSize_px, CV_8U, cv::Scalar(255));
-  const double cells_px = random->Uniform(90, 200);
+  const double cells_px = random->Uniform(120, 260);
   const cv::Mat crowns = FractalNoise(lit.size(), cells_px, 4, 2.4, random->Bits());
-  lit.setTo(CodeOfReflectance(random->Uniform(0, 0.15)), crowns > random->Uniform(0.3, 0.55));
+  lit.setTo(CodeOfReflectance(random->Uniform(0, 0.15)), crowns > random->Uniform(0.4, 0.7));
   const int houses = random->Integer(1, 3);
   for (int i = 0; i < houses; ++i) {
     const cv::Point2f center(static_cast<float>(kSize_px * random->Uniform()),

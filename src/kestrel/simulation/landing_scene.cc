@@ -77,6 +77,7 @@ RigidTransform AddBoard(int vehicle, const LandingPattern& pattern, const BoardO
   AddBox(vehicle, {{0, 0, top - 0.5 * kThickness_m}, {half, half, 0.5 * kThickness_m}},
          BoardPaint(pattern, options, world->channels, random), dark, world);
   world->surfaces[plate].gloss = static_cast<float>(options.gloss);
+  world->surfaces[plate].gloss_width = static_cast<float>(options.gloss_width_deg * kPi / 180);
   if (options.carrier == "box") {
     AddBox(vehicle, {{0, 0, 0.5 * height}, {0.6, 0.6, 0.5 * height}}, dark, dark, world);
   }

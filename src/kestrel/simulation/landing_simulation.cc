@@ -89,11 +89,7 @@ std::string TruthRow(const LandingFlightState& state, double time_s) {
 }
 
 std::string TruthText(const LandingFlightState& state) {
-  std::string text =
-      "#timestamp [ns],p_WP_W_x [m],p_WP_W_y [m],p_WP_W_z [m],"
-      "q_WP_w [],q_WP_x [],q_WP_y [],q_WP_z [],"
-      "v_WP_W_x [m s^-1],v_WP_W_y [m s^-1],v_WP_W_z [m s^-1],"
-      "u [px],v [px],altitude [m],visible_fraction []\n";
+  std::string text = LandingTruthHeader();
   for (const double time_s : state.times_s) text += TruthRow(state, time_s);
   return text;
 }
@@ -130,6 +126,7 @@ std::vector<std::string> BoardOptions::Validate() const {
   RequireIn(dirt, 0, 1, "dirt", &violations);
   RequireIn(scratches, 0, 200, "scratches", &violations);
   RequireIn(gloss, 0, 10, "gloss", &violations);
+  RequireIn(gloss_width_deg, 1, 90, "gloss_width_deg", &violations);
   return violations;
 }
 
@@ -149,6 +146,7 @@ std::vector<std::string> LandingSimulationOptions::Validate() const {
   AddViolations("flight", flight.Validate(), &violations);
   AddViolations("navigation", navigation.Validate(), &violations);
   AddViolations("pattern", pattern.Validate(), &violations);
+  AddViolations("stills", stills.Validate(), &violations);
   AddViolations("board", board.Validate(), &violations);
   AddViolations("ground", ground.Validate(), &violations);
   AddViolations("surroundings", surroundings.Validate(), &violations);
@@ -170,9 +168,13 @@ CameraCalibration PaperCalibration() {
   return calibration;
 }
 
-RecordingPlan PlanLandingFlight(const LandingSimulationOptions& options,
-                                const CameraCalibration& camera, std::uint64_t seed) {
+RecordingPlan PlanLanding(const LandingSimulationOptions& options, const CameraCalibration& camera,
+                          std::uint64_t seed) {
   RequireValid(options);
+  if (options.stills.show != "nothing") {
+    return PlanStills(options.stills, options.pattern, options.frames, options.lens.half_angle_deg,
+                      camera, seed);
+  }
   const auto state = std::make_shared<LandingFlightState>();
   state->scene = MakeLandingScene(options, /*channels=*/1, seed);
   state->times_s = ImageTimes(options.frames, options.rate_hz);

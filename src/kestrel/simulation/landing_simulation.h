@@ -14,6 +14,7 @@
 #include "kestrel/simulation/navigation_model.h"
 #include "kestrel/simulation/recording_plan.h"
 #include "kestrel/simulation/sensor.h"
+#include "kestrel/simulation/stills_simulation.h"
 
 namespace kestrel {
 
@@ -24,7 +25,8 @@ struct BoardOptions {
   double arm_variation_m = 0.03;   // the arms' length is drawn up to this above or below
   double dirt = 0.06;              // relative variation of the print
   int scratches = 4;               // and places where the ink is gone
-  double gloss = 0.15;             // strength of the sun's mirror image in it
+  double gloss = 0.15;             // strength of the sun's mirror image in it, in units of white
+  double gloss_width_deg = 12;     // angle at which that has faded to a third
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -35,6 +37,7 @@ struct BoardOptions {
     visitor("dirt", self.dirt, "1", "variation of the print's reflectance");
     visitor("scratches", self.scratches, "1", "places where the ink is gone");
     visitor("gloss", self.gloss, "1", "strength of the sun's mirror image in the board");
+    visitor("gloss_width_deg", self.gloss_width_deg, "deg", "width of the sun's mirror image");
   }
   std::vector<std::string> Validate() const;
 };
@@ -62,6 +65,7 @@ struct SurroundingsOptions {
 struct LandingSimulationOptions {
   int frames = 300;
   double rate_hz = 30;
+  StillsOptions stills;  // of what follows, stills use only the pattern and the lens' half angle
   VehicleMotionOptions vehicle;
   LandingFlightOptions flight;
   NavigationOptions navigation;
@@ -78,6 +82,7 @@ struct LandingSimulationOptions {
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("frames", self.frames, "1", "number of images");
     visitor("rate_hz", self.rate_hz, "Hz", "images per second");
+    visitor.Group("stills", self.stills);
     visitor.Group("vehicle", self.vehicle);
     visitor.Group("flight", self.flight);
     visitor.Group("navigation", self.navigation);
@@ -96,9 +101,10 @@ struct LandingSimulationOptions {
 // The camera of the paper on a UAV: it looks down, the upper side of its image is forward.
 CameraCalibration PaperCalibration();
 
-// Plans the recording: everything but the images is made. 'camera' has a mount (the nominal one).
-// The same arguments give the same recording. Throws InputError when options are not valid.
-RecordingPlan PlanLandingFlight(const LandingSimulationOptions& options,
-                                const CameraCalibration& camera, std::uint64_t seed);
+// Plans a flight, or stills, as a recording: everything but the images is made. 'camera' has a
+// mount (the nominal one). The same arguments give the same recording. Throws InputError when
+// options are not valid.
+RecordingPlan PlanLanding(const LandingSimulationOptions& options, const CameraCalibration& camera,
+                          std::uint64_t seed);
 
 }  // namespace kestrel

@@ -316,28 +316,52 @@ LandingStillMaker::LandingStillMaker(const LandingStillOptions& options)
       plain_(camera_, LensOf(options, /*legs=*/false)),
       with_legs_(camera_, LensOf(options, /*legs=*/true)) {}
 
-LandingStill LandingStillMaker::MakePattern(std::uint64_t seed) const {
+LandingStill LandingStillMaker::PreparePattern(std::uint64_t seed, View* view) const {
   Random random(seed);
   LandingStill still = RandomTruth(options_, plain_, &random);
   const double radius = still.pattern.outer_radius_m();
-  Scene scene = RandomGround(&random);
-  AddRandomPattern(still.pattern, &random, &scene);
-  AddRandomShadow(radius, &random, &scene);
-  AddRandomGlare(radius, &random, &scene);
-  ImagingOptions imaging = RandomImaging(still.ring_minor_px, &random);
-  AddRandomMotion(camera_, still.camera_from_pattern, still.ring_minor_px, &random, &imaging);
+  view->scene = RandomGround(&random);
+  AddRandomPattern(still.pattern, &random, &view->scene);
+  AddRandomShadow(radius, &random, &view->scene);
+  AddRandomGlare(radius, &random, &view->scene);
+  view->imaging = RandomImaging(still.ring_minor_px, &random);
+  AddRandomMotion(camera_, still.camera_from_pattern, still.ring_minor_px, &random, &view->imaging);
 
   const double beside_legs =
       VisibleFraction(still.pattern, still.camera_from_pattern, with_legs_.lens());
   const bool legs = random.Chance(0.3) && beside_legs > 0.9 * still.visible_fraction;
   if (legs) still.visible_fraction = beside_legs;
-  still.image = (legs ? with_legs_ : plain_).Render(scene, still.camera_from_pattern, imaging);
+  view->renderer = legs ? &with_legs_ : &plain_;
   return still;
 }
 
+LandingStill LandingStillMaker::PlacePattern(std::uint64_t seed) const {
+  View view;
+  return PreparePattern(seed, &view);
+}
+
+LandingStill LandingStillMaker::MakePattern(std::uint64_t seed) const {
+  View view;
+  LandingStill still = PreparePattern(seed, &view);
+  still.image = view.renderer->Render(view.scene, still.camera_from_pattern, view.imaging);
+  return still;
+}
+
+LookalikeStill LandingStillMaker::PlaceLookalikes(std::uint64_t seed) const {
+  View view;
+  return PrepareLookalikes(seed, &view);
+}
+
 LookalikeStill LandingStillMaker::MakeLookalikes(std::uint64_t seed) const {
+  View view;
+  LookalikeStill still = PrepareLookalikes(seed, &view);
+  still.image = view.renderer->Render(view.scene, still.camera_from_pattern, view.imaging);
+  return still;
+}
+
+LookalikeStill LandingStillMaker::PrepareLookalikes(std::uint64_t seed, View* view) const {
   Random random(seed);
-  const SceneRenderer& renderer = random.Chance(0.3) ? with_legs_ : plain_;
+  view->renderer = random.Chance(0.3) ? &with_legs_ : &plain_;
   const int wanted = random.Integer(1, 5);
   std::vector<LookalikePlace> places;
   LookalikeStill still;
@@ -346,7 +370,7 @@ LookalikeStill LandingStillMaker::MakeLookalikes(std::uint64_t seed) const {
     const auto pose = RandomPose(camera_, still.altitude_m, options_.max_tilt_deg, 0, &random);
     if (!pose) continue;
     still.camera_from_pattern = *pose;
-    places = RandomPlaces(renderer, *pose, wanted, &random);
+    places = RandomPlaces(*view->renderer, *pose, wanted, &random);
   }
   if (places.empty()) {
     throw InputError(fmt::format(
@@ -354,15 +378,14 @@ LookalikeStill LandingStillMaker::MakeLookalikes(std::uint64_t seed) const {
         options_.min_altitude_m, options_.max_altitude_m));
   }
   still.up_in_camera = UpInCamera(still.camera_from_pattern);
-  Scene scene = RandomGround(&random);
+  view->scene = RandomGround(&random);
   for (const LookalikePlace& place : places) {
-    still.names.emplace_back(AddRandomLookalike(place.center, place.radius, &random, &scene));
+    still.names.emplace_back(AddRandomLookalike(place.center, place.radius, &random, &view->scene));
   }
-  AddRandomShadow(2, &random, &scene);
+  AddRandomShadow(2, &random, &view->scene);
   const double size_px = places.front().minor_px;
-  ImagingOptions imaging = RandomImaging(size_px, &random);
-  AddRandomMotion(camera_, still.camera_from_pattern, size_px, &random, &imaging);
-  still.image = renderer.Render(scene, still.camera_from_pattern, imaging);
+  view->imaging = RandomImaging(size_px, &random);
+  AddRandomMotion(camera_, still.camera_from_pattern, size_px, &random, &view->imaging);
   return still;
 }
 

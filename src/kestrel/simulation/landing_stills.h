@@ -81,10 +81,23 @@ class LandingStillMaker {
   // an eye can tell them from the pattern. Throws InputError when none can be placed.
   LookalikeStill MakeLookalikes(std::uint64_t seed) const;
 
+  // The same without their images, which are left empty: quick.
+  LandingStill PlacePattern(std::uint64_t seed) const;
+  LookalikeStill PlaceLookalikes(std::uint64_t seed) const;
+
   const CameraModel& camera() const { return camera_; }
   const LandingStillOptions& options() const { return options_; }
 
  private:
+  // What an image is rendered from, other than the pose.
+  struct View {
+    Scene scene;
+    ImagingOptions imaging;
+    const SceneRenderer* renderer = nullptr;
+  };
+  LandingStill PreparePattern(std::uint64_t seed, View* view) const;
+  LookalikeStill PrepareLookalikes(std::uint64_t seed, View* view) const;
+
   LandingStillOptions options_;
   CameraModel camera_;
   SceneRenderer plain_;      // nothing in front of the lens

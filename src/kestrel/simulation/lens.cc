@@ -80,16 +80,16 @@ bool Lens::Sees(const Eigen::Vector3d& point_in_camera) const {
 
 Drawing LandingLegs(const CameraIntrinsics& camera, bool four) {
   const double unit = camera.height_px / 480.0;
+  const Eigen::Vector2d center(camera.cx_px, camera.cy_px);
   Drawing legs;
-  for (const double below : {1.0, -1.0}) {
-    if (below < 0 && !four) break;
-    for (const double side : {-1.0, 1.0}) {
-      const Eigen::Vector2d foot(camera.cx_px + side * 190 * unit,
-                                 camera.cy_px + below * 160 * unit);
-      const Eigen::Vector2d outward = Eigen::Vector2d(side * 0.55, below * 0.85).normalized();
-      legs.Add(Drawing::Ring{foot, 15 * unit});
-      legs.Add(Drawing::Bar{foot + 100 * unit * outward, outward, 100 * unit, 5 * unit});
-    }
+  const auto add = [&](const Eigen::Vector2d& foot, const Eigen::Vector2d& away) {
+    const Eigen::Vector2d outward = away.normalized();
+    legs.Add(Drawing::Ring{center + unit * foot, 15 * unit});
+    legs.Add(Drawing::Bar{center + unit * (foot + 100 * outward), outward, 100 * unit, 5 * unit});
+  };
+  for (const double side : {-1.0, 1.0}) {
+    add({190 * side, 160}, {0.55 * side, 0.85});
+    if (four) add({332 * side, -168}, {0.95 * side, -0.3});
   }
   return legs;
 }

@@ -15,6 +15,7 @@ std::vector<std::string> LightOptions::Validate() const {
   RequireIn(sky_radiance, 0, 10, "sky_radiance", &violations);
   RequireIn(visibility_m, 0, 1e5, "visibility_m", &violations);
   RequireIn(dust_clouds, 0, 1, "dust_clouds", &violations);
+  RequireIn(flare, 0, 100, "flare", &violations);
   RequireIn(haze_radiance, 0, 10, "haze_radiance", &violations);
   return violations;
 }
@@ -37,6 +38,7 @@ Lighting MakeLighting(const LightOptions& options, Random* random) {
   light.haze_per_m = options.visibility_m > 0 ? -std::log(0.05) / options.visibility_m : 0;
   light.haze_radiance = options.haze_radiance;
   light.haze_variation = options.dust_clouds;
+  light.flare = options.flare * options.direct;
   // A lower sun is redder, the sky bluer than it.
   const double red = 0.25 * (1 - std::sin(elevation));
   light.sun_color = {1 - red, 1, 1 + 0.5 * red};

@@ -17,6 +17,7 @@ struct LightOptions {
   double visibility_m = 0;        // distance at which haze or dust leaves 5 %; 0: clear air
   double dust_clouds = 0;         // by how much the density of the dust varies
   double haze_radiance = 0.55;    // in units of white
+  double flare = 0.3;             // sunlight that the lens scatters around the sun's image
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -26,6 +27,7 @@ struct LightOptions {
     visitor("visibility_m", self.visibility_m, "m",
             "distance at which haze or dust leaves 5 % of the light; 0 is clear air");
     visitor("dust_clouds", self.dust_clouds, "1", "by how much the density of the dust varies");
+    visitor("flare", self.flare, "1", "light that the lens scatters around the sun; white is 1");
     visitor("haze_radiance", self.haze_radiance, "1", "light of the haze; white is 1");
   }
   std::vector<std::string> Validate() const;

@@ -14,7 +14,7 @@ namespace kestrel {
 // How light becomes 8 bits. Gray values of noise and levels are those before gamma.
 struct SensorOptions {
   double black_level = 4;     // gray value without light, 0 to 255
-  double white_level = 220;   // gray value of a white horizontal surface in full light
+  double white_level = 235;   // gray value of a white horizontal surface in full light
   double gain_variation = 0;  // relative, by which exposure control wanders to both sides, 0 to 1
   double gamma = 1;           // exponent of the camera's curve; 1 is linear, 0.45 as for screens
   double read_noise = 1.2;    // standard deviation, gray values

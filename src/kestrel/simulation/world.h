@@ -29,6 +29,7 @@ struct Surface {
   std::shared_ptr<const Texture> paint;  // its first row is the upper side
   std::shared_ptr<const Texture> mask;   // where it is less than 0.5 there is a hole; may be null
   float gloss = 0;                       // strength of the sun's mirror image, in units of white
+  float gloss_width = 0.2f;              // rad, at which that has faded to 1 / e
   bool visible = true;                   // else it only throws a shadow, with 'mask' as its opacity
   bool casts_shadow = true;
 };
@@ -57,6 +58,7 @@ struct Lighting {
   double haze_per_m = 0;               // part of the light that a metre of air takes
   double haze_radiance = 0.6;          // and gives instead
   double haze_variation = 0;           // 0 to 1: dust in clouds
+  double flare = 0;                    // sunlight that the lens scatters around the sun's image
   Eigen::Vector3d sun_color{1, 1, 1};  // blue, green, red; means of about 1
   Eigen::Vector3d sky_color{1, 1, 1};
 };
