@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,6 +25,7 @@
 #include "kestrel/recording/landing_overlay.h"
 #include "kestrel/recording/open_source.h"
 #include "kestrel/recording/output_folder.h"
+#include "kestrel/recording/track_csv.h"
 
 namespace kestrel {
 namespace {
@@ -40,6 +42,7 @@ struct LandArguments {
   bool force = false;
   std::optional<double> altitude_m;
   std::optional<double> clock_offset;
+  std::vector<double> predict_s;
 };
 
 // A FILE without a mount takes the source's, and its clock offset.
@@ -86,38 +89,78 @@ class PoseFeeder {
   std::size_t next_ = 0;
 };
 
+void WriteLine(const std::string& line, const char* name, std::ostream* csv) {
+  // At once, for whoever reads along.
+  if (!(*csv << line << std::flush)) {
+    throw InputError(std::string(name) + ": cannot be written, is the disk full?");
+  }
+}
+
+// The files of the track, for a flight in which the target can be followed.
+class TrackSink {
+ public:
+  TrackSink(const OutputFolder& folder, const std::vector<double>& horizons_s)
+      : track_(folder.OpenText(kTrack)) {
+    WriteLine(TrackCsvHeader(), kTrack, &track_);
+    if (horizons_s.empty()) return;
+    for (const double horizon_s : horizons_s) horizons_.push_back(DurationFromSeconds(horizon_s));
+    prediction_ = folder.OpenText(kPrediction);
+    WriteLine(PredictionCsvHeader(), kPrediction, &prediction_);
+  }
+
+  void Write(const LandingObservation& observation, const TargetTracker& tracker) {
+    has_begun_ = has_begun_ || observation.fate;
+    if (!has_begun_) return;
+    WriteLine(TrackCsvRow(observation), kTrack, &track_);
+    if (observation.track_state == TrackState::kSearching) return;
+    for (const Duration horizon : horizons_) {
+      const auto prediction = tracker.Predict(observation.time + horizon);
+      if (!prediction) continue;
+      WriteLine(PredictionCsvRow(observation.time, *prediction), kPrediction, &prediction_);
+    }
+  }
+
+ private:
+  static constexpr char kTrack[] = "landing_track.csv";
+  static constexpr char kPrediction[] = "landing_prediction.csv";
+
+  std::ofstream track_, prediction_;
+  std::vector<Duration> horizons_;
+  bool has_begun_ = false;
+};
+
 // Where the results go: files below --output, or the CSV to stdout.
 class LandingSink {
  public:
-  LandingSink(const LandArguments& arguments, double rate_hz) {
+  LandingSink(const LandArguments& arguments, const FrameSource& source, bool has_track) {
     if (!arguments.output.empty()) {
       folder_.emplace(arguments.output, arguments.force);
-      file_ = folder_->OpenText("landing_detections.csv");
+      file_ = folder_->OpenText(kDetections);
+      if (has_track) track_.emplace(*folder_, arguments.predict_s);
     }
     if (arguments.annotate == "images") annotated_ = MakeImageWriter(*folder_);
-    if (arguments.annotate == "video") annotated_ = MakeVideoWriter(*folder_, rate_hz);
-    WriteLine(LandingCsvHeader());
+    if (arguments.annotate == "video") annotated_ = MakeVideoWriter(*folder_, source.rate_hz());
+    WriteLine(LandingCsvHeader(), kDetections, &csv());
   }
 
   void Write(const Frame& frame, const LandingObservation& observation,
-             const LandingPatternDetector& detector) {
-    WriteLine(LandingCsvRow(frame.name, observation));
+             const LandingPipeline& pipeline) {
+    WriteLine(LandingCsvRow(frame.name, observation), kDetections, &csv());
+    if (track_) track_->Write(observation, pipeline.tracker());
     if (!annotated_) return;
+    const LandingPatternDetector& detector = pipeline.detector();
     annotated_->Write(frame.name, DrawLandingOverlay(frame.image, detector.camera(),
                                                      detector.options().pattern, observation));
   }
 
  private:
-  // At once, for whoever reads along.
-  void WriteLine(const std::string& line) {
-    std::ostream& csv = file_.is_open() ? file_ : std::cout;
-    if (!(csv << line << std::flush)) {
-      throw InputError("landing_detections.csv: cannot be written, is the disk full?");
-    }
-  }
+  static constexpr char kDetections[] = "landing_detections.csv";
+
+  std::ostream& csv() { return file_.is_open() ? file_ : std::cout; }
 
   std::optional<OutputFolder> folder_;
   std::ofstream file_;
+  std::optional<TrackSink> track_;
   std::unique_ptr<AnnotatedWriter> annotated_;
 };
 
@@ -125,6 +168,7 @@ class Summary {
  public:
   void Add(const LandingObservation& observation) {
     detect_ms_.push_back(1e3 * ToSeconds(observation.detect_time));
+    ++poses_[observation.pose];
     found_ += observation.report.detection.has_value();
   }
   std::size_t frames() const { return detect_ms_.size(); }
@@ -136,15 +180,25 @@ class Summary {
       fmt::print(stderr, ", detect_ms median {:.2f}, p99 {:.2f}", Quantile(0.5), Quantile(0.99));
     }
     fmt::print(stderr, "\n");
+    PrintMissingPoses();
   }
 
  private:
+  // Only where there are poses for some of the frames; a source that has none is nothing unusual.
+  void PrintMissingPoses() const {
+    for (const auto& [pose, count] : poses_) {
+      if (pose == PoseLookup::kFound || pose == PoseLookup::kEmpty) continue;
+      fmt::print(stderr, "{} frames without a pose of the UAV: {}\n", count, ToString(pose));
+    }
+  }
+
   // By nearest rank; detect_ms_ is sorted.
   double Quantile(double part) const {
     return detect_ms_[static_cast<std::size_t>(std::ceil(part * frames())) - 1];
   }
 
   std::vector<double> detect_ms_;
+  std::map<PoseLookup, std::size_t> poses_;
   std::size_t found_ = 0;
 };
 
@@ -158,7 +212,7 @@ void ProcessFrames(FrameSource* source, const CameraCalibration& calibration,
     RequireSize(frame, calibration.intrinsics);
     poses.FeedUntil(frame.time + clock_offset, pipeline);
     const LandingObservation observation = pipeline->Process(frame.image, frame.time);
-    sink->Write(frame, observation, pipeline->detector());
+    sink->Write(frame, observation, *pipeline);
     summary->Add(observation);
     progress.Show(summary->frames());
   }
@@ -169,12 +223,14 @@ void RunLand(const LandArguments& arguments) {
   if (arguments.still) options.still = true;
   const std::unique_ptr<FrameSource> source = OpenSource(arguments.sources);
   const CameraCalibration calibration = FindCalibration(arguments, *source);
-  if (!calibration.body_from_camera && !source->poses().empty()) {
+  const bool has_poses = !source->poses().empty();
+  if (!calibration.body_from_camera && has_poses) {
     fmt::print(stderr, "kestrel: the calibration has no mount: no positions in the world\n");
   }
   LandingPipeline pipeline(calibration, options);
   pipeline.SetAltitude(arguments.altitude_m);
-  LandingSink sink(arguments, source->rate_hz());
+  const bool has_track = has_poses && calibration.body_from_camera && !options.still;
+  LandingSink sink(arguments, *source, has_track);
   Summary summary;
   CatchInterrupts();
   try {
@@ -231,6 +287,13 @@ void AddLandCommand(CLI::App* app) {
                    "Seconds to add to an image's time to get the navigation's")
       ->type_name("S")
       ->check(InRange(-kMaxClockOffset, kMaxClockOffset, "seconds"));
+  command
+      ->add_option("--predict", arguments->predict_s,
+                   "Also write where the target will be after these times (s), as 0.5,1.0")
+      ->type_name("S,...")
+      ->delimiter(',')
+      ->needs(output)
+      ->check(InRange(0, 60, "seconds, above 0 and below 60"));
   command->add_flag("--force", arguments->force, "Replace files that exist");
   command->callback([arguments] { RunLand(*arguments); });
 }
