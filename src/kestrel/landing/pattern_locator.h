@@ -53,7 +53,8 @@ class PatternLocator {
   struct Place {
     Eigen::Vector2d point;
     Eigen::Vector2d normal;
-    int part;  // 0 to 3: arm, 4 to 7: ring around it
+    int part;          // 0 to 3: arm, 4 to 7: ring around it
+    double curvature;  // 1/m; positive where the outline bends around the black side
   };
   struct Normal;
 

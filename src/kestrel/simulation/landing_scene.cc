@@ -150,7 +150,7 @@ void AddSurroundings(const SurroundingsOptions& options, const std::vector<Vecto
 
 LandingScene MakeLandingScene(const LandingSimulationOptions& options, int channels,
                               std::uint64_t seed) {
-  const double duration_s = options.frames / options.rate_hz;
+  const double duration_s = options.recording.duration_s();
   LandingScene scene;
   World& world = scene.world;
   world.channels = channels;
@@ -172,7 +172,7 @@ LandingScene MakeLandingScene(const LandingSimulationOptions& options, int chann
 
   const std::vector<Vector2d> track = Track(vehicle, duration_s);
   Random ground_random = RandomOf(seed, Part::kGround);
-  world.ground = MakeGround(options.ground, {}, track, channels, &ground_random);
+  world.ground = MakeGround(options.ground, track, channels, &ground_random);
   Random light_random = RandomOf(seed, Part::kLight);
   world.light = MakeLighting(options.light, &light_random);
   world.skyline = MakeSkyline(&light_random);
