@@ -20,15 +20,22 @@ namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
 constexpr std::size_t kMinSightings = 20;
+constexpr int kRounds = 3;  // of leaving out what does not fit
 constexpr Duration kMaxGap = std::chrono::milliseconds(200);
 constexpr int kAngles = 3;
-constexpr int kClock = 3;  // index of the clock offset among the parameters
+// Indices of the clock offset and the scale among the parameters.
+constexpr int kClock = 3;
+constexpr int kScale = 4;
+constexpr int kParameters = 5;
+constexpr double kScaleSigma = 0.005;
 
-// Roll, pitch, yaw of the mount's error (rad), clock offset (s).
-using Parameters = Eigen::Vector4d;
+// Roll, pitch, yaw of the mount's error (rad), clock offset (s), and by what part all distances are
+// too short: an error of the pattern's size, of kScaleSigma, that a descent would else turn into
+// one of the clock.
+using Parameters = Eigen::Vector<double, kParameters>;
 // By how much they are changed for the derivative. The clock's spans several poses, whose noise
 // would else be that of the derivative.
-const Parameters kSteps(1e-5, 1e-5, 1e-5, 0.01);
+const Parameters kSteps(1e-5, 1e-5, 1e-5, 0.01, 1e-5);
 
 Eigen::Quaterniond MountError(const Eigen::Vector3d& angles) {
   return Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) *
@@ -64,12 +71,19 @@ class FlightFit {
     for (std::size_t i = 0; i < sightings_.size(); ++i) {
       const auto world_from_body = poses_->Lookup(sightings_[i].time + offset);
       positions.row(static_cast<Eigen::Index>(i)) =
-          *world_from_body * (applied.body_from_camera * sightings_[i].center_in_camera);
+          *world_from_body * (applied.body_from_camera *
+                              ((1 + parameters(kScale)) * sightings_[i].center_in_camera).eval());
     }
     return path_.Residuals(positions);
   }
 
-  double Cost(const Parameters& parameters) const { return Residuals(parameters).squaredNorm(); }
+  // All of them in one column, and last the scale against its standard deviation.
+  Eigen::VectorXd Errors(const Parameters& parameters) const {
+    const Eigen::MatrixX3d residuals = Residuals(parameters);
+    Eigen::VectorXd errors(residuals.size() + 1);
+    errors << residuals.reshaped(), parameters(kScale) / kScaleSigma;
+    return errors;
+  }
 
   // Distances in metres.
   double RootMeanSquare(const Parameters& parameters) const {
@@ -98,17 +112,13 @@ class FlightFit {
   TargetPath path_;
 };
 
-Eigen::VectorXd Flat(const Eigen::MatrixX3d& residuals) {
-  return Eigen::Map<const Eigen::VectorXd>(residuals.data(), residuals.size());
-}
-
 Eigen::MatrixXd Jacobian(const FlightFit& fit, const Parameters& parameters) {
-  Eigen::MatrixXd jacobian(3 * fit.sightings().size(), parameters.size());
-  for (int k = 0; k < parameters.size(); ++k) {
+  Eigen::MatrixXd jacobian(3 * fit.sightings().size() + 1, kParameters);
+  for (int k = 0; k < kParameters; ++k) {
     Parameters step = Parameters::Zero();
     step(k) = kSteps(k);
     jacobian.col(k) =
-        Flat(fit.Residuals(parameters + step) - fit.Residuals(parameters - step)) / (2 * kSteps(k));
+        (fit.Errors(parameters + step) - fit.Errors(parameters - step)) / (2 * kSteps(k));
   }
   return jacobian;
 }
@@ -117,16 +127,16 @@ Eigen::MatrixXd Jacobian(const FlightFit& fit, const Parameters& parameters) {
 class FlightCost : public ceres::CostFunction {
  public:
   explicit FlightCost(const FlightFit* fit) : fit_(fit) {
-    set_num_residuals(static_cast<int>(3 * fit->sightings().size()));
-    mutable_parameter_block_sizes()->push_back(Parameters::RowsAtCompileTime);
+    set_num_residuals(static_cast<int>(3 * fit->sightings().size() + 1));
+    mutable_parameter_block_sizes()->push_back(kParameters);
   }
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
     const Eigen::Map<const Parameters> at(parameters[0]);
-    Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = Flat(fit_->Residuals(at));
+    Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = fit_->Errors(at);
     if (jacobians != nullptr && jacobians[0] != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>>(
-          jacobians[0], num_residuals(), 4) = Jacobian(*fit_, at);
+      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, kParameters, Eigen::RowMajor>>(
+          jacobians[0], num_residuals(), kParameters) = Jacobian(*fit_, at);
     }
     return true;
   }
@@ -135,21 +145,21 @@ class FlightCost : public ceres::CostFunction {
   const FlightFit* fit_;
 };
 
-std::vector<int> FixedParameters(const FlightCalibrationOptions& options) {
-  std::vector<int> fixed;
-  if (!options.estimate_mount) fixed = {0, 1, 2};
-  if (!options.estimate_clock) fixed.push_back(kClock);
-  return fixed;
+bool IsFixed(int parameter, const FlightCalibrationOptions& options) {
+  if (parameter < kAngles) return !options.estimate_mount;
+  return parameter == kClock && !options.estimate_clock;
 }
 
 Parameters Refine(const FlightFit& fit, Parameters parameters,
                   const FlightCalibrationOptions& options) {
   ceres::Problem problem;
   problem.AddResidualBlock(new FlightCost(&fit), nullptr, parameters.data());
-  const std::vector<int> fixed = FixedParameters(options);
+  std::vector<int> fixed;
+  for (int k = 0; k < kParameters; ++k) {
+    if (IsFixed(k, options)) fixed.push_back(k);
+  }
   if (!fixed.empty()) {
-    problem.SetManifold(parameters.data(),
-                        new ceres::SubsetManifold(Parameters::RowsAtCompileTime, fixed));
+    problem.SetManifold(parameters.data(), new ceres::SubsetManifold(kParameters, fixed));
   }
   // The offset stays where there are poses.
   problem.SetParameterLowerBound(parameters.data(), kClock,
@@ -168,9 +178,9 @@ Parameters Refine(const FlightFit& fit, Parameters parameters,
 Parameters SearchGrid(const FlightFit& fit, const Parameters& given,
                       const FlightCalibrationOptions& options) {
   Parameters best = given;
-  double least = fit.Cost(best);
+  double least = fit.Errors(best).squaredNorm();
   const auto offer = [&](const Parameters& candidate) {
-    const double cost = fit.Cost(candidate);
+    const double cost = fit.Errors(candidate).squaredNorm();
     if (cost >= least) return;
     least = cost;
     best = candidate;
@@ -198,15 +208,15 @@ Parameters SearchGrid(const FlightFit& fit, const Parameters& given,
   return best;
 }
 
-// Those sightings whose distance from the path is no more than that of five standard deviations,
-// taken from the median.
+// Those sightings whose distance from the path is at most four standard deviations per axis, by the
+// median of all.
 std::vector<TargetSighting> WithoutOutliers(const FlightFit& fit, const Parameters& parameters) {
-  constexpr double kSigmas = 5;
+  constexpr double kSigmas = 4;
   constexpr double kMedianOfThree = 1.538;  // of a chi variable with 3 degrees of freedom
   const Eigen::VectorXd distances = fit.Residuals(parameters).rowwise().norm();
   std::vector<double> sorted(distances.data(), distances.data() + distances.size());
   std::nth_element(sorted.begin(), sorted.begin() + distances.size() / 2, sorted.end());
-  const double limit = kSigmas * sorted[sorted.size() / 2] / kMedianOfThree * std::sqrt(3.0);
+  const double limit = kSigmas * sorted[sorted.size() / 2] / kMedianOfThree;
   std::vector<TargetSighting> kept;
   for (Eigen::Index i = 0; i < distances.size(); ++i) {
     if (distances(i) <= limit) kept.push_back(fit.sightings()[i]);
@@ -214,21 +224,38 @@ std::vector<TargetSighting> WithoutOutliers(const FlightFit& fit, const Paramete
   return kept;
 }
 
+// How many times larger the variance of a mean is than that of independent values, for values as
+// like their neighbours in time as these residuals: (1 + r) / (1 - r) with r their correlation
+// (that of a first-order autoregressive process).
+double VarianceInflation(const Eigen::MatrixX3d& residuals) {
+  const Eigen::Index pairs = residuals.rows() - 1;
+  const double products = residuals.topRows(pairs).cwiseProduct(residuals.bottomRows(pairs)).sum();
+  const double correlation = std::clamp(products / residuals.squaredNorm(), 0.0, 0.95);
+  return (1 + correlation) / (1 - correlation);
+}
+
 // Standard deviations of those parameters that were estimated; infinite where nothing is known.
 Parameters Sigmas(const FlightFit& fit, const Parameters& parameters,
                   const FlightCalibrationOptions& options) {
-  const Eigen::MatrixXd all = Jacobian(fit, parameters);
-  const int first = options.estimate_mount ? 0 : kClock;
-  const int count = (options.estimate_mount ? kAngles : 0) + (options.estimate_clock ? 1 : 0);
-  const Eigen::MatrixXd jacobian = all.middleCols(first, count);
-  const double freedom =
-      static_cast<double>(jacobian.rows() - 3 * fit.path_size() - jacobian.cols());
-  const double variance = fit.Cost(parameters) / std::max(1.0, freedom);
-  const Eigen::FullPivLU<Eigen::MatrixXd> information(jacobian.transpose() * jacobian);
-  Parameters sigmas = Parameters::Zero();
-  sigmas.segment(first, count).setConstant(std::numeric_limits<double>::infinity());
-  if (information.isInvertible()) {
-    sigmas.segment(first, count) = (variance * information.inverse().diagonal()).cwiseSqrt();
+  const Eigen::MatrixXd jacobian = Jacobian(fit, parameters);
+  const Eigen::MatrixX3d residuals = fit.Residuals(parameters);
+  const double freedom = static_cast<double>(residuals.size() - 3 * fit.path_size() - kParameters);
+  const double variance =
+      VarianceInflation(residuals) * residuals.squaredNorm() / std::max(1.0, freedom);
+  Eigen::Matrix<double, kParameters, kParameters> information = jacobian.transpose() * jacobian;
+  for (int k = 0; k < kParameters; ++k) {
+    if (!IsFixed(k, options)) continue;
+    information.row(k).setZero();
+    information.col(k).setZero();
+    information(k, k) = 1;
+  }
+  Parameters sigmas = Parameters::Constant(std::numeric_limits<double>::infinity());
+  const Eigen::FullPivLU<decltype(information)> decomposition(information);
+  if (decomposition.isInvertible()) {
+    sigmas = (variance * decomposition.inverse().diagonal()).cwiseSqrt();
+  }
+  for (int k = 0; k < kParameters; ++k) {
+    if (IsFixed(k, options)) sigmas(k) = 0;
   }
   return sigmas;
 }
@@ -290,11 +317,15 @@ FlightCalibration CalibrateFlight(const std::vector<TargetSighting>& sightings,
         "the pattern was seen in {} images with poses around them, expected at least {}",
         usable.size(), kMinSightings));
   }
-  const Parameters start(0, 0, 0, given.clock_offset_s);
+  Parameters start = Parameters::Zero();
+  start(kClock) = given.clock_offset_s;
   const FlightFit all(usable, &history, given, options.knot_spacing_s);
-  const Parameters coarse = Refine(all, SearchGrid(all, start, options), options);
-  const FlightFit fit(WithoutOutliers(all, coarse), &history, given, options.knot_spacing_s);
-  const Parameters fine = Refine(fit, coarse, options);
+  Parameters fine = Refine(all, SearchGrid(all, start, options), options);
+  FlightFit fit = all;
+  for (int i = 0; i < kRounds; ++i) {
+    fit = FlightFit(WithoutOutliers(all, fine), &history, given, options.knot_spacing_s);
+    fine = Refine(fit, fine, options);
+  }
   const Parameters sigmas = Sigmas(fit, fine, options);
 
   FlightCalibration calibration;

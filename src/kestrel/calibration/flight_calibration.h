@@ -42,7 +42,8 @@ struct FlightCalibration {
   MountAndClock estimate;
   // Roll, pitch, yaw (rad) by which the mount differs from the given one: Rz Ry Rx, in the body.
   Eigen::Vector3d angles = Eigen::Vector3d::Zero();
-  // Standard deviations for errors that are independent from image to image; 0: not estimated.
+  // Standard deviations, by what is left of the positions and how it hangs together from image to
+  // image; 0: not estimated.
   Eigen::Vector3d angle_sigmas = Eigen::Vector3d::Zero();
   double clock_sigma_s = 0;
   double rms_before_m = 0;  // of the positions in the world from the path, by the given values

@@ -34,6 +34,7 @@ struct Flight {
   Eigen::Vector3d angles{0.03, -0.05, 0.06};  // of the mount's error: roll, pitch, yaw
   double target_speed_mps = 0;
   double noise_m = 0.005;
+  double scale = 1;  // of the distances that the camera reports
 
   RigidTransform WorldFromBody(double t) const {
     return {Turn(turn * t, Eigen::Vector3d::UnitZ()) *
@@ -58,7 +59,7 @@ struct Flight {
       const Eigen::Vector3d target(target_speed_mps * t, 0.2, 0);
       const Eigen::Vector3d noise(random.Normal(), random.Normal(), random.Normal());
       const Eigen::Vector3d center = (WorldFromBody(t) * TrueMount()).Inverse() * target;
-      sightings.push_back({At(t), center + noise_m * noise, 0.01});
+      sightings.push_back({At(t), scale * center + noise_m * noise, 0.01});
     }
     return sightings;
   }
@@ -107,6 +108,12 @@ TEST(CalibrateFlight, FindsTheClockOverAMovingTarget) {
     EXPECT_NEAR(calibration.estimate.clock_offset_s, offset, 0.001);
     EXPECT_LT(calibration.clock_sigma_s, 0.001);
   }
+}
+
+TEST(CalibrateFlight, APatternOfAnotherSizeDoesNotMoveTheClock) {
+  const Flight flight{.climb_m = 6, .scale = 1.005};
+  const FlightCalibration calibration = flight.Calibrate({});
+  EXPECT_NEAR(calibration.estimate.clock_offset_s, flight.clock_offset_s, 0.002);
 }
 
 TEST(CalibrateFlight, LeavesOutWhatIsNotThePattern) {

@@ -44,7 +44,7 @@ CameraCalibration ReadGiven(const CalibrateArguments& arguments, const FrameSour
   if (file.empty()) {
     throw InputError(arguments.recording + ": has no calibration, give one by --camera FILE");
   }
-  const CameraCalibration calibration = ReadCalibration(file);
+  CameraCalibration calibration = ReadCalibration(file);
   if (!calibration.body_from_camera) {
     throw InputError(file + ": has no mount, expected T_BS or T_cam_imu to start from");
   }
