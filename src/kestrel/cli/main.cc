@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <opencv2/core/utils/logger.hpp>
 
+#include "kestrel/cli/calibrate_command.h"
 #include "kestrel/cli/config_command.h"
 #include "kestrel/cli/evaluate_command.h"
 #include "kestrel/cli/help_command.h"
@@ -33,6 +34,7 @@ int main(int argc, char** argv) {
   kestrel::AddLandCommand(&app);
   kestrel::AddSimulateCommand(&app);
   kestrel::AddEvaluateCommand(&app);
+  kestrel::AddCalibrateCommand(&app);
   kestrel::AddConfigCommand(&app);
   kestrel::AddHelpCommand(&app);
   try {
