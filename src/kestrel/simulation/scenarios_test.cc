@@ -32,6 +32,10 @@ TEST(ScenariosTest, FileAndSettingsGoOverTheScenario) {
   EXPECT_EQ(options.vehicle.radius_m, 26) << "the scenario's";
 }
 
+TEST(ScenariosTest, StillsMayBeFew) {
+  EXPECT_NO_THROW(ReadLandingSimulation("stills", "", {"frames=1"}));
+}
+
 TEST(ScenariosTest, PrintedOptionsAreAScenarioFile) {
   const TestFolder folder;
   const LandingSimulationOptions dust = ReadLandingSimulation("dust", "", {});
