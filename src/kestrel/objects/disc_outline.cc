@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/objects/disc_outline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "kestrel/objects/color_edge.h"
+
+namespace kestrel {
+namespace {
+
+// Angle between a ray and the cone, to first order (Sampson's distance), rad.
+double DistanceToCone(const Cone& cone, const Eigen::Vector3d& ray) {
+  const Eigen::Vector3d gradient = 2 * cone.matrix * ray;
+  const double slope = (gradient - gradient.dot(ray) * ray).norm();
+  return std::abs(ray.dot(cone.matrix * ray)) / std::max(slope, 1e-12);
+}
+
+void MeasureDistances(const Cone& cone, double focal_px, DiscOutlineWorkspace* workspace) {
+  workspace->distances.clear();
+  for (const Eigen::Vector3d& ray : workspace->rays) {
+    workspace->distances.push_back(focal_px * DistanceToCone(cone, ray));
+  }
+}
+
+double MedianDistance(DiscOutlineWorkspace* workspace) {
+  auto& sorted = workspace->sorted;
+  sorted.assign(workspace->distances.begin(), workspace->distances.end());
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle;
+}
+
+// Takes out the rays that are further than 'limit' from the cone; true when there were any.
+bool DropOutliers(double limit_px, DiscOutlineWorkspace* workspace) {
+  auto& rays = workspace->rays;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (workspace->distances[i] <= limit_px) rays[kept++] = rays[i];
+  }
+  const bool dropped = kept < rays.size();
+  rays.resize(kept);
+  return dropped;
+}
+
+// The ellipse that a cone cuts out of the plane z = 1.
+std::optional<Ellipse> CutWithPlane(const Eigen::Matrix3d& conic) {
+  const Eigen::Matrix2d a = conic.topLeftCorner<2, 2>();
+  if (!(a.determinant() > 0)) return std::nullopt;
+  const Eigen::Matrix2d inverse = a.inverse();
+  const Eigen::Vector2d b = conic.topRightCorner<2, 1>();
+  RegionMoments moments;
+  moments.centroid = -inverse * b;
+  const double scale = b.dot(inverse * b) - conic(2, 2);
+  if (!(scale > 0)) return std::nullopt;
+  moments.covariance = scale / 4 * inverse;
+  return EllipseFromMoments(moments);
+}
+
+void CollectBorderPixels(const Segment& segment, const cv::Size& image_size,
+                         std::vector<Eigen::Vector2d>* points) {
+  // Outermost pixels of each row and column, half a pixel further out: on the edge.
+  const auto is_inside = [&](const Eigen::Vector2d& p) {
+    return p.x() > 1 && p.y() > 1 && p.x() < image_size.width - 2 && p.y() < image_size.height - 2;
+  };
+  points->clear();
+  const int count = segment.width() + segment.height();
+  points->resize(2 * static_cast<std::size_t>(count));
+  constexpr double kNone = 1e9;
+  auto* rows = points->data();
+  auto* columns = rows + segment.height();
+  for (int i = 0; i < count; ++i) rows[i] = {kNone, -kNone};
+  for (const PixelPosition& at : segment.pixels) {
+    Eigen::Vector2d& row = rows[at.v - segment.min_v];
+    row = {std::min<double>(row.x(), at.u), std::max<double>(row.y(), at.u)};
+    Eigen::Vector2d& column = columns[at.u - segment.min_u];
+    column = {std::min<double>(column.x(), at.v), std::max<double>(column.y(), at.v)};
+  }
+  for (int i = count - 1; i >= 0; --i) {
+    const Eigen::Vector2d extent = rows[i];
+    const bool is_row = i < segment.height();
+    for (const double x : {extent.x() - 0.5, extent.y() + 0.5}) {
+      const Eigen::Vector2d point = is_row
+                                        ? Eigen::Vector2d(x, segment.min_v + i)
+                                        : Eigen::Vector2d(segment.min_u + i - segment.height(), x);
+      if (is_inside(point)) points->push_back(point);
+    }
+  }
+  points->erase(points->begin(), points->begin() + 2 * count);
+}
+
+}  // namespace
+
+std::optional<DiscOutline> FitDiscOutline(const cv::Mat& image, const RayTable& rays,
+                                          double focal_px, const Ellipse& start,
+                                          DiscOutlineWorkspace* workspace) {
+  constexpr int kDirections = 32;
+  constexpr double kMinLimitPx = 0.5;
+  workspace->rays.clear();
+  for (int i = 0; i < kDirections; ++i) {
+    const double t = 2 * std::numbers::pi * i / kDirections;
+    const Eigen::Vector2d outward = (start.semi_minor * std::cos(t) * start.major_axis() +
+                                     start.semi_major * std::sin(t) * start.minor_axis())
+                                        .normalized();
+    const Eigen::Vector2d point = start.At(t);
+    const std::optional<double> edge = FindColorEdge(image, point, outward);
+    if (!edge) continue;
+    const Eigen::Vector2f at = (point + *edge * outward).cast<float>();
+    const Eigen::Vector3d ray = rays.Ray(at.x(), at.y()).cast<double>();
+    if (ray.squaredNorm() > 0) workspace->rays.push_back(ray);
+  }
+  std::optional<Cone> cone = FitCone(workspace->rays);
+  if (!cone) return std::nullopt;
+  MeasureDistances(*cone, focal_px, workspace);
+  if (DropOutliers(std::max(kMinLimitPx, 3 * MedianDistance(workspace)), workspace)) {
+    cone = FitCone(workspace->rays);
+    if (!cone) return std::nullopt;
+    MeasureDistances(*cone, focal_px, workspace);
+  }
+  double squares = 0;
+  for (const double distance : workspace->distances) squares += distance * distance;
+  const auto count = static_cast<double>(workspace->rays.size());
+  return DiscOutline{*cone, std::sqrt(squares / count), count / kDirections};
+}
+
+std::optional<Ellipse> EllipseOfCutOff(const Segment& segment, const cv::Size& image_size,
+                                       DiscOutlineWorkspace* workspace) {
+  CollectBorderPixels(segment, image_size, &workspace->points);
+  // A plane of pixels around the segment, as if a camera saw it: FitCone fits in such a plane.
+  const Eigen::Vector2d middle(0.5 * (segment.min_u + segment.max_u),
+                               0.5 * (segment.min_v + segment.max_v));
+  const double scale = std::max(segment.width(), segment.height());
+  workspace->rays.clear();
+  for (const Eigen::Vector2d& point : workspace->points) {
+    const Eigen::Vector2d x = (point - middle) / scale;
+    workspace->rays.push_back(Eigen::Vector3d(x.x(), x.y(), 1).normalized());
+  }
+  const std::optional<Cone> cone = FitCone(workspace->rays);
+  if (!cone) return std::nullopt;
+  std::optional<Ellipse> ellipse = CutWithPlane(cone->matrix);
+  if (!ellipse) return std::nullopt;
+  ellipse->center = middle + scale * ellipse->center;
+  ellipse->Scale(scale);
+  return ellipse;
+}
+
+}  // namespace kestrel
