@@ -250,5 +250,27 @@ TEST_F(KestrelCommandTest, MisspeltOptionNamesTheNearest) {
   ExpectInputError("land " + recording + " --set landing.hint_sigmam=1", "did you mean");
 }
 
+TEST_F(KestrelCommandTest, EvaluateComparesALandingWithItsTruth) {
+  const std::string flight = WriteRecording();
+  folder_.Write("flight/mav0/state_groundtruth_estimate0/data.csv",
+                "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y "
+                "[],q_RS_z []\n100000000,5,6,3,1,0,0,0\n200000000,5,6,3,1,0,0,0\n");
+  folder_.Write(
+      "flight/mav0/landing_pattern0/data.csv",
+      "#timestamp [ns],p_WP_W_x [m],p_WP_W_y [m],p_WP_W_z [m],q_WP_w [],q_WP_x [],q_WP_y [],q_WP_z "
+      "[],v_WP_W_x [m s^-1],v_WP_W_y [m s^-1],v_WP_W_z [m s^-1],u [px],v [px],altitude "
+      "[m],visible_fraction []\n100000000,4.8,5.7,0,1,0,0,0,0,0,0,359.5,266.17,3,1\n");
+  const std::string output = folder_ / "o";
+  ASSERT_EQ(Run("land " + flight + " --output " + output).status, 0);
+  const Outcome outcome = Run("evaluate " + flight + " " + output);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("| all | 2 to 6 | 1 | 1 | 100.0 |"));
+  EXPECT_TRUE(std::filesystem::exists(output + "/evaluation/report.md"));
+  EXPECT_TRUE(std::filesystem::exists(output + "/evaluation/error.png"));
+  ExpectInputError("evaluate " + flight + " " + output, "--force replaces it");
+  ExpectInputError("evaluate " + flight + " " + (folder_ / "none"), "no folder");
+  ExpectInputError("evaluate " + output + " " + output, "no recording");
+}
+
 }  // namespace
 }  // namespace kestrel

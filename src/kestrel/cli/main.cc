@@ -7,6 +7,7 @@
 #include <opencv2/core/utils/logger.hpp>
 
 #include "kestrel/cli/config_command.h"
+#include "kestrel/cli/evaluate_command.h"
 #include "kestrel/cli/help_command.h"
 #include "kestrel/cli/land_command.h"
 
@@ -29,6 +30,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "kestrel " KESTREL_VERSION);
   app.require_subcommand(1);
   kestrel::AddLandCommand(&app);
+  kestrel::AddEvaluateCommand(&app);
   kestrel::AddConfigCommand(&app);
   kestrel::AddHelpCommand(&app);
   try {

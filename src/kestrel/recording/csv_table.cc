@@ -90,6 +90,15 @@ std::int64_t CsvTable::Integer(std::size_t row, std::size_t column) const {
   return *number;
 }
 
+bool CsvTable::IsEmpty(std::size_t row, std::size_t column) const {
+  return rows_[row].cells[column].empty();
+}
+
+std::optional<double> CsvTable::OptionalNumber(std::size_t row, std::size_t column) const {
+  if (IsEmpty(row, column)) return std::nullopt;
+  return Number(row, column);
+}
+
 void CsvTable::Fail(std::size_t row, const std::string& message) const {
   throw InputError(fmt::format("{}: line {}: {}", file_, rows_[row].line, message));
 }
@@ -97,6 +106,13 @@ void CsvTable::Fail(std::size_t row, const std::string& message) const {
 void CsvTable::FailCell(std::size_t row, std::size_t column, const char* expected) const {
   Fail(row,
        fmt::format("{} is '{}', expected {}", header_[column], rows_[row].cells[column], expected));
+}
+
+std::string CsvCell(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
+  return quoted + '"';
 }
 
 }  // namespace kestrel

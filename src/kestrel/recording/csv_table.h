@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,10 @@ class CsvTable {
   double Number(std::size_t row, std::size_t column) const;  // finite
   std::int64_t Integer(std::size_t row, std::size_t column) const;
 
+  // For values that may be unknown: whether the cell is empty; its number, nothing when it is.
+  bool IsEmpty(std::size_t row, std::size_t column) const;
+  std::optional<double> OptionalNumber(std::size_t row, std::size_t column) const;
+
   [[noreturn]] void Fail(std::size_t row, const std::string& message) const;
 
  private:
@@ -40,5 +45,8 @@ class CsvTable {
   std::vector<std::string_view> header_;
   std::vector<Row> rows_;
 };
+
+// 'text' as one cell (RFC 4180): with a comma, a quote or a line break in it, it is put in quotes.
+std::string CsvCell(const std::string& text);
 
 }  // namespace kestrel

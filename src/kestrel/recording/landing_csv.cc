@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/recording/landing_csv.h"
 
-#include <cmath>
-#include <iterator>
 #include <optional>
 
 #include <fmt/format.h>
 
+#include "kestrel/recording/csv_table.h"
+
 namespace kestrel {
 namespace {
-
-// RFC 4180: a cell with a comma, a quote or a line break is put in quotes.
-std::string Quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
-  return quoted + '"';
-}
 
 std::string Position(const std::optional<Eigen::Vector3d>& position) {
   if (!position) return ",,";
@@ -48,7 +40,7 @@ std::string LandingCsvRow(const std::string& frame_name, const LandingObservatio
   const LandingReport& report = observation.report;
   const auto& yaw = observation.yaw_in_world;
   return fmt::format(
-      "{},{},{},{},{},{},{},{},{:.4f}\n", Quoted(frame_name), ToNanoseconds(observation.time),
+      "{},{},{},{},{},{},{},{},{:.4f}\n", CsvCell(frame_name), ToNanoseconds(observation.time),
       report.detection ? 1 : 0, ImageCells(report.detection), Position(observation.center_in_world),
       yaw ? fmt::format("{:.6f}", *yaw) : "", SigmaCells(report.detection),
       report.detection ? "" : ToString(report.reached), 1e3 * ToSeconds(observation.detect_time));

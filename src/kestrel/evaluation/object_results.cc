@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/evaluation/object_results.h"
+
+#include "kestrel/recording/csv_columns.h"
+
+namespace kestrel {
+namespace {
+
+std::optional<Eigen::Vector3d> ParseIfThere(const VectorColumns& columns, std::size_t row) {
+  if (columns.IsEmpty(row)) return std::nullopt;
+  return columns.Parse(row);
+}
+
+}  // namespace
+
+ObjectRows ParseObjectRows(std::string_view text, const std::string& file) {
+  const CsvTable table(text, file);
+  const std::vector<Time> times = ParseTimes(table, "timestamp_ns", TimeOrder::kNotDecreasing);
+  const std::size_t u = table.Column("u_px");
+  const std::size_t v = table.Column("v_px");
+  const std::size_t semi_major = table.Column("semi_major_px");
+  const std::size_t class_name = table.Column("class");
+  const VectorColumns in_camera(table, "p_CO_C_", "_m");
+  const VectorColumns in_world(table, "p_WO_W_", "_m");
+  ObjectRows rows;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    if (rows.frames.empty() || times[row] > rows.frames.back()) rows.frames.push_back(times[row]);
+    if (table.IsEmpty(row, u)) continue;
+    rows.objects.push_back({times[row],
+                            {table.Number(row, u), table.Number(row, v)},
+                            table.Number(row, semi_major),
+                            std::string(table.Text(row, class_name)),
+                            ParseIfThere(in_camera, row),
+                            ParseIfThere(in_world, row)});
+  }
+  return rows;
+}
+
+std::vector<MapRow> ParseMapRows(std::string_view text, const std::string& file) {
+  const CsvTable table(text, file);
+  const std::size_t id = table.Column("id");
+  const std::size_t class_name = table.Column("class");
+  const VectorColumns position(table, "p_", "_m");
+  const VectorColumns velocity(table, "v_", "_mps");
+  const std::size_t last_seen = table.Column("last_seen_ns");
+  std::vector<MapRow> rows;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    rows.push_back({static_cast<int>(table.Integer(row, id)),
+                    std::string(table.Text(row, class_name)), position.Parse(row),
+                    velocity.IsEmpty(row) ? Eigen::Vector3d::Zero() : velocity.Parse(row),
+                    TimeFromNanoseconds(table.Integer(row, last_seen))});
+  }
+  return rows;
+}
+
+}  // namespace kestrel

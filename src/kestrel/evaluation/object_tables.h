@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+
+#include "kestrel/evaluation/object_comparison.h"
+#include "kestrel/evaluation/report_table.h"
+
+namespace kestrel {
+
+// By class and in all: found of the objects that must be found, precision of the detections, share
+// of right classes, errors.
+ReportTable DetectionTable(std::span<const ObjectComparison> comparisons);
+
+// Rows: true classes; columns: the classes that they were given, or nothing.
+ReportTable ConfusionTable(std::span<const ObjectComparison> comparisons);
+
+// How complete and how right the map is.
+ReportTable MapTable(std::span<const MapComparison> comparisons);
+
+}  // namespace kestrel
