@@ -55,6 +55,9 @@ void HuntPipeline::Detect(const cv::Mat& image) {
     hint.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
     const double height_m = world_from_camera->translation.z() - options_.ground_height_m;
     if (options_.is_ground_flat && height_m > 0) hint.camera_height_m = height_m;
+  } else if (altitude_m_) {
+    hint.up_in_camera = -Eigen::Vector3d::UnitZ();
+    hint.camera_height_m = altitude_m_;
   }
   hint.track = track_;
   ObjectReport& report = observation_.report;

@@ -75,6 +75,10 @@ class HuntPipeline {
   // frame, or the frame has no pose.
   PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
 
+  // Height (m) of the camera above the ground, for frames without a pose; nothing: not known. The
+  // camera is then taken to look straight down.
+  void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
+
   // 'image': CV_8UC3 of the camera's size; 'time' on the clock of the images. The result is valid
   // until the next call. Does not throw, and does not allocate once it has warmed up.
   const HuntObservation& Process(const cv::Mat& image, Time time);
@@ -92,6 +96,7 @@ class HuntPipeline {
   ObjectDetector detector_;
   ObjectWorkspace workspace_;
   CameraPoses poses_;
+  std::optional<double> altitude_m_;
   HuntObservation observation_;
   std::vector<TrackedObject> track_;
 };

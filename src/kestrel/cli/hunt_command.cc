@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/cli/hunt_command.h"
+
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "kestrel/base/error.h"
+#include "kestrel/cli/interrupt.h"
+#include "kestrel/cli/progress_bar.h"
+#include "kestrel/cli/source_arguments.h"
+#include "kestrel/pipeline/hunt_pipeline.h"
+#include "kestrel/recording/annotated_writer.h"
+#include "kestrel/recording/object_csv.h"
+#include "kestrel/recording/object_overlay.h"
+#include "kestrel/recording/open_source.h"
+#include "kestrel/recording/output_folder.h"
+
+namespace kestrel {
+namespace {
+
+struct HuntArguments {
+  SourceArguments source;
+  std::string model;
+  std::string grid;
+};
+
+// Where the results go: files below --output, or the detections to stdout.
+class HuntSink {
+ public:
+  HuntSink(const SourceArguments& arguments, double rate_hz) {
+    if (!arguments.output.empty()) {
+      folder_.emplace(arguments.output, arguments.force);
+      file_ = folder_->OpenText("object_detections.csv");
+    }
+    if (arguments.annotate == "images") annotated_ = MakeImageWriter(*folder_);
+    if (arguments.annotate == "video") annotated_ = MakeVideoWriter(*folder_, rate_hz);
+    WriteText(ObjectCsvHeader());
+  }
+
+  void Write(const Frame& frame, const HuntObservation& observation,
+             const ObjectDetector& detector) {
+    WriteText(ObjectCsvRows(frame.name, observation, detector.model()));
+    if (!annotated_) return;
+    annotated_->Write(frame.name, DrawObjectOverlay(frame.image, detector.model(), observation));
+  }
+
+ private:
+  // At once, for whoever reads along.
+  void WriteText(const std::string& text) {
+    std::ostream& csv = file_.is_open() ? file_ : std::cout;
+    if (!(csv << text << std::flush)) {
+      throw InputError("object_detections.csv: cannot be written, is the disk full?");
+    }
+  }
+
+  std::optional<OutputFolder> folder_;
+  std::ofstream file_;
+  std::unique_ptr<AnnotatedWriter> annotated_;
+};
+
+class Summary {
+ public:
+  void Add(const HuntObservation& observation) {
+    times_.Add(observation.detect_time);
+    detections_ += observation.report.detections.size();
+    for (std::size_t i = 0; i < kObjectStageCount; ++i) passed_[i] += observation.report.passed[i];
+  }
+  std::size_t frames() const { return times_.frames(); }
+
+  // The last line is the paper's Table 3: segments that are left after each step.
+  void Print() const {
+    fmt::print(stderr, "{} frames, {} detections{}\nsegments", frames(), detections_,
+               times_.Summary());
+    for (std::size_t i = 0; i < kObjectStageCount; ++i) {
+      fmt::print(stderr, "{} {} {}", i == 0 ? "" : ",", passed_[i],
+                 ToString(static_cast<ObjectStage>(i)));
+    }
+    fmt::print(stderr, "\n");
+  }
+
+ private:
+  DetectTimes times_;
+  std::size_t detections_ = 0;
+  std::array<std::size_t, kObjectStageCount> passed_{};
+};
+
+void ProcessFrames(FrameSource* source, const CameraCalibration& calibration,
+                   HuntPipeline* pipeline, HuntSink* sink, Summary* summary) {
+  // The last row of a rolling shutter is later than the image.
+  const Duration lead = calibration.clock_offset.value_or(Duration::zero()) +
+                        DurationFromSeconds(pipeline->options().readout_s / 2);
+  PoseFeeder poses(source->poses());
+  ProgressBar progress(source->frame_count());
+  Frame frame;
+  while (!WasInterrupted() && source->Next(&frame)) {
+    RequireSize(frame, calibration.intrinsics);
+    poses.FeedUntil(frame.time + lead, pipeline);
+    const HuntObservation& observation = pipeline->Process(frame.image, frame.time);
+    sink->Write(frame, observation, pipeline->detector());
+    summary->Add(observation);
+    progress.Show(summary->frames());
+  }
+}
+
+void RunHunt(const HuntArguments& arguments) {
+  HuntPipelineOptions options = arguments.source.options.Read().hunt;
+  if (arguments.source.still) options.still = true;
+  const ObjectModel model =
+      arguments.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments.model);
+  const ColorGrid grid = arguments.grid.empty()
+                             ? ColorGrid(model.colors)
+                             : ColorGrid::Load(arguments.grid, model.colors.colors.size());
+  const std::unique_ptr<FrameSource> source =
+      OpenSource(arguments.source.sources, PixelFormat::kBgr);
+  const CameraCalibration calibration = arguments.source.FindCalibration(*source);
+  HuntPipeline pipeline(calibration, model, grid, options);
+  pipeline.SetAltitude(arguments.source.altitude_m);
+  HuntSink sink(arguments.source, source->rate_hz());
+  Summary summary;
+  CatchInterrupts();
+  try {
+    ProcessFrames(source.get(), calibration, &pipeline, &sink, &summary);
+  } catch (const InputError&) {
+    if (summary.frames() > 0) summary.Print();  // these stay
+    throw;
+  }
+  summary.Print();
+}
+
+}  // namespace
+
+void AddHuntCommand(CLI::App* app) {
+  CLI::App* command = app->add_subcommand("hunt", "Run the coloured-object pipeline over a source");
+  const auto arguments = std::make_shared<HuntArguments>();
+  arguments->source.AddTo(command);
+  command
+      ->add_option("--model", arguments->model,
+                   "Objects and their colours (YAML) in place of the built-in ones")
+      ->type_name("FILE");
+  command
+      ->add_option("--grid", arguments->grid,
+                   "Color grid (64^3 bytes) in place of the one that the model gives")
+      ->type_name("FILE");
+  command->callback([arguments] { RunHunt(*arguments); });
+}
+
+}  // namespace kestrel
