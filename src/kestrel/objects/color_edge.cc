@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 namespace kestrel {
 namespace {
@@ -44,10 +45,14 @@ bool ReadProfile(const cv::Mat& image, const Eigen::Vector2d& start, const Eigen
   return true;
 }
 
-// Index, with its fraction, where the profile first passes from the half of 'inside' to that of
-// 'outside' at or after 'first'.
-std::optional<double> Crossing(const Profile& profile, const Eigen::Vector3f& inside,
-                               const Eigen::Vector3f& outside, int first) {
+struct Crossing {
+  double index;  // with its fraction
+  float slope;   // of the share of the inside, per sample, positive
+};
+
+// Where the profile first passes from the half of 'inside' to that of 'outside' after 'first'.
+std::optional<Crossing> FindCrossing(const Profile& profile, const Eigen::Vector3f& inside,
+                                     const Eigen::Vector3f& outside, int first) {
   constexpr float kMinContrast = 0.02F;
   const Eigen::Vector3f axis = inside - outside;
   const float contrast = axis.squaredNorm();
@@ -56,7 +61,8 @@ std::optional<double> Crossing(const Profile& profile, const Eigen::Vector3f& in
   float last = share(first);
   for (int i = first + 1; i < kSamples; ++i) {
     const float here = share(i);
-    if (last >= 0.5F && here < 0.5F) return i - (0.5F - here) / (last - here);
+    const float slope = last - here;
+    if (last >= 0.5F && here < 0.5F) return Crossing{i - (0.5F - here) / slope, slope};
     last = here;
   }
   return std::nullopt;
@@ -64,20 +70,21 @@ std::optional<double> Crossing(const Profile& profile, const Eigen::Vector3f& in
 
 }  // namespace
 
-std::optional<double> FindColorEdge(const cv::Mat& image, const Eigen::Vector2d& start,
-                                    const Eigen::Vector2d& outward) {
+std::optional<ColorEdge> FindColorEdge(const cv::Mat& image, const Eigen::Vector2d& start,
+                                       const Eigen::Vector2d& outward) {
   constexpr int kBeside = 2;  // from the edge to where a blurred profile is flat again
   Profile profile;
   if (!ReadProfile(image, start, outward, &profile)) return std::nullopt;
-  std::optional<double> edge = Crossing(profile, 0.5F * (profile[1] + profile[2]),
-                                        profile[kSamples - 2], /*first=*/1);
+  std::optional<Crossing> edge = FindCrossing(profile, 0.5F * (profile[1] + profile[2]),
+                                              profile[kSamples - 2], /*first=*/1);
   // Once more with the colours right beside the edge.
   if (!edge) return std::nullopt;
-  const int near = static_cast<int>(std::lround(*edge));
+  const int near = static_cast<int>(std::lround(edge->index));
   if (near - kBeside < 0 || near + kBeside >= kSamples) return std::nullopt;
-  edge = Crossing(profile, profile[near - kBeside], profile[near + kBeside], near - kBeside);
-  if (!edge || *edge > near + kBeside) return std::nullopt;
-  return *edge - kReach;
+  edge = FindCrossing(profile, profile[near - kBeside], profile[near + kBeside], near - kBeside);
+  if (!edge || edge->index > near + kBeside) return std::nullopt;
+  const double blur_px = 1 / (std::sqrt(2 * std::numbers::pi) * edge->slope);
+  return ColorEdge{edge->index - kReach, blur_px};
 }
 
 }  // namespace kestrel

@@ -175,7 +175,7 @@ Line FitSide(const cv::Mat& image, const Eigen::Vector2d& a, const Eigen::Vector
     const double t = 0.15 + 0.7 * i / (kPoints - 1);
     const Eigen::Vector2d start = a + t * (b - a);
     if (const auto edge = FindColorEdge(image, start, outward)) {
-      points[count++] = start + *edge * outward;
+      points[count++] = start + edge->offset_px * outward;
     }
   }
   if (count < kPoints / 2) return side;

@@ -47,6 +47,14 @@ bool DropOutliers(double limit_px, DiscOutlineWorkspace* workspace) {
   return dropped;
 }
 
+// Blur of deviation s moves the place of half the light of a disc of radius r inwards, by
+// s^2 / (2 r): more of the disc's surroundings than of the disc lies around a point of its edge.
+double CurvatureShift(double blur_px, double radius_px) {
+  constexpr double kMaxBlurPx = 2;
+  const double blur = std::min(blur_px, kMaxBlurPx);
+  return blur * blur / (2 * radius_px);
+}
+
 // The ellipse that a cone cuts out of the plane z = 1.
 std::optional<Ellipse> CutWithPlane(const Eigen::Matrix3d& conic) {
   const Eigen::Matrix2d a = conic.topLeftCorner<2, 2>();
@@ -100,6 +108,7 @@ std::optional<DiscOutline> FitDiscOutline(const cv::Mat& image, const RayTable& 
                                           DiscOutlineWorkspace* workspace) {
   constexpr int kDirections = 32;
   constexpr double kMinLimitPx = 0.5;
+  const double radius_px = std::sqrt(start.semi_major * start.semi_minor);
   workspace->rays.clear();
   for (int i = 0; i < kDirections; ++i) {
     const double t = 2 * std::numbers::pi * i / kDirections;
@@ -107,9 +116,10 @@ std::optional<DiscOutline> FitDiscOutline(const cv::Mat& image, const RayTable& 
                                      start.semi_major * std::sin(t) * start.minor_axis())
                                         .normalized();
     const Eigen::Vector2d point = start.At(t);
-    const std::optional<double> edge = FindColorEdge(image, point, outward);
+    const std::optional<ColorEdge> edge = FindColorEdge(image, point, outward);
     if (!edge) continue;
-    const Eigen::Vector2f at = (point + *edge * outward).cast<float>();
+    const double offset_px = edge->offset_px + CurvatureShift(edge->blur_px, radius_px);
+    const Eigen::Vector2f at = (point + offset_px * outward).cast<float>();
     const Eigen::Vector3d ray = rays.Ray(at.x(), at.y()).cast<double>();
     if (ray.squaredNorm() > 0) workspace->rays.push_back(ray);
   }

@@ -74,6 +74,7 @@ bool ObjectExaminer::Run(const Segment& segment) {
        ++stage) {
     ++report_->passed[stage];
   }
+  if (!is_object) is_object = TestMerged(segment, shape, &detection);
   if (is_object) report_->detections.push_back(detection);
   return is_object;
 }
@@ -110,9 +111,7 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
     if (!ellipse) return false;
     start = *ellipse;
   } else if (std::abs(shape.circularity - 1) > options.max_circularity_error) {
-    if (!IsMerged(shape, object)) return false;
-    detection->completeness = Completeness::kMerged;
-    return true;
+    return false;
   }
   *reached = ObjectStage::kShape;
   const auto outline = FitDiscOutline(image_, detector_.rays_, detector_.focal_px_, start,
@@ -218,18 +217,37 @@ bool ObjectExaminer::LocateFace(const FaceCorners& corners, const ObjectClass& o
 
 // Several discs of one colour that touch make one segment. It is no disc, but as solid as one, and
 // larger where the size of one is known.
-bool ObjectExaminer::IsMerged(const SegmentShape& shape, const ObjectClass& object) const {
+bool ObjectExaminer::TestMerged(const Segment& segment, const SegmentShape& shape,
+                                ObjectDetection* detection) const {
   constexpr double kMaxCircularityError = 0.6;
+  constexpr double kMinCount = 1.2;
   constexpr double kMaxCount = 8;
-  if (std::abs(shape.circularity - 1) > kMaxCircularityError) return false;
-  const Eigen::Vector3d ray = RayAt(shape.moments.centroid);
+  if (segment.touches_border) return false;
+  const double error = std::abs(shape.circularity - 1);
+  if (error <= detector_.options_.max_circularity_error || error > kMaxCircularityError) {
+    return false;
+  }
+  const auto& classes = detector_.model_.classes;
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    if (classes[i].color + 1 != segment.label || classes[i].shape != ObjectShape::kDisc) continue;
+    const std::optional<double> one_px = PixelsOnGround(detection->bearing, classes[i]);
+    const double count = one_px ? shape.moments.area / *one_px : kMinCount;
+    if (count < kMinCount || count > kMaxCount) continue;
+    detection->class_index = i;
+    detection->class_probability = detection->color_probabilities[classes[i].color];
+    detection->completeness = Completeness::kMerged;
+    return true;
+  }
+  return false;
+}
+
+std::optional<double> ObjectExaminer::PixelsOnGround(const Eigen::Vector3d& ray,
+                                                     const ObjectClass& object) const {
   const auto distance = Ground().DistanceNear(ray, 0, object.height_m, object.max_height_m);
-  if (!distance) return true;
+  if (!distance) return std::nullopt;
   const Eigen::Vector2d angles =
       ConeOfCircle(*distance * ray, *hint_.up_in_camera, object.size_m / 2).HalfAngles();
-  const double one_px = std::numbers::pi * detector_.focal_px_ * detector_.focal_px_ *
-                        angles.prod();
-  return shape.moments.area > 1.2 * one_px && shape.moments.area < kMaxCount * one_px;
+  return std::numbers::pi * detector_.focal_px_ * detector_.focal_px_ * angles.prod();
 }
 
 void ObjectExaminer::SetCenter(const Eigen::Vector3d& position, double radius_px, double outline_share,

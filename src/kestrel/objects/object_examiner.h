@@ -33,7 +33,10 @@ class ObjectExaminer {
                ObjectDetection* detection, ObjectStage* reached);
   bool LocateFace(const FaceCorners& corners, const ObjectClass& object,
                   ObjectDetection* detection) const;
-  bool IsMerged(const SegmentShape& shape, const ObjectClass& object) const;
+  bool TestMerged(const Segment& segment, const SegmentShape& shape,
+                  ObjectDetection* detection) const;
+  // Area that a disc on the ground has in the image; nothing when the ground is not known.
+  std::optional<double> PixelsOnGround(const Eigen::Vector3d& ray, const ObjectClass& object) const;
   void SetCenter(const Eigen::Vector3d& position, double radius_px, double outline_share,
                  ObjectDetection* detection) const;
   GroundPlane Ground() const { return {hint_.up_in_camera, hint_.camera_height_m}; }
