@@ -15,9 +15,10 @@
 namespace kestrel {
 namespace {
 
-// The segment's bounding box with a margin of one pixel; each pixel one of these.
-enum Mark : std::uint8_t { kOutside, kFace, kSide, kDigit };
+// What a pixel of the segment's bounding box is.
+enum Mark : std::uint8_t { kOutside, kColored, kDigit };
 
+// The bounding box with a margin of one pixel.
 struct Box {
   explicit Box(const Segment& segment)
       : left(segment.min_u - 1),
@@ -28,6 +29,17 @@ struct Box {
   std::size_t Index(const PixelPosition& at) const {
     return static_cast<std::size_t>(at.v - top) * width + (at.u - left);
   }
+  // Visits the indices of all pixels but those of the margin.
+  template <class Visit>
+  void ForEachInside(const Visit& visit) const {
+    for (int v = 1; v + 1 < height; ++v) {
+      for (int u = 1; u + 1 < width; ++u) visit(static_cast<std::size_t>(v) * width + u);
+    }
+  }
+  std::array<std::size_t, 9> Neighborhood(std::size_t i) const {
+    const std::size_t w = width;
+    return {i - w - 1, i - w, i - w + 1, i - 1, i, i + 1, i + w - 1, i + w, i + w + 1};
+  }
 
   int left, top, width, height;
 };
@@ -37,50 +49,105 @@ std::uint8_t ValueAt(const cv::Mat& image, const PixelPosition& at) {
   return std::max({bgr[0], bgr[1], bgr[2]});
 }
 
-// Marks the pixels of the segment; those on the other side of the threshold than most pixels around
-// the digit are the side faces.
 void MarkPixels(const cv::Mat& image, const Segment& segment, const Box& box,
-                std::vector<std::uint8_t>* mask) {
-  constexpr double kMinContrast = 1.25;
-  mask->assign(static_cast<std::size_t>(box.width) * box.height, kOutside);
+                CuboidFaceWorkspace* workspace) {
+  const std::size_t size = static_cast<std::size_t>(box.width) * box.height;
+  workspace->mask.assign(size, kOutside);
+  workspace->values.assign(size, 0);
   const std::size_t colored = segment.pixels.size() - segment.ambiguous_pixels;
-  Histogram histogram{};
-  for (std::size_t i = 0; i < colored; ++i) ++histogram[ValueAt(image, segment.pixels[i])];
-  const OtsuSplit split = SplitByOtsu(histogram);
-  const bool has_sides = split.upper_mean > kMinContrast * split.lower_mean;
-  for (std::size_t i = 0; i < colored; ++i) {
-    const bool is_bright = ValueAt(image, segment.pixels[i]) > split.threshold;
-    (*mask)[box.Index(segment.pixels[i])] = is_bright || !has_sides ? kFace : kSide;
+  for (std::size_t i = 0; i < segment.pixels.size(); ++i) {
+    const std::size_t index = box.Index(segment.pixels[i]);
+    workspace->mask[index] = i < colored ? kColored : kDigit;
+    workspace->values[index] = ValueAt(image, segment.pixels[i]);
   }
-  int face_votes = 0;
-  for (const PixelPosition& at : segment.pixels.subspan(colored)) {
-    const std::size_t index = box.Index(at);
-    (*mask)[index] = kDigit;
-    for (const std::size_t near : {index - 2, index + 2, index - 2 * box.width,
-                                   index + 2 * box.width}) {
-      if (near >= mask->size()) continue;
-      face_votes += (*mask)[near] == kFace;
-      face_votes -= (*mask)[near] == kSide;
+  // Mean of the coloured pixels of 3 x 3, against noise.
+  workspace->smooth.assign(size, 0);
+  box.ForEachInside([&](std::size_t i) {
+    if (workspace->mask[i] != kColored) return;
+    int sum = 0;
+    int count = 0;
+    for (const std::size_t near : box.Neighborhood(i)) {
+      const bool counts = workspace->mask[near] == kColored;
+      sum += counts ? workspace->values[near] : 0;
+      count += counts;
     }
+    workspace->smooth[i] = static_cast<std::uint8_t>(sum / count);
+  });
+}
+
+// Median value of the coloured pixels around the digit: past the blur, still on its face.
+std::optional<int> ValueAroundDigit(const Box& box, const CuboidFaceWorkspace& workspace) {
+  constexpr int kDistance = 3;
+  Histogram histogram{};
+  int count = 0;
+  box.ForEachInside([&](std::size_t i) {
+    if (workspace.mask[i] != kDigit) return;
+    const std::size_t row = kDistance * static_cast<std::size_t>(box.width);
+    for (const std::size_t near : {i - kDistance, i + kDistance, i - row, i + row}) {
+      if (near >= workspace.mask.size() || workspace.mask[near] != kColored) continue;
+      ++histogram[workspace.smooth[near]];
+      ++count;
+    }
+  });
+  if (count == 0) return std::nullopt;
+  int below = 0;
+  for (int value = 0; value < 256; ++value) {
+    below += histogram[value];
+    if (2 * below >= count) return value;
   }
-  const std::uint8_t face = face_votes >= 0 ? kFace : kSide;
-  for (std::uint8_t& mark : *mask) mark = mark == face || mark == kDigit ? 1 : 0;
+  return std::nullopt;
+}
+
+// The values from 'start' in the direction of 'step' that belong to the same hill of the histogram:
+// down to a valley of less than a third of its top, or to nothing.
+int EndOfHill(const std::array<int, 256>& histogram, int start, int step) {
+  constexpr int kWindow = 2;  // the histogram of a small face has holes
+  const auto height = [&](int value) {
+    int sum = 0;
+    for (int i = std::max(0, value - kWindow); i <= std::min(255, value + kWindow); ++i) {
+      sum += histogram[i];
+    }
+    return sum;
+  };
+  int top = height(start);
+  int value = start;
+  while (value + step >= 0 && value + step < 256) {
+    const int here = height(value);
+    const int next = height(value + step);
+    top = std::max(top, here);
+    if (here * 20 <= top || (here * 3 <= top && next >= here)) break;
+    value += step;
+  }
+  return value;
+}
+
+// Leaves 1 for the pixels of the face that the digit is on, 0 for all else.
+bool MarkFace(const Box& box, CuboidFaceWorkspace* workspace) {
+  const std::optional<int> face_value = ValueAroundDigit(box, *workspace);
+  if (!face_value) return false;
+  Histogram histogram{};
+  box.ForEachInside([&](std::size_t i) {
+    if (workspace->mask[i] == kColored) ++histogram[workspace->smooth[i]];
+  });
+  const int darkest = EndOfHill(histogram, *face_value, -1);
+  const int brightest = EndOfHill(histogram, *face_value, 1);
+  for (std::size_t i = 0; i < workspace->mask.size(); ++i) {
+    const bool is_face = workspace->mask[i] == kColored && workspace->smooth[i] >= darkest &&
+                         workspace->smooth[i] <= brightest;
+    workspace->mask[i] = is_face || workspace->mask[i] == kDigit ? 1 : 0;
+  }
+  return true;
 }
 
 // Majority of 3 x 3: single pixels are noise.
 void FilterMask(const Box& box, const std::vector<std::uint8_t>& mask,
                 std::vector<std::uint8_t>* filtered) {
   filtered->assign(mask.size(), 0);
-  for (int v = 1; v + 1 < box.height; ++v) {
-    for (int u = 1; u + 1 < box.width; ++u) {
-      const std::size_t i = static_cast<std::size_t>(v) * box.width + u;
-      int sum = 0;
-      for (const std::size_t row : {i - box.width, i, i + box.width}) {
-        sum += mask[row - 1] + mask[row] + mask[row + 1];
-      }
-      (*filtered)[i] = sum >= 5;
-    }
-  }
+  box.ForEachInside([&](std::size_t i) {
+    int sum = 0;
+    for (const std::size_t near : box.Neighborhood(i)) sum += mask[near];
+    (*filtered)[i] = sum >= 5;
+  });
 }
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -246,7 +313,8 @@ std::optional<FaceCorners> FindCuboidFace(const cv::Mat& image, const Segment& s
   constexpr double kMinFill = 0.8;
   if (segment.ambiguous_pixels == 0) return std::nullopt;
   const Box box(segment);
-  MarkPixels(image, segment, box, &workspace->mask);
+  MarkPixels(image, segment, box, workspace);
+  if (!MarkFace(box, workspace)) return std::nullopt;
   FilterMask(box, workspace->mask, &workspace->filtered);
   FindHull(box, workspace->filtered, &workspace->hull);
   // Andrew's chain ends where it began.

@@ -19,15 +19,16 @@ using FaceCorners = std::array<Eigen::Vector2d, 4>;
 // Memory of FindCuboidFace.
 struct CuboidFaceWorkspace {
   std::vector<std::uint8_t> mask;
+  std::vector<std::uint8_t> values;
+  std::vector<std::uint8_t> smooth;
   std::vector<std::uint8_t> filtered;
   std::vector<Eigen::Vector2d> hull;
 };
 
 // The upper face of the cuboid that 'segment' (with its ambiguous pixels joined) shows. Side faces
-// have the same hue and another brightness: the pixels are split in two by their value (Otsu's
-// threshold) where that makes a difference, and those around the digit are kept. The smallest
-// quadrilateral around them is the face; its sides are then fitted to the sub-pixel edges. Nothing
-// when the digit or four sides are not found.
+// have the same hue and another brightness: kept are the pixels whose value is in the same hill of
+// the histogram as those around the digit. The smallest quadrilateral around them is the face; its
+// sides are then fitted to the sub-pixel edges. Nothing when the digit or four sides are not found.
 std::optional<FaceCorners> FindCuboidFace(const cv::Mat& image, const Segment& segment,
                                           CuboidFaceWorkspace* workspace);
 
