@@ -22,8 +22,8 @@ Cone ConeOfCircle(const Eigen::Vector3d& center, const Eigen::Vector3d& normal, 
 // 'row_direction': a vector along the image's rows at the disc. 'up': unit vector, upwards in the
 // camera frame, when the attitude is known.
 //
-// Without 'up' it is the circle of CirclePosesFromCone whose normal points more to the camera.
-// With it the disc is taken for horizontal. Its centre is then seen along Q^-1 up (the pole of the
+// Two circles look like the cone (CirclePosesFromCone). Without 'up' nothing tells which of them it
+// is, and the point between their centres is returned, on the axis of the cone. With it the disc is taken for horizontal. Its centre is then seen along Q^-1 up (the pole of the
 // vanishing line of its plane), and its distance follows from the length of the image row through
 // the centre: a rolling shutter shears the image and stretches its columns, but leaves the length
 // of rows alone.

@@ -2,6 +2,7 @@
 #include "kestrel/objects/disc_outline.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -38,12 +39,18 @@ double MedianDistance(DiscOutlineWorkspace* workspace) {
 // Takes out the rays that are further than 'limit' from the cone; true when there were any.
 bool DropOutliers(double limit_px, DiscOutlineWorkspace* workspace) {
   auto& rays = workspace->rays;
+  auto& points = workspace->points;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (workspace->distances[i] <= limit_px) rays[kept++] = rays[i];
+    if (workspace->distances[i] > limit_px) continue;
+    rays[kept] = rays[i];
+    workspace->directions[kept] = workspace->directions[i];
+    points[kept++] = points[i];
   }
   const bool dropped = kept < rays.size();
   rays.resize(kept);
+  points.resize(kept);
+  workspace->directions.resize(kept);
   return dropped;
 }
 
@@ -101,15 +108,28 @@ void CollectBorderPixels(const Segment& segment, const cv::Size& image_size,
   points->erase(points->begin(), points->begin() + 2 * count);
 }
 
-}  // namespace
+// The longest row of directions, around the circle of 'count', that are missing.
+int LargestGap(const std::vector<int>& directions, int count) {
+  if (directions.empty()) return count;
+  int largest = 0;
+  int last = directions.back() - count;
+  for (const int direction : directions) {
+    largest = std::max(largest, direction - last - 1);
+    last = direction;
+  }
+  return largest;
+}
 
-std::optional<DiscOutline> FitDiscOutline(const cv::Mat& image, const RayTable& rays,
-                                          double focal_px, const Ellipse& start,
-                                          DiscOutlineWorkspace* workspace) {
+std::optional<DiscOutline> FitOnce(const cv::Mat& image, const RayTable& rays, double focal_px,
+                                   const Ellipse& start, DiscOutlineWorkspace* workspace) {
   constexpr int kDirections = 32;
+  constexpr int kMaxRounds = 6;
   constexpr double kMinLimitPx = 0.5;
+  constexpr double kMinLimitShare = 0.015;  // of the radius: no disc is cut to perfection
   const double radius_px = std::sqrt(start.semi_major * start.semi_minor);
   workspace->rays.clear();
+  workspace->points.clear();
+  workspace->directions.clear();
   for (int i = 0; i < kDirections; ++i) {
     const double t = 2 * std::numbers::pi * i / kDirections;
     const Eigen::Vector2d outward = (start.semi_minor * std::cos(t) * start.major_axis() +
@@ -119,43 +139,78 @@ std::optional<DiscOutline> FitDiscOutline(const cv::Mat& image, const RayTable& 
     const std::optional<ColorEdge> edge = FindColorEdge(image, point, outward);
     if (!edge) continue;
     const double offset_px = edge->offset_px + CurvatureShift(edge->blur_px, radius_px);
-    const Eigen::Vector2f at = (point + offset_px * outward).cast<float>();
-    const Eigen::Vector3d ray = rays.Ray(at.x(), at.y()).cast<double>();
-    if (ray.squaredNorm() > 0) workspace->rays.push_back(ray);
+    const Eigen::Vector2d at = point + offset_px * outward;
+    const Eigen::Vector3d ray =
+        rays.Ray(static_cast<float>(at.x()), static_cast<float>(at.y())).cast<double>();
+    if (!(ray.squaredNorm() > 0)) continue;
+    workspace->rays.push_back(ray);
+    workspace->points.push_back(at);
+    workspace->directions.push_back(i);
   }
   std::optional<Cone> cone = FitCone(workspace->rays);
+  for (int round = 0; cone && round < kMaxRounds; ++round) {
+    MeasureDistances(*cone, focal_px, workspace);
+    const double limit_px = std::max(
+        {kMinLimitPx, kMinLimitShare * radius_px, 2.5 * MedianDistance(workspace)});
+    if (!DropOutliers(limit_px, workspace)) break;
+    cone = FitCone(workspace->rays);
+  }
   if (!cone) return std::nullopt;
   MeasureDistances(*cone, focal_px, workspace);
-  if (DropOutliers(std::max(kMinLimitPx, 3 * MedianDistance(workspace)), workspace)) {
-    cone = FitCone(workspace->rays);
-    if (!cone) return std::nullopt;
-    MeasureDistances(*cone, focal_px, workspace);
-  }
   double squares = 0;
   for (const double distance : workspace->distances) squares += distance * distance;
   const auto count = static_cast<double>(workspace->rays.size());
-  return DiscOutline{*cone, std::sqrt(squares / count), count / kDirections};
+  const double gap = LargestGap(workspace->directions, kDirections);
+  return DiscOutline{*cone, std::sqrt(squares / count), gap / kDirections,
+                     count / (kDirections - gap)};
 }
 
-std::optional<Ellipse> EllipseOfCutOff(const Segment& segment, const cv::Size& image_size,
-                                       DiscOutlineWorkspace* workspace) {
-  CollectBorderPixels(segment, image_size, &workspace->points);
-  // A plane of pixels around the segment, as if a camera saw it: FitCone fits in such a plane.
-  const Eigen::Vector2d middle(0.5 * (segment.min_u + segment.max_u),
-                               0.5 * (segment.min_v + segment.max_v));
-  const double scale = std::max(segment.width(), segment.height());
-  workspace->rays.clear();
-  for (const Eigen::Vector2d& point : workspace->points) {
-    const Eigen::Vector2d x = (point - middle) / scale;
-    workspace->rays.push_back(Eigen::Vector3d(x.x(), x.y(), 1).normalized());
+}  // namespace
+
+std::optional<DiscOutline> FitDiscOutline(const cv::Mat& image, const RayTable& rays,
+                                          double focal_px, const Ellipse& start,
+                                          DiscOutlineWorkspace* workspace) {
+  std::optional<DiscOutline> outline = FitOnce(image, rays, focal_px, start, workspace);
+  // Where something hides a part of the disc, the start was not right: once more from the fit.
+  if (!outline || outline->gap == 0) return outline;
+  const std::optional<Ellipse> better = EllipseThrough(workspace->points);
+  if (!better) return outline;
+  const std::optional<DiscOutline> again = FitOnce(image, rays, focal_px, *better, workspace);
+  return again ? again : outline;
+}
+
+std::optional<Ellipse> EllipseThrough(std::span<const Eigen::Vector2d> points) {
+  // A plane of pixels, as if a camera saw it: FitCone fits in such a plane.
+  constexpr std::size_t kMaxPoints = 512;
+  if (points.empty()) return std::nullopt;
+  Eigen::Vector2d min = points.front();
+  Eigen::Vector2d max = points.front();
+  for (const Eigen::Vector2d& point : points) {
+    min = min.cwiseMin(point);
+    max = max.cwiseMax(point);
   }
-  const std::optional<Cone> cone = FitCone(workspace->rays);
+  const Eigen::Vector2d middle = 0.5 * (min + max);
+  const double scale = std::max(1.0, (max - min).maxCoeff());
+  std::array<Eigen::Vector3d, kMaxPoints> rays;
+  std::size_t count = 0;
+  const std::size_t step = (points.size() + kMaxPoints - 1) / kMaxPoints;
+  for (std::size_t i = 0; i < points.size(); i += step) {
+    const Eigen::Vector2d x = (points[i] - middle) / scale;
+    rays[count++] = Eigen::Vector3d(x.x(), x.y(), 1).normalized();
+  }
+  const std::optional<Cone> cone = FitCone(std::span(rays).first(count));
   if (!cone) return std::nullopt;
   std::optional<Ellipse> ellipse = CutWithPlane(cone->matrix);
   if (!ellipse) return std::nullopt;
   ellipse->center = middle + scale * ellipse->center;
   ellipse->Scale(scale);
   return ellipse;
+}
+
+std::optional<Ellipse> EllipseOfCutOff(const Segment& segment, const cv::Size& image_size,
+                                       DiscOutlineWorkspace* workspace) {
+  CollectBorderPixels(segment, image_size, &workspace->points);
+  return EllipseThrough(workspace->points);
 }
 
 }  // namespace kestrel

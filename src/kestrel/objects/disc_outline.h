@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -18,12 +19,14 @@ namespace kestrel {
 struct DiscOutline {
   Cone cone;
   double residual_px = 0;  // root of the mean square distance of the edge points that fit
-  double outline_share = 0;  // of the directions around the disc, those whose edge point fits
+  double gap = 0;  // longest part of the outline, as a share of it, where nothing fits: is hidden
+  double fit_share = 0;  // of the directions outside of the gap, those whose edge point fits
 };
 
 // Memory of the fits.
 struct DiscOutlineWorkspace {
-  std::vector<Eigen::Vector2d> points;
+  std::vector<Eigen::Vector2d> points;  // of the last outline, those that fit
+  std::vector<int> directions;
   std::vector<Eigen::Vector3d> rays;
   std::vector<double> distances;
   std::vector<double> sorted;
@@ -35,6 +38,9 @@ struct DiscOutlineWorkspace {
 std::optional<DiscOutline> FitDiscOutline(const cv::Mat& image, const RayTable& rays,
                                           double focal_px, const Ellipse& start,
                                           DiscOutlineWorkspace* workspace);
+
+// The ellipse nearest to the points (px); nothing when they do not determine one.
+std::optional<Ellipse> EllipseThrough(std::span<const Eigen::Vector2d> points);
 
 // The ellipse through the border pixels of a segment that are not at the border of the image: where
 // to start from when the image cuts the disc off. Nothing when they lie on no ellipse.

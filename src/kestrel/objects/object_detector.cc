@@ -65,7 +65,8 @@ std::vector<std::string> ObjectDetectorOptions::Validate() const {
   require(outline_tolerance >= 0, "outline_tolerance must not be negative");
   require(outline_tolerance_px > 0, "outline_tolerance_px must be positive");
   require(min_outline_share > 0 && min_outline_share <= 1, "min_outline_share must be in 0 to 1");
-  require(min_cut_off_share > 0 && min_cut_off_share <= 1, "min_cut_off_share must be in 0 to 1");
+  require(max_gap >= 0 && max_gap < 1, "max_gap must be in 0 to 1");
+  require(max_cut_off_gap >= 0 && max_cut_off_gap < 1, "max_cut_off_gap must be in 0 to 1");
   require(ground_tolerance > 0, "ground_tolerance must be positive");
   require(ground_tolerance_m >= 0, "ground_tolerance_m must not be negative");
   require(center_sigma_px > 0, "center_sigma_px must be positive");

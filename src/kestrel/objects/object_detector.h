@@ -33,9 +33,12 @@ struct ObjectDetectorOptions {
   // what blur and noise add.
   double outline_tolerance = 0.03;
   double outline_tolerance_px = 0.22;
-  // Share of the directions around a disc in which the edge must fit: whole, and cut off.
-  double min_outline_share = 0.75;
-  double min_cut_off_share = 0.4;
+  // Longest part of a disc's outline that something may hide, of a whole disc and of one that the
+  // image's border cuts off, and the share of the rest that must fit. A polygon does not fit at its
+  // corners, which are all around.
+  double max_gap = 0.35;
+  double max_cut_off_gap = 0.6;
+  double min_outline_share = 0.85;
   // With known attitude and height: how far an object's distance, and the axes of its image, may be
   // from those of an object on the ground. Shares, and metres that are always forgiven.
   double ground_tolerance = 0.3;
@@ -55,10 +58,11 @@ struct ObjectDetectorOptions {
     visitor("outline_tolerance", self.outline_tolerance, "1",
             "edge of a disc: distance from an ellipse, share of the shorter semi-axis");
     visitor("outline_tolerance_px", self.outline_tolerance_px, "px", "added to that");
-    visitor("min_outline_share", self.min_outline_share, "1",
-            "share of a disc's outline that must fit");
-    visitor("min_cut_off_share", self.min_cut_off_share, "1",
+    visitor("max_gap", self.max_gap, "1", "share of a disc's outline that may be hidden");
+    visitor("max_cut_off_gap", self.max_cut_off_gap, "1",
             "the same where the image's border cuts it off");
+    visitor("min_outline_share", self.min_outline_share, "1",
+            "share of the rest of its outline that must fit");
     visitor("ground_tolerance", self.ground_tolerance, "1",
             "how far size and distance may be from those of an object on the ground, share");
     visitor("ground_tolerance_m", self.ground_tolerance_m, "m", "the same, always forgiven");

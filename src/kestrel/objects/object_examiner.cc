@@ -119,9 +119,8 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
   if (!outline) return false;
   const double radius_px =
       detector_.focal_px_ * std::tan(outline->cone.HalfAngles().minCoeff());
-  const double min_share =
-      segment.touches_border ? options.min_cut_off_share : options.min_outline_share;
-  if (outline->outline_share < min_share) return false;
+  const double max_gap = segment.touches_border ? options.max_cut_off_gap : options.max_gap;
+  if (outline->gap > max_gap || outline->fit_share < options.min_outline_share) return false;
   if (outline->residual_px > options.outline_tolerance * radius_px + options.outline_tolerance_px) {
     return false;
   }
@@ -129,7 +128,7 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
   const double radius_m = object.size_m / 2;
   const Eigen::Vector3d row_direction =
       RayAt(start.center + Eigen::Vector2d(1, 0)) - RayAt(start.center - Eigen::Vector2d(1, 0));
-  const Eigen::Vector3d position =
+  Eigen::Vector3d position =
       LocateDisc(outline->cone, radius_m, row_direction, hint_.up_in_camera);
   const double distance = position.norm();
   if (!std::isfinite(distance) || !(distance > 0)) return false;
@@ -144,7 +143,13 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
     }
   }
   *reached = ObjectStage::kPosition;
-  SetCenter(position, radius_px, outline->outline_share, detection);
+  if (!hint_.up_in_camera) {
+    // Which way the disc is tilted is not known: its centre is taken for that of the ellipse.
+    if (const auto ellipse = EllipseThrough(workspace_->outline.points)) {
+      position = distance * RayAt(ellipse->center);
+    }
+  }
+  SetCenter(position, radius_px, 1 - outline->gap, detection);
   return true;
 }
 
