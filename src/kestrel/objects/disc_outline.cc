@@ -14,11 +14,11 @@
 namespace kestrel {
 namespace {
 
-// Angle between a ray and the cone, to first order (Sampson's distance), rad.
+// Angle between a ray and the cone, to first order (Sampson's distance), rad; negative inside.
 double DistanceToCone(const Cone& cone, const Eigen::Vector3d& ray) {
   const Eigen::Vector3d gradient = 2 * cone.matrix * ray;
   const double slope = (gradient - gradient.dot(ray) * ray).norm();
-  return std::abs(ray.dot(cone.matrix * ray)) / std::max(slope, 1e-12);
+  return ray.dot(cone.matrix * ray) / std::max(slope, 1e-12);
 }
 
 void MeasureDistances(const Cone& cone, double focal_px, DiscOutlineWorkspace* workspace) {
@@ -30,19 +30,23 @@ void MeasureDistances(const Cone& cone, double focal_px, DiscOutlineWorkspace* w
 
 double MedianDistance(DiscOutlineWorkspace* workspace) {
   auto& sorted = workspace->sorted;
-  sorted.assign(workspace->distances.begin(), workspace->distances.end());
+  sorted.clear();
+  for (const double distance : workspace->distances) sorted.push_back(std::abs(distance));
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
   return *middle;
 }
 
-// Takes out the rays that are further than 'limit' from the cone; true when there were any.
+// Takes out the rays that are further than the limit from the cone; true when there were any. What
+// hides a part of a disc leaves an edge inside of its outline, which also draws the fit inwards:
+// what is outside is forgiven more.
 bool DropOutliers(double limit_px, DiscOutlineWorkspace* workspace) {
   auto& rays = workspace->rays;
   auto& points = workspace->points;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (workspace->distances[i] > limit_px) continue;
+    const double distance = workspace->distances[i];
+    if (distance < -limit_px || distance > 3 * limit_px) continue;
     rays[kept] = rays[i];
     workspace->directions[kept] = workspace->directions[i];
     points[kept++] = points[i];

@@ -31,14 +31,14 @@ struct ObjectDetectorOptions {
   double max_circularity_error = 0.07;
   // How far the edge points of a disc may lie from their cone: share of the shorter semi-axis, and
   // what blur and noise add.
-  double outline_tolerance = 0.03;
-  double outline_tolerance_px = 0.22;
+  double outline_tolerance = 0.02;
+  double outline_tolerance_px = 0.25;
   // Longest part of a disc's outline that something may hide, of a whole disc and of one that the
   // image's border cuts off, and the share of the rest that must fit. A polygon does not fit at its
   // corners, which are all around.
   double max_gap = 0.35;
   double max_cut_off_gap = 0.6;
-  double min_outline_share = 0.85;
+  double min_outline_share = 0.7;
   // With known attitude and height: how far an object's distance, and the axes of its image, may be
   // from those of an object on the ground. Shares, and metres that are always forgiven.
   double ground_tolerance = 0.3;

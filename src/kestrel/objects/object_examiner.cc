@@ -227,9 +227,7 @@ bool ObjectExaminer::TestMerged(const Segment& segment, const SegmentShape& shap
   constexpr double kMaxCircularityError = 0.6;
   constexpr double kMinCount = 1.2;
   constexpr double kMaxCount = 8;
-  if (segment.touches_border) return false;
-  const double error = std::abs(shape.circularity - 1);
-  if (error <= detector_.options_.max_circularity_error || error > kMaxCircularityError) {
+  if (segment.touches_border || std::abs(shape.circularity - 1) > kMaxCircularityError) {
     return false;
   }
   const auto& classes = detector_.model_.classes;
