@@ -4,13 +4,14 @@ SHELL := bash
 BIN := build/release
 DATA ?=
 CAMERA ?=
+SCENARIOS ?=
 PREFIX ?= /usr/local
 FUZZ_SECONDS ?= 60
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 
 .PHONY: demo test bench accuracy format check asan fuzz install build deps
 
-demo: build  ## a rendered landing, or with DATA=<folder> [CAMERA=<file>] your own images
+demo: build  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
 	scripts/demo $(BIN) "$(DATA)" "$(CAMERA)"
 
 test: build
@@ -19,7 +20,8 @@ test: build
 bench: build  ## speed
 	@for program in $(BIN)/bench/*_benchmark; do echo "== $$program"; $$program || exit; done
 
-accuracy: build  ## errors against truth
+accuracy: build  ## errors against truth; simulated landings (SCENARIOS) to docs/accuracy.md
+	scripts/accuracy $(BIN) $(SCENARIOS)
 	@for program in $(BIN)/bench/*accuracy; do echo "== $$program"; $$program || exit; done
 
 format:

@@ -35,12 +35,14 @@ struct Assigner {
   bool operator()(bool* value) const { return Assign(ParseBool(text), value); }
   bool operator()(int* value) const { return Assign(ParseNumber<int>(text), value); }
   bool operator()(double* value) const { return Assign(ParseNumber<double>(text), value); }
+  bool operator()(std::string* value) const { return Assign(std::optional(text), value); }
 };
 
 struct TypeName {
   const char* operator()(bool*) const { return "true or false"; }
   const char* operator()(int*) const { return "a whole number"; }
   const char* operator()(double*) const { return "a finite number"; }
+  const char* operator()(std::string*) const { return "a word"; }
 };
 
 std::string Expected(const OptionField& field) {
@@ -148,6 +150,7 @@ struct ValuePrinter {
   std::string operator()(const bool* value) const { return *value ? "true" : "false"; }
   std::string operator()(const int* value) const { return fmt::to_string(*value); }
   std::string operator()(const double* value) const { return fmt::to_string(*value); }
+  std::string operator()(const std::string* value) const { return *value; }
 };
 
 std::vector<std::string> SplitKey(const std::string& key) {

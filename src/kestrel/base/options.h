@@ -25,7 +25,7 @@ namespace kestrel {
 // One field of an options struct; 'value' points into the struct.
 struct OptionField {
   std::string key;
-  std::variant<bool*, int*, double*> value;
+  std::variant<bool*, int*, double*, std::string*> value;
   std::string_view unit;  // "1" for a pure number, empty where a unit makes no sense
   std::string_view meaning;
 };

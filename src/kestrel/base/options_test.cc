@@ -24,6 +24,7 @@ struct LensOptions {
 
 struct DeviceOptions {
   bool verbose = false;
+  std::string color = "red";
   LensOptions lens;
   LensOptions spare;
   double range_m = 1.0 / 3.0;
@@ -31,6 +32,7 @@ struct DeviceOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("verbose", self.verbose, "", "say more");
+    visitor("color", self.color, "", "red or blue");
     visitor.Group("lens", self.lens);
     visitor.Group("spare", self.spare);
     visitor("range_m", self.range_m, "m", "how far to look");

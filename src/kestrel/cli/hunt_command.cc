@@ -35,28 +35,24 @@ class HuntSink {
   HuntSink(const SourceArguments& arguments, double rate_hz) {
     if (!arguments.output.empty()) {
       folder_.emplace(arguments.output, arguments.force);
-      file_ = folder_->OpenText("object_detections.csv");
+      file_ = folder_->OpenText(kDetections);
     }
     if (arguments.annotate == "images") annotated_ = MakeImageWriter(*folder_);
     if (arguments.annotate == "video") annotated_ = MakeVideoWriter(*folder_, rate_hz);
-    WriteText(ObjectCsvHeader());
+    WriteAtOnce(ObjectCsvHeader(), kDetections, &csv());
   }
 
   void Write(const Frame& frame, const HuntObservation& observation,
              const ObjectDetector& detector) {
-    WriteText(ObjectCsvRows(frame.name, observation, detector.model()));
+    WriteAtOnce(ObjectCsvRows(frame.name, observation, detector.model()), kDetections, &csv());
     if (!annotated_) return;
     annotated_->Write(frame.name, DrawObjectOverlay(frame.image, detector.model(), observation));
   }
 
  private:
-  // At once, for whoever reads along.
-  void WriteText(const std::string& text) {
-    std::ostream& csv = file_.is_open() ? file_ : std::cout;
-    if (!(csv << text << std::flush)) {
-      throw InputError("object_detections.csv: cannot be written, is the disk full?");
-    }
-  }
+  static constexpr char kDetections[] = "object_detections.csv";
+
+  std::ostream& csv() { return file_.is_open() ? file_ : std::cout; }
 
   std::optional<OutputFolder> folder_;
   std::ofstream file_;

@@ -3,9 +3,11 @@
 
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -19,42 +21,82 @@
 #include "kestrel/recording/landing_overlay.h"
 #include "kestrel/recording/open_source.h"
 #include "kestrel/recording/output_folder.h"
+#include "kestrel/recording/track_csv.h"
 
 namespace kestrel {
 namespace {
 
+struct LandArguments {
+  SourceArguments source;
+  std::vector<double> predict_s;
+};
+
+// The files of the track, for a flight in which the target can be followed.
+class TrackSink {
+ public:
+  TrackSink(const OutputFolder& folder, const std::vector<double>& horizons_s)
+      : track_(folder.OpenText(kTrack)) {
+    WriteAtOnce(TrackCsvHeader(), kTrack, &track_);
+    if (horizons_s.empty()) return;
+    for (const double horizon_s : horizons_s) horizons_.push_back(DurationFromSeconds(horizon_s));
+    prediction_ = folder.OpenText(kPrediction);
+    WriteAtOnce(PredictionCsvHeader(), kPrediction, &prediction_);
+  }
+
+  void Write(const LandingObservation& observation, const TargetTracker& tracker) {
+    has_begun_ = has_begun_ || observation.fate;
+    if (!has_begun_) return;
+    WriteAtOnce(TrackCsvRow(observation), kTrack, &track_);
+    if (observation.track_state == TrackState::kSearching) return;
+    for (const Duration horizon : horizons_) {
+      const auto prediction = tracker.Predict(observation.time + horizon);
+      if (!prediction) continue;
+      WriteAtOnce(PredictionCsvRow(observation.time, *prediction), kPrediction, &prediction_);
+    }
+  }
+
+ private:
+  static constexpr char kTrack[] = "landing_track.csv";
+  static constexpr char kPrediction[] = "landing_prediction.csv";
+
+  std::ofstream track_, prediction_;
+  std::vector<Duration> horizons_;
+  bool has_begun_ = false;
+};
+
 // Where the results go: files below --output, or the CSV to stdout.
 class LandingSink {
  public:
-  LandingSink(const SourceArguments& arguments, double rate_hz) {
-    if (!arguments.output.empty()) {
-      folder_.emplace(arguments.output, arguments.force);
-      file_ = folder_->OpenText("landing_detections.csv");
+  LandingSink(const LandArguments& arguments, const FrameSource& source, bool has_track) {
+    const SourceArguments& shared = arguments.source;
+    if (!shared.output.empty()) {
+      folder_.emplace(shared.output, shared.force);
+      file_ = folder_->OpenText(kDetections);
+      if (has_track) track_.emplace(*folder_, arguments.predict_s);
     }
-    if (arguments.annotate == "images") annotated_ = MakeImageWriter(*folder_);
-    if (arguments.annotate == "video") annotated_ = MakeVideoWriter(*folder_, rate_hz);
-    WriteLine(LandingCsvHeader());
+    if (shared.annotate == "images") annotated_ = MakeImageWriter(*folder_);
+    if (shared.annotate == "video") annotated_ = MakeVideoWriter(*folder_, source.rate_hz());
+    WriteAtOnce(LandingCsvHeader(), kDetections, &csv());
   }
 
   void Write(const Frame& frame, const LandingObservation& observation,
-             const LandingPatternDetector& detector) {
-    WriteLine(LandingCsvRow(frame.name, observation));
+             const LandingPipeline& pipeline) {
+    WriteAtOnce(LandingCsvRow(frame.name, observation), kDetections, &csv());
+    if (track_) track_->Write(observation, pipeline.tracker());
     if (!annotated_) return;
+    const LandingPatternDetector& detector = pipeline.detector();
     annotated_->Write(frame.name, DrawLandingOverlay(frame.image, detector.camera(),
                                                      detector.options().pattern, observation));
   }
 
  private:
-  // At once, for whoever reads along.
-  void WriteLine(const std::string& line) {
-    std::ostream& csv = file_.is_open() ? file_ : std::cout;
-    if (!(csv << line << std::flush)) {
-      throw InputError("landing_detections.csv: cannot be written, is the disk full?");
-    }
-  }
+  static constexpr char kDetections[] = "landing_detections.csv";
+
+  std::ostream& csv() { return file_.is_open() ? file_ : std::cout; }
 
   std::optional<OutputFolder> folder_;
   std::ofstream file_;
+  std::optional<TrackSink> track_;
   std::unique_ptr<AnnotatedWriter> annotated_;
 };
 
@@ -62,16 +104,27 @@ class Summary {
  public:
   void Add(const LandingObservation& observation) {
     times_.Add(observation.detect_time);
+    ++poses_[observation.pose];
     found_ += observation.report.detection.has_value();
   }
   std::size_t frames() const { return times_.frames(); }
 
   void Print() const {
     fmt::print(stderr, "{} frames, pattern found in {}{}\n", frames(), found_, times_.Summary());
+    PrintMissingPoses();
   }
 
  private:
+  // Only where there are poses for some of the frames; a source that has none is nothing unusual.
+  void PrintMissingPoses() const {
+    for (const auto& [pose, count] : poses_) {
+      if (pose == PoseLookup::kFound || pose == PoseLookup::kEmpty) continue;
+      fmt::print(stderr, "{} frames without a pose of the UAV: {}\n", count, ToString(pose));
+    }
+  }
+
   DetectTimes times_;
+  std::map<PoseLookup, std::size_t> poses_;
   std::size_t found_ = 0;
 };
 
@@ -85,20 +138,22 @@ void ProcessFrames(FrameSource* source, const CameraCalibration& calibration,
     RequireSize(frame, calibration.intrinsics);
     poses.FeedUntil(frame.time + clock_offset, pipeline);
     const LandingObservation observation = pipeline->Process(frame.image, frame.time);
-    sink->Write(frame, observation, pipeline->detector());
+    sink->Write(frame, observation, *pipeline);
     summary->Add(observation);
     progress.Show(summary->frames());
   }
 }
 
-void RunLand(const SourceArguments& arguments) {
-  LandingPipelineOptions options = arguments.options.Read().landing;
-  if (arguments.still) options.still = true;
-  const std::unique_ptr<FrameSource> source = OpenSource(arguments.sources);
-  const CameraCalibration calibration = arguments.FindCalibration(*source);
+void RunLand(const LandArguments& arguments) {
+  LandingPipelineOptions options = arguments.source.options.Read().landing;
+  if (arguments.source.still) options.still = true;
+  const std::unique_ptr<FrameSource> source = OpenSource(arguments.source.sources);
+  const CameraCalibration calibration = arguments.source.FindCalibration(*source);
+  const bool has_poses = !source->poses().empty();
   LandingPipeline pipeline(calibration, options);
-  pipeline.SetAltitude(arguments.altitude_m);
-  LandingSink sink(arguments, source->rate_hz());
+  pipeline.SetAltitude(arguments.source.altitude_m);
+  const bool has_track = has_poses && calibration.body_from_camera && !options.still;
+  LandingSink sink(arguments, *source, has_track);
   Summary summary;
   CatchInterrupts();
   try {
@@ -114,8 +169,15 @@ void RunLand(const SourceArguments& arguments) {
 
 void AddLandCommand(CLI::App* app) {
   CLI::App* command = app->add_subcommand("land", "Run the landing pipeline over a source");
-  const auto arguments = std::make_shared<SourceArguments>();
-  arguments->AddTo(command);
+  const auto arguments = std::make_shared<LandArguments>();
+  arguments->source.AddTo(command);
+  command
+      ->add_option("--predict", arguments->predict_s,
+                   "Also write where the target will be after these times (s), as 0.5,1.0")
+      ->type_name("S,...")
+      ->delimiter(',')
+      ->needs("--output")
+      ->check(InRange(0, 60, "seconds, above 0 and below 60"));
   command->callback([arguments] { RunLand(*arguments); });
 }
 

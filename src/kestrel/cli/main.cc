@@ -11,6 +11,7 @@
 #include "kestrel/cli/help_command.h"
 #include "kestrel/cli/hunt_command.h"
 #include "kestrel/cli/land_command.h"
+#include "kestrel/cli/simulate_command.h"
 
 namespace {
 
@@ -32,6 +33,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   kestrel::AddLandCommand(&app);
   kestrel::AddHuntCommand(&app);
+  kestrel::AddSimulateCommand(&app);
   kestrel::AddEvaluateCommand(&app);
   kestrel::AddConfigCommand(&app);
   kestrel::AddHelpCommand(&app);

@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kMaxClockOffset = 1e6;
 
-// CLI11 takes "nan" for a number.
+}  // namespace
+
 CLI::Validator InRange(double min, double max, const std::string& words) {
   return CLI::Validator(
       [=](const std::string& text) {
@@ -24,8 +25,6 @@ CLI::Validator InRange(double min, double max, const std::string& words) {
       },
       "");
 }
-
-}  // namespace
 
 void SourceArguments::AddTo(CLI::App* command) {
   command

@@ -36,6 +36,9 @@ struct SourceArguments {
   CameraCalibration FindCalibration(const FrameSource& source) const;
 };
 
+// Accepts numbers above 'min' and below 'max', which 'words' names; CLI11 takes "nan" for one.
+CLI::Validator InRange(double min, double max, const std::string& words);
+
 // Throws InputError when the frame is not of the calibration's size.
 void RequireSize(const Frame& frame, const CameraIntrinsics& intrinsics);
 

@@ -88,7 +88,7 @@ TEST(CompareLanding, RowOfNoImageIsRefused) {
 
 TEST(CompareLanding, MotionDuringTheExposure) {
   const TestFlight files(5);
-  files.WriteTruth("scene.yaml", "camera: {exposure_s: 0.02}\n");
+  files.WriteTruth("scene.yaml", "options: {shutter: {exposure_s: 0.02}}\n");
   const FlightTruth flight(files.recording());
   TruePattern pattern = PatternBelow(2);
   pattern.velocity_in_world = {5, 0, 0};  // 10 cm at 4 m

@@ -91,10 +91,11 @@ SceneTruth ParseSceneTruth(const std::string& text, const std::string& file) {
   const Section root(node, file + ": ");
   SceneTruth scene;
   scene.condition = root.Text("condition").value_or(scene.condition);
-  scene.ring_diameter_m =
-      root.Child("pattern").Number("ring_outer_diameter_m").value_or(scene.ring_diameter_m);
   scene.mount_error = MountError(root.Child("mount_error"));
-  scene.exposure_s = root.Child("camera").Number("exposure_s");
+  const Section options = root.Child("options");
+  scene.ring_diameter_m =
+      options.Child("pattern").Number("outer_diameter_m").value_or(scene.ring_diameter_m);
+  scene.exposure_s = options.Child("shutter").Number("exposure_s");
   if (root.Child("frames").node()) ReadFrames(root.Child("frames"), file, &scene);
   return scene;
 }

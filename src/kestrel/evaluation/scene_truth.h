@@ -15,10 +15,10 @@ namespace kestrel {
 // there leave the defaults; keys that are not known here are left alone.
 struct SceneTruth {
   std::string condition = "all";  // light and weather
-  double ring_diameter_m = 1;     // pattern.ring_outer_diameter_m
+  double ring_diameter_m = 1;     // options.pattern.outer_diameter_m
   // R_BS_true = mount_error * R_BS_nominal: mount_error.yaw_deg, pitch_deg, roll_deg.
   Eigen::Quaterniond mount_error = Eigen::Quaterniond::Identity();
-  std::optional<double> exposure_s;
+  std::optional<double> exposure_s;  // options.shutter.exposure_s
 
   // frames.<timestamp>.condition and .exposure_s, where an image has its own.
   std::map<Time, std::string> frame_conditions;

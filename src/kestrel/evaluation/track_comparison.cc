@@ -45,7 +45,7 @@ std::vector<TrackErrors> CompareTrack(const std::vector<TruePattern>& patterns,
   std::vector<TrackErrors> errors;
   for (const TrackRow& row : rows) {
     const std::optional<TrueMotion> truth = TrueMotionAt(patterns, row.time);
-    if (!truth) continue;
+    if (!truth || row.state == "searching") continue;
     TrackErrors e;
     e.time = row.time;
     e.altitude_m = AltitudeAt(patterns, row.time);

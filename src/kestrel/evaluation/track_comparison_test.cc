@@ -28,7 +28,8 @@ std::vector<TruePattern> Straight() {
 TEST(CompareTrack, MeasuresPositionAndVelocity) {
   const TrackRow row = {At(0.55), "tracking", {1.1, 0.3, 0.4}, {2, 0, 1}, 0.1, 0.5};
   const TrackRow later = {At(3), "lost", {0, 0, 0}, {0, 0, 0}, 1, 1};
-  const auto errors = CompareTrack(Straight(), {row, later});
+  const TrackRow searching = {At(0.5), "searching", {0, 0, 0}, {0, 0, 0}, 1, 1};
+  const auto errors = CompareTrack(Straight(), {searching, row, later});
   ASSERT_EQ(errors.size(), 1u);  // the truth ends after a second
   EXPECT_NEAR(errors[0].position.norm(), 0.5, 1e-9);
   EXPECT_NEAR(errors[0].velocity.norm(), 1, 1e-9);

@@ -45,6 +45,9 @@ class BitImage {
   std::vector<std::uint64_t> words_;
 };
 
+// Sets in 'inverse' the pixels that are clear in 'image', and clears the others.
+void InvertBits(const BitImage& image, BitImage* inverse);
+
 // Morphological closing with the cross of five pixels: fills gaps and notches of one or two pixels.
 // What lies outside of the image is clear, and stays so. 'scratch' is overwritten.
 void CloseBits(BitImage* image, BitImage* scratch);

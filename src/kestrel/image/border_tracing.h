@@ -59,6 +59,9 @@ class BorderTracer {
   // How many points there is room for.
   std::size_t capacity() const { return points_.capacity(); }
 
+  // Size of the image that was traced last.
+  cv::Size image_size() const { return {traced_.width(), traced_.height()}; }
+
   const std::vector<Border>& borders() const { return borders_; }
   const GridPoint* begin(const Border& border) const { return points_.data() + border.first; }
 

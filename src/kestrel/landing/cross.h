@@ -50,6 +50,13 @@ std::optional<Cross> FindCrossByQuadrants(const RingInside& inside);
 // arms that it shows are asked for, at least one.
 std::optional<Cross> FindCrossByThinning(const RingInside& inside);
 
+// Where a cross is cut off by the image border or crossed by a shadow: the direction, modulo a
+// right angle, along which the image is darkest beside what lies next to it, by the half arms that
+// it shows. Nothing when no direction is darker by 'min_contrast' gray values. A proposal: it does
+// not say that nothing else is in the ring.
+std::optional<Cross> FindCrossByProfile(const cv::Mat& image, const PatternView& view,
+                                        const LandingPattern& pattern, double min_contrast);
+
 // Memory of FindCrossByLines, which does not allocate once it is reserved.
 struct CrossLinesWorkspace {
   BinaryImage binary;

@@ -20,20 +20,28 @@ constexpr double kMaxEdgeRmsPx = 1.0;
 // Axes (diameters) below which a stroke is hardly wider than the blur, everywhere or somewhere.
 constexpr double kSmallRingPx = 30;
 constexpr double kThinRingPx = 13;
-constexpr double kMaxBoardRingPx = 50;  // major axis of a ring that the board shows
-constexpr double kMinMajorPx = 11;      // of the smallest ring
+constexpr double kMaxBoardRingPx = 50;   // major axis of a ring that the board shows
+constexpr double kInspectedRingPx = 64;  // major axis below which it is looked for other signs
+constexpr double kMinMajorPx = 9;        // of the smallest ring
 // Differences of the residuals inside of a small ring, on it and around it, share of the contrast.
-constexpr double kMaxMoreInside = 0.09;
-constexpr double kMaxMoreOnRing = 0.07;
-constexpr double kMaxMoreOutside = 0.05;
-constexpr double kSmallMargin = 0.13;           // of the quality of a small pattern
-constexpr double kMinCorrelation = 0.35;        // of a start of a small pattern
-constexpr double kSureCorrelation = 0.6;        // of a start that quadrants give
-constexpr double kMinFittedCorrelation = 0.78;  // of a small pattern
+constexpr double kMaxMoreInside = 0.085;
+constexpr double kMaxMoreOnRing = 0.12;
+constexpr double kMaxMoreOutside = 0.15;
+// Darkness of what only other signs have, share of the contrast.
+constexpr double kMinCrossCorrelation = 0.7;
+constexpr double kMaxOtherSpokes = 0.55;
+constexpr double kMaxFrameCorners = 0.14;
+constexpr double kMaxBoardDarkness = 0.35;
+constexpr double kSmallMargin = 0.08;            // of the quality of a small pattern
+constexpr double kMinCorrelation = 0.35;         // of a start of a small pattern
+constexpr double kSureCorrelation = 0.6;         // of a start that quadrants give
+constexpr double kMinCorrelationOfEither = 0.7;  // of the poses of a small pattern
+constexpr double kMinFittedCorrelation = 0.82;   // of a small pattern
 // Candidates of a pass that are looked at, those of the highest contrast: a bound of the time that
 // a frame full of texture costs.
 constexpr std::size_t kMaxCandidates = 6;
 constexpr std::size_t kMaxCollected = 512;
+constexpr std::size_t kMaxTested = 64;  // small rings that are remembered
 constexpr std::array<double, 1> kOneScale{1.0};
 // Edges and contrasts of the ring that are where a circle has them: a frame of another shape has
 // some of them.
@@ -79,6 +87,12 @@ bool AreMirrorPoses(const LandingDetection& a, const LandingDetection& b) {
              kOtherNormal;
 }
 
+bool IsOtherSign(const SmallPatternFitter::OtherSigns& others) {
+  return others.spokes > kMaxOtherSpokes || others.frame_corners > kMaxFrameCorners ||
+         others.cross_correlation < kMinCrossCorrelation ||
+         others.board_darkness > kMaxBoardDarkness;
+}
+
 // What is asked of the quality of a small pattern beyond that of a near one.
 double SmallMargin(const Eigen::Vector2d& diameters_px) {
   return kSmallMargin * std::clamp((36 - std::sqrt(diameters_px.prod())) / 16, 0.0, 1.0);
@@ -93,6 +107,8 @@ const std::array<LandingSearch::Pass, LandingWorkspace::Buffers::kPasses> Landin
         {2, 4, 32, 400},
         {1, 3, 16, 200},
         {0, 1, 6, 120, true},
+        {0, 2, 6, 60, false, false},
+        {0, 3, 6, 60, false, true},
     }};
 
 LandingSearch::LandingSearch(const LandingModels& models, const cv::Mat& image,
@@ -130,10 +146,12 @@ void LandingSearch::MakeRoom() {
   buffers_.cross_lines.Reserve();
   buffers_.partial.Reserve(most_points);
   buffers_.small.Reserve();
+  buffers_.tested.reserve(kMaxTested);
 }
 
 LandingReport LandingSearch::Run() {
   MakeRoom();
+  buffers_.tested.clear();
   report_.reason = "no outline that could be a ring";
   if (!ChooseRegion()) {
     report_.reason = "the hint points out of the image";
@@ -238,6 +256,7 @@ void LandingSearch::Binarize(const Pass& pass) {
   const int contrast = std::clamp(buffers_.threshold.ContrastQuantile(0.7), 12, 32);
   buffers_.threshold.Binarize(image, cv::Rect(0, 0, image.cols, image.rows), contrast,
                               &buffers_.binary);
+  if (pass.not_bright) InvertBits(buffers_.binary.bright, &buffers_.binary.dark);
   if (pass.closing) CloseBits(&buffers_.binary.dark, &buffers_.scratch);
 }
 
@@ -448,6 +467,11 @@ void LandingSearch::TestRing(const RingFit& ring, const Eigen::Vector2d& diamete
     for (int i = 0; i < 2; ++i) {
       if (allowed[i]) hypotheses[i] = TestPose(ring.poses[i], diameters_px.x());
     }
+    const bool none = !hypotheses[0] && !hypotheses[1];
+    for (int i = 0; i < 2 && none; ++i) {
+      if (!allowed[i]) continue;
+      hypotheses[i] = TestRefinedPose(ring.poses[i], diameters_px.x(), reach_px);
+    }
   }
   if (hypotheses[0] && hypotheses[1]) {
     const double difference = hypotheses[0]->quality - hypotheses[1]->quality;
@@ -494,6 +518,30 @@ std::optional<LandingSearch::Hypothesis> LandingSearch::TestPose(const CirclePos
   return Compare(PatternPose(pose, cross->cross.arm_angle), cross->method, diameter_px);
 }
 
+// Where the ring is cut off or broken, what is known of it says little about its far side: the
+// edges of both of its circles bring it into place before its inside is looked at.
+std::optional<LandingSearch::Hypothesis> LandingSearch::TestRefinedPose(const CirclePose& pose,
+                                                                        double diameter_px,
+                                                                        double reach_px) {
+  constexpr int kIterations = 4;
+  const std::optional<RigidTransform> refined = models_.locator.LocateRing(
+      image_, PatternPose(pose, 0), 1.5 * reach_px, kMinRingContrast / 2, kIterations);
+  if (!refined) return std::nullopt;
+  const ImageRegion region{offset_, ViewLevel(diameter_px)};
+  const cv::Mat image = buffers_.pyramid.ImageAt(region.level);
+  const PatternView view(models_.camera, *refined, models_.matcher.extent_m(), region);
+  if (!view.valid() || models_.matcher.RingContrast(image, view) < kMinRingContrast) {
+    return std::nullopt;
+  }
+  const std::optional<Cross> cross =
+      FindCrossByProfile(image, view, models_.options.pattern, kMinRingContrast / 2);
+  if (!cross) return std::nullopt;
+  RigidTransform turned = *refined;
+  turned.rotation *=
+      Eigen::Quaterniond(Eigen::AngleAxisd(cross->arm_angle, Eigen::Vector3d::UnitZ()));
+  return Compare(turned, CrossMethod::kThinning, diameter_px);
+}
+
 std::optional<LandingSearch::Hypothesis> LandingSearch::Compare(const RigidTransform& pose,
                                                                 CrossMethod method,
                                                                 double diameter_px) {
@@ -522,15 +570,36 @@ std::optional<double> LandingSearch::ArmAngleByQuadrants(const CirclePose& pose)
   return cross->arm_angle;
 }
 
+// Whether nearly the same small ring was tested before, as another pass saw it; notes it if not.
+bool LandingSearch::WasTested(const RingFit& ring, const Eigen::Vector2d& diameters_px) {
+  constexpr double kSamePlace = 0.12;  // of its diameters
+  constexpr double kSameSize = 0.1;
+  SmallRingPlace place{Eigen::Vector2d::Zero(), diameters_px};
+  if (models_.camera.Project(ring.poses[0].center, &place.center) ==
+      ProjectionStatus::kOutsideModel) {
+    return true;
+  }
+  const auto same = [&](const SmallRingPlace& other) {
+    return (place.center - other.center).norm() < kSamePlace * diameters_px.y() &&
+           ((place.diameters - other.diameters).array().abs() < kSameSize * place.diameters.array())
+               .all();
+  };
+  std::vector<SmallRingPlace>& tested = buffers_.tested;
+  if (std::any_of(tested.begin(), tested.end(), same)) return true;
+  if (tested.size() < tested.capacity()) tested.push_back(place);
+  return false;
+}
+
 // Rings whose strokes are no wider than the blur: the print is fitted as a whole. The ring may be
 // smaller than it was seen by the given factors.
 void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
                                   std::span<const double> scales) {
-  if (diameters_px.x() < kMinMajorPx || diameters_px.y() < 0.8 * models_.options.min_ring_px) {
+  if (diameters_px.x() < kMinMajorPx || diameters_px.y() < 0.7 * models_.options.min_ring_px) {
     return;
   }
   StageTimer timer(&report_, LandingStage::kCross);
   Reach(LandingStage::kCross, "no cross inside of the ring");
+  if (WasTested(ring, diameters_px)) return;
   const std::array<bool, 2> allowed = LevelEnough(ring);
   for (int i = 0; i < 2; ++i) {
     if (!allowed[i]) continue;
@@ -546,8 +615,9 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
     constexpr int kIterations = 8;
     const auto fit =
         models_.small.Refine(image_, start.camera_from_pattern, kIterations, &buffers_.small);
-    if (!fit || !Agrees(start.camera_from_pattern, fit->location.camera_from_pattern,
-                        models_.options.pattern.outer_radius_m())) {
+    if (!fit || fit->correlation < kMinCorrelationOfEither) return;
+    if (!Agrees(start.camera_from_pattern, fit->location.camera_from_pattern,
+                models_.options.pattern.outer_radius_m())) {
       continue;
     }
     const double quality = fit->match.Quality();
@@ -560,7 +630,7 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
         fit->correlation < kMinFittedCorrelation ||
         fit->inside_residual - fit->ring_residual > kMaxMoreInside ||
         fit->ring_residual - fit->inside_residual > kMaxMoreOnRing ||
-        fit->white_residual > on_print + kMaxMoreOutside) {
+        fit->white_residual > on_print + kMaxMoreOutside || IsOtherSign(fit->others)) {
       continue;
     }
     Keep(fit->location, fit->match.seen < kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants,
@@ -591,6 +661,11 @@ void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& 
   combine(&match.ring, location->ring_share);
   const double quality = match.Quality();
   if (quality < models_.options.min_quality || match.RingShare() < kMinRingShare) return;
+  if (diameters_px.x() < kInspectedRingPx) {
+    const auto others =
+        models_.small.Inspect(image_, location->camera_from_pattern, &buffers_.small);
+    if (others && IsOtherSign(*others)) return;
+  }
   Keep(*location, match.seen < kWhole ? CrossMethod::kPartial : hypothesis.method, quality,
        diameters_px);
 }

@@ -53,8 +53,14 @@ struct RingCandidate {
   double contrast = 0;               // of ring and white, gray values
 };
 
+// A small ring, seen in one pass or another: pixels at full resolution.
+struct SmallRingPlace {
+  Eigen::Vector2d center;
+  Eigen::Vector2d diameters;
+};
+
 struct LandingWorkspace::Buffers {
-  static constexpr std::size_t kPasses = 4;
+  static constexpr std::size_t kPasses = 6;
 
   int width_px = 0;  // of the images that there is room for
   int height_px = 0;
@@ -69,6 +75,7 @@ struct LandingWorkspace::Buffers {
   CrossLinesWorkspace cross_lines;
   PartialPatternWorkspace partial;
   SmallPatternWorkspace small;
+  std::vector<SmallRingPlace> tested;  // small rings of this image
 };
 
 // The search of one image: runs the stages on candidates and keeps the best.
@@ -83,11 +90,12 @@ class LandingSearch {
  private:
   // One pass over the image at a resolution that suits rings of some sizes.
   struct Pass {
-    int image_level;       // the image at 1 / 2^level
-    int tile_level;        // tiles of the threshold's box
-    double min_ring_px;    // minor axis, full resolution
-    double max_ring_px;    // major axis, full resolution
-    bool closing = false;  // close gaps of the dark areas first
+    int image_level;          // the image at 1 / 2^level
+    int tile_level;           // tiles of the threshold's box
+    double min_ring_px;       // minor axis, full resolution
+    double max_ring_px;       // major axis, full resolution
+    bool closing = false;     // close gaps of the dark areas first
+    bool not_bright = false;  // dark is all that is not bright
   };
   static constexpr std::size_t kCoarsePasses = 3;   // whose borders are cut into arcs
   static constexpr std::size_t kPartialPasses = 2;  // in which the cross of a near pattern is seen
@@ -124,11 +132,14 @@ class LandingSearch {
   void TestRing(const RingFit& ring, const Eigen::Vector2d& diameters_px, double reach_px);
   void TestSmallRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
                      std::span<const double> scales);
+  bool WasTested(const RingFit& ring, const Eigen::Vector2d& diameters_px);
   std::optional<double> ArmAngleByQuadrants(const CirclePose& pose);
   std::array<bool, 2> LevelEnough(const RingFit& ring) const;
   std::optional<VerifiedCross> VerifyCross(const cv::Mat& image, const PatternView& view,
                                            double diameter_px);
   std::optional<Hypothesis> TestPose(const CirclePose& pose, double diameter_px);
+  std::optional<Hypothesis> TestRefinedPose(const CirclePose& pose, double diameter_px,
+                                            double reach_px);
   std::optional<Hypothesis> Compare(const RigidTransform& pose, CrossMethod method,
                                     double diameter_px);
   void Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& diameters_px, double reach_px);

@@ -57,6 +57,21 @@ std::optional<double> FindEdge(const cv::Mat& image, const Eigen::Vector2d& at,
   return best - reach - 1 + shift;
 }
 
+// Moves a pose by a translation and a rotation vector about its origin; false when that is no small
+// change.
+bool Move(const Eigen::Matrix<double, 6, 1>& step, RigidTransform* pose) {
+  if (!step.allFinite()) return false;
+  const double angle = step.tail<3>().norm();
+  if (angle > 1) return false;
+  pose->translation += step.head<3>();
+  if (angle > 1e-12) {
+    pose->rotation =
+        (Eigen::Quaterniond(Eigen::AngleAxisd(angle, step.tail<3>() / angle)) * pose->rotation)
+            .normalized();
+  }
+  return true;
+}
+
 }  // namespace
 
 // Normal equations of the pose, and the statistics of the residuals that made them.
@@ -72,12 +87,20 @@ struct PatternLocator::Normal {
   std::array<int, 8> part_used{};
   std::array<float, 512> magnitudes;  // of all residuals that were found
   int found = 0;
+
+  // Standard deviation of the residuals by the median of their magnitudes.
+  double RobustScale() {
+    const auto middle = magnitudes.begin() + found / 2;
+    std::nth_element(magnitudes.begin(), middle, magnitudes.begin() + found);
+    return 1.4826 * static_cast<double>(*middle);
+  }
 };
 
 PatternLocator::PatternLocator(const CameraModel& camera, const LandingPattern& pattern)
     : camera_(camera), pattern_(pattern) {
   AddCircle(pattern.outer_radius_m(), 1, 56, 0);
   AddCircle(pattern.inner_radius_m(), -1, 40, 0.8 * pattern.arm_width_m);
+  ring_places_ = places_.size();
   AddArms();
 }
 
@@ -115,13 +138,14 @@ void PatternLocator::AddArms() {
 
 // Adds what each place says to the normal equations, weighted by Tukey's function of its residual
 // with the given scale.
-void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose, double reach_px,
-                                double min_step, double scale_px, Normal* normal) const {
+void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose,
+                                std::span<const Place> places, double reach_px, double min_step,
+                                double scale_px, Normal* normal) const {
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   const Eigen::Matrix<double, 3, 2> plane = rotation.leftCols<2>();
   const int reach = std::clamp(static_cast<int>(std::ceil(reach_px)), 1, kMaxReach);
   Eigen::Matrix<double, 2, 3> d_pixel;
-  for (const Place& place : places_) {
+  for (const Place& place : places) {
     ++normal->part_places[place.part];
     const Eigen::Vector3d from_center = plane * place.point;
     Eigen::Vector2d pixel;
@@ -170,23 +194,11 @@ std::optional<PatternLocation> PatternLocator::Locate(const cv::Mat& image,
   double reach = reach_px;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     Normal normal;
-    Accumulate(image, pose, reach, min_step, scale, &normal);
+    Accumulate(image, pose, places_, reach, min_step, scale, &normal);
     if (normal.used < 12) return std::nullopt;
     const auto solver = normal.h.selfadjointView<Eigen::Lower>().ldlt();
-    const Eigen::Matrix<double, 6, 1> step = solver.solve(normal.g);
-    if (!step.allFinite()) return std::nullopt;
-    pose.translation += step.head<3>();
-    const double angle = step.tail<3>().norm();
-    if (angle > 1) return std::nullopt;
-    if (angle > 1e-12) {
-      pose.rotation =
-          (Eigen::Quaterniond(Eigen::AngleAxisd(angle, step.tail<3>() / angle)) * pose.rotation)
-              .normalized();
-    }
-    // Robust scale of the residuals (median of their magnitudes).
-    const auto middle = normal.magnitudes.begin() + normal.found / 2;
-    std::nth_element(normal.magnitudes.begin(), middle, normal.magnitudes.begin() + normal.found);
-    scale = std::clamp(1.4826 * static_cast<double>(*middle), 0.25, scale);
+    if (!Move(solver.solve(normal.g), &pose)) return std::nullopt;
+    scale = std::clamp(normal.RobustScale(), 0.25, scale);
     reach = std::clamp(3 * scale, 1.5, reach);
     if (iteration + 1 < iterations) continue;
 
@@ -198,7 +210,7 @@ std::optional<PatternLocation> PatternLocator::Locate(const cv::Mat& image,
     location.edges = normal.used;
     for (int part = 0; part < 8; ++part) {
       const int seen = normal.part_in_image[part];
-      const double share = 3 * seen < normal.part_places[part]
+      const double share = 4 * seen < normal.part_places[part]
                                ? -1.0
                                : static_cast<double>(normal.part_used[part]) / seen;
       (part < 4 ? location.arm_share : location.ring_share)[part % 4] = share;
@@ -206,6 +218,31 @@ std::optional<PatternLocation> PatternLocator::Locate(const cv::Mat& image,
   }
   if (!location.covariance.allFinite()) return std::nullopt;
   return location;
+}
+
+std::optional<RigidTransform> PatternLocator::LocateRing(const cv::Mat& image,
+                                                         const RigidTransform& initial,
+                                                         double reach_px, double min_step,
+                                                         int iterations) const {
+  RigidTransform pose = initial;
+  double scale = std::max(1.0, 0.5 * reach_px);
+  double reach = reach_px;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    Normal normal;
+    Accumulate(image, pose, std::span(places_).first(ring_places_), reach, min_step, scale,
+               &normal);
+    if (normal.used < 12) return std::nullopt;
+    // A ring says nothing about turns in its plane, and a short arc little about its far side.
+    normal.h.diagonal() *= 1 + 1e-4;
+    const double weight = 1e-6 * normal.h.diagonal().tail<3>().maxCoeff();
+    for (int i = 3; i < 6; ++i) normal.h(i, i) += weight;
+    if (!Move(normal.h.selfadjointView<Eigen::Lower>().ldlt().solve(normal.g), &pose)) {
+      return std::nullopt;
+    }
+    scale = std::clamp(normal.RobustScale(), 0.25, scale);
+    reach = std::clamp(3 * scale, 1.5, reach);
+  }
+  return pose;
 }
 
 }  // namespace kestrel

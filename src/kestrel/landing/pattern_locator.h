@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -43,6 +44,10 @@ class PatternLocator {
   std::optional<PatternLocation> Locate(const cv::Mat& image, const RigidTransform& initial,
                                         double reach_px, double min_step, int iterations) const;
 
+  // The same by the edges of the ring alone, however the cross is turned about its centre.
+  std::optional<RigidTransform> LocateRing(const cv::Mat& image, const RigidTransform& initial,
+                                           double reach_px, double min_step, int iterations) const;
+
  private:
   // A point of an outline and the unit normal that points from black to white, in the plane.
   struct Place {
@@ -54,12 +59,13 @@ class PatternLocator {
 
   void AddCircle(double radius, double sign, int count, double arm_clearance);
   void AddArms();
-  void Accumulate(const cv::Mat& image, const RigidTransform& pose, double reach_px,
-                  double min_step, double scale_px, Normal* normal) const;
+  void Accumulate(const cv::Mat& image, const RigidTransform& pose, std::span<const Place> places,
+                  double reach_px, double min_step, double scale_px, Normal* normal) const;
 
   CameraModel camera_;
   LandingPattern pattern_;
-  std::vector<Place> places_;
+  std::vector<Place> places_;  // those of the ring first
+  std::size_t ring_places_ = 0;
 };
 
 }  // namespace kestrel

@@ -25,7 +25,7 @@ struct Tally {
   int all = 0;
 
   double Share() const {
-    return 3 * seen < all ? -1.0 : static_cast<double>(agreed) / std::max(seen, 1);
+    return 4 * seen < all ? -1.0 : static_cast<double>(agreed) / std::max(seen, 1);
   }
 };
 
@@ -46,6 +46,8 @@ struct KnownShares {
       ++count;
     }
   }
+  double Mean() const { return count == 0 ? 1 : sum / count; }  // 1 when none is in view
+
   double worst = 1;
   double sum = 0;
   int count = 0;
@@ -62,9 +64,8 @@ double PatternMatch::RingShare() const {
 double PatternMatch::Quality() const {
   const KnownShares arms(arm);
   const KnownShares quadrants(quadrant);
-  if (arms.count == 0 || quadrants.count == 0 || spokes >= 2) return 0;
-  const double least =
-      std::min({arms.sum / arms.count, quadrants.sum / quadrants.count, RingShare()});
+  if (arms.count == 0 || spokes >= 2) return 0;
+  const double least = std::min({arms.Mean(), quadrants.Mean(), RingShare()});
   return std::max(0.0, least - kMissingArm * (1 - arms.worst));
 }
 

@@ -16,7 +16,9 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::size_t kStride = 3;          // border points per smoothed point
 constexpr std::size_t kChord = 2;           // smoothed points over which a direction is taken
-constexpr double kCorner = 42 * kDegree;    // turn between neighbouring directions: a corner
+constexpr double kCorner = 45 * kDegree;    // turn from one direction to the next: a corner,
+constexpr double kSharpness = 3;            // if it is so many times that before and after it
+constexpr std::size_t kApart = 3;           // smoothed points from a corner to what is beside it
 constexpr double kAgainst = -14 * kDegree;  // turn against the bend: its end
 constexpr double kMinTurning = 45 * kDegree;
 constexpr std::size_t kMinPoints = 6;
@@ -45,26 +47,28 @@ float Turn(const Eigen::Vector2f& from, const Eigen::Vector2f& to) {
 
 class ArcCutter {
  public:
-  explicit ArcCutter(RingArcsWorkspace* workspace) : workspace_(*workspace) {}
+  ArcCutter(cv::Size size, RingArcsWorkspace* workspace) : size_(size), workspace_(*workspace) {}
 
   // Cuts workspace.smooth, a closed curve with the dark side on its right, into arcs.
   void Cut() {
-    const std::vector<Eigen::Vector2f>& curve = workspace_.smooth;
-    const std::size_t n = curve.size();
+    const std::size_t n = workspace_.smooth.size();
     if (n < kMinPoints + kChord) return;
+    workspace_.turns.resize(n);
+    for (std::size_t i = 0; i < n; ++i) workspace_.turns[i] = TurnAt(i);
     // Once around and on until the arc that crosses the start has ended.
     std::size_t start = 0;
     double turning = 0;
     bool wrapped = false;
     for (std::size_t i = 0; i < 2 * n; ++i) {
-      const double turn = TurnAt(i);
+      const double turn = workspace_.turns[i % n] / kChord;
+      const bool ends = IsCorner(i) || IsAtImageBorder(i + kChord);
       const bool opposite = turning != 0 && turn * (turning > 0 ? 1 : -1) < kAgainst;
-      if (std::abs(turn) > kCorner || opposite || i - start >= n) {
-        Keep(start, i, turning);
+      if (ends || opposite || i - start >= n) {
+        if (i > start) Keep(start, i, turning);
         if (wrapped) return;
-        start = i + (std::abs(turn) > kCorner ? kChord : 0);
-        turning = std::abs(turn) > kCorner ? 0 : turn;
-      } else {
+        start = i + (ends ? kChord + 1 : 0);
+        turning = ends ? 0 : turn;
+      } else if (i >= start) {
         turning += turn;
       }
       wrapped = i >= n;
@@ -72,13 +76,35 @@ class ArcCutter {
   }
 
  private:
-  double TurnAt(std::size_t i) const {
+  // Turn (rad) around the point kChord after 'i'.
+  float TurnAt(std::size_t i) const {
     const std::vector<Eigen::Vector2f>& curve = workspace_.smooth;
     const std::size_t n = curve.size();
     const Eigen::Vector2f& a = curve[i % n];
     const Eigen::Vector2f& b = curve[(i + kChord) % n];
     const Eigen::Vector2f& c = curve[(i + 2 * kChord) % n];
-    return Turn(b - a, c - b) / kChord;
+    return Turn(b - a, c - b);
+  }
+
+  // The end of a narrow ellipse turns as fast as a corner, but not at once.
+  bool IsCorner(std::size_t i) const {
+    const std::vector<float>& turns = workspace_.turns;
+    const std::size_t n = turns.size();
+    const float turn = std::abs(turns[i % n]);
+    const auto sharper_than = [&](float other) {
+      return turn > static_cast<float>(kSharpness) * std::abs(other);
+    };
+    return turn > static_cast<float>(kCorner) && sharper_than(turns[(i + n - kApart) % n]) &&
+           sharper_than(turns[(i + kApart) % n]);
+  }
+
+  // Where a dark area is cut off by the image border, its border is no edge of anything.
+  bool IsAtImageBorder(std::size_t i) const {
+    const Eigen::Vector2f& point = workspace_.smooth[i % workspace_.smooth.size()];
+    constexpr float kMargin = 1;
+    return point.x() < kMargin - 0.5f || point.y() < kMargin - 0.5f ||
+           point.x() > static_cast<float>(size_.width) - 0.5f - kMargin ||
+           point.y() > static_cast<float>(size_.height) - 0.5f - kMargin;
   }
 
   // Keeps the points of the directions 'first' to 'last' when they bend enough.
@@ -106,6 +132,7 @@ class ArcCutter {
     workspace_.arcs.push_back(arc);
   }
 
+  cv::Size size_;  // of the image whose borders are cut
   RingArcsWorkspace& workspace_;
 };
 
@@ -233,6 +260,7 @@ class ArcGrouper {
 void RingArcsWorkspace::Reserve(std::size_t border_points) {
   const std::size_t count = border_points / kStride + 1;
   smooth.reserve(count);
+  turns.reserve(count);
   // Neighbouring arcs share the points where one ends and the other begins.
   points.reserve(2 * count);
   rays.reserve(2 * count);
@@ -247,7 +275,7 @@ void FindArcRings(const BorderTracer& tracer, const RayTable& rays, const ImageR
   workspace->points.clear();
   workspace->arcs.clear();
   workspace->rings.clear();
-  ArcCutter cutter(workspace);
+  ArcCutter cutter(tracer.image_size(), workspace);
   for (const Border& border : tracer.borders()) {
     SmoothBorder(tracer.begin(border), border.count, &workspace->smooth);
     cutter.Cut();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include <Eigen/Cholesky>
@@ -10,6 +11,7 @@
 #include <Eigen/LU>
 
 #include "kestrel/landing/pattern_pose.h"
+#include "kestrel/landing/pattern_view.h"
 
 namespace kestrel {
 namespace {
@@ -22,8 +24,18 @@ constexpr double kBlurSpread = 0.35;  // of the blur's logarithm over lenses
 constexpr double kMinContrast = 2;
 constexpr double kMaxWhite = 600;  // gray value of white under the strongest overexposure
 constexpr double kSaturated = 254;
+constexpr double kMinRingCorrelation = 0.2;  // of a start, ring and white alone
+// Standard deviations of the residuals beyond which one is an outlier, and the least of these,
+// share of the contrast: no print is perfect.
+constexpr double kOutlier = 2.5;
+constexpr double kLeastNoise = 0.05;
+// What looks so little like the print after so many steps never will.
+constexpr int kLateStart = 3;
+constexpr double kMinLateCorrelation = 0.6;
+// Pixels of a box around the print beyond which every second one is enough.
+constexpr int kManyPixels = 1200;
 constexpr std::size_t kMinPixels = 30;
-constexpr int kMaxSide = 72;  // of the box around the print, pixels
+constexpr int kMaxSide = 128;  // of the box around the print, pixels
 
 // A gray value where the image cuts off what is brighter: then it is what is expected.
 double SeenGray(double gray, double expected) {
@@ -102,6 +114,7 @@ SmallPatternFitter::SmallPatternFitter(const CameraModel& camera, const RayTable
     : camera_(camera), rays_(rays), pattern_(pattern) {
   const double margin = 0.5 * pattern.board_size_m - pattern.outer_radius_m();
   extent_m_ = pattern.outer_radius_m() + std::min(1.0 * pattern.ring_width_m, 0.6 * margin);
+  board_radius_m_ = pattern.outer_radius_m() + 0.6 * margin;
 }
 
 SmallPatternFitter::Darkness SmallPatternFitter::Evaluate(double x, double y,
@@ -146,9 +159,11 @@ void SmallPatternWorkspace::Reserve() {
   constexpr std::size_t kMost = static_cast<std::size_t>(kMaxSide + 1) * (kMaxSide + 1);
   pixels.reserve(kMost);
   points.reserve(kMost);
+  magnitudes.reserve(kMost);
 }
 
-// Collects the pixels that show the disc of the print and the white around it under 'pose'.
+// Collects the pixels, each 'stride'-th of each 'stride'-th row, that show the disc of the print
+// and the white around it under 'pose'.
 bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose,
                                 SmallPatternWorkspace* workspace) const {
   workspace->pixels.clear();
@@ -172,10 +187,12 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
   const int x1 = std::min(image.cols - 1, static_cast<int>(std::ceil(high.x())));
   const int y1 = std::min(image.rows - 1, static_cast<int>(std::ceil(high.y())));
   if (x1 - x0 < 4 || y1 - y0 < 4 || x1 - x0 > kMaxSide || y1 - y0 > kMaxSide) return false;
+  const int stride =
+      1 + static_cast<int>(std::sqrt((x1 - x0) * (y1 - y0) / static_cast<double>(kManyPixels)));
   const PlaneMap map(pose);
-  for (int y = y0; y <= y1; ++y) {
+  for (int y = y0; y <= y1; y += stride) {
     const std::uint8_t* row = image.ptr(y);
-    for (int x = x0; x <= x1; ++x) {
+    for (int x = x0; x <= x1; x += stride) {
       const auto u = static_cast<float>(x), v = static_cast<float>(y);
       SmallPatternWorkspace::Pixel pixel;
       pixel.ray = rays_.Ray(u, v).cast<double>();
@@ -204,59 +221,98 @@ double SmallPatternFitter::ArmDarkness(double along, double across, double blur_
   return width * (step(along + length, blur_along) - step(along - length, blur_along));
 }
 
+// Sums for the correlation of gray values with how dark a print is there.
+class DarknessCorrelation {
+ public:
+  void Add(double gray, double dark) {
+    ++n_;
+    g_ += gray;
+    gg_ += gray * gray;
+    d_ += dark;
+    dd_ += dark * dark;
+    gd_ += gray * dark;
+  }
+  // 1 when the image is bright where the print is not dark; -1 without any contrast.
+  double value() const {
+    const double variance = (gg_ - g_ * g_ / n_) * (dd_ - d_ * d_ / n_);
+    return variance > 0 ? -(gd_ - g_ * d_ / n_) / std::sqrt(variance) : -1;
+  }
+
+ private:
+  double n_ = 0, g_ = 0, gg_ = 0, d_ = 0, dd_ = 0, gd_ = 0;
+};
+
+// Correlation of ring and white with the image when the ring lies as 'unturned'; fills the points
+// of the workspace. The ring looks the same however it is turned.
+double SmallPatternFitter::CorrelateRing(const RigidTransform& unturned,
+                                         SmallPatternWorkspace* workspace) const {
+  const PlaneMap map(unturned);
+  const double inner = pattern_.inner_radius_m();
+  workspace->points.clear();
+  DarknessCorrelation correlation;
+  for (const auto& pixel : workspace->pixels) {
+    PlanePoint point = Intersect(map, pixel);
+    const double r = std::max(std::hypot(point.x, point.y), 1e-9);
+    const double blur_r =
+        kGoodLensBlurPx *
+        (point.by_pixel.transpose() * Eigen::Vector2d(point.x / r, point.y / r)).norm();
+    point.ring = BlurredStroke(r, inner, pattern_.outer_radius_m(), blur_r).value;
+    workspace->points.push_back(point);
+    if (r > inner) correlation.Add(pixel.gray, point.ring);
+  }
+  return correlation.value();
+}
+
+// Correlation of the print with the image when it is turned by 'angle' in the plane of the points.
+double SmallPatternFitter::CorrelatePrint(double angle,
+                                          const SmallPatternWorkspace& workspace) const {
+  const Eigen::Matrix2d turned = Eigen::Rotation2Dd(-angle).toRotationMatrix();
+  DarknessCorrelation correlation;
+  for (std::size_t i = 0; i < workspace.points.size(); ++i) {
+    const PlanePoint& point = workspace.points[i];
+    const Eigen::Vector2d place = turned * Eigen::Vector2d(point.x, point.y);
+    const Eigen::Matrix2d by_pixel = turned * point.by_pixel;
+    const double blur_x = kGoodLensBlurPx * by_pixel.row(0).norm();
+    const double blur_y = kGoodLensBlurPx * by_pixel.row(1).norm();
+    const double arms = (1 - ArmDarkness(place.x(), place.y(), blur_x, blur_y)) *
+                        (1 - ArmDarkness(place.y(), place.x(), blur_y, blur_x));
+    correlation.Add(workspace.pixels[i].gray, 1 - (1 - point.ring) * arms);
+  }
+  return correlation.value();
+}
+
 SmallPatternFitter::Start SmallPatternFitter::FindStart(const cv::Mat& image,
                                                         const CirclePose& ring,
                                                         std::span<const double> scales,
                                                         std::optional<double> arm_angle,
                                                         SmallPatternWorkspace* workspace) const {
+  Start best{{}, -1};
+  double best_ring = -1, best_scale = 0;
+  double last_scale = 0;
+  const auto scaled = [&ring](double scale) {
+    return CirclePose{ring.center / scale, ring.normal};  // farther away is smaller
+  };
+  const auto look_at = [&](double scale) {
+    const RigidTransform unturned = PatternPose(scaled(scale), 0);
+    last_scale = scale;
+    return Gather(image, unturned, workspace) ? CorrelateRing(unturned, workspace) : -1.0;
+  };
+  for (const double scale : scales) {
+    const double correlation = look_at(scale);
+    if (correlation > best_ring) {
+      best_ring = correlation;
+      best_scale = scale;
+    }
+  }
+  if (best_ring < kMinRingCorrelation) return best;
+  if (last_scale != best_scale) look_at(best_scale);
   // Over a right angle: within 7.5 degrees of every direction.
   const int turns = arm_angle ? 1 : 6;
-  Start best{{}, -1};
-  for (const double scale : scales) {
-    CirclePose scaled = ring;
-    scaled.center /= scale;  // farther away is smaller
-    const RigidTransform unturned = PatternPose(scaled, 0);
-    if (!Gather(image, unturned, workspace)) continue;
-    const PlaneMap map(unturned);
-    workspace->points.clear();
-    double g = 0, gg = 0;
-    for (const auto& pixel : workspace->pixels) {
-      PlanePoint point = Intersect(map, pixel);
-      // The ring looks the same however it is turned.
-      const double r = std::max(std::hypot(point.x, point.y), 1e-9);
-      const double blur_r =
-          kGoodLensBlurPx *
-          (point.by_pixel.transpose() * Eigen::Vector2d(point.x / r, point.y / r)).norm();
-      point.ring =
-          BlurredStroke(r, pattern_.inner_radius_m(), pattern_.outer_radius_m(), blur_r).value;
-      workspace->points.push_back(point);
-      g += pixel.gray;
-      gg += pixel.gray * pixel.gray;
-    }
-    const auto n = static_cast<double>(workspace->pixels.size());
-    for (int turn = 0; turn < turns; ++turn) {
-      const double angle = arm_angle.value_or(0) + turn * (std::numbers::pi / 2) / turns;
-      const Eigen::Matrix2d turned = Eigen::Rotation2Dd(-angle).toRotationMatrix();
-      double d = 0, dd = 0, gd = 0;
-      for (std::size_t i = 0; i < workspace->points.size(); ++i) {
-        const PlanePoint& point = workspace->points[i];
-        const Eigen::Vector2d place = turned * Eigen::Vector2d(point.x, point.y);
-        const Eigen::Matrix2d by_pixel = turned * point.by_pixel;
-        const double blur_x = kGoodLensBlurPx * by_pixel.row(0).norm();
-        const double blur_y = kGoodLensBlurPx * by_pixel.row(1).norm();
-        const double arms = (1 - ArmDarkness(place.x(), place.y(), blur_x, blur_y)) *
-                            (1 - ArmDarkness(place.y(), place.x(), blur_y, blur_x));
-        const double dark = 1 - (1 - point.ring) * arms;
-        d += dark;
-        dd += dark * dark;
-        gd += workspace->pixels[i].gray * dark;
-      }
-      const double variance = (gg - g * g / n) * (dd - d * d / n);
-      const double correlation = variance > 0 ? -(gd - g * d / n) / std::sqrt(variance) : -1;
-      if (correlation > best.correlation) best = {PatternPose(scaled, angle), correlation};
-    }
-    // What looks nothing like the print does not for being a little smaller.
-    if (best.correlation < 0.1) break;
+  for (int turn = 0; turn < turns; ++turn) {
+    const double angle = arm_angle.value_or(0) + turn * (std::numbers::pi / 2) / turns;
+    const double correlation = CorrelatePrint(angle, *workspace);
+    if (correlation > best.correlation)
+      best = {PatternPose(scaled(best_scale), angle), correlation};
   }
   return best;
 }
@@ -286,6 +342,7 @@ struct SmallPatternFitter::System {
     int count = 0;
     double Rms() const { return std::sqrt(squares / std::max(1, count)); }
   };
+  double robust_scale = 0;    // standard deviation of the residuals by their median
   std::array<Zone, 3> zones;  // inside of the ring, ring, white
   double squares = 0;         // of the residuals
   double sum = 0;             // of the gray values
@@ -317,26 +374,32 @@ void SmallPatternFitter::MeasureLevels(const SmallPatternWorkspace& workspace, S
   state->white = (g + state->contrast * d) / n;
 }
 
-SmallPatternFitter::System SmallPatternFitter::Linearize(const SmallPatternWorkspace& workspace,
-                                                         const State& state) const {
+// Residuals beyond 'limit' (gray values) count less, by Huber's function: highlights and dirt.
+SmallPatternFitter::System SmallPatternFitter::Linearize(const State& state, double limit,
+                                                         SmallPatternWorkspace* workspace) const {
   const PlaneMap map(state.pose);
   const Eigen::Vector3d normal = map.rotation.col(2);
   const double inner = pattern_.inner_radius_m();
   const double outer = pattern_.outer_radius_m() + 0.35 * pattern_.ring_width_m;
   System system;
-  for (const auto& pixel : workspace.pixels) {
+  workspace->magnitudes.clear();
+  for (const auto& pixel : workspace->pixels) {
     const PlanePoint point = Intersect(map, pixel);
     const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
     const double expected = state.Gray(point, dark);
     const double gray = SeenGray(pixel.gray, expected);
     const double residual = gray - expected;
-    ++system.count;
-    system.sum += gray;
-    system.sum_squares += gray * gray;
-    system.squares += residual * residual;
+    const double magnitude = std::abs(residual);
+    workspace->magnitudes.push_back(static_cast<float>(magnitude));
+    const double weight = magnitude > limit ? limit / magnitude : 1;
+    system.count += weight;
+    system.sum += weight * gray;
+    system.sum_squares += weight * gray * gray;
+    system.squares += weight * residual * residual;
     const double radius = std::hypot(point.x, point.y);
     System::Zone& zone = system.zones[radius < inner ? 0 : radius < outer ? 1 : 2];
-    zone.squares += residual * residual;
+    const double bounded = std::min(magnitude, limit);
+    zone.squares += bounded * bounded;
     ++zone.count;
     if (gray != pixel.gray) continue;  // cut off: says nothing about small changes
     // A moved plane point stays on the ray of its pixel: what is left of the motion within the
@@ -355,9 +418,13 @@ SmallPatternFitter::System SmallPatternFitter::Linearize(const SmallPatternWorks
     jacobian(8) = -dark.value;
     jacobian(9) = point.x;
     jacobian(10) = point.y;
-    system.h.selfadjointView<Eigen::Lower>().rankUpdate(jacobian);
-    system.b += jacobian * residual;
+    system.h.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
+    system.b += jacobian * (weight * residual);
   }
+  const auto middle =
+      workspace->magnitudes.begin() + static_cast<std::ptrdiff_t>(workspace->magnitudes.size() / 2);
+  std::nth_element(workspace->magnitudes.begin(), middle, workspace->magnitudes.end());
+  system.robust_scale = 1.4826 * *middle;
   system.h.triangularView<Eigen::StrictlyUpper>() = system.h.transpose();
   return system;
 }
@@ -404,10 +471,17 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   state.pose = initial;
   MeasureLevels(*workspace, &state);
   if (state.contrast < kMinContrast) return std::nullopt;
+  // The first steps come from far away: then nothing is an outlier.
+  double limit = kMaxWhite;
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    if (!Improve(Linearize(*workspace, state), &state)) return std::nullopt;
+    const System system = Linearize(state, limit, workspace);
+    if (iteration == kLateStart && system.correlation() < kMinLateCorrelation) return std::nullopt;
+    if (!Improve(system, &state)) return std::nullopt;
+    if (2 * iteration >= iterations) {
+      limit = kOutlier * std::max(system.robust_scale, kLeastNoise * state.contrast);
+    }
   }
-  const System system = Linearize(*workspace, state);
+  const System system = Linearize(state, limit, workspace);
   const Eigen::Matrix<double, kUnknowns, kUnknowns> covariance =
       system.variance() *
       system.h.ldlt().solve(Eigen::Matrix<double, kUnknowns, kUnknowns>::Identity());
@@ -421,7 +495,148 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   fit.correlation = system.correlation();
   fit.match.contrast = state.contrast;
   MeasureParts(*workspace, state, &fit.match);
+  fit.others = MeasureOthers(image, *workspace, state);
   return fit;
+}
+
+std::optional<SmallPatternFitter::OtherSigns> SmallPatternFitter::Inspect(
+    const cv::Mat& image, const RigidTransform& pose, SmallPatternWorkspace* workspace) const {
+  if (!Gather(image, pose, workspace)) return std::nullopt;
+  State state;
+  state.pose = pose;
+  MeasureLevels(*workspace, &state);
+  if (state.contrast < kMinContrast) return std::nullopt;
+  return MeasureOthers(image, *workspace, state);
+}
+
+SmallPatternFitter::OtherSigns SmallPatternFitter::MeasureOthers(
+    const cv::Mat& image, const SmallPatternWorkspace& workspace, const State& state) const {
+  return {.spokes = OtherSpokes(workspace, state),
+          .frame_corners = FrameCorners(workspace, state),
+          .cross_correlation = CrossCorrelation(workspace, state),
+          .board_darkness = BoardDarkness(image, state)};
+}
+
+// In each quadrant the darkest line from the centre among those well away from the arms: its depth
+// in what the fit left over, against the rest of the quadrant.
+double SmallPatternFitter::OtherSpokes(const SmallPatternWorkspace& workspace,
+                                       const State& state) const {
+  constexpr std::array<double, 3> kTurns{33, 45, 57};  // degrees from the arm before
+  struct Regression {
+    double n = 0, s = 0, ss = 0, e = 0, se = 0;
+  };
+  std::array<std::array<Regression, kTurns.size()>, 4> lines;
+  std::array<Eigen::Vector2d, kTurns.size()> directions;
+  for (std::size_t i = 0; i < kTurns.size(); ++i) {
+    const double angle = kTurns[i] * std::numbers::pi / 180;
+    directions[i] = {std::cos(angle), std::sin(angle)};
+  }
+  const PlaneMap map(state.pose);
+  const double inner = pattern_.inner_radius_m();
+  const double half_width = 0.5 * pattern_.arm_width_m;
+  for (const auto& pixel : workspace.pixels) {
+    const PlanePoint point = Intersect(map, pixel);
+    const double radius = std::hypot(point.x, point.y);
+    if (radius < 0.35 * inner || radius > 0.9 * inner) continue;
+    const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
+    const double expected = state.Gray(point, dark);
+    const double residual = SeenGray(pixel.gray, expected) - expected;
+    const int quadrant = point.x > 0 ? (point.y > 0 ? 0 : 3) : (point.y > 0 ? 1 : 2);
+    // Turned into the first quadrant, x along the arm before.
+    const Eigen::Vector2d turned =
+        Eigen::Rotation2Dd(-quadrant * std::numbers::pi / 2) * Eigen::Vector2d(point.x, point.y);
+    for (std::size_t i = 0; i < kTurns.size(); ++i) {
+      const Eigen::Vector2d normal(-directions[i].y(), directions[i].x());
+      const Eigen::Vector2d in_pattern =
+          Eigen::Rotation2Dd(quadrant * std::numbers::pi / 2) * normal;
+      const double blur = state.blur_px * (point.by_pixel.transpose() * in_pattern).norm();
+      const double line =
+          BlurredStroke(normal.dot(turned), -half_width, half_width, std::max(blur, 1e-9)).value;
+      Regression& r = lines[quadrant][i];
+      ++r.n;
+      r.s += line;
+      r.ss += line * line;
+      r.e += residual;
+      r.se += line * residual;
+    }
+  }
+  std::array<double, 4> darkest{};
+  for (int q = 0; q < 4; ++q) {
+    for (const Regression& r : lines[q]) {
+      const double spread = r.ss - r.s * r.s / std::max(r.n, 1.0);
+      if (r.n < 6 || spread < 0.3) continue;
+      darkest[q] = std::max(darkest[q], -(r.se - r.s * r.e / r.n) / spread / state.contrast);
+    }
+  }
+  std::sort(darkest.begin(), darkest.end(), std::greater<>());
+  return darkest[1];
+}
+
+// How much darker the white is beyond the ends of the arms than between them.
+double SmallPatternFitter::FrameCorners(const SmallPatternWorkspace& workspace,
+                                        const State& state) const {
+  const PlaneMap map(state.pose);
+  double n = 0, s = 0, ss = 0, e = 0, se = 0;
+  for (const auto& pixel : workspace.pixels) {
+    const PlanePoint point = Intersect(map, pixel);
+    const double radius = std::hypot(point.x, point.y);
+    if (radius < pattern_.inner_radius_m()) continue;
+    const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
+    const double expected = state.Gray(point, dark);
+    const double residual = SeenGray(pixel.gray, expected) - expected;
+    // 1 along the arms, -1 half-way between them.
+    const double wave = std::cos(4 * std::atan2(point.y, point.x));
+    ++n;
+    s += wave;
+    ss += wave * wave;
+    e += residual;
+    se += wave * residual;
+  }
+  const double spread = ss - s * s / std::max(n, 1.0);
+  return spread > 1 ? -(se - s * e / n) / spread / state.contrast : 0;
+}
+
+double SmallPatternFitter::CrossCorrelation(const SmallPatternWorkspace& workspace,
+                                            const State& state) const {
+  const PlaneMap map(state.pose);
+  double n = 0, g = 0, gg = 0, d = 0, dd = 0, gd = 0;
+  for (const auto& pixel : workspace.pixels) {
+    const PlanePoint point = Intersect(map, pixel);
+    if (std::hypot(point.x, point.y) > pattern_.arm_half_length_m) continue;
+    const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
+    const double expected = state.Gray(point, dark);
+    const double gray = SeenGray(pixel.gray, expected);
+    ++n;
+    g += gray;
+    gg += gray * gray;
+    d += expected;
+    dd += expected * expected;
+    gd += gray * expected;
+  }
+  const double variance = (gg - g * g / n) * (dd - d * d / n);
+  return n > 0 && variance > 0 ? (gd - g * d / n) / std::sqrt(variance) : 0;
+}
+
+// The median over the directions in view: a white ring on dark ground has no board.
+double SmallPatternFitter::BoardDarkness(const cv::Mat& image, const State& state) const {
+  constexpr int kDirections = 24;
+  std::array<double, kDirections> darkness;
+  int seen = 0;
+  for (int i = 0; i < kDirections; ++i) {
+    const double angle = i * 2 * std::numbers::pi / kDirections;
+    const Eigen::Vector3d point(board_radius_m_ * std::cos(angle),
+                                board_radius_m_ * std::sin(angle), 0);
+    Eigen::Vector2d pixel;
+    if (camera_.Project(state.pose * point, &pixel) == ProjectionStatus::kOutsideModel) continue;
+    const double gray =
+        SampleGray(image, static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
+    if (gray < 0) continue;
+    const double white = state.white + state.slope.dot(point.head<2>());
+    darkness[seen++] = gray >= kSaturated ? 0 : (white - gray) / state.contrast;
+  }
+  if (seen == 0) return 0;
+  std::nth_element(darkness.begin(), darkness.begin() + seen / 2, darkness.begin() + seen);
+  return darkness[seen / 2];
 }
 
 // Fits an amplitude to the ring's quarters, to each half arm and to the white of each quadrant, on

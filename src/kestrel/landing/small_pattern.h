@@ -33,6 +33,7 @@ struct SmallPatternWorkspace {
     double ring = 0;           // darkness of the ring there
   };
   std::vector<PlanePoint> points;  // of the pixels, under one pose
+  std::vector<float> magnitudes;   // of the residuals
 
   void Reserve();
 };
@@ -47,15 +48,24 @@ class SmallPatternFitter {
   SmallPatternFitter(const CameraModel& camera, const RayTable& rays,
                      const LandingPattern& pattern);
 
+  // What tells other signs from the print. Darkness is a share of the print's contrast.
+  struct OtherSigns {
+    double spokes;             // second darkest of the lines between the arms, one a quadrant
+    double frame_corners;      // beyond the ends of the arms, against between them
+    double cross_correlation;  // of image and print inside of the ring: low for a blot
+    double board_darkness;     // around the ring: 0 white, 1 as dark as the ring
+  };
+
   struct Fit {
     PatternLocation location;  // without edges
     PatternMatch match;        // amplitudes of arms, white quadrants and ring instead of shares
     double correlation;        // of the image with the fitted print, -1 to 1
-    // Residuals (root of their mean square, share of the contrast) inside of the ring, where the
-    // cross is, on the ring, and on the white around it.
+    // Residuals (root of their mean square, outliers bounded; share of the contrast) inside of the
+    // ring, where the cross is, on the ring, and on the white around it.
     double inside_residual;
     double ring_residual;
     double white_residual;
+    OtherSigns others;
   };
 
   struct Start {
@@ -73,6 +83,11 @@ class SmallPatternFitter {
   std::optional<Fit> Refine(const cv::Mat& image, const RigidTransform& initial, int iterations,
                             SmallPatternWorkspace* workspace) const;
 
+  // What there is of other signs in a print that was located in another way; nothing when the image
+  // shows too little of it. Does not allocate.
+  std::optional<OtherSigns> Inspect(const cv::Mat& image, const RigidTransform& pose,
+                                    SmallPatternWorkspace* workspace) const;
+
  private:
   struct Darkness;
   struct State;
@@ -80,17 +95,26 @@ class SmallPatternFitter {
   bool Gather(const cv::Mat& image, const RigidTransform& pose,
               SmallPatternWorkspace* workspace) const;
   Darkness Evaluate(double x, double y, const Eigen::Matrix2d& d_plane, double blur_px) const;
+  double CorrelateRing(const RigidTransform& unturned, SmallPatternWorkspace* workspace) const;
+  double CorrelatePrint(double angle, const SmallPatternWorkspace& workspace) const;
   double ArmDarkness(double along, double across, double blur_along, double blur_across) const;
   void MeasureLevels(const SmallPatternWorkspace& workspace, State* state) const;
-  System Linearize(const SmallPatternWorkspace& workspace, const State& state) const;
+  System Linearize(const State& state, double limit, SmallPatternWorkspace* workspace) const;
   bool Improve(const System& system, State* state) const;
   void MeasureParts(const SmallPatternWorkspace& workspace, const State& state,
                     PatternMatch* match) const;
+  OtherSigns MeasureOthers(const cv::Mat& image, const SmallPatternWorkspace& workspace,
+                           const State& state) const;
+  double OtherSpokes(const SmallPatternWorkspace& workspace, const State& state) const;
+  double FrameCorners(const SmallPatternWorkspace& workspace, const State& state) const;
+  double CrossCorrelation(const SmallPatternWorkspace& workspace, const State& state) const;
+  double BoardDarkness(const cv::Mat& image, const State& state) const;
 
   const CameraModel& camera_;
   const RayTable& rays_;
   LandingPattern pattern_;
-  double extent_m_;
+  double extent_m_;        // radius of what is fitted
+  double board_radius_m_;  // of a circle on the board, beyond that
 };
 
 }  // namespace kestrel

@@ -18,6 +18,22 @@ RigidTransform Interpolate(const RigidTransform& from, const RigidTransform& to,
 
 }  // namespace
 
+const char* ToString(PoseLookup lookup) {
+  switch (lookup) {
+    case PoseLookup::kFound:
+      return "found";
+    case PoseLookup::kEmpty:
+      return "no poses";
+    case PoseLookup::kTooOld:
+      return "too old";
+    case PoseLookup::kTooNew:
+      return "too new";
+    case PoseLookup::kGap:
+      return "gap";
+  }
+  return "";
+}
+
 PoseHistory::PoseHistory(std::size_t capacity, Duration max_gap)
     : ring_(std::max<std::size_t>(capacity, 1)), max_gap_(max_gap) {}
 
@@ -35,8 +51,9 @@ PoseStatus PoseHistory::Add(const PoseSample& sample) {
   return PoseStatus::kOk;
 }
 
-std::optional<RigidTransform> PoseHistory::Lookup(Time time) const {
-  std::size_t begin = 0;  // the first sample that is not before 'time', by bisection
+// Index of the first sample that is not before 'time', by bisection; size_ when all are.
+std::size_t PoseHistory::FirstNotBefore(Time time) const {
+  std::size_t begin = 0;
   for (std::size_t end = size_; begin < end;) {
     const std::size_t middle = begin + (end - begin) / 2;
     if (At(middle).time < time) {
@@ -45,12 +62,24 @@ std::optional<RigidTransform> PoseHistory::Lookup(Time time) const {
       end = middle;
     }
   }
-  if (begin == size_) return std::nullopt;
-  const PoseSample& after = At(begin);
+  return begin;
+}
+
+PoseLookup PoseHistory::Check(Time time) const {
+  if (size_ == 0) return PoseLookup::kEmpty;
+  const std::size_t after = FirstNotBefore(time);
+  if (after == size_) return PoseLookup::kTooNew;
+  if (At(after).time == time) return PoseLookup::kFound;
+  if (after == 0) return PoseLookup::kTooOld;
+  return At(after).time - At(after - 1).time > max_gap_ ? PoseLookup::kGap : PoseLookup::kFound;
+}
+
+std::optional<RigidTransform> PoseHistory::Lookup(Time time) const {
+  if (!Has(time)) return std::nullopt;
+  const std::size_t index = FirstNotBefore(time);
+  const PoseSample& after = At(index);
   if (after.time == time) return after.world_from_body;
-  if (begin == 0) return std::nullopt;
-  const PoseSample& before = At(begin - 1);
-  if (after.time - before.time > max_gap_) return std::nullopt;
+  const PoseSample& before = At(index - 1);
   const double part = ToSeconds(time - before.time) / ToSeconds(after.time - before.time);
   return Interpolate(before.world_from_body, after.world_from_body, part);
 }

@@ -22,6 +22,16 @@ enum class PoseStatus {
   kInvalid,     // not finite, or the rotation is no unit quaternion (to 1 %)
 };
 
+// Whether there is a pose for an instant, or why not.
+enum class PoseLookup {
+  kFound,
+  kEmpty,   // there are no samples at all
+  kTooOld,  // before the oldest sample
+  kTooNew,  // after the newest sample
+  kGap,     // the samples around it are too far apart
+};
+const char* ToString(PoseLookup lookup);  // "found", "no poses", "too old", "too new", "gap"
+
 // The last poses of the UAV, in order of time, and where it was between them. Bounded: the oldest
 // sample makes room for the newest. Allocates at construction only; never throws afterwards.
 class PoseHistory {
@@ -33,8 +43,9 @@ class PoseHistory {
   // A sample that is refused leaves the history as it was.
   PoseStatus Add(const PoseSample& sample);
 
-  // Whether Lookup has an answer.
-  bool Has(Time time) const { return Lookup(time).has_value(); }
+  // Whether Lookup has an answer, or why not.
+  PoseLookup Check(Time time) const;
+  bool Has(Time time) const { return Check(time) == PoseLookup::kFound; }
 
   // 'world_from_body' at 'time': the sample itself, or between its neighbours the translation by
   // straight line and the rotation by the shortest arc (slerp). Nothing outside of the samples.
@@ -45,6 +56,7 @@ class PoseHistory {
 
  private:
   const PoseSample& At(std::size_t i) const { return ring_[(first_ + i) % ring_.size()]; }
+  std::size_t FirstNotBefore(Time time) const;
 
   std::vector<PoseSample> ring_;
   Duration max_gap_;

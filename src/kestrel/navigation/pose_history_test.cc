@@ -86,6 +86,17 @@ TEST(PoseHistory, RefusesWhatIsNoPose) {
   EXPECT_EQ(history.size(), 0u);
 }
 
+TEST(PoseHistory, SaysWhyThereIsNoPose) {
+  PoseHistory history(3, kMaxGap);
+  EXPECT_EQ(history.Check(At(0)), PoseLookup::kEmpty);
+  for (const double seconds : {0.0, 1.0, 1.5, 3.0}) history.Add(Sample(seconds, 0));
+  EXPECT_EQ(history.Check(At(0.9)), PoseLookup::kTooOld);
+  EXPECT_EQ(history.Check(At(1.2)), PoseLookup::kFound);
+  EXPECT_EQ(history.Check(At(2)), PoseLookup::kGap);
+  EXPECT_EQ(history.Check(At(3)), PoseLookup::kFound);
+  EXPECT_EQ(history.Check(At(3.1)), PoseLookup::kTooNew);
+}
+
 TEST(PoseHistory, DoesNotBridgeAGap) {
   PoseHistory history(4, kMaxGap);
   history.Add(Sample(0, 0));

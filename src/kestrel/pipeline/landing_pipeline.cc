@@ -21,6 +21,12 @@ std::vector<std::string> LandingPipelineOptions::Validate() const {
   for (const std::string& violation : detector.Validate()) {
     violations.push_back("detector." + violation);
   }
+  for (const std::string& violation : tracker.Validate()) {
+    violations.push_back("tracker." + violation);
+  }
+  for (const std::string& violation : noise.Validate()) {
+    violations.push_back("noise." + violation);
+  }
   const auto require = [&](bool holds, const char* rule) {
     if (!holds) violations.push_back(rule);
   };
@@ -42,25 +48,33 @@ LandingPipeline::LandingPipeline(const CameraCalibration& calibration,
       body_from_camera_(calibration.body_from_camera),
       clock_offset_(calibration.clock_offset.value_or(Duration::zero())),
       detector_(CameraModel(calibration.intrinsics), options.detector),
-      poses_(options.pose_capacity, DurationFromSeconds(options.pose_gap_s)) {}
+      poses_(options.pose_capacity, DurationFromSeconds(options.pose_gap_s)),
+      tracker_(options.tracker) {}
 
 LandingObservation LandingPipeline::Process(const cv::Mat& image, Time time) {
   LandingObservation observation;
   observation.time = time;
   observation.world_from_camera = WorldFromCamera(time);
+  observation.pose = poses_.Check(time + clock_offset_);
   Detect(image, &observation);
   LocateInWorld(&observation);
+  if (options_.still) return observation;
+  Track(&observation);
   Remember(observation);
   return observation;
 }
 
 void LandingPipeline::Detect(const cv::Mat& image, LandingObservation* observation) {
-  LandingHint hint = MakeHint(*observation);
+  const LandingHint known = MakeHint(*observation);
+  LandingHint hint = known;
+  if (!options_.still) {
+    AddTrack(*observation, &hint);
+    AddLastSighting(*observation, &hint);
+  }
   const auto start = std::chrono::steady_clock::now();
   observation->report = detector_.Detect(image, hint, workspace_);
   if (!observation->report.detection && hint.center_in_camera) {
-    hint.center_in_camera.reset();
-    observation->report = detector_.Detect(image, hint, workspace_);
+    observation->report = detector_.Detect(image, known, workspace_);
   }
   observation->detect_time = std::chrono::steady_clock::now() - start;
 }
@@ -81,19 +95,27 @@ LandingHint LandingPipeline::MakeHint(const LandingObservation& observation) con
     if (options_.altitude_hint && altitude_m > 0) hint.altitude_m = altitude_m;
     hint.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
   }
-  if (!options_.still) AddLastSighting(observation, &hint);
   return hint;
+}
+
+void LandingPipeline::AddTrack(const LandingObservation& observation, LandingHint* hint) const {
+  const auto& world_from_camera = observation.world_from_camera;
+  if (!world_from_camera || !is_track_trusted_) return;
+  const std::optional<TargetEstimate> target = tracker_.Predict(observation.time);
+  if (!target) return;
+  hint->center_in_camera =
+      world_from_camera->Inverse() * Eigen::Vector3d(target->motion.position());
+  hint->center_sigma_m = options_.hint_sigma_m + target->position_sigma_m();
+  const double altitude_m = world_from_camera->translation.z() - target->motion.position().z();
+  if (altitude_m > 0) hint->altitude_m = altitude_m;
 }
 
 void LandingPipeline::AddLastSighting(const LandingObservation& observation,
                                       LandingHint* hint) const {
-  if (!last_) return;
-  const auto& world_from_camera = observation.world_from_camera;
-  if (last_->is_in_world && !world_from_camera) return;
+  if (!last_ || observation.world_from_camera) return;
   const double age_s = ToSeconds(observation.time - last_->time);
   if (age_s < 0 || age_s > options_.hint_age_s) return;
-  hint->center_in_camera =
-      last_->is_in_world ? world_from_camera->Inverse() * last_->center : last_->center;
+  hint->center_in_camera = last_->center_in_camera;
   hint->center_sigma_m = options_.hint_sigma_m + options_.hint_speed_mps * age_s;
 }
 
@@ -117,15 +139,24 @@ void LandingPipeline::LocateInWorld(LandingObservation* observation) const {
   observation->position_method = PositionMethod::kAltitude;
 }
 
+void LandingPipeline::Track(LandingObservation* observation) {
+  if (observation->center_in_world) {
+    const LandingDetection& detection = *observation->report.detection;
+    const Eigen::Matrix3d covariance = CovarianceInWorld(
+        detection.covariance.topLeftCorner<3, 3>(), detection.camera_from_pattern.translation,
+        observation->world_from_camera->rotation, options_.noise);
+    observation->fate =
+        tracker_.Add({observation->time, *observation->center_in_world, covariance});
+    is_track_trusted_ = observation->fate <= MeasurementFate::kAccepted;
+  }
+  observation->track_state = tracker_.StateAt(observation->time);
+  observation->target = tracker_.Predict(observation->time);
+}
+
 void LandingPipeline::Remember(const LandingObservation& observation) {
   last_.reset();
   const auto& detection = observation.report.detection;
-  if (!detection) return;
-  const Eigen::Vector3d& center_in_camera = detection->camera_from_pattern.translation;
-  const auto& world_from_camera = observation.world_from_camera;
-  last_ = {observation.time,
-           world_from_camera ? *world_from_camera * center_in_camera : center_in_camera,
-           world_from_camera.has_value()};
+  if (detection) last_ = {observation.time, detection->camera_from_pattern.translation};
 }
 
 }  // namespace kestrel

@@ -13,11 +13,15 @@
 #include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/landing/landing_pattern_detector.h"
 #include "kestrel/navigation/pose_history.h"
+#include "kestrel/pipeline/measurement_noise.h"
+#include "kestrel/tracking/target_tracker.h"
 
 namespace kestrel {
 
 struct LandingPipelineOptions {
   LandingPatternDetectorOptions detector;
+  TargetTrackerOptions tracker;
+  MeasurementNoise noise;  // of what the tracker gets, besides the detector's own
   // Frames have nothing to do with each other: no state is carried from one to the next.
   bool still = false;
   // The world position from the camera's altitude (paper, eq. 3) instead of from the pattern's size
@@ -29,9 +33,11 @@ struct LandingPipelineOptions {
   // Tell the detector the height above the pattern that the navigation reports. Switch off where
   // the world's z is no height above ground.
   bool altitude_hint = true;
-  // Where the pattern is searched for after a frame in which it was found: standard deviation per
-  // axis of the last position, and its growth with the speed of the target (and, without poses, of
-  // the camera). Where it is not found there, and after hint_age_s, the whole image is searched.
+  // Where the pattern is searched for first: within hint_sigma_m (standard deviation per axis, to
+  // which the track's own is added) of where the track says that it is. Without poses there is no
+  // track: the last position in the camera serves, with an uncertainty that grows by
+  // hint_speed_mps, for hint_age_s. Where the pattern is not found there, the whole image is
+  // searched.
   double hint_sigma_m = 0.2;
   double hint_speed_mps = 5;
   double hint_age_s = 0.5;
@@ -42,6 +48,8 @@ struct LandingPipelineOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor.Group("detector", self.detector);
+    visitor.Group("tracker", self.tracker);
+    visitor.Group("noise", self.noise);
     visitor("still", self.still, "", "frames have nothing to do with each other");
     visitor("position_by_altitude", self.position_by_altitude, "",
             "world position from the altitude instead of from the pattern's size");
@@ -50,9 +58,11 @@ struct LandingPipelineOptions {
     visitor("altitude_hint", self.altitude_hint, "",
             "tell the detector the height that the navigation reports");
     visitor("hint_sigma_m", self.hint_sigma_m, "m",
-            "after a detection: how far from it to search, standard deviation");
-    visitor("hint_speed_mps", self.hint_speed_mps, "m/s", "growth of that with time");
-    visitor("hint_age_s", self.hint_age_s, "s", "a detection older than this is no hint");
+            "how far from where it should be the pattern is searched for first");
+    visitor("hint_speed_mps", self.hint_speed_mps, "m/s",
+            "growth of that with the age of the last detection, where there are no poses");
+    visitor("hint_age_s", self.hint_age_s, "s",
+            "a detection older than this is no hint, where there are no poses");
     visitor("pose_capacity", self.pose_capacity, "1", "how many poses are kept");
     visitor("pose_gap_s", self.pose_gap_s, "s", "longest gap between poses that is interpolated");
   }
@@ -68,16 +78,22 @@ struct LandingObservation {
   Time time;                                        // of the frame, on the clock of the images
   LandingReport report;                             // the detection in the camera frame, or why not
   std::optional<RigidTransform> world_from_camera;  // when there was a pose for this time
+  PoseLookup pose = PoseLookup::kEmpty;             // or why there was none
   // With a detection and a pose: the pattern's centre in the world (ENU, m), by what it was found,
   // and the yaw of the pattern, see PatternYaw.
   std::optional<Eigen::Vector3d> center_in_world;
   PositionMethod position_method = PositionMethod::kSize;
   std::optional<double> yaw_in_world;
+  // The track, unless every frame is for itself: what became of the detection, and the target at
+  // the time of the frame, when that is known.
+  std::optional<MeasurementFate> fate;
+  TrackState track_state = TrackState::kSearching;
+  std::optional<TargetEstimate> target;
   Duration detect_time{};  // of LandingPatternDetector::Detect alone (both calls, if it took two)
 };
 
-// From an image to where the landing pattern is in the world: pose history, mount and clock offset,
-// hint, detector. One thread at a time.
+// From an image to where the landing pattern is in the world and will be: pose history, mount and
+// clock offset, detector, tracker, whose prediction is the next frame's hint. One thread at a time.
 class LandingPipeline {
  public:
   // Throws InputError when the calibration or the options are not valid.
@@ -94,22 +110,25 @@ class LandingPipeline {
   // does not allocate once it has warmed up.
   LandingObservation Process(const cv::Mat& image, Time time);
 
+  // The track; its times are those of the frames.
+  const TargetTracker& tracker() const { return tracker_; }
   const LandingPatternDetector& detector() const { return detector_; }
   const LandingPipelineOptions& options() const { return options_; }
 
  private:
-  // Where the pattern was seen last; in the world when there was a pose, else in the camera.
+  // Where the pattern was seen last, in the camera.
   struct Sighting {
     Time time;
-    Eigen::Vector3d center;
-    bool is_in_world;
+    Eigen::Vector3d center_in_camera;
   };
 
   void Detect(const cv::Mat& image, LandingObservation* observation);
   std::optional<RigidTransform> WorldFromCamera(Time time) const;
   LandingHint MakeHint(const LandingObservation& observation) const;
+  void AddTrack(const LandingObservation& observation, LandingHint* hint) const;
   void AddLastSighting(const LandingObservation& observation, LandingHint* hint) const;
   void LocateInWorld(LandingObservation* observation) const;
+  void Track(LandingObservation* observation);
   void Remember(const LandingObservation& observation);
 
   LandingPipelineOptions options_;
@@ -119,6 +138,8 @@ class LandingPipeline {
   LandingWorkspace workspace_;
   PoseHistory poses_;
   std::optional<double> altitude_m_;
+  TargetTracker tracker_;
+  bool is_track_trusted_ = true;  // the last detection was where the track expected it
   std::optional<Sighting> last_;
 };
 

@@ -119,6 +119,51 @@ TEST_F(LandingPipelineTest, FindsThePatternAgainWhereverItJumps) {
   }
 }
 
+// The UAV hovers, the pattern moves at 2 m/s; the frames are 0.1 s apart.
+TEST_F(LandingPipelineTest, FollowsAndPredictsThePattern) {
+  LandingPipeline pipeline(calibration_, options_);
+  LandingObservation observation;
+  for (int i = 0; i < 8; ++i) {
+    const Time time = kTime + i * DurationFromSeconds(0.1);
+    pipeline.AddPose({time, world_from_body_});
+    world_from_pattern_.translation.x() = 9.5 + 0.2 * i;
+    observation = pipeline.Process(Draw(), time);
+    ASSERT_TRUE(observation.fate) << i;
+    EXPECT_EQ(*observation.fate, i == 0 ? MeasurementFate::kStarted : MeasurementFate::kAccepted);
+  }
+  EXPECT_EQ(observation.track_state, TrackState::kTracking);
+  EXPECT_NEAR(observation.target->motion.velocity().x(), 2, 0.2);
+  const auto ahead = pipeline.tracker().Predict(observation.time + DurationFromSeconds(0.5));
+  ASSERT_TRUE(ahead);
+  EXPECT_NEAR(ahead->motion.position().x(), 9.5 + 0.2 * 7 + 1, 0.15);
+}
+
+TEST_F(LandingPipelineTest, AWrongTrackDoesNotHideThePattern) {
+  LandingPipeline pipeline(calibration_, options_);
+  for (int i = 0; i < 10; ++i) {
+    const Time time = kTime + i * DurationFromSeconds(0.1);
+    pipeline.AddPose({time, world_from_body_});
+    if (i == 5) world_from_pattern_.translation.x() += 1;
+    const auto observation = pipeline.Process(Draw(), time);
+    EXPECT_TRUE(observation.report.detection) << i;
+    if (i == 5) {
+      EXPECT_EQ(observation.fate, MeasurementFate::kFarFromTrack);
+    }
+    if (i == 9) {
+      EXPECT_EQ(observation.fate, MeasurementFate::kStarted);
+    }
+  }
+}
+
+TEST_F(LandingPipelineTest, StillFramesHaveNoTrack) {
+  options_.still = true;
+  calibration_.clock_offset = Duration(5);
+  const LandingObservation observation = ProcessWithPose(options_);
+  EXPECT_TRUE(observation.center_in_world);
+  EXPECT_FALSE(observation.fate);
+  EXPECT_FALSE(observation.target);
+}
+
 TEST_F(LandingPipelineTest, ImageOfAnotherSizeIsAMissWithAReason) {
   LandingPipeline pipeline(calibration_, options_);
   for (const cv::Size size : {cv::Size(1, 1), cv::Size(20000, 2), cv::Size(480, 640)}) {

@@ -75,4 +75,8 @@ Drawing::Edge Drawing::NearestEdge(const Eigen::Vector2d& point) const {
   return nearest;
 }
 
+double Coverage(double distance, double width) {
+  return std::clamp(0.5 - distance / std::max(width, 1e-12), 0.0, 1.0);
+}
+
 }  // namespace kestrel

@@ -53,4 +53,8 @@ class Drawing {
   double bound_radius_ = -1;
 };
 
+// Part of a box 'width' wide around a point at 'distance' outside of a straight edge that lies
+// inside of it.
+double Coverage(double distance, double width);
+
 }  // namespace kestrel

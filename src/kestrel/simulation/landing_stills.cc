@@ -33,15 +33,6 @@ Vector3d UpInCamera(const RigidTransform& camera_from_pattern) {
   return camera_from_pattern.rotation * Vector3d::UnitZ();
 }
 
-// Whether a point shows in the image: inside of it and of the lens circle, not behind the airframe.
-bool IsSeen(const Vector3d& point_in_camera, const SceneRenderer& renderer) {
-  const LensOptions& lens = renderer.lens();
-  Vector2d pixel;
-  if (renderer.camera().Project(point_in_camera, &pixel) != ProjectionStatus::kOk) return false;
-  const double angle = std::atan2(point_in_camera.head<2>().norm(), point_in_camera.z());
-  return angle < Radians(lens.half_angle_deg) && lens.airframe.NearestEdge(pixel).distance > 0;
-}
-
 // Points that cover ring and cross evenly.
 std::vector<Vector2d> InkPoints(const LandingPattern& pattern) {
   const Drawing ink = LandingPatternInk(pattern);
@@ -135,23 +126,10 @@ std::optional<Vector2d> RandomPlacePoint(const CameraModel& camera,
   return Vector2d((camera_in_pattern + range * direction).head<2>());
 }
 
-// Two landing legs that reach in from the lower corners, as in the paper's frames.
-Drawing LandingLegs(const CameraIntrinsics& camera) {
-  const double unit = camera.height_px / 480.0;
-  Drawing legs;
-  for (const double side : {-1.0, 1.0}) {
-    const Vector2d foot(camera.cx_px + side * 190 * unit, camera.cy_px + 160 * unit);
-    const Vector2d outward = Vector2d(side * 0.55, 0.85).normalized();
-    legs.Add(Drawing::Ring{foot, 15 * unit});
-    legs.Add(Drawing::Bar{foot + 100 * unit * outward, outward, 100 * unit, 5 * unit});
-  }
-  return legs;
-}
-
-LensOptions Lens(const LandingStillOptions& options, bool legs) {
+LensOptions LensOf(const LandingStillOptions& options, bool legs) {
   LensOptions lens;
   lens.half_angle_deg = options.lens_half_angle_deg;
-  if (legs) lens.airframe = LandingLegs(options.camera);
+  if (legs) lens.airframe = LandingLegs(options.camera, /*four=*/false);
   return lens;
 }
 
@@ -175,13 +153,13 @@ struct LookalikePlace {
   double minor_px;  // of its circle's image
 };
 
-bool IsCircleSeen(const Vector2d& center, double radius, const SceneRenderer& renderer,
+bool IsCircleSeen(const Vector2d& center, double radius, const Lens& lens,
                   const RigidTransform& camera_from_pattern) {
   constexpr int kPoints = 24;
   for (int i = 0; i < kPoints; ++i) {
     const double angle = 2 * kPi * i / kPoints;
     const Vector2d point = center + radius * Vector2d(std::cos(angle), std::sin(angle));
-    if (!IsSeen(camera_from_pattern * OnPlane(point), renderer)) return false;
+    if (!lens.Sees(camera_from_pattern * OnPlane(point))) return false;
   }
   return true;
 }
@@ -202,7 +180,7 @@ std::optional<LookalikePlace> RandomPlace(const SceneRenderer& renderer,
     return (*center - other.center).norm() < 2.2 * (radius + other.radius);
   };
   if (std::any_of(taken.begin(), taken.end(), overlaps) ||
-      !IsCircleSeen(*center, 1.1 * radius, renderer, camera_from_pattern)) {
+      !IsCircleSeen(*center, 1.1 * radius, renderer.lens(), camera_from_pattern)) {
     return std::nullopt;
   }
   const auto extent = ExtentOfCircle(camera, camera_from_pattern, *center, radius);
@@ -244,7 +222,7 @@ std::optional<LandingStill> TruthOf(const LandingStillOptions& options,
       ProjectionStatus::kOutsideModel) {
     return std::nullopt;
   }
-  const double visible_fraction = VisibleFraction(pattern, camera_from_pattern, renderer);
+  const double visible_fraction = VisibleFraction(pattern, camera_from_pattern, renderer.lens());
   if (visible_fraction < options.min_visible_fraction) return std::nullopt;
   return LandingStill{.image = {},
                       .pattern = pattern,
@@ -324,10 +302,10 @@ std::vector<std::string> LandingStillOptions::Validate() const {
 }
 
 double VisibleFraction(const LandingPattern& pattern, const RigidTransform& camera_from_pattern,
-                       const SceneRenderer& renderer) {
+                       const Lens& lens) {
   const std::vector<Vector2d> points = InkPoints(pattern);
   const auto seen = std::count_if(points.begin(), points.end(), [&](const Vector2d& point) {
-    return IsSeen(camera_from_pattern * OnPlane(point), renderer);
+    return lens.Sees(camera_from_pattern * OnPlane(point));
   });
   return static_cast<double>(seen) / static_cast<double>(points.size());
 }
@@ -335,30 +313,55 @@ double VisibleFraction(const LandingPattern& pattern, const RigidTransform& came
 LandingStillMaker::LandingStillMaker(const LandingStillOptions& options)
     : options_(Valid(options)),
       camera_(options.camera),
-      plain_(camera_, Lens(options, /*legs=*/false)),
-      with_legs_(camera_, Lens(options, /*legs=*/true)) {}
+      plain_(camera_, LensOf(options, /*legs=*/false)),
+      with_legs_(camera_, LensOf(options, /*legs=*/true)) {}
 
-LandingStill LandingStillMaker::MakePattern(std::uint64_t seed) const {
+LandingStill LandingStillMaker::PreparePattern(std::uint64_t seed, View* view) const {
   Random random(seed);
   LandingStill still = RandomTruth(options_, plain_, &random);
   const double radius = still.pattern.outer_radius_m();
-  Scene scene = RandomGround(&random);
-  AddRandomPattern(still.pattern, &random, &scene);
-  AddRandomShadow(radius, &random, &scene);
-  AddRandomGlare(radius, &random, &scene);
-  ImagingOptions imaging = RandomImaging(still.ring_minor_px, &random);
-  AddRandomMotion(camera_, still.camera_from_pattern, still.ring_minor_px, &random, &imaging);
+  view->scene = RandomGround(&random);
+  AddRandomPattern(still.pattern, &random, &view->scene);
+  AddRandomShadow(radius, &random, &view->scene);
+  AddRandomGlare(radius, &random, &view->scene);
+  view->imaging = RandomImaging(still.ring_minor_px, &random);
+  AddRandomMotion(camera_, still.camera_from_pattern, still.ring_minor_px, &random, &view->imaging);
 
-  const double beside_legs = VisibleFraction(still.pattern, still.camera_from_pattern, with_legs_);
+  const double beside_legs =
+      VisibleFraction(still.pattern, still.camera_from_pattern, with_legs_.lens());
   const bool legs = random.Chance(0.3) && beside_legs > 0.9 * still.visible_fraction;
   if (legs) still.visible_fraction = beside_legs;
-  still.image = (legs ? with_legs_ : plain_).Render(scene, still.camera_from_pattern, imaging);
+  view->renderer = legs ? &with_legs_ : &plain_;
   return still;
 }
 
+LandingStill LandingStillMaker::PlacePattern(std::uint64_t seed) const {
+  View view;
+  return PreparePattern(seed, &view);
+}
+
+LandingStill LandingStillMaker::MakePattern(std::uint64_t seed) const {
+  View view;
+  LandingStill still = PreparePattern(seed, &view);
+  still.image = view.renderer->Render(view.scene, still.camera_from_pattern, view.imaging);
+  return still;
+}
+
+LookalikeStill LandingStillMaker::PlaceLookalikes(std::uint64_t seed) const {
+  View view;
+  return PrepareLookalikes(seed, &view);
+}
+
 LookalikeStill LandingStillMaker::MakeLookalikes(std::uint64_t seed) const {
+  View view;
+  LookalikeStill still = PrepareLookalikes(seed, &view);
+  still.image = view.renderer->Render(view.scene, still.camera_from_pattern, view.imaging);
+  return still;
+}
+
+LookalikeStill LandingStillMaker::PrepareLookalikes(std::uint64_t seed, View* view) const {
   Random random(seed);
-  const SceneRenderer& renderer = random.Chance(0.3) ? with_legs_ : plain_;
+  view->renderer = random.Chance(0.3) ? &with_legs_ : &plain_;
   const int wanted = random.Integer(1, 5);
   std::vector<LookalikePlace> places;
   LookalikeStill still;
@@ -367,7 +370,7 @@ LookalikeStill LandingStillMaker::MakeLookalikes(std::uint64_t seed) const {
     const auto pose = RandomPose(camera_, still.altitude_m, options_.max_tilt_deg, 0, &random);
     if (!pose) continue;
     still.camera_from_pattern = *pose;
-    places = RandomPlaces(renderer, *pose, wanted, &random);
+    places = RandomPlaces(*view->renderer, *pose, wanted, &random);
   }
   if (places.empty()) {
     throw InputError(fmt::format(
@@ -375,15 +378,14 @@ LookalikeStill LandingStillMaker::MakeLookalikes(std::uint64_t seed) const {
         options_.min_altitude_m, options_.max_altitude_m));
   }
   still.up_in_camera = UpInCamera(still.camera_from_pattern);
-  Scene scene = RandomGround(&random);
+  view->scene = RandomGround(&random);
   for (const LookalikePlace& place : places) {
-    still.names.emplace_back(AddRandomLookalike(place.center, place.radius, &random, &scene));
+    still.names.emplace_back(AddRandomLookalike(place.center, place.radius, &random, &view->scene));
   }
-  AddRandomShadow(2, &random, &scene);
+  AddRandomShadow(2, &random, &view->scene);
   const double size_px = places.front().minor_px;
-  ImagingOptions imaging = RandomImaging(size_px, &random);
-  AddRandomMotion(camera_, still.camera_from_pattern, size_px, &random, &imaging);
-  still.image = renderer.Render(scene, still.camera_from_pattern, imaging);
+  view->imaging = RandomImaging(size_px, &random);
+  AddRandomMotion(camera_, still.camera_from_pattern, size_px, &random, &view->imaging);
   return still;
 }
 

@@ -61,10 +61,10 @@ struct LookalikeStill {
   std::vector<std::string> names;  // of the look-alikes in it, at least one
 };
 
-// Part (0 to 1) of the area of ring and cross that shows in the renderer's image: inside of it and
-// of the lens circle, not behind the airframe.
+// Part (0 to 1) of the area of ring and cross that shows in the image: inside of it and of the lens
+// circle, not behind the airframe.
 double VisibleFraction(const LandingPattern& pattern, const RigidTransform& camera_from_pattern,
-                       const SceneRenderer& renderer);
+                       const Lens& lens);
 
 // Makes random stills: any yaw, tilt and place in the lens circle, random ground, light, shadow,
 // glare, haze, wear, blur, motion and noise, all as strong as an eye can still see through. The
@@ -81,10 +81,23 @@ class LandingStillMaker {
   // an eye can tell them from the pattern. Throws InputError when none can be placed.
   LookalikeStill MakeLookalikes(std::uint64_t seed) const;
 
+  // The same without their images, which are left empty: quick.
+  LandingStill PlacePattern(std::uint64_t seed) const;
+  LookalikeStill PlaceLookalikes(std::uint64_t seed) const;
+
   const CameraModel& camera() const { return camera_; }
   const LandingStillOptions& options() const { return options_; }
 
  private:
+  // What an image is rendered from, other than the pose.
+  struct View {
+    Scene scene;
+    ImagingOptions imaging;
+    const SceneRenderer* renderer = nullptr;
+  };
+  LandingStill PreparePattern(std::uint64_t seed, View* view) const;
+  LookalikeStill PrepareLookalikes(std::uint64_t seed, View* view) const;
+
   LandingStillOptions options_;
   CameraModel camera_;
   SceneRenderer plain_;      // nothing in front of the lens

@@ -28,12 +28,12 @@ TEST(VisibleFractionTest, KnowsWhatTheBorderCutsOff) {
   const CameraModel camera(PaperCamera());
   const SceneRenderer renderer(camera);
   const LandingPattern pattern;
-  EXPECT_EQ(VisibleFraction(pattern, NadirPose({0, 0, 1}, 3), renderer), 1);
+  EXPECT_EQ(VisibleFraction(pattern, NadirPose({0, 0, 1}, 3), renderer.lens()), 1);
   Vector3d ray;
   ASSERT_NE(camera.Unproject({376, 479.5}, &ray), ProjectionStatus::kOutsideModel);
-  EXPECT_NEAR(VisibleFraction(pattern, NadirPose(ray, 3), renderer), 0.5, 0.03);
+  EXPECT_NEAR(VisibleFraction(pattern, NadirPose(ray, 3), renderer.lens()), 0.5, 0.03);
   ASSERT_NE(camera.Unproject({376, 560}, &ray), ProjectionStatus::kOutsideModel);
-  EXPECT_EQ(VisibleFraction(pattern, NadirPose(ray, 3), renderer), 0);
+  EXPECT_EQ(VisibleFraction(pattern, NadirPose(ray, 3), renderer.lens()), 0);
 }
 
 TEST(VisibleFractionTest, KnowsTheLensCircleAndTheAirframe) {
@@ -43,11 +43,11 @@ TEST(VisibleFractionTest, KnowsTheLensCircleAndTheAirframe) {
   const LandingPattern pattern;
   const Vector3d rim(std::sin(std::numbers::pi / 6), 0, std::cos(std::numbers::pi / 6));
   const SceneRenderer narrow(camera, lens);
-  EXPECT_NEAR(VisibleFraction(pattern, NadirPose(rim, 6), narrow), 0.5, 0.04);
+  EXPECT_NEAR(VisibleFraction(pattern, NadirPose(rim, 6), narrow.lens()), 0.5, 0.04);
 
   lens.airframe.Add(Drawing::Bar{{376 + 100, 240}, {1, 0}, 100, 200});
   const SceneRenderer covered(camera, lens);
-  EXPECT_NEAR(VisibleFraction(pattern, NadirPose({0, 0, 1}, 3), covered), 0.5, 0.01);
+  EXPECT_NEAR(VisibleFraction(pattern, NadirPose({0, 0, 1}, 3), covered.lens()), 0.5, 0.01);
 }
 
 TEST(LandingStillMakerTest, StillsKeepTheirOptions) {

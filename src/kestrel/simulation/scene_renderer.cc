@@ -15,6 +15,7 @@
 #include "kestrel/base/options.h"
 #include "kestrel/base/random.h"
 #include "kestrel/simulation/ground_texture.h"
+#include "kestrel/simulation/violations.h"
 
 namespace kestrel {
 namespace {
@@ -28,34 +29,6 @@ constexpr int kTimesMoving = 12;
 // Rays that fall on the plane flatter than this (sine of the angle) see the sky: the plane ends at
 // the horizon, a thousand camera heights away.
 constexpr double kHorizonSine = 1e-3;
-
-constexpr double kRimWidthDeg = 0.7;  // of the soft edge of the lens circle
-
-double DegFromRad(double angle) { return angle * 180 / std::numbers::pi; }
-
-// Part of a box 'width' wide around a point at 'distance' outside of a straight edge that lies
-// inside of it.
-double Coverage(double distance, double width) {
-  return std::clamp(0.5 - distance / std::max(width, 1e-12), 0.0, 1.0);
-}
-
-void RequireIn(double value, double low, double high, const std::string& key,
-               std::vector<std::string>* violations) {
-  if (!(value >= low && value <= high)) {
-    violations->push_back(fmt::format("{} is {}, expected {} to {}", key, value, low, high));
-  }
-}
-
-void RequireNotNegative(double value, const std::string& key,
-                        std::vector<std::string>* violations) {
-  if (!(value >= 0 && std::isfinite(value))) {
-    violations->push_back(fmt::format("{} is {}, expected 0 or more", key, value));
-  }
-}
-
-void RequireFinite(double norm, const std::string& key, std::vector<std::string>* violations) {
-  if (!std::isfinite(norm)) violations->push_back(fmt::format("{} is not finite", key));
-}
 
 // A camera pose as the plane sees it.
 struct PlaneView {
@@ -135,14 +108,6 @@ std::vector<std::string> Scene::Validate() const {
     RequireIn(glares[i].sigma_m, 1e-3, 1e3, fmt::format("glares[{}].sigma_m", i), &violations);
     RequireNotNegative(glares[i].strength, fmt::format("glares[{}].strength", i), &violations);
   }
-  return violations;
-}
-
-std::vector<std::string> LensOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(half_angle_deg, 1, 180, "half_angle_deg", &violations);
-  RequireIn(vignette, 0, 1, "vignette", &violations);
-  RequireIn(airframe_radiance, 0, 1, "airframe_radiance", &violations);
   return violations;
 }
 
@@ -300,52 +265,6 @@ class SceneRenderer::PlanePainter {
   int cells_per_side_ = 1;
 };
 
-SceneRenderer::SceneRenderer(const CameraModel& camera, const LensOptions& lens)
-    : camera_(camera), lens_(lens) {
-  RequireValid(lens);
-  const int columns = camera.width_px() + 1;
-  const int rows = camera.height_px() + 1;
-  corner_rays_.assign(static_cast<std::size_t>(columns) * rows, Eigen::Vector3f::Zero());
-  for (int i = 0; i < columns * rows; ++i) {
-    const int column = i % columns;
-    const int row = i / columns;
-    const Eigen::Vector2d corner(column - 0.5, row - 0.5);
-    Eigen::Vector3d ray;
-    if (camera.Unproject(corner, &ray) != ProjectionStatus::kOutsideModel) {
-      corner_rays_[i] = ray.cast<float>();
-    }
-  }
-  lens_gain_.create(camera.height_px(), camera.width_px(), CV_32F);
-  airframe_cover_.create(camera.height_px(), camera.width_px(), CV_32F);
-  for (int v = 0; v < camera.height_px(); ++v) {
-    for (int u = 0; u < camera.width_px(); ++u) {
-      lens_gain_.at<float>(v, u) = static_cast<float>(LensGain(u, v));
-      const double airframe_distance = lens.airframe.NearestEdge({u, v}).distance;
-      airframe_cover_.at<float>(v, u) = static_cast<float>(Coverage(airframe_distance, 1));
-    }
-  }
-}
-
-double SceneRenderer::LensGain(int u, int v) const {
-  const std::array<Eigen::Vector3d, 4> rays = PixelCorners(u, v);
-  for (const Eigen::Vector3d& ray : rays) {
-    if (ray.isZero()) return 0;
-  }
-  const Eigen::Vector3d center = (rays[0] + rays[1] + rays[2] + rays[3]).normalized();
-  const double angle_deg = DegFromRad(std::atan2(center.head<2>().norm(), center.z()));
-  const double rim = Coverage(angle_deg - lens_.half_angle_deg, kRimWidthDeg);
-  return rim * (1 - lens_.vignette * std::pow(angle_deg / lens_.half_angle_deg, 4));
-}
-
-// The rays of the upper left, upper right, lower left and lower right corner of a pixel.
-std::array<Eigen::Vector3d, 4> SceneRenderer::PixelCorners(int u, int v) const {
-  const std::size_t stride = camera_.width_px() + 1;
-  const Eigen::Vector3f* upper = corner_rays_.data() + v * stride + u;
-  const Eigen::Vector3f* lower = upper + stride;
-  return {upper[0].cast<double>(), upper[1].cast<double>(), lower[0].cast<double>(),
-          lower[1].cast<double>()};
-}
-
 cv::Mat SceneRenderer::Render(const Scene& scene, const RigidTransform& camera_from_pattern,
                               const ImagingOptions& imaging) const {
   RequireValid(scene);
@@ -359,11 +278,14 @@ cv::Mat SceneRenderer::Render(const Scene& scene, const RigidTransform& camera_f
 cv::Mat SceneRenderer::PaintRadiance(const Scene& scene, const RigidTransform& camera_from_pattern,
                                      const ImagingOptions& imaging) const {
   const PlanePainter painter(scene, camera_from_pattern, imaging);
-  cv::Mat radiance(camera_.height_px(), camera_.width_px(), CV_32F, cv::Scalar(0));
+  cv::Mat radiance(lens_.gain().size(), CV_32F, cv::Scalar(0));
   for (int v = 0; v < radiance.rows; ++v) {
     for (int u = 0; u < radiance.cols; ++u) {
-      if (lens_gain_.at<float>(v, u) <= 0) continue;
-      radiance.at<float>(v, u) = static_cast<float>(painter.Radiance(PixelCorners(u, v)));
+      if (lens_.gain().at<float>(v, u) <= 0) continue;
+      std::array<Eigen::Vector3d, 4> corners;
+      std::ranges::transform(lens_.PixelCorners(u, v), corners.begin(),
+                             [](const Eigen::Vector3f& ray) { return ray.cast<double>(); });
+      radiance.at<float>(v, u) = static_cast<float>(painter.Radiance(corners));
     }
   }
   return radiance;
@@ -374,11 +296,11 @@ void SceneRenderer::PassLens(const ImagingOptions& imaging, cv::Mat* radiance) c
     for (int u = 0; u < radiance->cols; ++u) {
       float& value = radiance->at<float>(v, u);
       const double hazy = value + imaging.haze * (imaging.haze_radiance - value);
-      const double cover = airframe_cover_.at<float>(v, u);
-      const double seen = hazy + cover * (lens_.airframe_radiance - hazy);
+      const double cover = lens_.airframe_cover().at<float>(v, u);
+      const double seen = hazy + cover * (lens_.options().airframe_radiance - hazy);
       const double light = 1 + imaging.gradient.x() * ((u + 0.5) / radiance->cols - 0.5) +
                            imaging.gradient.y() * ((v + 0.5) / radiance->rows - 0.5);
-      value = static_cast<float>(seen * std::max(light, 0.0) * lens_gain_.at<float>(v, u));
+      value = static_cast<float>(seen * std::max(light, 0.0) * lens_.gain().at<float>(v, u));
     }
   }
   if (imaging.blur_sigma_px > 0) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "kestrel/camera/camera_model.h"
 #include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/simulation/drawing.h"
+#include "kestrel/simulation/lens.h"
 
 namespace kestrel {
 
@@ -52,22 +52,6 @@ struct Scene {
   std::vector<std::string> Validate() const;
 };
 
-// The part of the lens that the camera model does not describe.
-struct LensOptions {
-  // Largest angle to the optical axis at which light arrives, degrees, (0, 180]. Pixels beyond it,
-  // and pixels that the camera model does not cover, are black.
-  double half_angle_deg = 92.5;
-  // Part of the light that is lost at that angle, 0 to 1; it falls with the fourth power of the
-  // angle.
-  double vignette = 0.3;
-  // What of the airframe stands in front of the lens, drawn in pixels, and its radiance in units of
-  // white, 0 to 1.
-  Drawing airframe;
-  double airframe_radiance = 0.1;
-
-  std::vector<std::string> Validate() const;
-};
-
 // How light becomes gray values.
 struct ImagingOptions {
   double black_level = 5;          // gray value without light, 0 to 255
@@ -95,15 +79,16 @@ struct ImagingOptions {
 class SceneRenderer {
  public:
   // Throws InputError when the lens options are not valid.
-  explicit SceneRenderer(const CameraModel& camera, const LensOptions& lens = {});
+  explicit SceneRenderer(const CameraModel& camera, const LensOptions& lens = {})
+      : lens_(camera, lens) {}
 
   // CV_8UC1 of the camera's size. 'camera_from_pattern' must see the plane from above. Throws
   // InputError when scene, pose or imaging are not valid.
   cv::Mat Render(const Scene& scene, const RigidTransform& camera_from_pattern,
                  const ImagingOptions& imaging) const;
 
-  const CameraModel& camera() const { return camera_; }
-  const LensOptions& lens() const { return lens_; }
+  const CameraModel& camera() const { return lens_.camera(); }
+  const Lens& lens() const { return lens_; }
 
  private:
   class PlanePainter;
@@ -111,14 +96,8 @@ class SceneRenderer {
   cv::Mat PaintRadiance(const Scene& scene, const RigidTransform& camera_from_pattern,
                         const ImagingOptions& imaging) const;
   void PassLens(const ImagingOptions& imaging, cv::Mat* radiance) const;
-  double LensGain(int u, int v) const;
-  std::array<Eigen::Vector3d, 4> PixelCorners(int u, int v) const;
 
-  CameraModel camera_;
-  LensOptions lens_;
-  std::vector<Eigen::Vector3f> corner_rays_;  // of the pixels' corners, row by row; zero if none
-  cv::Mat lens_gain_;                         // CV_32F, light that passes the lens, 0 to 1
-  cv::Mat airframe_cover_;                    // CV_32F, part of a pixel that the airframe covers
+  Lens lens_;
 };
 
 }  // namespace kestrel

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "kestrel/landing/cross.h"
+
+namespace kestrel {
+namespace {
+
+constexpr int kDirections = 96;                 // around the ring
+constexpr int kPerQuarter = kDirections / 4;    // over a right angle
+constexpr int kBeside = kPerQuarter * 28 / 90;  // from the middle of an arm to the white beside
+constexpr std::array<double, 5> kRadii{0.34, 0.46, 0.58, 0.7, 0.82};  // inner radii of the ring
+constexpr int kMinSeen = 2;  // contrasts without which nothing is said
+
+}  // namespace
+
+std::optional<Cross> FindCrossByProfile(const cv::Mat& image, const PatternView& view,
+                                        const LandingPattern& pattern, double min_contrast) {
+  // For each direction modulo a right angle, how much darker it is than what lies beside it: the
+  // mean over the half arms and radii that the image shows.
+  std::array<float, kPerQuarter> sum{};
+  std::array<int, kPerQuarter> seen{};
+  std::array<float, kDirections> gray;
+  for (const double radius : kRadii) {
+    for (int i = 0; i < kDirections; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kDirections;
+      const double r = radius * pattern.inner_radius_m();
+      gray[i] = view.Sample(image, static_cast<float>(r * std::cos(angle)),
+                            static_cast<float>(r * std::sin(angle)));
+    }
+    for (int i = 0; i < kDirections; ++i) {
+      const float before = gray[(i + kDirections - kBeside) % kDirections];
+      const float after = gray[(i + kBeside) % kDirections];
+      if (gray[i] < 0 || before < 0 || after < 0) continue;
+      // The darker side counts: the edge of a shadow is no arm.
+      sum[i % kPerQuarter] += std::min(before, after) - gray[i];
+      ++seen[i % kPerQuarter];
+    }
+  }
+  std::array<float, kPerQuarter> depth{};
+  for (int i = 0; i < kPerQuarter; ++i) {
+    if (seen[i] >= kMinSeen) depth[i] = sum[i] / static_cast<float>(seen[i]);
+  }
+  const auto best = std::max_element(depth.begin(), depth.end());
+  if (*best < min_contrast) return std::nullopt;
+  const auto index = static_cast<int>(best - depth.begin());
+  const double left = depth[(index + kPerQuarter - 1) % kPerQuarter];
+  const double right = depth[(index + 1) % kPerQuarter];
+  const double curvature = left - 2 * *best + right;
+  const double shift = curvature < 0 ? 0.5 * (left - right) / curvature : 0;
+  return Cross{(index + shift) * 2 * std::numbers::pi / kDirections};
+}
+
+}  // namespace kestrel

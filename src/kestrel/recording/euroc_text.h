@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kestrel/camera/calibration.h"
+#include "kestrel/navigation/pose_history.h"
+
+namespace kestrel {
+
+// cam0/sensor.yaml of a recording in the EuRoC layout: lens, size, rate and, where the calibration
+// has one, the mount T_BS. ReadCalibration reads it back, to the last bit.
+std::string EurocCameraText(const CameraCalibration& calibration, double rate_hz);
+
+// nav0/sensor.yaml.
+std::string EurocPoseSensorText(double rate_hz);
+
+// nav0/data.csv: position (to a micrometre) and quaternion (w x y z) of the body in the world.
+std::string EurocPoseText(const std::vector<PoseSample>& poses);
+
+// A matrix as EuRoC files have it, rows in a flat list: "  cols: 4\n  rows: 4\n  data: [...]\n".
+std::string EurocTransformText(const RigidTransform& transform);
+
+}  // namespace kestrel

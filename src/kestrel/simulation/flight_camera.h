@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "kestrel/simulation/flight.h"
+#include "kestrel/simulation/frame_renderer.h"
+#include "kestrel/simulation/sensor.h"
+
+namespace kestrel {
+
+// A camera on a flying body, and where the things appear that it sees. Thread-safe.
+class FlightCamera {
+ public:
+  // 'world_from_camera': its motion with its vibration. 'gain': what exposure control does.
+  // Neither copied nor moved; the world must outlive it.
+  FlightCamera(const FlightCamera&) = delete;
+  FlightCamera& operator=(const FlightCamera&) = delete;
+
+  FlightCamera(const CameraModel& camera, const LensOptions& lens, const ShutterOptions& shutter,
+               const SensorOptions& sensor, const World& world, Motion world_from_camera,
+               std::function<double(double time_s)> gain);
+
+  // The 8-bit image whose exposure has its middle at 'time_s'; 'seed' makes its noise.
+  cv::Mat Capture(double time_s, std::uint64_t seed) const;
+
+  // Where a point appears in that image: of a moving point, at the time of the row in which it
+  // appears. Nothing where the lens model says nothing.
+  std::optional<Eigen::Vector2d> Project(double time_s, const Path& point_in_world) const;
+
+  const Lens& lens() const { return lens_; }
+  RigidTransform WorldFromCamera(double time_s) const { return world_from_camera_(time_s); }
+
+ private:
+  Lens lens_;
+  SensorOptions sensor_;
+  FrameRenderer renderer_;
+  Motion world_from_camera_;
+  std::function<double(double time_s)> gain_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kestrel/simulation/landing_simulation.h"
+
+namespace kestrel {
+
+// A named flight: what it changes in the default options.
+struct Scenario {
+  const char* name;
+  const char* meaning;
+  std::vector<const char*> settings;  // "key=value", as for --set
+};
+
+// The flights of `kestrel simulate landing`.
+std::span<const Scenario> LandingScenarios();
+
+// The options of a scenario, then those of the file (if not empty), then the settings "key=value".
+// Throws InputError when there is no such scenario, one of them is at fault, or the result is not
+// valid.
+LandingSimulationOptions ReadLandingSimulation(const std::string& scenario,
+                                               const std::string& config_file,
+                                               const std::vector<std::string>& settings);
+
+}  // namespace kestrel

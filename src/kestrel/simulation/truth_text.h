@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kestrel/navigation/pose_history.h"
+#include "kestrel/simulation/world.h"
+
+namespace kestrel {
+
+// state_groundtruth_estimate0/data.csv of a flight: the true pose and velocity at 100 Hz from
+// 'begin_s' to 'end_s', and at all image times.
+std::string TrueStateText(const Motion& world_from_body, double begin_s, double end_s,
+                          const std::vector<double>& image_times_s);
+
+// The same of poses that have nothing to do with each other: without velocities.
+std::string TrueStateText(const std::vector<PoseSample>& poses);
+
+// The header of landing_pattern0/data.csv.
+std::string LandingTruthHeader();
+
+// A text of lines as a part of a YAML map: two blanks before each.
+std::string Indented(const std::string& lines);
+
+// Velocity (m/s) of a body's origin.
+Eigen::Vector3d VelocityOf(const Motion& world_from_body, double time_s);
+
+}  // namespace kestrel
