@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/cli/simulate_command.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <iostream>
 #include <memory>
@@ -16,6 +17,8 @@
 #include "kestrel/camera/calibration_reader.h"
 #include "kestrel/cli/interrupt.h"
 #include "kestrel/cli/progress_bar.h"
+#include "kestrel/simulation/hunt_simulation.h"
+#include "kestrel/simulation/landing_simulation.h"
 #include "kestrel/simulation/recording_plan.h"
 #include "kestrel/simulation/scenarios.h"
 
@@ -68,17 +71,26 @@ void Render(const RecordingPlan& plan, const SimulateArguments& arguments) {
   fmt::print(stderr, "{}: {} images\n", arguments.output, plan.times.size());
 }
 
-void RunLanding(const SimulateArguments& arguments) {
-  if (arguments.list) return PrintScenarios(LandingScenarios());
-  const LandingSimulationOptions options =
-      ReadLandingSimulation(arguments.scenario, arguments.config, arguments.settings);
+// What `landing` and `hunt` differ in.
+template <class Options>
+struct Kind {
+  std::span<const Scenario> scenarios;
+  Options (*read)(const std::string& scenario, const std::string& config_file,
+                  const std::vector<std::string>& settings);
+  RecordingPlan (*plan)(const Options& options, const CameraCalibration& camera,
+                        std::uint64_t seed);
+  CameraCalibration camera;  // where none is given
+};
+
+template <class Options>
+void Run(const Kind<Options>& kind, const SimulateArguments& arguments) {
+  if (arguments.list) return PrintScenarios(kind.scenarios);
+  const Options options = kind.read(arguments.scenario, arguments.config, arguments.settings);
   if (arguments.print_config) {
     std::cout << PrintOptions(options);
     return;
   }
-  Render(
-      PlanLanding(options, FindCamera(arguments.camera, PaperCalibration()), arguments.seed),
-      arguments);
+  Render(kind.plan(options, FindCamera(arguments.camera, kind.camera), arguments.seed), arguments);
 }
 
 void AddArguments(CLI::App* command, SimulateArguments* arguments) {
@@ -112,16 +124,26 @@ void AddArguments(CLI::App* command, SimulateArguments* arguments) {
   });
 }
 
+template <class Options>
+void AddKind(CLI::App* command, const char* name, const char* meaning, const Kind<Options>& kind) {
+  CLI::App* subcommand = command->add_subcommand(name, meaning);
+  const auto arguments = std::make_shared<SimulateArguments>();
+  AddArguments(subcommand, arguments.get());
+  subcommand->callback([kind, arguments] { Run(kind, *arguments); });
+}
+
 }  // namespace
 
 void AddSimulateCommand(CLI::App* app) {
   CLI::App* command = app->add_subcommand("simulate", "Render a flight with truth, as a recording");
   command->require_subcommand(1);
-  CLI::App* landing = command->add_subcommand(
-      "landing", "A flight over the landing pattern on a vehicle (fisheye camera)");
-  const auto arguments = std::make_shared<SimulateArguments>();
-  AddArguments(landing, arguments.get());
-  landing->callback([arguments] { RunLanding(*arguments); });
+  AddKind(command, "landing",
+          "A flight over the landing pattern on a vehicle (gray fisheye camera)",
+          Kind<LandingSimulationOptions>{LandingScenarios(), ReadLandingSimulation, PlanLanding,
+                                         PaperCalibration()});
+  AddKind(command, "hunt", "A flight over coloured objects (colour camera, rolling shutter)",
+          Kind<HuntSimulationOptions>{HuntScenarios(), ReadHuntSimulation, PlanHunt,
+                                      HuntCalibration()});
 }
 
 }  // namespace kestrel

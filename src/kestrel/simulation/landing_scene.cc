@@ -150,7 +150,7 @@ void AddSurroundings(const SurroundingsOptions& options, const std::vector<Vecto
 
 LandingScene MakeLandingScene(const LandingSimulationOptions& options, int channels,
                               std::uint64_t seed) {
-  const double duration_s = options.frames / options.rate_hz;
+  const double duration_s = options.recording.duration_s();
   LandingScene scene;
   World& world = scene.world;
   world.channels = channels;

@@ -8,12 +8,10 @@
 #include "kestrel/camera/calibration.h"
 #include "kestrel/landing/landing_pattern.h"
 #include "kestrel/simulation/flight.h"
-#include "kestrel/simulation/frame_renderer.h"
 #include "kestrel/simulation/ground_painter.h"
 #include "kestrel/simulation/light_options.h"
-#include "kestrel/simulation/navigation_model.h"
 #include "kestrel/simulation/recording_plan.h"
-#include "kestrel/simulation/sensor.h"
+#include "kestrel/simulation/simulated_flight.h"
 #include "kestrel/simulation/stills_simulation.h"
 
 namespace kestrel {
@@ -63,37 +61,27 @@ struct SurroundingsOptions {
 
 // A flight over the landing pattern, from the motion to the sensor.
 struct LandingSimulationOptions {
-  int frames = 300;
-  double rate_hz = 30;
+  FlightRecordingOptions recording;
   StillsOptions stills;  // of what follows, stills use only the pattern and the lens' half angle
   VehicleMotionOptions vehicle;
   LandingFlightOptions flight;
-  NavigationOptions navigation;
   LandingPattern pattern;
   BoardOptions board;
   GroundOptions ground;
   SurroundingsOptions surroundings;
   LightOptions light;
-  LensViewOptions lens;
-  ShutterOptions shutter;
-  SensorOptions sensor;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("frames", self.frames, "1", "number of images");
-    visitor("rate_hz", self.rate_hz, "Hz", "images per second");
+    FlightRecordingOptions::Visit(self.recording, visitor);
     visitor.Group("stills", self.stills);
     visitor.Group("vehicle", self.vehicle);
     visitor.Group("flight", self.flight);
-    visitor.Group("navigation", self.navigation);
     visitor.Group("pattern", self.pattern);
     visitor.Group("board", self.board);
     visitor.Group("ground", self.ground);
     visitor.Group("surroundings", self.surroundings);
     visitor.Group("light", self.light);
-    visitor.Group("lens", self.lens);
-    visitor.Group("shutter", self.shutter);
-    visitor.Group("sensor", self.sensor);
   }
   std::vector<std::string> Validate() const;
 };

@@ -62,6 +62,23 @@ const std::vector<Scenario>& AllLandingScenarios() {
   return scenarios;
 }
 
+const std::vector<Scenario>& AllHuntScenarios() {
+  static const std::vector<Scenario> scenarios = {
+      {"sweep", "to and fro at 6 m over coloured discs, with distractors", {}},
+      {"descend",
+       "from 6 m down to 0.8 m over a disc, into the UAV's own shadow",
+       {"flight.path=descend", "flight.length_m=10", "flight.width_m=8", "banners=1", "vehicles=0",
+        "light.sun_elevation_deg=70", "frames=200"}},
+      {"cuboids",
+       "to and fro at 4.5 m over cuboids with digits, on sand",
+       {"objects.shape=cuboid", "objects.red=7", "objects.green=7", "objects.blue=6",
+        "objects.yellow=0", "objects.orange=0", "objects.orange_bars=0", "flight.altitude_m=4.5",
+        "flight.speed_mps=2.5", "flight.length_m=20", "flight.width_m=12", "flight.lane_m=4",
+        "ground.material=sand"}},
+  };
+  return scenarios;
+}
+
 const Scenario& FindScenario(std::span<const Scenario> scenarios, const std::string& name) {
   std::vector<const char*> names;
   for (const Scenario& scenario : scenarios) {
@@ -96,6 +113,14 @@ LandingSimulationOptions ReadLandingSimulation(const std::string& scenario,
                                                const std::vector<std::string>& settings) {
   return ReadSimulation<LandingSimulationOptions>(LandingScenarios(), scenario, config_file,
                                                   settings);
+}
+
+std::span<const Scenario> HuntScenarios() { return AllHuntScenarios(); }
+
+HuntSimulationOptions ReadHuntSimulation(const std::string& scenario,
+                                         const std::string& config_file,
+                                         const std::vector<std::string>& settings) {
+  return ReadSimulation<HuntSimulationOptions>(HuntScenarios(), scenario, config_file, settings);
 }
 
 }  // namespace kestrel

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/simulation/hunt_simulation.h"
 #include "kestrel/simulation/landing_simulation.h"
 
 namespace kestrel {
@@ -16,8 +17,9 @@ struct Scenario {
   std::vector<const char*> settings;  // "key=value", as for --set
 };
 
-// The flights of `kestrel simulate landing`.
+// The flights of `kestrel simulate landing` and `kestrel simulate hunt`.
 std::span<const Scenario> LandingScenarios();
+std::span<const Scenario> HuntScenarios();
 
 // The options of a scenario, then those of the file (if not empty), then the settings "key=value".
 // Throws InputError when there is no such scenario, one of them is at fault, or the result is not
@@ -25,5 +27,8 @@ std::span<const Scenario> LandingScenarios();
 LandingSimulationOptions ReadLandingSimulation(const std::string& scenario,
                                                const std::string& config_file,
                                                const std::vector<std::string>& settings);
+HuntSimulationOptions ReadHuntSimulation(const std::string& scenario,
+                                         const std::string& config_file,
+                                         const std::vector<std::string>& settings);
 
 }  // namespace kestrel

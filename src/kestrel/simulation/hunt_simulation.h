@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kestrel/camera/calibration.h"
+#include "kestrel/simulation/ground_painter.h"
+#include "kestrel/simulation/hunt_objects.h"
+#include "kestrel/simulation/light_options.h"
+#include "kestrel/simulation/recording_plan.h"
+#include "kestrel/simulation/simulated_flight.h"
+
+namespace kestrel {
+
+// How the UAV flies over the objects.
+struct HuntFlightOptions {
+  std::string path = "sweep";   // sweep: to and fro over the area; descend: down on an object
+  double altitude_m = 6;        // of the sweep, or at the start of the descent
+  double end_altitude_m = 0.8;  // at the end of the descent
+  double speed_mps = 3.5;       // of the sweep
+  double length_m = 30;         // of the area, along the lanes
+  double width_m = 20;
+  double lane_m = 6.5;  // from one lane to the next
+  double attitude_noise_deg = 0.4;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("path", self.path, "", "sweep: to and fro over the area; descend: down on an object");
+    visitor("altitude_m", self.altitude_m, "m", "of the sweep, or at the start of the descent");
+    visitor("end_altitude_m", self.end_altitude_m, "m", "at the end of the descent");
+    visitor("speed_mps", self.speed_mps, "m/s", "of the sweep");
+    visitor("length_m", self.length_m, "m", "of the area, along the lanes");
+    visitor("width_m", self.width_m, "m", "of the area, across the lanes");
+    visitor("lane_m", self.lane_m, "m", "from one lane to the next");
+    visitor("attitude_noise_deg", self.attitude_noise_deg, "deg", "errors of the attitude control");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// A flight over coloured objects, from the motion to the sensor.
+struct HuntSimulationOptions {
+  FlightRecordingOptions recording = ConsumerCamera();
+  HuntFlightOptions flight;
+  HuntObjectsOptions objects;
+  GroundOptions ground{.markings = 8};
+  LightOptions light;
+  int banners = 4;
+  int vehicles = 1;
+  bool uav_shadow = true;
+
+  // A colour camera with a rolling shutter on a mount that shakes, which sharpens and compresses.
+  static FlightRecordingOptions ConsumerCamera();
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    FlightRecordingOptions::Visit(self.recording, visitor);
+    visitor.Group("flight", self.flight);
+    visitor.Group("objects", self.objects);
+    visitor.Group("ground", self.ground);
+    visitor.Group("light", self.light);
+    visitor("banners", self.banners, "1", "banners around");
+    visitor("vehicles", self.vehicles, "1", "parked vehicles");
+    visitor("uav_shadow", self.uav_shadow, "", "the UAV's shadow");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// 1280x720, 77 degrees wide, looks down, the upper side of its image is forward.
+CameraCalibration HuntCalibration();
+
+// Plans the recording: everything but the images is made. 'camera' has a mount (the nominal one).
+// The same arguments give the same recording. Throws InputError when options are not valid.
+RecordingPlan PlanHunt(const HuntSimulationOptions& options, const CameraCalibration& camera,
+                       std::uint64_t seed);
+
+}  // namespace kestrel

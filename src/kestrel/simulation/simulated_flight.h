@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kestrel/camera/calibration.h"
+#include "kestrel/simulation/drawing.h"
+#include "kestrel/simulation/flight_camera.h"
+#include "kestrel/simulation/light_options.h"
+#include "kestrel/simulation/navigation_model.h"
+#include "kestrel/simulation/recording_plan.h"
+
+namespace kestrel {
+
+// What every flight has, whatever it flies over.
+struct FlightRecordingOptions {
+  int frames = 300;
+  double rate_hz = 30;
+  NavigationOptions navigation;
+  LensViewOptions lens;
+  ShutterOptions shutter;
+  SensorOptions sensor;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("frames", self.frames, "1", "number of images");
+    visitor("rate_hz", self.rate_hz, "Hz", "images per second");
+    visitor.Group("navigation", self.navigation);
+    visitor.Group("lens", self.lens);
+    visitor.Group("shutter", self.shutter);
+    visitor.Group("sensor", self.sensor);
+  }
+  std::vector<std::string> Validate() const;
+
+  double duration_s() const { return frames / rate_hz; }
+};
+
+// A flight through a world with a camera and all the errors of its navigation. Immutable and
+// thread-safe.
+class SimulatedFlight {
+ public:
+  // 'camera' has a mount, the nominal one; 'airframe' stands in front of the lens.
+  SimulatedFlight(const FlightRecordingOptions& options, const CameraCalibration& camera,
+                  const Drawing& airframe, World world, Motion world_from_body, std::uint64_t seed);
+  SimulatedFlight(const SimulatedFlight&) = delete;  // the camera looks into the world in it
+  SimulatedFlight& operator=(const SimulatedFlight&) = delete;
+
+  const FlightCamera& camera() const { return *camera_; }
+  const World& world() const { return world_; }
+  const std::vector<double>& times_s() const { return times_s_; }  // of the images
+
+  cv::Mat Image(std::size_t index) const;
+
+  // What scene.yaml says of any flight; lines to go on after.
+  std::string SceneText(const std::string& kind) const;
+
+  // cam0/sensor.yaml, nav0 and state_groundtruth_estimate0.
+  std::vector<RecordingPlan::TextFile> Files() const;
+
+ private:
+  FlightRecordingOptions options_;
+  CameraCalibration nominal_;
+  World world_;
+  Motion world_from_body_;
+  std::uint64_t seed_;
+  NavigationErrors errors_;
+  std::vector<double> times_s_;
+  std::unique_ptr<FlightCamera> camera_;
+};
+
+}  // namespace kestrel
