@@ -6,16 +6,20 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/base/write_file.h"
 #include "kestrel/cli/interrupt.h"
 #include "kestrel/cli/progress_bar.h"
 #include "kestrel/cli/source_arguments.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/recording/annotated_writer.h"
+#include "kestrel/mapping/map_file.h"
 #include "kestrel/recording/object_csv.h"
+#include "kestrel/recording/object_map_csv.h"
 #include "kestrel/recording/object_overlay.h"
 #include "kestrel/recording/open_source.h"
 #include "kestrel/recording/output_folder.h"
@@ -27,12 +31,14 @@ struct HuntArguments {
   SourceArguments source;
   std::string model;
   std::string grid;
+  std::vector<double> origin;  // latitude, longitude, degrees; or empty
 };
 
 // Where the results go: files below --output, or the detections to stdout.
 class HuntSink {
  public:
-  HuntSink(const SourceArguments& arguments, double rate_hz) {
+  HuntSink(const HuntArguments& hunt, double rate_hz) : origin_(hunt.origin) {
+    const SourceArguments& arguments = hunt.source;
     if (!arguments.output.empty()) {
       folder_.emplace(arguments.output, arguments.force);
       file_ = folder_->OpenText(kDetections);
@@ -49,11 +55,23 @@ class HuntSink {
     annotated_->Write(frame.name, DrawObjectOverlay(frame.image, detector.model(), observation));
   }
 
+  // The map goes to files only.
+  void WriteMap(const ObjectMap& map, const ObjectModel& model) const {
+    if (!folder_) return;
+    const std::vector<MappedObject> objects = map.Confirmed();
+    WriteFile(folder_->NewFile("object_map.csv").string(), ObjectMapCsv(objects, model));
+    WriteFile(folder_->NewFile("object_map.json").string(), PrintObjects(objects));
+    if (origin_.empty()) return;
+    WriteFile(folder_->NewFile("object_map.geojson").string(),
+              PrintGeoJson(objects, model, {origin_[0], origin_[1]}));
+  }
+
  private:
   static constexpr char kDetections[] = "object_detections.csv";
 
   std::ostream& csv() { return file_.is_open() ? file_ : std::cout; }
 
+  std::vector<double> origin_;
   std::optional<OutputFolder> folder_;
   std::ofstream file_;
   std::unique_ptr<AnnotatedWriter> annotated_;
@@ -116,7 +134,7 @@ void RunHunt(const HuntArguments& arguments) {
   const CameraCalibration calibration = arguments.source.FindCalibration(*source);
   HuntPipeline pipeline(calibration, model, grid, options);
   pipeline.SetAltitude(arguments.source.altitude_m);
-  HuntSink sink(arguments.source, source->rate_hz());
+  HuntSink sink(arguments, source->rate_hz());
   Summary summary;
   CatchInterrupts();
   try {
@@ -124,6 +142,9 @@ void RunHunt(const HuntArguments& arguments) {
   } catch (const InputError&) {
     if (summary.frames() > 0) summary.Print();  // these stay
     throw;
+  }
+  if (!options.still && !source->poses().empty() && calibration.body_from_camera) {
+    sink.WriteMap(pipeline.map(), model);
   }
   summary.Print();
 }
@@ -142,6 +163,14 @@ void AddHuntCommand(CLI::App* app) {
       ->add_option("--grid", arguments->grid,
                    "Color grid (64^3 bytes) in place of the one that the model gives")
       ->type_name("FILE");
+  command
+      ->add_option("--origin", arguments->origin,
+                   "Latitude and longitude (degrees) of the world's origin, as 50.1,14.4: also "
+                   "write the map as GeoJSON")
+      ->type_name("LAT,LON")
+      ->delimiter(',')
+      ->expected(2)
+      ->check(InRange(-180.0001, 180.0001, "degrees"));
   command->callback([arguments] { RunHunt(*arguments); });
 }
 

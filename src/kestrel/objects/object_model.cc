@@ -3,16 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
-#include <string_view>
 
 #include <fmt/format.h>
-#include <yaml-cpp/yaml.h>
 
 #include "kestrel/base/error.h"
-#include "kestrel/base/options.h"
-#include "kestrel/base/parse_number.h"
 #include "kestrel/base/read_file.h"
+#include "kestrel/base/yaml_reader.h"
 #include "kestrel/objects/embedded_data.h"
 
 namespace kestrel {
@@ -20,74 +16,15 @@ namespace {
 
 constexpr std::array kShapes = {ObjectShape::kDisc, ObjectShape::kCuboid, ObjectShape::kBar};
 
-// A node of the file and what to call it in a message.
-class Reader {
- public:
-  Reader(YAML::Node node, std::string file, std::string key)
-      : node_(std::move(node)), file_(std::move(file)), key_(std::move(key)) {}
-
-  [[noreturn]] void Fail(const std::string& message) const {
-    throw InputError(fmt::format("{}:{}: {}{}{}", file_, node_.Mark().line + 1, key_,
-                                 key_.empty() ? "" : ": ", message));
-  }
-
-  // The value of 'name' in a map; required.
-  Reader operator[](const std::string& name) const {
-    if (!Has(name)) Fail(fmt::format("'{}' is missing", name));
-    return {node_[name], file_, key_.empty() ? name : key_ + "." + name};
-  }
-  bool Has(const std::string& name) const { return node_.IsMap() && node_[name].IsDefined(); }
-
-  // Refuses keys that are not in 'names', and keys that are given twice.
-  void RequireKeys(const std::set<std::string>& names) const {
-    if (!node_.IsMap()) Fail("expected 'name: value'");
-    std::set<std::string> seen;
-    for (const auto& entry : node_) {
-      if (!entry.first.IsScalar()) Fail("expected 'name: value'");
-      const std::string& name = entry.first.Scalar();
-      if (!names.contains(name)) Fail(fmt::format("unknown key '{}'", name));
-      if (!seen.insert(name).second) Fail(fmt::format("'{}' is given twice", name));
-    }
-  }
-  std::vector<Reader> Items() const {
-    if (!node_.IsSequence()) Fail("expected a list");
-    std::vector<Reader> items;
-    for (std::size_t i = 0; i < node_.size(); ++i) {
-      items.push_back({node_[i], file_, fmt::format("{}[{}]", key_, i)});
-    }
-    return items;
-  }
-  std::string Text() const {
-    if (!node_.IsScalar() || node_.Scalar().empty()) Fail("expected a word");
-    return node_.Scalar();
-  }
-  double Number() const {
-    const auto number = node_.IsScalar() ? ParseNumber<double>(node_.Scalar()) : std::nullopt;
-    if (!number) Fail("expected a number");
-    return *number;
-  }
-  bool Bool() const {
-    const std::string text = Text();
-    if (text != "true" && text != "false") Fail("expected true or false");
-    return text == "true";
-  }
-
- private:
-  YAML::Node node_;
-  std::string file_;
-  std::string key_;
-};
-
-Hsv ParseHsv(const Reader& reader) {
-  const std::vector<Reader> items = reader.Items();
-  if (items.size() != 3) reader.Fail("expected [hue, saturation, value]");
-  return {static_cast<float>(items[0].Number()), static_cast<float>(items[1].Number()),
-          static_cast<float>(items[2].Number())};
+Hsv ParseHsv(const YamlReader& reader) {
+  const std::vector<double> numbers = reader.Numbers(3);
+  return {static_cast<float>(numbers[0]), static_cast<float>(numbers[1]),
+          static_cast<float>(numbers[2])};
 }
 
-std::vector<ColorComponent> ParseComponents(const Reader& reader) {
+std::vector<ColorComponent> ParseComponents(const YamlReader& reader) {
   std::vector<ColorComponent> components;
-  for (const Reader& item : reader.Items()) {
+  for (const YamlReader& item : reader.Items()) {
     item.RequireKeys({"weight", "mean", "sigma"});
     components.push_back(
         {item["weight"].Number(), ParseHsv(item["mean"]), ParseHsv(item["sigma"])});
@@ -95,10 +32,10 @@ std::vector<ColorComponent> ParseComponents(const Reader& reader) {
   return components;
 }
 
-ColorModel ParseColors(const Reader& root) {
+ColorModel ParseColors(const YamlReader& root) {
   ColorModel colors;
   if (root.Has("max_distance")) colors.max_distance = root["max_distance"].Number();
-  for (const Reader& item : root["colors"].Items()) {
+  for (const YamlReader& item : root["colors"].Items()) {
     item.RequireKeys({"name", "components"});
     colors.colors.push_back({item["name"].Text(), ParseComponents(item["components"])});
   }
@@ -106,7 +43,7 @@ ColorModel ParseColors(const Reader& root) {
   return colors;
 }
 
-std::size_t ParseColorName(const Reader& reader, const ColorModel& model) {
+std::size_t ParseColorName(const YamlReader& reader, const ColorModel& model) {
   const std::string name = reader.Text();
   const auto found = std::find_if(model.colors.begin(), model.colors.end(),
                                   [&](const ColorMixture& color) { return color.name == name; });
@@ -116,7 +53,7 @@ std::size_t ParseColorName(const Reader& reader, const ColorModel& model) {
   return found - model.colors.begin();
 }
 
-ObjectShape ParseShape(const Reader& reader) {
+ObjectShape ParseShape(const YamlReader& reader) {
   const std::string name = reader.Text();
   for (const ObjectShape shape : kShapes) {
     if (name == ToString(shape)) return shape;
@@ -124,7 +61,7 @@ ObjectShape ParseShape(const Reader& reader) {
   reader.Fail(fmt::format("'{}' is no shape, expected disc, cuboid or bar", name));
 }
 
-ObjectClass ParseClass(const Reader& item, const ColorModel& colors) {
+ObjectClass ParseClass(const YamlReader& item, const ColorModel& colors) {
   item.RequireKeys({"name", "color", "shape", "size_m", "width_m", "height_m", "max_height_m",
                     "score", "may_move"});
   ObjectClass result;
@@ -141,11 +78,11 @@ ObjectClass ParseClass(const Reader& item, const ColorModel& colors) {
   return result;
 }
 
-ObjectModel ParseRoot(const Reader& root) {
+ObjectModel ParseRoot(const YamlReader& root) {
   root.RequireKeys({"max_distance", "colors", "ambiguous", "classes"});
   ObjectModel model;
   model.colors = ParseColors(root);
-  for (const Reader& item : root["classes"].Items()) {
+  for (const YamlReader& item : root["classes"].Items()) {
     model.classes.push_back(ParseClass(item, model.colors));
   }
   return model;
@@ -197,12 +134,7 @@ std::vector<std::string> ObjectModel::Validate() const {
 }
 
 ObjectModel ParseObjectModel(const std::string& yaml, const std::string& file) {
-  ObjectModel model;
-  try {
-    model = ParseRoot(Reader(YAML::Load(yaml), file, ""));
-  } catch (const YAML::Exception& error) {
-    throw InputError(fmt::format("{}:{}: not YAML: {}", file, error.mark.line + 1, error.msg));
-  }
+  const ObjectModel model = ParseRoot(YamlReader(yaml, file));
   const std::vector<std::string> violations = model.Validate();
   if (!violations.empty()) {
     throw InputError(fmt::format("{}: {}", file, fmt::join(violations, "; ")));

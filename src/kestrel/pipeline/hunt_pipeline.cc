@@ -2,8 +2,10 @@
 #include "kestrel/pipeline/hunt_pipeline.h"
 
 #include <chrono>
+#include <numbers>
 
 #include "kestrel/base/options.h"
+#include "kestrel/pipeline/object_view.h"
 
 namespace kestrel {
 namespace {
@@ -20,11 +22,14 @@ std::vector<std::string> HuntPipelineOptions::Validate() const {
   for (const std::string& violation : detector.Validate()) {
     violations.push_back("detector." + violation);
   }
+  for (const std::string& violation : map.Validate()) violations.push_back("map." + violation);
   const auto require = [&](bool holds, const char* rule) {
     if (!holds) violations.emplace_back(rule);
   };
   require(readout_s >= 0 && readout_s < 1, "readout_s must be in 0 to 1");
   require(track_count >= 0, "track_count must not be negative");
+  require(pose_sigma_m >= 0, "pose_sigma_m must not be negative");
+  require(attitude_sigma_deg >= 0, "attitude_sigma_deg must not be negative");
   require(pose_capacity >= 2, "pose_capacity must be at least 2");
   require(pose_gap_s > 0 && pose_gap_s < 1e6, "pose_gap_s must be positive and below 1e6");
   return violations;
@@ -38,13 +43,15 @@ HuntPipeline::HuntPipeline(const CameraCalibration& calibration, const ObjectMod
                            const ColorGrid& grid, const HuntPipelineOptions& options)
     : options_(Checked(options)),
       detector_(CameraModel(calibration.intrinsics), model, grid, options.detector),
-      poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s)) {}
+      poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s)),
+      map_(model, options.map) {}
 
 const HuntObservation& HuntPipeline::Process(const cv::Mat& image, Time time) {
   observation_.time = time;
   observation_.world_from_camera = poses_.At(time);
   Detect(image);
   LocateInWorld();
+  UpdateMap();
   RememberForTracking();
   return observation_;
 }
@@ -60,11 +67,13 @@ void HuntPipeline::Detect(const cv::Mat& image) {
     hint.camera_height_m = altitude_m_;
   }
   hint.track = track_;
+  saw_all_ = track_.empty();
   ObjectReport& report = observation_.report;
   const auto start = std::chrono::steady_clock::now();
   detector_.Detect(image, hint, workspace_, &report);
   if (report.detections.size() < track_.size()) {
     hint.track = {};
+    saw_all_ = true;
     detector_.Detect(image, hint, workspace_, &report);
   }
   observation_.detect_time = std::chrono::steady_clock::now() - start;
@@ -82,6 +91,32 @@ void HuntPipeline::LocateInWorld() {
     in_world.back() = {*world_from_camera * detection.location->position,
                        rotation * detection.location->covariance * rotation.transpose()};
   }
+}
+
+void HuntPipeline::UpdateMap() {
+  if (options_.still || !observation_.world_from_camera) return;
+  constexpr double kRadians = std::numbers::pi / 180;
+  measurements_.clear();
+  const auto& detections = observation_.report.detections;
+  for (std::size_t i = 0; i < detections.size(); ++i) {
+    const ObjectDetection& detection = detections[i];
+    const auto& in_world = observation_.in_world[i];
+    if (detection.completeness != Completeness::kWhole || !in_world) continue;
+    ObjectMeasurement& measurement = measurements_.emplace_back();
+    measurement.position = in_world->position;
+    const double swing_m =
+        kRadians * options_.attitude_sigma_deg * detection.location->position.norm();
+    measurement.covariance = in_world->covariance;
+    measurement.covariance.diagonal().array() +=
+        options_.pose_sigma_m * options_.pose_sigma_m + swing_m * swing_m;
+    measurement.shape = detector_.model().classes[detection.class_index].shape;
+    measurement.color = detection.mean_color;
+    measurement.color_probabilities = detection.color_probabilities;
+    measurement.digits = detection.digits;
+  }
+  map_.Update(observation_.time, measurements_,
+              ObjectView(detector_, observation_.report, *observation_.world_from_camera,
+                         saw_all_));
 }
 
 void HuntPipeline::RememberForTracking() {

@@ -11,6 +11,7 @@
 #include "kestrel/base/time.h"
 #include "kestrel/camera/calibration.h"
 #include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/mapping/object_map.h"
 #include "kestrel/objects/object_detector.h"
 #include "kestrel/pipeline/camera_poses.h"
 
@@ -18,6 +19,7 @@ namespace kestrel {
 
 struct HuntPipelineOptions {
   ObjectDetectorOptions detector;
+  ObjectMapOptions map;
   // Frames have nothing to do with each other: no state is carried from one to the next.
   bool still = false;
   // Height of the ground in the world. With poses, objects that are not on it are discarded.
@@ -29,6 +31,10 @@ struct HuntPipelineOptions {
   // More than 0: once so many objects are in view, only these are followed (the paper's mode
   // `track`), until one is lost.
   int track_count = 0;
+  // Standard deviations of the navigation's poses, per axis, which the map adds to those of a
+  // detection: raise them where clock offset or mount are not known.
+  double pose_sigma_m = 0.03;
+  double attitude_sigma_deg = 0.5;
   // How many poses are kept, and the longest gap between two of them that is interpolated.
   int pose_capacity = 1000;
   double pose_gap_s = 0.5;
@@ -36,6 +42,7 @@ struct HuntPipelineOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor.Group("detector", self.detector);
+    visitor.Group("map", self.map);
     visitor("still", self.still, "", "frames have nothing to do with each other");
     visitor("ground_height_m", self.ground_height_m, "m", "height of the ground in the world");
     visitor("is_ground_flat", self.is_ground_flat, "",
@@ -44,6 +51,9 @@ struct HuntPipelineOptions {
             "rolling shutter: time from the first row to the last, 0 for a global shutter");
     visitor("track_count", self.track_count, "1",
             "follow so many objects and look at nothing else, 0 to search the whole image");
+    visitor("pose_sigma_m", self.pose_sigma_m, "m", "of the navigation's position, per axis");
+    visitor("attitude_sigma_deg", self.attitude_sigma_deg, "deg",
+            "of the navigation's attitude, per axis");
     visitor("pose_capacity", self.pose_capacity, "1", "how many poses are kept");
     visitor("pose_gap_s", self.pose_gap_s, "s", "longest gap between poses that is interpolated");
   }
@@ -84,11 +94,14 @@ class HuntPipeline {
   const HuntObservation& Process(const cv::Mat& image, Time time);
 
   const ObjectDetector& detector() const { return detector_; }
+  // The objects in the world; empty without poses, and with independent frames.
+  const ObjectMap& map() const { return map_; }
   const HuntPipelineOptions& options() const { return options_; }
 
  private:
   void Detect(const cv::Mat& image);
   void LocateInWorld();
+  void UpdateMap();
   void RememberForTracking();
   Time TimeOfRow(double v_px) const;
 
@@ -99,6 +112,9 @@ class HuntPipeline {
   std::optional<double> altitude_m_;
   HuntObservation observation_;
   std::vector<TrackedObject> track_;
+  bool saw_all_ = true;  // the last frame was searched as a whole
+  ObjectMap map_;
+  std::vector<ObjectMeasurement> measurements_;
 };
 
 }  // namespace kestrel
