@@ -62,7 +62,8 @@ class FaceMaker {
       from[i] = {static_cast<float>((kSquare[i][0] + 0.5) * kPaintSide),
                  static_cast<float>((kSquare[i][1] + 0.5) * kPaintSide)};
       to[i] = {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
-      face.corners[i] = pixel + side_px * 0.02 * Eigen::Vector2d(random_.Normal(), random_.Normal());
+      face.corners[i] =
+          pixel + side_px * 0.02 * Eigen::Vector2d(random_.Normal(), random_.Normal());
     }
     // Averaged from a larger image, as a camera's pixels do.
     constexpr int kFine = 3;
@@ -79,9 +80,8 @@ class FaceMaker {
   cv::Scalar Gray() { return cv::Scalar::all(random_.Uniform(60, 150)); }
 
   cv::Mat Paint(int digit) {
-    static const std::array<cv::Scalar, 3> kPaints = {cv::Scalar(35, 30, 190),
-                                                      cv::Scalar(50, 160, 90),
-                                                      cv::Scalar(120, 60, 10)};
+    static const std::array<cv::Scalar, 3> kPaints = {
+        cv::Scalar(35, 30, 190), cv::Scalar(50, 160, 90), cv::Scalar(120, 60, 10)};
     cv::Mat paint(kPaintSide, kPaintSide, CV_8UC3, kPaints[random_.Integer(0, 2)]);
     const int height = static_cast<int>(kPaintSide * random_.Uniform(0.5, 0.8));
     const std::string text = std::to_string(digit);

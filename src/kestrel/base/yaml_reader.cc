@@ -78,8 +78,7 @@ double YamlReader::Number() const {
 }
 
 std::int64_t YamlReader::Integer() const {
-  const auto number =
-      node_->IsScalar() ? ParseNumber<std::int64_t>(node_->Scalar()) : std::nullopt;
+  const auto number = node_->IsScalar() ? ParseNumber<std::int64_t>(node_->Scalar()) : std::nullopt;
   if (!number) Fail("expected a whole number");
   return *number;
 }

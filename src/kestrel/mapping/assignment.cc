@@ -26,8 +26,7 @@ const std::vector<int>& AssignmentSolver::Solve(const Eigen::Ref<const Eigen::Ma
       int next = 0;
       for (int k = 1; k <= columns; ++k) {
         if (is_used_[k]) continue;
-        const double reduced =
-            costs(from - 1, k - 1) - row_potential_[from] - column_potential_[k];
+        const double reduced = costs(from - 1, k - 1) - row_potential_[from] - column_potential_[k];
         if (reduced < slack_[k]) {
           slack_[k] = reduced;
           previous_[k] = column;

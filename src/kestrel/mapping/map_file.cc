@@ -73,8 +73,8 @@ MappedObject ParseObject(const YamlReader& reader) {
     reader["covariance"].Fail("expected the covariance of a position, positive definite");
   }
   object.may_move = reader["may_move"].Bool();
-  object.detections = static_cast<int>(std::clamp<std::int64_t>(reader["detections"].Integer(), 0,
-                                                                std::int64_t{1} << 30));
+  object.detections = static_cast<int>(
+      std::clamp<std::int64_t>(reader["detections"].Integer(), 0, std::int64_t{1} << 30));
   object.log_odds = reader["log_odds"].Number();
   const std::vector<double> color = reader["color"].Numbers(3);
   object.color = {static_cast<float>(color[0]), static_cast<float>(color[1]),

@@ -15,8 +15,8 @@ namespace kestrel {
 
 // A detection with its place in the world.
 struct ObjectMeasurement {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();     // m
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();   // m^2, positive definite
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();    // m
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // m^2, positive definite
   ObjectShape shape = ObjectShape::kDisc;
   Hsv color;
   ColorProbabilities color_probabilities{};
@@ -33,8 +33,8 @@ struct MappedObject {
   ObjectShape shape = ObjectShape::kDisc;
   Time first_seen;
   Time last_seen;
-  Time time;                           // of the state
-  Vector6 state = Vector6::Zero();     // position (m) and velocity (m/s) in the world
+  Time time;                        // of the state
+  Vector6 state = Vector6::Zero();  // position (m) and velocity (m/s) in the world
   Matrix6 covariance = Matrix6::Zero();
   bool may_move = false;
   int detections = 0;

@@ -119,8 +119,7 @@ std::vector<MappedObject> ObjectMap::Confirmed() const {
 
 double ObjectMap::Cost(const ObjectMeasurement& measurement, const MappedObject& object) const {
   if (measurement.shape != object.shape) return kImpossible;
-  Eigen::Matrix3d covariance =
-      object.covariance.topLeftCorner<3, 3>() + measurement.covariance;
+  Eigen::Matrix3d covariance = object.covariance.topLeftCorner<3, 3>() + measurement.covariance;
   covariance.diagonal().array() += options_.shared_sigma_m * options_.shared_sigma_m;
   const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
   const Eigen::Vector3d whitened = llt.matrixL().solve(measurement.position - object.position());

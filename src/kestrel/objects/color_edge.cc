@@ -75,8 +75,8 @@ std::optional<ColorEdge> FindColorEdge(const cv::Mat& image, const Eigen::Vector
   constexpr int kBeside = 2;  // from the edge to where a blurred profile is flat again
   Profile profile;
   if (!ReadProfile(image, start, outward, &profile)) return std::nullopt;
-  std::optional<Crossing> edge = FindCrossing(profile, 0.5F * (profile[1] + profile[2]),
-                                              profile[kSamples - 2], /*first=*/1);
+  std::optional<Crossing> edge =
+      FindCrossing(profile, 0.5F * (profile[1] + profile[2]), profile[kSamples - 2], /*first=*/1);
   // Once more with the colours right beside the edge.
   if (!edge) return std::nullopt;
   const int near = static_cast<int>(std::lround(edge->index));

@@ -30,8 +30,8 @@ ColorGrid::ColorGrid(const ColorModel& model) : ColorGrid() {
 ColorGrid ColorGrid::Parse(const std::string& bytes, std::size_t color_count,
                            const std::string& file) {
   if (bytes.size() != kCells) {
-    throw InputError(fmt::format("{}: has {} bytes, a color grid has {}", file, bytes.size(),
-                                 kCells));
+    throw InputError(
+        fmt::format("{}: has {} bytes, a color grid has {}", file, bytes.size(), kCells));
   }
   ColorGrid grid;
   for (std::size_t cell = 0; cell < kCells; ++cell) {

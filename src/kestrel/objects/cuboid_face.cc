@@ -275,8 +275,8 @@ Line FitSide(const cv::Mat& image, const Eigen::Vector2d& a, const Eigen::Vector
 bool IsConvex(const FaceCorners& corners) {
   double sign = 0;
   for (int i = 0; i < 4; ++i) {
-    const double turn = Cross(corners[(i + 1) % 4] - corners[i],
-                              corners[(i + 2) % 4] - corners[(i + 1) % 4]);
+    const double turn =
+        Cross(corners[(i + 1) % 4] - corners[i], corners[(i + 2) % 4] - corners[(i + 1) % 4]);
     if (sign * turn < 0 || turn == 0) return false;
     sign = turn;
   }

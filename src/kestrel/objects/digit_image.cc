@@ -52,8 +52,7 @@ FaceImage MapFace(const cv::Mat& image, const FaceCorners& corners) {
   for (int row = 0; row < kFaceSide; ++row) {
     for (int column = 0; column < kFaceSide; ++column) {
       const Eigen::Vector3d pixel =
-          pixel_from_face *
-          Eigen::Vector3d((column + 0.5) / kFaceSide, (row + 0.5) / kFaceSide, 1);
+          pixel_from_face * Eigen::Vector3d((column + 0.5) / kFaceSide, (row + 0.5) / kFaceSide, 1);
       face[row * kFaceSide + column] = static_cast<std::uint8_t>(
           std::lround(SampleLeastChannel(image, pixel.head<2>() / pixel.z())));
     }
@@ -113,8 +112,8 @@ std::optional<DigitImage> CutOutDigit(const cv::Mat& image, const FaceCorners& c
   for (int row = 0; row < kDigitSide; ++row) {
     for (int column = 0; column < kDigitSide; ++column) {
       const Eigen::Vector2d at =
-          figure->middle + step * Eigen::Vector2d(column - 0.5 * (kDigitSide - 1),
-                                                  row - 0.5 * (kDigitSide - 1));
+          figure->middle +
+          step * Eigen::Vector2d(column - 0.5 * (kDigitSide - 1), row - 0.5 * (kDigitSide - 1));
       const auto x = static_cast<int>(std::lround(at.x()));
       const auto y = static_cast<int>(std::lround(at.y()));
       const bool is_inside = x >= kMargin / 2 && y >= kMargin / 2 && x < kFaceSide - kMargin / 2 &&

@@ -23,10 +23,10 @@ Cone ConeOfCircle(const Eigen::Vector3d& center, const Eigen::Vector3d& normal, 
 // camera frame, when the attitude is known.
 //
 // Two circles look like the cone (CirclePosesFromCone). Without 'up' nothing tells which of them it
-// is, and the point between their centres is returned, on the axis of the cone. With it the disc is taken for horizontal. Its centre is then seen along Q^-1 up (the pole of the
-// vanishing line of its plane), and its distance follows from the length of the image row through
-// the centre: a rolling shutter shears the image and stretches its columns, but leaves the length
-// of rows alone.
+// is, and the point between their centres is returned, on the axis of the cone. With it the disc is
+// taken for horizontal. Its centre is then seen along Q^-1 up (the pole of the vanishing line of
+// its plane), and its distance follows from the length of the image row through the centre: a
+// rolling shutter shears the image and stretches its columns, but leaves the length of rows alone.
 Eigen::Vector3d LocateDisc(const Cone& cone, double radius_m, const Eigen::Vector3d& row_direction,
                            const std::optional<Eigen::Vector3d>& up);
 

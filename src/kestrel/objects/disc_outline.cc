@@ -154,8 +154,8 @@ std::optional<DiscOutline> FitOnce(const cv::Mat& image, const RayTable& rays, d
   std::optional<Cone> cone = FitCone(workspace->rays);
   for (int round = 0; cone && round < kMaxRounds; ++round) {
     MeasureDistances(*cone, focal_px, workspace);
-    const double limit_px = std::max(
-        {kMinLimitPx, kMinLimitShare * radius_px, 2.5 * MedianDistance(workspace)});
+    const double limit_px =
+        std::max({kMinLimitPx, kMinLimitShare * radius_px, 2.5 * MedianDistance(workspace)});
     if (!DropOutliers(limit_px, workspace)) break;
     cone = FitCone(workspace->rays);
   }

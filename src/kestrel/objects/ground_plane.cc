@@ -28,9 +28,7 @@ bool LooksLikeDisc(const Cone& cone, const Eigen::Vector3d& ray, double distance
                    const Eigen::Vector3d& up, double radius, double tolerance, double slack) {
   const Eigen::Vector2d seen = cone.HalfAngles();
   const Eigen::Vector2d expected = ConeOfCircle(distance * ray, up, radius).HalfAngles();
-  const auto is_near = [&](double a, double b) {
-    return std::abs(a - b) <= tolerance * b + slack;
-  };
+  const auto is_near = [&](double a, double b) { return std::abs(a - b) <= tolerance * b + slack; };
   return is_near(seen(0), expected(0)) && is_near(seen(1), expected(1));
 }
 

@@ -21,8 +21,8 @@ struct GroundPlane {
   // The distance, nearest to 'distance', at which a point 'min_height' to 'max_height' above the
   // ground lies on the line of sight 'ray' (unit). Nothing when the ground is not known, or the ray
   // does not meet it.
-  std::optional<double> DistanceNear(const Eigen::Vector3d& ray, double distance,
-                                     double min_height, double max_height) const;
+  std::optional<double> DistanceNear(const Eigen::Vector3d& ray, double distance, double min_height,
+                                     double max_height) const;
 };
 
 // Whether 'cone' may be the image of a horizontal disc at 'distance' along 'ray': both opening

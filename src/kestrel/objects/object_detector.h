@@ -29,10 +29,10 @@ struct ObjectDetectorOptions {
   // Largest |circularity - 1| of a disc (paper, eq. 12). A square has 0.05, but a disc of 50 px,
   // half of it in a shadow, has as much: squares are told apart by their outline.
   double max_circularity_error = 0.07;
-  // How far the edge points of a disc may lie from their cone: share of the shorter semi-axis, and
-  // what blur and noise add.
-  double outline_tolerance = 0.02;
-  double outline_tolerance_px = 0.25;
+  // How far the edge points of a disc may lie from their cone (root of the mean square): share of
+  // the shorter semi-axis, and what blur and noise add. Those of a square lie 0.075 of it away.
+  double outline_tolerance = 0.03;
+  double outline_tolerance_px = 0.3;
   // Longest part of a disc's outline that something may hide, of a whole disc and of one that the
   // image's border cuts off, and the share of the rest that must fit. A polygon does not fit at its
   // corners, which are all around.

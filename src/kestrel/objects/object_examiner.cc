@@ -80,14 +80,13 @@ bool ObjectExaminer::Run(const Segment& segment) {
 }
 
 bool ObjectExaminer::TestClass(const Segment& segment, const SegmentShape& shape,
-                           std::size_t class_index, ObjectDetection* detection,
-                           ObjectStage* reached) {
+                               std::size_t class_index, ObjectDetection* detection,
+                               ObjectStage* reached) {
   const ObjectClass& object = detector_.model_.classes[class_index];
   detection->class_index = class_index;
   detection->class_probability = detection->color_probabilities[object.color];
   detection->completeness = segment.touches_border ? Completeness::kCutOff : Completeness::kWhole;
-  const bool is_round =
-      std::abs(shape.roundness - 1) <= detector_.options_.max_roundness_error;
+  const bool is_round = std::abs(shape.roundness - 1) <= detector_.options_.max_roundness_error;
   if (object.shape != ObjectShape::kBar && !is_round) return false;
   *reached = ObjectStage::kRoundness;
   switch (object.shape) {
@@ -102,8 +101,8 @@ bool ObjectExaminer::TestClass(const Segment& segment, const SegmentShape& shape
 }
 
 bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
-                          const ObjectClass& object, ObjectDetection* detection,
-                          ObjectStage* reached) {
+                              const ObjectClass& object, ObjectDetection* detection,
+                              ObjectStage* reached) {
   const ObjectDetectorOptions& options = detector_.options_;
   Ellipse start = shape.ellipse;
   if (segment.touches_border) {
@@ -114,11 +113,10 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
     return false;
   }
   *reached = ObjectStage::kShape;
-  const auto outline = FitDiscOutline(image_, detector_.rays_, detector_.focal_px_, start,
-                                      &workspace_->outline);
+  const auto outline =
+      FitDiscOutline(image_, detector_.rays_, detector_.focal_px_, start, &workspace_->outline);
   if (!outline) return false;
-  const double radius_px =
-      detector_.focal_px_ * std::tan(outline->cone.HalfAngles().minCoeff());
+  const double radius_px = detector_.focal_px_ * std::tan(outline->cone.HalfAngles().minCoeff());
   const double max_gap = segment.touches_border ? options.max_cut_off_gap : options.max_gap;
   if (outline->gap > max_gap || outline->fit_share < options.min_outline_share) return false;
   if (outline->residual_px > options.outline_tolerance * radius_px + options.outline_tolerance_px) {
@@ -128,8 +126,7 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
   const double radius_m = object.size_m / 2;
   const Eigen::Vector3d row_direction =
       RayAt(start.center + Eigen::Vector2d(1, 0)) - RayAt(start.center - Eigen::Vector2d(1, 0));
-  Eigen::Vector3d position =
-      LocateDisc(outline->cone, radius_m, row_direction, hint_.up_in_camera);
+  Eigen::Vector3d position = LocateDisc(outline->cone, radius_m, row_direction, hint_.up_in_camera);
   const double distance = position.norm();
   if (!std::isfinite(distance) || !(distance > 0)) return false;
   if (const auto on_ground = Ground().DistanceNear(position / distance, distance, object.height_m,
@@ -154,7 +151,7 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
 }
 
 bool ObjectExaminer::TestCuboid(const Segment& segment, const ObjectClass& object,
-                            ObjectDetection* detection, ObjectStage* reached) {
+                                ObjectDetection* detection, ObjectStage* reached) {
   if (segment.touches_border || segment.ambiguous_pixels == 0) return false;
   const auto corners = FindCuboidFace(image_, segment, &workspace_->face);
   if (!corners) return false;
@@ -168,8 +165,8 @@ bool ObjectExaminer::TestCuboid(const Segment& segment, const ObjectClass& objec
 }
 
 bool ObjectExaminer::TestBar(const Segment& segment, const SegmentShape& shape,
-                         const ObjectClass& object, ObjectDetection* detection,
-                         ObjectStage* reached) {
+                             const ObjectClass& object, ObjectDetection* detection,
+                             ObjectStage* reached) {
   constexpr double kMinFill = 0.75;
   constexpr double kMaxAspectFactor = 2;
   const Ellipse& ellipse = shape.ellipse;
@@ -178,9 +175,8 @@ bool ObjectExaminer::TestBar(const Segment& segment, const SegmentShape& shape,
   const double aspect = ellipse.semi_major / std::max(ellipse.semi_minor, 0.1);
   // A cut off one is shorter.
   const double expected = object.size_m / object.width_m;
-  const bool is_long = segment.touches_border
-                           ? aspect > 2 && aspect < kMaxAspectFactor * expected
-                           : IsWithin(aspect, expected, kMaxAspectFactor);
+  const bool is_long = segment.touches_border ? aspect > 2 && aspect < kMaxAspectFactor * expected
+                                              : IsWithin(aspect, expected, kMaxAspectFactor);
   if (!is_long) return false;
   *reached = ObjectStage::kOutline;
   if (segment.touches_border) return true;  // its bearing is all that is known
@@ -190,7 +186,7 @@ bool ObjectExaminer::TestBar(const Segment& segment, const SegmentShape& shape,
 }
 
 bool ObjectExaminer::LocateFace(const FaceCorners& corners, const ObjectClass& object,
-                            ObjectDetection* detection) const {
+                                ObjectDetection* detection) const {
   constexpr double kMaxSkew = 0.3;
   const ObjectDetectorOptions& options = detector_.options_;
   const bool is_bar = object.shape == ObjectShape::kBar;
@@ -253,8 +249,8 @@ std::optional<double> ObjectExaminer::PixelsOnGround(const Eigen::Vector3d& ray,
   return std::numbers::pi * detector_.focal_px_ * detector_.focal_px_ * angles.prod();
 }
 
-void ObjectExaminer::SetCenter(const Eigen::Vector3d& position, double radius_px, double outline_share,
-                           ObjectDetection* detection) const {
+void ObjectExaminer::SetCenter(const Eigen::Vector3d& position, double radius_px,
+                               double outline_share, ObjectDetection* detection) const {
   const ObjectDetectorOptions& options = detector_.options_;
   detection->bearing = position.normalized();
   detector_.camera_.Project(position, &detection->center_px);

@@ -16,7 +16,7 @@ namespace kestrel {
 class ObjectExaminer {
  public:
   ObjectExaminer(const ObjectDetector& detector, const cv::Mat& image, const ObjectHint& hint,
-             ObjectWorkspace* workspace, ObjectReport* report)
+                 ObjectWorkspace* workspace, ObjectReport* report)
       : detector_(detector), image_(image), hint_(hint), workspace_(workspace), report_(report) {}
 
   // Adds a detection to the report when the segment is an object of one of the classes; true then.

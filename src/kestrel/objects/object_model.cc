@@ -71,8 +71,7 @@ ObjectClass ParseClass(const YamlReader& item, const ColorModel& colors) {
   result.size_m = item["size_m"].Number();
   if (item.Has("width_m")) result.width_m = item["width_m"].Number();
   result.height_m = item["height_m"].Number();
-  result.max_height_m =
-      item.Has("max_height_m") ? item["max_height_m"].Number() : result.height_m;
+  result.max_height_m = item.Has("max_height_m") ? item["max_height_m"].Number() : result.height_m;
   result.score = item["score"].Number();
   result.may_move = item["may_move"].Bool();
   return result;
@@ -115,8 +114,8 @@ std::vector<std::string> ObjectModel::Validate() const {
   std::vector<std::string> violations = colors.Validate();
   if (classes.empty()) violations.emplace_back("there must be at least one class");
   if (classes.size() > kMaxClasses) {
-    violations.push_back(fmt::format("there are {} classes, at most {}", classes.size(),
-                                     kMaxClasses));
+    violations.push_back(
+        fmt::format("there are {} classes, at most {}", classes.size(), kMaxClasses));
   }
   for (std::size_t i = 0; i < classes.size(); ++i) {
     const ObjectClass& c = classes[i];

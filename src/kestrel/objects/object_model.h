@@ -21,9 +21,9 @@ struct ObjectClass {
   std::string name;       // as reported; classes of different shapes may share one
   std::size_t color = 0;  // index in the model's colours
   ObjectShape shape = ObjectShape::kDisc;
-  double size_m = 0.2;    // diameter, edge of the upper face, length of the bar
-  double width_m = 0;     // of a bar
-  double height_m = 0;    // of the upper face above the ground
+  double size_m = 0.2;      // diameter, edge of the upper face, length of the bar
+  double width_m = 0;       // of a bar
+  double height_m = 0;      // of the upper face above the ground
   double max_height_m = 0;  // where the same object may also stand higher (a moving robot)
   double score = 1;
   bool may_move = false;

@@ -114,9 +114,9 @@ void HuntPipeline::UpdateMap() {
     measurement.color_probabilities = detection.color_probabilities;
     measurement.digits = detection.digits;
   }
-  map_.Update(observation_.time, measurements_,
-              ObjectView(detector_, observation_.report, *observation_.world_from_camera,
-                         saw_all_));
+  map_.Update(
+      observation_.time, measurements_,
+      ObjectView(detector_, observation_.report, *observation_.world_from_camera, saw_all_));
 }
 
 void HuntPipeline::RememberForTracking() {
