@@ -81,5 +81,21 @@ TEST(CloseBits, BridgesGapsOfTwoPixels) {
   EXPECT_FALSE(bits.at(90, 4));
 }
 
+TEST(InvertBits, LeavesWhatLiesOutsideClear) {
+  for (const int width : {1, 63, 64, 65, 130}) {
+    BitImage image, inverse;
+    image.Reset(width, 3);
+    for (int x = 0; x < width; x += 3) image.Set(x, 1);
+    InvertBits(image, &inverse);
+    for (int y = -1; y <= 3; ++y) {
+      for (int x = -1; x <= width; ++x) {
+        const bool outside = x < 0 || y < 0 || x >= width || y >= 3;
+        ASSERT_EQ(inverse.at(x, y), !outside && !image.at(x, y))
+            << "width " << width << " at " << x << ", " << y;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace kestrel

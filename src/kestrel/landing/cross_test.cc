@@ -169,5 +169,50 @@ TEST(RectifyInside, SaysNothingWithoutContrastOrOutOfView) {
   EXPECT_FALSE(RectifyInside(image, PatternView(camera, aside, 0.6, {}), kPattern, 40, 6));
 }
 
+class CrossProfileTest : public ::testing::Test {
+ protected:
+  // The direction found in a print that is seen from straight above, in the view of its ring;
+  // columns from 'first_column' on are in the image.
+  std::optional<Cross> Find(const Print& print, double angle, int first_column = 0,
+                            int shadow_column = 0) const {
+    const RigidTransform pose = PrintPose({0, 0, 1.2}, 0, 0, 0);
+    RigidTransform turned = pose;
+    turned.rotation *= Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
+    cv::Mat image = DrawPrint(camera_, kPattern, print, turned);
+    if (shadow_column > 0) image.colRange(0, shadow_column) *= 0.4;
+    const PatternView view(camera_, pose, 0.6, {{first_column, 0}, 0});
+    return FindCrossByProfile(image.colRange(first_column, image.cols), view, kPattern, 10);
+  }
+  static double ErrorModuloRightAngle(double found, double angle) {
+    return std::abs(std::remainder(found - angle, std::numbers::pi / 2));
+  }
+
+  const CameraModel camera_ = TestPrintCamera();
+  const Print pattern_ = SpokedPrint(kPattern, 4);
+};
+
+TEST_F(CrossProfileTest, FindsTheArms) {
+  for (double angle = 0; angle < 1.57; angle += 0.2) {
+    const auto cross = Find(pattern_, angle);
+    ASSERT_TRUE(cross) << angle;
+    EXPECT_LT(ErrorModuloRightAngle(cross->arm_angle, angle), 2 * kDegree) << angle;
+  }
+}
+
+TEST_F(CrossProfileTest, FindsThemInHalfOfThePrintAndAcrossAShadow) {
+  for (double angle = 0; angle < 1.57; angle += 0.2) {
+    const auto cut_off = Find(pattern_, angle, 165);
+    ASSERT_TRUE(cut_off) << angle;
+    EXPECT_LT(ErrorModuloRightAngle(cut_off->arm_angle, angle), 4 * kDegree) << angle;
+    const auto shadowed = Find(pattern_, angle, 0, 150);
+    ASSERT_TRUE(shadowed) << angle;
+    EXPECT_LT(ErrorModuloRightAngle(shadowed->arm_angle, angle), 4 * kDegree) << angle;
+  }
+}
+
+TEST_F(CrossProfileTest, AnEmptyRingHasNone) {
+  EXPECT_FALSE(Find([](double x, double y) { return IsRing(kPattern, x, y); }, 0));
+}
+
 }  // namespace
 }  // namespace kestrel

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <optional>
 #include <span>
 #include <vector>
@@ -44,6 +45,19 @@ struct LandingModels {
   SmallPatternFitter small;
 };
 
+// Adds the time of its life to a stage.
+class StageTimer {
+ public:
+  StageTimer(LandingReport* report, LandingStage stage)
+      : total_(report->stage_ns[static_cast<int>(stage)]),
+        start_(std::chrono::steady_clock::now()) {}
+  ~StageTimer() { total_ += (std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::int64_t& total_;
+  std::chrono::steady_clock::time_point start_;
+};
+
 // An outline that may be the ring, in pixels of the image of its pass.
 struct RingCandidate {
   Ellipse outer_edge;
@@ -61,6 +75,7 @@ struct SmallRingPlace {
 
 struct LandingWorkspace::Buffers {
   static constexpr std::size_t kPasses = 6;
+  static constexpr std::size_t kMaxRays = 48;  // of a border
 
   int width_px = 0;  // of the images that there is room for
   int height_px = 0;

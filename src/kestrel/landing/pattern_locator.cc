@@ -17,6 +17,7 @@ namespace {
 
 constexpr int kMaxReach = 12;        // px
 constexpr double kOnEdgePx = 1.0;    // offset of an edge that is the outline's own
+constexpr double kLensBlurPx = 0.7;  // of optics and pixels, standard deviation
 constexpr double kEdgeSigma = 0.12;  // px, of an edge that fits perfectly
 
 // Offset (px) along the unit vector 'normal' from 'at' to the steepest rise of brightness within
@@ -113,7 +114,7 @@ void PatternLocator::AddCircle(double radius, double sign, int count, double arm
     const Eigen::Vector2d point = radius * direction;
     if (std::min(std::abs(point.x()), std::abs(point.y())) < arm_clearance) continue;
     const int quarter = static_cast<int>(std::floor(angle / (std::numbers::pi / 2) + 0.5)) % 4;
-    places_.push_back({point, sign * direction, 4 + quarter});
+    places_.push_back({point, sign * direction, 4 + quarter, sign / radius});
   }
 }
 
@@ -130,7 +131,7 @@ void PatternLocator::AddArms() {
     for (int i = 0; i < kPerSide; ++i) {
       const double reach = first + (last - first) * i / (kPerSide - 1);
       for (const double side : {1.0, -1.0}) {
-        places_.push_back({reach * along + side * half_width * across, side * across, arm});
+        places_.push_back({reach * along + side * half_width * across, side * across, arm, 0});
       }
     }
   }
@@ -161,9 +162,13 @@ void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose
     Eigen::Vector2d across(-tangent.y(), tangent.x());
     if (across.dot(d_plane * place.normal) < 0) across = -across;
     across.normalize();
-    const std::optional<double> offset =
+    std::optional<double> offset =
         FindEdge(image, pixel, across, reach, static_cast<float>(min_step));
     if (!offset) continue;
+    // Blur moves a bent edge towards the middle of the bend.
+    const double shrink = 0.5 * kLensBlurPx * kLensBlurPx * place.curvature *
+                          std::abs(d_plane.determinant()) / std::pow(tangent.norm(), 3);
+    *offset += shrink;
     if (normal->found < static_cast<int>(normal->magnitudes.size())) {
       normal->magnitudes[normal->found++] = static_cast<float>(std::abs(*offset));
     }

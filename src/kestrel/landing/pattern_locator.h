@@ -25,7 +25,7 @@ struct PatternLocation {
   double edge_share = 0;   // share of the pattern's edges in the image that were found there
   int edges = 0;           // how many were used
   // The same share for each arm and for the ring around it; negative when the image shows less than
-  // a third of it.
+  // a quarter of it.
   std::array<double, 4> arm_share{};
   std::array<double, 4> ring_share{};
 };
@@ -53,7 +53,8 @@ class PatternLocator {
   struct Place {
     Eigen::Vector2d point;
     Eigen::Vector2d normal;
-    int part;  // 0 to 3: arm, 4 to 7: ring around it
+    int part;          // 0 to 3: arm, 4 to 7: ring around it
+    double curvature;  // 1/m; positive where the outline bends around the black side
   };
   struct Normal;
 

@@ -92,5 +92,26 @@ TEST_F(PatternLocatorTest, WithoutEdgesThereIsNoPose) {
   EXPECT_FALSE(locator_.Locate(Draw(pose), PrintPose({0, 0, -2}, 0, 0, 0), 5, 10, 4));
 }
 
+TEST_F(PatternLocatorTest, TheRingAloneGivesItsPlaneAndCentre) {
+  Random random(7);
+  const Print ring = [this](double x, double y) { return IsRing(pattern_, x, y); };
+  for (int trial = 0; trial < 8; ++trial) {
+    const double distance = random.Uniform(1.3, 3);
+    const RigidTransform truth = PrintPose({0.1, -0.05, distance}, random.Uniform(0.2, 0.5),
+                                           random.Uniform(0, 6), random.Uniform(0, 6));
+    const cv::Mat image = DrawPrint(camera_, pattern_, ring, truth);
+    const auto found = locator_.LocateRing(image, Disturb(truth, &random), 5, 10, 6);
+    ASSERT_TRUE(found);
+    EXPECT_LT((found->translation - truth.translation).norm(), 0.005 * distance) << trial;
+    const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+    EXPECT_GT((found->rotation * z).dot(truth.rotation * z), std::cos(0.02)) << trial;
+  }
+}
+
+TEST_F(PatternLocatorTest, NothingIsLocatedOnAnEvenImage) {
+  const cv::Mat even(240, 320, CV_8UC1, cv::Scalar(120));
+  EXPECT_FALSE(locator_.LocateRing(even, PrintPose({0, 0, 2}, 0.2, 0, 0), 5, 10, 4));
+}
+
 }  // namespace
 }  // namespace kestrel

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/landing/ring_arcs.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -96,6 +97,30 @@ TEST_F(FindArcRingsTest, StraightLinesHaveNoArcs) {
                 return x > 60 && x < 200 && y > 60 && y < 160 &&
                        !(x > 90 && x < 170 && y > 90 && y < 130);
               }).empty());
+}
+
+TEST_F(FindArcRingsTest, TheImageBorderIsNoEdge) {
+  // Cut off above and on the left. The direct fit to an arc of a quarter is known to be too small.
+  const auto& rings = Find([](double x, double y) {
+    return std::hypot(x - 40, y - 30) < 60 && OnRing(x + 110, y + 80);
+  });
+  ASSERT_FALSE(rings.empty());
+  for (const ArcRing& ring : rings) {
+    const double radius_px = ring.edge == RingEdge::kOuter ? 60 : 48;
+    EXPECT_NEAR(std::tan(ring.cone.HalfAngles().x()) * 220, radius_px, 0.2 * radius_px);
+  }
+}
+
+TEST_F(FindArcRingsTest, ArmsThatTouchTheRingLeaveItsInnerEdge) {
+  const auto& rings = Find([](double x, double y) {
+    return OnRing(x, y) ||
+           (std::hypot(x - 150, y - 110) < 50 && (std::abs(x - 150) < 6 || std::abs(y - 110) < 6));
+  });
+  const auto inner = std::find_if(rings.begin(), rings.end(), [](const ArcRing& ring) {
+    return ring.edge == RingEdge::kInner;
+  });
+  ASSERT_NE(inner, rings.end());
+  ExpectCircle(*inner);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include <Eigen/Cholesky>
@@ -11,19 +10,16 @@
 #include <Eigen/LU>
 
 #include "kestrel/landing/pattern_pose.h"
-#include "kestrel/landing/pattern_view.h"
+#include "kestrel/landing/small_pattern_model.h"
 
 namespace kestrel {
 namespace {
 
-constexpr double kGoodLensBlurPx = 0.7;  // of optics and pixels, standard deviation
 constexpr double kMinBlurPx = 0.4;
 constexpr double kMaxBlurPx = 1.2;
-constexpr int kUnknowns = 11;         // pose, blur, white, contrast, two slopes of the light
-constexpr double kBlurSpread = 0.35;  // of the blur's logarithm over lenses
-constexpr double kMinContrast = 2;
-constexpr double kMaxWhite = 600;  // gray value of white under the strongest overexposure
-constexpr double kSaturated = 254;
+constexpr int kUnknowns = 11;                // pose, blur, white, contrast, two slopes of the light
+constexpr double kBlurSpread = 0.35;         // of the blur's logarithm over lenses
+constexpr double kMaxWhite = 600;            // gray value of white under the strongest overexposure
 constexpr double kMinRingCorrelation = 0.2;  // of a start, ring and white alone
 // Standard deviations of the residuals beyond which one is an outlier, and the least of these,
 // share of the contrast: no print is perfect.
@@ -37,77 +33,7 @@ constexpr int kManyPixels = 1200;
 constexpr std::size_t kMinPixels = 30;
 constexpr int kMaxSide = 128;  // of the box around the print, pixels
 
-// A gray value where the image cuts off what is brighter: then it is what is expected.
-double SeenGray(double gray, double expected) {
-  return gray >= kSaturated && expected > gray ? expected : gray;
-}
-
-// Blurred step from 0 to 1 over a distance in units of the blur's standard deviation: the integral
-// of the biweight kernel of variance one, which is near to a Gaussian and ends at 2.65.
-struct Step {
-  double value;
-  double slope;
-};
-Step BlurredStep(double z) {
-  constexpr double kReach = 2.6457513110645906;  // sqrt(7)
-  const double t = std::clamp(z / kReach, -1.0, 1.0);
-  const double square = t * t;
-  const double rest = 1 - square;
-  return {0.5 + t * (15.0 / 16 - square * (10.0 / 16 - square * 3.0 / 16)),
-          15.0 / 16 * rest * rest / kReach};
-}
-
-// A blurred stroke: where a distance lies between two limits.
-struct Stroke {
-  double value = 0;
-  double by_distance = 0;  // derivative
-  double by_log_blur = 0;
-};
-Stroke BlurredStroke(double distance, double low, double high, double blur) {
-  const double z_low = (distance - low) / blur;
-  const double z_high = (distance - high) / blur;
-  const Step a = BlurredStep(z_low);
-  const Step b = BlurredStep(z_high);
-  return {a.value - b.value, (a.slope - b.slope) / blur, b.slope * z_high - a.slope * z_low};
-}
-
-// Where rays meet the plane of a pose.
-struct PlaneMap {
-  explicit PlaneMap(const RigidTransform& camera_from_pattern)
-      : rotation(camera_from_pattern.rotation.toRotationMatrix()),
-        translation(camera_from_pattern.translation) {
-    Eigen::Matrix3d basis;
-    basis << rotation.col(0), rotation.col(1), translation;
-    inverse = basis.inverse();
-  }
-  Eigen::Matrix3d rotation;
-  Eigen::Vector3d translation;
-  Eigen::Matrix3d inverse;  // ray to homogeneous plane coordinates
-};
-
-using PlanePoint = SmallPatternWorkspace::PlanePoint;
-
-PlanePoint Intersect(const PlaneMap& map, const SmallPatternWorkspace::Pixel& pixel) {
-  const Eigen::Vector3d h = map.inverse * pixel.ray;
-  const Eigen::Vector3d hu = map.inverse * pixel.d_ray_du;
-  const Eigen::Vector3d hv = map.inverse * pixel.d_ray_dv;
-  const double w = 1 / h.z();
-  PlanePoint point{h.x() * w, h.y() * w, {}};
-  point.by_pixel << (hu.x() - point.x * hu.z()) * w, (hv.x() - point.x * hv.z()) * w,
-      (hu.y() - point.y * hu.z()) * w, (hv.y() - point.y * hv.z()) * w;
-  return point;
-}
-
 }  // namespace
-
-// How dark the blurred print is at a point of its plane, 0 white to 1 black.
-struct SmallPatternFitter::Darkness {
-  double value;
-  double by_x, by_y;  // per metre
-  double by_log_blur;
-  double ring;                 // of the ring alone
-  std::array<double, 2> arms;  // of the arms along x and along y
-};
 
 SmallPatternFitter::SmallPatternFitter(const CameraModel& camera, const RayTable& rays,
                                        const LandingPattern& pattern)
@@ -127,8 +53,13 @@ SmallPatternFitter::Darkness SmallPatternFitter::Evaluate(double x, double y,
   const double blur_y = blur_px * d_plane.row(1).norm();
   const double half_width = 0.5 * pattern_.arm_width_m;
   const double length = pattern_.arm_half_length_m;
+  // What the blur mixes in from along the ring lies farther from its centre: to second order the
+  // blurred ring is narrower by half of this. Left out, small prints seem farther away than they
+  // are, by half a percent.
+  const Eigen::Vector2d tangent(-radial.y(), radial.x());
+  const double bend = blur_px * blur_px * (d_plane.transpose() * tangent).squaredNorm() / (2 * r);
   const Stroke ring =
-      BlurredStroke(r, pattern_.inner_radius_m(), pattern_.outer_radius_m(), blur_r);
+      BlurredStroke(r + bend, pattern_.inner_radius_m(), pattern_.outer_radius_m(), blur_r);
   const Stroke x_across = BlurredStroke(y, -half_width, half_width, blur_y);
   const Stroke x_along = BlurredStroke(x, -length, length, blur_x);
   const Stroke y_across = BlurredStroke(x, -half_width, half_width, blur_x);
@@ -149,7 +80,7 @@ SmallPatternFitter::Darkness SmallPatternFitter::Evaluate(double x, double y,
   dark.by_y = by_r * radial.y() + by_arm_x * x_across.by_distance * x_along.value +
               by_arm_y * y_across.value * y_along.by_distance;
   dark.by_log_blur =
-      no_x * no_y * ring.by_log_blur +
+      no_x * no_y * (ring.by_log_blur + 2 * bend * ring.by_distance) +
       by_arm_x * (x_across.by_log_blur * x_along.value + x_across.value * x_along.by_log_blur) +
       by_arm_y * (y_across.by_log_blur * y_along.value + y_across.value * y_along.by_log_blur);
   return dark;
@@ -317,20 +248,6 @@ SmallPatternFitter::Start SmallPatternFitter::FindStart(const cv::Mat& image,
   return best;
 }
 
-// The unknowns of a fit.
-struct SmallPatternFitter::State {
-  RigidTransform pose;
-  double blur_px = kGoodLensBlurPx;
-  double white = 255;   // gray value, which the image may cut off
-  double contrast = 0;  // white minus black
-
-  Eigen::Vector2d slope{0, 0};  // of the light over the print, gray values per metre
-
-  double Gray(const PlanePoint& point, const Darkness& dark) const {
-    return white + slope.x() * point.x + slope.y() * point.y - contrast * dark.value;
-  }
-};
-
 // Normal equations of a state for small changes of pose (translation, then rotation about the
 // centre), logarithm of the blur, white, contrast and slopes; and the residuals that made them.
 struct SmallPatternFitter::System {
@@ -497,146 +414,6 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   MeasureParts(*workspace, state, &fit.match);
   fit.others = MeasureOthers(image, *workspace, state);
   return fit;
-}
-
-std::optional<SmallPatternFitter::OtherSigns> SmallPatternFitter::Inspect(
-    const cv::Mat& image, const RigidTransform& pose, SmallPatternWorkspace* workspace) const {
-  if (!Gather(image, pose, workspace)) return std::nullopt;
-  State state;
-  state.pose = pose;
-  MeasureLevels(*workspace, &state);
-  if (state.contrast < kMinContrast) return std::nullopt;
-  return MeasureOthers(image, *workspace, state);
-}
-
-SmallPatternFitter::OtherSigns SmallPatternFitter::MeasureOthers(
-    const cv::Mat& image, const SmallPatternWorkspace& workspace, const State& state) const {
-  return {.spokes = OtherSpokes(workspace, state),
-          .frame_corners = FrameCorners(workspace, state),
-          .cross_correlation = CrossCorrelation(workspace, state),
-          .board_darkness = BoardDarkness(image, state)};
-}
-
-// In each quadrant the darkest line from the centre among those well away from the arms: its depth
-// in what the fit left over, against the rest of the quadrant.
-double SmallPatternFitter::OtherSpokes(const SmallPatternWorkspace& workspace,
-                                       const State& state) const {
-  constexpr std::array<double, 3> kTurns{33, 45, 57};  // degrees from the arm before
-  struct Regression {
-    double n = 0, s = 0, ss = 0, e = 0, se = 0;
-  };
-  std::array<std::array<Regression, kTurns.size()>, 4> lines;
-  std::array<Eigen::Vector2d, kTurns.size()> directions;
-  for (std::size_t i = 0; i < kTurns.size(); ++i) {
-    const double angle = kTurns[i] * std::numbers::pi / 180;
-    directions[i] = {std::cos(angle), std::sin(angle)};
-  }
-  const PlaneMap map(state.pose);
-  const double inner = pattern_.inner_radius_m();
-  const double half_width = 0.5 * pattern_.arm_width_m;
-  for (const auto& pixel : workspace.pixels) {
-    const PlanePoint point = Intersect(map, pixel);
-    const double radius = std::hypot(point.x, point.y);
-    if (radius < 0.35 * inner || radius > 0.9 * inner) continue;
-    const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
-    const double expected = state.Gray(point, dark);
-    const double residual = SeenGray(pixel.gray, expected) - expected;
-    const int quadrant = point.x > 0 ? (point.y > 0 ? 0 : 3) : (point.y > 0 ? 1 : 2);
-    // Turned into the first quadrant, x along the arm before.
-    const Eigen::Vector2d turned =
-        Eigen::Rotation2Dd(-quadrant * std::numbers::pi / 2) * Eigen::Vector2d(point.x, point.y);
-    for (std::size_t i = 0; i < kTurns.size(); ++i) {
-      const Eigen::Vector2d normal(-directions[i].y(), directions[i].x());
-      const Eigen::Vector2d in_pattern =
-          Eigen::Rotation2Dd(quadrant * std::numbers::pi / 2) * normal;
-      const double blur = state.blur_px * (point.by_pixel.transpose() * in_pattern).norm();
-      const double line =
-          BlurredStroke(normal.dot(turned), -half_width, half_width, std::max(blur, 1e-9)).value;
-      Regression& r = lines[quadrant][i];
-      ++r.n;
-      r.s += line;
-      r.ss += line * line;
-      r.e += residual;
-      r.se += line * residual;
-    }
-  }
-  std::array<double, 4> darkest{};
-  for (int q = 0; q < 4; ++q) {
-    for (const Regression& r : lines[q]) {
-      const double spread = r.ss - r.s * r.s / std::max(r.n, 1.0);
-      if (r.n < 6 || spread < 0.3) continue;
-      darkest[q] = std::max(darkest[q], -(r.se - r.s * r.e / r.n) / spread / state.contrast);
-    }
-  }
-  std::sort(darkest.begin(), darkest.end(), std::greater<>());
-  return darkest[1];
-}
-
-// How much darker the white is beyond the ends of the arms than between them.
-double SmallPatternFitter::FrameCorners(const SmallPatternWorkspace& workspace,
-                                        const State& state) const {
-  const PlaneMap map(state.pose);
-  double n = 0, s = 0, ss = 0, e = 0, se = 0;
-  for (const auto& pixel : workspace.pixels) {
-    const PlanePoint point = Intersect(map, pixel);
-    const double radius = std::hypot(point.x, point.y);
-    if (radius < pattern_.inner_radius_m()) continue;
-    const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
-    const double expected = state.Gray(point, dark);
-    const double residual = SeenGray(pixel.gray, expected) - expected;
-    // 1 along the arms, -1 half-way between them.
-    const double wave = std::cos(4 * std::atan2(point.y, point.x));
-    ++n;
-    s += wave;
-    ss += wave * wave;
-    e += residual;
-    se += wave * residual;
-  }
-  const double spread = ss - s * s / std::max(n, 1.0);
-  return spread > 1 ? -(se - s * e / n) / spread / state.contrast : 0;
-}
-
-double SmallPatternFitter::CrossCorrelation(const SmallPatternWorkspace& workspace,
-                                            const State& state) const {
-  const PlaneMap map(state.pose);
-  double n = 0, g = 0, gg = 0, d = 0, dd = 0, gd = 0;
-  for (const auto& pixel : workspace.pixels) {
-    const PlanePoint point = Intersect(map, pixel);
-    if (std::hypot(point.x, point.y) > pattern_.arm_half_length_m) continue;
-    const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
-    const double expected = state.Gray(point, dark);
-    const double gray = SeenGray(pixel.gray, expected);
-    ++n;
-    g += gray;
-    gg += gray * gray;
-    d += expected;
-    dd += expected * expected;
-    gd += gray * expected;
-  }
-  const double variance = (gg - g * g / n) * (dd - d * d / n);
-  return n > 0 && variance > 0 ? (gd - g * d / n) / std::sqrt(variance) : 0;
-}
-
-// The median over the directions in view: a white ring on dark ground has no board.
-double SmallPatternFitter::BoardDarkness(const cv::Mat& image, const State& state) const {
-  constexpr int kDirections = 24;
-  std::array<double, kDirections> darkness;
-  int seen = 0;
-  for (int i = 0; i < kDirections; ++i) {
-    const double angle = i * 2 * std::numbers::pi / kDirections;
-    const Eigen::Vector3d point(board_radius_m_ * std::cos(angle),
-                                board_radius_m_ * std::sin(angle), 0);
-    Eigen::Vector2d pixel;
-    if (camera_.Project(state.pose * point, &pixel) == ProjectionStatus::kOutsideModel) continue;
-    const double gray =
-        SampleGray(image, static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
-    if (gray < 0) continue;
-    const double white = state.white + state.slope.dot(point.head<2>());
-    darkness[seen++] = gray >= kSaturated ? 0 : (white - gray) / state.contrast;
-  }
-  if (seen == 0) return 0;
-  std::nth_element(darkness.begin(), darkness.begin() + seen / 2, darkness.begin() + seen);
-  return darkness[seen / 2];
 }
 
 // Fits an amplitude to the ring's quarters, to each half arm and to the white of each quadrant, on

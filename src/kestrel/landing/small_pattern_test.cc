@@ -106,5 +106,46 @@ TEST_F(SmallPatternTest, AFlatImageFitsNothing) {
   EXPECT_FALSE(fitter_.Refine(cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)), pose, 8, &workspace_));
 }
 
+TEST_F(SmallPatternTest, OtherSignsShowWhatThePrintHasNot) {
+  Random random(4);
+  const auto inspect = [&](const Print& print, const RigidTransform& pose) {
+    return fitter_.Inspect(Draw(print, pose), pose, &workspace_);
+  };
+  const double outer = pattern_.outer_radius_m();
+  const Print frame = [&](double x, double y) {
+    const double sum = std::abs(x) + std::abs(y);  // its corners at the ends of the arms
+    return (sum > 1.0 * outer && sum < 1.25 * outer) || SpokedPrint(pattern_, 4)(x, y);
+  };
+  const Print blot = [&](double x, double y) { return std::hypot(x, y) < outer; };
+  for (const int diameter_px : {16, 22, 28, 50}) {
+    const RigidTransform pose = PoseOf(diameter_px, &random);
+    const auto right = inspect(SpokedPrint(pattern_, 4), pose);
+    ASSERT_TRUE(right) << diameter_px;
+    EXPECT_LT(right->spokes, 0.3) << diameter_px;
+    EXPECT_LT(std::abs(right->frame_corners), 0.05) << diameter_px;
+    EXPECT_GT(right->cross_correlation, 0.9) << diameter_px;
+    EXPECT_LT(std::abs(right->board_darkness), 0.15) << diameter_px;
+    EXPECT_GT(inspect(SpokedPrint(pattern_, 8), pose)->spokes, 0.6) << diameter_px;
+    EXPECT_GT(inspect(frame, pose)->frame_corners, 0.1) << diameter_px;
+    EXPECT_LT(inspect(blot, pose)->cross_correlation, 0.5) << diameter_px;
+  }
+}
+
+TEST_F(SmallPatternTest, AHighlightDoesNotSpoilTheFit) {
+  Random random(5);
+  for (const int diameter_px : {18, 24}) {
+    const RigidTransform truth = PoseOf(diameter_px, &random);
+    cv::Mat image = AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 2, &random);
+    Eigen::Vector2d spot;
+    camera_.Project(truth * Eigen::Vector3d(0.55, 0.1, 0), &spot);
+    image(cv::Rect(static_cast<int>(spot.x()) - 1, static_cast<int>(spot.y()) - 1, 3, 3)) = 254;
+    const auto fit = Fit(image, truth);
+    ASSERT_TRUE(fit) << diameter_px;
+    const double distance = truth.translation.norm();
+    EXPECT_NEAR(fit->location.camera_from_pattern.translation.norm() / distance, 1, 0.02)
+        << diameter_px;
+  }
+}
+
 }  // namespace
 }  // namespace kestrel

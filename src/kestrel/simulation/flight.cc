@@ -157,11 +157,11 @@ Motion LandingFlight(const LandingFlightOptions& options, const Path& target, do
   const auto beside_y = Wander(options.offset_m / std::numbers::sqrt2, kDriftPeriod_s, random);
   const double ratio = options.end_altitude_m / options.start_altitude_m;
   const Path position = [=](double time_s) {
-    constexpr double kFullSwayAltitude_m = 2;
+    constexpr double kHalfSwayAltitude_m = 1;  // about: less room to sway further down
     const double part = std::clamp(time_s / duration_s, -0.1, 1.1);
     // As long at 1 to 2 m as at 4 to 8 m.
     const double altitude = options.start_altitude_m * std::pow(ratio, part);
-    const double sway = acceleration * std::min(altitude / kFullSwayAltitude_m, 1.0);
+    const double sway = acceleration * altitude / std::hypot(altitude, kHalfSwayAltitude_m);
     const double sway_x = sway / (rate_x * rate_x) * std::sin(rate_x * time_s);
     const double sway_y = sway / (rate_y * rate_y) * std::sin(rate_y * time_s + phase);
     return Vector3d(target(time_s) + Vector3d(altitude * beside_x(time_s) + sway_x,

@@ -33,8 +33,8 @@ struct LandingFlightOptions {
   double start_altitude_m = 12;
   double end_altitude_m = 0.6;
   double offset_m = 0.15;          // how far beside the pattern, per metre of altitude
-  double sway_acceleration = 0.2;  // largest of its swaying, m/s^2, less below 2 m; the paper's
-                                   // calm flight: 0.2; 8 tilts the UAV by 40 degrees
+  double sway_acceleration = 0.2;  // largest of its swaying, m/s^2, less near the pattern; the
+                                   // paper's calm flight: 0.2; 8 tilts the UAV by 40 degrees
   double sway_period_s = 6;
   double attitude_noise_deg = 0.3;  // fast, small errors of the attitude control
   double yaw_rate_deg = 10;         // amplitude of its slow turning, degrees per second

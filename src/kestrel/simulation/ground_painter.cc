@@ -2,6 +2,7 @@
 #include "kestrel/simulation/ground_painter.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -17,6 +18,8 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kPi = std::numbers::pi;
+constexpr int kDetail_px = 1024;
+constexpr double kDetailSize_m = 2.5;
 constexpr int kMapShift = 4;  // fractional bits of OpenCV's drawing coordinates
 
 Vector2d Direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
@@ -60,26 +63,32 @@ std::vector<std::string> GroundOptions::Validate() const {
   }
   RequireIn(markings, 0, 1000, "markings", &violations);
   RequireIn(details, 0, 1000, "details", &violations);
+  RequireIn(map_size_m, 1, 1000, "map_size_m", &violations);
+  if (map_px < 64 || map_px > 8192 || !std::has_single_bit(static_cast<unsigned>(map_px))) {
+    violations.push_back(fmt::format("map_px is {}, expected a power of two, 64 to 8192", map_px));
+  }
   return violations;
 }
 
-GroundPainter::GroundPainter(const std::string& material, const GroundSize& size, Random* random)
-    : size_(size), per_m_(size.map_px / size.map_size_m) {
-  const GroundMaterial& ground = FindGroundMaterial(material);
+GroundPainter::GroundPainter(const GroundOptions& options, Random* random)
+    : map_size_m_(options.map_size_m),
+      map_px_(options.map_px),
+      per_m_(options.map_px / options.map_size_m) {
+  const GroundMaterial& ground = FindGroundMaterial(options.material);
   constexpr double kLargest_m = 9;
-  const cv::Size map_size(size.map_px, size.map_px);
+  const cv::Size map_size(map_px_, map_px_);
   const Color color = random->Uniform(0.75, 1.6) * ground.color;
   map_ = Painted(color, ground.map_variation,
                  FractalNoise(map_size, kLargest_m * per_m_, 7, 2.5, random->Bits()));
-  detail_ = DetailOf(ground, size.detail_px, size.detail_size_m, random->Bits());
+  detail_ = DetailOf(ground, kDetail_px, kDetailSize_m, random->Bits());
   paved_ = ground.paved;
   marking_ = Gray(random->Uniform(0.55, 0.85));
 }
 
 cv::Point GroundPainter::ToMap(const Vector2d& point) const {
   // OpenCV's (0, 0) is the centre of the first pixel, the texture's its corner.
-  const Vector2d pixel(0.5 * size_.map_px + per_m_ * point.x() - 0.5,
-                       0.5 * size_.map_px - per_m_ * point.y() - 0.5);
+  const Vector2d pixel(0.5 * map_px_ + per_m_ * point.x() - 0.5,
+                       0.5 * map_px_ - per_m_ * point.y() - 0.5);
   constexpr double kScale = 1 << kMapShift;
   return {static_cast<int>(std::lround(kScale * pixel.x())),
           static_cast<int>(std::lround(kScale * pixel.y()))};
@@ -134,7 +143,7 @@ void GroundPainter::Disc(const Vector2d& center, double radius_m, const Color& c
 
 Vector2d GroundPainter::Place(Random* random) const {
   // Denser in the middle, where the UAV flies.
-  const double radius = 0.5 * size_.map_size_m * std::pow(random->Uniform(), 0.7);
+  const double radius = 0.5 * map_size_m_ * std::pow(random->Uniform(), 0.7);
   return radius * RandomDirection(random);
 }
 
@@ -282,9 +291,9 @@ void GroundPainter::Curb(double radius_m, const std::string& material, Random* r
 Ground GroundPainter::ToGround(int channels) const {
   Ground ground;
   ground.map = std::make_shared<Texture>(map_, channels, Texture::Beyond::kMirror);
-  ground.map_size_m = size_.map_size_m;
+  ground.map_size_m = map_size_m_;
   ground.detail = std::make_shared<Texture>(detail_, 1, Texture::Beyond::kRepeat);
-  ground.detail_size_m = size_.detail_size_m;
+  ground.detail_size_m = kDetailSize_m;
   return ground;
 }
 
@@ -316,9 +325,9 @@ std::shared_ptr<const Texture> MakeSunlit(Random* random) {
 
 }  // namespace
 
-Ground MakeGround(const GroundOptions& options, const GroundSize& size,
-                  const std::vector<Vector2d>& track, int channels, Random* random) {
-  GroundPainter painter(options.material, size, random);
+Ground MakeGround(const GroundOptions& options, const std::vector<Vector2d>& track, int channels,
+                  Random* random) {
+  GroundPainter painter(options, random);
   painter.Details(options.details / 2, random);
   painter.Markings(options.markings, random);
   if (!track.empty()) painter.TrackLines(track, 2.2);
@@ -326,7 +335,7 @@ Ground MakeGround(const GroundOptions& options, const GroundSize& size,
   if (options.curb) {
     const auto materials = GroundMaterials();
     const int other = random->Integer(0, static_cast<int>(materials.size()) - 1);
-    painter.Curb(size.map_size_m * random->Uniform(0.3, 0.42), materials[other].name, random);
+    painter.Curb(options.map_size_m * random->Uniform(0.3, 0.42), materials[other].name, random);
   }
   Ground ground = painter.ToGround(channels);
   if (options.shadows) ground.sunlit = MakeSunlit(random);

@@ -21,6 +21,8 @@ struct GroundOptions {
   int details = 30;                  // manhole covers, drains, cracks, stains, tyre marks
   bool curb = true;                  // a round curb, another material behind it
   bool shadows = true;               // of trees and houses that are not in the world
+  double map_size_m = 64;            // side of the square that repeats (mirrored)
+  int map_px = 4096;                 // its side; a power of two, 64 to 8192
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -30,22 +32,16 @@ struct GroundOptions {
             "number of manhole covers, drains, cracks, stains and tyre marks");
     visitor("curb", self.curb, "", "a curb around, another material behind it");
     visitor("shadows", self.shadows, "", "shadows of trees and houses");
+    visitor("map_size_m", self.map_size_m, "m", "side of the ground's map, which repeats");
+    visitor("map_px", self.map_px, "px", "the same in pixels, a power of two: how fine it is");
   }
   std::vector<std::string> Validate() const;
-};
-
-// Sizes of the ground's textures.
-struct GroundSize {
-  double map_size_m = 64;
-  int map_px = 4096;
-  double detail_size_m = 2.5;
-  int detail_px = 1024;
 };
 
 // Draws on the ground's map, in metres around its middle (x right, y up in the map).
 class GroundPainter {
  public:
-  GroundPainter(const std::string& material, const GroundSize& size, Random* random);
+  GroundPainter(const GroundOptions& options, Random* random);
 
   void Markings(int count, Random* random);
   void Details(int count, Random* random);
@@ -73,7 +69,8 @@ class GroundPainter {
   void Patch(const Eigen::Vector2d& center, double yaw, Random* random);
   Eigen::Vector2d Place(Random* random) const;
 
-  GroundSize size_;
+  double map_size_m_;
+  int map_px_;
   double per_m_;
   bool paved_;
   Color marking_;
@@ -82,7 +79,7 @@ class GroundPainter {
 };
 
 // The whole ground by its options. 'track': where the vehicle drives; may be empty.
-Ground MakeGround(const GroundOptions& options, const GroundSize& size,
-                  const std::vector<Eigen::Vector2d>& track, int channels, Random* random);
+Ground MakeGround(const GroundOptions& options, const std::vector<Eigen::Vector2d>& track,
+                  int channels, Random* random);
 
 }  // namespace kestrel

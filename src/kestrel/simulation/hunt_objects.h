@@ -26,7 +26,7 @@ struct HuntObjectsOptions {
   int orange = 1;        // large discs, 0.5 m
   int orange_bars = 1;   // 2 m long
   int distractors = 10;  // other shapes
-  double fading = 0.25;  // most that the paint is bleached, 0 to 1
+  double fading = 0.15;  // most that the paint is bleached, 0 to 1
   double gloss = 0.25;   // most of the sun's mirror image in the paint
 
   template <class Self, class Visitor>

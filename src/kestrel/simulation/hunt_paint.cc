@@ -16,11 +16,11 @@ namespace {
 constexpr int kPaint_px = 128;
 
 Color ColorOf(const std::string& name) {
-  if (name == "red") return {0.035, 0.03, 0.42};
-  if (name == "green") return {0.06, 0.3, 0.07};
-  if (name == "blue") return {0.4, 0.13, 0.03};
-  if (name == "yellow") return {0.04, 0.5, 0.62};
-  return {0.02, 0.2, 0.6};  // orange
+  if (name == "red") return {0.025, 0.02, 0.5};
+  if (name == "green") return {0.03, 0.36, 0.08};
+  if (name == "blue") return {0.5, 0.12, 0.015};
+  if (name == "yellow") return {0.02, 0.55, 0.7};
+  return {0.01, 0.2, 0.7};  // orange
 }
 
 SquarePaint MakePaint(double fading, const std::string& color, Random* random) {

@@ -118,7 +118,7 @@ HuntScene MakeHuntScene(const HuntSimulationOptions& options, std::uint64_t seed
   scene.world_from_uav =
       UavMotion(options.flight, scene.objects, options.recording.duration_s(), &flight_random);
   Random ground_random = RandomOf(seed, Part::kGround);
-  world.ground = MakeGround(options.ground, {.map_size_m = 44}, {}, world.channels, &ground_random);
+  world.ground = MakeGround(options.ground, {}, world.channels, &ground_random);
   Random light_random = RandomOf(seed, Part::kLight);
   world.light = MakeLighting(options.light, &light_random);
   world.skyline = MakeSkyline(&light_random);
@@ -162,6 +162,13 @@ std::vector<std::string> HuntSimulationOptions::Validate() const {
     violations.emplace_back("flight.path is descend, expected at least one object");
   }
   return violations;
+}
+
+GroundOptions HuntSimulationOptions::Arena() {
+  GroundOptions options;
+  options.markings = 8;
+  options.map_size_m = 44;
+  return options;
 }
 
 FlightRecordingOptions HuntSimulationOptions::ConsumerCamera() {

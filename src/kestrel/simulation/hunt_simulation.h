@@ -44,11 +44,13 @@ struct HuntSimulationOptions {
   FlightRecordingOptions recording = ConsumerCamera();
   HuntFlightOptions flight;
   HuntObjectsOptions objects;
-  GroundOptions ground{.markings = 8};
+  GroundOptions ground = Arena();
   LightOptions light;
   int banners = 4;
   int vehicles = 1;
   bool uav_shadow = true;
+
+  static GroundOptions Arena();
 
   // A colour camera with a rolling shutter on a mount that shakes, which sharpens and compresses.
   static FlightRecordingOptions ConsumerCamera();

@@ -172,7 +172,7 @@ LandingScene MakeLandingScene(const LandingSimulationOptions& options, int chann
 
   const std::vector<Vector2d> track = Track(vehicle, duration_s);
   Random ground_random = RandomOf(seed, Part::kGround);
-  world.ground = MakeGround(options.ground, {}, track, channels, &ground_random);
+  world.ground = MakeGround(options.ground, track, channels, &ground_random);
   Random light_random = RandomOf(seed, Part::kLight);
   world.light = MakeLighting(options.light, &light_random);
   world.skyline = MakeSkyline(&light_random);

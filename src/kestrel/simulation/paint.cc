@@ -80,12 +80,30 @@ SquarePaint::SquarePaint(int size_px, double size_m, const Color& color)
 
 void SquarePaint::Draw(const Drawing& drawing, const Color& color) {
   const double pixel_m = size_m_ / codes_.cols;
-  for (int v = 0; v < codes_.rows; ++v) {
-    for (int u = 0; u < codes_.cols; ++u) {
-      const Eigen::Vector2d point((u + 0.5) * pixel_m - 0.5 * size_m_,
-                                  0.5 * size_m_ - (v + 0.5) * pixel_m);
-      const double cover = Coverage(drawing.NearestEdge(point).distance, pixel_m);
-      if (cover <= 0) continue;
+  constexpr int kBlock_px = 16;
+  for (int top = 0; top < codes_.rows; top += kBlock_px) {
+    for (int left = 0; left < codes_.cols; left += kBlock_px) {
+      const cv::Rect block =
+          cv::Rect(left, top, kBlock_px, kBlock_px) & cv::Rect({}, codes_.size());
+      const Eigen::Vector2d middle(left + 0.5 * block.width, top + 0.5 * block.height);
+      const double distance = drawing.NearestEdge(PointAt(middle)).distance;
+      const double reach = (0.5 * std::hypot(block.width, block.height) + 1) * pixel_m;
+      if (distance > reach) continue;
+      if (distance < -reach) {
+        codes_(block) = CodesOf(color);
+      } else {
+        DrawPixels(block, drawing, color);
+      }
+    }
+  }
+}
+
+void SquarePaint::DrawPixels(const cv::Rect& block, const Drawing& drawing, const Color& color) {
+  const double pixel_m = size_m_ / codes_.cols;
+  for (int v = block.y; v < block.y + block.height; ++v) {
+    for (int u = block.x; u < block.x + block.width; ++u) {
+      const double distance = drawing.NearestEdge(PointAt({u + 0.5, v + 0.5})).distance;
+      const double cover = Coverage(distance, pixel_m);
       cv::Vec3b& codes = codes_.at<cv::Vec3b>(v, u);
       for (int c = 0; c < 3; ++c) {
         const double below = kReflectanceOfCode[codes[c]];
@@ -93,6 +111,11 @@ void SquarePaint::Draw(const Drawing& drawing, const Color& color) {
       }
     }
   }
+}
+
+Eigen::Vector2d SquarePaint::PointAt(const Eigen::Vector2d& pixel) const {
+  const double pixel_m = size_m_ / codes_.cols;
+  return {pixel.x() * pixel_m - 0.5 * size_m_, 0.5 * size_m_ - pixel.y() * pixel_m};
 }
 
 void SquarePaint::Soil(double variation, std::uint64_t seed) {

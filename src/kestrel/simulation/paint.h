@@ -45,6 +45,10 @@ class SquarePaint {
   std::shared_ptr<const Texture> ToTexture(int channels) const;
 
  private:
+  void DrawPixels(const cv::Rect& block, const Drawing& drawing, const Color& color);
+  // 'pixel' counts from the upper left corner.
+  Eigen::Vector2d PointAt(const Eigen::Vector2d& pixel) const;
+
   double size_m_;
   cv::Mat codes_;
 };

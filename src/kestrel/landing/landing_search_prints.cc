@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the search of an image tests a ring for the print, and locates it.
+#include <algorithm>
+#include <cmath>
+
+#include "kestrel/landing/landing_search.h"
+#include "kestrel/landing/pattern_pose.h"
+
+namespace kestrel {
+namespace {
+
+// Edges of the print are found to a tenth of a pixel, blurred ones to a few; the nearest edges of
+// anything else scatter over the whole reach of the search.
+constexpr double kMaxEdgeRmsPx = 1.0;
+constexpr double kInspectedRingPx = 64;  // major axis below which it is looked for other signs
+constexpr double kMinMajorPx = 9;        // of the smallest ring
+// Differences of the residuals inside of a small ring, on it and around it, share of the contrast.
+constexpr double kMaxMoreInside = 0.085;
+constexpr double kMaxMoreOnRing = 0.12;
+constexpr double kMaxMoreOutside = 0.15;
+// Darkness of what only other signs have, share of the contrast.
+constexpr double kMinCrossCorrelation = 0.7;
+constexpr double kMaxOtherSpokes = 0.55;
+constexpr double kMaxFrameCorners = 0.14;
+constexpr double kMaxBoardDarkness = 0.35;
+constexpr double kSmallMargin = 0.08;            // of the quality of a small pattern
+constexpr double kMinCorrelation = 0.35;         // of a start of a small pattern
+constexpr double kSureCorrelation = 0.6;         // of a start that quadrants give
+constexpr double kMinCorrelationOfEither = 0.7;  // of the poses of a small pattern
+constexpr double kMinFittedCorrelation = 0.82;   // of a small pattern
+// Edges and contrasts of the ring that are where a circle has them: a frame of another shape has
+// some of them.
+constexpr double kMinRingShare = 0.85;
+constexpr double kMinRingContrast = 5;  // gray values
+constexpr double kWhole = 0.75;         // share of the print in view that is no partial pattern
+
+// Level of the pyramid at which a ring has about 40 to 80 pixels.
+int ViewLevel(double diameter_px) {
+  return std::clamp(static_cast<int>(std::floor(std::log2(diameter_px / 40))), 0, 4);
+}
+
+// Whether a fitted pose is still that of the ring it started from.
+bool Agrees(const RigidTransform& start, const RigidTransform& fitted, double radius_m) {
+  const double distance = start.translation.norm();
+  return std::abs(fitted.translation.norm() - distance) < 0.25 * distance &&
+         (fitted.translation.normalized() - start.translation / distance).norm() <
+             0.4 * radius_m / distance;
+}
+
+bool IsOtherSign(const SmallPatternFitter::OtherSigns& others) {
+  return others.spokes > kMaxOtherSpokes || others.frame_corners > kMaxFrameCorners ||
+         others.cross_correlation < kMinCrossCorrelation ||
+         others.board_darkness > kMaxBoardDarkness;
+}
+
+// What is asked of the quality of a small pattern beyond that of a near one.
+double SmallMargin(const Eigen::Vector2d& diameters_px) {
+  return kSmallMargin * std::clamp((36 - std::sqrt(diameters_px.prod())) / 16, 0.0, 1.0);
+}
+
+}  // namespace
+
+// Which of the two poses of a ring the attitude allows; both when it is not known.
+std::array<bool, 2> LandingSearch::LevelEnough(const RingFit& ring) const {
+  std::array<bool, 2> allowed{true, true};
+  if (!hint_.up_in_camera) return allowed;
+  const double a = ring.poses[0].normal.dot(*hint_.up_in_camera);
+  const double b = ring.poses[1].normal.dot(*hint_.up_in_camera);
+  // The board is level to some degrees; where the two poses are that near, the image decides.
+  if (std::abs(a - b) > 0.05) allowed[a > b ? 1 : 0] = false;
+  return allowed;
+}
+
+void LandingSearch::TestRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
+                             double reach_px) {
+  std::array<std::optional<Hypothesis>, 2> hypotheses;
+  {
+    StageTimer timer(&report_, LandingStage::kCross);
+    Reach(LandingStage::kCross, "no cross inside of the ring");
+    const std::array<bool, 2> allowed = LevelEnough(ring);
+    for (int i = 0; i < 2; ++i) {
+      if (allowed[i]) hypotheses[i] = TestPose(ring.poses[i], diameters_px.x());
+    }
+    const bool none = !hypotheses[0] && !hypotheses[1];
+    for (int i = 0; i < 2 && none; ++i) {
+      if (!allowed[i]) continue;
+      hypotheses[i] = TestRefinedPose(ring.poses[i], diameters_px.x(), reach_px);
+    }
+  }
+  if (hypotheses[0] && hypotheses[1]) {
+    const double difference = hypotheses[0]->quality - hypotheses[1]->quality;
+    if (std::abs(difference) > 0.1) hypotheses[difference > 0 ? 1 : 0].reset();
+  }
+  for (const auto& hypothesis : hypotheses) {
+    if (hypothesis) Locate(*hypothesis, diameters_px, reach_px);
+  }
+}
+
+std::optional<LandingSearch::VerifiedCross> LandingSearch::VerifyCross(const cv::Mat& image,
+                                                                       const PatternView& view,
+                                                                       double diameter_px) {
+  const LandingPattern& pattern = models_.options.pattern;
+  constexpr double kMinContrast = 6;
+  const auto by_thinning = [&]() -> std::optional<Cross> {
+    const auto inside = RectifyInside(image, view, pattern, 40, kMinContrast);
+    return inside ? FindCrossByThinning(*inside) : std::nullopt;
+  };
+  const auto by_lines = [&]() -> std::optional<Cross> {
+    const auto inside = RectifyInside(image, view, pattern, 64, kMinContrast);
+    return inside ? FindCrossByLines(*inside, pattern, &buffers_.cross_lines) : std::nullopt;
+  };
+  // Where the lines of a large cross are broken, thinning stands in: on the rectified inside it is
+  // not slow at any size.
+  if (diameter_px > 150) {
+    if (const auto cross = by_lines()) return VerifiedCross{*cross, CrossMethod::kLines};
+  }
+  if (const auto cross = by_thinning()) return VerifiedCross{*cross, CrossMethod::kThinning};
+  return std::nullopt;
+}
+
+std::optional<LandingSearch::Hypothesis> LandingSearch::TestPose(const CirclePose& pose,
+                                                                 double diameter_px) {
+  const ImageRegion region{offset_, ViewLevel(diameter_px)};
+  const cv::Mat image = buffers_.pyramid.ImageAt(region.level);
+  const double extent_m = models_.matcher.extent_m();
+  const PatternView view(models_.camera, PatternPose(pose, 0), extent_m, region);
+  if (!view.valid() || models_.matcher.RingContrast(image, view) < kMinRingContrast) {
+    return std::nullopt;
+  }
+  const std::optional<VerifiedCross> cross = VerifyCross(image, view, diameter_px);
+  if (!cross) return std::nullopt;
+  return Compare(PatternPose(pose, cross->cross.arm_angle), cross->method, diameter_px);
+}
+
+// Where the ring is cut off or broken, what is known of it says little about its far side: the
+// edges of both of its circles bring it into place before its inside is looked at.
+std::optional<LandingSearch::Hypothesis> LandingSearch::TestRefinedPose(const CirclePose& pose,
+                                                                        double diameter_px,
+                                                                        double reach_px) {
+  constexpr int kIterations = 4;
+  const std::optional<RigidTransform> refined = models_.locator.LocateRing(
+      image_, PatternPose(pose, 0), 1.5 * reach_px, kMinRingContrast / 2, kIterations);
+  if (!refined) return std::nullopt;
+  const ImageRegion region{offset_, ViewLevel(diameter_px)};
+  const cv::Mat image = buffers_.pyramid.ImageAt(region.level);
+  const PatternView view(models_.camera, *refined, models_.matcher.extent_m(), region);
+  if (!view.valid() || models_.matcher.RingContrast(image, view) < kMinRingContrast) {
+    return std::nullopt;
+  }
+  const std::optional<Cross> cross =
+      FindCrossByProfile(image, view, models_.options.pattern, kMinRingContrast / 2);
+  if (!cross) return std::nullopt;
+  RigidTransform turned = *refined;
+  turned.rotation *=
+      Eigen::Quaterniond(Eigen::AngleAxisd(cross->arm_angle, Eigen::Vector3d::UnitZ()));
+  return Compare(turned, CrossMethod::kThinning, diameter_px);
+}
+
+std::optional<LandingSearch::Hypothesis> LandingSearch::Compare(const RigidTransform& pose,
+                                                                CrossMethod method,
+                                                                double diameter_px) {
+  Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
+  const ImageRegion region{offset_, ViewLevel(diameter_px)};
+  const PatternView view(models_.camera, pose, models_.matcher.extent_m(), region);
+  if (!view.valid()) return std::nullopt;
+  const PatternMatch match = models_.matcher.Match(buffers_.pyramid.ImageAt(region.level), view);
+  const double quality = match.Quality();
+  if (quality < 0.7 * models_.options.min_quality) return std::nullopt;
+  return Hypothesis{pose, method, quality, match.contrast};
+}
+
+// Direction of an arm of a small cross by its quadrants.
+std::optional<double> LandingSearch::ArmAngleByQuadrants(const CirclePose& pose) {
+  const LandingPattern& pattern = models_.options.pattern;
+  const ImageRegion region{offset_, 0};
+  const PatternView view(models_.camera, PatternPose(pose, 0), models_.matcher.extent_m(), region);
+  if (!view.valid()) return std::nullopt;
+  constexpr int kSize = 24;
+  constexpr double kMinContrast = 6;
+  const auto inside = RectifyInside(searched_, view, pattern, kSize, kMinContrast);
+  if (!inside) return std::nullopt;
+  const std::optional<Cross> cross = FindCrossByQuadrants(*inside);
+  if (!cross) return std::nullopt;
+  return cross->arm_angle;
+}
+
+// Whether nearly the same small ring was tested before, as another pass saw it; notes it if not.
+bool LandingSearch::WasTested(const RingFit& ring, const Eigen::Vector2d& diameters_px) {
+  constexpr double kSamePlace = 0.12;  // of its diameters
+  constexpr double kSameSize = 0.1;
+  SmallRingPlace place{Eigen::Vector2d::Zero(), diameters_px};
+  if (models_.camera.Project(ring.poses[0].center, &place.center) ==
+      ProjectionStatus::kOutsideModel) {
+    return true;
+  }
+  const auto same = [&](const SmallRingPlace& other) {
+    return (place.center - other.center).norm() < kSamePlace * diameters_px.y() &&
+           ((place.diameters - other.diameters).array().abs() < kSameSize * place.diameters.array())
+               .all();
+  };
+  std::vector<SmallRingPlace>& tested = buffers_.tested;
+  if (std::any_of(tested.begin(), tested.end(), same)) return true;
+  if (tested.size() < tested.capacity()) tested.push_back(place);
+  return false;
+}
+
+// Rings whose strokes are no wider than the blur: the print is fitted as a whole. The ring may be
+// smaller than it was seen by the given factors.
+void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
+                                  std::span<const double> scales) {
+  if (diameters_px.x() < kMinMajorPx || diameters_px.y() < 0.7 * models_.options.min_ring_px) {
+    return;
+  }
+  StageTimer timer(&report_, LandingStage::kCross);
+  Reach(LandingStage::kCross, "no cross inside of the ring");
+  if (WasTested(ring, diameters_px)) return;
+  const std::array<bool, 2> allowed = LevelEnough(ring);
+  for (int i = 0; i < 2; ++i) {
+    if (!allowed[i]) continue;
+    const auto find_start = [&](std::optional<double> arm_angle) {
+      return models_.small.FindStart(image_, ring.poses[i], scales, arm_angle, &buffers_.small);
+    };
+    SmallPatternFitter::Start start{{}, -1};
+    if (const auto arm_angle = ArmAngleByQuadrants(ring.poses[i])) start = find_start(arm_angle);
+    if (start.correlation < kSureCorrelation) start = find_start(std::nullopt);
+    // The two poses of a small ring look much the same: what does not fit one fits neither.
+    if (start.correlation < kMinCorrelation) return;
+    Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
+    constexpr int kIterations = 8;
+    const auto fit =
+        models_.small.Refine(image_, start.camera_from_pattern, kIterations, &buffers_.small);
+    if (!fit || fit->correlation < kMinCorrelationOfEither) return;
+    if (!Agrees(start.camera_from_pattern, fit->location.camera_from_pattern,
+                models_.options.pattern.outer_radius_m())) {
+      continue;
+    }
+    const double quality = fit->match.Quality();
+    Reach(LandingStage::kLocate, "no pose explains the edges of ring and cross");
+    // What the print does not explain is spread evenly where the print is: a sign with another
+    // figure in the ring leaves more inside, one in another frame more on the ring and around it.
+    // So few pixels tell less than the edges of a near pattern: more is asked of them.
+    const double on_print = std::max(fit->inside_residual, fit->ring_residual);
+    if (quality < models_.options.min_quality + SmallMargin(diameters_px) ||
+        fit->correlation < kMinFittedCorrelation ||
+        fit->inside_residual - fit->ring_residual > kMaxMoreInside ||
+        fit->ring_residual - fit->inside_residual > kMaxMoreOnRing ||
+        fit->white_residual > on_print + kMaxMoreOutside || IsOtherSign(fit->others)) {
+      continue;
+    }
+    Keep(fit->location, fit->match.seen < kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants,
+         quality, diameters_px);
+  }
+}
+
+void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& diameters_px,
+                           double reach_px) {
+  StageTimer timer(&report_, LandingStage::kLocate);
+  Reach(LandingStage::kLocate, "no pose explains the edges of ring and cross");
+  constexpr int kIterations = 3;
+  const std::optional<PatternLocation> location =
+      models_.locator.Locate(image_, hypothesis.camera_from_pattern, reach_px,
+                             std::max(2.0, 0.12 * hypothesis.contrast), kIterations);
+  if (!location || location->edge_rms_px > kMaxEdgeRmsPx) return;
+  const ImageRegion region{offset_, ViewLevel(diameters_px.x())};
+  const PatternView view(models_.camera, location->camera_from_pattern, models_.matcher.extent_m(),
+                         region);
+  if (!view.valid()) return;
+  PatternMatch match = models_.matcher.Match(buffers_.pyramid.ImageAt(region.level), view);
+  const auto combine = [](std::array<double, 4>* shares, const std::array<double, 4>& edges) {
+    for (int k = 0; k < 4; ++k) {
+      if ((*shares)[k] >= 0 && edges[k] >= 0) (*shares)[k] = 0.5 * ((*shares)[k] + edges[k]);
+    }
+  };
+  combine(&match.arm, location->arm_share);
+  combine(&match.ring, location->ring_share);
+  const double quality = match.Quality();
+  if (quality < models_.options.min_quality || match.RingShare() < kMinRingShare) return;
+  if (diameters_px.x() < kInspectedRingPx) {
+    const auto others =
+        models_.small.Inspect(image_, location->camera_from_pattern, &buffers_.small);
+    if (others && IsOtherSign(*others)) return;
+  }
+  Keep(*location, match.seen < kWhole ? CrossMethod::kPartial : hypothesis.method, quality,
+       diameters_px);
+}
+
+}  // namespace kestrel

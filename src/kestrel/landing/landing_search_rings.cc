@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the search of an image comes to rings: closed dark areas, the white board, arcs, the cross
+// alone.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kestrel/landing/landing_search.h"
+
+namespace kestrel {
+namespace {
+
+constexpr double kToleranceRingPx = 3.5;  // paper, section 2.3
+// Axes (diameters) below which a stroke is hardly wider than the blur, everywhere or somewhere.
+constexpr double kSmallRingPx = 30;
+constexpr double kThinRingPx = 13;
+constexpr double kMaxBoardRingPx = 50;  // major axis of a ring that the board shows
+// Candidates of a pass that are looked at, those of the highest contrast: a bound of the time that
+// a frame full of texture costs.
+constexpr std::size_t kMaxCandidates = 6;
+constexpr std::array<double, 1> kOneScale{1.0};
+
+}  // namespace
+
+void LandingSearch::TestAreas(std::size_t pass_index) {
+  CollectCandidates(pass_index);
+  for (const RingCandidate& candidate : buffers_.candidates) TestCandidate(candidate, pass_index);
+}
+
+// The outlines of a pass that may be a ring, those of the highest contrast first.
+void LandingSearch::CollectCandidates(std::size_t pass_index) {
+  StageTimer timer(&report_, LandingStage::kAreas);
+  const Pass& pass = kPasses[pass_index];
+  const LandingPattern& pattern = models_.options.pattern;
+  const double scale = 1 << pass.image_level;
+  const cv::Mat image = buffers_.pyramid.ImageAt(pass.image_level);
+  const BorderTracer& tracer = buffers_.tracers[pass_index];
+  std::vector<RingCandidate>& candidates = buffers_.candidates;
+  candidates.clear();
+  for (std::size_t i = 0;
+       i < tracer.borders().size() && candidates.size() + 2 <= candidates.capacity(); ++i) {
+    const Border& border = tracer.borders()[i];
+    const std::optional<DarkArea> area =
+        TestDarkArea(tracer, border, std::max(4.0, 0.7 * pass.min_ring_px / scale));
+    if (!area) continue;
+    RingCandidate candidate;
+    candidate.border = i;
+    candidate.edge = area->edge;
+    candidate.outer_edge = area->outline;
+    if (area->edge == RingEdge::kInner) {
+      candidate.outer_edge.Scale(pattern.outer_radius_m() / pattern.inner_radius_m());
+    }
+    Reach(LandingStage::kAreas, "no ring stands out of its surroundings");
+    candidate.contrast = RingContrast(image, candidate.outer_edge, pattern);
+    const bool small = 2 * area->outline.semi_major * scale < kSmallRingPx;
+    if (candidate.contrast > 0 && (small || area->ellipticity >= kMinEllipticity)) {
+      candidates.push_back(candidate);
+    }
+    if (pass.image_level > 1 || area->edge == RingEdge::kOuter) continue;
+    // The second moments of a square are those of a circle of 1 / sqrt(3) times its side.
+    candidate.board = true;
+    candidate.outer_edge = area->outline;
+    candidate.outer_edge.Scale(pattern.outer_radius_m() * std::sqrt(3.0) / pattern.board_size_m);
+    const Ellipse& ring = candidate.outer_edge;
+    if (area->ellipticity < kMinEllipticity || 2 * ring.semi_major * scale > kMaxBoardRingPx ||
+        2 * ring.semi_minor * scale < models_.options.min_ring_px) {
+      continue;
+    }
+    candidate.contrast = BoardContrast(image, ring);
+    if (candidate.contrast > 0) candidates.push_back(candidate);
+  }
+  const std::size_t kept = std::min(candidates.size(), kMaxCandidates);
+  std::partial_sort(
+      candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(kept), candidates.end(),
+      [](const RingCandidate& a, const RingCandidate& b) { return a.contrast > b.contrast; });
+  candidates.resize(kept);
+}
+
+void LandingSearch::TestCandidate(const RingCandidate& candidate, std::size_t pass_index) {
+  const ImageRegion region{offset_, kPasses[pass_index].image_level};
+  Reach(LandingStage::kRing, "no border lies on the image of a circle");
+  const bool small =
+      IsSmall(2 * region.scale() *
+              Eigen::Vector2d(candidate.outer_edge.semi_major, candidate.outer_edge.semi_minor));
+  const std::optional<RingFit> ring = candidate.board || small ? FitToOutline(candidate, region)
+                                                               : FitToBorder(candidate, pass_index);
+  if (!ring) return;
+  if (!IsPlausible(ring->poses[0])) return;
+  const LandingPattern& pattern = models_.options.pattern;
+  const bool inner = !candidate.board && !small && candidate.edge == RingEdge::kInner;
+  const double to_outer = inner ? pattern.outer_radius_m() / pattern.inner_radius_m() : 1.0;
+  const Eigen::Vector2d diameters_px = 2 * to_outer * focal_px_ * ring->cone.HalfAngles();
+  // A print with a dark border shows less white than the board's size, and an outline that grew
+  // together with what is beside it is larger than the ring.
+  constexpr std::array<double, 3> kBoardScales{1.0, 1.08, 1.17};
+  constexpr std::array<double, 2> kAreaScales{1.0, 1.12};
+  if (small) {
+    TestSmallRing(*ring, diameters_px,
+                  candidate.board ? std::span<const double>(kBoardScales) : kAreaScales);
+  } else if (candidate.board) {
+    for (const double scale : kBoardScales) {
+      RingFit scaled = *ring;
+      for (CirclePose& pose : scaled.poses) pose.center /= scale;
+      TestRing(scaled, diameters_px, std::max(2.0, 0.06 * diameters_px.x()));
+    }
+  } else {
+    TestRing(*ring, diameters_px, std::max(2.0, 0.8 * region.scale() + 0.02 * diameters_px.x()));
+  }
+}
+
+std::optional<RingFit> LandingSearch::FitToBorder(const RingCandidate& candidate,
+                                                  std::size_t pass_index) {
+  StageTimer timer(&report_, LandingStage::kRing);
+  const ImageRegion region{offset_, kPasses[pass_index].image_level};
+  const BorderTracer& tracer = buffers_.tracers[pass_index];
+  const Border& border = tracer.borders()[candidate.border];
+  const GridPoint* points = tracer.begin(border);
+  const std::size_t step =
+      std::max<std::size_t>(1, border.count / LandingWorkspace::Buffers::kMaxRays);
+  buffers_.rays.clear();
+  for (std::size_t i = 0; i < border.count; i += step) {
+    const Eigen::Vector2d pixel =
+        region.ToFull(Eigen::Vector2d(points[i].x - 0.5, points[i].y - 0.5));
+    const Eigen::Vector3f ray =
+        models_.rays.Ray(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
+    if (ray.squaredNorm() > 0.5f) buffers_.rays.push_back(ray.cast<double>());
+  }
+  const double scale = region.scale();
+  const double radius_px = candidate.outer_edge.semi_major * scale;
+  const double tolerance_px =
+      std::max(std::min(kToleranceRingPx, 0.05 * radius_px + 0.6 * scale), scale);
+  const LandingPattern& pattern = models_.options.pattern;
+  return FitRing(
+      buffers_.rays,
+      candidate.edge == RingEdge::kOuter ? pattern.outer_radius_m() : pattern.inner_radius_m(),
+      tolerance_px / focal_px_);
+}
+
+// The ring that the moments of an outline say: for outlines of few pixels, and for the board.
+std::optional<RingFit> LandingSearch::FitToOutline(const RingCandidate& candidate,
+                                                   const ImageRegion& region) {
+  StageTimer timer(&report_, LandingStage::kRing);
+  constexpr int kRays = 16;
+  buffers_.rays.clear();
+  for (int i = 0; i < kRays; ++i) {
+    const Eigen::Vector2d pixel =
+        region.ToFull(candidate.outer_edge.At(i * 2 * std::numbers::pi / kRays));
+    const Eigen::Vector3f ray =
+        models_.rays.Ray(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
+    if (ray.squaredNorm() < 0.5f) return std::nullopt;
+    buffers_.rays.push_back(ray.cast<double>());
+  }
+  return FitRing(buffers_.rays, models_.options.pattern.outer_radius_m(), 1 / focal_px_);
+}
+
+void LandingSearch::TestArcs(std::size_t pass_index) {
+  const ImageRegion region{offset_, kPasses[pass_index].image_level};
+  const LandingPattern& pattern = models_.options.pattern;
+  const double scale = region.scale();
+  {
+    StageTimer timer(&report_, LandingStage::kRing);
+    constexpr double kMinCoverage = 0.25;
+    FindArcRings(buffers_.tracers[pass_index], models_.rays, region, 0.7 * scale / focal_px_,
+                 kMinCoverage, &buffers_.arcs);
+  }
+  for (const ArcRing& arcs : buffers_.arcs.rings) {
+    Reach(LandingStage::kRing, "no border lies on the image of a circle");
+    const bool inner = arcs.edge == RingEdge::kInner;
+    const double radius_m = inner ? pattern.inner_radius_m() : pattern.outer_radius_m();
+    const RingFit ring{arcs.cone, CirclePosesFromCone(arcs.cone, radius_m, arcs.toward)};
+    if (!IsPlausible(ring.poses[0])) continue;
+    const Eigen::Vector2d diameters_px =
+        2 * pattern.outer_radius_m() / radius_m * focal_px_ * ring.cone.HalfAngles();
+    if (IsSmall(diameters_px)) {
+      TestSmallRing(ring, diameters_px, kOneScale);
+    } else {
+      TestRing(ring, diameters_px, std::max(2.0, scale + 0.025 * diameters_px.x()));
+    }
+  }
+}
+
+// The cross alone, where the camera is so low that no ring is in view.
+void LandingSearch::TestPartial(std::size_t pass_index) {
+  const ImageRegion region{offset_, kPasses[pass_index].image_level};
+  const LandingPattern& pattern = models_.options.pattern;
+  {
+    StageTimer timer(&report_, LandingStage::kCross);
+    // Without an attitude the camera is taken to look straight down.
+    const Eigen::Vector3d up = hint_.up_in_camera.value_or(-Eigen::Vector3d::UnitZ());
+    FindPartialPatterns(buffers_.tracers[pass_index], models_.rays, region, pattern, up,
+                        &buffers_.partial);
+  }
+  for (const RigidTransform& pose : buffers_.partial.poses) {
+    const double distance = pose.translation.norm();
+    if (distance > models_.options.max_partial_altitude_m ||
+        !IsPlausible({pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()})) {
+      continue;
+    }
+    Reach(LandingStage::kCross, "lines of a cross without the pattern around them");
+    const double diameter_px = 2 * focal_px_ * std::atan2(pattern.outer_radius_m(), distance);
+    const std::optional<Hypothesis> hypothesis = Compare(pose, CrossMethod::kPartial, diameter_px);
+    if (!hypothesis) continue;
+    Locate(*hypothesis, Eigen::Vector2d::Constant(diameter_px),
+           std::max(2.0, region.scale() + 0.03 * diameter_px));
+  }
+}
+
+bool LandingSearch::IsSmall(const Eigen::Vector2d& diameters_px) const {
+  return diameters_px.x() < kSmallRingPx || diameters_px.y() < kThinRingPx;
+}
+
+}  // namespace kestrel

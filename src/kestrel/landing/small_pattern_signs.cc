@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What tells other signs from a small print.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+#include "kestrel/landing/pattern_view.h"
+#include "kestrel/landing/small_pattern_model.h"
+
+namespace kestrel {
+
+std::optional<SmallPatternFitter::OtherSigns> SmallPatternFitter::Inspect(
+    const cv::Mat& image, const RigidTransform& pose, SmallPatternWorkspace* workspace) const {
+  if (!Gather(image, pose, workspace)) return std::nullopt;
+  State state;
+  state.pose = pose;
+  MeasureLevels(*workspace, &state);
+  if (state.contrast < kMinContrast) return std::nullopt;
+  return MeasureOthers(image, *workspace, state);
+}
+
+SmallPatternFitter::OtherSigns SmallPatternFitter::MeasureOthers(
+    const cv::Mat& image, const SmallPatternWorkspace& workspace, const State& state) const {
+  return {.spokes = OtherSpokes(workspace, state),
+          .frame_corners = FrameCorners(workspace, state),
+          .cross_correlation = CrossCorrelation(workspace, state),
+          .board_darkness = BoardDarkness(image, state)};
+}
+
+// In each quadrant the darkest line from the centre among those well away from the arms: its depth
+// in what the fit left over, against the rest of the quadrant.
+double SmallPatternFitter::OtherSpokes(const SmallPatternWorkspace& workspace,
+                                       const State& state) const {
+  constexpr std::array<double, 3> kTurns{33, 45, 57};  // degrees from the arm before
+  struct Regression {
+    double n = 0, s = 0, ss = 0, e = 0, se = 0;
+  };
+  std::array<std::array<Regression, kTurns.size()>, 4> lines;
+  std::array<Eigen::Vector2d, kTurns.size()> directions;
+  for (std::size_t i = 0; i < kTurns.size(); ++i) {
+    const double angle = kTurns[i] * std::numbers::pi / 180;
+    directions[i] = {std::cos(angle), std::sin(angle)};
+  }
+  const PlaneMap map(state.pose);
+  const double inner = pattern_.inner_radius_m();
+  const double half_width = 0.5 * pattern_.arm_width_m;
+  for (const auto& pixel : workspace.pixels) {
+    const PlanePoint point = Intersect(map, pixel);
+    const double radius = std::hypot(point.x, point.y);
+    if (radius < 0.35 * inner || radius > 0.9 * inner) continue;
+    const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
+    const double expected = state.Gray(point, dark);
+    const double residual = SeenGray(pixel.gray, expected) - expected;
+    const int quadrant = point.x > 0 ? (point.y > 0 ? 0 : 3) : (point.y > 0 ? 1 : 2);
+    // Turned into the first quadrant, x along the arm before.
+    const Eigen::Vector2d turned =
+        Eigen::Rotation2Dd(-quadrant * std::numbers::pi / 2) * Eigen::Vector2d(point.x, point.y);
+    for (std::size_t i = 0; i < kTurns.size(); ++i) {
+      const Eigen::Vector2d normal(-directions[i].y(), directions[i].x());
+      const Eigen::Vector2d in_pattern =
+          Eigen::Rotation2Dd(quadrant * std::numbers::pi / 2) * normal;
+      const double blur = state.blur_px * (point.by_pixel.transpose() * in_pattern).norm();
+      const double line =
+          BlurredStroke(normal.dot(turned), -half_width, half_width, std::max(blur, 1e-9)).value;
+      Regression& r = lines[quadrant][i];
+      ++r.n;
+      r.s += line;
+      r.ss += line * line;
+      r.e += residual;
+      r.se += line * residual;
+    }
+  }
+  std::array<double, 4> darkest{};
+  for (int q = 0; q < 4; ++q) {
+    for (const Regression& r : lines[q]) {
+      const double spread = r.ss - r.s * r.s / std::max(r.n, 1.0);
+      if (r.n < 6 || spread < 0.3) continue;
+      darkest[q] = std::max(darkest[q], -(r.se - r.s * r.e / r.n) / spread / state.contrast);
+    }
+  }
+  std::sort(darkest.begin(), darkest.end(), std::greater<>());
+  return darkest[1];
+}
+
+// How much darker the white is beyond the ends of the arms than between them.
+double SmallPatternFitter::FrameCorners(const SmallPatternWorkspace& workspace,
+                                        const State& state) const {
+  const PlaneMap map(state.pose);
+  double n = 0, s = 0, ss = 0, e = 0, se = 0;
+  for (const auto& pixel : workspace.pixels) {
+    const PlanePoint point = Intersect(map, pixel);
+    const double radius = std::hypot(point.x, point.y);
+    if (radius < pattern_.inner_radius_m()) continue;
+    const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
+    const double expected = state.Gray(point, dark);
+    const double residual = SeenGray(pixel.gray, expected) - expected;
+    // 1 along the arms, -1 half-way between them.
+    const double wave = std::cos(4 * std::atan2(point.y, point.x));
+    ++n;
+    s += wave;
+    ss += wave * wave;
+    e += residual;
+    se += wave * residual;
+  }
+  const double spread = ss - s * s / std::max(n, 1.0);
+  return spread > 1 ? -(se - s * e / n) / spread / state.contrast : 0;
+}
+
+double SmallPatternFitter::CrossCorrelation(const SmallPatternWorkspace& workspace,
+                                            const State& state) const {
+  const PlaneMap map(state.pose);
+  double n = 0, g = 0, gg = 0, d = 0, dd = 0, gd = 0;
+  for (const auto& pixel : workspace.pixels) {
+    const PlanePoint point = Intersect(map, pixel);
+    if (std::hypot(point.x, point.y) > pattern_.arm_half_length_m) continue;
+    const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
+    const double expected = state.Gray(point, dark);
+    const double gray = SeenGray(pixel.gray, expected);
+    ++n;
+    g += gray;
+    gg += gray * gray;
+    d += expected;
+    dd += expected * expected;
+    gd += gray * expected;
+  }
+  const double variance = (gg - g * g / n) * (dd - d * d / n);
+  return n > 0 && variance > 0 ? (gd - g * d / n) / std::sqrt(variance) : 0;
+}
+
+// The median over the directions in view: a white ring on dark ground has no board.
+double SmallPatternFitter::BoardDarkness(const cv::Mat& image, const State& state) const {
+  constexpr int kDirections = 24;
+  std::array<double, kDirections> darkness;
+  int seen = 0;
+  for (int i = 0; i < kDirections; ++i) {
+    const double angle = i * 2 * std::numbers::pi / kDirections;
+    const Eigen::Vector3d point(board_radius_m_ * std::cos(angle),
+                                board_radius_m_ * std::sin(angle), 0);
+    Eigen::Vector2d pixel;
+    if (camera_.Project(state.pose * point, &pixel) == ProjectionStatus::kOutsideModel) continue;
+    const double gray =
+        SampleGray(image, static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
+    if (gray < 0) continue;
+    const double white = state.white + state.slope.dot(point.head<2>());
+    darkness[seen++] = gray >= kSaturated ? 0 : (white - gray) / state.contrast;
+  }
+  if (seen == 0) return 0;
+  std::nth_element(darkness.begin(), darkness.begin() + seen / 2, darkness.begin() + seen);
+  return darkness[seen / 2];
+}
+
+}  // namespace kestrel

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/simulation/scenarios.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/base/options.h"
+#include "kestrel/recording/test_files.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(ScenariosTest, AllAreValid) {
+  for (const Scenario& scenario : LandingScenarios()) {
+    EXPECT_NO_THROW(ReadLandingSimulation(scenario.name, "", {})) << scenario.name;
+  }
+  for (const Scenario& scenario : HuntScenarios()) {
+    EXPECT_NO_THROW(ReadHuntSimulation(scenario.name, "", {})) << scenario.name;
+  }
+}
+
+TEST(ScenariosTest, FileAndSettingsGoOverTheScenario) {
+  const TestFolder folder;
+  const std::string file = folder.Write("mine.yaml", "frames: 7\nvehicle:\n  speed_mps: 3\n");
+  const LandingSimulationOptions options =
+      ReadLandingSimulation("fast", file, {"vehicle.speed_mps=2"});
+  EXPECT_EQ(options.recording.frames, 7);
+  EXPECT_EQ(options.vehicle.speed_mps, 2);
+  EXPECT_EQ(options.vehicle.radius_m, 26) << "the scenario's";
+}
+
+TEST(ScenariosTest, PrintedOptionsAreAScenarioFile) {
+  const TestFolder folder;
+  const LandingSimulationOptions dust = ReadLandingSimulation("dust", "", {});
+  const std::string file = folder.Write("dust.yaml", PrintOptions(dust));
+  EXPECT_EQ(PrintOptions(ReadLandingSimulation("", file, {})), PrintOptions(dust));
+}
+
+TEST(ScenariosTest, BadScenarioFilesAreRefusedInWords) {
+  const TestFolder folder;
+  const auto error = [&](const std::string& yaml) {
+    const std::string file = folder.Write("bad.yaml", yaml);
+    return InputErrorOf([&] { ReadLandingSimulation("", file, {}); });
+  };
+  EXPECT_THAT(error("vehicle:\n  sped_mps: 3\n"),
+              HasSubstr("bad.yaml:2: unknown key 'vehicle.sped_mps', did you mean "
+                        "'vehicle.speed_mps'?"));
+  EXPECT_THAT(
+      error("vehicle:\n  speed_mps: quick\n"),
+      HasSubstr("bad.yaml:2: vehicle.speed_mps is 'quick', expected a finite number (m/s)"));
+  EXPECT_THAT(error("pattern:\n  outer_diameter_m: -1\n"), HasSubstr("pattern.outer_diameter_m"));
+  EXPECT_THAT(error("flight:\n  end_altitude_m: -0.5\n"),
+              HasSubstr("flight.end_altitude_m is -0.5, expected 0.1 to 100"));
+  EXPECT_THAT(error("ground:\n  material: lava\n"),
+              HasSubstr("ground.material is 'lava', expected asphalt, concrete, sand or grass"));
+  EXPECT_THAT(error("ground:\n  map_px: 1000\n"),
+              HasSubstr("ground.map_px is 1000, expected a power of two"));
+  EXPECT_THAT(InputErrorOf([] { ReadLandingSimulation("figure9", "", {}); }),
+              HasSubstr("there is no scenario 'figure9', expected calm, aggressive, figure8"));
+}
+
+}  // namespace
+}  // namespace kestrel
