@@ -25,7 +25,9 @@ TEST(ObjectMap, ObjectIsConfirmedAndItsPositionIsFused) {
   Random random(1);
   const Eigen::Vector3d truth(3, -2, 0.01);
   for (int i = 0; i < 100; ++i) {
-    if (i == 2) EXPECT_THAT(map.Confirmed(), IsEmpty());
+    if (i == 2) {
+      EXPECT_THAT(map.Confirmed(), IsEmpty());
+    }
     map.Update(At(0.1 * i), std::vector{MeasureNoisily(truth, kRed, 0.2, &random)}, SeesAll());
   }
   const auto objects = map.Confirmed();
