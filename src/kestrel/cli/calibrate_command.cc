@@ -15,6 +15,7 @@
 #include "kestrel/base/error.h"
 #include "kestrel/calibration/flight_calibration.h"
 #include "kestrel/camera/calibration_reader.h"
+#include "kestrel/cli/calibrate_colors_command.h"
 #include "kestrel/cli/interrupt.h"
 #include "kestrel/cli/option_arguments.h"
 #include "kestrel/cli/progress_bar.h"
@@ -157,7 +158,7 @@ void AddFlightCalibration(CLI::App* parent, const std::string& name, const std::
 }  // namespace
 
 void AddCalibrateCommand(CLI::App* app) {
-  CLI::App* command = app->add_subcommand("calibrate", "Estimate mount and clock from a flight");
+  CLI::App* command = app->add_subcommand("calibrate", "Estimate mount, clock or colours");
   command->require_subcommand(1);
   AddFlightCalibration(command, "mount",
                        "The camera's angles in the body, from a slow flight over the pattern",
@@ -165,6 +166,7 @@ void AddCalibrateCommand(CLI::App* app) {
   AddFlightCalibration(command, "clock",
                        "The offset from the images' clock to the navigation's, from a quick flight",
                        {.estimate_mount = false, .estimate_clock = true});
+  AddCalibrateColorsCommand(command);
 }
 
 }  // namespace kestrel

@@ -10,6 +10,7 @@
 #include "kestrel/cli/config_command.h"
 #include "kestrel/cli/evaluate_command.h"
 #include "kestrel/cli/help_command.h"
+#include "kestrel/cli/hunt_command.h"
 #include "kestrel/cli/land_command.h"
 #include "kestrel/cli/simulate_command.h"
 
@@ -32,6 +33,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "kestrel " KESTREL_VERSION);
   app.require_subcommand(1);
   kestrel::AddLandCommand(&app);
+  kestrel::AddHuntCommand(&app);
   kestrel::AddSimulateCommand(&app);
   kestrel::AddEvaluateCommand(&app);
   kestrel::AddCalibrateCommand(&app);
