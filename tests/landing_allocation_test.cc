@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Detect does not allocate once its workspace has warmed up. Counts by taking the place of the C
-// library's allocation functions (glibc), through which operator new and cv::Mat go as well.
+// Detect does not allocate once its workspace has warmed up, the tracker not at all. Counts by
+// taking the place of the C library's allocation functions (glibc), through which operator new and
+// cv::Mat go as well.
 #include <cerrno>
+#include <chrono>
 #include <cstddef>
 #include <vector>
 
@@ -10,6 +12,7 @@
 
 #include "kestrel/landing/landing_pattern_detector.h"
 #include "kestrel/simulation/landing_stills.h"
+#include "kestrel/tracking/target_tracker.h"
 
 namespace {
 
@@ -135,6 +138,20 @@ TEST(LandingAllocationTest, NoneWhenTheHintComesLate) {
   std::vector<Shot> shots = ShotsOfPattern(/*with_hint=*/true);
   for (int i = 0; i < kWarmUpFrames; ++i) shots[i].hint = {};
   ExpectNoAllocationAfterWarmUp(shots);
+}
+
+TEST(TrackerAllocationTest, NoneAfterConstruction) {
+  TargetTracker tracker({});
+  allocation_count = 0;
+  is_counting = true;
+  for (int i = 0; i < 500; ++i) {
+    const int late = i % 7 == 3 ? i - 5 : i;
+    const Time time = TimeFromNanoseconds(1'000'000'000 + 33'000'000LL * late);
+    tracker.Add({time, {0.1 * late, 0, 0}, 1e-4 * Eigen::Matrix3d::Identity()});
+    tracker.Predict(time + std::chrono::seconds(1));
+  }
+  is_counting = false;
+  EXPECT_EQ(allocation_count, 0);
 }
 
 }  // namespace

@@ -81,7 +81,8 @@ TEST_F(KestrelCommandTest, WrongUsageIsStatusTwo) {
   for (const char* arguments :
        {"", "fly", "help fly", "land", "land a.png --altitude nan", "land a.png --altitude -1",
         "land a.png --clock-offset inf", "land a.png --annotate", "land a.png --colour",
-        "land a.png --output o --annotate=gif"}) {
+        "land a.png --output o --annotate=gif", "land a.png --predict 1", "calibrate",
+        "land a.png --output o --predict 0.5,-1"}) {
     const Outcome outcome = Run(arguments);
     EXPECT_EQ(outcome.status, 2) << arguments;
     EXPECT_THAT(outcome.err, Not(IsEmpty())) << arguments;
@@ -247,6 +248,24 @@ TEST_F(KestrelCommandTest, EvaluateComparesALandingWithItsTruth) {
   ExpectInputError("evaluate " + flight + " " + output, "--force replaces it");
   ExpectInputError("evaluate " + flight + " " + (folder_ / "none"), "no folder");
   ExpectInputError("evaluate " + output + " " + output, "no recording");
+}
+
+TEST_F(KestrelCommandTest, LandWritesTrackAndPrediction) {
+  const std::string flight = WriteRecording();
+  const std::string output = folder_ / "o";
+  ASSERT_EQ(Run("land " + flight + " --output " + output + " --predict 0.5,1.0").status, 0);
+  EXPECT_THAT(ReadFile(output + "/landing_track.csv"), HasSubstr("\n100000000,searching,"));
+  EXPECT_THAT(ReadFile(output + "/landing_prediction.csv"), StartsWith("timestamp_ns,horizon_s"));
+  const std::string still = folder_ / "still";
+  ASSERT_EQ(Run("land --still " + flight + " --output " + still).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(still + "/landing_track.csv"));
+}
+
+TEST_F(KestrelCommandTest, CalibrateSaysWhatIsMissing) {
+  const std::string flight = WriteRecording();
+  ExpectInputError("calibrate mount " + flight, "seen in 0 images with poses around them");
+  std::filesystem::remove(flight + "/mav0/nav0/data.csv");
+  ExpectInputError("calibrate clock " + flight, "has no poses of the UAV");
 }
 
 }  // namespace

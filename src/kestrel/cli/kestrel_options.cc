@@ -10,6 +10,7 @@ std::vector<std::string> KestrelOptions::Validate() const {
   for (const std::string& violation : landing.Validate()) {
     violations.push_back("landing." + violation);
   }
+  for (const std::string& violation : hunt.Validate()) violations.push_back("hunt." + violation);
   return violations;
 }
 

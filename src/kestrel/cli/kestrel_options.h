@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/pipeline/landing_pipeline.h"
 
 namespace kestrel {
@@ -11,10 +12,12 @@ namespace kestrel {
 // The options of all subcommands: what `kestrel config` prints and --config reads.
 struct KestrelOptions {
   LandingPipelineOptions landing;
+  HuntPipelineOptions hunt;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor.Group("landing", self.landing);
+    visitor.Group("hunt", self.hunt);
   }
   std::vector<std::string> Validate() const;
 };

@@ -6,9 +6,11 @@
 #include <fmt/format.h>
 #include <opencv2/core/utils/logger.hpp>
 
+#include "kestrel/cli/calibrate_command.h"
 #include "kestrel/cli/config_command.h"
 #include "kestrel/cli/evaluate_command.h"
 #include "kestrel/cli/help_command.h"
+#include "kestrel/cli/hunt_command.h"
 #include "kestrel/cli/land_command.h"
 #include "kestrel/cli/simulate_command.h"
 
@@ -31,8 +33,10 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "kestrel " KESTREL_VERSION);
   app.require_subcommand(1);
   kestrel::AddLandCommand(&app);
+  kestrel::AddHuntCommand(&app);
   kestrel::AddSimulateCommand(&app);
   kestrel::AddEvaluateCommand(&app);
+  kestrel::AddCalibrateCommand(&app);
   kestrel::AddConfigCommand(&app);
   kestrel::AddHelpCommand(&app);
   try {

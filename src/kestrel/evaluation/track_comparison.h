@@ -28,7 +28,8 @@ struct PredictionErrors {
   Eigen::Vector3d position;
 };
 
-// Rows for whose time the truth is not known are left out, and those of a track that is not yet one.
+// Rows for whose time the truth is not known are left out, and those of a track that is not yet
+// one.
 std::vector<TrackErrors> CompareTrack(const std::vector<TruePattern>& patterns,
                                       const std::vector<TrackRow>& rows);
 std::vector<PredictionErrors> ComparePredictions(const std::vector<TruePattern>& patterns,

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 
 namespace kestrel {
 

@@ -25,7 +25,7 @@ struct PatternLocation {
   double edge_share = 0;   // share of the pattern's edges in the image that were found there
   int edges = 0;           // how many were used
   // The same share for each arm and for the ring around it; negative when the image shows less than
-  // a third of it.
+  // a quarter of it.
   std::array<double, 4> arm_share{};
   std::array<double, 4> ring_share{};
 };

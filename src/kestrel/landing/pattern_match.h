@@ -15,7 +15,7 @@ namespace kestrel {
 // k is the right angle around arm k.
 struct PatternMatch {
   // Share, 0 to 1, of the local contrasts of each quarter that stand in the image as in the print;
-  // negative when the image shows too little of the quarter to say.
+  // negative when the image shows less than a quarter of it.
   std::array<double, 4> arm{};       // arm darker than the white on both of its sides
   std::array<double, 4> quadrant{};  // white between the arms brighter than ring and arms
   std::array<double, 4> ring{};      // ring darker than the white around it
@@ -26,7 +26,8 @@ struct PatternMatch {
   // What the shares say together, 0 to 1: the least of the means over arms, quadrants and quarters
   // of the ring (but the worst: a highlight or the image border may take one away), less a part of
   // what the worst arm lacks, because an arm that is not there at all makes another sign. The ring
-  // counts as far as it is in view. 0 when no arm can be seen, and for spokes in two quadrants.
+  // and the quadrants count as far as they are in view. 0 when no arm can be seen, and for spokes
+  // in two quadrants.
   double Quality() const;
 
   // Mean over the quarters of the ring that are in view, but the worst; 1 when none is.

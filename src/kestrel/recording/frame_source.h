@@ -19,6 +19,9 @@ class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
+  // What the next frames shall be; gray unless asked otherwise.
+  void set_format(PixelFormat format) { format_ = format; }
+
   // Fills 'frame' with the next image; false at the end. Frames are in order of time. Throws
   // InputError when an image is missing, broken or of a kind that is not read (16 bits), and at the
   // end of a video that ends before it should.
@@ -32,6 +35,12 @@ class FrameSource {
   virtual std::string calibration_file() const { return ""; }
   // What the navigation reported, on its own clock, in order of time; empty if it said nothing.
   virtual std::vector<PoseSample> poses() const { return {}; }
+
+ protected:
+  PixelFormat format() const { return format_; }
+
+ private:
+  PixelFormat format_ = PixelFormat::kGray;
 };
 
 }  // namespace kestrel

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -69,35 +70,38 @@ const char* DepthName(int depth) {
   return kNames[depth];
 }
 
+// cv::cvtColor's code from 'channels' to 'format'; nothing where they are the same.
+std::optional<int> ConversionCode(int channels, PixelFormat format) {
+  const bool is_gray = format == PixelFormat::kGray;
+  if (channels == 1) return is_gray ? std::nullopt : std::optional<int>(cv::COLOR_GRAY2BGR);
+  if (channels == 3) return is_gray ? std::optional<int>(cv::COLOR_BGR2GRAY) : std::nullopt;
+  return is_gray ? cv::COLOR_BGRA2GRAY : cv::COLOR_BGRA2BGR;
+}
+
 }  // namespace
 
-cv::Mat ReadGrayImage(const std::string& path) {
+cv::Mat ReadImage(const std::string& path, PixelFormat format) {
   const std::string bytes = ReadFile(path);
   if (!IsComplete(bytes)) throw InputError(path + ": the image file is cut off");
   const cv::Mat image = Decode(bytes);
   if (image.empty()) throw InputError(path + ": cannot be decoded as an image");
-  return ToGray(image, path);
+  return ToFormat(image, format, path);
 }
 
-cv::Mat ToGray(const cv::Mat& image, const std::string& name) {
+cv::Mat ToFormat(const cv::Mat& image, PixelFormat format, const std::string& name) {
   if (image.depth() != CV_8U) {
     throw InputError(fmt::format("{}: is a {} image, expected 8 bits a channel", name,
                                  DepthName(image.depth())));
   }
-  cv::Mat gray;
-  switch (image.channels()) {
-    case 1:
-      return image;
-    case 3:
-      cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
-      return gray;
-    case 4:
-      cv::cvtColor(image, gray, cv::COLOR_BGRA2GRAY);
-      return gray;
-    default:
-      throw InputError(
-          fmt::format("{}: has {} channels, expected 1, 3 or 4", name, image.channels()));
+  const int channels = image.channels();
+  if (channels != 1 && channels != 3 && channels != 4) {
+    throw InputError(fmt::format("{}: has {} channels, expected 1, 3 or 4", name, channels));
   }
+  const std::optional<int> code = ConversionCode(channels, format);
+  if (!code) return image;
+  cv::Mat converted;
+  cv::cvtColor(image, converted, *code);
+  return converted;
 }
 
 }  // namespace kestrel

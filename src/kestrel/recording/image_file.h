@@ -5,15 +5,20 @@
 
 #include <opencv2/core.hpp>
 
+#include "kestrel/recording/frame.h"
+
 namespace kestrel {
 
-// The image as CV_8UC1; colour is converted to luminance (BT.601). The pixels stay where the sensor
-// had them: a rotation asked for by EXIF is ignored, because the calibration does not know of it.
-// Throws InputError when the file is missing, cut off or not an image, or has other than 8 bits a
-// channel.
-cv::Mat ReadGrayImage(const std::string& path);
+// The image in 'format'; colour is converted to luminance by BT.601. The pixels stay where the
+// sensor had them: a rotation asked for by EXIF is ignored, because the calibration does not know
+// of it. Throws InputError when the file is missing, cut off or not an image, or has other than 8
+// bits a channel.
+cv::Mat ReadImage(const std::string& path, PixelFormat format);
+inline cv::Mat ReadGrayImage(const std::string& path) {
+  return ReadImage(path, PixelFormat::kGray);
+}
 
-// 'image' as CV_8UC1, as above; 'name' is for the message.
-cv::Mat ToGray(const cv::Mat& image, const std::string& name);
+// 'image' in 'format', as above; 'name' is for the message.
+cv::Mat ToFormat(const cv::Mat& image, PixelFormat format, const std::string& name);
 
 }  // namespace kestrel

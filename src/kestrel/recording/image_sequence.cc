@@ -73,7 +73,7 @@ bool ImageSequence::Next(Frame* frame) {
   const Item& item = items_[next_++];
   frame->name = item.name;
   frame->time = item.time;
-  frame->image = ReadGrayImage(item.path);
+  frame->image = ReadImage(item.path, format());
   return true;
 }
 

@@ -46,9 +46,7 @@ std::unique_ptr<FrameSource> OpenOne(const std::string& source) {
   return fs::is_directory(source) ? OpenFolder(source) : OpenFile(source);
 }
 
-}  // namespace
-
-std::unique_ptr<FrameSource> OpenSource(const std::vector<std::string>& arguments) {
+std::unique_ptr<FrameSource> Open(const std::vector<std::string>& arguments) {
   if (arguments.empty()) throw InputError("no source given");
   if (arguments.size() == 1) return OpenOne(arguments.front());
   for (const std::string& argument : arguments) {
@@ -59,6 +57,15 @@ std::unique_ptr<FrameSource> OpenSource(const std::vector<std::string>& argument
     }
   }
   return std::make_unique<ImageSequence>(OpenImageFiles(arguments));
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> OpenSource(const std::vector<std::string>& arguments,
+                                        PixelFormat format) {
+  std::unique_ptr<FrameSource> source = Open(arguments);
+  source->set_format(format);
+  return source;
 }
 
 }  // namespace kestrel

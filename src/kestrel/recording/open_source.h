@@ -11,7 +11,8 @@ namespace kestrel {
 
 // The source that the arguments are: a recording folder (EuRoC), a folder of images, one or more
 // image files, a video file, a camera (/dev/video0) or a GStreamer pipeline. Throws InputError that
-// says what is wrong with them.
-std::unique_ptr<FrameSource> OpenSource(const std::vector<std::string>& arguments);
+// says what is wrong with them. 'format': of the frames.
+std::unique_ptr<FrameSource> OpenSource(const std::vector<std::string>& arguments,
+                                        PixelFormat format = PixelFormat::kGray);
 
 }  // namespace kestrel

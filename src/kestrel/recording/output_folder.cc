@@ -48,4 +48,9 @@ std::ofstream OutputFolder::OpenText(const fs::path& name) const {
   return file;
 }
 
+void WriteAtOnce(const std::string& text, const char* name, std::ostream* file) {
+  if (*file << text << std::flush) return;
+  throw InputError(std::string(name) + ": cannot be written, is the disk full?");
+}
+
 }  // namespace kestrel

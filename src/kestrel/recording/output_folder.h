@@ -26,4 +26,8 @@ class OutputFolder {
   bool replace_files_;
 };
 
+// Writes and flushes 'text', for whoever reads along. Throws InputError, with the file's 'name',
+// when it cannot be written.
+void WriteAtOnce(const std::string& text, const char* name, std::ostream* file);
+
 }  // namespace kestrel

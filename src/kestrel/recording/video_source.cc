@@ -44,7 +44,7 @@ bool VideoSource::Next(Frame* frame) {
   }
   frame->name = fmt::format("{}/{:06}", name_, next_);
   frame->time = last_time_ = NextTime();
-  frame->image = ToGray(image, frame->name);
+  frame->image = ToFormat(image, format(), frame->name);
   ++next_;
   return true;
 }

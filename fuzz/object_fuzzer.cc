@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whatever is in a model, a grid, a digit model or a map, the readers give what can be used or
+// refuse it.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "kestrel/base/error.h"
+#include "kestrel/mapping/map_file.h"
+#include "kestrel/objects/color_grid.h"
+#include "kestrel/objects/digit_classifier.h"
+#include "kestrel/objects/object_model.h"
+
+namespace {
+
+void ReadModel(const std::string& text) {
+  if (!kestrel::ParseObjectModel(text, "objects.yaml").Validate().empty()) std::abort();
+}
+
+void ReadGrid(const std::string& text) {
+  // Whole grids are too large to be found by chance: the text is repeated.
+  std::string bytes;
+  while (!text.empty() && bytes.size() < kestrel::ColorGrid::kCells) bytes += text;
+  bytes.resize(text.size() % 2 == 0 ? kestrel::ColorGrid::kCells : text.size());
+  const auto grid = kestrel::ColorGrid::Parse(bytes, 5, "colors.grid");
+  if (grid.labels().size() != kestrel::ColorGrid::kCells) std::abort();
+}
+
+void ReadDigits(const std::string& text) {
+  for (const auto& shares : kestrel::ParseDigitModel(text, "digits.txt")) {
+    for (const float share : shares) {
+      if (!(share > 0 && share < 1)) std::abort();
+    }
+  }
+}
+
+void ReadMap(const std::string& text) {
+  for (const auto& object : kestrel::ParseObjects(text, "object_map.json")) {
+    if (!object.state.allFinite() || !object.covariance.allFinite()) std::abort();
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  for (const auto read : {ReadModel, ReadGrid, ReadDigits, ReadMap}) {
+    try {
+      read(text);
+    } catch (const kestrel::InputError&) {
+    }
+  }
+  return 0;
+}

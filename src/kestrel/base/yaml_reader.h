@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace YAML {
+class Node;
+}
+
+namespace kestrel {
+
+// A value of a YAML (or JSON) text, for files that are no options: every error is an InputError
+// that names file, line and key.
+class YamlReader {
+ public:
+  // The text as a whole. Throws InputError when it is not YAML; 'file' is for messages.
+  YamlReader(const std::string& text, const std::string& file);
+
+  [[noreturn]] void Fail(const std::string& message) const;
+
+  // The value of 'name' in a map; required.
+  YamlReader operator[](const std::string& name) const;
+  bool Has(const std::string& name) const;
+  // Refuses what is no map, keys that are not in 'names' and keys that are given twice.
+  void RequireKeys(const std::set<std::string>& names) const;
+
+  std::vector<YamlReader> Items() const;  // of a list
+  std::string Text() const;               // not empty
+  double Number() const;                  // finite
+  std::int64_t Integer() const;
+  bool Bool() const;
+  // A list of 'count' numbers.
+  std::vector<double> Numbers(std::size_t count) const;
+
+ private:
+  YamlReader(const YAML::Node& node, std::string file, std::string key);
+
+  std::shared_ptr<YAML::Node> node_;
+  std::string file_;
+  std::string key_;  // the path of names that led here
+};
+
+}  // namespace kestrel

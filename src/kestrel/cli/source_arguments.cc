@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/cli/source_arguments.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "kestrel/base/error.h"
+#include "kestrel/base/parse_number.h"
+#include "kestrel/camera/calibration_reader.h"
+
+namespace kestrel {
+namespace {
+
+constexpr double kMaxClockOffset = 1e6;
+
+}  // namespace
+
+CLI::Validator InRange(double min, double max, const std::string& words) {
+  return CLI::Validator(
+      [=](const std::string& text) {
+        const auto number = ParseNumber<double>(text);
+        return number && *number > min && *number < max ? "" : "expected " + words;
+      },
+      "");
+}
+
+void SourceArguments::AddTo(CLI::App* command) {
+  command
+      ->add_option("SOURCE", sources,
+                   "A recording folder (EuRoC), a folder of images, image files, a video file, a "
+                   "camera (/dev/video0) or a GStreamer pipeline")
+      ->required();
+  command
+      ->add_option("--camera", camera,
+                   "Calibration: EuRoC sensor.yaml, Kalibr camchain.yaml, ROS camera_info YAML or "
+                   "OpenCV YAML; overrides the source's")
+      ->type_name("FILE");
+  options.AddTo(command);
+  CLI::Option* folder =
+      command->add_option("--output", output, "Folder for the results (else stdout)")
+          ->type_name("DIR");
+  command
+      ->add_flag("--annotate{video}", annotate,
+                 "Also write the frames with what was found: a video, or --annotate=images")
+      ->needs(folder)
+      ->check(CLI::IsMember({"video", "images"}));
+  command->add_flag("--still", still, "The frames have nothing to do with each other");
+  command
+      ->add_option("--altitude", altitude_m,
+                   "Height of the camera above the pattern or the ground (m), where the source has "
+                   "no poses")
+      ->type_name("M")
+      ->check(InRange(0, 1e5, "a positive height in m"));
+  command
+      ->add_option("--clock-offset", clock_offset,
+                   "Seconds to add to an image's time to get the navigation's")
+      ->type_name("S")
+      ->check(InRange(-kMaxClockOffset, kMaxClockOffset, "seconds"));
+  command->add_flag("--force", force, "Replace files that exist");
+}
+
+CameraCalibration SourceArguments::FindCalibration(const FrameSource& source) const {
+  const std::string own_file = source.calibration_file();
+  if (camera.empty() && own_file.empty()) {
+    throw InputError(
+        "no calibration: the source has none, give one by --camera FILE (EuRoC sensor.yaml, Kalibr "
+        "camchain.yaml, ROS camera_info YAML or OpenCV YAML)");
+  }
+  CameraCalibration calibration = ReadCalibration(camera.empty() ? own_file : camera);
+  if (!calibration.body_from_camera && !own_file.empty()) {
+    const CameraCalibration own = ReadCalibration(own_file);
+    calibration.body_from_camera = own.body_from_camera;
+    if (!calibration.clock_offset) calibration.clock_offset = own.clock_offset;
+  }
+  if (clock_offset) calibration.clock_offset = DurationFromSeconds(*clock_offset);
+  if (!calibration.body_from_camera && !source.poses().empty()) {
+    fmt::print(stderr, "kestrel: the calibration has no mount: no positions in the world\n");
+  }
+  return calibration;
+}
+
+void RequireSize(const Frame& frame, const CameraIntrinsics& intrinsics) {
+  if (frame.image.cols == intrinsics.width_px && frame.image.rows == intrinsics.height_px) return;
+  throw InputError(fmt::format("{}: the image has {} x {} px, but the calibration is for {} x {}",
+                               frame.name, frame.image.cols, frame.image.rows, intrinsics.width_px,
+                               intrinsics.height_px));
+}
+
+std::string DetectTimes::Summary() const {
+  if (ms_.empty()) return "";
+  std::vector<double> sorted = ms_;
+  std::sort(sorted.begin(), sorted.end());
+  const auto quantile = [&](double part) {  // by nearest rank
+    return sorted[static_cast<std::size_t>(std::ceil(part * sorted.size())) - 1];
+  };
+  return fmt::format(", detect_ms median {:.2f}, p99 {:.2f}", quantile(0.5), quantile(0.99));
+}
+
+}  // namespace kestrel

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace kestrel {
+
+// The assignment of every row to a column of its own that costs least in all (Hungarian method,
+// Kuhn 1955, in the O(rows^2 columns) form with potentials). Keeps its memory between calls.
+class AssignmentSolver {
+ public:
+  // 'costs': rows x columns, finite, not more rows than columns. The column of each row; valid
+  // until the next call.
+  const std::vector<int>& Solve(const Eigen::Ref<const Eigen::MatrixXd>& costs);
+
+ private:
+  std::vector<double> row_potential_;
+  std::vector<double> column_potential_;
+  std::vector<double> slack_;
+  std::vector<int> row_of_column_;
+  std::vector<int> previous_;
+  std::vector<char> is_used_;
+  std::vector<int> column_of_row_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "kestrel/base/time.h"
+#include "kestrel/objects/object_detection.h"
+#include "kestrel/objects/object_model.h"
+
+namespace kestrel {
+
+// A detection with its place in the world.
+struct ObjectMeasurement {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();    // m
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // m^2, positive definite
+  ObjectShape shape = ObjectShape::kDisc;
+  Hsv color;
+  ColorProbabilities color_probabilities{};
+  std::optional<DigitLikelihoods> digits;
+};
+
+// What the map knows of an object. Likelihoods are kept, not a choice: the next detection may
+// change it.
+struct MappedObject {
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+  std::int64_t id = 0;  // within its map
+  ObjectShape shape = ObjectShape::kDisc;
+  Time first_seen;
+  Time last_seen;
+  Time time;                        // of the state
+  Vector6 state = Vector6::Zero();  // position (m) and velocity (m/s) in the world
+  Matrix6 covariance = Matrix6::Zero();
+  bool may_move = false;
+  int detections = 0;
+  double log_odds = 0;  // that it is there
+  Hsv color;            // of the last detection
+  ColorProbabilities color_log_likelihoods{};
+  DigitLikelihoods digit_log_likelihoods{};
+
+  auto position() const { return state.head<3>(); }
+  auto velocity() const { return state.tail<3>(); }
+  // Standard deviation of the position per axis: root of the mean of the three variances.
+  double sigma_m() const;
+  std::size_t color_index() const;  // the most likely
+  // The digit of a cuboid; of all else nothing.
+  std::optional<int> digit() const;
+};
+
+// How objects move: see ObjectMapOptions.
+struct ObjectMotion {
+  double drift_noise;
+  double acceleration_noise;
+};
+
+// The object at a later time (an earlier one changes nothing): where it stands, or by its velocity.
+void PredictObject(Time time, const ObjectMotion& motion, MappedObject* object);
+
+// Makes 'kept' what both say together, when they are the same object at the same time: states
+// weighted by the inverse of their covariances, likelihoods multiplied, detections added.
+void UnifyObjects(const MappedObject& other, MappedObject* kept);
+
+// Index of the class that the object most likely is; nothing when the model has none of its shape
+// and colour.
+std::optional<std::size_t> ClassOf(const MappedObject& object, const ObjectModel& model);
+
+// What the object is worth: its digit, or its class's score.
+double ScoreOf(const MappedObject& object, const ObjectModel& model);
+
+}  // namespace kestrel

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kestrel/base/time.h"
+#include "kestrel/mapping/assignment.h"
+#include "kestrel/mapping/mapped_object.h"
+
+namespace kestrel {
+
+struct ObjectMapOptions {
+  // Squared Mahalanobis distance beyond which a detection is not the object's: 16.3 is passed by
+  // one true detection in a thousand (3 degrees of freedom).
+  double gate = 16.3;
+  // Two objects of one shape and colour cannot be nearer than this: they become one.
+  double min_separation_m = 0.2;
+  // How fast the position of a standing object becomes uncertain, and how a moving one accelerates.
+  double drift_noise = 0.005;
+  double acceleration_noise = 0.3;
+  double start_speed_sigma_mps = 1;
+  // Error of the position, per axis, that many detections in a row share (bias of the navigation,
+  // clock): no object is known better than this.
+  double shared_sigma_m = 0.02;
+  // How sure a detection and a miss make the map of an object: probability that an object in view
+  // is detected, and of a detection where there is none. At 'removal_probability' it is removed.
+  double detection_probability = 0.6;
+  double false_probability = 0.02;
+  double max_probability = 0.999;
+  double removal_probability = 0.05;
+  // Detections that make an object part of the map.
+  int confirm_count = 3;
+  // Objects that are kept; the least sure make room.
+  int capacity = 256;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("gate", self.gate, "1", "squared Mahalanobis distance of the furthest detection");
+    visitor("min_separation_m", self.min_separation_m, "m", "nearer ones of a kind become one");
+    visitor("drift_noise", self.drift_noise, "m/sqrt(s)", "of the position of standing objects");
+    visitor("acceleration_noise", self.acceleration_noise, "m/s^2/sqrt(Hz)", "of moving objects");
+    visitor("start_speed_sigma_mps", self.start_speed_sigma_mps, "m/s",
+            "speed of a new object that may move, standard deviation per axis");
+    visitor("shared_sigma_m", self.shared_sigma_m, "m",
+            "error that detections in a row share, per axis");
+    visitor("detection_probability", self.detection_probability, "1",
+            "that an object in view is detected");
+    visitor("false_probability", self.false_probability, "1",
+            "that something is detected where there is nothing");
+    visitor("max_probability", self.max_probability, "1", "no object is surer than this");
+    visitor("removal_probability", self.removal_probability, "1",
+            "an object that is less sure is removed");
+    visitor("confirm_count", self.confirm_count, "1", "detections that make an object");
+    visitor("capacity", self.capacity, "1", "objects that are kept");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// Says where an object should have been seen, if it were there.
+class FieldOfView {
+ public:
+  virtual ~FieldOfView() = default;
+  virtual bool Shows(const MappedObject& object) const = 0;
+};
+
+// The objects around, from detections in the world: the paper's section 3.7 with covariances. Each
+// frame's detections are assigned to the objects together, the cheapest way in all (Mahalanobis
+// distance and how alike colours are); a Kalman filter fuses them, with a velocity for what may
+// move; what should be seen and is not fades and is removed. Bounded memory and time per update.
+class ObjectMap {
+ public:
+  // Throws InputError when the options are not valid. 'model' tells what may move.
+  ObjectMap(const ObjectModel& model, const ObjectMapOptions& options);
+
+  // The detections of one frame at 'time', which must not decrease: an older frame is left out.
+  // Detections that are not finite are left out, and those beyond kMaxMeasurements.
+  void Update(Time time, std::span<const ObjectMeasurement> measurements, const FieldOfView& view);
+
+  // The objects seen often enough, by their ids, at the time when they were last updated.
+  std::vector<MappedObject> Confirmed() const;
+
+  // All, with those that were seen once.
+  const std::vector<MappedObject>& objects() const { return objects_; }
+
+  static constexpr std::size_t kMaxMeasurements = 64;
+
+ private:
+  double Cost(const ObjectMeasurement& measurement, const MappedObject& object) const;
+  void Fuse(const ObjectMeasurement& measurement, MappedObject* object) const;
+  MappedObject Start(Time time, const ObjectMeasurement& measurement);
+  void Assign(Time time);
+  void FadeUnseen(Time time, const FieldOfView& view);
+  void UnifyNeighbors();
+  void RemoveSurplus();
+
+  ObjectModel model_;
+  ObjectMapOptions options_;
+  double hit_log_odds_;
+  double miss_log_odds_;
+  double max_log_odds_;
+  double removal_log_odds_;
+  std::vector<MappedObject> objects_;
+  std::vector<ObjectMeasurement> measurements_;
+  Eigen::MatrixXd costs_;
+  AssignmentSolver solver_;
+  std::int64_t next_id_ = 1;
+  Time last_time_ = Time::min();
+};
+
+}  // namespace kestrel

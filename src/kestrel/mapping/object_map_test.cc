@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/mapping/object_map.h"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/base/error.h"
+#include "kestrel/mapping/test_map.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+constexpr std::size_t kRed = 0;
+constexpr std::size_t kYellow = 2;
+
+Time At(double seconds) { return Time(DurationFromSeconds(seconds)); }
+
+TEST(ObjectMap, ObjectIsConfirmedAndItsPositionIsFused) {
+  ObjectMap map(DefaultObjectModel(), {});
+  Random random(1);
+  const Eigen::Vector3d truth(3, -2, 0.01);
+  for (int i = 0; i < 100; ++i) {
+    if (i == 2) {
+      EXPECT_THAT(map.Confirmed(), IsEmpty());
+    }
+    map.Update(At(0.1 * i), std::vector{MeasureNoisily(truth, kRed, 0.2, &random)}, SeesAll());
+  }
+  const auto objects = map.Confirmed();
+  ASSERT_THAT(objects, SizeIs(1));
+  EXPECT_LT((objects[0].position() - truth).norm(), 0.08);
+  EXPECT_LT(objects[0].sigma_m(), 0.04);
+  EXPECT_EQ(objects[0].detections, 100);
+  EXPECT_EQ(objects[0].velocity().norm(), 0);
+}
+
+TEST(ObjectMap, NeighboursAreToldApartTogether) {
+  ObjectMap map(DefaultObjectModel(), {});
+  Random random(2);
+  // Nearer to each other than detections scatter: the nearest object alone would mix them up.
+  for (int i = 0; i < 60; ++i) {
+    map.Update(At(0.1 * i),
+               std::vector{MeasureNoisily({0, 0, 0}, kRed, 0.1, &random),
+                           MeasureNoisily({0.4, 0, 0}, kRed, 0.1, &random)},
+               SeesAll());
+  }
+  const auto objects = map.Confirmed();
+  ASSERT_THAT(objects, SizeIs(2));
+  EXPECT_NEAR(std::abs(objects[0].position().x() - objects[1].position().x()), 0.4, 0.08);
+}
+
+TEST(ObjectMap, OtherColoursAreOtherObjects) {
+  ObjectMap map(DefaultObjectModel(), {});
+  for (int i = 0; i < 5; ++i) {
+    map.Update(At(i), std::vector{MeasureDisc({0, 0, 0}, kRed), MeasureDisc({0.05, 0, 0}, kYellow)},
+               SeesAll());
+  }
+  EXPECT_THAT(map.Confirmed(), SizeIs(2));
+}
+
+TEST(ObjectMap, MovingObjectHasItsVelocity) {
+  ObjectMap map(DefaultObjectModel(), {});
+  Random random(3);
+  const Eigen::Vector3d velocity(0.5, -0.3, 0);
+  for (int i = 0; i < 100; ++i) {
+    const double t = 0.1 * i;
+    map.Update(At(t), std::vector{MeasureNoisily(t * velocity, kYellow, 0.05, &random)}, SeesAll());
+  }
+  const auto objects = map.Confirmed();
+  ASSERT_THAT(objects, SizeIs(1));
+  EXPECT_LT((objects[0].velocity() - velocity).norm(), 0.1);
+}
+
+TEST(ObjectMap, WhatIsPickedUpFadesAndWhatIsOutOfViewStays) {
+  ObjectMap map(DefaultObjectModel(), {});
+  for (int i = 0; i < 20; ++i) {
+    map.Update(At(0.1 * i), std::vector{MeasureDisc({0, 0, 0}, kRed)}, SeesAll());
+  }
+  for (int i = 20; i < 100; ++i) map.Update(At(0.1 * i), {}, SeesNothing());
+  EXPECT_THAT(map.Confirmed(), SizeIs(1));
+  for (int i = 100; i < 103; ++i) map.Update(At(0.1 * i), {}, SeesAll());
+  EXPECT_THAT(map.Confirmed(), SizeIs(1)) << "missed for a moment";
+  for (int i = 103; i < 130; ++i) map.Update(At(0.1 * i), {}, SeesAll());
+  EXPECT_THAT(map.objects(), IsEmpty());
+}
+
+TEST(ObjectMap, MemoryIsBounded) {
+  ObjectMapOptions options;
+  options.capacity = 20;
+  ObjectMap map(DefaultObjectModel(), options);
+  for (int i = 0; i < 100; ++i) {
+    map.Update(At(i), std::vector{MeasureDisc({5.0 * i, 0, 0}, kRed)}, SeesNothing());
+  }
+  EXPECT_THAT(map.objects(), SizeIs(20));
+}
+
+TEST(ObjectMap, NonsenseAndThePastAreLeftOut) {
+  ObjectMap map(DefaultObjectModel(), {});
+  ObjectMeasurement nonsense = MeasureDisc({0, 0, 0}, kRed);
+  nonsense.position.x() = std::numeric_limits<double>::quiet_NaN();
+  ObjectMeasurement no_covariance = MeasureDisc({0, 0, 0}, kRed);
+  no_covariance.covariance.setZero();
+  map.Update(At(2), std::vector{nonsense, no_covariance}, SeesAll());
+  EXPECT_THAT(map.objects(), IsEmpty());
+  map.Update(At(1), std::vector{MeasureDisc({0, 0, 0}, kRed)}, SeesAll());
+  EXPECT_THAT(map.objects(), IsEmpty());
+}
+
+TEST(ObjectMap, DigitIsTheMostLikelyOfAllDetections) {
+  ObjectMap map(DefaultObjectModel(), {});
+  for (int i = 0; i < 5; ++i) {
+    ObjectMeasurement measurement = MeasureDisc({0, 0, 0}, kRed);
+    measurement.shape = ObjectShape::kCuboid;
+    measurement.digits.emplace();
+    measurement.digits->fill(0.05);
+    (*measurement.digits)[i == 2 ? 3 : 7] = 0.55;
+    map.Update(At(i), std::vector{measurement}, SeesAll());
+  }
+  ASSERT_THAT(map.Confirmed(), SizeIs(1));
+  EXPECT_EQ(ScoreOf(map.Confirmed()[0], DefaultObjectModel()), 7);
+}
+
+TEST(ObjectMapOptions, ViolationsAreNamed) {
+  ObjectMapOptions options;
+  options.gate = 0;
+  options.false_probability = 0.9;
+  EXPECT_THAT(options.Validate(), SizeIs(2));
+  EXPECT_THROW(ObjectMap(DefaultObjectModel(), options), InputError);
+}
+
+}  // namespace
+}  // namespace kestrel

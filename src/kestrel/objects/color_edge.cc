@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/objects/color_edge.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace kestrel {
+namespace {
+
+constexpr int kReach = 4;  // samples at -4 ... 4 px
+constexpr int kSamples = 2 * kReach + 1;
+
+using Profile = std::array<Eigen::Vector3f, kSamples>;
+
+const std::array<float, 256>& LightTable() {
+  static const std::array<float, 256> table = [] {
+    std::array<float, 256> light{};
+    for (int i = 0; i < 256; ++i) light[i] = static_cast<float>(i * i) / (255.0F * 255.0F);
+    return light;
+  }();
+  return table;
+}
+
+Eigen::Vector3f LightAt(const std::uint8_t* bgr, const std::array<float, 256>& light) {
+  return {light[bgr[0]], light[bgr[1]], light[bgr[2]]};
+}
+
+bool ReadProfile(const cv::Mat& image, const Eigen::Vector2d& start, const Eigen::Vector2d& outward,
+                 Profile* profile) {
+  const std::array<float, 256>& light = LightTable();
+  for (int i = 0; i < kSamples; ++i) {
+    const Eigen::Vector2d at = start + (i - kReach) * outward;
+    const int u = static_cast<int>(std::floor(at.x()));
+    const int v = static_cast<int>(std::floor(at.y()));
+    if (u < 0 || v < 0 || u + 1 >= image.cols || v + 1 >= image.rows) return false;
+    const auto x = static_cast<float>(at.x() - u);
+    const auto y = static_cast<float>(at.y() - v);
+    const std::uint8_t* upper = image.ptr(v) + 3 * u;
+    const std::uint8_t* lower = image.ptr(v + 1) + 3 * u;
+    (*profile)[i] = (1 - y) * ((1 - x) * LightAt(upper, light) + x * LightAt(upper + 3, light)) +
+                    y * ((1 - x) * LightAt(lower, light) + x * LightAt(lower + 3, light));
+  }
+  return true;
+}
+
+struct Crossing {
+  double index;  // with its fraction
+  float slope;   // of the share of the inside, per sample, positive
+};
+
+// Where the profile first passes from the half of 'inside' to that of 'outside' after 'first'.
+std::optional<Crossing> FindCrossing(const Profile& profile, const Eigen::Vector3f& inside,
+                                     const Eigen::Vector3f& outside, int first) {
+  constexpr float kMinContrast = 0.02F;
+  const Eigen::Vector3f axis = inside - outside;
+  const float contrast = axis.squaredNorm();
+  if (contrast < kMinContrast * kMinContrast) return std::nullopt;
+  const auto share = [&](int i) { return axis.dot(profile[i] - outside) / contrast; };
+  float last = share(first);
+  for (int i = first + 1; i < kSamples; ++i) {
+    const float here = share(i);
+    const float slope = last - here;
+    if (last >= 0.5F && here < 0.5F) return Crossing{i - (0.5F - here) / slope, slope};
+    last = here;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<ColorEdge> FindColorEdge(const cv::Mat& image, const Eigen::Vector2d& start,
+                                       const Eigen::Vector2d& outward) {
+  constexpr int kBeside = 2;  // from the edge to where a blurred profile is flat again
+  Profile profile;
+  if (!ReadProfile(image, start, outward, &profile)) return std::nullopt;
+  std::optional<Crossing> edge =
+      FindCrossing(profile, 0.5F * (profile[1] + profile[2]), profile[kSamples - 2], /*first=*/1);
+  // Once more with the colours right beside the edge.
+  if (!edge) return std::nullopt;
+  const int near = static_cast<int>(std::lround(edge->index));
+  if (near - kBeside < 0 || near + kBeside >= kSamples) return std::nullopt;
+  edge = FindCrossing(profile, profile[near - kBeside], profile[near + kBeside], near - kBeside);
+  if (!edge || edge->index > near + kBeside) return std::nullopt;
+  const double blur_px = 1 / (std::sqrt(2 * std::numbers::pi) * edge->slope);
+  return ColorEdge{edge->index - kReach, blur_px};
+}
+
+}  // namespace kestrel

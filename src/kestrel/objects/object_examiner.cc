@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/objects/object_examiner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace kestrel {
+namespace {
+
+// What a colour that is none of the model's would have as its density: even over the colours.
+constexpr double kBackgroundLogDensity = -8;
+
+// Naive Bayes with equal priors (paper, section 3.6 for scores, 3.2 for colours).
+ColorProbabilities ProbabilitiesOf(const ColorModel& model, const Hsv& color) {
+  ColorProbabilities probabilities{};
+  double best = kBackgroundLogDensity;
+  for (const ColorMixture& mixture : model.colors) {
+    best = std::max(best, mixture.LogLikelihood(color));
+  }
+  double total = std::exp(kBackgroundLogDensity - best);
+  for (std::size_t i = 0; i < model.colors.size(); ++i) {
+    probabilities[i] = std::exp(model.colors[i].LogLikelihood(color) - best);
+    total += probabilities[i];
+  }
+  for (double& p : probabilities) p /= total;
+  return probabilities;
+}
+
+FaceCorners CornersOfMoments(const RegionMoments& moments) {
+  // A rectangle's second moments are a quarter of its sides squared, by three.
+  Ellipse ellipse = EllipseFromMoments(moments);
+  ellipse.Scale(std::sqrt(3.0) / 2);
+  const Eigen::Vector2d along = ellipse.semi_major * ellipse.major_axis();
+  const Eigen::Vector2d across = ellipse.semi_minor * ellipse.minor_axis();
+  const Eigen::Vector2d& center = ellipse.center;
+  return {center + along + across, center - along + across, center - along - across,
+          center + along - across};
+}
+
+bool IsWithin(double value, double expected, double factor) {
+  return value <= expected * factor && expected <= value * factor;
+}
+
+}  // namespace
+
+bool ObjectExaminer::Run(const Segment& segment) {
+  const ObjectDetectorOptions& options = detector_.options_;
+  const auto count = [&](ObjectStage stage) { ++report_->passed[static_cast<int>(stage)]; };
+  count(ObjectStage::kSegmented);
+  if (static_cast<int>(segment.pixels.size()) < options.min_pixels) return false;
+  count(ObjectStage::kSize);
+  const SegmentShape shape = MeasureShape(image_, segment);
+  ObjectDetection detection;
+  detection.ellipse = shape.ellipse;
+  detection.roundness = shape.roundness;
+  detection.circularity = shape.circularity;
+  detection.pixels = static_cast<int>(segment.pixels.size());
+  detection.mean_color = shape.mean_color;
+  detection.color_probabilities = ProbabilitiesOf(detector_.model_.colors, shape.mean_color);
+  detection.center_px = shape.moments.centroid;
+  detection.bearing = RayAt(detection.center_px);
+
+  ObjectStage furthest = ObjectStage::kSize;
+  bool is_object = false;
+  const auto& classes = detector_.model_.classes;
+  for (std::size_t i = 0; i < classes.size() && !is_object; ++i) {
+    if (classes[i].color + 1 != segment.label) continue;
+    ObjectStage reached = ObjectStage::kSize;
+    is_object = TestClass(segment, shape, i, &detection, &reached);
+    furthest = std::max(furthest, reached);
+  }
+  for (int stage = static_cast<int>(ObjectStage::kRoundness); stage <= static_cast<int>(furthest);
+       ++stage) {
+    ++report_->passed[stage];
+  }
+  if (!is_object) is_object = TestMerged(segment, shape, &detection);
+  if (is_object) report_->detections.push_back(detection);
+  return is_object;
+}
+
+bool ObjectExaminer::TestClass(const Segment& segment, const SegmentShape& shape,
+                               std::size_t class_index, ObjectDetection* detection,
+                               ObjectStage* reached) {
+  const ObjectClass& object = detector_.model_.classes[class_index];
+  detection->class_index = class_index;
+  detection->class_probability = detection->color_probabilities[object.color];
+  detection->completeness = segment.touches_border ? Completeness::kCutOff : Completeness::kWhole;
+  const bool is_round = std::abs(shape.roundness - 1) <= detector_.options_.max_roundness_error;
+  if (object.shape != ObjectShape::kBar && !is_round) return false;
+  *reached = ObjectStage::kRoundness;
+  switch (object.shape) {
+    case ObjectShape::kDisc:
+      return TestDisc(segment, shape, object, detection, reached);
+    case ObjectShape::kCuboid:
+      return TestCuboid(segment, object, detection, reached);
+    case ObjectShape::kBar:
+      return TestBar(segment, shape, object, detection, reached);
+  }
+  return false;
+}
+
+bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
+                              const ObjectClass& object, ObjectDetection* detection,
+                              ObjectStage* reached) {
+  const ObjectDetectorOptions& options = detector_.options_;
+  Ellipse start = shape.ellipse;
+  if (segment.touches_border) {
+    const auto ellipse = EllipseOfCutOff(segment, image_.size(), &workspace_->outline);
+    if (!ellipse) return false;
+    start = *ellipse;
+  } else if (std::abs(shape.circularity - 1) > options.max_circularity_error) {
+    return false;
+  }
+  *reached = ObjectStage::kShape;
+  const auto outline =
+      FitDiscOutline(image_, detector_.rays_, detector_.focal_px_, start, &workspace_->outline);
+  if (!outline) return false;
+  const double radius_px = detector_.focal_px_ * std::tan(outline->cone.HalfAngles().minCoeff());
+  const double max_gap = segment.touches_border ? options.max_cut_off_gap : options.max_gap;
+  if (outline->gap > max_gap || outline->fit_share < options.min_outline_share) return false;
+  if (outline->residual_px > options.outline_tolerance * radius_px + options.outline_tolerance_px) {
+    return false;
+  }
+  *reached = ObjectStage::kOutline;
+  const double radius_m = object.size_m / 2;
+  const Eigen::Vector3d row_direction =
+      RayAt(start.center + Eigen::Vector2d(1, 0)) - RayAt(start.center - Eigen::Vector2d(1, 0));
+  Eigen::Vector3d position = LocateDisc(outline->cone, radius_m, row_direction, hint_.up_in_camera);
+  const double distance = position.norm();
+  if (!std::isfinite(distance) || !(distance > 0)) return false;
+  if (const auto on_ground = Ground().DistanceNear(position / distance, distance, object.height_m,
+                                                   object.max_height_m)) {
+    const double slack_rad = 1 / detector_.focal_px_;
+    if (std::abs(distance - *on_ground) >
+            options.ground_tolerance * *on_ground + options.ground_tolerance_m ||
+        !LooksLikeDisc(outline->cone, position / distance, *on_ground, *hint_.up_in_camera,
+                       radius_m, options.ground_tolerance, slack_rad)) {
+      return false;
+    }
+  }
+  *reached = ObjectStage::kPosition;
+  if (!hint_.up_in_camera) {
+    // Which way the disc is tilted is not known: its centre is taken for that of the ellipse.
+    if (const auto ellipse = EllipseThrough(workspace_->outline.points)) {
+      position = distance * RayAt(ellipse->center);
+    }
+  }
+  SetCenter(position, radius_px, 1 - outline->gap, detection);
+  return true;
+}
+
+bool ObjectExaminer::TestCuboid(const Segment& segment, const ObjectClass& object,
+                                ObjectDetection* detection, ObjectStage* reached) {
+  if (segment.touches_border || segment.ambiguous_pixels == 0) return false;
+  const auto corners = FindCuboidFace(image_, segment, &workspace_->face);
+  if (!corners) return false;
+  const auto digit = CutOutDigit(image_, *corners);
+  if (!digit) return false;
+  *reached = ObjectStage::kOutline;
+  detection->digits = detector_.digits_.Classify(*digit);
+  if (!LocateFace(*corners, object, detection)) return false;
+  *reached = ObjectStage::kPosition;
+  return true;
+}
+
+bool ObjectExaminer::TestBar(const Segment& segment, const SegmentShape& shape,
+                             const ObjectClass& object, ObjectDetection* detection,
+                             ObjectStage* reached) {
+  constexpr double kMinFill = 0.75;
+  constexpr double kMaxAspectFactor = 2;
+  const Ellipse& ellipse = shape.ellipse;
+  const double box_px = 3 * ellipse.semi_major * ellipse.semi_minor;
+  if (shape.moments.area < kMinFill * box_px) return false;
+  const double aspect = ellipse.semi_major / std::max(ellipse.semi_minor, 0.1);
+  // A cut off one is shorter.
+  const double expected = object.size_m / object.width_m;
+  const bool is_long = segment.touches_border ? aspect > 2 && aspect < kMaxAspectFactor * expected
+                                              : IsWithin(aspect, expected, kMaxAspectFactor);
+  if (!is_long) return false;
+  *reached = ObjectStage::kOutline;
+  if (segment.touches_border) return true;  // its bearing is all that is known
+  if (!LocateFace(CornersOfMoments(shape.moments), object, detection)) return false;
+  *reached = ObjectStage::kPosition;
+  return true;
+}
+
+bool ObjectExaminer::LocateFace(const FaceCorners& corners, const ObjectClass& object,
+                                ObjectDetection* detection) const {
+  constexpr double kMaxSkew = 0.3;
+  const ObjectDetectorOptions& options = detector_.options_;
+  const bool is_bar = object.shape == ObjectShape::kBar;
+  std::array<Eigen::Vector3d, 4> rays;
+  for (int i = 0; i < 4; ++i) rays[i] = RayAt(corners[i]);
+  const Eigen::Vector3d up = hint_.up_in_camera.value_or(-detection->bearing);
+  const auto face = RectangleOnPlane(rays, up);
+  if (!face) return false;
+  // Not seen from above, a square may be any parallelogram.
+  const double length = is_bar ? face->sides.maxCoeff() : std::sqrt(face->sides.prod());
+  if (!(length > 0)) return false;
+  if (!is_bar && hint_.up_in_camera &&
+      (face->skew > kMaxSkew ||
+       !IsWithin(face->sides.x(), face->sides.y(), 1 + options.ground_tolerance))) {
+    return false;
+  }
+  const Eigen::Vector3d position = object.size_m / length * face->center;
+  const double distance = position.norm();
+  if (const auto on_ground = Ground().DistanceNear(position / distance, distance, object.height_m,
+                                                   object.max_height_m)) {
+    if (std::abs(distance - *on_ground) >
+        options.ground_tolerance * *on_ground + options.ground_tolerance_m) {
+      return false;
+    }
+  }
+  SetCenter(position, 0.5 * detector_.focal_px_ * object.size_m / distance, 1, detection);
+  return true;
+}
+
+// Several discs of one colour that touch make one segment. It is no disc, but as solid as one, and
+// larger where the size of one is known.
+bool ObjectExaminer::TestMerged(const Segment& segment, const SegmentShape& shape,
+                                ObjectDetection* detection) const {
+  constexpr double kMaxCircularityError = 0.6;
+  constexpr double kMinCount = 1.2;
+  constexpr double kMaxCount = 8;
+  if (segment.touches_border || std::abs(shape.circularity - 1) > kMaxCircularityError) {
+    return false;
+  }
+  const auto& classes = detector_.model_.classes;
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    if (classes[i].color + 1 != segment.label || classes[i].shape != ObjectShape::kDisc) continue;
+    const std::optional<double> one_px = PixelsOnGround(detection->bearing, classes[i]);
+    const double count = one_px ? shape.moments.area / *one_px : kMinCount;
+    if (count < kMinCount || count > kMaxCount) continue;
+    detection->class_index = i;
+    detection->class_probability = detection->color_probabilities[classes[i].color];
+    detection->completeness = Completeness::kMerged;
+    return true;
+  }
+  return false;
+}
+
+std::optional<double> ObjectExaminer::PixelsOnGround(const Eigen::Vector3d& ray,
+                                                     const ObjectClass& object) const {
+  const auto distance = Ground().DistanceNear(ray, 0, object.height_m, object.max_height_m);
+  if (!distance) return std::nullopt;
+  const Eigen::Vector2d angles =
+      ConeOfCircle(*distance * ray, *hint_.up_in_camera, object.size_m / 2).HalfAngles();
+  return std::numbers::pi * detector_.focal_px_ * detector_.focal_px_ * angles.prod();
+}
+
+void ObjectExaminer::SetCenter(const Eigen::Vector3d& position, double radius_px,
+                               double outline_share, ObjectDetection* detection) const {
+  const ObjectDetectorOptions& options = detector_.options_;
+  detection->bearing = position.normalized();
+  detector_.camera_.Project(position, &detection->center_px);
+  // The less of the outline is seen, the less it says.
+  const double less = 1 / (outline_share * outline_share);
+  detection->location = {
+      position, LocationCovariance(position, less * options.center_sigma_px / detector_.focal_px_,
+                                   less * options.radius_sigma_px / radius_px)};
+}
+
+Eigen::Vector3d ObjectExaminer::RayAt(const Eigen::Vector2d& pixel) const {
+  const Eigen::Vector2f at = pixel.cast<float>();
+  return detector_.rays_.Ray(at.x(), at.y()).cast<double>();
+}
+
+}  // namespace kestrel

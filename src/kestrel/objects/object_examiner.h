@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/objects/cuboid_face.h"
+#include "kestrel/objects/ground_plane.h"
+#include "kestrel/objects/object_detector.h"
+#include "kestrel/objects/segment_shape.h"
+
+namespace kestrel {
+
+// The tests that a segment of an image goes through on its way to a detection.
+class ObjectExaminer {
+ public:
+  ObjectExaminer(const ObjectDetector& detector, const cv::Mat& image, const ObjectHint& hint,
+                 ObjectWorkspace* workspace, ObjectReport* report)
+      : detector_(detector), image_(image), hint_(hint), workspace_(workspace), report_(report) {}
+
+  // Adds a detection to the report when the segment is an object of one of the classes; true then.
+  bool Run(const Segment& segment);
+
+ private:
+  bool TestClass(const Segment& segment, const SegmentShape& shape, std::size_t class_index,
+                 ObjectDetection* detection, ObjectStage* reached);
+  bool TestDisc(const Segment& segment, const SegmentShape& shape, const ObjectClass& object,
+                ObjectDetection* detection, ObjectStage* reached);
+  bool TestCuboid(const Segment& segment, const ObjectClass& object, ObjectDetection* detection,
+                  ObjectStage* reached);
+  bool TestBar(const Segment& segment, const SegmentShape& shape, const ObjectClass& object,
+               ObjectDetection* detection, ObjectStage* reached);
+  bool LocateFace(const FaceCorners& corners, const ObjectClass& object,
+                  ObjectDetection* detection) const;
+  bool TestMerged(const Segment& segment, const SegmentShape& shape,
+                  ObjectDetection* detection) const;
+  // Area that a disc on the ground has in the image; nothing when the ground is not known.
+  std::optional<double> PixelsOnGround(const Eigen::Vector3d& ray, const ObjectClass& object) const;
+  void SetCenter(const Eigen::Vector3d& position, double radius_px, double outline_share,
+                 ObjectDetection* detection) const;
+  GroundPlane Ground() const { return {hint_.up_in_camera, hint_.camera_height_m}; }
+  Eigen::Vector3d RayAt(const Eigen::Vector2d& pixel) const;
+
+  const ObjectDetector& detector_;
+  const cv::Mat& image_;
+  const ObjectHint& hint_;
+  ObjectWorkspace* workspace_;
+  ObjectReport* report_;
+};
+
+}  // namespace kestrel

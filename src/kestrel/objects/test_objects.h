@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "kestrel/camera/camera_model.h"
+#include "kestrel/objects/ground_plane.h"
+
+namespace kestrel {
+
+inline CameraModel ObjectCamera() {
+  return CameraModel({640, 480, 500, 500, 319.5, 239.5, DistortionModel::kNone, {}});
+}
+
+// A camera above flat ground that looks nearly straight down, and what it sees of flat paint.
+class ObjectScene {
+ public:
+  explicit ObjectScene(double height_m = 4, double tilt = 0.2)
+      : camera_(ObjectCamera()),
+        height_m_(height_m),
+        up_(Eigen::Vector3d(std::sin(tilt), 0, -std::cos(tilt))),
+        image_(480 * kFine, 640 * kFine, CV_8UC3, cv::Scalar(95, 100, 105)) {}
+
+  // Where the ray through a pixel meets the plane 'above' the ground; and back.
+  Eigen::Vector3d PointUnder(const Eigen::Vector2d& pixel, double above_m) const {
+    Eigen::Vector3d ray;
+    camera_.Unproject(pixel, &ray);
+    return (height_m_ - above_m) / -up_.dot(ray) * ray;
+  }
+
+  void DrawDisc(const Eigen::Vector3d& center, double radius_m, const cv::Scalar& color) {
+    std::vector<Eigen::Vector3d> outline;
+    for (int i = 0; i < 120; ++i) {
+      const double t = 2 * 3.141592653589793 * i / 120;
+      outline.push_back(center + radius_m * (std::cos(t) * East() + std::sin(t) * North()));
+    }
+    Fill(outline, color);
+  }
+
+  // A horizontal rectangle.
+  void DrawRectangle(const Eigen::Vector3d& center, double length_m, double width_m, double yaw,
+                     const cv::Scalar& color) {
+    const Eigen::Vector3d along = std::cos(yaw) * East() + std::sin(yaw) * North();
+    const Eigen::Vector3d across = -std::sin(yaw) * East() + std::cos(yaw) * North();
+    Fill({center + 0.5 * (length_m * along + width_m * across),
+          center + 0.5 * (-length_m * along + width_m * across),
+          center + 0.5 * (-length_m * along - width_m * across),
+          center + 0.5 * (length_m * along - width_m * across)},
+         color);
+  }
+
+  cv::Mat Image() const {
+    cv::Mat image;
+    cv::resize(image_, image, cv::Size(640, 480), 0, 0, cv::INTER_AREA);
+    cv::GaussianBlur(image, image, cv::Size(), 0.7);
+    return image;
+  }
+
+  const CameraModel& camera() const { return camera_; }
+  const Eigen::Vector3d& up() const { return up_; }
+  double height_m() const { return height_m_; }
+
+ private:
+  static constexpr int kFine = 4;
+
+  Eigen::Vector3d East() const { return up_.cross(Eigen::Vector3d::UnitY()).normalized(); }
+  Eigen::Vector3d North() const { return up_.cross(East()); }
+
+  void Fill(const std::vector<Eigen::Vector3d>& outline, const cv::Scalar& color) {
+    constexpr int kBits = 4;
+    std::vector<cv::Point> points;
+    for (const Eigen::Vector3d& point : outline) {
+      Eigen::Vector2d pixel;
+      camera_.Project(point, &pixel);
+      const Eigen::Vector2d fine = (kFine * (pixel.array() + 0.5) - 0.5) * (1 << kBits);
+      points.emplace_back(static_cast<int>(std::lround(fine.x())),
+                          static_cast<int>(std::lround(fine.y())));
+    }
+    cv::fillPoly(image_, std::vector<std::vector<cv::Point>>{points}, color, cv::LINE_8, kBits);
+  }
+
+  CameraModel camera_;
+  double height_m_;
+  Eigen::Vector3d up_;
+  cv::Mat image_;
+};
+
+inline const cv::Scalar kRedPaint(45, 40, 200);
+inline const cv::Scalar kGreenPaint(55, 165, 95);
+inline const cv::Scalar kBluePaint(140, 70, 8);
+inline const cv::Scalar kYellowPaint(30, 225, 240);
+inline const cv::Scalar kOrangePaint(20, 95, 235);
+inline const cv::Scalar kWhitePaint(240, 240, 240);
+
+}  // namespace kestrel

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "kestrel/base/time.h"
+#include "kestrel/camera/calibration.h"
+#include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/navigation/pose_history.h"
+
+namespace kestrel {
+
+// Where the camera was when its light was collected: the navigation's poses, the mount and the
+// clock offset.
+class CameraPoses {
+ public:
+  CameraPoses(const CameraCalibration& calibration, std::size_t capacity, Duration max_gap)
+      : body_from_camera_(calibration.body_from_camera),
+        clock_offset_(calibration.clock_offset.value_or(Duration::zero())),
+        poses_(capacity, max_gap) {}
+
+  // A pose from the navigation, on its clock.
+  PoseStatus Add(const PoseSample& sample) { return poses_.Add(sample); }
+
+  // 'world_from_camera' at an instant of the images' clock; nothing without a mount or a pose.
+  std::optional<RigidTransform> At(Time image_time) const {
+    if (!body_from_camera_) return std::nullopt;
+    const auto world_from_body = poses_.Lookup(image_time + clock_offset_);
+    if (!world_from_body) return std::nullopt;
+    return *world_from_body * *body_from_camera_;
+  }
+
+ private:
+  std::optional<RigidTransform> body_from_camera_;
+  Duration clock_offset_;
+  PoseHistory poses_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/pipeline/hunt_pipeline.h"
+
+#include <chrono>
+#include <numbers>
+
+#include "kestrel/base/options.h"
+#include "kestrel/pipeline/object_view.h"
+
+namespace kestrel {
+namespace {
+
+const HuntPipelineOptions& Checked(const HuntPipelineOptions& options) {
+  RequireValid(options);
+  return options;
+}
+
+}  // namespace
+
+std::vector<std::string> HuntPipelineOptions::Validate() const {
+  std::vector<std::string> violations;
+  for (const std::string& violation : detector.Validate()) {
+    violations.push_back("detector." + violation);
+  }
+  for (const std::string& violation : map.Validate()) violations.push_back("map." + violation);
+  const auto require = [&](bool holds, const char* rule) {
+    if (!holds) violations.emplace_back(rule);
+  };
+  require(readout_s >= 0 && readout_s < 1, "readout_s must be in 0 to 1");
+  require(track_count >= 0, "track_count must not be negative");
+  require(pose_sigma_m >= 0, "pose_sigma_m must not be negative");
+  require(attitude_sigma_deg >= 0, "attitude_sigma_deg must not be negative");
+  require(pose_capacity >= 2, "pose_capacity must be at least 2");
+  require(pose_gap_s > 0 && pose_gap_s < 1e6, "pose_gap_s must be positive and below 1e6");
+  return violations;
+}
+
+HuntPipeline::HuntPipeline(const CameraCalibration& calibration, const ObjectModel& model,
+                           const HuntPipelineOptions& options)
+    : HuntPipeline(calibration, model, ColorGrid(model.colors), options) {}
+
+HuntPipeline::HuntPipeline(const CameraCalibration& calibration, const ObjectModel& model,
+                           const ColorGrid& grid, const HuntPipelineOptions& options)
+    : options_(Checked(options)),
+      detector_(CameraModel(calibration.intrinsics), model, grid, options.detector),
+      poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s)),
+      map_(model, options.map) {}
+
+const HuntObservation& HuntPipeline::Process(const cv::Mat& image, Time time) {
+  observation_.time = time;
+  observation_.world_from_camera = poses_.At(time);
+  Detect(image);
+  LocateInWorld();
+  UpdateMap();
+  RememberForTracking();
+  return observation_;
+}
+
+void HuntPipeline::Detect(const cv::Mat& image) {
+  ObjectHint hint;
+  if (const auto& world_from_camera = observation_.world_from_camera) {
+    hint.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
+    const double height_m = world_from_camera->translation.z() - options_.ground_height_m;
+    if (options_.is_ground_flat && height_m > 0) hint.camera_height_m = height_m;
+  } else if (altitude_m_) {
+    hint.up_in_camera = -Eigen::Vector3d::UnitZ();
+    hint.camera_height_m = altitude_m_;
+  }
+  hint.track = track_;
+  saw_all_ = track_.empty();
+  ObjectReport& report = observation_.report;
+  const auto start = std::chrono::steady_clock::now();
+  detector_.Detect(image, hint, workspace_, &report);
+  if (report.detections.size() < track_.size()) {
+    hint.track = {};
+    saw_all_ = true;
+    detector_.Detect(image, hint, workspace_, &report);
+  }
+  observation_.detect_time = std::chrono::steady_clock::now() - start;
+}
+
+void HuntPipeline::LocateInWorld() {
+  auto& in_world = observation_.in_world;
+  in_world.clear();
+  for (const ObjectDetection& detection : observation_.report.detections) {
+    in_world.emplace_back();
+    if (!detection.location) continue;
+    const auto world_from_camera = poses_.At(TimeOfRow(detection.center_px.y()));
+    if (!world_from_camera) continue;
+    const Eigen::Matrix3d rotation = world_from_camera->rotation.toRotationMatrix();
+    in_world.back() = {*world_from_camera * detection.location->position,
+                       rotation * detection.location->covariance * rotation.transpose()};
+  }
+}
+
+void HuntPipeline::UpdateMap() {
+  if (options_.still || !observation_.world_from_camera) return;
+  constexpr double kRadians = std::numbers::pi / 180;
+  measurements_.clear();
+  const auto& detections = observation_.report.detections;
+  for (std::size_t i = 0; i < detections.size(); ++i) {
+    const ObjectDetection& detection = detections[i];
+    const auto& in_world = observation_.in_world[i];
+    if (detection.completeness != Completeness::kWhole || !in_world) continue;
+    ObjectMeasurement& measurement = measurements_.emplace_back();
+    measurement.position = in_world->position;
+    const double swing_m =
+        kRadians * options_.attitude_sigma_deg * detection.location->position.norm();
+    measurement.covariance = in_world->covariance;
+    measurement.covariance.diagonal().array() +=
+        options_.pose_sigma_m * options_.pose_sigma_m + swing_m * swing_m;
+    measurement.shape = detector_.model().classes[detection.class_index].shape;
+    measurement.color = detection.mean_color;
+    measurement.color_probabilities = detection.color_probabilities;
+    measurement.digits = detection.digits;
+  }
+  map_.Update(
+      observation_.time, measurements_,
+      ObjectView(detector_, observation_.report, *observation_.world_from_camera, saw_all_));
+}
+
+void HuntPipeline::RememberForTracking() {
+  track_.clear();
+  if (options_.still) return;
+  for (const ObjectDetection& detection : observation_.report.detections) {
+    if (static_cast<int>(track_.size()) == options_.track_count) return;
+    if (detection.completeness != Completeness::kWhole) continue;
+    track_.push_back({detection.center_px, detection.class_index});
+  }
+  if (static_cast<int>(track_.size()) < options_.track_count) track_.clear();
+}
+
+Time HuntPipeline::TimeOfRow(double v_px) const {
+  const double share = v_px / (detector_.camera().height_px() - 1) - 0.5;
+  return observation_.time + DurationFromSeconds(options_.readout_s * share);
+}
+
+}  // namespace kestrel

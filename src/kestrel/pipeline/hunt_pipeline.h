@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "kestrel/base/time.h"
+#include "kestrel/camera/calibration.h"
+#include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/mapping/object_map.h"
+#include "kestrel/objects/object_detector.h"
+#include "kestrel/pipeline/camera_poses.h"
+
+namespace kestrel {
+
+struct HuntPipelineOptions {
+  ObjectDetectorOptions detector;
+  ObjectMapOptions map;
+  // Frames have nothing to do with each other: no state is carried from one to the next.
+  bool still = false;
+  // Height of the ground in the world. With poses, objects that are not on it are discarded.
+  double ground_height_m = 0;
+  bool is_ground_flat = true;
+  // Time from the first to the last row of a rolling shutter; an image's time is that of its middle
+  // row. 0 for a global shutter.
+  double readout_s = 0;
+  // More than 0: once so many objects are in view, only these are followed (the paper's mode
+  // `track`), until one is lost.
+  int track_count = 0;
+  // Standard deviations of the navigation's poses, per axis, which the map adds to those of a
+  // detection: raise them where clock offset or mount are not known.
+  double pose_sigma_m = 0.03;
+  double attitude_sigma_deg = 0.5;
+  // How many poses are kept, and the longest gap between two of them that is interpolated.
+  int pose_capacity = 1000;
+  double pose_gap_s = 0.5;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor.Group("detector", self.detector);
+    visitor.Group("map", self.map);
+    visitor("still", self.still, "", "frames have nothing to do with each other");
+    visitor("ground_height_m", self.ground_height_m, "m", "height of the ground in the world");
+    visitor("is_ground_flat", self.is_ground_flat, "",
+            "discard objects that are not on the ground, where there are poses");
+    visitor("readout_s", self.readout_s, "s",
+            "rolling shutter: time from the first row to the last, 0 for a global shutter");
+    visitor("track_count", self.track_count, "1",
+            "follow so many objects and look at nothing else, 0 to search the whole image");
+    visitor("pose_sigma_m", self.pose_sigma_m, "m", "of the navigation's position, per axis");
+    visitor("attitude_sigma_deg", self.attitude_sigma_deg, "deg",
+            "of the navigation's attitude, per axis");
+    visitor("pose_capacity", self.pose_capacity, "1", "how many poses are kept");
+    visitor("pose_gap_s", self.pose_gap_s, "s", "longest gap between poses that is interpolated");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// What one frame showed.
+struct HuntObservation {
+  Time time;  // of the frame, on the clock of the images
+  ObjectReport report;
+  std::optional<RigidTransform> world_from_camera;  // when there was a pose for this time
+  // Of each detection, in their order: position and covariance in the world (ENU, m), when it has a
+  // location and there is a pose. With a rolling shutter by the pose at its own row.
+  std::vector<std::optional<ObjectLocation>> in_world;
+  Duration detect_time{};  // of ObjectDetector::Detect alone (both calls, if it took two)
+};
+
+// From an image to where the coloured objects are in the world. One thread at a time.
+class HuntPipeline {
+ public:
+  // Throws InputError when calibration, model or options are not valid.
+  HuntPipeline(const CameraCalibration& calibration, const ObjectModel& model,
+               const HuntPipelineOptions& options);
+  // With a grid that need not be the model's own.
+  HuntPipeline(const CameraCalibration& calibration, const ObjectModel& model,
+               const ColorGrid& grid, const HuntPipelineOptions& options);
+
+  // A pose from the navigation, on its clock; the one after a frame's time should come before the
+  // frame, or the frame has no pose.
+  PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
+
+  // Height (m) of the camera above the ground, for frames without a pose; nothing: not known. The
+  // camera is then taken to look straight down.
+  void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
+
+  // 'image': CV_8UC3 of the camera's size; 'time' on the clock of the images. The result is valid
+  // until the next call. Does not throw, and does not allocate once it has warmed up.
+  const HuntObservation& Process(const cv::Mat& image, Time time);
+
+  const ObjectDetector& detector() const { return detector_; }
+  // The objects in the world; empty without poses, and with independent frames.
+  const ObjectMap& map() const { return map_; }
+  const HuntPipelineOptions& options() const { return options_; }
+
+ private:
+  void Detect(const cv::Mat& image);
+  void LocateInWorld();
+  void UpdateMap();
+  void RememberForTracking();
+  Time TimeOfRow(double v_px) const;
+
+  HuntPipelineOptions options_;
+  ObjectDetector detector_;
+  ObjectWorkspace workspace_;
+  CameraPoses poses_;
+  std::optional<double> altitude_m_;
+  HuntObservation observation_;
+  std::vector<TrackedObject> track_;
+  bool saw_all_ = true;  // the last frame was searched as a whole
+  ObjectMap map_;
+  std::vector<ObjectMeasurement> measurements_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/recording/object_map_csv.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "kestrel/recording/csv_table.h"
+
+namespace kestrel {
+namespace {
+
+bool IsMoving(const MappedObject& object) {
+  constexpr double kMinSpeed_mps = 0.05;
+  const double sigma_mps = std::sqrt(object.covariance.bottomRightCorner<3, 3>().trace() / 3);
+  return object.velocity().norm() > std::max(kMinSpeed_mps, 3 * sigma_mps);
+}
+
+std::string Row(const MappedObject& object, const ObjectModel& model) {
+  const auto index = ClassOf(object, model);
+  const auto p = object.position();
+  const auto v = object.velocity();
+  return fmt::format("{},{},{:g},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{},{},{},{}\n",
+                     object.id, index ? CsvCell(model.classes[*index].name) : "",
+                     ScoreOf(object, model), p.x(), p.y(), p.z(), v.x(), v.y(), v.z(),
+                     object.sigma_m(), object.detections, ToNanoseconds(object.first_seen),
+                     ToNanoseconds(object.last_seen), IsMoving(object) ? 1 : 0);
+}
+
+}  // namespace
+
+std::string ObjectMapCsv(const std::vector<MappedObject>& objects, const ObjectModel& model) {
+  std::string text =
+      "id,class,score,p_x_m,p_y_m,p_z_m,v_x_mps,v_y_mps,v_z_mps,sigma_m,detections,first_seen_ns,"
+      "last_seen_ns,moving\n";
+  for (const MappedObject& object : objects) text += Row(object, model);
+  return text;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kestrel/mapping/mapped_object.h"
+
+namespace kestrel {
+
+// object_map.csv: a header row and one row for each object. 'score': the digit of a cuboid, else
+// the class's; 'moving': 1 for what moves by more than three standard deviations of its velocity.
+std::string ObjectMapCsv(const std::vector<MappedObject>& objects, const ObjectModel& model);
+
+}  // namespace kestrel
