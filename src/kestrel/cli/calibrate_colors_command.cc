@@ -81,11 +81,13 @@ void RunColors(const ColorsArguments& arguments) {
 }  // namespace
 
 void AddCalibrateColorsCommand(CLI::App* app) {
-  CLI::App* calibrate = app->get_subcommand_no_throw("calibrate");
-  if (calibrate == nullptr) {
-    calibrate = app->add_subcommand("calibrate", "Estimate what a camera and a place need");
-    calibrate->require_subcommand(1);
-  }
+  const std::vector<CLI::App*> known = app->get_subcommands(
+      [](const CLI::App* command) { return command->get_name() == "calibrate"; });
+  CLI::App* calibrate =
+      known.empty()
+          ? app->add_subcommand("calibrate", "Estimate what a camera and a place need")
+          : known.front();
+  calibrate->require_subcommand(1);
   CLI::App* command =
       calibrate->add_subcommand("colors", "Colour models from images with marked pixels");
   const auto arguments = std::make_shared<ColorsArguments>();
