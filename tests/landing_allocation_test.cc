@@ -1,55 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Detect does not allocate once its workspace has warmed up. Counts by taking the place of the C
-// library's allocation functions (glibc), through which operator new and cv::Mat go as well.
-#include <cerrno>
-#include <cstddef>
+// Detect does not allocate once its workspace has warmed up.
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
+#include "count_allocations.h"
 #include "kestrel/landing/landing_pattern_detector.h"
 #include "kestrel/simulation/landing_stills.h"
-
-namespace {
-
-thread_local bool is_counting = false;
-thread_local int allocation_count = 0;
-
-void CountAllocation() {
-  if (is_counting) ++allocation_count;
-}
-
-}  // namespace
-
-extern "C" {
-void* __libc_malloc(std::size_t size);
-void* __libc_calloc(std::size_t count, std::size_t size);
-void* __libc_realloc(void* memory, std::size_t size);
-void* __libc_memalign(std::size_t align, std::size_t size);
-
-void* malloc(std::size_t size) {
-  CountAllocation();
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t count, std::size_t size) {
-  CountAllocation();
-  return __libc_calloc(count, size);
-}
-void* realloc(void* memory, std::size_t size) {
-  CountAllocation();
-  return __libc_realloc(memory, size);
-}
-void* aligned_alloc(std::size_t align, std::size_t size) {
-  CountAllocation();
-  return __libc_memalign(align, size);
-}
-int posix_memalign(void** memory, std::size_t align, std::size_t size) {
-  CountAllocation();
-  *memory = __libc_memalign(align, size);
-  return *memory == nullptr ? ENOMEM : 0;
-}
-}
 
 namespace kestrel {
 namespace {
@@ -98,11 +56,7 @@ std::vector<Shot> ShotsOfLookalikes() {
 
 int CountAllocations(const LandingPatternDetector& detector, const Shot& shot,
                      LandingWorkspace* workspace) {
-  allocation_count = 0;
-  is_counting = true;
-  detector.Detect(shot.image, shot.hint, *workspace);
-  is_counting = false;
-  return allocation_count;
+  return CountAllocations([&] { detector.Detect(shot.image, shot.hint, *workspace); });
 }
 
 void ExpectNoAllocationAfterWarmUp(const std::vector<Shot>& shots) {
