@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Detect does not allocate once its workspace has warmed up.
+// Detect does not allocate once its workspace has warmed up, the tracker not at all.
+#include <chrono>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -8,6 +9,7 @@
 #include "count_allocations.h"
 #include "kestrel/landing/landing_pattern_detector.h"
 #include "kestrel/simulation/landing_stills.h"
+#include "kestrel/tracking/target_tracker.h"
 
 namespace kestrel {
 namespace {
@@ -89,6 +91,19 @@ TEST(LandingAllocationTest, NoneWhenTheHintComesLate) {
   std::vector<Shot> shots = ShotsOfPattern(/*with_hint=*/true);
   for (int i = 0; i < kWarmUpFrames; ++i) shots[i].hint = {};
   ExpectNoAllocationAfterWarmUp(shots);
+}
+
+TEST(TrackerAllocationTest, NoneAfterConstruction) {
+  TargetTracker tracker({});
+  const int count = CountAllocations([&] {
+    for (int i = 0; i < 500; ++i) {
+      const int late = i % 7 == 3 ? i - 5 : i;
+      const Time time = TimeFromNanoseconds(1'000'000'000 + 33'000'000LL * late);
+      tracker.Add({time, {0.1 * late, 0, 0}, 1e-4 * Eigen::Matrix3d::Identity()});
+      tracker.Predict(time + std::chrono::seconds(1));
+    }
+  });
+  EXPECT_EQ(count, 0);
 }
 
 }  // namespace

@@ -37,9 +37,8 @@ void ReplaceColors(const std::map<std::string, std::vector<Hsv>>& samples, int c
                    ObjectModel* model) {
   std::vector<ColorMixture>& colors = model->colors.colors;
   for (const auto& [name, pixels] : samples) {
-    const auto found = std::find_if(colors.begin(), colors.end(), [&](const ColorMixture& color) {
-      return color.name == name;
-    });
+    const auto found = std::find_if(colors.begin(), colors.end(),
+                                    [&](const ColorMixture& color) { return color.name == name; });
     if (found == colors.end()) {
       throw InputError(fmt::format("'{}' is none of the model's colors", name));
     }
@@ -55,8 +54,7 @@ void WritePicture(const OutputFolder& folder, const std::string& name, const cv:
 }
 
 void RunColors(const ColorsArguments& arguments) {
-  const std::vector<ColorMark> marks =
-      ParseColorMarks(ReadFile(arguments.marks), arguments.marks);
+  const std::vector<ColorMark> marks = ParseColorMarks(ReadFile(arguments.marks), arguments.marks);
   ObjectModel model =
       arguments.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments.model);
   const auto samples = ReadMarkedColors(marks);
@@ -80,14 +78,7 @@ void RunColors(const ColorsArguments& arguments) {
 
 }  // namespace
 
-void AddCalibrateColorsCommand(CLI::App* app) {
-  const std::vector<CLI::App*> known = app->get_subcommands(
-      [](const CLI::App* command) { return command->get_name() == "calibrate"; });
-  CLI::App* calibrate =
-      known.empty()
-          ? app->add_subcommand("calibrate", "Estimate what a camera and a place need")
-          : known.front();
-  calibrate->require_subcommand(1);
+void AddCalibrateColorsCommand(CLI::App* calibrate) {
   CLI::App* command =
       calibrate->add_subcommand("colors", "Colour models from images with marked pixels");
   const auto arguments = std::make_shared<ColorsArguments>();

@@ -6,6 +6,6 @@
 namespace kestrel {
 
 // `kestrel calibrate colors`: colour models from images with marked rectangles or masks.
-void AddCalibrateColorsCommand(CLI::App* app);
+void AddCalibrateColorsCommand(CLI::App* calibrate);
 
 }  // namespace kestrel

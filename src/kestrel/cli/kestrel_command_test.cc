@@ -13,6 +13,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "kestrel/base/read_file.h"
+#include "kestrel/cli/test_command.h"
 #include "kestrel/pipeline/test_pattern.h"
 #include "kestrel/recording/test_files.h"
 
@@ -41,30 +42,8 @@ constexpr char kPoses[] =
     "[]\n"
     "100000000,5,6,3,1,0,0,0\n200000000,5,6,3,1,0,0,0\n";
 
-struct Outcome {
-  int status;
-  std::string out;
-  std::string err;
-};
-
-auto Lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
-
-class KestrelCommandTest : public ::testing::Test {
+class KestrelCommandTest : public CommandTest {
  protected:
-  Outcome Run(const std::string& arguments) const {
-    const std::string out = folder_ / "stdout";
-    const std::string err = folder_ / "stderr";
-    const int status = std::system(
-        fmt::format("{} {} >'{}' 2>'{}' </dev/null", KESTREL_COMMAND, arguments, out, err).c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadFile(out), ReadFile(err)};
-  }
-  // Exit status 1 and one line on stderr that has 'words' in it.
-  void ExpectInputError(const std::string& arguments, const std::string& words) const {
-    const Outcome outcome = Run(arguments);
-    EXPECT_EQ(outcome.status, 1) << arguments;
-    EXPECT_THAT(outcome.err, HasSubstr(words)) << arguments;
-    EXPECT_EQ(Lines(outcome.err), 1) << outcome.err;
-  }
   // A pattern 1 m in diameter, 3 m below the camera; two frames and their poses.
   std::string WriteRecording() const {
     const RigidTransform camera_from_pattern = {
@@ -80,8 +59,6 @@ class KestrelCommandTest : public ::testing::Test {
     folder_.Write("flight/mav0/nav0/data.csv", kPoses);
     return folder_ / "flight";
   }
-
-  TestFolder folder_;
 };
 
 TEST_F(KestrelCommandTest, HelpAndVersion) {
@@ -104,7 +81,8 @@ TEST_F(KestrelCommandTest, WrongUsageIsStatusTwo) {
   for (const char* arguments :
        {"", "fly", "help fly", "land", "land a.png --altitude nan", "land a.png --altitude -1",
         "land a.png --clock-offset inf", "land a.png --annotate", "land a.png --colour",
-        "land a.png --output o --annotate=gif"}) {
+        "land a.png --output o --annotate=gif", "land a.png --predict 1", "calibrate",
+        "land a.png --output o --predict 0.5,-1"}) {
     const Outcome outcome = Run(arguments);
     EXPECT_EQ(outcome.status, 2) << arguments;
     EXPECT_THAT(outcome.err, Not(IsEmpty())) << arguments;
@@ -270,6 +248,24 @@ TEST_F(KestrelCommandTest, EvaluateComparesALandingWithItsTruth) {
   ExpectInputError("evaluate " + flight + " " + output, "--force replaces it");
   ExpectInputError("evaluate " + flight + " " + (folder_ / "none"), "no folder");
   ExpectInputError("evaluate " + output + " " + output, "no recording");
+}
+
+TEST_F(KestrelCommandTest, LandWritesTrackAndPrediction) {
+  const std::string flight = WriteRecording();
+  const std::string output = folder_ / "o";
+  ASSERT_EQ(Run("land " + flight + " --output " + output + " --predict 0.5,1.0").status, 0);
+  EXPECT_THAT(ReadFile(output + "/landing_track.csv"), HasSubstr("\n100000000,searching,"));
+  EXPECT_THAT(ReadFile(output + "/landing_prediction.csv"), StartsWith("timestamp_ns,horizon_s"));
+  const std::string still = folder_ / "still";
+  ASSERT_EQ(Run("land --still " + flight + " --output " + still).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(still + "/landing_track.csv"));
+}
+
+TEST_F(KestrelCommandTest, CalibrateSaysWhatIsMissing) {
+  const std::string flight = WriteRecording();
+  ExpectInputError("calibrate mount " + flight, "seen in 0 images with poses around them");
+  std::filesystem::remove(flight + "/mav0/nav0/data.csv");
+  ExpectInputError("calibrate clock " + flight, "has no poses of the UAV");
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <opencv2/core/utils/logger.hpp>
 
-#include "kestrel/cli/calibrate_colors_command.h"
+#include "kestrel/cli/calibrate_command.h"
 #include "kestrel/cli/config_command.h"
 #include "kestrel/cli/evaluate_command.h"
 #include "kestrel/cli/help_command.h"
@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
   kestrel::AddHuntCommand(&app);
   kestrel::AddSimulateCommand(&app);
   kestrel::AddEvaluateCommand(&app);
-  kestrel::AddCalibrateColorsCommand(&app);
+  kestrel::AddCalibrateCommand(&app);
   kestrel::AddConfigCommand(&app);
   kestrel::AddHelpCommand(&app);
   try {

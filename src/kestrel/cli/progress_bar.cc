@@ -2,6 +2,7 @@
 #include "kestrel/cli/progress_bar.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <unistd.h>
@@ -14,16 +15,25 @@ namespace {
 constexpr std::size_t kWidth = 40;
 constexpr auto kPeriod = std::chrono::milliseconds(100);
 
-std::string Line(std::size_t done, const std::optional<std::size_t>& total) {
+std::string Line(std::size_t done, const std::optional<std::size_t>& total, double elapsed_s) {
   if (!total || *total == 0) return fmt::format("\r{} frames", done);
   const std::size_t filled = kWidth * std::min(done, *total) / *total;
-  return fmt::format("\r[{:#<{}}{:<{}}] {}/{}", "", filled, "", kWidth - filled, done, *total);
+  std::string line =
+      fmt::format("\r[{:#<{}}{:<{}}] {}/{}", "", filled, "", kWidth - filled, done, *total);
+  if (done > 0 && done < *total) {
+    const auto left_s =
+        std::lround(elapsed_s * static_cast<double>(*total - done) / static_cast<double>(done));
+    line += fmt::format(", {}:{:02} left", left_s / 60, left_s % 60);
+  }
+  return line + "\033[K";
 }
 
 }  // namespace
 
 ProgressBar::ProgressBar(std::optional<std::size_t> total)
-    : is_terminal_(isatty(STDERR_FILENO) == 1), total_(total) {}
+    : is_terminal_(isatty(STDERR_FILENO) == 1),
+      total_(total),
+      started_(std::chrono::steady_clock::now()) {}
 
 ProgressBar::~ProgressBar() {
   if (is_terminal_) fmt::print(stderr, "\r\033[K");
@@ -33,7 +43,8 @@ void ProgressBar::Show(std::size_t done) {
   const auto now = std::chrono::steady_clock::now();
   if (!is_terminal_ || now - last_shown_ < kPeriod) return;
   last_shown_ = now;
-  fmt::print(stderr, "{}", Line(done, total_));
+  const std::chrono::duration<double> elapsed = now - started_;
+  fmt::print(stderr, "{}", Line(done, total_, elapsed.count()));
   std::fflush(stderr);
 }
 

@@ -7,7 +7,8 @@
 
 namespace kestrel {
 
-// A line on stderr that shows how far a run is; nothing where stderr is no terminal.
+// A line on stderr that shows how far a run is and how long it will take; nothing where stderr is
+// no terminal.
 class ProgressBar {
  public:
   explicit ProgressBar(std::optional<std::size_t> total);
@@ -20,6 +21,7 @@ class ProgressBar {
  private:
   bool is_terminal_;
   std::optional<std::size_t> total_;
+  std::chrono::steady_clock::time_point started_;
   std::chrono::steady_clock::time_point last_shown_;
 };
 

@@ -68,7 +68,7 @@ TEST(FrameRendererTest, RingLiesWhereItsOutlineIsProjected) {
   World world = PlainWorld(0.3);
   AddInkPlate(Drawing().Add(Drawing::Ring{{0, 0}, radius, 0.3}), 1.5, 0.7, &world);
   const Lens lens{CameraModel(SmallFisheye())};
-  const RigidTransform pose{
+  RigidTransform pose{
       LookingDown({0, 0, 0}).rotation * AngleAxisd(0.3, Vector3d(1, 2, 0).normalized()),
       {0.35, -0.3, 1.9}};
   const cv::Mat image = FrameRenderer(lens, world, Quick(0.001))
@@ -143,7 +143,7 @@ TEST(FrameRendererTest, SunThrowsSoftShadowsWhereTheyBelong) {
   // A square metre, 1 m up: its shadow lies 1 m further in -x.
   AddPlate(0, {0, 0, 1}, 0.5, 0.5, 0, PlainPaint(Gray(0.8), 1), &world).visible = false;
   const Lens lens{CameraModel(SmallFisheye())};
-  const RigidTransform pose = LookingDown({-1, 0, 3});
+  RigidTransform pose = LookingDown({-1, 0, 3});
   const cv::Mat image = FrameRenderer(lens, world, Quick(0.001, 32))
                             .Render(
                                 0, [&](double) { return pose; }, 1);

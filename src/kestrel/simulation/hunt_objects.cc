@@ -73,7 +73,7 @@ class Placer {
 
   void AddDisc(const std::string& color, double diameter_m) {
     const Vector2d place = places_.Next();
-    const Vector3d center(place.x(), place.y(), kDiscHeight_m);
+    Vector3d center(place.x(), place.y(), kDiscHeight_m);
     AddRoundPlate(0, center, 0.5 * diameter_m, color);
     AddObject({.color = color,
                .shape = "disc",
@@ -115,7 +115,7 @@ class Placer {
     const double height = 0.08;
     AddBox(body, {{0, 0, 0.5 * height}, {0.5 * kBarLength_m, 0.5 * kBarWidth_m, 0.5 * height}},
            paint, paint, world_);
-    const Vector3d center(place.x(), place.y(), height);
+    Vector3d center(place.x(), place.y(), height);
     AddObject({.color = "orange",
                .shape = "bar",
                .size_m = kBarLength_m,
@@ -150,7 +150,7 @@ class Placer {
     const auto side = FadedPaint(fading, color, world_->channels, random_);
     const auto top = DigitPaint(fading, color, digit, world_->channels, random_);
     AddBox(body, {{0, 0, half}, {half, half, half}}, top, side, world_);
-    const Vector3d center(place.x(), place.y(), options_.size_m);
+    Vector3d center(place.x(), place.y(), options_.size_m);
     AddObject({.color = color,
                .shape = "cuboid",
                .size_m = options_.size_m,

@@ -53,14 +53,16 @@ void PutDigit(int digit, Random* random, cv::Mat* codes) {
 
 using Polygon = std::vector<cv::Point>;
 
+constexpr double kMiddle_px = 0.5 * kPaint_px;
+
 // Corners at given radii (parts of half the side) in equal steps of angle.
 Polygon Star(const std::vector<double>& radii) {
   Polygon corners;
   for (std::size_t i = 0; i < radii.size(); ++i) {
     const double angle = 2 * std::numbers::pi * static_cast<double>(i) / radii.size();
     const double radius = 0.48 * kPaint_px * radii[i];
-    corners.emplace_back(static_cast<int>(kPaint_px / 2 + radius * std::cos(angle)),
-                         static_cast<int>(kPaint_px / 2 + radius * std::sin(angle)));
+    corners.emplace_back(static_cast<int>(kMiddle_px + radius * std::cos(angle)),
+                         static_cast<int>(kMiddle_px + radius * std::sin(angle)));
   }
   return corners;
 }

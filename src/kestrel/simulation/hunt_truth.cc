@@ -24,8 +24,10 @@ double VisiblePart(const HuntObject& object, const FlightCamera& camera, double 
   int inside = 0;
   int all = 0;
   for (int i = 0; i < kSteps * kSteps; ++i) {
-    const double x = 2 * (i % kSteps + 0.5) / kSteps - 1;
-    const double y = 2 * (i / kSteps + 0.5) / kSteps - 1;
+    const int column = i % kSteps;
+    const int row = i / kSteps;
+    const double x = 2 * (column + 0.5) / kSteps - 1;
+    const double y = 2 * (row + 0.5) / kSteps - 1;
     if (object.shape == "disc" && x * x + y * y > 1) continue;
     const Vector2d offset = x * object.half_size.x() * along +
                             y * object.half_size.y() * Vector2d(-along.y(), along.x());

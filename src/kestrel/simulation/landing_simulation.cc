@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/simulation/landing_simulation.h"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -52,6 +54,22 @@ std::string TruthText(const LandingFlightTruth& truth) {
   return text;
 }
 
+// No UAV sinks faster than about 10 m/s: whoever asks for fewer images has to say what else
+// changes.
+void RequireTime(const LandingFlightOptions& flight, double duration_s,
+                 std::vector<std::string>* violations) {
+  constexpr double kFastest_mps = 10;
+  const double ratio = std::abs(std::log(flight.start_altitude_m / flight.end_altitude_m));
+  const double least_s =
+      std::max(flight.start_altitude_m, flight.end_altitude_m) * ratio / kFastest_mps;
+  if (duration_s < least_s) {
+    violations->push_back(
+        fmt::format("frames / rate_hz is {:.2f} s, expected at least {:.2f} s for the way from {} "
+                    "to {} m",
+                    duration_s, least_s, flight.start_altitude_m, flight.end_altitude_m));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> BoardOptions::Validate() const {
@@ -86,6 +104,8 @@ std::vector<std::string> LandingSimulationOptions::Validate() const {
   AddViolations("ground", ground.Validate(), &violations);
   AddViolations("surroundings", surroundings.Validate(), &violations);
   AddViolations("light", light.Validate(), &violations);
+  const bool flies = stills.show == "nothing";
+  if (flies && violations.empty()) RequireTime(flight, recording.duration_s(), &violations);
   return violations;
 }
 

@@ -13,12 +13,13 @@ namespace {
 const std::vector<Scenario>& AllLandingScenarios() {
   static const std::vector<Scenario> scenarios = {
       {"calm",
-       "over a standing vehicle from 4.5 to 0.8 m, acceleration below 0.2 m/s^2, good navigation",
+       "over a standing vehicle from 4.5 to 0.8 m, below 0.2 m/s^2, good light and navigation",
        {"vehicle.path=standing", "flight.start_altitude_m=4.5", "flight.end_altitude_m=0.8",
         "flight.sway_acceleration=0.05", "flight.offset_m=0.08", "flight.yaw_rate_deg=4",
         "flight.attitude_noise_deg=0.1", "navigation.position_noise_m=0.005",
         "navigation.position_drift_m=0", "navigation.position_bias_m=0",
-        "navigation.attitude_noise_deg=0.05", "navigation.attitude_bias_deg=0", "frames=450"}},
+        "navigation.attitude_noise_deg=0.05", "navigation.attitude_bias_deg=0",
+        "ground.shadows=false", "frames=450"}},
       {"aggressive",
        "tilt to 40 degrees and 150 degrees/s over a car on a circle, from 10 to 0.8 m",
        {"vehicle.path=circle", "vehicle.radius_m=12", "vehicle.speed_mps=4.2", "board.carrier=car",

@@ -23,12 +23,17 @@ TEST(ScenariosTest, AllAreValid) {
 
 TEST(ScenariosTest, FileAndSettingsGoOverTheScenario) {
   const TestFolder folder;
-  const std::string file = folder.Write("mine.yaml", "frames: 7\nvehicle:\n  speed_mps: 3\n");
+  const std::string file =
+      folder.Write("mine.yaml", "frames: 7\nrate_hz: 1\nvehicle:\n  speed_mps: 3\n");
   const LandingSimulationOptions options =
       ReadLandingSimulation("fast", file, {"vehicle.speed_mps=2"});
   EXPECT_EQ(options.recording.frames, 7);
   EXPECT_EQ(options.vehicle.speed_mps, 2);
   EXPECT_EQ(options.vehicle.radius_m, 26) << "the scenario's";
+}
+
+TEST(ScenariosTest, StillsMayBeFew) {
+  EXPECT_NO_THROW(ReadLandingSimulation("stills", "", {"frames=1"}));
 }
 
 TEST(ScenariosTest, PrintedOptionsAreAScenarioFile) {
@@ -53,6 +58,7 @@ TEST(ScenariosTest, BadScenarioFilesAreRefusedInWords) {
   EXPECT_THAT(error("pattern:\n  outer_diameter_m: -1\n"), HasSubstr("pattern.outer_diameter_m"));
   EXPECT_THAT(error("flight:\n  end_altitude_m: -0.5\n"),
               HasSubstr("flight.end_altitude_m is -0.5, expected 0.1 to 100"));
+  EXPECT_THAT(error("frames: 3\n"), HasSubstr("frames / rate_hz is 0.10 s, expected at least 3."));
   EXPECT_THAT(error("ground:\n  material: lava\n"),
               HasSubstr("ground.material is 'lava', expected asphalt, concrete, sand or grass"));
   EXPECT_THAT(error("ground:\n  map_px: 1000\n"),

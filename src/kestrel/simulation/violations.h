@@ -41,7 +41,9 @@ inline void RequireFinite(double value, const std::string& key,
 // The violations of a part, with its name before each.
 inline void AddViolations(const std::string& part, const std::vector<std::string>& of_part,
                           std::vector<std::string>* violations) {
-  for (const std::string& violation : of_part) violations->push_back(part + "." + violation);
+  for (const std::string& violation : of_part) {
+    violations->push_back(fmt::format("{}.{}", part, violation));
+  }
 }
 
 }  // namespace kestrel

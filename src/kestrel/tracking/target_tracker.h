@@ -51,7 +51,7 @@ struct TargetEstimate {
 
 struct TargetTrackerOptions {
   // How the target moves: see TurnNoise. The defaults suit a car of up to 40 km/h on curves.
-  double acceleration_noise = 0.2;
+  double acceleration_noise = 0.15;
   double climb_noise = 0.1;
   double turn_noise = 0.1;
   double turn_time_s = 3;

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/cli/calibrate_command.h"
+
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "kestrel/base/error.h"
+#include "kestrel/calibration/flight_calibration.h"
+#include "kestrel/camera/calibration_reader.h"
+#include "kestrel/cli/calibrate_colors_command.h"
+#include "kestrel/cli/interrupt.h"
+#include "kestrel/cli/option_arguments.h"
+#include "kestrel/cli/progress_bar.h"
+#include "kestrel/landing/landing_pattern_detector.h"
+#include "kestrel/pipeline/measurement_noise.h"
+#include "kestrel/recording/euroc_text.h"
+#include "kestrel/recording/open_source.h"
+#include "kestrel/recording/output_folder.h"
+
+namespace kestrel {
+namespace {
+
+constexpr double kKnotSpacing_s = 2;
+
+struct CalibrateArguments {
+  std::string recording;
+  std::string camera;
+  std::string output;
+  OptionArguments options;
+  bool both = false;
+  bool moving = false;
+  bool force = false;
+};
+
+CameraCalibration ReadGiven(const CalibrateArguments& arguments, const FrameSource& source) {
+  const std::string file = arguments.camera.empty() ? source.calibration_file() : arguments.camera;
+  if (file.empty()) {
+    throw InputError(arguments.recording + ": has no calibration, give one by --camera FILE");
+  }
+  CameraCalibration calibration = ReadCalibration(file);
+  if (!calibration.body_from_camera) {
+    throw InputError(file + ": has no mount, expected T_BS or T_cam_imu to start from");
+  }
+  return calibration;
+}
+
+// Finds the pattern in every frame for itself.
+std::vector<TargetSighting> FindSightings(FrameSource* source, const CameraCalibration& calibration,
+                                          const LandingPipelineOptions& options) {
+  const LandingPatternDetector detector(CameraModel(calibration.intrinsics), options.detector);
+  LandingWorkspace workspace;
+  ProgressBar progress(source->frame_count());
+  std::vector<TargetSighting> sightings;
+  std::size_t frames = 0;
+  for (Frame frame; !WasInterrupted() && source->Next(&frame); progress.Show(++frames)) {
+    CheckImageSize(detector.camera(), frame.image.cols, frame.image.rows, frame.name);
+    const LandingReport report = detector.Detect(frame.image, {}, workspace);
+    if (!report.detection) continue;
+    const Eigen::Vector3d& center = report.detection->camera_from_pattern.translation;
+    const Eigen::Matrix3d covariance =
+        CovarianceInWorld(report.detection->covariance.topLeftCorner<3, 3>(), center,
+                          Eigen::Quaterniond::Identity(), options.noise);
+    sightings.push_back({frame.time, center, std::sqrt(covariance.trace() / 3)});
+  }
+  return sightings;
+}
+
+void PrintResult(const FlightCalibration& result, const FlightCalibrationOptions& options) {
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  if (options.estimate_mount) {
+    const Eigen::Vector3d angles = kDegrees * result.angles;
+    const Eigen::Vector3d sigmas = kDegrees * result.angle_sigmas;
+    fmt::print(stderr,
+               "mount: turned by roll {:.3f} +- {:.3f}, pitch {:.3f} +- {:.3f}, yaw {:.3f} +- "
+               "{:.3f} degrees\n",
+               angles.x(), sigmas.x(), angles.y(), sigmas.y(), angles.z(), sigmas.z());
+  }
+  if (options.estimate_clock) {
+    fmt::print(stderr, "clock offset: {:.4f} +- {:.4f} s\n", result.estimate.clock_offset_s,
+               result.clock_sigma_s);
+  }
+  fmt::print(stderr,
+             "positions in the world, RMS: {:.3f} m before, {:.3f} m after, in {} images ({} left "
+             "out)\n",
+             result.rms_before_m, result.rms_after_m, result.sightings, result.outliers);
+  for (const std::string& warning : result.warnings) {
+    fmt::print(stderr, "kestrel: warning: {}\n", warning);
+  }
+}
+
+void WriteCalibration(const CalibrateArguments& arguments, const CameraCalibration& calibration,
+                      double rate_hz) {
+  const std::string text =
+      EurocCameraText(calibration, rate_hz) +
+      fmt::format("timeshift_cam_imu: {}\n", ToSeconds(*calibration.clock_offset));
+  if (arguments.output.empty()) {
+    std::cout << text << std::flush;
+    return;
+  }
+  const std::filesystem::path path(arguments.output);
+  OutputFolder(path.has_parent_path() ? path.parent_path() : ".", arguments.force)
+          .OpenText(path.filename())
+      << text;
+}
+
+void RunCalibrate(const CalibrateArguments& arguments, FlightCalibrationOptions options) {
+  const LandingPipelineOptions landing = arguments.options.Read().landing;
+  if (arguments.both) options.estimate_mount = options.estimate_clock = true;
+  if (arguments.moving) options.knot_spacing_s = kKnotSpacing_s;
+  const std::unique_ptr<FrameSource> source = OpenSource({arguments.recording});
+  CameraCalibration calibration = ReadGiven(arguments, *source);
+  const std::vector<PoseSample> poses = source->poses();
+  if (poses.empty()) {
+    throw InputError(arguments.recording + ": has no poses of the UAV, expected nav0/data.csv");
+  }
+  CatchInterrupts();
+  const auto sightings = FindSightings(source.get(), calibration, landing);
+  const MountAndClock given{*calibration.body_from_camera,
+                            ToSeconds(calibration.clock_offset.value_or(Duration::zero()))};
+  const FlightCalibration result = CalibrateFlight(sightings, poses, given, options);
+  PrintResult(result, options);
+  calibration.body_from_camera = result.estimate.body_from_camera;
+  calibration.clock_offset = DurationFromSeconds(result.estimate.clock_offset_s);
+  WriteCalibration(arguments, calibration, source->rate_hz());
+}
+
+void AddFlightCalibration(CLI::App* parent, const std::string& name, const std::string& meaning,
+                          const FlightCalibrationOptions& options) {
+  CLI::App* command = parent->add_subcommand(name, meaning);
+  const auto arguments = std::make_shared<CalibrateArguments>();
+  command
+      ->add_option("RECORDING", arguments->recording,
+                   "A recording folder with the poses of the UAV")
+      ->required();
+  command
+      ->add_option("--camera", arguments->camera,
+                   "Calibration to start from, with a mount; overrides the recording's")
+      ->type_name("FILE");
+  arguments->options.AddTo(command);
+  command
+      ->add_option("--output", arguments->output,
+                   "File for the calibration, which --camera reads (else stdout)")
+      ->type_name("FILE");
+  command->add_flag("--both", arguments->both, "Mount and clock together");
+  command->add_flag("--moving", arguments->moving, "The pattern moves, on a smooth path");
+  command->add_flag("--force", arguments->force, "Replace a file that exists");
+  command->callback([arguments, options] { RunCalibrate(*arguments, options); });
+}
+
+}  // namespace
+
+void AddCalibrateCommand(CLI::App* app) {
+  CLI::App* command = app->add_subcommand("calibrate", "Estimate mount, clock or colours");
+  command->require_subcommand(1);
+  AddFlightCalibration(command, "mount",
+                       "The camera's angles in the body, from a slow flight over the pattern",
+                       {.estimate_mount = true, .estimate_clock = false});
+  AddFlightCalibration(command, "clock",
+                       "The offset from the images' clock to the navigation's, from a quick flight",
+                       {.estimate_mount = false, .estimate_clock = true});
+  AddCalibrateColorsCommand(command);
+}
+
+}  // namespace kestrel

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <filesystem>
+
+#include "kestrel/cli/test_command.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::HasSubstr;
+
+class SimulateCommandTest : public CommandTest {
+ protected:
+  // Options of a flight that is quickly rendered.
+  static constexpr const char* kSmall =
+      " --set frames=2 --set rate_hz=1 --set ground.map_px=256 --set shutter.rays_per_pixel=4";
+};
+
+TEST_F(SimulateCommandTest, LandsOnWhatItSimulates) {
+  const std::string flight = folder_ / "flight";
+  const Outcome simulated =
+      Run("simulate landing --scenario calm --seed 2 --output " + flight + kSmall);
+  EXPECT_EQ(simulated.status, 0) << simulated.err;
+  EXPECT_THAT(simulated.err, HasSubstr("2 images"));
+  const Outcome landed = Run("land " + flight);
+  EXPECT_EQ(landed.status, 0) << landed.err;
+  EXPECT_THAT(landed.err, HasSubstr("2 frames, pattern found in 2"));
+  ExpectInputError("simulate landing --scenario calm --seed 2 --output " + flight + kSmall,
+                   "exists already; --force replaces it");
+}
+
+TEST_F(SimulateCommandTest, SimulatesAHuntWithTheUsersCamera) {
+  const std::string camera = folder_.Write("camera.yaml",
+                                           "image_width: 160\nimage_height: 90\n"
+                                           "distortion_model: plumb_bob\n"
+                                           "camera_matrix: [100, 0, 80, 0, 100, 45, 0, 0, 1]\n"
+                                           "distortion_coefficients: [0, 0, 0, 0, 0]\n");
+  const std::string flight = folder_ / "hunt";
+  const Outcome outcome = Run("simulate hunt --output " + flight + " --camera " + camera + kSmall);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const cv::Mat image = cv::imread(flight + "/mav0/cam0/data/100000000000.png", -1);
+  EXPECT_EQ(image.size(), cv::Size(160, 90));
+  EXPECT_EQ(image.channels(), 3);
+}
+
+TEST_F(SimulateCommandTest, ListsScenariosAndPrintsOptions) {
+  for (const char* name : {"calm", "aggressive", "figure8", "fast", "dark", "dust", "low-sun",
+                           "stills", "lookalikes"}) {
+    EXPECT_THAT(Run("simulate landing --list").out, HasSubstr(std::string(name) + " ")) << name;
+  }
+  EXPECT_THAT(Run("simulate hunt --list").out, HasSubstr("cuboids "));
+  const Outcome options = Run("simulate landing --scenario dust --print-config");
+  EXPECT_THAT(options.out, HasSubstr("material: sand "));
+}
+
+TEST_F(SimulateCommandTest, FaultsAreNamed) {
+  const std::string output = " --output " + folder_ / "flight";
+  ExpectInputError("simulate landing --scenario moon" + output, "no scenario 'moon'");
+  ExpectInputError("simulate hunt --set objects.size_m=big" + output,
+                   "objects.size_m is 'big', expected a finite number (m)");
+  ExpectInputError("simulate landing --config " + folder_ / "none.yaml" + output, "none.yaml");
+  EXPECT_EQ(Run("simulate landing").status, 2) << "no output";
+  EXPECT_EQ(Run("simulate landing --threads 0" + output).status, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "flight"));
+}
+
+}  // namespace
+}  // namespace kestrel

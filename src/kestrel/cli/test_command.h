@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <sys/wait.h>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/base/read_file.h"
+#include "kestrel/recording/test_files.h"
+
+namespace kestrel {
+
+// How a run of the command ended and what it said.
+struct Outcome {
+  int status;
+  std::string out;
+  std::string err;
+};
+
+inline auto Lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
+
+// Runs the binary `kestrel` as a user does, with a folder of the test's own.
+class CommandTest : public ::testing::Test {
+ protected:
+  Outcome Run(const std::string& arguments) const {
+    const std::string out = folder_ / "stdout";
+    const std::string err = folder_ / "stderr";
+    const int status = std::system(
+        fmt::format("{} {} >'{}' 2>'{}' </dev/null", KESTREL_COMMAND, arguments, out, err).c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadFile(out), ReadFile(err)};
+  }
+  // Exit status 1 and one line on stderr that has 'words' in it.
+  void ExpectInputError(const std::string& arguments, const std::string& words) const {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 1) << arguments;
+    EXPECT_THAT(outcome.err, ::testing::HasSubstr(words)) << arguments;
+    EXPECT_EQ(Lines(outcome.err), 1) << outcome.err;
+  }
+
+  TestFolder folder_;
+};
+
+}  // namespace kestrel
