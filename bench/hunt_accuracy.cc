@@ -91,7 +91,12 @@ void PrintReal(const fs::path& folder) {
                is_found ? detector.model().classes[nearest->class_index].name : "-",
                is_found ? fmt::format("{:.2f}", (nearest->center_px - truth).norm()) : "-");
   }
-  fmt::print("\n{} detections in all\n", report.detections.size());
+  const auto merged = std::count_if(report.detections.begin(), report.detections.end(),
+                                    [](const ObjectDetection& detection) {
+                                      return detection.completeness == Completeness::kMerged;
+                                    });
+  fmt::print("\n{} detections in all, and {} that may be several discs\n",
+             report.detections.size() - merged, merged);
 }
 
 // Digits that are right; a 6 that is upside down is a 9.

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstddef>
+#include <cstdlib>
 
 namespace {
 
@@ -23,23 +24,23 @@ void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* memory, std::size_t size);
 void* __libc_memalign(std::size_t align, std::size_t size);
 
-void* malloc(std::size_t size) {
+void* malloc(std::size_t size) noexcept {
   CountAllocation();
   return __libc_malloc(size);
 }
-void* calloc(std::size_t count, std::size_t size) {
+void* calloc(std::size_t count, std::size_t size) noexcept {
   CountAllocation();
   return __libc_calloc(count, size);
 }
-void* realloc(void* memory, std::size_t size) {
+void* realloc(void* memory, std::size_t size) noexcept {
   CountAllocation();
   return __libc_realloc(memory, size);
 }
-void* aligned_alloc(std::size_t align, std::size_t size) {
+void* aligned_alloc(std::size_t align, std::size_t size) noexcept {
   CountAllocation();
   return __libc_memalign(align, size);
 }
-int posix_memalign(void** memory, std::size_t align, std::size_t size) {
+int posix_memalign(void** memory, std::size_t align, std::size_t size) noexcept {
   CountAllocation();
   *memory = __libc_memalign(align, size);
   return *memory == nullptr ? ENOMEM : 0;
