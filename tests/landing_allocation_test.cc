@@ -1,58 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Detect does not allocate once its workspace has warmed up, the tracker not at all. Counts by
-// taking the place of the C library's allocation functions (glibc), through which operator new and
-// cv::Mat go as well.
-#include <cerrno>
+// Detect does not allocate once its workspace has warmed up, the tracker not at all.
 #include <chrono>
-#include <cstddef>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
+#include "count_allocations.h"
 #include "kestrel/landing/landing_pattern_detector.h"
 #include "kestrel/simulation/landing_stills.h"
 #include "kestrel/tracking/target_tracker.h"
-
-namespace {
-
-thread_local bool is_counting = false;
-thread_local int allocation_count = 0;
-
-void CountAllocation() {
-  if (is_counting) ++allocation_count;
-}
-
-}  // namespace
-
-extern "C" {
-void* __libc_malloc(std::size_t size);
-void* __libc_calloc(std::size_t count, std::size_t size);
-void* __libc_realloc(void* memory, std::size_t size);
-void* __libc_memalign(std::size_t align, std::size_t size);
-
-void* malloc(std::size_t size) {
-  CountAllocation();
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t count, std::size_t size) {
-  CountAllocation();
-  return __libc_calloc(count, size);
-}
-void* realloc(void* memory, std::size_t size) {
-  CountAllocation();
-  return __libc_realloc(memory, size);
-}
-void* aligned_alloc(std::size_t align, std::size_t size) {
-  CountAllocation();
-  return __libc_memalign(align, size);
-}
-int posix_memalign(void** memory, std::size_t align, std::size_t size) {
-  CountAllocation();
-  *memory = __libc_memalign(align, size);
-  return *memory == nullptr ? ENOMEM : 0;
-}
-}
 
 namespace kestrel {
 namespace {
@@ -101,11 +58,7 @@ std::vector<Shot> ShotsOfLookalikes() {
 
 int CountAllocations(const LandingPatternDetector& detector, const Shot& shot,
                      LandingWorkspace* workspace) {
-  allocation_count = 0;
-  is_counting = true;
-  detector.Detect(shot.image, shot.hint, *workspace);
-  is_counting = false;
-  return allocation_count;
+  return CountAllocations([&] { detector.Detect(shot.image, shot.hint, *workspace); });
 }
 
 void ExpectNoAllocationAfterWarmUp(const std::vector<Shot>& shots) {
@@ -142,16 +95,15 @@ TEST(LandingAllocationTest, NoneWhenTheHintComesLate) {
 
 TEST(TrackerAllocationTest, NoneAfterConstruction) {
   TargetTracker tracker({});
-  allocation_count = 0;
-  is_counting = true;
-  for (int i = 0; i < 500; ++i) {
-    const int late = i % 7 == 3 ? i - 5 : i;
-    const Time time = TimeFromNanoseconds(1'000'000'000 + 33'000'000LL * late);
-    tracker.Add({time, {0.1 * late, 0, 0}, 1e-4 * Eigen::Matrix3d::Identity()});
-    tracker.Predict(time + std::chrono::seconds(1));
-  }
-  is_counting = false;
-  EXPECT_EQ(allocation_count, 0);
+  const int count = CountAllocations([&] {
+    for (int i = 0; i < 500; ++i) {
+      const int late = i % 7 == 3 ? i - 5 : i;
+      const Time time = TimeFromNanoseconds(1'000'000'000 + 33'000'000LL * late);
+      tracker.Add({time, {0.1 * late, 0, 0}, 1e-4 * Eigen::Matrix3d::Identity()});
+      tracker.Predict(time + std::chrono::seconds(1));
+    }
+  });
+  EXPECT_EQ(count, 0);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ struct ObjectMapOptions {
   double min_separation_m = 0.2;
   // How fast the position of a standing object becomes uncertain, and how a moving one accelerates.
   double drift_noise = 0.005;
-  double acceleration_noise = 0.3;
+  double acceleration_noise = 0.1;
   double start_speed_sigma_mps = 1;
   // Error of the position, per axis, that many detections in a row share (bias of the navigation,
   // clock): no object is known better than this.

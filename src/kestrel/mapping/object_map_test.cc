@@ -72,7 +72,7 @@ TEST(ObjectMap, MovingObjectHasItsVelocity) {
   }
   const auto objects = map.Confirmed();
   ASSERT_THAT(objects, SizeIs(1));
-  EXPECT_LT((objects[0].velocity() - velocity).norm(), 0.1);
+  EXPECT_LT((objects[0].velocity() - velocity).norm(), 0.15);
 }
 
 TEST(ObjectMap, WhatIsPickedUpFadesAndWhatIsOutOfViewStays) {

@@ -232,7 +232,7 @@ struct Line {
 Line FitSide(const cv::Mat& image, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
              const Eigen::Vector2d& center) {
   constexpr int kPoints = 13;
-  const Line side{0.5 * (a + b), (b - a).normalized()};
+  Line side{0.5 * (a + b), (b - a).normalized()};
   Eigen::Vector2d outward(side.direction.y(), -side.direction.x());
   if (outward.dot(side.point - center) < 0) outward = -outward;
   std::array<Eigen::Vector2d, kPoints> points;
@@ -322,7 +322,7 @@ std::optional<FaceCorners> FindCuboidFace(const cv::Mat& image, const Segment& s
     workspace->hull.pop_back();
   }
   if (!ReduceToFour(&workspace->hull)) return std::nullopt;
-  const std::optional<FaceCorners> corners = RefineCorners(image, workspace->hull);
+  std::optional<FaceCorners> corners = RefineCorners(image, workspace->hull);
   if (!corners) return std::nullopt;
   const auto pixels =
       static_cast<double>(std::count(workspace->filtered.begin(), workspace->filtered.end(), 1));

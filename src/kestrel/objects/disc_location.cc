@@ -35,7 +35,7 @@ Cone ConeOfCircle(const Eigen::Vector3d& center, const Eigen::Vector3d& normal, 
 Eigen::Vector3d LocateDisc(const Cone& cone, double radius_m, const Eigen::Vector3d& row_direction,
                            const std::optional<Eigen::Vector3d>& up) {
   const auto poses = CirclePosesFromCone(cone, radius_m, Eigen::Vector3d::UnitZ());
-  const Eigen::Vector3d by_cone = 0.5 * (poses[0].center + poses[1].center);
+  Eigen::Vector3d by_cone = 0.5 * (poses[0].center + poses[1].center);
   if (!up) return by_cone;
   Eigen::Vector3d ray = cone.matrix.inverse() * *up;
   if (ray.dot(by_cone) < 0) ray = -ray;

@@ -220,7 +220,7 @@ bool ObjectExaminer::LocateFace(const FaceCorners& corners, const ObjectClass& o
 // larger where the size of one is known.
 bool ObjectExaminer::TestMerged(const Segment& segment, const SegmentShape& shape,
                                 ObjectDetection* detection) const {
-  constexpr double kMaxCircularityError = 0.6;
+  constexpr double kMaxCircularityError = 0.4;  // three discs in a row have 0.35
   constexpr double kMinCount = 1.2;
   constexpr double kMaxCount = 8;
   if (segment.touches_border || std::abs(shape.circularity - 1) > kMaxCircularityError) {
