@@ -7,6 +7,9 @@ CAMERA ?=
 SCENARIOS ?=
 PREFIX ?= /usr/local
 FUZZ_SECONDS ?= 60
+ROOMS ?=
+empty :=
+space := $(empty) $(empty)
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 
 .PHONY: demo test bench accuracy format check asan fuzz install build deps
@@ -33,10 +36,10 @@ check: deps  ## format, layers, clang-tidy on every source but the tests
 	cmake --preset tidy
 	cmake --build --preset tidy -- -k 0
 
-asan: deps  ## the unit tests with the address and undefined-behaviour sanitizers
+asan: deps  ## the unit tests, of all ROOMS or of some, with the address and undefined-behaviour sanitizers
 	cmake --preset asan
-	cmake --build --preset asan
-	ctest --preset asan -j $$(nproc)
+	cmake --build --preset asan $(if $(ROOMS),--target $(ROOMS:%=kestrel_%_test))
+	ctest --preset asan -j $$(nproc) $(if $(ROOMS),-R '^($(subst $(space),|,$(strip $(ROOMS))))/')
 
 fuzz: deps  ## every fuzz target for FUZZ_SECONDS
 	cmake --preset asan
