@@ -20,8 +20,8 @@ struct ColorMark {
 };
 
 // Marks from a YAML list of {image: FILE, color: NAME, rectangle: [x, y, width, height]} or
-// {image: FILE, color: NAME, mask: FILE}; paths are relative to the file's folder. Throws InputError
-// for what is missing, unknown or of the wrong type.
+// {image: FILE, color: NAME, mask: FILE}; paths are relative to the file's folder. Throws
+// InputError for what is missing, unknown or of the wrong type.
 std::vector<ColorMark> ParseColorMarks(const std::string& yaml, const std::string& file);
 
 // The marked colours by name. Throws InputError when an image cannot be read, a rectangle is not

@@ -7,9 +7,7 @@
 namespace kestrel {
 namespace {
 
-bool IsObject(ColorLabel label) {
-  return label != kBackgroundLabel && label != kAmbiguousLabel;
-}
+bool IsObject(ColorLabel label) { return label != kBackgroundLabel && label != kAmbiguousLabel; }
 
 cv::Vec3b CellPixel(std::size_t cell) {
   const auto channel = [](std::size_t index) { return static_cast<uchar>(4 * index + 2); };
