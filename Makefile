@@ -27,7 +27,7 @@ accuracy: build  ## errors against truth; simulated landings (SCENARIOS) to docs
 format:
 	scripts/check-format --fix
 
-check: deps  ## format, layers, clang-tidy on every source
+check: deps  ## format, layers, clang-tidy on every source but the tests
 	scripts/check-format
 	scripts/check-layers
 	cmake --preset tidy

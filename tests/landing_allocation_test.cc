@@ -56,8 +56,8 @@ std::vector<Shot> ShotsOfLookalikes() {
   return shots;
 }
 
-int CountDetectAllocations(const LandingPatternDetector& detector, const Shot& shot,
-                           LandingWorkspace* workspace) {
+int CountInDetect(const LandingPatternDetector& detector, const Shot& shot,
+                  LandingWorkspace* workspace) {
   return CountAllocations([&] { detector.Detect(shot.image, shot.hint, *workspace); });
 }
 
@@ -66,11 +66,11 @@ void ExpectNoAllocationAfterWarmUp(const std::vector<Shot>& shots) {
   LandingWorkspace workspace;
   int warm_up_count = 0;
   for (int i = 0; i < kWarmUpFrames; ++i) {
-    warm_up_count += CountDetectAllocations(detector, shots[i], &workspace);
+    warm_up_count += CountInDetect(detector, shots[i], &workspace);
   }
   EXPECT_GT(warm_up_count, 0) << "the count does not see the workspace grow";
   for (std::size_t i = kWarmUpFrames; i < shots.size(); ++i) {
-    EXPECT_EQ(CountDetectAllocations(detector, shots[i], &workspace), 0) << "frame " << i;
+    EXPECT_EQ(CountInDetect(detector, shots[i], &workspace), 0) << "frame " << i;
   }
 }
 

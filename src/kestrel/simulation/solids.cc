@@ -161,8 +161,8 @@ void AddUavShadow(int body, double size_m, World* world) {
 }
 
 Motion Standing(const Vector2d& place, double yaw) {
-  const RigidTransform pose{Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Vector3d::UnitZ())),
-                            {place.x(), place.y(), 0}};
+  RigidTransform pose{Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Vector3d::UnitZ())),
+                      {place.x(), place.y(), 0}};
   return [pose](double) { return pose; };
 }
 

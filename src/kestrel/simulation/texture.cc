@@ -32,7 +32,8 @@ cv::Mat Halve(const cv::Mat& codes) {
       for (int c = 0; c < channels; ++c) {
         const float sum = kReflectanceOfCode[upper[x0 + c]] + kReflectanceOfCode[upper[x1 + c]] +
                           kReflectanceOfCode[lower[x0 + c]] + kReflectanceOfCode[lower[x1 + c]];
-        out[channels * u + c] = static_cast<std::uint8_t>(255 * std::sqrt(0.25f * sum) + 0.5f);
+        out[channels * u + c] =
+            static_cast<std::uint8_t>(std::lround(255 * std::sqrt(0.25f * sum)));
       }
     }
   }
