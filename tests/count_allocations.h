@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdlib>
+#include <mm_malloc.h>  // declares them once more, and must not differ
 
 namespace {
 

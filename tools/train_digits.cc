@@ -87,10 +87,10 @@ class FaceMaker {
     const std::string text = std::to_string(digit);
     int baseline = 0;
     const cv::Size size = font_->getTextSize(text, height, -1, &baseline);
-    const cv::Point origin(
-        static_cast<int>((kPaintSide - size.width) / 2 + random_.Uniform(-0.05, 0.05) * kPaintSide),
-        static_cast<int>((kPaintSide + size.height) / 2 +
-                         random_.Uniform(-0.05, 0.05) * kPaintSide));
+    const cv::Point origin(static_cast<int>(0.5 * (kPaintSide - size.width) +
+                                            random_.Uniform(-0.05, 0.05) * kPaintSide),
+                           static_cast<int>(0.5 * (kPaintSide + size.height) +
+                                            random_.Uniform(-0.05, 0.05) * kPaintSide));
     font_->putText(paint, text, origin, height, cv::Scalar(235, 235, 235), -1, cv::LINE_AA, true);
     return paint;
   }

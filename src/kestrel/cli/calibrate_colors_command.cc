@@ -36,13 +36,14 @@ struct ColorsArguments {
 void ReplaceColors(const std::map<std::string, std::vector<Hsv>>& samples, int components,
                    ObjectModel* model) {
   std::vector<ColorMixture>& colors = model->colors.colors;
-  for (const auto& [name, pixels] : samples) {
+  for (const auto& entry : samples) {
+    const std::string& name = entry.first;
     const auto found = std::find_if(colors.begin(), colors.end(),
                                     [&](const ColorMixture& color) { return color.name == name; });
     if (found == colors.end()) {
       throw InputError(fmt::format("'{}' is none of the model's colors", name));
     }
-    *found = FitColorMixture(name, pixels, components);
+    *found = FitColorMixture(name, entry.second, components);
   }
   const std::vector<std::string> violations = model->Validate();
   if (!violations.empty()) throw InputError(fmt::format("{}", fmt::join(violations, "; ")));

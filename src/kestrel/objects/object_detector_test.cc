@@ -16,7 +16,7 @@ using ::testing::IsEmpty;
 
 class ObjectDetectorTest : public ::testing::Test {
  protected:
-  std::vector<ObjectDetection> Detect(const ObjectScene& scene, ObjectHint hint) {
+  std::vector<ObjectDetection> Detect(const ObjectScene& scene, const ObjectHint& hint) {
     detector_.Detect(scene.Image(), hint, workspace_, &report_);
     return report_.detections;
   }

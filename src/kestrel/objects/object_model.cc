@@ -133,7 +133,7 @@ std::vector<std::string> ObjectModel::Validate() const {
 }
 
 ObjectModel ParseObjectModel(const std::string& yaml, const std::string& file) {
-  const ObjectModel model = ParseRoot(YamlReader(yaml, file));
+  ObjectModel model = ParseRoot(YamlReader(yaml, file));
   const std::vector<std::string> violations = model.Validate();
   if (!violations.empty()) {
     throw InputError(fmt::format("{}: {}", file, fmt::join(violations, "; ")));
