@@ -88,6 +88,8 @@ void CollectBorderPixels(const Segment& segment, const cv::Size& image_size,
   };
   points->clear();
   const int count = segment.width() + segment.height();
+  // Room for the extents and for the points behind them: 'rows' must stay where it is.
+  points->reserve(4 * static_cast<std::size_t>(count));
   points->resize(2 * static_cast<std::size_t>(count));
   constexpr double kNone = 1e9;
   auto* rows = points->data();
