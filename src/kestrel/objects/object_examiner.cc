@@ -223,7 +223,9 @@ bool ObjectExaminer::TestMerged(const Segment& segment, const SegmentShape& shap
   constexpr double kMaxCircularityError = 0.4;  // three discs in a row have 0.35
   constexpr double kMinCount = 1.2;
   constexpr double kMaxCount = 8;
-  if (segment.touches_border || std::abs(shape.circularity - 1) > kMaxCircularityError) {
+  constexpr double kMaxAspect = 4;  // three discs in a row have 3
+  if (segment.touches_border || std::abs(shape.circularity - 1) > kMaxCircularityError ||
+      shape.ellipse.semi_major > kMaxAspect * shape.ellipse.semi_minor) {
     return false;
   }
   const auto& classes = detector_.model_.classes;
