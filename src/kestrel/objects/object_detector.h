@@ -86,6 +86,10 @@ struct ObjectHint {
   std::span<const TrackedObject> track;
   std::optional<Eigen::Vector3d> up_in_camera;  // unit vector, upwards
   std::optional<double> camera_height_m;        // above the ground; used together with 'up'
+  // Standard deviations of 'up' (rad) and of the height with the ground's own unevenness (m): what
+  // the height says of an object's distance is weighed against what its size says.
+  double up_sigma_rad = 0.02;
+  double height_sigma_m = 0.1;
 };
 
 // Memory of ObjectDetector::Detect; keeps its size from frame to frame.

@@ -129,11 +129,9 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
   Eigen::Vector3d position = LocateDisc(outline->cone, radius_m, row_direction, hint_.up_in_camera);
   const double distance = position.norm();
   if (!std::isfinite(distance) || !(distance > 0)) return false;
-  if (const auto on_ground = Ground().DistanceNear(position / distance, distance, object.height_m,
-                                                   object.max_height_m)) {
+  if (const auto on_ground = DistanceOnGround(position, object)) {
     const double slack_rad = 1 / detector_.focal_px_;
-    if (std::abs(distance - *on_ground) >
-            options.ground_tolerance * *on_ground + options.ground_tolerance_m ||
+    if (!IsOnGround(distance, *on_ground) ||
         !LooksLikeDisc(outline->cone, position / distance, *on_ground, *hint_.up_in_camera,
                        radius_m, options.ground_tolerance, slack_rad)) {
       return false;
@@ -146,7 +144,10 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
       position = distance * RayAt(ellipse->center);
     }
   }
-  SetCenter(position, radius_px, 1 - outline->gap, detection);
+  // The less of the outline is seen, the less it says.
+  const double less = 1 / ((1 - outline->gap) * (1 - outline->gap));
+  SetLocation(position, object, less * options.center_sigma_px,
+              less * options.radius_sigma_px / radius_px, detection);
   return true;
 }
 
@@ -205,14 +206,11 @@ bool ObjectExaminer::LocateFace(const FaceCorners& corners, const ObjectClass& o
   }
   const Eigen::Vector3d position = object.size_m / length * face->center;
   const double distance = position.norm();
-  if (const auto on_ground = Ground().DistanceNear(position / distance, distance, object.height_m,
-                                                   object.max_height_m)) {
-    if (std::abs(distance - *on_ground) >
-        options.ground_tolerance * *on_ground + options.ground_tolerance_m) {
-      return false;
-    }
-  }
-  SetCenter(position, 0.5 * detector_.focal_px_ * object.size_m / distance, 1, detection);
+  const auto on_ground = DistanceOnGround(position, object);
+  if (on_ground && !IsOnGround(distance, *on_ground)) return false;
+  const double radius_px = 0.5 * detector_.focal_px_ * object.size_m / distance;
+  SetLocation(position, object, options.center_sigma_px, options.radius_sigma_px / radius_px,
+              detection);
   return true;
 }
 
@@ -251,16 +249,36 @@ std::optional<double> ObjectExaminer::PixelsOnGround(const Eigen::Vector3d& ray,
   return std::numbers::pi * detector_.focal_px_ * detector_.focal_px_ * angles.prod();
 }
 
-void ObjectExaminer::SetCenter(const Eigen::Vector3d& position, double radius_px,
-                               double outline_share, ObjectDetection* detection) const {
+std::optional<double> ObjectExaminer::DistanceOnGround(const Eigen::Vector3d& position,
+                                                       const ObjectClass& object) const {
+  const double distance = position.norm();
+  return Ground().DistanceNear(position / distance, distance, object.height_m, object.max_height_m);
+}
+
+bool ObjectExaminer::IsOnGround(double distance, double on_ground) const {
   const ObjectDetectorOptions& options = detector_.options_;
-  detection->bearing = position.normalized();
-  detector_.camera_.Project(position, &detection->center_px);
-  // The less of the outline is seen, the less it says.
-  const double less = 1 / (outline_share * outline_share);
-  detection->location = {
-      position, LocationCovariance(position, less * options.center_sigma_px / detector_.focal_px_,
-                                   less * options.radius_sigma_px / radius_px)};
+  return std::abs(distance - on_ground) <=
+         options.ground_tolerance * on_ground + options.ground_tolerance_m;
+}
+
+void ObjectExaminer::SetLocation(const Eigen::Vector3d& by_size, const ObjectClass& object,
+                                 double center_sigma_px, double relative_sigma,
+                                 ObjectDetection* detection) const {
+  const Eigen::Vector3d ray = by_size.normalized();
+  double distance = by_size.norm();
+  double sigma_m = relative_sigma * distance;
+  if (const auto on_ground = DistanceOnGround(by_size, object)) {
+    const double ground_sigma_m = Ground().DistanceSigma(ray, *on_ground);
+    const double total = std::hypot(sigma_m, ground_sigma_m);
+    const double gain = sigma_m * sigma_m / (total * total);
+    distance += gain * (*on_ground - distance);
+    sigma_m *= ground_sigma_m / total;
+  }
+  detection->bearing = ray;
+  detector_.camera_.Project(ray, &detection->center_px);
+  detection->location = {distance * ray,
+                         LocationCovariance(distance * ray, center_sigma_px / detector_.focal_px_,
+                                            sigma_m / distance)};
 }
 
 Eigen::Vector3d ObjectExaminer::RayAt(const Eigen::Vector2d& pixel) const {
