@@ -84,6 +84,7 @@ ObjectMap::ObjectMap(const ObjectModel& model, const ObjectMapOptions& options)
       removal_log_odds_(LogOdds(options.removal_probability)) {
   const auto capacity = static_cast<std::size_t>(options.capacity);
   objects_.reserve(capacity + kMaxMeasurements);
+  predicted_.reserve(capacity + kMaxMeasurements);
   measurements_.reserve(kMaxMeasurements);
   costs_.resize(kMaxMeasurements, static_cast<Eigen::Index>(capacity + kMaxMeasurements));
 }
@@ -98,7 +99,8 @@ void ObjectMap::Update(Time time, std::span<const ObjectMeasurement> measurement
     if (IsUsable(measurement)) measurements_.push_back(measurement);
   }
   const ObjectMotion motion{options_.drift_noise, options_.acceleration_noise};
-  for (MappedObject& object : objects_) PredictObject(time, motion, &object);
+  predicted_ = objects_;
+  for (MappedObject& object : predicted_) PredictObject(time, motion, &object);
   Assign(time);
   FadeUnseen(time, view);
   UnifyNeighbors();
@@ -177,13 +179,15 @@ void ObjectMap::Assign(Time time) {
   auto costs = costs_.topLeftCorner(rows, known + rows);
   costs.rightCols(rows).setConstant(kImpossible);
   for (Eigen::Index i = 0; i < rows; ++i) {
-    for (Eigen::Index k = 0; k < known; ++k) costs(i, k) = Cost(measurements_[i], objects_[k]);
+    for (Eigen::Index k = 0; k < known; ++k) costs(i, k) = Cost(measurements_[i], predicted_[k]);
     costs(i, known + i) = options_.gate;
   }
   const std::vector<int>& columns = solver_.Solve(costs);
   for (Eigen::Index i = 0; i < rows; ++i) {
     if (columns[i] < known) {
-      Fuse(measurements_[i], &objects_[columns[i]]);
+      MappedObject& object = objects_[columns[i]];
+      object = predicted_[columns[i]];
+      Fuse(measurements_[i], &object);
     } else {
       objects_.push_back(Start(time, measurements_[i]));
     }
@@ -191,8 +195,10 @@ void ObjectMap::Assign(Time time) {
 }
 
 void ObjectMap::FadeUnseen(Time time, const FieldOfView& view) {
-  for (MappedObject& object : objects_) {
-    if (object.last_seen != time && view.Shows(object)) object.log_odds += miss_log_odds_;
+  for (std::size_t i = 0; i < predicted_.size(); ++i) {
+    if (objects_[i].last_seen != time && view.Shows(predicted_[i])) {
+      objects_[i].log_odds += miss_log_odds_;
+    }
   }
   std::erase_if(objects_,
                 [&](const MappedObject& object) { return object.log_odds < removal_log_odds_; });

@@ -81,7 +81,8 @@ class ObjectMap {
   // Detections that are not finite are left out, and those beyond kMaxMeasurements.
   void Update(Time time, std::span<const ObjectMeasurement> measurements, const FieldOfView& view);
 
-  // The objects seen often enough, by their ids, at the time when they were last updated.
+  // The objects seen often enough, by their ids, each at the time when it was last seen: where a
+  // moving one is since then nobody knows, PredictObject says where it would be.
   std::vector<MappedObject> Confirmed() const;
 
   // All, with those that were seen once.
@@ -105,6 +106,7 @@ class ObjectMap {
   double max_log_odds_;
   double removal_log_odds_;
   std::vector<MappedObject> objects_;
+  std::vector<MappedObject> predicted_;  // the same at the time of the update
   std::vector<ObjectMeasurement> measurements_;
   Eigen::MatrixXd costs_;
   AssignmentSolver solver_;

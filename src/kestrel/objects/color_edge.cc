@@ -81,6 +81,14 @@ std::optional<Crossing> FindCrossing(const Profile& profile, const Eigen::Vector
 
 }  // namespace
 
+bool ShowsColorEdge(const cv::Size& image, const Eigen::Vector2d& start,
+                    const Eigen::Vector2d& outward) {
+  const auto is_inside = [&](const Eigen::Vector2d& at) {
+    return at.x() >= 0 && at.y() >= 0 && at.x() < image.width - 1 && at.y() < image.height - 1;
+  };
+  return is_inside(start - kReach * outward) && is_inside(start + kReach * outward);
+}
+
 std::optional<ColorEdge> FindColorEdge(const cv::Mat& image, const Eigen::Vector2d& start,
                                        const Eigen::Vector2d& outward) {
   constexpr int kBeside = 2;  // from the edge to where a blurred profile is flat again

@@ -118,7 +118,10 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
   if (!outline) return false;
   const double radius_px = detector_.focal_px_ * std::tan(outline->cone.HalfAngles().minCoeff());
   const double max_gap = segment.touches_border ? options.max_cut_off_gap : options.max_gap;
-  if (outline->gap > max_gap || outline->fit_share < options.min_outline_share) return false;
+  if (outline->gap > max_gap || outline->outside > options.max_outside ||
+      outline->fit_share < options.min_outline_share) {
+    return false;
+  }
   if (outline->residual_px > options.outline_tolerance * radius_px + options.outline_tolerance_px) {
     return false;
   }
@@ -130,10 +133,13 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
   const double distance = position.norm();
   if (!std::isfinite(distance) || !(distance > 0)) return false;
   if (const auto on_ground = DistanceOnGround(position, object)) {
+    // A part of an outline says less: its size must say more.
+    const double tolerance =
+        segment.touches_border ? 0.5 * options.ground_tolerance : options.ground_tolerance;
     const double slack_rad = 1 / detector_.focal_px_;
     if (!IsOnGround(distance, *on_ground) ||
         !LooksLikeDisc(outline->cone, position / distance, *on_ground, *hint_.up_in_camera,
-                       radius_m, options.ground_tolerance, slack_rad)) {
+                       radius_m, tolerance, slack_rad)) {
       return false;
     }
   }
@@ -145,7 +151,8 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
     }
   }
   // The less of the outline is seen, the less it says.
-  const double less = 1 / ((1 - outline->gap) * (1 - outline->gap));
+  const double seen = 1 - outline->gap - outline->outside;
+  const double less = 1 / (seen * seen);
   SetLocation(position, object, less * options.center_sigma_px,
               less * options.radius_sigma_px / radius_px, detection);
   return true;
