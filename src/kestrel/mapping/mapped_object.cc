@@ -36,11 +36,12 @@ void PredictObject(Time time, const ObjectMotion& motion, MappedObject* object) 
   MappedObject::Matrix6 transition = MappedObject::Matrix6::Identity();
   transition.topRightCorner<3, 3>().diagonal().setConstant(dt);
   const double q = motion.acceleration_noise * motion.acceleration_noise;
+  const Eigen::Vector3d density(q, q, kClimb * kClimb * q);
   MappedObject::Matrix6 noise = MappedObject::Matrix6::Zero();
-  noise.topLeftCorner<3, 3>().diagonal().setConstant(q * dt * dt * dt / 3);
-  noise.topRightCorner<3, 3>().diagonal().setConstant(q * dt * dt / 2);
-  noise.bottomLeftCorner<3, 3>().diagonal().setConstant(q * dt * dt / 2);
-  noise.bottomRightCorner<3, 3>().diagonal().setConstant(q * dt);
+  noise.topLeftCorner<3, 3>().diagonal() = density * dt * dt * dt / 3;
+  noise.topRightCorner<3, 3>().diagonal() = density * dt * dt / 2;
+  noise.bottomLeftCorner<3, 3>().diagonal() = density * dt * dt / 2;
+  noise.bottomRightCorner<3, 3>().diagonal() = density * dt;
   object->state = (transition * object->state).eval();
   object->covariance = (transition * object->covariance * transition.transpose() + noise).eval();
 }

@@ -52,6 +52,9 @@ struct MappedObject {
   std::optional<int> digit() const;
 };
 
+// Objects that move drive: their speed and acceleration upwards is this share of that sideways.
+inline constexpr double kClimb = 0.02;
+
 // How objects move: see ObjectMapOptions.
 struct ObjectMotion {
   double drift_noise;

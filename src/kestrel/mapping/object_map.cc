@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -58,6 +59,7 @@ std::vector<std::string> ObjectMapOptions::Validate() const {
   };
   const auto is_share = [](double x) { return x > 0 && x < 1; };
   require(gate > 0, "gate must be positive");
+  require(new_density > 0, "new_density must be positive");
   require(min_separation_m >= 0, "min_separation_m must not be negative");
   require(drift_noise >= 0, "drift_noise must not be negative");
   require(acceleration_noise > 0, "acceleration_noise must be positive");
@@ -80,6 +82,7 @@ ObjectMap::ObjectMap(const ObjectModel& model, const ObjectMapOptions& options)
       hit_log_odds_(std::log(options.detection_probability / options.false_probability)),
       miss_log_odds_(
           std::log((1 - options.detection_probability) / (1 - options.false_probability))),
+      new_cost_(-2 * std::log(options.new_density)),
       max_log_odds_(LogOdds(options.max_probability)),
       removal_log_odds_(LogOdds(options.removal_probability)) {
   const auto capacity = static_cast<std::size_t>(options.capacity);
@@ -128,7 +131,8 @@ double ObjectMap::Cost(const ObjectMeasurement& measurement, const MappedObject&
   const double distance = whitened.squaredNorm();
   if (distance > options_.gate) return kImpossible;
   // -2 log of the likelihood.
-  return distance + 2 * llt.matrixL().nestedExpression().diagonal().array().log().sum() +
+  return distance + 3 * std::log(2 * std::numbers::pi) +
+         2 * llt.matrixL().nestedExpression().diagonal().array().log().sum() +
          2 * ColorCost(measurement.color_probabilities, object.color_log_likelihoods);
 }
 
@@ -165,8 +169,9 @@ MappedObject ObjectMap::Start(Time time, const ObjectMeasurement& measurement) {
   const auto index = ClassOf(object, model_);
   object.may_move = index && model_.classes[*index].may_move;
   if (object.may_move) {
-    object.covariance.bottomRightCorner<3, 3>().diagonal().setConstant(
-        options_.start_speed_sigma_mps * options_.start_speed_sigma_mps);
+    const double variance = options_.start_speed_sigma_mps * options_.start_speed_sigma_mps;
+    object.covariance.bottomRightCorner<3, 3>().diagonal() << variance, variance,
+        kClimb * kClimb * variance;
   }
   return object;
 }
@@ -180,7 +185,7 @@ void ObjectMap::Assign(Time time) {
   costs.rightCols(rows).setConstant(kImpossible);
   for (Eigen::Index i = 0; i < rows; ++i) {
     for (Eigen::Index k = 0; k < known; ++k) costs(i, k) = Cost(measurements_[i], predicted_[k]);
-    costs(i, known + i) = options_.gate;
+    costs(i, known + i) = new_cost_;
   }
   const std::vector<int>& columns = solver_.Solve(costs);
   for (Eigen::Index i = 0; i < rows; ++i) {

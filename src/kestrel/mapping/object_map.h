@@ -18,11 +18,14 @@ struct ObjectMapOptions {
   // Squared Mahalanobis distance beyond which a detection is not the object's: 16.3 is passed by
   // one true detection in a thousand (3 degrees of freedom).
   double gate = 16.3;
+  // How many objects that are not in the map yet lie around, 1/m^3. A detection is rather a new
+  // object than one that may be anywhere by now.
+  double new_density = 0.02;
   // Two objects of one shape and colour cannot be nearer than this: they become one.
   double min_separation_m = 0.2;
   // How fast the position of a standing object becomes uncertain, and how a moving one accelerates.
   double drift_noise = 0.005;
-  double acceleration_noise = 0.1;
+  double acceleration_noise = 0.3;
   double start_speed_sigma_mps = 1;
   // Error of the position, per axis, that many detections in a row share (bias of the navigation,
   // clock): no object is known better than this.
@@ -41,6 +44,7 @@ struct ObjectMapOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("gate", self.gate, "1", "squared Mahalanobis distance of the furthest detection");
+    visitor("new_density", self.new_density, "1/m^3", "objects that are not in the map yet");
     visitor("min_separation_m", self.min_separation_m, "m", "nearer ones of a kind become one");
     visitor("drift_noise", self.drift_noise, "m/sqrt(s)", "of the position of standing objects");
     visitor("acceleration_noise", self.acceleration_noise, "m/s^2/sqrt(Hz)", "of moving objects");
@@ -103,6 +107,7 @@ class ObjectMap {
   ObjectMapOptions options_;
   double hit_log_odds_;
   double miss_log_odds_;
+  double new_cost_;  // -2 log of how likely a detection is that of a new object
   double max_log_odds_;
   double removal_log_odds_;
   std::vector<MappedObject> objects_;

@@ -35,8 +35,8 @@ struct HuntPipelineOptions {
   int track_count = 0;
   // Standard deviations of the navigation's poses, per axis, which the map adds to those of a
   // detection: raise them where clock offset or mount are not known.
-  double pose_sigma_m = 0.03;
-  double attitude_sigma_deg = 0.5;
+  double pose_sigma_m = 0.02;
+  double attitude_sigma_deg = 0.2;
   // How many poses are kept, and the longest gap between two of them that is interpolated.
   int pose_capacity = 1000;
   double pose_gap_s = 0.5;
