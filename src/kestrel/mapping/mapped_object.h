@@ -59,6 +59,7 @@ inline constexpr double kClimb = 0.02;
 struct ObjectMotion {
   double drift_noise;
   double acceleration_noise;
+  double velocity_time_s;
 };
 
 // The object at a later time (an earlier one changes nothing): where it stands, or by its velocity.

@@ -63,6 +63,7 @@ std::vector<std::string> ObjectMapOptions::Validate() const {
   require(min_separation_m >= 0, "min_separation_m must not be negative");
   require(drift_noise >= 0, "drift_noise must not be negative");
   require(acceleration_noise > 0, "acceleration_noise must be positive");
+  require(velocity_time_s > 0, "velocity_time_s must be positive");
   require(start_speed_sigma_mps > 0, "start_speed_sigma_mps must be positive");
   require(shared_sigma_m >= 0, "shared_sigma_m must not be negative");
   require(is_share(detection_probability), "detection_probability must be in 0 to 1");
@@ -101,9 +102,8 @@ void ObjectMap::Update(Time time, std::span<const ObjectMeasurement> measurement
     if (measurements_.size() == kMaxMeasurements) break;
     if (IsUsable(measurement)) measurements_.push_back(measurement);
   }
-  const ObjectMotion motion{options_.drift_noise, options_.acceleration_noise};
   predicted_ = objects_;
-  for (MappedObject& object : predicted_) PredictObject(time, motion, &object);
+  for (MappedObject& object : predicted_) PredictObject(time, options_.motion(), &object);
   Assign(time);
   FadeUnseen(time, view);
   UnifyNeighbors();

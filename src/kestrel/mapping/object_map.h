@@ -23,9 +23,11 @@ struct ObjectMapOptions {
   double new_density = 0.02;
   // Two objects of one shape and colour cannot be nearer than this: they become one.
   double min_separation_m = 0.2;
-  // How fast the position of a standing object becomes uncertain, and how a moving one accelerates.
+  // How fast the position of a standing object becomes uncertain; how a moving one accelerates, and
+  // for how long it keeps its velocity.
   double drift_noise = 0.005;
   double acceleration_noise = 0.3;
+  double velocity_time_s = 5;
   double start_speed_sigma_mps = 1;
   // Error of the position, per axis, that many detections in a row share (bias of the navigation,
   // clock): no object is known better than this.
@@ -48,6 +50,7 @@ struct ObjectMapOptions {
     visitor("min_separation_m", self.min_separation_m, "m", "nearer ones of a kind become one");
     visitor("drift_noise", self.drift_noise, "m/sqrt(s)", "of the position of standing objects");
     visitor("acceleration_noise", self.acceleration_noise, "m/s^2/sqrt(Hz)", "of moving objects");
+    visitor("velocity_time_s", self.velocity_time_s, "s", "how long a velocity is kept, about");
     visitor("start_speed_sigma_mps", self.start_speed_sigma_mps, "m/s",
             "speed of a new object that may move, standard deviation per axis");
     visitor("shared_sigma_m", self.shared_sigma_m, "m",
@@ -63,6 +66,8 @@ struct ObjectMapOptions {
     visitor("capacity", self.capacity, "1", "objects that are kept");
   }
   std::vector<std::string> Validate() const;
+
+  ObjectMotion motion() const { return {drift_noise, acceleration_noise, velocity_time_s}; }
 };
 
 // Says where an object should have been seen, if it were there.
