@@ -20,7 +20,7 @@ struct ObjectMapOptions {
   double gate = 16.3;
   // How many objects that are not in the map yet lie around, 1/m^3. A detection is rather a new
   // object than one that may be anywhere by now.
-  double new_density = 0.02;
+  double new_density = 0.005;
   // Two objects of one shape and colour cannot be nearer than this: they become one.
   double min_separation_m = 0.2;
   // How fast the position of a standing object becomes uncertain; how a moving one accelerates, and

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Geometry>
+
 namespace kestrel {
 namespace {
 
@@ -25,17 +27,6 @@ ColorProbabilities ProbabilitiesOf(const ColorModel& model, const Hsv& color) {
   }
   for (double& p : probabilities) p /= total;
   return probabilities;
-}
-
-FaceCorners CornersOfMoments(const RegionMoments& moments) {
-  // A rectangle's second moments are a quarter of its sides squared, by three.
-  Ellipse ellipse = EllipseFromMoments(moments);
-  ellipse.Scale(std::sqrt(3.0) / 2);
-  const Eigen::Vector2d along = ellipse.semi_major * ellipse.major_axis();
-  const Eigen::Vector2d across = ellipse.semi_minor * ellipse.minor_axis();
-  const Eigen::Vector2d& center = ellipse.center;
-  return {center + along + across, center - along + across, center - along - across,
-          center + along - across};
 }
 
 bool IsWithin(double value, double expected, double factor) {
@@ -167,7 +158,9 @@ bool ObjectExaminer::TestCuboid(const Segment& segment, const ObjectClass& objec
   if (!digit) return false;
   *reached = ObjectStage::kOutline;
   detection->digits = detector_.digits_.Classify(*digit);
-  if (!LocateFace(*corners, object, detection)) return false;
+  std::array<Eigen::Vector3d, 4> rays;
+  for (int i = 0; i < 4; ++i) rays[i] = RayAt((*corners)[i]);
+  if (!LocateFace(rays, object, detection)) return false;
   *reached = ObjectStage::kPosition;
   return true;
 }
@@ -188,18 +181,46 @@ bool ObjectExaminer::TestBar(const Segment& segment, const SegmentShape& shape,
   if (!is_long) return false;
   *reached = ObjectStage::kOutline;
   if (segment.touches_border) return true;  // its bearing is all that is known
-  if (!LocateFace(CornersOfMoments(shape.moments), object, detection)) return false;
+  if (!LocateFace(RectangleAround(segment, shape), object, detection)) return false;
   *reached = ObjectStage::kPosition;
   return true;
 }
 
-bool ObjectExaminer::LocateFace(const FaceCorners& corners, const ObjectClass& object,
-                                ObjectDetection* detection) const {
+// The rectangle around the segment, as it lies on the ground where the attitude is known: the
+// nearer half of a long object is larger in the image, and its centroid is not its middle.
+std::array<Eigen::Vector3d, 4> ObjectExaminer::RectangleAround(const Segment& segment,
+                                                               const SegmentShape& shape) const {
+  constexpr double kMinDescent = 0.05;
+  const Eigen::Vector3d up = hint_.up_in_camera.value_or(-RayAt(shape.moments.centroid));
+  const auto on_plane = [&](const Eigen::Vector2d& pixel) {
+    const Eigen::Vector3d ray = RayAt(pixel);
+    return Eigen::Vector3d(ray / std::max(kMinDescent, -up.dot(ray)));
+  };
+  const Eigen::Vector3d origin = on_plane(shape.ellipse.center);
+  const Eigen::Vector3d end =
+      on_plane(shape.ellipse.center + shape.ellipse.semi_major * shape.ellipse.major_axis());
+  const Eigen::Vector3d along = (end - origin).normalized();
+  const Eigen::Vector3d across = up.cross(along).normalized();
+  Eigen::AlignedBox2d extent;
+  for (const PixelPosition& at : segment.pixels) {
+    const Eigen::Vector3d offset = on_plane(Eigen::Vector2d(at.u, at.v)) - origin;
+    extent.extend(Eigen::Vector2d(along.dot(offset), across.dot(offset)));
+  }
+  std::array<Eigen::Vector3d, 4> corners;
+  constexpr std::array kOrder = {Eigen::AlignedBox2d::BottomLeft, Eigen::AlignedBox2d::BottomRight,
+                                 Eigen::AlignedBox2d::TopRight, Eigen::AlignedBox2d::TopLeft};
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Vector2d corner = extent.corner(kOrder[i]);
+    corners[i] = (origin + corner.x() * along + corner.y() * across).normalized();
+  }
+  return corners;
+}
+
+bool ObjectExaminer::LocateFace(const std::array<Eigen::Vector3d, 4>& rays,
+                                const ObjectClass& object, ObjectDetection* detection) const {
   constexpr double kMaxSkew = 0.3;
   const ObjectDetectorOptions& options = detector_.options_;
   const bool is_bar = object.shape == ObjectShape::kBar;
-  std::array<Eigen::Vector3d, 4> rays;
-  for (int i = 0; i < 4; ++i) rays[i] = RayAt(corners[i]);
   const Eigen::Vector3d up = hint_.up_in_camera.value_or(-detection->bearing);
   const auto face = RectangleOnPlane(rays, up);
   if (!face) return false;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include <opencv2/core.hpp>
@@ -31,7 +32,10 @@ class ObjectExaminer {
                   ObjectStage* reached);
   bool TestBar(const Segment& segment, const SegmentShape& shape, const ObjectClass& object,
                ObjectDetection* detection, ObjectStage* reached);
-  bool LocateFace(const FaceCorners& corners, const ObjectClass& object,
+  std::array<Eigen::Vector3d, 4> RectangleAround(const Segment& segment,
+                                                 const SegmentShape& shape) const;
+  // 'rays': through the corners, in the order of a walk around.
+  bool LocateFace(const std::array<Eigen::Vector3d, 4>& rays, const ObjectClass& object,
                   ObjectDetection* detection) const;
   bool TestMerged(const Segment& segment, const SegmentShape& shape,
                   ObjectDetection* detection) const;
