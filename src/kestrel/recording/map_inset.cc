@@ -13,6 +13,7 @@ namespace {
 
 const cv::Scalar kPaper(245, 245, 245);
 const cv::Scalar kInk(40, 40, 40);
+constexpr int kScaleHeight_px = 24;
 
 // From metres in the world to pixels of the inset.
 class Plan {
@@ -101,7 +102,9 @@ void DrawMapInset(const std::vector<MappedObject>& objects, const ObjectModel& m
   cv::Mat inset = (*image)(frame);
   cv::addWeighted(inset, 0.2, cv::Mat(inset.size(), inset.type(), kPaper), 0.8, 0, inset);
   cv::rectangle(*image, frame, kInk);
-  const Plan plan(AreaOf(objects, uav), frame);
+  // The scale lies below the plan.
+  const cv::Rect plan_frame(frame.x, frame.y, frame.width, frame.height - kScaleHeight_px);
+  const Plan plan(AreaOf(objects, uav), plan_frame);
   for (const MappedObject& object : objects) DrawObject(plan, object, model, image);
   if (uav) cv::drawMarker(*image, plan.At(*uav), kInk, cv::MARKER_TILTED_CROSS, 10, 2, cv::LINE_AA);
   DrawScale(plan, frame, image);
