@@ -100,9 +100,9 @@ class FaceMaker {
     return paint;
   }
 
-  // Every third digit is set in italics.
+  // Half of the digits are set in italics.
   void Slant(cv::Mat* ink) {
-    if (!random_.Chance(1.0 / 3)) return;
+    if (!random_.Chance(0.5)) return;
     const double slant = random_.Uniform(0.1, 0.35);
     const cv::Matx23d shear(1, -slant, 0.5 * slant * kPaintSide, 0, 1, 0);
     cv::warpAffine(*ink, *ink, shear, ink->size());
@@ -110,7 +110,7 @@ class FaceMaker {
 
   // Digits are painted with brushes, too.
   void Thicken(cv::Mat* ink) {
-    const int reach = random_.Integer(0, 9);
+    const int reach = random_.Integer(0, 5);
     const cv::Size size(2 * reach + 1, 2 * reach + 1);
     cv::dilate(*ink, *ink, cv::getStructuringElement(cv::MORPH_ELLIPSE, size));
   }
