@@ -157,10 +157,10 @@ bool ObjectExaminer::TestCuboid(const Segment& segment, const ObjectClass& objec
   const auto digit = CutOutDigit(image_, *corners);
   if (!digit) return false;
   *reached = ObjectStage::kOutline;
-  detection->digits = detector_.digits_.Classify(*digit);
   std::array<Eigen::Vector3d, 4> rays;
   for (int i = 0; i < 4; ++i) rays[i] = RayAt((*corners)[i]);
   if (!LocateFace(rays, object, detection)) return false;
+  detection->digits = detector_.digits_.Classify(*digit);
   *reached = ObjectStage::kPosition;
   return true;
 }
@@ -218,7 +218,7 @@ std::array<Eigen::Vector3d, 4> ObjectExaminer::RectangleAround(const Segment& se
 
 bool ObjectExaminer::LocateFace(const std::array<Eigen::Vector3d, 4>& rays,
                                 const ObjectClass& object, ObjectDetection* detection) const {
-  constexpr double kMaxSkew = 0.3;
+  constexpr double kMaxSkew = 0.15;
   const ObjectDetectorOptions& options = detector_.options_;
   const bool is_bar = object.shape == ObjectShape::kBar;
   const Eigen::Vector3d up = hint_.up_in_camera.value_or(-detection->bearing);
@@ -229,7 +229,7 @@ bool ObjectExaminer::LocateFace(const std::array<Eigen::Vector3d, 4>& rays,
   if (!(length > 0)) return false;
   if (!is_bar && hint_.up_in_camera &&
       (face->skew > kMaxSkew ||
-       !IsWithin(face->sides.x(), face->sides.y(), 1 + options.ground_tolerance))) {
+       !IsWithin(face->sides.x(), face->sides.y(), 1 + 0.5 * options.ground_tolerance))) {
     return false;
   }
   const Eigen::Vector3d position = object.size_m / length * face->center;
