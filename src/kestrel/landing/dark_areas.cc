@@ -19,17 +19,22 @@ constexpr double kMinAxisRatio = 0.15;
 }  // namespace
 
 std::optional<DarkArea> TestDarkArea(const BorderTracer& tracer, const Border& border,
-                                     double min_minor_px) {
+                                     double min_minor_px, int max_hull_extent) {
   const int width = border.max.x - border.min.x;
   const int height = border.max.y - border.min.y;
   if (std::min(width, height) < kMinAxisRatio * std::max(width, height)) return std::nullopt;
   // The border of a convex outline is as long as its bounding box is around; noise may add some.
-  if (static_cast<double>(border.count) > 2.6 * (width + height)) return std::nullopt;
-  const RegionMoments moments = ComputeBorderMoments(tracer.begin(border), border.count);
-  const double ellipticity = moments.Ellipticity();
-  if (ellipticity < kLeastEllipticity) return std::nullopt;
+  const bool smooth = static_cast<double>(border.count) <= 2.6 * (width + height);
+  RegionMoments moments;
+  if (smooth) moments = ComputeBorderMoments(tracer.begin(border), border.count);
   DarkArea area;
-  area.ellipticity = ellipticity;
+  area.ellipticity = smooth ? moments.Ellipticity() : 0;
+  if (area.ellipticity < kLeastEllipticity) {
+    if (std::max(width, height) > max_hull_extent) return std::nullopt;
+    moments = ComputeHullMoments(tracer.begin(border), border.count);
+    area.ellipticity = moments.Ellipticity();
+    if (area.ellipticity < kMinEllipticity) return std::nullopt;
+  }
   area.outline = EllipseFromMoments(moments);
   if (2 * area.outline.semi_minor < min_minor_px) return std::nullopt;
   area.edge = border.signed_area > 0 ? RingEdge::kOuter : RingEdge::kInner;

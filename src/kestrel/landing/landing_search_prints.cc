@@ -20,6 +20,8 @@ constexpr double kMaxMoreOnRing = 0.12;
 constexpr double kMaxMoreOutside = 0.15;
 // Darkness of what only other signs have, share of the contrast.
 constexpr double kMinCrossCorrelation = 0.7;
+// Added to that for a small pattern whose board is dark, times the darkness: two doubts in one.
+constexpr double kCrossForDarkBoard = 1.2;
 constexpr double kMaxOtherSpokes = 0.55;
 constexpr double kMaxFrameCorners = 0.14;
 constexpr double kMaxBoardDarkness = 0.35;
@@ -28,6 +30,7 @@ constexpr double kMinCorrelation = 0.35;         // of a start of a small patter
 constexpr double kSureCorrelation = 0.6;         // of a start that quadrants give
 constexpr double kMinCorrelationOfEither = 0.7;  // of the poses of a small pattern
 constexpr double kMinFittedCorrelation = 0.82;   // of a small pattern
+constexpr double kMinExplained = 0.55;           // of the variance
 // Edges and contrasts of the ring that are where a circle has them: a frame of another shape has
 // some of them.
 constexpr double kMinRingShare = 0.85;
@@ -51,6 +54,11 @@ bool IsOtherSign(const SmallPatternFitter::OtherSigns& others) {
   return others.spokes > kMaxOtherSpokes || others.frame_corners > kMaxFrameCorners ||
          others.cross_correlation < kMinCrossCorrelation ||
          others.board_darkness > kMaxBoardDarkness;
+}
+
+bool IsDoubtful(const SmallPatternFitter::OtherSigns& others) {
+  return others.cross_correlation <
+         kMinCrossCorrelation + kCrossForDarkBoard * std::max(0.0, others.board_darkness);
 }
 
 // What is asked of the quality of a small pattern beyond that of a near one.
@@ -241,10 +249,11 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
     // So few pixels tell less than the edges of a near pattern: more is asked of them.
     const double on_print = std::max(fit->inside_residual, fit->ring_residual);
     if (quality < models_.options.min_quality + SmallMargin(diameters_px) ||
-        fit->correlation < kMinFittedCorrelation ||
+        fit->correlation < kMinFittedCorrelation || fit->explained < kMinExplained ||
         fit->inside_residual - fit->ring_residual > kMaxMoreInside ||
         fit->ring_residual - fit->inside_residual > kMaxMoreOnRing ||
-        fit->white_residual > on_print + kMaxMoreOutside || IsOtherSign(fit->others)) {
+        fit->white_residual > on_print + kMaxMoreOutside || IsOtherSign(fit->others) ||
+        IsDoubtful(fit->others)) {
       continue;
     }
     Keep(fit->location, fit->match.seen < kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants,

@@ -17,7 +17,8 @@ constexpr double kThinRingPx = 13;
 constexpr double kMaxBoardRingPx = 50;  // major axis of a ring that the board shows
 // Candidates of a pass that are looked at, those of the highest contrast: a bound of the time that
 // a frame full of texture costs.
-constexpr std::size_t kMaxCandidates = 6;
+constexpr std::size_t kMaxCandidates = 4;
+constexpr int kMaxHullExtent = 40;  // px, of borders that need not be convex
 constexpr std::array<double, 1> kOneScale{1.0};
 
 }  // namespace
@@ -41,7 +42,8 @@ void LandingSearch::CollectCandidates(std::size_t pass_index) {
        i < tracer.borders().size() && candidates.size() + 2 <= candidates.capacity(); ++i) {
     const Border& border = tracer.borders()[i];
     const std::optional<DarkArea> area =
-        TestDarkArea(tracer, border, std::max(4.0, 0.7 * pass.min_ring_px / scale));
+        TestDarkArea(tracer, border, std::max(4.0, 0.7 * pass.min_ring_px / scale),
+                     pass.image_level == 0 ? kMaxHullExtent : 0);
     if (!area) continue;
     RingCandidate candidate;
     candidate.border = i;

@@ -271,6 +271,13 @@ struct SmallPatternFitter::System {
     const double about_mean = sum_squares - sum * sum / count;
     return std::sqrt(std::max(0.0, 1 - squares / std::max(about_mean, 1e-9)));
   }
+  // Adjusted R^2. Neighbouring pixels share their blur: of so many, one tells something new.
+  double explained() const {
+    constexpr double kPixelsPerSample = 4;
+    const double samples = count / kPixelsPerSample;
+    const double unexplained = 1 - correlation() * correlation();
+    return 1 - unexplained * (samples - 1) / std::max(1.0, samples - 1 - kUnknowns);
+  }
 };
 
 // The gray values of black and white under a pose, by linear regression.
@@ -410,6 +417,7 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   fit.ring_residual = system.zones[1].Rms() / state.contrast;
   fit.white_residual = system.zones[2].Rms() / state.contrast;
   fit.correlation = system.correlation();
+  fit.explained = system.explained();
   fit.match.contrast = state.contrast;
   MeasureParts(*workspace, state, &fit.match);
   fit.others = MeasureOthers(image, *workspace, state);

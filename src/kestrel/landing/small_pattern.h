@@ -60,6 +60,9 @@ class SmallPatternFitter {
     PatternLocation location;  // without edges
     PatternMatch match;        // amplitudes of arms, white quadrants and ring instead of shares
     double correlation;        // of the image with the fitted print, -1 to 1
+    // Share of the image's variance that the print explains beyond what so many unknowns explain
+    // of noise (adjusted R^2): low where few pixels are fitted well, by chance.
+    double explained;
     // Residuals (root of their mean square, outliers bounded; share of the contrast) inside of the
     // ring, where the cross is, on the ring, and on the white around it.
     double inside_residual;
