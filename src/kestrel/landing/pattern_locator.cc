@@ -20,20 +20,21 @@ constexpr double kOnEdgePx = 1.0;    // offset of an edge that is the outline's 
 constexpr double kLensBlurPx = 0.7;  // of optics and pixels, standard deviation
 constexpr double kEdgeSigma = 0.12;  // px, of an edge that fits perfectly
 
+// Whether the image shows all that FindEdge looks at.
+bool ShowsSearch(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::Vector2d& normal,
+                 int reach) {
+  const Eigen::Array2d span = (reach + 1.5) * normal.array().abs();
+  return (at.array() - span >= 0).all() &&
+         (at.array() + span <= Eigen::Array2d(image.cols - 1, image.rows - 1)).all();
+}
+
 // Offset (px) along the unit vector 'normal' from 'at' to the steepest rise of brightness within
-// 'reach' pixels. Nothing when there is none, or the image does not show the whole search.
+// 'reach' pixels; nothing when there is none.
 std::optional<double> FindEdge(const cv::Mat& image, const Eigen::Vector2d& at,
                                const Eigen::Vector2d& normal, int reach, float min_step) {
   std::array<float, 2 * kMaxReach + 4> gray;
   const int count = 2 * reach + 4;
-  const Eigen::Vector2d first = at - (reach + 1.5) * normal;
-  const Eigen::Vector2d last = at + (reach + 1.5) * normal;
-  if (std::min(first.x(), last.x()) < 0 || std::min(first.y(), last.y()) < 0 ||
-      std::max(first.x(), last.x()) > image.cols - 1 ||
-      std::max(first.y(), last.y()) > image.rows - 1) {
-    return std::nullopt;
-  }
-  Eigen::Vector2f place = first.cast<float>();
+  Eigen::Vector2f place = (at - (reach + 1.5) * normal).cast<float>();
   const Eigen::Vector2f step = normal.cast<float>();
   for (int i = 0; i < count; ++i, place += step) {
     gray[i] = SampleGray(image, place.x(), place.y());
@@ -154,20 +155,22 @@ void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose
         ProjectionStatus::kOk) {
       continue;
     }
-    ++normal->in_image;
-    ++normal->part_in_image[place.part];
     const Eigen::Matrix2d d_plane = d_pixel * plane;
     // Normal of the outline in the image: at right angles to the image of its tangent.
     const Eigen::Vector2d tangent = d_plane * Eigen::Vector2d(-place.normal.y(), place.normal.x());
     Eigen::Vector2d across(-tangent.y(), tangent.x());
     if (across.dot(d_plane * place.normal) < 0) across = -across;
     across.normalize();
+    if (!ShowsSearch(image, pixel, across, reach)) continue;
+    ++normal->in_image;
+    ++normal->part_in_image[place.part];
     std::optional<double> offset =
         FindEdge(image, pixel, across, reach, static_cast<float>(min_step));
     if (!offset) continue;
     // Blur moves a bent edge towards the middle of the bend.
     const double shrink = 0.5 * kLensBlurPx * kLensBlurPx * place.curvature *
-                          std::abs(d_plane.determinant()) / std::pow(tangent.norm(), 3);
+                          std::abs(d_plane.determinant()) /
+                          (tangent.squaredNorm() * tangent.norm());
     *offset += shrink;
     if (normal->found < static_cast<int>(normal->magnitudes.size())) {
       normal->magnitudes[normal->found++] = static_cast<float>(std::abs(*offset));
