@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the search of an image tests a ring for the print, and locates it.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "kestrel/landing/landing_search.h"
 #include "kestrel/landing/pattern_pose.h"
@@ -110,7 +112,7 @@ std::optional<LandingSearch::VerifiedCross> LandingSearch::VerifyCross(const cv:
   const LandingPattern& pattern = models_.options.pattern;
   constexpr double kMinContrast = 6;
   const auto by_thinning = [&]() -> std::optional<Cross> {
-    const auto inside = RectifyInside(image, view, pattern, 40, kMinContrast);
+    const auto inside = RectifyInside(image, view, pattern, 32, kMinContrast);
     return inside ? FindCrossByThinning(*inside) : std::nullopt;
   };
   const auto by_lines = [&]() -> std::optional<Cross> {
@@ -212,6 +214,23 @@ bool LandingSearch::WasTested(const RingFit& ring, const Eigen::Vector2d& diamet
   return false;
 }
 
+// The best start for a small pattern whose ring lies as 'pose'; its correlation is -1 when there is
+// none.
+SmallPatternFitter::Start LandingSearch::FindStart(const CirclePose& pose,
+                                                   std::span<const double> scales) {
+  const std::optional<double> scale =
+      models_.small.FindScale(image_, pose, scales, &buffers_.small);
+  if (!scale) return {{}, -1};
+  if (const std::optional<double> angle = ArmAngleByQuadrants(pose)) {
+    const auto start = models_.small.FindStart(pose, *scale, {&*angle, 1}, buffers_.small);
+    if (start.correlation >= kSureCorrelation) return start;
+  }
+  // Within 7.5 degrees of every direction.
+  constexpr double kStep = std::numbers::pi / 12;
+  constexpr std::array<double, 6> kTurns{0, kStep, 2 * kStep, 3 * kStep, 4 * kStep, 5 * kStep};
+  return models_.small.FindStart(pose, *scale, kTurns, buffers_.small);
+}
+
 // Rings whose strokes are no wider than the blur: the print is fitted as a whole. The ring may be
 // smaller than it was seen by the given factors.
 void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
@@ -225,12 +244,7 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
   const std::array<bool, 2> allowed = LevelEnough(ring);
   for (int i = 0; i < 2; ++i) {
     if (!allowed[i]) continue;
-    const auto find_start = [&](std::optional<double> arm_angle) {
-      return models_.small.FindStart(image_, ring.poses[i], scales, arm_angle, &buffers_.small);
-    };
-    SmallPatternFitter::Start start{{}, -1};
-    if (const auto arm_angle = ArmAngleByQuadrants(ring.poses[i])) start = find_start(arm_angle);
-    if (start.correlation < kSureCorrelation) start = find_start(std::nullopt);
+    const SmallPatternFitter::Start start = FindStart(ring.poses[i], scales);
     // The two poses of a small ring look much the same: what does not fit one fits neither.
     if (start.correlation < kMinCorrelation) return;
     Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");

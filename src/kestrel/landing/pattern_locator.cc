@@ -18,6 +18,7 @@ namespace {
 constexpr int kMaxReach = 12;        // px
 constexpr double kOnEdgePx = 1.0;    // offset of an edge that is the outline's own
 constexpr double kLensBlurPx = 0.7;  // of optics and pixels, standard deviation
+constexpr double kMaxRingScatterPx = 1.5;  // after two iterations, standard deviation
 constexpr double kEdgeSigma = 0.12;  // px, of an edge that fits perfectly
 
 // Whether the image shows all that FindEdge looks at.
@@ -29,7 +30,7 @@ bool ShowsSearch(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::V
 }
 
 // Offset (px) along the unit vector 'normal' from 'at' to the steepest rise of brightness within
-// 'reach' pixels; nothing when there is none.
+// 'reach' pixels, all of which the image must show; nothing when there is none.
 std::optional<double> FindEdge(const cv::Mat& image, const Eigen::Vector2d& at,
                                const Eigen::Vector2d& normal, int reach, float min_step) {
   std::array<float, 2 * kMaxReach + 4> gray;
@@ -37,7 +38,7 @@ std::optional<double> FindEdge(const cv::Mat& image, const Eigen::Vector2d& at,
   Eigen::Vector2f place = (at - (reach + 1.5) * normal).cast<float>();
   const Eigen::Vector2f step = normal.cast<float>();
   for (int i = 0; i < count; ++i, place += step) {
-    gray[i] = SampleGray(image, place.x(), place.y());
+    gray[i] = SampleInside(image, place.x(), place.y());
   }
   // Rise between neighbours; the one at index i lies at offset i - reach - 1.
   int best = -1;
@@ -182,8 +183,9 @@ void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose
     const Eigen::Vector3d d_point = d_pixel.transpose() * across;
     jacobian.head<3>() = d_point;
     jacobian.tail<3>() = from_center.cross(d_point);
-    normal->h.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
-    normal->g += weight * *offset * jacobian;
+    const Eigen::Matrix<double, 6, 1> weighted = weight * jacobian;
+    normal->h.noalias() += weighted * jacobian.transpose();
+    normal->g += *offset * weighted;
     normal->weighted_squares += weight * *offset * *offset;
     normal->weights += weight;
     ++normal->used;
@@ -204,7 +206,7 @@ std::optional<PatternLocation> PatternLocator::Locate(const cv::Mat& image,
     Normal normal;
     Accumulate(image, pose, places_, reach, min_step, scale, &normal);
     if (normal.used < 12) return std::nullopt;
-    const auto solver = normal.h.selfadjointView<Eigen::Lower>().ldlt();
+    const auto solver = normal.h.ldlt();
     if (!Move(solver.solve(normal.g), &pose)) return std::nullopt;
     scale = std::clamp(normal.RobustScale(), 0.25, scale);
     reach = std::clamp(3 * scale, 1.5, reach);
@@ -244,11 +246,13 @@ std::optional<RigidTransform> PatternLocator::LocateRing(const cv::Mat& image,
     normal.h.diagonal() *= 1 + 1e-4;
     const double weight = 1e-6 * normal.h.diagonal().tail<3>().maxCoeff();
     for (int i = 3; i < 6; ++i) normal.h(i, i) += weight;
-    if (!Move(normal.h.selfadjointView<Eigen::Lower>().ldlt().solve(normal.g), &pose)) {
+    if (!Move(normal.h.ldlt().solve(normal.g), &pose)) {
       return std::nullopt;
     }
     scale = std::clamp(normal.RobustScale(), 0.25, scale);
     reach = std::clamp(3 * scale, 1.5, reach);
+    // The edges of anything but a ring stay scattered.
+    if (iteration == 1 && scale > kMaxRingScatterPx) return std::nullopt;
   }
   return pose;
 }

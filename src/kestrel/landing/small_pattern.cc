@@ -152,6 +152,11 @@ double SmallPatternFitter::ArmDarkness(double along, double across, double blur_
   return width * (step(along + length, blur_along) - step(along - length, blur_along));
 }
 
+// The ring 'scale' times smaller: that much farther away.
+CirclePose Shrunk(const CirclePose& ring, double scale) {
+  return {ring.center / scale, ring.normal};
+}
+
 // Sums for the correlation of gray values with how dark a print is there.
 class DarknessCorrelation {
  public:
@@ -212,38 +217,34 @@ double SmallPatternFitter::CorrelatePrint(double angle,
   return correlation.value();
 }
 
-SmallPatternFitter::Start SmallPatternFitter::FindStart(const cv::Mat& image,
-                                                        const CirclePose& ring,
-                                                        std::span<const double> scales,
-                                                        std::optional<double> arm_angle,
-                                                        SmallPatternWorkspace* workspace) const {
-  Start best{{}, -1};
-  double best_ring = -1, best_scale = 0;
-  double last_scale = 0;
-  const auto scaled = [&ring](double scale) {
-    return CirclePose{ring.center / scale, ring.normal};  // farther away is smaller
-  };
+std::optional<double> SmallPatternFitter::FindScale(const cv::Mat& image, const CirclePose& ring,
+                                                    std::span<const double> scales,
+                                                    SmallPatternWorkspace* workspace) const {
   const auto look_at = [&](double scale) {
-    const RigidTransform unturned = PatternPose(scaled(scale), 0);
-    last_scale = scale;
+    const RigidTransform unturned = PatternPose(Shrunk(ring, scale), 0);
     return Gather(image, unturned, workspace) ? CorrelateRing(unturned, workspace) : -1.0;
   };
+  double best = 0, best_correlation = kMinRingCorrelation;
   for (const double scale : scales) {
     const double correlation = look_at(scale);
-    if (correlation > best_ring) {
-      best_ring = correlation;
-      best_scale = scale;
-    }
+    if (correlation < best_correlation) continue;
+    best_correlation = correlation;
+    best = scale;
   }
-  if (best_ring < kMinRingCorrelation) return best;
-  if (last_scale != best_scale) look_at(best_scale);
-  // Over a right angle: within 7.5 degrees of every direction.
-  const int turns = arm_angle ? 1 : 6;
-  for (int turn = 0; turn < turns; ++turn) {
-    const double angle = arm_angle.value_or(0) + turn * (std::numbers::pi / 2) / turns;
-    const double correlation = CorrelatePrint(angle, *workspace);
-    if (correlation > best.correlation)
-      best = {PatternPose(scaled(best_scale), angle), correlation};
+  if (best == 0) return std::nullopt;
+  if (best != scales.back()) look_at(best);
+  return best;
+}
+
+SmallPatternFitter::Start SmallPatternFitter::FindStart(
+    const CirclePose& ring, double scale, std::span<const double> arm_angles,
+    const SmallPatternWorkspace& workspace) const {
+  Start best{{}, -1};
+  for (const double angle : arm_angles) {
+    const double correlation = CorrelatePrint(angle, workspace);
+    if (correlation > best.correlation) {
+      best = {PatternPose(Shrunk(ring, scale), angle), correlation};
+    }
   }
   return best;
 }

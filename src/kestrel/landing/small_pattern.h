@@ -75,11 +75,16 @@ class SmallPatternFitter {
     RigidTransform camera_from_pattern;
     double correlation;  // -1 to 1, of the image with the print blurred by a good lens
   };
-  // The best start for Refine among all directions of the arms and the given sizes: the ring lies
-  // as 'ring' in all of them, and is 'scales' times smaller. 'arm_angle': the direction of an arm
-  // where it is known (as for PatternPose). Does not allocate.
-  Start FindStart(const cv::Mat& image, const CirclePose& ring, std::span<const double> scales,
-                  std::optional<double> arm_angle, SmallPatternWorkspace* workspace) const;
+  // The size at which ring and white fit the image best: the ring lies as 'ring' in all of them, and
+  // is 'scales' times smaller. Nothing when they fit at none. Does not allocate.
+  std::optional<double> FindScale(const cv::Mat& image, const CirclePose& ring,
+                                  std::span<const double> scales,
+                                  SmallPatternWorkspace* workspace) const;
+
+  // The best start for Refine among the directions of an arm (as for PatternPose), of a ring at the
+  // scale that FindScale said last. Does not allocate.
+  Start FindStart(const CirclePose& ring, double scale, std::span<const double> arm_angles,
+                  const SmallPatternWorkspace& workspace) const;
 
   // Refines 'initial', which must be within about a stroke's width. Nothing when the image shows
   // too little of the print or the fit does not converge. Does not allocate.
