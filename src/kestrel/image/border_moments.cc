@@ -17,8 +17,8 @@ double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 
 // Appends a point to a convex chain that starts at index 'first'; points that would dent it go.
 void Append(const Eigen::Vector2d& point, int first, HullPoints* hull, int* count) {
-  while (*count >= first + 2 && Cross((*hull)[*count - 1] - (*hull)[*count - 2],
-                                      point - (*hull)[*count - 1]) <= 0) {
+  while (*count >= first + 2 &&
+         Cross((*hull)[*count - 1] - (*hull)[*count - 2], point - (*hull)[*count - 1]) <= 0) {
     --*count;
   }
   (*hull)[(*count)++] = point;
@@ -105,9 +105,7 @@ RegionMoments ComputeHullMoments(const GridPoint* points, std::size_t count) {
     right[row] = std::max<int>(right[row], points[i].x);
   }
   const Eigen::Vector2d origin(points[0].x, top);
-  const auto corner = [&](int x, int row) {
-    return Eigen::Vector2d(x - origin.x(), row);
-  };
+  const auto corner = [&](int x, int row) { return Eigen::Vector2d(x - origin.x(), row); };
   HullPoints hull;
   int corners = 0;
   for (int row = 0; row < rows; ++row) Append(corner(right[row], row), 0, &hull, &corners);

@@ -19,7 +19,7 @@ constexpr double kMaxBoardRingPx = 50;  // major axis of a ring that the board s
 // Candidates of a pass that are looked at, those of the highest contrast: a bound of the time that
 // a frame full of texture costs.
 constexpr std::size_t kMaxCandidates = 4;
-constexpr int kMaxHullExtent = 62;  // px, of borders that need not be convex
+constexpr int kMaxHullExtent = 62;       // px, of borders that need not be convex
 constexpr double kMinSmallContrast = 3;  // gray values
 constexpr std::array<double, 1> kOneScale{1.0};
 

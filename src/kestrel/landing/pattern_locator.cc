@@ -15,11 +15,15 @@
 namespace kestrel {
 namespace {
 
-constexpr int kMaxReach = 12;        // px
-constexpr double kOnEdgePx = 1.0;    // offset of an edge that is the outline's own
-constexpr double kLensBlurPx = 0.7;  // of optics and pixels, standard deviation
+constexpr int kMaxReach = 12;  // px
+// Places per place that the first iterations look at: odd, so that both sides of the arms have
+// some.
+constexpr std::size_t kCoarseStride = 3;
+constexpr int kFewEdges = 30;              // too few of those for a pose
+constexpr double kOnEdgePx = 1.0;          // offset of an edge that is the outline's own
+constexpr double kLensBlurPx = 0.7;        // of optics and pixels, standard deviation
 constexpr double kMaxRingScatterPx = 1.5;  // after two iterations, standard deviation
-constexpr double kEdgeSigma = 0.12;  // px, of an edge that fits perfectly
+constexpr double kEdgeSigma = 0.12;        // px, of an edge that fits perfectly
 
 // Whether the image shows all that FindEdge looks at.
 bool ShowsSearch(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::Vector2d& normal,
@@ -139,16 +143,17 @@ void PatternLocator::AddArms() {
   }
 }
 
-// Adds what each place says to the normal equations, weighted by Tukey's function of its residual
-// with the given scale.
+// Adds what each 'stride'-th place says to the normal equations, weighted by Tukey's function of
+// its residual with the given scale.
 void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose,
-                                std::span<const Place> places, double reach_px, double min_step,
-                                double scale_px, Normal* normal) const {
+                                std::span<const Place> places, std::size_t stride, double reach_px,
+                                double min_step, double scale_px, Normal* normal) const {
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   const Eigen::Matrix<double, 3, 2> plane = rotation.leftCols<2>();
   const int reach = std::clamp(static_cast<int>(std::ceil(reach_px)), 1, kMaxReach);
   Eigen::Matrix<double, 2, 3> d_pixel;
-  for (const Place& place : places) {
+  for (std::size_t i = 0; i < places.size(); i += stride) {
+    const Place& place = places[i];
     ++normal->part_places[place.part];
     const Eigen::Vector3d from_center = plane * place.point;
     Eigen::Vector2d pixel;
@@ -204,13 +209,19 @@ std::optional<PatternLocation> PatternLocator::Locate(const cv::Mat& image,
   double reach = reach_px;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     Normal normal;
-    Accumulate(image, pose, places_, reach, min_step, scale, &normal);
+    // A part of the edges brings the pose near, all of them say where it is.
+    const bool last = iteration + 1 == iterations;
+    if (!last) Accumulate(image, pose, places_, kCoarseStride, reach, min_step, scale, &normal);
+    if (last || normal.used < kFewEdges) {
+      normal = Normal();
+      Accumulate(image, pose, places_, 1, reach, min_step, scale, &normal);
+    }
     if (normal.used < 12) return std::nullopt;
     const auto solver = normal.h.ldlt();
     if (!Move(solver.solve(normal.g), &pose)) return std::nullopt;
     scale = std::clamp(normal.RobustScale(), 0.25, scale);
     reach = std::clamp(3 * scale, 1.5, reach);
-    if (iteration + 1 < iterations) continue;
+    if (!last) continue;
 
     const double variance =
         std::max(kEdgeSigma * kEdgeSigma, normal.weighted_squares / normal.weights);
@@ -239,7 +250,7 @@ std::optional<RigidTransform> PatternLocator::LocateRing(const cv::Mat& image,
   double reach = reach_px;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     Normal normal;
-    Accumulate(image, pose, std::span(places_).first(ring_places_), reach, min_step, scale,
+    Accumulate(image, pose, std::span(places_).first(ring_places_), 1, reach, min_step, scale,
                &normal);
     if (normal.used < 12) return std::nullopt;
     // A ring says nothing about turns in its plane, and a short arc little about its far side.

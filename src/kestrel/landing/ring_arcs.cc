@@ -38,9 +38,9 @@ void SmoothBorder(const GridPoint* points, std::size_t count,
       x += p.x;
       y += p.y;
     }
-    smooth->push_back(
-        Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) / (2 * kWindow + 1) -
-        Eigen::Vector2f(0.5f, 0.5f));
+    smooth->push_back(Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) /
+                          (2 * kWindow + 1) -
+                      Eigen::Vector2f(0.5f, 0.5f));
   };
   for (std::size_t i = 0; i + kStride <= count; i += kStride) {
     if (i >= kWindow && i + kWindow < count) {
@@ -110,8 +110,7 @@ class ArcCutter {
     const auto sharper_than = [&](float other) {
       return turn > static_cast<float>(kSharpness) * std::abs(other);
     };
-    return sharper_than(turns[(i + n - kApart) % n]) &&
-           sharper_than(turns[(i + kApart) % n]);
+    return sharper_than(turns[(i + n - kApart) % n]) && sharper_than(turns[(i + kApart) % n]);
   }
 
   // Where a dark area is cut off by the image border, its border is no edge of anything.

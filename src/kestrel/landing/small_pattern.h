@@ -75,8 +75,8 @@ class SmallPatternFitter {
     RigidTransform camera_from_pattern;
     double correlation;  // -1 to 1, of the image with the print blurred by a good lens
   };
-  // The size at which ring and white fit the image best: the ring lies as 'ring' in all of them, and
-  // is 'scales' times smaller. Nothing when they fit at none. Does not allocate.
+  // The size at which ring and white fit the image best: the ring lies as 'ring' in all of them,
+  // and is 'scales' times smaller. Nothing when they fit at none. Does not allocate.
   std::optional<double> FindScale(const cv::Mat& image, const CirclePose& ring,
                                   std::span<const double> scales,
                                   SmallPatternWorkspace* workspace) const;
