@@ -131,6 +131,7 @@ class LandingSearch {
   void MakeRoom();
   void Binarize(const Pass& pass);
   bool ChooseRegion();
+  double ExpectedRingPx(const Eigen::Vector3d& center) const;
   bool Suits(const Pass& pass) const;
   bool IsPlausible(const CirclePose& ring) const;
   void Trace(std::size_t pass_index);
