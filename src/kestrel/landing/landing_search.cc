@@ -164,8 +164,8 @@ bool LandingSearch::Suits(const Pass& pass) const {
   return 1.5 * pass.min_ring_px <= expected_ring_px_ && expected_ring_px_ <= 1.2 * pass.max_ring_px;
 }
 
-// Whether a ring is where the hint says that it may be. The altitude may be that above the ground on
-// which a vehicle stands.
+// Whether a ring is where the hint says that it may be. The altitude may be that above the ground
+// on which a vehicle stands.
 bool LandingSearch::IsPlausible(const CirclePose& ring) const {
   const double distance = ring.center.norm();
   if (hint_.center_in_camera) {

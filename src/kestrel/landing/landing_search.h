@@ -150,6 +150,9 @@ class LandingSearch {
   void TestSmallRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
                      std::span<const double> scales);
   SmallPatternFitter::Start FindStart(const CirclePose& pose, std::span<const double> scales);
+  bool IsSmallPattern(const SmallPatternFitter::Fit& fit,
+                      const Eigen::Vector2d& diameters_px) const;
+  bool ShowsOtherSign(const RigidTransform& pose);
   bool WasTested(const RingFit& ring, const Eigen::Vector2d& diameters_px);
   std::optional<double> ArmAngleByQuadrants(const CirclePose& pose);
   std::array<bool, 2> LevelEnough(const RingFit& ring) const;

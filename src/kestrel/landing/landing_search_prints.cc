@@ -214,6 +214,20 @@ bool LandingSearch::WasTested(const RingFit& ring, const Eigen::Vector2d& diamet
   return false;
 }
 
+// What the print does not explain is spread evenly where the print is: a sign with another figure
+// in the ring leaves more inside, one in another frame more on the ring and around it. So few
+// pixels tell less than the edges of a near pattern: more is asked of them.
+bool LandingSearch::IsSmallPattern(const SmallPatternFitter::Fit& fit,
+                                   const Eigen::Vector2d& diameters_px) const {
+  const double on_print = std::max(fit.inside_residual, fit.ring_residual);
+  return fit.match.Quality() >= models_.options.min_quality + SmallMargin(diameters_px) &&
+         fit.correlation >= kMinFittedCorrelation && fit.explained >= kMinExplained &&
+         fit.inside_residual - fit.ring_residual <= kMaxMoreInside &&
+         fit.ring_residual - fit.inside_residual <= kMaxMoreOnRing &&
+         fit.white_residual <= on_print + kMaxMoreOutside && !IsOtherSign(fit.others) &&
+         !IsDoubtful(fit.others);
+}
+
 // The best start for a small pattern whose ring lies as 'pose'; its correlation is -1 when there is
 // none.
 SmallPatternFitter::Start LandingSearch::FindStart(const CirclePose& pose,
@@ -249,30 +263,33 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
     if (start.correlation < kMinCorrelation) return;
     Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
     constexpr int kIterations = 8;
-    const auto fit =
-        models_.small.Refine(image_, start.camera_from_pattern, kIterations, &buffers_.small);
+    using Light = SmallPatternFitter::Light;
+    auto fit = models_.small.Refine(image_, start.camera_from_pattern, Light::kEven, kIterations,
+                                    &buffers_.small);
     if (!fit || fit->correlation < kMinCorrelationOfEither) return;
     if (!Agrees(start.camera_from_pattern, fit->location.camera_from_pattern,
                 models_.options.pattern.outer_radius_m())) {
       continue;
     }
-    const double quality = fit->match.Quality();
     Reach(LandingStage::kLocate, "no pose explains the edges of ring and cross");
-    // What the print does not explain is spread evenly where the print is: a sign with another
-    // figure in the ring leaves more inside, one in another frame more on the ring and around it.
-    // So few pixels tell less than the edges of a near pattern: more is asked of them.
-    const double on_print = std::max(fit->inside_residual, fit->ring_residual);
-    if (quality < models_.options.min_quality + SmallMargin(diameters_px) ||
-        fit->correlation < kMinFittedCorrelation || fit->explained < kMinExplained ||
-        fit->inside_residual - fit->ring_residual > kMaxMoreInside ||
-        fit->ring_residual - fit->inside_residual > kMaxMoreOnRing ||
-        fit->white_residual > on_print + kMaxMoreOutside || IsOtherSign(fit->others) ||
-        IsDoubtful(fit->others)) {
-      continue;
+    if (!IsSmallPattern(*fit, diameters_px)) {
+      fit = models_.small.Refine(image_, fit->location.camera_from_pattern, Light::kShadowEdge,
+                                 kIterations, &buffers_.small);
+      if (!fit || !IsSmallPattern(*fit, diameters_px)) continue;
     }
     Keep(fit->location, fit->match.seen < kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants,
-         quality, diameters_px);
+         fit->match.Quality(), diameters_px);
   }
+}
+
+// Whether there is another sign where a pattern was located, in even light and in the light that
+// the edge of a shadow leaves.
+bool LandingSearch::ShowsOtherSign(const RigidTransform& pose) {
+  using Light = SmallPatternFitter::Light;
+  const auto in_even = models_.small.Inspect(image_, pose, Light::kEven, &buffers_.small);
+  if (!in_even || !IsOtherSign(*in_even)) return false;
+  const auto beside_edge = models_.small.Inspect(image_, pose, Light::kShadowEdge, &buffers_.small);
+  return !beside_edge || IsOtherSign(*beside_edge);
 }
 
 void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& diameters_px,
@@ -299,9 +316,7 @@ void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& 
   const double quality = match.Quality();
   if (quality < models_.options.min_quality || match.RingShare() < kMinRingShare) return;
   if (diameters_px.x() < kInspectedRingPx) {
-    const auto others =
-        models_.small.Inspect(image_, location->camera_from_pattern, &buffers_.small);
-    if (others && IsOtherSign(*others)) return;
+    if (ShowsOtherSign(location->camera_from_pattern)) return;
   }
   Keep(*location, match.seen < kWhole ? CrossMethod::kPartial : hypothesis.method, quality,
        diameters_px);

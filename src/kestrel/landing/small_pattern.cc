@@ -389,13 +389,14 @@ bool SmallPatternFitter::Improve(const System& system, State* state) const {
 }
 
 std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
-    const cv::Mat& image, const RigidTransform& initial, int iterations,
+    const cv::Mat& image, const RigidTransform& initial, Light light, int iterations,
     SmallPatternWorkspace* workspace) const {
   if (!Gather(image, initial, workspace)) return std::nullopt;
   State state;
   state.pose = initial;
   MeasureLevels(*workspace, &state);
   if (state.contrast < kMinContrast) return std::nullopt;
+  if (light == Light::kShadowEdge && !EvenOut(workspace, &state)) return std::nullopt;
   // The first steps come from far away: then nothing is an outlier.
   double limit = kMaxWhite;
   for (int iteration = 0; iteration < iterations; ++iteration) {

@@ -86,18 +86,23 @@ class SmallPatternFitter {
   Start FindStart(const CirclePose& ring, double scale, std::span<const double> arm_angles,
                   const SmallPatternWorkspace& workspace) const;
 
+  // The light on a print: even but for a slope, or with the edge of a shadow across it, which is
+  // taken out of the image first.
+  enum class Light { kEven, kShadowEdge };
+
   // Refines 'initial', which must be within about a stroke's width. Nothing when the image shows
-  // too little of the print or the fit does not converge. Does not allocate.
-  std::optional<Fit> Refine(const cv::Mat& image, const RigidTransform& initial, int iterations,
-                            SmallPatternWorkspace* workspace) const;
+  // too little of the print, the fit does not converge or the light has no edge. Does not allocate.
+  std::optional<Fit> Refine(const cv::Mat& image, const RigidTransform& initial, Light light,
+                            int iterations, SmallPatternWorkspace* workspace) const;
 
   // What there is of other signs in a print that was located in another way; nothing when the image
-  // shows too little of it. Does not allocate.
-  std::optional<OtherSigns> Inspect(const cv::Mat& image, const RigidTransform& pose,
+  // shows too little of it or the light has no edge. Does not allocate.
+  std::optional<OtherSigns> Inspect(const cv::Mat& image, const RigidTransform& pose, Light light,
                                     SmallPatternWorkspace* workspace) const;
 
  private:
   struct Darkness;
+  struct ShadowEdge;
   struct State;
   struct System;
   bool Gather(const cv::Mat& image, const RigidTransform& pose,
@@ -107,6 +112,9 @@ class SmallPatternFitter {
   double CorrelatePrint(double angle, const SmallPatternWorkspace& workspace) const;
   double ArmDarkness(double along, double across, double blur_along, double blur_across) const;
   void MeasureLevels(const SmallPatternWorkspace& workspace, State* state) const;
+  std::optional<ShadowEdge> FitShadowEdge(const State& state,
+                                          SmallPatternWorkspace* workspace) const;
+  bool EvenOut(SmallPatternWorkspace* workspace, State* state) const;
   System Linearize(const State& state, double limit, SmallPatternWorkspace* workspace) const;
   bool Improve(const System& system, State* state) const;
   void MeasureParts(const SmallPatternWorkspace& workspace, const State& state,
