@@ -18,15 +18,19 @@ constexpr std::array<double, kQuadrantTurns> kQuadrantAngles{27, 33, 39, 45, 51,
 constexpr std::array<double, 3> kQuadrantRadii{0.45, 0.6, 0.75};
 constexpr float kUnseen = -1e9f;
 constexpr double kMissingArm = 0.3;
-// In a shadow a contrast counts by its share of the brightness: relative to that of the print, and
-// when it is no noise: gray values, and relative to the print's contrast.
+// In a shadow a contrast counts by its share of the brightness, relative to that of the print, or
+// when the other side of it, relative to the print's contrast, is in the light; and when it is no
+// noise: gray values, and relative to the print's contrast.
 constexpr double kRatioShare = 0.6;
+constexpr double kShareInLight = 0.7;
 constexpr double kLeastInShadow = 4;
 constexpr double kShareInShadow = 0.1;
 
-// A contrast: white minus black, gray values, and the same relative to the white.
+// A contrast: white minus black on the darker and on the brighter side, gray values; the former
+// relative to the white.
 struct Seen {
   float difference;
+  float brighter_difference;
   float ratio;
   bool known() const { return difference != kUnseen; }
 };
@@ -148,9 +152,14 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
   };
   const auto look_at = [&](const Contrast& contrast) -> Seen {
     const float dark = darker(contrast.dark);
-    const float bright = darker(contrast.bright);
-    if (dark < 0 || bright < 0) return {kUnseen, kUnseen};
-    return {bright - dark, (bright - dark) / std::max(bright, 1.0f)};
+    const float one = view.Sample(image, contrast.bright[0].x, contrast.bright[0].y);
+    const bool single = contrast.bright[0].x == contrast.bright[1].x &&
+                        contrast.bright[0].y == contrast.bright[1].y;
+    const float other =
+        single ? one : view.Sample(image, contrast.bright[1].x, contrast.bright[1].y);
+    const float bright = std::min(one, other);
+    if (dark < 0 || bright < 0) return {kUnseen, kUnseen, kUnseen};
+    return {bright - dark, std::max(one, other) - dark, (bright - dark) / std::max(bright, 1.0f)};
   };
 
   // The print's contrast in each quarter, which shadow and haze may make different, is that of the
@@ -181,7 +190,9 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
   }
   match.contrast = Median(&known, count);
   if (match.contrast < 2) return match;
-  // Where light and shadow meet within a quarter, black is still as dark as it is beside white.
+  // Where light and shadow meet within a quarter, black is as dark as it is beside white; where
+  // they meet along an arm, it is on one side.
+  const double least_in_light = kShareInLight * match.contrast;
   const double least_ratio = kRatioShare * Median(&known_ratio, count);
   const double least_in_shadow = std::max(kLeastInShadow, kShareInShadow * match.contrast);
   std::array<double, 4> least;
@@ -193,7 +204,8 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
 
   const auto agrees = [&](const Seen& value, int quarter) {
     return value.difference >= least[quarter] ||
-           (value.difference >= least_in_shadow && value.ratio >= least_ratio);
+           (value.difference >= least_in_shadow &&
+            (value.ratio >= least_ratio || value.brighter_difference >= least_in_light));
   };
   int seen = 0, all = 0;
   const auto count_in = [&](const Contrast& contrast, const Seen& value,

@@ -8,10 +8,10 @@
 namespace kestrel {
 namespace {
 
-constexpr int kDirections = 12;           // over half a turn
-constexpr double kOffsetStep = 0.1;       // of the extent
-constexpr double kMaxRemaining = 0.6;     // of the residual's square, by the edge
-constexpr double kMaxDarkRatio = 0.8;     // of the light in the shadow to that beside it
+constexpr int kDirections = 12;        // over half a turn
+constexpr double kOffsetStep = 0.1;    // of the extent
+constexpr double kMaxRemaining = 0.6;  // of the residual's square, by the edge
+constexpr double kMaxDarkRatio = 0.8;  // of the light in the shadow to that beside it
 constexpr double kMinDarkRatio = 0.05;
 
 // Sums of a fit of gray values by two lights, each on its side of an edge.
