@@ -103,5 +103,46 @@ TEST(ComputeBorderMoments, OfAnEmptyWalkIsNothing) {
   EXPECT_EQ(ComputeBorderMoments(points.data(), points.size()).area, 0);
 }
 
+// A walk around the corners of a polygon with axis-parallel sides, in unit steps.
+std::vector<GridPoint> WalkAround(const std::vector<GridPoint>& corners) {
+  std::vector<GridPoint> points;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    GridPoint at = corners[i];
+    const GridPoint to = corners[(i + 1) % corners.size()];
+    while (at.x != to.x || at.y != to.y) {
+      points.push_back(at);
+      at.x = static_cast<std::int16_t>(at.x + (to.x > at.x) - (to.x < at.x));
+      at.y = static_cast<std::int16_t>(at.y + (to.y > at.y) - (to.y < at.y));
+    }
+  }
+  return points;
+}
+
+TEST(ComputeHullMoments, OfAConvexBorderAreThoseOfTheBorder) {
+  const auto points = WalkAround({{100, 50}, {140, 50}, {140, 75}, {100, 75}});
+  const RegionMoments border = ComputeBorderMoments(points.data(), points.size());
+  const RegionMoments hull = ComputeHullMoments(points.data(), points.size());
+  EXPECT_NEAR(hull.area, border.area, 1e-9);
+  EXPECT_LT((hull.centroid - border.centroid).norm(), 1e-9);
+  EXPECT_LT((hull.covariance - border.covariance).norm(), 1e-9);
+}
+
+TEST(ComputeHullMoments, FillNotches) {
+  // A square of 30 pixels with a gap that leads into it from the right, and what it encloses.
+  const auto open =
+      WalkAround({{10, 10}, {40, 10}, {40, 24}, {15, 24}, {15, 27}, {40, 27}, {40, 40}, {10, 40}});
+  const RegionMoments hull = ComputeHullMoments(open.data(), open.size());
+  EXPECT_NEAR(hull.area, 900, 1e-9);
+  EXPECT_LT((hull.centroid - Eigen::Vector2d(24.5, 24.5)).norm(), 1e-9);
+  EXPECT_NEAR(hull.covariance(0, 0), 900.0 / 12, 1e-9);
+  EXPECT_NEAR(hull.covariance(1, 1), 900.0 / 12, 1e-9);
+  EXPECT_NEAR(hull.covariance(0, 1), 0, 1e-9);
+}
+
+TEST(ComputeHullMoments, OfALineAreNothing) {
+  const std::vector<GridPoint> points{{3, 3}, {4, 3}};
+  EXPECT_EQ(ComputeHullMoments(points.data(), points.size()).area, 0);
+}
+
 }  // namespace
 }  // namespace kestrel

@@ -13,7 +13,8 @@ namespace kestrel {
 namespace {
 
 // The areas that the borders of a figure of 100 x 100 pixels pass for.
-std::vector<DarkArea> Areas(const Print& is_dark, double min_minor_px = 8) {
+std::vector<DarkArea> Areas(const Print& is_dark, double min_minor_px = 8,
+                            int max_hull_extent = 0) {
   BinaryImage binary;
   binary.dark.Reset(100, 100);
   binary.bright.Reset(100, 100);
@@ -27,7 +28,9 @@ std::vector<DarkArea> Areas(const Print& is_dark, double min_minor_px = 8) {
   tracer.Trace(binary, cv::Rect(0, 0, 100, 100), BorderLimits{});
   std::vector<DarkArea> areas;
   for (const Border& border : tracer.borders()) {
-    if (const auto area = TestDarkArea(tracer, border, min_minor_px)) areas.push_back(*area);
+    if (const auto area = TestDarkArea(tracer, border, min_minor_px, max_hull_extent)) {
+      areas.push_back(*area);
+    }
   }
   return areas;
 }
@@ -61,6 +64,20 @@ TEST(TestDarkArea, RefusesBarsAndWhatIsTooSmall) {
   const Print disc = [](double x, double y) { return std::hypot(x, y) < 9.5; };
   EXPECT_EQ(Areas(disc, 18).size(), 1u);
   EXPECT_TRUE(Areas(disc, 20).empty());
+}
+
+TEST(TestDarkArea, AnOpenSmallRingIsItsHull) {
+  const Print open_ring = [](double x, double y) {
+    const double r = std::hypot(x, y);
+    return r > 13 && r < 17 && !(x > 0 && std::abs(y) < 2.5);
+  };
+  EXPECT_TRUE(Areas(open_ring).empty());
+  const auto areas = Areas(open_ring, 8, 40);
+  ASSERT_EQ(areas.size(), 1u);
+  EXPECT_EQ(areas[0].edge, RingEdge::kOuter);
+  EXPECT_NEAR(areas[0].outline.semi_major, 17, 0.6);
+  EXPECT_NEAR(areas[0].outline.semi_minor, 17, 0.6);
+  EXPECT_TRUE(Areas(open_ring, 8, 30).empty()) << "larger than small ones";
 }
 
 class ContrastTest : public ::testing::Test {

@@ -106,6 +106,25 @@ TEST_F(LandingPatternDetectorTest, OtherSignsAreNotThePattern) {
   }
 }
 
+TEST_F(LandingPatternDetectorTest, AHintFitsAPatternThatFillsTheImageOfAFisheye) {
+  // Half a metre above the board the ring spans 90 degrees: much less than its size over its
+  // distance times the focal length.
+  const CameraModel fisheye(
+      {752, 480, 250, 250, 375.5, 239.5, DistortionModel::kEquidistant, {0, 0, 0, 0}});
+  const LandingPatternDetector detector(fisheye, {});
+  for (const double distance : {0.45, 0.6, 1.0}) {
+    const RigidTransform truth = PrintPose({0.02, 0.03, distance}, 0.1, 1, 0.3);
+    const cv::Mat image = DrawPrint(fisheye, pattern_, SpokedPrint(pattern_, 4), truth);
+    LandingHint hint;
+    hint.center_in_camera = truth.translation;
+    hint.center_sigma_m = 0.1;
+    hint.altitude_m = distance + 2;  // above the ground, not above the roof
+    const LandingReport report = detector.Detect(image, hint, workspace_);
+    ASSERT_TRUE(report.detection) << distance << " m: " << report.reason;
+    EXPECT_LT(PoseError(report.detection->camera_from_pattern, truth).head<3>().norm(), 0.005);
+  }
+}
+
 TEST_F(LandingPatternDetectorTest, AFlatImageFallsAtTheFirstStages) {
   const LandingReport report = Detect(cv::Mat(240, 320, CV_8UC1, cv::Scalar(100)));
   EXPECT_FALSE(report.detection);

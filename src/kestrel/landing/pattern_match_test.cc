@@ -66,6 +66,26 @@ TEST_F(PatternMatcherTest, AMissingArmIsSeen) {
   EXPECT_LT(match.Quality(), kMinQuality);
 }
 
+TEST_F(PatternMatcherTest, AShadowBesideAnArmCostsLittle) {
+  cv::Mat shaded = pattern_image_.clone();
+  for (int v = 0; v < shaded.rows; ++v) {
+    for (int u = 0; u < shaded.cols; ++u) {
+      Eigen::Vector3d ray;
+      camera_.Unproject({u, v}, &ray);
+      const RigidTransform inverse = pose_.Inverse();
+      const Eigen::Vector3d direction = inverse.rotation * ray;
+      const Eigen::Vector3d point =
+          inverse.translation - inverse.translation.z() / direction.z() * direction;
+      auto& gray = shaded.at<std::uint8_t>(v, u);
+      if (point.y() > 0.06) gray = static_cast<std::uint8_t>(0.3 * gray);
+    }
+  }
+  const PatternMatch match = Match(shaded, pose_);
+  for (int k = 0; k < 4; ++k) EXPECT_GT(match.arm[k], 0.8) << k;
+  EXPECT_EQ(match.spokes, 0);
+  EXPECT_GT(match.Quality(), 0.8);
+}
+
 TEST_F(PatternMatcherTest, AShadowOverAHalfCostsLittle) {
   cv::Mat shaded = pattern_image_.clone();
   cv::Mat left = shaded.colRange(0, 168);

@@ -13,19 +13,22 @@ namespace {
 
 class SmallPatternTest : public ::testing::Test {
  protected:
-  static constexpr std::array<double, 1> kOneScale{1.0};
-
   static RigidTransform PoseOf(double diameter_px, Random* random) {
     const double distance = 220 / diameter_px;
     return PrintPose(
         {random->Uniform(-0.2, 0.2) * distance, random->Uniform(-0.2, 0.2) * distance, distance},
         random->Uniform(0, 0.3), random->Uniform(0, 6), random->Uniform(0, 6));
   }
+  using Light = SmallPatternFitter::Light;
+
   // Fits from the ring of 'truth', its distance off by 3 %.
   std::optional<SmallPatternFitter::Fit> Fit(const cv::Mat& image, const RigidTransform& truth) {
     const CirclePose ring{1.03 * truth.translation, truth.rotation * Eigen::Vector3d::UnitZ()};
-    const auto start = fitter_.FindStart(image, ring, kOneScale, std::nullopt, &workspace_);
-    return fitter_.Refine(image, start.camera_from_pattern, 8, &workspace_);
+    constexpr std::array<double, 1> kOneScale{1.0};
+    constexpr std::array<double, 6> kTurns{0, 0.26, 0.52, 0.79, 1.05, 1.31};
+    if (!fitter_.FindScale(image, ring, kOneScale, &workspace_)) return std::nullopt;
+    const auto start = fitter_.FindStart(ring, 1, kTurns, workspace_);
+    return fitter_.Refine(image, start.camera_from_pattern, Light::kEven, 8, &workspace_);
   }
   cv::Mat Draw(const Print& print, const RigidTransform& pose) const {
     return DrawPrint(camera_, pattern_, print, pose);
@@ -103,13 +106,14 @@ TEST_F(SmallPatternTest, OverexposureDoesNotMoveIt) {
 
 TEST_F(SmallPatternTest, AFlatImageFitsNothing) {
   const RigidTransform pose = PrintPose({0, 0, 10}, 0, 0, 0);
-  EXPECT_FALSE(fitter_.Refine(cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)), pose, 8, &workspace_));
+  EXPECT_FALSE(fitter_.Refine(cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)), pose, Light::kEven, 8,
+                              &workspace_));
 }
 
 TEST_F(SmallPatternTest, OtherSignsShowWhatThePrintHasNot) {
   Random random(4);
   const auto inspect = [&](const Print& print, const RigidTransform& pose) {
-    return fitter_.Inspect(Draw(print, pose), pose, &workspace_);
+    return fitter_.Inspect(Draw(print, pose), pose, Light::kEven, &workspace_);
   };
   const double outer = pattern_.outer_radius_m();
   const Print frame = [&](double x, double y) {
@@ -129,6 +133,52 @@ TEST_F(SmallPatternTest, OtherSignsShowWhatThePrintHasNot) {
     EXPECT_GT(inspect(frame, pose)->frame_corners, 0.1) << diameter_px;
     EXPECT_LT(inspect(blot, pose)->cross_correlation, 0.5) << diameter_px;
   }
+}
+
+TEST_F(SmallPatternTest, AShadowEdgeIsTakenOut) {
+  Random random(6);
+  for (const int diameter_px : {18, 24, 28, 40}) {
+    const RigidTransform truth = PoseOf(diameter_px, &random);
+    const cv::Mat even = Draw(SpokedPrint(pattern_, 4), truth);
+    cv::Mat shaded = even.clone();
+    Eigen::Vector2d center;
+    camera_.Project(truth.translation, &center);
+    for (int v = 0; v < shaded.rows; ++v) {
+      for (int u = 0; u < shaded.cols; ++u) {
+        const double behind = 0.6 * (u - center.x()) + 0.8 * (v - center.y()) - 1;
+        const double light = 1 - 0.65 * std::clamp(0.5 + 0.3 * behind, 0.0, 1.0);
+        auto& gray = shaded.at<std::uint8_t>(v, u);
+        gray = static_cast<std::uint8_t>(light * gray);
+      }
+    }
+    shaded = AddNoise(shaded, 1.5, &random);
+    const auto lit = fitter_.Inspect(shaded, truth, Light::kEven, &workspace_);
+    const auto evened = fitter_.Inspect(shaded, truth, Light::kShadowEdge, &workspace_);
+    ASSERT_TRUE(lit && evened) << diameter_px;
+    EXPECT_GT(evened->cross_correlation, 0.85) << diameter_px;
+    EXPECT_GT(evened->cross_correlation, lit->cross_correlation + 0.05) << diameter_px;
+    EXPECT_LT(std::abs(evened->board_darkness), 0.2) << diameter_px;
+    const auto fit = fitter_.Refine(shaded, truth, Light::kShadowEdge, 8, &workspace_);
+    ASSERT_TRUE(fit) << diameter_px;
+    EXPECT_GT(fit->correlation, 0.93) << diameter_px;
+    EXPECT_GT(fit->match.Quality(), 0.75) << diameter_px;
+    EXPECT_FALSE(fitter_.Inspect(even, truth, Light::kShadowEdge, &workspace_)) << "there is none";
+  }
+}
+
+TEST_F(SmallPatternTest, NoiseIsNotExplained) {
+  Random random(7);
+  double most = 0;
+  for (int i = 0; i < 40; ++i) {
+    const cv::Mat noise = AddNoise(cv::Mat(240, 320, CV_8UC1, cv::Scalar(120)), 25, &random);
+    const auto fit = Fit(noise, PoseOf(13, &random));
+    if (fit) most = std::max(most, fit->explained);
+  }
+  EXPECT_LT(most, 0.5);
+  const RigidTransform truth = PoseOf(13, &random);
+  const auto fit = Fit(Draw(SpokedPrint(pattern_, 4), truth), truth);
+  ASSERT_TRUE(fit);
+  EXPECT_GT(fit->explained, 0.8);
 }
 
 TEST_F(SmallPatternTest, AHighlightDoesNotSpoilTheFit) {
