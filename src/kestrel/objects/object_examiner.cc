@@ -29,6 +29,31 @@ ColorProbabilities ProbabilitiesOf(const ColorModel& model, const Hsv& color) {
   return probabilities;
 }
 
+// Share of the ellipse's pixels in the image that are the segment's.
+double FilledShare(const Segment& segment, const Ellipse& ellipse, const cv::Size& image) {
+  const Eigen::Vector2d along = ellipse.major_axis() / ellipse.semi_major;
+  const Eigen::Vector2d across = ellipse.minor_axis() / ellipse.semi_minor;
+  const auto is_inside = [&](int u, int v) {
+    const Eigen::Vector2d offset = Eigen::Vector2d(u, v) - ellipse.center;
+    return std::hypot(along.dot(offset), across.dot(offset)) <= 1;
+  };
+  const auto first = [&](double x) {
+    return std::max(0, static_cast<int>(x - ellipse.semi_major));
+  };
+  const auto last = [&](double x, int size) {
+    return std::min(size - 1, static_cast<int>(x + ellipse.semi_major));
+  };
+  int all = 0;
+  for (int v = first(ellipse.center.y()); v <= last(ellipse.center.y(), image.height); ++v) {
+    for (int u = first(ellipse.center.x()); u <= last(ellipse.center.x(), image.width); ++u) {
+      all += is_inside(u, v);
+    }
+  }
+  const auto filled = std::ranges::count_if(
+      segment.pixels, [&](const PixelPosition& at) { return is_inside(at.u, at.v); });
+  return static_cast<double>(filled) / std::max(1, all);
+}
+
 bool IsWithin(double value, double expected, double factor) {
   return value <= expected * factor && expected <= value * factor;
 }
@@ -115,6 +140,12 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
   }
   if (outline->residual_px > options.outline_tolerance * radius_px + options.outline_tolerance_px) {
     return false;
+  }
+  if (segment.touches_border) {
+    // What circularity says of a whole disc.
+    constexpr double kMinFill = 0.8;
+    const auto ellipse = EllipseThrough(workspace_->outline.points);
+    if (!ellipse || FilledShare(segment, *ellipse, image_.size()) < kMinFill) return false;
   }
   *reached = ObjectStage::kOutline;
   const double radius_m = object.size_m / 2;
