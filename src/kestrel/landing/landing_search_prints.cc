@@ -251,7 +251,7 @@ SmallPatternFitter::Start LandingSearch::FindStart(const CirclePose& pose,
       models_.small.FindScale(image_, pose, scales, &buffers_.small);
   if (!scale) return {{}, -1};
   if (const std::optional<double> angle = ArmAngleByQuadrants(pose)) {
-    const auto start = models_.small.FindStart(pose, *scale, {&*angle, 1}, buffers_.small);
+    auto start = models_.small.FindStart(pose, *scale, {&*angle, 1}, buffers_.small);
     if (start.correlation >= kSureCorrelation) return start;
   }
   // Within 7.5 degrees of every direction.
