@@ -23,8 +23,9 @@ test: build
 bench: build  ## speed
 	@for program in $(BIN)/bench/*_benchmark; do echo "== $$program"; $$program || exit; done
 
-accuracy: build  ## errors against truth; simulated landings (SCENARIOS) to docs/accuracy.md
+accuracy: build  ## errors against truth; simulated flights (landings: SCENARIOS) to docs/accuracy.md, docs/hunt_accuracy.md
 	scripts/accuracy $(BIN) $(SCENARIOS)
+	scripts/hunt_accuracy $(BIN)
 	@for program in $(BIN)/bench/*accuracy; do echo "== $$program"; $$program || exit; done
 
 format:

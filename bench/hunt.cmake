@@ -1,5 +1,5 @@
 # Accuracy and speed of the coloured-object pipeline (paper, section 3).
-add_executable(hunt_accuracy hunt_accuracy.cc)
+add_executable(hunt_accuracy hunt_accuracy.cc hunt_score.cc)
 target_link_libraries(hunt_accuracy PRIVATE kestrel::pipeline kestrel::recording kestrel::evaluation
                                             CLI11::CLI11 fmt::fmt opencv_imgproc)
 target_compile_definitions(hunt_accuracy

@@ -82,7 +82,7 @@ class FaceMaker {
   cv::Mat Paint(int digit) {
     static const std::array<cv::Scalar, 3> kPaints = {
         cv::Scalar(35, 30, 190), cv::Scalar(50, 160, 90), cv::Scalar(120, 60, 10)};
-    cv::Mat paint(kPaintSide, kPaintSide, CV_8UC3, kPaints[random_.Integer(0, 2)]);
+    cv::Mat ink(kPaintSide, kPaintSide, CV_8UC3, cv::Scalar::all(0));  // what FreeType draws on
     const int height = static_cast<int>(kPaintSide * random_.Uniform(0.5, 0.8));
     const std::string text = std::to_string(digit);
     int baseline = 0;
@@ -91,8 +91,28 @@ class FaceMaker {
                                             random_.Uniform(-0.05, 0.05) * kPaintSide),
                            static_cast<int>(0.5 * (kPaintSide + size.height) +
                                             random_.Uniform(-0.05, 0.05) * kPaintSide));
-    font_->putText(paint, text, origin, height, cv::Scalar(235, 235, 235), -1, cv::LINE_AA, true);
+    font_->putText(ink, text, origin, height, cv::Scalar::all(255), -1, cv::LINE_AA, true);
+    cv::cvtColor(ink, ink, cv::COLOR_BGR2GRAY);
+    Slant(&ink);
+    Thicken(&ink);
+    cv::Mat paint(ink.size(), CV_8UC3, kPaints[random_.Integer(0, 2)]);
+    paint.setTo(cv::Scalar::all(235), ink > 127);
     return paint;
+  }
+
+  // Half of the digits are set in italics.
+  void Slant(cv::Mat* ink) {
+    if (!random_.Chance(0.5)) return;
+    const double slant = random_.Uniform(0.1, 0.35);
+    const cv::Matx23d shear(1, -slant, 0.5 * slant * kPaintSide, 0, 1, 0);
+    cv::warpAffine(*ink, *ink, shear, ink->size());
+  }
+
+  // Digits are painted with brushes, too.
+  void Thicken(cv::Mat* ink) {
+    const int reach = random_.Integer(0, 5);
+    const cv::Size size(2 * reach + 1, 2 * reach + 1);
+    cv::dilate(*ink, *ink, cv::getStructuringElement(cv::MORPH_ELLIPSE, size));
   }
 
   void Degrade(cv::Mat* image) {

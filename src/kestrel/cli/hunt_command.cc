@@ -18,6 +18,7 @@
 #include "kestrel/mapping/map_file.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/recording/annotated_writer.h"
+#include "kestrel/recording/map_inset.h"
 #include "kestrel/recording/object_csv.h"
 #include "kestrel/recording/object_map_csv.h"
 #include "kestrel/recording/object_overlay.h"
@@ -48,11 +49,15 @@ class HuntSink {
     WriteAtOnce(ObjectCsvHeader(), kDetections, &csv());
   }
 
-  void Write(const Frame& frame, const HuntObservation& observation,
-             const ObjectDetector& detector) {
-    WriteAtOnce(ObjectCsvRows(frame.name, observation, detector.model()), kDetections, &csv());
+  void Write(const Frame& frame, const HuntObservation& observation, const HuntPipeline& pipeline) {
+    const ObjectModel& model = pipeline.detector().model();
+    WriteAtOnce(ObjectCsvRows(frame.name, observation, model), kDetections, &csv());
     if (!annotated_) return;
-    annotated_->Write(frame.name, DrawObjectOverlay(frame.image, detector.model(), observation));
+    cv::Mat drawn = DrawObjectOverlay(frame.image, model, observation);
+    if (const auto& pose = observation.world_from_camera) {
+      DrawMapInset(pipeline.map().Confirmed(), model, pose->translation.head<2>(), &drawn);
+    }
+    annotated_->Write(frame.name, drawn);
   }
 
   // The map goes to files only.
@@ -115,7 +120,7 @@ void ProcessFrames(FrameSource* source, const CameraCalibration& calibration,
     RequireSize(frame, calibration.intrinsics);
     poses.FeedUntil(frame.time + lead, pipeline);
     const HuntObservation& observation = pipeline->Process(frame.image, frame.time);
-    sink->Write(frame, observation, pipeline->detector());
+    sink->Write(frame, observation, *pipeline);
     summary->Add(observation);
     progress.Show(summary->frames());
   }

@@ -2,6 +2,8 @@
 #include "kestrel/evaluation/object_comparison.h"
 
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <set>
 #include <span>
 
@@ -14,6 +16,7 @@ namespace {
 constexpr double kMinWantedArea_px = 50;
 constexpr double kMinReach_px = 5;
 constexpr double kMaxMapDistance_m = 1;
+constexpr int kMinSightings = 3;
 
 // The elements of 'rows', in order of time, that are of 'time'.
 template <class Row>
@@ -46,6 +49,15 @@ void MeasureErrors(const FlightTruth& flight, const TrueSighting& truth, const O
   if (detected.center_in_world) {
     comparison->world_error_m = (*detected.center_in_world - truth.position_in_world).norm();
   }
+}
+
+// Several objects that touch, or a part of one that the image's border cuts off: without a position
+// they are neither right nor wrong.
+std::vector<ObjectRow> Located(std::span<const ObjectRow> detections) {
+  std::vector<ObjectRow> located;
+  std::ranges::copy_if(detections, std::back_inserter(located),
+                       [](const ObjectRow& row) { return row.center_in_camera.has_value(); });
+  return located;
 }
 
 std::vector<Candidate> NearDetections(std::span<const TrueSighting> sightings,
@@ -99,8 +111,8 @@ std::vector<ObjectComparison> CompareObjects(const FlightTruth& flight, const Tr
   std::vector<ObjectComparison> comparisons;
   for (const Time time : rows.frames) {
     flight.RequireFrame(time, file);
-    CompareFrame(flight, objects, time, RowsAt(sightings, time), RowsAt(rows.objects, time),
-                 &comparisons);
+    CompareFrame(flight, objects, time, RowsAt(sightings, time),
+                 Located(RowsAt(rows.objects, time)), &comparisons);
   }
   return comparisons;
 }
@@ -109,9 +121,13 @@ std::vector<MapComparison> CompareMap(const TrueObjects& objects,
                                       const std::vector<TrueSighting>& sightings,
                                       const std::vector<ObjectComparison>& comparisons,
                                       const std::vector<MapRow>& rows) {
-  std::set<int> wanted;
+  std::map<int, int> wanted_sightings;
   for (const ObjectComparison& comparison : comparisons) {
-    if (comparison.is_wanted) wanted.insert(*comparison.true_id);
+    if (comparison.is_wanted) ++wanted_sightings[*comparison.true_id];
+  }
+  std::set<int> wanted;
+  for (const auto& [id, count] : wanted_sightings) {
+    if (count >= kMinSightings) wanted.insert(id);
   }
   std::vector<Candidate> candidates;
   for (const auto& [id, object] : objects) {

@@ -28,8 +28,8 @@ struct ObjectComparison {
 };
 
 // A detection is that of the nearest object in view (whatever its class) whose centre is at most
-// its semi-major axis, or 5 px, away. Frames that have no row in 'rows' are left out. Throws
-// InputError for a row that is of no image.
+// its semi-major axis, or 5 px, away. Those without a position are left out. Frames that have no
+// row in 'rows' are left out. Throws InputError for a row that is of no image.
 std::vector<ObjectComparison> CompareObjects(const FlightTruth& flight, const TrueObjects& objects,
                                              const std::vector<TrueSighting>& sightings,
                                              const ObjectRows& rows, const std::string& file);
@@ -45,8 +45,8 @@ struct MapComparison {
   bool IsMapped() const { return !mapped_class.empty(); }
 };
 
-// Objects of which at least one sighting was wanted, and the entries of the map, matched where they
-// are at most 1 m apart when the entry was last seen.
+// Objects of which at least three sightings were wanted, and the entries of the map, matched where
+// they are at most 1 m apart when the entry was last seen.
 std::vector<MapComparison> CompareMap(const TrueObjects& objects,
                                       const std::vector<TrueSighting>& sightings,
                                       const std::vector<ObjectComparison>& comparisons,

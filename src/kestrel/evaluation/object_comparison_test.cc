@@ -24,7 +24,7 @@ TrueSighting Sighting(int id, double x, double visible = 1) {
 }
 
 ObjectRow Detection(const std::string& class_name, const Eigen::Vector2d& center_px) {
-  return {FrameTime(0), center_px, 10, class_name, {}, {}};
+  return {FrameTime(0), center_px, 10, class_name, Eigen::Vector3d(0, 0, 5), {}};
 }
 
 TEST(MatchNearest, TakesEveryThingOnce) {
@@ -38,9 +38,10 @@ TEST(MatchNearest, TakesEveryThingOnce) {
 TEST(CompareObjects, FoundMissedFalseAndOfAnotherClass) {
   const TestFlight files;
   const FlightTruth flight(files.recording());
-  const ObjectRows rows = {{FrameTime(0)},
-                           {Detection("red", {320, 241}), Detection("green", {323, 144}),
-                            Detection("orange", {30, 30})}};
+  ObjectRows rows = {{FrameTime(0)},
+                     {Detection("red", {320, 241}), Detection("green", {323, 144}),
+                      Detection("orange", {30, 30}), Detection("red", {60, 60})}};
+  rows.objects.back().center_in_camera.reset();  // merged objects, or a part of one
   const auto comparisons = CompareObjects(
       flight, kObjects, {Sighting(1, 0), Sighting(2, 1), Sighting(3, 2, 0.4)}, rows, "file");
   ASSERT_EQ(comparisons.size(), 4u);
@@ -65,7 +66,7 @@ TEST(CompareMap, FindsWhatIsMissingAndWhatIsNotThere) {
   std::vector<TrueSighting> sightings = {Sighting(1, 0), Sighting(2, 1), Sighting(3, 2)};
   sightings[2].velocity_in_world = {0, 1, 0};
   std::vector<ObjectComparison> comparisons;
-  for (const int id : {1, 2, 3}) {
+  for (const int id : {1, 2, 3, 1, 2, 3, 1, 2, 3}) {
     comparisons.push_back({FrameTime(0), id, kObjects.at(id).class_name, "", true, 0, {}, {}});
   }
   const Time later = FrameTime(0) + DurationFromSeconds(2);

@@ -92,6 +92,7 @@ SceneTruth ParseSceneTruth(const std::string& text, const std::string& file) {
   SceneTruth scene;
   scene.condition = root.Text("condition").value_or(scene.condition);
   scene.mount_error = MountError(root.Child("mount_error"));
+  scene.clock_offset_s = root.Number("time_offset_s").value_or(scene.clock_offset_s);
   const Section options = root.Child("options");
   scene.ring_diameter_m =
       options.Child("pattern").Number("outer_diameter_m").value_or(scene.ring_diameter_m);

@@ -18,6 +18,7 @@ struct SceneTruth {
   double ring_diameter_m = 1;     // options.pattern.outer_diameter_m
   // R_BS_true = mount_error * R_BS_nominal: mount_error.yaw_deg, pitch_deg, roll_deg.
   Eigen::Quaterniond mount_error = Eigen::Quaterniond::Identity();
+  double clock_offset_s = 0;         // time_offset_s: t_nav = t_image + offset
   std::optional<double> exposure_s;  // options.shutter.exposure_s
 
   // frames.<timestamp>.condition and .exposure_s, where an image has its own.

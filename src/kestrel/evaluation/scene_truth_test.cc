@@ -21,7 +21,7 @@ TEST(SceneTruth, WhatIsNotThereKeepsItsDefault) {
 
 TEST(SceneTruth, AnImageMayHaveItsOwn) {
   const SceneTruth scene = ParseSceneTruth(
-      "condition: dark\noptions: {shutter: {exposure_s: 0.01}}\n"
+      "condition: dark\ntime_offset_s: 0.07\noptions: {shutter: {exposure_s: 0.01}}\n"
       "frames:\n  '5': {condition: dust, exposure_s: 0.02}\n  '6': {haze: 1}\n",
       "scene.yaml");
   EXPECT_EQ(scene.ConditionAt(TimeFromNanoseconds(5)), "dust");

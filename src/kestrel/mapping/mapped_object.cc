@@ -32,15 +32,21 @@ void PredictObject(Time time, const ObjectMotion& motion, MappedObject* object) 
         motion.drift_noise * motion.drift_noise * dt;
     return;
   }
-  // Constant velocity, disturbed by white acceleration.
+  // A velocity that is disturbed by white acceleration and forgotten with time: nothing drives
+  // straight on for long (Ornstein-Uhlenbeck process).
+  const double t = motion.velocity_time_s;
+  const double kept = std::exp(-dt / t);
+  const double way = t * (1 - kept);
   MappedObject::Matrix6 transition = MappedObject::Matrix6::Identity();
-  transition.topRightCorner<3, 3>().diagonal().setConstant(dt);
+  transition.topRightCorner<3, 3>().diagonal().setConstant(way);
+  transition.bottomRightCorner<3, 3>().diagonal().setConstant(kept);
   const double q = motion.acceleration_noise * motion.acceleration_noise;
+  const Eigen::Vector3d density(q, q, kClimb * kClimb * q);
   MappedObject::Matrix6 noise = MappedObject::Matrix6::Zero();
-  noise.topLeftCorner<3, 3>().diagonal().setConstant(q * dt * dt * dt / 3);
-  noise.topRightCorner<3, 3>().diagonal().setConstant(q * dt * dt / 2);
-  noise.bottomLeftCorner<3, 3>().diagonal().setConstant(q * dt * dt / 2);
-  noise.bottomRightCorner<3, 3>().diagonal().setConstant(q * dt);
+  noise.topLeftCorner<3, 3>().diagonal() = density * t * t * (dt - way - way * way / (2 * t));
+  noise.topRightCorner<3, 3>().diagonal() = density * way * way / 2;
+  noise.bottomLeftCorner<3, 3>().diagonal() = density * way * way / 2;
+  noise.bottomRightCorner<3, 3>().diagonal() = density * t / 2 * (1 - kept * kept);
   object->state = (transition * object->state).eval();
   object->covariance = (transition * object->covariance * transition.transpose() + noise).eval();
 }

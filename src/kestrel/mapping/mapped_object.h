@@ -52,10 +52,14 @@ struct MappedObject {
   std::optional<int> digit() const;
 };
 
+// Objects that move drive: their speed and acceleration upwards is this share of that sideways.
+inline constexpr double kClimb = 0.02;
+
 // How objects move: see ObjectMapOptions.
 struct ObjectMotion {
   double drift_noise;
   double acceleration_noise;
+  double velocity_time_s;
 };
 
 // The object at a later time (an earlier one changes nothing): where it stands, or by its velocity.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -58,9 +59,11 @@ std::vector<std::string> ObjectMapOptions::Validate() const {
   };
   const auto is_share = [](double x) { return x > 0 && x < 1; };
   require(gate > 0, "gate must be positive");
+  require(new_density > 0, "new_density must be positive");
   require(min_separation_m >= 0, "min_separation_m must not be negative");
   require(drift_noise >= 0, "drift_noise must not be negative");
   require(acceleration_noise > 0, "acceleration_noise must be positive");
+  require(velocity_time_s > 0, "velocity_time_s must be positive");
   require(start_speed_sigma_mps > 0, "start_speed_sigma_mps must be positive");
   require(shared_sigma_m >= 0, "shared_sigma_m must not be negative");
   require(is_share(detection_probability), "detection_probability must be in 0 to 1");
@@ -80,10 +83,12 @@ ObjectMap::ObjectMap(const ObjectModel& model, const ObjectMapOptions& options)
       hit_log_odds_(std::log(options.detection_probability / options.false_probability)),
       miss_log_odds_(
           std::log((1 - options.detection_probability) / (1 - options.false_probability))),
+      new_cost_(-2 * std::log(options.new_density)),
       max_log_odds_(LogOdds(options.max_probability)),
       removal_log_odds_(LogOdds(options.removal_probability)) {
   const auto capacity = static_cast<std::size_t>(options.capacity);
   objects_.reserve(capacity + kMaxMeasurements);
+  predicted_.reserve(capacity + kMaxMeasurements);
   measurements_.reserve(kMaxMeasurements);
   costs_.resize(kMaxMeasurements, static_cast<Eigen::Index>(capacity + kMaxMeasurements));
 }
@@ -97,8 +102,8 @@ void ObjectMap::Update(Time time, std::span<const ObjectMeasurement> measurement
     if (measurements_.size() == kMaxMeasurements) break;
     if (IsUsable(measurement)) measurements_.push_back(measurement);
   }
-  const ObjectMotion motion{options_.drift_noise, options_.acceleration_noise};
-  for (MappedObject& object : objects_) PredictObject(time, motion, &object);
+  predicted_ = objects_;
+  for (MappedObject& object : predicted_) PredictObject(time, options_.motion(), &object);
   Assign(time);
   FadeUnseen(time, view);
   UnifyNeighbors();
@@ -126,7 +131,8 @@ double ObjectMap::Cost(const ObjectMeasurement& measurement, const MappedObject&
   const double distance = whitened.squaredNorm();
   if (distance > options_.gate) return kImpossible;
   // -2 log of the likelihood.
-  return distance + 2 * llt.matrixL().nestedExpression().diagonal().array().log().sum() +
+  return distance + 3 * std::log(2 * std::numbers::pi) +
+         2 * llt.matrixL().nestedExpression().diagonal().array().log().sum() +
          2 * ColorCost(measurement.color_probabilities, object.color_log_likelihoods);
 }
 
@@ -163,8 +169,9 @@ MappedObject ObjectMap::Start(Time time, const ObjectMeasurement& measurement) {
   const auto index = ClassOf(object, model_);
   object.may_move = index && model_.classes[*index].may_move;
   if (object.may_move) {
-    object.covariance.bottomRightCorner<3, 3>().diagonal().setConstant(
-        options_.start_speed_sigma_mps * options_.start_speed_sigma_mps);
+    const double variance = options_.start_speed_sigma_mps * options_.start_speed_sigma_mps;
+    object.covariance.bottomRightCorner<3, 3>().diagonal() << variance, variance,
+        kClimb * kClimb * variance;
   }
   return object;
 }
@@ -177,13 +184,15 @@ void ObjectMap::Assign(Time time) {
   auto costs = costs_.topLeftCorner(rows, known + rows);
   costs.rightCols(rows).setConstant(kImpossible);
   for (Eigen::Index i = 0; i < rows; ++i) {
-    for (Eigen::Index k = 0; k < known; ++k) costs(i, k) = Cost(measurements_[i], objects_[k]);
-    costs(i, known + i) = options_.gate;
+    for (Eigen::Index k = 0; k < known; ++k) costs(i, k) = Cost(measurements_[i], predicted_[k]);
+    costs(i, known + i) = new_cost_;
   }
   const std::vector<int>& columns = solver_.Solve(costs);
   for (Eigen::Index i = 0; i < rows; ++i) {
     if (columns[i] < known) {
-      Fuse(measurements_[i], &objects_[columns[i]]);
+      MappedObject& object = objects_[columns[i]];
+      object = predicted_[columns[i]];
+      Fuse(measurements_[i], &object);
     } else {
       objects_.push_back(Start(time, measurements_[i]));
     }
@@ -191,8 +200,10 @@ void ObjectMap::Assign(Time time) {
 }
 
 void ObjectMap::FadeUnseen(Time time, const FieldOfView& view) {
-  for (MappedObject& object : objects_) {
-    if (object.last_seen != time && view.Shows(object)) object.log_odds += miss_log_odds_;
+  for (std::size_t i = 0; i < predicted_.size(); ++i) {
+    if (objects_[i].last_seen != time && view.Shows(predicted_[i])) {
+      objects_[i].log_odds += miss_log_odds_;
+    }
   }
   std::erase_if(objects_,
                 [&](const MappedObject& object) { return object.log_odds < removal_log_odds_; });

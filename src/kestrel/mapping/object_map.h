@@ -18,11 +18,16 @@ struct ObjectMapOptions {
   // Squared Mahalanobis distance beyond which a detection is not the object's: 16.3 is passed by
   // one true detection in a thousand (3 degrees of freedom).
   double gate = 16.3;
+  // How many objects that are not in the map yet lie around, 1/m^3. A detection is rather a new
+  // object than one that may be anywhere by now.
+  double new_density = 0.005;
   // Two objects of one shape and colour cannot be nearer than this: they become one.
   double min_separation_m = 0.2;
-  // How fast the position of a standing object becomes uncertain, and how a moving one accelerates.
+  // How fast the position of a standing object becomes uncertain; how a moving one accelerates, and
+  // for how long it keeps its velocity.
   double drift_noise = 0.005;
-  double acceleration_noise = 0.1;
+  double acceleration_noise = 0.3;
+  double velocity_time_s = 5;
   double start_speed_sigma_mps = 1;
   // Error of the position, per axis, that many detections in a row share (bias of the navigation,
   // clock): no object is known better than this.
@@ -41,9 +46,11 @@ struct ObjectMapOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("gate", self.gate, "1", "squared Mahalanobis distance of the furthest detection");
+    visitor("new_density", self.new_density, "1/m^3", "objects that are not in the map yet");
     visitor("min_separation_m", self.min_separation_m, "m", "nearer ones of a kind become one");
     visitor("drift_noise", self.drift_noise, "m/sqrt(s)", "of the position of standing objects");
     visitor("acceleration_noise", self.acceleration_noise, "m/s^2/sqrt(Hz)", "of moving objects");
+    visitor("velocity_time_s", self.velocity_time_s, "s", "how long a velocity is kept, about");
     visitor("start_speed_sigma_mps", self.start_speed_sigma_mps, "m/s",
             "speed of a new object that may move, standard deviation per axis");
     visitor("shared_sigma_m", self.shared_sigma_m, "m",
@@ -59,6 +66,8 @@ struct ObjectMapOptions {
     visitor("capacity", self.capacity, "1", "objects that are kept");
   }
   std::vector<std::string> Validate() const;
+
+  ObjectMotion motion() const { return {drift_noise, acceleration_noise, velocity_time_s}; }
 };
 
 // Says where an object should have been seen, if it were there.
@@ -81,7 +90,8 @@ class ObjectMap {
   // Detections that are not finite are left out, and those beyond kMaxMeasurements.
   void Update(Time time, std::span<const ObjectMeasurement> measurements, const FieldOfView& view);
 
-  // The objects seen often enough, by their ids, at the time when they were last updated.
+  // The objects seen often enough, by their ids, each at the time when it was last seen: where a
+  // moving one is since then nobody knows, PredictObject says where it would be.
   std::vector<MappedObject> Confirmed() const;
 
   // All, with those that were seen once.
@@ -102,9 +112,11 @@ class ObjectMap {
   ObjectMapOptions options_;
   double hit_log_odds_;
   double miss_log_odds_;
+  double new_cost_;  // -2 log of how likely a detection is that of a new object
   double max_log_odds_;
   double removal_log_odds_;
   std::vector<MappedObject> objects_;
+  std::vector<MappedObject> predicted_;  // the same at the time of the update
   std::vector<ObjectMeasurement> measurements_;
   Eigen::MatrixXd costs_;
   AssignmentSolver solver_;

@@ -70,7 +70,7 @@ std::vector<MappedObject> TeamMap::Fused(const ObjectMapOptions& options) const 
   for (const auto& [uav, map] : maps_) {
     std::vector<MappedObject> objects = map.objects;
     for (MappedObject& object : objects) {
-      PredictObject(newest, {options.drift_noise, options.acceleration_noise}, &object);
+      PredictObject(newest, options.motion(), &object);
     }
     FuseInto(objects, options, &fused);
   }

@@ -45,6 +45,17 @@ bool ReadProfile(const cv::Mat& image, const Eigen::Vector2d& start, const Eigen
   return true;
 }
 
+// The direction in the space of colours that tells 'inside' from 'outside' best. What the outside
+// would be in a shadow or in more light has no part in it, as far as the two differ by more than
+// their brightness: a disc that lies on the ground has its own shadow around a half of its edge.
+Eigen::Vector3f AxisBetween(const Eigen::Vector3f& inside, const Eigen::Vector3f& outside) {
+  constexpr float kMinShare = 0.4F;
+  const Eigen::Vector3f difference = inside - outside;
+  const Eigen::Vector3f hue =
+      inside - inside.dot(outside) / std::max(outside.squaredNorm(), 1e-9F) * outside;
+  return hue.norm() > kMinShare * difference.norm() ? hue : difference;
+}
+
 struct Crossing {
   double index;  // with its fraction
   float slope;   // of the share of the inside, per sample, positive
@@ -54,9 +65,9 @@ struct Crossing {
 std::optional<Crossing> FindCrossing(const Profile& profile, const Eigen::Vector3f& inside,
                                      const Eigen::Vector3f& outside, int first) {
   constexpr float kMinContrast = 0.02F;
-  const Eigen::Vector3f axis = inside - outside;
-  const float contrast = axis.squaredNorm();
-  if (contrast < kMinContrast * kMinContrast) return std::nullopt;
+  const Eigen::Vector3f axis = AxisBetween(inside, outside);
+  if (axis.norm() < kMinContrast) return std::nullopt;
+  const float contrast = axis.dot(inside - outside);
   const auto share = [&](int i) { return axis.dot(profile[i] - outside) / contrast; };
   float last = share(first);
   for (int i = first + 1; i < kSamples; ++i) {
@@ -69,6 +80,14 @@ std::optional<Crossing> FindCrossing(const Profile& profile, const Eigen::Vector
 }
 
 }  // namespace
+
+bool ShowsColorEdge(const cv::Size& image, const Eigen::Vector2d& start,
+                    const Eigen::Vector2d& outward) {
+  const auto is_inside = [&](const Eigen::Vector2d& at) {
+    return at.x() >= 0 && at.y() >= 0 && at.x() < image.width - 1 && at.y() < image.height - 1;
+  };
+  return is_inside(start - kReach * outward) && is_inside(start + kReach * outward);
+}
 
 std::optional<ColorEdge> FindColorEdge(const cv::Mat& image, const Eigen::Vector2d& start,
                                        const Eigen::Vector2d& outward) {

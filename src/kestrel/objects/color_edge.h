@@ -13,6 +13,10 @@ struct ColorEdge {
   double blur_px = 0;    // standard deviation of the Gaussian that would blur a sharp edge as much
 };
 
+// Whether the image shows all that FindColorEdge looks at.
+bool ShowsColorEdge(const cv::Size& image, const Eigen::Vector2d& start,
+                    const Eigen::Vector2d& outward);
+
 // The sub-pixel place, along 'outward' (unit vector) from 'start' in a CV_8UC3 image, where the
 // colour is half that inside and half that outside. Light mixes linearly,
 // so that the channels are squared first (a camera's gamma is about 2). What is inside and outside

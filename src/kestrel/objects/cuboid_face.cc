@@ -54,10 +54,12 @@ void MarkPixels(const cv::Mat& image, const Segment& segment, const Box& box,
   const std::size_t size = static_cast<std::size_t>(box.width) * box.height;
   workspace->mask.assign(size, kOutside);
   workspace->values.assign(size, 0);
+  workspace->digit.clear();
   const std::size_t colored = segment.pixels.size() - segment.ambiguous_pixels;
   for (std::size_t i = 0; i < segment.pixels.size(); ++i) {
     const std::size_t index = box.Index(segment.pixels[i]);
     workspace->mask[index] = i < colored ? kColored : kDigit;
+    if (i >= colored) workspace->digit.push_back(index);
     workspace->values[index] = ValueAt(image, segment.pixels[i]);
   }
   // Mean of the coloured pixels of 3 x 3, against noise.
@@ -148,6 +150,32 @@ void FilterMask(const Box& box, const std::vector<std::uint8_t>& mask,
     for (const std::size_t near : box.Neighborhood(i)) sum += mask[near];
     (*filtered)[i] = sum >= 5;
   });
+}
+
+// Leaves what hangs together with the digit: not by a thread, but by pixels all of whose neighbours
+// belong to it.
+void KeepDigitsPart(const Box& box, CuboidFaceWorkspace* workspace) {
+  constexpr int kMinNeighbors = 8;
+  constexpr std::uint8_t kKept = 2;
+  std::vector<std::uint8_t>& filtered = workspace->filtered;
+  const auto is_core = [&](std::size_t i) {
+    int sum = 0;
+    for (const std::size_t near : box.Neighborhood(i)) sum += filtered[near] != 0;
+    return sum >= kMinNeighbors;
+  };
+  std::vector<std::size_t>& queue = workspace->queue;
+  queue.clear();
+  const auto push = [&](std::size_t i) {
+    if (filtered[i] != 1) return;
+    filtered[i] = kKept;
+    queue.push_back(i);
+  };
+  for (const std::size_t i : workspace->digit) push(i);
+  for (std::size_t start = 0; start < queue.size(); ++start) {
+    if (!is_core(queue[start])) continue;
+    for (const std::size_t near : box.Neighborhood(queue[start])) push(near);
+  }
+  for (std::uint8_t& pixel : filtered) pixel = pixel == kKept ? 1 : 0;
 }
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -316,6 +344,7 @@ std::optional<FaceCorners> FindCuboidFace(const cv::Mat& image, const Segment& s
   MarkPixels(image, segment, box, workspace);
   if (!MarkFace(box, workspace)) return std::nullopt;
   FilterMask(box, workspace->mask, &workspace->filtered);
+  KeepDigitsPart(box, workspace);
   FindHull(box, workspace->filtered, &workspace->hull);
   // Andrew's chain ends where it began.
   if (workspace->hull.size() > 1 && workspace->hull.front() == workspace->hull.back()) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -22,6 +23,8 @@ struct CuboidFaceWorkspace {
   std::vector<std::uint8_t> values;
   std::vector<std::uint8_t> smooth;
   std::vector<std::uint8_t> filtered;
+  std::vector<std::size_t> digit;  // pixels of it
+  std::vector<std::size_t> queue;
   std::vector<Eigen::Vector2d> hull;
 };
 

@@ -14,6 +14,8 @@
 namespace kestrel {
 namespace {
 
+constexpr int kDirections = 32;  // in which the edge is looked for
+
 // Angle between a ray and the cone, to first order (Sampson's distance), rad; negative inside.
 double DistanceToCone(const Cone& cone, const Eigen::Vector3d& ray) {
   const Eigen::Vector3d gradient = 2 * cone.matrix * ray;
@@ -114,21 +116,23 @@ void CollectBorderPixels(const Segment& segment, const cv::Size& image_size,
   points->erase(points->begin(), points->begin() + 2 * count);
 }
 
-// The longest row of directions, around the circle of 'count', that are missing.
-int LargestGap(const std::vector<int>& directions, int count) {
-  if (directions.empty()) return count;
+// What became of a direction in which the edge was looked for.
+enum class Direction { kHidden, kOutside, kFits };
+using Directions = std::array<Direction, kDirections>;
+
+// The longest row of hidden directions around the circle.
+int LargestGap(const Directions& directions) {
   int largest = 0;
-  int last = directions.back() - count;
-  for (const int direction : directions) {
-    largest = std::max(largest, direction - last - 1);
-    last = direction;
+  int run = 0;
+  for (int i = 0; i < 2 * kDirections && largest < kDirections; ++i) {
+    run = directions[i % kDirections] == Direction::kHidden ? run + 1 : 0;
+    largest = std::max(largest, run);
   }
   return largest;
 }
 
 std::optional<DiscOutline> FitOnce(const cv::Mat& image, const RayTable& rays, double focal_px,
                                    const Ellipse& start, DiscOutlineWorkspace* workspace) {
-  constexpr int kDirections = 32;
   constexpr int kMaxRounds = 6;
   constexpr double kMinLimitPx = 0.5;
   constexpr double kMinLimitShare = 0.015;  // of the radius: no disc is cut to perfection
@@ -136,12 +140,14 @@ std::optional<DiscOutline> FitOnce(const cv::Mat& image, const RayTable& rays, d
   workspace->rays.clear();
   workspace->points.clear();
   workspace->directions.clear();
+  Directions directions{};
   for (int i = 0; i < kDirections; ++i) {
     const double t = 2 * std::numbers::pi * i / kDirections;
     const Eigen::Vector2d outward = (start.semi_minor * std::cos(t) * start.major_axis() +
                                      start.semi_major * std::sin(t) * start.minor_axis())
                                         .normalized();
     const Eigen::Vector2d point = start.At(t);
+    if (!ShowsColorEdge(image.size(), point, outward)) directions[i] = Direction::kOutside;
     const std::optional<ColorEdge> edge = FindColorEdge(image, point, outward);
     if (!edge) continue;
     const double offset_px = edge->offset_px + CurvatureShift(edge->blur_px, radius_px);
@@ -165,10 +171,12 @@ std::optional<DiscOutline> FitOnce(const cv::Mat& image, const RayTable& rays, d
   MeasureDistances(*cone, focal_px, workspace);
   double squares = 0;
   for (const double distance : workspace->distances) squares += distance * distance;
+  for (const int direction : workspace->directions) directions[direction] = Direction::kFits;
   const auto count = static_cast<double>(workspace->rays.size());
-  const double gap = LargestGap(workspace->directions, kDirections);
-  return DiscOutline{*cone, std::sqrt(squares / count), gap / kDirections,
-                     count / (kDirections - gap)};
+  const double gap = LargestGap(directions);
+  const auto outside = static_cast<double>(std::ranges::count(directions, Direction::kOutside));
+  return DiscOutline{*cone, std::sqrt(squares / count), outside / kDirections, gap / kDirections,
+                     count / std::max(1.0, kDirections - outside - gap)};
 }
 
 }  // namespace
@@ -177,8 +185,8 @@ std::optional<DiscOutline> FitDiscOutline(const cv::Mat& image, const RayTable& 
                                           double focal_px, const Ellipse& start,
                                           DiscOutlineWorkspace* workspace) {
   std::optional<DiscOutline> outline = FitOnce(image, rays, focal_px, start, workspace);
-  // Where something hides a part of the disc, the start was not right: once more from the fit.
-  if (!outline || outline->gap == 0) return outline;
+  // Of a disc that is not seen as a whole the start was not right: once more from the fit.
+  if (!outline || outline->gap + outline->outside == 0) return outline;
   const std::optional<Ellipse> better = EllipseThrough(workspace->points);
   if (!better) return outline;
   const std::optional<DiscOutline> again = FitOnce(image, rays, focal_px, *better, workspace);

@@ -19,8 +19,11 @@ namespace kestrel {
 struct DiscOutline {
   Cone cone;
   double residual_px = 0;  // root of the mean square distance of the edge points that fit
-  double gap = 0;  // longest part of the outline, as a share of it, where nothing fits: is hidden
-  double fit_share = 0;  // of the directions outside of the gap, those whose edge point fits
+  double outside = 0;      // share of the outline that the image does not show
+  // Longest part of the outline, as a share of it, where the image shows it and nothing fits: is
+  // hidden by something.
+  double gap = 0;
+  double fit_share = 0;  // of the other directions, those whose edge point fits
 };
 
 // Memory of the fits.

@@ -24,6 +24,12 @@ std::optional<double> GroundPlane::DistanceNear(const Eigen::Vector3d& ray, doub
   return std::clamp(distance, nearest, furthest);
 }
 
+double GroundPlane::DistanceSigma(const Eigen::Vector3d& ray, double distance) const {
+  const double descent = -up_in_camera->dot(ray);
+  const double sideways = std::sqrt(std::max(0.0, 1 - descent * descent));
+  return std::hypot(height_sigma_m, up_sigma_rad * distance * sideways) / descent;
+}
+
 bool LooksLikeDisc(const Cone& cone, const Eigen::Vector3d& ray, double distance,
                    const Eigen::Vector3d& up, double radius, double tolerance, double slack) {
   const Eigen::Vector2d seen = cone.HalfAngles();

@@ -15,6 +15,8 @@ namespace kestrel {
 struct GroundPlane {
   std::optional<Eigen::Vector3d> up_in_camera;
   std::optional<double> camera_height_m;
+  double height_sigma_m = 0;  // standard deviations of both, and of the ground's flatness
+  double up_sigma_rad = 0;
 
   bool is_known() const { return up_in_camera && camera_height_m; }
 
@@ -23,6 +25,9 @@ struct GroundPlane {
   // does not meet it.
   std::optional<double> DistanceNear(const Eigen::Vector3d& ray, double distance, double min_height,
                                      double max_height) const;
+
+  // Standard deviation of such a distance, m.
+  double DistanceSigma(const Eigen::Vector3d& ray, double distance) const;
 };
 
 // Whether 'cone' may be the image of a horizontal disc at 'distance' along 'ray': both opening

@@ -67,6 +67,7 @@ std::vector<std::string> ObjectDetectorOptions::Validate() const {
   require(min_outline_share > 0 && min_outline_share <= 1, "min_outline_share must be in 0 to 1");
   require(max_gap >= 0 && max_gap < 1, "max_gap must be in 0 to 1");
   require(max_cut_off_gap >= 0 && max_cut_off_gap < 1, "max_cut_off_gap must be in 0 to 1");
+  require(max_outside >= 0 && max_outside < 1, "max_outside must be in 0 to 1");
   require(ground_tolerance > 0, "ground_tolerance must be positive");
   require(ground_tolerance_m >= 0, "ground_tolerance_m must not be negative");
   require(center_sigma_px > 0, "center_sigma_px must be positive");

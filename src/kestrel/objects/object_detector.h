@@ -34,10 +34,11 @@ struct ObjectDetectorOptions {
   double outline_tolerance = 0.03;
   double outline_tolerance_px = 0.3;
   // Longest part of a disc's outline that something may hide, of a whole disc and of one that the
-  // image's border cuts off, and the share of the rest that must fit. A polygon does not fit at its
-  // corners, which are all around.
+  // image's border cuts off, the share that may lie outside of the image, and the share of the rest
+  // that must fit. A polygon does not fit at its corners, which are all around.
   double max_gap = 0.35;
-  double max_cut_off_gap = 0.6;
+  double max_cut_off_gap = 0.1;
+  double max_outside = 0.5;
   double min_outline_share = 0.7;
   // With known attitude and height: how far an object's distance, and the axes of its image, may be
   // from those of an object on the ground. Shares, and metres that are always forgiven.
@@ -61,6 +62,7 @@ struct ObjectDetectorOptions {
     visitor("max_gap", self.max_gap, "1", "share of a disc's outline that may be hidden");
     visitor("max_cut_off_gap", self.max_cut_off_gap, "1",
             "the same where the image's border cuts it off");
+    visitor("max_outside", self.max_outside, "1", "share of it that may be outside of the image");
     visitor("min_outline_share", self.min_outline_share, "1",
             "share of the rest of its outline that must fit");
     visitor("ground_tolerance", self.ground_tolerance, "1",
@@ -86,6 +88,10 @@ struct ObjectHint {
   std::span<const TrackedObject> track;
   std::optional<Eigen::Vector3d> up_in_camera;  // unit vector, upwards
   std::optional<double> camera_height_m;        // above the ground; used together with 'up'
+  // Standard deviations of 'up' (rad) and of the height with the ground's own unevenness (m): what
+  // the height says of an object's distance is weighed against what its size says.
+  double up_sigma_rad = 0.02;
+  double height_sigma_m = 0.1;
 };
 
 // Memory of ObjectDetector::Detect; keeps its size from frame to frame.

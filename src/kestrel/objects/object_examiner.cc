@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Geometry>
+
 namespace kestrel {
 namespace {
 
@@ -25,17 +27,6 @@ ColorProbabilities ProbabilitiesOf(const ColorModel& model, const Hsv& color) {
   }
   for (double& p : probabilities) p /= total;
   return probabilities;
-}
-
-FaceCorners CornersOfMoments(const RegionMoments& moments) {
-  // A rectangle's second moments are a quarter of its sides squared, by three.
-  Ellipse ellipse = EllipseFromMoments(moments);
-  ellipse.Scale(std::sqrt(3.0) / 2);
-  const Eigen::Vector2d along = ellipse.semi_major * ellipse.major_axis();
-  const Eigen::Vector2d across = ellipse.semi_minor * ellipse.minor_axis();
-  const Eigen::Vector2d& center = ellipse.center;
-  return {center + along + across, center - along + across, center - along - across,
-          center + along - across};
 }
 
 bool IsWithin(double value, double expected, double factor) {
@@ -118,7 +109,10 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
   if (!outline) return false;
   const double radius_px = detector_.focal_px_ * std::tan(outline->cone.HalfAngles().minCoeff());
   const double max_gap = segment.touches_border ? options.max_cut_off_gap : options.max_gap;
-  if (outline->gap > max_gap || outline->fit_share < options.min_outline_share) return false;
+  if (outline->gap > max_gap || outline->outside > options.max_outside ||
+      outline->fit_share < options.min_outline_share) {
+    return false;
+  }
   if (outline->residual_px > options.outline_tolerance * radius_px + options.outline_tolerance_px) {
     return false;
   }
@@ -129,13 +123,14 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
   Eigen::Vector3d position = LocateDisc(outline->cone, radius_m, row_direction, hint_.up_in_camera);
   const double distance = position.norm();
   if (!std::isfinite(distance) || !(distance > 0)) return false;
-  if (const auto on_ground = Ground().DistanceNear(position / distance, distance, object.height_m,
-                                                   object.max_height_m)) {
+  if (const auto on_ground = DistanceOnGround(position, object)) {
+    // A part of an outline says less: its size must say more.
+    const double tolerance =
+        segment.touches_border ? 0.5 * options.ground_tolerance : options.ground_tolerance;
     const double slack_rad = 1 / detector_.focal_px_;
-    if (std::abs(distance - *on_ground) >
-            options.ground_tolerance * *on_ground + options.ground_tolerance_m ||
+    if (!IsOnGround(distance, *on_ground) ||
         !LooksLikeDisc(outline->cone, position / distance, *on_ground, *hint_.up_in_camera,
-                       radius_m, options.ground_tolerance, slack_rad)) {
+                       radius_m, tolerance, slack_rad)) {
       return false;
     }
   }
@@ -146,7 +141,11 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
       position = distance * RayAt(ellipse->center);
     }
   }
-  SetCenter(position, radius_px, 1 - outline->gap, detection);
+  // The less of the outline is seen, the less it says.
+  const double seen = 1 - outline->gap - outline->outside;
+  const double less = 1 / (seen * seen);
+  SetLocation(position, object, less * options.center_sigma_px,
+              less * options.radius_sigma_px / radius_px, detection);
   return true;
 }
 
@@ -158,8 +157,10 @@ bool ObjectExaminer::TestCuboid(const Segment& segment, const ObjectClass& objec
   const auto digit = CutOutDigit(image_, *corners);
   if (!digit) return false;
   *reached = ObjectStage::kOutline;
+  std::array<Eigen::Vector3d, 4> rays;
+  for (int i = 0; i < 4; ++i) rays[i] = RayAt((*corners)[i]);
+  if (!LocateFace(rays, object, detection)) return false;
   detection->digits = detector_.digits_.Classify(*digit);
-  if (!LocateFace(*corners, object, detection)) return false;
   *reached = ObjectStage::kPosition;
   return true;
 }
@@ -180,18 +181,46 @@ bool ObjectExaminer::TestBar(const Segment& segment, const SegmentShape& shape,
   if (!is_long) return false;
   *reached = ObjectStage::kOutline;
   if (segment.touches_border) return true;  // its bearing is all that is known
-  if (!LocateFace(CornersOfMoments(shape.moments), object, detection)) return false;
+  if (!LocateFace(RectangleAround(segment, shape), object, detection)) return false;
   *reached = ObjectStage::kPosition;
   return true;
 }
 
-bool ObjectExaminer::LocateFace(const FaceCorners& corners, const ObjectClass& object,
-                                ObjectDetection* detection) const {
-  constexpr double kMaxSkew = 0.3;
+// The rectangle around the segment, as it lies on the ground where the attitude is known: the
+// nearer half of a long object is larger in the image, and its centroid is not its middle.
+std::array<Eigen::Vector3d, 4> ObjectExaminer::RectangleAround(const Segment& segment,
+                                                               const SegmentShape& shape) const {
+  constexpr double kMinDescent = 0.05;
+  const Eigen::Vector3d up = hint_.up_in_camera.value_or(-RayAt(shape.moments.centroid));
+  const auto on_plane = [&](const Eigen::Vector2d& pixel) {
+    const Eigen::Vector3d ray = RayAt(pixel);
+    return Eigen::Vector3d(ray / std::max(kMinDescent, -up.dot(ray)));
+  };
+  const Eigen::Vector3d origin = on_plane(shape.ellipse.center);
+  const Eigen::Vector3d end =
+      on_plane(shape.ellipse.center + shape.ellipse.semi_major * shape.ellipse.major_axis());
+  const Eigen::Vector3d along = (end - origin).normalized();
+  const Eigen::Vector3d across = up.cross(along).normalized();
+  Eigen::AlignedBox2d extent;
+  for (const PixelPosition& at : segment.pixels) {
+    const Eigen::Vector3d offset = on_plane(Eigen::Vector2d(at.u, at.v)) - origin;
+    extent.extend(Eigen::Vector2d(along.dot(offset), across.dot(offset)));
+  }
+  std::array<Eigen::Vector3d, 4> corners;
+  constexpr std::array kOrder = {Eigen::AlignedBox2d::BottomLeft, Eigen::AlignedBox2d::BottomRight,
+                                 Eigen::AlignedBox2d::TopRight, Eigen::AlignedBox2d::TopLeft};
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Vector2d corner = extent.corner(kOrder[i]);
+    corners[i] = (origin + corner.x() * along + corner.y() * across).normalized();
+  }
+  return corners;
+}
+
+bool ObjectExaminer::LocateFace(const std::array<Eigen::Vector3d, 4>& rays,
+                                const ObjectClass& object, ObjectDetection* detection) const {
+  constexpr double kMaxSkew = 0.15;
   const ObjectDetectorOptions& options = detector_.options_;
   const bool is_bar = object.shape == ObjectShape::kBar;
-  std::array<Eigen::Vector3d, 4> rays;
-  for (int i = 0; i < 4; ++i) rays[i] = RayAt(corners[i]);
   const Eigen::Vector3d up = hint_.up_in_camera.value_or(-detection->bearing);
   const auto face = RectangleOnPlane(rays, up);
   if (!face) return false;
@@ -200,19 +229,16 @@ bool ObjectExaminer::LocateFace(const FaceCorners& corners, const ObjectClass& o
   if (!(length > 0)) return false;
   if (!is_bar && hint_.up_in_camera &&
       (face->skew > kMaxSkew ||
-       !IsWithin(face->sides.x(), face->sides.y(), 1 + options.ground_tolerance))) {
+       !IsWithin(face->sides.x(), face->sides.y(), 1 + 0.5 * options.ground_tolerance))) {
     return false;
   }
   const Eigen::Vector3d position = object.size_m / length * face->center;
   const double distance = position.norm();
-  if (const auto on_ground = Ground().DistanceNear(position / distance, distance, object.height_m,
-                                                   object.max_height_m)) {
-    if (std::abs(distance - *on_ground) >
-        options.ground_tolerance * *on_ground + options.ground_tolerance_m) {
-      return false;
-    }
-  }
-  SetCenter(position, 0.5 * detector_.focal_px_ * object.size_m / distance, 1, detection);
+  const auto on_ground = DistanceOnGround(position, object);
+  if (on_ground && !IsOnGround(distance, *on_ground)) return false;
+  const double radius_px = 0.5 * detector_.focal_px_ * object.size_m / distance;
+  SetLocation(position, object, options.center_sigma_px, options.radius_sigma_px / radius_px,
+              detection);
   return true;
 }
 
@@ -223,7 +249,9 @@ bool ObjectExaminer::TestMerged(const Segment& segment, const SegmentShape& shap
   constexpr double kMaxCircularityError = 0.4;  // three discs in a row have 0.35
   constexpr double kMinCount = 1.2;
   constexpr double kMaxCount = 8;
-  if (segment.touches_border || std::abs(shape.circularity - 1) > kMaxCircularityError) {
+  constexpr double kMaxAspect = 4;  // three discs in a row have 3
+  if (segment.touches_border || std::abs(shape.circularity - 1) > kMaxCircularityError ||
+      shape.ellipse.semi_major > kMaxAspect * shape.ellipse.semi_minor) {
     return false;
   }
   const auto& classes = detector_.model_.classes;
@@ -249,16 +277,36 @@ std::optional<double> ObjectExaminer::PixelsOnGround(const Eigen::Vector3d& ray,
   return std::numbers::pi * detector_.focal_px_ * detector_.focal_px_ * angles.prod();
 }
 
-void ObjectExaminer::SetCenter(const Eigen::Vector3d& position, double radius_px,
-                               double outline_share, ObjectDetection* detection) const {
+std::optional<double> ObjectExaminer::DistanceOnGround(const Eigen::Vector3d& position,
+                                                       const ObjectClass& object) const {
+  const double distance = position.norm();
+  return Ground().DistanceNear(position / distance, distance, object.height_m, object.max_height_m);
+}
+
+bool ObjectExaminer::IsOnGround(double distance, double on_ground) const {
   const ObjectDetectorOptions& options = detector_.options_;
-  detection->bearing = position.normalized();
-  detector_.camera_.Project(position, &detection->center_px);
-  // The less of the outline is seen, the less it says.
-  const double less = 1 / (outline_share * outline_share);
-  detection->location = {
-      position, LocationCovariance(position, less * options.center_sigma_px / detector_.focal_px_,
-                                   less * options.radius_sigma_px / radius_px)};
+  return std::abs(distance - on_ground) <=
+         options.ground_tolerance * on_ground + options.ground_tolerance_m;
+}
+
+void ObjectExaminer::SetLocation(const Eigen::Vector3d& by_size, const ObjectClass& object,
+                                 double center_sigma_px, double relative_sigma,
+                                 ObjectDetection* detection) const {
+  const Eigen::Vector3d ray = by_size.normalized();
+  double distance = by_size.norm();
+  double sigma_m = relative_sigma * distance;
+  if (const auto on_ground = DistanceOnGround(by_size, object)) {
+    const double ground_sigma_m = Ground().DistanceSigma(ray, *on_ground);
+    const double total = std::hypot(sigma_m, ground_sigma_m);
+    const double gain = sigma_m * sigma_m / (total * total);
+    distance += gain * (*on_ground - distance);
+    sigma_m *= ground_sigma_m / total;
+  }
+  detection->bearing = ray;
+  detector_.camera_.Project(ray, &detection->center_px);
+  detection->location = {distance * ray,
+                         LocationCovariance(distance * ray, center_sigma_px / detector_.focal_px_,
+                                            sigma_m / distance)};
 }
 
 Eigen::Vector3d ObjectExaminer::RayAt(const Eigen::Vector2d& pixel) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include <opencv2/core.hpp>
@@ -31,15 +32,24 @@ class ObjectExaminer {
                   ObjectStage* reached);
   bool TestBar(const Segment& segment, const SegmentShape& shape, const ObjectClass& object,
                ObjectDetection* detection, ObjectStage* reached);
-  bool LocateFace(const FaceCorners& corners, const ObjectClass& object,
+  std::array<Eigen::Vector3d, 4> RectangleAround(const Segment& segment,
+                                                 const SegmentShape& shape) const;
+  // 'rays': through the corners, in the order of a walk around.
+  bool LocateFace(const std::array<Eigen::Vector3d, 4>& rays, const ObjectClass& object,
                   ObjectDetection* detection) const;
   bool TestMerged(const Segment& segment, const SegmentShape& shape,
                   ObjectDetection* detection) const;
   // Area that a disc on the ground has in the image; nothing when the ground is not known.
   std::optional<double> PixelsOnGround(const Eigen::Vector3d& ray, const ObjectClass& object) const;
-  void SetCenter(const Eigen::Vector3d& position, double radius_px, double outline_share,
-                 ObjectDetection* detection) const;
-  GroundPlane Ground() const { return {hint_.up_in_camera, hint_.camera_height_m}; }
+  std::optional<double> DistanceOnGround(const Eigen::Vector3d& position,
+                                         const ObjectClass& object) const;
+  bool IsOnGround(double distance, double on_ground) const;
+  // 'by_size': where the object is by its size, with 'relative_sigma' of that distance.
+  void SetLocation(const Eigen::Vector3d& by_size, const ObjectClass& object,
+                   double center_sigma_px, double relative_sigma, ObjectDetection* detection) const;
+  GroundPlane Ground() const {
+    return {hint_.up_in_camera, hint_.camera_height_m, hint_.height_sigma_m, hint_.up_sigma_rad};
+  }
   Eigen::Vector3d RayAt(const Eigen::Vector2d& pixel) const;
 
   const ObjectDetector& detector_;

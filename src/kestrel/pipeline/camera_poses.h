@@ -23,6 +23,9 @@ class CameraPoses {
   // A pose from the navigation, on its clock.
   PoseStatus Add(const PoseSample& sample) { return poses_.Add(sample); }
 
+  // Whether the navigation has a pose for an instant of the images' clock, or why not.
+  PoseLookup Check(Time image_time) const { return poses_.Check(image_time + clock_offset_); }
+
   // 'world_from_camera' at an instant of the images' clock; nothing without a mount or a pose.
   std::optional<RigidTransform> At(Time image_time) const {
     if (!body_from_camera_) return std::nullopt;

@@ -2,6 +2,7 @@
 #include "kestrel/pipeline/hunt_pipeline.h"
 
 #include <chrono>
+#include <cmath>
 #include <numbers>
 
 #include "kestrel/base/options.h"
@@ -9,6 +10,12 @@
 
 namespace kestrel {
 namespace {
+
+constexpr double kRadians = std::numbers::pi / 180;
+
+// Of a flight whose attitude is not known and whose altitude somebody told: standard deviations.
+constexpr double kTilt_deg = 5;
+constexpr double kAltitudeShare = 0.05;
 
 const HuntPipelineOptions& Checked(const HuntPipelineOptions& options) {
   RequireValid(options);
@@ -27,6 +34,7 @@ std::vector<std::string> HuntPipelineOptions::Validate() const {
     if (!holds) violations.emplace_back(rule);
   };
   require(readout_s >= 0 && readout_s < 1, "readout_s must be in 0 to 1");
+  require(ground_sigma_m >= 0, "ground_sigma_m must not be negative");
   require(track_count >= 0, "track_count must not be negative");
   require(pose_sigma_m >= 0, "pose_sigma_m must not be negative");
   require(attitude_sigma_deg >= 0, "attitude_sigma_deg must not be negative");
@@ -62,9 +70,13 @@ void HuntPipeline::Detect(const cv::Mat& image) {
     hint.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
     const double height_m = world_from_camera->translation.z() - options_.ground_height_m;
     if (options_.is_ground_flat && height_m > 0) hint.camera_height_m = height_m;
+    hint.up_sigma_rad = kRadians * options_.attitude_sigma_deg;
+    hint.height_sigma_m = std::hypot(options_.pose_sigma_m, options_.ground_sigma_m);
   } else if (altitude_m_) {
     hint.up_in_camera = -Eigen::Vector3d::UnitZ();
     hint.camera_height_m = altitude_m_;
+    hint.up_sigma_rad = kRadians * kTilt_deg;
+    hint.height_sigma_m = std::hypot(kAltitudeShare * *altitude_m_, options_.ground_sigma_m);
   }
   hint.track = track_;
   saw_all_ = track_.empty();
@@ -95,7 +107,6 @@ void HuntPipeline::LocateInWorld() {
 
 void HuntPipeline::UpdateMap() {
   if (options_.still || !observation_.world_from_camera) return;
-  constexpr double kRadians = std::numbers::pi / 180;
   measurements_.clear();
   const auto& detections = observation_.report.detections;
   for (std::size_t i = 0; i < detections.size(); ++i) {

@@ -25,6 +25,8 @@ struct HuntPipelineOptions {
   // Height of the ground in the world. With poses, objects that are not on it are discarded.
   double ground_height_m = 0;
   bool is_ground_flat = true;
+  // How far from that height a piece of ground may be, standard deviation.
+  double ground_sigma_m = 0.03;
   // Time from the first to the last row of a rolling shutter; an image's time is that of its middle
   // row. 0 for a global shutter.
   double readout_s = 0;
@@ -33,8 +35,8 @@ struct HuntPipelineOptions {
   int track_count = 0;
   // Standard deviations of the navigation's poses, per axis, which the map adds to those of a
   // detection: raise them where clock offset or mount are not known.
-  double pose_sigma_m = 0.03;
-  double attitude_sigma_deg = 0.5;
+  double pose_sigma_m = 0.02;
+  double attitude_sigma_deg = 0.2;
   // How many poses are kept, and the longest gap between two of them that is interpolated.
   int pose_capacity = 1000;
   double pose_gap_s = 0.5;
@@ -47,6 +49,7 @@ struct HuntPipelineOptions {
     visitor("ground_height_m", self.ground_height_m, "m", "height of the ground in the world");
     visitor("is_ground_flat", self.is_ground_flat, "",
             "discard objects that are not on the ground, where there are poses");
+    visitor("ground_sigma_m", self.ground_sigma_m, "m", "unevenness of the ground");
     visitor("readout_s", self.readout_s, "s",
             "rolling shutter: time from the first row to the last, 0 for a global shutter");
     visitor("track_count", self.track_count, "1",

@@ -45,17 +45,15 @@ const char* ToString(PositionMethod method) {
 LandingPipeline::LandingPipeline(const CameraCalibration& calibration,
                                  const LandingPipelineOptions& options)
     : options_(Checked(options)),
-      body_from_camera_(calibration.body_from_camera),
-      clock_offset_(calibration.clock_offset.value_or(Duration::zero())),
       detector_(CameraModel(calibration.intrinsics), options.detector),
-      poses_(options.pose_capacity, DurationFromSeconds(options.pose_gap_s)),
+      poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s)),
       tracker_(options.tracker) {}
 
 LandingObservation LandingPipeline::Process(const cv::Mat& image, Time time) {
   LandingObservation observation;
   observation.time = time;
-  observation.world_from_camera = WorldFromCamera(time);
-  observation.pose = poses_.Check(time + clock_offset_);
+  observation.world_from_camera = poses_.At(time);
+  observation.pose = poses_.Check(time);
   Detect(image, &observation);
   LocateInWorld(&observation);
   if (options_.still) return observation;
@@ -77,13 +75,6 @@ void LandingPipeline::Detect(const cv::Mat& image, LandingObservation* observati
     observation->report = detector_.Detect(image, known, workspace_);
   }
   observation->detect_time = std::chrono::steady_clock::now() - start;
-}
-
-std::optional<RigidTransform> LandingPipeline::WorldFromCamera(Time time) const {
-  if (!body_from_camera_) return std::nullopt;
-  const std::optional<RigidTransform> world_from_body = poses_.Lookup(time + clock_offset_);
-  if (!world_from_body) return std::nullopt;
-  return *world_from_body * *body_from_camera_;
 }
 
 LandingHint LandingPipeline::MakeHint(const LandingObservation& observation) const {

@@ -12,7 +12,7 @@
 #include "kestrel/camera/calibration.h"
 #include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/landing/landing_pattern_detector.h"
-#include "kestrel/navigation/pose_history.h"
+#include "kestrel/pipeline/camera_poses.h"
 #include "kestrel/pipeline/measurement_noise.h"
 #include "kestrel/tracking/target_tracker.h"
 
@@ -123,7 +123,6 @@ class LandingPipeline {
   };
 
   void Detect(const cv::Mat& image, LandingObservation* observation);
-  std::optional<RigidTransform> WorldFromCamera(Time time) const;
   LandingHint MakeHint(const LandingObservation& observation) const;
   void AddTrack(const LandingObservation& observation, LandingHint* hint) const;
   void AddLastSighting(const LandingObservation& observation, LandingHint* hint) const;
@@ -132,11 +131,9 @@ class LandingPipeline {
   void Remember(const LandingObservation& observation);
 
   LandingPipelineOptions options_;
-  std::optional<RigidTransform> body_from_camera_;
-  Duration clock_offset_;
   LandingPatternDetector detector_;
   LandingWorkspace workspace_;
-  PoseHistory poses_;
+  CameraPoses poses_;
   std::optional<double> altitude_m_;
   TargetTracker tracker_;
   bool is_track_trusted_ = true;  // the last detection was where the track expected it

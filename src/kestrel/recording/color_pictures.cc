@@ -47,8 +47,8 @@ cv::Mat DrawLabels(const cv::Mat& image, const ColorGrid& grid) {
       auto& pixel = drawn.at<cv::Vec3b>(v, u);
       const ColorLabel label = grid.At(pixel.val);
       if (IsObject(label)) continue;
-      const auto gray = static_cast<uchar>((pixel[0] + pixel[1] + pixel[2]) / 9);
-      pixel = label == kAmbiguousLabel ? cv::Vec3b(255, 255, 255) : cv::Vec3b(gray, gray, gray);
+      const int sum = pixel[0] + pixel[1] + pixel[2];
+      pixel = cv::Vec3b::all(static_cast<uchar>(label == kAmbiguousLabel ? sum / 4 : sum / 9));
     }
   }
   return drawn;

@@ -11,7 +11,7 @@ namespace kestrel {
 // top, brightest value of each; black where no cell of the grid has an object's label.
 cv::Mat DrawHueSaturation(const ColorGrid& grid);
 
-// A copy of the image (CV_8UC3) in which background is dark and gray, what is ambiguous is white,
+// A copy of the image (CV_8UC3) in which background is dark gray, what is ambiguous a lighter gray,
 // and pixels of the objects' colours keep theirs.
 cv::Mat DrawLabels(const cv::Mat& image, const ColorGrid& grid);
 

@@ -17,18 +17,21 @@ std::string Position(const std::optional<ObjectLocation>& location) {
   return fmt::format("{:.6f},{:.6f},{:.6f}", p.x(), p.y(), p.z());
 }
 
+std::string Sigma(const std::optional<ObjectLocation>& location) {
+  return location ? fmt::format("{:.4f}", std::sqrt(location->covariance.trace() / 3)) : "";
+}
+
 // u_px to pixels: what a detection says.
 std::string DetectionCells(const ObjectDetection& detection,
                            const std::optional<ObjectLocation>& in_world,
                            const ObjectModel& model) {
   const Ellipse& ellipse = detection.ellipse;
-  const double sigma_m = std::sqrt(detection.location->covariance.trace() / 3);
-  return fmt::format("{:.3f},{:.3f},{:.2f},{:.2f},{:.4f},{},{:.4f},{},{},{:.4f},{:.4f},{:.4f},{}",
-                     detection.center_px.x(), detection.center_px.y(), ellipse.semi_major,
-                     ellipse.semi_minor, ellipse.angle,
-                     CsvCell(model.classes[detection.class_index].name),
-                     detection.class_probability, Position(detection.location), Position(in_world),
-                     sigma_m, detection.roundness, detection.circularity, detection.pixels);
+  return fmt::format(
+      "{:.3f},{:.3f},{:.2f},{:.2f},{:.4f},{},{:.4f},{},{},{},{:.4f},{:.4f},{}",
+      detection.center_px.x(), detection.center_px.y(), ellipse.semi_major, ellipse.semi_minor,
+      ellipse.angle, CsvCell(model.classes[detection.class_index].name),
+      detection.class_probability, Position(detection.location), Position(in_world),
+      Sigma(detection.location), detection.roundness, detection.circularity, detection.pixels);
 }
 
 }  // namespace
@@ -47,7 +50,6 @@ std::string ObjectCsvRows(const std::string& frame_name, const HuntObservation& 
   std::string rows;
   for (std::size_t i = 0; i < observation.report.detections.size(); ++i) {
     const ObjectDetection& detection = observation.report.detections[i];
-    if (!detection.location) continue;
     rows += fmt::format("{},{},{}\n", frame,
                         DetectionCells(detection, observation.in_world[i], model), detect_ms);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/simulation/flight_camera.h"
 
+#include <cmath>
 #include <utility>
 
 #include "kestrel/base/options.h"
@@ -27,18 +28,37 @@ cv::Mat FlightCamera::Capture(double time_s, std::uint64_t seed) const {
 std::optional<Eigen::Vector2d> FlightCamera::Project(double time_s,
                                                      const Path& point_in_world) const {
   // The row's time depends on the row: a few rounds settle it.
-  constexpr int kRounds = 6;
-  Eigen::Vector2d pixel(0, 0);
+  constexpr int kRounds = 12;
+  constexpr double kTolerance_s = 1e-6;
   double row_time_s = time_s;
+  double change_s = 0;
   for (int i = 0; i < kRounds; ++i) {
-    const Eigen::Vector3d point =
-        world_from_camera_(row_time_s).Inverse() * point_in_world(row_time_s);
-    if (lens_.camera().Project(point, &pixel) == ProjectionStatus::kOutsideModel) {
-      return std::nullopt;
-    }
-    const double new_time_s = time_s + renderer_.RowTime(pixel.y());
-    if (new_time_s == row_time_s) break;
+    const auto pixel = ProjectAt(row_time_s, point_in_world);
+    if (!pixel) return std::nullopt;
+    const double new_time_s = TimeOfRow(time_s, *pixel);
+    change_s = std::abs(new_time_s - row_time_s);
     row_time_s = new_time_s;
+    if (change_s < kTolerance_s) break;
+  }
+  if (change_s >= kTolerance_s) return std::nullopt;
+  constexpr int kMoments = 8;
+  Eigen::Vector2d sum(0, 0);
+  for (int i = 0; i < kMoments; ++i) {
+    const double part = (i + 0.5) / kMoments - 0.5;
+    const auto pixel =
+        ProjectAt(row_time_s + part * renderer_.shutter().exposure_s, point_in_world);
+    if (!pixel) return std::nullopt;
+    sum += *pixel;
+  }
+  return sum / kMoments;
+}
+
+std::optional<Eigen::Vector2d> FlightCamera::ProjectAt(double time_s,
+                                                       const Path& point_in_world) const {
+  Eigen::Vector2d pixel;
+  const Eigen::Vector3d point = world_from_camera_(time_s).Inverse() * point_in_world(time_s);
+  if (lens_.camera().Project(point, &pixel) == ProjectionStatus::kOutsideModel) {
+    return std::nullopt;
   }
   return pixel;
 }

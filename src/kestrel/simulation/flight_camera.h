@@ -26,14 +26,23 @@ class FlightCamera {
   // The 8-bit image whose exposure has its middle at 'time_s'; 'seed' makes its noise.
   cv::Mat Capture(double time_s, std::uint64_t seed) const;
 
-  // Where a point appears in that image: of a moving point, at the time of the row in which it
-  // appears. Nothing where the lens model says nothing.
+  // Where a point appears in that image: the middle of the streak that it leaves during the
+  // exposure of the row in which it appears. Nothing where the lens model says nothing, or where
+  // the image moves as fast as the rolling shutter, so that there is no one row (far beside the
+  // image).
   std::optional<Eigen::Vector2d> Project(double time_s, const Path& point_in_world) const;
+
+  // The middle of the exposure of the row of a pixel.
+  double TimeOfRow(double time_s, const Eigen::Vector2d& pixel) const {
+    return time_s + renderer_.RowTime(pixel.y());
+  }
 
   const Lens& lens() const { return lens_; }
   RigidTransform WorldFromCamera(double time_s) const { return world_from_camera_(time_s); }
 
  private:
+  std::optional<Eigen::Vector2d> ProjectAt(double time_s, const Path& point_in_world) const;
+
   Lens lens_;
   SensorOptions sensor_;
   FrameRenderer renderer_;

@@ -49,6 +49,8 @@ class FrameRenderer {
   // When row 'v' (fractions allowed) has the middle of its exposure, relative to the frame's time.
   double RowTime(double v) const;
 
+  const ShutterOptions& shutter() const { return shutter_; }
+
  private:
   template <int kChannels>
   cv::Mat RenderChannels(double time_s, const Motion& world_from_camera, std::uint64_t seed) const;

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/simulation/occlusion.h"
+
 namespace kestrel {
 namespace {
 
@@ -17,8 +19,9 @@ bool IsInside(const Vector2d& pixel, const CameraModel& camera, double margin_px
          pixel.y() > -0.5 - margin_px && pixel.y() < camera.height_px() - 0.5 + margin_px;
 }
 
-// Part of the upper face that the image shows.
-double VisiblePart(const HuntObject& object, const FlightCamera& camera, double time_s) {
+// Part of the upper face that the image shows: that is inside of it, with nothing before it.
+double VisiblePart(const HuntObject& object, const SimulatedFlight& flight, double time_s) {
+  const FlightCamera& camera = flight.camera();
   constexpr int kSteps = 10;
   const Vector2d along(std::cos(object.yaw), std::sin(object.yaw));
   int inside = 0;
@@ -31,17 +34,22 @@ double VisiblePart(const HuntObject& object, const FlightCamera& camera, double 
     if (object.shape == "disc" && x * x + y * y > 1) continue;
     const Vector2d offset = x * object.half_size.x() * along +
                             y * object.half_size.y() * Vector2d(-along.y(), along.x());
-    const auto pixel = camera.Project(time_s, [&](double row_time_s) {
+    const auto point = [&](double row_time_s) {
       return Vector3d(object.center(row_time_s) + Vector3d(offset.x(), offset.y(), 0));
-    });
+    };
     ++all;
-    inside += pixel && IsInside(*pixel, camera.lens().camera(), 0);
+    const auto pixel = camera.Project(time_s, point);
+    if (!pixel || !IsInside(*pixel, camera.lens().camera(), 0)) continue;
+    const double row_time_s = camera.TimeOfRow(time_s, *pixel);
+    inside += !IsHidden(flight.world(), row_time_s, camera.WorldFromCamera(row_time_s).translation,
+                        point(row_time_s));
   }
   return static_cast<double>(inside) / all;
 }
 
 // One row, or nothing when the object is not in view.
-std::string ObjectRow(const HuntObject& object, const FlightCamera& camera, double time_s) {
+std::string ObjectRow(const HuntObject& object, const SimulatedFlight& flight, double time_s) {
+  const FlightCamera& camera = flight.camera();
   const CameraModel& model = camera.lens().camera();
   const auto pixel = camera.Project(time_s, object.center);
   if (!pixel) return "";
@@ -50,7 +58,7 @@ std::string ObjectRow(const HuntObject& object, const FlightCamera& camera, doub
       (camera.WorldFromCamera(time_s).translation - object.center(time_s)).norm();
   const double margin_px = 1.5 * object.size_m * model.intrinsics().fx_px / range_m;
   if (!IsInside(*pixel, model, margin_px)) return "";
-  const double visible = VisiblePart(object, camera, time_s);
+  const double visible = VisiblePart(object, flight, time_s);
   if (visible <= 0) return "";
   constexpr double kStep_s = 1e-3;
   const Vector3d p = object.center(time_s);
@@ -76,7 +84,7 @@ std::string ObjectRowsText(const std::vector<HuntObject>& objects, const Simulat
       "#timestamp [ns],id [],p_WO_W_x [m],p_WO_W_y [m],p_WO_W_z [m],"
       "v_WO_W_x [m s^-1],v_WO_W_y [m s^-1],v_WO_W_z [m s^-1],u [px],v [px],visible_fraction []\n";
   for (const double time_s : flight.times_s()) {
-    for (const HuntObject& object : objects) text += ObjectRow(object, flight.camera(), time_s);
+    for (const HuntObject& object : objects) text += ObjectRow(object, flight, time_s);
   }
   return text;
 }

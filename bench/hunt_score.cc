@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "hunt_score.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <sstream>
+
+#include <opencv2/imgproc.hpp>
+
+#include "kestrel/base/error.h"
+#include "kestrel/base/parse_number.h"
+#include "kestrel/base/read_file.h"
+#include "kestrel/camera/calibration_reader.h"
+#include "kestrel/pipeline/hunt_pipeline.h"
+#include "kestrel/recording/csv_table.h"
+#include "kestrel/recording/image_file.h"
+#include "kestrel/recording/object_csv.h"
+#include "kestrel/recording/open_source.h"
+
+namespace kestrel {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kReadout_s = 0.025;  // scene.yaml, rolling_shutter_readout_s
+
+struct AnnotatedDisc {
+  Eigen::Vector2d center_px;
+  std::string color;
+};
+
+// Columns file, u, v, radius_px, colour; what follows is remarks, with commas in quotes.
+std::vector<AnnotatedDisc> ReadAnnotations(const fs::path& path) {
+  std::istringstream lines(ReadFile(path.string()));
+  std::vector<AnnotatedDisc> discs;
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::array<std::string, 5> cell;
+    for (std::string& text : cell) std::getline(cells, text, ',');
+    const auto u = ParseNumber<double>(cell[1]);
+    const auto v = ParseNumber<double>(cell[2]);
+    if (!u || !v) throw InputError(path.string() + ": expected numbers u and v in '" + line + "'");
+    discs.push_back({{*u, *v}, cell[4]});
+  }
+  return discs;
+}
+
+// Digits of cuboids by their ids.
+std::map<int, int> ReadDigits(const fs::path& root) {
+  const fs::path path = root / "objects0" / "digits.csv";
+  std::map<int, int> digits;
+  if (!fs::exists(path)) return digits;
+  const std::string text = ReadFile(path.string());
+  const CsvTable table(text, path.string());
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    digits[static_cast<int>(table.Integer(row, table.Column("id []")))] =
+        static_cast<int>(table.Integer(row, table.Column("digit []")));
+  }
+  return digits;
+}
+
+void Count(bool is_right, DigitScore* score) {
+  ++score->count;
+  score->right += is_right;
+}
+
+void ScoreDigits(const HuntObservation& observation, const std::vector<TrueSighting>& sightings,
+                 const std::map<int, int>& digits, HuntScore* score) {
+  constexpr double kReach_px = 10;
+  constexpr double kNear_m = 3;
+  const auto without_up = [](int digit) { return digit == 9 ? 6 : digit; };
+  for (const TrueSighting& sighting : sightings) {
+    if (sighting.time != observation.time || sighting.visible_fraction < 1) continue;
+    for (const ObjectDetection& detection : observation.report.detections) {
+      if (!detection.digits || (detection.center_px - sighting.center_px).norm() > kReach_px) {
+        continue;
+      }
+      const auto best = std::max_element(detection.digits->begin(), detection.digits->end());
+      const int found = static_cast<int>(best - detection.digits->begin());
+      const bool is_right = without_up(found) == without_up(digits.at(sighting.id));
+      Count(is_right, &score->digits);
+      if (detection.location->position.norm() <= kNear_m) Count(is_right, &score->near_digits);
+    }
+  }
+}
+
+}  // namespace
+
+RealFrameScore ScoreRealFrame(const std::string& folder) {
+  constexpr double kReach_px = 20;
+  cv::Mat image = ReadImage((fs::path(folder) / "treasure.jpg").string(), PixelFormat::kBgr);
+  cv::rectangle(image, cv::Rect(0, 0, 600, 270), cv::Scalar::all(255), cv::FILLED);
+  const CameraModel camera({image.cols,
+                            image.rows,
+                            700,
+                            700,
+                            0.5 * image.cols,
+                            0.5 * image.rows,
+                            DistortionModel::kNone,
+                            {}});
+  const ObjectDetector detector(camera, DefaultObjectModel());
+  ObjectWorkspace workspace;
+  ObjectReport report;
+  detector.Detect(image, {}, workspace, &report);
+  RealFrameScore score;
+  for (const AnnotatedDisc& annotated : ReadAnnotations(fs::path(folder) / "annotations.csv")) {
+    RealDisc& disc = score.discs.emplace_back();
+    disc.color = annotated.color;
+    disc.center_error_px = kReach_px;
+    for (const ObjectDetection& detection : report.detections) {
+      const double error_px = (detection.center_px - annotated.center_px).norm();
+      if (error_px >= disc.center_error_px) continue;
+      disc.center_error_px = error_px;
+      disc.found_as = detector.model().classes[detection.class_index].name;
+    }
+  }
+  for (const ObjectDetection& detection : report.detections) {
+    ++(detection.completeness == Completeness::kMerged ? score.merged : score.single);
+  }
+  return score;
+}
+
+HuntScore ScoreHunt(const std::string& folder) {
+  const FlightTruth truth(folder);
+  const fs::path root = truth.root();
+  const std::string objects_file = (root / "objects0" / "objects.csv").string();
+  const std::string sightings_file = (root / "objects0" / "data.csv").string();
+  const TrueObjects objects = ParseTrueObjects(ReadFile(objects_file), objects_file);
+  const auto sightings = ParseTrueSightings(ReadFile(sightings_file), sightings_file, objects);
+  const std::map<int, int> digits = ReadDigits(root);
+
+  const auto source = OpenSource({folder}, PixelFormat::kBgr);
+  CameraCalibration calibration = ReadCalibration(source->calibration_file());
+  calibration.clock_offset = DurationFromSeconds(truth.scene().clock_offset_s);
+  calibration.body_from_camera->rotation =
+      truth.scene().mount_error * calibration.body_from_camera->rotation;
+  HuntPipelineOptions options;
+  options.readout_s = kReadout_s;
+  options.pose_capacity = static_cast<int>(std::max<std::size_t>(2, source->poses().size()));
+  HuntPipeline pipeline(calibration, DefaultObjectModel(), options);
+  for (const PoseSample& pose : source->poses()) pipeline.AddPose(pose);
+  HuntScore score;
+  std::string csv = ObjectCsvHeader();
+  for (Frame frame; source->Next(&frame);) {
+    const HuntObservation& observation = pipeline.Process(frame.image, frame.time);
+    csv += ObjectCsvRows(frame.name, observation, pipeline.detector().model());
+    if (!digits.empty()) ScoreDigits(observation, sightings, digits, &score);
+  }
+  const std::string name = "object_detections.csv";
+  score.comparisons = CompareObjects(truth, objects, sightings, ParseObjectRows(csv, name), name);
+  return score;
+}
+
+}  // namespace kestrel

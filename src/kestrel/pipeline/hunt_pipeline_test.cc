@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/pipeline/hunt_pipeline.h"
+
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/base/error.h"
+#include "kestrel/objects/test_objects.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+constexpr double kHeight_m = 4;
+
+CameraCalibration Calibration() {
+  CameraCalibration calibration;
+  calibration.intrinsics = ObjectCamera().intrinsics();
+  // Looks straight down, its rows along the body's x.
+  calibration.body_from_camera = RigidTransform{
+      Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX())),
+      Eigen::Vector3d::Zero()};
+  return calibration;
+}
+
+Time At(double seconds) { return Time(DurationFromSeconds(seconds)); }
+
+// Red discs on the ground around a camera that looks straight down from 4 m.
+cv::Mat DrawDiscs(const std::vector<Eigen::Vector2d>& pixels) {
+  ObjectScene scene(kHeight_m, /*tilt=*/0);
+  for (const Eigen::Vector2d& pixel : pixels) {
+    scene.DrawDisc(scene.PointUnder(pixel, 0.012), 0.1, kRedPaint);
+  }
+  return scene.Image();
+}
+
+RigidTransform Over(double x, double y) {
+  return {Eigen::Quaterniond::Identity(), {x, y, kHeight_m}};
+}
+
+TEST(HuntPipeline, ObjectsAreWhereTheyAreInTheWorld) {
+  HuntPipeline pipeline(Calibration(), DefaultObjectModel(), {});
+  const cv::Mat image = DrawDiscs({{420, 140}});
+  for (int i = 0; i < 5; ++i) {
+    pipeline.AddPose({At(i), Over(10, 20)});
+    const HuntObservation& seen = pipeline.Process(image, At(i));
+    ASSERT_THAT(seen.report.detections, SizeIs(1));
+    ASSERT_TRUE(seen.in_world[0]);
+    // 100.5 px right and 99.5 px up, of 500 at 4 m.
+    const Eigen::Vector3d expected(10 + 100.5 / 500 * 3.988, 20 + 99.5 / 500 * 3.988, 0.012);
+    EXPECT_LT((seen.in_world[0]->position - expected).norm(), 0.02);
+  }
+  const auto objects = pipeline.map().Confirmed();
+  ASSERT_THAT(objects, SizeIs(1));
+  EXPECT_EQ(objects[0].detections, 5);
+  EXPECT_EQ(ScoreOf(objects[0], DefaultObjectModel()), 1);
+}
+
+TEST(HuntPipeline, WithoutPosesThereIsNoMapButADistance) {
+  HuntPipeline pipeline(Calibration(), DefaultObjectModel(), {});
+  const HuntObservation& seen = pipeline.Process(DrawDiscs({{320, 240}}), At(0));
+  ASSERT_THAT(seen.report.detections, SizeIs(1));
+  EXPECT_NEAR(seen.report.detections[0].location->position.norm(), 3.988, 0.1);
+  EXPECT_FALSE(seen.in_world[0]);
+  EXPECT_THAT(pipeline.map().objects(), IsEmpty());
+}
+
+TEST(HuntPipeline, AltitudeDiscardsWhatIsNotOfItsSize) {
+  HuntPipeline pipeline(Calibration(), DefaultObjectModel(), {});
+  const cv::Mat image = DrawDiscs({{320, 240}});
+  pipeline.SetAltitude(4);
+  EXPECT_THAT(pipeline.Process(image, At(0)).report.detections, SizeIs(1));
+  pipeline.SetAltitude(1.5);
+  EXPECT_THAT(pipeline.Process(image, At(1)).report.detections, IsEmpty());
+}
+
+TEST(HuntPipeline, RowsOfARollingShutterHaveTheirOwnPose) {
+  HuntPipelineOptions options;
+  options.readout_s = 0.1;
+  HuntPipeline pipeline(Calibration(), DefaultObjectModel(), options);
+  for (int i = 0; i < 20; ++i) pipeline.AddPose({At(0.05 * i), Over(0.05 * i * 3, 0)});  // 3 m/s
+  const HuntObservation& seen = pipeline.Process(DrawDiscs({{320, 60}, {320, 420}}), At(0.5));
+  ASSERT_THAT(seen.report.detections, SizeIs(2));
+  const double upper = seen.in_world[0]->position.x();
+  const double lower = seen.in_world[1]->position.x();
+  EXPECT_NEAR(lower - upper, 3 * 0.1 * 360 / 479, 0.02);
+  EXPECT_NEAR(0.5 * (lower + upper), 3 * 0.5, 0.02);
+}
+
+TEST(HuntPipeline, ClockOffsetIsAppliedToThePoses) {
+  CameraCalibration calibration = Calibration();
+  calibration.clock_offset = DurationFromSeconds(0.2);
+  HuntPipeline pipeline(calibration, DefaultObjectModel(), {});
+  for (int i = 0; i < 20; ++i) pipeline.AddPose({At(0.05 * i), Over(0.05 * i * 3, 0)});
+  const HuntObservation& seen = pipeline.Process(DrawDiscs({{319.5, 240}}), At(0.5));
+  ASSERT_THAT(seen.report.detections, SizeIs(1));
+  EXPECT_NEAR(seen.in_world[0]->position.x(), 3 * 0.7, 0.02);
+}
+
+TEST(HuntPipeline, TrackFollowsSoManyAndSearchesWhenOneIsLost) {
+  HuntPipelineOptions options;
+  options.track_count = 1;
+  HuntPipeline pipeline(Calibration(), DefaultObjectModel(), options);
+  EXPECT_THAT(pipeline.Process(DrawDiscs({{200, 100}, {450, 300}}), At(0)).report.detections,
+              SizeIs(2));
+  EXPECT_THAT(pipeline.Process(DrawDiscs({{205, 105}, {450, 300}}), At(1)).report.detections,
+              SizeIs(1));
+  const auto& found = pipeline.Process(DrawDiscs({{500, 400}}), At(2)).report.detections;
+  ASSERT_THAT(found, SizeIs(1)) << "far from where the other one was";
+  EXPECT_NEAR(found[0].center_px.x(), 500, 1);
+}
+
+TEST(HuntPipeline, IndependentFramesHaveNoMap) {
+  HuntPipelineOptions options;
+  options.still = true;
+  HuntPipeline pipeline(Calibration(), DefaultObjectModel(), options);
+  pipeline.AddPose({At(0), Over(0, 0)});
+  EXPECT_TRUE(pipeline.Process(DrawDiscs({{320, 240}}), At(0)).in_world[0]);
+  EXPECT_THAT(pipeline.map().objects(), IsEmpty());
+}
+
+TEST(HuntPipeline, BadOptionsAreRefused) {
+  HuntPipelineOptions options;
+  options.readout_s = -1;
+  options.map.gate = 0;
+  options.detector.min_pixels = 1;
+  EXPECT_THAT(options.Validate(), SizeIs(3));
+  EXPECT_THROW(HuntPipeline(Calibration(), DefaultObjectModel(), options), InputError);
+}
+
+}  // namespace
+}  // namespace kestrel
