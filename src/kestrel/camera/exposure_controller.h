@@ -62,7 +62,8 @@ class ExposureController {
   ExposureController(const ExposureOptions& options, double exposure_s);
 
   // The exposure (s) for the images to come. 'image': CV_8UC1, every one that the camera takes, in
-  // order; 'area': where the pattern is in it, whose white then counts; empty: the whole image does.
+  // order; 'area': where the pattern is in it, whose white then counts; empty: the whole image
+  // does.
   double Update(const cv::Mat& image, const cv::Rect& area = {});
 
   double exposure_s() const { return exposure_s_; }

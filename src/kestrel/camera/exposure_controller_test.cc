@@ -17,7 +17,8 @@ using ::testing::HasSubstr;
 
 constexpr double kFullLight_s = 0.001;  // exposure at which white in full light has gray 220
 
-// A camera before a scene of all brightnesses; 'delay' images after a new exposure still have the old one.
+// A camera before a scene of all brightnesses; 'delay' images after a new exposure still have the
+// old one.
 class TestCamera {
  public:
   TestCamera(double exposure_s, int delay, double gamma = 1)
