@@ -50,6 +50,7 @@ class SimulatedFlight {
 
   const FlightCamera& camera() const { return *camera_; }
   const World& world() const { return world_; }
+  const NavigationErrors& errors() const { return errors_; }
   const std::vector<double>& times_s() const { return times_s_; }  // of the images
 
   // 'gain' multiplies the light, besides the wandering gain of the options.

@@ -36,7 +36,8 @@ SimulatedLanding::SimulatedLanding(const FlightRecordingOptions& options,
     : pattern_(scene.pattern),
       world_from_pattern_(std::move(scene.world_from_pattern)),
       flight_(options, camera, AirframeOf(surroundings, camera),
-              WithUav(std::move(scene.world), surroundings, world_from_uav), world_from_uav, seed) {}
+              WithUav(std::move(scene.world), surroundings, world_from_uav), world_from_uav, seed) {
+}
 
 std::string SimulatedLanding::SceneText(const std::string& kind, const std::string& options) const {
   return flight_.SceneText(kind) +

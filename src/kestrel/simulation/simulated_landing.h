@@ -19,8 +19,7 @@ class SimulatedLanding {
                    const Motion& world_from_uav, std::uint64_t seed);
 
   const SimulatedFlight& flight() const { return flight_; }
-  const LandingPattern& pattern() const { return pattern_; }
-  RigidTransform WorldFromPattern(double time_s) const { return world_from_pattern_(time_s); }
+  const Motion& world_from_pattern() const { return world_from_pattern_; }
 
   // Leaves out the images from 'index' on: a flight that is over.
   void EndBefore(std::size_t index) { flight_.EndBefore(index); }
