@@ -74,9 +74,8 @@ void PrintSummary(const std::string& scenario, const std::vector<TouchdownResult
 }
 
 void Run(const Arguments& arguments) {
-  const auto scenarios = arguments.scenario.empty()
-                             ? std::vector<std::string>{"figure8", "fast"}
-                             : std::vector<std::string>{arguments.scenario};
+  const auto scenarios = arguments.scenario.empty() ? std::vector<std::string>{"figure8", "fast"}
+                                                    : std::vector<std::string>{arguments.scenario};
   for (const std::string& scenario : scenarios) {
     const auto options = ReadTouchdownSimulation(scenario, "", arguments.settings);
     fmt::print("== {}\n{}", scenario, TouchdownCsvHeader());

@@ -65,8 +65,8 @@ class Multicopter {
   MulticopterOptions options_;
   Eigen::Vector3d position_;
   Eigen::Vector3d velocity_{0, 0, 0};
-  Eigen::Vector3d thrust_;       // acceleration by the rotors
-  Eigen::Vector3d lagging_;      // the command after the first lag
+  Eigen::Vector3d thrust_;   // acceleration by the rotors
+  Eigen::Vector3d lagging_;  // the command after the first lag
   Eigen::Vector3d felt_drag_{0, 0, 0};
   double heading_;
 };

@@ -112,7 +112,7 @@ std::string SimulatedFlight::SceneText(const std::string& kind) const {
       sun.x(), sun.y(), sun.z(), Indented(EurocCameraText(nominal_, options_.rate_hz)));
 }
 
-std::vector<RecordingPlan::TextFile> SimulatedFlight::Files() const {
+std::vector<RecordingFile> SimulatedFlight::Files() const {
   const double end_s = times_s_.back() + kMargin_s;
   const auto poses = navigation().ReportAll(world_from_body_, begin_s(), end_s);
   return {{"cam0/sensor.yaml", EurocCameraText(nominal_, options_.rate_hz)},

@@ -67,7 +67,7 @@ class SimulatedFlight {
   std::string SceneText(const std::string& kind) const;
 
   // cam0/sensor.yaml, nav0 and state_groundtruth_estimate0.
-  std::vector<RecordingPlan::TextFile> Files() const;
+  std::vector<RecordingFile> Files() const;
 
  private:
   FlightRecordingOptions options_;

@@ -45,10 +45,10 @@ std::string SimulatedLanding::SceneText(const std::string& kind, const std::stri
          Indented(options);
 }
 
-std::vector<RecordingPlan::TextFile> SimulatedLanding::Files() const {
+std::vector<RecordingFile> SimulatedLanding::Files() const {
   std::string rows = LandingTruthHeader();
   for (const double time_s : flight_.times_s()) rows += TruthRow(time_s);
-  std::vector<RecordingPlan::TextFile> files = flight_.Files();
+  std::vector<RecordingFile> files = flight_.Files();
   files.push_back({"landing_pattern0/data.csv", rows});
   return files;
 }

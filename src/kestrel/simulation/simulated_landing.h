@@ -28,7 +28,7 @@ class SimulatedLanding {
   std::string SceneText(const std::string& kind, const std::string& options) const;
 
   // Those of any flight and landing_pattern0.
-  std::vector<RecordingPlan::TextFile> Files() const;
+  std::vector<RecordingFile> Files() const;
 
  private:
   std::string TruthRow(double time_s) const;

@@ -106,8 +106,7 @@ void TouchdownGuidance::ChoosePhase(const UavState& uav, const TargetEstimate& t
   const Vector3d from_target = uav.feet_in_world - target.motion.position();
   const double off_m = from_target.head<2>().norm();
   const double height_m = from_target.z();
-  const double slip_mps =
-      (target.motion.velocity() - uav.velocity_in_world).head<2>().norm();
+  const double slip_mps = (target.motion.velocity() - uav.velocity_in_world).head<2>().norm();
   const bool is_known = target.position_sigma_m() <= options_.max_sigma_m;
   const double cone_m = Cone(std::max(height_m, 0.0));
   if (phase_ == LandingPhase::kSearch) phase_ = LandingPhase::kApproach;
@@ -128,8 +127,8 @@ double TouchdownGuidance::ClimbRate(const UavState& uav, const TargetEstimate& t
   const Vector3d from_target = uav.feet_in_world - target.motion.position();
   const double off_m = from_target.head<2>().norm();
   const double height_m = from_target.z();
-  const double sink = std::clamp(options_.sink_gain * height_m, options_.touchdown_sink_mps,
-                                 options_.max_sink_mps);
+  const double sink =
+      std::clamp(options_.sink_gain * height_m, options_.touchdown_sink_mps, options_.max_sink_mps);
   if (phase_ == LandingPhase::kCommit) return -sink;
   if (phase_ == LandingPhase::kDescend) return off_m < Cone(height_m) ? -sink : 0;
   const double top_m = options_.search_altitude_m - target.motion.position().z();

@@ -51,12 +51,12 @@ std::string TouchdownCsvHeader() {
 
 std::string TouchdownCsvRow(std::uint64_t seed, const TouchdownResult& result) {
   const bool is_down = result.outcome != TouchdownOutcome::kTimeUp;
-  return fmt::format(
-      "{},{},{:.3f},{},{},{},{},{:.2f},{}\n", seed, ToString(result.outcome), result.time_s,
-      result.first_seen_s ? fmt::format("{:.3f}", *result.first_seen_s) : "",
-      is_down ? fmt::format("{:.4f}", result.distance_m) : "",
-      is_down ? fmt::format("{:.3f},{:.3f}", result.slip_mps, result.sink_mps) : ",",
-      result.go_arounds, result.wind_mps, result.frames);
+  return fmt::format("{},{},{:.3f},{},{},{},{},{:.2f},{}\n", seed, ToString(result.outcome),
+                     result.time_s,
+                     result.first_seen_s ? fmt::format("{:.3f}", *result.first_seen_s) : "",
+                     is_down ? fmt::format("{:.4f}", result.distance_m) : "",
+                     is_down ? fmt::format("{:.3f},{:.3f}", result.slip_mps, result.sink_mps) : ",",
+                     result.go_arounds, result.wind_mps, result.frames);
 }
 
 std::string TouchdownPathCsv(const TouchdownResult& result) {

@@ -25,23 +25,23 @@ const char* ToString(TouchdownOutcome outcome);  // "landed", "too fast", ...
 struct TouchdownMoment {
   Time time;
   LandingPhase phase = LandingPhase::kSearch;
-  Eigen::Vector3d feet_in_world{0, 0, 0};            // true
-  Eigen::Vector3d pattern_in_world{0, 0, 0};         // true
-  std::optional<Eigen::Vector3d> target_in_world;    // by the track
+  Eigen::Vector3d feet_in_world{0, 0, 0};          // true
+  Eigen::Vector3d pattern_in_world{0, 0, 0};       // true
+  std::optional<Eigen::Vector3d> target_in_world;  // by the track
 };
 
 // How a flight ended.
 struct TouchdownResult {
   TouchdownOutcome outcome = TouchdownOutcome::kTimeUp;
-  double time_s = 0;                        // from the start to the end
-  std::optional<double> first_seen_s;       // when the first image was taken that showed it
-  double distance_m = 0;                    // of the feet's middle from the pattern's, on the board
-  double slip_mps = 0;                      // speed against the board, horizontal
-  double sink_mps = 0;                      // and vertical
-  double wind_mps = 0;                      // mean over the flight
+  double time_s = 0;                   // from the start to the end
+  std::optional<double> first_seen_s;  // when the first image was taken that showed it
+  double distance_m = 0;               // of the feet's middle from the pattern's, on the board
+  double slip_mps = 0;                 // speed against the board, horizontal
+  double sink_mps = 0;                 // and vertical
+  double wind_mps = 0;                 // mean over the flight
   int go_arounds = 0;
   int frames = 0;
-  std::vector<TouchdownMoment> path;        // one for every image
+  std::vector<TouchdownMoment> path;  // one for every image
 };
 
 // The flight in words, a few lines.

@@ -21,8 +21,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kStep_s = 0.005;
-constexpr double kRideOn_s = 1;        // after touchdown, for the navigation's last poses
-constexpr int kExposureDelay = 2;      // images after a new exposure that have the old one
+constexpr double kRideOn_s = 1;    // after touchdown, for the navigation's last poses
+constexpr int kExposureDelay = 2;  // images after a new exposure that have the old one
 
 const TouchdownSimulationOptions& Checked(const TouchdownSimulationOptions& options) {
   RequireValid(options);
@@ -202,11 +202,9 @@ VelocityCommand TouchdownSimulation::Guide(double time_s) {
 bool TouchdownSimulation::HasEnded(double time_s, TouchdownResult* result) const {
   result->time_s = time_s;
   if (next_image_ == landing_.flight().times_s().size()) return true;
-  const Vector3d feet_on_board =
-      landing_.world_from_pattern()(time_s).Inverse() * FeetAt(time_s);
+  const Vector3d feet_on_board = landing_.world_from_pattern()(time_s).Inverse() * FeetAt(time_s);
   if (feet_on_board.z() > 0) return false;
-  const Vector3d slip =
-      multicopter_.velocity() - VelocityOf(landing_.world_from_pattern(), time_s);
+  const Vector3d slip = multicopter_.velocity() - VelocityOf(landing_.world_from_pattern(), time_s);
   result->distance_m = feet_on_board.head<2>().norm();
   result->slip_mps = slip.head<2>().norm();
   result->sink_mps = -slip.z();
@@ -218,7 +216,8 @@ TouchdownOutcome TouchdownSimulation::OutcomeOf(const Vector3d& feet_on_board,
                                                 const TouchdownResult& result) const {
   const TouchdownOptions& options = options_.touchdown;
   // The arms, the axes of the pattern, point to the corners of the board.
-  const double to_side_m = (std::abs(feet_on_board.x()) + std::abs(feet_on_board.y())) / std::numbers::sqrt2;
+  const double to_side_m =
+      (std::abs(feet_on_board.x()) + std::abs(feet_on_board.y())) / std::numbers::sqrt2;
   if (to_side_m > 0.5 * options_.pattern.board_size_m - options.feet_radius_m) {
     return TouchdownOutcome::kBesideBoard;
   }

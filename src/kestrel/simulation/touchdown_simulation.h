@@ -35,8 +35,9 @@ struct TouchdownOptions {
   double pass_max_s = 8;
   // From the middle of an image's exposure until its result can be used: transfer and detection.
   double processing_delay_s = 0.06;
-  double leg_m = 0.35;        // from the body's origin down to its feet
-  double feet_radius_m = 0.25;  // its feet stand on the board when their middle is so far from the edge
+  double leg_m = 0.35;  // from the body's origin down to its feet
+  double feet_radius_m =
+      0.25;  // its feet stand on the board when their middle is so far from the edge
   double max_slip_mps = 1.5;  // horizontal speed against the board with which it stays there
   double max_sink_mps = 2;    // and vertical
 
@@ -91,7 +92,8 @@ class TouchdownSimulation {
   // InputError when options are not valid.
   TouchdownSimulation(const TouchdownSimulationOptions& options, const CameraCalibration& camera,
                       std::uint64_t seed);
-  TouchdownSimulation(const TouchdownSimulation&) = delete;  // the camera looks along the path in it
+  TouchdownSimulation(const TouchdownSimulation&) =
+      delete;  // the camera looks along the path in it
   TouchdownSimulation& operator=(const TouchdownSimulation&) = delete;
 
   // Called with every image and what the pipeline made of it, in order; returns whether to go on.
@@ -102,10 +104,8 @@ class TouchdownSimulation {
   std::optional<TouchdownResult> Fly(const FrameSink& sink);
 
   // The texts of a recording: scene.yaml, and after the flight the other files.
-  std::string SceneText() const {
-    return landing_.SceneText("touchdown", PrintOptions(options_));
-  }
-  std::vector<RecordingPlan::TextFile> Files() const { return landing_.Files(); }
+  std::string SceneText() const { return landing_.SceneText("touchdown", PrintOptions(options_)); }
+  std::vector<RecordingFile> Files() const { return landing_.Files(); }
 
  private:
   struct Start {

@@ -13,8 +13,8 @@ namespace kestrel {
 struct WindOptions {
   double min_mps = 2.8;  // the steady speed is drawn between these; 10 to 20 km/h
   double max_mps = 5.6;
-  double gusts = 0.25;   // standard deviation of the gusts per axis, as a part of the steady speed;
-                         // half of it up and down
+  double gusts = 0.25;  // standard deviation of the gusts per axis, as a part of the steady speed;
+                        // half of it up and down
   double gust_period_s = 3;
 
   template <class Self, class Visitor>
