@@ -17,7 +17,7 @@ std::vector<PlotSeries> Series(const std::vector<TouchdownMoment>& path, const V
   PlotSeries vehicle{"pattern", PlotStyle::kLine, {}, {}};
   PlotSeries uav{"UAV", PlotStyle::kLine, {}, {}};
   PlotSeries track{"track", PlotStyle::kLine, {}, {}};
-  PlotSeries ends{"start, touchdown", PlotStyle::kCircles, {}, {}};
+  PlotSeries ends{"start, end", PlotStyle::kCircles, {}, {}};
   for (const TouchdownMoment& moment : path) {
     vehicle.points.push_back(view(moment.pattern_in_world));
     uav.points.push_back(view(moment.feet_in_world));

@@ -19,7 +19,7 @@ struct MulticopterOptions {
   double max_climb_mps = 4;      // up and down
   double attitude_lag_s = 0.06;  // of each of two lags in a row between command and thrust
   double drag = 0.25;            // acceleration by the air, per m/s of speed through it
-  double velocity_gain = 3;      // of its velocity control, m/s^2 per m/s
+  double velocity_gain = 4;      // of its velocity control, m/s^2 per m/s
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {

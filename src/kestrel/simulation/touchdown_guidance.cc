@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "kestrel/simulation/violations.h"
 
 namespace kestrel {
@@ -28,9 +30,10 @@ Closing ClosingSpeed(double distance_m, double gain, double braking) {
   return {speed, braking / speed};
 }
 
-// How the target's velocity changes in its curve.
-Vector3d AccelerationOf(const TurnState& motion) {
-  const Vector3d velocity = motion.velocity();
+// How the target's velocity will change in its curve, 'ahead_s' from now.
+Vector3d AccelerationAhead(const TurnState& motion, double ahead_s) {
+  const Eigen::AngleAxisd turn(motion.turn_rate() * ahead_s, Vector3d::UnitZ());
+  const Vector3d velocity = turn * Vector3d(motion.velocity());
   return motion.turn_rate() * Vector3d(-velocity.y(), velocity.x(), 0);
 }
 
@@ -57,6 +60,7 @@ std::vector<std::string> GuidanceOptions::Validate() const {
   RequireIn(glide, 0, 10, "glide", &violations);
   RequireIn(position_gain, 0.1, 5, "position_gain", &violations);
   RequireIn(braking, 0.1, 20, "braking", &violations);
+  RequireIn(lead_s, 0, 1, "lead_s", &violations);
   RequireIn(sink_gain, 0.05, 5, "sink_gain", &violations);
   RequireIn(max_sink_mps, 0.1, 10, "max_sink_mps", &violations);
   RequireIn(touchdown_sink_mps, 0.1, 10, "touchdown_sink_mps", &violations);
@@ -86,7 +90,7 @@ VelocityCommand TouchdownGuidance::Command(const UavState& uav,
   command.velocity = motion.velocity();
   command.velocity.head<2>() += closing.speed * towards;
   command.velocity.z() = ClimbRate(uav, *target);
-  command.acceleration = AccelerationOf(motion);
+  command.acceleration = AccelerationAhead(motion, options_.lead_s);
   command.acceleration.head<2>() += closing.rate * slip.head<2>();
   return command;
 }

@@ -20,8 +20,10 @@ struct GuidanceOptions {
   double glide = 0.7;
   // Speed towards the target: in proportion to the distance, further away as fast as it can still
   // be braked.
-  double position_gain = 1.5;
+  double position_gain = 2.5;
   double braking = 3;
+  // How long before it is needed an acceleration is commanded: the attitude lags by as much.
+  double lead_s = 0.12;
   // It goes down, in proportion to the height, while the target is within a cone: 'cone_m' wide on
   // the board and 'cone_slope' wider per metre of height.
   double sink_gain = 0.8;
@@ -42,6 +44,7 @@ struct GuidanceOptions {
     visitor("glide", self.glide, "m/m", "height in approach, per metre of distance");
     visitor("position_gain", self.position_gain, "1/s", "speed towards the target per metre");
     visitor("braking", self.braking, "m/s^2", "deceleration that it counts on when far away");
+    visitor("lead_s", self.lead_s, "s", "acceleration is commanded so long before it is needed");
     visitor("sink_gain", self.sink_gain, "1/s", "speed of the descent per metre of height");
     visitor("max_sink_mps", self.max_sink_mps, "m/s", "fastest descent");
     visitor("touchdown_sink_mps", self.touchdown_sink_mps, "m/s", "slowest descent");
