@@ -9,12 +9,9 @@ namespace kestrel {
 
 void SimulateArguments::AddTo(CLI::App* command) {
   CLI::Option* output_option =
-      command->add_option("--output", output, "Folder for the recording")
-          ->type_name("DIR");
-  command->add_option("--seed", seed, "Same seed, same recording (default 1)")
-      ->type_name("N");
-  command->add_option("--scenario", scenario, "A named flight, see --list")
-      ->type_name("NAME");
+      command->add_option("--output", output, "Folder for the recording")->type_name("DIR");
+  command->add_option("--seed", seed, "Same seed, same recording (default 1)")->type_name("N");
+  command->add_option("--scenario", scenario, "A named flight, see --list")->type_name("NAME");
   command
       ->add_option("--config", config,
                    "Options from a YAML file (see --print-config), over the scenario's")
@@ -27,7 +24,7 @@ void SimulateArguments::AddTo(CLI::App* command) {
   command->add_flag("--force", force, "Replace a recording that exists");
   CLI::Option* list_flag = command->add_flag("--list", list, "Print the scenarios");
   CLI::Option* print_flag = command->add_flag("--print-config", print_config,
-                                         "Print all options with their values, as YAML");
+                                              "Print all options with their values, as YAML");
   command->parse_complete_callback([=] {
     if (output_option->count() + list_flag->count() + print_flag->count() == 0) {
       throw CLI::RequiredError("--output");

@@ -68,8 +68,7 @@ void Simulate(const TouchdownSimulationOptions& options, const TouchdownArgument
   const SimulateArguments& shared = arguments.shared;
   TouchdownSimulation simulation(options, shared.FindCamera(PaperCalibration()), shared.seed);
   const RecordingWriter writer(shared.output, shared.force, simulation.SceneText());
-  const auto result =
-      FlyInto(writer, arguments.annotate, options.recording.rate_hz, &simulation);
+  const auto result = FlyInto(writer, arguments.annotate, options.recording.rate_hz, &simulation);
   if (!result) throw InputError("interrupted; the same command starts anew");
   WriteResult(*result, shared.seed, OutputFolder(writer.part(), /*replace_files=*/true));
   std::vector<Time> times;

@@ -56,11 +56,12 @@ void Multicopter::Step(const VelocityCommand& command, const Vector3d& wind, dou
 
 Vector3d Multicopter::WantedThrust(const VelocityCommand& command) const {
   constexpr double kMaxVertical = 5;  // m/s^2; the rotors neither stop nor have double power
+  // Limited together: the acceleration must not bring it beyond the speed either.
   const Vector3d velocity =
-      Limited(command.velocity, options_.max_speed_mps, options_.max_climb_mps);
-  const Vector3d wanted =
-      Limited(command.acceleration + options_.velocity_gain * (velocity - velocity_),
-              options_.max_acceleration, kMaxVertical);
+      Limited(command.velocity + command.acceleration / options_.velocity_gain,
+              options_.max_speed_mps, options_.max_climb_mps);
+  const Vector3d wanted = Limited(options_.velocity_gain * (velocity - velocity_),
+                                  options_.max_acceleration, kMaxVertical);
   const Vector3d thrust = wanted - felt_drag_ + kGravity * Vector3d::UnitZ();
   const double max_tilt = options_.max_tilt_deg * std::numbers::pi / 180;
   return Limited(thrust, std::tan(max_tilt) * thrust.z(), thrust.z());

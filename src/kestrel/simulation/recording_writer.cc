@@ -86,7 +86,8 @@ void RecordingWriter::WriteImage(Time time, const cv::Mat& image) const {
   std::vector<std::uint8_t> bytes;
   constexpr int kFast = 1;
   cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, kFast});
-  WriteWhole(part_ / RecordedImagePath(time), reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  WriteWhole(part_ / RecordedImagePath(time), reinterpret_cast<const char*>(bytes.data()),
+             bytes.size());
 }
 
 void RecordingWriter::Publish(const std::vector<Time>& times,
@@ -94,7 +95,8 @@ void RecordingWriter::Publish(const std::vector<Time>& times,
   for (const RecordingFile& file : files) WriteText(part_ / "mav0" / file.name, file.text);
   std::string rows = "#timestamp [ns],filename\n";
   for (const Time time : times) {
-    rows += fmt::format("{},{}\n", ToNanoseconds(time), RecordedImagePath(time).filename().string());
+    rows +=
+        fmt::format("{},{}\n", ToNanoseconds(time), RecordedImagePath(time).filename().string());
   }
   WriteText(part_ / "mav0" / "cam0" / "data.csv", rows);
   std::error_code error;

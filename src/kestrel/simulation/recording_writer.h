@@ -24,10 +24,10 @@ std::filesystem::path RecordedImagePath(Time time);
 // WriteImage and HasImage may be called from several threads at a time, for different images.
 class RecordingWriter {
  public:
-  // 'scene', the text of scene.yaml, names all that the images depend on: images that an interrupted
-  // writer of the same scene has left are kept, everything of another one is removed. Throws
-  // InputError when 'output' exists (unless it is empty, or 'replace' and a recording) or cannot be
-  // written, as the functions below do.
+  // 'scene', the text of scene.yaml, names all that the images depend on: images that an
+  // interrupted writer of the same scene has left are kept, everything of another one is removed.
+  // Throws InputError when 'output' exists (unless it is empty, or 'replace' and a recording) or
+  // cannot be written, as the functions below do.
   RecordingWriter(const std::filesystem::path& output, bool replace, const std::string& scene);
 
   // Where the files are until they are published.
