@@ -21,7 +21,10 @@ class Loop {
   Loop(double gamma, double exposure_s)
       : world_(PatternWorld()),
         camera_(CameraModel(SmallFisheye()), {.airframe = {}}, {.rays_per_pixel = 2},
-                {.gamma = gamma}, world_, [](double) { return LookingDown({0, 0, 2}); }),
+                {.gamma = gamma}, world_,
+                [](double) {
+                  return LookingDown({0, 0, 2});
+                }),
         controller_({.gamma = gamma}, exposure_s),
         exposures_s_(3, exposure_s) {}
 

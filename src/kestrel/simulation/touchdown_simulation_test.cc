@@ -25,13 +25,13 @@ const TouchdownSimulation::FrameSink kAll = [](const auto&...) { return true; };
 TEST(TouchdownSimulationTest, LandsOnAMovingVehicle) {
   TouchdownSimulation simulation(Small(), PaperCalibration(), 3);
   int images = 0;
-  const auto result = simulation.Fly([&](const cv::Mat& image, const LandingObservation& observation,
-                                         const LandingPipeline&) {
-    EXPECT_EQ(image.size(), cv::Size(752, 480));
-    EXPECT_EQ(observation.pose, PoseLookup::kFound);
-    ++images;
-    return true;
-  });
+  const auto result = simulation.Fly(
+      [&](const cv::Mat& image, const LandingObservation& observation, const LandingPipeline&) {
+        EXPECT_EQ(image.size(), cv::Size(752, 480));
+        EXPECT_EQ(observation.pose, PoseLookup::kFound);
+        ++images;
+        return true;
+      });
   ASSERT_TRUE(result);
   EXPECT_EQ(result->outcome, TouchdownOutcome::kLanded) << InWords(*result);
   EXPECT_LT(result->time_s, 30);
