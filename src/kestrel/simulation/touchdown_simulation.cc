@@ -102,11 +102,20 @@ TouchdownSimulation::Start TouchdownSimulation::DrawStart() const {
   const TouchdownOptions& options = options_.touchdown;
   Random random = RandomOf(seed_, LandingPart::kStart);
   const double pass_s = random.Uniform(options.pass_min_s, options.pass_max_s);
-  const double direction = random.Uniform(0, 2 * std::numbers::pi);
-  const Vector2d away(std::cos(direction), std::sin(direction));
+  const Vector2d place = landing_.world_from_pattern()(pass_s).translation.head<2>();
+  const Vector2d vehicle = landing_.world_from_pattern()(0).translation.head<2>();
+  // Not where it would see the vehicle at once.
+  constexpr int kTries = 20;
+  Vector2d away(1, 0);
+  for (int i = 0; i < kTries; ++i) {
+    const double direction = random.Uniform(0, 2 * std::numbers::pi);
+    away << std::cos(direction), std::sin(direction);
+    const Vector2d start = place + options.start_distance_m * away;
+    if ((start - vehicle).norm() >= options.start_distance_m) break;
+  }
   Start start;
-  start.place = landing_.world_from_pattern()(pass_s).translation.head<2>();
-  start.position << start.place + options.start_distance_m * away, options.start_altitude_m;
+  start.place = place;
+  start.position << place + options.start_distance_m * away, options.start_altitude_m;
   start.heading = std::atan2(-away.y(), -away.x());
   return start;
 }

@@ -30,7 +30,7 @@ struct TouchdownOptions {
   double start_altitude_m = 10;  // above ground
   double start_distance_m = 20;  // from the place where the vehicle should pass
   // The vehicle passes that place at a time drawn between these. The UAV knows the place, not the
-  // time.
+  // time. The vehicle is not nearer to the start than that place.
   double pass_min_s = 4;
   double pass_max_s = 8;
   // From the middle of an image's exposure until its result can be used: transfer and detection.
