@@ -63,8 +63,7 @@ Vector3d Multicopter::WantedThrust(const VelocityCommand& command) const {
   const Vector3d wanted = Limited(options_.velocity_gain * (velocity - velocity_),
                                   options_.max_acceleration, kMaxVertical);
   const Vector3d thrust = wanted - felt_drag_ + kGravity * Vector3d::UnitZ();
-  const double max_tilt =
-      std::min(options_.max_tilt_deg * std::numbers::pi / 180, command.max_tilt);
+  const double max_tilt = options_.max_tilt_deg * std::numbers::pi / 180;
   return Limited(thrust, std::tan(max_tilt) * thrust.z(), thrust.z());
 }
 

@@ -35,12 +35,11 @@ struct MulticopterOptions {
   std::vector<std::string> Validate() const;
 };
 
-// What an autopilot is told: a velocity, the acceleration that will be needed to keep up with it,
-// and how far it may tilt for it, if less than it can.
+// What an autopilot is told: a velocity, and the acceleration that will be needed to keep up with
+// it.
 struct VelocityCommand {
   Eigen::Vector3d velocity{0, 0, 0};
   Eigen::Vector3d acceleration{0, 0, 0};
-  double max_tilt = 1.5;  // rad
 };
 
 // A multicopter with its autopilot: a point of mass 1 that is pushed by its thrust, gravity and the

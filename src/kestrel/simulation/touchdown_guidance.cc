@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/Geometry>
 
@@ -17,8 +16,6 @@ using Eigen::Vector3d;
 
 constexpr double kHeightGain = 1;      // climb rate per metre that it is too low
 constexpr double kMaxClosing_mps = 1;  // faster over the target it does not go down
-
-double Radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 // Speed at which to close in on something 'distance_m' away, and its derivative by the distance: in
 // proportion to it while that can be braked, by the root further away.
@@ -64,8 +61,6 @@ std::vector<std::string> GuidanceOptions::Validate() const {
   RequireIn(position_gain, 0.1, 5, "position_gain", &violations);
   RequireIn(braking, 0.1, 20, "braking", &violations);
   RequireIn(lead_s, 0, 1, "lead_s", &violations);
-  RequireIn(view_deg, 0, 180, "view_deg", &violations);
-  RequireIn(least_tilt_deg, 1, 80, "least_tilt_deg", &violations);
   RequireIn(sink_gain, 0.05, 5, "sink_gain", &violations);
   RequireIn(max_sink_mps, 0.1, 10, "max_sink_mps", &violations);
   RequireIn(touchdown_sink_mps, 0.1, 10, "touchdown_sink_mps", &violations);
@@ -97,7 +92,6 @@ VelocityCommand TouchdownGuidance::Command(const UavState& uav,
   command.velocity.z() = ClimbRate(uav, *target);
   command.acceleration = AccelerationAhead(motion, options_.lead_s);
   command.acceleration.head<2>() += closing.rate * slip.head<2>();
-  command.max_tilt = MaxTilt(uav, *target);
   return command;
 }
 
@@ -131,12 +125,6 @@ void TouchdownGuidance::ChoosePhase(const UavState& uav, const TargetEstimate& t
     phase_ = LandingPhase::kApproach;
     ++go_arounds_;
   }
-}
-
-double TouchdownGuidance::MaxTilt(const UavState& uav, const TargetEstimate& target) const {
-  const Vector3d from_target = uav.feet_in_world - target.motion.position();
-  const double to_target = std::atan2(from_target.head<2>().norm(), from_target.z());
-  return std::max(Radians(options_.view_deg) - to_target, Radians(options_.least_tilt_deg));
 }
 
 double TouchdownGuidance::ClimbRate(const UavState& uav, const TargetEstimate& target) const {

@@ -24,10 +24,6 @@ struct GuidanceOptions {
   double braking = 3;
   // How long before it is needed an acceleration is commanded: the attitude lags by as much.
   double lead_s = 0.12;
-  // It tilts only so far that the target stays within this angle to the camera's axis, 'least_tilt'
-  // excepted.
-  double view_deg = 75;
-  double least_tilt_deg = 20;
   // It goes down, in proportion to the height, while the target is within a cone: 'cone_m' wide on
   // the board and 'cone_slope' wider per metre of height.
   double sink_gain = 0.8;
@@ -49,9 +45,6 @@ struct GuidanceOptions {
     visitor("position_gain", self.position_gain, "1/s", "speed towards the target per metre");
     visitor("braking", self.braking, "m/s^2", "deceleration that it counts on when far away");
     visitor("lead_s", self.lead_s, "s", "acceleration is commanded so long before it is needed");
-    visitor("view_deg", self.view_deg, "deg",
-            "tilts only so far that the target stays within this angle of the camera's axis");
-    visitor("least_tilt_deg", self.least_tilt_deg, "deg", "but may always tilt so far");
     visitor("sink_gain", self.sink_gain, "1/s", "speed of the descent per metre of height");
     visitor("max_sink_mps", self.max_sink_mps, "m/s", "fastest descent");
     visitor("touchdown_sink_mps", self.touchdown_sink_mps, "m/s", "slowest descent");
@@ -97,7 +90,6 @@ class TouchdownGuidance {
  private:
   VelocityCommand Search(const UavState& uav) const;
   void ChoosePhase(const UavState& uav, const TargetEstimate& target);
-  double MaxTilt(const UavState& uav, const TargetEstimate& target) const;
   double ClimbRate(const UavState& uav, const TargetEstimate& target) const;
   double Cone(double height_m) const { return options_.cone_m + options_.cone_slope * height_m; }
 
