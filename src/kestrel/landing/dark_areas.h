@@ -28,9 +28,11 @@ inline constexpr double kMinEllipticity = 0.9;
 // The paper's continuous dark areas with convex border (section 2.1), tested by their moments
 // alone, before anything is fitted: the outline encloses as much as an ellipse with the same second
 // moments, and is not thinner than 'min_minor_px' across. The outer border of an area is taken for
-// the outer edge of the ring, the border of a hole for the inner one.
+// the outer edge of the ring, the border of a hole for the inner one. Where the stroke of a small
+// ring is hardly wider than the blur, the border enters it through a gap: of borders that are at
+// most 'max_hull_extent' pixels wide and high and not convex, the convex hull is tested instead.
 std::optional<DarkArea> TestDarkArea(const BorderTracer& tracer, const Border& border,
-                                     double min_minor_px);
+                                     double min_minor_px, int max_hull_extent = 0);
 
 // How well the ring stands out along an outline, gray values: the least contrast, in three of four
 // directions, of the black between the white around it and the white inside; 0 when it does not.

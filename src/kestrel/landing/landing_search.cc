@@ -111,7 +111,20 @@ LandingReport LandingSearch::Run() {
   const bool low = !hint_.altitude_m || *hint_.altitude_m <= models_.options.max_partial_altitude_m;
   if (low) run(0, kPartialPasses, [this](std::size_t i) { TestPartial(i); });
   run(kCoarsePasses, kPasses.size(), trace_and_test);
+  run(kCoarsePasses, kPasses.size(), [this](std::size_t i) { TestArcs(i); });
   return report_;
+}
+
+// Diameter of a ring that faces the camera.
+double LandingSearch::ExpectedRingPx(const Eigen::Vector3d& center) const {
+  const double radius = models_.options.pattern.outer_radius_m();
+  const Eigen::Vector3d across = radius * center.unitOrthogonal();
+  Eigen::Vector2d a, b;
+  if (models_.camera.Project(center + across, &a) == ProjectionStatus::kOutsideModel ||
+      models_.camera.Project(center - across, &b) == ProjectionStatus::kOutsideModel) {
+    return 2 * focal_px_ * std::atan2(radius, center.norm());
+  }
+  return (a - b).norm();
 }
 
 // Sets the part of the image that the hint leaves and the size of the ring that it says. False when
@@ -127,7 +140,7 @@ bool LandingSearch::ChooseRegion() {
     return false;
   }
   const double px_per_m = focal_px_ / distance;
-  expected_ring_px_ = 2 * models_.options.pattern.outer_radius_m() * px_per_m;
+  expected_ring_px_ = ExpectedRingPx(center);
   // The board, and three standard deviations of where its centre may be.
   const double reach = 1.2 * expected_ring_px_ + 3 * hint_.center_sigma_m * px_per_m + 8;
   // Whole tiles of the coarsest pass that may be used, so that a crop is seen as the image is.
@@ -151,7 +164,8 @@ bool LandingSearch::Suits(const Pass& pass) const {
   return 1.5 * pass.min_ring_px <= expected_ring_px_ && expected_ring_px_ <= 1.2 * pass.max_ring_px;
 }
 
-// Whether a ring is where the hint says that it may be; a metre of the altitude is not trusted.
+// Whether a ring is where the hint says that it may be. The altitude may be that above the ground
+// on which a vehicle stands.
 bool LandingSearch::IsPlausible(const CirclePose& ring) const {
   const double distance = ring.center.norm();
   if (hint_.center_in_camera) {
@@ -161,7 +175,8 @@ bool LandingSearch::IsPlausible(const CirclePose& ring) const {
   }
   if (!hint_.altitude_m) return true;
   const double below = hint_.up_in_camera ? -hint_.up_in_camera->dot(ring.center) : distance;
-  const double least = 0.7 * *hint_.altitude_m - 1;
+  constexpr double kMaxVehicleHeight = 3;
+  const double least = 0.7 * *hint_.altitude_m - kMaxVehicleHeight;
   const double most = 1.4 * *hint_.altitude_m + 1;
   return below >= least && (!hint_.up_in_camera || below <= most);
 }

@@ -131,6 +131,7 @@ class LandingSearch {
   void MakeRoom();
   void Binarize(const Pass& pass);
   bool ChooseRegion();
+  double ExpectedRingPx(const Eigen::Vector3d& center) const;
   bool Suits(const Pass& pass) const;
   bool IsPlausible(const CirclePose& ring) const;
   void Trace(std::size_t pass_index);
@@ -143,10 +144,15 @@ class LandingSearch {
   std::optional<RingFit> FitToBorder(const RingCandidate& candidate, std::size_t pass_index);
   std::optional<RingFit> FitToOutline(const RingCandidate& candidate, const ImageRegion& region);
 
+  bool StandsOut(const CirclePose& ring) const;
   bool IsSmall(const Eigen::Vector2d& diameters_px) const;
   void TestRing(const RingFit& ring, const Eigen::Vector2d& diameters_px, double reach_px);
   void TestSmallRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
                      std::span<const double> scales);
+  SmallPatternFitter::Start FindStart(const CirclePose& pose, std::span<const double> scales);
+  bool IsSmallPattern(const SmallPatternFitter::Fit& fit,
+                      const Eigen::Vector2d& diameters_px) const;
+  bool ShowsOtherSign(const RigidTransform& pose);
   bool WasTested(const RingFit& ring, const Eigen::Vector2d& diameters_px);
   std::optional<double> ArmAngleByQuadrants(const CirclePose& pose);
   std::array<bool, 2> LevelEnough(const RingFit& ring) const;

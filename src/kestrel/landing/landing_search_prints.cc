@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the search of an image tests a ring for the print, and locates it.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "kestrel/landing/landing_search.h"
 #include "kestrel/landing/pattern_pose.h"
@@ -20,6 +22,8 @@ constexpr double kMaxMoreOnRing = 0.12;
 constexpr double kMaxMoreOutside = 0.15;
 // Darkness of what only other signs have, share of the contrast.
 constexpr double kMinCrossCorrelation = 0.7;
+// Added to that for a small pattern whose board is dark, times the darkness: two doubts in one.
+constexpr double kCrossForDarkBoard = 1.2;
 constexpr double kMaxOtherSpokes = 0.55;
 constexpr double kMaxFrameCorners = 0.14;
 constexpr double kMaxBoardDarkness = 0.35;
@@ -28,6 +32,7 @@ constexpr double kMinCorrelation = 0.35;         // of a start of a small patter
 constexpr double kSureCorrelation = 0.6;         // of a start that quadrants give
 constexpr double kMinCorrelationOfEither = 0.7;  // of the poses of a small pattern
 constexpr double kMinFittedCorrelation = 0.82;   // of a small pattern
+constexpr double kMinExplained = 0.55;           // of the variance
 // Edges and contrasts of the ring that are where a circle has them: a frame of another shape has
 // some of them.
 constexpr double kMinRingShare = 0.85;
@@ -51,6 +56,11 @@ bool IsOtherSign(const SmallPatternFitter::OtherSigns& others) {
   return others.spokes > kMaxOtherSpokes || others.frame_corners > kMaxFrameCorners ||
          others.cross_correlation < kMinCrossCorrelation ||
          others.board_darkness > kMaxBoardDarkness;
+}
+
+bool IsDoubtful(const SmallPatternFitter::OtherSigns& others) {
+  return others.cross_correlation <
+         kMinCrossCorrelation + kCrossForDarkBoard * std::max(0.0, others.board_darkness);
 }
 
 // What is asked of the quality of a small pattern beyond that of a near one.
@@ -102,7 +112,7 @@ std::optional<LandingSearch::VerifiedCross> LandingSearch::VerifyCross(const cv:
   const LandingPattern& pattern = models_.options.pattern;
   constexpr double kMinContrast = 6;
   const auto by_thinning = [&]() -> std::optional<Cross> {
-    const auto inside = RectifyInside(image, view, pattern, 40, kMinContrast);
+    const auto inside = RectifyInside(image, view, pattern, 32, kMinContrast);
     return inside ? FindCrossByThinning(*inside) : std::nullopt;
   };
   const auto by_lines = [&]() -> std::optional<Cross> {
@@ -204,6 +214,37 @@ bool LandingSearch::WasTested(const RingFit& ring, const Eigen::Vector2d& diamet
   return false;
 }
 
+// What the print does not explain is spread evenly where the print is: a sign with another figure
+// in the ring leaves more inside, one in another frame more on the ring and around it. So few
+// pixels tell less than the edges of a near pattern: more is asked of them.
+bool LandingSearch::IsSmallPattern(const SmallPatternFitter::Fit& fit,
+                                   const Eigen::Vector2d& diameters_px) const {
+  const double on_print = std::max(fit.inside_residual, fit.ring_residual);
+  return fit.match.Quality() >= models_.options.min_quality + SmallMargin(diameters_px) &&
+         fit.correlation >= kMinFittedCorrelation && fit.explained >= kMinExplained &&
+         fit.inside_residual - fit.ring_residual <= kMaxMoreInside &&
+         fit.ring_residual - fit.inside_residual <= kMaxMoreOnRing &&
+         fit.white_residual <= on_print + kMaxMoreOutside && !IsOtherSign(fit.others) &&
+         !IsDoubtful(fit.others);
+}
+
+// The best start for a small pattern whose ring lies as 'pose'; its correlation is -1 when there is
+// none.
+SmallPatternFitter::Start LandingSearch::FindStart(const CirclePose& pose,
+                                                   std::span<const double> scales) {
+  const std::optional<double> scale =
+      models_.small.FindScale(image_, pose, scales, &buffers_.small);
+  if (!scale) return {{}, -1};
+  if (const std::optional<double> angle = ArmAngleByQuadrants(pose)) {
+    const auto start = models_.small.FindStart(pose, *scale, {&*angle, 1}, buffers_.small);
+    if (start.correlation >= kSureCorrelation) return start;
+  }
+  // Within 7.5 degrees of every direction.
+  constexpr double kStep = std::numbers::pi / 12;
+  constexpr std::array<double, 6> kTurns{0, kStep, 2 * kStep, 3 * kStep, 4 * kStep, 5 * kStep};
+  return models_.small.FindStart(pose, *scale, kTurns, buffers_.small);
+}
+
 // Rings whose strokes are no wider than the blur: the print is fitted as a whole. The ring may be
 // smaller than it was seen by the given factors.
 void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
@@ -217,39 +258,38 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
   const std::array<bool, 2> allowed = LevelEnough(ring);
   for (int i = 0; i < 2; ++i) {
     if (!allowed[i]) continue;
-    const auto find_start = [&](std::optional<double> arm_angle) {
-      return models_.small.FindStart(image_, ring.poses[i], scales, arm_angle, &buffers_.small);
-    };
-    SmallPatternFitter::Start start{{}, -1};
-    if (const auto arm_angle = ArmAngleByQuadrants(ring.poses[i])) start = find_start(arm_angle);
-    if (start.correlation < kSureCorrelation) start = find_start(std::nullopt);
+    const SmallPatternFitter::Start start = FindStart(ring.poses[i], scales);
     // The two poses of a small ring look much the same: what does not fit one fits neither.
     if (start.correlation < kMinCorrelation) return;
     Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
     constexpr int kIterations = 8;
-    const auto fit =
-        models_.small.Refine(image_, start.camera_from_pattern, kIterations, &buffers_.small);
+    using Light = SmallPatternFitter::Light;
+    auto fit = models_.small.Refine(image_, start.camera_from_pattern, Light::kEven, kIterations,
+                                    &buffers_.small);
     if (!fit || fit->correlation < kMinCorrelationOfEither) return;
     if (!Agrees(start.camera_from_pattern, fit->location.camera_from_pattern,
                 models_.options.pattern.outer_radius_m())) {
       continue;
     }
-    const double quality = fit->match.Quality();
     Reach(LandingStage::kLocate, "no pose explains the edges of ring and cross");
-    // What the print does not explain is spread evenly where the print is: a sign with another
-    // figure in the ring leaves more inside, one in another frame more on the ring and around it.
-    // So few pixels tell less than the edges of a near pattern: more is asked of them.
-    const double on_print = std::max(fit->inside_residual, fit->ring_residual);
-    if (quality < models_.options.min_quality + SmallMargin(diameters_px) ||
-        fit->correlation < kMinFittedCorrelation ||
-        fit->inside_residual - fit->ring_residual > kMaxMoreInside ||
-        fit->ring_residual - fit->inside_residual > kMaxMoreOnRing ||
-        fit->white_residual > on_print + kMaxMoreOutside || IsOtherSign(fit->others)) {
-      continue;
+    if (!IsSmallPattern(*fit, diameters_px)) {
+      fit = models_.small.Refine(image_, fit->location.camera_from_pattern, Light::kShadowEdge,
+                                 kIterations, &buffers_.small);
+      if (!fit || !IsSmallPattern(*fit, diameters_px)) continue;
     }
     Keep(fit->location, fit->match.seen < kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants,
-         quality, diameters_px);
+         fit->match.Quality(), diameters_px);
   }
+}
+
+// Whether there is another sign where a pattern was located, in even light and in the light that
+// the edge of a shadow leaves.
+bool LandingSearch::ShowsOtherSign(const RigidTransform& pose) {
+  using Light = SmallPatternFitter::Light;
+  const auto in_even = models_.small.Inspect(image_, pose, Light::kEven, &buffers_.small);
+  if (!in_even || !IsOtherSign(*in_even)) return false;
+  const auto beside_edge = models_.small.Inspect(image_, pose, Light::kShadowEdge, &buffers_.small);
+  return !beside_edge || IsOtherSign(*beside_edge);
 }
 
 void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& diameters_px,
@@ -276,9 +316,7 @@ void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& 
   const double quality = match.Quality();
   if (quality < models_.options.min_quality || match.RingShare() < kMinRingShare) return;
   if (diameters_px.x() < kInspectedRingPx) {
-    const auto others =
-        models_.small.Inspect(image_, location->camera_from_pattern, &buffers_.small);
-    if (others && IsOtherSign(*others)) return;
+    if (ShowsOtherSign(location->camera_from_pattern)) return;
   }
   Keep(*location, match.seen < kWhole ? CrossMethod::kPartial : hypothesis.method, quality,
        diameters_px);

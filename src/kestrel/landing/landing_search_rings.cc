@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "kestrel/landing/landing_search.h"
+#include "kestrel/landing/pattern_pose.h"
 
 namespace kestrel {
 namespace {
@@ -17,7 +18,9 @@ constexpr double kThinRingPx = 13;
 constexpr double kMaxBoardRingPx = 50;  // major axis of a ring that the board shows
 // Candidates of a pass that are looked at, those of the highest contrast: a bound of the time that
 // a frame full of texture costs.
-constexpr std::size_t kMaxCandidates = 6;
+constexpr std::size_t kMaxCandidates = 4;
+constexpr int kMaxHullExtent = 62;       // px, of borders that need not be convex
+constexpr double kMinSmallContrast = 3;  // gray values
 constexpr std::array<double, 1> kOneScale{1.0};
 
 }  // namespace
@@ -41,7 +44,8 @@ void LandingSearch::CollectCandidates(std::size_t pass_index) {
        i < tracer.borders().size() && candidates.size() + 2 <= candidates.capacity(); ++i) {
     const Border& border = tracer.borders()[i];
     const std::optional<DarkArea> area =
-        TestDarkArea(tracer, border, std::max(4.0, 0.7 * pass.min_ring_px / scale));
+        TestDarkArea(tracer, border, std::max(4.0, 0.7 * pass.min_ring_px / scale),
+                     pass.image_level == 0 ? kMaxHullExtent : 0);
     if (!area) continue;
     RingCandidate candidate;
     candidate.border = i;
@@ -172,7 +176,7 @@ void LandingSearch::TestArcs(std::size_t pass_index) {
     const Eigen::Vector2d diameters_px =
         2 * pattern.outer_radius_m() / radius_m * focal_px_ * ring.cone.HalfAngles();
     if (IsSmall(diameters_px)) {
-      TestSmallRing(ring, diameters_px, kOneScale);
+      if (StandsOut(ring.poses[0])) TestSmallRing(ring, diameters_px, kOneScale);
     } else {
       TestRing(ring, diameters_px, std::max(2.0, scale + 0.025 * diameters_px.x()));
     }
@@ -203,6 +207,13 @@ void LandingSearch::TestPartial(std::size_t pass_index) {
     Locate(*hypothesis, Eigen::Vector2d::Constant(diameter_px),
            std::max(2.0, region.scale() + 0.03 * diameter_px));
   }
+}
+
+// Whether a small ring is darker than what is around it.
+bool LandingSearch::StandsOut(const CirclePose& ring) const {
+  const PatternView view(models_.camera, PatternPose(ring, 0), models_.matcher.extent_m(),
+                         {offset_, 0});
+  return view.valid() && models_.matcher.RingContrast(searched_, view) >= kMinSmallContrast;
 }
 
 bool LandingSearch::IsSmall(const Eigen::Vector2d& diameters_px) const {

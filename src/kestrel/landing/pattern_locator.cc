@@ -15,28 +15,34 @@
 namespace kestrel {
 namespace {
 
-constexpr int kMaxReach = 12;        // px
-constexpr double kOnEdgePx = 1.0;    // offset of an edge that is the outline's own
-constexpr double kLensBlurPx = 0.7;  // of optics and pixels, standard deviation
-constexpr double kEdgeSigma = 0.12;  // px, of an edge that fits perfectly
+constexpr int kMaxReach = 12;  // px
+// Places per place that the first iterations look at: odd, so that both sides of the arms have
+// some.
+constexpr std::size_t kCoarseStride = 3;
+constexpr int kFewEdges = 30;              // too few of those for a pose
+constexpr double kOnEdgePx = 1.0;          // offset of an edge that is the outline's own
+constexpr double kLensBlurPx = 0.7;        // of optics and pixels, standard deviation
+constexpr double kMaxRingScatterPx = 1.5;  // after two iterations, standard deviation
+constexpr double kEdgeSigma = 0.12;        // px, of an edge that fits perfectly
+
+// Whether the image shows all that FindEdge looks at.
+bool ShowsSearch(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::Vector2d& normal,
+                 int reach) {
+  const Eigen::Array2d span = (reach + 1.5) * normal.array().abs();
+  return (at.array() - span >= 0).all() &&
+         (at.array() + span <= Eigen::Array2d(image.cols - 1, image.rows - 1)).all();
+}
 
 // Offset (px) along the unit vector 'normal' from 'at' to the steepest rise of brightness within
-// 'reach' pixels. Nothing when there is none, or the image does not show the whole search.
+// 'reach' pixels, all of which the image must show; nothing when there is none.
 std::optional<double> FindEdge(const cv::Mat& image, const Eigen::Vector2d& at,
                                const Eigen::Vector2d& normal, int reach, float min_step) {
   std::array<float, 2 * kMaxReach + 4> gray;
   const int count = 2 * reach + 4;
-  const Eigen::Vector2d first = at - (reach + 1.5) * normal;
-  const Eigen::Vector2d last = at + (reach + 1.5) * normal;
-  if (std::min(first.x(), last.x()) < 0 || std::min(first.y(), last.y()) < 0 ||
-      std::max(first.x(), last.x()) > image.cols - 1 ||
-      std::max(first.y(), last.y()) > image.rows - 1) {
-    return std::nullopt;
-  }
-  Eigen::Vector2f place = first.cast<float>();
+  Eigen::Vector2f place = (at - (reach + 1.5) * normal).cast<float>();
   const Eigen::Vector2f step = normal.cast<float>();
   for (int i = 0; i < count; ++i, place += step) {
-    gray[i] = SampleGray(image, place.x(), place.y());
+    gray[i] = SampleInside(image, place.x(), place.y());
   }
   // Rise between neighbours; the one at index i lies at offset i - reach - 1.
   int best = -1;
@@ -137,16 +143,17 @@ void PatternLocator::AddArms() {
   }
 }
 
-// Adds what each place says to the normal equations, weighted by Tukey's function of its residual
-// with the given scale.
+// Adds what each 'stride'-th place says to the normal equations, weighted by Tukey's function of
+// its residual with the given scale.
 void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose,
-                                std::span<const Place> places, double reach_px, double min_step,
-                                double scale_px, Normal* normal) const {
+                                std::span<const Place> places, std::size_t stride, double reach_px,
+                                double min_step, double scale_px, Normal* normal) const {
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   const Eigen::Matrix<double, 3, 2> plane = rotation.leftCols<2>();
   const int reach = std::clamp(static_cast<int>(std::ceil(reach_px)), 1, kMaxReach);
   Eigen::Matrix<double, 2, 3> d_pixel;
-  for (const Place& place : places) {
+  for (std::size_t i = 0; i < places.size(); i += stride) {
+    const Place& place = places[i];
     ++normal->part_places[place.part];
     const Eigen::Vector3d from_center = plane * place.point;
     Eigen::Vector2d pixel;
@@ -154,20 +161,22 @@ void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose
         ProjectionStatus::kOk) {
       continue;
     }
-    ++normal->in_image;
-    ++normal->part_in_image[place.part];
     const Eigen::Matrix2d d_plane = d_pixel * plane;
     // Normal of the outline in the image: at right angles to the image of its tangent.
     const Eigen::Vector2d tangent = d_plane * Eigen::Vector2d(-place.normal.y(), place.normal.x());
     Eigen::Vector2d across(-tangent.y(), tangent.x());
     if (across.dot(d_plane * place.normal) < 0) across = -across;
     across.normalize();
+    if (!ShowsSearch(image, pixel, across, reach)) continue;
+    ++normal->in_image;
+    ++normal->part_in_image[place.part];
     std::optional<double> offset =
         FindEdge(image, pixel, across, reach, static_cast<float>(min_step));
     if (!offset) continue;
     // Blur moves a bent edge towards the middle of the bend.
     const double shrink = 0.5 * kLensBlurPx * kLensBlurPx * place.curvature *
-                          std::abs(d_plane.determinant()) / std::pow(tangent.norm(), 3);
+                          std::abs(d_plane.determinant()) /
+                          (tangent.squaredNorm() * tangent.norm());
     *offset += shrink;
     if (normal->found < static_cast<int>(normal->magnitudes.size())) {
       normal->magnitudes[normal->found++] = static_cast<float>(std::abs(*offset));
@@ -179,8 +188,9 @@ void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose
     const Eigen::Vector3d d_point = d_pixel.transpose() * across;
     jacobian.head<3>() = d_point;
     jacobian.tail<3>() = from_center.cross(d_point);
-    normal->h.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
-    normal->g += weight * *offset * jacobian;
+    const Eigen::Matrix<double, 6, 1> weighted = weight * jacobian;
+    normal->h.noalias() += weighted * jacobian.transpose();
+    normal->g += *offset * weighted;
     normal->weighted_squares += weight * *offset * *offset;
     normal->weights += weight;
     ++normal->used;
@@ -199,13 +209,19 @@ std::optional<PatternLocation> PatternLocator::Locate(const cv::Mat& image,
   double reach = reach_px;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     Normal normal;
-    Accumulate(image, pose, places_, reach, min_step, scale, &normal);
+    // A part of the edges brings the pose near, all of them say where it is.
+    const bool last = iteration + 1 == iterations;
+    if (!last) Accumulate(image, pose, places_, kCoarseStride, reach, min_step, scale, &normal);
+    if (last || normal.used < kFewEdges) {
+      normal = Normal();
+      Accumulate(image, pose, places_, 1, reach, min_step, scale, &normal);
+    }
     if (normal.used < 12) return std::nullopt;
-    const auto solver = normal.h.selfadjointView<Eigen::Lower>().ldlt();
+    const auto solver = normal.h.ldlt();
     if (!Move(solver.solve(normal.g), &pose)) return std::nullopt;
     scale = std::clamp(normal.RobustScale(), 0.25, scale);
     reach = std::clamp(3 * scale, 1.5, reach);
-    if (iteration + 1 < iterations) continue;
+    if (!last) continue;
 
     const double variance =
         std::max(kEdgeSigma * kEdgeSigma, normal.weighted_squares / normal.weights);
@@ -234,18 +250,20 @@ std::optional<RigidTransform> PatternLocator::LocateRing(const cv::Mat& image,
   double reach = reach_px;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     Normal normal;
-    Accumulate(image, pose, std::span(places_).first(ring_places_), reach, min_step, scale,
+    Accumulate(image, pose, std::span(places_).first(ring_places_), 1, reach, min_step, scale,
                &normal);
     if (normal.used < 12) return std::nullopt;
     // A ring says nothing about turns in its plane, and a short arc little about its far side.
     normal.h.diagonal() *= 1 + 1e-4;
     const double weight = 1e-6 * normal.h.diagonal().tail<3>().maxCoeff();
     for (int i = 3; i < 6; ++i) normal.h(i, i) += weight;
-    if (!Move(normal.h.selfadjointView<Eigen::Lower>().ldlt().solve(normal.g), &pose)) {
+    if (!Move(normal.h.ldlt().solve(normal.g), &pose)) {
       return std::nullopt;
     }
     scale = std::clamp(normal.RobustScale(), 0.25, scale);
     reach = std::clamp(3 * scale, 1.5, reach);
+    // The edges of anything but a ring stay scattered.
+    if (iteration == 1 && scale > kMaxRingScatterPx) return std::nullopt;
   }
   return pose;
 }

@@ -61,7 +61,8 @@ class PatternLocator {
   void AddCircle(double radius, double sign, int count, double arm_clearance);
   void AddArms();
   void Accumulate(const cv::Mat& image, const RigidTransform& pose, std::span<const Place> places,
-                  double reach_px, double min_step, double scale_px, Normal* normal) const;
+                  std::size_t stride, double reach_px, double min_step, double scale_px,
+                  Normal* normal) const;
 
   CameraModel camera_;
   LandingPattern pattern_;

@@ -18,6 +18,18 @@ constexpr std::array<double, kQuadrantTurns> kQuadrantAngles{27, 33, 39, 45, 51,
 constexpr std::array<double, 3> kQuadrantRadii{0.45, 0.6, 0.75};
 constexpr float kUnseen = -1e9f;
 constexpr double kMissingArm = 0.3;
+// In a shadow a contrast counts by its share of the brightness: relative to that of the print, and
+// when it is no noise: gray values, and relative to the print's contrast.
+constexpr double kRatioShare = 0.6;
+constexpr double kLeastInShadow = 4;
+constexpr double kShareInShadow = 0.1;
+
+// A contrast: white minus black, gray values, and the same relative to the white.
+struct Seen {
+  float difference;
+  float ratio;
+  bool known() const { return difference != kUnseen; }
+};
 
 struct Tally {
   int agreed = 0;
@@ -129,42 +141,49 @@ double PatternMatcher::RingContrast(const cv::Mat& image, const PatternView& vie
 PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view) const {
   PatternMatch match;
   std::array<Tally, 4> arm, quadrant, ring;
-  // Difference of a contrast; far below zero where the image does not show it.
   const auto darker = [&](const std::array<Place, 2>& places) {
     const float first = view.Sample(image, places[0].x, places[0].y);
     if (places[0].x == places[1].x && places[0].y == places[1].y) return first;
     return std::min(first, view.Sample(image, places[1].x, places[1].y));
   };
-  const auto difference = [&](const Contrast& contrast) {
+  const auto look_at = [&](const Contrast& contrast) -> Seen {
     const float dark = darker(contrast.dark);
     const float bright = darker(contrast.bright);
-    return dark < 0 || bright < 0 ? kUnseen : bright - dark;
+    if (dark < 0 || bright < 0) return {kUnseen, kUnseen};
+    return {bright - dark, (bright - dark) / std::max(bright, 1.0f)};
   };
 
   // The print's contrast in each quarter, which shadow and haze may make different, is that of the
   // ring; but not less than a third of what it is over the whole ring. Where the ring is out of
   // view it is that of the arms.
-  std::array<float, kRingPlaces> of_ring;
-  std::array<float, kRingPlaces> known;
+  std::array<Seen, kRingPlaces> of_ring;
+  std::array<float, kRingPlaces> known, known_ratio;
   std::size_t count = 0;
   std::array<std::array<float, kRingPlaces>, 4> of_quarter;
   std::array<std::size_t, 4> quarter_count{};
   for (std::size_t i = 0; i < ring_.size(); ++i) {
-    of_ring[i] = difference(ring_[i]);
-    if (of_ring[i] == kUnseen) continue;
-    known[count++] = of_ring[i];
+    of_ring[i] = look_at(ring_[i]);
+    if (!of_ring[i].known()) continue;
+    known[count] = of_ring[i].difference;
+    known_ratio[count++] = of_ring[i].ratio;
     const int q = ring_[i].quarter;
-    of_quarter[q][quarter_count[q]++] = of_ring[i];
+    of_quarter[q][quarter_count[q]++] = of_ring[i].difference;
   }
   if (count < kRingPlaces / 6) {
     count = 0;
     for (const Contrast& contrast : arms_) {
       if (count == known.size()) break;
-      if (const float value = difference(contrast); value != kUnseen) known[count++] = value;
+      const Seen arm_contrast = look_at(contrast);
+      if (!arm_contrast.known()) continue;
+      known[count] = arm_contrast.difference;
+      known_ratio[count++] = arm_contrast.ratio;
     }
   }
   match.contrast = Median(&known, count);
   if (match.contrast < 2) return match;
+  // Where light and shadow meet within a quarter, black is still as dark as it is beside white.
+  const double least_ratio = kRatioShare * Median(&known_ratio, count);
+  const double least_in_shadow = std::max(kLeastInShadow, kShareInShadow * match.contrast);
   std::array<double, 4> least;
   for (int q = 0; q < 4; ++q) {
     const double local =
@@ -172,18 +191,23 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
     least[q] = kShare * std::clamp(local, match.contrast / 3, match.contrast);
   }
 
+  const auto agrees = [&](const Seen& value, int quarter) {
+    return value.difference >= least[quarter] ||
+           (value.difference >= least_in_shadow && value.ratio >= least_ratio);
+  };
   int seen = 0, all = 0;
-  const auto count_in = [&](const Contrast& contrast, float value, std::array<Tally, 4>* tallies) {
+  const auto count_in = [&](const Contrast& contrast, const Seen& value,
+                            std::array<Tally, 4>* tallies) {
     Tally& tally = (*tallies)[contrast.quarter];
     ++tally.all;
     ++all;
-    if (value == kUnseen) return;
+    if (!value.known()) return;
     ++tally.seen;
     ++seen;
-    tally.agreed += value >= least[contrast.quarter];
+    tally.agreed += agrees(value, contrast.quarter);
   };
   for (std::size_t i = 0; i < ring_.size(); ++i) count_in(ring_[i], of_ring[i], &ring);
-  for (const Contrast& contrast : arms_) count_in(contrast, difference(contrast), &arm);
+  for (const Contrast& contrast : arms_) count_in(contrast, look_at(contrast), &arm);
   std::size_t place = 0;
   for (int q = 0; q < 4; ++q) {
     bool spoke = false;
@@ -191,9 +215,9 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
       int dark = 0;
       for (std::size_t radius = 0; radius < kQuadrantRadii.size(); ++radius, ++place) {
         const Contrast& contrast = quadrants_[place];
-        const float value = difference(contrast);
+        const Seen value = look_at(contrast);
         count_in(contrast, value, &quadrant);
-        dark += value != kUnseen && value < least[contrast.quarter];
+        dark += value.known() && !agrees(value, contrast.quarter);
       }
       spoke |= dark == static_cast<int>(kQuadrantRadii.size());
     }

@@ -13,12 +13,8 @@
 
 namespace kestrel {
 
-// Gray value of a CV_8UC1 image between its pixels, bilinear; negative outside of the image.
-inline float SampleGray(const cv::Mat& image, float x, float y) {
-  if (!(x >= 0 && y >= 0 && x <= static_cast<float>(image.cols - 1) &&
-        y <= static_cast<float>(image.rows - 1))) {
-    return -1;
-  }
+// Gray value of a CV_8UC1 image between its pixels, bilinear; the point must lie in the image.
+inline float SampleInside(const cv::Mat& image, float x, float y) {
   const int x0 = std::min(static_cast<int>(x), image.cols - 2);
   const int y0 = std::min(static_cast<int>(y), image.rows - 2);
   const float fx = x - static_cast<float>(x0);
@@ -28,6 +24,13 @@ inline float SampleGray(const cv::Mat& image, float x, float y) {
   const float top = upper[0] + fx * static_cast<float>(upper[1] - upper[0]);
   const float bottom = lower[0] + fx * static_cast<float>(lower[1] - lower[0]);
   return top + fy * (bottom - top);
+}
+
+// The same; negative outside of the image.
+inline float SampleGray(const cv::Mat& image, float x, float y) {
+  const bool inside = x >= 0 && y >= 0 && x <= static_cast<float>(image.cols - 1) &&
+                      y <= static_cast<float>(image.rows - 1);
+  return inside ? SampleInside(image, x, y) : -1;
 }
 
 // A part of the camera's image at 1 / 2^level of its resolution.

@@ -30,19 +30,31 @@ constexpr std::size_t kMaxRings = 4;
 void SmoothBorder(const GridPoint* points, std::size_t count,
                   std::vector<Eigen::Vector2f>* smooth) {
   smooth->clear();
-  constexpr int kWindow = 2;
-  for (std::size_t i = 0; i + kStride <= count; i += kStride) {
-    Eigen::Vector2f sum = Eigen::Vector2f::Zero();
-    for (int j = -kWindow; j <= kWindow; ++j) {
-      const GridPoint& p = points[(i + count + static_cast<std::size_t>(j + 0)) % count];
-      sum += Eigen::Vector2f(p.x, p.y);
+  constexpr std::size_t kWindow = 2;
+  const auto add_mean = [&](const auto& point_at) {
+    int x = 0, y = 0;
+    for (std::size_t j = 0; j <= 2 * kWindow; ++j) {
+      const GridPoint& p = point_at(j);
+      x += p.x;
+      y += p.y;
     }
-    smooth->push_back(sum / (2 * kWindow + 1) - Eigen::Vector2f(0.5f, 0.5f));
+    smooth->push_back(Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) /
+                          (2 * kWindow + 1) -
+                      Eigen::Vector2f(0.5f, 0.5f));
+  };
+  for (std::size_t i = 0; i + kStride <= count; i += kStride) {
+    if (i >= kWindow && i + kWindow < count) {
+      add_mean([&, first = points + i - kWindow](std::size_t j) { return first[j]; });
+    } else {
+      add_mean([&](std::size_t j) { return points[(i + count - kWindow + j) % count]; });
+    }
   }
 }
 
+// Angle (rad) from one direction to another, to 0.3 degrees.
 float Turn(const Eigen::Vector2f& from, const Eigen::Vector2f& to) {
-  return std::atan2(from.x() * to.y() - from.y() * to.x(), from.dot(to));
+  const float degrees = cv::fastAtan2(from.x() * to.y() - from.y() * to.x(), from.dot(to));
+  return static_cast<float>(kDegree) * (degrees > 180 ? degrees - 360 : degrees);
 }
 
 class ArcCutter {
@@ -60,7 +72,7 @@ class ArcCutter {
     double turning = 0;
     bool wrapped = false;
     for (std::size_t i = 0; i < 2 * n; ++i) {
-      const double turn = workspace_.turns[i % n] / kChord;
+      const double turn = workspace_.turns[Wrap(i, n)] / kChord;
       const bool ends = IsCorner(i) || IsAtImageBorder(i + kChord);
       const bool opposite = turning != 0 && turn * (turning > 0 ? 1 : -1) < kAgainst;
       if (ends || opposite || i - start >= n) {
@@ -76,13 +88,16 @@ class ArcCutter {
   }
 
  private:
-  // Turn (rad) around the point kChord after 'i'.
+  // Index of a closed curve of n points, for i < 2 n.
+  static std::size_t Wrap(std::size_t i, std::size_t n) { return i < n ? i : i - n; }
+
+  // Turn (rad) around the point kChord after 'i', i < n.
   float TurnAt(std::size_t i) const {
     const std::vector<Eigen::Vector2f>& curve = workspace_.smooth;
     const std::size_t n = curve.size();
-    const Eigen::Vector2f& a = curve[i % n];
-    const Eigen::Vector2f& b = curve[(i + kChord) % n];
-    const Eigen::Vector2f& c = curve[(i + 2 * kChord) % n];
+    const Eigen::Vector2f& a = curve[i];
+    const Eigen::Vector2f& b = curve[Wrap(i + kChord, n)];
+    const Eigen::Vector2f& c = curve[Wrap(i + 2 * kChord, n)];
     return Turn(b - a, c - b);
   }
 
@@ -90,12 +105,12 @@ class ArcCutter {
   bool IsCorner(std::size_t i) const {
     const std::vector<float>& turns = workspace_.turns;
     const std::size_t n = turns.size();
-    const float turn = std::abs(turns[i % n]);
+    const float turn = std::abs(turns[Wrap(i, n)]);
+    if (turn <= static_cast<float>(kCorner)) return false;
     const auto sharper_than = [&](float other) {
       return turn > static_cast<float>(kSharpness) * std::abs(other);
     };
-    return turn > static_cast<float>(kCorner) && sharper_than(turns[(i + n - kApart) % n]) &&
-           sharper_than(turns[(i + kApart) % n]);
+    return sharper_than(turns[(i + n - kApart) % n]) && sharper_than(turns[(i + kApart) % n]);
   }
 
   // Where a dark area is cut off by the image border, its border is no edge of anything.

@@ -152,6 +152,11 @@ double SmallPatternFitter::ArmDarkness(double along, double across, double blur_
   return width * (step(along + length, blur_along) - step(along - length, blur_along));
 }
 
+// The ring 'scale' times smaller: that much farther away.
+CirclePose Shrunk(const CirclePose& ring, double scale) {
+  return {ring.center / scale, ring.normal};
+}
+
 // Sums for the correlation of gray values with how dark a print is there.
 class DarknessCorrelation {
  public:
@@ -212,38 +217,34 @@ double SmallPatternFitter::CorrelatePrint(double angle,
   return correlation.value();
 }
 
-SmallPatternFitter::Start SmallPatternFitter::FindStart(const cv::Mat& image,
-                                                        const CirclePose& ring,
-                                                        std::span<const double> scales,
-                                                        std::optional<double> arm_angle,
-                                                        SmallPatternWorkspace* workspace) const {
-  Start best{{}, -1};
-  double best_ring = -1, best_scale = 0;
-  double last_scale = 0;
-  const auto scaled = [&ring](double scale) {
-    return CirclePose{ring.center / scale, ring.normal};  // farther away is smaller
-  };
+std::optional<double> SmallPatternFitter::FindScale(const cv::Mat& image, const CirclePose& ring,
+                                                    std::span<const double> scales,
+                                                    SmallPatternWorkspace* workspace) const {
   const auto look_at = [&](double scale) {
-    const RigidTransform unturned = PatternPose(scaled(scale), 0);
-    last_scale = scale;
+    const RigidTransform unturned = PatternPose(Shrunk(ring, scale), 0);
     return Gather(image, unturned, workspace) ? CorrelateRing(unturned, workspace) : -1.0;
   };
+  double best = 0, best_correlation = kMinRingCorrelation;
   for (const double scale : scales) {
     const double correlation = look_at(scale);
-    if (correlation > best_ring) {
-      best_ring = correlation;
-      best_scale = scale;
-    }
+    if (correlation < best_correlation) continue;
+    best_correlation = correlation;
+    best = scale;
   }
-  if (best_ring < kMinRingCorrelation) return best;
-  if (last_scale != best_scale) look_at(best_scale);
-  // Over a right angle: within 7.5 degrees of every direction.
-  const int turns = arm_angle ? 1 : 6;
-  for (int turn = 0; turn < turns; ++turn) {
-    const double angle = arm_angle.value_or(0) + turn * (std::numbers::pi / 2) / turns;
-    const double correlation = CorrelatePrint(angle, *workspace);
-    if (correlation > best.correlation)
-      best = {PatternPose(scaled(best_scale), angle), correlation};
+  if (best == 0) return std::nullopt;
+  if (best != scales.back()) look_at(best);
+  return best;
+}
+
+SmallPatternFitter::Start SmallPatternFitter::FindStart(
+    const CirclePose& ring, double scale, std::span<const double> arm_angles,
+    const SmallPatternWorkspace& workspace) const {
+  Start best{{}, -1};
+  for (const double angle : arm_angles) {
+    const double correlation = CorrelatePrint(angle, workspace);
+    if (correlation > best.correlation) {
+      best = {PatternPose(Shrunk(ring, scale), angle), correlation};
+    }
   }
   return best;
 }
@@ -270,6 +271,13 @@ struct SmallPatternFitter::System {
   double correlation() const {
     const double about_mean = sum_squares - sum * sum / count;
     return std::sqrt(std::max(0.0, 1 - squares / std::max(about_mean, 1e-9)));
+  }
+  // Adjusted R^2. Neighbouring pixels share their blur: of so many, one tells something new.
+  double explained() const {
+    constexpr double kPixelsPerSample = 4;
+    const double samples = count / kPixelsPerSample;
+    const double unexplained = 1 - correlation() * correlation();
+    return 1 - unexplained * (samples - 1) / std::max(1.0, samples - 1 - kUnknowns);
   }
 };
 
@@ -381,13 +389,14 @@ bool SmallPatternFitter::Improve(const System& system, State* state) const {
 }
 
 std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
-    const cv::Mat& image, const RigidTransform& initial, int iterations,
+    const cv::Mat& image, const RigidTransform& initial, Light light, int iterations,
     SmallPatternWorkspace* workspace) const {
   if (!Gather(image, initial, workspace)) return std::nullopt;
   State state;
   state.pose = initial;
   MeasureLevels(*workspace, &state);
   if (state.contrast < kMinContrast) return std::nullopt;
+  if (light == Light::kShadowEdge && !EvenOut(workspace, &state)) return std::nullopt;
   // The first steps come from far away: then nothing is an outlier.
   double limit = kMaxWhite;
   for (int iteration = 0; iteration < iterations; ++iteration) {
@@ -410,6 +419,7 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   fit.ring_residual = system.zones[1].Rms() / state.contrast;
   fit.white_residual = system.zones[2].Rms() / state.contrast;
   fit.correlation = system.correlation();
+  fit.explained = system.explained();
   fit.match.contrast = state.contrast;
   MeasureParts(*workspace, state, &fit.match);
   fit.others = MeasureOthers(image, *workspace, state);

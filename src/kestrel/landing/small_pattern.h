@@ -60,6 +60,9 @@ class SmallPatternFitter {
     PatternLocation location;  // without edges
     PatternMatch match;        // amplitudes of arms, white quadrants and ring instead of shares
     double correlation;        // of the image with the fitted print, -1 to 1
+    // Share of the image's variance that the print explains beyond what so many unknowns explain
+    // of noise (adjusted R^2): low where few pixels are fitted well, by chance.
+    double explained;
     // Residuals (root of their mean square, outliers bounded; share of the contrast) inside of the
     // ring, where the cross is, on the ring, and on the white around it.
     double inside_residual;
@@ -72,24 +75,34 @@ class SmallPatternFitter {
     RigidTransform camera_from_pattern;
     double correlation;  // -1 to 1, of the image with the print blurred by a good lens
   };
-  // The best start for Refine among all directions of the arms and the given sizes: the ring lies
-  // as 'ring' in all of them, and is 'scales' times smaller. 'arm_angle': the direction of an arm
-  // where it is known (as for PatternPose). Does not allocate.
-  Start FindStart(const cv::Mat& image, const CirclePose& ring, std::span<const double> scales,
-                  std::optional<double> arm_angle, SmallPatternWorkspace* workspace) const;
+  // The size at which ring and white fit the image best: the ring lies as 'ring' in all of them,
+  // and is 'scales' times smaller. Nothing when they fit at none. Does not allocate.
+  std::optional<double> FindScale(const cv::Mat& image, const CirclePose& ring,
+                                  std::span<const double> scales,
+                                  SmallPatternWorkspace* workspace) const;
+
+  // The best start for Refine among the directions of an arm (as for PatternPose), of a ring at the
+  // scale that FindScale said last. Does not allocate.
+  Start FindStart(const CirclePose& ring, double scale, std::span<const double> arm_angles,
+                  const SmallPatternWorkspace& workspace) const;
+
+  // The light on a print: even but for a slope, or with the edge of a shadow across it, which is
+  // taken out of the image first.
+  enum class Light { kEven, kShadowEdge };
 
   // Refines 'initial', which must be within about a stroke's width. Nothing when the image shows
-  // too little of the print or the fit does not converge. Does not allocate.
-  std::optional<Fit> Refine(const cv::Mat& image, const RigidTransform& initial, int iterations,
-                            SmallPatternWorkspace* workspace) const;
+  // too little of the print, the fit does not converge or the light has no edge. Does not allocate.
+  std::optional<Fit> Refine(const cv::Mat& image, const RigidTransform& initial, Light light,
+                            int iterations, SmallPatternWorkspace* workspace) const;
 
   // What there is of other signs in a print that was located in another way; nothing when the image
-  // shows too little of it. Does not allocate.
-  std::optional<OtherSigns> Inspect(const cv::Mat& image, const RigidTransform& pose,
+  // shows too little of it or the light has no edge. Does not allocate.
+  std::optional<OtherSigns> Inspect(const cv::Mat& image, const RigidTransform& pose, Light light,
                                     SmallPatternWorkspace* workspace) const;
 
  private:
   struct Darkness;
+  struct ShadowEdge;
   struct State;
   struct System;
   bool Gather(const cv::Mat& image, const RigidTransform& pose,
@@ -99,6 +112,9 @@ class SmallPatternFitter {
   double CorrelatePrint(double angle, const SmallPatternWorkspace& workspace) const;
   double ArmDarkness(double along, double across, double blur_along, double blur_across) const;
   void MeasureLevels(const SmallPatternWorkspace& workspace, State* state) const;
+  std::optional<ShadowEdge> FitShadowEdge(const State& state,
+                                          SmallPatternWorkspace* workspace) const;
+  bool EvenOut(SmallPatternWorkspace* workspace, State* state) const;
   System Linearize(const State& state, double limit, SmallPatternWorkspace* workspace) const;
   bool Improve(const System& system, State* state) const;
   void MeasureParts(const SmallPatternWorkspace& workspace, const State& state,

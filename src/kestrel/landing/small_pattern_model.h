@@ -89,6 +89,24 @@ struct SmallPatternFitter::Darkness {
   std::array<double, 2> arms;  // of the arms along x and along y
 };
 
+// Where the light over the print changes: a soft straight edge between two lights.
+struct SmallPatternFitter::ShadowEdge {
+  Eigen::Vector2d normal{0, 0};  // unit vector in the plane, zero where there is no edge
+  double offset = 0;             // of the edge along the normal, metres
+  double before = 1;             // factors that make the light even on the two sides
+  double behind = 1;
+
+  // Share of the light behind the edge, 0 to 1.
+  double Share(double x, double y) const {
+    constexpr double kSoftness = 0.08;  // metres from the edge to where it ends
+    return std::clamp(0.5 + (normal.x() * x + normal.y() * y - offset) / (2 * kSoftness), 0.0, 1.0);
+  }
+  double Factor(double x, double y) const {
+    const double share = Share(x, y);
+    return 1 / ((1 - share) / before + share / behind);
+  }
+};
+
 // The unknowns of a fit.
 struct SmallPatternFitter::State {
   RigidTransform pose;
@@ -96,6 +114,7 @@ struct SmallPatternFitter::State {
   double white = 255;   // gray value, which the image may cut off
   double contrast = 0;  // white minus black
 
+  ShadowEdge edge;              // taken out of the gray values before the fit
   Eigen::Vector2d slope{0, 0};  // of the light over the print, gray values per metre
 
   double Gray(const PlanePoint& point, const Darkness& dark) const {

@@ -14,12 +14,14 @@
 namespace kestrel {
 
 std::optional<SmallPatternFitter::OtherSigns> SmallPatternFitter::Inspect(
-    const cv::Mat& image, const RigidTransform& pose, SmallPatternWorkspace* workspace) const {
+    const cv::Mat& image, const RigidTransform& pose, Light light,
+    SmallPatternWorkspace* workspace) const {
   if (!Gather(image, pose, workspace)) return std::nullopt;
   State state;
   state.pose = pose;
   MeasureLevels(*workspace, &state);
   if (state.contrast < kMinContrast) return std::nullopt;
+  if (light == Light::kShadowEdge && !EvenOut(workspace, &state)) return std::nullopt;
   return MeasureOthers(image, *workspace, state);
 }
 
@@ -142,11 +144,12 @@ double SmallPatternFitter::BoardDarkness(const cv::Mat& image, const State& stat
                                 board_radius_m_ * std::sin(angle), 0);
     Eigen::Vector2d pixel;
     if (camera_.Project(state.pose * point, &pixel) == ProjectionStatus::kOutsideModel) continue;
-    const double gray =
+    const float seen_gray =
         SampleGray(image, static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
-    if (gray < 0) continue;
+    if (seen_gray < 0) continue;
+    const double gray = seen_gray * state.edge.Factor(point.x(), point.y());
     const double white = state.white + state.slope.dot(point.head<2>());
-    darkness[seen++] = gray >= kSaturated ? 0 : (white - gray) / state.contrast;
+    darkness[seen++] = seen_gray >= kSaturated ? 0 : (white - gray) / state.contrast;
   }
   if (seen == 0) return 0;
   std::nth_element(darkness.begin(), darkness.begin() + seen / 2, darkness.begin() + seen);

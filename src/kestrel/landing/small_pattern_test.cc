@@ -13,8 +13,6 @@ namespace {
 
 class SmallPatternTest : public ::testing::Test {
  protected:
-  static constexpr std::array<double, 1> kOneScale{1.0};
-
   static RigidTransform PoseOf(double diameter_px, Random* random) {
     const double distance = 220 / diameter_px;
     return PrintPose(
@@ -24,8 +22,12 @@ class SmallPatternTest : public ::testing::Test {
   // Fits from the ring of 'truth', its distance off by 3 %.
   std::optional<SmallPatternFitter::Fit> Fit(const cv::Mat& image, const RigidTransform& truth) {
     const CirclePose ring{1.03 * truth.translation, truth.rotation * Eigen::Vector3d::UnitZ()};
-    const auto start = fitter_.FindStart(image, ring, kOneScale, std::nullopt, &workspace_);
-    return fitter_.Refine(image, start.camera_from_pattern, 8, &workspace_);
+    constexpr std::array<double, 1> kOneScale{1.0};
+    constexpr std::array<double, 6> kTurns{0, 0.26, 0.52, 0.79, 1.05, 1.31};
+    if (!fitter_.FindScale(image, ring, kOneScale, &workspace_)) return std::nullopt;
+    const auto start = fitter_.FindStart(ring, 1, kTurns, workspace_);
+    return fitter_.Refine(image, start.camera_from_pattern, SmallPatternFitter::Light::kEven, 8,
+                          &workspace_);
   }
   cv::Mat Draw(const Print& print, const RigidTransform& pose) const {
     return DrawPrint(camera_, pattern_, print, pose);

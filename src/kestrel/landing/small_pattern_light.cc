@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The edge of a shadow on a small print.
+#include <cmath>
+#include <numbers>
+
+#include "kestrel/landing/small_pattern_model.h"
+
+namespace kestrel {
+namespace {
+
+constexpr int kDirections = 12;           // over half a turn
+constexpr double kOffsetStep = 0.1;       // of the extent
+constexpr double kMaxRemaining = 0.6;     // of the residual's square, by the edge
+constexpr double kMaxDarkRatio = 0.8;     // of the light in the shadow to that beside it
+constexpr double kMinDarkRatio = 0.05;
+
+// Sums of a fit of gray values by two lights, each on its side of an edge.
+struct TwoLights {
+  double aa = 0, ab = 0, bb = 0, ag = 0, bg = 0;
+
+  void Add(double gray, double reflected, double share) {
+    const double a = reflected * (1 - share), b = reflected * share;
+    aa += a * a;
+    ab += a * b;
+    bb += b * b;
+    ag += a * gray;
+    bg += b * gray;
+  }
+  // Light on either side; what of the squared gray values they explain.
+  struct Solution {
+    double before, behind, explained;
+  };
+  Solution Solve() const {
+    const double determinant = aa * bb - ab * ab;
+    if (determinant < 1e-6 * aa * bb + 1e-9) return {0, 0, 0};
+    const double before = (bb * ag - ab * bg) / determinant;
+    const double behind = (aa * bg - ab * ag) / determinant;
+    return {before, behind, before * ag + behind * bg};
+  }
+};
+
+}  // namespace
+
+std::optional<SmallPatternFitter::ShadowEdge> SmallPatternFitter::FitShadowEdge(
+    const State& state, SmallPatternWorkspace* workspace) const {
+  // What black reflects of the light that white does.
+  const double blackness = std::clamp(state.contrast / state.white, 0.3, 0.95);
+  const PlaneMap map(state.pose);
+  workspace->points.clear();
+  double squares = 0, one_light = 0, one_norm = 0;
+  for (const auto& pixel : workspace->pixels) {
+    PlanePoint point = Intersect(map, pixel);
+    const double reflected =
+        1 - blackness * Evaluate(point.x, point.y, point.by_pixel, state.blur_px).value;
+    point.ring = reflected;
+    workspace->points.push_back(point);
+    squares += pixel.gray * pixel.gray;
+    one_light += reflected * pixel.gray;
+    one_norm += reflected * reflected;
+  }
+  const double even_residual = squares - one_light * one_light / one_norm;
+
+  ShadowEdge best;
+  double best_residual = kMaxRemaining * even_residual;
+  for (int i = 0; i < kDirections; ++i) {
+    const double angle = i * std::numbers::pi / kDirections;
+    ShadowEdge edge{{std::cos(angle), std::sin(angle)}, 0, 1, 1};
+    for (int step = -8; step <= 8; ++step) {
+      edge.offset = step * kOffsetStep * extent_m_;
+      TwoLights lights;
+      for (std::size_t k = 0; k < workspace->points.size(); ++k) {
+        const PlanePoint& point = workspace->points[k];
+        lights.Add(workspace->pixels[k].gray, point.ring, edge.Share(point.x, point.y));
+      }
+      const TwoLights::Solution solution = lights.Solve();
+      const double residual = squares - solution.explained;
+      const double darker = std::min(solution.before, solution.behind);
+      const double brighter = std::max(solution.before, solution.behind);
+      if (residual >= best_residual || darker < kMinDarkRatio * brighter ||
+          darker > kMaxDarkRatio * brighter) {
+        continue;
+      }
+      best_residual = residual;
+      edge.before = darker / solution.before;
+      edge.behind = darker / solution.behind;
+      best = edge;
+    }
+  }
+  if (best.normal.isZero()) return std::nullopt;
+  return best;
+}
+
+// Takes from the gray values of the workspace what the light beside a shadow adds to them. False
+// when there is no such edge.
+bool SmallPatternFitter::EvenOut(SmallPatternWorkspace* workspace, State* state) const {
+  const std::optional<ShadowEdge> edge = FitShadowEdge(*state, workspace);
+  if (!edge) return false;
+  state->edge = *edge;
+  for (std::size_t i = 0; i < workspace->pixels.size(); ++i) {
+    workspace->pixels[i].gray *= edge->Factor(workspace->points[i].x, workspace->points[i].y);
+  }
+  MeasureLevels(*workspace, state);
+  return state->contrast >= kMinContrast;
+}
+
+}  // namespace kestrel
