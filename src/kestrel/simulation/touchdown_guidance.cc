@@ -61,6 +61,7 @@ std::vector<std::string> GuidanceOptions::Validate() const {
   RequireIn(position_gain, 0.1, 5, "position_gain", &violations);
   RequireIn(braking, 0.1, 20, "braking", &violations);
   RequireIn(lead_s, 0, 1, "lead_s", &violations);
+  RequireIn(smoothing_s, 0.01, 10, "smoothing_s", &violations);
   RequireIn(sink_gain, 0.05, 5, "sink_gain", &violations);
   RequireIn(max_sink_mps, 0.1, 10, "max_sink_mps", &violations);
   RequireIn(touchdown_sink_mps, 0.1, 10, "touchdown_sink_mps", &violations);
@@ -76,6 +77,7 @@ VelocityCommand TouchdownGuidance::Command(const UavState& uav,
   if (!target) {
     if (phase_ == LandingPhase::kDescend || phase_ == LandingPhase::kCommit) ++go_arounds_;
     phase_ = LandingPhase::kSearch;
+    smoothed_.reset();
     return Search(uav);
   }
   const TurnState& motion = target->motion;
@@ -85,9 +87,10 @@ VelocityCommand TouchdownGuidance::Command(const UavState& uav,
   const double distance_m = offset.norm();
   const Closing closing = ClosingSpeed(distance_m, options_.position_gain, options_.braking);
   const Vector2d towards = distance_m > 0 ? Vector2d(offset / distance_m) : Vector2d::Zero();
-  const Vector3d slip = motion.velocity() - uav.velocity_in_world;
+  const Vector3d velocity = Smoothed(*target);
+  const Vector3d slip = velocity - uav.velocity_in_world;
   VelocityCommand command;
-  command.velocity = motion.velocity();
+  command.velocity = velocity;
   command.velocity.head<2>() += closing.speed * towards;
   command.velocity.z() = ClimbRate(uav, *target);
   command.acceleration = AccelerationAhead(motion, options_.lead_s);
@@ -104,6 +107,17 @@ VelocityCommand TouchdownGuidance::Search(const UavState& uav) const {
   command.acceleration.head<2>() = -closing.rate * uav.velocity_in_world.head<2>();
   command.velocity.z() = kHeightGain * (options_.search_altitude_m - uav.feet_in_world.z());
   return command;
+}
+
+// A low pass that turns with the target: it does not lag in curves.
+Vector3d TouchdownGuidance::Smoothed(const TargetEstimate& target) {
+  const Vector3d velocity = target.motion.velocity();
+  if (!smoothed_) smoothed_ = {target.time, velocity};
+  const double seconds = ToSeconds(target.time - smoothed_->time);
+  const double part = 1 - std::exp(-seconds / options_.smoothing_s);
+  const Vector3d turned = smoothed_->in_world + seconds * AccelerationAhead(target.motion, 0);
+  smoothed_ = {target.time, turned + part * (velocity - turned)};
+  return smoothed_->in_world;
 }
 
 void TouchdownGuidance::ChoosePhase(const UavState& uav, const TargetEstimate& target) {

@@ -24,6 +24,9 @@ struct GuidanceOptions {
   double braking = 3;
   // How long before it is needed an acceleration is commanded: the attitude lags by as much.
   double lead_s = 0.12;
+  // Over how long the target's velocity is smoothed: a vehicle sways on its springs, faster than a
+  // UAV can follow.
+  double smoothing_s = 0.5;
   // It goes down, in proportion to the height, while the target is within a cone: 'cone_m' wide on
   // the board and 'cone_slope' wider per metre of height.
   double sink_gain = 0.8;
@@ -45,6 +48,8 @@ struct GuidanceOptions {
     visitor("position_gain", self.position_gain, "1/s", "speed towards the target per metre");
     visitor("braking", self.braking, "m/s^2", "deceleration that it counts on when far away");
     visitor("lead_s", self.lead_s, "s", "acceleration is commanded so long before it is needed");
+    visitor("smoothing_s", self.smoothing_s, "s",
+            "over how long the target's velocity is smoothed");
     visitor("sink_gain", self.sink_gain, "1/s", "speed of the descent per metre of height");
     visitor("max_sink_mps", self.max_sink_mps, "m/s", "fastest descent");
     visitor("touchdown_sink_mps", self.touchdown_sink_mps, "m/s", "slowest descent");
@@ -72,7 +77,8 @@ struct UavState {
 
 // Flies a multicopter onto a moving target by the predicted track, and nothing else. A plain
 // controller, there to judge the vision:
-// - horizontally, the target's velocity plus a speed towards it; the accelerations that these need
+// - horizontally, the target's smoothed velocity plus a speed towards it; the accelerations that
+// these need
 //   (the target's in its curve, that of closing in) are given along, so that it does not lag;
 // - vertically, a height that depends on the phase.
 class TouchdownGuidance {
@@ -88,7 +94,13 @@ class TouchdownGuidance {
   int go_arounds() const { return go_arounds_; }  // how often it went up again
 
  private:
+  struct Velocity {
+    Time time;
+    Eigen::Vector3d in_world;
+  };
+
   VelocityCommand Search(const UavState& uav) const;
+  Eigen::Vector3d Smoothed(const TargetEstimate& target);
   void ChoosePhase(const UavState& uav, const TargetEstimate& target);
   double ClimbRate(const UavState& uav, const TargetEstimate& target) const;
   double Cone(double height_m) const { return options_.cone_m + options_.cone_slope * height_m; }
@@ -97,6 +109,7 @@ class TouchdownGuidance {
   Eigen::Vector2d place_;
   LandingPhase phase_ = LandingPhase::kSearch;
   int go_arounds_ = 0;
+  std::optional<Velocity> smoothed_;  // of the target
 };
 
 }  // namespace kestrel

@@ -20,6 +20,7 @@ TargetEstimate OnCircle(double time_s, double sigma_m = 0.03) {
   constexpr double kRate = 4.2 / kRadius_m;
   const double angle = kRate * time_s;
   TargetEstimate target;
+  target.time = TimeFromNanoseconds(0) + DurationFromSeconds(time_s);
   target.motion.mean.head<3>() << kRadius_m * std::cos(angle), kRadius_m * std::sin(angle),
       kBoard_m;
   target.motion.mean.segment<3>(3) << -4.2 * std::sin(angle), 4.2 * std::cos(angle), 0;
