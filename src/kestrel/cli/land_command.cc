@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/cli/land_command.h"
 
-#include <fstream>
-#include <iostream>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,15 +11,11 @@
 
 #include "kestrel/base/error.h"
 #include "kestrel/cli/interrupt.h"
+#include "kestrel/cli/landing_sink.h"
 #include "kestrel/cli/progress_bar.h"
 #include "kestrel/cli/source_arguments.h"
 #include "kestrel/pipeline/landing_pipeline.h"
-#include "kestrel/recording/annotated_writer.h"
-#include "kestrel/recording/landing_csv.h"
-#include "kestrel/recording/landing_overlay.h"
 #include "kestrel/recording/open_source.h"
-#include "kestrel/recording/output_folder.h"
-#include "kestrel/recording/track_csv.h"
 
 namespace kestrel {
 namespace {
@@ -29,75 +23,6 @@ namespace {
 struct LandArguments {
   SourceArguments source;
   std::vector<double> predict_s;
-};
-
-// The files of the track, for a flight in which the target can be followed.
-class TrackSink {
- public:
-  TrackSink(const OutputFolder& folder, const std::vector<double>& horizons_s)
-      : track_(folder.OpenText(kTrack)) {
-    WriteAtOnce(TrackCsvHeader(), kTrack, &track_);
-    if (horizons_s.empty()) return;
-    for (const double horizon_s : horizons_s) horizons_.push_back(DurationFromSeconds(horizon_s));
-    prediction_ = folder.OpenText(kPrediction);
-    WriteAtOnce(PredictionCsvHeader(), kPrediction, &prediction_);
-  }
-
-  void Write(const LandingObservation& observation, const TargetTracker& tracker) {
-    has_begun_ = has_begun_ || observation.fate;
-    if (!has_begun_) return;
-    WriteAtOnce(TrackCsvRow(observation), kTrack, &track_);
-    if (observation.track_state == TrackState::kSearching) return;
-    for (const Duration horizon : horizons_) {
-      const auto prediction = tracker.Predict(observation.time + horizon);
-      if (!prediction) continue;
-      WriteAtOnce(PredictionCsvRow(observation.time, *prediction), kPrediction, &prediction_);
-    }
-  }
-
- private:
-  static constexpr char kTrack[] = "landing_track.csv";
-  static constexpr char kPrediction[] = "landing_prediction.csv";
-
-  std::ofstream track_, prediction_;
-  std::vector<Duration> horizons_;
-  bool has_begun_ = false;
-};
-
-// Where the results go: files below --output, or the CSV to stdout.
-class LandingSink {
- public:
-  LandingSink(const LandArguments& arguments, const FrameSource& source, bool has_track) {
-    const SourceArguments& shared = arguments.source;
-    if (!shared.output.empty()) {
-      folder_.emplace(shared.output, shared.force);
-      file_ = folder_->OpenText(kDetections);
-      if (has_track) track_.emplace(*folder_, arguments.predict_s);
-    }
-    if (shared.annotate == "images") annotated_ = MakeImageWriter(*folder_);
-    if (shared.annotate == "video") annotated_ = MakeVideoWriter(*folder_, source.rate_hz());
-    WriteAtOnce(LandingCsvHeader(), kDetections, &csv());
-  }
-
-  void Write(const Frame& frame, const LandingObservation& observation,
-             const LandingPipeline& pipeline) {
-    WriteAtOnce(LandingCsvRow(frame.name, observation), kDetections, &csv());
-    if (track_) track_->Write(observation, pipeline.tracker());
-    if (!annotated_) return;
-    const LandingPatternDetector& detector = pipeline.detector();
-    annotated_->Write(frame.name, DrawLandingOverlay(frame.image, detector.camera(),
-                                                     detector.options().pattern, observation));
-  }
-
- private:
-  static constexpr char kDetections[] = "landing_detections.csv";
-
-  std::ostream& csv() { return file_.is_open() ? file_ : std::cout; }
-
-  std::optional<OutputFolder> folder_;
-  std::ofstream file_;
-  std::optional<TrackSink> track_;
-  std::unique_ptr<AnnotatedWriter> annotated_;
 };
 
 class Summary {
@@ -153,7 +78,12 @@ void RunLand(const LandArguments& arguments) {
   LandingPipeline pipeline(calibration, options);
   pipeline.SetAltitude(arguments.source.altitude_m);
   const bool has_track = has_poses && calibration.body_from_camera && !options.still;
-  LandingSink sink(arguments, *source, has_track);
+  LandingSink sink({.folder = arguments.source.output,
+                    .force = arguments.source.force,
+                    .annotate = arguments.source.annotate,
+                    .rate_hz = source->rate_hz(),
+                    .has_track = has_track,
+                    .predict_s = arguments.predict_s});
   Summary summary;
   CatchInterrupts();
   try {

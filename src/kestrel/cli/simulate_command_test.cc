@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <filesystem>
+#include <regex>
+#include <string>
 
 #include "kestrel/cli/test_command.h"
 
@@ -10,6 +12,12 @@ using ::testing::HasSubstr;
 
 class SimulateCommandTest : public CommandTest {
  protected:
+  // What landing_detections.csv says of the camera: up to p_CP_C_z_m. The poses, and with them the
+  // positions in the world, were rounded when they were written.
+  static std::string InCamera(const std::string& csv) {
+    return std::regex_replace(csv, std::regex("((?:[^,\\n]*,){10})[^\\n]*"), "$1");
+  }
+
   // Options of a flight that is quickly rendered.
   static constexpr const char* kSmall =
       " --set frames=2 --set rate_hz=1 --set ground.map_px=256 --set shutter.rays_per_pixel=4";
@@ -42,12 +50,30 @@ TEST_F(SimulateCommandTest, SimulatesAHuntWithTheUsersCamera) {
   EXPECT_EQ(image.channels(), 3);
 }
 
+TEST_F(SimulateCommandTest, FliesATouchdownThatCanBeRunAgain) {
+  const std::string flight = folder_ / "flight";
+  const Outcome flown = Run("simulate touchdown --seed 4 --annotate=images --output " + flight +
+                            kSmall + " --set frames=4 --set rate_hz=10");
+  EXPECT_EQ(flown.status, 0) << flown.err;
+  EXPECT_THAT(flown.out, HasSubstr("still in the air after 0.3 s"));
+  for (const char* file :
+       {"touchdown.csv", "touchdown_path.csv", "touchdown.png", "summary.txt", "landing_track.csv",
+        "mav0/landing_pattern0/data.csv", "annotated/mav0/cam0/data/100000000000.png"}) {
+    EXPECT_TRUE(std::filesystem::exists(flight + "/" + file)) << file;
+  }
+  EXPECT_FALSE(std::filesystem::exists(flight + ".part"));
+  const Outcome landed = Run("land " + flight);
+  EXPECT_EQ(landed.status, 0) << landed.err;
+  EXPECT_EQ(InCamera(landed.out), InCamera(ReadFile(flight + "/landing_detections.csv")));
+}
+
 TEST_F(SimulateCommandTest, ListsScenariosAndPrintsOptions) {
   for (const char* name : {"calm", "aggressive", "figure8", "fast", "dark", "dust", "low-sun",
                            "stills", "lookalikes"}) {
     EXPECT_THAT(Run("simulate landing --list").out, HasSubstr(std::string(name) + " ")) << name;
   }
   EXPECT_THAT(Run("simulate hunt --list").out, HasSubstr("cuboids "));
+  EXPECT_THAT(Run("simulate touchdown --list").out, HasSubstr("fast "));
   const Outcome options = Run("simulate landing --scenario dust --print-config");
   EXPECT_THAT(options.out, HasSubstr("material: sand "));
 }
@@ -58,6 +84,7 @@ TEST_F(SimulateCommandTest, FaultsAreNamed) {
   ExpectInputError("simulate hunt --set objects.size_m=big" + output,
                    "objects.size_m is 'big', expected a finite number (m)");
   ExpectInputError("simulate landing --config " + folder_ / "none.yaml" + output, "none.yaml");
+  ExpectInputError("simulate touchdown --set wind.min_mps=-1" + output, "wind.min_mps is -1");
   EXPECT_EQ(Run("simulate landing").status, 2) << "no output";
   EXPECT_EQ(Run("simulate landing --threads 0" + output).status, 2);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "flight"));

@@ -26,6 +26,13 @@ CLI::Validator InRange(double min, double max, const std::string& words) {
       "");
 }
 
+CLI::Option* AddAnnotateFlag(CLI::App* command, std::string* annotate) {
+  return command
+      ->add_flag("--annotate{video}", *annotate,
+                 "Also write the frames with what was found: a video, or --annotate=images")
+      ->check(CLI::IsMember({"video", "images"}));
+}
+
 void SourceArguments::AddTo(CLI::App* command) {
   command
       ->add_option("SOURCE", sources,
@@ -41,11 +48,7 @@ void SourceArguments::AddTo(CLI::App* command) {
   CLI::Option* folder =
       command->add_option("--output", output, "Folder for the results (else stdout)")
           ->type_name("DIR");
-  command
-      ->add_flag("--annotate{video}", annotate,
-                 "Also write the frames with what was found: a video, or --annotate=images")
-      ->needs(folder)
-      ->check(CLI::IsMember({"video", "images"}));
+  AddAnnotateFlag(command, &annotate)->needs(folder);
   command->add_flag("--still", still, "The frames have nothing to do with each other");
   command
       ->add_option("--altitude", altitude_m,

@@ -36,6 +36,9 @@ struct SourceArguments {
   CameraCalibration FindCalibration(const FrameSource& source) const;
 };
 
+// The flag --annotate: "video" or "images".
+CLI::Option* AddAnnotateFlag(CLI::App* command, std::string* annotate);
+
 // Accepts numbers above 'min' and below 'max', which 'words' names; CLI11 takes "nan" for one.
 CLI::Validator InRange(double min, double max, const std::string& words);
 

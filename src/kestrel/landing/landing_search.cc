@@ -8,7 +8,7 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kMaxCollected = 512;  // candidates of a pass
-constexpr std::size_t kMaxTested = 64;      // small rings that are remembered
+constexpr std::size_t kMaxTested = 64;      // rings that are remembered
 
 // Whether two detections are the two poses of one ring, between which the image does not decide.
 bool AreMirrorPoses(const LandingDetection& a, const LandingDetection& b) {
@@ -82,11 +82,13 @@ void LandingSearch::MakeRoom() {
   buffers_.partial.Reserve(most_points);
   buffers_.small.Reserve();
   buffers_.tested.reserve(kMaxTested);
+  buffers_.other_signs.reserve(kMaxTested);
 }
 
 LandingReport LandingSearch::Run() {
   MakeRoom();
   buffers_.tested.clear();
+  buffers_.other_signs.clear();
   report_.reason = "no outline that could be a ring";
   if (!ChooseRegion()) {
     report_.reason = "the hint points out of the image";

@@ -67,8 +67,8 @@ struct RingCandidate {
   double contrast = 0;               // of ring and white, gray values
 };
 
-// A small ring, seen in one pass or another: pixels at full resolution.
-struct SmallRingPlace {
+// A ring, seen in one pass or another: pixels at full resolution.
+struct RingPlace {
   Eigen::Vector2d center;
   Eigen::Vector2d diameters;
 };
@@ -90,7 +90,8 @@ struct LandingWorkspace::Buffers {
   CrossLinesWorkspace cross_lines;
   PartialPatternWorkspace partial;
   SmallPatternWorkspace small;
-  std::vector<SmallRingPlace> tested;  // small rings of this image
+  std::vector<RingPlace> tested;       // small rings of this image
+  std::vector<RingPlace> other_signs;  // rings of this image that hold another sign
 };
 
 // The search of one image: runs the stages on candidates and keeps the best.
@@ -153,6 +154,8 @@ class LandingSearch {
   bool IsSmallPattern(const SmallPatternFitter::Fit& fit,
                       const Eigen::Vector2d& diameters_px) const;
   bool ShowsOtherSign(const RigidTransform& pose);
+  std::optional<RingPlace> PlaceOf(const Eigen::Vector3d& center,
+                                   const Eigen::Vector2d& diameters_px) const;
   bool WasTested(const RingFit& ring, const Eigen::Vector2d& diameters_px);
   std::optional<double> ArmAngleByQuadrants(const CirclePose& pose);
   std::array<bool, 2> LevelEnough(const RingFit& ring) const;

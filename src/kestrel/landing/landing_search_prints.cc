@@ -39,6 +39,21 @@ constexpr double kMinRingShare = 0.85;
 constexpr double kMinRingContrast = 5;  // gray values
 constexpr double kWhole = 0.75;         // share of the print in view that is no partial pattern
 
+bool IsAmong(const RingPlace& place, const std::vector<RingPlace>& others) {
+  constexpr double kSamePlace = 0.12;  // of its diameters
+  constexpr double kSameSize = 0.1;
+  return std::any_of(others.begin(), others.end(), [&](const RingPlace& other) {
+    return (place.center - other.center).norm() < kSamePlace * place.diameters.y() &&
+           ((place.diameters - other.diameters).array().abs() < kSameSize * place.diameters.array())
+               .all();
+  });
+}
+
+// Remembers a place as long as there is room.
+void Note(const RingPlace& place, std::vector<RingPlace>* places) {
+  if (places->size() < places->capacity()) places->push_back(place);
+}
+
 // Level of the pyramid at which a ring has about 40 to 80 pixels.
 int ViewLevel(double diameter_px) {
   return std::clamp(static_cast<int>(std::floor(std::log2(diameter_px / 40))), 0, 4);
@@ -83,6 +98,8 @@ std::array<bool, 2> LandingSearch::LevelEnough(const RingFit& ring) const {
 
 void LandingSearch::TestRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
                              double reach_px) {
+  const std::optional<RingPlace> place = PlaceOf(ring.poses[0].center, diameters_px);
+  if (!place || IsAmong(*place, buffers_.other_signs)) return;
   std::array<std::optional<Hypothesis>, 2> hypotheses;
   {
     StageTimer timer(&report_, LandingStage::kCross);
@@ -194,23 +211,21 @@ std::optional<double> LandingSearch::ArmAngleByQuadrants(const CirclePose& pose)
   return cross->arm_angle;
 }
 
-// Whether nearly the same small ring was tested before, as another pass saw it; notes it if not.
-bool LandingSearch::WasTested(const RingFit& ring, const Eigen::Vector2d& diameters_px) {
-  constexpr double kSamePlace = 0.12;  // of its diameters
-  constexpr double kSameSize = 0.1;
-  SmallRingPlace place{Eigen::Vector2d::Zero(), diameters_px};
-  if (models_.camera.Project(ring.poses[0].center, &place.center) ==
-      ProjectionStatus::kOutsideModel) {
-    return true;
+// Where a ring is in the image; nothing when the lens does not show it.
+std::optional<RingPlace> LandingSearch::PlaceOf(const Eigen::Vector3d& center,
+                                                const Eigen::Vector2d& diameters_px) const {
+  RingPlace place{Eigen::Vector2d::Zero(), diameters_px};
+  if (models_.camera.Project(center, &place.center) == ProjectionStatus::kOutsideModel) {
+    return std::nullopt;
   }
-  const auto same = [&](const SmallRingPlace& other) {
-    return (place.center - other.center).norm() < kSamePlace * diameters_px.y() &&
-           ((place.diameters - other.diameters).array().abs() < kSameSize * place.diameters.array())
-               .all();
-  };
-  std::vector<SmallRingPlace>& tested = buffers_.tested;
-  if (std::any_of(tested.begin(), tested.end(), same)) return true;
-  if (tested.size() < tested.capacity()) tested.push_back(place);
+  return place;
+}
+
+// Whether nearly the same ring was tested before, as another pass saw it; notes it if not.
+bool LandingSearch::WasTested(const RingFit& ring, const Eigen::Vector2d& diameters_px) {
+  const std::optional<RingPlace> place = PlaceOf(ring.poses[0].center, diameters_px);
+  if (!place || IsAmong(*place, buffers_.tested)) return true;
+  Note(*place, &buffers_.tested);
   return false;
 }
 
@@ -236,7 +251,7 @@ SmallPatternFitter::Start LandingSearch::FindStart(const CirclePose& pose,
       models_.small.FindScale(image_, pose, scales, &buffers_.small);
   if (!scale) return {{}, -1};
   if (const std::optional<double> angle = ArmAngleByQuadrants(pose)) {
-    const auto start = models_.small.FindStart(pose, *scale, {&*angle, 1}, buffers_.small);
+    auto start = models_.small.FindStart(pose, *scale, {&*angle, 1}, buffers_.small);
     if (start.correlation >= kSureCorrelation) return start;
   }
   // Within 7.5 degrees of every direction.
@@ -316,7 +331,11 @@ void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& 
   const double quality = match.Quality();
   if (quality < models_.options.min_quality || match.RingShare() < kMinRingShare) return;
   if (diameters_px.x() < kInspectedRingPx) {
-    if (ShowsOtherSign(location->camera_from_pattern)) return;
+    if (ShowsOtherSign(location->camera_from_pattern)) {
+      const auto place = PlaceOf(location->camera_from_pattern.translation, diameters_px);
+      if (place) Note(*place, &buffers_.other_signs);
+      return;
+    }
   }
   Keep(*location, match.seen < kWhole ? CrossMethod::kPartial : hypothesis.method, quality,
        diameters_px);

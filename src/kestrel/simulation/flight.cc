@@ -20,7 +20,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kGravity = 9.81;
 constexpr double kStep_s = 5e-3;  // of the differences that give velocity and acceleration
 
 double Radians(double degrees) { return degrees * kPi / 180; }
@@ -126,6 +125,14 @@ Motion VehicleMotion(const VehicleMotionOptions& options, Random* random) {
   };
 }
 
+Quaterniond MulticopterAttitude(const Vector3d& thrust, double yaw) {
+  const Vector3d up = thrust.normalized();
+  const Vector3d left = up.cross(Vector3d(std::cos(yaw), std::sin(yaw), 0)).normalized();
+  Eigen::Matrix3d axes;
+  axes << left.cross(up), left, up;
+  return Quaterniond(axes);
+}
+
 Motion MulticopterMotion(const Path& position, const std::function<double(double)>& yaw,
                          double attitude_noise_deg, Random* random) {
   const double noise = Radians(attitude_noise_deg);
@@ -133,12 +140,8 @@ Motion MulticopterMotion(const Path& position, const std::function<double(double
   const auto pitch = Wander(noise, 0.5, random);
   return [=](double time_s) {
     const Vector3d thrust = Acceleration(position, time_s) + kGravity * Vector3d::UnitZ();
-    const double heading = yaw(time_s);
-    const Vector3d up = thrust.normalized();
-    const Vector3d left = up.cross(Vector3d(std::cos(heading), std::sin(heading), 0)).normalized();
-    Eigen::Matrix3d axes;
-    axes << left.cross(up), left, up;
-    const Quaterniond rotation = Quaterniond(axes) * AngleAxisd(pitch(time_s), Vector3d::UnitY()) *
+    const Quaterniond rotation = MulticopterAttitude(thrust, yaw(time_s)) *
+                                 AngleAxisd(pitch(time_s), Vector3d::UnitY()) *
                                  AngleAxisd(roll(time_s), Vector3d::UnitX());
     return RigidTransform{rotation.normalized(), position(time_s)};
   };

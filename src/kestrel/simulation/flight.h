@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "kestrel/base/random.h"
 #include "kestrel/simulation/world.h"
 
@@ -58,6 +60,12 @@ Motion VehicleMotion(const VehicleMotionOptions& options, Random* random);
 
 // A position (m) as a function of time (s), two times differentiable.
 using Path = std::function<Eigen::Vector3d(double time_s)>;
+
+inline constexpr double kGravity = 9.81;  // m/s^2
+
+// Attitude (world_from_body) of a multicopter whose thrust, as an acceleration in the world, is
+// along its z axis; 'yaw' is the heading of x, rad.
+Eigen::Quaterniond MulticopterAttitude(const Eigen::Vector3d& thrust, double yaw);
 
 // The body (x forward, y left, z up) of a multicopter that follows 'position': its thrust, along z,
 // is what the acceleration and gravity ask for. 'yaw' is the heading of x, rad.

@@ -10,19 +10,17 @@ namespace kestrel {
 
 FlightCamera::FlightCamera(const CameraModel& camera, const LensOptions& lens,
                            const ShutterOptions& shutter, const SensorOptions& sensor,
-                           const World& world, Motion world_from_camera,
-                           std::function<double(double)> gain)
+                           const World& world, Motion world_from_camera)
     : lens_(camera, lens),
       sensor_(sensor),
       renderer_(lens_, world, shutter),
-      world_from_camera_(std::move(world_from_camera)),
-      gain_(std::move(gain)) {
+      world_from_camera_(std::move(world_from_camera)) {
   RequireValid(sensor);
 }
 
-cv::Mat FlightCamera::Capture(double time_s, std::uint64_t seed) const {
+cv::Mat FlightCamera::Capture(double time_s, double gain, std::uint64_t seed) const {
   const cv::Mat light = renderer_.Render(time_s, world_from_camera_, seed);
-  return Expose(sensor_, lens_, gain_(time_s), ~seed, light);
+  return Expose(sensor_, lens_, gain, ~seed, light);
 }
 
 std::optional<Eigen::Vector2d> FlightCamera::Project(double time_s,

@@ -14,17 +14,17 @@ namespace kestrel {
 // A camera on a flying body, and where the things appear that it sees. Thread-safe.
 class FlightCamera {
  public:
-  // 'world_from_camera': its motion with its vibration. 'gain': what exposure control does.
-  // Neither copied nor moved; the world must outlive it.
+  // 'world_from_camera': its motion with its vibration. Neither copied nor moved; the world must
+  // outlive it.
   FlightCamera(const FlightCamera&) = delete;
   FlightCamera& operator=(const FlightCamera&) = delete;
 
   FlightCamera(const CameraModel& camera, const LensOptions& lens, const ShutterOptions& shutter,
-               const SensorOptions& sensor, const World& world, Motion world_from_camera,
-               std::function<double(double time_s)> gain);
+               const SensorOptions& sensor, const World& world, Motion world_from_camera);
 
-  // The 8-bit image whose exposure has its middle at 'time_s'; 'seed' makes its noise.
-  cv::Mat Capture(double time_s, std::uint64_t seed) const;
+  // The 8-bit image whose exposure has its middle at 'time_s'; 'gain' multiplies the light, 'seed'
+  // makes the noise.
+  cv::Mat Capture(double time_s, double gain, std::uint64_t seed) const;
 
   // Where a point appears in that image: the middle of the streak that it leaves during the
   // exposure of the row in which it appears. Nothing where the lens model says nothing, or where
@@ -47,7 +47,6 @@ class FlightCamera {
   SensorOptions sensor_;
   FrameRenderer renderer_;
   Motion world_from_camera_;
-  std::function<double(double time_s)> gain_;
 };
 
 }  // namespace kestrel

@@ -123,10 +123,9 @@ TEST(FrameRendererTest, RollingShutterShowsEveryRowAtItsTime) {
   };
   const FlightCamera camera(
       CameraModel(SmallFisheye()), {}, rolling,
-      {.white_level = 250, .read_noise = 0, .shot_noise = 0, .blur_sigma_px = 0}, world, moving,
-      [](double) { return 1.0; });
+      {.white_level = 250, .read_noise = 0, .shot_noise = 0, .blur_sigma_px = 0}, world, moving);
   cv::Mat image;
-  camera.Capture(0, 1).convertTo(image, CV_32F, 1.0 / 250);
+  camera.Capture(0, 1, 1).convertTo(image, CV_32F, 1.0 / 250);
   const auto center = camera.Project(0, [](double) { return Vector3d(0, 0, 0.01); });
   ASSERT_TRUE(center);
   EXPECT_LT((DarkCenter(image, *center, 0.75) - *center).norm(), 0.1);

@@ -9,11 +9,13 @@
 #include <vector>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 
 #include "kestrel/simulation/hash.h"
 #include "kestrel/simulation/landing_drawings.h"
 #include "kestrel/simulation/random_scene.h"
 #include "kestrel/simulation/solids.h"
+#include "kestrel/simulation/violations.h"
 
 namespace kestrel {
 namespace {
@@ -25,19 +27,13 @@ constexpr double kPi = std::numbers::pi;
 constexpr int kBoardPaint_px = 2048;
 constexpr int kLookalikePaint_px = 512;
 
-// Each part of the scene has random numbers of its own: options of one do not change another.
-enum class Part { kVehicle, kBoard, kFlight, kGround, kLight, kSurroundings };
-Random RandomOf(std::uint64_t seed, Part part) {
-  return Random(Hash(seed, static_cast<std::uint64_t>(part)));
-}
-
 Color CarColor(Random* random) {
   static const std::vector<Color> kColors = {Gray(0.7),  Gray(0.5),          Gray(0.12),
                                              Gray(0.03), {0.05, 0.05, 0.45}, {0.35, 0.12, 0.04}};
   return kColors[random->Integer(0, static_cast<int>(kColors.size()) - 1)];
 }
 
-LandingPattern DrawnPattern(const LandingSimulationOptions& options, Random* random) {
+LandingPattern DrawnPattern(const LandingSceneOptions& options, Random* random) {
   LandingPattern pattern = options.pattern;
   pattern.arm_half_length_m +=
       random->Uniform(-options.board.arm_variation_m, options.board.arm_variation_m);
@@ -148,40 +144,69 @@ void AddSurroundings(const SurroundingsOptions& options, const std::vector<Vecto
 
 }  // namespace
 
-LandingScene MakeLandingScene(const LandingSimulationOptions& options, int channels,
+Random RandomOf(std::uint64_t seed, LandingPart part) {
+  return Random(Hash(seed, static_cast<std::uint64_t>(part)));
+}
+
+std::vector<std::string> BoardOptions::Validate() const {
+  std::vector<std::string> violations;
+  if (carrier != "pickup" && carrier != "car" && carrier != "box") {
+    violations.push_back(fmt::format("carrier is '{}', expected pickup, car or box", carrier));
+  }
+  RequireIn(border_m, 0, 1, "border_m", &violations);
+  RequireIn(arm_variation_m, 0, 0.2, "arm_variation_m", &violations);
+  RequireIn(dirt, 0, 1, "dirt", &violations);
+  RequireIn(scratches, 0, 200, "scratches", &violations);
+  RequireIn(gloss, 0, 10, "gloss", &violations);
+  RequireIn(gloss_width_deg, 1, 90, "gloss_width_deg", &violations);
+  return violations;
+}
+
+std::vector<std::string> SurroundingsOptions::Validate() const {
+  std::vector<std::string> violations;
+  RequireIn(vehicles, 0, 100, "vehicles", &violations);
+  RequireIn(lookalikes, 0, 100, "lookalikes", &violations);
+  RequireIn(banners, 0, 100, "banners", &violations);
+  return violations;
+}
+
+std::vector<std::string> LandingSceneOptions::Validate() const {
+  std::vector<std::string> violations;
+  AddViolations("vehicle", vehicle.Validate(), &violations);
+  AddViolations("pattern", pattern.Validate(), &violations);
+  AddViolations("board", board.Validate(), &violations);
+  AddViolations("ground", ground.Validate(), &violations);
+  AddViolations("surroundings", surroundings.Validate(), &violations);
+  AddViolations("light", light.Validate(), &violations);
+  return violations;
+}
+
+LandingScene MakeLandingScene(const LandingSceneOptions& options, double duration_s, int channels,
                               std::uint64_t seed) {
-  const double duration_s = options.recording.duration_s();
   LandingScene scene;
   World& world = scene.world;
   world.channels = channels;
 
-  Random vehicle_random = RandomOf(seed, Part::kVehicle);
+  Random vehicle_random = RandomOf(seed, LandingPart::kVehicle);
   const Motion vehicle = VehicleMotion(options.vehicle, &vehicle_random);
   world.bodies.push_back(vehicle);
-  Random board_random = RandomOf(seed, Part::kBoard);
+  Random board_random = RandomOf(seed, LandingPart::kBoard);
   scene.pattern = DrawnPattern(options, &board_random);
   const RigidTransform vehicle_from_pattern =
       AddBoard(1, scene.pattern, options.board, &board_random, &world);
   scene.world_from_pattern = [=](double time_s) { return vehicle(time_s) * vehicle_from_pattern; };
 
-  // The UAV follows the vehicle, not its shaking.
   const Vector3d above(0, 0, vehicle_from_pattern.translation.z());
-  const Path target = [=](double time_s) { return Vector3d(vehicle(time_s).translation + above); };
-  Random flight_random = RandomOf(seed, Part::kFlight);
-  scene.world_from_uav = LandingFlight(options.flight, target, duration_s, &flight_random);
+  scene.target = [=](double time_s) { return Vector3d(vehicle(time_s).translation + above); };
 
   const std::vector<Vector2d> track = Track(vehicle, duration_s);
-  Random ground_random = RandomOf(seed, Part::kGround);
+  Random ground_random = RandomOf(seed, LandingPart::kGround);
   world.ground = MakeGround(options.ground, track, channels, &ground_random);
-  Random light_random = RandomOf(seed, Part::kLight);
+  Random light_random = RandomOf(seed, LandingPart::kLight);
   world.light = MakeLighting(options.light, &light_random);
   world.skyline = MakeSkyline(&light_random);
-  Random surroundings_random = RandomOf(seed, Part::kSurroundings);
+  Random surroundings_random = RandomOf(seed, LandingPart::kSurroundings);
   AddSurroundings(options.surroundings, track, &surroundings_random, &world);
-  if (options.surroundings.uav_shadow) {
-    world.bodies.push_back(scene.world_from_uav);
-    AddUavShadow(static_cast<int>(world.bodies.size()) - 1, 0.8, &world);
-  }
   return scene;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/simulation/navigation_model.h"
 
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -65,25 +64,30 @@ RigidTransform NavigationErrors::TrueMount(const RigidTransform& nominal) const 
   return {(turn * nominal.rotation).normalized(), nominal.translation};
 }
 
-std::vector<PoseSample> ReportedPoses(const NavigationOptions& options,
-                                      const NavigationErrors& errors, const Motion& world_from_body,
-                                      double begin_s, double end_s, Random* random) {
+NavigationSensor::NavigationSensor(const NavigationOptions& options, const NavigationErrors& errors,
+                                   Random random)
+    : options_(options), errors_(errors), random_(random) {
   constexpr double kDriftPeriod_s = 40;
-  const Vector3d bias = NormalVector(options.position_bias_m, random);
-  const Quaterniond turn = SmallTurn(NormalVector(Radians(options.attitude_bias_deg), random));
-  const auto drift_x = Wander(options.position_drift_m, kDriftPeriod_s, random);
-  const auto drift_y = Wander(options.position_drift_m, kDriftPeriod_s, random);
-  const auto drift_z = Wander(options.position_drift_m, kDriftPeriod_s, random);
+  bias_ = NormalVector(options.position_bias_m, &random_);
+  turn_ = SmallTurn(NormalVector(Radians(options.attitude_bias_deg), &random_));
+  for (auto& drift : drift_) drift = Wander(options.position_drift_m, kDriftPeriod_s, &random_);
+}
+
+PoseSample NavigationSensor::Report(double time_s, RigidTransform world_from_body) {
+  const Vector3d drift(drift_[0](time_s), drift_[1](time_s), drift_[2](time_s));
+  world_from_body.translation += bias_ + drift + NormalVector(options_.position_noise_m, &random_);
+  const Vector3d noise = NormalVector(Radians(options_.attitude_noise_deg), &random_);
+  world_from_body.rotation = (world_from_body.rotation * turn_ * SmallTurn(noise)).normalized();
+  return {TimeOfFlight(time_s + errors_.clock_offset_s), world_from_body};
+}
+
+std::vector<PoseSample> NavigationSensor::ReportAll(const Motion& world_from_body, double begin_s,
+                                                    double end_s) {
   std::vector<PoseSample> poses;
-  const int count = static_cast<int>(std::ceil((end_s - begin_s) * options.rate_hz)) + 1;
+  const int count = static_cast<int>(std::ceil((end_s - begin_s) * options_.rate_hz)) + 1;
   for (int i = 0; i < count; ++i) {
-    const double time_s = begin_s + i / options.rate_hz;
-    RigidTransform pose = world_from_body(time_s);
-    pose.translation += bias + Vector3d(drift_x(time_s), drift_y(time_s), drift_z(time_s)) +
-                        NormalVector(options.position_noise_m, random);
-    const Vector3d noise = NormalVector(Radians(options.attitude_noise_deg), random);
-    pose.rotation = (pose.rotation * turn * SmallTurn(noise)).normalized();
-    poses.push_back({TimeOfFlight(time_s + errors.clock_offset_s), pose});
+    const double time_s = begin_s + i / options_.rate_hz;
+    poses.push_back(Report(time_s, world_from_body(time_s)));
   }
   return poses;
 }

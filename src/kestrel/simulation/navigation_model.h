@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <functional>
 #include <string>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "kestrel/base/random.h"
 #include "kestrel/geometry/rigid_transform.h"
@@ -57,10 +61,25 @@ struct NavigationErrors {
 };
 NavigationErrors DrawNavigationErrors(const NavigationOptions& options, Random* random);
 
-// What the navigation reports of a flight from 'begin_s' to 'end_s', in the times of its own clock.
-std::vector<PoseSample> ReportedPoses(const NavigationOptions& options,
-                                      const NavigationErrors& errors, const Motion& world_from_body,
-                                      double begin_s, double end_s, Random* random);
+// What the navigation reports of a flight, pose by pose. Copies go on by themselves.
+class NavigationSensor {
+ public:
+  NavigationSensor(const NavigationOptions& options, const NavigationErrors& errors, Random random);
+
+  // The next pose: of 'time_s', in the time of the navigation's own clock.
+  PoseSample Report(double time_s, RigidTransform world_from_body);
+
+  // All poses from 'begin_s' on at the navigation's rate; the last is not before 'end_s'.
+  std::vector<PoseSample> ReportAll(const Motion& world_from_body, double begin_s, double end_s);
+
+ private:
+  NavigationOptions options_;
+  NavigationErrors errors_;
+  Random random_;
+  Eigen::Vector3d bias_;
+  Eigen::Quaterniond turn_;  // constant error of the attitude
+  std::array<std::function<double(double time_s)>, 3> drift_;
+};
 
 // Rotation of the camera on its mount (camera_from_still_camera) as a function of time.
 std::function<Eigen::Quaterniond(double time_s)> Vibration(const NavigationOptions& options,

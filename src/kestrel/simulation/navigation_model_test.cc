@@ -31,7 +31,7 @@ NavigationOptions Perfect() {
 TEST(NavigationModelTest, OffsetLeadsFromImageTimeToNavigationTime) {
   Random random(1);
   const NavigationErrors errors = DrawNavigationErrors(Perfect(), &random);
-  const auto poses = ReportedPoses(Perfect(), errors, MovingAt, -0.5, 1.5, &random);
+  const auto poses = NavigationSensor(Perfect(), errors, random).ReportAll(MovingAt, -0.5, 1.5);
   PoseHistory history(poses.size(), std::chrono::seconds(1));
   for (const PoseSample& pose : poses) ASSERT_EQ(history.Add(pose), PoseStatus::kOk);
   const auto found = history.Lookup(TimeOfFlight(0.777) + DurationFromSeconds(0.2));
@@ -44,8 +44,7 @@ TEST(NavigationModelTest, NoiseHasTheSpreadAskedFor) {
   NavigationOptions options = Perfect();
   options.position_noise_m = 0.05;
   options.attitude_noise_deg = 0.5;
-  Random random(2);
-  const auto poses = ReportedPoses(options, {}, MovingAt, 0, 40, &random);
+  const auto poses = NavigationSensor(options, {}, Random(2)).ReportAll(MovingAt, 0, 40);
   double position = 0;
   double attitude = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -10,6 +10,7 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/base/time.h"
+#include "kestrel/simulation/recording_writer.h"
 
 namespace kestrel {
 
@@ -24,11 +25,7 @@ struct RecordingPlan {
   std::function<cv::Mat(std::size_t index)> render;
   // scene.yaml: names all that the images depend on.
   std::string scene;
-  struct TextFile {
-    std::string name;  // below mav0
-    std::string text;
-  };
-  std::vector<TextFile> files;  // other than scene.yaml and cam0/data.csv
+  std::vector<RecordingFile> files;  // other than scene.yaml and cam0/data.csv
 };
 
 // Called from one thread at a time with the number of images that are done; returns whether to go

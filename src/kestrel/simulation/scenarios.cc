@@ -80,6 +80,17 @@ const std::vector<Scenario>& AllHuntScenarios() {
   return scenarios;
 }
 
+const std::vector<Scenario>& AllTouchdownScenarios() {
+  static const std::vector<Scenario> scenarios = {
+      {"figure8", "the contest: onto a pick-up at 15 km/h on a figure of eight", {}},
+      {"fast",
+       "onto a car at 30 km/h on a wide figure of eight",
+       {"vehicle.speed_mps=8.33", "vehicle.radius_m=26", "board.carrier=car",
+        "ground.material=concrete"}},
+  };
+  return scenarios;
+}
+
 const Scenario& FindScenario(std::span<const Scenario> scenarios, const std::string& name) {
   std::vector<const char*> names;
   for (const Scenario& scenario : scenarios) {
@@ -122,6 +133,15 @@ HuntSimulationOptions ReadHuntSimulation(const std::string& scenario,
                                          const std::string& config_file,
                                          const std::vector<std::string>& settings) {
   return ReadSimulation<HuntSimulationOptions>(HuntScenarios(), scenario, config_file, settings);
+}
+
+std::span<const Scenario> TouchdownScenarios() { return AllTouchdownScenarios(); }
+
+TouchdownSimulationOptions ReadTouchdownSimulation(const std::string& scenario,
+                                                   const std::string& config_file,
+                                                   const std::vector<std::string>& settings) {
+  return ReadSimulation<TouchdownSimulationOptions>(TouchdownScenarios(), scenario, config_file,
+                                                    settings);
 }
 
 }  // namespace kestrel

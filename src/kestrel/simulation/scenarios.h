@@ -7,6 +7,7 @@
 
 #include "kestrel/simulation/hunt_simulation.h"
 #include "kestrel/simulation/landing_simulation.h"
+#include "kestrel/simulation/touchdown_simulation.h"
 
 namespace kestrel {
 
@@ -17,9 +18,10 @@ struct Scenario {
   std::vector<const char*> settings;  // "key=value", as for --set
 };
 
-// The flights of `kestrel simulate landing` and `kestrel simulate hunt`.
+// The flights of `kestrel simulate landing`, `hunt` and `touchdown`.
 std::span<const Scenario> LandingScenarios();
 std::span<const Scenario> HuntScenarios();
+std::span<const Scenario> TouchdownScenarios();
 
 // The options of a scenario, then those of the file (if not empty), then the settings "key=value".
 // Throws InputError when there is no such scenario, one of them is at fault, or the result is not
@@ -30,5 +32,8 @@ LandingSimulationOptions ReadLandingSimulation(const std::string& scenario,
 HuntSimulationOptions ReadHuntSimulation(const std::string& scenario,
                                          const std::string& config_file,
                                          const std::vector<std::string>& settings);
+TouchdownSimulationOptions ReadTouchdownSimulation(const std::string& scenario,
+                                                   const std::string& config_file,
+                                                   const std::vector<std::string>& settings);
 
 }  // namespace kestrel

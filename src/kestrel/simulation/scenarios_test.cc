@@ -19,6 +19,9 @@ TEST(ScenariosTest, AllAreValid) {
   for (const Scenario& scenario : HuntScenarios()) {
     EXPECT_NO_THROW(ReadHuntSimulation(scenario.name, "", {})) << scenario.name;
   }
+  for (const Scenario& scenario : TouchdownScenarios()) {
+    EXPECT_NO_THROW(ReadTouchdownSimulation(scenario.name, "", {})) << scenario.name;
+  }
 }
 
 TEST(ScenariosTest, FileAndSettingsGoOverTheScenario) {

@@ -69,7 +69,8 @@ SimulatedFlight::SimulatedFlight(const FlightRecordingOptions& options,
       world_(std::move(world)),
       world_from_body_(std::move(world_from_body)),
       seed_(seed),
-      errors_(ErrorsOf(options.navigation, seed)) {
+      errors_(ErrorsOf(options.navigation, seed)),
+      gain_(GainControl(options.sensor, seed)) {
   for (int i = 0; i < options.frames; ++i) times_s_.push_back(i / options.rate_hz);
   LensOptions lens;
   lens.half_angle_deg = options.lens.half_angle_deg;
@@ -78,13 +79,21 @@ SimulatedFlight::SimulatedFlight(const FlightRecordingOptions& options,
   const Motion motion = CameraMotion(world_from_body_, errors_.TrueMount(*camera.body_from_camera),
                                      options.navigation, seed);
   camera_ = std::make_unique<FlightCamera>(CameraModel(camera.intrinsics), lens, options.shutter,
-                                           options.sensor, world_, motion,
-                                           GainControl(options.sensor, seed));
+                                           options.sensor, world_, motion);
 }
 
-cv::Mat SimulatedFlight::Image(std::size_t index) const {
-  return camera_->Capture(times_s_[index], Hash(SeedOf(seed_, Part::kNoise), index));
+cv::Mat SimulatedFlight::Image(std::size_t index, double gain) const {
+  const double time_s = times_s_[index];
+  return camera_->Capture(time_s, gain * gain_(time_s), Hash(SeedOf(seed_, Part::kNoise), index));
 }
+
+void SimulatedFlight::EndBefore(std::size_t index) { times_s_.resize(index); }
+
+NavigationSensor SimulatedFlight::navigation() const {
+  return {options_.navigation, errors_, RandomOf(seed_, Part::kPoses)};
+}
+
+double SimulatedFlight::begin_s() const { return -kMargin_s; }
 
 std::string SimulatedFlight::SceneText(const std::string& kind) const {
   const Eigen::Vector3d& sun = world_.light.to_sun;
@@ -103,16 +112,14 @@ std::string SimulatedFlight::SceneText(const std::string& kind) const {
       sun.x(), sun.y(), sun.z(), Indented(EurocCameraText(nominal_, options_.rate_hz)));
 }
 
-std::vector<RecordingPlan::TextFile> SimulatedFlight::Files() const {
+std::vector<RecordingFile> SimulatedFlight::Files() const {
   const double end_s = times_s_.back() + kMargin_s;
-  Random random = RandomOf(seed_, Part::kPoses);
-  const auto poses =
-      ReportedPoses(options_.navigation, errors_, world_from_body_, -kMargin_s, end_s, &random);
+  const auto poses = navigation().ReportAll(world_from_body_, begin_s(), end_s);
   return {{"cam0/sensor.yaml", EurocCameraText(nominal_, options_.rate_hz)},
           {"nav0/sensor.yaml", EurocPoseSensorText(options_.navigation.rate_hz)},
           {"nav0/data.csv", EurocPoseText(poses)},
           {"state_groundtruth_estimate0/data.csv",
-           TrueStateText(world_from_body_, -kMargin_s, end_s, times_s_)}};
+           TrueStateText(world_from_body_, begin_s(), end_s, times_s_)}};
 }
 
 }  // namespace kestrel

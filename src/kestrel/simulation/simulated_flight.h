@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,8 +39,7 @@ struct FlightRecordingOptions {
   double duration_s() const { return frames / rate_hz; }
 };
 
-// A flight through a world with a camera and all the errors of its navigation. Immutable and
-// thread-safe.
+// A flight through a world with a camera and all the errors of its navigation. Thread-safe.
 class SimulatedFlight {
  public:
   // 'camera' has a mount, the nominal one; 'airframe' stands in front of the lens.
@@ -50,15 +50,24 @@ class SimulatedFlight {
 
   const FlightCamera& camera() const { return *camera_; }
   const World& world() const { return world_; }
+  const NavigationErrors& errors() const { return errors_; }
   const std::vector<double>& times_s() const { return times_s_; }  // of the images
 
-  cv::Mat Image(std::size_t index) const;
+  // 'gain' multiplies the light, besides the wandering gain of the options.
+  cv::Mat Image(std::size_t index, double gain = 1) const;
+
+  // Leaves out the images from 'index' on: a flight that is over.
+  void EndBefore(std::size_t index);
+
+  // The navigation, before its first report, which is that of 'begin_s'.
+  NavigationSensor navigation() const;
+  double begin_s() const;
 
   // What scene.yaml says of any flight; lines to go on after.
   std::string SceneText(const std::string& kind) const;
 
   // cam0/sensor.yaml, nav0 and state_groundtruth_estimate0.
-  std::vector<RecordingPlan::TextFile> Files() const;
+  std::vector<RecordingFile> Files() const;
 
  private:
   FlightRecordingOptions options_;
@@ -68,6 +77,7 @@ class SimulatedFlight {
   std::uint64_t seed_;
   NavigationErrors errors_;
   std::vector<double> times_s_;
+  std::function<double(double time_s)> gain_;
   std::unique_ptr<FlightCamera> camera_;
 };
 

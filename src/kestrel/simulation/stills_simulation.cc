@@ -91,8 +91,8 @@ RecordingPlan PlanStills(const StillsOptions& options, const LandingPattern& pat
   plan.files = {{"cam0/sensor.yaml", EurocCameraText(camera, kRate_hz)},
                 {"nav0/sensor.yaml", EurocPoseSensorText(kRate_hz)},
                 {"nav0/data.csv", EurocPoseText(poses)},
-                {"state_groundtruth_estimate0/data.csv", TrueStateText(poses)}};
-  if (!lookalikes) plan.files.push_back({"landing_pattern0/data.csv", truth});
+                {"state_groundtruth_estimate0/data.csv", TrueStateText(poses)},
+                {"landing_pattern0/data.csv", truth}};
   return plan;
 }
 

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Many simulated touchdowns, in closed loop: how many land, how long they take and how well they
+// hit. Usage: touchdown_accuracy [--scenario NAME] [--flights N] [--first-seed N] [--set K=V]...
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <iostream>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "kestrel/base/error.h"
+#include "kestrel/evaluation/statistics.h"
+#include "kestrel/simulation/landing_simulation.h"
+#include "kestrel/simulation/scenarios.h"
+#include "kestrel/simulation/touchdown_simulation.h"
+
+namespace kestrel {
+namespace {
+
+struct Arguments {
+  std::string scenario;
+  std::vector<std::string> settings;
+  int flights = 20;
+  std::uint64_t first_seed = 1;
+};
+
+TouchdownResult Fly(const TouchdownSimulationOptions& options, std::uint64_t seed) {
+  TouchdownSimulation simulation(options, PaperCalibration(), seed);
+  return *simulation.Fly([](const auto&...) { return true; });
+}
+
+// One flight on each core at a time; the rows as they are done.
+std::vector<TouchdownResult> FlyAll(const TouchdownSimulationOptions& options,
+                                    const Arguments& arguments) {
+  std::vector<TouchdownResult> results(arguments.flights);
+  std::atomic<int> next = 0;
+  std::mutex mutex;
+  const auto work = [&] {
+    for (int i = next++; i < arguments.flights; i = next++) {
+      results[i] = Fly(options, arguments.first_seed + i);
+      const std::lock_guard lock(mutex);
+      std::cout << TouchdownCsvRow(arguments.first_seed + i, results[i]) << std::flush;
+    }
+  };
+  std::vector<std::thread> threads(std::max(1U, std::thread::hardware_concurrency()) - 1);
+  for (std::thread& thread : threads) thread = std::thread(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  return results;
+}
+
+void PrintSummary(const std::string& scenario, const std::vector<TouchdownResult>& results) {
+  std::vector<double> times_s, distances_m, slips_mps;
+  for (const TouchdownResult& result : results) {
+    if (result.outcome != TouchdownOutcome::kLanded) continue;
+    times_s.push_back(result.time_s);
+    distances_m.push_back(result.distance_m);
+    slips_mps.push_back(result.slip_mps);
+  }
+  fmt::print("\n{}: {} of {} landed\n", scenario, times_s.size(), results.size());
+  const auto print = [](const char* what, const std::vector<double>& values) {
+    fmt::print("{:<32}median {:6.2f}   95 % {:6.2f}   worst {:6.2f}\n", what, Median(values),
+               Quantile(values, 0.95), Quantile(values, 1));
+  };
+  print("time, s", times_s);
+  print("distance from the centre, m", distances_m);
+  print("speed against the board, m/s", slips_mps);
+}
+
+void Run(const Arguments& arguments) {
+  const auto scenarios = arguments.scenario.empty() ? std::vector<std::string>{"figure8", "fast"}
+                                                    : std::vector<std::string>{arguments.scenario};
+  for (const std::string& scenario : scenarios) {
+    const auto options = ReadTouchdownSimulation(scenario, "", arguments.settings);
+    fmt::print("== {}\n{}", scenario, TouchdownCsvHeader());
+    std::cout << std::flush;
+    PrintSummary(scenario, FlyAll(options, arguments));
+  }
+}
+
+}  // namespace
+}  // namespace kestrel
+
+int main(int argc, char** argv) {
+  CLI::App app{"Many simulated touchdowns and how well they hit"};
+  kestrel::Arguments arguments;
+  app.add_option("--scenario", arguments.scenario, "Of `kestrel simulate touchdown` (all)");
+  app.add_option("--flights", arguments.flights, "How many, each with the next seed (20)")
+      ->check(CLI::Range(1, 100000));
+  app.add_option("--first-seed", arguments.first_seed, "Seed of the first flight (1)");
+  app.add_option("--set", arguments.settings, "One option, as key=value; may be given again")
+      ->allow_extra_args(false);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    kestrel::Run(arguments);
+  } catch (const kestrel::InputError& error) {
+    std::cerr << error.what() << "\n";
+    return 1;
+  }
+}

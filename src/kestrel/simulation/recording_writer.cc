@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/simulation/recording_writer.h"
+
+#include <cstdint>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include "kestrel/base/error.h"
+#include "kestrel/base/read_file.h"
+
+namespace kestrel {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Fails with what the system says.
+void Require(const std::error_code& error, const fs::path& path, const char* what) {
+  if (error) throw InputError(fmt::format("{}: {}: {}", path.string(), what, error.message()));
+}
+
+void MakeFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  Require(error, folder, "cannot be made");
+}
+
+// Under another name first: what has its name is whole.
+void WriteWhole(const fs::path& path, const char* bytes, std::size_t size) {
+  MakeFolder(path.parent_path());
+  const fs::path unfinished = path.string() + ".unfinished";
+  std::ofstream file(unfinished, std::ios::binary);
+  file.write(bytes, static_cast<std::streamsize>(size));
+  file.close();
+  if (!file) throw InputError(path.string() + ": cannot be written, is the disk full?");
+  std::error_code error;
+  fs::rename(unfinished, path, error);
+  Require(error, path, "cannot be written");
+}
+
+void WriteText(const fs::path& path, const std::string& text) {
+  WriteWhole(path, text.data(), text.size());
+}
+
+void RequireFree(const fs::path& output, bool replace) {
+  if (!fs::exists(output)) return;
+  if (!fs::is_directory(output)) {
+    throw InputError(output.string() + ": is a file, not a folder");
+  }
+  if (fs::is_empty(output)) return;
+  if (!fs::exists(output / "mav0" / "cam0")) {
+    throw InputError(output.string() + ": is no recording, and not empty");
+  }
+  if (!replace) throw InputError(output.string() + ": exists already; --force replaces it");
+}
+
+constexpr char kImages[] = "mav0/cam0/data";
+
+}  // namespace
+
+fs::path RecordedImagePath(Time time) {
+  return fs::path(kImages) / fmt::format("{}.png", ToNanoseconds(time));
+}
+
+RecordingWriter::RecordingWriter(const fs::path& output, bool replace, const std::string& scene) {
+  const fs::path path = fs::absolute(output).lexically_normal();
+  output_ = path.has_filename() ? path : path.parent_path();
+  RequireFree(output_, replace);
+  part_ = output_.string() + ".part";
+  const fs::path scene_file = part_ / "mav0" / "scene.yaml";
+  if (!fs::exists(scene_file) || ReadFile(scene_file.string()) != scene) {
+    std::error_code error;
+    fs::remove_all(part_, error);
+    Require(error, part_, "cannot be removed");
+    WriteText(scene_file, scene);
+  }
+  MakeFolder(part_ / kImages);
+}
+
+bool RecordingWriter::HasImage(Time time) const {
+  return fs::exists(part_ / RecordedImagePath(time));
+}
+
+void RecordingWriter::WriteImage(Time time, const cv::Mat& image) const {
+  std::vector<std::uint8_t> bytes;
+  constexpr int kFast = 1;
+  cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, kFast});
+  WriteWhole(part_ / RecordedImagePath(time), reinterpret_cast<const char*>(bytes.data()),
+             bytes.size());
+}
+
+void RecordingWriter::Publish(const std::vector<Time>& times,
+                              const std::vector<RecordingFile>& files) const {
+  for (const RecordingFile& file : files) WriteText(part_ / "mav0" / file.name, file.text);
+  std::string rows = "#timestamp [ns],filename\n";
+  for (const Time time : times) {
+    rows +=
+        fmt::format("{},{}\n", ToNanoseconds(time), RecordedImagePath(time).filename().string());
+  }
+  WriteText(part_ / "mav0" / "cam0" / "data.csv", rows);
+  std::error_code error;
+  fs::remove_all(output_, error);
+  Require(error, output_, "cannot be replaced");
+  fs::rename(part_, output_, error);
+  Require(error, output_, "cannot be written");
+}
+
+}  // namespace kestrel

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/simulation/simulated_landing.h"
+
+#include <utility>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "kestrel/simulation/landing_stills.h"
+#include "kestrel/simulation/solids.h"
+#include "kestrel/simulation/truth_text.h"
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector3d;
+
+Drawing AirframeOf(const SurroundingsOptions& options, const CameraCalibration& camera) {
+  return options.landing_legs ? LandingLegs(camera.intrinsics, /*four=*/true) : Drawing();
+}
+
+World WithUav(World world, const SurroundingsOptions& options, const Motion& world_from_uav) {
+  if (!options.uav_shadow) return world;
+  constexpr double kSize_m = 0.8;  // from rotor to rotor
+  world.bodies.push_back(world_from_uav);
+  AddUavShadow(static_cast<int>(world.bodies.size()) - 1, kSize_m, &world);
+  return world;
+}
+
+}  // namespace
+
+SimulatedLanding::SimulatedLanding(const FlightRecordingOptions& options,
+                                   const SurroundingsOptions& surroundings,
+                                   const CameraCalibration& camera, LandingScene scene,
+                                   const Motion& world_from_uav, std::uint64_t seed)
+    : pattern_(scene.pattern),
+      world_from_pattern_(std::move(scene.world_from_pattern)),
+      flight_(options, camera, AirframeOf(surroundings, camera),
+              WithUav(std::move(scene.world), surroundings, world_from_uav), world_from_uav, seed) {
+}
+
+std::string SimulatedLanding::SceneText(const std::string& kind, const std::string& options) const {
+  return flight_.SceneText(kind) +
+         fmt::format("drawn_arm_half_length_m: {}\n", pattern_.arm_half_length_m) + "options:\n" +
+         Indented(options);
+}
+
+std::vector<RecordingFile> SimulatedLanding::Files() const {
+  std::string rows = LandingTruthHeader();
+  for (const double time_s : flight_.times_s()) rows += TruthRow(time_s);
+  std::vector<RecordingFile> files = flight_.Files();
+  files.push_back({"landing_pattern0/data.csv", rows});
+  return files;
+}
+
+std::string SimulatedLanding::TruthRow(double time_s) const {
+  const FlightCamera& camera = flight_.camera();
+  const RigidTransform pattern = world_from_pattern_(time_s);
+  const RigidTransform pattern_from_camera = pattern.Inverse() * camera.WorldFromCamera(time_s);
+  const auto pixel = camera.Project(
+      time_s, [this](double row_time_s) { return world_from_pattern_(row_time_s).translation; });
+  if (!pixel) return "";
+  const Vector3d& p = pattern.translation;
+  const Eigen::Quaterniond& q = pattern.rotation;
+  const Vector3d v = VelocityOf(world_from_pattern_, time_s);
+  const double visible = VisibleFraction(pattern_, pattern_from_camera.Inverse(), camera.lens());
+  return fmt::format(
+      "{},{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f},{:.6f},{:.6f},{:.6f},"
+      "{:.4f},{:.4f},{:.6f},{:.4f}\n",
+      ToNanoseconds(TimeOfFlight(time_s)), p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), v.x(),
+      v.y(), v.z(), pixel->x(), pixel->y(), pattern_from_camera.translation.z(), visible);
+}
+
+}  // namespace kestrel
