@@ -128,6 +128,7 @@ class ArcCutter {
     const std::size_t n = curve.size();
     if (std::abs(turning) < kMinTurning || last < first + kMinPoints) return;
     const std::size_t count = std::min(last - first + kChord, n);
+    if (workspace_.points.size() + count > workspace_.points.capacity()) return;
     RingArc arc;
     arc.first = workspace_.points.size();
     arc.count = count;
@@ -280,7 +281,7 @@ void RingArcsWorkspace::Reserve(std::size_t border_points) {
   points.reserve(2 * count);
   rays.reserve(2 * count);
   selected.reserve(2 * count);
-  arcs.reserve(count / kMinPoints + kMaxArcs);
+  arcs.reserve(2 * count / kMinPoints);
   used.reserve(kMaxArcs);
   rings.reserve(kMaxRings);
 }
@@ -292,6 +293,7 @@ void FindArcRings(const BorderTracer& tracer, const RayTable& rays, const ImageR
   workspace->rings.clear();
   ArcCutter cutter(tracer.image_size(), workspace);
   for (const Border& border : tracer.borders()) {
+    if (border.count / kStride > workspace->smooth.capacity()) continue;
     SmoothBorder(tracer.begin(border), border.count, &workspace->smooth);
     cutter.Cut();
   }

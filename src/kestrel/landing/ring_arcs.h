@@ -35,7 +35,7 @@ struct ArcRing {
   double coverage = 0;     // share of the outline, 0 to 1, that the arcs cover
 };
 
-// Memory of FindArcRings, which does not allocate for borders of as many points as are reserved.
+// Memory of FindArcRings, which does not allocate: arcs for which there is no room are left out.
 struct RingArcsWorkspace {
   std::vector<Eigen::Vector2f> smooth;
   std::vector<float>

@@ -14,8 +14,8 @@ namespace {
 
 class FindArcRingsTest : public ::testing::Test {
  protected:
-  // Traces a figure in pixels of the camera's image and looks for rings.
-  const std::vector<ArcRing>& Find(const Print& is_dark, double min_coverage = 0.25) {
+  // The borders of a figure in pixels of the camera's image.
+  static BorderTracer Trace(const Print& is_dark) {
     BinaryImage binary;
     binary.dark.Reset(320, 240);
     binary.bright.Reset(320, 240);
@@ -27,6 +27,11 @@ class FindArcRingsTest : public ::testing::Test {
     }
     BorderTracer tracer;
     tracer.Trace(binary, cv::Rect(0, 0, 320, 240), BorderLimits{});
+    return tracer;
+  }
+  const std::vector<ArcRing>& Find(const Print& is_dark, double min_coverage = 0.25) {
+    const BorderTracer tracer = Trace(is_dark);
+    workspace_.Reserve(tracer.capacity());
     const double tolerance = 0.7 / camera_.intrinsics().fx_px;
     FindArcRings(tracer, rays_, {}, tolerance, min_coverage, &workspace_);
     return workspace_.rings;
@@ -48,6 +53,15 @@ class FindArcRingsTest : public ::testing::Test {
   const RayTable rays_{camera_};
   RingArcsWorkspace workspace_;
 };
+
+TEST_F(FindArcRingsTest, WithoutRoomThereAreNoArcs) {
+  const BorderTracer tracer = Trace(OnRing);
+  workspace_.Reserve(300);  // the outer edge alone has more points
+  const std::size_t room = workspace_.points.capacity();
+  FindArcRings(tracer, rays_, {}, 0.003, 0.25, &workspace_);
+  EXPECT_LE(workspace_.points.size(), room);
+  EXPECT_EQ(workspace_.points.capacity(), room);
+}
 
 TEST_F(FindArcRingsTest, AWholeRingIsCovered) {
   const auto& rings = Find(OnRing);
