@@ -275,7 +275,7 @@ std::vector<std::string> Warnings(const Parameters& sigmas) {
   if (sigmas(kClock) > kMaxClockSigma_s) {
     warnings.push_back(fmt::format(
         "the flight cannot tell the clock offset (standard deviation {:.2g} s): tilt and turn the "
-        "UAV quickly",
+        "UAV quickly, and say so when the pattern moves (--moving)",
         sigmas(kClock)));
   }
   return warnings;
