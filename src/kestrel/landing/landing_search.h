@@ -151,6 +151,7 @@ class LandingSearch {
   void TestSmallRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
                      std::span<const double> scales);
   SmallPatternFitter::Start FindStart(const CirclePose& pose, std::span<const double> scales);
+  double MinorAxisPx(const RigidTransform& pose) const;
   bool IsSmallPattern(const SmallPatternFitter::Fit& fit,
                       const Eigen::Vector2d& diameters_px) const;
   bool ShowsOtherSign(const RigidTransform& pose);

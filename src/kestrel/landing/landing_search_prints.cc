@@ -32,7 +32,7 @@ constexpr double kMinCorrelation = 0.35;         // of a start of a small patter
 constexpr double kSureCorrelation = 0.6;         // of a start that quadrants give
 constexpr double kMinCorrelationOfEither = 0.7;  // of the poses of a small pattern
 constexpr double kMinFittedCorrelation = 0.82;   // of a small pattern
-constexpr double kMinExplained = 0.55;           // of the variance
+constexpr double kMinExplained = 0.62;           // of the variance
 // Edges and contrasts of the ring that are where a circle has them: a frame of another shape has
 // some of them.
 constexpr double kMinRingShare = 0.85;
@@ -229,12 +229,24 @@ bool LandingSearch::WasTested(const RingFit& ring, const Eigen::Vector2d& diamet
   return false;
 }
 
+// Shorter axis of the ring as it appears under a pose.
+double LandingSearch::MinorAxisPx(const RigidTransform& pose) const {
+  const double distance = pose.translation.norm();
+  const Eigen::Vector3d normal = pose.rotation * Eigen::Vector3d::UnitZ();
+  const double foreshortening = std::abs(normal.dot(pose.translation)) / distance;
+  return 2 * models_.options.pattern.outer_radius_m() * focal_px_ / distance * foreshortening;
+}
+
 // What the print does not explain is spread evenly where the print is: a sign with another figure
 // in the ring leaves more inside, one in another frame more on the ring and around it. So few
 // pixels tell less than the edges of a near pattern: more is asked of them.
 bool LandingSearch::IsSmallPattern(const SmallPatternFitter::Fit& fit,
                                    const Eigen::Vector2d& diameters_px) const {
   const double on_print = std::max(fit.inside_residual, fit.ring_residual);
+  constexpr double kTolerance = 0.85;  // of the size, which so few pixels hardly tell
+  if (MinorAxisPx(fit.location.camera_from_pattern) < kTolerance * models_.options.min_ring_px) {
+    return false;
+  }
   return fit.match.Quality() >= models_.options.min_quality + SmallMargin(diameters_px) &&
          fit.correlation >= kMinFittedCorrelation && fit.explained >= kMinExplained &&
          fit.inside_residual - fit.ring_residual <= kMaxMoreInside &&
