@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace kestrel {
 namespace {
@@ -145,21 +146,17 @@ double PatternMatcher::RingContrast(const cv::Mat& image, const PatternView& vie
 PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view) const {
   PatternMatch match;
   std::array<Tally, 4> arm, quadrant, ring;
-  const auto darker = [&](const std::array<Place, 2>& places) {
+  // The darker and the brighter gray value of two places, which may be one.
+  const auto sample = [&](const std::array<Place, 2>& places) -> std::pair<float, float> {
     const float first = view.Sample(image, places[0].x, places[0].y);
-    if (places[0].x == places[1].x && places[0].y == places[1].y) return first;
-    return std::min(first, view.Sample(image, places[1].x, places[1].y));
+    if (places[0].x == places[1].x && places[0].y == places[1].y) return {first, first};
+    return std::minmax({first, view.Sample(image, places[1].x, places[1].y)});
   };
   const auto look_at = [&](const Contrast& contrast) -> Seen {
-    const float dark = darker(contrast.dark);
-    const float one = view.Sample(image, contrast.bright[0].x, contrast.bright[0].y);
-    const bool single = contrast.bright[0].x == contrast.bright[1].x &&
-                        contrast.bright[0].y == contrast.bright[1].y;
-    const float other =
-        single ? one : view.Sample(image, contrast.bright[1].x, contrast.bright[1].y);
-    const float bright = std::min(one, other);
+    const float dark = sample(contrast.dark).first;
+    const auto [bright, brighter] = sample(contrast.bright);
     if (dark < 0 || bright < 0) return {kUnseen, kUnseen, kUnseen};
-    return {bright - dark, std::max(one, other) - dark, (bright - dark) / std::max(bright, 1.0f)};
+    return {bright - dark, brighter - dark, (bright - dark) / std::max(bright, 1.0f)};
   };
 
   // The print's contrast in each quarter, which shadow and haze may make different, is that of the

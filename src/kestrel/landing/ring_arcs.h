@@ -37,9 +37,8 @@ struct ArcRing {
 
 // Memory of FindArcRings, which does not allocate: arcs for which there is no room are left out.
 struct RingArcsWorkspace {
-  std::vector<Eigen::Vector2f> smooth;
-  std::vector<float>
-      turns;  // rad, around each point of it  // one border, smoothed and thinned out
+  std::vector<Eigen::Vector2f> smooth;  // one border, smoothed and thinned out
+  std::vector<float> turns;             // rad, around each point of it
   std::vector<Eigen::Vector2f> points;  // of all arcs, pixels of the traced image
   std::vector<Eigen::Vector3d> rays;    // of the same points
   std::vector<Eigen::Vector3d> selected;
