@@ -64,7 +64,7 @@ class SmallPatternFitter {
     // of noise (adjusted R^2): low where few pixels are fitted well, by chance.
     double explained;
     // Residuals (root of their mean square, outliers bounded; share of the contrast) inside of the
-    // ring, where the cross is, on the ring, and on the white around it.
+    // ring but for the worst quadrant, on the ring, and on the white around it.
     double inside_residual;
     double ring_residual;
     double white_residual;

@@ -69,6 +69,11 @@ struct PlaneMap {
 
 using PlanePoint = SmallPatternWorkspace::PlanePoint;
 
+// Quadrant between the arms, from x to y.
+inline int QuadrantOf(const PlanePoint& point) {
+  return point.x > 0 ? (point.y > 0 ? 0 : 3) : (point.y > 0 ? 1 : 2);
+}
+
 inline PlanePoint Intersect(const PlaneMap& map, const SmallPatternWorkspace::Pixel& pixel) {
   const Eigen::Vector3d h = map.inverse * pixel.ray;
   const Eigen::Vector3d hu = map.inverse * pixel.d_ray_du;

@@ -57,7 +57,7 @@ double SmallPatternFitter::OtherSpokes(const SmallPatternWorkspace& workspace,
     const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
     const double expected = state.Gray(point, dark);
     const double residual = SeenGray(pixel.gray, expected) - expected;
-    const int quadrant = point.x > 0 ? (point.y > 0 ? 0 : 3) : (point.y > 0 ? 1 : 2);
+    const int quadrant = QuadrantOf(point);
     // Turned into the first quadrant, x along the arm before.
     const Eigen::Vector2d turned =
         Eigen::Rotation2Dd(-quadrant * std::numbers::pi / 2) * Eigen::Vector2d(point.x, point.y);
