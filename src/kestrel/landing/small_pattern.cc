@@ -438,7 +438,7 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   fit.explained = system.explained();
   fit.match.contrast = state.contrast;
   MeasureParts(*workspace, state, &fit.match);
-  fit.others = MeasureOthers(image, *workspace, state);
+  fit.others = MeasureOthers(image, state, workspace);
   return fit;
 }
 

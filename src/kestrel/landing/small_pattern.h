@@ -31,6 +31,8 @@ struct SmallPatternWorkspace {
     double x, y;
     Eigen::Matrix2d by_pixel;  // d(x, y) / d(u, v), metres per pixel
     double ring = 0;           // darkness of the ring there
+    double expected = 0;       // gray value by the fitted print
+    double gray = 0;           // in the image
   };
   std::vector<PlanePoint> points;  // of the pixels, under one pose
   std::vector<float> magnitudes;   // of the residuals
@@ -119,11 +121,11 @@ class SmallPatternFitter {
   bool Improve(const System& system, State* state) const;
   void MeasureParts(const SmallPatternWorkspace& workspace, const State& state,
                     PatternMatch* match) const;
-  OtherSigns MeasureOthers(const cv::Mat& image, const SmallPatternWorkspace& workspace,
-                           const State& state) const;
+  OtherSigns MeasureOthers(const cv::Mat& image, const State& state,
+                           SmallPatternWorkspace* workspace) const;
   double OtherSpokes(const SmallPatternWorkspace& workspace, const State& state) const;
   double FrameCorners(const SmallPatternWorkspace& workspace, const State& state) const;
-  double CrossCorrelation(const SmallPatternWorkspace& workspace, const State& state) const;
+  double CrossCorrelation(const SmallPatternWorkspace& workspace) const;
   double BoardDarkness(const cv::Mat& image, const State& state) const;
 
   const CameraModel& camera_;
