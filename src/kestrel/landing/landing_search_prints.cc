@@ -111,7 +111,9 @@ void LandingSearch::TestRing(const RingFit& ring, const Eigen::Vector2d& diamete
     const bool none = !hypotheses[0] && !hypotheses[1];
     for (int i = 0; i < 2 && none; ++i) {
       if (!allowed[i]) continue;
-      hypotheses[i] = TestRefinedPose(ring.poses[i], diameters_px.x(), reach_px);
+      const std::optional<RigidTransform> refined = RefineRing(ring.poses[i], reach_px);
+      if (!refined) break;  // both poses have the same ring
+      hypotheses[i] = TestRefinedPose(*refined, diameters_px.x());
     }
   }
   if (hypotheses[0] && hypotheses[1]) {
@@ -161,23 +163,24 @@ std::optional<LandingSearch::Hypothesis> LandingSearch::TestPose(const CirclePos
 
 // Where the ring is cut off or broken, what is known of it says little about its far side: the
 // edges of both of its circles bring it into place before its inside is looked at.
-std::optional<LandingSearch::Hypothesis> LandingSearch::TestRefinedPose(const CirclePose& pose,
-                                                                        double diameter_px,
-                                                                        double reach_px) {
+std::optional<RigidTransform> LandingSearch::RefineRing(const CirclePose& pose, double reach_px) {
   constexpr int kIterations = 4;
-  const std::optional<RigidTransform> refined = models_.locator.LocateRing(
-      image_, PatternPose(pose, 0), 1.5 * reach_px, kMinRingContrast / 2, kIterations);
-  if (!refined) return std::nullopt;
+  return models_.locator.LocateRing(image_, PatternPose(pose, 0), 1.5 * reach_px,
+                                    kMinRingContrast / 2, kIterations);
+}
+
+std::optional<LandingSearch::Hypothesis> LandingSearch::TestRefinedPose(const RigidTransform& ring,
+                                                                        double diameter_px) {
   const ImageRegion region{offset_, ViewLevel(diameter_px)};
   const cv::Mat image = buffers_.pyramid.ImageAt(region.level);
-  const PatternView view(models_.camera, *refined, models_.matcher.extent_m(), region);
+  const PatternView view(models_.camera, ring, models_.matcher.extent_m(), region);
   if (!view.valid() || models_.matcher.RingContrast(image, view) < kMinRingContrast) {
     return std::nullopt;
   }
   const std::optional<Cross> cross =
       FindCrossByProfile(image, view, models_.options.pattern, kMinRingContrast / 2);
   if (!cross) return std::nullopt;
-  RigidTransform turned = *refined;
+  RigidTransform turned = ring;
   turned.rotation *=
       Eigen::Quaterniond(Eigen::AngleAxisd(cross->arm_angle, Eigen::Vector3d::UnitZ()));
   return Compare(turned, CrossMethod::kThinning, diameter_px);
