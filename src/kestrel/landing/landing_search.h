@@ -155,7 +155,7 @@ class LandingSearch {
   double MinorAxisPx(const RigidTransform& pose) const;
   bool IsSmallPattern(const SmallPatternFitter::Fit& fit,
                       const Eigen::Vector2d& diameters_px) const;
-  bool ShowsOtherSign(const RigidTransform& pose);
+  bool ShowsOtherSign(const RigidTransform& pose, double quality);
   std::optional<RingPlace> PlaceOf(const Eigen::Vector3d& center,
                                    const Eigen::Vector2d& diameters_px) const;
   bool WasTested(const RingFit& ring, const Eigen::Vector2d& diameters_px);

@@ -27,6 +27,7 @@ constexpr double kCrossForDarkBoard = 1.2;
 constexpr double kMaxOtherSpokes = 0.55;
 constexpr double kMaxFrameCorners = 0.14;
 constexpr double kMaxBoardDarkness = 0.35;
+constexpr double kEveryPart = 0.95;              // quality of a print of which nothing is missing
 constexpr double kSmallMargin = 0.08;            // of the quality of a small pattern
 constexpr double kMinCorrelation = 0.35;         // of a start of a small pattern
 constexpr double kSureCorrelation = 0.6;         // of a start that quadrants give
@@ -67,9 +68,12 @@ bool Agrees(const RigidTransform& start, const RigidTransform& fitted, double ra
              0.4 * radius_m / distance;
 }
 
+bool HasOtherLines(const SmallPatternFitter::OtherSigns& others) {
+  return others.spokes > kMaxOtherSpokes || others.frame_corners > kMaxFrameCorners;
+}
+
 bool IsOtherSign(const SmallPatternFitter::OtherSigns& others) {
-  return others.spokes > kMaxOtherSpokes || others.frame_corners > kMaxFrameCorners ||
-         others.cross_correlation < kMinCrossCorrelation ||
+  return HasOtherLines(others) || others.cross_correlation < kMinCrossCorrelation ||
          others.board_darkness > kMaxBoardDarkness;
 }
 
@@ -313,13 +317,15 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
 }
 
 // Whether there is another sign where a pattern was located, in even light and in the light that
-// the edge of a shadow leaves.
-bool LandingSearch::ShowsOtherSign(const RigidTransform& pose) {
+// the edge of a shadow leaves. Where every part of the print was seen next to its own white, gray
+// values that do not fit the whole tell of the light alone.
+bool LandingSearch::ShowsOtherSign(const RigidTransform& pose, double quality) {
   using Light = SmallPatternFitter::Light;
+  const auto is_other = quality >= kEveryPart ? HasOtherLines : IsOtherSign;
   const auto in_even = models_.small.Inspect(image_, pose, Light::kEven, &buffers_.small);
-  if (!in_even || !IsOtherSign(*in_even)) return false;
+  if (!in_even || !is_other(*in_even)) return false;
   const auto beside_edge = models_.small.Inspect(image_, pose, Light::kShadowEdge, &buffers_.small);
-  return !beside_edge || IsOtherSign(*beside_edge);
+  return !beside_edge || is_other(*beside_edge);
 }
 
 void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& diameters_px,
@@ -346,7 +352,7 @@ void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& 
   const double quality = match.Quality();
   if (quality < models_.options.min_quality || match.RingShare() < kMinRingShare) return;
   if (diameters_px.x() < kInspectedRingPx) {
-    if (ShowsOtherSign(location->camera_from_pattern)) {
+    if (ShowsOtherSign(location->camera_from_pattern, quality)) {
       const auto place = PlaceOf(location->camera_from_pattern.translation, diameters_px);
       if (place) Note(*place, &buffers_.other_signs);
       return;
