@@ -116,8 +116,7 @@ void LandingSearch::TestRing(const RingFit& ring, const Eigen::Vector2d& diamete
     for (int i = 0; i < 2 && none; ++i) {
       if (!allowed[i]) continue;
       const std::optional<RigidTransform> refined = RefineRing(ring.poses[i], reach_px);
-      if (!refined) break;  // both poses have the same ring
-      hypotheses[i] = TestRefinedPose(*refined, diameters_px.x());
+      if (refined) hypotheses[i] = TestRefinedPose(*refined, diameters_px.x());
     }
   }
   if (hypotheses[0] && hypotheses[1]) {
