@@ -68,12 +68,13 @@ bool Agrees(const RigidTransform& start, const RigidTransform& fitted, double ra
              0.4 * radius_m / distance;
 }
 
-bool HasOtherLines(const SmallPatternFitter::OtherSigns& others) {
-  return others.spokes > kMaxOtherSpokes || others.frame_corners > kMaxFrameCorners;
+bool HasOtherSpokes(const SmallPatternFitter::OtherSigns& others) {
+  return others.spokes > kMaxOtherSpokes;
 }
 
 bool IsOtherSign(const SmallPatternFitter::OtherSigns& others) {
-  return HasOtherLines(others) || others.cross_correlation < kMinCrossCorrelation ||
+  return HasOtherSpokes(others) || others.frame_corners > kMaxFrameCorners ||
+         others.cross_correlation < kMinCrossCorrelation ||
          others.board_darkness > kMaxBoardDarkness;
 }
 
@@ -320,7 +321,7 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
 // values that do not fit the whole tell of the light alone.
 bool LandingSearch::ShowsOtherSign(const RigidTransform& pose, double quality) {
   using Light = SmallPatternFitter::Light;
-  const auto is_other = quality >= kEveryPart ? HasOtherLines : IsOtherSign;
+  const auto is_other = quality >= kEveryPart ? HasOtherSpokes : IsOtherSign;
   const auto in_even = models_.small.Inspect(image_, pose, Light::kEven, &buffers_.small);
   if (!in_even || !is_other(*in_even)) return false;
   const auto beside_edge = models_.small.Inspect(image_, pose, Light::kShadowEdge, &buffers_.small);
