@@ -250,7 +250,7 @@ double LandingSearch::MinorAxisPx(const RigidTransform& pose) const {
 bool LandingSearch::IsSmallPattern(const SmallPatternFitter::Fit& fit,
                                    const Eigen::Vector2d& diameters_px) const {
   const double on_print = std::max(fit.inside_residual, fit.ring_residual);
-  constexpr double kTolerance = 0.85;  // of the size, which so few pixels hardly tell
+  constexpr double kTolerance = 0.75;  // of the size, which so few pixels hardly tell
   if (MinorAxisPx(fit.location.camera_from_pattern) < kTolerance * models_.options.min_ring_px) {
     return false;
   }
