@@ -34,9 +34,10 @@ std::optional<Cross> FindCrossByProfile(const cv::Mat& image, const PatternView&
     for (int i = 0; i < kDirections; ++i) {
       const float before = gray[(i + kDirections - kBeside) % kDirections];
       const float after = gray[(i + kBeside) % kDirections];
-      if (gray[i] < 0 || before < 0 || after < 0) continue;
+      if (gray[i] < 0 || (before < 0 && after < 0)) continue;
       // The darker side counts: the edge of a shadow is no arm.
-      sum[i % kPerQuarter] += std::min(before, after) - gray[i];
+      const float beside = before < 0 ? after : after < 0 ? before : std::min(before, after);
+      sum[i % kPerQuarter] += beside - gray[i];
       ++seen[i % kPerQuarter];
     }
   }
