@@ -88,12 +88,13 @@ void LandingSearch::TestCandidate(const RingCandidate& candidate, std::size_t pa
   const bool small =
       IsSmall(2 * region.scale() *
               Eigen::Vector2d(candidate.outer_edge.semi_major, candidate.outer_edge.semi_minor));
-  const std::optional<RingFit> ring = candidate.board || small ? FitToOutline(candidate, region)
-                                                               : FitToBorder(candidate, pass_index);
-  if (!ring) return;
-  if (!IsPlausible(ring->poses[0])) return;
+  std::optional<RingFit> ring;
+  if (!candidate.board && !small) ring = FitToBorder(candidate, pass_index);
+  const bool by_border = ring.has_value();
+  if (!ring) ring = FitToOutline(candidate, region);
+  if (!ring || !IsPlausible(ring->poses[0])) return;
   const LandingPattern& pattern = models_.options.pattern;
-  const bool inner = !candidate.board && !small && candidate.edge == RingEdge::kInner;
+  const bool inner = by_border && candidate.edge == RingEdge::kInner;
   const double to_outer = inner ? pattern.outer_radius_m() / pattern.inner_radius_m() : 1.0;
   const Eigen::Vector2d diameters_px = 2 * to_outer * focal_px_ * ring->cone.HalfAngles();
   // A print with a dark border shows less white than the board's size.
@@ -108,7 +109,9 @@ void LandingSearch::TestCandidate(const RingCandidate& candidate, std::size_t pa
       TestRing(scaled, diameters_px, std::max(2.0, 0.06 * diameters_px.x()));
     }
   } else {
-    TestRing(*ring, diameters_px, std::max(2.0, 0.8 * region.scale() + 0.02 * diameters_px.x()));
+    // Dirt around the ring on which no circle lies makes the outline less sure.
+    const double unsure = by_border ? 0.02 : 0.1;
+    TestRing(*ring, diameters_px, std::max(2.0, 0.8 * region.scale() + unsure * diameters_px.x()));
   }
 }
 
