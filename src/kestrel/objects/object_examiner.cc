@@ -222,6 +222,7 @@ bool ObjectExaminer::TestBar(const Segment& segment, const SegmentShape& shape,
 std::array<Eigen::Vector3d, 4> ObjectExaminer::RectangleAround(const Segment& segment,
                                                                const SegmentShape& shape) const {
   constexpr double kMinDescent = 0.05;
+  constexpr double kMiddlePart = 0.1;
   const Eigen::Vector3d up = hint_.up_in_camera.value_or(-RayAt(shape.moments.centroid));
   const auto on_plane = [&](const Eigen::Vector2d& pixel) {
     const Eigen::Vector3d ray = RayAt(pixel);
@@ -232,11 +233,24 @@ std::array<Eigen::Vector3d, 4> ObjectExaminer::RectangleAround(const Segment& se
       on_plane(shape.ellipse.center + shape.ellipse.semi_major * shape.ellipse.major_axis());
   const Eigen::Vector3d along = (end - origin).normalized();
   const Eigen::Vector3d across = up.cross(along).normalized();
-  Eigen::AlignedBox2d extent;
-  for (const PixelPosition& at : segment.pixels) {
+  const auto place = [&](const PixelPosition& at) {
     const Eigen::Vector3d offset = on_plane(Eigen::Vector2d(at.u, at.v)) - origin;
-    extent.extend(Eigen::Vector2d(along.dot(offset), across.dot(offset)));
+    return Eigen::Vector2d(along.dot(offset), across.dot(offset));
+  };
+  Eigen::AlignedBox2d extent;
+  for (const PixelPosition& at : segment.pixels) extent.extend(place(at));
+  // A shaking camera's rows bend what is long: its middle is where its middle part is.
+  const double middle = extent.center().x();
+  const double reach = kMiddlePart / 2 * extent.sizes().x();
+  double sum = 0;
+  double count = 0;
+  for (const PixelPosition& at : segment.pixels) {
+    const Eigen::Vector2d here = place(at);
+    if (std::abs(here.x() - middle) > reach) continue;
+    sum += here.y();
+    ++count;
   }
+  if (count > 0) extent.translate(Eigen::Vector2d(0, sum / count - extent.center().y()));
   std::array<Eigen::Vector3d, 4> corners;
   constexpr std::array kOrder = {Eigen::AlignedBox2d::BottomLeft, Eigen::AlignedBox2d::BottomRight,
                                  Eigen::AlignedBox2d::TopRight, Eigen::AlignedBox2d::TopLeft};
