@@ -66,7 +66,8 @@ std::optional<FaceCorners> FindFace(const cv::Mat& image) {
   if (!search.Next(&segment)) return std::nullopt;
   search.JoinAmbiguous(&segment);
   CuboidFaceWorkspace face;
-  return FindCuboidFace(image, segment, &face);
+  const auto corners = FindCuboidFace(image, segment, &face);
+  return corners ? RefineCorners(image, *corners) : std::nullopt;
 }
 
 TEST(FindCuboidFace, CornersAreThoseOfTheUpperFace) {
