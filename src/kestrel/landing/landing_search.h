@@ -137,6 +137,7 @@ class LandingSearch {
   bool IsPlausible(const CirclePose& ring) const;
   void Trace(std::size_t pass_index);
   void TestAreas(std::size_t pass_index);
+  void TestCutAreas(std::size_t pass_index);
   void TestArcs(std::size_t pass_index);
   void TestPartial(std::size_t pass_index);
 
@@ -154,7 +155,7 @@ class LandingSearch {
   double MinorAxisPx(const RigidTransform& pose) const;
   bool IsSmallPattern(const SmallPatternFitter::Fit& fit,
                       const Eigen::Vector2d& diameters_px) const;
-  bool ShowsOtherSign(const RigidTransform& pose);
+  bool ShowsOtherSign(const RigidTransform& pose, double quality);
   std::optional<RingPlace> PlaceOf(const Eigen::Vector3d& center,
                                    const Eigen::Vector2d& diameters_px) const;
   bool WasTested(const RingFit& ring, const Eigen::Vector2d& diameters_px);
@@ -163,8 +164,8 @@ class LandingSearch {
   std::optional<VerifiedCross> VerifyCross(const cv::Mat& image, const PatternView& view,
                                            double diameter_px);
   std::optional<Hypothesis> TestPose(const CirclePose& pose, double diameter_px);
-  std::optional<Hypothesis> TestRefinedPose(const CirclePose& pose, double diameter_px,
-                                            double reach_px);
+  std::optional<RigidTransform> RefineRing(const CirclePose& pose, double reach_px);
+  std::optional<Hypothesis> TestRefinedPose(const RigidTransform& ring, double diameter_px);
   std::optional<Hypothesis> Compare(const RigidTransform& pose, CrossMethod method,
                                     double diameter_px);
   void Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& diameters_px, double reach_px);

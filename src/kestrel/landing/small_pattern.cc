@@ -28,10 +28,8 @@ constexpr double kLeastNoise = 0.05;
 // What looks so little like the print after so many steps never will.
 constexpr int kLateStart = 3;
 constexpr double kMinLateCorrelation = 0.6;
-// Pixels of a box around the print beyond which every second one is enough.
-constexpr int kManyPixels = 1200;
 constexpr std::size_t kMinPixels = 30;
-constexpr int kMaxSide = 128;  // of the box around the print, pixels
+constexpr int kMaxSide = 256;  // of the box around the print, pixels
 
 }  // namespace
 
@@ -87,15 +85,15 @@ SmallPatternFitter::Darkness SmallPatternFitter::Evaluate(double x, double y,
 }
 
 void SmallPatternWorkspace::Reserve() {
-  constexpr std::size_t kMost = static_cast<std::size_t>(kMaxSide + 1) * (kMaxSide + 1);
+  constexpr std::size_t kMost = kEnoughToFit + 2 * kMaxSide + 1;  // of a box and its border
   pixels.reserve(kMost);
   points.reserve(kMost);
   magnitudes.reserve(kMost);
 }
 
-// Collects the pixels, each 'stride'-th of each 'stride'-th row, that show the disc of the print
-// and the white around it under 'pose'.
-bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose,
+// Collects the pixels that show the disc of the print and the white around it under 'pose': every
+// second, third, ... of every such row where a box around them has more than 'enough_pixels'.
+bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose, int enough_pixels,
                                 SmallPatternWorkspace* workspace) const {
   workspace->pixels.clear();
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
@@ -119,7 +117,7 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
   const int y1 = std::min(image.rows - 1, static_cast<int>(std::ceil(high.y())));
   if (x1 - x0 < 4 || y1 - y0 < 4 || x1 - x0 > kMaxSide || y1 - y0 > kMaxSide) return false;
   const int stride =
-      1 + static_cast<int>(std::sqrt((x1 - x0) * (y1 - y0) / static_cast<double>(kManyPixels)));
+      1 + static_cast<int>(std::sqrt((x1 - x0) * (y1 - y0) / static_cast<double>(enough_pixels)));
   const PlaneMap map(pose);
   for (int y = y0; y <= y1; y += stride) {
     const std::uint8_t* row = image.ptr(y);
@@ -222,7 +220,8 @@ std::optional<double> SmallPatternFitter::FindScale(const cv::Mat& image, const 
                                                     SmallPatternWorkspace* workspace) const {
   const auto look_at = [&](double scale) {
     const RigidTransform unturned = PatternPose(Shrunk(ring, scale), 0);
-    return Gather(image, unturned, workspace) ? CorrelateRing(unturned, workspace) : -1.0;
+    return Gather(image, unturned, kEnoughToFit, workspace) ? CorrelateRing(unturned, workspace)
+                                                            : -1.0;
   };
   double best = 0, best_correlation = kMinRingCorrelation;
   for (const double scale : scales) {
@@ -260,13 +259,27 @@ struct SmallPatternFitter::System {
     int count = 0;
     double Rms() const { return std::sqrt(squares / std::max(1, count)); }
   };
-  double robust_scale = 0;    // standard deviation of the residuals by their median
-  std::array<Zone, 3> zones;  // inside of the ring, ring, white
-  double squares = 0;         // of the residuals
-  double sum = 0;             // of the gray values
+  double robust_scale = 0;        // standard deviation of the residuals by their median
+  std::array<Zone, 4> quadrants;  // of the inside of the ring
+  Zone ring, white;
+  double squares = 0;  // of the residuals
+  double sum = 0;      // of the gray values
   double sum_squares = 0;
   double count = 0;
 
+  // Of the inside but the worst quadrant: dirt or a highlight may spoil one.
+  double InsideRms() const {
+    const auto worst = std::max_element(
+        quadrants.begin(), quadrants.end(),
+        [](const Zone& one, const Zone& other) { return one.squares < other.squares; });
+    Zone others;
+    for (auto zone = quadrants.begin(); zone != quadrants.end(); ++zone) {
+      if (zone == worst) continue;
+      others.squares += zone->squares;
+      others.count += zone->count;
+    }
+    return others.Rms();
+  }
   double variance() const { return squares / std::max(1.0, count - kUnknowns); }
   double correlation() const {
     const double about_mean = sum_squares - sum * sum / count;
@@ -322,7 +335,9 @@ SmallPatternFitter::System SmallPatternFitter::Linearize(const State& state, dou
     system.sum_squares += weight * gray * gray;
     system.squares += weight * residual * residual;
     const double radius = std::hypot(point.x, point.y);
-    System::Zone& zone = system.zones[radius < inner ? 0 : radius < outer ? 1 : 2];
+    System::Zone& zone = radius < inner   ? system.quadrants[QuadrantOf(point)]
+                         : radius < outer ? system.ring
+                                          : system.white;
     const double bounded = std::min(magnitude, limit);
     zone.squares += bounded * bounded;
     ++zone.count;
@@ -391,7 +406,7 @@ bool SmallPatternFitter::Improve(const System& system, State* state) const {
 std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
     const cv::Mat& image, const RigidTransform& initial, Light light, int iterations,
     SmallPatternWorkspace* workspace) const {
-  if (!Gather(image, initial, workspace)) return std::nullopt;
+  if (!Gather(image, initial, kEnoughToFit, workspace)) return std::nullopt;
   State state;
   state.pose = initial;
   MeasureLevels(*workspace, &state);
@@ -415,14 +430,14 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   Fit fit;
   fit.location.camera_from_pattern = state.pose;
   fit.location.covariance = covariance.topLeftCorner<6, 6>();
-  fit.inside_residual = system.zones[0].Rms() / state.contrast;
-  fit.ring_residual = system.zones[1].Rms() / state.contrast;
-  fit.white_residual = system.zones[2].Rms() / state.contrast;
+  fit.inside_residual = system.InsideRms() / state.contrast;
+  fit.ring_residual = system.ring.Rms() / state.contrast;
+  fit.white_residual = system.white.Rms() / state.contrast;
   fit.correlation = system.correlation();
   fit.explained = system.explained();
   fit.match.contrast = state.contrast;
   MeasureParts(*workspace, state, &fit.match);
-  fit.others = MeasureOthers(image, *workspace, state);
+  fit.others = MeasureOthers(image, state, workspace);
   return fit;
 }
 
@@ -442,7 +457,7 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
     const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
     const double along_x = std::abs(point.x) > std::abs(point.y) ? 1 : 0;
     const int quarter = along_x > 0 ? (point.x > 0 ? 0 : 2) : (point.y > 0 ? 1 : 3);
-    const int quadrant = point.x > 0 ? (point.y > 0 ? 0 : 3) : (point.y > 0 ? 1 : 2);
+    const int quadrant = QuadrantOf(point);
     const double radius = std::hypot(point.x, point.y);
     Vector basis = Vector::Zero();
     basis(quarter) = dark.ring;
