@@ -29,9 +29,20 @@ void PrintReal(const fs::path& folder) {
              score.merged);
 }
 
+ReportTable CenterTable(const HuntScore& score) {
+  ReportTable table{
+      "centers", "Centres", "", {"objects found", "count", "centre median, px", "95 %, px"}, {}};
+  for (const auto& [kind, errors_px] : score.center_errors_px) {
+    table.rows.push_back({kind, std::to_string(errors_px.size()), FormatFixed(Median(errors_px), 2),
+                          FormatFixed(Quantile(errors_px, 0.95), 2)});
+  }
+  return table;
+}
+
 void PrintFlight(const fs::path& folder) {
   const HuntScore score = ScoreHunt(folder.string());
   fmt::print("\n# {}\n\n{}", folder.string(), ToMarkdown(DetectionTable(score.comparisons)));
+  fmt::print("\n{}", ToMarkdown(CenterTable(score)));
   if (score.digits.count == 0) return;
   fmt::print("\nDigits right (6 and 9 as one): {} of {}, at 3 m and less {} of {}\n",
              score.digits.right, score.digits.count, score.near_digits.right,

@@ -64,6 +64,17 @@ std::map<int, int> ReadDigits(const fs::path& root) {
   return digits;
 }
 
+std::map<int, std::string> ReadShapes(const std::string& objects_file) {
+  const std::string text = ReadFile(objects_file);
+  const CsvTable table(text, objects_file);
+  std::map<int, std::string> shapes;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    shapes[static_cast<int>(table.Integer(row, table.Column("id []")))] =
+        table.Text(row, table.Column("shape []"));
+  }
+  return shapes;
+}
+
 void Count(bool is_right, DigitScore* score) {
   ++score->count;
   score->right += is_right;
@@ -153,6 +164,13 @@ HuntScore ScoreHunt(const std::string& folder) {
   }
   const std::string name = "object_detections.csv";
   score.comparisons = CompareObjects(truth, objects, sightings, ParseObjectRows(csv, name), name);
+  const std::map<int, std::string> shapes = ReadShapes(objects_file);
+  for (const ObjectComparison& c : score.comparisons) {
+    if (!c.IsObject() || !c.IsDetected()) continue;
+    const std::string kind =
+        c.is_wanted ? shapes.at(*c.true_id) + ", wanted" : "cut off, hidden or small";
+    score.center_errors_px[kind].push_back(c.center_error_px);
+  }
   return score;
 }
 

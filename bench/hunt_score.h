@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,9 @@ struct DigitScore {
 
 struct HuntScore {
   std::vector<ObjectComparison> comparisons;
+  // Of the objects found (px): those that had to be found by shape ("disc, wanted"), and "cut off,
+  // hidden or small".
+  std::map<std::string, std::vector<double>> center_errors_px;
   DigitScore digits;
   DigitScore near_digits;  // of cuboids at most 3 m away
 };

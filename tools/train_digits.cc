@@ -4,8 +4,8 @@
 //   train_digits --train A.ttf B.ttf ... --test C.ttf ... --output src/kestrel/objects/digits.txt
 //
 // A face is painted, given a white digit, and seen from an oblique side at 18 to 70 px, blurred,
-// noisy, in sun or shade, and with corners that are off by up to 4 % of its side. make digits runs
-// it with the fonts of Debian's packages.
+// noisy, in sun or shade, and with corners that are off by up to 4 % of its side. docs/digits.md
+// has the command that made the model in the sources.
 #include <array>
 #include <cmath>
 #include <map>

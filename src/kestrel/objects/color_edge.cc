@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/objects/color_edge.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -14,10 +15,15 @@ constexpr int kSamples = 2 * kReach + 1;
 
 using Profile = std::array<Eigen::Vector3f, kSamples>;
 
+// What a channel's values are worth where colours mix. The optics mix light, which is about the
+// square of a value; the camera's compression mixes the values themselves, and blurs the colour
+// more than the optics do. The power between both leaves an edge where it is on ground of any
+// brightness: with 2 it moves towards bright ground, with 1 towards dark one.
 const std::array<float, 256>& LightTable() {
+  constexpr float kPower = 1.5F;
   static const std::array<float, 256> table = [] {
     std::array<float, 256> light{};
-    for (int i = 0; i < 256; ++i) light[i] = static_cast<float>(i * i) / (255.0F * 255.0F);
+    for (int i = 0; i < 256; ++i) light[i] = std::pow(static_cast<float>(i) / 255.0F, kPower);
     return light;
   }();
   return table;
@@ -43,6 +49,14 @@ bool ReadProfile(const cv::Mat& image, const Eigen::Vector2d& start, const Eigen
                     y * ((1 - x) * LightAt(lower, light) + x * LightAt(lower + 3, light));
   }
   return true;
+}
+
+// The colour at a fraction of an index; that of the nearest end outside of the profile.
+Eigen::Vector3f ColorAt(const Profile& profile, double index) {
+  const double inside = std::clamp<double>(index, 0, kSamples - 1);
+  const int i = std::min(static_cast<int>(inside), kSamples - 2);
+  const auto part = static_cast<float>(inside - i);
+  return (1 - part) * profile[i] + part * profile[i + 1];
 }
 
 // The direction in the space of colours that tells 'inside' from 'outside' best. What the outside
@@ -91,17 +105,17 @@ bool ShowsColorEdge(const cv::Size& image, const Eigen::Vector2d& start,
 
 std::optional<ColorEdge> FindColorEdge(const cv::Mat& image, const Eigen::Vector2d& start,
                                        const Eigen::Vector2d& outward) {
-  constexpr int kBeside = 2;  // from the edge to where a blurred profile is flat again
+  constexpr double kBeside = 3;  // from the edge to where a blurred profile is flat again
   Profile profile;
   if (!ReadProfile(image, start, outward, &profile)) return std::nullopt;
   std::optional<Crossing> edge =
       FindCrossing(profile, 0.5F * (profile[1] + profile[2]), profile[kSamples - 2], /*first=*/1);
-  // Once more with the colours right beside the edge.
+  // Once more with the colours beside the edge, as far from it on both sides wherever it is.
   if (!edge) return std::nullopt;
-  const int near = static_cast<int>(std::lround(edge->index));
-  if (near - kBeside < 0 || near + kBeside >= kSamples) return std::nullopt;
-  edge = FindCrossing(profile, profile[near - kBeside], profile[near + kBeside], near - kBeside);
-  if (!edge || edge->index > near + kBeside) return std::nullopt;
+  const double first = std::max(0.0, edge->index - kBeside);
+  edge = FindCrossing(profile, ColorAt(profile, edge->index - kBeside),
+                      ColorAt(profile, edge->index + kBeside), static_cast<int>(first));
+  if (!edge) return std::nullopt;
   const double blur_px = 1 / (std::sqrt(2 * std::numbers::pi) * edge->slope);
   return ColorEdge{edge->index - kReach, blur_px};
 }

@@ -18,10 +18,10 @@ bool ShowsColorEdge(const cv::Size& image, const Eigen::Vector2d& start,
                     const Eigen::Vector2d& outward);
 
 // The sub-pixel place, along 'outward' (unit vector) from 'start' in a CV_8UC3 image, where the
-// colour is half that inside and half that outside. Light mixes linearly,
-// so that the channels are squared first (a camera's gamma is about 2). What is inside and outside
-// is read beside the edge, not from a model: a disc may lie on anything, half in a shadow. Nothing
-// when the profile leaves the image or shows no clear edge.
+// colour is half that inside and half that outside, on a scale between that of light and that of
+// the image's values (a camera's gamma is about 2). What is inside and outside is read beside the
+// edge, not from a model: a disc may lie on anything, half in a shadow. Nothing when the profile
+// leaves the image or shows no clear edge.
 std::optional<ColorEdge> FindColorEdge(const cv::Mat& image, const Eigen::Vector2d& start,
                                        const Eigen::Vector2d& outward);
 

@@ -311,8 +311,14 @@ bool IsConvex(const FaceCorners& corners) {
   return true;
 }
 
+}  // namespace
+
+double QuadrilateralArea(const FaceCorners& corners) {
+  return 0.5 * std::abs(Cross(corners[2] - corners[0], corners[3] - corners[1]));
+}
+
 std::optional<FaceCorners> RefineCorners(const cv::Mat& image,
-                                         const std::vector<Eigen::Vector2d>& polygon) {
+                                         std::span<const Eigen::Vector2d> polygon) {
   const Eigen::Vector2d center = 0.25 * (polygon[0] + polygon[1] + polygon[2] + polygon[3]);
   std::array<Line, 4> sides;
   for (int i = 0; i < 4; ++i) {
@@ -330,12 +336,6 @@ std::optional<FaceCorners> RefineCorners(const cv::Mat& image,
   return corners;
 }
 
-}  // namespace
-
-double QuadrilateralArea(const FaceCorners& corners) {
-  return 0.5 * std::abs(Cross(corners[2] - corners[0], corners[3] - corners[1]));
-}
-
 std::optional<FaceCorners> FindCuboidFace(const cv::Mat& image, const Segment& segment,
                                           CuboidFaceWorkspace* workspace) {
   constexpr double kMinFill = 0.8;
@@ -351,11 +351,11 @@ std::optional<FaceCorners> FindCuboidFace(const cv::Mat& image, const Segment& s
     workspace->hull.pop_back();
   }
   if (!ReduceToFour(&workspace->hull)) return std::nullopt;
-  std::optional<FaceCorners> corners = RefineCorners(image, workspace->hull);
-  if (!corners) return std::nullopt;
+  FaceCorners corners;
+  std::ranges::copy(workspace->hull, corners.begin());
   const auto pixels =
       static_cast<double>(std::count(workspace->filtered.begin(), workspace->filtered.end(), 1));
-  if (pixels < kMinFill * QuadrilateralArea(*corners)) return std::nullopt;
+  if (pixels < kMinFill * QuadrilateralArea(corners)) return std::nullopt;
   return corners;
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -28,10 +29,15 @@ struct CuboidFaceWorkspace {
   std::vector<Eigen::Vector2d> hull;
 };
 
+// The corners after the sides of the quadrilateral 'polygon' (four corners) are fitted to the
+// sub-pixel edges along them. Nothing when that moves one by more than 6 px.
+std::optional<FaceCorners> RefineCorners(const cv::Mat& image,
+                                         std::span<const Eigen::Vector2d> polygon);
+
 // The upper face of the cuboid that 'segment' (with its ambiguous pixels joined) shows. Side faces
 // have the same hue and another brightness: kept are the pixels whose value is in the same hill of
-// the histogram as those around the digit. The smallest quadrilateral around them is the face; its
-// sides are then fitted to the sub-pixel edges. Nothing when the digit or four sides are not found.
+// the histogram as those around the digit. The smallest quadrilateral around them is the face, to
+// about 2 px: see RefineCorners. Nothing when the digit or four sides are not found.
 std::optional<FaceCorners> FindCuboidFace(const cv::Mat& image, const Segment& segment,
                                           CuboidFaceWorkspace* workspace);
 

@@ -21,6 +21,27 @@ constexpr char kHeading[] = "digits";
   throw InputError(fmt::format("{}:{}: {}", file, line, message));
 }
 
+DigitModel CountPixels(const std::array<std::vector<DigitImage>, kDigitCount>& images,
+                       const std::array<std::vector<int>, kDigitCount>& figures) {
+  DigitModel model{};
+  std::array<int, kFigureCount> counts{};
+  for (int digit = 0; digit < kDigitCount; ++digit) {
+    for (std::size_t k = 0; k < images[digit].size(); ++k) {
+      const int figure = figures[digit][k];
+      ++counts[figure];
+      for (std::size_t i = 0; i < images[digit][k].size(); ++i) {
+        model[figure][i] += images[digit][k][i];
+      }
+    }
+  }
+  for (int figure = 0; figure < kFigureCount; ++figure) {
+    for (float& share : model[figure]) {
+      share = (share + 1) / static_cast<float>(counts[figure] + 2);
+    }
+  }
+  return model;
+}
+
 }  // namespace
 
 DigitModel ParseDigitModel(const std::string& text, const std::string& file) {
@@ -28,9 +49,10 @@ DigitModel ParseDigitModel(const std::string& text, const std::string& file) {
   std::istringstream lines(text);
   std::string line;
   std::getline(lines, line);
-  const std::string heading = fmt::format("{} {} {}", kHeading, kDigitCount, kDigitSide);
+  const std::string heading =
+      fmt::format("{} {} {} {}", kHeading, kDigitCount, kStyleCount, kDigitSide);
   if (line != heading) Fail(file, 1, fmt::format("expected '{}'", heading));
-  for (int i = 0; i < kDigitCount * kDigitSide; ++i) {
+  for (int i = 0; i < kFigureCount * kDigitSide; ++i) {
     if (!std::getline(lines, line)) Fail(file, i + 2, "ends here, expected more rows");
     if (line.size() != 2 * kDigitSide) {
       Fail(file, i + 2, fmt::format("expected {} numbers of two digits", kDigitSide));
@@ -42,13 +64,13 @@ DigitModel ParseDigitModel(const std::string& text, const std::string& file) {
       model[i / kDigitSide][i % kDigitSide * kDigitSide + column] = 0.01F * *percent;
     }
   }
-  if (std::getline(lines, line)) Fail(file, kDigitCount * kDigitSide + 2, "expected the end");
+  if (std::getline(lines, line)) Fail(file, kFigureCount * kDigitSide + 2, "expected the end");
   return model;
 }
 
 std::string PrintDigitModel(const DigitModel& model) {
-  std::string text = fmt::format("{} {} {}\n", kHeading, kDigitCount, kDigitSide);
-  for (const auto& shares : model) {
+  std::string text = fmt::format("{} {} {} {}\n", kHeading, kDigitCount, kStyleCount, kDigitSide);
+  for (const DigitFigure& shares : model) {
     for (int i = 0; i < kDigitSide * kDigitSide; ++i) {
       const long percent = std::lround(100 * shares[i]);
       text += fmt::format("{:02}", std::clamp(percent, 1L, 99L));
@@ -65,14 +87,28 @@ const DigitModel& DefaultDigitModel() {
 }
 
 DigitClassifier::DigitClassifier(const DigitModel& model) : set_gain_(), empty_() {
-  for (int digit = 0; digit < kDigitCount; ++digit) {
+  for (int figure = 0; figure < kFigureCount; ++figure) {
     for (int i = 0; i < kDigitSide * kDigitSide; ++i) {
-      const float set = std::log(model[digit][i]);
-      const float not_set = std::log(1 - model[digit][i]);
-      set_gain_[digit][i] = set - not_set;
-      empty_[digit] += not_set;
+      const float set = std::log(model[figure][i]);
+      const float not_set = std::log(1 - model[figure][i]);
+      set_gain_[figure][i] = set - not_set;
+      empty_[figure] += not_set;
     }
   }
+}
+
+int DigitClassifier::LikeliestFigure(const DigitImage& image, int digit) const {
+  int best = digit * kStyleCount;
+  for (int figure = best + 1; figure < (digit + 1) * kStyleCount; ++figure) {
+    if (LogLikelihood(image, figure) > LogLikelihood(image, best)) best = figure;
+  }
+  return best;
+}
+
+double DigitClassifier::LogLikelihood(const DigitImage& image, int figure) const {
+  double sum = empty_[figure];
+  for (std::size_t i = 0; i < image.size(); ++i) sum += image[i] * set_gain_[figure][i];
+  return sum;
 }
 
 DigitLikelihoods DigitClassifier::Classify(const DigitImage& digit) const {
@@ -82,10 +118,9 @@ DigitLikelihoods DigitClassifier::Classify(const DigitImage& digit) const {
   log_likelihoods.fill(-std::numeric_limits<double>::infinity());
   DigitImage turned = digit;
   for (int quarter = 0; quarter < 4; ++quarter) {
-    for (int k = 0; k < kDigitCount; ++k) {
-      double sum = empty_[k];
-      for (std::size_t i = 0; i < turned.size(); ++i) sum += turned[i] * set_gain_[k][i];
-      log_likelihoods[k] = std::max(log_likelihoods[k], kIndependentShare * sum);
+    for (int figure = 0; figure < kFigureCount; ++figure) {
+      double& best = log_likelihoods[figure / kStyleCount];
+      best = std::max(best, kIndependentShare * LogLikelihood(turned, figure));
     }
     turned = QuarterTurn(turned);
   }
@@ -96,15 +131,24 @@ DigitLikelihoods DigitClassifier::Classify(const DigitImage& digit) const {
   return log_likelihoods;
 }
 
-void DigitTrainer::Add(int digit, const DigitImage& image) {
-  ++images_[digit];
-  for (std::size_t i = 0; i < image.size(); ++i) set_[digit][i] += image[i];
-}
-
 DigitModel DigitTrainer::Model() const {
-  DigitModel model = set_;
+  constexpr int kRounds = 20;
+  std::array<std::vector<int>, kDigitCount> figures;  // of the images
   for (int digit = 0; digit < kDigitCount; ++digit) {
-    for (float& share : model[digit]) share = (share + 1) / static_cast<float>(images_[digit] + 2);
+    const std::size_t count = images_[digit].size();
+    for (std::size_t i = 0; i < count; ++i) {
+      figures[digit].push_back(digit * kStyleCount + static_cast<int>(i * kStyleCount / count));
+    }
+  }
+  DigitModel model = CountPixels(images_, figures);
+  for (int round = 0; round < kRounds; ++round) {
+    const DigitClassifier classifier(model);
+    for (int digit = 0; digit < kDigitCount; ++digit) {
+      for (std::size_t i = 0; i < images_[digit].size(); ++i) {
+        figures[digit][i] = classifier.LikeliestFigure(images_[digit][i], digit);
+      }
+    }
+    model = CountPixels(images_, figures);
   }
   return model;
 }

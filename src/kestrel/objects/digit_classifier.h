@@ -15,8 +15,14 @@ inline constexpr int kDigitCount = 10;
 // where nothing tells which way is up, both are equally likely.
 using DigitLikelihoods = std::array<double, kDigitCount>;
 
-// Share of the training images of a digit in which each of its pixels was set, 0 < share < 1.
-using DigitModel = std::array<std::array<float, kDigitSide * kDigitSide>, kDigitCount>;
+// A digit looks different in upright, slanted, thin and bold fonts: it has several figures, those
+// of digit d are d * kStyleCount and the next ones.
+inline constexpr int kStyleCount = 4;
+inline constexpr int kFigureCount = kDigitCount * kStyleCount;
+
+// Share of the training images of a figure in which each of its pixels was set, 0 < share < 1.
+using DigitFigure = std::array<float, kDigitSide * kDigitSide>;
+using DigitModel = std::array<DigitFigure, kFigureCount>;
 
 // From the text that PrintDigitModel makes; 'file' is for messages. Throws InputError.
 DigitModel ParseDigitModel(const std::string& text, const std::string& file);
@@ -25,30 +31,37 @@ std::string PrintDigitModel(const DigitModel& model);
 // Trained by tools/train_digits on fonts, blur, light and oblique views.
 const DigitModel& DefaultDigitModel();
 
-// Pixel-wise naive Bayes over the four orientations (paper, section 3.6). Immutable, thread-safe.
+// Pixel-wise naive Bayes over the four orientations (paper, section 3.6); a digit is as likely as
+// the likeliest of its figures. Immutable, thread-safe.
 class DigitClassifier {
  public:
   explicit DigitClassifier(const DigitModel& model);
 
   DigitLikelihoods Classify(const DigitImage& digit) const;
 
+  // Of the digit's figures, as the image stands.
+  int LikeliestFigure(const DigitImage& image, int digit) const;
+
  private:
+  double LogLikelihood(const DigitImage& image, int figure) const;
+
   // Logarithm of the probability of a pixel that is set, minus that of one that is not; and the
   // logarithm of an image without any set pixel.
-  std::array<std::array<float, kDigitSide * kDigitSide>, kDigitCount> set_gain_;
-  std::array<double, kDigitCount> empty_;
+  DigitModel set_gain_;
+  std::array<double, kFigureCount> empty_;
 };
 
-// Counts the set pixels of labelled images.
+// Learns the figures from labelled images: those of a digit are divided among its figures such that
+// each is with the figure that makes it likeliest (expectation maximisation with hard choices).
 class DigitTrainer {
  public:
-  void Add(int digit, const DigitImage& image);
-  // Laplace's rule: no pixel is certain. Digits without an image are even noise.
+  void Add(int digit, const DigitImage& image) { images_[digit].push_back(image); }
+  // Starts with equal parts of the images in the order in which they came: fonts one after the
+  // other. Laplace's rule: no pixel is certain. Figures without an image are even noise.
   DigitModel Model() const;
 
  private:
-  DigitModel set_{};
-  std::array<int, kDigitCount> images_{};
+  std::array<std::vector<DigitImage>, kDigitCount> images_;
 };
 
 }  // namespace kestrel

@@ -66,7 +66,8 @@ std::optional<FaceCorners> FindFace(const cv::Mat& image) {
   if (!search.Next(&segment)) return std::nullopt;
   search.JoinAmbiguous(&segment);
   CuboidFaceWorkspace face;
-  return FindCuboidFace(image, segment, &face);
+  const auto corners = FindCuboidFace(image, segment, &face);
+  return corners ? RefineCorners(image, *corners) : std::nullopt;
 }
 
 TEST(FindCuboidFace, CornersAreThoseOfTheUpperFace) {
@@ -123,7 +124,7 @@ TEST(DigitModel, ReadsWhatItPrintsAndRefusesTheRest) {
     }
     return "";
   };
-  EXPECT_THAT(error_of(""), HasSubstr("digits.txt:1: expected 'digits 10 20'"));
+  EXPECT_THAT(error_of(""), HasSubstr("digits.txt:1: expected 'digits 10 4 20'"));
   EXPECT_THAT(error_of(text.substr(0, text.size() / 2)), HasSubstr("expected"));
   EXPECT_THAT(error_of(text + "more\n"), HasSubstr("expected the end"));
   std::string bad = text;
@@ -137,9 +138,20 @@ TEST(DigitTrainer, CountsAndIsNeverCertain) {
   image[5] = 1;
   for (int i = 0; i < 8; ++i) trainer.Add(3, image);
   const DigitModel model = trainer.Model();
-  EXPECT_FLOAT_EQ(model[3][5], 0.9F);
-  EXPECT_FLOAT_EQ(model[3][6], 0.1F);
-  EXPECT_FLOAT_EQ(model[4][6], 0.5F);
+  EXPECT_FLOAT_EQ(model[3 * kStyleCount][5], 0.9F);
+  EXPECT_FLOAT_EQ(model[3 * kStyleCount][6], 0.1F);
+  EXPECT_FLOAT_EQ(model[4 * kStyleCount][6], 0.5F);
+}
+
+TEST(DigitTrainer, TellsStylesApart) {
+  DigitTrainer trainer;
+  DigitImage thin{};
+  thin[5] = 1;
+  DigitImage bold{};
+  bold[5] = bold[6] = bold[7] = 1;
+  for (int i = 0; i < 600; ++i) trainer.Add(3, i < 350 ? thin : bold);
+  const DigitClassifier classifier(trainer.Model());
+  EXPECT_NE(classifier.LikeliestFigure(thin, 3), classifier.LikeliestFigure(bold, 3));
 }
 
 TEST(SplitByOtsu, SeparatesTwoHills) {

@@ -82,40 +82,6 @@ std::optional<Ellipse> CutWithPlane(const Eigen::Matrix3d& conic) {
   return EllipseFromMoments(moments);
 }
 
-void CollectBorderPixels(const Segment& segment, const cv::Size& image_size,
-                         std::vector<Eigen::Vector2d>* points) {
-  // Outermost pixels of each row and column, half a pixel further out: on the edge.
-  const auto is_inside = [&](const Eigen::Vector2d& p) {
-    return p.x() > 1 && p.y() > 1 && p.x() < image_size.width - 2 && p.y() < image_size.height - 2;
-  };
-  points->clear();
-  const int count = segment.width() + segment.height();
-  // Room for the extents and for the points behind them: 'rows' must stay where it is.
-  points->reserve(4 * static_cast<std::size_t>(count));
-  points->resize(2 * static_cast<std::size_t>(count));
-  constexpr double kNone = 1e9;
-  auto* rows = points->data();
-  auto* columns = rows + segment.height();
-  for (int i = 0; i < count; ++i) rows[i] = {kNone, -kNone};
-  for (const PixelPosition& at : segment.pixels) {
-    Eigen::Vector2d& row = rows[at.v - segment.min_v];
-    row = {std::min<double>(row.x(), at.u), std::max<double>(row.y(), at.u)};
-    Eigen::Vector2d& column = columns[at.u - segment.min_u];
-    column = {std::min<double>(column.x(), at.v), std::max<double>(column.y(), at.v)};
-  }
-  for (int i = count - 1; i >= 0; --i) {
-    const Eigen::Vector2d extent = rows[i];
-    const bool is_row = i < segment.height();
-    for (const double x : {extent.x() - 0.5, extent.y() + 0.5}) {
-      const Eigen::Vector2d point = is_row
-                                        ? Eigen::Vector2d(x, segment.min_v + i)
-                                        : Eigen::Vector2d(segment.min_u + i - segment.height(), x);
-      if (is_inside(point)) points->push_back(point);
-    }
-  }
-  points->erase(points->begin(), points->begin() + 2 * count);
-}
-
 // What became of a direction in which the edge was looked for.
 enum class Direction { kHidden, kOutside, kFits };
 using Directions = std::array<Direction, kDirections>;
@@ -219,12 +185,6 @@ std::optional<Ellipse> EllipseThrough(std::span<const Eigen::Vector2d> points) {
   ellipse->center = middle + scale * ellipse->center;
   ellipse->Scale(scale);
   return ellipse;
-}
-
-std::optional<Ellipse> EllipseOfCutOff(const Segment& segment, const cv::Size& image_size,
-                                       DiscOutlineWorkspace* workspace) {
-  CollectBorderPixels(segment, image_size, &workspace->points);
-  return EllipseThrough(workspace->points);
 }
 
 }  // namespace kestrel

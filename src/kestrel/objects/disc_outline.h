@@ -11,7 +11,6 @@
 #include "kestrel/camera/ray_table.h"
 #include "kestrel/geometry/cone.h"
 #include "kestrel/geometry/ellipse.h"
-#include "kestrel/objects/segmentation.h"
 
 namespace kestrel {
 
@@ -44,10 +43,5 @@ std::optional<DiscOutline> FitDiscOutline(const cv::Mat& image, const RayTable& 
 
 // The ellipse nearest to the points (px); nothing when they do not determine one.
 std::optional<Ellipse> EllipseThrough(std::span<const Eigen::Vector2d> points);
-
-// The ellipse through the border pixels of a segment that are not at the border of the image: where
-// to start from when the image cuts the disc off. Nothing when they lie on no ellipse.
-std::optional<Ellipse> EllipseOfCutOff(const Segment& segment, const cv::Size& image_size,
-                                       DiscOutlineWorkspace* workspace);
 
 }  // namespace kestrel

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "kestrel/objects/disc_location.h"
 
 namespace kestrel {
@@ -28,6 +30,18 @@ double GroundPlane::DistanceSigma(const Eigen::Vector3d& ray, double distance) c
   const double descent = -up_in_camera->dot(ray);
   const double sideways = std::sqrt(std::max(0.0, 1 - descent * descent));
   return std::hypot(height_sigma_m, up_sigma_rad * distance * sideways) / descent;
+}
+
+PlaneBelow::PlaneBelow(const Eigen::Vector3d& up)
+    : up_(up), x_axis_(up.unitOrthogonal()), y_axis_(x_axis_.cross(up)) {}
+
+Eigen::Vector2d PlaneBelow::PointOf(const Eigen::Vector3d& ray) const {
+  const Eigen::Vector2d across(x_axis_.dot(ray), y_axis_.dot(ray));
+  return across / std::max(kMinSine, -up_.dot(ray));
+}
+
+Eigen::Vector3d PlaneBelow::RayTo(const Eigen::Vector2d& point) const {
+  return point.x() * x_axis_ + point.y() * y_axis_ - up_;
 }
 
 bool LooksLikeDisc(const Cone& cone, const Eigen::Vector3d& ray, double distance,

@@ -30,6 +30,22 @@ struct GroundPlane {
   double DistanceSigma(const Eigen::Vector3d& ray, double distance) const;
 };
 
+// Coordinates on the horizontal plane at unit distance below the camera: the origin is right below
+// it, and seen from above x turns to y as in an image.
+class PlaneBelow {
+ public:
+  explicit PlaneBelow(const Eigen::Vector3d& up);
+
+  // Where a ray meets the plane; rays that descend by less than 3 degrees are taken to do so.
+  Eigen::Vector2d PointOf(const Eigen::Vector3d& ray) const;
+  Eigen::Vector3d RayTo(const Eigen::Vector2d& point) const;  // not a unit vector
+
+ private:
+  Eigen::Vector3d up_;
+  Eigen::Vector3d x_axis_;
+  Eigen::Vector3d y_axis_;
+};
+
 // Whether 'cone' may be the image of a horizontal disc at 'distance' along 'ray': both opening
 // angles within the tolerance (share) and 'slack' (rad).
 bool LooksLikeDisc(const Cone& cone, const Eigen::Vector3d& ray, double distance,

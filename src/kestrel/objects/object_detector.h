@@ -17,6 +17,7 @@
 #include "kestrel/objects/disc_outline.h"
 #include "kestrel/objects/object_detection.h"
 #include "kestrel/objects/object_model.h"
+#include "kestrel/objects/segment_border.h"
 #include "kestrel/objects/segmentation.h"
 
 namespace kestrel {
@@ -99,6 +100,7 @@ struct ObjectWorkspace {
   SegmentationWorkspace segmentation;
   DiscOutlineWorkspace outline;
   CuboidFaceWorkspace face;
+  SegmentBorder border;
 };
 
 // Finds the configured objects in a colour image of a camera that looks down (paper, section 3).

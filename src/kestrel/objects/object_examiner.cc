@@ -54,10 +54,6 @@ double FilledShare(const Segment& segment, const Ellipse& ellipse, const cv::Siz
   return static_cast<double>(filled) / std::max(1, all);
 }
 
-bool IsWithin(double value, double expected, double factor) {
-  return value <= expected * factor && expected <= value * factor;
-}
-
 }  // namespace
 
 bool ObjectExaminer::Run(const Segment& segment) {
@@ -122,7 +118,8 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
   const ObjectDetectorOptions& options = detector_.options_;
   Ellipse start = shape.ellipse;
   if (segment.touches_border) {
-    const auto ellipse = EllipseOfCutOff(segment, image_.size(), &workspace_->outline);
+    FindBorder(segment, image_.size(), &workspace_->border);
+    const auto ellipse = EllipseThrough(workspace_->border.points);
     if (!ellipse) return false;
     start = *ellipse;
   } else if (std::abs(shape.circularity - 1) > options.max_circularity_error) {
@@ -177,99 +174,6 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
   const double less = 1 / (seen * seen);
   SetLocation(position, object, less * options.center_sigma_px,
               less * options.radius_sigma_px / radius_px, detection);
-  return true;
-}
-
-bool ObjectExaminer::TestCuboid(const Segment& segment, const ObjectClass& object,
-                                ObjectDetection* detection, ObjectStage* reached) {
-  if (segment.touches_border || segment.ambiguous_pixels == 0) return false;
-  const auto corners = FindCuboidFace(image_, segment, &workspace_->face);
-  if (!corners) return false;
-  const auto digit = CutOutDigit(image_, *corners);
-  if (!digit) return false;
-  *reached = ObjectStage::kOutline;
-  std::array<Eigen::Vector3d, 4> rays;
-  for (int i = 0; i < 4; ++i) rays[i] = RayAt((*corners)[i]);
-  if (!LocateFace(rays, object, detection)) return false;
-  detection->digits = detector_.digits_.Classify(*digit);
-  *reached = ObjectStage::kPosition;
-  return true;
-}
-
-bool ObjectExaminer::TestBar(const Segment& segment, const SegmentShape& shape,
-                             const ObjectClass& object, ObjectDetection* detection,
-                             ObjectStage* reached) {
-  constexpr double kMinFill = 0.75;
-  constexpr double kMaxAspectFactor = 2;
-  const Ellipse& ellipse = shape.ellipse;
-  const double box_px = 3 * ellipse.semi_major * ellipse.semi_minor;
-  if (shape.moments.area < kMinFill * box_px) return false;
-  const double aspect = ellipse.semi_major / std::max(ellipse.semi_minor, 0.1);
-  // A cut off one is shorter.
-  const double expected = object.size_m / object.width_m;
-  const bool is_long = segment.touches_border ? aspect > 2 && aspect < kMaxAspectFactor * expected
-                                              : IsWithin(aspect, expected, kMaxAspectFactor);
-  if (!is_long) return false;
-  *reached = ObjectStage::kOutline;
-  if (segment.touches_border) return true;  // its bearing is all that is known
-  if (!LocateFace(RectangleAround(segment, shape), object, detection)) return false;
-  *reached = ObjectStage::kPosition;
-  return true;
-}
-
-// The rectangle around the segment, as it lies on the ground where the attitude is known: the
-// nearer half of a long object is larger in the image, and its centroid is not its middle.
-std::array<Eigen::Vector3d, 4> ObjectExaminer::RectangleAround(const Segment& segment,
-                                                               const SegmentShape& shape) const {
-  constexpr double kMinDescent = 0.05;
-  const Eigen::Vector3d up = hint_.up_in_camera.value_or(-RayAt(shape.moments.centroid));
-  const auto on_plane = [&](const Eigen::Vector2d& pixel) {
-    const Eigen::Vector3d ray = RayAt(pixel);
-    return Eigen::Vector3d(ray / std::max(kMinDescent, -up.dot(ray)));
-  };
-  const Eigen::Vector3d origin = on_plane(shape.ellipse.center);
-  const Eigen::Vector3d end =
-      on_plane(shape.ellipse.center + shape.ellipse.semi_major * shape.ellipse.major_axis());
-  const Eigen::Vector3d along = (end - origin).normalized();
-  const Eigen::Vector3d across = up.cross(along).normalized();
-  Eigen::AlignedBox2d extent;
-  for (const PixelPosition& at : segment.pixels) {
-    const Eigen::Vector3d offset = on_plane(Eigen::Vector2d(at.u, at.v)) - origin;
-    extent.extend(Eigen::Vector2d(along.dot(offset), across.dot(offset)));
-  }
-  std::array<Eigen::Vector3d, 4> corners;
-  constexpr std::array kOrder = {Eigen::AlignedBox2d::BottomLeft, Eigen::AlignedBox2d::BottomRight,
-                                 Eigen::AlignedBox2d::TopRight, Eigen::AlignedBox2d::TopLeft};
-  for (int i = 0; i < 4; ++i) {
-    const Eigen::Vector2d corner = extent.corner(kOrder[i]);
-    corners[i] = (origin + corner.x() * along + corner.y() * across).normalized();
-  }
-  return corners;
-}
-
-bool ObjectExaminer::LocateFace(const std::array<Eigen::Vector3d, 4>& rays,
-                                const ObjectClass& object, ObjectDetection* detection) const {
-  constexpr double kMaxSkew = 0.15;
-  const ObjectDetectorOptions& options = detector_.options_;
-  const bool is_bar = object.shape == ObjectShape::kBar;
-  const Eigen::Vector3d up = hint_.up_in_camera.value_or(-detection->bearing);
-  const auto face = RectangleOnPlane(rays, up);
-  if (!face) return false;
-  // Not seen from above, a square may be any parallelogram.
-  const double length = is_bar ? face->sides.maxCoeff() : std::sqrt(face->sides.prod());
-  if (!(length > 0)) return false;
-  if (!is_bar && hint_.up_in_camera &&
-      (face->skew > kMaxSkew ||
-       !IsWithin(face->sides.x(), face->sides.y(), 1 + 0.5 * options.ground_tolerance))) {
-    return false;
-  }
-  const Eigen::Vector3d position = object.size_m / length * face->center;
-  const double distance = position.norm();
-  const auto on_ground = DistanceOnGround(position, object);
-  if (on_ground && !IsOnGround(distance, *on_ground)) return false;
-  const double radius_px = 0.5 * detector_.focal_px_ * object.size_m / distance;
-  SetLocation(position, object, options.center_sigma_px, options.radius_sigma_px / radius_px,
-              detection);
   return true;
 }
 

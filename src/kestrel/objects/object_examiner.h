@@ -30,6 +30,9 @@ class ObjectExaminer {
                 ObjectDetection* detection, ObjectStage* reached);
   bool TestCuboid(const Segment& segment, const ObjectClass& object, ObjectDetection* detection,
                   ObjectStage* reached);
+  // Corners of the upper face, by a cuboid fitted to the whole segment; 'up' must be known.
+  std::optional<FaceCorners> FindFaceBySilhouette(const Segment& segment,
+                                                  const ObjectClass& object);
   bool TestBar(const Segment& segment, const SegmentShape& shape, const ObjectClass& object,
                ObjectDetection* detection, ObjectStage* reached);
   std::array<Eigen::Vector3d, 4> RectangleAround(const Segment& segment,

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What has corners: cuboids, by their upper face, and bars.
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "kestrel/objects/cuboid_silhouette.h"
+#include "kestrel/objects/object_examiner.h"
+
+namespace kestrel {
+namespace {
+
+bool IsWithin(double value, double expected, double factor) {
+  return value <= expected * factor && expected <= value * factor;
+}
+
+}  // namespace
+
+bool ObjectExaminer::TestCuboid(const Segment& segment, const ObjectClass& object,
+                                ObjectDetection* detection, ObjectStage* reached) {
+  if (segment.ambiguous_pixels == 0) return false;
+  const auto found = hint_.up_in_camera ? FindFaceBySilhouette(segment, object)
+                                        : FindCuboidFace(image_, segment, &workspace_->face);
+  if (!found) return false;
+  // Where the image is blurred the sides' edges may be no square's: the silhouette still is right.
+  for (const std::optional<FaceCorners>& corners : {RefineCorners(image_, *found), found}) {
+    const auto digit = corners ? CutOutDigit(image_, *corners) : std::nullopt;
+    if (!digit) continue;
+    *reached = ObjectStage::kOutline;
+    std::array<Eigen::Vector3d, 4> rays;
+    std::ranges::transform(*corners, rays.begin(),
+                           [&](const auto& corner) { return RayAt(corner); });
+    if (!LocateFace(rays, object, detection)) continue;
+    detection->digits = detector_.digits_.Classify(*digit);
+    detection->completeness = Completeness::kWhole;  // its upper face is
+    *reached = ObjectStage::kPosition;
+    return true;
+  }
+  return false;
+}
+
+std::optional<FaceCorners> ObjectExaminer::FindFaceBySilhouette(const Segment& segment,
+                                                                const ObjectClass& object) {
+  constexpr double kMaxResidual = 0.15;
+  const PlaneBelow plane(*hint_.up_in_camera);
+  const auto on_plane = [&](const Eigen::Vector2d& pixel) { return plane.PointOf(RayAt(pixel)); };
+  SegmentBorder& border = workspace_->border;
+  FindBorder(segment, image_.size(), &border);
+  for (Eigen::Vector2d& point : border.points) point = on_plane(point);
+  for (Eigen::Vector2d& point : border.cut) point = on_plane(point);
+  Eigen::Vector2d digit = Eigen::Vector2d::Zero();
+  for (const PixelPosition& at : segment.pixels.last(segment.ambiguous_pixels)) {
+    digit += Eigen::Vector2d(at.u, at.v) / segment.ambiguous_pixels;
+  }
+  CuboidSilhouette silhouette{
+      border.points, border.cut, on_plane(digit), object.height_m / object.size_m, {}};
+  if (hint_.camera_height_m && *hint_.camera_height_m > object.height_m) {
+    silhouette.half_side = 0.5 * object.size_m / (*hint_.camera_height_m - object.height_m);
+  }
+  const auto fit = FitCuboid(silhouette);
+  if (!fit || fit->residual > kMaxResidual) return std::nullopt;
+  FaceCorners corners;
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Vector3d ray = plane.RayTo(fit->corners[i]);
+    if (detector_.camera_.Project(ray, &corners[i]) != ProjectionStatus::kOk) return std::nullopt;
+  }
+  return corners;
+}
+
+bool ObjectExaminer::TestBar(const Segment& segment, const SegmentShape& shape,
+                             const ObjectClass& object, ObjectDetection* detection,
+                             ObjectStage* reached) {
+  constexpr double kMinFill = 0.75;
+  constexpr double kMaxAspectFactor = 2;
+  const Ellipse& ellipse = shape.ellipse;
+  const double box_px = 3 * ellipse.semi_major * ellipse.semi_minor;
+  if (shape.moments.area < kMinFill * box_px) return false;
+  const double aspect = ellipse.semi_major / std::max(ellipse.semi_minor, 0.1);
+  // A cut off one is shorter.
+  const double expected = object.size_m / object.width_m;
+  const bool is_long = segment.touches_border ? aspect > 2 && aspect < kMaxAspectFactor * expected
+                                              : IsWithin(aspect, expected, kMaxAspectFactor);
+  if (!is_long) return false;
+  *reached = ObjectStage::kOutline;
+  if (segment.touches_border) return true;  // its bearing is all that is known
+  if (!LocateFace(RectangleAround(segment, shape), object, detection)) return false;
+  *reached = ObjectStage::kPosition;
+  return true;
+}
+
+// The rectangle around the segment, as it lies on the ground where the attitude is known: the
+// nearer half of a long object is larger in the image, and its centroid is not its middle.
+std::array<Eigen::Vector3d, 4> ObjectExaminer::RectangleAround(const Segment& segment,
+                                                               const SegmentShape& shape) const {
+  constexpr double kMinDescent = 0.05;
+  constexpr double kMiddlePart = 0.1;
+  const Eigen::Vector3d up = hint_.up_in_camera.value_or(-RayAt(shape.moments.centroid));
+  const auto on_plane = [&](const Eigen::Vector2d& pixel) {
+    const Eigen::Vector3d ray = RayAt(pixel);
+    return Eigen::Vector3d(ray / std::max(kMinDescent, -up.dot(ray)));
+  };
+  const Eigen::Vector3d origin = on_plane(shape.ellipse.center);
+  const Eigen::Vector3d end =
+      on_plane(shape.ellipse.center + shape.ellipse.semi_major * shape.ellipse.major_axis());
+  const Eigen::Vector3d along = (end - origin).normalized();
+  const Eigen::Vector3d across = up.cross(along).normalized();
+  const auto place = [&](const PixelPosition& at) {
+    const Eigen::Vector3d offset = on_plane(Eigen::Vector2d(at.u, at.v)) - origin;
+    return Eigen::Vector2d(along.dot(offset), across.dot(offset));
+  };
+  Eigen::AlignedBox2d extent;
+  for (const PixelPosition& at : segment.pixels) extent.extend(place(at));
+  // A shaking camera's rows bend what is long: its middle is where its middle part is.
+  const double middle = extent.center().x();
+  const double reach = kMiddlePart / 2 * extent.sizes().x();
+  double sum = 0;
+  double count = 0;
+  for (const PixelPosition& at : segment.pixels) {
+    const Eigen::Vector2d here = place(at);
+    if (std::abs(here.x() - middle) > reach) continue;
+    sum += here.y();
+    ++count;
+  }
+  if (count > 0) extent.translate(Eigen::Vector2d(0, sum / count - extent.center().y()));
+  std::array<Eigen::Vector3d, 4> corners;
+  constexpr std::array kOrder = {Eigen::AlignedBox2d::BottomLeft, Eigen::AlignedBox2d::BottomRight,
+                                 Eigen::AlignedBox2d::TopRight, Eigen::AlignedBox2d::TopLeft};
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Vector2d corner = extent.corner(kOrder[i]);
+    corners[i] = (origin + corner.x() * along + corner.y() * across).normalized();
+  }
+  return corners;
+}
+
+bool ObjectExaminer::LocateFace(const std::array<Eigen::Vector3d, 4>& rays,
+                                const ObjectClass& object, ObjectDetection* detection) const {
+  constexpr double kMaxSkew = 0.15;
+  const ObjectDetectorOptions& options = detector_.options_;
+  const bool is_bar = object.shape == ObjectShape::kBar;
+  const Eigen::Vector3d up = hint_.up_in_camera.value_or(-detection->bearing);
+  const auto face = RectangleOnPlane(rays, up);
+  if (!face) return false;
+  // Not seen from above, a square may be any parallelogram.
+  const double length = is_bar ? face->sides.maxCoeff() : std::sqrt(face->sides.prod());
+  if (!(length > 0)) return false;
+  if (!is_bar && hint_.up_in_camera &&
+      (face->skew > kMaxSkew ||
+       !IsWithin(face->sides.x(), face->sides.y(), 1 + 0.5 * options.ground_tolerance))) {
+    return false;
+  }
+  const Eigen::Vector3d position = object.size_m / length * face->center;
+  const double distance = position.norm();
+  const auto on_ground = DistanceOnGround(position, object);
+  if (on_ground && !IsOnGround(distance, *on_ground)) return false;
+  const double radius_px = 0.5 * detector_.focal_px_ * object.size_m / distance;
+  SetLocation(position, object, options.center_sigma_px, options.radius_sigma_px / radius_px,
+              detection);
+  return true;
+}
+
+}  // namespace kestrel
