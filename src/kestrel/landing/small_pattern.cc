@@ -267,7 +267,18 @@ struct SmallPatternFitter::System {
   double sum_squares = 0;
   double count = 0;
 
+  double products = 0;  // of the residuals of neighbours in a row, and their squares
+  double product_squares = 0;
+
   double variance() const { return squares / std::max(1.0, count - kUnknowns); }
+  // Variance of a pixel as the pose sees it: what neighbours have in common (blur that is not as
+  // modelled, dirt) does not average out along the strokes (as in PatternLocator).
+  double EffectiveVariance() const {
+    constexpr double kMaxCorrelation = 0.7;
+    const double correlation =
+        std::clamp(products / std::max(product_squares, 1e-12), 0.0, kMaxCorrelation);
+    return variance() * (1 + correlation) / (1 - correlation);
+  }
   double correlation() const {
     const double about_mean = sum_squares - sum * sum / count;
     return std::sqrt(std::max(0.0, 1 - squares / std::max(about_mean, 1e-9)));
@@ -308,6 +319,7 @@ SmallPatternFitter::System SmallPatternFitter::Linearize(const State& state, dou
   const double outer = pattern_.outer_radius_m() + 0.35 * pattern_.ring_width_m;
   System system;
   workspace->magnitudes.clear();
+  double before = 0;
   for (const auto& pixel : workspace->pixels) {
     const PlanePoint point = Intersect(map, pixel);
     const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
@@ -324,6 +336,10 @@ SmallPatternFitter::System SmallPatternFitter::Linearize(const State& state, dou
     const double radius = std::hypot(point.x, point.y);
     System::Zone& zone = system.zones[radius < inner ? 0 : radius < outer ? 1 : 2];
     const double bounded = std::min(magnitude, limit);
+    const double signed_bounded = std::copysign(bounded, residual);
+    system.products += before * signed_bounded;
+    system.product_squares += 0.5 * (before * before + bounded * bounded);
+    before = signed_bounded;
     zone.squares += bounded * bounded;
     ++zone.count;
     if (gray != pixel.gray) continue;  // cut off: says nothing about small changes
@@ -355,7 +371,8 @@ SmallPatternFitter::System SmallPatternFitter::Linearize(const State& state, dou
 }
 
 // One Gauss-Newton step; false when it leads nowhere.
-bool SmallPatternFitter::Improve(const System& system, State* state) const {
+bool SmallPatternFitter::Improve(const System& system, const std::optional<NormalPrior>& prior,
+                                 State* state) const {
   // The blur of a lens is known to some extent, white hardly where the image cuts it off, and the
   // direction of a small plane hardly at all: priors keep them from taking what the other
   // parameters explain.
@@ -365,6 +382,7 @@ bool SmallPatternFitter::Improve(const System& system, State* state) const {
   h(6, 6) += blur_weight;
   b(6) -= blur_weight * std::log(state->blur_px / kGoodLensBlurPx);
   for (int i = 0; i < 6; ++i) h(i, i) *= 1.001;
+  if (prior) prior->AddTo(state->pose.rotation, system.EffectiveVariance(), &h, &b);
   h(7, 7) += 0.01 * system.count;
   h(9, 9) += 1e-6 * system.count;
   h(10, 10) += 1e-6 * system.count;
@@ -390,7 +408,7 @@ bool SmallPatternFitter::Improve(const System& system, State* state) const {
 
 std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
     const cv::Mat& image, const RigidTransform& initial, Light light, int iterations,
-    SmallPatternWorkspace* workspace) const {
+    SmallPatternWorkspace* workspace, const std::optional<NormalPrior>& prior) const {
   if (!Gather(image, initial, workspace)) return std::nullopt;
   State state;
   state.pose = initial;
@@ -402,14 +420,15 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   for (int iteration = 0; iteration < iterations; ++iteration) {
     const System system = Linearize(state, limit, workspace);
     if (iteration == kLateStart && system.correlation() < kMinLateCorrelation) return std::nullopt;
-    if (!Improve(system, &state)) return std::nullopt;
+    if (!Improve(system, prior, &state)) return std::nullopt;
     if (2 * iteration >= iterations) {
       limit = kOutlier * std::max(system.robust_scale, kLeastNoise * state.contrast);
     }
   }
-  const System system = Linearize(state, limit, workspace);
+  System system = Linearize(state, limit, workspace);
+  if (prior) prior->AddTo(state.pose.rotation, system.EffectiveVariance(), &system.h, &system.b);
   const Eigen::Matrix<double, kUnknowns, kUnknowns> covariance =
-      system.variance() *
+      system.EffectiveVariance() *
       system.h.ldlt().solve(Eigen::Matrix<double, kUnknowns, kUnknowns>::Identity());
   if (!covariance.allFinite()) return std::nullopt;
   Fit fit;
