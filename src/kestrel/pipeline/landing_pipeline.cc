@@ -133,11 +133,13 @@ void LandingPipeline::LocateInWorld(LandingObservation* observation) const {
 void LandingPipeline::Track(LandingObservation* observation) {
   if (observation->center_in_world) {
     const LandingDetection& detection = *observation->report.detection;
-    const Eigen::Matrix3d covariance = CovarianceInWorld(
-        detection.covariance.topLeftCorner<3, 3>(), detection.camera_from_pattern.translation,
-        observation->world_from_camera->rotation, options_.noise);
-    observation->fate =
-        tracker_.Add({observation->time, *observation->center_in_world, covariance});
+    const Eigen::Vector3d& center = detection.camera_from_pattern.translation;
+    const Eigen::Quaterniond& rotation = observation->world_from_camera->rotation;
+    observation->fate = tracker_.Add(
+        {observation->time, *observation->center_in_world,
+         CovarianceInWorld(detection.covariance.topLeftCorner<3, 3>(), center, rotation,
+                           options_.noise),
+         SharedCovarianceInWorld(center, rotation, options_.noise)});
     is_track_trusted_ = observation->fate <= MeasurementFate::kAccepted;
   }
   observation->track_state = tracker_.StateAt(observation->time);

@@ -5,18 +5,21 @@
 
 namespace kestrel {
 
-// How a ground vehicle moves: at constant speed along a curve whose turn rate changes steadily, as
-// in a road or a figure of eight, all disturbed by noise (a coordinated turn with one derivative
-// more: docs/tracking.md has the comparison). The state has the velocity by its components, so that
-// a standing target, which has no heading, is like any other (X. R. Li and V. P. Jilkov, Survey of
-// maneuvering target tracking I, 2003, section V). World frame, z up; m, s, rad.
-inline constexpr int kTurnStateSize = 8;
+// How what a ground vehicle carries moves. The vehicle: at constant speed along a curve whose turn
+// rate changes steadily, as in a road or a figure of eight, all disturbed by noise (a coordinated
+// turn with one derivative more: docs/tracking.md has the comparison). The state has the velocity
+// by its components, so that a standing target, which has no heading, is like any other (X. R. Li
+// and V. P. Jilkov, Survey of maneuvering target tracking I, 2003, section V). The load sways on
+// the vehicle's springs: a damped oscillator driven by noise in either horizontal axis. World frame,
+// z up; m, s, rad.
+inline constexpr int kTurnStateSize = 12;
 
 struct TurnState {
   using Vector = Eigen::Matrix<double, kTurnStateSize, 1>;
   using Matrix = Eigen::Matrix<double, kTurnStateSize, kTurnStateSize>;
 
-  // Position (3), velocity (3), turn rate about z and its derivative.
+  // Position (3), velocity (3), turn rate of the vehicle about z and its derivative; of position
+  // and velocity what is sway (2 and 2, horizontal).
   Vector mean = Vector::Zero();
   Matrix covariance = Matrix::Zero();
 
@@ -25,13 +28,30 @@ struct TurnState {
   double turn_rate() const { return mean(6); }
 };
 
-// Root spectral densities of the white noises that disturb the motion.
+// The swaying left alone: standard deviation (m; 0: none), frequency and damping ratio (0 to 1,
+// exclusive).
+struct SwayMotion {
+  double sigma;
+  double frequency_hz;
+  double damping;
+
+  double rate() const;  // rad/s
+};
+
+// Root spectral densities of the white noises that disturb the motion, and the sway.
 struct TurnNoise {
   double acceleration;  // horizontal, m/s^2 per root of Hz
   double climb;         // vertical acceleration, m/s^2 per root of Hz
   double turn;          // of the turn rate's second derivative, rad/s^3 per root of Hz
   double turn_time_s;   // after which a change of the turn rate, left alone, ends (to 1/e)
+  SwayMotion sway;
 };
+
+// What is known before anything was seen to move: standard deviations of the vehicle's velocity
+// per axis, of its turn rate and of the derivative of that; the sway is that of 'noise'.
+TurnState StartState(const Eigen::Vector3d& position, const Eigen::Matrix3d& covariance,
+                     const Eigen::Vector3d& velocity_sigmas, double turn_sigma,
+                     const TurnNoise& noise);
 
 // The state 'seconds' later (at least 0). In steps short enough for the turn
 // rate to be constant, the covariance by the model's Jacobian.
