@@ -139,7 +139,9 @@ void LandingPipeline::Track(LandingObservation* observation) {
         {observation->time, *observation->center_in_world,
          CovarianceInWorld(detection.covariance.topLeftCorner<3, 3>(), center, rotation,
                            options_.noise),
-         SharedCovarianceInWorld(center, rotation, options_.noise)});
+         SharedCovarianceInWorld(center, rotation, options_.noise), observation->yaw_in_world,
+         YawVarianceInWorld(detection.covariance.bottomRightCorner<3, 3>(), rotation,
+                            options_.noise)});
     is_track_trusted_ = observation->fate <= MeasurementFate::kAccepted;
   }
   observation->track_state = tracker_.StateAt(observation->time);

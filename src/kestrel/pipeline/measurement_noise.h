@@ -40,6 +40,12 @@ Eigen::Matrix3d CovarianceInWorld(const Eigen::Matrix3d& covariance_in_camera,
                                   const Eigen::Quaterniond& world_from_camera,
                                   const MeasurementNoise& noise);
 
+// Variance (rad^2) of a yaw in the world, of a pose whose rotation has the given covariance in the
+// camera frame (rad^2).
+double YawVarianceInWorld(const Eigen::Matrix3d& covariance_in_camera,
+                          const Eigen::Quaterniond& world_from_camera,
+                          const MeasurementNoise& noise);
+
 // Covariance (m^2) of what the positions of a flight have in common, for one seen at
 // 'center_in_camera'.
 Eigen::Matrix3d SharedCovarianceInWorld(const Eigen::Vector3d& center_in_camera,

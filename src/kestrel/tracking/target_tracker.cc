@@ -21,7 +21,16 @@ bool IsValid(const TargetMeasurement& measurement) {
   if (measurement.position_in_world.cwiseAbs().maxCoeff() > kMaxCoordinate_m) return false;
   if (covariance.cwiseAbs().maxCoeff() > kMaxVariance_m2) return false;
   if (!covariance.isApprox(covariance.transpose(), 1e-6)) return false;
-  return covariance.llt().info() == Eigen::Success && measurement.shared_covariance.allFinite();
+  if (covariance.llt().info() != Eigen::Success) return false;
+  if (!measurement.shared_covariance.allFinite()) return false;
+  return !measurement.yaw || (std::isfinite(*measurement.yaw) && measurement.yaw_variance > 0 &&
+                              measurement.yaw_variance < kMaxVariance_m2);
+}
+
+TurnState WithYaw(const TurnState& state, const TargetMeasurement& measurement) {
+  constexpr double kGate = 16;
+  if (!measurement.yaw) return state;
+  return UpdateByYaw(state, *measurement.yaw, measurement.yaw_variance, kGate);
 }
 
 double RootMeanVariance(const Eigen::Matrix3d& covariance) {
@@ -141,7 +150,7 @@ MeasurementFate TargetTracker::Start(const TargetMeasurement& measurement) {
       StartState(measurement.position_in_world, measurement.covariance,
                  {speed, speed, kSteepest * speed}, options_.start_turn_sigma_radps, noise_);
   entries_.clear();
-  entries_.push_back({measurement, state});
+  entries_.push_back({measurement, WithYaw(state, measurement)});
   accepted_ = 1;
   outlier_.reset();
   outliers_ = 0;
@@ -174,8 +183,9 @@ bool TargetTracker::FilterFrom(std::size_t index) {
   for (std::size_t i = index; i < entries_.size(); ++i) {
     const TargetMeasurement& measurement = entries_[i].measurement;
     const TurnState predicted = PredictFrom(entries_[i - 1], measurement.time);
-    entries_[i].filtered =
-        UpdateByPosition(predicted, measurement.position_in_world, measurement.covariance);
+    entries_[i].filtered = WithYaw(
+        UpdateByPosition(predicted, measurement.position_in_world, measurement.covariance),
+        measurement);
     if (!entries_[i].filtered.mean.allFinite() || !entries_[i].filtered.covariance.allFinite()) {
       return false;
     }

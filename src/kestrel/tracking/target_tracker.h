@@ -20,6 +20,10 @@ struct TargetMeasurement {
   // Of the error that all measurements share, as the bias of the navigation, m^2: it is not
   // filtered away, but in the covariance of every estimate.
   Eigen::Matrix3d shared_covariance = Eigen::Matrix3d::Zero();
+  // How the target is turned about the vertical, up to quarter turns (rad), and the variance of
+  // that (rad^2): where it is seen to turn, the track knows the curve.
+  std::optional<double> yaw;
+  double yaw_variance = 0;
 };
 
 // What became of a measurement.

@@ -12,6 +12,7 @@ namespace kestrel {
 namespace {
 
 constexpr double kMaxStep_s = 0.05;
+constexpr int kYaw = 12;
 
 using StateMatrix = TurnState::Matrix;
 
@@ -55,6 +56,8 @@ StateMatrix StepJacobian(const TurnState& state, double t, const TurnNoise& nois
   jacobian.block<2, 1>(3, 6) = t * (Turn(angle) * left);
   jacobian.block<5, 1>(0, 7) = t / 2 * jacobian.block<5, 1>(0, 6);
   jacobian(6, 7) = t;
+  jacobian(kYaw, 6) = t;
+  jacobian(kYaw, 7) = t * t / 2;
   jacobian(7, 7) = std::exp(-t / noise.turn_time_s);
   for (int to = 0; to < 2; ++to) {
     for (int from = 0; from < 2; ++from) {
@@ -98,14 +101,14 @@ void Step(double t, const TurnNoise& noise, TurnState* state) {
   AddNoise(noise.climb, t, 2, 5, &covariance);
   AddNoise(noise.turn, t, 6, 7, &covariance);
   AddSwayNoise(noise.sway, t, &covariance);
-  // All but the turn rate, of which the motion is no linear function, follow the Jacobian.
-  TurnState::Vector straight = state->mean;
+  // Of the turn rate the path is no linear function: the Jacobian's matrices turn it already.
+  const StateMatrix& by = jacobian;
+  const TurnState::Vector now = state->mean;
+  TurnState::Vector straight = now;
   straight.segment<2>(6).setZero();
-  const double turn_rate = state->mean(6) + t * state->mean(7);
-  const double turn_change = state->mean(7) * jacobian(7, 7);
-  state->mean = jacobian * straight;
-  state->mean(6) = turn_rate;
-  state->mean(7) = turn_change;
+  state->mean = by * straight;
+  state->mean.segment<2>(6) = by.block<2, 2>(6, 6) * now.segment<2>(6);
+  state->mean(kYaw) += by.block<1, 2>(kYaw, 6).dot(now.segment<2>(6));
 }
 
 }  // namespace
@@ -120,6 +123,7 @@ TurnState StartState(const Eigen::Vector3d& position, const Eigen::Matrix3d& cov
   state.covariance.topLeftCorner<3, 3>() = covariance;
   state.covariance.diagonal().segment<3>(3) = velocity_sigmas.cwiseAbs2();
   state.covariance.diagonal().segment<2>(6).setConstant(turn_sigma * turn_sigma);
+  state.covariance(kYaw, kYaw) = std::numbers::pi * std::numbers::pi / 4;
   // What was measured has the sway in it, so it says nothing of how much of it there is; the
   // velocity is that of the vehicle and of the sway.
   const Eigen::Matrix2d sway = SwayCovariance(noise.sway);
@@ -151,6 +155,21 @@ TurnState UpdateByPosition(const TurnState& state, const Eigen::Vector3d& positi
   updated.mean = state.mean + gain * (position - state.position());
   updated.covariance = rest * state.covariance * rest.transpose();
   updated.covariance += gain * covariance * gain.transpose();
+  updated.covariance = (0.5 * (updated.covariance + updated.covariance.transpose())).eval();
+  return updated;
+}
+
+TurnState UpdateByYaw(const TurnState& state, double yaw, double variance, double gate) {
+  const double offset = std::remainder(yaw - state.mean(kYaw), std::numbers::pi / 2);
+  const double innovation = state.covariance(kYaw, kYaw) + variance;
+  if (!(offset * offset <= gate * innovation)) return state;
+  const TurnState::Vector gain = state.covariance.col(kYaw) / innovation;
+  StateMatrix rest = StateMatrix::Identity();
+  rest.col(kYaw) -= gain;
+  TurnState updated;
+  updated.mean = state.mean + gain * offset;
+  updated.covariance = rest * state.covariance * rest.transpose();
+  updated.covariance += variance * gain * gain.transpose();
   updated.covariance = (0.5 * (updated.covariance + updated.covariance.transpose())).eval();
   return updated;
 }

@@ -10,16 +10,16 @@ namespace kestrel {
 // turn with one derivative more: docs/tracking.md has the comparison). The state has the velocity
 // by its components, so that a standing target, which has no heading, is like any other (X. R. Li
 // and V. P. Jilkov, Survey of maneuvering target tracking I, 2003, section V). The load sways on
-// the vehicle's springs: a damped oscillator driven by noise in either horizontal axis. World frame,
-// z up; m, s, rad.
-inline constexpr int kTurnStateSize = 12;
+// the vehicle's springs: a damped oscillator driven by noise in either horizontal axis. It turns
+// with the vehicle. World frame, z up; m, s, rad.
+inline constexpr int kTurnStateSize = 13;
 
 struct TurnState {
   using Vector = Eigen::Matrix<double, kTurnStateSize, 1>;
   using Matrix = Eigen::Matrix<double, kTurnStateSize, kTurnStateSize>;
 
   // Position (3), velocity (3), turn rate of the vehicle about z and its derivative; of position
-  // and velocity what is sway (2 and 2, horizontal).
+  // and velocity what is sway (2 and 2, horizontal); yaw of the load.
   Vector mean = Vector::Zero();
   Matrix covariance = Matrix::Zero();
 
@@ -48,7 +48,8 @@ struct TurnNoise {
 };
 
 // What is known before anything was seen to move: standard deviations of the vehicle's velocity
-// per axis, of its turn rate and of the derivative of that; the sway is that of 'noise'.
+// per axis, of its turn rate and of the derivative of that; the sway is that of 'noise', and of the
+// yaw nothing is known.
 TurnState StartState(const Eigen::Vector3d& position, const Eigen::Matrix3d& covariance,
                      const Eigen::Vector3d& velocity_sigmas, double turn_sigma,
                      const TurnNoise& noise);
@@ -60,6 +61,10 @@ TurnState Propagate(const TurnState& state, double seconds, const TurnNoise& noi
 // The state given a measured position (Kalman filter, Joseph's form).
 TurnState UpdateByPosition(const TurnState& state, const Eigen::Vector3d& position,
                            const Eigen::Matrix3d& covariance);
+
+// The state given a measured yaw (rad) of a load that looks the same after a quarter turn, unless
+// that is further than 'gate' (squared, in variances) from where it should be.
+TurnState UpdateByYaw(const TurnState& state, double yaw, double variance, double gate);
 
 // Squared Mahalanobis distance of a measured position from the state's: chi-square with 3 degrees
 // of freedom when both covariances are right.
