@@ -12,11 +12,11 @@ namespace kestrel {
 // What is wrong with a position in the world besides the detector's error in the image: standard
 // deviations of what differs from frame to frame, and of what a whole flight has in common.
 struct MeasurementNoise {
-  double pose_sigma_m = 0.01;         // of the UAV's position, per axis
-  double attitude_sigma_deg = 0.15;   // of its attitude, per axis
-  double pose_bias_m = 0.03;          // of its position, per axis, in all frames alike
-  double attitude_bias_deg = 0.2;     // of its attitude and the camera's mount, per axis
-  double scale_bias = 0.002;          // of the pattern's size and the focal length, as a part of them
+  double pose_sigma_m = 0.01;        // of the UAV's position, per axis
+  double attitude_sigma_deg = 0.15;  // of its attitude, per axis
+  double pose_bias_m = 0.03;         // of its position, per axis, in all frames alike
+  double attitude_bias_deg = 0.2;    // of its attitude and the camera's mount, per axis
+  double scale_bias = 0.002;  // of the pattern's size and the focal length, as a part of them
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {

@@ -22,13 +22,14 @@ bool IsValid(const TargetMeasurement& measurement) {
   if (covariance.cwiseAbs().maxCoeff() > kMaxVariance_m2) return false;
   if (!covariance.isApprox(covariance.transpose(), 1e-6)) return false;
   if (covariance.llt().info() != Eigen::Success) return false;
-  if (!measurement.shared_covariance.allFinite()) return false;
+  if (!(measurement.shared_covariance.cwiseAbs().array() <= kMaxVariance_m2).all()) return false;
+  constexpr double kMaxYawVariance = 1e3;
   return !measurement.yaw || (std::isfinite(*measurement.yaw) && measurement.yaw_variance > 0 &&
-                              measurement.yaw_variance < kMaxVariance_m2);
+                              measurement.yaw_variance < kMaxYawVariance);
 }
 
 TurnState WithYaw(const TurnState& state, const TargetMeasurement& measurement) {
-  constexpr double kGate = 16;
+  constexpr double kGate = 16;  // four standard deviations: beyond, another line was taken for it
   if (!measurement.yaw) return state;
   return UpdateByYaw(state, *measurement.yaw, measurement.yaw_variance, kGate);
 }
@@ -121,7 +122,9 @@ std::vector<std::string> TargetTrackerOptions::Validate() const {
 
 TargetTracker::TargetTracker(const TargetTrackerOptions& options)
     : options_(Checked(options)),
-      noise_{options.acceleration_noise, options.climb_noise, options.turn_noise,
+      noise_{options.acceleration_noise,
+             options.climb_noise,
+             options.turn_noise,
              options.turn_time_s,
              {options.sway_sigma_m, options.sway_frequency_hz, options.sway_damping}} {
   entries_.reserve(options_.history + 1);
@@ -183,9 +186,9 @@ bool TargetTracker::FilterFrom(std::size_t index) {
   for (std::size_t i = index; i < entries_.size(); ++i) {
     const TargetMeasurement& measurement = entries_[i].measurement;
     const TurnState predicted = PredictFrom(entries_[i - 1], measurement.time);
-    entries_[i].filtered = WithYaw(
-        UpdateByPosition(predicted, measurement.position_in_world, measurement.covariance),
-        measurement);
+    entries_[i].filtered =
+        WithYaw(UpdateByPosition(predicted, measurement.position_in_world, measurement.covariance),
+                measurement);
     if (!entries_[i].filtered.mean.allFinite() || !entries_[i].filtered.covariance.allFinite()) {
       return false;
     }

@@ -22,7 +22,7 @@ struct TargetMeasurement {
   Eigen::Matrix3d shared_covariance = Eigen::Matrix3d::Zero();
   // How the target is turned about the vertical, up to quarter turns (rad), and the variance of
   // that (rad^2): where it is seen to turn, the track knows the curve.
-  std::optional<double> yaw;
+  std::optional<double> yaw = std::nullopt;
   double yaw_variance = 0;
 };
 
@@ -58,13 +58,13 @@ struct TargetEstimate {
 
 struct TargetTrackerOptions {
   // How the target moves: see TurnNoise. The defaults suit a car of up to 40 km/h on curves.
-  double acceleration_noise = 0.15;
+  double acceleration_noise = 0.1;
   double climb_noise = 0.1;
   double turn_noise = 0.1;
-  double turn_time_s = 3;
+  double turn_time_s = 5;
   // How the board sways on the vehicle's springs: see SwayMotion. A body rolls and pitches at 1 to
   // 2 Hz, by some tenths of a degree.
-  double sway_sigma_m = 0.012;
+  double sway_sigma_m = 0.01;
   double sway_frequency_hz = 1.4;
   double sway_damping = 0.3;
   // What a new track does not know: standard deviations of speed, turn rate and, per second, its
