@@ -139,8 +139,10 @@ struct PatternLocator::Normal {
       squares += stretch.sum * stretch.sum / stretch.weights;
       ++stretches;
     }
-    const bool tells = stretches > kUnknowns + 1;
-    return tells ? std::max(of_edges, squares / (stretches - kUnknowns)) : of_edges;
+    // So few means know their own variance badly: that of Student's distribution is larger.
+    const double of_stretches_freedom = stretches - kUnknowns - 2;
+    if (of_stretches_freedom < 1) return of_edges;
+    return std::max(of_edges, squares / of_stretches_freedom);
   }
 
   void Describe(PatternLocation* location) const {
