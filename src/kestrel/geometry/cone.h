@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 
@@ -17,6 +19,14 @@ struct Cone {
 
   // Half of the widest and of the narrowest opening angle, rad.
   Eigen::Vector2d HalfAngles() const;
+
+  // Angle (rad) between a unit ray and the cone, to first order (Sampson's distance).
+  double AngleTo(const Eigen::Vector3d& ray) const {
+    const Eigen::Vector3d half_gradient = matrix * ray;
+    const double value = ray.dot(half_gradient);
+    const double slope = 2 * (half_gradient - value * ray).norm();
+    return std::abs(value) / std::max(slope, 1e-12);
+  }
 };
 
 // Position and orientation of a circle in the frame of its cone. 'normal' is a unit vector and

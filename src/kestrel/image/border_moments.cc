@@ -2,48 +2,14 @@
 #include "kestrel/image/border_moments.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdint>
+#include <span>
 
 namespace kestrel {
 namespace {
 
-using HullPoints = std::array<Eigen::Vector2d, 2 * kMaxHullHeight>;
-
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
-}
-
-// Appends a point to a convex chain that starts at index 'first'; points that would dent it go.
-void Append(const Eigen::Vector2d& point, int first, HullPoints* hull, int* count) {
-  while (*count >= first + 2 &&
-         Cross((*hull)[*count - 1] - (*hull)[*count - 2], point - (*hull)[*count - 1]) <= 0) {
-    --*count;
-  }
-  (*hull)[(*count)++] = point;
-}
-
-// Moments of a polygon whose corners run clockwise in the image.
-RegionMoments PolygonMoments(const HullPoints& corners, int count) {
-  double twice_area = 0;
-  Eigen::Vector2d first = Eigen::Vector2d::Zero();  // moments
-  Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
-  for (int i = 0; i < count; ++i) {
-    const Eigen::Vector2d& a = corners[i];
-    const Eigen::Vector2d& b = corners[i + 1 < count ? i + 1 : 0];
-    const double cross = Cross(a, b);  // twice the triangle of the two and the origin
-    const Eigen::Vector2d sum = a + b;
-    twice_area += cross;
-    first += cross / 6 * sum;
-    second += cross / 24 * (a * a.transpose() + b * b.transpose() + sum * sum.transpose());
-  }
-  RegionMoments moments;
-  moments.area = 0.5 * twice_area;
-  if (moments.area <= 0) return moments;
-  moments.centroid = first / moments.area;
-  moments.covariance = second / moments.area - moments.centroid * moments.centroid.transpose();
-  return moments;
 }
 
 }  // namespace
@@ -88,31 +54,28 @@ RegionMoments ComputeBorderMoments(const GridPoint* points, std::size_t count) {
   return moments;
 }
 
-RegionMoments ComputeHullMoments(const GridPoint* points, std::size_t count) {
-  // The ends of every row hold the hull; one side of it is walked down, the other one up.
-  std::array<int, kMaxHullHeight> left, right;
-  left.fill(1 << 16);
-  right.fill(-1);
-  int top = points[0].y, bottom = points[0].y;
-  for (std::size_t i = 0; i < count; ++i) {
-    top = std::min<int>(top, points[i].y);
-    bottom = std::max<int>(bottom, points[i].y);
+RegionMoments ComputeHullMoments(const ConvexHull& hull) {
+  const std::span<const Eigen::Vector2d> corners = hull.corners();
+  // Relative to a corner, so that large coordinates cost no digits.
+  const Eigen::Vector2d origin = corners.front();
+  double twice_area = 0;
+  Eigen::Vector2d first = Eigen::Vector2d::Zero();  // moments
+  Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d a = corners[i] - origin;
+    const Eigen::Vector2d b = corners[(i + 1) % corners.size()] - origin;
+    const double cross = Cross(a, b);  // twice the triangle of the two and the origin
+    const Eigen::Vector2d sum = a + b;
+    twice_area += cross;
+    first += cross / 6 * sum;
+    second += cross / 24 * (a * a.transpose() + b * b.transpose() + sum * sum.transpose());
   }
-  const int rows = std::min(bottom - top + 1, kMaxHullHeight);
-  for (std::size_t i = 0; i < count; ++i) {
-    const int row = std::min(points[i].y - top, rows - 1);
-    left[row] = std::min<int>(left[row], points[i].x);
-    right[row] = std::max<int>(right[row], points[i].x);
-  }
-  const Eigen::Vector2d origin(points[0].x, top);
-  const auto corner = [&](int x, int row) { return Eigen::Vector2d(x - origin.x(), row); };
-  HullPoints hull;
-  int corners = 0;
-  for (int row = 0; row < rows; ++row) Append(corner(right[row], row), 0, &hull, &corners);
-  const int turn = corners;
-  for (int row = rows; row-- > 0;) Append(corner(left[row], row), turn, &hull, &corners);
-  RegionMoments moments = PolygonMoments(hull, corners);
-  moments.centroid += origin - Eigen::Vector2d::Constant(0.5);
+  RegionMoments moments;
+  moments.area = 0.5 * twice_area;
+  if (moments.area <= 0) return moments;
+  const Eigen::Vector2d centroid = first / moments.area;
+  moments.covariance = second / moments.area - centroid * centroid.transpose();
+  moments.centroid = centroid + origin;
   return moments;
 }
 

@@ -3,6 +3,7 @@
 
 #include "kestrel/geometry/ellipse.h"
 #include "kestrel/image/border_tracing.h"
+#include "kestrel/image/convex_hull.h"
 
 namespace kestrel {
 
@@ -10,11 +11,7 @@ namespace kestrel {
 // integer = centre of a pixel. The area is positive for holes as well.
 RegionMoments ComputeBorderMoments(const GridPoint* points, std::size_t count);
 
-// The tallest border of which ComputeHullMoments is told, vertices of a column.
-inline constexpr int kMaxHullHeight = 64;
-
-// The same of the convex hull of a border that is at most kMaxHullHeight - 1 pixels high. The
-// border may cross itself and run either way.
-RegionMoments ComputeHullMoments(const GridPoint* points, std::size_t count);
+// The same of what a convex hull encloses.
+RegionMoments ComputeHullMoments(const ConvexHull& hull);
 
 }  // namespace kestrel

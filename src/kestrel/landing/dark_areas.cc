@@ -63,7 +63,7 @@ std::optional<DarkArea> TestDarkArea(const BorderTracer& tracer, const Border& b
   area.ellipticity = smooth ? moments.Ellipticity() : 0;
   if (area.ellipticity < kLeastEllipticity) {
     if (std::max(width, height) > max_hull_extent) return std::nullopt;
-    moments = ComputeHullMoments(tracer.begin(border), border.count);
+    moments = ComputeHullMoments(ConvexHull(tracer.begin(border), border.count));
     area.ellipticity = moments.Ellipticity();
     if (area.ellipticity < kMinEllipticity) return std::nullopt;
   }
@@ -71,6 +71,34 @@ std::optional<DarkArea> TestDarkArea(const BorderTracer& tracer, const Border& b
   if (2 * area.outline.semi_minor < min_minor_px) return std::nullopt;
   area.edge = border.signed_area > 0 ? RingEdge::kOuter : RingEdge::kInner;
   return area;
+}
+
+bool IsCutOff(const BorderTracer& tracer, const Border& border) {
+  return border.min.x <= 0 || border.min.y <= 0 || border.max.x >= tracer.image_size().width ||
+         border.max.y >= tracer.image_size().height;
+}
+
+std::size_t OutlineInView(const BorderTracer& tracer, const Border& border,
+                          std::span<Eigen::Vector2d> outline) {
+  const ConvexHull hull(tracer.begin(border), border.count);
+  const std::span<const Eigen::Vector2d> corners = hull.corners();
+  const Eigen::Array2d first = Eigen::Array2d::Constant(-0.5);
+  const Eigen::Array2d last =
+      first + Eigen::Array2d(tracer.image_size().width, tracer.image_size().height);
+  const auto at_image_border = [&](const Eigen::Vector2d& point) {
+    return (point.array() <= first).any() || (point.array() >= last).any();
+  };
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d& corner = corners[i];
+    const Eigen::Vector2d side = corners[(i + 1) % corners.size()] - corner;
+    const auto steps = static_cast<int>(std::ceil(side.norm()));
+    for (int k = 0; k < steps && count < outline.size(); ++k) {
+      const Eigen::Vector2d point = corner + (k + 0.5) / steps * side;
+      if (!at_image_border(point)) outline[count++] = point;
+    }
+  }
+  return count;
 }
 
 double RingContrast(const cv::Mat& image, const Ellipse& outer_edge,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <span>
 
 #include <opencv2/core.hpp>
 
@@ -33,6 +35,15 @@ inline constexpr double kMinEllipticity = 0.9;
 // most 'max_hull_extent' pixels wide and high and not convex, the convex hull is tested instead.
 std::optional<DarkArea> TestDarkArea(const BorderTracer& tracer, const Border& border,
                                      double min_minor_px, int max_hull_extent = 0);
+
+// Whether a border touches that of the image.
+bool IsCutOff(const BorderTracer& tracer, const Border& border);
+
+// What the image shows of the convex hull of a border that is at most ConvexHull::kMaxHeight pixels
+// high: writes the points of it that do not lie on the image border to 'outline', as many as there
+// is room for and a pixel or less apart, and returns how many.
+std::size_t OutlineInView(const BorderTracer& tracer, const Border& border,
+                          std::span<Eigen::Vector2d> outline);
 
 // How well the ring stands out along an outline, gray values: the least contrast, in three of four
 // directions, of the black between the white around it and the white inside; 0 when it does not.

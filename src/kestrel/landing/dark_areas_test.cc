@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/landing/dark_areas.h"
 
+#include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -12,9 +14,8 @@
 namespace kestrel {
 namespace {
 
-// The areas that the borders of a figure of 100 x 100 pixels pass for.
-std::vector<DarkArea> Areas(const Print& is_dark, double min_minor_px = 8,
-                            int max_hull_extent = 0) {
+// The borders of a figure of 100 x 100 pixels.
+BorderTracer TraceFigure(const Print& is_dark) {
   BinaryImage binary;
   binary.dark.Reset(100, 100);
   binary.bright.Reset(100, 100);
@@ -26,6 +27,13 @@ std::vector<DarkArea> Areas(const Print& is_dark, double min_minor_px = 8,
   }
   BorderTracer tracer;
   tracer.Trace(binary, cv::Rect(0, 0, 100, 100), BorderLimits{});
+  return tracer;
+}
+
+// The areas that they pass for.
+std::vector<DarkArea> Areas(const Print& is_dark, double min_minor_px = 8,
+                            int max_hull_extent = 0) {
+  const BorderTracer tracer = TraceFigure(is_dark);
   std::vector<DarkArea> areas;
   for (const Border& border : tracer.borders()) {
     if (const auto area = TestDarkArea(tracer, border, min_minor_px, max_hull_extent)) {
@@ -78,6 +86,31 @@ TEST(TestDarkArea, AnOpenSmallRingIsItsHull) {
   EXPECT_NEAR(areas[0].outline.semi_major, 17, 0.6);
   EXPECT_NEAR(areas[0].outline.semi_minor, 17, 0.6);
   EXPECT_TRUE(Areas(open_ring, 8, 30).empty()) << "larger than small ones";
+}
+
+TEST(OutlineInView, IsThatOfTheRingWithoutTheImageBorder) {
+  const Eigen::Vector2d center(85, 40);  // of a ring that the right side of the image cuts off
+  const BorderTracer tracer = TraceFigure([&](double x, double y) {
+    const double r = (Eigen::Vector2d(x, y) - center + Eigen::Vector2d(50, 50)).norm();
+    return std::abs(r - 24) < 2;
+  });
+  ASSERT_EQ(tracer.borders().size(), 1u);
+  EXPECT_TRUE(IsCutOff(tracer, tracer.borders()[0]));
+  std::array<Eigen::Vector2d, 300> outline;
+  const std::size_t count = OutlineInView(tracer, tracer.borders()[0], outline);
+  EXPECT_GT(count, 105u) << "as long as the arc in view";
+  for (std::size_t i = 0; i < count; ++i) {
+    EXPECT_NEAR((outline[i] - center).norm(), 26, 0.8) << outline[i].transpose();
+    EXPECT_LT(outline[i].x(), 99.5);
+  }
+  EXPECT_EQ(OutlineInView(tracer, tracer.borders()[0], std::span(outline).first(20)), 20u);
+}
+
+TEST(IsCutOff, IsNotWhatLiesWithinTheImage) {
+  const BorderTracer tracer =
+      TraceFigure([](double x, double y) { return std::hypot(x, y) < 48; });
+  ASSERT_EQ(tracer.borders().size(), 1u);
+  EXPECT_FALSE(IsCutOff(tracer, tracer.borders()[0]));
 }
 
 class ContrastTest : public ::testing::Test {

@@ -137,6 +137,7 @@ class LandingSearch {
   bool IsPlausible(const CirclePose& ring) const;
   void Trace(std::size_t pass_index);
   void TestAreas(std::size_t pass_index);
+  void TestCutAreas(std::size_t pass_index);
   void TestArcs(std::size_t pass_index);
   void TestPartial(std::size_t pass_index);
 

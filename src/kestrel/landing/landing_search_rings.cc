@@ -22,6 +22,8 @@ constexpr std::size_t kMaxCandidates = 4;
 constexpr int kMaxHullExtent = 62;       // px, of borders that need not be convex
 constexpr double kMinSmallContrast = 3;  // gray values
 constexpr std::array<double, 1> kOneScale{1.0};
+// An outline that grew together with what is beside it is larger than the ring.
+constexpr std::array<double, 2> kAreaScales{1.0, 1.12};
 
 }  // namespace
 
@@ -94,10 +96,8 @@ void LandingSearch::TestCandidate(const RingCandidate& candidate, std::size_t pa
   const bool inner = !candidate.board && !small && candidate.edge == RingEdge::kInner;
   const double to_outer = inner ? pattern.outer_radius_m() / pattern.inner_radius_m() : 1.0;
   const Eigen::Vector2d diameters_px = 2 * to_outer * focal_px_ * ring->cone.HalfAngles();
-  // A print with a dark border shows less white than the board's size, and an outline that grew
-  // together with what is beside it is larger than the ring.
+  // A print with a dark border shows less white than the board's size.
   constexpr std::array<double, 3> kBoardScales{1.0, 1.08, 1.17};
-  constexpr std::array<double, 2> kAreaScales{1.0, 1.12};
   if (small) {
     TestSmallRing(*ring, diameters_px,
                   candidate.board ? std::span<const double>(kBoardScales) : kAreaScales);
@@ -138,6 +138,43 @@ std::optional<RingFit> LandingSearch::FitToBorder(const RingCandidate& candidate
       buffers_.rays,
       candidate.edge == RingEdge::kOuter ? pattern.outer_radius_m() : pattern.inner_radius_m(),
       tolerance_px / focal_px_);
+}
+
+// Small rings that the image border cuts off: their moments say nothing, and their arcs are too
+// short to stand out from those of everything else in the image.
+void LandingSearch::TestCutAreas(std::size_t pass_index) {
+  constexpr double kTolerancePx = 0.8;  // of an outline that ends in corners of pixels
+  const ImageRegion region{offset_, kPasses[pass_index].image_level};
+  const LandingPattern& pattern = models_.options.pattern;
+  const BorderTracer& tracer = buffers_.tracers[pass_index];
+  for (const Border& border : tracer.borders()) {
+    const int extent = std::max(border.max.x - border.min.x, border.max.y - border.min.y);
+    if (border.signed_area < 0 || extent > kMaxHullExtent || !IsCutOff(tracer, border)) continue;
+    std::optional<RingFit> ring;
+    {
+      StageTimer timer(&report_, LandingStage::kRing);
+      std::array<Eigen::Vector2d, 4 * kMaxHullExtent> outline;
+      const std::size_t count = OutlineInView(tracer, border, outline);
+      buffers_.rays.clear();
+      for (std::size_t i = 0; i < count; i += 1 + count / LandingWorkspace::Buffers::kMaxRays) {
+        const Eigen::Vector2d pixel = region.ToFull(outline[i]);
+        const Eigen::Vector3f ray =
+            models_.rays.Ray(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
+        if (ray.squaredNorm() > 0.5f) buffers_.rays.push_back(ray.cast<double>());
+      }
+      ring = FitRing(buffers_.rays, pattern.outer_radius_m(),
+                     kTolerancePx * region.scale() / focal_px_);
+    }
+    if (!ring || !IsPlausible(ring->poses[0])) continue;
+    Reach(LandingStage::kRing, "no border lies on the image of a circle");
+    if (!StandsOut(ring->poses[0])) continue;
+    const Eigen::Vector2d diameters_px = 2 * focal_px_ * ring->cone.HalfAngles();
+    if (IsSmall(diameters_px)) {
+      TestSmallRing(*ring, diameters_px, kAreaScales);
+    } else {
+      TestRing(*ring, diameters_px, std::max(2.0, 0.8 * region.scale() + 0.02 * diameters_px.x()));
+    }
+  }
 }
 
 // The ring that the moments of an outline say: for outlines of few pixels, and for the board.

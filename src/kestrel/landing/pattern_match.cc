@@ -18,6 +18,8 @@ constexpr int kQuadrantTurns = 7;
 constexpr std::array<double, kQuadrantTurns> kQuadrantAngles{27, 33, 39, 45, 51, 57, 63};
 constexpr std::array<double, 3> kQuadrantRadii{0.45, 0.6, 0.75};
 constexpr float kUnseen = -1e9f;
+constexpr double kInsideRadius = 0.65;  // of places inside of the ring, inner radii
+constexpr double kLeastInside = 0.2;    // white there, against the contrast of ring and white
 constexpr double kMissingArm = 0.3;
 // In a shadow a contrast counts by its share of the brightness, relative to that of the print, or
 // when the other side of it, relative to the print's contrast, is in the light; and when it is no
@@ -93,6 +95,7 @@ PatternMatcher::PatternMatcher(const LandingPattern& pattern) {
   const double margin = 0.5 * pattern.board_size_m - outer;
   const double outside = outer + std::min(0.8 * pattern.ring_width_m, 0.6 * margin);
   extent_m_ = outside * 1.02;
+  to_inside_ = static_cast<float>(kInsideRadius * inner / middle);
   const auto at = [](double radius, double angle) {
     return Place{static_cast<float>(radius * std::cos(angle)),
                  static_cast<float>(radius * std::sin(angle))};
@@ -133,14 +136,26 @@ PatternMatcher::PatternMatcher(const LandingPattern& pattern) {
 }
 
 double PatternMatcher::RingContrast(const cv::Mat& image, const PatternView& view) const {
-  std::array<float, kRingPlaces> known;
-  std::size_t count = 0;
+  std::array<float, kRingPlaces> outside, inside;
+  std::size_t count = 0, inside_count = 0;
   for (const Contrast& contrast : ring_) {
-    const float dark = view.Sample(image, contrast.dark[0].x, contrast.dark[0].y);
+    const Place& ring = contrast.dark[0];
+    const float dark = view.Sample(image, ring.x, ring.y);
     const float bright = view.Sample(image, contrast.bright[0].x, contrast.bright[0].y);
-    if (dark >= 0 && bright >= 0) known[count++] = bright - dark;
+    if (dark < 0 || bright < 0) continue;
+    outside[count++] = bright - dark;
+    const float within = view.Sample(image, to_inside_ * ring.x, to_inside_ * ring.y);
+    if (within >= 0) inside[inside_count++] = within - dark;
   }
-  return count < kRingPlaces / 6 ? 0 : Median(&known, count);
+  if (count < kRingPlaces / 6) return 0;
+  const double contrast = Median(&outside, count);
+  // Inside, arms and white alternate: a quarter of the directions must show white.
+  const std::size_t upper = inside_count - inside_count / 4;
+  if (inside_count >= kRingPlaces / 6) {
+    std::nth_element(inside.begin(), inside.begin() + upper, inside.begin() + inside_count);
+    if (inside[upper] < kLeastInside * contrast) return 0;
+  }
+  return contrast;
 }
 
 PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view) const {

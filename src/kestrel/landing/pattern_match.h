@@ -45,8 +45,8 @@ class PatternMatcher {
   double extent_m() const { return extent_m_; }
 
   // Median contrast, gray values, of the ring and the white around it, however the pattern is
-  // turned: what is worth a look before any other. 0 when less than a sixth of the ring is in view.
-  // Does not allocate.
+  // turned: what is worth a look before any other. 0 when less than a sixth of the ring is in view
+  // and where there is no white inside. Does not allocate.
   double RingContrast(const cv::Mat& image, const PatternView& view) const;
 
   // 'view': of the pattern's frame, x along an arm. Does not allocate.
@@ -63,6 +63,7 @@ class PatternMatcher {
     std::array<Place, 2> bright;  // the darker counts
   };
   double extent_m_ = 0;
+  float to_inside_ = 0;  // from the middle of the ring's stroke, factor
   std::vector<Contrast> ring_;
   std::vector<Contrast> arms_;
   std::vector<Contrast>

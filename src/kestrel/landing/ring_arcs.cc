@@ -152,17 +152,9 @@ class ArcCutter {
   RingArcsWorkspace& workspace_;
 };
 
-// Angle (rad) between a ray and the cone, to first order.
-double DistanceToCone(const Cone& cone, const Eigen::Vector3d& ray) {
-  const Eigen::Vector3d gradient = 2 * cone.matrix * ray;
-  const double value = 0.5 * ray.dot(gradient);
-  const double slope = (gradient - gradient.dot(ray) * ray).norm();
-  return std::abs(value) / std::max(slope, 1e-12);
-}
-
 double ShareNearCone(const Cone& cone, std::span<const Eigen::Vector3d> rays, double tolerance) {
   std::size_t near = 0;
-  for (const Eigen::Vector3d& ray : rays) near += DistanceToCone(cone, ray) <= tolerance;
+  for (const Eigen::Vector3d& ray : rays) near += cone.AngleTo(ray) <= tolerance;
   return static_cast<double>(near) / static_cast<double>(rays.size());
 }
 
@@ -239,7 +231,7 @@ class ArcGrouper {
     for (const RingArc& arc : workspace_.arcs) {
       if (!LiesOn(arc, cone, edge)) continue;
       for (const Eigen::Vector3d& ray : RaysOf(arc)) {
-        if (DistanceToCone(cone, ray) <= 1.5 * tolerance_) workspace_.selected.push_back(ray);
+        if (cone.AngleTo(ray) <= 1.5 * tolerance_) workspace_.selected.push_back(ray);
       }
     }
   }

@@ -31,7 +31,7 @@ constexpr double kMinLateCorrelation = 0.6;
 // Pixels of a box around the print beyond which every second one is enough.
 constexpr int kManyPixels = 1200;
 constexpr std::size_t kMinPixels = 30;
-constexpr int kMaxSide = 128;  // of the box around the print, pixels
+constexpr int kMaxSide = 256;  // of the box around the print, pixels
 
 }  // namespace
 
@@ -87,7 +87,7 @@ SmallPatternFitter::Darkness SmallPatternFitter::Evaluate(double x, double y,
 }
 
 void SmallPatternWorkspace::Reserve() {
-  constexpr std::size_t kMost = static_cast<std::size_t>(kMaxSide + 1) * (kMaxSide + 1);
+  constexpr std::size_t kMost = kManyPixels + 2 * kMaxSide + 1;  // of a box and its border
   pixels.reserve(kMost);
   points.reserve(kMost);
   magnitudes.reserve(kMost);
@@ -260,16 +260,29 @@ struct SmallPatternFitter::System {
     int count = 0;
     double Rms() const { return std::sqrt(squares / std::max(1, count)); }
   };
-  double robust_scale = 0;    // standard deviation of the residuals by their median
-  std::array<Zone, 3> zones;  // inside of the ring, ring, white
-  double squares = 0;         // of the residuals
-  double sum = 0;             // of the gray values
+  double robust_scale = 0;        // standard deviation of the residuals by their median
+  std::array<Zone, 4> quadrants;  // of the inside of the ring
+  Zone ring, white;
+  double squares = 0;  // of the residuals
+  double sum = 0;      // of the gray values
   double sum_squares = 0;
   double count = 0;
-
   double products = 0;  // of the residuals of neighbours in a row, and their squares
   double product_squares = 0;
 
+  // Of the inside but the worst quadrant: dirt or a highlight may spoil one.
+  double InsideRms() const {
+    const auto worst = std::max_element(
+        quadrants.begin(), quadrants.end(),
+        [](const Zone& one, const Zone& other) { return one.squares < other.squares; });
+    Zone others;
+    for (auto zone = quadrants.begin(); zone != quadrants.end(); ++zone) {
+      if (zone == worst) continue;
+      others.squares += zone->squares;
+      others.count += zone->count;
+    }
+    return others.Rms();
+  }
   double variance() const { return squares / std::max(1.0, count - kUnknowns); }
   // Variance of a pixel as the pose sees it: what neighbours have in common (blur that is not as
   // modelled, dirt) does not average out along the strokes (as in PatternLocator).
@@ -334,7 +347,9 @@ SmallPatternFitter::System SmallPatternFitter::Linearize(const State& state, dou
     system.sum_squares += weight * gray * gray;
     system.squares += weight * residual * residual;
     const double radius = std::hypot(point.x, point.y);
-    System::Zone& zone = system.zones[radius < inner ? 0 : radius < outer ? 1 : 2];
+    System::Zone& zone = radius < inner   ? system.quadrants[QuadrantOf(point)]
+                         : radius < outer ? system.ring
+                                          : system.white;
     const double bounded = std::min(magnitude, limit);
     const double signed_bounded = std::copysign(bounded, residual);
     system.products += before * signed_bounded;
@@ -434,14 +449,14 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   Fit fit;
   fit.location.camera_from_pattern = state.pose;
   fit.location.covariance = covariance.topLeftCorner<6, 6>();
-  fit.inside_residual = system.zones[0].Rms() / state.contrast;
-  fit.ring_residual = system.zones[1].Rms() / state.contrast;
-  fit.white_residual = system.zones[2].Rms() / state.contrast;
+  fit.inside_residual = system.InsideRms() / state.contrast;
+  fit.ring_residual = system.ring.Rms() / state.contrast;
+  fit.white_residual = system.white.Rms() / state.contrast;
   fit.correlation = system.correlation();
   fit.explained = system.explained();
   fit.match.contrast = state.contrast;
   MeasureParts(*workspace, state, &fit.match);
-  fit.others = MeasureOthers(image, *workspace, state);
+  fit.others = MeasureOthers(image, state, workspace);
   return fit;
 }
 
@@ -461,7 +476,7 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
     const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
     const double along_x = std::abs(point.x) > std::abs(point.y) ? 1 : 0;
     const int quarter = along_x > 0 ? (point.x > 0 ? 0 : 2) : (point.y > 0 ? 1 : 3);
-    const int quadrant = point.x > 0 ? (point.y > 0 ? 0 : 3) : (point.y > 0 ? 1 : 2);
+    const int quadrant = QuadrantOf(point);
     const double radius = std::hypot(point.x, point.y);
     Vector basis = Vector::Zero();
     basis(quarter) = dark.ring;

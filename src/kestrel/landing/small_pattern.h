@@ -31,6 +31,8 @@ struct SmallPatternWorkspace {
     double x, y;
     Eigen::Matrix2d by_pixel;  // d(x, y) / d(u, v), metres per pixel
     double ring = 0;           // darkness of the ring there
+    double expected = 0;       // gray value by the fitted print
+    double gray = 0;           // in the image
   };
   std::vector<PlanePoint> points;  // of the pixels, under one pose
   std::vector<float> magnitudes;   // of the residuals
@@ -64,7 +66,7 @@ class SmallPatternFitter {
     // of noise (adjusted R^2): low where few pixels are fitted well, by chance.
     double explained;
     // Residuals (root of their mean square, outliers bounded; share of the contrast) inside of the
-    // ring, where the cross is, on the ring, and on the white around it.
+    // ring but for the worst quadrant, on the ring, and on the white around it.
     double inside_residual;
     double ring_residual;
     double white_residual;
@@ -120,11 +122,11 @@ class SmallPatternFitter {
   bool Improve(const System& system, const std::optional<NormalPrior>& prior, State* state) const;
   void MeasureParts(const SmallPatternWorkspace& workspace, const State& state,
                     PatternMatch* match) const;
-  OtherSigns MeasureOthers(const cv::Mat& image, const SmallPatternWorkspace& workspace,
-                           const State& state) const;
+  OtherSigns MeasureOthers(const cv::Mat& image, const State& state,
+                           SmallPatternWorkspace* workspace) const;
   double OtherSpokes(const SmallPatternWorkspace& workspace, const State& state) const;
   double FrameCorners(const SmallPatternWorkspace& workspace, const State& state) const;
-  double CrossCorrelation(const SmallPatternWorkspace& workspace, const State& state) const;
+  double CrossCorrelation(const SmallPatternWorkspace& workspace) const;
   double BoardDarkness(const cv::Mat& image, const State& state) const;
 
   const CameraModel& camera_;

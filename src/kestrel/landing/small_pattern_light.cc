@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The edge of a shadow on a small print.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -10,21 +12,29 @@ namespace {
 
 constexpr int kDirections = 12;        // over half a turn
 constexpr double kOffsetStep = 0.1;    // of the extent
+constexpr int kStrips = 64;            // over twice the extent, along the normal of an edge
 constexpr double kMaxRemaining = 0.6;  // of the residual's square, by the edge
 constexpr double kMaxDarkRatio = 0.8;  // of the light in the shadow to that beside it
 constexpr double kMinDarkRatio = 0.05;
+
+// Sums over what lies at one distance along the normal of an edge.
+struct Strip {
+  double reflected_squared = 0;
+  double reflected_gray = 0;
+};
 
 // Sums of a fit of gray values by two lights, each on its side of an edge.
 struct TwoLights {
   double aa = 0, ab = 0, bb = 0, ag = 0, bg = 0;
 
-  void Add(double gray, double reflected, double share) {
-    const double a = reflected * (1 - share), b = reflected * share;
-    aa += a * a;
-    ab += a * b;
-    bb += b * b;
-    ag += a * gray;
-    bg += b * gray;
+  // 'reflected': what is reflected of the light, squared and times the gray values. 'share': of the
+  // light behind the edge.
+  void Add(double reflected_squared, double reflected_gray, double share) {
+    aa += reflected_squared * (1 - share) * (1 - share);
+    ab += reflected_squared * (1 - share) * share;
+    bb += reflected_squared * share * share;
+    ag += reflected_gray * (1 - share);
+    bg += reflected_gray * share;
   }
   // Light on either side; what of the squared gray values they explain.
   struct Solution {
@@ -65,12 +75,23 @@ std::optional<SmallPatternFitter::ShadowEdge> SmallPatternFitter::FitShadowEdge(
   for (int i = 0; i < kDirections; ++i) {
     const double angle = i * std::numbers::pi / kDirections;
     ShadowEdge edge{{std::cos(angle), std::sin(angle)}, 0, 1, 1};
+    // All edges of a direction have the same distances from the points: those are summed up first.
+    std::array<Strip, kStrips> strips{};
+    for (std::size_t k = 0; k < workspace->points.size(); ++k) {
+      const PlanePoint& point = workspace->points[k];
+      const double distance = edge.normal.dot(Eigen::Vector2d(point.x, point.y));
+      const auto at = static_cast<int>((distance / extent_m_ + 1) * (0.5 * kStrips));
+      Strip& strip = strips[std::clamp(at, 0, kStrips - 1)];
+      strip.reflected_squared += point.ring * point.ring;
+      strip.reflected_gray += point.ring * workspace->pixels[k].gray;
+    }
     for (int step = -8; step <= 8; ++step) {
       edge.offset = step * kOffsetStep * extent_m_;
       TwoLights lights;
-      for (std::size_t k = 0; k < workspace->points.size(); ++k) {
-        const PlanePoint& point = workspace->points[k];
-        lights.Add(workspace->pixels[k].gray, point.ring, edge.Share(point.x, point.y));
+      for (int k = 0; k < kStrips; ++k) {
+        const double distance = ((k + 0.5) / (0.5 * kStrips) - 1) * extent_m_;
+        lights.Add(strips[k].reflected_squared, strips[k].reflected_gray,
+                   ShadowEdge::ShareAt(distance - edge.offset));
       }
       const TwoLights::Solution solution = lights.Solve();
       const double residual = squares - solution.explained;

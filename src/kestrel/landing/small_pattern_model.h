@@ -69,6 +69,11 @@ struct PlaneMap {
 
 using PlanePoint = SmallPatternWorkspace::PlanePoint;
 
+// Quadrant between the arms, from x to y.
+inline int QuadrantOf(const PlanePoint& point) {
+  return point.x > 0 ? (point.y > 0 ? 0 : 3) : (point.y > 0 ? 1 : 2);
+}
+
 inline PlanePoint Intersect(const PlaneMap& map, const SmallPatternWorkspace::Pixel& pixel) {
   const Eigen::Vector3d h = map.inverse * pixel.ray;
   const Eigen::Vector3d hu = map.inverse * pixel.d_ray_du;
@@ -96,13 +101,13 @@ struct SmallPatternFitter::ShadowEdge {
   double before = 1;             // factors that make the light even on the two sides
   double behind = 1;
 
-  // Share of the light behind the edge, 0 to 1.
-  double Share(double x, double y) const {
+  // Share of the light behind the edge, 0 to 1, at so many metres behind it.
+  static double ShareAt(double distance) {
     constexpr double kSoftness = 0.08;  // metres from the edge to where it ends
-    return std::clamp(0.5 + (normal.x() * x + normal.y() * y - offset) / (2 * kSoftness), 0.0, 1.0);
+    return std::clamp(0.5 + distance / (2 * kSoftness), 0.0, 1.0);
   }
   double Factor(double x, double y) const {
-    const double share = Share(x, y);
+    const double share = ShareAt(normal.x() * x + normal.y() * y - offset);
     return 1 / ((1 - share) / before + share / behind);
   }
 };

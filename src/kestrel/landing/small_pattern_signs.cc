@@ -22,14 +22,22 @@ std::optional<SmallPatternFitter::OtherSigns> SmallPatternFitter::Inspect(
   MeasureLevels(*workspace, &state);
   if (state.contrast < kMinContrast) return std::nullopt;
   if (light == Light::kShadowEdge && !EvenOut(workspace, &state)) return std::nullopt;
-  return MeasureOthers(image, *workspace, state);
+  return MeasureOthers(image, state, workspace);
 }
 
 SmallPatternFitter::OtherSigns SmallPatternFitter::MeasureOthers(
-    const cv::Mat& image, const SmallPatternWorkspace& workspace, const State& state) const {
-  return {.spokes = OtherSpokes(workspace, state),
-          .frame_corners = FrameCorners(workspace, state),
-          .cross_correlation = CrossCorrelation(workspace, state),
+    const cv::Mat& image, const State& state, SmallPatternWorkspace* workspace) const {
+  const PlaneMap map(state.pose);
+  workspace->points.clear();
+  for (const auto& pixel : workspace->pixels) {
+    PlanePoint point = Intersect(map, pixel);
+    point.expected = state.Gray(point, Evaluate(point.x, point.y, point.by_pixel, state.blur_px));
+    point.gray = SeenGray(pixel.gray, point.expected);
+    workspace->points.push_back(point);
+  }
+  return {.spokes = OtherSpokes(*workspace, state),
+          .frame_corners = FrameCorners(*workspace, state),
+          .cross_correlation = CrossCorrelation(*workspace),
           .board_darkness = BoardDarkness(image, state)};
 }
 
@@ -47,17 +55,13 @@ double SmallPatternFitter::OtherSpokes(const SmallPatternWorkspace& workspace,
     const double angle = kTurns[i] * std::numbers::pi / 180;
     directions[i] = {std::cos(angle), std::sin(angle)};
   }
-  const PlaneMap map(state.pose);
   const double inner = pattern_.inner_radius_m();
   const double half_width = 0.5 * pattern_.arm_width_m;
-  for (const auto& pixel : workspace.pixels) {
-    const PlanePoint point = Intersect(map, pixel);
+  for (const PlanePoint& point : workspace.points) {
     const double radius = std::hypot(point.x, point.y);
     if (radius < 0.35 * inner || radius > 0.9 * inner) continue;
-    const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
-    const double expected = state.Gray(point, dark);
-    const double residual = SeenGray(pixel.gray, expected) - expected;
-    const int quadrant = point.x > 0 ? (point.y > 0 ? 0 : 3) : (point.y > 0 ? 1 : 2);
+    const double residual = point.gray - point.expected;
+    const int quadrant = QuadrantOf(point);
     // Turned into the first quadrant, x along the arm before.
     const Eigen::Vector2d turned =
         Eigen::Rotation2Dd(-quadrant * std::numbers::pi / 2) * Eigen::Vector2d(point.x, point.y);
@@ -91,15 +95,11 @@ double SmallPatternFitter::OtherSpokes(const SmallPatternWorkspace& workspace,
 // How much darker the white is beyond the ends of the arms than between them.
 double SmallPatternFitter::FrameCorners(const SmallPatternWorkspace& workspace,
                                         const State& state) const {
-  const PlaneMap map(state.pose);
   double n = 0, s = 0, ss = 0, e = 0, se = 0;
-  for (const auto& pixel : workspace.pixels) {
-    const PlanePoint point = Intersect(map, pixel);
+  for (const PlanePoint& point : workspace.points) {
     const double radius = std::hypot(point.x, point.y);
     if (radius < pattern_.inner_radius_m()) continue;
-    const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
-    const double expected = state.Gray(point, dark);
-    const double residual = SeenGray(pixel.gray, expected) - expected;
+    const double residual = point.gray - point.expected;
     // 1 along the arms, -1 half-way between them.
     const double wave = std::cos(4 * std::atan2(point.y, point.x));
     ++n;
@@ -112,22 +112,16 @@ double SmallPatternFitter::FrameCorners(const SmallPatternWorkspace& workspace,
   return spread > 1 ? -(se - s * e / n) / spread / state.contrast : 0;
 }
 
-double SmallPatternFitter::CrossCorrelation(const SmallPatternWorkspace& workspace,
-                                            const State& state) const {
-  const PlaneMap map(state.pose);
+double SmallPatternFitter::CrossCorrelation(const SmallPatternWorkspace& workspace) const {
   double n = 0, g = 0, gg = 0, d = 0, dd = 0, gd = 0;
-  for (const auto& pixel : workspace.pixels) {
-    const PlanePoint point = Intersect(map, pixel);
+  for (const PlanePoint& point : workspace.points) {
     if (std::hypot(point.x, point.y) > pattern_.arm_half_length_m) continue;
-    const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
-    const double expected = state.Gray(point, dark);
-    const double gray = SeenGray(pixel.gray, expected);
     ++n;
-    g += gray;
-    gg += gray * gray;
-    d += expected;
-    dd += expected * expected;
-    gd += gray * expected;
+    g += point.gray;
+    gg += point.gray * point.gray;
+    d += point.expected;
+    dd += point.expected * point.expected;
+    gd += point.gray * point.expected;
   }
   const double variance = (gg - g * g / n) * (dd - d * d / n);
   return n > 0 && variance > 0 ? (gd - g * d / n) / std::sqrt(variance) : 0;

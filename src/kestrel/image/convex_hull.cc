@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/image/convex_hull.h"
+
+#include <algorithm>
+
+namespace kestrel {
+
+ConvexHull::ConvexHull(const GridPoint* points, std::size_t count) {
+  // The ends of every row hold the hull; one side of it is walked down, the other one up.
+  struct Row {
+    int left = 1 << 16;
+    int right = -1;
+  };
+  std::array<Row, kMaxHeight + 1> rows;
+  int top = points[0].y, bottom = points[0].y;
+  for (std::size_t i = 0; i < count; ++i) {
+    top = std::min<int>(top, points[i].y);
+    bottom = std::max<int>(bottom, points[i].y);
+  }
+  const int last = std::min(bottom - top, kMaxHeight);
+  for (std::size_t i = 0; i < count; ++i) {
+    Row& row = rows[std::min(points[i].y - top, last)];
+    row.left = std::min<int>(row.left, points[i].x);
+    row.right = std::max<int>(row.right, points[i].x);
+  }
+  const auto corner = [&](int x, int row) { return Eigen::Vector2d(x - 0.5, top + row - 0.5); };
+  for (int row = 0; row <= last; ++row) Append(corner(rows[row].right, row), 0);
+  const std::size_t turn = count_;
+  for (int row = last; row >= 0; --row) Append(corner(rows[row].left, row), turn);
+}
+
+// Appends a point to the convex chain that starts at corner 'first'; corners that would be dents go.
+void ConvexHull::Append(const Eigen::Vector2d& point, std::size_t first) {
+  const auto is_dent = [&] {
+    const Eigen::Vector2d before = corners_[count_ - 1] - corners_[count_ - 2];
+    const Eigen::Vector2d behind = point - corners_[count_ - 1];
+    return before.x() * behind.y() - before.y() * behind.x() <= 0;
+  };
+  while (count_ >= first + 2 && is_dent()) --count_;
+  corners_[count_++] = point;
+}
+
+}  // namespace kestrel
