@@ -117,7 +117,8 @@ struct TargetTrackerOptions {
   std::vector<std::string> Validate() const;
 };
 
-// Follows one ground vehicle by measured positions (title and sections 1 and 5 of the paper).
+// Follows one ground vehicle by measured positions and, where it is known, the yaw of what it
+// carries (title and sections 1 and 5 of the paper).
 // Measurements may be late and out of order: each is put in at its time and those after it are
 // filtered again. Bounded memory and time; allocates at construction only, never throws afterwards,
 // never returns what is not finite.
