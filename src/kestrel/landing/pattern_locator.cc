@@ -68,6 +68,18 @@ std::optional<double> FindEdge(const cv::Mat& image, const Eigen::Vector2d& at,
   return best - reach - 1 + shift;
 }
 
+// By how far (px) the two edges of a stroke seem too far apart, each: the blurred other edge takes
+// from the rise on the stroke's side, and the parabola through three rises leans the other way.
+double StrokeShift(double width_px) {
+  // Interpolation and differences blur once more.
+  constexpr double kVariance = kLensBlurPx * kLensBlurPx + 1.0 / 6 + 1.0 / 12;
+  const double away = width_px - 1;
+  const double taken = std::exp(-away * away / (2 * kVariance));
+  const double fall =
+      1 - std::exp(-1 / (2 * kVariance));  // from the steepest rise to its neighbour
+  return 0.5 * taken / (2 * fall + taken);
+}
+
 // Moves a pose by a translation and a rotation vector about its origin; false when that is no small
 // change.
 bool Move(const Eigen::Matrix<double, 6, 1>& step, RigidTransform* pose) {
@@ -179,7 +191,8 @@ void PatternLocator::AddCircle(double radius, double sign, int count, double arm
     const Eigen::Vector2d point = radius * direction;
     if (std::min(std::abs(point.x()), std::abs(point.y())) < arm_clearance) continue;
     const int quarter = static_cast<int>(std::floor(angle / (std::numbers::pi / 2) + 0.5)) % 4;
-    places_.push_back({point, sign * direction, 4 + quarter, sign > 0 ? 1 : 0, sign / radius});
+    places_.push_back({point, sign * direction, 4 + quarter, sign > 0 ? 1 : 0,
+                       pattern_.ring_width_m, sign / radius});
   }
 }
 
@@ -196,8 +209,8 @@ void PatternLocator::AddArms() {
     for (const double side : {1.0, -1.0}) {
       for (int i = 0; i < kPerSide; ++i) {
         const double reach = first + (last - first) * i / (kPerSide - 1);
-        places_.push_back(
-            {reach * along + side * half_width * across, side * across, arm, side > 0 ? 1 : 0, 0});
+        places_.push_back({reach * along + side * half_width * across, side * across, arm,
+                           side > 0 ? 1 : 0, pattern_.arm_width_m, 0});
       }
     }
   }
@@ -238,7 +251,8 @@ void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose
     // Blur moves a bent edge towards the middle of the bend.
     const double bend = 0.5 * place.curvature * std::abs(d_plane.determinant()) /
                         (tangent.squaredNorm() * tangent.norm());
-    *offset += kLensBlurPx * kLensBlurPx * bend;
+    const double width_px = place.width * across.dot(d_plane * place.normal);
+    *offset += kLensBlurPx * kLensBlurPx * bend - StrokeShift(width_px);
     if (normal->found < static_cast<int>(normal->magnitudes.size())) {
       normal->magnitudes[normal->found++] = static_cast<float>(std::abs(*offset));
     }

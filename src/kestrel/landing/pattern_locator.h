@@ -75,6 +75,7 @@ class PatternLocator {
     Eigen::Vector2d normal;
     int part;          // 0 to 3: arm, 4 to 7: ring around it
     int side;          // 0 or 1: of the arm, or the inside and outside of the ring
+    double width;      // of the stroke whose edge it is, m
     double curvature;  // 1/m; positive where the outline bends around the black side
   };
   struct Normal;
