@@ -2,6 +2,7 @@
 #include "kestrel/cli/simulate_command.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <iostream>
 #include <memory>
@@ -31,6 +32,7 @@ void Render(const RecordingPlan& plan, const SimulateArguments& arguments, int w
   const int threads = wanted_threads > 0 ? wanted_threads : std::max(cores, 1);
   CatchInterrupts();
   ProgressBar progress(plan.times.size());
+  const auto start = std::chrono::steady_clock::now();
   std::size_t rendered = 0;
   const bool complete =
       WriteRecording(plan, arguments.output, arguments.force, threads, [&](std::size_t done) {
@@ -42,7 +44,9 @@ void Render(const RecordingPlan& plan, const SimulateArguments& arguments, int w
     throw InputError(fmt::format("interrupted after {} of {} images; the same command goes on",
                                  rendered, plan.times.size()));
   }
-  fmt::print(stderr, "{}: {} images\n", arguments.output, plan.times.size());
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  fmt::print(stderr, "{}: {} images in {:.1f} s\n", arguments.output, plan.times.size(),
+             took.count());
 }
 
 // What `landing` and `hunt` differ in.
@@ -64,7 +68,10 @@ void Run(const Kind<Options>& kind, const SimulateArguments& arguments, int thre
     std::cout << PrintOptions(options);
     return;
   }
-  Render(kind.plan(options, arguments.FindCamera(kind.camera), arguments.seed), arguments, threads);
+  RecordingPlan plan = kind.plan(options, arguments.FindCamera(kind.camera), arguments.seed);
+  // By which an evaluation sorts its results.
+  if (!arguments.scenario.empty()) plan.scene += "condition: " + arguments.scenario + "\n";
+  Render(plan, arguments, threads);
 }
 
 template <class Options>

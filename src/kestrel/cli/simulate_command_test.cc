@@ -32,6 +32,10 @@ TEST_F(SimulateCommandTest, LandsOnWhatItSimulates) {
   const Outcome landed = Run("land " + flight);
   EXPECT_EQ(landed.status, 0) << landed.err;
   EXPECT_THAT(landed.err, HasSubstr("2 frames, pattern found in 2"));
+  const Outcome kept = Run("land " + flight + " --output " + folder_ / "out");
+  EXPECT_EQ(kept.status, 0) << kept.err;
+  EXPECT_THAT(Run("evaluate " + flight + " " + folder_ / "out").out,
+              HasSubstr("| calm | all | 2 | 2 | 100.0 |"));
   ExpectInputError("simulate landing --scenario calm --seed 2 --output " + flight + kSmall,
                    "exists already; --force replaces it");
 }

@@ -155,7 +155,7 @@ class LandingSearch {
   double MinorAxisPx(const RigidTransform& pose) const;
   bool IsSmallPattern(const SmallPatternFitter::Fit& fit,
                       const Eigen::Vector2d& diameters_px) const;
-  bool ShowsOtherSign(const RigidTransform& pose);
+  bool ShowsOtherSign(const RigidTransform& pose, double quality);
   std::optional<RingPlace> PlaceOf(const Eigen::Vector3d& center,
                                    const Eigen::Vector2d& diameters_px) const;
   bool WasTested(const RingFit& ring, const Eigen::Vector2d& diameters_px);
@@ -164,8 +164,8 @@ class LandingSearch {
   std::optional<VerifiedCross> VerifyCross(const cv::Mat& image, const PatternView& view,
                                            double diameter_px);
   std::optional<Hypothesis> TestPose(const CirclePose& pose, double diameter_px);
-  std::optional<Hypothesis> TestRefinedPose(const CirclePose& pose, double diameter_px,
-                                            double reach_px);
+  std::optional<RigidTransform> RefineRing(const CirclePose& pose, double reach_px);
+  std::optional<Hypothesis> TestRefinedPose(const RigidTransform& ring, double diameter_px);
   std::optional<Hypothesis> Compare(const RigidTransform& pose, CrossMethod method,
                                     double diameter_px);
   void Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& diameters_px, double reach_px);

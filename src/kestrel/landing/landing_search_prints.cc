@@ -27,7 +27,8 @@ constexpr double kCrossForDarkBoard = 1.2;
 constexpr double kMaxOtherSpokes = 0.55;
 constexpr double kMaxFrameCorners = 0.14;
 constexpr double kMaxBoardDarkness = 0.35;
-constexpr double kSmallMargin = 0.08;            // of the quality of a small pattern
+constexpr double kEveryPart = 0.95;              // quality of a print of which nothing is missing
+constexpr double kSmallMargin = 0.1;             // of the quality of a small pattern
 constexpr double kMinCorrelation = 0.35;         // of a start of a small pattern
 constexpr double kSureCorrelation = 0.6;         // of a start that quadrants give
 constexpr double kMinCorrelationOfEither = 0.7;  // of the poses of a small pattern
@@ -67,8 +68,12 @@ bool Agrees(const RigidTransform& start, const RigidTransform& fitted, double ra
              0.4 * radius_m / distance;
 }
 
+bool HasOtherSpokes(const SmallPatternFitter::OtherSigns& others) {
+  return others.spokes > kMaxOtherSpokes;
+}
+
 bool IsOtherSign(const SmallPatternFitter::OtherSigns& others) {
-  return others.spokes > kMaxOtherSpokes || others.frame_corners > kMaxFrameCorners ||
+  return HasOtherSpokes(others) || others.frame_corners > kMaxFrameCorners ||
          others.cross_correlation < kMinCrossCorrelation ||
          others.board_darkness > kMaxBoardDarkness;
 }
@@ -111,7 +116,8 @@ void LandingSearch::TestRing(const RingFit& ring, const Eigen::Vector2d& diamete
     const bool none = !hypotheses[0] && !hypotheses[1];
     for (int i = 0; i < 2 && none; ++i) {
       if (!allowed[i]) continue;
-      hypotheses[i] = TestRefinedPose(ring.poses[i], diameters_px.x(), reach_px);
+      const std::optional<RigidTransform> refined = RefineRing(ring.poses[i], reach_px);
+      if (refined) hypotheses[i] = TestRefinedPose(*refined, diameters_px.x());
     }
   }
   if (hypotheses[0] && hypotheses[1]) {
@@ -161,23 +167,24 @@ std::optional<LandingSearch::Hypothesis> LandingSearch::TestPose(const CirclePos
 
 // Where the ring is cut off or broken, what is known of it says little about its far side: the
 // edges of both of its circles bring it into place before its inside is looked at.
-std::optional<LandingSearch::Hypothesis> LandingSearch::TestRefinedPose(const CirclePose& pose,
-                                                                        double diameter_px,
-                                                                        double reach_px) {
+std::optional<RigidTransform> LandingSearch::RefineRing(const CirclePose& pose, double reach_px) {
   constexpr int kIterations = 4;
-  const std::optional<RigidTransform> refined = models_.locator.LocateRing(
-      image_, PatternPose(pose, 0), 1.5 * reach_px, kMinRingContrast / 2, kIterations);
-  if (!refined) return std::nullopt;
+  return models_.locator.LocateRing(image_, PatternPose(pose, 0), 1.5 * reach_px,
+                                    kMinRingContrast / 2, kIterations);
+}
+
+std::optional<LandingSearch::Hypothesis> LandingSearch::TestRefinedPose(const RigidTransform& ring,
+                                                                        double diameter_px) {
   const ImageRegion region{offset_, ViewLevel(diameter_px)};
   const cv::Mat image = buffers_.pyramid.ImageAt(region.level);
-  const PatternView view(models_.camera, *refined, models_.matcher.extent_m(), region);
+  const PatternView view(models_.camera, ring, models_.matcher.extent_m(), region);
   if (!view.valid() || models_.matcher.RingContrast(image, view) < kMinRingContrast) {
     return std::nullopt;
   }
   const std::optional<Cross> cross =
       FindCrossByProfile(image, view, models_.options.pattern, kMinRingContrast / 2);
   if (!cross) return std::nullopt;
-  RigidTransform turned = *refined;
+  RigidTransform turned = ring;
   turned.rotation *=
       Eigen::Quaterniond(Eigen::AngleAxisd(cross->arm_angle, Eigen::Vector3d::UnitZ()));
   return Compare(turned, CrossMethod::kThinning, diameter_px);
@@ -243,7 +250,7 @@ double LandingSearch::MinorAxisPx(const RigidTransform& pose) const {
 bool LandingSearch::IsSmallPattern(const SmallPatternFitter::Fit& fit,
                                    const Eigen::Vector2d& diameters_px) const {
   const double on_print = std::max(fit.inside_residual, fit.ring_residual);
-  constexpr double kTolerance = 0.85;  // of the size, which so few pixels hardly tell
+  constexpr double kTolerance = 0.75;  // of the size, which so few pixels hardly tell
   if (MinorAxisPx(fit.location.camera_from_pattern) < kTolerance * models_.options.min_ring_px) {
     return false;
   }
@@ -310,13 +317,15 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
 }
 
 // Whether there is another sign where a pattern was located, in even light and in the light that
-// the edge of a shadow leaves.
-bool LandingSearch::ShowsOtherSign(const RigidTransform& pose) {
+// the edge of a shadow leaves. Where every part of the print was seen next to its own white, gray
+// values that do not fit the whole tell of the light alone.
+bool LandingSearch::ShowsOtherSign(const RigidTransform& pose, double quality) {
   using Light = SmallPatternFitter::Light;
+  const auto is_other = quality >= kEveryPart ? HasOtherSpokes : IsOtherSign;
   const auto in_even = models_.small.Inspect(image_, pose, Light::kEven, &buffers_.small);
-  if (!in_even || !IsOtherSign(*in_even)) return false;
+  if (!in_even || !is_other(*in_even)) return false;
   const auto beside_edge = models_.small.Inspect(image_, pose, Light::kShadowEdge, &buffers_.small);
-  return !beside_edge || IsOtherSign(*beside_edge);
+  return !beside_edge || is_other(*beside_edge);
 }
 
 void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& diameters_px,
@@ -343,7 +352,7 @@ void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& 
   const double quality = match.Quality();
   if (quality < models_.options.min_quality || match.RingShare() < kMinRingShare) return;
   if (diameters_px.x() < kInspectedRingPx) {
-    if (ShowsOtherSign(location->camera_from_pattern)) {
+    if (ShowsOtherSign(location->camera_from_pattern, quality)) {
       const auto place = PlaceOf(location->camera_from_pattern.translation, diameters_px);
       if (place) Note(*place, &buffers_.other_signs);
       return;

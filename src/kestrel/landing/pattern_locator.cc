@@ -21,6 +21,8 @@ constexpr int kMaxReach = 12;  // px
 // some.
 constexpr std::size_t kCoarseStride = 3;
 constexpr int kFewEdges = 30;              // too few of those for a pose
+constexpr float kLeastStep = 2;            // of an edge, gray values per pixel
+constexpr float kStepInShadow = 0.3f;      // the same against the gray value on its bright side
 constexpr double kOnEdgePx = 1.0;          // offset of an edge that is the outline's own
 constexpr double kLensBlurPx = 0.7;        // of optics and pixels, standard deviation
 constexpr double kBlurSpreadPx2 = 0.3;     // of its square, over lenses: 0.45 to 0.9 px
@@ -50,7 +52,7 @@ std::optional<double> FindEdge(const cv::Mat& image, const Eigen::Vector2d& at,
   }
   // Rise between neighbours; the one at index i lies at offset i - reach - 1.
   int best = -1;
-  float best_rise = min_step;
+  float best_rise = kLeastStep;
   for (int i = 1; i + 2 < count; ++i) {
     const float rise = gray[i + 1] - gray[i];
     if (rise > best_rise) {
@@ -58,7 +60,10 @@ std::optional<double> FindEdge(const cv::Mat& image, const Eigen::Vector2d& at,
       best = i;
     }
   }
-  if (best < 0) return std::nullopt;
+  // In a shadow the print's contrast is lower, and so is its white.
+  if (best < 0 || best_rise < std::min(min_step, kStepInShadow * gray[best + 1])) {
+    return std::nullopt;
+  }
   const double before = gray[best] - gray[best - 1];
   const double here = best_rise;
   const double after = gray[best + 2] - gray[best + 1];

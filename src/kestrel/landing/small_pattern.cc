@@ -28,8 +28,6 @@ constexpr double kLeastNoise = 0.05;
 // What looks so little like the print after so many steps never will.
 constexpr int kLateStart = 3;
 constexpr double kMinLateCorrelation = 0.6;
-// Pixels of a box around the print beyond which every second one is enough.
-constexpr int kManyPixels = 1200;
 constexpr std::size_t kMinPixels = 30;
 constexpr int kMaxSide = 256;  // of the box around the print, pixels
 
@@ -87,15 +85,15 @@ SmallPatternFitter::Darkness SmallPatternFitter::Evaluate(double x, double y,
 }
 
 void SmallPatternWorkspace::Reserve() {
-  constexpr std::size_t kMost = kManyPixels + 2 * kMaxSide + 1;  // of a box and its border
+  constexpr std::size_t kMost = kEnoughToFit + 2 * kMaxSide + 1;  // of a box and its border
   pixels.reserve(kMost);
   points.reserve(kMost);
   magnitudes.reserve(kMost);
 }
 
-// Collects the pixels, each 'stride'-th of each 'stride'-th row, that show the disc of the print
-// and the white around it under 'pose'.
-bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose,
+// Collects the pixels that show the disc of the print and the white around it under 'pose': every
+// second, third, ... of every such row where a box around them has more than 'enough_pixels'.
+bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose, int enough_pixels,
                                 SmallPatternWorkspace* workspace) const {
   workspace->pixels.clear();
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
@@ -119,7 +117,7 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
   const int y1 = std::min(image.rows - 1, static_cast<int>(std::ceil(high.y())));
   if (x1 - x0 < 4 || y1 - y0 < 4 || x1 - x0 > kMaxSide || y1 - y0 > kMaxSide) return false;
   const int stride =
-      1 + static_cast<int>(std::sqrt((x1 - x0) * (y1 - y0) / static_cast<double>(kManyPixels)));
+      1 + static_cast<int>(std::sqrt((x1 - x0) * (y1 - y0) / static_cast<double>(enough_pixels)));
   const PlaneMap map(pose);
   for (int y = y0; y <= y1; y += stride) {
     const std::uint8_t* row = image.ptr(y);
@@ -222,7 +220,8 @@ std::optional<double> SmallPatternFitter::FindScale(const cv::Mat& image, const 
                                                     SmallPatternWorkspace* workspace) const {
   const auto look_at = [&](double scale) {
     const RigidTransform unturned = PatternPose(Shrunk(ring, scale), 0);
-    return Gather(image, unturned, workspace) ? CorrelateRing(unturned, workspace) : -1.0;
+    return Gather(image, unturned, kEnoughToFit, workspace) ? CorrelateRing(unturned, workspace)
+                                                            : -1.0;
   };
   double best = 0, best_correlation = kMinRingCorrelation;
   for (const double scale : scales) {
@@ -424,7 +423,7 @@ bool SmallPatternFitter::Improve(const System& system, const std::optional<Norma
 std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
     const cv::Mat& image, const RigidTransform& initial, Light light, int iterations,
     SmallPatternWorkspace* workspace, const std::optional<NormalPrior>& prior) const {
-  if (!Gather(image, initial, workspace)) return std::nullopt;
+  if (!Gather(image, initial, kEnoughToFit, workspace)) return std::nullopt;
   State state;
   state.pose = initial;
   MeasureLevels(*workspace, &state);

@@ -108,7 +108,7 @@ class SmallPatternFitter {
   struct ShadowEdge;
   struct State;
   struct System;
-  bool Gather(const cv::Mat& image, const RigidTransform& pose,
+  bool Gather(const cv::Mat& image, const RigidTransform& pose, int enough_pixels,
               SmallPatternWorkspace* workspace) const;
   Darkness Evaluate(double x, double y, const Eigen::Matrix2d& d_plane, double blur_px) const;
   double CorrelateRing(const RigidTransform& unturned, SmallPatternWorkspace* workspace) const;

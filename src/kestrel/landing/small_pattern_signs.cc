@@ -16,7 +16,7 @@ namespace kestrel {
 std::optional<SmallPatternFitter::OtherSigns> SmallPatternFitter::Inspect(
     const cv::Mat& image, const RigidTransform& pose, Light light,
     SmallPatternWorkspace* workspace) const {
-  if (!Gather(image, pose, workspace)) return std::nullopt;
+  if (!Gather(image, pose, kEnoughToInspect, workspace)) return std::nullopt;
   State state;
   state.pose = pose;
   MeasureLevels(*workspace, &state);
