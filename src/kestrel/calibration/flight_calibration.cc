@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/calibration/pose_smoothing.h"
 #include "kestrel/calibration/target_path.h"
 
 namespace kestrel {
@@ -22,6 +23,7 @@ constexpr double kRadians = std::numbers::pi / 180;
 constexpr std::size_t kMinSightings = 20;
 constexpr int kRounds = 3;  // of leaving out what does not fit
 constexpr Duration kMaxGap = std::chrono::milliseconds(200);
+constexpr Duration kSmoothing = std::chrono::milliseconds(100);  // to either side
 constexpr int kAngles = 3;
 // Indices of the clock offset and the scale among the parameters.
 constexpr int kClock = 3;
@@ -299,10 +301,16 @@ std::vector<TargetSighting> WithPoses(const std::vector<TargetSighting>& sightin
   return kept;
 }
 
+// Those that a history takes, smoothed: a UAV moves more evenly than its navigation says.
 PoseHistory HistoryOf(const std::vector<PoseSample>& samples) {
   PoseHistory history(samples.size(), kMaxGap);
-  for (const PoseSample& sample : samples) history.Add(sample);
-  return history;
+  std::vector<PoseSample> valid;
+  for (const PoseSample& sample : samples) {
+    if (history.Add(sample) == PoseStatus::kOk) valid.push_back(sample);
+  }
+  PoseHistory smooth(samples.size(), kMaxGap);
+  for (const PoseSample& sample : SmoothPoses(valid, kSmoothing)) smooth.Add(sample);
+  return smooth;
 }
 
 }  // namespace

@@ -47,6 +47,9 @@ std::vector<std::string> LandingPatternDetectorOptions::Validate() const {
   if (!(min_quality >= 0 && min_quality <= 1)) {
     violations.push_back("min_quality: must be 0 to 1");
   }
+  if (!(level_sigma_deg > 0 && level_sigma_deg <= 90)) {
+    violations.push_back("level_sigma_deg: must be positive, 90 at most");
+  }
   if (!(max_partial_altitude_m >= 0)) {
     violations.push_back("max_partial_altitude_m: must not be negative");
   }

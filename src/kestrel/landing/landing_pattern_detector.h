@@ -43,7 +43,8 @@ struct LandingHint {
   double center_sigma_m = 0.5;
   // Height of the camera above the pattern.
   std::optional<double> altitude_m;
-  // Unit vector away from the ground, in the camera frame: resolves the mirror pose of a circle.
+  // Unit vector away from the ground, in the camera frame: resolves the mirror pose of a circle and
+  // helps with the tilt of a far one.
   std::optional<Eigen::Vector3d> up_in_camera;
 };
 
@@ -79,6 +80,10 @@ struct LandingPatternDetectorOptions {
   double min_ring_px = 6;
   // Smallest quality that is accepted, 0 to 1.
   double min_quality = 0.65;
+  // How far from level the pattern may lie, standard deviation per axis: of a far one the image
+  // hardly tells the tilt, on which its distance hangs. Used where the hint says what is up; larger
+  // for a deck that rolls, smaller for a floor.
+  double level_sigma_deg = 3;
   // Height of the camera (m) up to which a partial pattern is searched for, when it is known.
   double max_partial_altitude_m = 2.5;
 
@@ -87,6 +92,8 @@ struct LandingPatternDetectorOptions {
     visitor.Group("pattern", self.pattern);
     visitor("min_ring_px", self.min_ring_px, "px", "smallest minor axis of a ring searched for");
     visitor("min_quality", self.min_quality, "1", "smallest quality that is accepted, 0 to 1");
+    visitor("level_sigma_deg", self.level_sigma_deg, "deg",
+            "how far from level the pattern may lie, standard deviation");
     visitor("max_partial_altitude_m", self.max_partial_altitude_m, "m",
             "height up to which a pattern that is cut off by the image border is searched for");
   }

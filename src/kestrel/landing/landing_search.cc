@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace kestrel {
 namespace {
@@ -20,17 +21,6 @@ bool AreMirrorPoses(const LandingDetection& a, const LandingDetection& b) {
          (a.center_px - b.center_px).norm() < kSameCenterPx &&
          (a.camera_from_pattern.rotation * z).dot(b.camera_from_pattern.rotation * z) <
              kOtherNormal;
-}
-
-// Covariance of the position (m^2) that no residual tells of: the print is as large as it should be
-// to a fraction, and the lens as calibrated to a part of a pixel.
-Eigen::Matrix3d SystematicError(const Eigen::Vector3d& position, double focal_px) {
-  constexpr double kPrintError = 0.001;  // of its dimensions
-  constexpr double kCalibrationErrorPx = 0.03;
-  const double across = kCalibrationErrorPx / focal_px;
-  const Eigen::Matrix3d along = position * position.transpose();
-  return kPrintError * kPrintError * along +
-         across * across * (position.squaredNorm() * Eigen::Matrix3d::Identity() - along);
 }
 
 }  // namespace
@@ -52,7 +42,12 @@ LandingSearch::LandingSearch(const LandingModels& models, const cv::Mat& image,
       image_(image),
       hint_(hint),
       buffers_(*buffers),
-      focal_px_(models.camera.intrinsics().fx_px) {}
+      focal_px_(models.camera.intrinsics().fx_px) {
+  constexpr double kRadians = std::numbers::pi / 180;
+  if (hint.up_in_camera) {
+    level_ = {*hint.up_in_camera, models.options.level_sigma_deg * kRadians};
+  }
+}
 
 void LandingSearch::Reach(LandingStage stage, std::string_view reason_if_it_ends_here) {
   ++report_.candidates[static_cast<int>(stage)];
@@ -220,8 +215,6 @@ void LandingSearch::Keep(const PatternLocation& location, CrossMethod method, do
   LandingDetection detection;
   detection.camera_from_pattern = location.camera_from_pattern;
   detection.covariance = location.covariance;
-  detection.covariance.topLeftCorner<3, 3>() +=
-      SystematicError(location.camera_from_pattern.translation, focal_px_);
   detection.method = method;
   detection.quality = quality;
   detection.ring_semi_major_px = 0.5 * diameters_px.x();

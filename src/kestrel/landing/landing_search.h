@@ -178,9 +178,10 @@ class LandingSearch {
   const LandingHint& hint_;
   LandingWorkspace::Buffers& buffers_;
   double focal_px_;
-  cv::Mat searched_;             // the part of the image that is searched
-  cv::Point offset_{0, 0};       // of that part in the image
-  double expected_ring_px_ = 0;  // diameter by the hint; 0 when it says nothing
+  std::optional<NormalPrior> level_;  // where it is known what is up
+  cv::Mat searched_;                  // the part of the image that is searched
+  cv::Point offset_{0, 0};            // of that part in the image
+  double expected_ring_px_ = 0;       // diameter by the hint; 0 when it says nothing
   LandingReport report_;
 };
 

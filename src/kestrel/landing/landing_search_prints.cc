@@ -299,7 +299,7 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
     constexpr int kIterations = 8;
     using Light = SmallPatternFitter::Light;
     auto fit = models_.small.Refine(image_, start.camera_from_pattern, Light::kEven, kIterations,
-                                    &buffers_.small);
+                                    &buffers_.small, level_);
     if (!fit || fit->correlation < kMinCorrelationOfEither) return;
     if (!Agrees(start.camera_from_pattern, fit->location.camera_from_pattern,
                 models_.options.pattern.outer_radius_m())) {
@@ -308,7 +308,7 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
     Reach(LandingStage::kLocate, "no pose explains the edges of ring and cross");
     if (!IsSmallPattern(*fit, diameters_px)) {
       fit = models_.small.Refine(image_, fit->location.camera_from_pattern, Light::kShadowEdge,
-                                 kIterations, &buffers_.small);
+                                 kIterations, &buffers_.small, level_);
       if (!fit || !IsSmallPattern(*fit, diameters_px)) continue;
     }
     Keep(fit->location, fit->match.seen < kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants,
@@ -335,7 +335,7 @@ void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& 
   constexpr int kIterations = 3;
   const std::optional<PatternLocation> location =
       models_.locator.Locate(image_, hypothesis.camera_from_pattern, reach_px,
-                             std::max(2.0, 0.12 * hypothesis.contrast), kIterations);
+                             std::max(2.0, 0.12 * hypothesis.contrast), kIterations, level_);
   if (!location || location->edge_rms_px > kMaxEdgeRmsPx) return;
   const ImageRegion region{offset_, ViewLevel(diameters_px.x())};
   const PatternView view(models_.camera, location->camera_from_pattern, models_.matcher.extent_m(),

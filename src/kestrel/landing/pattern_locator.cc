@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -24,8 +25,11 @@ constexpr float kLeastStep = 2;            // of an edge, gray values per pixel
 constexpr float kStepInShadow = 0.3f;      // the same against the gray value on its bright side
 constexpr double kOnEdgePx = 1.0;          // offset of an edge that is the outline's own
 constexpr double kLensBlurPx = 0.7;        // of optics and pixels, standard deviation
+constexpr double kBlurSpreadPx2 = 0.3;     // of its square, over lenses: 0.45 to 0.9 px
 constexpr double kMaxRingScatterPx = 1.5;  // after two iterations, standard deviation
-constexpr double kEdgeSigma = 0.12;        // px, of an edge that fits perfectly
+constexpr int kMoreIterations = 5;         // for a pose that still moves
+constexpr double kMaxCorrelation = 0.9;    // of neighbouring residuals
+constexpr double kSettledPx = 0.02;        // outlines that move by less stay where they are
 
 // Whether the image shows all that FindEdge looks at.
 bool ShowsSearch(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::Vector2d& normal,
@@ -69,6 +73,18 @@ std::optional<double> FindEdge(const cv::Mat& image, const Eigen::Vector2d& at,
   return best - reach - 1 + shift;
 }
 
+// By how far (px) the two edges of a stroke seem too far apart, each: the blurred other edge takes
+// from the rise on the stroke's side, and the parabola through three rises leans the other way.
+double StrokeShift(double width_px) {
+  // Interpolation and differences blur once more.
+  constexpr double kVariance = kLensBlurPx * kLensBlurPx + 1.0 / 6 + 1.0 / 12;
+  const double away = width_px - 1;
+  const double taken = std::exp(-away * away / (2 * kVariance));
+  const double fall =
+      1 - std::exp(-1 / (2 * kVariance));  // from the steepest rise to its neighbour
+  return 0.5 * taken / (2 * fall + taken);
+}
+
 // Moves a pose by a translation and a rotation vector about its origin; false when that is no small
 // change.
 bool Move(const Eigen::Matrix<double, 6, 1>& step, RigidTransform* pose) {
@@ -90,8 +106,16 @@ bool Move(const Eigen::Matrix<double, 6, 1>& step, RigidTransform* pose) {
 struct PatternLocator::Normal {
   Eigen::Matrix<double, 6, 6> h = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
+  Eigen::Matrix<double, 6, 1> by_blur = Eigen::Matrix<double, 6, 1>::Zero();  // derivative of g
   double weighted_squares = 0;
   double weights = 0;
+  double products = 0;  // of neighbouring residuals, and the squares that belong to them
+  double product_squares = 0;
+  struct Stretch {
+    double sum = 0;  // of weighted residuals
+    double weights = 0;
+  };
+  std::array<Stretch, 16> outline{};  // by part and side
   int in_image = 0;
   int used = 0;
   std::array<int, 8> part_places{};  // by part: all, in the image, used
@@ -105,6 +129,53 @@ struct PatternLocator::Normal {
     const auto middle = magnitudes.begin() + found / 2;
     std::nth_element(magnitudes.begin(), middle, magnitudes.begin() + found);
     return 1.4826 * static_cast<double>(*middle);
+  }
+
+  double MeanSquare() const { return weighted_squares / weights; }
+
+  // By how much (px, root mean square) 'step' moves the outlines in the image.
+  double Movement(const Eigen::Matrix<double, 6, 1>& step) const {
+    return std::sqrt(std::max(0.0, step.dot(h * step)) / weights);
+  }
+
+  // Variance of an edge as the pose sees it. Neighbours share pixels, dirt and light, and what they
+  // have in common does not average out: (1 + r) / (1 - r) with their correlation r is how many
+  // edges count as one (a first-order autoregressive process along the outline). What whole
+  // stretches of an outline have in common shows in how their means differ.
+  double EdgeVariance() const {
+    constexpr double kUnknowns = 6;
+    constexpr double kStretchEdges = 3;
+    const double correlation =
+        std::clamp(products / std::max(product_squares, 1e-12), 0.0, kMaxCorrelation);
+    const double freedom = std::max(1.0, used - kUnknowns) / used;
+    const double of_edges = MeanSquare() / freedom * (1 + correlation) / (1 - correlation);
+    double squares = 0;
+    int stretches = 0;
+    for (const Stretch& stretch : outline) {
+      if (stretch.weights < kStretchEdges) continue;
+      squares += stretch.sum * stretch.sum / stretch.weights;
+      ++stretches;
+    }
+    // So few means know their own variance badly: that of Student's distribution is larger.
+    const double of_stretches_freedom = stretches - kUnknowns - 2;
+    if (of_stretches_freedom < 1) return of_edges;
+    return std::max(of_edges, squares / of_stretches_freedom);
+  }
+
+  void Describe(PatternLocation* location) const {
+    const Eigen::Matrix<double, 6, 6> inverse =
+        h.ldlt().solve(Eigen::Matrix<double, 6, 6>::Identity().eval());
+    const Eigen::Matrix<double, 6, 1> blur = kBlurSpreadPx2 * (inverse * by_blur);
+    location->covariance = EdgeVariance() * inverse + blur * blur.transpose();
+    location->edge_rms_px = std::sqrt(MeanSquare());
+    location->edge_share = static_cast<double>(used) / std::max(1, in_image);
+    location->edges = used;
+    for (int part = 0; part < 8; ++part) {
+      const int seen = part_in_image[part];
+      const double share =
+          4 * seen < part_places[part] ? -1.0 : static_cast<double>(part_used[part]) / seen;
+      (part < 4 ? location->arm_share : location->ring_share)[part % 4] = share;
+    }
   }
 };
 
@@ -125,7 +196,8 @@ void PatternLocator::AddCircle(double radius, double sign, int count, double arm
     const Eigen::Vector2d point = radius * direction;
     if (std::min(std::abs(point.x()), std::abs(point.y())) < arm_clearance) continue;
     const int quarter = static_cast<int>(std::floor(angle / (std::numbers::pi / 2) + 0.5)) % 4;
-    places_.push_back({point, sign * direction, 4 + quarter, sign / radius});
+    places_.push_back({point, sign * direction, 4 + quarter, sign > 0 ? 1 : 0,
+                       pattern_.ring_width_m, sign / radius});
   }
 }
 
@@ -139,10 +211,11 @@ void PatternLocator::AddArms() {
     const double angle = arm * std::numbers::pi / 2;
     const Eigen::Vector2d along(std::cos(angle), std::sin(angle));
     const Eigen::Vector2d across(-along.y(), along.x());
-    for (int i = 0; i < kPerSide; ++i) {
-      const double reach = first + (last - first) * i / (kPerSide - 1);
-      for (const double side : {1.0, -1.0}) {
-        places_.push_back({reach * along + side * half_width * across, side * across, arm, 0});
+    for (const double side : {1.0, -1.0}) {
+      for (int i = 0; i < kPerSide; ++i) {
+        const double reach = first + (last - first) * i / (kPerSide - 1);
+        places_.push_back({reach * along + side * half_width * across, side * across, arm,
+                           side > 0 ? 1 : 0, pattern_.arm_width_m, 0});
       }
     }
   }
@@ -157,8 +230,10 @@ void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose
   const Eigen::Matrix<double, 3, 2> plane = rotation.leftCols<2>();
   const int reach = std::clamp(static_cast<int>(std::ceil(reach_px)), 1, kMaxReach);
   Eigen::Matrix<double, 2, 3> d_pixel;
+  std::optional<double> before;  // residual of the last place on this outline
   for (std::size_t i = 0; i < places.size(); i += stride) {
     const Place& place = places[i];
+    const std::optional<double> neighbor = std::exchange(before, std::nullopt);
     ++normal->part_places[place.part];
     const Eigen::Vector3d from_center = plane * place.point;
     Eigen::Vector2d pixel;
@@ -179,10 +254,10 @@ void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose
         FindEdge(image, pixel, across, reach, static_cast<float>(min_step));
     if (!offset) continue;
     // Blur moves a bent edge towards the middle of the bend.
-    const double shrink = 0.5 * kLensBlurPx * kLensBlurPx * place.curvature *
-                          std::abs(d_plane.determinant()) /
-                          (tangent.squaredNorm() * tangent.norm());
-    *offset += shrink;
+    const double bend = 0.5 * place.curvature * std::abs(d_plane.determinant()) /
+                        (tangent.squaredNorm() * tangent.norm());
+    const double width_px = place.width * across.dot(d_plane * place.normal);
+    *offset += kLensBlurPx * kLensBlurPx * bend - StrokeShift(width_px);
     if (normal->found < static_cast<int>(normal->magnitudes.size())) {
       normal->magnitudes[normal->found++] = static_cast<float>(std::abs(*offset));
     }
@@ -196,51 +271,49 @@ void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose
     const Eigen::Matrix<double, 6, 1> weighted = weight * jacobian;
     normal->h.noalias() += weighted * jacobian.transpose();
     normal->g += *offset * weighted;
+    normal->by_blur += bend * weighted;
     normal->weighted_squares += weight * *offset * *offset;
     normal->weights += weight;
     ++normal->used;
     normal->part_used[place.part] += std::abs(*offset) <= kOnEdgePx;
+    before = offset;
+    Normal::Stretch& stretch = normal->outline[2 * place.part + place.side];
+    stretch.sum += weight * *offset;
+    stretch.weights += weight;
+    if (!neighbor) continue;
+    normal->products += *neighbor * *offset;
+    normal->product_squares += 0.5 * (*neighbor * *neighbor + *offset * *offset);
   }
 }
 
-std::optional<PatternLocation> PatternLocator::Locate(const cv::Mat& image,
-                                                      const RigidTransform& initial,
-                                                      double reach_px, double min_step,
-                                                      int iterations) const {
+std::optional<PatternLocation> PatternLocator::Locate(
+    const cv::Mat& image, const RigidTransform& initial, double reach_px, double min_step,
+    int iterations, const std::optional<NormalPrior>& prior) const {
   PatternLocation location;
   location.camera_from_pattern = initial;
   RigidTransform& pose = location.camera_from_pattern;
   double scale = std::max(1.0, 0.5 * reach_px);
   double reach = reach_px;
-  for (int iteration = 0; iteration < iterations; ++iteration) {
+  for (int iteration = 1; iteration <= iterations + kMoreIterations; ++iteration) {
     Normal normal;
     // A part of the edges brings the pose near, all of them say where it is.
-    const bool last = iteration + 1 == iterations;
-    if (!last) Accumulate(image, pose, places_, kCoarseStride, reach, min_step, scale, &normal);
-    if (last || normal.used < kFewEdges) {
+    const bool coarse = iteration < iterations;
+    if (coarse) Accumulate(image, pose, places_, kCoarseStride, reach, min_step, scale, &normal);
+    if (!coarse || normal.used < kFewEdges) {
       normal = Normal();
       Accumulate(image, pose, places_, 1, reach, min_step, scale, &normal);
     }
     if (normal.used < 12) return std::nullopt;
-    const auto solver = normal.h.ldlt();
-    if (!Move(solver.solve(normal.g), &pose)) return std::nullopt;
+    if (prior) prior->AddTo(pose.rotation, normal.EdgeVariance(), &normal.h, &normal.g);
+    const Eigen::Matrix<double, 6, 1> step = normal.h.ldlt().solve(normal.g);
+    if (!Move(step, &pose)) return std::nullopt;
     scale = std::clamp(normal.RobustScale(), 0.25, scale);
     reach = std::clamp(3 * scale, 1.5, reach);
-    if (!last) continue;
-
-    const double variance =
-        std::max(kEdgeSigma * kEdgeSigma, normal.weighted_squares / normal.weights);
-    location.covariance = variance * solver.solve(Eigen::Matrix<double, 6, 6>::Identity().eval());
-    location.edge_rms_px = std::sqrt(normal.weighted_squares / normal.weights);
-    location.edge_share = static_cast<double>(normal.used) / std::max(1, normal.in_image);
-    location.edges = normal.used;
-    for (int part = 0; part < 8; ++part) {
-      const int seen = normal.part_in_image[part];
-      const double share = 4 * seen < normal.part_places[part]
-                               ? -1.0
-                               : static_cast<double>(normal.part_used[part]) / seen;
-      (part < 4 ? location.arm_share : location.ring_share)[part % 4] = share;
-    }
+    if (coarse) continue;
+    normal.Describe(&location);
+    // The tilt of a pattern that is seen from straight above moves the edges by its square only:
+    // there the steps are short of the goal.
+    if (normal.Movement(step) < kSettledPx) break;
   }
   if (!location.covariance.allFinite()) return std::nullopt;
   return location;

@@ -30,6 +30,24 @@ struct PatternLocation {
   std::array<double, 4> ring_share{};
 };
 
+// What is known of the pattern's plane before the image is looked at.
+struct NormalPrior {
+  Eigen::Vector3d normal_in_camera;  // unit vector, out of the print
+  double sigma;                      // standard deviation of its direction per axis, rad
+
+  // Adds it to the normal equations of a pose (translation, then rotation about the centre) whose
+  // residuals have the given variance.
+  template <class Matrix, class Vector>
+  void AddTo(const Eigen::Quaterniond& camera_from_pattern, double variance, Matrix* h,
+             Vector* g) const {
+    const Eigen::Vector3d normal = camera_from_pattern * Eigen::Vector3d::UnitZ();
+    const double weight = variance / (sigma * sigma);
+    h->template block<3, 3>(3, 3) +=
+        weight * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
+    g->template segment<3>(3) += weight * normal.cross(normal_in_camera);
+  }
+};
+
 // Refines a pose from the edges (model-based pose estimation, after Drummond and Cipolla 2002): the
 // outlines of ring and arms are projected through the lens, the edge nearest to each of their
 // points is looked for along the normal, to a fraction of a pixel, and the pose that brings them
@@ -39,10 +57,12 @@ class PatternLocator {
   PatternLocator(const CameraModel& camera, const LandingPattern& pattern);
 
   // 'image': CV_8UC1 of the camera. 'initial': a pose whose outlines are within 'reach_px' of the
-  // edges. 'min_step': gray values per pixel below which a change is no edge. Nothing when too few
-  // edges are found to fix the six parameters. Does not allocate.
+  // edges. 'min_step': gray values per pixel below which a change is no edge. 'prior': of a small
+  // print the tilt is weakly known. Nothing when too few edges are found to fix the six parameters.
+  // Does not allocate.
   std::optional<PatternLocation> Locate(const cv::Mat& image, const RigidTransform& initial,
-                                        double reach_px, double min_step, int iterations) const;
+                                        double reach_px, double min_step, int iterations,
+                                        const std::optional<NormalPrior>& prior = {}) const;
 
   // The same by the edges of the ring alone, however the cross is turned about its centre.
   std::optional<RigidTransform> LocateRing(const cv::Mat& image, const RigidTransform& initial,
@@ -54,6 +74,8 @@ class PatternLocator {
     Eigen::Vector2d point;
     Eigen::Vector2d normal;
     int part;          // 0 to 3: arm, 4 to 7: ring around it
+    int side;          // 0 or 1: of the arm, or the inside and outside of the ring
+    double width;      // of the stroke whose edge it is, m
     double curvature;  // 1/m; positive where the outline bends around the black side
   };
   struct Normal;

@@ -266,6 +266,8 @@ struct SmallPatternFitter::System {
   double sum = 0;      // of the gray values
   double sum_squares = 0;
   double count = 0;
+  double products = 0;  // of the residuals of neighbours in a row, and their squares
+  double product_squares = 0;
 
   // Of the inside but the worst quadrant: dirt or a highlight may spoil one.
   double InsideRms() const {
@@ -281,6 +283,14 @@ struct SmallPatternFitter::System {
     return others.Rms();
   }
   double variance() const { return squares / std::max(1.0, count - kUnknowns); }
+  // Variance of a pixel as the pose sees it: what neighbours have in common (blur that is not as
+  // modelled, dirt) does not average out along the strokes (as in PatternLocator).
+  double EffectiveVariance() const {
+    constexpr double kMaxCorrelation = 0.7;
+    const double correlation =
+        std::clamp(products / std::max(product_squares, 1e-12), 0.0, kMaxCorrelation);
+    return variance() * (1 + correlation) / (1 - correlation);
+  }
   double correlation() const {
     const double about_mean = sum_squares - sum * sum / count;
     return std::sqrt(std::max(0.0, 1 - squares / std::max(about_mean, 1e-9)));
@@ -321,6 +331,7 @@ SmallPatternFitter::System SmallPatternFitter::Linearize(const State& state, dou
   const double outer = pattern_.outer_radius_m() + 0.35 * pattern_.ring_width_m;
   System system;
   workspace->magnitudes.clear();
+  double before = 0;
   for (const auto& pixel : workspace->pixels) {
     const PlanePoint point = Intersect(map, pixel);
     const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
@@ -339,6 +350,10 @@ SmallPatternFitter::System SmallPatternFitter::Linearize(const State& state, dou
                          : radius < outer ? system.ring
                                           : system.white;
     const double bounded = std::min(magnitude, limit);
+    const double signed_bounded = std::copysign(bounded, residual);
+    system.products += before * signed_bounded;
+    system.product_squares += 0.5 * (before * before + bounded * bounded);
+    before = signed_bounded;
     zone.squares += bounded * bounded;
     ++zone.count;
     if (gray != pixel.gray) continue;  // cut off: says nothing about small changes
@@ -370,7 +385,8 @@ SmallPatternFitter::System SmallPatternFitter::Linearize(const State& state, dou
 }
 
 // One Gauss-Newton step; false when it leads nowhere.
-bool SmallPatternFitter::Improve(const System& system, State* state) const {
+bool SmallPatternFitter::Improve(const System& system, const std::optional<NormalPrior>& prior,
+                                 State* state) const {
   // The blur of a lens is known to some extent, white hardly where the image cuts it off, and the
   // direction of a small plane hardly at all: priors keep them from taking what the other
   // parameters explain.
@@ -380,6 +396,7 @@ bool SmallPatternFitter::Improve(const System& system, State* state) const {
   h(6, 6) += blur_weight;
   b(6) -= blur_weight * std::log(state->blur_px / kGoodLensBlurPx);
   for (int i = 0; i < 6; ++i) h(i, i) *= 1.001;
+  if (prior) prior->AddTo(state->pose.rotation, system.EffectiveVariance(), &h, &b);
   h(7, 7) += 0.01 * system.count;
   h(9, 9) += 1e-6 * system.count;
   h(10, 10) += 1e-6 * system.count;
@@ -405,7 +422,7 @@ bool SmallPatternFitter::Improve(const System& system, State* state) const {
 
 std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
     const cv::Mat& image, const RigidTransform& initial, Light light, int iterations,
-    SmallPatternWorkspace* workspace) const {
+    SmallPatternWorkspace* workspace, const std::optional<NormalPrior>& prior) const {
   if (!Gather(image, initial, kEnoughToFit, workspace)) return std::nullopt;
   State state;
   state.pose = initial;
@@ -417,14 +434,15 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   for (int iteration = 0; iteration < iterations; ++iteration) {
     const System system = Linearize(state, limit, workspace);
     if (iteration == kLateStart && system.correlation() < kMinLateCorrelation) return std::nullopt;
-    if (!Improve(system, &state)) return std::nullopt;
+    if (!Improve(system, prior, &state)) return std::nullopt;
     if (2 * iteration >= iterations) {
       limit = kOutlier * std::max(system.robust_scale, kLeastNoise * state.contrast);
     }
   }
-  const System system = Linearize(state, limit, workspace);
+  System system = Linearize(state, limit, workspace);
+  if (prior) prior->AddTo(state.pose.rotation, system.EffectiveVariance(), &system.h, &system.b);
   const Eigen::Matrix<double, kUnknowns, kUnknowns> covariance =
-      system.variance() *
+      system.EffectiveVariance() *
       system.h.ldlt().solve(Eigen::Matrix<double, kUnknowns, kUnknowns>::Identity());
   if (!covariance.allFinite()) return std::nullopt;
   Fit fit;

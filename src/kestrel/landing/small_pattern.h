@@ -95,7 +95,8 @@ class SmallPatternFitter {
   // Refines 'initial', which must be within about a stroke's width. Nothing when the image shows
   // too little of the print, the fit does not converge or the light has no edge. Does not allocate.
   std::optional<Fit> Refine(const cv::Mat& image, const RigidTransform& initial, Light light,
-                            int iterations, SmallPatternWorkspace* workspace) const;
+                            int iterations, SmallPatternWorkspace* workspace,
+                            const std::optional<NormalPrior>& prior = {}) const;
 
   // What there is of other signs in a print that was located in another way; nothing when the image
   // shows too little of it or the light has no edge. Does not allocate.
@@ -118,7 +119,7 @@ class SmallPatternFitter {
                                           SmallPatternWorkspace* workspace) const;
   bool EvenOut(SmallPatternWorkspace* workspace, State* state) const;
   System Linearize(const State& state, double limit, SmallPatternWorkspace* workspace) const;
-  bool Improve(const System& system, State* state) const;
+  bool Improve(const System& system, const std::optional<NormalPrior>& prior, State* state) const;
   void MeasureParts(const SmallPatternWorkspace& workspace, const State& state,
                     PatternMatch* match) const;
   OtherSigns MeasureOthers(const cv::Mat& image, const State& state,

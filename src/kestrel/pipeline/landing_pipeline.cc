@@ -130,14 +130,26 @@ void LandingPipeline::LocateInWorld(LandingObservation* observation) const {
   observation->position_method = PositionMethod::kAltitude;
 }
 
+TargetMeasurement LandingPipeline::MeasurementOf(const LandingObservation& observation) const {
+  const LandingDetection& detection = *observation.report.detection;
+  const Eigen::Vector3d& center = detection.camera_from_pattern.translation;
+  const Eigen::Quaterniond& rotation = observation.world_from_camera->rotation;
+  TargetMeasurement measurement;
+  measurement.time = observation.time;
+  measurement.position_in_world = *observation.center_in_world;
+  measurement.covariance = CovarianceInWorld(detection.covariance.topLeftCorner<3, 3>(), center,
+                                             rotation, options_.noise);
+  measurement.shared_covariance = SharedCovarianceInWorld(center, rotation, options_.noise);
+  if (!options_.track_yaw) return measurement;
+  measurement.yaw = observation.yaw_in_world;
+  measurement.yaw_variance =
+      YawVarianceInWorld(detection.covariance.bottomRightCorner<3, 3>(), rotation, options_.noise);
+  return measurement;
+}
+
 void LandingPipeline::Track(LandingObservation* observation) {
   if (observation->center_in_world) {
-    const LandingDetection& detection = *observation->report.detection;
-    const Eigen::Matrix3d covariance = CovarianceInWorld(
-        detection.covariance.topLeftCorner<3, 3>(), detection.camera_from_pattern.translation,
-        observation->world_from_camera->rotation, options_.noise);
-    observation->fate =
-        tracker_.Add({observation->time, *observation->center_in_world, covariance});
+    observation->fate = tracker_.Add(MeasurementOf(*observation));
     is_track_trusted_ = observation->fate <= MeasurementFate::kAccepted;
   }
   observation->track_state = tracker_.StateAt(observation->time);

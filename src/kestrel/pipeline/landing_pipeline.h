@@ -30,6 +30,9 @@ struct LandingPipelineOptions {
   // Height of the pattern's face above the world's z = 0. With it the navigation's z becomes the
   // height above the pattern, for the hint and for position_by_altitude.
   double target_height_m = 0;
+  // The pattern turns with the vehicle: its yaw tells the tracker how the path bends. Switch off
+  // where it lies on something that turns by itself.
+  bool track_yaw = true;
   // Tell the detector the height above the pattern that the navigation reports. Switch off where
   // the world's z is no height above ground.
   bool altitude_hint = true;
@@ -55,6 +58,8 @@ struct LandingPipelineOptions {
             "world position from the altitude instead of from the pattern's size");
     visitor("target_height_m", self.target_height_m, "m",
             "height of the pattern above the world's z = 0");
+    visitor("track_yaw", self.track_yaw, "",
+            "the pattern turns with the vehicle: its yaw tells how the path bends");
     visitor("altitude_hint", self.altitude_hint, "",
             "tell the detector the height that the navigation reports");
     visitor("hint_sigma_m", self.hint_sigma_m, "m",
@@ -127,6 +132,7 @@ class LandingPipeline {
   void AddTrack(const LandingObservation& observation, LandingHint* hint) const;
   void AddLastSighting(const LandingObservation& observation, LandingHint* hint) const;
   void LocateInWorld(LandingObservation* observation) const;
+  TargetMeasurement MeasurementOf(const LandingObservation& observation) const;
   void Track(LandingObservation* observation);
   void Remember(const LandingObservation& observation);
 

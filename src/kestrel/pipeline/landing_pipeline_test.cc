@@ -138,6 +138,23 @@ TEST_F(LandingPipelineTest, FollowsAndPredictsThePattern) {
   EXPECT_NEAR(ahead->motion.position().x(), 9.5 + 0.2 * 7 + 1, 0.15);
 }
 
+// The pattern turns where it stands, at 0.4 rad/s.
+TEST_F(LandingPipelineTest, SeesThePatternTurnUnlessItIsToldNotTo) {
+  for (const bool track_yaw : {true, false}) {
+    options_.track_yaw = track_yaw;
+    LandingPipeline pipeline(calibration_, options_);
+    LandingObservation observation;
+    for (int i = 0; i < 8; ++i) {
+      const Time time = kTime + i * DurationFromSeconds(0.1);
+      pipeline.AddPose({time, world_from_body_});
+      world_from_pattern_.rotation = Rotation(0.3 + 0.04 * i, Eigen::Vector3d::UnitZ());
+      observation = pipeline.Process(Draw(), time);
+    }
+    ASSERT_TRUE(observation.target);
+    EXPECT_NEAR(observation.target->motion.turn_rate(), track_yaw ? 0.4 : 0, 0.05);
+  }
+}
+
 TEST_F(LandingPipelineTest, AWrongTrackDoesNotHideThePattern) {
   LandingPipeline pipeline(calibration_, options_);
   for (int i = 0; i < 10; ++i) {

@@ -4,6 +4,28 @@
 #include <numbers>
 
 namespace kestrel {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180;
+
+// Of a position at 'center' by errors of the attitude (rad per axis) and of the scale, both in the
+// camera's axes.
+Eigen::Matrix3d SwingAndScale(const Eigen::Vector3d& center, double attitude_deg, double scale) {
+  const double attitude = attitude_deg * kRadians;
+  const Eigen::Matrix3d along = center * center.transpose();
+  const Eigen::Matrix3d across = center.squaredNorm() * Eigen::Matrix3d::Identity() - along;
+  return attitude * attitude * across + scale * scale * along;
+}
+
+Eigen::Matrix3d InWorld(const Eigen::Matrix3d& in_camera, const Eigen::Quaterniond& rotation,
+                        double position_sigma_m) {
+  const Eigen::Matrix3d world_from_camera = rotation.toRotationMatrix();
+  Eigen::Matrix3d in_world = world_from_camera * in_camera * world_from_camera.transpose();
+  in_world.diagonal().array() += position_sigma_m * position_sigma_m;
+  return 0.5 * (in_world + in_world.transpose());
+}
+
+}  // namespace
 
 std::vector<std::string> MeasurementNoise::Validate() const {
   std::vector<std::string> violations;
@@ -12,7 +34,9 @@ std::vector<std::string> MeasurementNoise::Validate() const {
   };
   require(pose_sigma_m > 0 && pose_sigma_m < 100, "pose_sigma_m must be positive, below 100");
   require(attitude_sigma_deg >= 0 && attitude_sigma_deg < 90, "attitude_sigma_deg must be 0 to 90");
-  require(scale_sigma >= 0 && scale_sigma < 1, "scale_sigma must be 0 to 1");
+  require(pose_bias_m >= 0 && pose_bias_m < 100, "pose_bias_m must be 0 to 100");
+  require(attitude_bias_deg >= 0 && attitude_bias_deg < 90, "attitude_bias_deg must be 0 to 90");
+  require(scale_bias >= 0 && scale_bias < 1, "scale_bias must be 0 to 1");
   return violations;
 }
 
@@ -20,16 +44,23 @@ Eigen::Matrix3d CovarianceInWorld(const Eigen::Matrix3d& covariance_in_camera,
                                   const Eigen::Vector3d& center_in_camera,
                                   const Eigen::Quaterniond& world_from_camera,
                                   const MeasurementNoise& noise) {
-  const double attitude = noise.attitude_sigma_deg * std::numbers::pi / 180;
-  const Eigen::Matrix3d along = center_in_camera * center_in_camera.transpose();
-  const Eigen::Matrix3d across =
-      center_in_camera.squaredNorm() * Eigen::Matrix3d::Identity() - along;
-  const Eigen::Matrix3d in_camera = covariance_in_camera + attitude * attitude * across +
-                                    noise.scale_sigma * noise.scale_sigma * along;
-  const Eigen::Matrix3d rotation = world_from_camera.toRotationMatrix();
-  Eigen::Matrix3d in_world = rotation * in_camera * rotation.transpose();
-  in_world.diagonal().array() += noise.pose_sigma_m * noise.pose_sigma_m;
-  return 0.5 * (in_world + in_world.transpose());
+  const Eigen::Matrix3d swing = SwingAndScale(center_in_camera, noise.attitude_sigma_deg, 0);
+  return InWorld(covariance_in_camera + swing, world_from_camera, noise.pose_sigma_m);
+}
+
+double YawVarianceInWorld(const Eigen::Matrix3d& covariance_in_camera,
+                          const Eigen::Quaterniond& world_from_camera,
+                          const MeasurementNoise& noise) {
+  const Eigen::Vector3d up = world_from_camera.conjugate() * Eigen::Vector3d::UnitZ();
+  const double attitude = noise.attitude_sigma_deg * kRadians;
+  return up.dot(covariance_in_camera * up) + attitude * attitude;
+}
+
+Eigen::Matrix3d SharedCovarianceInWorld(const Eigen::Vector3d& center_in_camera,
+                                        const Eigen::Quaterniond& world_from_camera,
+                                        const MeasurementNoise& noise) {
+  return InWorld(SwingAndScale(center_in_camera, noise.attitude_bias_deg, noise.scale_bias),
+                 world_from_camera, noise.pose_bias_m);
 }
 
 }  // namespace kestrel

@@ -21,7 +21,17 @@ bool IsValid(const TargetMeasurement& measurement) {
   if (measurement.position_in_world.cwiseAbs().maxCoeff() > kMaxCoordinate_m) return false;
   if (covariance.cwiseAbs().maxCoeff() > kMaxVariance_m2) return false;
   if (!covariance.isApprox(covariance.transpose(), 1e-6)) return false;
-  return covariance.llt().info() == Eigen::Success;
+  if (covariance.llt().info() != Eigen::Success) return false;
+  if (!(measurement.shared_covariance.cwiseAbs().array() <= kMaxVariance_m2).all()) return false;
+  constexpr double kMaxYawVariance = 1e3;
+  return !measurement.yaw || (std::isfinite(*measurement.yaw) && measurement.yaw_variance > 0 &&
+                              measurement.yaw_variance < kMaxYawVariance);
+}
+
+TurnState WithYaw(const TurnState& state, const TargetMeasurement& measurement) {
+  constexpr double kGate = 16;  // four standard deviations: beyond, another line was taken for it
+  if (!measurement.yaw) return state;
+  return UpdateByYaw(state, *measurement.yaw, measurement.yaw_variance, kGate);
 }
 
 double RootMeanVariance(const Eigen::Matrix3d& covariance) {
@@ -91,10 +101,13 @@ std::vector<std::string> TargetTrackerOptions::Validate() const {
   require_positive(climb_noise, "climb_noise must be positive");
   require(turn_noise >= 0 && turn_noise < 1e3, "turn_noise must be 0 to 1000");
   require_positive(turn_time_s, "turn_time_s must be positive");
+  require(sway_sigma_m >= 0 && sway_sigma_m < 1, "sway_sigma_m must be 0 to 1");
+  require(sway_frequency_hz > 0 && sway_frequency_hz < 100,
+          "sway_frequency_hz must be positive, below 100");
+  require(sway_damping > 0 && sway_damping < 1, "sway_damping must be between 0 and 1");
   require_positive(start_speed_sigma_mps, "start_speed_sigma_mps must be positive");
   require(start_turn_sigma_radps >= 0 && start_turn_sigma_radps < 1e3,
           "start_turn_sigma_radps must be 0 to 1000");
-  require(shared_sigma_m >= 0 && shared_sigma_m < 100, "shared_sigma_m must be 0 to 100");
   require_positive(gate, "gate must be positive");
   require(restart_count >= 1, "restart_count must be at least 1");
   require_positive(max_speed_mps, "max_speed_mps must be positive");
@@ -109,8 +122,11 @@ std::vector<std::string> TargetTrackerOptions::Validate() const {
 
 TargetTracker::TargetTracker(const TargetTrackerOptions& options)
     : options_(Checked(options)),
-      noise_{options.acceleration_noise, options.climb_noise, options.turn_noise,
-             options.turn_time_s} {
+      noise_{options.acceleration_noise,
+             options.climb_noise,
+             options.turn_noise,
+             options.turn_time_s,
+             {options.sway_sigma_m, options.sway_frequency_hz, options.sway_damping}} {
   entries_.reserve(options_.history + 1);
 }
 
@@ -131,16 +147,13 @@ MeasurementFate TargetTracker::Add(const TargetMeasurement& measurement) {
 }
 
 MeasurementFate TargetTracker::Start(const TargetMeasurement& measurement) {
-  TurnState state;
-  state.mean.head<3>() = measurement.position_in_world;
-  state.covariance.topLeftCorner<3, 3>() = measurement.covariance;
-  const auto square = [](double sigma) { return sigma * sigma; };
-  const double speed = square(options_.start_speed_sigma_mps);
-  const double turn = square(options_.start_turn_sigma_radps);
-  // Roads climb by a tenth.
-  state.covariance.diagonal().tail<5>() << speed, speed, speed / 100, turn, turn;
+  constexpr double kSteepest = 0.1;  // of roads
+  const double speed = options_.start_speed_sigma_mps;
+  const TurnState state =
+      StartState(measurement.position_in_world, measurement.covariance,
+                 {speed, speed, kSteepest * speed}, options_.start_turn_sigma_radps, noise_);
   entries_.clear();
-  entries_.push_back({measurement, state});
+  entries_.push_back({measurement, WithYaw(state, measurement)});
   accepted_ = 1;
   outlier_.reset();
   outliers_ = 0;
@@ -174,7 +187,8 @@ bool TargetTracker::FilterFrom(std::size_t index) {
     const TargetMeasurement& measurement = entries_[i].measurement;
     const TurnState predicted = PredictFrom(entries_[i - 1], measurement.time);
     entries_[i].filtered =
-        UpdateByPosition(predicted, measurement.position_in_world, measurement.covariance);
+        WithYaw(UpdateByPosition(predicted, measurement.position_in_world, measurement.covariance),
+                measurement);
     if (!entries_[i].filtered.mean.allFinite() || !entries_[i].filtered.covariance.allFinite()) {
       return false;
     }
@@ -211,8 +225,7 @@ std::optional<TargetEstimate> TargetTracker::Predict(Time time) const {
   const Entry& entry = entries_[count - 1];
   if (ToSeconds(time - entry.measurement.time) > options_.lost_after_s) return std::nullopt;
   TargetEstimate estimate{time, PredictFrom(entry, time)};
-  estimate.motion.covariance.diagonal().head<3>().array() +=
-      options_.shared_sigma_m * options_.shared_sigma_m;
+  estimate.motion.covariance.topLeftCorner<3, 3>() += entry.measurement.shared_covariance;
   const bool is_known =
       estimate.motion.mean.allFinite() && estimate.position_sigma_m() <= options_.lost_sigma_m;
   return is_known ? std::optional(estimate) : std::nullopt;

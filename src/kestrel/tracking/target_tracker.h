@@ -16,7 +16,14 @@ namespace kestrel {
 struct TargetMeasurement {
   Time time;
   Eigen::Vector3d position_in_world;
-  Eigen::Matrix3d covariance;  // of the position, m^2
+  Eigen::Matrix3d covariance;  // of the position's own error, m^2
+  // Of the error that all measurements share, as the bias of the navigation, m^2: it is not
+  // filtered away, but in the covariance of every estimate.
+  Eigen::Matrix3d shared_covariance = Eigen::Matrix3d::Zero();
+  // How the target is turned about the vertical, up to quarter turns (rad), and the variance of
+  // that (rad^2): where it is seen to turn, the track knows the curve.
+  std::optional<double> yaw = std::nullopt;
+  double yaw_variance = 0;
 };
 
 // What became of a measurement.
@@ -51,17 +58,19 @@ struct TargetEstimate {
 
 struct TargetTrackerOptions {
   // How the target moves: see TurnNoise. The defaults suit a car of up to 40 km/h on curves.
-  double acceleration_noise = 0.15;
+  double acceleration_noise = 0.1;
   double climb_noise = 0.1;
   double turn_noise = 0.1;
-  double turn_time_s = 3;
+  double turn_time_s = 5;
+  // How the board sways on the vehicle's springs: see SwayMotion. A body rolls and pitches at 1 to
+  // 2 Hz, by some tenths of a degree.
+  double sway_sigma_m = 0.01;
+  double sway_frequency_hz = 1.4;
+  double sway_damping = 0.3;
   // What a new track does not know: standard deviations of speed, turn rate and, per second, its
   // change.
   double start_speed_sigma_mps = 6;
   double start_turn_sigma_radps = 0.3;
-  // Error of the position, per axis, that all measurements share, as the bias of the navigation: it
-  // is not filtered away, but in the covariance of every estimate.
-  double shared_sigma_m = 0.025;
   // Squared Mahalanobis distance beyond which a measurement is not the target's: 16.3 is passed by
   // one true measurement in a thousand.
   double gate = 16.3;
@@ -87,12 +96,14 @@ struct TargetTrackerOptions {
             "how the change of the turn rate varies; 0, and so start_turn_sigma_radps: no turns");
     visitor("turn_time_s", self.turn_time_s, "s",
             "after which a change of the turn rate ends, left alone");
+    visitor("sway_sigma_m", self.sway_sigma_m, "m",
+            "swaying of the board on the vehicle, standard deviation; 0: none");
+    visitor("sway_frequency_hz", self.sway_frequency_hz, "Hz", "frequency of that");
+    visitor("sway_damping", self.sway_damping, "1", "damping ratio of that, between 0 and 1");
     visitor("start_speed_sigma_mps", self.start_speed_sigma_mps, "m/s",
             "speed of a new track, standard deviation");
     visitor("start_turn_sigma_radps", self.start_turn_sigma_radps, "rad/s",
             "turn rate of a new track, standard deviation");
-    visitor("shared_sigma_m", self.shared_sigma_m, "m",
-            "error that all measurements share, as the bias of the navigation, per axis");
     visitor("gate", self.gate, "1", "squared Mahalanobis distance of the furthest measurement");
     visitor("restart_count", self.restart_count, "1",
             "measurements in a row outside of the gate that start a new track");
@@ -106,7 +117,8 @@ struct TargetTrackerOptions {
   std::vector<std::string> Validate() const;
 };
 
-// Follows one ground vehicle by measured positions (title and sections 1 and 5 of the paper).
+// Follows one ground vehicle by measured positions and, where it is known, the yaw of what it
+// carries (title and sections 1 and 5 of the paper).
 // Measurements may be late and out of order: each is put in at its time and those after it are
 // filtered again. Bounded memory and time; allocates at construction only, never throws afterwards,
 // never returns what is not finite.

@@ -21,6 +21,7 @@ using Path = std::function<Eigen::Vector3d(double seconds)>;
 
 constexpr double kSpeed = 15 / 3.6;
 constexpr double kSigma_m = 0.015;
+constexpr double kQuarter = std::numbers::pi / 2;
 
 Time At(double seconds) { return Time(DurationFromSeconds(1000 + seconds)); }
 
@@ -40,21 +41,41 @@ Eigen::Vector3d FigureOfEight(double t) {
   return {x, x * std::sin(angle), 1.5};
 }
 
+// The straight line with a board that sways by 2 cm.
+Eigen::Vector3d Swaying(double t) {
+  return Straight(t) + 0.02 * std::sin(9 * t) * Eigen::Vector3d(1, -1, 0);
+}
+
 Eigen::Vector3d VelocityOf(const Path& path, double t) {
   return (path(t + 1e-4) - path(t - 1e-4)) / 2e-4;
 }
 
 class Sensor {
  public:
-  explicit Sensor(Path path, std::uint64_t seed = 1) : path_(std::move(path)), random_(seed) {}
+  explicit Sensor(Path path, double sigma_m = kSigma_m)
+      : path_(std::move(path)), sigma_m_(sigma_m), random_(1) {}
 
   TargetMeasurement Measure(double t) {
     const Eigen::Vector3d noise(random_.Normal(), random_.Normal(), random_.Normal());
-    return {At(t), path_(t) + kSigma_m * noise, kSigma_m * kSigma_m * Eigen::Matrix3d::Identity()};
+    return {.time = At(t),
+            .position_in_world = path_(t) + sigma_m_ * noise,
+            .covariance = sigma_m_ * sigma_m_ * Eigen::Matrix3d::Identity()};
+  }
+  // With the yaw of a board that was mounted somehow.
+  TargetMeasurement MeasureWithYaw(double t) {
+    constexpr double kMounted = 0.3;
+    constexpr double kYawSigma = 0.01;
+    TargetMeasurement measurement = Measure(t);
+    const Eigen::Vector3d velocity = VelocityOf(path_, t);
+    const double heading = std::atan2(velocity.y(), velocity.x());
+    measurement.yaw = std::remainder(heading + kMounted + kYawSigma * random_.Normal(), kQuarter);
+    measurement.yaw_variance = kYawSigma * kYawSigma;
+    return measurement;
   }
 
  private:
   Path path_;
+  double sigma_m_;
   Random random_;
 };
 
@@ -64,11 +85,12 @@ struct Errors {
   int rejected = 0;
 };
 
-Errors Follow(const Path& path, const TargetTrackerOptions& options, double duration = 40) {
+Errors Follow(const Path& path, const TargetTrackerOptions& options, double sigma_m = kSigma_m) {
+  constexpr double kDuration_s = 40;
   TargetTracker tracker(options);
-  Sensor sensor(path);
+  Sensor sensor(path, sigma_m);
   Errors errors;
-  for (double t = 0; t < duration; t += 1.0 / 30) {
+  for (double t = 0; t < kDuration_s; t += 1.0 / 30) {
     errors.rejected += tracker.Add(sensor.Measure(t)) > MeasurementFate::kAccepted;
     if (t < 2) continue;
     const auto now = tracker.Predict(At(t));
@@ -126,20 +148,62 @@ TEST(TargetTracker, OnCurvesItPredictsTwiceAsWellAsConstantVelocity) {
 }
 
 TEST(TargetTracker, ItsCovarianceIsNotTooSmall) {
-  TargetTrackerOptions options;
-  options.shared_sigma_m = 0;
-  for (const auto& path : {Standing, Straight, Circle, FigureOfEight}) {
-    const Errors errors = Follow(path, options);
-    EXPECT_LT(Rms(errors.nees), 6);  // of a chi-square of 3: 3.9
+  for (const auto& path : {Standing, Straight, Circle, FigureOfEight, Swaying}) {
+    EXPECT_LT(Rms(Follow(path, {}).nees), 6);  // of a chi-square of 3: 3.9
+  }
+}
+
+TEST(TargetTracker, TheSwayOfTheBoardIsNotTheVehiclesSpeed) {
+  TargetTrackerOptions rigid;
+  rigid.sway_sigma_m = 0;
+  constexpr double kNear_m = 0.005;
+  const Errors sways = Follow(Swaying, {}, kNear_m);
+  const Errors stiff = Follow(Swaying, rigid, kNear_m);
+  EXPECT_LT(Rms(sways.velocity), 0.7 * Rms(stiff.velocity));
+  EXPECT_LT(Percentile95(sways.second), 0.7 * Percentile95(stiff.second));
+}
+
+// Positions (m) that it predicts a second ahead are off by, half a second to 1.5 s after its start.
+double ErrorAtTheStart(bool with_yaw) {
+  TargetTracker tracker({});
+  Sensor sensor(FigureOfEight);
+  std::vector<double> errors;
+  for (double t = 5; t < 6.5; t += 1.0 / 30) {
+    tracker.Add(with_yaw ? sensor.MeasureWithYaw(t) : sensor.Measure(t));
+    if (t < 5.5) continue;
+    const auto ahead = tracker.Predict(At(t + 1));
+    errors.push_back((ahead->motion.position() - FigureOfEight(t + 1)).norm());
+  }
+  return Rms(errors);
+}
+
+TEST(TargetTracker, ByTheYawItKnowsTheCurveEarly) {
+  EXPECT_LT(ErrorAtTheStart(/*with_yaw=*/true), 0.2);
+  EXPECT_GT(ErrorAtTheStart(/*with_yaw=*/false), 2 * ErrorAtTheStart(/*with_yaw=*/true));
+}
+
+TEST(TargetTracker, AWrongYawDoesNotTurnIt) {
+  TargetTracker tracker({});
+  Sensor sensor(Circle);
+  Random random(7);
+  for (int i = 0; i < 300; ++i) {
+    const double t = i / 30.0;
+    TargetMeasurement measurement = sensor.MeasureWithYaw(t);
+    if (i > 30 && random.Chance(0.2)) measurement.yaw = random.Uniform(-1, 1);
+    EXPECT_LE(tracker.Add(measurement), MeasurementFate::kAccepted);
+    if (t < 2) continue;
+    EXPECT_LT((tracker.Predict(At(t + 1))->motion.position() - Circle(t + 1)).norm(), 0.4) << t;
   }
 }
 
 TEST(TargetTracker, WhatAllMeasurementsShareStaysUncertain) {
-  TargetTrackerOptions options;
-  options.shared_sigma_m = 0.5;
-  TargetTracker tracker(options);
+  TargetTracker tracker({});
   Sensor sensor(Standing);
-  for (int i = 0; i < 300; ++i) tracker.Add(sensor.Measure(i / 30.0));
+  for (int i = 0; i < 300; ++i) {
+    TargetMeasurement measurement = sensor.Measure(i / 30.0);
+    measurement.shared_covariance = 0.25 * Eigen::Matrix3d::Identity();
+    tracker.Add(measurement);
+  }
   EXPECT_NEAR(tracker.Predict(At(10))->position_sigma_m(), 0.5, 0.01);
 }
 
@@ -256,6 +320,12 @@ TEST(TargetTracker, WhatIsNotFiniteIsRefused) {
     measurement = sensor.Measure(0);
     measurement.covariance(1, 1) = bad;
     EXPECT_EQ(tracker.Add(measurement), MeasurementFate::kInvalid);
+    measurement = sensor.Measure(0);
+    measurement.shared_covariance(1, 1) = bad;
+    EXPECT_EQ(tracker.Add(measurement), MeasurementFate::kInvalid);
+    measurement = sensor.MeasureWithYaw(0);
+    measurement.yaw_variance = bad;
+    EXPECT_EQ(tracker.Add(measurement), MeasurementFate::kInvalid);
   }
   TargetMeasurement measurement = sensor.Measure(0);
   measurement.covariance(0, 0) = -1;
@@ -270,8 +340,12 @@ TEST(TargetTracker, NeverReturnsWhatIsNotFinite) {
     const double scale = std::pow(10, random.Uniform(-3, 6));
     const double sigma = std::pow(10, random.Uniform(-4, 2.5));
     const double t = i / 30.0 + random.Uniform(-0.5, 0.5);
-    tracker.Add({At(t), scale * Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()),
-                 sigma * sigma * Eigen::Matrix3d::Identity()});
+    tracker.Add({.time = At(t),
+                 .position_in_world =
+                     scale * Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()),
+                 .covariance = sigma * sigma * Eigen::Matrix3d::Identity(),
+                 .yaw = scale * random.Normal(),
+                 .yaw_variance = sigma * sigma / 1e3});
     if (const auto estimate = tracker.Predict(At(t + random.Uniform(0, 3)))) {
       ASSERT_TRUE(estimate->motion.mean.allFinite());
       ASSERT_TRUE(estimate->motion.covariance.allFinite());

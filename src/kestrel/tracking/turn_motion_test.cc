@@ -2,13 +2,15 @@
 #include "kestrel/tracking/turn_motion.h"
 
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
 namespace kestrel {
 namespace {
 
-constexpr TurnNoise kNoNoise = {0, 0, 0, 1e12};
+constexpr SwayMotion kNoSway = {0, 1, 0.5};
+constexpr TurnNoise kNoNoise = {0, 0, 0, 1e12, kNoSway};
 
 TurnState State(const Eigen::Vector3d& velocity, double turn_rate) {
   TurnState state;
@@ -33,7 +35,7 @@ TEST(Propagate, FollowsACircle) {
 TEST(Propagate, AChangeOfTheTurnRateGoesOnAndEnds) {
   TurnState state = State({4, 0, 0}, 0);
   state.mean(7) = 0.5;
-  const TurnState later = Propagate(state, 1, {0, 0, 0, 1});
+  const TurnState later = Propagate(state, 1, {0, 0, 0, 1, kNoSway});
   EXPECT_NEAR(later.turn_rate(), 0.5 * (1 - std::exp(-1.0)), 0.01);
   EXPECT_NEAR(later.mean(7), 0.5 * std::exp(-1.0), 1e-9);
   EXPECT_NEAR(later.velocity().norm(), 4, 1e-9);
@@ -43,7 +45,7 @@ TEST(Propagate, AChangeOfTheTurnRateGoesOnAndEnds) {
 TEST(Propagate, CovarianceIsThatOfTheDifferences) {
   constexpr double kDelta = 1e-5;
   TurnState state = State({3, 2, 0}, 0.6);
-  state.mean(7) = 0.3;
+  state.mean.tail<6>() << 0.3, 0.02, -0.01, 0.1, 0.2, 1.2;
   TurnState moved = state;
   const TurnState later = Propagate(state, 0.05, kNoNoise);
   Eigen::Matrix<double, kTurnStateSize, kTurnStateSize> jacobian;
@@ -55,14 +57,45 @@ TEST(Propagate, CovarianceIsThatOfTheDifferences) {
   EXPECT_LT((later.covariance - jacobian * jacobian.transpose()).cwiseAbs().maxCoeff(), 1e-3);
 }
 
+TEST(Propagate, SwayGoesToAndFroOnTheVehicle) {
+  TurnState state = State({4, 0, 0}, 0);
+  state.mean(1) = 0.05;  // y, all of it sway
+  state.mean(9) = 0.05;
+  TurnNoise noise = kNoNoise;
+  noise.sway = {0.05, 2, 0.01};
+  const TurnState half_a_period = Propagate(state, 0.25, noise);
+  EXPECT_NEAR(half_a_period.mean(0), 1, 1e-9);
+  EXPECT_NEAR(half_a_period.mean(1), -0.05, 0.003);
+  EXPECT_NEAR(half_a_period.mean(9), -0.05, 0.003);
+  EXPECT_NEAR(half_a_period.velocity().y(), 0, 0.05);
+}
+
+TEST(Propagate, SwayIsKeptUp) {
+  TurnNoise noise = kNoNoise;
+  noise.sway = {0.02, 1.4, 0.3};
+  const TurnState start =
+      StartState({0, 0, 0}, Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero(), 0, noise);
+  EXPECT_NEAR(start.covariance(8, 8), 0.0004, 1e-12);
+  const TurnState later = Propagate(start, 3, noise);
+  EXPECT_NEAR(later.covariance(8, 8), 0.0004, 1e-9);
+  EXPECT_NEAR(later.covariance(10, 10), start.covariance(10, 10), 1e-9);
+  EXPECT_NEAR(later.covariance(3, 3), start.covariance(3, 3), 1e-9);
+}
+
+TEST(Propagate, TheLoadTurnsWithTheVehicle) {
+  TurnState state = State({4, 0, 0}, 0.5);
+  state.mean(12) = 0.2;
+  EXPECT_NEAR(Propagate(state, 2, kNoNoise).mean(12), 1.2, 1e-9);
+}
+
 TEST(Propagate, NoTimeChangesNothing) {
   const TurnState state = State({3, 2, 0}, 0.6);
-  EXPECT_EQ(Propagate(state, 0, {1, 1, 1, 1}).mean, state.mean);
+  EXPECT_EQ(Propagate(state, 0, {1, 1, 1, 1, kNoSway}).mean, state.mean);
 }
 
 TEST(Propagate, UncertaintyGrows) {
   const TurnState state = State({3, 0, 0}, 0.6);
-  const TurnState later = Propagate(state, 1, {1, 1, 0.1, 2});
+  const TurnState later = Propagate(state, 1, {1, 1, 0.1, 2, kNoSway});
   EXPECT_GT(later.covariance(0, 0), state.covariance(0, 0));
   EXPECT_GT(later.covariance(6, 6), state.covariance(6, 6));
 }
@@ -74,6 +107,20 @@ TEST(UpdateByPosition, WeighsBothByTheirCovariance) {
   EXPECT_LT((updated.position() - Eigen::Vector3d(0.25, 0.5, 0.75)).norm(), 1e-12);
   EXPECT_NEAR(updated.covariance(0, 0), 0.75, 1e-12);
   EXPECT_NEAR(updated.covariance(6, 6), 1, 1e-12);
+}
+
+TEST(UpdateByYaw, IsUpToQuarterTurns) {
+  TurnState state = State({0, 0, 0}, 0);
+  state.covariance *= 0.01;
+  const double quarter = std::numbers::pi / 2;
+  EXPECT_NEAR(UpdateByYaw(state, 3 * quarter + 0.1, 0.01, 16).mean(12), 0.05, 1e-12);
+  EXPECT_NEAR(UpdateByYaw(state, 0.1 - quarter, 0.01, 16).covariance(12, 12), 0.005, 1e-12);
+}
+
+TEST(UpdateByYaw, BeyondTheGateItChangesNothing) {
+  TurnState state = State({0, 0, 0}, 0);
+  state.covariance *= 1e-4;
+  EXPECT_EQ(UpdateByYaw(state, 0.5, 1e-4, 16).mean, state.mean);
 }
 
 TEST(SquaredDistance, IsThatOfBothCovariances) {
