@@ -29,7 +29,8 @@ ConvexHull::ConvexHull(const GridPoint* points, std::size_t count) {
   for (int row = last; row >= 0; --row) Append(corner(rows[row].left, row), turn);
 }
 
-// Appends a point to the convex chain that starts at corner 'first'; corners that would be dents go.
+// Appends a point to the convex chain that starts at corner 'first'; corners that would be dents
+// go.
 void ConvexHull::Append(const Eigen::Vector2d& point, std::size_t first) {
   const auto is_dent = [&] {
     const Eigen::Vector2d before = corners_[count_ - 1] - corners_[count_ - 2];

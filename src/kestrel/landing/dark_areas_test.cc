@@ -107,8 +107,7 @@ TEST(OutlineInView, IsThatOfTheRingWithoutTheImageBorder) {
 }
 
 TEST(IsCutOff, IsNotWhatLiesWithinTheImage) {
-  const BorderTracer tracer =
-      TraceFigure([](double x, double y) { return std::hypot(x, y) < 48; });
+  const BorderTracer tracer = TraceFigure([](double x, double y) { return std::hypot(x, y) < 48; });
   ASSERT_EQ(tracer.borders().size(), 1u);
   EXPECT_FALSE(IsCutOff(tracer, tracer.borders()[0]));
 }
