@@ -18,10 +18,11 @@ class ConvexHull {
   // The tallest border that it takes: what lies below is left out.
   static constexpr int kMaxHeight = 63;  // pixels
 
-  // Of at least one point.
+  // Of at least one point, and one in each row between the first and the last, as a border has.
   ConvexHull(const GridPoint* points, std::size_t count);
 
-  // Clockwise in the image, in pixels, integer = centre of a pixel.
+  // Clockwise in the image, in pixels, integer = centre of a pixel. The uppermost and the lowest one
+  // come twice where they are points and no sides.
   std::span<const Eigen::Vector2d> corners() const { return {corners_.data(), count_}; }
 
  private:

@@ -40,7 +40,10 @@ const char* ToString(LandingStage stage) {
 }
 
 std::vector<std::string> LandingPatternDetectorOptions::Validate() const {
-  std::vector<std::string> violations = pattern.Validate();
+  std::vector<std::string> violations;
+  for (const std::string& violation : pattern.Validate()) {
+    violations.push_back("pattern." + violation);
+  }
   if (!(min_ring_px >= 4 && min_ring_px <= 1000)) {
     violations.push_back("min_ring_px: must be 4 to 1000");
   }

@@ -36,6 +36,29 @@ class LandingPatternDetectorTest : public ::testing::Test {
   const cv::Mat image_ = DrawPrint(camera_, pattern_, SpokedPrint(pattern_, 4), pose_);
 };
 
+// A ring of 24 px whose centre moves over the left image border: half of it is in view at 0.
+TEST_F(LandingPatternDetectorTest, FindsSmallPatternsThatTheImageBorderCutsOff) {
+  for (const double center_px : {8.0, 4.0, 0.0}) {
+    const double distance = 9;
+    const RigidTransform truth =
+        PrintPose({(center_px - 159.5) / 220 * distance, 0.4, distance}, 0.1, 2, 0.5);
+    const LandingReport report = Detect(Draw(SpokedPrint(pattern_, 4), truth));
+    ASSERT_TRUE(report.detection) << center_px << " px: " << report.reason;
+    Eigen::Vector2d center;
+    camera_.Project(truth.translation, &center);
+    EXPECT_LT((report.detection->center_px - center).norm(), 0.5) << center_px;
+  }
+}
+
+TEST_F(LandingPatternDetectorTest, AnImageThatContradictsWhatIsUpPrevails) {
+  LandingHint hint;
+  const Eigen::Vector3d normal = pose_.rotation * Eigen::Vector3d::UnitZ();
+  hint.up_in_camera = Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitX()) * normal;  // 23 degrees off
+  const LandingReport report = Detect(image_, hint);
+  ASSERT_TRUE(report.detection) << report.reason;
+  EXPECT_LT(PoseError(report.detection->camera_from_pattern, pose_).head<3>().norm(), 0.015);
+}
+
 // What two reports of one image must share: all but the times.
 void ExpectSame(const LandingReport& a, const LandingReport& b) {
   EXPECT_EQ(a.reached, b.reached);

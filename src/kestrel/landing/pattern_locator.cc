@@ -162,9 +162,10 @@ struct PatternLocator::Normal {
     return std::max(of_edges, squares / of_stretches_freedom);
   }
 
-  void Describe(PatternLocation* location) const {
+  // 'information': h and what is known beside the edges.
+  void Describe(const Eigen::Matrix<double, 6, 6>& information, PatternLocation* location) const {
     const Eigen::Matrix<double, 6, 6> inverse =
-        h.ldlt().solve(Eigen::Matrix<double, 6, 6>::Identity().eval());
+        information.ldlt().solve(Eigen::Matrix<double, 6, 6>::Identity().eval());
     const Eigen::Matrix<double, 6, 1> blur = kBlurSpreadPx2 * (inverse * by_blur);
     location->covariance = EdgeVariance() * inverse + blur * blur.transpose();
     location->edge_rms_px = std::sqrt(MeanSquare());
@@ -221,6 +222,11 @@ void PatternLocator::AddArms() {
   }
 }
 
+// Whether two places follow each other on a circle or on a side of an arm.
+bool PatternLocator::AreOnOneOutline(const Place& a, const Place& b) {
+  return a.curvature == b.curvature && a.side == b.side && (a.curvature != 0 || a.part == b.part);
+}
+
 // Adds what each 'stride'-th place says to the normal equations, weighted by Tukey's function of
 // its residual with the given scale.
 void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose,
@@ -233,7 +239,8 @@ void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose
   std::optional<double> before;  // residual of the last place on this outline
   for (std::size_t i = 0; i < places.size(); i += stride) {
     const Place& place = places[i];
-    const std::optional<double> neighbor = std::exchange(before, std::nullopt);
+    std::optional<double> neighbor = std::exchange(before, std::nullopt);
+    if (i >= stride && !AreOnOneOutline(places[i - stride], place)) neighbor.reset();
     ++normal->part_places[place.part];
     const Eigen::Vector3d from_center = plane * place.point;
     Eigen::Vector2d pixel;
@@ -304,13 +311,15 @@ std::optional<PatternLocation> PatternLocator::Locate(
       Accumulate(image, pose, places_, 1, reach, min_step, scale, &normal);
     }
     if (normal.used < 12) return std::nullopt;
-    if (prior) prior->AddTo(pose.rotation, normal.EdgeVariance(), &normal.h, &normal.g);
-    const Eigen::Matrix<double, 6, 1> step = normal.h.ldlt().solve(normal.g);
+    Eigen::Matrix<double, 6, 6> information = normal.h;
+    Eigen::Matrix<double, 6, 1> gradient = normal.g;
+    if (prior) prior->AddTo(pose.rotation, normal.EdgeVariance(), &information, &gradient);
+    const Eigen::Matrix<double, 6, 1> step = information.ldlt().solve(gradient);
     if (!Move(step, &pose)) return std::nullopt;
     scale = std::clamp(normal.RobustScale(), 0.25, scale);
     reach = std::clamp(3 * scale, 1.5, reach);
     if (coarse) continue;
-    normal.Describe(&location);
+    normal.Describe(information, &location);
     // The tilt of a pattern that is seen from straight above moves the edges by its square only:
     // there the steps are short of the goal.
     if (normal.Movement(step) < kSettledPx) break;

@@ -30,7 +30,9 @@ struct PatternLocation {
   std::array<double, 4> ring_share{};
 };
 
-// What is known of the pattern's plane before the image is looked at.
+// What is known of the pattern's plane before the image is looked at. The attitude that tells it
+// may be late, or the plane no level one: a direction that is far from it counts less (Cauchy's
+// weight), so that an image that contradicts the prior prevails.
 struct NormalPrior {
   Eigen::Vector3d normal_in_camera;  // unit vector, out of the print
   double sigma;                      // standard deviation of its direction per axis, rad
@@ -41,7 +43,9 @@ struct NormalPrior {
   void AddTo(const Eigen::Quaterniond& camera_from_pattern, double variance, Matrix* h,
              Vector* g) const {
     const Eigen::Vector3d normal = camera_from_pattern * Eigen::Vector3d::UnitZ();
-    const double weight = variance / (sigma * sigma);
+    constexpr double kFar = 2;  // standard deviations
+    const double away = normal.cross(normal_in_camera).norm() / (kFar * sigma);
+    const double weight = variance / (sigma * sigma) / (1 + away * away);
     h->template block<3, 3>(3, 3) +=
         weight * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
     g->template segment<3>(3) += weight * normal.cross(normal_in_camera);
@@ -57,9 +61,10 @@ class PatternLocator {
   PatternLocator(const CameraModel& camera, const LandingPattern& pattern);
 
   // 'image': CV_8UC1 of the camera. 'initial': a pose whose outlines are within 'reach_px' of the
-  // edges. 'min_step': gray values per pixel below which a change is no edge. 'prior': of a small
-  // print the tilt is weakly known. Nothing when too few edges are found to fix the six parameters.
-  // Does not allocate.
+  // edges. 'min_step': gray values per pixel below which a change in full light is no edge.
+  // 'iterations': of a pose that settles; a few more follow while it does not. 'prior': what tells
+  // the tilt where the image hardly does, of small prints. Nothing when too few edges are found to
+  // fix the six parameters. Does not allocate.
   std::optional<PatternLocation> Locate(const cv::Mat& image, const RigidTransform& initial,
                                         double reach_px, double min_step, int iterations,
                                         const std::optional<NormalPrior>& prior = {}) const;
@@ -80,6 +85,7 @@ class PatternLocator {
   };
   struct Normal;
 
+  static bool AreOnOneOutline(const Place& a, const Place& b);
   void AddCircle(double radius, double sign, int count, double arm_clearance);
   void AddArms();
   void Accumulate(const cv::Mat& image, const RigidTransform& pose, std::span<const Place> places,

@@ -273,7 +273,7 @@ struct SmallPatternFitter::System {
   double InsideRms() const {
     const auto worst = std::max_element(
         quadrants.begin(), quadrants.end(),
-        [](const Zone& one, const Zone& other) { return one.squares < other.squares; });
+        [](const Zone& one, const Zone& other) { return one.Rms() < other.Rms(); });
     Zone others;
     for (auto zone = quadrants.begin(); zone != quadrants.end(); ++zone) {
       if (zone == worst) continue;
