@@ -190,15 +190,18 @@ bool ObjectExaminer::IsHole(const Ellipse& outline, ColorLabel label) const {
   int same = 0;
   for (int i = 0; i < kDirections; ++i) {
     const double t = 2 * std::numbers::pi * i / kDirections;
-    const double radius_px = (outline.At(t) - outline.center).norm();
+    const Eigen::Vector2d radius = outline.At(t) - outline.center;
+    const double radius_px = radius.norm();
+    const Eigen::Vector2d outward = radius / radius_px;
     const double min_width_px = std::max(kMinWidthPx, kMinWidth * radius_px);
     int width_px = 0;
     bool is_shown = false;
     for (double r = kFirst * radius_px; r < kLast * radius_px && width_px < min_width_px; ++r) {
-      const Eigen::Vector2i at = outline.At(t, r / radius_px).array().round().cast<int>();
-      if (!frame.contains({at.x(), at.y()})) break;
+      const cv::Point at(cvRound(outline.center.x() + r * outward.x()),
+                         cvRound(outline.center.y() + r * outward.y()));
+      if (!frame.contains(at)) break;
       is_shown = true;
-      const bool is_same = detector_.grid_.At(image_.ptr(at.y()) + 3 * at.x()) == label;
+      const bool is_same = detector_.grid_.At(image_.ptr(at.y) + 3 * at.x) == label;
       width_px = is_same ? width_px + 1 : 0;
     }
     shown += is_shown;
