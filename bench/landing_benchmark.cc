@@ -31,9 +31,9 @@ namespace {
 constexpr int kRounds = 9;
 constexpr char kThreshold[] = "cv::adaptiveThreshold, mean, box 11";
 constexpr char kDetect[] = "Detect, whole frame";
-constexpr char kDetectHint[] = "Detect, hint of 0.15 m";
+constexpr char kDetectHint[] = "Detect, hint of 0.15 m and up";
 
-// Frames of one camera and what the detector may be told about each.
+// Frames of one camera and what a tracker would tell the detector about each.
 struct Scenes {
   std::string name;
   LandingPatternDetector detector;
@@ -51,6 +51,7 @@ Scenes MakeScenes(const std::string& name, const CameraIntrinsics& camera,
     if (report.detection) {
       hint.center_in_camera = report.detection->camera_from_pattern.translation;
       hint.center_sigma_m = 0.15;
+      hint.up_in_camera = report.detection->camera_from_pattern.rotation * Eigen::Vector3d::UnitZ();
     }
     scenes.hints.push_back(hint);
   }

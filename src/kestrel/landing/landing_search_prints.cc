@@ -13,7 +13,7 @@ namespace {
 
 // Edges of the print are found to a tenth of a pixel, blurred ones to a few; the nearest edges of
 // anything else scatter over the whole reach of the search.
-constexpr double kMaxEdgeRmsPx = 1.0;
+constexpr double kMaxEdgeRmsPx = 0.7;
 constexpr double kInspectedRingPx = 64;  // major axis below which it is looked for other signs
 constexpr double kMinMajorPx = 9;        // of the smallest ring
 // Differences of the residuals inside of a small ring, on it and around it, share of the contrast.
