@@ -78,6 +78,22 @@ TEST_F(ObjectDetectorTest, DiscsOfAnotherSizeAreNotOnTheGround) {
   EXPECT_THAT(DetectSingle(scene, {{}, scene.up(), scene.height_m()}), IsEmpty());
 }
 
+TEST_F(ObjectDetectorTest, InsideOfALetterOnABannerIsNoDisc) {
+  const cv::Scalar letter(60, 60, 60);
+  const auto draw_letter = [&](const Eigen::Vector2d& pixel, ObjectScene* scene) {
+    scene->DrawDisc(scene->PointUnder(pixel, 0), 0.2, letter);
+    scene->DrawDisc(scene->PointUnder(pixel, 0), 0.1, kBluePaint);
+  };
+  ObjectScene banner;
+  banner.DrawRectangle(banner.PointUnder({400, 240}, 0), 8, 0.8, 0, kBluePaint);
+  draw_letter({150, 240}, &banner);
+  draw_letter({634, 240}, &banner);  // half of it in view
+  EXPECT_THAT(DetectSingle(banner, {{}, banner.up(), banner.height_m()}), IsEmpty());
+  ObjectScene ground;
+  draw_letter({150, 240}, &ground);
+  EXPECT_EQ(DetectOnGround(ground).size(), 1U) << "on the ground it may be a disc on a plate";
+}
+
 TEST_F(ObjectDetectorTest, CutOffDiscHasItsCentre) {
   ObjectScene scene;
   const Eigen::Vector2d center(634, 200);

@@ -138,11 +138,12 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
   if (outline->residual_px > options.outline_tolerance * radius_px + options.outline_tolerance_px) {
     return false;
   }
+  const auto ellipse = EllipseThrough(workspace_->outline.points);
+  if (!ellipse || IsHole(*ellipse, segment.label)) return false;
   if (segment.touches_border) {
     // What circularity says of a whole disc.
     constexpr double kMinFill = 0.8;
-    const auto ellipse = EllipseThrough(workspace_->outline.points);
-    if (!ellipse || FilledShare(segment, *ellipse, image_.size()) < kMinFill) return false;
+    if (FilledShare(segment, *ellipse, image_.size()) < kMinFill) return false;
   }
   *reached = ObjectStage::kOutline;
   const double radius_m = object.size_m / 2;
@@ -165,9 +166,7 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
   *reached = ObjectStage::kPosition;
   if (!hint_.up_in_camera) {
     // Which way the disc is tilted is not known: its centre is taken for that of the ellipse.
-    if (const auto ellipse = EllipseThrough(workspace_->outline.points)) {
-      position = distance * RayAt(ellipse->center);
-    }
+    position = distance * RayAt(ellipse->center);
   }
   // The less of the outline is seen, the less it says.
   const double seen = 1 - outline->gap - outline->outside;
@@ -175,6 +174,40 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
   SetLocation(position, object, less * options.center_sigma_px,
               less * options.radius_sigma_px / radius_px, detection);
   return true;
+}
+
+bool ObjectExaminer::IsHole(const Ellipse& outline, ColorLabel label) const {
+  constexpr int kDirections = 16;
+  // Times the outline: from beyond its blur to beyond the strokes of a letter, and how broad what
+  // has the colour must be. A line is not.
+  constexpr double kFirst = 1.3;
+  constexpr double kLast = 4;
+  constexpr double kMinWidth = 0.3;
+  constexpr double kMinWidthPx = 3;
+  constexpr double kMaxShare = 0.5;  // other discs lie around, but not on all sides
+  const cv::Rect frame({}, image_.size());
+  int shown = 0;
+  int same = 0;
+  for (int i = 0; i < kDirections; ++i) {
+    const double t = 2 * std::numbers::pi * i / kDirections;
+    const Eigen::Vector2d radius = outline.At(t) - outline.center;
+    const double radius_px = radius.norm();
+    const Eigen::Vector2d outward = radius / radius_px;
+    const double min_width_px = std::max(kMinWidthPx, kMinWidth * radius_px);
+    int width_px = 0;
+    bool is_shown = false;
+    for (double r = kFirst * radius_px; r < kLast * radius_px && width_px < min_width_px; ++r) {
+      const cv::Point at(cvRound(outline.center.x() + r * outward.x()),
+                         cvRound(outline.center.y() + r * outward.y()));
+      if (!frame.contains(at)) break;
+      is_shown = true;
+      const bool is_same = detector_.grid_.At(image_.ptr(at.y) + 3 * at.x) == label;
+      width_px = is_same ? width_px + 1 : 0;
+    }
+    shown += is_shown;
+    same += width_px >= min_width_px;
+  }
+  return same > kMaxShare * shown;
 }
 
 // Several discs of one colour that touch make one segment. It is no disc, but as solid as one, and

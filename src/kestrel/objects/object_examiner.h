@@ -40,6 +40,9 @@ class ObjectExaminer {
   // 'rays': through the corners, in the order of a walk around.
   bool LocateFace(const std::array<Eigen::Vector3d, 4>& rays, const ObjectClass& object,
                   ObjectDetection* detection) const;
+  // Whether the colour goes on beyond what surrounds the outline: a hole in something larger, like
+  // the inside of a letter on a banner.
+  bool IsHole(const Ellipse& outline, ColorLabel label) const;
   bool TestMerged(const Segment& segment, const SegmentShape& shape,
                   ObjectDetection* detection) const;
   // Area that a disc on the ground has in the image; nothing when the ground is not known.

@@ -52,8 +52,8 @@ TEST(HuntPipeline, ObjectsAreWhereTheyAreInTheWorld) {
     ASSERT_TRUE(seen.in_world[0]);
     // 100.5 px right and 99.5 px up, of 500 at 4 m.
     const Eigen::Vector3d expected(10 + 100.5 / 500 * 3.988, 20 + 99.5 / 500 * 3.988, 0.012);
-    // A tenth of a pixel in the radius is 3 cm of distance.
-    EXPECT_LT((seen.in_world[0]->position - expected).norm(), 0.03);
+    // A thirtieth of a pixel in the radius is 1 cm of distance.
+    EXPECT_LT((seen.in_world[0]->position - expected).norm(), 0.01);
   }
   const auto objects = pipeline.map().Confirmed();
   ASSERT_THAT(objects, SizeIs(1));
