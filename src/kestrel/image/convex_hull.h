@@ -21,8 +21,8 @@ class ConvexHull {
   // Of at least one point, and one in each row between the first and the last, as a border has.
   ConvexHull(const GridPoint* points, std::size_t count);
 
-  // Clockwise in the image, in pixels, integer = centre of a pixel. The uppermost and the lowest one
-  // come twice where they are points and no sides.
+  // Clockwise in the image, in pixels, integer = centre of a pixel. The uppermost and the lowest
+  // one come twice where they are points and no sides.
   std::span<const Eigen::Vector2d> corners() const { return {corners_.data(), count_}; }
 
  private:
