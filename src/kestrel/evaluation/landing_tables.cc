@@ -209,19 +209,24 @@ ReportTable ErrorTable(std::span<const LandingComparison> comparisons) {
 }
 
 ReportTable ConsistencyTable(std::span<const LandingComparison> comparisons) {
-  ReportTable table{"nees",
-                    "Consistency: normalised error squared (NEES)",
-                    "Of the position in the camera against the reported standard deviations of its "
-                    "three axes: 3 is right, more: the errors are larger than reported. The bounds "
-                    "are for axes that are independent; their correlation is not in the output.",
-                    {"altitude, m", "found", "mean", "95 % bounds of the mean", "median"},
-                    {}};
+  ReportTable table{
+      "nees",
+      "Consistency: normalised error squared (NEES)",
+      "Of the position in the camera against the reported standard deviations of its "
+      "three axes: 3 is right, more: the errors are larger than reported. The bounds "
+      "are for axes that are independent; their correlation is not in the output. "
+      "Successive images have errors in common: independent is how many that "
+      "have none say as much of the mean.",
+      {"altitude, m", "found", "independent", "mean", "95 % bounds of the mean", "median"},
+      {}};
   for (const auto& [bin, label] : AltitudeRows()) {
     const std::vector<double> nees = ErrorsOf(
         comparisons, bin, [](const LandingErrors& e) -> std::optional<double> { return e.nees; });
     if (nees.empty()) continue;
-    const Interval bounds = MeanNeesBounds(static_cast<int>(nees.size()), 3);
-    table.rows.push_back({label, std::to_string(nees.size()), FormatFixed(Mean(nees), 2),
+    const int independent = IndependentCount(nees);
+    const Interval bounds = MeanNeesBounds(independent, 3);
+    table.rows.push_back({label, std::to_string(nees.size()), std::to_string(independent),
+                          FormatFixed(Mean(nees), 2),
                           FormatFixed(bounds.low, 2) + " to " + FormatFixed(bounds.high, 2),
                           FormatFixed(Median(nees), 2)});
   }

@@ -38,6 +38,18 @@ Interval MeanNeesBounds(int count, int dimensions) {
   return {sum.low / count, sum.high / count};
 }
 
+int IndependentCount(std::span<const double> series) {
+  const auto count = static_cast<double>(series.size());
+  const double mean = Mean(series);
+  double squares = 0, products = 0;
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    squares += (series[i] - mean) * (series[i] - mean);
+    if (i > 0) products += (series[i] - mean) * (series[i - 1] - mean);
+  }
+  const double correlation = squares > 0 ? std::clamp(products / squares, 0.0, 1.0) : 0.0;
+  return std::max(1, static_cast<int>(count * (1 - correlation) / (1 + correlation)));
+}
+
 double Mean(std::span<const double> values) {
   if (values.empty()) return kNaN;
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());

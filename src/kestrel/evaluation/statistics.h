@@ -25,6 +25,11 @@ Interval ChiSquareBounds(int degrees);
 // degrees of freedom each, when the covariances are right (Bar-Shalom et al. 2001, section 5.4).
 Interval MeanNeesBounds(int count, int dimensions);
 
+// How many independent values say as much of their mean as a series whose neighbours are alike: a
+// first-order autoregressive process with the correlation of the neighbours. At least 1, and no
+// more than there are values.
+int IndependentCount(std::span<const double> series);
+
 // These are NaN without values. The quantile, 'part' 0 to 1, is interpolated between neighbours.
 double Mean(std::span<const double> values);
 double RootMeanSquare(std::span<const double> values);

@@ -2,8 +2,11 @@
 #include "kestrel/evaluation/statistics.h"
 
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
+
+#include "kestrel/base/random.h"
 
 namespace kestrel {
 namespace {
@@ -36,6 +39,21 @@ TEST(MeanNeesBounds, CloseInOnTheDimensions) {
   EXPECT_GT(few.high, many.high);
   EXPECT_NEAR(many.low, 3, 0.2);
   EXPECT_NEAR(many.high, 3, 0.2);
+}
+
+TEST(IndependentCount, OfNeighboursThatAreAlikeIsLess) {
+  Random random(1);
+  std::vector<double> independent, alike;
+  double state = 0;
+  for (int i = 0; i < 2000; ++i) {
+    independent.push_back(random.Normal());
+    state = 0.8 * state + random.Normal();
+    alike.push_back(state);
+  }
+  EXPECT_NEAR(IndependentCount(independent), 2000, 150);
+  EXPECT_NEAR(IndependentCount(alike), 2000 * 0.2 / 1.8, 40);
+  EXPECT_EQ(IndependentCount(std::vector<double>(5, 1.0)), 5);
+  EXPECT_EQ(IndependentCount(std::vector<double>{7}), 1);
 }
 
 TEST(Quantile, InterpolatesBetweenNeighbours) {

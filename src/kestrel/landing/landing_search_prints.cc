@@ -24,7 +24,7 @@ constexpr double kMaxMoreOutside = 0.15;
 constexpr double kMinCrossCorrelation = 0.7;
 // Added to that for a small pattern whose board is dark, times the darkness: two doubts in one.
 constexpr double kCrossForDarkBoard = 1.2;
-constexpr double kMaxOtherSpokes = 0.55;
+constexpr double kMaxOtherSpokes = 0.65;
 constexpr double kMaxFrameCorners = 0.14;
 constexpr double kMaxBoardDarkness = 0.35;
 constexpr double kEveryPart = 0.95;              // quality of a print of which nothing is missing

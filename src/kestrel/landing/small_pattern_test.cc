@@ -129,7 +129,7 @@ TEST_F(SmallPatternTest, OtherSignsShowWhatThePrintHasNot) {
     EXPECT_LT(std::abs(right->frame_corners), 0.05) << diameter_px;
     EXPECT_GT(right->cross_correlation, 0.9) << diameter_px;
     EXPECT_LT(std::abs(right->board_darkness), 0.15) << diameter_px;
-    EXPECT_GT(inspect(SpokedPrint(pattern_, 8), pose)->spokes, 0.6) << diameter_px;
+    EXPECT_GT(inspect(SpokedPrint(pattern_, 8), pose)->spokes, 0.65) << diameter_px;
     EXPECT_GT(inspect(frame, pose)->frame_corners, 0.1) << diameter_px;
     EXPECT_LT(inspect(blot, pose)->cross_correlation, 0.5) << diameter_px;
   }
