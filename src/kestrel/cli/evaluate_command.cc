@@ -41,10 +41,10 @@ Report Evaluate(const EvaluateArguments& arguments) {
 
 void RunEvaluate(const EvaluateArguments& arguments) {
   const Report report = Evaluate(arguments);
-  std::cout << ToMarkdown(report) << std::flush;
   const fs::path folder = arguments.report.empty() ? fs::path(arguments.output) / "evaluation"
                                                    : fs::path(arguments.report);
   WriteReport(report, OutputFolder(folder, arguments.force));
+  std::cout << ToMarkdown(report) << std::flush;
   fmt::print(stderr, "report: {}\n", (folder / "report.md").string());
 }
 

@@ -90,6 +90,12 @@ TEST_F(KestrelCommandTest, WrongUsageIsStatusTwo) {
   }
 }
 
+TEST_F(KestrelCommandTest, UnknownCommandIsNamed) {
+  const Outcome outcome = Run("lnd a.png");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("there is no command 'lnd'"));
+}
+
 TEST_F(KestrelCommandTest, ConfigReadsBackToItself) {
   const Outcome first = Run("config --set landing.detector.min_ring_px=9.5");
   EXPECT_EQ(first.status, 0);
@@ -170,6 +176,8 @@ TEST_F(KestrelCommandTest, SourceAtFaultIsNamed) {
   const std::string image = folder_.WriteImage("a.png", NoiseImage(640, 480, CV_8UC1));
   ExpectInputError("land nowhere.png" + camera, "nowhere.png: no such file");
   ExpectInputError("land " + image, "no calibration");
+  EXPECT_THAT(Run("land " + image + camera + " --predict 1 --output " + folder_ / "out").err,
+              HasSubstr("no prediction: it needs a source with poses"));
   const std::string deep = folder_.WriteImage("deep.png", cv::Mat(480, 640, CV_16UC1));
   const std::string tiny = folder_.WriteImage("tiny.png", cv::Mat(1, 1, CV_8UC1));
   const std::string wide = folder_.WriteImage("wide.png", cv::Mat(2, 20000, CV_8UC1));

@@ -78,6 +78,11 @@ void RunLand(const LandArguments& arguments) {
   LandingPipeline pipeline(calibration, options);
   pipeline.SetAltitude(arguments.source.altitude_m);
   const bool has_track = has_poses && calibration.body_from_camera && !options.still;
+  if (!arguments.predict_s.empty() && !has_track) {
+    fmt::print(stderr,
+               "no prediction: it needs a source with poses, a camera with its mount (T_BS) and no "
+               "--still\n");
+  }
   LandingSink sink({.folder = arguments.source.output,
                     .force = arguments.source.force,
                     .annotate = arguments.source.annotate,

@@ -45,6 +45,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& wanted) {  // help, version
     return app.exit(wanted);
   } catch (const CLI::ParseError& error) {
+    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
+      fmt::print(stderr, "kestrel: there is no command '{}'; kestrel --help lists them\n", argv[1]);
+      return kWrongUsage;
+    }
     app.exit(error);
     return kWrongUsage;
   } catch (const std::exception& error) {

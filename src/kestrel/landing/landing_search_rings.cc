@@ -147,12 +147,15 @@ std::optional<RingFit> LandingSearch::FitToBorder(const RingCandidate& candidate
 // short to stand out from those of everything else in the image.
 void LandingSearch::TestCutAreas(std::size_t pass_index) {
   constexpr double kTolerancePx = 0.8;  // of an outline that ends in corners of pixels
+  constexpr int kMaxFits = 16;          // a bound of the time that a frame full of texture costs
   const ImageRegion region{offset_, kPasses[pass_index].image_level};
   const LandingPattern& pattern = models_.options.pattern;
   const BorderTracer& tracer = buffers_.tracers[pass_index];
+  int fits = 0;
   for (const Border& border : tracer.borders()) {
     const int extent = std::max(border.max.x - border.min.x, border.max.y - border.min.y);
     if (border.signed_area < 0 || extent > kMaxHullExtent || !IsCutOff(tracer, border)) continue;
+    if (++fits > kMaxFits) return;
     std::optional<RingFit> ring;
     {
       StageTimer timer(&report_, LandingStage::kRing);
