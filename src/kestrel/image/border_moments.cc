@@ -57,7 +57,7 @@ RegionMoments ComputeBorderMoments(const GridPoint* points, std::size_t count) {
 RegionMoments ComputeHullMoments(const ConvexHull& hull) {
   const std::span<const Eigen::Vector2d> corners = hull.corners();
   // Relative to a corner, so that large coordinates cost no digits.
-  const Eigen::Vector2d origin = corners.front();
+  const Eigen::Vector2d& origin = corners.front();
   double twice_area = 0;
   Eigen::Vector2d first = Eigen::Vector2d::Zero();  // moments
   Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
