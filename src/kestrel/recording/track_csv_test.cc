@@ -10,7 +10,7 @@ namespace {
 
 TargetEstimate Target() {
   TargetEstimate target{TimeFromNanoseconds(1'500'000'000), {}};
-  target.motion.mean << 1, 2, 3, 0, 4, 0.5, 0.25, 0;
+  target.motion.mean.head<8>() << 1, 2, 3, 0, 4, 0.5, 0.25, 0;
   target.motion.covariance.diagonal().head<6>() << 0.01, 0.01, 0.01, 0.04, 0.04, 0.04;
   return target;
 }
