@@ -10,17 +10,6 @@ namespace {
 
 constexpr std::size_t kMinSamples = 6;  // for a parabola that is not the samples themselves
 
-Eigen::Vector3d RotationVector(const Eigen::Quaterniond& rotation) {
-  const Eigen::AngleAxisd turn(rotation);
-  return turn.angle() * turn.axis();
-}
-
-Eigen::Quaterniond FromRotationVector(const Eigen::Vector3d& turn) {
-  const double angle = turn.norm();
-  if (angle < 1e-12) return Eigen::Quaterniond::Identity();
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle));
-}
-
 // The pose at the time of 'at' by the parabolas through 'window'.
 RigidTransform FitAt(const PoseSample& at, std::span<const PoseSample> window) {
   const auto count = static_cast<Eigen::Index>(window.size());
@@ -35,7 +24,7 @@ RigidTransform FitAt(const PoseSample& at, std::span<const PoseSample> window) {
   }
   const Eigen::Matrix<double, 3, 6> parabolas = basis.colPivHouseholderQr().solve(offsets);
   const Eigen::Matrix<double, 6, 1> now = parabolas.row(0).transpose();
-  const RigidTransform correction{FromRotationVector(now.tail<3>()), now.head<3>()};
+  const RigidTransform correction{RotationBy(now.tail<3>()), now.head<3>()};
   RigidTransform pose = at.world_from_body * correction;
   pose.rotation.normalize();
   return pose;

@@ -24,4 +24,24 @@ struct RigidTransform {
   }
 };
 
+// The rotation by a rotation vector: about its direction by its length, rad.
+inline Eigen::Quaterniond RotationBy(const Eigen::Vector3d& turn) {
+  const double angle = turn.norm();
+  if (!(angle > 0)) return Eigen::Quaterniond::Identity();
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle));
+}
+
+// Its inverse: the rotation vector of 'rotation', no longer than pi.
+inline Eigen::Vector3d RotationVector(const Eigen::Quaterniond& rotation) {
+  const Eigen::AngleAxisd turn(rotation);
+  return turn.angle() * turn.axis();
+}
+
+// 'pose' moved by a translation and turned about its own origin by a rotation vector (rad), both in
+// the frame that it maps to.
+inline RigidTransform Moved(const RigidTransform& pose, const Eigen::Vector3d& translation,
+                            const Eigen::Vector3d& turn) {
+  return {(RotationBy(turn) * pose.rotation).normalized(), pose.translation + translation};
+}
+
 }  // namespace kestrel

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/geometry/rigid_transform.h"
 
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "kestrel/base/random.h"
@@ -38,6 +40,27 @@ TEST(RigidTransform, AgreesWithHomogeneousMatrices) {
     const Eigen::Vector3d point{random.Normal(), random.Normal(), random.Normal()};
     const Eigen::Vector4d reference = MatrixOf(b_from_a) * point.homogeneous();
     EXPECT_TRUE((b_from_a * point).isApprox(reference.head<3>()));
+  }
+}
+
+TEST(RigidTransform, RotatesByTheLengthOfTheVectorAboutItsDirection) {
+  const Eigen::Vector3d quarter_about_z(0, 0, std::numbers::pi / 2);
+  EXPECT_TRUE((RotationBy(quarter_about_z) * Eigen::Vector3d::UnitX())
+                  .isApprox(Eigen::Vector3d::UnitY(), 1e-12));
+  EXPECT_TRUE(RotationBy(Eigen::Vector3d::Zero()).isApprox(Eigen::Quaterniond::Identity()));
+  EXPECT_TRUE(RotationVector(RotationBy(quarter_about_z)).isApprox(quarter_about_z, 1e-12));
+}
+
+TEST(RigidTransform, IsMovedInTheFrameThatItMapsTo) {
+  Random random(3);
+  for (int trial = 0; trial < 100; ++trial) {
+    const RigidTransform pose = RandomTransform(&random);
+    const Eigen::Vector3d translation{random.Normal(), random.Normal(), random.Normal()};
+    const Eigen::Vector3d turn{random.Normal(), random.Normal(), random.Normal()};
+    const Eigen::Vector3d point{random.Normal(), random.Normal(), random.Normal()};
+    const Eigen::Vector3d turned = RotationBy(turn) * (pose.rotation * point);
+    EXPECT_TRUE(
+        (Moved(pose, translation, turn) * point).isApprox(turned + pose.translation + translation));
   }
 }
 

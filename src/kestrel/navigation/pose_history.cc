@@ -84,4 +84,32 @@ std::optional<RigidTransform> PoseHistory::Lookup(Time time) const {
   return Interpolate(before.world_from_body, after.world_from_body, part);
 }
 
+std::optional<RigidTransform> PoseHistory::Smooth(Time time, Duration half_window) const {
+  constexpr double kMinSamples = 4;
+  std::optional<RigidTransform> pose = Lookup(time);
+  if (!pose) return std::nullopt;
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  const Eigen::Quaterniond back = pose->rotation.conjugate();
+  double count = 0;
+  double sum_t = 0;
+  double sum_tt = 0;
+  Vector6 sum = Vector6::Zero();  // of the samples' offsets from 'pose'
+  Vector6 sum_times_t = Vector6::Zero();
+  for (std::size_t i = FirstNotBefore(time - half_window);
+       i < size_ && At(i).time <= time + half_window; ++i) {
+    const RigidTransform& sample = At(i).world_from_body;
+    const double t = ToSeconds(At(i).time - time);
+    Vector6 offset;
+    offset << sample.translation - pose->translation, RotationVector(sample.rotation * back);
+    ++count;
+    sum_t += t;
+    sum_tt += t * t;
+    sum += offset;
+    sum_times_t += t * offset;
+  }
+  if (count < kMinSamples) return pose;
+  const Vector6 offset = (sum_tt * sum - sum_t * sum_times_t) / (count * sum_tt - sum_t * sum_t);
+  return Moved(*pose, offset.head<3>(), offset.tail<3>());
+}
+
 }  // namespace kestrel

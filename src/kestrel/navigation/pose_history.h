@@ -51,6 +51,12 @@ class PoseHistory {
   // straight line and the rotation by the shortest arc (slerp). Nothing outside of the samples.
   std::optional<RigidTransform> Lookup(Time time) const;
 
+  // The same with less noise: the value at 'time' of the lines, of position and of rotation vector,
+  // that fit the samples up to 'half_window' before and after it best. In flight those after it are
+  // still to come, and the lines end there. Motion that bends within the window is flattened. As
+  // Lookup where fewer than four samples are around.
+  std::optional<RigidTransform> Smooth(Time time, Duration half_window) const;
+
   std::size_t size() const { return size_; }
   std::size_t capacity() const { return ring_.size(); }
 

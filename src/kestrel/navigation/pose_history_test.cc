@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/navigation/pose_history.h"
 
+#include <cmath>
 #include <limits>
 #include <numbers>
 
 #include <gtest/gtest.h>
+
+#include "kestrel/base/random.h"
 
 namespace kestrel {
 namespace {
@@ -104,6 +107,37 @@ TEST(PoseHistory, DoesNotBridgeAGap) {
   EXPECT_TRUE(history.Has(At(0)));
   EXPECT_TRUE(history.Has(At(1.5)));
   EXPECT_FALSE(history.Has(At(0.1)));
+}
+
+TEST(PoseHistory, SmoothPosesHaveLessNoiseAndNoDelay) {
+  Random random(1);
+  PoseHistory history(2000, kMaxGap);
+  double lookup = 0;
+  double smooth = 0;
+  // 3 m/s and 0.5 rad/s at 100 Hz, each pose as it comes.
+  for (int i = 0; i < 1000; ++i) {
+    const double t = 0.01 * i;
+    history.Add(Sample(t, 3 * t + 0.01 * random.Normal(), 0.5 * t + 0.003 * random.Normal()));
+    if (i < 20) continue;
+    const Time now = At(t - 0.002);
+    const RigidTransform truth =
+        Sample(t - 0.002, 3 * (t - 0.002), 0.5 * (t - 0.002)).world_from_body;
+    const auto error = [&](const RigidTransform& pose) {
+      return std::pow(pose.translation.x() - truth.translation.x(), 2) +
+             std::pow(pose.rotation.angularDistance(truth.rotation), 2);
+    };
+    lookup += error(*history.Lookup(now));
+    smooth += error(*history.Smooth(now, std::chrono::milliseconds(100)));
+  }
+  EXPECT_LT(smooth, 0.5 * lookup);
+}
+
+TEST(PoseHistory, TooFewPosesAreNotSmoothed) {
+  PoseHistory history(10, kMaxGap);
+  for (int i = 0; i < 8; ++i) history.Add(Sample(0.1 * i, i % 2));
+  const Duration half_window = std::chrono::milliseconds(120);
+  EXPECT_EQ(history.Smooth(At(0.4), half_window)->translation.x(), 0);
+  EXPECT_FALSE(history.Smooth(At(0.75), half_window));
 }
 
 }  // namespace

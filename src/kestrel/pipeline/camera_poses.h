@@ -15,9 +15,12 @@ namespace kestrel {
 // clock offset.
 class CameraPoses {
  public:
-  CameraPoses(const CameraCalibration& calibration, std::size_t capacity, Duration max_gap)
+  // 'smoothing': see PoseHistory::Smooth; none: poses as they are.
+  CameraPoses(const CameraCalibration& calibration, std::size_t capacity, Duration max_gap,
+              Duration smoothing = Duration::zero())
       : body_from_camera_(calibration.body_from_camera),
         clock_offset_(calibration.clock_offset.value_or(Duration::zero())),
+        smoothing_(smoothing),
         poses_(capacity, max_gap) {}
 
   // A pose from the navigation, on its clock.
@@ -29,7 +32,7 @@ class CameraPoses {
   // 'world_from_camera' at an instant of the images' clock; nothing without a mount or a pose.
   std::optional<RigidTransform> At(Time image_time) const {
     if (!body_from_camera_) return std::nullopt;
-    const auto world_from_body = poses_.Lookup(image_time + clock_offset_);
+    const auto world_from_body = poses_.Smooth(image_time + clock_offset_, smoothing_);
     if (!world_from_body) return std::nullopt;
     return *world_from_body * *body_from_camera_;
   }
@@ -37,6 +40,7 @@ class CameraPoses {
  private:
   std::optional<RigidTransform> body_from_camera_;
   Duration clock_offset_;
+  Duration smoothing_;
   PoseHistory poses_;
 };
 

@@ -25,11 +25,6 @@ Vector3d NormalVector(double sigma, Random* random) {
   return sigma * Vector3d(x, y, random->Normal());
 }
 
-Quaterniond SmallTurn(const Vector3d& turn) {
-  const double angle = turn.norm();
-  return angle > 0 ? Quaterniond(AngleAxisd(angle, turn / angle)) : Quaterniond::Identity();
-}
-
 }  // namespace
 
 std::vector<std::string> NavigationOptions::Validate() const {
@@ -69,7 +64,7 @@ NavigationSensor::NavigationSensor(const NavigationOptions& options, const Navig
     : options_(options), errors_(errors), random_(random) {
   constexpr double kDriftPeriod_s = 40;
   bias_ = NormalVector(options.position_bias_m, &random_);
-  turn_ = SmallTurn(NormalVector(Radians(options.attitude_bias_deg), &random_));
+  turn_ = RotationBy(NormalVector(Radians(options.attitude_bias_deg), &random_));
   for (auto& drift : drift_) drift = Wander(options.position_drift_m, kDriftPeriod_s, &random_);
 }
 
@@ -77,7 +72,7 @@ PoseSample NavigationSensor::Report(double time_s, RigidTransform world_from_bod
   const Vector3d drift(drift_[0](time_s), drift_[1](time_s), drift_[2](time_s));
   world_from_body.translation += bias_ + drift + NormalVector(options_.position_noise_m, &random_);
   const Vector3d noise = NormalVector(Radians(options_.attitude_noise_deg), &random_);
-  world_from_body.rotation = (world_from_body.rotation * turn_ * SmallTurn(noise)).normalized();
+  world_from_body.rotation = (world_from_body.rotation * turn_ * RotationBy(noise)).normalized();
   return {TimeOfFlight(time_s + errors_.clock_offset_s), world_from_body};
 }
 
@@ -98,7 +93,7 @@ std::function<Quaterniond(double)> Vibration(const NavigationOptions& options, R
   const auto x = Wander(sigma, period_s, random);
   const auto y = Wander(sigma, period_s, random);
   const auto z = Wander(sigma, period_s, random);
-  return [=](double time_s) { return SmallTurn(Vector3d(x(time_s), y(time_s), z(time_s))); };
+  return [=](double time_s) { return RotationBy(Vector3d(x(time_s), y(time_s), z(time_s))); };
 }
 
 }  // namespace kestrel
