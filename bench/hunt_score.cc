@@ -152,12 +152,18 @@ HuntScore ScoreHunt(const std::string& folder) {
       truth.scene().mount_error * calibration.body_from_camera->rotation;
   HuntPipelineOptions options;
   options.readout_s = kReadout_s;
-  options.pose_capacity = static_cast<int>(std::max<std::size_t>(2, source->poses().size()));
   HuntPipeline pipeline(calibration, DefaultObjectModel(), options);
-  for (const PoseSample& pose : source->poses()) pipeline.AddPose(pose);
+  const std::vector<PoseSample> poses = source->poses();
+  std::size_t next_pose = 0;
   HuntScore score;
   std::string csv = ObjectCsvHeader();
   for (Frame frame; source->Next(&frame);) {
+    // As in flight: poses up to the one after the last row.
+    const Time last_row =
+        frame.time + *calibration.clock_offset + DurationFromSeconds(kReadout_s / 2);
+    while (next_pose < poses.size() && (next_pose == 0 || poses[next_pose - 1].time < last_row)) {
+      pipeline.AddPose(poses[next_pose++]);
+    }
     const HuntObservation& observation = pipeline.Process(frame.image, frame.time);
     csv += ObjectCsvRows(frame.name, observation, pipeline.detector().model());
     if (!digits.empty()) ScoreDigits(observation, sightings, digits, &score);
@@ -170,6 +176,7 @@ HuntScore ScoreHunt(const std::string& folder) {
     const std::string kind =
         c.is_wanted ? shapes.at(*c.true_id) + ", wanted" : "cut off, hidden or small";
     score.center_errors_px[kind].push_back(c.center_error_px);
+    if (c.is_wanted) score.center_errors_px["all, wanted"].push_back(c.center_error_px);
   }
   return score;
 }

@@ -34,8 +34,8 @@ struct DigitScore {
 
 struct HuntScore {
   std::vector<ObjectComparison> comparisons;
-  // Of the objects found (px): those that had to be found by shape ("disc, wanted"), and "cut off,
-  // hidden or small".
+  // Of the objects found (px): those that had to be found by shape ("disc, wanted") and together
+  // ("all, wanted"), and "cut off, hidden or small".
   std::map<std::string, std::vector<double>> center_errors_px;
   DigitScore digits;
   DigitScore near_digits;  // of cuboids at most 3 m away

@@ -17,7 +17,7 @@
 namespace kestrel {
 namespace {
 
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;
 constexpr std::array kShapes = {ObjectShape::kDisc, ObjectShape::kCuboid, ObjectShape::kBar};
 
 template <class Range>
@@ -26,18 +26,16 @@ std::string List(const Range& range) {
 }
 
 std::string Print(const MappedObject& object) {
-  const std::vector<double> covariance(object.covariance.data(), object.covariance.data() + 36);
-  const std::vector<double> state(object.state.data(), object.state.data() + 6);
   return fmt::format(
       "{{\"id\": {}, \"shape\": \"{}\", \"first_seen_ns\": {}, \"last_seen_ns\": {}, "
       "\"time_ns\": {}, \"state\": {}, \"covariance\": {}, \"may_move\": {}, \"detections\": {}, "
       "\"log_odds\": {}, \"color\": [{}, {}, {}], \"color_log_likelihoods\": {}, "
       "\"digit_log_likelihoods\": {}}}",
       object.id, ToString(object.shape), ToNanoseconds(object.first_seen),
-      ToNanoseconds(object.last_seen), ToNanoseconds(object.time), List(state), List(covariance),
-      object.may_move, object.detections, object.log_odds, object.color.hue_deg,
-      object.color.saturation, object.color.value, List(object.color_log_likelihoods),
-      List(object.digit_log_likelihoods));
+      ToNanoseconds(object.last_seen), ToNanoseconds(object.time), List(object.state.reshaped()),
+      List(object.covariance.reshaped()), object.may_move, object.detections, object.log_odds,
+      object.color.hue_deg, object.color.saturation, object.color.value,
+      List(object.color_log_likelihoods), List(object.digit_log_likelihoods));
 }
 
 ObjectShape ParseShape(const YamlReader& reader) {
@@ -60,14 +58,16 @@ MappedObject ParseObject(const YamlReader& reader) {
   reader.RequireKeys({"id", "shape", "first_seen_ns", "last_seen_ns", "time_ns", "state",
                       "covariance", "may_move", "detections", "log_odds", "color",
                       "color_log_likelihoods", "digit_log_likelihoods"});
+  constexpr int kStateSize = MappedObject::kStateSize;
   MappedObject object;
   object.id = reader["id"].Integer();
   object.shape = ParseShape(reader["shape"]);
   object.first_seen = ParseTime(reader["first_seen_ns"]);
   object.last_seen = ParseTime(reader["last_seen_ns"]);
   object.time = ParseTime(reader["time_ns"]);
-  object.state = MappedObject::Vector6(reader["state"].Numbers(6).data());
-  object.covariance = MappedObject::Matrix6(reader["covariance"].Numbers(36).data());
+  object.state = MappedObject::State(reader["state"].Numbers(kStateSize).data());
+  object.covariance =
+      MappedObject::Covariance(reader["covariance"].Numbers(kStateSize * kStateSize).data());
   const Eigen::Matrix3d position = object.covariance.topLeftCorner<3, 3>();
   if (position.llt().info() != Eigen::Success) {
     reader["covariance"].Fail("expected the covariance of a position, positive definite");

@@ -57,7 +57,7 @@ TEST(MapFile, ValuesThatNoMapHasAreNamed) {
     return changed.replace(changed.find(from), from.size(), to);
   };
   EXPECT_THAT(ErrorOf(with("disc", "ball")), HasSubstr("'ball' is no shape"));
-  EXPECT_THAT(ErrorOf(with("\"kestrel_map\": 1", "\"kestrel_map\": 9")), HasSubstr("format 1"));
+  EXPECT_THAT(ErrorOf(with("\"kestrel_map\": 2", "\"kestrel_map\": 1")), HasSubstr("format 2"));
   EXPECT_THAT(ErrorOf(with("\"state\": [", "\"state\": [nan, ")), HasSubstr("finite number"));
   EXPECT_THAT(ErrorOf(with("\"covariance\": [", "\"covariance\": [-")), HasSubstr("map.json:2"));
 }

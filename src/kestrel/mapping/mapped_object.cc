@@ -7,6 +7,39 @@
 #include <Eigen/LU>
 
 namespace kestrel {
+namespace {
+
+// How position, velocity and acceleration along one axis go on.
+struct AxisMotion {
+  Eigen::Matrix3d transition;
+  Eigen::Matrix3d noise;
+};
+
+// An acceleration that is forgotten with time (Singer, 1970), and a velocity that is too: nothing
+// drives on for long as it does now, nor ever faster. The process over a short step, doubled until
+// it is as long as 'dt' (s).
+AxisMotion PredictAxis(double dt, const ObjectMotion& motion) {
+  constexpr double kShort_s = 1e-3;
+  const int doublings = std::max(0, static_cast<int>(std::ceil(std::log2(dt / kShort_s))));
+  const double step = std::ldexp(dt, -doublings);
+  Eigen::Matrix3d rates;
+  rates << 0, 1, 0,                           //
+      0, -1 / motion.velocity_time_s, 1,      //
+      0, 0, -1 / motion.acceleration_time_s;  //
+  const Eigen::Matrix3d change = step * rates;
+  AxisMotion axis{Eigen::Matrix3d::Identity() + change + 0.5 * change * change,
+                  Eigen::Matrix3d::Zero()};
+  // Keeps the variance of the acceleration.
+  axis.noise(2, 2) =
+      std::pow(motion.acceleration_sigma_mps2, 2) * (1 - std::pow(axis.transition(2, 2), 2));
+  for (int i = 0; i < doublings; ++i) {
+    axis.noise += (axis.transition * axis.noise * axis.transition.transpose()).eval();
+    axis.transition = (axis.transition * axis.transition).eval();
+  }
+  return axis;
+}
+
+}  // namespace
 
 double MappedObject::sigma_m() const {
   return std::sqrt(covariance.topLeftCorner<3, 3>().trace() / 3);
@@ -32,29 +65,24 @@ void PredictObject(Time time, const ObjectMotion& motion, MappedObject* object) 
         motion.drift_noise * motion.drift_noise * dt;
     return;
   }
-  // A velocity that is disturbed by white acceleration and forgotten with time: nothing drives
-  // straight on for long (Ornstein-Uhlenbeck process).
-  const double t = motion.velocity_time_s;
-  const double kept = std::exp(-dt / t);
-  const double way = t * (1 - kept);
-  MappedObject::Matrix6 transition = MappedObject::Matrix6::Identity();
-  transition.topRightCorner<3, 3>().diagonal().setConstant(way);
-  transition.bottomRightCorner<3, 3>().diagonal().setConstant(kept);
-  const double q = motion.acceleration_noise * motion.acceleration_noise;
-  const Eigen::Vector3d density(q, q, kClimb * kClimb * q);
-  MappedObject::Matrix6 noise = MappedObject::Matrix6::Zero();
-  noise.topLeftCorner<3, 3>().diagonal() = density * t * t * (dt - way - way * way / (2 * t));
-  noise.topRightCorner<3, 3>().diagonal() = density * way * way / 2;
-  noise.bottomLeftCorner<3, 3>().diagonal() = density * way * way / 2;
-  noise.bottomRightCorner<3, 3>().diagonal() = density * t / 2 * (1 - kept * kept);
+  const AxisMotion axis = PredictAxis(dt, motion);
+  MappedObject::Covariance transition;
+  MappedObject::Covariance noise;
+  const Eigen::DiagonalMatrix<double, 3> shares(1, 1, kClimb * kClimb);
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      transition.block<3, 3>(3 * i, 3 * k) = axis.transition(i, k) * Eigen::Matrix3d::Identity();
+      noise.block<3, 3>(3 * i, 3 * k) = axis.noise(i, k) * shares.toDenseMatrix();
+    }
+  }
   object->state = (transition * object->state).eval();
   object->covariance = (transition * object->covariance * transition.transpose() + noise).eval();
 }
 
 void UnifyObjects(const MappedObject& other, MappedObject* kept) {
   // A standing object's velocity has no covariance, hence a solver for what is singular.
-  const MappedObject::Matrix6 sum = kept->covariance + other.covariance;
-  const MappedObject::Matrix6 gain = sum.fullPivLu().solve(kept->covariance).transpose();
+  const MappedObject::Covariance sum = kept->covariance + other.covariance;
+  const MappedObject::Covariance gain = sum.fullPivLu().solve(kept->covariance).transpose();
   kept->state = (kept->state + gain * (other.state - kept->state)).eval();
   kept->covariance = (kept->covariance - gain * kept->covariance).eval();
   kept->covariance = (0.5 * (kept->covariance + kept->covariance.transpose())).eval();

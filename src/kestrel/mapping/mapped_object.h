@@ -26,16 +26,18 @@ struct ObjectMeasurement {
 // What the map knows of an object. Likelihoods are kept, not a choice: the next detection may
 // change it.
 struct MappedObject {
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  static constexpr int kStateSize = 9;
+  using State = Eigen::Matrix<double, kStateSize, 1>;
+  using Covariance = Eigen::Matrix<double, kStateSize, kStateSize>;
 
   std::int64_t id = 0;  // within its map
   ObjectShape shape = ObjectShape::kDisc;
   Time first_seen;
   Time last_seen;
-  Time time;                        // of the state
-  Vector6 state = Vector6::Zero();  // position (m) and velocity (m/s) in the world
-  Matrix6 covariance = Matrix6::Zero();
+  Time time;  // of the state
+  // Position (m), velocity (m/s) and acceleration (m/s^2) in the world; what stands has no motion.
+  State state = State::Zero();
+  Covariance covariance = Covariance::Zero();
   bool may_move = false;
   int detections = 0;
   double log_odds = 0;  // that it is there
@@ -44,7 +46,7 @@ struct MappedObject {
   DigitLikelihoods digit_log_likelihoods{};
 
   auto position() const { return state.head<3>(); }
-  auto velocity() const { return state.tail<3>(); }
+  auto velocity() const { return state.segment<3>(3); }
   // Standard deviation of the position per axis: root of the mean of the three variances.
   double sigma_m() const;
   std::size_t color_index() const;  // the most likely
@@ -58,7 +60,8 @@ inline constexpr double kClimb = 0.02;
 // How objects move: see ObjectMapOptions.
 struct ObjectMotion {
   double drift_noise;
-  double acceleration_noise;
+  double acceleration_sigma_mps2;
+  double acceleration_time_s;
   double velocity_time_s;
 };
 

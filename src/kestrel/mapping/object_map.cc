@@ -62,8 +62,9 @@ std::vector<std::string> ObjectMapOptions::Validate() const {
   require(new_density > 0, "new_density must be positive");
   require(min_separation_m >= 0, "min_separation_m must not be negative");
   require(drift_noise >= 0, "drift_noise must not be negative");
-  require(acceleration_noise > 0, "acceleration_noise must be positive");
-  require(velocity_time_s > 0, "velocity_time_s must be positive");
+  require(acceleration_sigma_mps2 > 0, "acceleration_sigma_mps2 must be positive");
+  require(acceleration_time_s >= 0.01, "acceleration_time_s must be at least 0.01");
+  require(velocity_time_s >= 0.01, "velocity_time_s must be at least 0.01");
   require(start_speed_sigma_mps > 0, "start_speed_sigma_mps must be positive");
   require(shared_sigma_m >= 0, "shared_sigma_m must not be negative");
   require(is_share(detection_probability), "detection_probability must be in 0 to 1");
@@ -139,11 +140,11 @@ double ObjectMap::Cost(const ObjectMeasurement& measurement, const MappedObject&
 void ObjectMap::Fuse(const ObjectMeasurement& measurement, MappedObject* object) const {
   const Eigen::Matrix3d innovation =
       object->covariance.topLeftCorner<3, 3>() + measurement.covariance;
-  const Eigen::Matrix<double, 6, 3> gain =
+  const Eigen::Matrix<double, MappedObject::kStateSize, 3> gain =
       innovation.llt().solve(object->covariance.topRows<3>()).transpose();
   object->state += gain * (measurement.position - object->position());
   // Joseph's form stays symmetric and positive.
-  MappedObject::Matrix6 rest = MappedObject::Matrix6::Identity();
+  MappedObject::Covariance rest = MappedObject::Covariance::Identity();
   rest.leftCols<3>() -= gain;
   object->covariance = rest * object->covariance * rest.transpose() +
                        gain * measurement.covariance * gain.transpose();
@@ -169,9 +170,10 @@ MappedObject ObjectMap::Start(Time time, const ObjectMeasurement& measurement) {
   const auto index = ClassOf(object, model_);
   object.may_move = index && model_.classes[*index].may_move;
   if (object.may_move) {
-    const double variance = options_.start_speed_sigma_mps * options_.start_speed_sigma_mps;
-    object.covariance.bottomRightCorner<3, 3>().diagonal() << variance, variance,
-        kClimb * kClimb * variance;
+    const Eigen::Vector3d axes(1, 1, kClimb);
+    Eigen::Matrix<double, 6, 1> sigmas;  // of velocity and acceleration
+    sigmas << options_.start_speed_sigma_mps * axes, options_.acceleration_sigma_mps2 * axes;
+    object.covariance.bottomRightCorner<6, 6>().diagonal() = sigmas.cwiseAbs2();
   }
   return object;
 }

@@ -24,10 +24,11 @@ struct ObjectMapOptions {
   // Two objects of one shape and colour cannot be nearer than this: they become one.
   double min_separation_m = 0.2;
   // How fast the position of a standing object becomes uncertain; how a moving one accelerates, and
-  // for how long it keeps its velocity.
+  // for how long it keeps its acceleration and its velocity.
   double drift_noise = 0.005;
-  double acceleration_noise = 0.3;
-  double velocity_time_s = 5;
+  double acceleration_sigma_mps2 = 0.5;
+  double acceleration_time_s = 1;
+  double velocity_time_s = 3;
   double start_speed_sigma_mps = 1;
   // Error of the position, per axis, that many detections in a row share (bias of the navigation,
   // clock): no object is known better than this.
@@ -49,7 +50,10 @@ struct ObjectMapOptions {
     visitor("new_density", self.new_density, "1/m^3", "objects that are not in the map yet");
     visitor("min_separation_m", self.min_separation_m, "m", "nearer ones of a kind become one");
     visitor("drift_noise", self.drift_noise, "m/sqrt(s)", "of the position of standing objects");
-    visitor("acceleration_noise", self.acceleration_noise, "m/s^2/sqrt(Hz)", "of moving objects");
+    visitor("acceleration_sigma_mps2", self.acceleration_sigma_mps2, "m/s^2",
+            "acceleration of moving objects, standard deviation per axis");
+    visitor("acceleration_time_s", self.acceleration_time_s, "s",
+            "how long an acceleration is kept, about");
     visitor("velocity_time_s", self.velocity_time_s, "s", "how long a velocity is kept, about");
     visitor("start_speed_sigma_mps", self.start_speed_sigma_mps, "m/s",
             "speed of a new object that may move, standard deviation per axis");
@@ -67,7 +71,9 @@ struct ObjectMapOptions {
   }
   std::vector<std::string> Validate() const;
 
-  ObjectMotion motion() const { return {drift_noise, acceleration_noise, velocity_time_s}; }
+  ObjectMotion motion() const {
+    return {drift_noise, acceleration_sigma_mps2, acceleration_time_s, velocity_time_s};
+  }
 };
 
 // Says where an object should have been seen, if it were there.

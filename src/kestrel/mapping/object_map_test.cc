@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/mapping/object_map.h"
 
+#include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -73,6 +75,39 @@ TEST(ObjectMap, MovingObjectHasItsVelocity) {
   const auto objects = map.Confirmed();
   ASSERT_THAT(objects, SizeIs(1));
   EXPECT_LT((objects[0].velocity() - velocity).norm(), 0.15);
+}
+
+TEST(ObjectMap, VelocityFollowsCurves) {
+  constexpr int kSeeds = 20;
+  double squares = 0;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    ObjectMap map(DefaultObjectModel(), {});
+    Random random(static_cast<std::uint64_t>(seed));
+    // To and fro at up to 0.7 m/s, speeding up and down by up to 0.4 m/s^2.
+    const double rate = random.Uniform(0.4, 0.6);
+    const double phase = random.Uniform(0, 6);
+    const auto along = [&](double t) { return 0.7 / rate * std::sin(rate * t + phase); };
+    constexpr double kEnd_s = 3;
+    for (int i = 0; i <= 30; ++i) {
+      const Eigen::Vector3d position(along(0.1 * i), 0.5 * along(0.1 * i + 2), 0);
+      map.Update(At(0.1 * i), std::vector{MeasureNoisily(position, kYellow, 0.02, &random)},
+                 SeesAll());
+    }
+    const auto speed = [&](double t) { return 0.7 * std::cos(rate * t + phase); };
+    const Eigen::Vector3d truth(speed(kEnd_s), 0.5 * speed(kEnd_s + 2), 0);
+    ASSERT_THAT(map.Confirmed(), SizeIs(1));
+    squares += (map.Confirmed()[0].velocity() - truth).squaredNorm();
+  }
+  EXPECT_LT(std::sqrt(squares / kSeeds), 0.1);
+}
+
+TEST(ObjectMap, AfterAnHourTheStateIsStillFinite) {
+  ObjectMap map(DefaultObjectModel(), {});
+  map.Update(At(0), std::vector{MeasureDisc({0, 0, 0}, kYellow)}, SeesNothing());
+  MappedObject object = map.objects()[0];
+  PredictObject(At(3600), ObjectMapOptions{}.motion(), &object);
+  EXPECT_TRUE(object.covariance.allFinite());
+  EXPECT_LT(object.sigma_m(), 200);
 }
 
 TEST(ObjectMap, WhatIsPickedUpFadesAndWhatIsOutOfViewStays) {

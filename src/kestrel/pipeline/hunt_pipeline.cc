@@ -40,6 +40,7 @@ std::vector<std::string> HuntPipelineOptions::Validate() const {
   require(attitude_sigma_deg >= 0, "attitude_sigma_deg must not be negative");
   require(pose_capacity >= 2, "pose_capacity must be at least 2");
   require(pose_gap_s > 0 && pose_gap_s < 1e6, "pose_gap_s must be positive and below 1e6");
+  require(pose_smoothing_s >= 0 && pose_smoothing_s <= 1, "pose_smoothing_s must be in 0 to 1");
   return violations;
 }
 
@@ -51,7 +52,8 @@ HuntPipeline::HuntPipeline(const CameraCalibration& calibration, const ObjectMod
                            const ColorGrid& grid, const HuntPipelineOptions& options)
     : options_(Checked(options)),
       detector_(CameraModel(calibration.intrinsics), model, grid, options.detector),
-      poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s)),
+      poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s),
+             DurationFromSeconds(options.pose_smoothing_s)),
       map_(model, options.map) {}
 
 const HuntObservation& HuntPipeline::Process(const cv::Mat& image, Time time) {

@@ -40,6 +40,9 @@ struct HuntPipelineOptions {
   // How many poses are kept, and the longest gap between two of them that is interpolated.
   int pose_capacity = 1000;
   double pose_gap_s = 0.5;
+  // Poses are smoothed over so much before and, as far as they have come, after an instant; 0: are
+  // taken as they are.
+  double pose_smoothing_s = 0.1;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -59,6 +62,8 @@ struct HuntPipelineOptions {
             "of the navigation's attitude, per axis");
     visitor("pose_capacity", self.pose_capacity, "1", "how many poses are kept");
     visitor("pose_gap_s", self.pose_gap_s, "s", "longest gap between poses that is interpolated");
+    visitor("pose_smoothing_s", self.pose_smoothing_s, "s",
+            "poses this long before (and after, if there) are averaged, 0 for none");
   }
   std::vector<std::string> Validate() const;
 };

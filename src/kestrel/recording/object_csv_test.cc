@@ -82,8 +82,8 @@ TEST(ObjectCsv, FrameWithoutObjectsHasNameAndTimes) {
 TEST(ObjectMapCsv, ColumnsAreThoseOfTheObject) {
   MappedObject object;
   object.id = 7;
-  object.state << 1, 2, 3, 0.5, 0, 0;
-  object.covariance.diagonal() << 0.01, 0.01, 0.01, 1e-4, 1e-4, 1e-4;
+  object.state.head<6>() << 1, 2, 3, 0.5, 0, 0;
+  object.covariance.diagonal().head<6>() << 0.01, 0.01, 0.01, 1e-4, 1e-4, 1e-4;
   object.detections = 12;
   object.first_seen = TimeFromNanoseconds(5);
   object.last_seen = TimeFromNanoseconds(9);
