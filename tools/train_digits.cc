@@ -134,7 +134,7 @@ class FaceMaker {
   Random random_;
 };
 
-// Calls visit(digit, cut out image) for all faces of all fonts.
+// Calls visit(digit, views) for all faces of all fonts.
 template <class Visit>
 void ForEachDigit(const std::vector<std::string>& fonts, std::uint64_t seed, const Visit& visit) {
   for (const std::string& font : fonts) {
@@ -142,7 +142,7 @@ void ForEachDigit(const std::vector<std::string>& fonts, std::uint64_t seed, con
     for (int digit = 0; digit < kDigitCount; ++digit) {
       for (int i = 0; i < kFacesPerFontAndDigit; ++i) {
         const FaceMaker::Face face = maker.Make(digit);
-        if (const auto image = CutOutDigit(face.image, face.corners)) visit(digit, *image);
+        if (const auto views = CutOutDigit(face.image, face.corners)) visit(digit, *views);
       }
     }
   }
@@ -156,8 +156,8 @@ void PrintScore(const DigitModel& model, const std::string& font, std::uint64_t 
   int count = 0;
   int right = 0;
   std::map<std::pair<int, int>, int> wrong;
-  ForEachDigit({font}, seed, [&](int digit, const DigitImage& image) {
-    const DigitLikelihoods likelihoods = classifier.Classify(image);
+  ForEachDigit({font}, seed, [&](int digit, const DigitViews& views) {
+    const DigitLikelihoods likelihoods = classifier.Classify(views);
     const auto best = std::max_element(likelihoods.begin(), likelihoods.end());
     const int found = static_cast<int>(best - likelihoods.begin());
     ++count;
@@ -185,8 +185,8 @@ int main(int argc, char** argv) {
   app.add_option("--output", output, "File for the model");
   CLI11_PARSE(app, argc, argv);
   kestrel::DigitTrainer trainer;
-  kestrel::ForEachDigit(train, /*seed=*/0, [&](int digit, const kestrel::DigitImage& image) {
-    trainer.Add(digit, image);
+  kestrel::ForEachDigit(train, /*seed=*/0, [&](int digit, const kestrel::DigitViews& views) {
+    trainer.Add(digit, views[0]);  // upright
   });
   for (const std::string& font : test) kestrel::PrintScore(trainer.Model(), font, /*seed=*/1000);
   try {

@@ -137,29 +137,31 @@ std::optional<CuboidFit> FitCuboid(const CuboidSilhouette& silhouette) {
   if (seen < kDirections / 2) return std::nullopt;
   const double half = silhouette.half_side.value_or(0.7 * fit.MeanReach());
   if (!(half > 0)) return std::nullopt;
-  // Starts: all directions, with every choice of the side faces that can be seen.
+  // Of every choice of the side faces that can be seen the best direction is refined.
   double best_sum = std::numeric_limits<double>::infinity();
   Parameters best = Parameters::Zero();
-  SideFaces best_sides{};
-  for (int i = 0; i < kYaws; ++i) {
-    Parameters start;
-    start << silhouette.digit, std::numbers::pi / 2 * i / kYaws, std::log(half);
-    const SideFaces visible = VisibleSides(CornersOf(start));
-    for (int choice = 0; choice < 16; ++choice) {
-      SideFaces sides{};
-      for (int k = 0; k < 4; ++k) sides[k] = (choice >> k & 1) != 0;
-      const bool can_be = std::ranges::equal(sides, visible, [](bool is_colored, bool is_visible) {
-        return !is_colored || is_visible;
-      });
-      if (!can_be) continue;
-      const double sum = fit.ResidualsOf(start, sides).squaredNorm();
-      if (sum >= best_sum) continue;
-      best_sum = sum;
-      best = start;
-      best_sides = sides;
+  for (int choice = 0; choice < 16; ++choice) {
+    SideFaces sides{};
+    for (int k = 0; k < 4; ++k) sides[k] = (choice >> k & 1) != 0;
+    double start_sum = std::numeric_limits<double>::infinity();
+    Parameters best_start;
+    for (int i = 0; i < kYaws; ++i) {
+      Parameters start;
+      start << silhouette.digit, std::numbers::pi / 2 * i / kYaws, std::log(half);
+      const bool can_be = std::ranges::equal(
+          sides, VisibleSides(CornersOf(start)),
+          [](bool is_colored, bool is_visible) { return !is_colored || is_visible; });
+      const double sum = can_be ? fit.ResidualsOf(start, sides).squaredNorm() : start_sum;
+      if (sum >= start_sum) continue;
+      start_sum = sum;
+      best_start = start;
     }
+    if (!std::isfinite(start_sum)) continue;
+    const double sum = fit.Refine(sides, &best_start);
+    if (sum >= best_sum) continue;
+    best_sum = sum;
+    best = best_start;
   }
-  best_sum = fit.Refine(best_sides, &best);
   return CuboidFit{CornersOf(best), std::sqrt(best_sum / seen)};
 }
 

@@ -111,18 +111,16 @@ double DigitClassifier::LogLikelihood(const DigitImage& image, int figure) const
   return sum;
 }
 
-DigitLikelihoods DigitClassifier::Classify(const DigitImage& digit) const {
+DigitLikelihoods DigitClassifier::Classify(const DigitViews& views) const {
   // Neighbouring pixels say the same: about ten of them are worth one.
   constexpr double kIndependentShare = 0.1;
   DigitLikelihoods log_likelihoods;
   log_likelihoods.fill(-std::numeric_limits<double>::infinity());
-  DigitImage turned = digit;
-  for (int quarter = 0; quarter < 4; ++quarter) {
+  for (const DigitImage& view : views) {
     for (int figure = 0; figure < kFigureCount; ++figure) {
       double& best = log_likelihoods[figure / kStyleCount];
-      best = std::max(best, kIndependentShare * LogLikelihood(turned, figure));
+      best = std::max(best, kIndependentShare * LogLikelihood(view, figure));
     }
-    turned = QuarterTurn(turned);
   }
   const double best = *std::max_element(log_likelihoods.begin(), log_likelihoods.end());
   double total = 0;

@@ -17,7 +17,7 @@ using DigitLikelihoods = std::array<double, kDigitCount>;
 
 // A digit looks different in upright, slanted, thin and bold fonts: it has several figures, those
 // of digit d are d * kStyleCount and the next ones.
-inline constexpr int kStyleCount = 4;
+inline constexpr int kStyleCount = 8;
 inline constexpr int kFigureCount = kDigitCount * kStyleCount;
 
 // Share of the training images of a figure in which each of its pixels was set, 0 < share < 1.
@@ -37,7 +37,7 @@ class DigitClassifier {
  public:
   explicit DigitClassifier(const DigitModel& model);
 
-  DigitLikelihoods Classify(const DigitImage& digit) const;
+  DigitLikelihoods Classify(const DigitViews& views) const;
 
   // Of the digit's figures, as the image stands.
   int LikeliestFigure(const DigitImage& image, int digit) const;

@@ -60,11 +60,12 @@ FaceImage MapFace(const cv::Mat& image, const FaceCorners& corners) {
   return face;
 }
 
-// Where the figure is and how far its pixels are from its middle (root of the mean square).
+// The bright pixels: what tells them from the paint, their middle and their covariance.
 struct Figure {
-  int threshold;
+  double threshold;
+  double contrast;
   Eigen::Vector2d middle;
-  double radius;
+  Eigen::Matrix2d covariance;
 };
 
 std::optional<Figure> FindFigure(const FaceImage& face) {
@@ -85,54 +86,76 @@ std::optional<Figure> FindFigure(const FaceImage& face) {
   if (split.upper_mean - split.lower_mean < kMinContrast) return std::nullopt;
   double count = 0;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  double squares = 0;
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
   for_inside([&](int column, int row, std::uint8_t value) {
     if (value <= split.threshold) return;
     const Eigen::Vector2d at(column, row);
     ++count;
     sum += at;
-    squares += at.squaredNorm();
+    squares += at * at.transpose();
   });
   if (count < kMinShare * kInside || count > kMaxShare * kInside) return std::nullopt;
   const Eigen::Vector2d middle = sum / count;
-  return Figure{split.threshold, middle,
-                std::sqrt(std::max(1.0, squares / count - middle.squaredNorm()))};
+  return Figure{static_cast<double>(split.threshold), split.upper_mean - split.lower_mean, middle,
+                squares / count - middle * middle.transpose()};
 }
 
-}  // namespace
+// How much of the figure there is at a point of the face, 0 to 1.
+float ShareAt(const FaceImage& face, const Figure& figure, const Eigen::Vector2d& at) {
+  const double edge = 0.5 * kMargin;
+  if (at.minCoeff() < edge || at.maxCoeff() >= kFaceSide - 1 - edge) return 0;
+  const auto u = static_cast<int>(at.x());
+  const auto v = static_cast<int>(at.y());
+  const double x = at.x() - u;
+  const double y = at.y() - v;
+  const std::uint8_t* upper = &face[v * kFaceSide + u];
+  const std::uint8_t* lower = upper + kFaceSide;
+  const double value =
+      (1 - y) * ((1 - x) * upper[0] + x * upper[1]) + y * ((1 - x) * lower[0] + x * lower[1]);
+  const double share = 0.5 + (value - figure.threshold) / figure.contrast;
+  return static_cast<float>(std::clamp(share, 0.0, 1.0));
+}
 
-std::optional<DigitImage> CutOutDigit(const cv::Mat& image, const FaceCorners& corners) {
+// The figure with its foot where 'down' points to.
+DigitImage ViewFigure(const FaceImage& face, const Figure& figure, const Eigen::Vector2d& down) {
   // The image reaches this many radii from the figure's middle: a digit fits in.
   constexpr double kReach = 1.8;
-  const FaceImage face = MapFace(image, corners);
-  const std::optional<Figure> figure = FindFigure(face);
-  if (!figure) return std::nullopt;
-  const double step = 2 * kReach * figure->radius / kDigitSide;
+  constexpr double kMaxSlant = 0.5;
+  constexpr double kMinVariance = 0.5;
+  const Eigen::Vector2d right(down.y(), -down.x());
+  const double height = std::max(kMinVariance, down.dot(figure.covariance * down));
+  const double lean = right.dot(figure.covariance * down);
+  const double slant = std::clamp(lean / height, -kMaxSlant, kMaxSlant);
+  const double width = std::max(
+      kMinVariance, right.dot(figure.covariance * right) - slant * (2 * lean - slant * height));
+  // As wide as high, for fonts are narrow and wide.
+  const double step = 2 * kReach * std::sqrt(width + height) / kDigitSide;
+  const double stretch = std::pow(width / height, 0.25);
   DigitImage digit;
   for (int row = 0; row < kDigitSide; ++row) {
     for (int column = 0; column < kDigitSide; ++column) {
-      const Eigen::Vector2d at =
-          figure->middle +
-          step * Eigen::Vector2d(column - 0.5 * (kDigitSide - 1), row - 0.5 * (kDigitSide - 1));
-      const auto x = static_cast<int>(std::lround(at.x()));
-      const auto y = static_cast<int>(std::lround(at.y()));
-      const bool is_inside = x >= kMargin / 2 && y >= kMargin / 2 && x < kFaceSide - kMargin / 2 &&
-                             y < kFaceSide - kMargin / 2;
+      const double x = step * stretch * (column - 0.5 * (kDigitSide - 1));
+      const double y = step / stretch * (row - 0.5 * (kDigitSide - 1));
       digit[row * kDigitSide + column] =
-          is_inside && face[y * kFaceSide + x] > figure->threshold ? 1 : 0;
+          ShareAt(face, figure, figure.middle + (x + slant * y) * right + y * down);
     }
   }
   return digit;
 }
 
-DigitImage QuarterTurn(const DigitImage& digit) {
-  DigitImage turned;
-  for (int row = 0; row < kDigitSide; ++row) {
-    for (int column = 0; column < kDigitSide; ++column) {
-      turned[column * kDigitSide + (kDigitSide - 1 - row)] = digit[row * kDigitSide + column];
-    }
+}  // namespace
+
+std::optional<DigitViews> CutOutDigit(const cv::Mat& image, const FaceCorners& corners) {
+  const FaceImage face = MapFace(image, corners);
+  const std::optional<Figure> figure = FindFigure(face);
+  if (!figure) return std::nullopt;
+  DigitViews views;
+  Eigen::Vector2d down = Eigen::Vector2d::UnitY();
+  for (DigitImage& view : views) {
+    view = ViewFigure(face, *figure, down);
+    down = {down.y(), -down.x()};
   }
-  return turned;
+  return views;
 }
 
 }  // namespace kestrel

@@ -106,11 +106,37 @@ TEST(Digits, AreReadInEveryOrientation) {
   }
 }
 
-TEST(QuarterTurn, FourMakeNone) {
-  DigitImage image{};
-  image[3] = image[50] = 1;
-  EXPECT_NE(QuarterTurn(image), image);
-  EXPECT_EQ(QuarterTurn(QuarterTurn(QuarterTurn(QuarterTurn(image)))), image);
+TEST(CutOutDigit, ItalicsStandUpright) {
+  const CuboidView view = DrawCuboid("4", 0.2);
+  CuboidView slanted = view;  // a face that is a parallelogram shows what is slanted on a square
+  const cv::Matx23d shear(1, -0.25, 0.25 * 55, 0, 1, 0);
+  cv::warpAffine(view.image, slanted.image, shear, view.image.size());
+  const auto upright = CutOutDigit(view.image, view.corners);
+  const auto italic = CutOutDigit(slanted.image, slanted.corners);
+  ASSERT_TRUE(upright && italic);
+  double difference = 0;
+  double ink = 0;
+  for (std::size_t i = 0; i < upright->front().size(); ++i) {
+    difference += std::abs(upright->front()[i] - italic->front()[i]);
+    ink += upright->front()[i];
+  }
+  EXPECT_LT(difference, 0.2 * ink);
+}
+
+TEST(CutOutDigit, ViewsAreQuarterTurns) {
+  const CuboidView view = DrawCuboid("7", 0.2);
+  CuboidView turned = view;
+  std::rotate(turned.corners.begin(), turned.corners.begin() + 1, turned.corners.end());
+  const auto first = CutOutDigit(view.image, view.corners);
+  const auto second = CutOutDigit(turned.image, turned.corners);
+  ASSERT_TRUE(first && second);
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    double difference = 0;
+    for (std::size_t i = 0; i < first->front().size(); ++i) {
+      difference += std::abs((*first)[quarter][i] - (*second)[(quarter + 1) % 4][i]);
+    }
+    EXPECT_LT(difference, 8) << quarter;
+  }
 }
 
 TEST(DigitModel, ReadsWhatItPrintsAndRefusesTheRest) {
@@ -124,7 +150,7 @@ TEST(DigitModel, ReadsWhatItPrintsAndRefusesTheRest) {
     }
     return "";
   };
-  EXPECT_THAT(error_of(""), HasSubstr("digits.txt:1: expected 'digits 10 4 20'"));
+  EXPECT_THAT(error_of(""), HasSubstr("digits.txt:1: expected 'digits 10 8 20'"));
   EXPECT_THAT(error_of(text.substr(0, text.size() / 2)), HasSubstr("expected"));
   EXPECT_THAT(error_of(text + "more\n"), HasSubstr("expected the end"));
   std::string bad = text;

@@ -78,6 +78,15 @@ TEST_F(ObjectDetectorTest, DiscsOfAnotherSizeAreNotOnTheGround) {
   EXPECT_THAT(DetectSingle(scene, {{}, scene.up(), scene.height_m()}), IsEmpty());
 }
 
+TEST_F(ObjectDetectorTest, RingIsNoDisc) {
+  ObjectScene scene(3);
+  const Eigen::Vector3d center = scene.PointUnder({320, 240}, 0.012);
+  scene.DrawDisc(center, 0.1, kBluePaint);
+  EXPECT_EQ(DetectOnGround(scene).size(), 1U);
+  scene.DrawDisc(center, 0.05, cv::Scalar(88, 90, 90));
+  EXPECT_THAT(DetectOnGround(scene), IsEmpty());
+}
+
 TEST_F(ObjectDetectorTest, InsideOfALetterOnABannerIsNoDisc) {
   const cv::Scalar letter(60, 60, 60);
   const auto draw_letter = [&](const Eigen::Vector2d& pixel, ObjectScene* scene) {

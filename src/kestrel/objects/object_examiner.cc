@@ -139,7 +139,7 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
     return false;
   }
   const auto ellipse = EllipseThrough(workspace_->outline.points);
-  if (!ellipse || IsHole(*ellipse, segment.label)) return false;
+  if (!ellipse || IsHole(*ellipse, segment.label) || IsRing(*ellipse, segment.label)) return false;
   if (segment.touches_border) {
     // What circularity says of a whole disc.
     constexpr double kMinFill = 0.8;
@@ -176,6 +176,12 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
   return true;
 }
 
+std::optional<ColorLabel> ObjectExaminer::LabelAt(const Eigen::Vector2d& pixel) const {
+  const cv::Point at(cvRound(pixel.x()), cvRound(pixel.y()));
+  if (!cv::Rect({}, image_.size()).contains(at)) return std::nullopt;
+  return detector_.grid_.At(image_.ptr(at.y) + 3 * at.x);
+}
+
 bool ObjectExaminer::IsHole(const Ellipse& outline, ColorLabel label) const {
   constexpr int kDirections = 16;
   // Times the outline: from beyond its blur to beyond the strokes of a letter, and how broad what
@@ -185,7 +191,6 @@ bool ObjectExaminer::IsHole(const Ellipse& outline, ColorLabel label) const {
   constexpr double kMinWidth = 0.3;
   constexpr double kMinWidthPx = 3;
   constexpr double kMaxShare = 0.5;  // other discs lie around, but not on all sides
-  const cv::Rect frame({}, image_.size());
   int shown = 0;
   int same = 0;
   for (int i = 0; i < kDirections; ++i) {
@@ -197,17 +202,34 @@ bool ObjectExaminer::IsHole(const Ellipse& outline, ColorLabel label) const {
     int width_px = 0;
     bool is_shown = false;
     for (double r = kFirst * radius_px; r < kLast * radius_px && width_px < min_width_px; ++r) {
-      const cv::Point at(cvRound(outline.center.x() + r * outward.x()),
-                         cvRound(outline.center.y() + r * outward.y()));
-      if (!frame.contains(at)) break;
+      const std::optional<ColorLabel> seen = LabelAt(outline.center + r * outward);
+      if (!seen) break;
       is_shown = true;
-      const bool is_same = detector_.grid_.At(image_.ptr(at.y) + 3 * at.x) == label;
-      width_px = is_same ? width_px + 1 : 0;
+      width_px = seen == label ? width_px + 1 : 0;
     }
     shown += is_shown;
     same += width_px >= min_width_px;
   }
   return same > kMaxShare * shown;
+}
+
+// Gray is ambiguous for the sake of digits: the hole of a ring may be part of the segment.
+bool ObjectExaminer::IsRing(const Ellipse& outline, ColorLabel label) const {
+  constexpr int kDirections = 16;
+  constexpr std::array kShares = {0.1, 0.2, 0.3, 0.4};  // of the outline: clear of its blur
+  constexpr double kMinShare = 0.5;
+  int shown = 0;
+  int same = 0;
+  for (int i = 0; i < kDirections; ++i) {
+    const Eigen::Vector2d radius =
+        outline.At(2 * std::numbers::pi * i / kDirections) - outline.center;
+    for (const double share : kShares) {
+      const std::optional<ColorLabel> seen = LabelAt(outline.center + share * radius);
+      shown += seen.has_value();
+      same += seen == label;
+    }
+  }
+  return same < kMinShare * shown;
 }
 
 // Several discs of one colour that touch make one segment. It is no disc, but as solid as one, and

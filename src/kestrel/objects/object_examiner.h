@@ -35,6 +35,9 @@ class ObjectExaminer {
                                                   const ObjectClass& object);
   bool TestBar(const Segment& segment, const SegmentShape& shape, const ObjectClass& object,
                ObjectDetection* detection, ObjectStage* reached);
+  template <class RayTo>
+  double EdgeShift(const RayTo& ray_to, const Eigen::Vector2d& side, const Eigen::Vector2d& outward,
+                   double reach) const;
   std::array<Eigen::Vector3d, 4> RectangleAround(const Segment& segment,
                                                  const SegmentShape& shape) const;
   // 'rays': through the corners, in the order of a walk around.
@@ -43,6 +46,10 @@ class ObjectExaminer {
   // Whether the colour goes on beyond what surrounds the outline: a hole in something larger, like
   // the inside of a letter on a banner.
   bool IsHole(const Ellipse& outline, ColorLabel label) const;
+  // Label of the nearest pixel; nothing outside of the image.
+  std::optional<ColorLabel> LabelAt(const Eigen::Vector2d& pixel) const;
+  // Whether most of what lies around the centre has another colour.
+  bool IsRing(const Ellipse& outline, ColorLabel label) const;
   bool TestMerged(const Segment& segment, const SegmentShape& shape,
                   ObjectDetection* detection) const;
   // Area that a disc on the ground has in the image; nothing when the ground is not known.

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "kestrel/objects/color_edge.h"
 #include "kestrel/objects/cuboid_silhouette.h"
 #include "kestrel/objects/object_examiner.h"
 
@@ -42,7 +43,7 @@ bool ObjectExaminer::TestCuboid(const Segment& segment, const ObjectClass& objec
 
 std::optional<FaceCorners> ObjectExaminer::FindFaceBySilhouette(const Segment& segment,
                                                                 const ObjectClass& object) {
-  constexpr double kMaxResidual = 0.15;
+  constexpr double kMaxResidual = 0.12;
   const PlaneBelow plane(*hint_.up_in_camera);
   const auto on_plane = [&](const Eigen::Vector2d& pixel) { return plane.PointOf(RayAt(pixel)); };
   SegmentBorder& border = workspace_->border;
@@ -89,6 +90,34 @@ bool ObjectExaminer::TestBar(const Segment& segment, const SegmentShape& shape,
   return true;
 }
 
+// How far from 'side', a point on the ground, the colour ends in the direction 'outward', on the
+// average of places up to 'reach' beside it; 0 where no edge is clear.
+template <class RayTo>
+double ObjectExaminer::EdgeShift(const RayTo& ray_to, const Eigen::Vector2d& side,
+                                 const Eigen::Vector2d& outward, double reach) const {
+  constexpr int kPlaces = 4;  // on either hand
+  double sum = 0;
+  int count = 0;
+  for (int i = -kPlaces; i <= kPlaces; ++i) {
+    const Eigen::Vector2d at =
+        side + reach * i / kPlaces * Eigen::Vector2d(-outward.y(), outward.x());
+    const double step = 0.01 * ray_to(at).norm();
+    Eigen::Vector2d pixel;
+    Eigen::Vector2d further;
+    const CameraModel& camera = detector_.camera_;
+    if (camera.Project(ray_to(at), &pixel) != ProjectionStatus::kOk ||
+        camera.Project(ray_to(at + step * outward), &further) != ProjectionStatus::kOk) {
+      continue;
+    }
+    const double step_px = (further - pixel).norm();
+    const auto edge = FindColorEdge(image_, pixel, (further - pixel) / step_px);
+    if (!edge) continue;
+    sum += edge->offset_px * step / step_px;
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
 // The rectangle around the segment, as it lies on the ground where the attitude is known: the
 // nearer half of a long object is larger in the image, and its centroid is not its middle.
 std::array<Eigen::Vector3d, 4> ObjectExaminer::RectangleAround(const Segment& segment,
@@ -114,21 +143,34 @@ std::array<Eigen::Vector3d, 4> ObjectExaminer::RectangleAround(const Segment& se
   // A shaking camera's rows bend what is long: its middle is where its middle part is.
   const double middle = extent.center().x();
   const double reach = kMiddlePart / 2 * extent.sizes().x();
-  double sum = 0;
-  double count = 0;
+  Eigen::AlignedBox2d middle_part;
   for (const PixelPosition& at : segment.pixels) {
     const Eigen::Vector2d here = place(at);
-    if (std::abs(here.x() - middle) > reach) continue;
-    sum += here.y();
-    ++count;
+    if (std::abs(here.x() - middle) <= reach) middle_part.extend(here);
   }
-  if (count > 0) extent.translate(Eigen::Vector2d(0, sum / count - extent.center().y()));
+  if (!middle_part.isEmpty()) {
+    extent.min().y() = middle_part.min().y();
+    extent.max().y() = middle_part.max().y();
+  }
+  const auto ray_to = [&](const Eigen::Vector2d& at) {
+    return Eigen::Vector3d(origin + at.x() * along + at.y() * across);
+  };
+  const Eigen::Vector2d center = extent.center();
+  const Eigen::Vector2d half = 0.5 * extent.sizes();
+  for (const double side : {-1.0, 1.0}) {
+    const double tip =
+        EdgeShift(ray_to, center + Eigen::Vector2d(side * half.x(), 0), {side, 0}, 0.5 * half.y());
+    const double flank =
+        EdgeShift(ray_to, center + Eigen::Vector2d(0, side * half.y()), {0, side}, reach);
+    Eigen::Vector2d& corner = side < 0 ? extent.min() : extent.max();
+    corner += side * Eigen::Vector2d(tip, flank);
+  }
   std::array<Eigen::Vector3d, 4> corners;
   constexpr std::array kOrder = {Eigen::AlignedBox2d::BottomLeft, Eigen::AlignedBox2d::BottomRight,
                                  Eigen::AlignedBox2d::TopRight, Eigen::AlignedBox2d::TopLeft};
   for (int i = 0; i < 4; ++i) {
     const Eigen::Vector2d corner = extent.corner(kOrder[i]);
-    corners[i] = (origin + corner.x() * along + corner.y() * across).normalized();
+    corners[i] = ray_to(corner).normalized();
   }
   return corners;
 }
