@@ -21,8 +21,40 @@ constexpr int kLeftY[4] = {-1, 0, 0, -1};
 constexpr int kRightX[4] = {0, -1, -1, 0};
 constexpr int kRightY[4] = {0, 0, -1, -1};
 
+// The pixels of a word beside which the left and the right pixel are bright, with 'narrow' one of
+// them.
+std::uint64_t BesideBright(const std::uint64_t* bright, int word, int words, bool narrow) {
+  const std::uint64_t next = word + 1 < words ? bright[word + 1] : 0;
+  const std::uint64_t left = bright[word] << 1 | bright[word - 1] >> 63;
+  const std::uint64_t right = bright[word] >> 1 | next << 63;
+  return narrow ? left | right : left & right;
+}
+
 // How often the size of a border is compared with the limit.
 constexpr std::size_t kCheckInterval = 32;
+
+// Median over places along a border of how much brighter the second pixel on its left is than the
+// first on its right.
+int ContrastAcross(const cv::Mat& image, const GridPoint* points, std::size_t count) {
+  constexpr std::size_t kPlaces = 16;
+  std::array<int, kPlaces> contrast;
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < kPlaces; ++i) {
+    const GridPoint& from = points[i * count / kPlaces];
+    const GridPoint& to = points[(i * count / kPlaces + 1) % count];
+    int direction = 0;
+    while (kStepX[direction] != to.x - from.x || kStepY[direction] != to.y - from.y) ++direction;
+    const cv::Point dark(from.x + kRightX[direction], from.y + kRightY[direction]);
+    const cv::Point beside(from.x + kLeftX[direction], from.y + kLeftY[direction]);
+    const cv::Point bright = 2 * beside - dark;
+    if (!cv::Rect({0, 0}, image.size()).contains(bright)) continue;
+    contrast[seen++] = image.at<std::uint8_t>(bright) - image.at<std::uint8_t>(dark);
+  }
+  if (seen == 0) return 0;
+  const auto middle = contrast.begin() + static_cast<std::ptrdiff_t>(seen / 2);
+  std::nth_element(contrast.begin(), middle, contrast.begin() + static_cast<std::ptrdiff_t>(seen));
+  return *middle;
+}
 
 }  // namespace
 
@@ -31,6 +63,7 @@ void BorderTracer::Reserve(int width, int height) {
   const std::size_t pixels = static_cast<std::size_t>(width) * height;
   points_.reserve(pixels / 2 + kLeast);
   borders_.reserve(pixels / 64 + kLeast / 64);
+  strengths_.reserve(borders_.capacity());
   traced_.Reset(width, height);
 }
 
@@ -49,9 +82,7 @@ void BorderTracer::Trace(const BinaryImage& binary, const cv::Rect& region,
     for (int word = first_word; word < last_word; ++word) {
       std::uint64_t candidates = here[word] & ~above[word] & bright[word];
       if (candidates == 0) continue;
-      const std::uint64_t next = word + 1 < dark.words_per_row() ? bright[word + 1] : 0;
-      candidates &= (bright[word] << 1 | bright[word - 1] >> 63) & (bright[word] >> 1 | next << 63);
-      if (candidates == 0) continue;
+      candidates &= BesideBright(bright, word, dark.words_per_row(), limits.narrow);
       // Of a run of neighbouring candidates one is enough.
       std::uint64_t starts = candidates & ~(candidates << 1);
       while ((starts &= ~traced[word]) != 0) {
@@ -60,6 +91,21 @@ void BorderTracer::Trace(const BinaryImage& binary, const cv::Rect& region,
       }
     }
   }
+}
+
+void BorderTracer::KeepStrongest(const cv::Mat& image, std::size_t most) {
+  if (borders_.size() <= most) return;
+  strengths_.clear();
+  for (std::size_t i = 0; i < borders_.size(); ++i) {
+    strengths_.push_back({ContrastAcross(image, begin(borders_[i]), borders_[i].count), i});
+  }
+  const auto last = strengths_.begin() + static_cast<std::ptrdiff_t>(most);
+  std::nth_element(strengths_.begin(), last, strengths_.end(),
+                   [](const Strength& a, const Strength& b) { return a.contrast > b.contrast; });
+  std::sort(strengths_.begin(), last,
+            [](const Strength& a, const Strength& b) { return a.border < b.border; });
+  for (std::size_t i = 0; i < most; ++i) borders_[i] = borders_[strengths_[i].border];
+  borders_.resize(most);
 }
 
 void BorderTracer::TraceFrom(const BitImage& dark, int x, int y, const BorderLimits& limits) {

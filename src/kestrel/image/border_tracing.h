@@ -35,12 +35,14 @@ struct BorderLimits {
   std::size_t min_count = 10;  // points
   int min_extent = 4;          // of the bounding box, both directions, pixels
   int max_extent = 1 << 14;    // of the bounding box, either direction, pixels
+  bool narrow = false;         // borders beside bright strokes of less than three pixels as well
 };
 
 // Traces every border of a binary image once (border following, after Suzuki and Abe 1985, on the
 // cracks between the pixels: 8-connected dark areas, 4-connected holes). A border is followed only
-// if, somewhere along an upper edge of it, the three pixels two above are bright: a border between
-// pixels that are barely dark and barely not is texture.
+// if, somewhere along an upper edge of it, the three pixels two above are bright, or with
+// BorderLimits::narrow two of them: a border between pixels that are barely dark and barely not is
+// texture.
 class BorderTracer {
  public:
   // Makes room for an image; what does not fit into half as many points as the image has pixels is
@@ -49,6 +51,11 @@ class BorderTracer {
 
   // Keeps the borders within the limits.
   void Trace(const BinaryImage& binary, const cv::Rect& region, const BorderLimits& limits);
+
+  // Keeps 'most' of the borders, those across which the image changes most: by the median over
+  // places along the border of how much brighter it is 1.5 px beyond it than 0.5 px within. Of
+  // 'image' was the binary image made. Does not allocate after Reserve.
+  void KeepStrongest(const cv::Mat& image, std::size_t most);
 
   // Forgets all borders.
   void Clear() {
@@ -71,6 +78,11 @@ class BorderTracer {
   BitImage traced_;  // pixels whose upper edge has been walked along
   std::vector<Border> borders_;
   std::vector<GridPoint> points_;
+  struct Strength {
+    int contrast;
+    std::size_t border;
+  };
+  std::vector<Strength> strengths_;
 };
 
 }  // namespace kestrel

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <functional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -12,25 +11,12 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/base/random.h"
+#include "kestrel/image/test_figures.h"
 
 namespace kestrel {
 namespace {
 
 constexpr BorderLimits kNoLimits{0, 0, 1 << 14};
-
-// Dark where 'is_dark' says so, bright everywhere: every border may start.
-BinaryImage Draw(int width, int height, const std::function<bool(int, int)>& is_dark) {
-  BinaryImage binary;
-  binary.dark.Reset(width, height);
-  binary.bright.Reset(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      binary.bright.Set(x, y);
-      if (is_dark(x, y)) binary.dark.Set(x, y);
-    }
-  }
-  return binary;
-}
 
 BorderTracer TraceAll(const BinaryImage& binary, const BorderLimits& limits = kNoLimits) {
   BorderTracer tracer;
@@ -95,8 +81,8 @@ std::size_t CountCracks(const BitImage& image) {
 }
 
 TEST(BorderTracer, ADiscHasOneBorder) {
-  const BinaryImage binary =
-      Draw(90, 60, [](int x, int y) { return InDisc(x, y, 62, 30, 20.3); });  // across two words
+  const BinaryImage binary = DrawFigure(
+      90, 60, [](int x, int y) { return InDisc(x, y, 62, 30, 20.3); });  // across two words
   const BorderTracer tracer = TraceAll(binary);
   ASSERT_EQ(tracer.borders().size(), 1u);
   const Border& border = tracer.borders()[0];
@@ -108,7 +94,7 @@ TEST(BorderTracer, ADiscHasOneBorder) {
 }
 
 TEST(BorderTracer, WalksInUnitStepsWithTheDarkOnItsRight) {
-  const BinaryImage binary = Draw(
+  const BinaryImage binary = DrawFigure(
       40, 40, [](int x, int y) { return InDisc(x, y, 20, 20, 14) && !InDisc(x, y, 22, 19, 6); });
   const BorderTracer tracer = TraceAll(binary);
   ASSERT_EQ(tracer.borders().size(), 2u);
@@ -131,8 +117,8 @@ TEST(BorderTracer, WalksInUnitStepsWithTheDarkOnItsRight) {
 TEST(BorderTracer, ARingHasAnOuterBorderAndThatOfItsHole) {
   const auto in_hole = [](int x, int y) { return InDisc(x, y, 41, 39, 15); };
   const BinaryImage binary =
-      Draw(80, 80, [&](int x, int y) { return InDisc(x, y, 40, 40, 30) && !in_hole(x, y); });
-  const BinaryImage hole = Draw(80, 80, in_hole);
+      DrawFigure(80, 80, [&](int x, int y) { return InDisc(x, y, 40, 40, 30) && !in_hole(x, y); });
+  const BinaryImage hole = DrawFigure(80, 80, in_hole);
   const BorderTracer tracer = TraceAll(binary);
   ASSERT_EQ(tracer.borders().size(), 2u);
   EXPECT_EQ(tracer.borders()[0].signed_area, CountPixels(binary.dark) + CountPixels(hole.dark));
@@ -141,7 +127,7 @@ TEST(BorderTracer, ARingHasAnOuterBorderAndThatOfItsHole) {
 
 TEST(BorderTracer, DarkAreasTouchByCornersHolesDoNot) {
   // Two squares that share a corner.
-  const BinaryImage squares = Draw(20, 20, [](int x, int y) {
+  const BinaryImage squares = DrawFigure(20, 20, [](int x, int y) {
     return (x >= 4 && x < 8 && y >= 4 && y < 8) || (x >= 8 && x < 12 && y >= 8 && y < 12);
   });
   const BorderTracer touching = TraceAll(squares);
@@ -149,7 +135,7 @@ TEST(BorderTracer, DarkAreasTouchByCornersHolesDoNot) {
   EXPECT_EQ(touching.borders()[0].signed_area, 32);
   // A diamond closed by corners only: its inside is a hole.
   const BinaryImage diamond =
-      Draw(20, 20, [](int x, int y) { return std::abs(x - 10) + std::abs(y - 10) == 4; });
+      DrawFigure(20, 20, [](int x, int y) { return std::abs(x - 10) + std::abs(y - 10) == 4; });
   const BorderTracer closed = TraceAll(diamond);
   ASSERT_EQ(closed.borders().size(), 2u);
   EXPECT_LT(closed.borders()[1].signed_area, 0);
@@ -162,7 +148,7 @@ TEST(BorderTracer, FindsEveryBorderOfRandomImagesOnce) {
     const int height = random.Integer(5, 50);
     const double share = random.Uniform(0.05, 0.95);
     // Where the first two columns and rows are clear, the bright mask allows every start.
-    const BinaryImage binary = Draw(width, height, [&](int x, int y) {
+    const BinaryImage binary = DrawFigure(width, height, [&](int x, int y) {
       const bool dark = random.Chance(share);
       return dark && x >= 2 && y >= 2 && x < width - 2;
     });
@@ -185,7 +171,7 @@ TEST(BorderTracer, FindsEveryBorderOfRandomImagesOnce) {
 
 TEST(BorderTracer, KeepsWhatIsWithinTheLimits) {
   // Squares of 3, 6 and 20 pixels, and a bar of 12 x 2.
-  const BinaryImage binary = Draw(64, 64, [](int x, int y) {
+  const BinaryImage binary = DrawFigure(64, 64, [](int x, int y) {
     const auto in = [&](int x0, int y0, int w, int h) {
       return x >= x0 && x < x0 + w && y >= y0 && y < y0 + h;
     };
@@ -207,7 +193,7 @@ TEST(BorderTracer, KeepsWhatIsWithinTheLimits) {
 
 TEST(BorderTracer, ABorderThatWasGivenUpIsNotFollowedAgain) {
   // A comb whose teeth each offer a start; it is larger than allowed.
-  const BinaryImage binary = Draw(200, 40, [](int x, int y) {
+  const BinaryImage binary = DrawFigure(200, 40, [](int x, int y) {
     return x >= 4 && x < 196 && y >= (x % 8 < 4 ? 10 : 20) && y < 30;
   });
   EXPECT_TRUE(TraceAll(binary, {0, 0, 100}).borders().empty());
@@ -215,7 +201,7 @@ TEST(BorderTracer, ABorderThatWasGivenUpIsNotFollowedAgain) {
 }
 
 TEST(BorderTracer, StartsOnlyBelowBright) {
-  BinaryImage binary = Draw(40, 40, [](int x, int y) { return InDisc(x, y, 20, 20, 10); });
+  BinaryImage binary = DrawFigure(40, 40, [](int x, int y) { return InDisc(x, y, 20, 20, 10); });
   binary.bright.Reset(40, 40);
   EXPECT_TRUE(TraceAll(binary).borders().empty());
   // Three bright pixels two above an upper edge are enough; two are not.
@@ -226,10 +212,23 @@ TEST(BorderTracer, StartsOnlyBelowBright) {
   EXPECT_EQ(TraceAll(binary).borders().size(), 1u);
 }
 
+TEST(BorderTracer, StartsBelowANarrowBrightStrokeWhereThatIsAskedFor) {
+  BinaryImage binary = DrawFigure(40, 40, [](int x, int y) { return InDisc(x, y, 20, 20, 10); });
+  binary.bright.Reset(40, 40);
+  BorderLimits limits = kNoLimits;
+  limits.narrow = true;
+  EXPECT_TRUE(TraceAll(binary, limits).borders().empty());
+  binary.bright.Set(20, 8);
+  EXPECT_TRUE(TraceAll(binary, limits).borders().empty());
+  binary.bright.Set(21, 8);
+  EXPECT_TRUE(TraceAll(binary).borders().empty());
+  EXPECT_EQ(TraceAll(binary, limits).borders().size(), 1u);
+}
+
 TEST(BorderTracer, GivesUpWhatThereIsNoRoomFor) {
   // Single pixels, many more than there is room for.
   const BinaryImage binary =
-      Draw(400, 400, [](int x, int y) { return x % 2 == 0 && y % 2 == 0 && x > 1 && y > 1; });
+      DrawFigure(400, 400, [](int x, int y) { return x % 2 == 0 && y % 2 == 0 && x > 1 && y > 1; });
   BorderTracer tracer;
   tracer.Reserve(400, 400);
   const std::size_t room = tracer.capacity();
@@ -240,9 +239,35 @@ TEST(BorderTracer, GivesUpWhatThereIsNoRoomFor) {
   for (const Border& border : tracer.borders()) ASSERT_EQ(border.signed_area, 1);
 }
 
+TEST(BorderTracer, KeepsTheBordersAcrossWhichTheImageChangesMost) {
+  const auto in_disc = [](int disc, int x, int y) { return InDisc(x, y, 20 + 30 * disc, 20, 8); };
+  // Three discs, the middle one the darkest; the right one has a bright hole, the strongest border.
+  const auto in_hole = [](int x, int y) { return InDisc(x, y, 80, 20, 4); };
+  cv::Mat image(40, 100, CV_8UC1, cv::Scalar(100));
+  const BinaryImage binary = DrawFigure(100, 40, [&](int x, int y) {
+    for (int disc = 0; disc < 3; ++disc) {
+      if (!in_disc(disc, x, y)) continue;
+      image.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(disc == 1 ? 40 : 80);
+      if (disc < 2 || !in_hole(x, y)) return true;
+      image.at<std::uint8_t>(y, x) = 180;
+    }
+    return false;
+  });
+  BorderTracer tracer = TraceAll(binary);
+  ASSERT_EQ(tracer.borders().size(), 4u);
+  tracer.KeepStrongest(image, 4);
+  EXPECT_EQ(tracer.borders().size(), 4u);
+  tracer.KeepStrongest(image, 2);
+  ASSERT_EQ(tracer.borders().size(), 2u);
+  EXPECT_GT(tracer.borders()[0].signed_area, 0);
+  EXPECT_EQ(tracer.borders()[0].min.x, 42);
+  EXPECT_LT(tracer.borders()[1].signed_area, 0);
+}
+
 TEST(BorderTracer, ForgetsTheImageBefore) {
-  const BinaryImage disc = Draw(70, 70, [](int x, int y) { return InDisc(x, y, 30, 30, 20); });
-  const BinaryImage empty = Draw(70, 70, [](int, int) { return false; });
+  const BinaryImage disc =
+      DrawFigure(70, 70, [](int x, int y) { return InDisc(x, y, 30, 30, 20); });
+  const BinaryImage empty = DrawFigure(70, 70, [](int, int) { return false; });
   BorderTracer tracer;
   const cv::Rect all(0, 0, 70, 70);
   tracer.Trace(disc, all, kNoLimits);

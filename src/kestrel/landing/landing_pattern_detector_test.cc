@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <string>
 #include <thread>
@@ -146,6 +147,25 @@ TEST_F(LandingPatternDetectorTest, AHintFitsAPatternThatFillsTheImageOfAFisheye)
     ASSERT_TRUE(report.detection) << distance << " m: " << report.reason;
     EXPECT_LT(PoseError(report.detection->camera_from_pattern, truth).head<3>().norm(), 0.005);
   }
+}
+
+TEST_F(LandingPatternDetectorTest, TheSizeOfARingIsThatOfItsImage) {
+  // 85 degrees from the axis the lens stretches what it shows by half, along its rim.
+  const CameraModel fisheye(
+      {752, 752, 230, 230, 375.5, 375.5, DistortionModel::kEquidistant, {0, 0, 0, 0}});
+  const LandingPatternDetector detector(fisheye, {});
+  const double angle = 85 * std::numbers::pi / 180;
+  const Eigen::Vector3d direction(std::sin(angle), 0, std::cos(angle));
+  RigidTransform truth;
+  truth.rotation = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), -direction);
+  truth.translation = 3 * direction;
+  const cv::Mat image = DrawPrint(fisheye, pattern_, SpokedPrint(pattern_, 4), truth);
+  const LandingReport report = detector.Detect(image, {}, workspace_);
+  ASSERT_TRUE(report.detection) << report.reason;
+  const double by_angle = 230 * std::atan2(pattern_.outer_radius_m(), 3);
+  EXPECT_NEAR(report.detection->ring_semi_minor_px, by_angle, 0.03 * by_angle);
+  EXPECT_NEAR(report.detection->ring_semi_major_px, angle / std::sin(angle) * by_angle,
+              0.03 * by_angle);
 }
 
 TEST_F(LandingPatternDetectorTest, AFlatImageFallsAtTheFirstStages) {

@@ -10,6 +10,10 @@ namespace {
 
 constexpr std::size_t kMaxCollected = 512;  // candidates of a pass
 constexpr std::size_t kMaxTested = 64;      // rings that are remembered
+// Of a pass the borders of the highest contrast are looked at, so many: black on white stands out
+// of texture, of which there may be any amount.
+constexpr std::size_t kMinBorders = 24;
+constexpr std::size_t kPixelsPerBorder = 8192;
 
 // Whether two detections are the two poses of one ring, between which the image does not decide.
 bool AreMirrorPoses(const LandingDetection& a, const LandingDetection& b) {
@@ -28,12 +32,16 @@ bool AreMirrorPoses(const LandingDetection& a, const LandingDetection& b) {
 // Near patterns first: they are found at a sixteenth of the cost, and matter most.
 const std::array<LandingSearch::Pass, LandingWorkspace::Buffers::kPasses> LandingSearch::kPasses = {
     {
-        {3, 5, 64, 1e9},
-        {2, 4, 32, 400},
-        {1, 3, 16, 200},
-        {0, 1, 6, 120, true},
-        {0, 2, 6, 60, false, false},
-        {0, 3, 6, 60, false, true},
+        {.image_level = 3, .tile_level = 5, .min_ring_px = 64, .max_ring_px = 1e9},
+        {.image_level = 2, .tile_level = 4, .min_ring_px = 32, .max_ring_px = 400},
+        {.image_level = 1, .tile_level = 3, .min_ring_px = 16, .max_ring_px = 200},
+        {.image_level = 0, .tile_level = 1, .min_ring_px = 6, .max_ring_px = 120, .closing = true},
+        {.image_level = 0, .tile_level = 2, .min_ring_px = 6, .max_ring_px = 120, .narrow = true},
+        {.image_level = 0,
+         .tile_level = 3,
+         .min_ring_px = 6,
+         .max_ring_px = 120,
+         .not_bright = true},
     }};
 
 LandingSearch::LandingSearch(const LandingModels& models, const cv::Mat& image,
@@ -72,6 +80,7 @@ void LandingSearch::MakeRoom() {
   }
   buffers_.candidates.reserve(kMaxCollected);
   buffers_.rays.reserve(2 * LandingWorkspace::Buffers::kMaxRays);
+  buffers_.quadrants.Reserve();
   buffers_.arcs.Reserve(most_points);
   buffers_.cross_lines.Reserve();
   buffers_.partial.Reserve(most_points);
@@ -108,6 +117,7 @@ LandingReport LandingSearch::Run() {
   const bool low = !hint_.altitude_m || *hint_.altitude_m <= models_.options.max_partial_altitude_m;
   if (low) run(0, kPartialPasses, [this](std::size_t i) { TestPartial(i); });
   run(kCoarsePasses, kPasses.size(), trace_and_test);
+  run(kCoarsePasses, kPasses.size(), [this](std::size_t i) { TestQuadrants(i); });
   run(kCoarsePasses - 1, kPasses.size(), [this](std::size_t i) { TestCutAreas(i); });
   run(kCoarsePasses, kPasses.size(), [this](std::size_t i) { TestArcs(i); });
   return report_;
@@ -194,7 +204,10 @@ void LandingSearch::Trace(std::size_t pass_index) {
   limits.min_extent = std::max(4, static_cast<int>(0.7 * pass.min_ring_px / scale));
   limits.min_count = 4 * static_cast<std::size_t>(limits.min_extent);
   limits.max_extent = static_cast<int>(std::min(16000.0, 1.2 * pass.max_ring_px / scale));
+  limits.narrow = pass.narrow;
   tracer.Trace(buffers_.binary, cv::Rect(0, 0, image.cols, image.rows), limits);
+  const std::size_t by_size = image.total() / kPixelsPerBorder;
+  tracer.KeepStrongest(image, std::max(kMinBorders, by_size));
 }
 
 void LandingSearch::Binarize(const Pass& pass) {

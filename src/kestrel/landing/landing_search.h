@@ -23,6 +23,7 @@
 #include "kestrel/landing/pattern_view.h"
 #include "kestrel/landing/ring_arcs.h"
 #include "kestrel/landing/ring_fit.h"
+#include "kestrel/landing/ring_quadrants.h"
 #include "kestrel/landing/small_pattern.h"
 
 namespace kestrel {
@@ -86,6 +87,7 @@ struct LandingWorkspace::Buffers {
   std::array<BorderTracer, kPasses> tracers;  // of each pass
   std::vector<RingCandidate> candidates;
   std::vector<Eigen::Vector3d> rays;
+  RingQuadrantsWorkspace quadrants;
   RingArcsWorkspace arcs;
   CrossLinesWorkspace cross_lines;
   PartialPatternWorkspace partial;
@@ -112,9 +114,11 @@ class LandingSearch {
     double max_ring_px;       // major axis, full resolution
     bool closing = false;     // close gaps of the dark areas first
     bool not_bright = false;  // dark is all that is not bright
+    bool narrow = false;      // rings beside narrow strokes of white as well
   };
   static constexpr std::size_t kCoarsePasses = 3;   // whose borders are cut into arcs
   static constexpr std::size_t kPartialPasses = 2;  // in which the cross of a near pattern is seen
+  static constexpr double kMinFittedCorrelation = 0.84;  // of a small pattern
   static const std::array<Pass, LandingWorkspace::Buffers::kPasses> kPasses;
 
   // A ring with a pose that was looked at: how well the image agrees.
@@ -137,24 +141,27 @@ class LandingSearch {
   bool IsPlausible(const CirclePose& ring) const;
   void Trace(std::size_t pass_index);
   void TestAreas(std::size_t pass_index);
+  void TestQuadrants(std::size_t pass_index);
   void TestCutAreas(std::size_t pass_index);
   void TestArcs(std::size_t pass_index);
   void TestPartial(std::size_t pass_index);
 
   void CollectCandidates(std::size_t pass_index);
+  bool AddRay(const Eigen::Vector2d& pixel);
   void TestCandidate(const RingCandidate& candidate, std::size_t pass_index);
   std::optional<RingFit> FitToBorder(const RingCandidate& candidate, std::size_t pass_index);
   std::optional<RingFit> FitToOutline(const RingCandidate& candidate, const ImageRegion& region);
 
   bool StandsOut(const CirclePose& ring) const;
+  Eigen::Vector2d DiametersPx(const CirclePose& ring) const;
   bool IsSmall(const Eigen::Vector2d& diameters_px) const;
   void TestRing(const RingFit& ring, const Eigen::Vector2d& diameters_px, double reach_px);
   void TestSmallRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
-                     std::span<const double> scales);
+                     std::span<const double> scales,
+                     double min_correlation = kMinFittedCorrelation);
   SmallPatternFitter::Start FindStart(const CirclePose& pose, std::span<const double> scales);
-  double MinorAxisPx(const RigidTransform& pose) const;
-  bool IsSmallPattern(const SmallPatternFitter::Fit& fit,
-                      const Eigen::Vector2d& diameters_px) const;
+  bool IsSmallPattern(const SmallPatternFitter::Fit& fit, const Eigen::Vector2d& diameters_px,
+                      double min_correlation) const;
   bool ShowsOtherSign(const RigidTransform& pose, double quality);
   std::optional<RingPlace> PlaceOf(const Eigen::Vector3d& center,
                                    const Eigen::Vector2d& diameters_px) const;

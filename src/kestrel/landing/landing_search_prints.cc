@@ -14,7 +14,8 @@ namespace {
 // Edges of the print are found to a tenth of a pixel, blurred ones to a few; the nearest edges of
 // anything else scatter over the whole reach of the search.
 constexpr double kMaxEdgeRmsPx = 0.7;
-constexpr double kInspectedRingPx = 64;  // major axis below which it is looked for other signs
+constexpr double kMaxOneArmRmsPx = 0.3;  // where one arm alone keeps the ring from turning
+constexpr double kInspectedRingPx = 80;  // major axis below which it is looked for other signs
 constexpr double kMinMajorPx = 9;        // of the smallest ring
 // Differences of the residuals inside of a small ring, on it and around it, share of the contrast.
 constexpr double kMaxMoreInside = 0.085;
@@ -25,6 +26,7 @@ constexpr double kMinCrossCorrelation = 0.7;
 // Added to that for a small pattern whose board is dark, times the darkness: two doubts in one.
 constexpr double kCrossForDarkBoard = 1.2;
 constexpr double kMaxOtherSpokes = 0.65;
+constexpr double kMaxOtherSpokesOfSmall = 0.58;
 constexpr double kMaxFrameCorners = 0.14;
 constexpr double kMaxBoardDarkness = 0.35;
 constexpr double kEveryPart = 0.95;              // quality of a print of which nothing is missing
@@ -32,8 +34,9 @@ constexpr double kSmallMargin = 0.1;             // of the quality of a small pa
 constexpr double kMinCorrelation = 0.35;         // of a start of a small pattern
 constexpr double kSureCorrelation = 0.6;         // of a start that quadrants give
 constexpr double kMinCorrelationOfEither = 0.7;  // of the poses of a small pattern
-constexpr double kMinFittedCorrelation = 0.82;   // of a small pattern
 constexpr double kMinExplained = 0.62;           // of the variance
+constexpr double kMinExplainedBesideEdge =
+    0.7;  // the same: a shadow's edge explains much by itself
 // Edges and contrasts of the ring that are where a circle has them: a frame of another shape has
 // some of them.
 constexpr double kMinRingShare = 0.85;
@@ -83,9 +86,12 @@ bool IsDoubtful(const SmallPatternFitter::OtherSigns& others) {
          kMinCrossCorrelation + kCrossForDarkBoard * std::max(0.0, others.board_darkness);
 }
 
-// What is asked of the quality of a small pattern beyond that of a near one.
+// What is asked of the quality of a small pattern beyond that of a near one: the fewer pixels, and
+// the fewer across a ring that is seen from the side, the more a chance agrees with.
 double SmallMargin(const Eigen::Vector2d& diameters_px) {
-  return kSmallMargin * std::clamp((36 - std::sqrt(diameters_px.prod())) / 16, 0.0, 1.0);
+  const double size = std::sqrt(diameters_px.prod());
+  return kSmallMargin * (std::clamp((36 - size) / 16, 0.0, 1.0) +
+                         std::clamp((9 - diameters_px.y()) / 6, 0.0, 1.0));
 }
 
 }  // namespace
@@ -236,30 +242,23 @@ bool LandingSearch::WasTested(const RingFit& ring, const Eigen::Vector2d& diamet
   return false;
 }
 
-// Shorter axis of the ring as it appears under a pose.
-double LandingSearch::MinorAxisPx(const RigidTransform& pose) const {
-  const double distance = pose.translation.norm();
-  const Eigen::Vector3d normal = pose.rotation * Eigen::Vector3d::UnitZ();
-  const double foreshortening = std::abs(normal.dot(pose.translation)) / distance;
-  return 2 * models_.options.pattern.outer_radius_m() * focal_px_ / distance * foreshortening;
-}
-
 // What the print does not explain is spread evenly where the print is: a sign with another figure
 // in the ring leaves more inside, one in another frame more on the ring and around it. So few
 // pixels tell less than the edges of a near pattern: more is asked of them.
 bool LandingSearch::IsSmallPattern(const SmallPatternFitter::Fit& fit,
-                                   const Eigen::Vector2d& diameters_px) const {
+                                   const Eigen::Vector2d& diameters_px,
+                                   double min_correlation) const {
   const double on_print = std::max(fit.inside_residual, fit.ring_residual);
   constexpr double kTolerance = 0.75;  // of the size, which so few pixels hardly tell
-  if (MinorAxisPx(fit.location.camera_from_pattern) < kTolerance * models_.options.min_ring_px) {
-    return false;
-  }
+  const RigidTransform& pose = fit.location.camera_from_pattern;
+  const CirclePose ring{pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()};
+  if (DiametersPx(ring).y() < kTolerance * models_.options.min_ring_px) return false;
   return fit.match.Quality() >= models_.options.min_quality + SmallMargin(diameters_px) &&
-         fit.correlation >= kMinFittedCorrelation && fit.explained >= kMinExplained &&
+         fit.correlation >= min_correlation && fit.explained >= kMinExplained &&
          fit.inside_residual - fit.ring_residual <= kMaxMoreInside &&
          fit.ring_residual - fit.inside_residual <= kMaxMoreOnRing &&
          fit.white_residual <= on_print + kMaxMoreOutside && !IsOtherSign(fit.others) &&
-         !IsDoubtful(fit.others);
+         fit.others.spokes <= kMaxOtherSpokesOfSmall && !IsDoubtful(fit.others);
 }
 
 // The best start for a small pattern whose ring lies as 'pose'; its correlation is -1 when there is
@@ -282,7 +281,7 @@ SmallPatternFitter::Start LandingSearch::FindStart(const CirclePose& pose,
 // Rings whose strokes are no wider than the blur: the print is fitted as a whole. The ring may be
 // smaller than it was seen by the given factors.
 void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
-                                  std::span<const double> scales) {
+                                  std::span<const double> scales, double min_correlation) {
   if (diameters_px.x() < kMinMajorPx || diameters_px.y() < 0.7 * models_.options.min_ring_px) {
     return;
   }
@@ -306,10 +305,13 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
       continue;
     }
     Reach(LandingStage::kLocate, "no pose explains the edges of ring and cross");
-    if (!IsSmallPattern(*fit, diameters_px)) {
+    if (!IsSmallPattern(*fit, diameters_px, min_correlation)) {
       fit = models_.small.Refine(image_, fit->location.camera_from_pattern, Light::kShadowEdge,
                                  kIterations, &buffers_.small, level_);
-      if (!fit || !IsSmallPattern(*fit, diameters_px)) continue;
+      if (!fit || fit->explained < kMinExplainedBesideEdge ||
+          !IsSmallPattern(*fit, diameters_px, min_correlation)) {
+        continue;
+      }
     }
     Keep(fit->location, fit->match.seen < kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants,
          fit->match.Quality(), diameters_px);
@@ -336,12 +338,15 @@ void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& 
   const std::optional<PatternLocation> location =
       models_.locator.Locate(image_, hypothesis.camera_from_pattern, reach_px,
                              std::max(2.0, 0.12 * hypothesis.contrast), kIterations, level_);
-  if (!location || location->edge_rms_px > kMaxEdgeRmsPx) return;
+  if (!location) return;
   const ImageRegion region{offset_, ViewLevel(diameters_px.x())};
   const PatternView view(models_.camera, location->camera_from_pattern, models_.matcher.extent_m(),
                          region);
   if (!view.valid()) return;
   PatternMatch match = models_.matcher.Match(buffers_.pyramid.ImageAt(region.level), view);
+  const auto arms =
+      std::count_if(match.arm.begin(), match.arm.end(), [](double share) { return share >= 0; });
+  if (location->edge_rms_px > (arms < 2 ? kMaxOneArmRmsPx : kMaxEdgeRmsPx)) return;
   const auto combine = [](std::array<double, 4>* shares, const std::array<double, 4>& edges) {
     for (int k = 0; k < 4; ++k) {
       if ((*shares)[k] >= 0 && edges[k] >= 0) (*shares)[k] = 0.5 * ((*shares)[k] + edges[k]);

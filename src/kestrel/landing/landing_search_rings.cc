@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the search of an image comes to rings: closed dark areas, the white board, arcs, the cross
-// alone.
+// How the search of an image comes to rings: closed dark areas, the white board, white quadrants,
+// arcs, the cross alone.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -19,11 +19,31 @@ constexpr double kMaxBoardRingPx = 50;  // major axis of a ring that the board s
 // Candidates of a pass that are looked at, those of the highest contrast: a bound of the time that
 // a frame full of texture costs.
 constexpr std::size_t kMaxCandidates = 4;
+// Borders at full resolution that are cut into arcs: of texture so fine any number bend like rings.
+constexpr std::size_t kMaxArcBorders = 8;
 constexpr int kMaxHullExtent = 62;       // px, of borders that need not be convex
-constexpr double kMinSmallContrast = 3;  // gray values
+constexpr double kMinSmallContrast = 5;  // gray values
 constexpr std::array<double, 1> kOneScale{1.0};
 // An outline that grew together with what is beside it is larger than the ring.
 constexpr std::array<double, 2> kAreaScales{1.0, 1.12};
+// Least correlation of a small ring that was found by what looks like the inside of the print.
+constexpr double kMinCorrelationOfQuadrants = 0.87;
+// How far from an area's outline the edges of the ring may be, of its diameter.
+constexpr double kSure = 0.02;
+constexpr double kUnsure = 0.1;
+
+double ReachPx(const Eigen::Vector2d& diameters_px, const ImageRegion& region, double unsure) {
+  return std::max(2.0, 0.8 * region.scale() + unsure * diameters_px.x());
+}
+
+void KeepBest(std::vector<RingCandidate>* candidates) {
+  const std::size_t kept = std::min(candidates->size(), kMaxCandidates);
+  std::partial_sort(candidates->begin(), candidates->begin() + static_cast<std::ptrdiff_t>(kept),
+                    candidates->end(), [](const RingCandidate& a, const RingCandidate& b) {
+                      return a.contrast > b.contrast;
+                    });
+  candidates->resize(kept);
+}
 
 }  // namespace
 
@@ -58,7 +78,8 @@ void LandingSearch::CollectCandidates(std::size_t pass_index) {
     }
     Reach(LandingStage::kAreas, "no ring stands out of its surroundings");
     candidate.contrast = RingContrast(image, candidate.outer_edge, pattern);
-    const bool small = 2 * area->outline.semi_major * scale < kSmallRingPx;
+    const bool small =
+        IsSmall(2 * scale * Eigen::Vector2d(area->outline.semi_major, area->outline.semi_minor));
     if (candidate.contrast > 0 && (small || area->ellipticity >= kMinEllipticity)) {
       candidates.push_back(candidate);
     }
@@ -75,11 +96,16 @@ void LandingSearch::CollectCandidates(std::size_t pass_index) {
     candidate.contrast = BoardContrast(image, ring);
     if (candidate.contrast > 0) candidates.push_back(candidate);
   }
-  const std::size_t kept = std::min(candidates.size(), kMaxCandidates);
-  std::partial_sort(
-      candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(kept), candidates.end(),
-      [](const RingCandidate& a, const RingCandidate& b) { return a.contrast > b.contrast; });
-  candidates.resize(kept);
+  KeepBest(&candidates);
+}
+
+// Adds the ray of a pixel to those that a ring is fitted to; false when the lens has none there.
+bool LandingSearch::AddRay(const Eigen::Vector2d& pixel) {
+  const Eigen::Vector3f ray =
+      models_.rays.Ray(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
+  if (ray.squaredNorm() < 0.5f) return false;
+  buffers_.rays.push_back(ray.cast<double>());
+  return true;
 }
 
 void LandingSearch::TestCandidate(const RingCandidate& candidate, std::size_t pass_index) {
@@ -93,10 +119,7 @@ void LandingSearch::TestCandidate(const RingCandidate& candidate, std::size_t pa
   const bool by_border = ring.has_value();
   if (!ring) ring = FitToOutline(candidate, region);
   if (!ring || !IsPlausible(ring->poses[0])) return;
-  const LandingPattern& pattern = models_.options.pattern;
-  const bool inner = by_border && candidate.edge == RingEdge::kInner;
-  const double to_outer = inner ? pattern.outer_radius_m() / pattern.inner_radius_m() : 1.0;
-  const Eigen::Vector2d diameters_px = 2 * to_outer * focal_px_ * ring->cone.HalfAngles();
+  const Eigen::Vector2d diameters_px = DiametersPx(ring->poses[0]);
   // A print with a dark border shows less white than the board's size.
   constexpr std::array<double, 3> kBoardScales{1.0, 1.08, 1.17};
   if (small) {
@@ -110,8 +133,7 @@ void LandingSearch::TestCandidate(const RingCandidate& candidate, std::size_t pa
     }
   } else {
     // Dirt around the ring on which no circle lies makes the outline less sure.
-    const double unsure = by_border ? 0.02 : 0.1;
-    TestRing(*ring, diameters_px, std::max(2.0, 0.8 * region.scale() + unsure * diameters_px.x()));
+    TestRing(*ring, diameters_px, ReachPx(diameters_px, region, by_border ? kSure : kUnsure));
   }
 }
 
@@ -126,11 +148,7 @@ std::optional<RingFit> LandingSearch::FitToBorder(const RingCandidate& candidate
       std::max<std::size_t>(1, border.count / LandingWorkspace::Buffers::kMaxRays);
   buffers_.rays.clear();
   for (std::size_t i = 0; i < border.count; i += step) {
-    const Eigen::Vector2d pixel =
-        region.ToFull(Eigen::Vector2d(points[i].x - 0.5, points[i].y - 0.5));
-    const Eigen::Vector3f ray =
-        models_.rays.Ray(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
-    if (ray.squaredNorm() > 0.5f) buffers_.rays.push_back(ray.cast<double>());
+    AddRay(region.ToFull(Eigen::Vector2d(points[i].x - 0.5, points[i].y - 0.5)));
   }
   const double scale = region.scale();
   const double radius_px = candidate.outer_edge.semi_major * scale;
@@ -141,6 +159,36 @@ std::optional<RingFit> LandingSearch::FitToBorder(const RingCandidate& candidate
       buffers_.rays,
       candidate.edge == RingEdge::kOuter ? pattern.outer_radius_m() : pattern.inner_radius_m(),
       tolerance_px / focal_px_);
+}
+
+// Small rings whose white quadrants were seen.
+void LandingSearch::TestQuadrants(std::size_t pass_index) {
+  const ImageRegion region{offset_, kPasses[pass_index].image_level};
+  const LandingPattern& pattern = models_.options.pattern;
+  std::vector<RingCandidate>& candidates = buffers_.candidates;
+  candidates.clear();
+  {
+    StageTimer timer(&report_, LandingStage::kAreas);
+    const cv::Mat image = buffers_.pyramid.ImageAt(region.level);
+    FindQuadrantRings(buffers_.tracers[pass_index], pattern, &buffers_.quadrants);
+    for (const Ellipse& outer_edge : buffers_.quadrants.rings) {
+      if (2 * outer_edge.semi_minor * region.scale() < models_.options.min_ring_px) continue;
+      const double contrast = RingContrast(image, outer_edge, pattern);
+      if (contrast > 0) candidates.push_back({.outer_edge = outer_edge, .contrast = contrast});
+    }
+    KeepBest(&candidates);
+  }
+  for (const RingCandidate& candidate : candidates) {
+    const std::optional<RingFit> ring = FitToOutline(candidate, region);
+    if (!ring || !IsPlausible(ring->poses[0])) continue;
+    Reach(LandingStage::kRing, "no border lies on the image of a circle");
+    const Eigen::Vector2d diameters_px = DiametersPx(ring->poses[0]);
+    if (IsSmall(diameters_px)) {
+      TestSmallRing(*ring, diameters_px, kAreaScales, kMinCorrelationOfQuadrants);
+    } else {
+      TestRing(*ring, diameters_px, ReachPx(diameters_px, region, kUnsure));
+    }
+  }
 }
 
 // Small rings that the image border cuts off: their moments say nothing, and their arcs are too
@@ -163,10 +211,7 @@ void LandingSearch::TestCutAreas(std::size_t pass_index) {
       const std::size_t count = OutlineInView(tracer, border, outline);
       buffers_.rays.clear();
       for (std::size_t i = 0; i < count; i += 1 + count / LandingWorkspace::Buffers::kMaxRays) {
-        const Eigen::Vector2d pixel = region.ToFull(outline[i]);
-        const Eigen::Vector3f ray =
-            models_.rays.Ray(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
-        if (ray.squaredNorm() > 0.5f) buffers_.rays.push_back(ray.cast<double>());
+        AddRay(region.ToFull(outline[i]));
       }
       ring = FitRing(buffers_.rays, pattern.outer_radius_m(),
                      kTolerancePx * region.scale() / focal_px_);
@@ -174,11 +219,11 @@ void LandingSearch::TestCutAreas(std::size_t pass_index) {
     if (!ring || !IsPlausible(ring->poses[0])) continue;
     Reach(LandingStage::kRing, "no border lies on the image of a circle");
     if (!StandsOut(ring->poses[0])) continue;
-    const Eigen::Vector2d diameters_px = 2 * focal_px_ * ring->cone.HalfAngles();
+    const Eigen::Vector2d diameters_px = DiametersPx(ring->poses[0]);
     if (IsSmall(diameters_px)) {
       TestSmallRing(*ring, diameters_px, kAreaScales);
     } else {
-      TestRing(*ring, diameters_px, std::max(2.0, 0.8 * region.scale() + 0.02 * diameters_px.x()));
+      TestRing(*ring, diameters_px, ReachPx(diameters_px, region, kSure));
     }
   }
 }
@@ -190,12 +235,8 @@ std::optional<RingFit> LandingSearch::FitToOutline(const RingCandidate& candidat
   constexpr int kRays = 16;
   buffers_.rays.clear();
   for (int i = 0; i < kRays; ++i) {
-    const Eigen::Vector2d pixel =
-        region.ToFull(candidate.outer_edge.At(i * 2 * std::numbers::pi / kRays));
-    const Eigen::Vector3f ray =
-        models_.rays.Ray(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
-    if (ray.squaredNorm() < 0.5f) return std::nullopt;
-    buffers_.rays.push_back(ray.cast<double>());
+    const Eigen::Vector2d point = candidate.outer_edge.At(i * 2 * std::numbers::pi / kRays);
+    if (!AddRay(region.ToFull(point))) return std::nullopt;
   }
   return FitRing(buffers_.rays, models_.options.pattern.outer_radius_m(), 1 / focal_px_);
 }
@@ -207,8 +248,10 @@ void LandingSearch::TestArcs(std::size_t pass_index) {
   {
     StageTimer timer(&report_, LandingStage::kRing);
     constexpr double kMinCoverage = 0.25;
-    FindArcRings(buffers_.tracers[pass_index], models_.rays, region, 0.7 * scale / focal_px_,
-                 kMinCoverage, &buffers_.arcs);
+    BorderTracer& tracer = buffers_.tracers[pass_index];
+    if (region.level == 0) tracer.KeepStrongest(searched_, kMaxArcBorders);
+    FindArcRings(tracer, models_.rays, region, 0.7 * scale / focal_px_, kMinCoverage,
+                 &buffers_.arcs);
   }
   for (const ArcRing& arcs : buffers_.arcs.rings) {
     Reach(LandingStage::kRing, "no border lies on the image of a circle");
@@ -216,8 +259,7 @@ void LandingSearch::TestArcs(std::size_t pass_index) {
     const double radius_m = inner ? pattern.inner_radius_m() : pattern.outer_radius_m();
     const RingFit ring{arcs.cone, CirclePosesFromCone(arcs.cone, radius_m, arcs.toward)};
     if (!IsPlausible(ring.poses[0])) continue;
-    const Eigen::Vector2d diameters_px =
-        2 * pattern.outer_radius_m() / radius_m * focal_px_ * ring.cone.HalfAngles();
+    const Eigen::Vector2d diameters_px = DiametersPx(ring.poses[0]);
     if (IsSmall(diameters_px)) {
       if (StandsOut(ring.poses[0])) TestSmallRing(ring, diameters_px, kOneScale);
     } else {
@@ -257,6 +299,34 @@ bool LandingSearch::StandsOut(const CirclePose& ring) const {
   const PatternView view(models_.camera, PatternPose(ring, 0), models_.matcher.extent_m(),
                          {offset_, 0});
   return view.valid() && models_.matcher.RingContrast(searched_, view) >= kMinSmallContrast;
+}
+
+// Axes of the ring as the image shows it, px, the longer one first: near its rim a fisheye lens
+// stretches what it shows. By its angles where it leaves the lens.
+Eigen::Vector2d LandingSearch::DiametersPx(const CirclePose& ring) const {
+  constexpr int kPoints = 8;
+  const double radius = models_.options.pattern.outer_radius_m();
+  const Eigen::Vector3d a = ring.normal.unitOrthogonal();
+  const Eigen::Vector3d b = ring.normal.cross(a);
+  Eigen::Matrix<double, 2, kPoints> pixels;
+  for (int i = 0; i < kPoints; ++i) {
+    const double angle = i * 2 * std::numbers::pi / kPoints;
+    Eigen::Vector2d pixel;
+    if (models_.camera.Project(ring.center + radius * (std::cos(angle) * a + std::sin(angle) * b),
+                               &pixel) == ProjectionStatus::kOutsideModel) {
+      const double distance = ring.center.norm();
+      const double foreshortening = std::abs(ring.normal.dot(ring.center)) / distance;
+      return 2 * focal_px_ * std::atan2(radius, distance) * Eigen::Vector2d(1, foreshortening);
+    }
+    pixels.col(i) = pixel;
+  }
+  pixels.colwise() -= pixels.rowwise().mean().eval();
+  const Eigen::Matrix2d moments = pixels * pixels.transpose() / kPoints;
+  const double mean = 0.5 * moments.trace();
+  const double spread = std::sqrt(std::max(0.0, mean * mean - moments.determinant()));
+  // The second moment of a circle along its diameter is half of its squared radius.
+  return 2 * std::numbers::sqrt2 *
+         Eigen::Vector2d(std::sqrt(mean + spread), std::sqrt(std::max(0.0, mean - spread)));
 }
 
 bool LandingSearch::IsSmall(const Eigen::Vector2d& diameters_px) const {

@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "kestrel/landing/neighbor_correlation.h"
 #include "kestrel/landing/pattern_view.h"
 
 namespace kestrel {
@@ -89,14 +90,8 @@ double StrokeShift(double width_px) {
 // change.
 bool Move(const Eigen::Matrix<double, 6, 1>& step, RigidTransform* pose) {
   if (!step.allFinite()) return false;
-  const double angle = step.tail<3>().norm();
-  if (angle > 1) return false;
-  pose->translation += step.head<3>();
-  if (angle > 1e-12) {
-    pose->rotation =
-        (Eigen::Quaterniond(Eigen::AngleAxisd(angle, step.tail<3>() / angle)) * pose->rotation)
-            .normalized();
-  }
+  if (step.tail<3>().norm() > 1) return false;
+  *pose = Moved(*pose, step.head<3>(), step.tail<3>());
   return true;
 }
 
@@ -109,8 +104,7 @@ struct PatternLocator::Normal {
   Eigen::Matrix<double, 6, 1> by_blur = Eigen::Matrix<double, 6, 1>::Zero();  // derivative of g
   double weighted_squares = 0;
   double weights = 0;
-  double products = 0;  // of neighbouring residuals, and the squares that belong to them
-  double product_squares = 0;
+  NeighborCorrelation neighbors;
   struct Stretch {
     double sum = 0;  // of weighted residuals
     double weights = 0;
@@ -138,17 +132,13 @@ struct PatternLocator::Normal {
     return std::sqrt(std::max(0.0, step.dot(h * step)) / weights);
   }
 
-  // Variance of an edge as the pose sees it. Neighbours share pixels, dirt and light, and what they
-  // have in common does not average out: (1 + r) / (1 - r) with their correlation r is how many
-  // edges count as one (a first-order autoregressive process along the outline). What whole
-  // stretches of an outline have in common shows in how their means differ.
+  // Variance of an edge as the pose sees it: what neighbours have in common does not average out,
+  // and what whole stretches of an outline have in common shows in how their means differ.
   double EdgeVariance() const {
     constexpr double kUnknowns = 6;
     constexpr double kStretchEdges = 3;
-    const double correlation =
-        std::clamp(products / std::max(product_squares, 1e-12), 0.0, kMaxCorrelation);
     const double freedom = std::max(1.0, used - kUnknowns) / used;
-    const double of_edges = MeanSquare() / freedom * (1 + correlation) / (1 - correlation);
+    const double of_edges = MeanSquare() / freedom * neighbors.Redundancy(kMaxCorrelation);
     double squares = 0;
     int stretches = 0;
     for (const Stretch& stretch : outline) {
@@ -287,9 +277,7 @@ void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose
     Normal::Stretch& stretch = normal->outline[2 * place.part + place.side];
     stretch.sum += weight * *offset;
     stretch.weights += weight;
-    if (!neighbor) continue;
-    normal->products += *neighbor * *offset;
-    normal->product_squares += 0.5 * (*neighbor * *neighbor + *offset * *offset);
+    if (neighbor) normal->neighbors.Add(*neighbor, *offset);
   }
 }
 

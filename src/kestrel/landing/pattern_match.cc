@@ -39,12 +39,13 @@ struct Seen {
 };
 
 struct Tally {
+  static constexpr int kSeenOf = 5;  // at least one in so many
   int agreed = 0;
   int seen = 0;
   int all = 0;
 
   double Share() const {
-    return 4 * seen < all ? -1.0 : static_cast<double>(agreed) / std::max(seen, 1);
+    return kSeenOf * seen < all ? -1.0 : static_cast<double>(agreed) / std::max(seen, 1);
   }
 };
 
@@ -113,7 +114,7 @@ PatternMatcher::PatternMatcher(const LandingPattern& pattern) {
     const Place dark = at(middle, angle);
     ring_.push_back({quarter, {dark, dark}, {bright, bright}});
   }
-  const double reach = std::min(pattern.arm_half_length_m, inner) - 0.5 * pattern.arm_width_m;
+  const double reach = std::min(pattern.arm_half_length_m, inner) - 0.3 * pattern.arm_width_m;
   const double side = 1.15 * pattern.arm_width_m;
   for (int quarter = 0; quarter < 4; ++quarter) {
     for (int i = 0; i < 10; ++i) {

@@ -15,7 +15,7 @@ namespace kestrel {
 // k is the right angle around arm k.
 struct PatternMatch {
   // Share, 0 to 1, of the local contrasts of each quarter that stand in the image as in the print;
-  // negative when the image shows less than a quarter of it.
+  // negative when the image shows less than a fifth of it.
   std::array<double, 4> arm{};       // arm darker than the white on both of its sides
   std::array<double, 4> quadrant{};  // white between the arms brighter than ring and arms
   std::array<double, 4> ring{};      // ring darker than the white around it

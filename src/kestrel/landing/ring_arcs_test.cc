@@ -14,23 +14,8 @@ namespace {
 
 class FindArcRingsTest : public ::testing::Test {
  protected:
-  // The borders of a figure in pixels of the camera's image.
-  static BorderTracer Trace(const Print& is_dark) {
-    BinaryImage binary;
-    binary.dark.Reset(320, 240);
-    binary.bright.Reset(320, 240);
-    for (int y = 0; y < 240; ++y) {
-      for (int x = 0; x < 320; ++x) {
-        binary.bright.Set(x, y);
-        if (is_dark(x, y)) binary.dark.Set(x, y);
-      }
-    }
-    BorderTracer tracer;
-    tracer.Trace(binary, cv::Rect(0, 0, 320, 240), BorderLimits{});
-    return tracer;
-  }
   const std::vector<ArcRing>& Find(const Print& is_dark, double min_coverage = 0.25) {
-    const BorderTracer tracer = Trace(is_dark);
+    const BorderTracer tracer = TraceFigure(is_dark, 320, 240);
     workspace_.Reserve(tracer.capacity());
     const double tolerance = 0.7 / camera_.intrinsics().fx_px;
     FindArcRings(tracer, rays_, {}, tolerance, min_coverage, &workspace_);
@@ -55,7 +40,7 @@ class FindArcRingsTest : public ::testing::Test {
 };
 
 TEST_F(FindArcRingsTest, WithoutRoomThereAreNoArcs) {
-  const BorderTracer tracer = Trace(OnRing);
+  const BorderTracer tracer = TraceFigure(OnRing, 320, 240);
   workspace_.Reserve(300);  // the outer edge alone has more points
   const std::size_t room = workspace_.points.capacity();
   FindArcRings(tracer, rays_, {}, 0.003, 0.25, &workspace_);

@@ -6,10 +6,9 @@
 #include <numbers>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include "kestrel/landing/pattern_pose.h"
+#include "kestrel/landing/neighbor_correlation.h"
 #include "kestrel/landing/small_pattern_model.h"
 
 namespace kestrel {
@@ -17,10 +16,9 @@ namespace {
 
 constexpr double kMinBlurPx = 0.4;
 constexpr double kMaxBlurPx = 1.2;
-constexpr int kUnknowns = 11;                // pose, blur, white, contrast, two slopes of the light
-constexpr double kBlurSpread = 0.35;         // of the blur's logarithm over lenses
-constexpr double kMaxWhite = 600;            // gray value of white under the strongest overexposure
-constexpr double kMinRingCorrelation = 0.2;  // of a start, ring and white alone
+constexpr int kUnknowns = 11;         // pose, blur, white, contrast, two slopes of the light
+constexpr double kBlurSpread = 0.35;  // of the blur's logarithm over lenses
+constexpr double kMaxWhite = 600;     // gray value of white under the strongest overexposure
 // Standard deviations of the residuals beyond which one is an outlier, and the least of these,
 // share of the contrast: no print is perfect.
 constexpr double kOutlier = 2.5;
@@ -138,116 +136,6 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
   return workspace->pixels.size() >= kMinPixels;
 }
 
-// Darkness of the arm along 'along', metres.
-double SmallPatternFitter::ArmDarkness(double along, double across, double blur_along,
-                                       double blur_across) const {
-  const double half_width = 0.5 * pattern_.arm_width_m;
-  const double length = pattern_.arm_half_length_m;
-  const auto step = [](double distance, double blur) { return BlurredStep(distance / blur).value; };
-  const double width =
-      step(across + half_width, blur_across) - step(across - half_width, blur_across);
-  if (width <= 0) return 0;
-  return width * (step(along + length, blur_along) - step(along - length, blur_along));
-}
-
-// The ring 'scale' times smaller: that much farther away.
-CirclePose Shrunk(const CirclePose& ring, double scale) {
-  return {ring.center / scale, ring.normal};
-}
-
-// Sums for the correlation of gray values with how dark a print is there.
-class DarknessCorrelation {
- public:
-  void Add(double gray, double dark) {
-    ++n_;
-    g_ += gray;
-    gg_ += gray * gray;
-    d_ += dark;
-    dd_ += dark * dark;
-    gd_ += gray * dark;
-  }
-  // 1 when the image is bright where the print is not dark; -1 without any contrast.
-  double value() const {
-    const double variance = (gg_ - g_ * g_ / n_) * (dd_ - d_ * d_ / n_);
-    return variance > 0 ? -(gd_ - g_ * d_ / n_) / std::sqrt(variance) : -1;
-  }
-
- private:
-  double n_ = 0, g_ = 0, gg_ = 0, d_ = 0, dd_ = 0, gd_ = 0;
-};
-
-// Correlation of ring and white with the image when the ring lies as 'unturned'; fills the points
-// of the workspace. The ring looks the same however it is turned.
-double SmallPatternFitter::CorrelateRing(const RigidTransform& unturned,
-                                         SmallPatternWorkspace* workspace) const {
-  const PlaneMap map(unturned);
-  const double inner = pattern_.inner_radius_m();
-  workspace->points.clear();
-  DarknessCorrelation correlation;
-  for (const auto& pixel : workspace->pixels) {
-    PlanePoint point = Intersect(map, pixel);
-    const double r = std::max(std::hypot(point.x, point.y), 1e-9);
-    const double blur_r =
-        kGoodLensBlurPx *
-        (point.by_pixel.transpose() * Eigen::Vector2d(point.x / r, point.y / r)).norm();
-    point.ring = BlurredStroke(r, inner, pattern_.outer_radius_m(), blur_r).value;
-    workspace->points.push_back(point);
-    if (r > inner) correlation.Add(pixel.gray, point.ring);
-  }
-  return correlation.value();
-}
-
-// Correlation of the print with the image when it is turned by 'angle' in the plane of the points.
-double SmallPatternFitter::CorrelatePrint(double angle,
-                                          const SmallPatternWorkspace& workspace) const {
-  const Eigen::Matrix2d turned = Eigen::Rotation2Dd(-angle).toRotationMatrix();
-  DarknessCorrelation correlation;
-  for (std::size_t i = 0; i < workspace.points.size(); ++i) {
-    const PlanePoint& point = workspace.points[i];
-    const Eigen::Vector2d place = turned * Eigen::Vector2d(point.x, point.y);
-    const Eigen::Matrix2d by_pixel = turned * point.by_pixel;
-    const double blur_x = kGoodLensBlurPx * by_pixel.row(0).norm();
-    const double blur_y = kGoodLensBlurPx * by_pixel.row(1).norm();
-    const double arms = (1 - ArmDarkness(place.x(), place.y(), blur_x, blur_y)) *
-                        (1 - ArmDarkness(place.y(), place.x(), blur_y, blur_x));
-    correlation.Add(workspace.pixels[i].gray, 1 - (1 - point.ring) * arms);
-  }
-  return correlation.value();
-}
-
-std::optional<double> SmallPatternFitter::FindScale(const cv::Mat& image, const CirclePose& ring,
-                                                    std::span<const double> scales,
-                                                    SmallPatternWorkspace* workspace) const {
-  const auto look_at = [&](double scale) {
-    const RigidTransform unturned = PatternPose(Shrunk(ring, scale), 0);
-    return Gather(image, unturned, kEnoughToFit, workspace) ? CorrelateRing(unturned, workspace)
-                                                            : -1.0;
-  };
-  double best = 0, best_correlation = kMinRingCorrelation;
-  for (const double scale : scales) {
-    const double correlation = look_at(scale);
-    if (correlation < best_correlation) continue;
-    best_correlation = correlation;
-    best = scale;
-  }
-  if (best == 0) return std::nullopt;
-  if (best != scales.back()) look_at(best);
-  return best;
-}
-
-SmallPatternFitter::Start SmallPatternFitter::FindStart(
-    const CirclePose& ring, double scale, std::span<const double> arm_angles,
-    const SmallPatternWorkspace& workspace) const {
-  Start best{{}, -1};
-  for (const double angle : arm_angles) {
-    const double correlation = CorrelatePrint(angle, workspace);
-    if (correlation > best.correlation) {
-      best = {PatternPose(Shrunk(ring, scale), angle), correlation};
-    }
-  }
-  return best;
-}
-
 // Normal equations of a state for small changes of pose (translation, then rotation about the
 // centre), logarithm of the blur, white, contrast and slopes; and the residuals that made them.
 struct SmallPatternFitter::System {
@@ -266,8 +154,7 @@ struct SmallPatternFitter::System {
   double sum = 0;      // of the gray values
   double sum_squares = 0;
   double count = 0;
-  double products = 0;  // of the residuals of neighbours in a row, and their squares
-  double product_squares = 0;
+  NeighborCorrelation neighbors;  // in a row
 
   // Of the inside but the worst quadrant: dirt or a highlight may spoil one.
   double InsideRms() const {
@@ -283,13 +170,11 @@ struct SmallPatternFitter::System {
     return others.Rms();
   }
   double variance() const { return squares / std::max(1.0, count - kUnknowns); }
-  // Variance of a pixel as the pose sees it: what neighbours have in common (blur that is not as
-  // modelled, dirt) does not average out along the strokes (as in PatternLocator).
+  // Variance of a pixel as the pose sees it: what neighbours have in common does not average out
+  // along the strokes.
   double EffectiveVariance() const {
     constexpr double kMaxCorrelation = 0.7;
-    const double correlation =
-        std::clamp(products / std::max(product_squares, 1e-12), 0.0, kMaxCorrelation);
-    return variance() * (1 + correlation) / (1 - correlation);
+    return variance() * neighbors.Redundancy(kMaxCorrelation);
   }
   double correlation() const {
     const double about_mean = sum_squares - sum * sum / count;
@@ -342,19 +227,19 @@ SmallPatternFitter::System SmallPatternFitter::Linearize(const State& state, dou
     workspace->magnitudes.push_back(static_cast<float>(magnitude));
     const double weight = magnitude > limit ? limit / magnitude : 1;
     system.count += weight;
-    system.sum += weight * gray;
-    system.sum_squares += weight * gray * gray;
-    system.squares += weight * residual * residual;
+    const double clear = state.WithoutHighlight(point, gray);
+    system.sum += weight * clear;
+    system.sum_squares += weight * clear * clear;
+    system.squares += weight * (clear - expected) * (clear - expected);
     const double radius = std::hypot(point.x, point.y);
     System::Zone& zone = radius < inner   ? system.quadrants[QuadrantOf(point)]
                          : radius < outer ? system.ring
                                           : system.white;
-    const double bounded = std::min(magnitude, limit);
-    const double signed_bounded = std::copysign(bounded, residual);
-    system.products += before * signed_bounded;
-    system.product_squares += 0.5 * (before * before + bounded * bounded);
-    before = signed_bounded;
-    zone.squares += bounded * bounded;
+    const double bounded = std::clamp(residual, -limit, limit);
+    system.neighbors.Add(before, bounded);
+    before = bounded;
+    const double unexplained = std::clamp(clear - expected, -limit, limit);
+    zone.squares += unexplained * unexplained;
     ++zone.count;
     if (gray != pixel.gray) continue;  // cut off: says nothing about small changes
     // A moved plane point stays on the ray of its pixel: what is left of the motion within the
@@ -403,14 +288,9 @@ bool SmallPatternFitter::Improve(const System& system, const std::optional<Norma
   const Eigen::Matrix<double, kUnknowns, 1> step = h.ldlt().solve(b);
   if (!step.allFinite()) return false;
   RigidTransform& pose = state->pose;
-  const double angle = step.segment<3>(3).norm();
-  if (angle > 0.8 || step.head<3>().norm() > 0.5 * pose.translation.norm()) return false;
-  pose.translation += step.head<3>();
-  if (angle > 1e-12) {
-    pose.rotation =
-        (Eigen::Quaterniond(Eigen::AngleAxisd(angle, step.segment<3>(3) / angle)) * pose.rotation)
-            .normalized();
-  }
+  const Eigen::Vector3d turn = step.segment<3>(3);
+  if (turn.norm() > 0.8 || step.head<3>().norm() > 0.5 * pose.translation.norm()) return false;
+  pose = Moved(pose, step.head<3>(), turn);
   state->blur_px =
       std::clamp(state->blur_px * std::exp(std::clamp(step(6), -0.5, 0.5)), kMinBlurPx, kMaxBlurPx);
   state->white += step(7);

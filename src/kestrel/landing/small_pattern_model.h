@@ -125,8 +125,16 @@ struct SmallPatternFitter::State {
   ShadowEdge edge;              // taken out of the gray values before the fit
   Eigen::Vector2d slope{0, 0};  // of the light over the print, gray values per metre
 
+  double White(const PlanePoint& point) const {
+    return white + slope.x() * point.x + slope.y() * point.y;
+  }
   double Gray(const PlanePoint& point, const Darkness& dark) const {
-    return white + slope.x() * point.x + slope.y() * point.y - contrast * dark.value;
+    return White(point) - contrast * dark.value;
+  }
+  // A gray value without what makes it brighter than the print can be: a highlight is no sign.
+  double WithoutHighlight(const PlanePoint& point, double gray) const {
+    constexpr double kMargin = 0.1;  // of the contrast
+    return std::min(gray, White(point) + kMargin * contrast);
   }
 };
 

@@ -32,7 +32,7 @@ SmallPatternFitter::OtherSigns SmallPatternFitter::MeasureOthers(
   for (const auto& pixel : workspace->pixels) {
     PlanePoint point = Intersect(map, pixel);
     point.expected = state.Gray(point, Evaluate(point.x, point.y, point.by_pixel, state.blur_px));
-    point.gray = SeenGray(pixel.gray, point.expected);
+    point.gray = state.WithoutHighlight(point, SeenGray(pixel.gray, point.expected));
     workspace->points.push_back(point);
   }
   return {.spokes = OtherSpokes(*workspace, state),
@@ -142,7 +142,7 @@ double SmallPatternFitter::BoardDarkness(const cv::Mat& image, const State& stat
         SampleGray(image, static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
     if (seen_gray < 0) continue;
     const double gray = seen_gray * state.edge.Factor(point.x(), point.y());
-    const double white = state.white + state.slope.dot(point.head<2>());
+    const double white = state.White({point.x(), point.y(), {}});
     darkness[seen++] = seen_gray >= kSaturated ? 0 : (white - gray) / state.contrast;
   }
   if (seen == 0) return 0;

@@ -197,5 +197,23 @@ TEST_F(SmallPatternTest, AHighlightDoesNotSpoilTheFit) {
   }
 }
 
+TEST_F(SmallPatternTest, AHighlightInAQuadrantIsNoSign) {
+  Random random(6);
+  for (const int diameter_px : {18, 24}) {
+    const RigidTransform truth = PoseOf(diameter_px, &random);
+    // Half as bright, so that the highlight is not cut off by the image.
+    cv::Mat image = 0.5 * AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 2, &random);
+    Eigen::Vector2d spot;
+    camera_.Project(truth * Eigen::Vector3d(0.2, 0.2, 0), &spot);
+    const auto x = static_cast<int>(std::lround(spot.x()));
+    const auto y = static_cast<int>(std::lround(spot.y()));
+    image(cv::Rect(x - 1, y - 1, 3, 3)) = 240;  // of a white of 100
+    const auto fit = Fit(image, truth);
+    ASSERT_TRUE(fit) << diameter_px;
+    EXPECT_GT(fit->others.cross_correlation, 0.93) << diameter_px;
+    EXPECT_GT(fit->explained, 0.9) << diameter_px;
+  }
+}
+
 }  // namespace
 }  // namespace kestrel

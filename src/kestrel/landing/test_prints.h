@@ -14,6 +14,8 @@
 #include "kestrel/base/random.h"
 #include "kestrel/camera/camera_model.h"
 #include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/image/border_tracing.h"
+#include "kestrel/image/test_figures.h"
 #include "kestrel/landing/landing_pattern.h"
 
 namespace kestrel {
@@ -101,6 +103,13 @@ inline cv::Mat DrawPrint(const CameraModel& camera, const LandingPattern& patter
     }
   }
   return image;
+}
+
+// The borders of a figure in pixels, on bright ground.
+inline BorderTracer TraceFigure(const Print& is_dark, int width, int height) {
+  BorderTracer tracer;
+  tracer.Trace(DrawFigure(width, height, is_dark), cv::Rect(0, 0, width, height), BorderLimits{});
+  return tracer;
 }
 
 // A copy with normal noise of the given standard deviation, gray values.
