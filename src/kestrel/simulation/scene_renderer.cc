@@ -51,12 +51,8 @@ struct PlaneView {
 // The plane's pose at a moment of the exposure, 'time' from its middle.
 RigidTransform PoseAt(const RigidTransform& camera_from_pattern, const ImagingOptions& imaging,
                       double time) {
-  const Eigen::Vector3d turn = time * imaging.angular_velocity_in_camera;
-  const double angle = turn.norm();
-  const Eigen::Quaterniond rotation(angle > 0 ? Eigen::AngleAxisd(angle, turn / angle)
-                                              : Eigen::AngleAxisd::Identity());
-  return {rotation * camera_from_pattern.rotation,
-          camera_from_pattern.translation + time * imaging.velocity_in_camera};
+  return Moved(camera_from_pattern, time * imaging.velocity_in_camera,
+               time * imaging.angular_velocity_in_camera);
 }
 
 // Gray values of radiances in units of white, with noise.
