@@ -15,6 +15,9 @@ namespace kestrel {
 
 // A detection with its place in the world.
 struct ObjectMeasurement {
+  // After the time of the frame (s), before it if negative: a rolling shutter sees each row at a
+  // time of its own.
+  double delay_s = 0;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();    // m
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // m^2, positive definite
   ObjectShape shape = ObjectShape::kDisc;

@@ -29,6 +29,16 @@ bool IsUsable(const ObjectMeasurement& measurement) {
          measurement.covariance.llt().info() == Eigen::Success;
 }
 
+using Observation = Eigen::Matrix<double, 3, MappedObject::kStateSize>;
+
+// From the state to where the object is 'delay_s' after the state's time: a moment.
+Observation ObservationAfter(double delay_s) {
+  Observation observation = Observation::Zero();
+  observation.leftCols<3>().setIdentity();
+  observation.middleCols<3>(3).diagonal().setConstant(delay_s);
+  return observation;
+}
+
 // Adds the logarithms of 'probabilities', and keeps the greatest sum at 0.
 template <class Array>
 void AddLogarithms(const Array& probabilities, Array* sums) {
@@ -125,10 +135,13 @@ std::vector<MappedObject> ObjectMap::Confirmed() const {
 
 double ObjectMap::Cost(const ObjectMeasurement& measurement, const MappedObject& object) const {
   if (measurement.shape != object.shape) return kImpossible;
-  Eigen::Matrix3d covariance = object.covariance.topLeftCorner<3, 3>() + measurement.covariance;
+  const Observation observation = ObservationAfter(measurement.delay_s);
+  Eigen::Matrix3d covariance =
+      observation * object.covariance * observation.transpose() + measurement.covariance;
   covariance.diagonal().array() += options_.shared_sigma_m * options_.shared_sigma_m;
   const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
-  const Eigen::Vector3d whitened = llt.matrixL().solve(measurement.position - object.position());
+  const Eigen::Vector3d whitened =
+      llt.matrixL().solve(measurement.position - observation * object.state);
   const double distance = whitened.squaredNorm();
   if (distance > options_.gate) return kImpossible;
   // -2 log of the likelihood.
@@ -138,14 +151,14 @@ double ObjectMap::Cost(const ObjectMeasurement& measurement, const MappedObject&
 }
 
 void ObjectMap::Fuse(const ObjectMeasurement& measurement, MappedObject* object) const {
-  const Eigen::Matrix3d innovation =
-      object->covariance.topLeftCorner<3, 3>() + measurement.covariance;
+  const Observation observation = ObservationAfter(measurement.delay_s);
+  const Observation seen = observation * object->covariance;
+  const Eigen::Matrix3d innovation = seen * observation.transpose() + measurement.covariance;
   const Eigen::Matrix<double, MappedObject::kStateSize, 3> gain =
-      innovation.llt().solve(object->covariance.topRows<3>()).transpose();
-  object->state += gain * (measurement.position - object->position());
+      innovation.llt().solve(seen).transpose();
+  object->state += (gain * (measurement.position - observation * object->state)).eval();
   // Joseph's form stays symmetric and positive.
-  MappedObject::Covariance rest = MappedObject::Covariance::Identity();
-  rest.leftCols<3>() -= gain;
+  const MappedObject::Covariance rest = MappedObject::Covariance::Identity() - gain * observation;
   object->covariance = rest * object->covariance * rest.transpose() +
                        gain * measurement.covariance * gain.transpose();
   object->color = measurement.color;
@@ -174,6 +187,10 @@ MappedObject ObjectMap::Start(Time time, const ObjectMeasurement& measurement) {
     Eigen::Matrix<double, 6, 1> sigmas;  // of velocity and acceleration
     sigmas << options_.start_speed_sigma_mps * axes, options_.acceleration_sigma_mps2 * axes;
     object.covariance.bottomRightCorner<6, 6>().diagonal() = sigmas.cwiseAbs2();
+    // As fast as it may be, it was as far from there at the time of the frame.
+    MappedObject::Covariance back = MappedObject::Covariance::Identity();
+    back.topRows<3>() = ObservationAfter(-measurement.delay_s);
+    object.covariance = (back * object.covariance * back.transpose()).eval();
   }
   return object;
 }

@@ -77,6 +77,26 @@ TEST(ObjectMap, MovingObjectHasItsVelocity) {
   EXPECT_LT((objects[0].velocity() - velocity).norm(), 0.15);
 }
 
+TEST(ObjectMap, RowsOfARollingShutterHaveTimesOfTheirOwn) {
+  ObjectMap map(DefaultObjectModel(), {});
+  Random random(7);
+  const Eigen::Vector3d velocity(1, 0.5, 0);
+  // Through the image from the first row to the last: as if it took the readout's time longer.
+  constexpr double kReadout_s = 0.1;
+  for (int i = 0; i <= 20; ++i) {
+    const double t = 0.1 * i;
+    const double delay_s = kReadout_s * (t / 2 - 0.5);
+    ObjectMeasurement measurement =
+        MeasureNoisily((t + delay_s) * velocity, kYellow, 0.002, &random);
+    measurement.delay_s = delay_s;
+    map.Update(At(t), std::vector{measurement}, SeesAll());
+  }
+  const auto objects = map.Confirmed();
+  ASSERT_THAT(objects, SizeIs(1));
+  EXPECT_LT((objects[0].position() - 2 * velocity).norm(), 0.01) << "else 0.05 on";
+  EXPECT_LT((objects[0].velocity() - velocity).norm(), 0.02) << "else 0.03 faster";
+}
+
 TEST(ObjectMap, VelocityFollowsCurves) {
   constexpr int kSeeds = 20;
   double squares = 0;
