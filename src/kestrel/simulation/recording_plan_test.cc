@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <fstream>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
 #include "kestrel/recording/euroc_recording.h"
 #include "kestrel/recording/test_files.h"
@@ -15,6 +17,9 @@ namespace kestrel {
 namespace {
 
 namespace fs = std::filesystem;
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 constexpr int kImages = 6;
 
@@ -53,6 +58,20 @@ TEST(RecordingPlanTest, WritesAWholeRecording) {
   const cv::Mat image = cv::imread(folder / ("flight/mav0/cam0/data/" + rows[3].filename), -1);
   EXPECT_EQ(image.at<std::uint8_t>(0, 0), 30);
   EXPECT_FALSE(fs::exists(folder / "flight.part"));
+}
+
+TEST(RecordingPlanTest, TwoDoNotWriteOneRecordingAtATime) {
+  const TestFolder folder;
+  std::atomic<int> rendered = 0;
+  const std::string output = folder / "flight";
+  const auto interfere = [&](std::size_t) {
+    EXPECT_THAT([&] { WriteRecording(TestPlan(&rendered, "seed: 2\n"), output, false, 1, Always); },
+                ThrowsMessage<InputError>(HasSubstr("flight.part: another program")));
+    return true;
+  };
+  ASSERT_TRUE(WriteRecording(TestPlan(&rendered), output, false, 1, interfere));
+  EXPECT_EQ(rendered, kImages);
+  EXPECT_EQ(ReadFile(output + "/mav0/scene.yaml"), "seed: 1\n");
 }
 
 TEST(RecordingPlanTest, InterruptionLeavesNothingThatLooksCompleteAndIsGoneOnFrom) {

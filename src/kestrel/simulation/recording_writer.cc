@@ -68,11 +68,15 @@ RecordingWriter::RecordingWriter(const fs::path& output, bool replace, const std
   output_ = path.has_filename() ? path : path.parent_path();
   RequireFree(output_, replace);
   part_ = output_.string() + ".part";
+  MakeFolder(part_);
+  lock_.emplace(part_.string());
   const fs::path scene_file = part_ / "mav0" / "scene.yaml";
   if (!fs::exists(scene_file) || ReadFile(scene_file.string()) != scene) {
-    std::error_code error;
-    fs::remove_all(part_, error);
-    Require(error, part_, "cannot be removed");
+    for (const fs::path& old : fs::directory_iterator(part_)) {
+      std::error_code error;
+      fs::remove_all(old, error);
+      Require(error, old, "cannot be removed");
+    }
     WriteText(scene_file, scene);
   }
   MakeFolder(part_ / kImages);

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <opencv2/core.hpp>
 
+#include "kestrel/base/folder_lock.h"
 #include "kestrel/base/time.h"
 
 namespace kestrel {
@@ -20,14 +22,15 @@ struct RecordingFile {
 // An image's path in a recording.
 std::filesystem::path RecordedImagePath(Time time);
 
-// Writes a recording. Until it is complete it lies in a folder beside its place, "<output>.part".
+// Writes a recording. Until it is complete it lies in a folder beside its place, "<output>.part",
+// where no other writer may write.
 // WriteImage and HasImage may be called from several threads at a time, for different images.
 class RecordingWriter {
  public:
   // 'scene', the text of scene.yaml, names all that the images depend on: images that an
   // interrupted writer of the same scene has left are kept, everything of another one is removed.
-  // Throws InputError when 'output' exists (unless it is empty, or 'replace' and a recording) or
-  // cannot be written, as the functions below do.
+  // Throws InputError when 'output' exists (unless it is empty, or 'replace' and a recording),
+  // another writer is at work on it, or it cannot be written, as the functions below do.
   RecordingWriter(const std::filesystem::path& output, bool replace, const std::string& scene);
 
   // Where the files are until they are published.
@@ -42,6 +45,7 @@ class RecordingWriter {
  private:
   std::filesystem::path output_;
   std::filesystem::path part_;
+  std::optional<FolderLock> lock_;  // of that part
 };
 
 }  // namespace kestrel
