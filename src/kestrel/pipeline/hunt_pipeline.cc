@@ -116,8 +116,7 @@ void HuntPipeline::UpdateMap() {
     const auto& in_world = observation_.in_world[i];
     if (detection.completeness != Completeness::kWhole || !in_world) continue;
     ObjectMeasurement& measurement = measurements_.emplace_back();
-    measurement.delay_s =
-        ToSeconds(TimeOfRow(detection.center_px.y()) - observation_.time);
+    measurement.delay_s = ToSeconds(TimeOfRow(detection.center_px.y()) - observation_.time);
     measurement.position = in_world->position;
     const double swing_m =
         kRadians * options_.attitude_sigma_deg * detection.location->position.norm();
