@@ -21,6 +21,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/base/error.h"
+#include "kestrel/base/random.h"
 #include "kestrel/landing/landing_pattern_detector.h"
 #include "landing_frames.h"
 #include "landing_score.h"
@@ -31,7 +32,8 @@ namespace {
 constexpr int kRounds = 9;
 constexpr char kThreshold[] = "cv::adaptiveThreshold, mean, box 11";
 constexpr char kDetect[] = "Detect, whole frame";
-constexpr char kDetectHint[] = "Detect, hint of 0.15 m and up";
+constexpr char kDetectHint[] = "Detect, hint 0.05 m off and up";
+constexpr double kHintError_m = 0.05;  // standard deviation per axis
 
 // Frames of one camera and what a tracker would tell the detector about each.
 struct Scenes {
@@ -45,12 +47,15 @@ Scenes MakeScenes(const std::string& name, const CameraIntrinsics& camera,
                   std::vector<cv::Mat> images) {
   Scenes scenes{name, LandingPatternDetector(CameraModel(camera), {}), std::move(images), {}};
   LandingWorkspace workspace;
+  Random random(1);
+  const auto error = [&random] { return kHintError_m * random.Normal(); };
   for (const cv::Mat& image : scenes.images) {
     const LandingReport report = scenes.detector.Detect(image, {}, workspace);
     LandingHint hint;
     if (report.detection) {
       hint.center_in_camera = report.detection->camera_from_pattern.translation;
-      hint.center_sigma_m = 0.15;
+      for (double& coordinate : hint.center_in_camera->array()) coordinate += error();
+      hint.center_sigma_m = 3 * kHintError_m;
       hint.up_in_camera = report.detection->camera_from_pattern.rotation * Eigen::Vector3d::UnitZ();
     }
     scenes.hints.push_back(hint);

@@ -126,6 +126,11 @@ TEST_F(LandingPatternDetectorTest, OtherSignsAreNotThePattern) {
       const LandingReport report = Detect(Draw(signs[i], pose), hint);
       EXPECT_FALSE(report.detection) << "sign " << i << " at " << distance << " m";
       EXPECT_NE(report.reason, "");
+      // Nor where one was predicted.
+      hint.center_in_camera = pose.translation;
+      hint.up_in_camera = pose.rotation * Eigen::Vector3d::UnitZ();
+      EXPECT_FALSE(Detect(Draw(signs[i], pose), hint).detection)
+          << "predicted sign " << i << " at " << distance << " m";
     }
   }
 }
@@ -241,6 +246,36 @@ TEST_F(LandingPatternDetectorTest, AHintSaysWhereToLook) {
   EXPECT_THAT(std::string(outside.reason), HasSubstr("out of the image"));
   hint.center_in_camera = Eigen::Vector3d(0, 0, -3);
   EXPECT_FALSE(Detect(image_, hint).detection);
+}
+
+TEST_F(LandingPatternDetectorTest, AGoodPredictionNeedsNoSearch) {
+  constexpr auto kAreas = static_cast<int>(LandingStage::kAreas);
+  for (const double distance : {1.1, 3.0, 6.0}) {
+    const RigidTransform truth =
+        PrintPose({0.03 * distance, 0.02 * distance, distance}, 0.1, 2, 0.5);
+    const cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
+    LandingHint hint;
+    hint.up_in_camera = truth.rotation * Eigen::Vector3d::UnitZ();
+    const LandingReport searched = Detect(image, hint);
+    ASSERT_TRUE(searched.detection);
+    EXPECT_GT(searched.candidates[kAreas], 0);
+    hint.center_in_camera = truth.translation + Eigen::Vector3d(0.03, -0.02, 0.02 * distance);
+    const LandingReport predicted = Detect(image, hint);
+    ASSERT_TRUE(predicted.detection);
+    EXPECT_EQ(predicted.candidates[kAreas], 0) << distance << " m";
+    EXPECT_EQ(predicted.detection->method, searched.detection->method);
+    EXPECT_LT((predicted.detection->center_px - searched.detection->center_px).norm(), 0.05);
+    EXPECT_LT((predicted.detection->camera_from_pattern.translation -
+               searched.detection->camera_from_pattern.translation)
+                  .norm(),
+              0.002 * distance);
+    // Half a ring off: within three sigma, found by search.
+    hint.center_in_camera = truth.translation + Eigen::Vector3d(0.3, -0.2, 0);
+    hint.center_sigma_m = 0.2;
+    const LandingReport around = Detect(image, hint);
+    ASSERT_TRUE(around.detection);
+    EXPECT_GT(around.candidates[kAreas], 0);
+  }
 }
 
 TEST_F(LandingPatternDetectorTest, AHintSaysHowFar) {

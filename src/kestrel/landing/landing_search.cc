@@ -94,14 +94,17 @@ LandingReport LandingSearch::Run() {
   buffers_.tested.clear();
   buffers_.other_signs.clear();
   report_.reason = "no outline that could be a ring";
-  if (!ChooseRegion()) {
+  if (TestPrediction()) return report_;
+  if (ChooseRegion(hint_.center_sigma_m)) {
+    SearchRegion();
+  } else {
     report_.reason = "the hint points out of the image";
-    return report_;
   }
-  {
-    StageTimer timer(&report_, LandingStage::kBinarize);
-    buffers_.pyramid.Build(searched_);
-  }
+  return report_;
+}
+
+void LandingSearch::SearchRegion() {
+  BuildPyramid();
   // Closed areas are the cheaper way to the ring, arcs the surer one.
   const auto run = [this](std::size_t first, std::size_t last, auto test) {
     for (std::size_t i = first; i < last && !report_.detection; ++i) {
@@ -120,7 +123,11 @@ LandingReport LandingSearch::Run() {
   run(kCoarsePasses, kPasses.size(), [this](std::size_t i) { TestQuadrants(i); });
   run(kCoarsePasses - 1, kPasses.size(), [this](std::size_t i) { TestCutAreas(i); });
   run(kCoarsePasses, kPasses.size(), [this](std::size_t i) { TestArcs(i); });
-  return report_;
+}
+
+void LandingSearch::BuildPyramid() {
+  StageTimer timer(&report_, LandingStage::kBinarize);
+  buffers_.pyramid.Build(searched_);
 }
 
 // Diameter of a ring that faces the camera.
@@ -135,9 +142,9 @@ double LandingSearch::ExpectedRingPx(const Eigen::Vector3d& center) const {
   return (a - b).norm();
 }
 
-// Sets the part of the image that the hint leaves and the size of the ring that it says. False when
-// that part is empty.
-bool LandingSearch::ChooseRegion() {
+// Sets the part of the image that the hint leaves, when its centre has this standard deviation, and
+// the size of the ring that it says. False when that part is empty.
+bool LandingSearch::ChooseRegion(double sigma_m) {
   searched_ = image_;
   if (!hint_.center_in_camera) return true;
   const Eigen::Vector3d& center = *hint_.center_in_camera;
@@ -150,7 +157,7 @@ bool LandingSearch::ChooseRegion() {
   const double px_per_m = focal_px_ / distance;
   expected_ring_px_ = ExpectedRingPx(center);
   // The board, and three standard deviations of where its centre may be.
-  const double reach = 1.2 * expected_ring_px_ + 3 * hint_.center_sigma_m * px_per_m + 8;
+  const double reach = 1.2 * expected_ring_px_ + 3 * sigma_m * px_per_m + 8;
   // Whole tiles of the coarsest pass that may be used, so that a crop is seen as the image is.
   constexpr int kAlign = 32;
   const auto align = [](double value) {

@@ -135,7 +135,10 @@ class LandingSearch {
 
   void MakeRoom();
   void Binarize(const Pass& pass);
-  bool ChooseRegion();
+  bool ChooseRegion(double sigma_m);
+  void BuildPyramid();
+  bool TestPrediction();
+  void SearchRegion();
   double ExpectedRingPx(const Eigen::Vector3d& center) const;
   bool Suits(const Pass& pass) const;
   bool IsPlausible(const CirclePose& ring) const;
@@ -171,7 +174,8 @@ class LandingSearch {
   std::optional<VerifiedCross> VerifyCross(const cv::Mat& image, const PatternView& view,
                                            double diameter_px);
   std::optional<Hypothesis> TestPose(const CirclePose& pose, double diameter_px);
-  std::optional<RigidTransform> RefineRing(const CirclePose& pose, double reach_px);
+  std::optional<RigidTransform> RefineRing(const CirclePose& pose, double reach_px,
+                                           int iterations);
   std::optional<Hypothesis> TestRefinedPose(const RigidTransform& ring, double diameter_px);
   std::optional<Hypothesis> Compare(const RigidTransform& pose, CrossMethod method,
                                     double diameter_px);

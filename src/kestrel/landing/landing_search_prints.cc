@@ -122,7 +122,9 @@ void LandingSearch::TestRing(const RingFit& ring, const Eigen::Vector2d& diamete
     const bool none = !hypotheses[0] && !hypotheses[1];
     for (int i = 0; i < 2 && none; ++i) {
       if (!allowed[i]) continue;
-      const std::optional<RigidTransform> refined = RefineRing(ring.poses[i], reach_px);
+      constexpr int kIterations = 4;
+      const std::optional<RigidTransform> refined =
+          RefineRing(ring.poses[i], 1.5 * reach_px, kIterations);
       if (refined) hypotheses[i] = TestRefinedPose(*refined, diameters_px.x());
     }
   }
@@ -173,10 +175,10 @@ std::optional<LandingSearch::Hypothesis> LandingSearch::TestPose(const CirclePos
 
 // Where the ring is cut off or broken, what is known of it says little about its far side: the
 // edges of both of its circles bring it into place before its inside is looked at.
-std::optional<RigidTransform> LandingSearch::RefineRing(const CirclePose& pose, double reach_px) {
-  constexpr int kIterations = 4;
-  return models_.locator.LocateRing(image_, PatternPose(pose, 0), 1.5 * reach_px,
-                                    kMinRingContrast / 2, kIterations);
+std::optional<RigidTransform> LandingSearch::RefineRing(const CirclePose& pose, double reach_px,
+                                                        int iterations) {
+  return models_.locator.LocateRing(image_, PatternPose(pose, 0), reach_px, kMinRingContrast / 2,
+                                    iterations);
 }
 
 std::optional<LandingSearch::Hypothesis> LandingSearch::TestRefinedPose(const RigidTransform& ring,

@@ -31,6 +31,7 @@ constexpr double kMinCorrelationOfQuadrants = 0.87;
 // How far from an area's outline the edges of the ring may be, of its diameter.
 constexpr double kSure = 0.02;
 constexpr double kUnsure = 0.1;
+constexpr double kPredicted = 0.12;  // the same of a predicted ring
 
 double ReachPx(const Eigen::Vector2d& diameters_px, const ImageRegion& region, double unsure) {
   return std::max(2.0, 0.8 * region.scale() + unsure * diameters_px.x());
@@ -46,6 +47,32 @@ void KeepBest(std::vector<RingCandidate>* candidates) {
 }
 
 }  // namespace
+
+// Where a good prediction says that the ring is, its edges are near: there is no need to search. A
+// wrong one finds none, and costs little. Whether the pattern was found.
+bool LandingSearch::TestPrediction() {
+  if (!hint_.center_in_camera || !hint_.up_in_camera) return false;
+  CirclePose ring{*hint_.center_in_camera, *hint_.up_in_camera};
+  const Eigen::Vector2d diameters_px = DiametersPx(ring);
+  if (IsSmall(diameters_px)) return false;
+  {
+    StageTimer timer(&report_, LandingStage::kRing);
+    constexpr int kIterations = 2;
+    const auto refined = RefineRing(ring, kPredicted * diameters_px.x(), kIterations);
+    if (!refined) return false;
+    ring = {refined->translation, refined->rotation * Eigen::Vector3d::UnitZ()};
+  }
+  if (!IsPlausible(ring) || !ChooseRegion(0)) return false;
+  BuildPyramid();
+  std::optional<Hypothesis> hypothesis;
+  {
+    StageTimer timer(&report_, LandingStage::kCross);
+    hypothesis = TestPose(ring, diameters_px.x());
+  }
+  if (!hypothesis) return false;
+  Locate(*hypothesis, diameters_px, std::max(2.0, kSure * diameters_px.x()));
+  return report_.detection.has_value();
+}
 
 void LandingSearch::TestAreas(std::size_t pass_index) {
   CollectCandidates(pass_index);

@@ -42,7 +42,7 @@ SmallPatternFitter::SmallPatternFitter(const CameraModel& camera, const RayTable
 SmallPatternFitter::Darkness SmallPatternFitter::Evaluate(double x, double y,
                                                           const Eigen::Matrix2d& d_plane,
                                                           double blur_px) const {
-  const double r = std::max(std::hypot(x, y), 1e-9);
+  const double r = std::max(std::sqrt(x * x + y * y), 1e-9);
   const Eigen::Vector2d radial(x / r, y / r);
   const double blur_r = blur_px * (d_plane.transpose() * radial).norm();
   const double blur_x = blur_px * d_plane.row(0).norm();
@@ -231,7 +231,7 @@ SmallPatternFitter::System SmallPatternFitter::Linearize(const State& state, dou
     system.sum += weight * clear;
     system.sum_squares += weight * clear * clear;
     system.squares += weight * (clear - expected) * (clear - expected);
-    const double radius = std::hypot(point.x, point.y);
+    const double radius = point.radius();
     System::Zone& zone = radius < inner   ? system.quadrants[QuadrantOf(point)]
                          : radius < outer ? system.ring
                                           : system.white;
@@ -356,7 +356,7 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
     const double along_x = std::abs(point.x) > std::abs(point.y) ? 1 : 0;
     const int quarter = along_x > 0 ? (point.x > 0 ? 0 : 2) : (point.y > 0 ? 1 : 3);
     const int quadrant = QuadrantOf(point);
-    const double radius = std::hypot(point.x, point.y);
+    const double radius = point.radius();
     Vector basis = Vector::Zero();
     basis(quarter) = dark.ring;
     basis(4 + quarter) = std::max(dark.arms[0], dark.arms[1]) * (1 - dark.ring);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -33,6 +34,8 @@ struct SmallPatternWorkspace {
     double ring = 0;           // darkness of the ring there
     double expected = 0;       // gray value by the fitted print
     double gray = 0;           // in the image
+
+    double radius() const { return std::sqrt(x * x + y * y); }
   };
   std::vector<PlanePoint> points;  // of the pixels, under one pose
   std::vector<float> magnitudes;   // of the residuals

@@ -6,8 +6,6 @@
 #include <functional>
 #include <numbers>
 
-#include <Eigen/Geometry>
-
 #include "kestrel/landing/pattern_view.h"
 #include "kestrel/landing/small_pattern_model.h"
 
@@ -50,28 +48,26 @@ double SmallPatternFitter::OtherSpokes(const SmallPatternWorkspace& workspace,
     double n = 0, s = 0, ss = 0, e = 0, se = 0;
   };
   std::array<std::array<Regression, kTurns.size()>, 4> lines;
-  std::array<Eigen::Vector2d, kTurns.size()> directions;
-  for (std::size_t i = 0; i < kTurns.size(); ++i) {
-    const double angle = kTurns[i] * std::numbers::pi / 180;
-    directions[i] = {std::cos(angle), std::sin(angle)};
+  std::array<std::array<Eigen::Vector2d, kTurns.size()>, 4> normals;
+  for (int q = 0; q < 4; ++q) {
+    for (std::size_t i = 0; i < kTurns.size(); ++i) {
+      const double angle = (90 * q + kTurns[i]) * std::numbers::pi / 180;
+      normals[q][i] = {-std::sin(angle), std::cos(angle)};
+    }
   }
   const double inner = pattern_.inner_radius_m();
   const double half_width = 0.5 * pattern_.arm_width_m;
   for (const PlanePoint& point : workspace.points) {
-    const double radius = std::hypot(point.x, point.y);
+    const double radius = point.radius();
     if (radius < 0.35 * inner || radius > 0.9 * inner) continue;
     const double residual = point.gray - point.expected;
     const int quadrant = QuadrantOf(point);
-    // Turned into the first quadrant, x along the arm before.
-    const Eigen::Vector2d turned =
-        Eigen::Rotation2Dd(-quadrant * std::numbers::pi / 2) * Eigen::Vector2d(point.x, point.y);
     for (std::size_t i = 0; i < kTurns.size(); ++i) {
-      const Eigen::Vector2d normal(-directions[i].y(), directions[i].x());
-      const Eigen::Vector2d in_pattern =
-          Eigen::Rotation2Dd(quadrant * std::numbers::pi / 2) * normal;
-      const double blur = state.blur_px * (point.by_pixel.transpose() * in_pattern).norm();
+      const Eigen::Vector2d& normal = normals[quadrant][i];
+      const double distance = normal.dot(Eigen::Vector2d(point.x, point.y));
+      const double blur = state.blur_px * (point.by_pixel.transpose() * normal).norm();
       const double line =
-          BlurredStroke(normal.dot(turned), -half_width, half_width, std::max(blur, 1e-9)).value;
+          BlurredStroke(distance, -half_width, half_width, std::max(blur, 1e-9)).value;
       Regression& r = lines[quadrant][i];
       ++r.n;
       r.s += line;
@@ -97,11 +93,12 @@ double SmallPatternFitter::FrameCorners(const SmallPatternWorkspace& workspace,
                                         const State& state) const {
   double n = 0, s = 0, ss = 0, e = 0, se = 0;
   for (const PlanePoint& point : workspace.points) {
-    const double radius = std::hypot(point.x, point.y);
+    const double radius = point.radius();
     if (radius < pattern_.inner_radius_m()) continue;
     const double residual = point.gray - point.expected;
-    // 1 along the arms, -1 half-way between them.
-    const double wave = std::cos(4 * std::atan2(point.y, point.x));
+    // 1 along the arms, -1 half-way between them: the cosine of four times the direction.
+    const double twice = (point.x * point.x - point.y * point.y) / (radius * radius);
+    const double wave = 2 * twice * twice - 1;
     ++n;
     s += wave;
     ss += wave * wave;
@@ -115,7 +112,7 @@ double SmallPatternFitter::FrameCorners(const SmallPatternWorkspace& workspace,
 double SmallPatternFitter::CrossCorrelation(const SmallPatternWorkspace& workspace) const {
   double n = 0, g = 0, gg = 0, d = 0, dd = 0, gd = 0;
   for (const PlanePoint& point : workspace.points) {
-    if (std::hypot(point.x, point.y) > pattern_.arm_half_length_m) continue;
+    if (point.radius() > pattern_.arm_half_length_m) continue;
     ++n;
     g += point.gray;
     gg += point.gray * point.gray;

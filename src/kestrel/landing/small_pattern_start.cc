@@ -63,7 +63,7 @@ double SmallPatternFitter::CorrelateRing(const RigidTransform& unturned,
   DarknessCorrelation correlation;
   for (const auto& pixel : workspace->pixels) {
     PlanePoint point = Intersect(map, pixel);
-    const double r = std::max(std::hypot(point.x, point.y), 1e-9);
+    const double r = std::max(point.radius(), 1e-9);
     const double blur_r =
         kGoodLensBlurPx *
         (point.by_pixel.transpose() * Eigen::Vector2d(point.x / r, point.y / r)).norm();
