@@ -174,8 +174,7 @@ class LandingSearch {
   std::optional<VerifiedCross> VerifyCross(const cv::Mat& image, const PatternView& view,
                                            double diameter_px);
   std::optional<Hypothesis> TestPose(const CirclePose& pose, double diameter_px);
-  std::optional<RigidTransform> RefineRing(const CirclePose& pose, double reach_px,
-                                           int iterations);
+  std::optional<RigidTransform> RefineRing(const CirclePose& pose, double reach_px, int iterations);
   std::optional<Hypothesis> TestRefinedPose(const RigidTransform& ring, double diameter_px);
   std::optional<Hypothesis> Compare(const RigidTransform& pose, CrossMethod method,
                                     double diameter_px);
