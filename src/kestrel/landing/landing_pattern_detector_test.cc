@@ -250,7 +250,7 @@ TEST_F(LandingPatternDetectorTest, AHintSaysWhereToLook) {
 
 TEST_F(LandingPatternDetectorTest, AGoodPredictionNeedsNoSearch) {
   constexpr auto kAreas = static_cast<int>(LandingStage::kAreas);
-  for (const double distance : {1.1, 3.0, 6.0}) {
+  for (const double distance : {1.1, 3.0, 6.0, 9.0}) {
     const RigidTransform truth =
         PrintPose({0.03 * distance, 0.02 * distance, distance}, 0.1, 2, 0.5);
     const cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);

@@ -138,6 +138,7 @@ class LandingSearch {
   bool ChooseRegion(double sigma_m);
   void BuildPyramid();
   bool TestPrediction();
+  void TestPredictedRing(CirclePose ring, const Eigen::Vector2d& diameters_px);
   void SearchRegion();
   double ExpectedRingPx(const Eigen::Vector3d& center) const;
   bool Suits(const Pass& pass) const;
@@ -162,6 +163,9 @@ class LandingSearch {
   void TestSmallRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
                      std::span<const double> scales,
                      double min_correlation = kMinFittedCorrelation);
+  bool IsTooSmall(const Eigen::Vector2d& diameters_px) const;
+  bool TestSmallPose(const CirclePose& pose, const Eigen::Vector2d& diameters_px,
+                     std::span<const double> scales, double min_correlation);
   SmallPatternFitter::Start FindStart(const CirclePose& pose, std::span<const double> scales);
   bool IsSmallPattern(const SmallPatternFitter::Fit& fit, const Eigen::Vector2d& diameters_px,
                       double min_correlation) const;

@@ -284,40 +284,49 @@ SmallPatternFitter::Start LandingSearch::FindStart(const CirclePose& pose,
 // smaller than it was seen by the given factors.
 void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
                                   std::span<const double> scales, double min_correlation) {
-  if (diameters_px.x() < kMinMajorPx || diameters_px.y() < 0.7 * models_.options.min_ring_px) {
-    return;
-  }
+  if (IsTooSmall(diameters_px)) return;
   StageTimer timer(&report_, LandingStage::kCross);
   Reach(LandingStage::kCross, "no cross inside of the ring");
   if (WasTested(ring, diameters_px)) return;
   const std::array<bool, 2> allowed = LevelEnough(ring);
   for (int i = 0; i < 2; ++i) {
     if (!allowed[i]) continue;
-    const SmallPatternFitter::Start start = FindStart(ring.poses[i], scales);
     // The two poses of a small ring look much the same: what does not fit one fits neither.
-    if (start.correlation < kMinCorrelation) return;
-    Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
-    constexpr int kIterations = 8;
-    using Light = SmallPatternFitter::Light;
-    auto fit = models_.small.Refine(image_, start.camera_from_pattern, Light::kEven, kIterations,
-                                    &buffers_.small, level_);
-    if (!fit || fit->correlation < kMinCorrelationOfEither) return;
-    if (!Agrees(start.camera_from_pattern, fit->location.camera_from_pattern,
-                models_.options.pattern.outer_radius_m())) {
-      continue;
-    }
-    Reach(LandingStage::kLocate, "no pose explains the edges of ring and cross");
-    if (!IsSmallPattern(*fit, diameters_px, min_correlation)) {
-      fit = models_.small.Refine(image_, fit->location.camera_from_pattern, Light::kShadowEdge,
-                                 kIterations, &buffers_.small, level_);
-      if (!fit || fit->explained < kMinExplainedBesideEdge ||
-          !IsSmallPattern(*fit, diameters_px, min_correlation)) {
-        continue;
-      }
-    }
-    Keep(fit->location, fit->match.seen < kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants,
-         fit->match.Quality(), diameters_px);
+    if (!TestSmallPose(ring.poses[i], diameters_px, scales, min_correlation)) return;
   }
+}
+
+bool LandingSearch::IsTooSmall(const Eigen::Vector2d& diameters_px) const {
+  return diameters_px.x() < kMinMajorPx || diameters_px.y() < 0.7 * models_.options.min_ring_px;
+}
+
+// Keeps the pattern if there is one; false when there is none under the ring's other pose either.
+bool LandingSearch::TestSmallPose(const CirclePose& pose, const Eigen::Vector2d& diameters_px,
+                                  std::span<const double> scales, double min_correlation) {
+  const SmallPatternFitter::Start start = FindStart(pose, scales);
+  if (start.correlation < kMinCorrelation) return false;
+  Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
+  constexpr int kIterations = 8;
+  using Light = SmallPatternFitter::Light;
+  auto fit = models_.small.Refine(image_, start.camera_from_pattern, Light::kEven, kIterations,
+                                  &buffers_.small, level_);
+  if (!fit || fit->correlation < kMinCorrelationOfEither) return false;
+  if (!Agrees(start.camera_from_pattern, fit->location.camera_from_pattern,
+              models_.options.pattern.outer_radius_m())) {
+    return true;
+  }
+  Reach(LandingStage::kLocate, "no pose explains the edges of ring and cross");
+  if (!IsSmallPattern(*fit, diameters_px, min_correlation)) {
+    fit = models_.small.Refine(image_, fit->location.camera_from_pattern, Light::kShadowEdge,
+                               kIterations, &buffers_.small, level_);
+    if (!fit || fit->explained < kMinExplainedBesideEdge ||
+        !IsSmallPattern(*fit, diameters_px, min_correlation)) {
+      return true;
+    }
+  }
+  Keep(fit->location, fit->match.seen < kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants,
+       fit->match.Quality(), diameters_px);
+  return true;
 }
 
 // Whether there is another sign where a pattern was located, in even light and in the light that

@@ -48,30 +48,38 @@ void KeepBest(std::vector<RingCandidate>* candidates) {
 
 }  // namespace
 
-// Where a good prediction says that the ring is, its edges are near: there is no need to search. A
-// wrong one finds none, and costs little. Whether the pattern was found.
+// Where a good prediction says that the ring is, it is found without a search. A wrong one shows
+// no ring there, and costs little. Whether the pattern was found.
 bool LandingSearch::TestPrediction() {
-  if (!hint_.center_in_camera || !hint_.up_in_camera) return false;
-  CirclePose ring{*hint_.center_in_camera, *hint_.up_in_camera};
+  if (!hint_.center_in_camera || !hint_.up_in_camera || !ChooseRegion(0)) return false;
+  const CirclePose ring{*hint_.center_in_camera, *hint_.up_in_camera};
   const Eigen::Vector2d diameters_px = DiametersPx(ring);
-  if (IsSmall(diameters_px)) return false;
+  if (!IsSmall(diameters_px)) {
+    TestPredictedRing(ring, diameters_px);
+  } else if (!IsTooSmall(diameters_px)) {
+    StageTimer timer(&report_, LandingStage::kCross);
+    TestSmallPose(ring, diameters_px, kOneScale, kMinFittedCorrelation);
+  }
+  return report_.detection.has_value();
+}
+
+// The edges of a large ring are near to where it is predicted.
+void LandingSearch::TestPredictedRing(CirclePose ring, const Eigen::Vector2d& diameters_px) {
   {
     StageTimer timer(&report_, LandingStage::kRing);
     constexpr int kIterations = 2;
     const auto refined = RefineRing(ring, kPredicted * diameters_px.x(), kIterations);
-    if (!refined) return false;
+    if (!refined) return;
     ring = {refined->translation, refined->rotation * Eigen::Vector3d::UnitZ()};
   }
-  if (!IsPlausible(ring) || !ChooseRegion(0)) return false;
+  if (!IsPlausible(ring)) return;
   BuildPyramid();
   std::optional<Hypothesis> hypothesis;
   {
     StageTimer timer(&report_, LandingStage::kCross);
     hypothesis = TestPose(ring, diameters_px.x());
   }
-  if (!hypothesis) return false;
-  Locate(*hypothesis, diameters_px, std::max(2.0, kSure * diameters_px.x()));
-  return report_.detection.has_value();
+  if (hypothesis) Locate(*hypothesis, diameters_px, std::max(2.0, kSure * diameters_px.x()));
 }
 
 void LandingSearch::TestAreas(std::size_t pass_index) {
