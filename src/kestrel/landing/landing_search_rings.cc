@@ -53,6 +53,7 @@ void KeepBest(std::vector<RingCandidate>* candidates) {
 bool LandingSearch::TestPrediction() {
   if (!hint_.center_in_camera || !hint_.up_in_camera || !ChooseRegion(0)) return false;
   const CirclePose ring{*hint_.center_in_camera, *hint_.up_in_camera};
+  if (!(ring.center.dot(ring.normal) < 0)) return false;  // seen from below, or not a number
   const Eigen::Vector2d diameters_px = DiametersPx(ring);
   if (!IsSmall(diameters_px)) {
     TestPredictedRing(ring, diameters_px);
