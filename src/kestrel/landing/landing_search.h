@@ -138,7 +138,7 @@ class LandingSearch {
   bool ChooseRegion(double sigma_m);
   void BuildPyramid();
   bool TestPrediction();
-  void TestPredictedRing(CirclePose ring, const Eigen::Vector2d& diameters_px);
+  void TestPredictedRing(const CirclePose& predicted, const Eigen::Vector2d& predicted_px);
   void SearchRegion();
   double ExpectedRingPx(const Eigen::Vector3d& center) const;
   bool Suits(const Pass& pass) const;

@@ -32,6 +32,9 @@ constexpr double kMinCorrelationOfQuadrants = 0.87;
 constexpr double kSure = 0.02;
 constexpr double kUnsure = 0.1;
 constexpr double kPredicted = 0.12;  // the same of a predicted ring
+// Times which a predicted ring is large enough for its edges, which tell more than its fit as a
+// whole: areas seem larger by as much.
+constexpr double kNearlyLarge = 1.1;
 
 double ReachPx(const Eigen::Vector2d& diameters_px, const ImageRegion& region, double unsure) {
   return std::max(2.0, 0.8 * region.scale() + unsure * diameters_px.x());
@@ -55,9 +58,8 @@ bool LandingSearch::TestPrediction() {
   const CirclePose ring{*hint_.center_in_camera, *hint_.up_in_camera};
   if (!(ring.center.dot(ring.normal) < 0)) return false;  // seen from below, or not a number
   const Eigen::Vector2d diameters_px = DiametersPx(ring);
-  if (!IsSmall(diameters_px)) {
-    TestPredictedRing(ring, diameters_px);
-  } else if (!IsTooSmall(diameters_px)) {
+  if (!IsSmall(kNearlyLarge * diameters_px)) TestPredictedRing(ring, diameters_px);
+  if (!report_.detection && IsSmall(diameters_px) && !IsTooSmall(diameters_px)) {
     StageTimer timer(&report_, LandingStage::kCross);
     TestSmallPose(ring, diameters_px, kOneScale, kMinFittedCorrelation);
   }
@@ -65,15 +67,18 @@ bool LandingSearch::TestPrediction() {
 }
 
 // The edges of a large ring are near to where it is predicted.
-void LandingSearch::TestPredictedRing(CirclePose ring, const Eigen::Vector2d& diameters_px) {
+void LandingSearch::TestPredictedRing(const CirclePose& predicted,
+                                      const Eigen::Vector2d& predicted_px) {
+  std::optional<RigidTransform> refined;
   {
     StageTimer timer(&report_, LandingStage::kRing);
     constexpr int kIterations = 2;
-    const auto refined = RefineRing(ring, kPredicted * diameters_px.x(), kIterations);
-    if (!refined) return;
-    ring = {refined->translation, refined->rotation * Eigen::Vector3d::UnitZ()};
+    refined = RefineRing(predicted, kPredicted * predicted_px.x(), kIterations);
   }
-  if (!IsPlausible(ring)) return;
+  if (!refined) return;
+  const CirclePose ring{refined->translation, refined->rotation * Eigen::Vector3d::UnitZ()};
+  const Eigen::Vector2d diameters_px = DiametersPx(ring);
+  if (IsSmall(kNearlyLarge * diameters_px) || !IsPlausible(ring)) return;
   BuildPyramid();
   std::optional<Hypothesis> hypothesis;
   {
