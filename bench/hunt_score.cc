@@ -15,6 +15,7 @@
 #include "kestrel/base/read_file.h"
 #include "kestrel/camera/calibration_reader.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
+#include "kestrel/pipeline/pose_feeder.h"
 #include "kestrel/recording/csv_table.h"
 #include "kestrel/recording/image_file.h"
 #include "kestrel/recording/object_csv.h"
@@ -153,17 +154,13 @@ HuntScore ScoreHunt(const std::string& folder) {
   HuntPipelineOptions options;
   options.readout_s = kReadout_s;
   HuntPipeline pipeline(calibration, DefaultObjectModel(), options);
-  const std::vector<PoseSample> poses = source->poses();
-  std::size_t next_pose = 0;
+  // As in flight: poses up to the one after the last row.
+  const Duration lead = *calibration.clock_offset + DurationFromSeconds(kReadout_s / 2);
+  PoseFeeder poses(source->poses());
   HuntScore score;
   std::string csv = ObjectCsvHeader();
   for (Frame frame; source->Next(&frame);) {
-    // As in flight: poses up to the one after the last row.
-    const Time last_row =
-        frame.time + *calibration.clock_offset + DurationFromSeconds(kReadout_s / 2);
-    while (next_pose < poses.size() && (next_pose == 0 || poses[next_pose - 1].time < last_row)) {
-      pipeline.AddPose(poses[next_pose++]);
-    }
+    poses.FeedUntil(frame.time + lead, &pipeline);
     const HuntObservation& observation = pipeline.Process(frame.image, frame.time);
     csv += ObjectCsvRows(frame.name, observation, pipeline.detector().model());
     if (!digits.empty()) ScoreDigits(observation, sightings, digits, &score);

@@ -17,6 +17,7 @@
 #include "kestrel/cli/source_arguments.h"
 #include "kestrel/mapping/map_file.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
+#include "kestrel/pipeline/pose_feeder.h"
 #include "kestrel/recording/annotated_writer.h"
 #include "kestrel/recording/map_inset.h"
 #include "kestrel/recording/object_csv.h"

@@ -15,6 +15,7 @@
 #include "kestrel/cli/progress_bar.h"
 #include "kestrel/cli/source_arguments.h"
 #include "kestrel/pipeline/landing_pipeline.h"
+#include "kestrel/pipeline/pose_feeder.h"
 #include "kestrel/recording/open_source.h"
 
 namespace kestrel {

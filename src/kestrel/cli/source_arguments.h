@@ -45,23 +45,6 @@ CLI::Validator InRange(double min, double max, const std::string& words);
 // Throws InputError when the frame is not of the calibration's size.
 void RequireSize(const Frame& frame, const CameraIntrinsics& intrinsics);
 
-// Gives a pipeline the poses in the order of time, one further than the frame needs.
-class PoseFeeder {
- public:
-  explicit PoseFeeder(std::vector<PoseSample> poses) : poses_(std::move(poses)) {}
-
-  template <class Pipeline>
-  void FeedUntil(Time time, Pipeline* pipeline) {
-    while (next_ < poses_.size() && (next_ == 0 || poses_[next_ - 1].time < time)) {
-      pipeline->AddPose(poses_[next_++]);
-    }
-  }
-
- private:
-  std::vector<PoseSample> poses_;
-  std::size_t next_ = 0;
-};
-
 // Times of Detect, for the line at the end of a run.
 class DetectTimes {
  public:
