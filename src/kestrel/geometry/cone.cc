@@ -2,6 +2,7 @@
 #include "kestrel/geometry/cone.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
@@ -20,6 +21,39 @@ Eigen::Matrix3d BaseAround(const Eigen::Vector3d& axis) {
   return base;
 }
 
+// The exponents of x and y in three terms of a conic.
+using Terms = std::array<std::array<int, 2>, 3>;
+constexpr Terms kQuadratic{{{2, 0}, {1, 1}, {0, 2}}};
+constexpr Terms kLinear{{{1, 0}, {0, 1}, {0, 0}}};
+
+// Sums of x^i y^j over points of a plane, i + j <= 4.
+struct PlaneMoments {
+  std::array<std::array<double, 5>, 5> sum{};
+
+  void Add(double x, double y) {
+    double x_power = 1;
+    for (int i = 0; i <= 4; ++i, x_power *= x) {
+      double power = x_power;
+      for (int j = 0; i + j <= 4; ++j, power *= y) sum[i][j] += power;
+    }
+  }
+  void Scale(double scale) {
+    for (int i = 0; i <= 4; ++i) {
+      for (int j = 0; i + j <= 4; ++j) sum[i][j] *= std::pow(scale, i + j);
+    }
+  }
+  // The part of the scatter of the design matrix that belongs to these terms.
+  Eigen::Matrix3d Scatter(const Terms& rows, const Terms& columns) const {
+    Eigen::Matrix3d scatter;
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) {
+        scatter(r, c) = sum[rows[r][0] + columns[c][0]][rows[r][1] + columns[c][1]];
+      }
+    }
+    return scatter;
+  }
+};
+
 }  // namespace
 
 Eigen::Vector2d Cone::HalfAngles() const {
@@ -37,28 +71,19 @@ std::optional<Cone> FitCone(std::span<const Eigen::Vector3d> rays) {
   if (mean.norm() < 1e-6 * static_cast<double>(rays.size())) return std::nullopt;
   const Eigen::Matrix3d tangent_from_camera = BaseAround(mean);
 
-  // Scatter of the quadratic (x^2, xy, y^2) and linear (x, y, 1) parts of the design matrix; the
-  // plane is scaled so that the points are of the order of one.
-  double spread = 0;
+  PlaneMoments moments;
   for (const Eigen::Vector3d& ray : rays) {
     const Eigen::Vector3d p = tangent_from_camera * ray;
     if (p.z() < 0.05) return std::nullopt;
-    spread += (p.head<2>() / p.z()).squaredNorm();
+    moments.Add(p.x() / p.z(), p.y() / p.z());
   }
+  // The plane is scaled so that the points are of the order of one.
+  const double spread = moments.sum[2][0] + moments.sum[0][2];
   const double scale = std::sqrt(static_cast<double>(rays.size()) / std::max(spread, 1e-18));
-  Eigen::Matrix3d s1 = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d s2 = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d s3 = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& ray : rays) {
-    const Eigen::Vector3d p = tangent_from_camera * ray;
-    const double x = scale * p.x() / p.z();
-    const double y = scale * p.y() / p.z();
-    const Eigen::Vector3d quadratic(x * x, x * y, y * y);
-    const Eigen::Vector3d linear(x, y, 1);
-    s1 += quadratic * quadratic.transpose();
-    s2 += quadratic * linear.transpose();
-    s3 += linear * linear.transpose();
-  }
+  moments.Scale(scale);
+  const Eigen::Matrix3d s1 = moments.Scatter(kQuadratic, kQuadratic);
+  const Eigen::Matrix3d s2 = moments.Scatter(kQuadratic, kLinear);
+  const Eigen::Matrix3d s3 = moments.Scatter(kLinear, kLinear);
   if (std::abs(s3.determinant()) < 1e-12) return std::nullopt;
   const Eigen::Matrix3d t = -s3.inverse() * s2.transpose();
   const Eigen::Matrix3d m = s1 + s2 * t;

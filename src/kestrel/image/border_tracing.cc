@@ -111,6 +111,7 @@ void BorderTracer::KeepStrongest(const cv::Mat& image, std::size_t most) {
 void BorderTracer::TraceFrom(const BitImage& dark, int x, int y, const BorderLimits& limits) {
   // Pixels are addressed by the number of their bit, so that a step is one addition.
   const std::uint64_t* words = dark.row(0);
+  std::uint64_t* traced = traced_.row(0);
   const std::ptrdiff_t stride = std::ptrdiff_t{64} * dark.words_per_row();
   const auto bit = [words](std::ptrdiff_t index) {
     return static_cast<int>((words[index >> 6] >> (index & 63)) & 1);
@@ -137,11 +138,13 @@ void BorderTracer::TraceFrom(const BitImage& dark, int x, int y, const BorderLim
       break;
     }
     points_.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)});
-    if (direction == kRight) {
-      // An edge that was walked along before belongs to a border that was given up.
-      if (traced_.at(x, y)) kept = false;
-      traced_.Set(x, y);
-    }
+    // Steps to the right walk along the upper edge of a pixel: computed instead of branched on, as
+    // in texture every second turn would be predicted wrong.
+    const std::uint64_t upper = std::uint64_t{direction == kRight} << (at & 63);
+    std::uint64_t& traced_word = traced[at >> 6];
+    // An edge that was walked along before belongs to a border that was given up.
+    kept = (traced_word & upper) == 0;
+    traced_word |= upper;
     // Green's theorem: only steps along y sweep area.
     area += x * kStepY[direction];
     x += kStepX[direction];
@@ -156,8 +159,7 @@ void BorderTracer::TraceFrom(const BitImage& dark, int x, int y, const BorderLim
       kept = false;
     }
     // Dark areas are 8-connected: a dark pixel on the left turns left, even where it touches the
-    // one on the right at the vertex only; without either the border turns right. In texture
-    // every second turn would be predicted wrong: it is computed instead of branched on.
+    // one on the right at the vertex only; without either the border turns right.
     const int is_left = bit(at + left[direction]);
     const int is_right = bit(at + right[direction]);
     direction = (direction + 3 * is_left + ((is_left | is_right) ^ 1)) & 3;

@@ -304,10 +304,10 @@ void TileImage::Reset(int new_columns, int new_rows) {
   mean.resize(count);
 }
 
-void TilePyramid::Build(const cv::Mat& image) {
+void TilePyramid::Build(const cv::Mat& image, int last_level) {
   image_ = image;
-  Halve(image, &levels_[1]);
-  for (int level = 2; level < kLevels; ++level) Halve(levels_[level - 1], &levels_[level]);
+  if (last_level >= 1) Halve(image, &levels_[1]);
+  for (int level = 2; level <= last_level; ++level) Halve(levels_[level - 1], &levels_[level]);
 }
 
 cv::Mat TilePyramid::ImageAt(int level) const {

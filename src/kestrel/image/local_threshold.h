@@ -31,8 +31,9 @@ class TilePyramid {
  public:
   static constexpr int kLevels = 8;
 
-  // 'image': CV_8UC1, kept by reference until the next Build.
-  void Build(const cv::Mat& image);
+  // 'image': CV_8UC1, kept by reference until the next Build. Levels above 'last_level' are made
+  // by the next Build that asks for them: until then they must not be read.
+  void Build(const cv::Mat& image, int last_level = kLevels - 1);
 
   // 'level' from 1 to kLevels - 1; without a single tile where the image is too small for one.
   const TileImage& level(int level) const { return levels_[level]; }

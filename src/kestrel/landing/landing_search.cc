@@ -125,9 +125,9 @@ void LandingSearch::SearchRegion() {
   run(kCoarsePasses, kPasses.size(), [this](std::size_t i) { TestArcs(i); });
 }
 
-void LandingSearch::BuildPyramid() {
+void LandingSearch::BuildPyramid(int last_level) {
   StageTimer timer(&report_, LandingStage::kBinarize);
-  buffers_.pyramid.Build(searched_);
+  buffers_.pyramid.Build(searched_, last_level);
 }
 
 // Diameter of a ring that faces the camera.

@@ -136,7 +136,7 @@ class LandingSearch {
   void MakeRoom();
   void Binarize(const Pass& pass);
   bool ChooseRegion(double sigma_m);
-  void BuildPyramid();
+  void BuildPyramid(int last_level = TilePyramid::kLevels - 1);
   bool TestPrediction();
   void TestPredictedRing(const CirclePose& predicted, const Eigen::Vector2d& predicted_px);
   void SearchRegion();
@@ -157,6 +157,7 @@ class LandingSearch {
   std::optional<RingFit> FitToOutline(const RingCandidate& candidate, const ImageRegion& region);
 
   bool StandsOut(const CirclePose& ring) const;
+  static int ViewLevel(double diameter_px);
   Eigen::Vector2d DiametersPx(const CirclePose& ring) const;
   bool IsSmall(const Eigen::Vector2d& diameters_px) const;
   void TestRing(const RingFit& ring, const Eigen::Vector2d& diameters_px, double reach_px);

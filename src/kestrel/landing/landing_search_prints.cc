@@ -58,11 +58,6 @@ void Note(const RingPlace& place, std::vector<RingPlace>* places) {
   if (places->size() < places->capacity()) places->push_back(place);
 }
 
-// Level of the pyramid at which a ring has about 40 to 80 pixels.
-int ViewLevel(double diameter_px) {
-  return std::clamp(static_cast<int>(std::floor(std::log2(diameter_px / 40))), 0, 4);
-}
-
 // Whether a fitted pose is still that of the ring it started from.
 bool Agrees(const RigidTransform& start, const RigidTransform& fitted, double radius_m) {
   const double distance = start.translation.norm();
@@ -96,6 +91,11 @@ double SmallMargin(const Eigen::Vector2d& diameters_px) {
 
 }  // namespace
 
+// Level of the pyramid at which a ring has about 40 to 80 pixels.
+int LandingSearch::ViewLevel(double diameter_px) {
+  return std::clamp(static_cast<int>(std::floor(std::log2(diameter_px / 40))), 0, 4);
+}
+
 // Which of the two poses of a ring the attitude allows; both when it is not known.
 std::array<bool, 2> LandingSearch::LevelEnough(const RingFit& ring) const {
   std::array<bool, 2> allowed{true, true};
@@ -125,7 +125,10 @@ void LandingSearch::TestRing(const RingFit& ring, const Eigen::Vector2d& diamete
       constexpr int kIterations = 4;
       const std::optional<RigidTransform> refined =
           RefineRing(ring.poses[i], 1.5 * reach_px, kIterations);
-      if (refined) hypotheses[i] = TestRefinedPose(*refined, diameters_px.x());
+      // Both poses have the outer edge in common: what is no ring under one is none under the
+      // other.
+      if (!refined) break;
+      hypotheses[i] = TestRefinedPose(*refined, diameters_px.x());
     }
   }
   if (hypotheses[0] && hypotheses[1]) {
@@ -178,7 +181,7 @@ std::optional<LandingSearch::Hypothesis> LandingSearch::TestPose(const CirclePos
 std::optional<RigidTransform> LandingSearch::RefineRing(const CirclePose& pose, double reach_px,
                                                         int iterations) {
   return models_.locator.LocateRing(image_, PatternPose(pose, 0), reach_px, kMinRingContrast / 2,
-                                    iterations);
+                                    iterations, level_);
 }
 
 std::optional<LandingSearch::Hypothesis> LandingSearch::TestRefinedPose(const RigidTransform& ring,

@@ -72,14 +72,14 @@ void LandingSearch::TestPredictedRing(const CirclePose& predicted,
   std::optional<RigidTransform> refined;
   {
     StageTimer timer(&report_, LandingStage::kRing);
-    constexpr int kIterations = 2;
+    constexpr int kIterations = 3;
     refined = RefineRing(predicted, kPredicted * predicted_px.x(), kIterations);
   }
   if (!refined) return;
   const CirclePose ring{refined->translation, refined->rotation * Eigen::Vector3d::UnitZ()};
   const Eigen::Vector2d diameters_px = DiametersPx(ring);
   if (IsSmall(kNearlyLarge * diameters_px) || !IsPlausible(ring)) return;
-  BuildPyramid();
+  BuildPyramid(ViewLevel(diameters_px.x()));
   std::optional<Hypothesis> hypothesis;
   {
     StageTimer timer(&report_, LandingStage::kCross);

@@ -22,22 +22,48 @@ constexpr int kMaxReach = 12;  // px
 // some.
 constexpr std::size_t kCoarseStride = 3;
 constexpr int kFewEdges = 30;              // too few of those for a pose
+constexpr int kMinEdges = 12;              // too few for anything
 constexpr float kLeastStep = 2;            // of an edge, gray values per pixel
 constexpr float kStepInShadow = 0.3f;      // the same against the gray value on its bright side
 constexpr double kOnEdgePx = 1.0;          // offset of an edge that is the outline's own
 constexpr double kLensBlurPx = 0.7;        // of optics and pixels, standard deviation
 constexpr double kBlurSpreadPx2 = 0.3;     // of its square, over lenses: 0.45 to 0.9 px
-constexpr double kMaxRingScatterPx = 1.5;  // after two iterations, standard deviation
+constexpr double kMaxRingScatterPx = 1.5;  // standard deviation, after two iterations
+constexpr double kGathering = 0.6;         // of edges that gather still, from step to step
 constexpr int kMoreIterations = 5;         // for a pose that still moves
 constexpr double kMaxCorrelation = 0.9;    // of neighbouring residuals
 constexpr double kSettledPx = 0.02;        // outlines that move by less stay where they are
+constexpr double kRingSettledPx = 0.2;     // the same of a ring that is to be located yet
 
 // Whether the image shows all that FindEdge looks at.
 bool ShowsSearch(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::Vector2d& normal,
                  int reach) {
   const Eigen::Array2d span = (reach + 1.5) * normal.array().abs();
-  return (at.array() - span >= 0).all() &&
-         (at.array() + span <= Eigen::Array2d(image.cols - 1, image.rows - 1)).all();
+  constexpr double kRounding = 0.1;  // of the places along the way
+  return (at.array() - span >= kRounding).all() &&
+         (at.array() + span <= Eigen::Array2d(image.cols - 1, image.rows - 1) - kRounding).all();
+}
+
+// Gray values at places one 'step' apart, bilinear, all of which the image must show. In fixed
+// point, as the places follow each other: these are most of what the location of a pattern costs.
+void SampleLine(const cv::Mat& image, const Eigen::Vector2d& first, const Eigen::Vector2d& step,
+                int count, float* gray) {
+  constexpr int kPlaceBits = 16, kFractionBits = 10;
+  constexpr int kFraction = (1 << kFractionBits) - 1;
+  const auto fixed = [](double value) { return static_cast<int>(value * (1 << kPlaceBits)); };
+  const std::size_t stride = image.step[0];
+  int x = fixed(first.x()), y = fixed(first.y());
+  const int step_x = fixed(step.x()), step_y = fixed(step.y());
+  for (int i = 0; i < count; ++i, x += step_x, y += step_y) {
+    const std::uint8_t* upper = image.data + stride * (y >> kPlaceBits) + (x >> kPlaceBits);
+    const std::uint8_t* lower = upper + stride;
+    const int fx = (x >> (kPlaceBits - kFractionBits)) & kFraction;
+    const int fy = (y >> (kPlaceBits - kFractionBits)) & kFraction;
+    const int top = (upper[0] << kFractionBits) + fx * (upper[1] - upper[0]);
+    const int bottom = (lower[0] << kFractionBits) + fx * (lower[1] - lower[0]);
+    const int value = (top << kFractionBits) + fy * (bottom - top);
+    gray[i] = static_cast<float>(value) * (1.0f / (1 << 2 * kFractionBits));
+  }
 }
 
 // Offset (px) along the unit vector 'normal' from 'at' to the steepest rise of brightness within
@@ -46,11 +72,7 @@ std::optional<double> FindEdge(const cv::Mat& image, const Eigen::Vector2d& at,
                                const Eigen::Vector2d& normal, int reach, float min_step) {
   std::array<float, 2 * kMaxReach + 4> gray;
   const int count = 2 * reach + 4;
-  Eigen::Vector2f place = (at - (reach + 1.5) * normal).cast<float>();
-  const Eigen::Vector2f step = normal.cast<float>();
-  for (int i = 0; i < count; ++i, place += step) {
-    gray[i] = SampleInside(image, place.x(), place.y());
-  }
+  SampleLine(image, at - (reach + 1.5) * normal, normal, count, gray.data());
   // Rise between neighbours; the one at index i lies at offset i - reach - 1.
   int best = -1;
   float best_rise = kLeastStep;
@@ -80,6 +102,8 @@ double StrokeShift(double width_px) {
   // Interpolation and differences blur once more.
   constexpr double kVariance = kLensBlurPx * kLensBlurPx + 1.0 / 6 + 1.0 / 12;
   const double away = width_px - 1;
+  constexpr double kFar = 5;  // from where the other edge does not reach here
+  if (away > kFar) return 0;
   const double taken = std::exp(-away * away / (2 * kVariance));
   const double fall =
       1 - std::exp(-1 / (2 * kVariance));  // from the steepest rise to its neighbour
@@ -266,7 +290,7 @@ void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose
     jacobian.head<3>() = d_point;
     jacobian.tail<3>() = from_center.cross(d_point);
     const Eigen::Matrix<double, 6, 1> weighted = weight * jacobian;
-    normal->h.noalias() += weighted * jacobian.transpose();
+    for (int c = 0; c < 6; ++c) normal->h.col(c) += jacobian(c) * weighted;
     normal->g += *offset * weighted;
     normal->by_blur += bend * weighted;
     normal->weighted_squares += weight * *offset * *offset;
@@ -281,6 +305,22 @@ void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose
   }
 }
 
+// Normal equations by every kCoarseStride-th place if that many edges are enough, else by all.
+// 'enough': 0 to look at all places at once.
+PatternLocator::Normal PatternLocator::Measure(const cv::Mat& image, const RigidTransform& pose,
+                                               std::span<const Place> places, int enough,
+                                               double reach_px, double min_step,
+                                               double scale_px) const {
+  Normal normal;
+  if (enough > 0) {
+    Accumulate(image, pose, places, kCoarseStride, reach_px, min_step, scale_px, &normal);
+    if (normal.used >= enough) return normal;
+    normal = Normal();
+  }
+  Accumulate(image, pose, places, 1, reach_px, min_step, scale_px, &normal);
+  return normal;
+}
+
 std::optional<PatternLocation> PatternLocator::Locate(
     const cv::Mat& image, const RigidTransform& initial, double reach_px, double min_step,
     int iterations, const std::optional<NormalPrior>& prior) const {
@@ -290,15 +330,10 @@ std::optional<PatternLocation> PatternLocator::Locate(
   double scale = std::max(1.0, 0.5 * reach_px);
   double reach = reach_px;
   for (int iteration = 1; iteration <= iterations + kMoreIterations; ++iteration) {
-    Normal normal;
     // A part of the edges brings the pose near, all of them say where it is.
     const bool coarse = iteration < iterations;
-    if (coarse) Accumulate(image, pose, places_, kCoarseStride, reach, min_step, scale, &normal);
-    if (!coarse || normal.used < kFewEdges) {
-      normal = Normal();
-      Accumulate(image, pose, places_, 1, reach, min_step, scale, &normal);
-    }
-    if (normal.used < 12) return std::nullopt;
+    Normal normal = Measure(image, pose, places_, coarse ? kFewEdges : 0, reach, min_step, scale);
+    if (normal.used < kMinEdges) return std::nullopt;
     Eigen::Matrix<double, 6, 6> information = normal.h;
     Eigen::Matrix<double, 6, 1> gradient = normal.g;
     if (prior) prior->AddTo(pose.rotation, normal.EdgeVariance(), &information, &gradient);
@@ -316,29 +351,29 @@ std::optional<PatternLocation> PatternLocator::Locate(
   return location;
 }
 
-std::optional<RigidTransform> PatternLocator::LocateRing(const cv::Mat& image,
-                                                         const RigidTransform& initial,
-                                                         double reach_px, double min_step,
-                                                         int iterations) const {
+std::optional<RigidTransform> PatternLocator::LocateRing(
+    const cv::Mat& image, const RigidTransform& initial, double reach_px, double min_step,
+    int iterations, const std::optional<NormalPrior>& prior) const {
   RigidTransform pose = initial;
   double scale = std::max(1.0, 0.5 * reach_px);
   double reach = reach_px;
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    Normal normal;
-    Accumulate(image, pose, std::span(places_).first(ring_places_), 1, reach, min_step, scale,
-               &normal);
-    if (normal.used < 12) return std::nullopt;
+    Normal normal = Measure(image, pose, std::span(places_).first(ring_places_),
+                            iteration == 0 ? kMinEdges : 0, reach, min_step, scale);
+    if (normal.used < kMinEdges) return std::nullopt;
     // A ring says nothing about turns in its plane, and a short arc little about its far side.
     normal.h.diagonal() *= 1 + 1e-4;
     const double weight = 1e-6 * normal.h.diagonal().tail<3>().maxCoeff();
     for (int i = 3; i < 6; ++i) normal.h(i, i) += weight;
-    if (!Move(normal.h.ldlt().solve(normal.g), &pose)) {
-      return std::nullopt;
-    }
-    scale = std::clamp(normal.RobustScale(), 0.25, scale);
+    if (prior) prior->AddTo(pose.rotation, normal.EdgeVariance(), &normal.h, &normal.g);
+    const Eigen::Matrix<double, 6, 1> step = normal.h.ldlt().solve(normal.g);
+    if (!Move(step, &pose)) return std::nullopt;
+    const double before = std::exchange(scale, std::clamp(normal.RobustScale(), 0.25, scale));
     reach = std::clamp(3 * scale, 1.5, reach);
     // The edges of anything but a ring stay scattered.
-    if (iteration == 1 && scale > kMaxRingScatterPx) return std::nullopt;
+    const bool gathers = scale < kGathering * before && iteration + 1 < iterations;
+    if (iteration > 0 && scale > kMaxRingScatterPx && !gathers) return std::nullopt;
+    if (iteration > 0 && normal.Movement(step) < kRingSettledPx) break;
   }
   return pose;
 }

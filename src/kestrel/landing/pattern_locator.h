@@ -71,7 +71,8 @@ class PatternLocator {
 
   // The same by the edges of the ring alone, however the cross is turned about its centre.
   std::optional<RigidTransform> LocateRing(const cv::Mat& image, const RigidTransform& initial,
-                                           double reach_px, double min_step, int iterations) const;
+                                           double reach_px, double min_step, int iterations,
+                                           const std::optional<NormalPrior>& prior = {}) const;
 
  private:
   // A point of an outline and the unit normal that points from black to white, in the plane.
@@ -88,6 +89,8 @@ class PatternLocator {
   static bool AreOnOneOutline(const Place& a, const Place& b);
   void AddCircle(double radius, double sign, int count, double arm_clearance);
   void AddArms();
+  Normal Measure(const cv::Mat& image, const RigidTransform& pose, std::span<const Place> places,
+                 int enough, double reach_px, double min_step, double scale_px) const;
   void Accumulate(const cv::Mat& image, const RigidTransform& pose, std::span<const Place> places,
                   std::size_t stride, double reach_px, double min_step, double scale_px,
                   Normal* normal) const;

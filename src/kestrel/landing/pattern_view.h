@@ -51,6 +51,18 @@ struct ImageRegion {
 // pixels. Projects the nodes of a grid exactly and interpolates between them, because a candidate
 // is looked at in many more places than it is worth projecting.
 class PatternView {
+ private:
+  static constexpr int kNodes = 9;
+
+  // Node before a place, and how far the place is beyond it.
+  struct Cell {
+    explicit Cell(float place)
+        : node(std::clamp(static_cast<int>(place), 0, kNodes - 2)),
+          share(place - static_cast<float>(node)) {}
+    int node;
+    float share;
+  };
+
  public:
   // Covers |x|, |y| <= 'extent_m' of the plane. Pixels are those of 'region'.
   PatternView(const CameraModel& camera, const RigidTransform& camera_from_pattern, double extent_m,
@@ -59,18 +71,39 @@ class PatternView {
   // False when the lens model does not show the whole extent.
   bool valid() const { return valid_; }
 
+  // A line of the plane along x: for many points of it.
+  class Row {
+   public:
+    Eigen::Vector2f Pixel(float x_m) const {
+      const Cell cell((x_m + extent_m_) * nodes_per_m_);
+      return nodes_[cell.node] + cell.share * (nodes_[cell.node + 1] - nodes_[cell.node]);
+    }
+
+   private:
+    friend class PatternView;
+    Row(float extent_m, float nodes_per_m) : extent_m_(extent_m), nodes_per_m_(nodes_per_m) {}
+    float extent_m_;
+    float nodes_per_m_;
+    std::array<Eigen::Vector2f, kNodes> nodes_;
+  };
+  Row RowAt(float y_m) const {
+    Row row(extent_m_, nodes_per_m_);
+    const Cell cell((y_m + extent_m_) * nodes_per_m_);
+    const Eigen::Vector2f* upper = &nodes_[cell.node * kNodes];
+    for (int i = 0; i < kNodes; ++i) {
+      row.nodes_[i] = upper[i] + cell.share * (upper[kNodes + i] - upper[i]);
+    }
+    return row;
+  }
+
   // Pixel of a point of the plane (m), which must lie within the extent.
   Eigen::Vector2f Pixel(float x_m, float y_m) const {
-    const float gx = (x_m + extent_m_) * nodes_per_m_;
-    const float gy = (y_m + extent_m_) * nodes_per_m_;
-    const int ix = std::clamp(static_cast<int>(gx), 0, kNodes - 2);
-    const int iy = std::clamp(static_cast<int>(gy), 0, kNodes - 2);
-    const float fx = gx - static_cast<float>(ix);
-    const float fy = gy - static_cast<float>(iy);
-    const Eigen::Vector2f* node = &nodes_[iy * kNodes + ix];
-    const Eigen::Vector2f upper = node[0] + fx * (node[1] - node[0]);
-    const Eigen::Vector2f lower = node[kNodes] + fx * (node[kNodes + 1] - node[kNodes]);
-    return upper + fy * (lower - upper);
+    const Cell x((x_m + extent_m_) * nodes_per_m_);
+    const Cell y((y_m + extent_m_) * nodes_per_m_);
+    const Eigen::Vector2f* node = &nodes_[y.node * kNodes + x.node];
+    const Eigen::Vector2f upper = node[0] + x.share * (node[1] - node[0]);
+    const Eigen::Vector2f lower = node[kNodes] + x.share * (node[kNodes + 1] - node[kNodes]);
+    return upper + y.share * (lower - upper);
   }
 
   // Gray value at a point of the plane; negative where the image does not show it.
@@ -80,8 +113,6 @@ class PatternView {
   }
 
  private:
-  static constexpr int kNodes = 9;
-
   float extent_m_;
   float nodes_per_m_;
   bool valid_ = true;

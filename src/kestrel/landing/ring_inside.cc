@@ -31,13 +31,14 @@ class SmallIntegral {
       counts_[row + x + 1] = counts_[row - (kMax + 1) + x + 1] + count;
     }
   }
-  float Mean(int x, int y, int radius) const {
+  // Whether a gray value is below the mean of the known pixels in a square around (x, y).
+  bool IsBelowMean(float gray, int x, int y, int radius) const {
     const int x0 = std::max(x - radius, 0), x1 = std::min(x + radius + 1, size_);
     const int y0 = std::max(y - radius, 0) * (kMax + 1);
     const int y1 = std::min(y + radius + 1, size_) * (kMax + 1);
     const int count = counts_[y1 + x1] - counts_[y0 + x1] - counts_[y1 + x0] + counts_[y0 + x0];
     const float sum = sums_[y1 + x1] - sums_[y0 + x1] - sums_[y1 + x0] + sums_[y0 + x0];
-    return sum / static_cast<float>(std::max(count, 1));
+    return gray * static_cast<float>(count) < sum;
   }
 
  private:
@@ -58,6 +59,7 @@ std::optional<RingInside> RectifyInside(const cv::Mat& image, const PatternView&
   float darkest = 255, brightest = 0;
   int in_disc = 0, seen = 0;
   for (int y = 0; y < size; ++y) {
+    const PatternView::Row row = view.RowAt(static_cast<float>(inside.Coordinate(y)) * radius_m);
     for (int x = 0; x < size; ++x) {
       const auto u = static_cast<float>(inside.Coordinate(x));
       const auto v = static_cast<float>(inside.Coordinate(y));
@@ -66,7 +68,8 @@ std::optional<RingInside> RectifyInside(const cv::Mat& image, const PatternView&
       value = -1;
       if (u * u + v * v > 0.81f) continue;
       ++in_disc;
-      value = view.Sample(image, u * radius_m, v * radius_m);
+      const Eigen::Vector2f pixel = row.Pixel(u * radius_m);
+      value = SampleGray(image, pixel.x(), pixel.y());
       if (value < 0) continue;
       ++seen;
       inside.disc.Set(x, y);
@@ -82,7 +85,7 @@ std::optional<RingInside> RectifyInside(const cv::Mat& image, const PatternView&
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
       const float value = gray[y * kMax + x];
-      if (value >= 0 && value < integral.Mean(x, y, radius) - margin) inside.dark.Set(x, y);
+      if (value >= 0 && integral.IsBelowMean(value + margin, x, y, radius)) inside.dark.Set(x, y);
     }
   }
   inside.seen = static_cast<double>(seen) / in_disc;

@@ -122,13 +122,15 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
     for (int x = x0; x <= x1; x += stride) {
       const auto u = static_cast<float>(x), v = static_cast<float>(y);
       SmallPatternWorkspace::Pixel pixel;
-      pixel.ray = rays_.Ray(u, v).cast<double>();
+      const Eigen::Vector3f ray = rays_.Ray(u, v);
+      pixel.ray = ray.cast<double>();
       const Eigen::Vector3d h = map.inverse * pixel.ray;
       if (!(h.z() > 0) || h.head<2>().squaredNorm() > extent_m_ * extent_m_ * h.z() * h.z()) {
         continue;
       }
-      pixel.d_ray_du = (rays_.Ray(u + 1, v) - rays_.Ray(u - 1, v)).cast<double>() / 2;
-      pixel.d_ray_dv = (rays_.Ray(u, v + 1) - rays_.Ray(u, v - 1)).cast<double>() / 2;
+      // To one side only: they tell how far the blur reaches, half a pixel beside is near enough.
+      pixel.d_ray_du = (rays_.Ray(u + 1, v) - ray).cast<double>();
+      pixel.d_ray_dv = (rays_.Ray(u, v + 1) - ray).cast<double>();
       pixel.gray = row[x];
       workspace->pixels.push_back(pixel);
     }
@@ -189,18 +191,28 @@ struct SmallPatternFitter::System {
   }
 };
 
-// The gray values of black and white under a pose, by linear regression.
+// Where the pixels lie on the print and how dark it is there: fills the points of the workspace.
+void SmallPatternFitter::Predict(const State& state, SmallPatternWorkspace* workspace) const {
+  const PlaneMap map(state.pose);
+  workspace->points.clear();
+  for (const auto& pixel : workspace->pixels) {
+    PlanePoint point = Intersect(map, pixel);
+    point.dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px).value;
+    workspace->points.push_back(point);
+  }
+}
+
+// The gray values of black and white where the print is predicted, by linear regression.
 void SmallPatternFitter::MeasureLevels(const SmallPatternWorkspace& workspace, State* state) const {
-  const PlaneMap map(state->pose);
   double n = 0, g = 0, d = 0, dd = 0, gd = 0;
-  for (const auto& pixel : workspace.pixels) {
-    const PlanePoint point = Intersect(map, pixel);
-    const double dark = Evaluate(point.x, point.y, point.by_pixel, state->blur_px).value;
+  for (std::size_t i = 0; i < workspace.points.size(); ++i) {
+    const double gray = workspace.pixels[i].gray;
+    const double dark = workspace.points[i].dark;
     ++n;
-    g += pixel.gray;
+    g += gray;
     d += dark;
     dd += dark * dark;
-    gd += pixel.gray * dark;
+    gd += gray * dark;
   }
   const double spread = dd - d * d / n;
   state->contrast = spread > 1e-9 ? -(gd - g * d / n) / spread : 0;
@@ -220,7 +232,7 @@ SmallPatternFitter::System SmallPatternFitter::Linearize(const State& state, dou
   for (const auto& pixel : workspace->pixels) {
     const PlanePoint point = Intersect(map, pixel);
     const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
-    const double expected = state.Gray(point, dark);
+    const double expected = state.Gray(point, dark.value);
     const double gray = SeenGray(pixel.gray, expected);
     const double residual = gray - expected;
     const double magnitude = std::abs(residual);
@@ -306,6 +318,7 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   if (!Gather(image, initial, kEnoughToFit, workspace)) return std::nullopt;
   State state;
   state.pose = initial;
+  Predict(state, workspace);
   MeasureLevels(*workspace, &state);
   if (state.contrast < kMinContrast) return std::nullopt;
   if (light == Light::kShadowEdge && !EvenOut(workspace, &state)) return std::nullopt;
@@ -335,6 +348,7 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   fit.explained = system.explained();
   fit.match.contrast = state.contrast;
   MeasureParts(*workspace, state, &fit.match);
+  Predict(state, workspace);
   fit.others = MeasureOthers(image, state, workspace);
   return fit;
 }
@@ -366,7 +380,7 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
     basis(14) = point.y;
     h.selfadjointView<Eigen::Lower>().rankUpdate(basis);
     // Cut off where the print should be darker than that: it is as good as white.
-    const double expected = state.Gray(point, dark);
+    const double expected = state.Gray(point, dark.value);
     const bool missing = pixel.gray >= kSaturated && expected <= pixel.gray;
     b += basis * (missing ? std::max(state.white, pixel.gray) : SeenGray(pixel.gray, expected));
   }

@@ -32,6 +32,7 @@ struct SmallPatternWorkspace {
     double x, y;
     Eigen::Matrix2d by_pixel;  // d(x, y) / d(u, v), metres per pixel
     double ring = 0;           // darkness of the ring there
+    double dark = 0;           // of the whole print
     double expected = 0;       // gray value by the fitted print
     double gray = 0;           // in the image
 
@@ -117,9 +118,10 @@ class SmallPatternFitter {
   double CorrelateRing(const RigidTransform& unturned, SmallPatternWorkspace* workspace) const;
   double CorrelatePrint(double angle, const SmallPatternWorkspace& workspace) const;
   double ArmDarkness(double along, double across, double blur_along, double blur_across) const;
+  void Predict(const State& state, SmallPatternWorkspace* workspace) const;
   void MeasureLevels(const SmallPatternWorkspace& workspace, State* state) const;
   std::optional<ShadowEdge> FitShadowEdge(const State& state,
-                                          SmallPatternWorkspace* workspace) const;
+                                          const SmallPatternWorkspace& workspace) const;
   bool EvenOut(SmallPatternWorkspace* workspace, State* state) const;
   System Linearize(const State& state, double limit, SmallPatternWorkspace* workspace) const;
   bool Improve(const System& system, const std::optional<NormalPrior>& prior, State* state) const;

@@ -52,20 +52,16 @@ struct TwoLights {
 }  // namespace
 
 std::optional<SmallPatternFitter::ShadowEdge> SmallPatternFitter::FitShadowEdge(
-    const State& state, SmallPatternWorkspace* workspace) const {
+    const State& state, const SmallPatternWorkspace& workspace) const {
   // What black reflects of the light that white does.
   const double blackness = std::clamp(state.contrast / state.white, 0.3, 0.95);
-  const PlaneMap map(state.pose);
-  workspace->points.clear();
+  const auto reflected_at = [&](std::size_t i) { return 1 - blackness * workspace.points[i].dark; };
   double squares = 0, one_light = 0, one_norm = 0;
-  for (const auto& pixel : workspace->pixels) {
-    PlanePoint point = Intersect(map, pixel);
-    const double reflected =
-        1 - blackness * Evaluate(point.x, point.y, point.by_pixel, state.blur_px).value;
-    point.ring = reflected;
-    workspace->points.push_back(point);
-    squares += pixel.gray * pixel.gray;
-    one_light += reflected * pixel.gray;
+  for (std::size_t i = 0; i < workspace.points.size(); ++i) {
+    const double gray = workspace.pixels[i].gray;
+    const double reflected = reflected_at(i);
+    squares += gray * gray;
+    one_light += reflected * gray;
     one_norm += reflected * reflected;
   }
   const double even_residual = squares - one_light * one_light / one_norm;
@@ -77,13 +73,14 @@ std::optional<SmallPatternFitter::ShadowEdge> SmallPatternFitter::FitShadowEdge(
     ShadowEdge edge{{std::cos(angle), std::sin(angle)}, 0, 1, 1};
     // All edges of a direction have the same distances from the points: those are summed up first.
     std::array<Strip, kStrips> strips{};
-    for (std::size_t k = 0; k < workspace->points.size(); ++k) {
-      const PlanePoint& point = workspace->points[k];
+    for (std::size_t k = 0; k < workspace.points.size(); ++k) {
+      const PlanePoint& point = workspace.points[k];
+      const double reflected = reflected_at(k);
       const double distance = edge.normal.dot(Eigen::Vector2d(point.x, point.y));
       const auto at = static_cast<int>((distance / extent_m_ + 1) * (0.5 * kStrips));
       Strip& strip = strips[std::clamp(at, 0, kStrips - 1)];
-      strip.reflected_squared += point.ring * point.ring;
-      strip.reflected_gray += point.ring * workspace->pixels[k].gray;
+      strip.reflected_squared += reflected * reflected;
+      strip.reflected_gray += reflected * workspace.pixels[k].gray;
     }
     for (int step = -8; step <= 8; ++step) {
       edge.offset = step * kOffsetStep * extent_m_;
@@ -114,7 +111,7 @@ std::optional<SmallPatternFitter::ShadowEdge> SmallPatternFitter::FitShadowEdge(
 // Takes from the gray values of the workspace what the light beside a shadow adds to them. False
 // when there is no such edge.
 bool SmallPatternFitter::EvenOut(SmallPatternWorkspace* workspace, State* state) const {
-  const std::optional<ShadowEdge> edge = FitShadowEdge(*state, workspace);
+  const std::optional<ShadowEdge> edge = FitShadowEdge(*state, *workspace);
   if (!edge) return false;
   state->edge = *edge;
   for (std::size_t i = 0; i < workspace->pixels.size(); ++i) {

@@ -128,9 +128,7 @@ struct SmallPatternFitter::State {
   double White(const PlanePoint& point) const {
     return white + slope.x() * point.x + slope.y() * point.y;
   }
-  double Gray(const PlanePoint& point, const Darkness& dark) const {
-    return White(point) - contrast * dark.value;
-  }
+  double Gray(const PlanePoint& point, double dark) const { return White(point) - contrast * dark; }
   // A gray value without what makes it brighter than the print can be: a highlight is no sign.
   double WithoutHighlight(const PlanePoint& point, double gray) const {
     constexpr double kMargin = 0.1;  // of the contrast

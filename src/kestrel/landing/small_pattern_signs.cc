@@ -17,21 +17,20 @@ std::optional<SmallPatternFitter::OtherSigns> SmallPatternFitter::Inspect(
   if (!Gather(image, pose, kEnoughToInspect, workspace)) return std::nullopt;
   State state;
   state.pose = pose;
+  Predict(state, workspace);
   MeasureLevels(*workspace, &state);
   if (state.contrast < kMinContrast) return std::nullopt;
   if (light == Light::kShadowEdge && !EvenOut(workspace, &state)) return std::nullopt;
   return MeasureOthers(image, state, workspace);
 }
 
+// Of a print that is predicted.
 SmallPatternFitter::OtherSigns SmallPatternFitter::MeasureOthers(
     const cv::Mat& image, const State& state, SmallPatternWorkspace* workspace) const {
-  const PlaneMap map(state.pose);
-  workspace->points.clear();
-  for (const auto& pixel : workspace->pixels) {
-    PlanePoint point = Intersect(map, pixel);
-    point.expected = state.Gray(point, Evaluate(point.x, point.y, point.by_pixel, state.blur_px));
-    point.gray = state.WithoutHighlight(point, SeenGray(pixel.gray, point.expected));
-    workspace->points.push_back(point);
+  for (std::size_t i = 0; i < workspace->points.size(); ++i) {
+    PlanePoint& point = workspace->points[i];
+    point.expected = state.Gray(point, point.dark);
+    point.gray = state.WithoutHighlight(point, SeenGray(workspace->pixels[i].gray, point.expected));
   }
   return {.spokes = OtherSpokes(*workspace, state),
           .frame_corners = FrameCorners(*workspace, state),
