@@ -38,8 +38,10 @@ struct PlaneMoments {
     }
   }
   void Scale(double scale) {
-    for (int i = 0; i <= 4; ++i) {
-      for (int j = 0; i + j <= 4; ++j) sum[i][j] *= std::pow(scale, i + j);
+    double x_power = 1;
+    for (int i = 0; i <= 4; ++i, x_power *= scale) {
+      double power = x_power;
+      for (int j = 0; i + j <= 4; ++j, power *= scale) sum[i][j] *= power;
     }
   }
   // The part of the scatter of the design matrix that belongs to these terms.

@@ -5,6 +5,8 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <limits>
+#include <span>
 
 namespace kestrel {
 namespace {
@@ -33,6 +35,31 @@ std::uint64_t BesideBright(const std::uint64_t* bright, int word, int words, boo
 // How often the size of a border is compared with the limit.
 constexpr std::size_t kCheckInterval = 32;
 
+// Bounding box of points.
+struct Extent {
+  static constexpr std::int16_t kMost = std::numeric_limits<std::int16_t>::max();
+  GridPoint min{kMost, kMost};
+  GridPoint max{-1, -1};
+
+  void Add(std::span<const GridPoint> points) {
+    for (const GridPoint& point : points) {
+      min = {std::min(min.x, point.x), std::min(min.y, point.y)};
+      max = {std::max(max.x, point.x), std::max(max.y, point.y)};
+    }
+  }
+  int Longer() const { return std::max(max.x - min.x, max.y - min.y); }
+  int Shorter() const { return std::min(max.x - min.x, max.y - min.y); }
+};
+
+// Area within a closed walk, by Green's theorem: only steps along y sweep area.
+std::int32_t SignedArea(std::span<const GridPoint> points) {
+  std::int32_t area = 0;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    area += points[i].x * (points[i + 1].y - points[i].y);
+  }
+  return area + points.back().x * (points.front().y - points.back().y);
+}
+
 // Median over places along a border of how much brighter the second pixel on its left is than the
 // first on its right.
 int ContrastAcross(const cv::Mat& image, const GridPoint* points, std::size_t count) {
@@ -42,11 +69,11 @@ int ContrastAcross(const cv::Mat& image, const GridPoint* points, std::size_t co
   for (std::size_t i = 0; i < kPlaces; ++i) {
     const GridPoint& from = points[i * count / kPlaces];
     const GridPoint& to = points[(i * count / kPlaces + 1) % count];
-    int direction = 0;
-    while (kStepX[direction] != to.x - from.x || kStepY[direction] != to.y - from.y) ++direction;
-    const cv::Point dark(from.x + kRightX[direction], from.y + kRightY[direction]);
-    const cv::Point beside(from.x + kLeftX[direction], from.y + kLeftY[direction]);
-    const cv::Point bright = 2 * beside - dark;
+    const cv::Point step(to.x - from.x, to.y - from.y);
+    const cv::Point to_left(step.y, -step.x);
+    const cv::Point dark(from.x - static_cast<int>(step.x < 0 || step.y > 0),
+                         from.y - static_cast<int>(step.x < 0 || step.y < 0));
+    const cv::Point bright = dark + 2 * to_left;
     if (!cv::Rect({0, 0}, image.size()).contains(bright)) continue;
     contrast[seen++] = image.at<std::uint8_t>(bright) - image.at<std::uint8_t>(dark);
   }
@@ -61,7 +88,7 @@ int ContrastAcross(const cv::Mat& image, const GridPoint* points, std::size_t co
 void BorderTracer::Reserve(int width, int height) {
   constexpr std::size_t kLeast = 4096;
   const std::size_t pixels = static_cast<std::size_t>(width) * height;
-  points_.reserve(pixels / 2 + kLeast);
+  points_.resize(std::max(points_.size(), pixels / 2 + kLeast));
   borders_.reserve(pixels / 64 + kLeast / 64);
   strengths_.reserve(borders_.capacity());
   traced_.Reset(width, height);
@@ -108,7 +135,14 @@ void BorderTracer::KeepStrongest(const cv::Mat& image, std::size_t most) {
   borders_.resize(most);
 }
 
+// Room for the points of one more border; empty when there is none.
+std::span<GridPoint> BorderTracer::Room() {
+  if (borders_.size() == borders_.capacity()) return {};
+  return std::span(points_).subspan(used_);
+}
+
 void BorderTracer::TraceFrom(const BitImage& dark, int x, int y, const BorderLimits& limits) {
+  const std::span<GridPoint> room = Room();
   // Pixels are addressed by the number of their bit, so that a step is one addition.
   const std::uint64_t* words = dark.row(0);
   std::uint64_t* traced = traced_.row(0);
@@ -123,59 +157,45 @@ void BorderTracer::TraceFrom(const BitImage& dark, int x, int y, const BorderLim
     right[d] = kRightY[d] * stride + kRightX[d];
   }
 
-  Border border;
-  border.first = points_.size();
-  if (borders_.size() == borders_.capacity()) return;
   const std::ptrdiff_t start = y * stride + x;
   std::ptrdiff_t at = start;
   int direction = kRight;
-  int min_x = x, max_x = x, min_y = y, max_y = y;
-  std::int32_t area = 0;
-  bool kept = true;
-  do {
-    if (points_.size() == points_.capacity()) {
-      kept = false;
-      break;
+  std::size_t count = 0;
+  Extent extent;
+  bool closed = false;
+  while (!closed) {
+    // The limits are looked at after some steps at a time: a step is short.
+    const std::size_t first = count;
+    const std::size_t last = std::min(count + kCheckInterval, room.size());
+    bool walked = first == last;  // no room, or where a border that was given up was walked
+    while (count < last && !closed && !walked) {
+      room[count++] = {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)};
+      // Steps to the right walk along the upper edge of a pixel: computed instead of branched on,
+      // as in texture every second turn would be predicted wrong.
+      const std::uint64_t upper = std::uint64_t{direction == kRight} << (at & 63);
+      std::uint64_t& traced_word = traced[at >> 6];
+      walked = (traced_word & upper) != 0;
+      traced_word |= upper;
+      x += kStepX[direction];
+      y += kStepY[direction];
+      at += step[direction];
+      // Dark areas are 8-connected: a dark pixel on the left turns left, even where it touches the
+      // one on the right at the vertex only; without either the border turns right.
+      const int is_left = bit(at + left[direction]);
+      const int is_right = bit(at + right[direction]);
+      direction = (direction + 3 * is_left + ((is_left | is_right) ^ 1)) & 3;
+      closed = at == start && direction == kRight;
     }
-    points_.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)});
-    // Steps to the right walk along the upper edge of a pixel: computed instead of branched on, as
-    // in texture every second turn would be predicted wrong.
-    const std::uint64_t upper = std::uint64_t{direction == kRight} << (at & 63);
-    std::uint64_t& traced_word = traced[at >> 6];
-    // An edge that was walked along before belongs to a border that was given up.
-    kept = (traced_word & upper) == 0;
-    traced_word |= upper;
-    // Green's theorem: only steps along y sweep area.
-    area += x * kStepY[direction];
-    x += kStepX[direction];
-    y += kStepY[direction];
-    at += step[direction];
-    min_x = std::min(min_x, x);
-    max_x = std::max(max_x, x);
-    min_y = std::min(min_y, y);
-    max_y = std::max(max_y, y);
-    if ((points_.size() - border.first) % kCheckInterval == 0 &&
-        std::max(max_x - min_x, max_y - min_y) > limits.max_extent) {
-      kept = false;
-    }
-    // Dark areas are 8-connected: a dark pixel on the left turns left, even where it touches the
-    // one on the right at the vertex only; without either the border turns right.
-    const int is_left = bit(at + left[direction]);
-    const int is_right = bit(at + right[direction]);
-    direction = (direction + 3 * is_left + ((is_left | is_right) ^ 1)) & 3;
-  } while (kept && (at != start || direction != kRight));
-
-  border.count = points_.size() - border.first;
-  if (!kept || border.count < limits.min_count || max_x - min_x < limits.min_extent ||
-      max_y - min_y < limits.min_extent ||
-      std::max(max_x - min_x, max_y - min_y) > limits.max_extent) {
-    points_.resize(border.first);
-    return;
+    extent.Add(room.subspan(first, count - first));
+    if (walked || extent.Longer() > limits.max_extent) return;
   }
-  border.signed_area = area;
-  border.min = {static_cast<std::int16_t>(min_x), static_cast<std::int16_t>(min_y)};
-  border.max = {static_cast<std::int16_t>(max_x), static_cast<std::int16_t>(max_y)};
-  borders_.push_back(border);
+  if (count < limits.min_count || extent.Shorter() < limits.min_extent) return;
+  borders_.push_back({.first = used_,
+                      .count = count,
+                      .signed_area = SignedArea(room.first(count)),
+                      .min = extent.min,
+                      .max = extent.max});
+  used_ += count;
 }
 
 }  // namespace kestrel

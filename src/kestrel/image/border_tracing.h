@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -23,7 +24,7 @@ struct GridPoint {
 // dark pixels on its right. The outer border of a dark area has a positive area, the border of a
 // hole in one a negative one.
 struct Border {
-  std::size_t first = 0;  // of its points in BorderTracer::points()
+  std::size_t first = 0;  // of its points in the tracer
   std::size_t count = 0;
   std::int32_t signed_area = 0;  // pixels
   GridPoint min{};               // bounding box of the vertices
@@ -60,11 +61,11 @@ class BorderTracer {
   // Forgets all borders.
   void Clear() {
     borders_.clear();
-    points_.clear();
+    used_ = 0;
   }
 
   // How many points there is room for.
-  std::size_t capacity() const { return points_.capacity(); }
+  std::size_t capacity() const { return points_.size(); }
 
   // Size of the image that was traced last.
   cv::Size image_size() const { return {traced_.width(), traced_.height()}; }
@@ -73,11 +74,13 @@ class BorderTracer {
   const GridPoint* begin(const Border& border) const { return points_.data() + border.first; }
 
  private:
+  std::span<GridPoint> Room();
   void TraceFrom(const BitImage& dark, int x, int y, const BorderLimits& limits);
 
   BitImage traced_;  // pixels whose upper edge has been walked along
   std::vector<Border> borders_;
   std::vector<GridPoint> points_;
+  std::size_t used_ = 0;  // of the points
   struct Strength {
     int contrast;
     std::size_t border;

@@ -20,6 +20,7 @@ inline constexpr double kMinContrast = 2;       // gray values
 inline constexpr double kSaturated = 254;
 // Pixels of a box around a print beyond which some may be left out.
 inline constexpr int kEnoughToFit = 1200;
+inline constexpr int kEnoughToStart = 600;
 inline constexpr int kEnoughToInspect = 600;
 
 // A gray value where the image cuts off what is brighter: then it is what is expected.

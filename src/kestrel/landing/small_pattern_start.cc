@@ -97,8 +97,8 @@ std::optional<double> SmallPatternFitter::FindScale(const cv::Mat& image, const 
                                                     SmallPatternWorkspace* workspace) const {
   const auto look_at = [&](double scale) {
     const RigidTransform unturned = PatternPose(Shrunk(ring, scale), 0);
-    return Gather(image, unturned, kEnoughToFit, workspace) ? CorrelateRing(unturned, workspace)
-                                                            : -1.0;
+    return Gather(image, unturned, kEnoughToStart, workspace) ? CorrelateRing(unturned, workspace)
+                                                              : -1.0;
   };
   double best = 0, best_correlation = kMinRingCorrelation;
   for (const double scale : scales) {
