@@ -125,10 +125,7 @@ void LandingSearch::TestRing(const RingFit& ring, const Eigen::Vector2d& diamete
       constexpr int kIterations = 4;
       const std::optional<RigidTransform> refined =
           RefineRing(ring.poses[i], 1.5 * reach_px, kIterations);
-      // Both poses have the outer edge in common: what is no ring under one is none under the
-      // other.
-      if (!refined) break;
-      hypotheses[i] = TestRefinedPose(*refined, diameters_px.x());
+      if (refined) hypotheses[i] = TestRefinedPose(*refined, diameters_px.x());
     }
   }
   if (hypotheses[0] && hypotheses[1]) {

@@ -22,6 +22,7 @@ constexpr int kMaxReach = 12;  // px
 // some.
 constexpr std::size_t kCoarseStride = 3;
 constexpr int kFewEdges = 30;              // too few of those for a pose
+constexpr int kWholeRing = 22;             // of those, of a ring that is whole
 constexpr int kMinEdges = 12;              // too few for anything
 constexpr float kLeastStep = 2;            // of an edge, gray values per pixel
 constexpr float kStepInShadow = 0.3f;      // the same against the gray value on its bright side
@@ -39,7 +40,7 @@ constexpr double kRingSettledPx = 0.2;     // the same of a ring that is to be l
 bool ShowsSearch(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::Vector2d& normal,
                  int reach) {
   const Eigen::Array2d span = (reach + 1.5) * normal.array().abs();
-  constexpr double kRounding = 0.1;  // of the places along the way
+  constexpr double kRounding = 0.01;  // of the places along the way
   return (at.array() - span >= kRounding).all() &&
          (at.array() + span <= Eigen::Array2d(image.cols - 1, image.rows - 1) - kRounding).all();
 }
@@ -359,7 +360,7 @@ std::optional<RigidTransform> PatternLocator::LocateRing(
   double reach = reach_px;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     Normal normal = Measure(image, pose, std::span(places_).first(ring_places_),
-                            iteration == 0 ? kMinEdges : 0, reach, min_step, scale);
+                            iteration == 0 ? kWholeRing : 0, reach, min_step, scale);
     if (normal.used < kMinEdges) return std::nullopt;
     // A ring says nothing about turns in its plane, and a short arc little about its far side.
     normal.h.diagonal() *= 1 + 1e-4;
