@@ -15,7 +15,7 @@ namespace {
 // anything else scatter over the whole reach of the search.
 constexpr double kMaxEdgeRmsPx = 0.7;
 constexpr double kMaxOneArmRmsPx = 0.3;  // where one arm alone keeps the ring from turning
-constexpr double kInspectedRingPx = 80;  // major axis below which it is looked for other signs
+constexpr double kInspectedRingPx = 80;  // mean axis below which it is looked for other signs
 constexpr double kMinMajorPx = 9;        // of the smallest ring
 // Differences of the residuals inside of a small ring, on it and around it, share of the contrast.
 constexpr double kMaxMoreInside = 0.085;
@@ -367,7 +367,7 @@ void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& 
   combine(&match.ring, location->ring_share);
   const double quality = match.Quality();
   if (quality < models_.options.min_quality || match.RingShare() < kMinRingShare) return;
-  if (diameters_px.x() < kInspectedRingPx) {
+  if (std::sqrt(diameters_px.prod()) < kInspectedRingPx) {
     if (ShowsOtherSign(location->camera_from_pattern, quality)) {
       const auto place = PlaceOf(location->camera_from_pattern.translation, diameters_px);
       if (place) Note(*place, &buffers_.other_signs);
