@@ -14,10 +14,31 @@ constexpr std::size_t kMaxTested = 64;      // rings that are remembered
 // of texture, of which there may be any amount.
 constexpr std::size_t kMinBorders = 24;
 constexpr std::size_t kPixelsPerBorder = 8192;
+constexpr double kAlike = 0.05;  // difference of two qualities that says nothing
+
+// Whether 'a' explains the image better than 'b'. Of poses that agree alike with the part of a
+// print that is in view, the one is right whose edges lie nearer.
+bool IsBetter(const LandingDetection& a, double edge_rms_px_a, const LandingDetection& b,
+              double edge_rms_px_b) {
+  const bool partial = a.method == CrossMethod::kPartial && b.method == CrossMethod::kPartial;
+  const bool have_edges = edge_rms_px_a > 0 && edge_rms_px_b > 0;
+  if (partial && have_edges && std::abs(a.quality - b.quality) < kAlike) {
+    return edge_rms_px_a < edge_rms_px_b;
+  }
+  return a.quality > b.quality;
+}
+
+// Whether a location knows its place: a wrong pose of a print of which little is in view bends until
+// the edges scatter little, but then they hardly hold it.
+bool IsCertain(const PatternLocation& location) {
+  constexpr double kMaxSigma = 0.05;  // of the distance
+  const double variance = location.covariance.topLeftCorner<3, 3>().trace();
+  const double most = kMaxSigma * location.camera_from_pattern.translation.norm();
+  return variance <= most * most;
+}
 
 // Whether two detections are the two poses of one ring, between which the image does not decide.
 bool AreMirrorPoses(const LandingDetection& a, const LandingDetection& b) {
-  constexpr double kAlike = 0.05;  // difference of the qualities
   constexpr double kSameCenterPx = 2;
   constexpr double kOtherNormal = 0.99;  // cosine between the normals
   const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
@@ -232,6 +253,7 @@ void LandingSearch::Binarize(const Pass& pass) {
 // poses of the same ring alike, the other is told as well.
 void LandingSearch::Keep(const PatternLocation& location, CrossMethod method, double quality,
                          const Eigen::Vector2d& diameters_px) {
+  if (!IsCertain(location)) return;
   LandingDetection detection;
   detection.camera_from_pattern = location.camera_from_pattern;
   detection.covariance = location.covariance;
@@ -245,13 +267,15 @@ void LandingSearch::Keep(const PatternLocation& location, CrossMethod method, do
   }
   Reach(LandingStage::kFound, {});
   std::optional<LandingDetection>& best = report_.detection;
-  const bool better = !best || quality > best->quality;
+  const bool better = !best || IsBetter(detection, location.edge_rms_px, *best, best_edge_rms_px_);
   if (best && AreMirrorPoses(*best, detection)) {
     LandingDetection& winner = better ? detection : *best;
     winner.mirror_camera_from_pattern =
         better ? best->camera_from_pattern : detection.camera_from_pattern;
   }
-  if (better) best = detection;
+  if (!better) return;
+  best = detection;
+  best_edge_rms_px_ = location.edge_rms_px;
 }
 
 }  // namespace kestrel

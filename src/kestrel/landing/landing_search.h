@@ -198,6 +198,7 @@ class LandingSearch {
   cv::Point offset_{0, 0};            // of that part in the image
   double expected_ring_px_ = 0;       // diameter by the hint; 0 when it says nothing
   LandingReport report_;
+  double best_edge_rms_px_ = 0;  // of its detection
 };
 
 }  // namespace kestrel

@@ -14,7 +14,6 @@ namespace {
 // Edges of the print are found to a tenth of a pixel, blurred ones to a few; the nearest edges of
 // anything else scatter over the whole reach of the search.
 constexpr double kMaxEdgeRmsPx = 0.7;
-constexpr double kMaxOneArmRmsPx = 0.3;  // where one arm alone keeps the ring from turning
 constexpr double kInspectedRingPx = 80;  // mean axis below which it is looked for other signs
 constexpr double kMinMajorPx = 9;        // of the smallest ring
 // Differences of the residuals inside of a small ring, on it and around it, share of the contrast.
@@ -355,9 +354,7 @@ void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& 
                          region);
   if (!view.valid()) return;
   PatternMatch match = models_.matcher.Match(buffers_.pyramid.ImageAt(region.level), view);
-  const auto arms =
-      std::count_if(match.arm.begin(), match.arm.end(), [](double share) { return share >= 0; });
-  if (location->edge_rms_px > (arms < 2 ? kMaxOneArmRmsPx : kMaxEdgeRmsPx)) return;
+  if (location->edge_rms_px > kMaxEdgeRmsPx) return;
   const auto combine = [](std::array<double, 4>* shares, const std::array<double, 4>& edges) {
     for (int k = 0; k < 4; ++k) {
       if ((*shares)[k] >= 0 && edges[k] >= 0) (*shares)[k] = 0.5 * ((*shares)[k] + edges[k]);

@@ -166,7 +166,10 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
   const auto sample = [&](const std::array<Place, 2>& places) -> std::pair<float, float> {
     const float first = view.Sample(image, places[0].x, places[0].y);
     if (places[0].x == places[1].x && places[0].y == places[1].y) return {first, first};
-    return std::minmax({first, view.Sample(image, places[1].x, places[1].y)});
+    const float second = view.Sample(image, places[1].x, places[1].y);
+    if (first < 0) return {second, second};
+    if (second < 0) return {first, first};
+    return std::minmax({first, second});
   };
   const auto look_at = [&](const Contrast& contrast) -> Seen {
     const float dark = sample(contrast.dark).first;

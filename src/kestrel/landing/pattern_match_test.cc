@@ -66,6 +66,21 @@ TEST_F(PatternMatcherTest, AMissingArmIsSeen) {
   EXPECT_LT(match.Quality(), kMinQuality);
 }
 
+TEST_F(PatternMatcherTest, AnArmAlongTheImageBorderIsSeenByItsInnerSide) {
+  // The centre 5 px from the border: of the arms along it only one side is in view.
+  const RigidTransform pose = PrintPose({-154.5 / 220, 0, 1}, 0, 0, 0);
+  const PatternMatch match =
+      Match(DrawPrint(camera_, pattern_, SpokedPrint(pattern_, 4), pose), pose);
+  EXPECT_GT(match.arm[0], 0.9);
+  EXPECT_GT(match.arm[1], 0.9);
+  EXPECT_LT(match.arm[2], 0);
+  EXPECT_GT(match.arm[3], 0.9);
+  const Print half = [this](double x, double y) {
+    return SpokedPrint(pattern_, 4)(x, y) && (std::abs(y) < 0.06 || IsRing(pattern_, x, y));
+  };
+  EXPECT_LT(Match(DrawPrint(camera_, pattern_, half, pose), pose).Quality(), kMinQuality);
+}
+
 TEST_F(PatternMatcherTest, AShadowBesideAnArmCostsLittle) {
   cv::Mat shaded = pattern_image_.clone();
   for (int v = 0; v < shaded.rows; ++v) {

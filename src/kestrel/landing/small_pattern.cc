@@ -26,6 +26,7 @@ constexpr double kLeastNoise = 0.05;
 // What looks so little like the print after so many steps never will.
 constexpr int kLateStart = 3;
 constexpr double kMinLateCorrelation = 0.6;
+constexpr double kMaxHighlight = 0.25;  // share of the print around an arm that leaves it visible
 constexpr std::size_t kMinPixels = 30;
 constexpr int kMaxSide = 256;  // of the box around the print, pixels
 
@@ -362,6 +363,7 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
   using Matrix = Eigen::Matrix<double, kParts, kParts>;
   Matrix h = Matrix::Zero();
   Vector b = Vector::Zero();
+  std::array<int, 4> highlight{}, inside{};  // pixels of each quarter
   const PlaneMap map(state.pose);
   const double inner = pattern_.inner_radius_m();
   for (const auto& pixel : workspace.pixels) {
@@ -379,6 +381,10 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
     basis(13) = point.x;
     basis(14) = point.y;
     h.selfadjointView<Eigen::Lower>().rankUpdate(basis);
+    if (radius < inner) {
+      ++inside[quarter];
+      highlight[quarter] += state.IsHighlight(point, pixel.gray);
+    }
     // Cut off where the print should be darker than that: it is as good as white.
     const double expected = state.Gray(point, dark.value);
     const bool missing = pixel.gray >= kSaturated && expected <= pixel.gray;
@@ -393,16 +399,20 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
   const auto seen = [&](int first, int k) {
     return 3 * weight(first + k) >= weight.segment<4>(first).maxCoeff();
   };
+  // Nor is an arm in a highlight: one that is missing is white, not brighter than that.
+  const auto arm_seen = [&](int k) {
+    return seen(4, k) && highlight[k] <= kMaxHighlight * inside[k];
+  };
   int parts_seen = 0;
   for (int k = 0; k < 4; ++k) {
     const int before = (k + 3) % 4;
     match->ring[k] = seen(0, k) ? share(-amplitude(k)) : -1;
-    match->arm[k] = seen(4, k) ? share(-amplitude(4 + k)) : -1;
+    match->arm[k] = arm_seen(k) ? share(-amplitude(4 + k)) : -1;
     // Quarter k has half of quadrant k and half of the one before.
     match->quadrant[k] = seen(8, k) && seen(8, before)
                              ? 1 - 0.5 * (share(-amplitude(8 + k)) + share(-amplitude(8 + before)))
                              : -1;
-    parts_seen += seen(0, k) + seen(4, k) + seen(8, k);
+    parts_seen += seen(0, k) + arm_seen(k) + seen(8, k);
   }
   match->seen = parts_seen / 12.0;
 }

@@ -132,8 +132,14 @@ struct SmallPatternFitter::State {
   double Gray(const PlanePoint& point, double dark) const { return White(point) - contrast * dark; }
   // A gray value without what makes it brighter than the print can be: a highlight is no sign.
   double WithoutHighlight(const PlanePoint& point, double gray) const {
+    return std::min(gray, BrightestWhite(point));
+  }
+  bool IsHighlight(const PlanePoint& point, double gray) const {
+    return gray > BrightestWhite(point);
+  }
+  double BrightestWhite(const PlanePoint& point) const {
     constexpr double kMargin = 0.1;  // of the contrast
-    return std::min(gray, White(point) + kMargin * contrast);
+    return White(point) + kMargin * contrast;
   }
 };
 

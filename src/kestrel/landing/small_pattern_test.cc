@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/landing/small_pattern.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -213,6 +214,28 @@ TEST_F(SmallPatternTest, AHighlightInAQuadrantIsNoSign) {
     EXPECT_GT(fit->others.cross_correlation, 0.93) << diameter_px;
     EXPECT_GT(fit->explained, 0.9) << diameter_px;
   }
+}
+
+TEST_F(SmallPatternTest, AnArmInAHighlightIsNotMissing) {
+  Random random(7);
+  const RigidTransform truth = PoseOf(24, &random);
+  const cv::Mat image = 0.4 * AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 2, &random);
+  Eigen::Vector2d spot;
+  camera_.Project(truth * Eigen::Vector3d(0.22, 0, 0), &spot);
+  cv::Mat lit = image.clone();
+  for (int v = 0; v < lit.rows; ++v) {
+    for (int u = 0; u < lit.cols; ++u) {
+      const double away = (Eigen::Vector2d(u, v) - spot).squaredNorm() / (2.5 * 2.5);
+      auto& gray = lit.at<std::uint8_t>(v, u);
+      gray = cv::saturate_cast<std::uint8_t>(gray + 120 * std::exp(-0.5 * away));
+    }
+  }
+  const auto fit = Fit(lit, truth);
+  ASSERT_TRUE(fit);
+  EXPECT_EQ(std::count_if(fit->match.arm.begin(), fit->match.arm.end(),
+                          [](double share) { return share < 0; }),
+            1);
+  EXPECT_GT(fit->match.Quality(), 0.8);
 }
 
 }  // namespace
