@@ -104,14 +104,12 @@ void BorderTracer::Trace(const BinaryImage& binary, const cv::Rect& region,
   for (int y = region.y; y < region.y + region.height; ++y) {
     const std::uint64_t* above = dark.row(y - 1);
     const std::uint64_t* here = dark.row(y);
-    const std::uint64_t* bright = binary.bright.row(std::max(y - 2, 0));
+    const std::uint64_t* bright = binary.bright.row(std::max(y - 2, -1));
     const std::uint64_t* traced = traced_.row(y);
     for (int word = first_word; word < last_word; ++word) {
-      std::uint64_t candidates = here[word] & ~above[word];
-      // What the upper border of the image cuts off may have no bright side above it anywhere.
-      if (y > 0) candidates &= bright[word];
+      std::uint64_t candidates = here[word] & ~above[word] & bright[word];
       if (candidates == 0) continue;
-      if (y > 0) candidates &= BesideBright(bright, word, dark.words_per_row(), limits.narrow);
+      candidates &= BesideBright(bright, word, dark.words_per_row(), limits.narrow);
       // Of a run of neighbouring candidates one is enough.
       std::uint64_t starts = candidates & ~(candidates << 1);
       while ((starts &= ~traced[word]) != 0) {

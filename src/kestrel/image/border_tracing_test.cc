@@ -212,12 +212,6 @@ TEST(BorderTracer, StartsOnlyBelowBright) {
   EXPECT_EQ(TraceAll(binary).borders().size(), 1u);
 }
 
-TEST(BorderTracer, StartsAtTheUpperBorderOfTheImage) {
-  BinaryImage binary = DrawFigure(40, 40, [](int x, int y) { return InDisc(x, y, 20, 0, 10); });
-  binary.bright.Reset(40, 40);
-  EXPECT_EQ(TraceAll(binary).borders().size(), 1u);
-}
-
 TEST(BorderTracer, StartsBelowANarrowBrightStrokeWhereThatIsAskedFor) {
   BinaryImage binary = DrawFigure(40, 40, [](int x, int y) { return InDisc(x, y, 20, 20, 10); });
   binary.bright.Reset(40, 40);

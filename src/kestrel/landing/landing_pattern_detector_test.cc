@@ -51,6 +51,27 @@ TEST_F(LandingPatternDetectorTest, FindsSmallPatternsThatTheImageBorderCutsOff) 
   }
 }
 
+// Prints of about a quarter is in view at full quality under a wrong pose too: its edges hardly
+// hold it, and the search goes on to the right one.
+TEST_F(LandingPatternDetectorTest, PutsPrintsThatAreCutOffWhereTheyAre) {
+  constexpr int kImages = 80;
+  Random random(3);
+  int found = 0;
+  for (int i = 0; i < kImages; ++i) {
+    const double distance = random.Uniform(1, 2);
+    const double center_px = random.Uniform(-50, -10);
+    const RigidTransform truth = PrintPose({(center_px - 159.5) / 220 * distance, 0, distance}, 0.4,
+                                           random.Uniform(0, 6), random.Uniform(0, 6));
+    const LandingReport report =
+        Detect(AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 8, &random));
+    if (!report.detection) continue;
+    ++found;
+    const Eigen::Vector3d& position = report.detection->camera_from_pattern.translation;
+    EXPECT_LT((position - truth.translation).norm(), 0.02) << "image " << i;
+  }
+  EXPECT_GT(found, kImages / 2);
+}
+
 TEST_F(LandingPatternDetectorTest, AnImageThatContradictsWhatIsUpPrevails) {
   LandingHint hint;
   const Eigen::Vector3d normal = pose_.rotation * Eigen::Vector3d::UnitZ();

@@ -28,13 +28,15 @@ bool IsBetter(const LandingDetection& a, double edge_rms_px_a, const LandingDete
   return a.quality > b.quality;
 }
 
-// Whether a location knows its place: a wrong pose of a print of which little is in view bends until
-// the edges scatter little, but then they hardly hold it.
-bool IsCertain(const PatternLocation& location) {
-  constexpr double kMaxSigma = 0.05;  // of the distance
-  const double variance = location.covariance.topLeftCorner<3, 3>().trace();
-  const double most = kMaxSigma * location.camera_from_pattern.translation.norm();
-  return variance <= most * most;
+// Standard deviations of the position, shares of the distance: of a location that is none, and of
+// one while which is the best the search goes on. A wrong pose of a print of which little is in
+// view bends until the edges scatter little, but then they hardly hold it.
+constexpr double kMaxSigma = 0.05;
+constexpr double kMaxSureSigma = 0.02;
+
+double RelativeSigma(const PatternLocation& location) {
+  return std::sqrt(location.covariance.topLeftCorner<3, 3>().trace()) /
+         location.camera_from_pattern.translation.norm();
 }
 
 // Whether two detections are the two poses of one ring, between which the image does not decide.
@@ -128,7 +130,7 @@ void LandingSearch::SearchRegion() {
   BuildPyramid();
   // Closed areas are the cheaper way to the ring, arcs the surer one.
   const auto run = [this](std::size_t first, std::size_t last, auto test) {
-    for (std::size_t i = first; i < last && !report_.detection; ++i) {
+    for (std::size_t i = first; i < last && !is_sure_; ++i) {
       if (Suits(kPasses[i])) test(i);
     }
   };
@@ -253,7 +255,8 @@ void LandingSearch::Binarize(const Pass& pass) {
 // poses of the same ring alike, the other is told as well.
 void LandingSearch::Keep(const PatternLocation& location, CrossMethod method, double quality,
                          const Eigen::Vector2d& diameters_px) {
-  if (!IsCertain(location)) return;
+  const double sigma = RelativeSigma(location);
+  if (!(sigma <= kMaxSigma)) return;
   LandingDetection detection;
   detection.camera_from_pattern = location.camera_from_pattern;
   detection.covariance = location.covariance;
@@ -276,6 +279,7 @@ void LandingSearch::Keep(const PatternLocation& location, CrossMethod method, do
   if (!better) return;
   best = detection;
   best_edge_rms_px_ = location.edge_rms_px;
+  is_sure_ = sigma <= kMaxSureSigma;
 }
 
 }  // namespace kestrel

@@ -199,6 +199,7 @@ class LandingSearch {
   double expected_ring_px_ = 0;       // diameter by the hint; 0 when it says nothing
   LandingReport report_;
   double best_edge_rms_px_ = 0;  // of its detection
+  bool is_sure_ = false;         // of where that is
 };
 
 }  // namespace kestrel

@@ -63,7 +63,7 @@ bool LandingSearch::TestPrediction() {
     StageTimer timer(&report_, LandingStage::kCross);
     TestSmallPose(ring, diameters_px, kOneScale, kMinFittedCorrelation);
   }
-  return report_.detection.has_value();
+  return is_sure_;
 }
 
 // The edges of a large ring are near to where it is predicted.
