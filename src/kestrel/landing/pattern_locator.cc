@@ -22,8 +22,8 @@ constexpr int kMaxReach = 12;  // px
 // some.
 constexpr std::size_t kCoarseStride = 3;
 constexpr int kFewEdges = 30;              // too few of those for a pose
-constexpr int kWholeRing = 22;             // of those, of a ring that is whole
 constexpr int kMinEdges = 12;              // too few for anything
+constexpr double kWholeRing = 0.75;        // share of its places that have an edge
 constexpr float kLeastStep = 2;            // of an edge, gray values per pixel
 constexpr float kStepInShadow = 0.3f;      // the same against the gray value on its bright side
 constexpr double kOnEdgePx = 1.0;          // offset of an edge that is the outline's own
@@ -358,9 +358,11 @@ std::optional<RigidTransform> PatternLocator::LocateRing(
   RigidTransform pose = initial;
   double scale = std::max(1.0, 0.5 * reach_px);
   double reach = reach_px;
+  const std::span<const Place> places = std::span(places_).first(ring_places_);
+  const auto whole = static_cast<int>(kWholeRing * places.size() / kCoarseStride);
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    Normal normal = Measure(image, pose, std::span(places_).first(ring_places_),
-                            iteration == 0 ? kWholeRing : 0, reach, min_step, scale);
+    Normal normal =
+        Measure(image, pose, places, iteration == 0 ? whole : 0, reach, min_step, scale);
     if (normal.used < kMinEdges) return std::nullopt;
     // A ring says nothing about turns in its plane, and a short arc little about its far side.
     normal.h.diagonal() *= 1 + 1e-4;
