@@ -256,7 +256,9 @@ void LandingSearch::Binarize(const Pass& pass) {
 void LandingSearch::Keep(const PatternLocation& location, CrossMethod method, double quality,
                          const Eigen::Vector2d& diameters_px) {
   const double sigma = RelativeSigma(location);
-  if (!(sigma <= kMaxSigma)) return;
+  // No edges speak for a part of a small print, fitted as a whole: unsure, it is none.
+  const bool part_of_small = method == CrossMethod::kPartial && location.edges == 0;
+  if (!(sigma <= (part_of_small ? kMaxSureSigma : kMaxSigma))) return;
   LandingDetection detection;
   detection.camera_from_pattern = location.camera_from_pattern;
   detection.covariance = location.covariance;
