@@ -28,11 +28,11 @@ bool IsBetter(const LandingDetection& a, double edge_rms_px_a, const LandingDete
   return a.quality > b.quality;
 }
 
-// Standard deviations of the position, shares of the distance: of a location that is none, and of
-// one while which is the best the search goes on. A wrong pose of a print of which little is in
-// view bends until the edges scatter little, but then they hardly hold it.
+// Largest standard deviations of the position, shares of the distance. A wrong pose of a print of
+// which little is in view bends until the edges scatter little, but then they hardly hold it.
 constexpr double kMaxSigma = 0.05;
-constexpr double kMaxSureSigma = 0.02;
+constexpr double kMaxSigmaOfSmallPart = 0.02;  // of a part of a small print, fitted as a whole
+constexpr double kMaxSureSigma = 0.01;         // of a part that ends the search
 
 double RelativeSigma(const PatternLocation& location) {
   return std::sqrt(location.covariance.topLeftCorner<3, 3>().trace()) /
@@ -256,9 +256,9 @@ void LandingSearch::Binarize(const Pass& pass) {
 void LandingSearch::Keep(const PatternLocation& location, CrossMethod method, double quality,
                          const Eigen::Vector2d& diameters_px) {
   const double sigma = RelativeSigma(location);
-  // No edges speak for a part of a small print, fitted as a whole: unsure, it is none.
-  const bool part_of_small = method == CrossMethod::kPartial && location.edges == 0;
-  if (!(sigma <= (part_of_small ? kMaxSureSigma : kMaxSigma))) return;
+  const bool is_part = method == CrossMethod::kPartial;
+  const bool by_edges = location.edges > 0;
+  if (!(sigma <= (is_part && !by_edges ? kMaxSigmaOfSmallPart : kMaxSigma))) return;
   LandingDetection detection;
   detection.camera_from_pattern = location.camera_from_pattern;
   detection.covariance = location.covariance;
@@ -281,7 +281,7 @@ void LandingSearch::Keep(const PatternLocation& location, CrossMethod method, do
   if (!better) return;
   best = detection;
   best_edge_rms_px_ = location.edge_rms_px;
-  is_sure_ = sigma <= kMaxSureSigma;
+  is_sure_ = !is_part || sigma <= kMaxSureSigma;
 }
 
 }  // namespace kestrel
