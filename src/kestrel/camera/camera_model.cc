@@ -335,6 +335,7 @@ CameraModel::CameraModel(const CameraIntrinsics& intrinsics) : intrinsics_(intri
     throw InputError(fmt::format("camera calibration: {}", fmt::join(violations, "; ")));
   }
   k_ = Padded(intrinsics.distortion);
+  is_distorted_ = std::any_of(k_.begin(), k_.end(), [](double k) { return k != 0; });
   max_angle_ = MaxAngle(intrinsics.distortion_model, k_);
   max_tangent_ = std::tan(max_angle_);
   max_radius_ = MaxRadius(intrinsics.distortion_model, k_, max_angle_);
@@ -400,7 +401,9 @@ ProjectionStatus CameraModel::ProjectPinhole(const Eigen::Vector3d& point, Eigen
   const Eigen::Vector2d undistorted = point.head<2>() / z;
   if (!(undistorted.norm() <= max_tangent_)) return ProjectionStatus::kOutsideModel;
 
-  const DistortedPoint distorted = DistortRadialTangential(k_, undistorted);
+  const DistortedPoint distorted =
+      is_distorted_ ? DistortRadialTangential(k_, undistorted)
+                    : DistortedPoint{undistorted, Eigen::Matrix2d::Identity()};
   *pixel << intrinsics_.fx_px * distorted.value.x() + intrinsics_.cx_px,
       intrinsics_.fy_px * distorted.value.y() + intrinsics_.cy_px;
   if (jacobian != nullptr) {

@@ -79,6 +79,7 @@ class CameraModel {
 
   CameraIntrinsics intrinsics_;
   std::array<double, 8> k_{};  // intrinsics_.distortion, filled up with zeros
+  bool is_distorted_ = false;  // by any of them
   double max_angle_ = 0;
   double max_tangent_ = 0;  // pinhole kinds: tan(max_angle_)
   double max_radius_ = 0;   // distorted radius at max_angle_ by the radial part, focal length 1

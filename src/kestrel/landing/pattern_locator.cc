@@ -21,8 +21,8 @@ constexpr int kMaxReach = 12;  // px
 // Places per place that the first iterations look at: odd, so that both sides of the arms have
 // some.
 constexpr std::size_t kCoarseStride = 3;
-constexpr int kFewEdges = 30;              // too few of those for a pose
-constexpr int kMinEdges = 12;              // too few for anything
+constexpr std::size_t kFewEdges = 30;              // too few of those for a pose
+constexpr std::size_t kMinEdges = 12;              // too few for anything
 constexpr double kWholeRing = 0.75;        // share of its places that have an edge
 constexpr float kLeastStep = 2;            // of an edge, gray values per pixel
 constexpr float kStepInShadow = 0.3f;      // the same against the gray value on its bright side
@@ -33,7 +33,11 @@ constexpr double kMaxRingScatterPx = 1.5;  // standard deviation, after two iter
 constexpr double kGathering = 0.6;         // of edges that gather still, from step to step
 constexpr int kMoreIterations = 5;         // for a pose that still moves
 constexpr double kMaxCorrelation = 0.9;    // of neighbouring residuals
-constexpr double kSettledPx = 0.02;        // outlines that move by less stay where they are
+// A parabola puts a blurred edge short of where it is: by so much the steps that it asks for have to
+// be longer.
+constexpr double kShortOfEdge = 1.3;
+constexpr double kStepError = 0.5;         // of the last step, standard deviation
+constexpr double kSettledPx = 0.04;        // outlines that move by less stay where they are
 constexpr double kRingSettledPx = 0.2;     // the same of a ring that is to be located yet
 
 // Whether the image shows all that FindEdge looks at.
@@ -122,40 +126,61 @@ bool Move(const Eigen::Matrix<double, 6, 1>& step, RigidTransform* pose) {
 
 }  // namespace
 
-// Normal equations of the pose, and the statistics of the residuals that made them.
+// Normal equations of the pose, and the edges that made them.
 struct PatternLocator::Normal {
+  static constexpr std::size_t kMaxEdges = 256;
+  struct Edge {
+    const Place* place;
+    Eigen::Matrix<double, 6, 1> jacobian;  // of the offset, by the pose
+    double offset;                         // px, from the outline
+    double weight;
+    bool follows;  // the edge before is its neighbour on the outline
+  };
+
   Eigen::Matrix<double, 6, 6> h = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Matrix<double, 6, 1> by_blur = Eigen::Matrix<double, 6, 1>::Zero();  // derivative of g
-  double weighted_squares = 0;
   double weights = 0;
-  NeighborCorrelation neighbors;
-  struct Stretch {
-    double sum = 0;  // of weighted residuals
-    double weights = 0;
-  };
-  std::array<Stretch, 16> outline{};  // by part and side
   int in_image = 0;
-  int used = 0;
-  std::array<int, 8> part_places{};  // by part: all, in the image, used
+  std::array<int, 8> part_places{};  // by part: all, in the image
   std::array<int, 8> part_in_image{};
-  std::array<int, 8> part_used{};
-  std::array<float, 512> magnitudes;  // of all residuals that were found
-  int found = 0;
+  std::array<Edge, kMaxEdges> edges;  // that have a weight
+  std::size_t used = 0;
+  std::array<float, kMaxEdges> magnitudes;  // of all offsets that were found
+  std::size_t found = 0;
 
-  // Standard deviation of the residuals by the median of their magnitudes.
+  // Standard deviation of the offsets by the median of their magnitudes.
   double RobustScale() {
-    const auto middle = magnitudes.begin() + found / 2;
-    std::nth_element(magnitudes.begin(), middle, magnitudes.begin() + found);
+    const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(found / 2);
+    std::nth_element(magnitudes.begin(), middle,
+                     magnitudes.begin() + static_cast<std::ptrdiff_t>(found));
     return 1.4826 * static_cast<double>(*middle);
   }
-
-  double MeanSquare() const { return weighted_squares / weights; }
 
   // By how much (px, root mean square) 'step' moves the outlines in the image.
   double Movement(const Eigen::Matrix<double, 6, 1>& step) const {
     return std::sqrt(std::max(0.0, step.dot(h * step)) / weights);
   }
+};
+
+// What the edges are off the outlines once these have moved by a step.
+struct PatternLocator::Residuals {
+  Residuals(const Normal& normal, const Eigen::Matrix<double, 6, 1>& step)
+      : used(static_cast<double>(normal.used)), weights(normal.weights) {
+    double before = 0;
+    for (const Normal::Edge& edge : std::span(normal.edges).first(normal.used)) {
+      const double residual = edge.offset - edge.jacobian.dot(step);
+      weighted_squares += edge.weight * residual * residual;
+      part_used[edge.place->part] += std::abs(residual) <= kOnEdgePx;
+      Stretch& stretch = outline[2 * edge.place->part + edge.place->side];
+      stretch.sum += edge.weight * residual;
+      stretch.weights += edge.weight;
+      if (edge.follows) neighbors.Add(before, residual);
+      before = residual;
+    }
+  }
+
+  double MeanSquare() const { return weighted_squares / weights; }
 
   // Variance of an edge as the pose sees it: what neighbours have in common does not average out,
   // and what whole stretches of an outline have in common shows in how their means differ.
@@ -177,22 +202,16 @@ struct PatternLocator::Normal {
     return std::max(of_edges, squares / of_stretches_freedom);
   }
 
-  // 'information': h and what is known beside the edges.
-  void Describe(const Eigen::Matrix<double, 6, 6>& information, PatternLocation* location) const {
-    const Eigen::Matrix<double, 6, 6> inverse =
-        information.ldlt().solve(Eigen::Matrix<double, 6, 6>::Identity().eval());
-    const Eigen::Matrix<double, 6, 1> blur = kBlurSpreadPx2 * (inverse * by_blur);
-    location->covariance = EdgeVariance() * inverse + blur * blur.transpose();
-    location->edge_rms_px = std::sqrt(MeanSquare());
-    location->edge_share = static_cast<double>(used) / std::max(1, in_image);
-    location->edges = used;
-    for (int part = 0; part < 8; ++part) {
-      const int seen = part_in_image[part];
-      const double share =
-          4 * seen < part_places[part] ? -1.0 : static_cast<double>(part_used[part]) / seen;
-      (part < 4 ? location->arm_share : location->ring_share)[part % 4] = share;
-    }
-  }
+  struct Stretch {
+    double sum = 0;  // of weighted residuals
+    double weights = 0;
+  };
+  double used;
+  double weights;
+  double weighted_squares = 0;
+  NeighborCorrelation neighbors;
+  std::array<Stretch, 16> outline{};  // by part and side
+  std::array<int, 8> part_used{};
 };
 
 PatternLocator::PatternLocator(const CameraModel& camera, const LandingPattern& pattern)
@@ -242,21 +261,23 @@ bool PatternLocator::AreOnOneOutline(const Place& a, const Place& b) {
   return a.curvature == b.curvature && a.side == b.side && (a.curvature != 0 || a.part == b.part);
 }
 
-// Adds what each 'stride'-th place says to the normal equations, weighted by Tukey's function of
-// its residual with the given scale.
-void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose,
-                                std::span<const Place> places, std::size_t stride, double reach_px,
-                                double min_step, double scale_px, Normal* normal) const {
+// What each 'stride'-th place says of the pose, weighted by Tukey's function of its offset with the
+// given scale.
+PatternLocator::Normal PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose,
+                                                  std::span<const Place> places,
+                                                  std::size_t stride, double reach_px,
+                                                  double min_step, double scale_px) const {
+  Normal normal;
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   const Eigen::Matrix<double, 3, 2> plane = rotation.leftCols<2>();
   const int reach = std::clamp(static_cast<int>(std::ceil(reach_px)), 1, kMaxReach);
   Eigen::Matrix<double, 2, 3> d_pixel;
-  std::optional<double> before;  // residual of the last place on this outline
+  bool has_edge_before = false;  // the place before this one on its outline
   for (std::size_t i = 0; i < places.size(); i += stride) {
     const Place& place = places[i];
-    std::optional<double> neighbor = std::exchange(before, std::nullopt);
-    if (i >= stride && !AreOnOneOutline(places[i - stride], place)) neighbor.reset();
-    ++normal->part_places[place.part];
+    const bool follows = std::exchange(has_edge_before, false) && i >= stride &&
+                         AreOnOneOutline(places[i - stride], place);
+    ++normal.part_places[place.part];
     const Eigen::Vector3d from_center = plane * place.point;
     Eigen::Vector2d pixel;
     if (camera_.Project(from_center + pose.translation, &pixel, &d_pixel) !=
@@ -270,8 +291,8 @@ void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose
     if (across.dot(d_plane * place.normal) < 0) across = -across;
     across.normalize();
     if (!ShowsSearch(image, pixel, across, reach)) continue;
-    ++normal->in_image;
-    ++normal->part_in_image[place.part];
+    ++normal.in_image;
+    ++normal.part_in_image[place.part];
     std::optional<double> offset =
         FindEdge(image, pixel, across, reach, static_cast<float>(min_step));
     if (!offset) continue;
@@ -280,46 +301,73 @@ void PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose
                         (tangent.squaredNorm() * tangent.norm());
     const double width_px = place.width * across.dot(d_plane * place.normal);
     *offset += kLensBlurPx * kLensBlurPx * bend - StrokeShift(width_px);
-    if (normal->found < static_cast<int>(normal->magnitudes.size())) {
-      normal->magnitudes[normal->found++] = static_cast<float>(std::abs(*offset));
-    }
+    normal.magnitudes[normal.found++] = static_cast<float>(std::abs(*offset));
     const double ratio = *offset / (4 * scale_px);
     if (std::abs(ratio) >= 1) continue;
     const double weight = (1 - ratio * ratio) * (1 - ratio * ratio);
-    Eigen::Matrix<double, 6, 1> jacobian;
+    Normal::Edge& edge = normal.edges[normal.used++];
     const Eigen::Vector3d d_point = d_pixel.transpose() * across;
-    jacobian.head<3>() = d_point;
-    jacobian.tail<3>() = from_center.cross(d_point);
-    const Eigen::Matrix<double, 6, 1> weighted = weight * jacobian;
-    for (int c = 0; c < 6; ++c) normal->h.col(c) += jacobian(c) * weighted;
-    normal->g += *offset * weighted;
-    normal->by_blur += bend * weighted;
-    normal->weighted_squares += weight * *offset * *offset;
-    normal->weights += weight;
-    ++normal->used;
-    normal->part_used[place.part] += std::abs(*offset) <= kOnEdgePx;
-    before = offset;
-    Normal::Stretch& stretch = normal->outline[2 * place.part + place.side];
-    stretch.sum += weight * *offset;
-    stretch.weights += weight;
-    if (neighbor) normal->neighbors.Add(*neighbor, *offset);
+    edge.place = &place;
+    edge.jacobian.head<3>() = d_point;
+    edge.jacobian.tail<3>() = from_center.cross(d_point);
+    edge.offset = *offset;
+    edge.weight = weight;
+    edge.follows = follows;
+    const Eigen::Matrix<double, 6, 1> weighted = weight * edge.jacobian;
+    for (int c = 0; c < 6; ++c) normal.h.col(c) += edge.jacobian(c) * weighted;
+    normal.g += *offset * weighted;
+    normal.by_blur += bend * weighted;
+    normal.weights += weight;
+    has_edge_before = true;
   }
+  return normal;
 }
 
 // Normal equations by every kCoarseStride-th place if that many edges are enough, else by all.
 // 'enough': 0 to look at all places at once.
 PatternLocator::Normal PatternLocator::Measure(const cv::Mat& image, const RigidTransform& pose,
-                                               std::span<const Place> places, int enough,
+                                               std::span<const Place> places, std::size_t enough,
                                                double reach_px, double min_step,
                                                double scale_px) const {
-  Normal normal;
   if (enough > 0) {
-    Accumulate(image, pose, places, kCoarseStride, reach_px, min_step, scale_px, &normal);
+    const Normal normal =
+        Accumulate(image, pose, places, kCoarseStride, reach_px, min_step, scale_px);
     if (normal.used >= enough) return normal;
-    normal = Normal();
   }
-  Accumulate(image, pose, places, 1, reach_px, min_step, scale_px, &normal);
-  return normal;
+  return Accumulate(image, pose, places, 1, reach_px, min_step, scale_px);
+}
+
+// The pose's step, a prior put to the normal equations first.
+Eigen::Matrix<double, 6, 1> PatternLocator::Solve(const Eigen::Quaterniond& rotation,
+                                                  const std::optional<NormalPrior>& prior,
+                                                  Normal* normal) {
+  if (prior) {
+    const Residuals residuals(*normal, Eigen::Matrix<double, 6, 1>::Zero());
+    prior->AddTo(rotation, residuals.EdgeVariance(), &normal->h, &normal->g);
+  }
+  return normal->h.ldlt().solve(normal->g);
+}
+
+// What 'step' leaves of the offsets makes the covariance of the pose.
+void PatternLocator::Describe(const Normal& normal, const Eigen::Matrix<double, 6, 1>& step,
+                              PatternLocation* location) {
+  const Residuals residuals(normal, step);
+  const Eigen::Matrix<double, 6, 6> inverse =
+      normal.h.ldlt().solve(Eigen::Matrix<double, 6, 6>::Identity().eval());
+  const Eigen::Matrix<double, 6, 1> blur = kBlurSpreadPx2 * (inverse * normal.by_blur);
+  const Eigen::Matrix<double, 6, 1> error = kStepError * step;
+  location->covariance = residuals.EdgeVariance() * inverse + blur * blur.transpose() +
+                         error * error.transpose();
+  location->edge_rms_px = std::sqrt(residuals.MeanSquare());
+  location->edge_share = residuals.used / std::max(1, normal.in_image);
+  location->edges = static_cast<int>(normal.used);
+  for (int part = 0; part < 8; ++part) {
+    const int seen = normal.part_in_image[part];
+    const double share = 4 * seen < normal.part_places[part]
+                             ? -1.0
+                             : static_cast<double>(residuals.part_used[part]) / seen;
+    (part < 4 ? location->arm_share : location->ring_share)[part % 4] = share;
+  }
 }
 
 std::optional<PatternLocation> PatternLocator::Locate(
@@ -335,18 +383,16 @@ std::optional<PatternLocation> PatternLocator::Locate(
     const bool coarse = iteration < iterations;
     Normal normal = Measure(image, pose, places_, coarse ? kFewEdges : 0, reach, min_step, scale);
     if (normal.used < kMinEdges) return std::nullopt;
-    Eigen::Matrix<double, 6, 6> information = normal.h;
-    Eigen::Matrix<double, 6, 1> gradient = normal.g;
-    if (prior) prior->AddTo(pose.rotation, normal.EdgeVariance(), &information, &gradient);
-    const Eigen::Matrix<double, 6, 1> step = information.ldlt().solve(gradient);
-    if (!Move(step, &pose)) return std::nullopt;
+    const Eigen::Matrix<double, 6, 1> step = Solve(pose.rotation, prior, &normal);
+    if (!Move(coarse ? step : (kShortOfEdge * step).eval(), &pose)) return std::nullopt;
     scale = std::clamp(normal.RobustScale(), 0.25, scale);
     reach = std::clamp(3 * scale, 1.5, reach);
     if (coarse) continue;
-    normal.Describe(information, &location);
+    const bool settled = normal.Movement(step) < kSettledPx;
+    if (settled || iteration == iterations + kMoreIterations) Describe(normal, step, &location);
     // The tilt of a pattern that is seen from straight above moves the edges by its square only:
     // there the steps are short of the goal.
-    if (normal.Movement(step) < kSettledPx) break;
+    if (settled) break;
   }
   if (!location.covariance.allFinite()) return std::nullopt;
   return location;
@@ -359,7 +405,7 @@ std::optional<RigidTransform> PatternLocator::LocateRing(
   double scale = std::max(1.0, 0.5 * reach_px);
   double reach = reach_px;
   const std::span<const Place> places = std::span(places_).first(ring_places_);
-  const auto whole = static_cast<int>(kWholeRing * places.size() / kCoarseStride);
+  const auto whole = static_cast<std::size_t>(kWholeRing * places.size() / kCoarseStride);
   for (int iteration = 0; iteration < iterations; ++iteration) {
     Normal normal =
         Measure(image, pose, places, iteration == 0 ? whole : 0, reach, min_step, scale);
@@ -368,8 +414,7 @@ std::optional<RigidTransform> PatternLocator::LocateRing(
     normal.h.diagonal() *= 1 + 1e-4;
     const double weight = 1e-6 * normal.h.diagonal().tail<3>().maxCoeff();
     for (int i = 3; i < 6; ++i) normal.h(i, i) += weight;
-    if (prior) prior->AddTo(pose.rotation, normal.EdgeVariance(), &normal.h, &normal.g);
-    const Eigen::Matrix<double, 6, 1> step = normal.h.ldlt().solve(normal.g);
+    const Eigen::Matrix<double, 6, 1> step = Solve(pose.rotation, prior, &normal);
     if (!Move(step, &pose)) return std::nullopt;
     const double before = std::exchange(scale, std::clamp(normal.RobustScale(), 0.25, scale));
     reach = std::clamp(3 * scale, 1.5, reach);

@@ -85,15 +85,19 @@ class PatternLocator {
     double curvature;  // 1/m; positive where the outline bends around the black side
   };
   struct Normal;
+  struct Residuals;
 
   static bool AreOnOneOutline(const Place& a, const Place& b);
   void AddCircle(double radius, double sign, int count, double arm_clearance);
   void AddArms();
+  Normal Accumulate(const cv::Mat& image, const RigidTransform& pose, std::span<const Place> places,
+                    std::size_t stride, double reach_px, double min_step, double scale_px) const;
   Normal Measure(const cv::Mat& image, const RigidTransform& pose, std::span<const Place> places,
-                 int enough, double reach_px, double min_step, double scale_px) const;
-  void Accumulate(const cv::Mat& image, const RigidTransform& pose, std::span<const Place> places,
-                  std::size_t stride, double reach_px, double min_step, double scale_px,
-                  Normal* normal) const;
+                 std::size_t enough, double reach_px, double min_step, double scale_px) const;
+  static Eigen::Matrix<double, 6, 1> Solve(const Eigen::Quaterniond& rotation,
+                                           const std::optional<NormalPrior>& prior, Normal* normal);
+  static void Describe(const Normal& normal, const Eigen::Matrix<double, 6, 1>& step,
+                       PatternLocation* location);
 
   CameraModel camera_;
   LandingPattern pattern_;
