@@ -125,7 +125,7 @@ class LandingSearch {
   struct Hypothesis {
     RigidTransform camera_from_pattern;
     CrossMethod method;
-    double quality;
+    double quality;   // 0 where that was not asked
     double contrast;  // of ring and white, gray values
   };
   struct VerifiedCross {
@@ -178,6 +178,7 @@ class LandingSearch {
   std::array<bool, 2> LevelEnough(const RingFit& ring) const;
   std::optional<VerifiedCross> VerifyCross(const cv::Mat& image, const PatternView& view,
                                            double diameter_px);
+  std::optional<Hypothesis> FindCross(const CirclePose& pose, double diameter_px);
   std::optional<Hypothesis> TestPose(const CirclePose& pose, double diameter_px);
   std::optional<RigidTransform> RefineRing(const CirclePose& pose, double reach_px, int iterations);
   std::optional<Hypothesis> TestRefinedPose(const RigidTransform& ring, double diameter_px);

@@ -158,18 +158,25 @@ std::optional<LandingSearch::VerifiedCross> LandingSearch::VerifyCross(const cv:
   return std::nullopt;
 }
 
-std::optional<LandingSearch::Hypothesis> LandingSearch::TestPose(const CirclePose& pose,
-                                                                 double diameter_px) {
+// The print whose ring lies as 'pose', turned by the cross inside; not compared with the image yet.
+std::optional<LandingSearch::Hypothesis> LandingSearch::FindCross(const CirclePose& pose,
+                                                                  double diameter_px) {
   const ImageRegion region{offset_, ViewLevel(diameter_px)};
   const cv::Mat image = buffers_.pyramid.ImageAt(region.level);
-  const double extent_m = models_.matcher.extent_m();
-  const PatternView view(models_.camera, PatternPose(pose, 0), extent_m, region);
-  if (!view.valid() || models_.matcher.RingContrast(image, view) < kMinRingContrast) {
-    return std::nullopt;
-  }
+  const PatternView view(models_.camera, PatternPose(pose, 0), models_.matcher.extent_m(), region);
+  if (!view.valid()) return std::nullopt;
+  const double contrast = models_.matcher.RingContrast(image, view);
+  if (contrast < kMinRingContrast) return std::nullopt;
   const std::optional<VerifiedCross> cross = VerifyCross(image, view, diameter_px);
   if (!cross) return std::nullopt;
-  return Compare(PatternPose(pose, cross->cross.arm_angle), cross->method, diameter_px);
+  return Hypothesis{PatternPose(pose, cross->cross.arm_angle), cross->method, 0, contrast};
+}
+
+std::optional<LandingSearch::Hypothesis> LandingSearch::TestPose(const CirclePose& pose,
+                                                                 double diameter_px) {
+  const std::optional<Hypothesis> print = FindCross(pose, diameter_px);
+  if (!print) return std::nullopt;
+  return Compare(print->camera_from_pattern, print->method, diameter_px);
 }
 
 // Where the ring is cut off or broken, what is known of it says little about its far side: the

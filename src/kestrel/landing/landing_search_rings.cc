@@ -83,7 +83,7 @@ void LandingSearch::TestPredictedRing(const CirclePose& predicted,
   std::optional<Hypothesis> hypothesis;
   {
     StageTimer timer(&report_, LandingStage::kCross);
-    hypothesis = TestPose(ring, diameters_px.x());
+    hypothesis = FindCross(ring, diameters_px.x());
   }
   if (hypothesis) Locate(*hypothesis, diameters_px, std::max(2.0, kSure * diameters_px.x()));
 }

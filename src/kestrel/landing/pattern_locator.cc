@@ -408,7 +408,7 @@ std::optional<RigidTransform> PatternLocator::LocateRing(
   const auto whole = static_cast<std::size_t>(kWholeRing * places.size() / kCoarseStride);
   for (int iteration = 0; iteration < iterations; ++iteration) {
     Normal normal =
-        Measure(image, pose, places, iteration == 0 ? whole : 0, reach, min_step, scale);
+        Measure(image, pose, places, whole, reach, min_step, scale);
     if (normal.used < kMinEdges) return std::nullopt;
     // A ring says nothing about turns in its plane, and a short arc little about its far side.
     normal.h.diagonal() *= 1 + 1e-4;
