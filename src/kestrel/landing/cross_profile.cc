@@ -15,6 +15,19 @@ constexpr int kBeside = kPerQuarter * 28 / 90;  // from the middle of an arm to 
 constexpr std::array<double, 5> kRadii{0.34, 0.46, 0.58, 0.7, 0.82};  // inner radii of the ring
 constexpr int kMinSeen = 2;  // contrasts without which nothing is said
 
+using DirectionTable = std::array<Eigen::Vector2f, kDirections>;
+const DirectionTable& Directions() {
+  static const DirectionTable kTable = [] {
+    DirectionTable table;
+    for (int i = 0; i < kDirections; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kDirections;
+      table[i] = Eigen::Vector2d(std::cos(angle), std::sin(angle)).cast<float>();
+    }
+    return table;
+  }();
+  return kTable;
+}
+
 }  // namespace
 
 std::optional<Cross> FindCrossByProfile(const cv::Mat& image, const PatternView& view,
@@ -23,14 +36,14 @@ std::optional<Cross> FindCrossByProfile(const cv::Mat& image, const PatternView&
   // mean over the half arms and radii that the image shows.
   std::array<float, kPerQuarter> sum{};
   std::array<int, kPerQuarter> seen{};
-  std::array<float, kDirections> gray;
+  std::array<float, kDirections> x, y, gray;
   for (const double radius : kRadii) {
+    const auto r = static_cast<float>(radius * pattern.inner_radius_m());
     for (int i = 0; i < kDirections; ++i) {
-      const double angle = 2 * std::numbers::pi * i / kDirections;
-      const double r = radius * pattern.inner_radius_m();
-      gray[i] = view.Sample(image, static_cast<float>(r * std::cos(angle)),
-                            static_cast<float>(r * std::sin(angle)));
+      x[i] = r * Directions()[i].x();
+      y[i] = r * Directions()[i].y();
     }
+    view.Sample(image, x.data(), y.data(), kDirections, gray.data());
     for (int i = 0; i < kDirections; ++i) {
       const float before = gray[(i + kDirections - kBeside) % kDirections];
       const float after = gray[(i + kBeside) % kDirections];

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "kestrel/image/border_moments.h"
-#include "kestrel/landing/pattern_view.h"
+#include "kestrel/image/gray_sampling.h"
 
 namespace kestrel {
 namespace {

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <utility>
 
@@ -12,7 +14,6 @@
 #include <Eigen/LU>
 
 #include "kestrel/landing/neighbor_correlation.h"
-#include "kestrel/landing/pattern_view.h"
 
 namespace kestrel {
 namespace {
@@ -21,11 +22,12 @@ constexpr int kMaxReach = 12;  // px
 // Places per place that the first iterations look at: odd, so that both sides of the arms have
 // some.
 constexpr std::size_t kCoarseStride = 3;
-constexpr std::size_t kFewEdges = 30;              // too few of those for a pose
-constexpr std::size_t kMinEdges = 12;              // too few for anything
+constexpr std::size_t kFewEdges = 30;      // too few of those for a pose
+constexpr std::size_t kMinEdges = 12;      // too few for anything
 constexpr double kWholeRing = 0.75;        // share of its places that have an edge
 constexpr float kLeastStep = 2;            // of an edge, gray values per pixel
 constexpr float kStepInShadow = 0.3f;      // the same against the gray value on its bright side
+constexpr float kLeastShare = 0.02f;       // of the steepest rise, that its neighbours have
 constexpr double kOnEdgePx = 1.0;          // offset of an edge that is the outline's own
 constexpr double kLensBlurPx = 0.7;        // of optics and pixels, standard deviation
 constexpr double kBlurSpreadPx2 = 0.3;     // of its square, over lenses: 0.45 to 0.9 px
@@ -33,11 +35,7 @@ constexpr double kMaxRingScatterPx = 1.5;  // standard deviation, after two iter
 constexpr double kGathering = 0.6;         // of edges that gather still, from step to step
 constexpr int kMoreIterations = 5;         // for a pose that still moves
 constexpr double kMaxCorrelation = 0.9;    // of neighbouring residuals
-// A parabola puts a blurred edge short of where it is: by so much the steps that it asks for have to
-// be longer.
-constexpr double kShortOfEdge = 1.3;
-constexpr double kStepError = 0.5;         // of the last step, standard deviation
-constexpr double kSettledPx = 0.04;        // outlines that move by less stay where they are
+constexpr double kSettledPx = 0.08;        // outlines that move by less stay where they are
 constexpr double kRingSettledPx = 0.2;     // the same of a ring that is to be located yet
 
 // Whether the image shows all that FindEdge looks at.
@@ -71,6 +69,17 @@ void SampleLine(const cv::Mat& image, const Eigen::Vector2d& first, const Eigen:
   }
 }
 
+// Binary logarithm of a positive normal number, to 0.01: exponent, and mantissa by a parabola.
+float Log2(float value) {
+  constexpr int kMantissaBits = 23;
+  constexpr std::uint32_t kMantissa = (1u << kMantissaBits) - 1;
+  constexpr int kBias = 127;
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  const float t = static_cast<float>(bits & kMantissa) * (1.0f / (1u << kMantissaBits));
+  return static_cast<float>(static_cast<int>(bits >> kMantissaBits) - kBias) +
+         t * (1.3465f - 0.3465f * t);
+}
+
 // Offset (px) along the unit vector 'normal' from 'at' to the steepest rise of brightness within
 // 'reach' pixels, all of which the image must show; nothing when there is none.
 std::optional<double> FindEdge(const cv::Mat& image, const Eigen::Vector2d& at,
@@ -92,27 +101,43 @@ std::optional<double> FindEdge(const cv::Mat& image, const Eigen::Vector2d& at,
   if (best < 0 || best_rise < std::min(min_step, kStepInShadow * gray[best + 1])) {
     return std::nullopt;
   }
-  const double before = gray[best] - gray[best - 1];
-  const double here = best_rise;
-  const double after = gray[best + 2] - gray[best + 1];
-  const double curvature = before - 2 * here + after;
-  const double shift =
-      curvature < 0 ? std::clamp(0.5 * (before - after) / curvature, -0.5, 0.5) : 0;
-  return best - reach - 1 + shift;
+  // The rise across a blurred edge is a Gaussian, its logarithm a parabola: a parabola through the
+  // rises themselves would stay short of the edge by a third.
+  const float least = kLeastShare * best_rise;
+  const float before = Log2(std::max(gray[best] - gray[best - 1], least));
+  const float here = Log2(best_rise);
+  const float after = Log2(std::max(gray[best + 2] - gray[best + 1], least));
+  const float curvature = before - 2 * here + after;
+  const float shift =
+      curvature < 0 ? std::clamp(0.5f * (before - after) / curvature, -0.5f, 0.5f) : 0;
+  return best - reach - 1 + static_cast<double>(shift);
 }
 
 // By how far (px) the two edges of a stroke seem too far apart, each: the blurred other edge takes
-// from the rise on the stroke's side, and the parabola through three rises leans the other way.
-double StrokeShift(double width_px) {
+// from the rise on the stroke's side, and the parabola through the three leans the other way.
+double ComputeStrokeShift(double width_px) {
   // Interpolation and differences blur once more.
   constexpr double kVariance = kLensBlurPx * kLensBlurPx + 1.0 / 6 + 1.0 / 12;
   const double away = width_px - 1;
-  constexpr double kFar = 5;  // from where the other edge does not reach here
-  if (away > kFar) return 0;
   const double taken = std::exp(-away * away / (2 * kVariance));
   const double fall =
       1 - std::exp(-1 / (2 * kVariance));  // from the steepest rise to its neighbour
   return 0.5 * taken / (2 * fall + taken);
+}
+
+// The same from a table.
+double StrokeShift(double width_px) {
+  constexpr double kFar = 6;  // from where the other edge does not reach here
+  constexpr int kPerPixel = 16;
+  static const auto kTable = [] {
+    std::array<double, static_cast<std::size_t>(kFar) * kPerPixel + 1> table;
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      table[i] = ComputeStrokeShift(static_cast<double>(i) / kPerPixel);
+    }
+    return table;
+  }();
+  if (!(width_px < kFar)) return 0;
+  return kTable[static_cast<std::size_t>(std::max(width_px, 0.0) * kPerPixel + 0.5)];
 }
 
 // Moves a pose by a translation and a rotation vector about its origin; false when that is no small
@@ -264,9 +289,9 @@ bool PatternLocator::AreOnOneOutline(const Place& a, const Place& b) {
 // What each 'stride'-th place says of the pose, weighted by Tukey's function of its offset with the
 // given scale.
 PatternLocator::Normal PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose,
-                                                  std::span<const Place> places,
-                                                  std::size_t stride, double reach_px,
-                                                  double min_step, double scale_px) const {
+                                                  std::span<const Place> places, std::size_t stride,
+                                                  double reach_px, double min_step,
+                                                  double scale_px) const {
   Normal normal;
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   const Eigen::Matrix<double, 3, 2> plane = rotation.leftCols<2>();
@@ -355,9 +380,7 @@ void PatternLocator::Describe(const Normal& normal, const Eigen::Matrix<double, 
   const Eigen::Matrix<double, 6, 6> inverse =
       normal.h.ldlt().solve(Eigen::Matrix<double, 6, 6>::Identity().eval());
   const Eigen::Matrix<double, 6, 1> blur = kBlurSpreadPx2 * (inverse * normal.by_blur);
-  const Eigen::Matrix<double, 6, 1> error = kStepError * step;
-  location->covariance = residuals.EdgeVariance() * inverse + blur * blur.transpose() +
-                         error * error.transpose();
+  location->covariance = residuals.EdgeVariance() * inverse + blur * blur.transpose();
   location->edge_rms_px = std::sqrt(residuals.MeanSquare());
   location->edge_share = residuals.used / std::max(1, normal.in_image);
   location->edges = static_cast<int>(normal.used);
@@ -384,7 +407,7 @@ std::optional<PatternLocation> PatternLocator::Locate(
     Normal normal = Measure(image, pose, places_, coarse ? kFewEdges : 0, reach, min_step, scale);
     if (normal.used < kMinEdges) return std::nullopt;
     const Eigen::Matrix<double, 6, 1> step = Solve(pose.rotation, prior, &normal);
-    if (!Move(coarse ? step : (kShortOfEdge * step).eval(), &pose)) return std::nullopt;
+    if (!Move(step, &pose)) return std::nullopt;
     scale = std::clamp(normal.RobustScale(), 0.25, scale);
     reach = std::clamp(3 * scale, 1.5, reach);
     if (coarse) continue;
@@ -407,8 +430,7 @@ std::optional<RigidTransform> PatternLocator::LocateRing(
   const std::span<const Place> places = std::span(places_).first(ring_places_);
   const auto whole = static_cast<std::size_t>(kWholeRing * places.size() / kCoarseStride);
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    Normal normal =
-        Measure(image, pose, places, whole, reach, min_step, scale);
+    Normal normal = Measure(image, pose, places, whole, reach, min_step, scale);
     if (normal.used < kMinEdges) return std::nullopt;
     // A ring says nothing about turns in its plane, and a short arc little about its far side.
     normal.h.diagonal() *= 1 + 1e-4;

@@ -10,6 +10,7 @@ namespace kestrel {
 namespace {
 
 constexpr int kRingPlaces = 48;
+constexpr std::size_t kMaxPlaces = 400;
 // A contrast counts when it has at least this share of the print's contrast in its quarter.
 constexpr double kShare = 0.35;
 // Directions of the places in a quadrant, degrees from the arm before it, and their radii, inner
@@ -96,56 +97,67 @@ PatternMatcher::PatternMatcher(const LandingPattern& pattern) {
   const double margin = 0.5 * pattern.board_size_m - outer;
   const double outside = outer + std::min(0.8 * pattern.ring_width_m, 0.6 * margin);
   extent_m_ = outside * 1.02;
-  to_inside_ = static_cast<float>(kInsideRadius * inner / middle);
-  const auto at = [](double radius, double angle) {
-    return Place{static_cast<float>(radius * std::cos(angle)),
-                 static_cast<float>(radius * std::sin(angle))};
+  const auto at = [this](double radius, double angle) {
+    return AddPlace(radius * std::cos(angle), radius * std::sin(angle));
   };
   // In the frame of an arm: along it and across.
-  const auto beside = [](int quarter, double along, double across) {
+  const auto beside = [this](int quarter, double along, double across) {
     const double angle = quarter * std::numbers::pi / 2;
-    return Place{static_cast<float>(along * std::cos(angle) - across * std::sin(angle)),
-                 static_cast<float>(along * std::sin(angle) + across * std::cos(angle))};
+    return AddPlace(along * std::cos(angle) - across * std::sin(angle),
+                    along * std::sin(angle) + across * std::cos(angle));
   };
+  const auto ring_angle = [](int i) { return (i + 0.5) * 2 * std::numbers::pi / kRingPlaces; };
+  for (int i = 0; i < kRingPlaces; ++i) at(kInsideRadius * inner, ring_angle(i));
   for (int i = 0; i < kRingPlaces; ++i) {
-    const double angle = (i + 0.5) * 2 * std::numbers::pi / kRingPlaces;
-    const int quarter = static_cast<int>(std::floor(angle / (std::numbers::pi / 2) + 0.5)) % 4;
-    const Place bright = at(outside, angle);
-    const Place dark = at(middle, angle);
-    ring_.push_back({quarter, {dark, dark}, {bright, bright}});
+    const int quarter = static_cast<int>(std::floor(ring_angle(i) / (std::numbers::pi / 2) + 0.5));
+    const std::size_t dark = at(middle, ring_angle(i));
+    const std::size_t bright = at(outside, ring_angle(i));
+    ring_.push_back({quarter % 4, {dark, dark}, {bright, bright}});
   }
   const double reach = std::min(pattern.arm_half_length_m, inner) - 0.3 * pattern.arm_width_m;
   const double side = 1.15 * pattern.arm_width_m;
   for (int quarter = 0; quarter < 4; ++quarter) {
     for (int i = 0; i < 10; ++i) {
       const double along = side + 0.02 + (reach - side - 0.02) * i / 9;
-      const Place dark = beside(quarter, along, 0);
+      const std::size_t dark = beside(quarter, along, 0);
       arms_.push_back(
           {quarter, {dark, dark}, {beside(quarter, along, side), beside(quarter, along, -side)}});
+    }
+    std::array<std::size_t, kQuadrantRadii.size()> on_arm;
+    for (std::size_t k = 0; k < on_arm.size(); ++k) {
+      on_arm[k] = beside(quarter, kQuadrantRadii[k] * inner, 0);
     }
     // From half a quadrant before the arm to half a quadrant behind it.
     for (int i = 0; i < kQuadrantTurns; ++i) {
       const double angle = (quarter + kQuadrantAngles[i] / 90) * std::numbers::pi / 2;
-      for (const double radius : kQuadrantRadii) {
-        const Place bright = at(radius * inner, angle);
+      const std::size_t on_ring = at(middle, angle);
+      for (std::size_t k = 0; k < on_arm.size(); ++k) {
+        const std::size_t bright = at(kQuadrantRadii[k] * inner, angle);
         quadrants_.push_back({(quarter + (kQuadrantAngles[i] > 45 ? 1 : 0)) % 4,
-                              {at(middle, angle), beside(quarter, radius * inner, 0)},
+                              {on_ring, on_arm[k]},
                               {bright, bright}});
       }
     }
   }
 }
 
+std::size_t PatternMatcher::AddPlace(double x_m, double y_m) {
+  x_m_.push_back(static_cast<float>(x_m));
+  y_m_.push_back(static_cast<float>(y_m));
+  return x_m_.size() - 1;
+}
+
 double PatternMatcher::RingContrast(const cv::Mat& image, const PatternView& view) const {
+  std::array<float, 3 * kRingPlaces> gray;
+  view.Sample(image, x_m_.data(), y_m_.data(), gray.size(), gray.data());
   std::array<float, kRingPlaces> outside, inside;
   std::size_t count = 0, inside_count = 0;
-  for (const Contrast& contrast : ring_) {
-    const Place& ring = contrast.dark[0];
-    const float dark = view.Sample(image, ring.x, ring.y);
-    const float bright = view.Sample(image, contrast.bright[0].x, contrast.bright[0].y);
+  for (std::size_t i = 0; i < kRingPlaces; ++i) {
+    const float within = gray[i];
+    const float dark = gray[ring_[i].dark[0]];
+    const float bright = gray[ring_[i].bright[0]];
     if (dark < 0 || bright < 0) continue;
     outside[count++] = bright - dark;
-    const float within = view.Sample(image, to_inside_ * ring.x, to_inside_ * ring.y);
     if (within >= 0) inside[inside_count++] = within - dark;
   }
   if (count < kRingPlaces / 6) return 0;
@@ -162,11 +174,12 @@ double PatternMatcher::RingContrast(const cv::Mat& image, const PatternView& vie
 PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view) const {
   PatternMatch match;
   std::array<Tally, 4> arm, quadrant, ring;
+  std::array<float, kMaxPlaces> gray;
+  view.Sample(image, x_m_.data(), y_m_.data(), x_m_.size(), gray.data());
   // The darker and the brighter gray value of two places, which may be one.
-  const auto sample = [&](const std::array<Place, 2>& places) -> std::pair<float, float> {
-    const float first = view.Sample(image, places[0].x, places[0].y);
-    if (places[0].x == places[1].x && places[0].y == places[1].y) return {first, first};
-    const float second = view.Sample(image, places[1].x, places[1].y);
+  const auto sample = [&](const std::array<std::size_t, 2>& places) -> std::pair<float, float> {
+    const float first = gray[places[0]];
+    const float second = gray[places[1]];
     if (first < 0) return {second, second};
     if (second < 0) return {first, first};
     return std::minmax({first, second});

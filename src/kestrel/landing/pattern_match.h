@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -53,17 +54,19 @@ class PatternMatcher {
   PatternMatch Match(const cv::Mat& image, const PatternView& view) const;
 
  private:
-  struct Place {
-    float x, y;
-  };
-  // Places that should be dark and places that should be white; the two of a kind may coincide.
+  // Which places should be dark and which should be white; the two of a kind may be one.
   struct Contrast {
     int quarter;
-    std::array<Place, 2> dark;    // the darker counts
-    std::array<Place, 2> bright;  // the darker counts
+    std::array<std::size_t, 2> dark;    // the darker counts
+    std::array<std::size_t, 2> bright;  // the darker counts
   };
+  std::size_t AddPlace(double x_m, double y_m);
+
   double extent_m_ = 0;
-  float to_inside_ = 0;  // from the middle of the ring's stroke, factor
+  // Places of the plane, looked at all at once: those inside of the ring, on it and outside of it
+  // first, then those of the cross.
+  std::vector<float> x_m_;
+  std::vector<float> y_m_;
   std::vector<Contrast> ring_;
   std::vector<Contrast> arms_;
   std::vector<Contrast>

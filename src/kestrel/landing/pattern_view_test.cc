@@ -9,25 +9,6 @@
 namespace kestrel {
 namespace {
 
-TEST(SampleGray, InterpolatesAndEndsWithTheImage) {
-  cv::Mat image(5, 7, CV_8UC1);
-  for (int y = 0; y < 5; ++y) {
-    for (int x = 0; x < 7; ++x) {
-      image.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(10 * x + 20 * y);
-    }
-  }
-  for (const float y : {0.f, 0.25f, 2.5f, 4.f}) {
-    for (const float x : {0.f, 1.75f, 5.5f, 6.f}) {
-      EXPECT_FLOAT_EQ(SampleGray(image, x, y), 10 * x + 20 * y);
-    }
-  }
-  EXPECT_LT(SampleGray(image, -0.01f, 2), 0);
-  EXPECT_LT(SampleGray(image, 6.01f, 2), 0);
-  EXPECT_LT(SampleGray(image, 2, 4.01f), 0);
-  EXPECT_LT(SampleGray(image, NAN, 2), 0);
-  EXPECT_FLOAT_EQ(SampleGray(image(cv::Rect(2, 1, 3, 3)), 1, 1), 70) << "rows are strided";
-}
-
 TEST(ImageRegion, PixelsOfALevelAreCentredOnThoseTheyAreMadeOf) {
   const ImageRegion region{{64, 32}, 2};
   EXPECT_EQ(region.FromFull({65.5, 33.5}), Eigen::Vector2d(0, 0));
@@ -51,7 +32,9 @@ TEST(PatternView, AgreesWithTheProjection) {
         const double x = random.Uniform(-0.6, 0.6), y = random.Uniform(-0.6, 0.6);
         Eigen::Vector2d pixel;
         camera.Project(pose * Eigen::Vector3d(x, y, 0), &pixel);
-        const Eigen::Vector2f seen = view.Pixel(static_cast<float>(x), static_cast<float>(y));
+        const auto x_m = static_cast<float>(x), y_m = static_cast<float>(y);
+        Eigen::Vector2f seen;
+        view.Project(&x_m, &y_m, 1, &seen.x(), &seen.y());
         EXPECT_LT((seen.cast<double>() - region.FromFull(pixel)).norm(), 0.4 / region.scale());
       }
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "kestrel/landing/cross.h"
 
@@ -58,25 +59,27 @@ std::optional<RingInside> RectifyInside(const cv::Mat& image, const PatternView&
   const auto radius_m = static_cast<float>(pattern.inner_radius_m());
   float darkest = 255, brightest = 0;
   int in_disc = 0, seen = 0;
+  std::array<float, kMax> x_m, y_m;
+  for (int x = 0; x < size; ++x) x_m[x] = static_cast<float>(inside.Coordinate(x)) * radius_m;
   for (int y = 0; y < size; ++y) {
-    const PatternView::Row row = view.RowAt(static_cast<float>(inside.Coordinate(y)) * radius_m);
-    for (int x = 0; x < size; ++x) {
-      const auto u = static_cast<float>(inside.Coordinate(x));
-      const auto v = static_cast<float>(inside.Coordinate(y));
-      // A tenth of the radius is left to the ring's inner edge.
-      float& value = gray[y * kMax + x];
-      value = -1;
-      if (u * u + v * v > 0.81f) continue;
-      ++in_disc;
-      const Eigen::Vector2f pixel = row.Pixel(u * radius_m);
-      value = SampleGray(image, pixel.x(), pixel.y());
-      if (value < 0) continue;
+    float* const values = &gray[y * kMax];
+    std::fill_n(values, size, -1.0f);
+    std::fill_n(y_m.begin(), size, x_m[y]);
+    // A tenth of the radius is left to the ring's inner edge.
+    const double v = inside.Coordinate(y);
+    const double half = 0.5 * size * std::sqrt(std::max(0.0, 0.81 - v * v));
+    const int count = 2 * static_cast<int>(half + 0.5);
+    const int first = (size - count) / 2;
+    view.Sample(image, &x_m[first], y_m.data(), count, values + first);
+    in_disc += count;
+    for (int x = first; x < first + count; ++x) {
+      if (values[x] < 0) continue;
       ++seen;
       inside.disc.Set(x, y);
-      darkest = std::min(darkest, value);
-      brightest = std::max(brightest, value);
+      darkest = std::min(darkest, values[x]);
+      brightest = std::max(brightest, values[x]);
     }
-    integral.AddRow(y, &gray[y * kMax]);
+    integral.AddRow(y, values);
   }
   if (seen < 0.2 * in_disc || brightest - darkest < min_contrast) return std::nullopt;
   // The box of the local threshold reaches across an arm to the white on both of its sides.

@@ -6,7 +6,7 @@
 #include <functional>
 #include <numbers>
 
-#include "kestrel/landing/pattern_view.h"
+#include "kestrel/image/gray_sampling.h"
 #include "kestrel/landing/small_pattern_model.h"
 
 namespace kestrel {
