@@ -107,7 +107,6 @@ void LandingSearch::MakeRoom() {
   buffers_.arcs.Reserve(most_points);
   buffers_.cross_lines.Reserve();
   buffers_.partial.Reserve(most_points);
-  buffers_.small.Reserve();
   buffers_.tested.reserve(kMaxTested);
   buffers_.other_signs.reserve(kMaxTested);
 }

@@ -277,13 +277,13 @@ SmallPatternFitter::Start LandingSearch::FindStart(const CirclePose& pose,
       models_.small.FindScale(image_, pose, scales, &buffers_.small);
   if (!scale) return {{}, -1};
   if (const std::optional<double> angle = ArmAngleByQuadrants(pose)) {
-    auto start = models_.small.FindStart(pose, *scale, {&*angle, 1}, buffers_.small);
+    auto start = models_.small.FindStart(pose, *scale, {&*angle, 1}, &buffers_.small);
     if (start.correlation >= kSureCorrelation) return start;
   }
   // Within 7.5 degrees of every direction.
   constexpr double kStep = std::numbers::pi / 12;
   constexpr std::array<double, 6> kTurns{0, kStep, 2 * kStep, 3 * kStep, 4 * kStep, 5 * kStep};
-  return models_.small.FindStart(pose, *scale, kTurns, buffers_.small);
+  return models_.small.FindStart(pose, *scale, kTurns, &buffers_.small);
 }
 
 // Rings whose strokes are no wider than the blur: the print is fitted as a whole. The ring may be

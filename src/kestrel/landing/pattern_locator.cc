@@ -221,8 +221,7 @@ struct PatternLocator::Residuals {
       squares += stretch.sum * stretch.sum / stretch.weights;
       ++stretches;
     }
-    // So few means know their own variance badly: that of Student's distribution is larger.
-    const double of_stretches_freedom = stretches - kUnknowns - 2;
+    const double of_stretches_freedom = stretches - kUnknowns;
     if (of_stretches_freedom < 1) return of_edges;
     return std::max(of_edges, squares / of_stretches_freedom);
   }

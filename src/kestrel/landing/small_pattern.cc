@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 
 #include "kestrel/landing/neighbor_correlation.h"
+#include "kestrel/landing/small_pattern_kernel.h"
 #include "kestrel/landing/small_pattern_model.h"
 
 namespace kestrel {
@@ -16,7 +17,8 @@ namespace {
 
 constexpr double kMinBlurPx = 0.4;
 constexpr double kMaxBlurPx = 1.2;
-constexpr int kUnknowns = 11;         // pose, blur, white, contrast, two slopes of the light
+// Pose, blur, white, contrast, two slopes of the light.
+constexpr int kUnknowns = SmallPatternWorkspace::kUnknowns;
 constexpr double kBlurSpread = 0.35;  // of the blur's logarithm over lenses
 constexpr double kMaxWhite = 600;     // gray value of white under the strongest overexposure
 // Standard deviations of the residuals beyond which one is an outlier, and the least of these,
@@ -30,6 +32,72 @@ constexpr double kMaxHighlight = 0.25;  // share of the print around an arm that
 constexpr std::size_t kMinPixels = 30;
 constexpr int kMaxSide = 256;  // of the box around the print, pixels
 
+// By how much the variance of a pixel is larger as the pose sees it: what neighbours in a row have
+// in common does not average out along the strokes.
+double Redundancy(const SmallPatternWorkspace& workspace, double limit) {
+  constexpr double kMaxCorrelation = 0.7;
+  NeighborCorrelation neighbors;
+  double before = 0;
+  for (std::size_t i = 0; i < workspace.count; ++i) {
+    const double residual = std::clamp<double>(workspace.points.residual[i], -limit, limit);
+    neighbors.Add(before, residual);
+    before = residual;
+  }
+  return neighbors.Redundancy(kMaxCorrelation);
+}
+
+// Standard deviation of the residuals by their median.
+double RobustScale(SmallPatternWorkspace* workspace) {
+  const auto first = workspace->magnitudes.begin();
+  const auto last = first + static_cast<std::ptrdiff_t>(workspace->count);
+  const auto middle = first + static_cast<std::ptrdiff_t>(workspace->count / 2);
+  std::transform(workspace->points.residual.begin(),
+                 workspace->points.residual.begin() + (last - first), first,
+                 [](float residual) { return std::abs(residual); });
+  std::nth_element(first, middle, last);
+  return 1.4826 * *middle;
+}
+
+// Residuals by where they are, outliers bounded.
+struct Zones {
+  Zones(const LandingPattern& pattern, const SmallPatternWorkspace& workspace, double limit) {
+    const double inner = pattern.inner_radius_m();
+    const double outer = pattern.outer_radius_m() + 0.35 * pattern.ring_width_m;
+    const SmallPatternWorkspace::Points& points = workspace.points;
+    for (std::size_t i = 0; i < workspace.count; ++i) {
+      const double radius = std::hypot(points.x[i], points.y[i]);
+      Zone& zone = radius < inner   ? quadrants[QuadrantOf(points.x[i], points.y[i])]
+                   : radius < outer ? ring
+                                    : white;
+      const double residual = std::clamp<double>(points.seen[i] - points.expected[i], -limit, limit);
+      zone.squares += residual * residual;
+      ++zone.count;
+    }
+  }
+
+  struct Zone {
+    double squares = 0;
+    int count = 0;
+    double Rms() const { return std::sqrt(squares / std::max(1, count)); }
+  };
+  // Of the inside but the worst quadrant: dirt or a highlight may spoil one.
+  double InsideRms() const {
+    const auto worst = std::max_element(
+        quadrants.begin(), quadrants.end(),
+        [](const Zone& one, const Zone& other) { return one.Rms() < other.Rms(); });
+    Zone others;
+    for (auto zone = quadrants.begin(); zone != quadrants.end(); ++zone) {
+      if (zone == worst) continue;
+      others.squares += zone->squares;
+      others.count += zone->count;
+    }
+    return others.Rms();
+  }
+
+  std::array<Zone, 4> quadrants;  // of the inside of the ring
+  Zone ring, white;
+};
+
 }  // namespace
 
 SmallPatternFitter::SmallPatternFitter(const CameraModel& camera, const RayTable& rays,
@@ -40,61 +108,27 @@ SmallPatternFitter::SmallPatternFitter(const CameraModel& camera, const RayTable
   board_radius_m_ = pattern.outer_radius_m() + 0.6 * margin;
 }
 
-SmallPatternFitter::Darkness SmallPatternFitter::Evaluate(double x, double y,
-                                                          const Eigen::Matrix2d& d_plane,
-                                                          double blur_px) const {
-  const double r = std::max(std::sqrt(x * x + y * y), 1e-9);
-  const Eigen::Vector2d radial(x / r, y / r);
-  const double blur_r = blur_px * (d_plane.transpose() * radial).norm();
-  const double blur_x = blur_px * d_plane.row(0).norm();
-  const double blur_y = blur_px * d_plane.row(1).norm();
-  const double half_width = 0.5 * pattern_.arm_width_m;
-  const double length = pattern_.arm_half_length_m;
-  // What the blur mixes in from along the ring lies farther from its centre: to second order the
-  // blurred ring is narrower by half of this. Left out, small prints seem farther away than they
-  // are, by half a percent.
-  const Eigen::Vector2d tangent(-radial.y(), radial.x());
-  const double bend = blur_px * blur_px * (d_plane.transpose() * tangent).squaredNorm() / (2 * r);
-  const Stroke ring =
-      BlurredStroke(r + bend, pattern_.inner_radius_m(), pattern_.outer_radius_m(), blur_r);
-  const Stroke x_across = BlurredStroke(y, -half_width, half_width, blur_y);
-  const Stroke x_along = BlurredStroke(x, -length, length, blur_x);
-  const Stroke y_across = BlurredStroke(x, -half_width, half_width, blur_x);
-  const Stroke y_along = BlurredStroke(y, -length, length, blur_y);
-  const double arm_x = x_across.value * x_along.value;
-  const double arm_y = y_across.value * y_along.value;
-  const double no_ring = 1 - ring.value, no_x = 1 - arm_x, no_y = 1 - arm_y;
-
-  Darkness dark;
-  dark.ring = ring.value;
-  dark.arms = {arm_x, arm_y};
-  dark.value = 1 - no_ring * no_x * no_y;
-  const double by_r = no_x * no_y * ring.by_distance;
-  const double by_arm_x = no_ring * no_y;
-  const double by_arm_y = no_ring * no_x;
-  dark.by_x = by_r * radial.x() + by_arm_x * x_across.value * x_along.by_distance +
-              by_arm_y * y_across.by_distance * y_along.value;
-  dark.by_y = by_r * radial.y() + by_arm_x * x_across.by_distance * x_along.value +
-              by_arm_y * y_across.value * y_along.by_distance;
-  dark.by_log_blur =
-      no_x * no_y * (ring.by_log_blur + 2 * bend * ring.by_distance) +
-      by_arm_x * (x_across.by_log_blur * x_along.value + x_across.value * x_along.by_log_blur) +
-      by_arm_y * (y_across.by_log_blur * y_along.value + y_across.value * y_along.by_log_blur);
-  return dark;
-}
-
-void SmallPatternWorkspace::Reserve() {
+SmallPatternWorkspace::SmallPatternWorkspace() {
+  constexpr std::size_t kVector = 64;                              // at most, floats
   constexpr std::size_t kMost = kEnoughToFit + 2 * kMaxSide + 1;  // of a box and its border
-  pixels.reserve(kMost);
-  points.reserve(kMost);
-  magnitudes.reserve(kMost);
+  const auto make_room = [](auto&... columns) { (columns.resize(kMost + kVector), ...); };
+  for (auto* rays : {&pixels.ray, &pixels.ray_by_u, &pixels.ray_by_v}) {
+    for (Column& column : *rays) make_room(column);
+  }
+  make_room(pixels.gray, u, v, magnitudes);
+  make_room(points.x, points.y, points.x_by_u, points.x_by_v, points.y_by_u, points.y_by_v);
+  make_room(points.dark, points.ring, points.arm_x, points.arm_y);
+  make_room(points.dark_by_x, points.dark_by_y, points.dark_by_log_blur);
+  make_room(points.expected, points.seen, points.residual, points.weight, points.root_weight);
+  for (Column& column : jacobian) make_room(column);
+  for (Column& column : lines) make_room(column);
 }
 
 // Collects the pixels that show the disc of the print and the white around it under 'pose': every
 // second, third, ... of every such row where a box around them has more than 'enough_pixels'.
 bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose, int enough_pixels,
                                 SmallPatternWorkspace* workspace) const {
-  workspace->pixels.clear();
+  workspace->count = 0;
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
   for (int i = 0; i < 8; ++i) {
@@ -117,68 +151,60 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
   if (x1 - x0 < 4 || y1 - y0 < 4 || x1 - x0 > kMaxSide || y1 - y0 > kMaxSide) return false;
   const int stride =
       1 + static_cast<int>(std::sqrt((x1 - x0) * (y1 - y0) / static_cast<double>(enough_pixels)));
-  const PlaneMap map(pose);
+  SmallPatternWorkspace::Pixels& pixels = workspace->pixels;
+  std::size_t in_box = 0;
   for (int y = y0; y <= y1; y += stride) {
-    const std::uint8_t* row = image.ptr(y);
-    for (int x = x0; x <= x1; x += stride) {
-      const auto u = static_cast<float>(x), v = static_cast<float>(y);
-      SmallPatternWorkspace::Pixel pixel;
-      const Eigen::Vector3f ray = rays_.Ray(u, v);
-      pixel.ray = ray.cast<double>();
-      const Eigen::Vector3d h = map.inverse * pixel.ray;
-      if (!(h.z() > 0) || h.head<2>().squaredNorm() > extent_m_ * extent_m_ * h.z() * h.z()) {
-        continue;
-      }
-      // To one side only: they tell how far the blur reaches, half a pixel beside is near enough.
-      pixel.d_ray_du = (rays_.Ray(u + 1, v) - ray).cast<double>();
-      pixel.d_ray_dv = (rays_.Ray(u, v + 1) - ray).cast<double>();
-      pixel.gray = row[x];
-      workspace->pixels.push_back(pixel);
+    for (int x = x0; x <= x1; x += stride, ++in_box) {
+      workspace->u[in_box] = static_cast<float>(x);
+      workspace->v[in_box] = static_cast<float>(y);
     }
   }
-  return workspace->pixels.size() >= kMinPixels;
+  const auto rays = [&](std::size_t count, std::array<SmallPatternWorkspace::Column, 3>* columns) {
+    rays_.Rays(workspace->u.data(), workspace->v.data(), count, (*columns)[0].data(),
+               (*columns)[1].data(), (*columns)[2].data());
+  };
+  rays(in_box, &pixels.ray);
+  // Those that meet the disc.
+  const Eigen::Matrix3f plane_from_ray = PlaneFromRay(pose).cast<float>();
+  const auto extent = static_cast<float>(extent_m_ * extent_m_);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < in_box; ++i) {
+    const Eigen::Vector3f ray(pixels.ray[0][i], pixels.ray[1][i], pixels.ray[2][i]);
+    const Eigen::Vector3f h = plane_from_ray * ray;
+    if (!(h.z() > 0) || h.head<2>().squaredNorm() > extent * h.z() * h.z()) continue;
+    for (int k = 0; k < 3; ++k) pixels.ray[k][count] = ray(k);
+    const float x = workspace->u[i], y = workspace->v[i];
+    pixels.gray[count] = image.ptr(static_cast<int>(y))[static_cast<int>(x)];
+    workspace->u[count] = x;
+    workspace->v[count++] = y;
+  }
+  workspace->count = count;
+  // To one side only: they tell how far the blur reaches, half a pixel beside is near enough.
+  const auto differences = [&](SmallPatternWorkspace::Column* place,
+                               std::array<SmallPatternWorkspace::Column, 3>* columns) {
+    for (std::size_t i = 0; i < count; ++i) (*place)[i] += 1;
+    rays(count, columns);
+    for (std::size_t i = 0; i < count; ++i) (*place)[i] -= 1;
+    for (int k = 0; k < 3; ++k) {
+      for (std::size_t i = 0; i < count; ++i) (*columns)[k][i] -= pixels.ray[k][i];
+    }
+  };
+  differences(&workspace->u, &pixels.ray_by_u);
+  differences(&workspace->v, &pixels.ray_by_v);
+  return count >= kMinPixels;
 }
 
 // Normal equations of a state for small changes of pose (translation, then rotation about the
-// centre), logarithm of the blur, white, contrast and slopes; and the residuals that made them.
+// centre), logarithm of the blur, white, contrast and slopes; and sums over the pixels.
 struct SmallPatternFitter::System {
-  Eigen::Matrix<double, kUnknowns, kUnknowns> h =
-      Eigen::Matrix<double, kUnknowns, kUnknowns>::Zero();
-  Eigen::Matrix<double, kUnknowns, 1> b = Eigen::Matrix<double, kUnknowns, 1>::Zero();
-  struct Zone {
-    double squares = 0;
-    int count = 0;
-    double Rms() const { return std::sqrt(squares / std::max(1, count)); }
-  };
-  double robust_scale = 0;        // standard deviation of the residuals by their median
-  std::array<Zone, 4> quadrants;  // of the inside of the ring
-  Zone ring, white;
-  double squares = 0;  // of the residuals
-  double sum = 0;      // of the gray values
-  double sum_squares = 0;
-  double count = 0;
-  NeighborCorrelation neighbors;  // in a row
+  Eigen::Matrix<double, kUnknowns, kUnknowns> h;
+  Eigen::Matrix<double, kUnknowns, 1> b;
+  double count;        // of the pixels, weighted
+  double sum;          // of the gray values, without highlights
+  double sum_squares;
+  double squares;      // of the residuals, without highlights
 
-  // Of the inside but the worst quadrant: dirt or a highlight may spoil one.
-  double InsideRms() const {
-    const auto worst = std::max_element(
-        quadrants.begin(), quadrants.end(),
-        [](const Zone& one, const Zone& other) { return one.Rms() < other.Rms(); });
-    Zone others;
-    for (auto zone = quadrants.begin(); zone != quadrants.end(); ++zone) {
-      if (zone == worst) continue;
-      others.squares += zone->squares;
-      others.count += zone->count;
-    }
-    return others.Rms();
-  }
   double variance() const { return squares / std::max(1.0, count - kUnknowns); }
-  // Variance of a pixel as the pose sees it: what neighbours have in common does not average out
-  // along the strokes.
-  double EffectiveVariance() const {
-    constexpr double kMaxCorrelation = 0.7;
-    return variance() * neighbors.Redundancy(kMaxCorrelation);
-  }
   double correlation() const {
     const double about_mean = sum_squares - sum * sum / count;
     return std::sqrt(std::max(0.0, 1 - squares / std::max(about_mean, 1e-9)));
@@ -193,22 +219,17 @@ struct SmallPatternFitter::System {
 };
 
 // Where the pixels lie on the print and how dark it is there: fills the points of the workspace.
-void SmallPatternFitter::Predict(const State& state, SmallPatternWorkspace* workspace) const {
-  const PlaneMap map(state.pose);
-  workspace->points.clear();
-  for (const auto& pixel : workspace->pixels) {
-    PlanePoint point = Intersect(map, pixel);
-    point.dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px).value;
-    workspace->points.push_back(point);
-  }
+void SmallPatternFitter::Predict(const RigidTransform& pose, double blur_px,
+                                 SmallPatternWorkspace* workspace) const {
+  EvaluatePrint(ModelOf(pattern_, pose, blur_px), workspace);
 }
 
 // The gray values of black and white where the print is predicted, by linear regression.
 void SmallPatternFitter::MeasureLevels(const SmallPatternWorkspace& workspace, State* state) const {
   double n = 0, g = 0, d = 0, dd = 0, gd = 0;
-  for (std::size_t i = 0; i < workspace.points.size(); ++i) {
-    const double gray = workspace.pixels[i].gray;
-    const double dark = workspace.points[i].dark;
+  for (std::size_t i = 0; i < workspace.count; ++i) {
+    const double gray = workspace.pixels.gray[i];
+    const double dark = workspace.points.dark[i];
     ++n;
     g += gray;
     d += dark;
@@ -223,67 +244,38 @@ void SmallPatternFitter::MeasureLevels(const SmallPatternWorkspace& workspace, S
 // Residuals beyond 'limit' (gray values) count less, by Huber's function: highlights and dirt.
 SmallPatternFitter::System SmallPatternFitter::Linearize(const State& state, double limit,
                                                          SmallPatternWorkspace* workspace) const {
-  const PlaneMap map(state.pose);
-  const Eigen::Vector3d normal = map.rotation.col(2);
-  const double inner = pattern_.inner_radius_m();
-  const double outer = pattern_.outer_radius_m() + 0.35 * pattern_.ring_width_m;
-  System system;
-  workspace->magnitudes.clear();
-  double before = 0;
-  for (const auto& pixel : workspace->pixels) {
-    const PlanePoint point = Intersect(map, pixel);
-    const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
-    const double expected = state.Gray(point, dark.value);
-    const double gray = SeenGray(pixel.gray, expected);
-    const double residual = gray - expected;
-    const double magnitude = std::abs(residual);
-    workspace->magnitudes.push_back(static_cast<float>(magnitude));
-    const double weight = magnitude > limit ? limit / magnitude : 1;
+  Predict(state.pose, state.blur_px, workspace);
+  CompareGrays(state.Light(), static_cast<float>(limit), workspace);
+  const Eigen::Matrix3f rotation = state.pose.rotation.toRotationMatrix().cast<float>();
+  const auto axis = [&rotation](int k) {
+    return std::array<float, 3>{rotation(0, k), rotation(1, k), rotation(2, k)};
+  };
+  Differentiate({axis(0), axis(1), axis(2)}, static_cast<float>(state.contrast), workspace);
+
+  constexpr int kColumns = kUnknowns + 1;  // the last one is the residual
+  std::array<const float*, kColumns> columns;
+  for (int k = 0; k < kColumns; ++k) columns[k] = workspace->jacobian[k].data();
+  Eigen::Matrix<double, kColumns, kColumns> products;
+  SumProducts(columns, workspace->count, products.data());
+  System system{};
+  system.h = products.topLeftCorner<kUnknowns, kUnknowns>();
+  system.b = products.topRightCorner<kUnknowns, 1>();
+  const SmallPatternWorkspace::Points& points = workspace->points;
+  for (std::size_t i = 0; i < workspace->count; ++i) {
+    const double weight = points.weight[i];
+    const double seen = points.seen[i];
+    const double unexplained = seen - points.expected[i];
     system.count += weight;
-    const double clear = state.WithoutHighlight(point, gray);
-    system.sum += weight * clear;
-    system.sum_squares += weight * clear * clear;
-    system.squares += weight * (clear - expected) * (clear - expected);
-    const double radius = point.radius();
-    System::Zone& zone = radius < inner   ? system.quadrants[QuadrantOf(point)]
-                         : radius < outer ? system.ring
-                                          : system.white;
-    const double bounded = std::clamp(residual, -limit, limit);
-    system.neighbors.Add(before, bounded);
-    before = bounded;
-    const double unexplained = std::clamp(clear - expected, -limit, limit);
-    zone.squares += unexplained * unexplained;
-    ++zone.count;
-    if (gray != pixel.gray) continue;  // cut off: says nothing about small changes
-    // A moved plane point stays on the ray of its pixel: what is left of the motion within the
-    // plane, along the ray, moves the print under the pixel the other way.
-    const Eigen::Vector3d from_center =
-        point.x * map.rotation.col(0) + point.y * map.rotation.col(1);
-    const Eigen::Vector3d shear = normal / normal.dot(pixel.ray);
-    const Eigen::Vector3d bx = map.rotation.col(0) - map.rotation.col(0).dot(pixel.ray) * shear;
-    const Eigen::Vector3d by = map.rotation.col(1) - map.rotation.col(1).dot(pixel.ray) * shear;
-    const Eigen::Vector3d d_point = state.contrast * (dark.by_x * bx + dark.by_y * by);
-    Eigen::Matrix<double, kUnknowns, 1> jacobian;
-    jacobian.head<3>() = d_point;
-    jacobian.segment<3>(3) = from_center.cross(d_point);
-    jacobian(6) = -state.contrast * dark.by_log_blur;
-    jacobian(7) = 1;
-    jacobian(8) = -dark.value;
-    jacobian(9) = point.x;
-    jacobian(10) = point.y;
-    system.h.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
-    system.b += jacobian * (weight * residual);
+    system.sum += weight * seen;
+    system.sum_squares += weight * seen * seen;
+    system.squares += weight * unexplained * unexplained;
   }
-  const auto middle =
-      workspace->magnitudes.begin() + static_cast<std::ptrdiff_t>(workspace->magnitudes.size() / 2);
-  std::nth_element(workspace->magnitudes.begin(), middle, workspace->magnitudes.end());
-  system.robust_scale = 1.4826 * *middle;
-  system.h.triangularView<Eigen::StrictlyUpper>() = system.h.transpose();
   return system;
 }
 
 // One Gauss-Newton step; false when it leads nowhere.
 bool SmallPatternFitter::Improve(const System& system, const std::optional<NormalPrior>& prior,
+                                 const SmallPatternWorkspace& workspace, double limit,
                                  State* state) const {
   // The blur of a lens is known to some extent, white hardly where the image cuts it off, and the
   // direction of a small plane hardly at all: priors keep them from taking what the other
@@ -294,7 +286,10 @@ bool SmallPatternFitter::Improve(const System& system, const std::optional<Norma
   h(6, 6) += blur_weight;
   b(6) -= blur_weight * std::log(state->blur_px / kGoodLensBlurPx);
   for (int i = 0; i < 6; ++i) h(i, i) *= 1.001;
-  if (prior) prior->AddTo(state->pose.rotation, system.EffectiveVariance(), &h, &b);
+  if (prior) {
+    const double variance = system.variance() * Redundancy(workspace, limit);
+    prior->AddTo(state->pose.rotation, variance, &h, &b);
+  }
   h(7, 7) += 0.01 * system.count;
   h(9, 9) += 1e-6 * system.count;
   h(10, 10) += 1e-6 * system.count;
@@ -319,7 +314,7 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   if (!Gather(image, initial, kEnoughToFit, workspace)) return std::nullopt;
   State state;
   state.pose = initial;
-  Predict(state, workspace);
+  Predict(state.pose, state.blur_px, workspace);
   MeasureLevels(*workspace, &state);
   if (state.contrast < kMinContrast) return std::nullopt;
   if (light == Light::kShadowEdge && !EvenOut(workspace, &state)) return std::nullopt;
@@ -328,28 +323,28 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   for (int iteration = 0; iteration < iterations; ++iteration) {
     const System system = Linearize(state, limit, workspace);
     if (iteration == kLateStart && system.correlation() < kMinLateCorrelation) return std::nullopt;
-    if (!Improve(system, prior, &state)) return std::nullopt;
+    if (!Improve(system, prior, *workspace, limit, &state)) return std::nullopt;
     if (2 * iteration >= iterations) {
-      limit = kOutlier * std::max(system.robust_scale, kLeastNoise * state.contrast);
+      limit = kOutlier * std::max(RobustScale(workspace), kLeastNoise * state.contrast);
     }
   }
   System system = Linearize(state, limit, workspace);
-  if (prior) prior->AddTo(state.pose.rotation, system.EffectiveVariance(), &system.h, &system.b);
+  const double variance = system.variance() * Redundancy(*workspace, limit);
+  if (prior) prior->AddTo(state.pose.rotation, variance, &system.h, &system.b);
   const Eigen::Matrix<double, kUnknowns, kUnknowns> covariance =
-      system.EffectiveVariance() *
-      system.h.ldlt().solve(Eigen::Matrix<double, kUnknowns, kUnknowns>::Identity());
+      variance * system.h.ldlt().solve(Eigen::Matrix<double, kUnknowns, kUnknowns>::Identity());
   if (!covariance.allFinite()) return std::nullopt;
   Fit fit;
   fit.location.camera_from_pattern = state.pose;
   fit.location.covariance = covariance.topLeftCorner<6, 6>();
-  fit.inside_residual = system.InsideRms() / state.contrast;
-  fit.ring_residual = system.ring.Rms() / state.contrast;
-  fit.white_residual = system.white.Rms() / state.contrast;
+  const Zones zones(pattern_, *workspace, limit);
+  fit.inside_residual = zones.InsideRms() / state.contrast;
+  fit.ring_residual = zones.ring.Rms() / state.contrast;
+  fit.white_residual = zones.white.Rms() / state.contrast;
   fit.correlation = system.correlation();
   fit.explained = system.explained();
   fit.match.contrast = state.contrast;
   MeasureParts(*workspace, state, &fit.match);
-  Predict(state, workspace);
   fit.others = MeasureOthers(image, state, workspace);
   return fit;
 }
@@ -364,31 +359,35 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
   Matrix h = Matrix::Zero();
   Vector b = Vector::Zero();
   std::array<int, 4> highlight{}, inside{};  // pixels of each quarter
-  const PlaneMap map(state.pose);
   const double inner = pattern_.inner_radius_m();
-  for (const auto& pixel : workspace.pixels) {
-    const PlanePoint point = Intersect(map, pixel);
-    const Darkness dark = Evaluate(point.x, point.y, point.by_pixel, state.blur_px);
-    const double along_x = std::abs(point.x) > std::abs(point.y) ? 1 : 0;
-    const int quarter = along_x > 0 ? (point.x > 0 ? 0 : 2) : (point.y > 0 ? 1 : 3);
-    const int quadrant = QuadrantOf(point);
-    const double radius = point.radius();
-    Vector basis = Vector::Zero();
-    basis(quarter) = dark.ring;
-    basis(4 + quarter) = std::max(dark.arms[0], dark.arms[1]) * (1 - dark.ring);
-    if (radius < inner) basis(8 + quadrant) = 1 - dark.value;
-    basis(12) = 1;
-    basis(13) = point.x;
-    basis(14) = point.y;
-    h.selfadjointView<Eigen::Lower>().rankUpdate(basis);
-    if (radius < inner) {
+  const SmallPatternWorkspace::Points& points = workspace.points;
+  for (std::size_t i = 0; i < workspace.count; ++i) {
+    const double x = points.x[i], y = points.y[i], ring = points.ring[i];
+    const double gray = workspace.pixels.gray[i], expected = points.expected[i];
+    const int quarter = std::abs(x) > std::abs(y) ? (x > 0 ? 0 : 2) : (y > 0 ? 1 : 3);
+    const bool is_inside = x * x + y * y < inner * inner;
+    if (is_inside) {
       ++inside[quarter];
-      highlight[quarter] += state.IsHighlight(point, pixel.gray);
+      highlight[quarter] += gray > state.White(x, y) + state.Highlight();
     }
     // Cut off where the print should be darker than that: it is as good as white.
-    const double expected = state.Gray(point, dark.value);
-    const bool missing = pixel.gray >= kSaturated && expected <= pixel.gray;
-    b += basis * (missing ? std::max(state.white, pixel.gray) : SeenGray(pixel.gray, expected));
+    const double seen = gray < kSaturated   ? gray
+                        : expected <= gray ? std::max(state.white, gray)
+                                           : expected;
+    // What a pixel belongs to, in the order of the parts.
+    const std::array<int, 6> part{quarter, 4 + quarter, 8 + QuadrantOf(x, y), 12, 13, 14};
+    const std::array<double, 6> share{ring,
+                                      std::max(points.arm_x[i], points.arm_y[i]) * (1 - ring),
+                                      is_inside ? 1 - points.dark[i] : 0.0,
+                                      1,
+                                      x,
+                                      y};
+    for (std::size_t row = 0; row < part.size(); ++row) {
+      b(part[row]) += share[row] * seen;
+      for (std::size_t column = 0; column <= row; ++column) {
+        h(part[row], part[column]) += share[row] * share[column];
+      }
+    }
   }
   // Parts that the image does not show get no amplitude instead of a wild one.
   const Vector weight = h.diagonal();

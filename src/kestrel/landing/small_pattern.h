@@ -2,7 +2,7 @@
 #pragma once
 
 #include <array>
-#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,29 +19,42 @@
 
 namespace kestrel {
 
-// Memory of SmallPatternFitter, which does not allocate once it is reserved.
+// Memory of SmallPatternFitter, which does not allocate. Columns of one value a pixel of the print,
+// so that many are computed at once.
 struct SmallPatternWorkspace {
-  struct Pixel {
-    Eigen::Vector3d ray;
-    Eigen::Vector3d d_ray_du;  // per pixel
-    Eigen::Vector3d d_ray_dv;
-    double gray;
-  };
-  std::vector<Pixel> pixels;
-  struct PlanePoint {
-    double x, y;
-    Eigen::Matrix2d by_pixel;  // d(x, y) / d(u, v), metres per pixel
-    double ring = 0;           // darkness of the ring there
-    double dark = 0;           // of the whole print
-    double expected = 0;       // gray value by the fitted print
-    double gray = 0;           // in the image
+  static constexpr std::size_t kUnknowns = 11;
+  static constexpr std::size_t kLines = 3;
+  using Column = std::vector<float>;
 
-    double radius() const { return std::sqrt(x * x + y * y); }
+  struct Pixels {
+    std::array<Column, 3> ray;       // unit vector
+    std::array<Column, 3> ray_by_u;  // its change over a pixel
+    std::array<Column, 3> ray_by_v;
+    Column gray;
   };
-  std::vector<PlanePoint> points;  // of the pixels, under one pose
-  std::vector<float> magnitudes;   // of the residuals
+  struct Points {
+    Column x, y;                            // where the ray meets the plane of a pose, m
+    Column x_by_u, x_by_v, y_by_u, y_by_v;  // m per pixel
+    Column dark;                            // 0 white to 1 black
+    Column ring, arm_x, arm_y;              // the same of parts
+    Column dark_by_x, dark_by_y;            // per metre
+    Column dark_by_log_blur;
+    Column expected;     // gray value by the print
+    Column seen;         // in the image, without highlights and as expected where it is cut off
+    Column residual;     // of the image, highlights in it
+    Column weight;       // of that, 0 to 1
+    Column root_weight;  // root of that, 0 where the image is cut off
+  };
 
-  void Reserve();
+  std::size_t count = 0;  // of the pixels
+  Pixels pixels;
+  Points points;
+  std::array<Column, kUnknowns + 1> jacobian;  // and the residual, both times the root of the weight
+  std::array<Column, kLines> lines;            // darkness of lines that are not on the print
+  Column u, v;                                 // of the pixels that are gathered
+  Column magnitudes;                           // of the residuals
+
+  SmallPatternWorkspace();
 };
 
 // Verifies and locates a pattern whose strokes are no wider than the blur of the image, so that
@@ -90,7 +103,7 @@ class SmallPatternFitter {
   // The best start for Refine among the directions of an arm (as for PatternPose), of a ring at the
   // scale that FindScale said last. Does not allocate.
   Start FindStart(const CirclePose& ring, double scale, std::span<const double> arm_angles,
-                  const SmallPatternWorkspace& workspace) const;
+                  SmallPatternWorkspace* workspace) const;
 
   // The light on a print: even but for a slope, or with the edge of a shadow across it, which is
   // taken out of the image first.
@@ -108,28 +121,24 @@ class SmallPatternFitter {
                                     SmallPatternWorkspace* workspace) const;
 
  private:
-  struct Darkness;
   struct ShadowEdge;
   struct State;
   struct System;
   bool Gather(const cv::Mat& image, const RigidTransform& pose, int enough_pixels,
               SmallPatternWorkspace* workspace) const;
-  Darkness Evaluate(double x, double y, const Eigen::Matrix2d& d_plane, double blur_px) const;
-  double CorrelateRing(const RigidTransform& unturned, SmallPatternWorkspace* workspace) const;
-  double CorrelatePrint(double angle, const SmallPatternWorkspace& workspace) const;
-  double ArmDarkness(double along, double across, double blur_along, double blur_across) const;
-  void Predict(const State& state, SmallPatternWorkspace* workspace) const;
+  void Predict(const RigidTransform& pose, double blur_px, SmallPatternWorkspace* workspace) const;
   void MeasureLevels(const SmallPatternWorkspace& workspace, State* state) const;
   std::optional<ShadowEdge> FitShadowEdge(const State& state,
                                           const SmallPatternWorkspace& workspace) const;
   bool EvenOut(SmallPatternWorkspace* workspace, State* state) const;
   System Linearize(const State& state, double limit, SmallPatternWorkspace* workspace) const;
-  bool Improve(const System& system, const std::optional<NormalPrior>& prior, State* state) const;
+  bool Improve(const System& system, const std::optional<NormalPrior>& prior,
+               const SmallPatternWorkspace& workspace, double limit, State* state) const;
   void MeasureParts(const SmallPatternWorkspace& workspace, const State& state,
                     PatternMatch* match) const;
   OtherSigns MeasureOthers(const cv::Mat& image, const State& state,
                            SmallPatternWorkspace* workspace) const;
-  double OtherSpokes(const SmallPatternWorkspace& workspace, const State& state) const;
+  double OtherSpokes(const State& state, SmallPatternWorkspace* workspace) const;
   double FrameCorners(const SmallPatternWorkspace& workspace, const State& state) const;
   double CrossCorrelation(const SmallPatternWorkspace& workspace) const;
   double BoardDarkness(const cv::Mat& image, const State& state) const;

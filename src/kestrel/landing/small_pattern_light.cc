@@ -55,10 +55,11 @@ std::optional<SmallPatternFitter::ShadowEdge> SmallPatternFitter::FitShadowEdge(
     const State& state, const SmallPatternWorkspace& workspace) const {
   // What black reflects of the light that white does.
   const double blackness = std::clamp(state.contrast / state.white, 0.3, 0.95);
-  const auto reflected_at = [&](std::size_t i) { return 1 - blackness * workspace.points[i].dark; };
+  const SmallPatternWorkspace::Points& points = workspace.points;
+  const auto reflected_at = [&](std::size_t i) { return 1 - blackness * points.dark[i]; };
   double squares = 0, one_light = 0, one_norm = 0;
-  for (std::size_t i = 0; i < workspace.points.size(); ++i) {
-    const double gray = workspace.pixels[i].gray;
+  for (std::size_t i = 0; i < workspace.count; ++i) {
+    const double gray = workspace.pixels.gray[i];
     const double reflected = reflected_at(i);
     squares += gray * gray;
     one_light += reflected * gray;
@@ -73,14 +74,13 @@ std::optional<SmallPatternFitter::ShadowEdge> SmallPatternFitter::FitShadowEdge(
     ShadowEdge edge{{std::cos(angle), std::sin(angle)}, 0, 1, 1};
     // All edges of a direction have the same distances from the points: those are summed up first.
     std::array<Strip, kStrips> strips{};
-    for (std::size_t k = 0; k < workspace.points.size(); ++k) {
-      const PlanePoint& point = workspace.points[k];
+    for (std::size_t k = 0; k < workspace.count; ++k) {
       const double reflected = reflected_at(k);
-      const double distance = edge.normal.dot(Eigen::Vector2d(point.x, point.y));
+      const double distance = edge.normal.dot(Eigen::Vector2d(points.x[k], points.y[k]));
       const auto at = static_cast<int>((distance / extent_m_ + 1) * (0.5 * kStrips));
       Strip& strip = strips[std::clamp(at, 0, kStrips - 1)];
       strip.reflected_squared += reflected * reflected;
-      strip.reflected_gray += reflected * workspace.pixels[k].gray;
+      strip.reflected_gray += reflected * workspace.pixels.gray[k];
     }
     for (int step = -8; step <= 8; ++step) {
       edge.offset = step * kOffsetStep * extent_m_;
@@ -114,8 +114,9 @@ bool SmallPatternFitter::EvenOut(SmallPatternWorkspace* workspace, State* state)
   const std::optional<ShadowEdge> edge = FitShadowEdge(*state, *workspace);
   if (!edge) return false;
   state->edge = *edge;
-  for (std::size_t i = 0; i < workspace->pixels.size(); ++i) {
-    workspace->pixels[i].gray *= edge->Factor(workspace->points[i].x, workspace->points[i].y);
+  for (std::size_t i = 0; i < workspace->count; ++i) {
+    const double factor = edge->Factor(workspace->points.x[i], workspace->points.y[i]);
+    workspace->pixels.gray[i] *= static_cast<float>(factor);
   }
   MeasureLevels(*workspace, state);
   return state->contrast >= kMinContrast;

@@ -12,6 +12,7 @@
 
 #include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/landing/small_pattern.h"
+#include "kestrel/landing/small_pattern_kernel.h"
 
 namespace kestrel {
 
@@ -23,80 +24,30 @@ inline constexpr int kEnoughToFit = 1200;
 inline constexpr int kEnoughToStart = 600;
 inline constexpr int kEnoughToInspect = 600;
 
-// A gray value where the image cuts off what is brighter: then it is what is expected.
-inline double SeenGray(double gray, double expected) {
-  return gray >= kSaturated && expected > gray ? expected : gray;
+// Ray to homogeneous coordinates of the plane of a pose.
+inline Eigen::Matrix3d PlaneFromRay(const RigidTransform& camera_from_pattern) {
+  const Eigen::Matrix3d rotation = camera_from_pattern.rotation.toRotationMatrix();
+  Eigen::Matrix3d basis;
+  basis << rotation.col(0), rotation.col(1), camera_from_pattern.translation;
+  return basis.inverse();
 }
 
-// Blurred step from 0 to 1 over a distance in units of the blur's standard deviation: the integral
-// of the biweight kernel of variance one, which is near to a Gaussian and ends at 2.65.
-struct Step {
-  double value;
-  double slope;
-};
-inline Step BlurredStep(double z) {
-  constexpr double kReach = 2.6457513110645906;  // sqrt(7)
-  const double t = std::clamp(z / kReach, -1.0, 1.0);
-  const double square = t * t;
-  const double rest = 1 - square;
-  return {0.5 + t * (15.0 / 16 - square * (10.0 / 16 - square * 3.0 / 16)),
-          15.0 / 16 * rest * rest / kReach};
+inline PrintModel ModelOf(const LandingPattern& pattern, const RigidTransform& pose,
+                          double blur_px) {
+  PrintModel model;
+  const Eigen::Matrix3f plane_from_ray = PlaneFromRay(pose).cast<float>();
+  Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(model.plane_from_ray.data()) =
+      plane_from_ray;
+  model.blur_px = static_cast<float>(blur_px);
+  model.inner_radius_m = static_cast<float>(pattern.inner_radius_m());
+  model.outer_radius_m = static_cast<float>(pattern.outer_radius_m());
+  model.arm_half_width_m = static_cast<float>(0.5 * pattern.arm_width_m);
+  model.arm_half_length_m = static_cast<float>(pattern.arm_half_length_m);
+  return model;
 }
-
-// A blurred stroke: where a distance lies between two limits.
-struct Stroke {
-  double value = 0;
-  double by_distance = 0;  // derivative
-  double by_log_blur = 0;
-};
-inline Stroke BlurredStroke(double distance, double low, double high, double blur) {
-  const double z_low = (distance - low) / blur;
-  const double z_high = (distance - high) / blur;
-  const Step a = BlurredStep(z_low);
-  const Step b = BlurredStep(z_high);
-  return {a.value - b.value, (a.slope - b.slope) / blur, b.slope * z_high - a.slope * z_low};
-}
-
-// Where rays meet the plane of a pose.
-struct PlaneMap {
-  explicit PlaneMap(const RigidTransform& camera_from_pattern)
-      : rotation(camera_from_pattern.rotation.toRotationMatrix()),
-        translation(camera_from_pattern.translation) {
-    Eigen::Matrix3d basis;
-    basis << rotation.col(0), rotation.col(1), translation;
-    inverse = basis.inverse();
-  }
-  Eigen::Matrix3d rotation;
-  Eigen::Vector3d translation;
-  Eigen::Matrix3d inverse;  // ray to homogeneous plane coordinates
-};
-
-using PlanePoint = SmallPatternWorkspace::PlanePoint;
 
 // Quadrant between the arms, from x to y.
-inline int QuadrantOf(const PlanePoint& point) {
-  return point.x > 0 ? (point.y > 0 ? 0 : 3) : (point.y > 0 ? 1 : 2);
-}
-
-inline PlanePoint Intersect(const PlaneMap& map, const SmallPatternWorkspace::Pixel& pixel) {
-  const Eigen::Vector3d h = map.inverse * pixel.ray;
-  const Eigen::Vector3d hu = map.inverse * pixel.d_ray_du;
-  const Eigen::Vector3d hv = map.inverse * pixel.d_ray_dv;
-  const double w = 1 / h.z();
-  PlanePoint point{h.x() * w, h.y() * w, {}};
-  point.by_pixel << (hu.x() - point.x * hu.z()) * w, (hv.x() - point.x * hv.z()) * w,
-      (hu.y() - point.y * hu.z()) * w, (hv.y() - point.y * hv.z()) * w;
-  return point;
-}
-
-// How dark the blurred print is at a point of its plane, 0 white to 1 black.
-struct SmallPatternFitter::Darkness {
-  double value;
-  double by_x, by_y;  // per metre
-  double by_log_blur;
-  double ring;                 // of the ring alone
-  std::array<double, 2> arms;  // of the arms along x and along y
-};
+inline int QuadrantOf(double x, double y) { return x > 0 ? (y > 0 ? 0 : 3) : (y > 0 ? 1 : 2); }
 
 // Where the light over the print changes: a soft straight edge between two lights.
 struct SmallPatternFitter::ShadowEdge {
@@ -126,20 +77,19 @@ struct SmallPatternFitter::State {
   ShadowEdge edge;              // taken out of the gray values before the fit
   Eigen::Vector2d slope{0, 0};  // of the light over the print, gray values per metre
 
-  double White(const PlanePoint& point) const {
-    return white + slope.x() * point.x + slope.y() * point.y;
-  }
-  double Gray(const PlanePoint& point, double dark) const { return White(point) - contrast * dark; }
-  // A gray value without what makes it brighter than the print can be: a highlight is no sign.
-  double WithoutHighlight(const PlanePoint& point, double gray) const {
-    return std::min(gray, BrightestWhite(point));
-  }
-  bool IsHighlight(const PlanePoint& point, double gray) const {
-    return gray > BrightestWhite(point);
-  }
-  double BrightestWhite(const PlanePoint& point) const {
+  double White(double x, double y) const { return white + slope.x() * x + slope.y() * y; }
+  // What exceeds white by more is a highlight: the print cannot be so bright.
+  double Highlight() const {
     constexpr double kMargin = 0.1;  // of the contrast
-    return White(point) + kMargin * contrast;
+    return kMargin * contrast;
+  }
+  PrintLight Light() const {
+    return {.white = static_cast<float>(white),
+            .slope_x = static_cast<float>(slope.x()),
+            .slope_y = static_cast<float>(slope.y()),
+            .contrast = static_cast<float>(contrast),
+            .highlight = static_cast<float>(Highlight()),
+            .saturated = static_cast<float>(kSaturated)};
   }
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 
 #include "kestrel/image/gray_sampling.h"
@@ -17,22 +18,18 @@ std::optional<SmallPatternFitter::OtherSigns> SmallPatternFitter::Inspect(
   if (!Gather(image, pose, kEnoughToInspect, workspace)) return std::nullopt;
   State state;
   state.pose = pose;
-  Predict(state, workspace);
+  Predict(state.pose, state.blur_px, workspace);
   MeasureLevels(*workspace, &state);
   if (state.contrast < kMinContrast) return std::nullopt;
   if (light == Light::kShadowEdge && !EvenOut(workspace, &state)) return std::nullopt;
+  CompareGrays(state.Light(), std::numeric_limits<float>::max(), workspace);
   return MeasureOthers(image, state, workspace);
 }
 
-// Of a print that is predicted.
+// Of a print that is predicted and compared with the image.
 SmallPatternFitter::OtherSigns SmallPatternFitter::MeasureOthers(
     const cv::Mat& image, const State& state, SmallPatternWorkspace* workspace) const {
-  for (std::size_t i = 0; i < workspace->points.size(); ++i) {
-    PlanePoint& point = workspace->points[i];
-    point.expected = state.Gray(point, point.dark);
-    point.gray = state.WithoutHighlight(point, SeenGray(workspace->pixels[i].gray, point.expected));
-  }
-  return {.spokes = OtherSpokes(*workspace, state),
+  return {.spokes = OtherSpokes(state, workspace),
           .frame_corners = FrameCorners(*workspace, state),
           .cross_correlation = CrossCorrelation(*workspace),
           .board_darkness = BoardDarkness(image, state)};
@@ -40,34 +37,31 @@ SmallPatternFitter::OtherSigns SmallPatternFitter::MeasureOthers(
 
 // In each quadrant the darkest line from the centre among those well away from the arms: its depth
 // in what the fit left over, against the rest of the quadrant.
-double SmallPatternFitter::OtherSpokes(const SmallPatternWorkspace& workspace,
-                                       const State& state) const {
-  constexpr std::array<double, 3> kTurns{33, 45, 57};  // degrees from the arm before
+double SmallPatternFitter::OtherSpokes(const State& state, SmallPatternWorkspace* workspace) const {
+  constexpr std::size_t kLines = SmallPatternWorkspace::kLines;
+  constexpr std::array<double, kLines> kTurns{33, 45, 57};  // degrees from the arm before
+  std::array<std::array<float, 2>, kLines> normals;
+  for (std::size_t i = 0; i < kLines; ++i) {
+    const double angle = kTurns[i] * std::numbers::pi / 180;
+    normals[i] = {static_cast<float>(-std::sin(angle)), static_cast<float>(std::cos(angle))};
+  }
+  EvaluateLines(ModelOf(pattern_, state.pose, state.blur_px), normals, workspace);
   struct Regression {
     double n = 0, s = 0, ss = 0, e = 0, se = 0;
   };
-  std::array<std::array<Regression, kTurns.size()>, 4> lines;
-  std::array<std::array<Eigen::Vector2d, kTurns.size()>, 4> normals;
-  for (int q = 0; q < 4; ++q) {
-    for (std::size_t i = 0; i < kTurns.size(); ++i) {
-      const double angle = (90 * q + kTurns[i]) * std::numbers::pi / 180;
-      normals[q][i] = {-std::sin(angle), std::cos(angle)};
-    }
-  }
+  std::array<std::array<Regression, kLines>, 4> lines;
   const double inner = pattern_.inner_radius_m();
-  const double half_width = 0.5 * pattern_.arm_width_m;
-  for (const PlanePoint& point : workspace.points) {
-    const double radius = point.radius();
-    if (radius < 0.35 * inner || radius > 0.9 * inner) continue;
-    const double residual = point.gray - point.expected;
-    const int quadrant = QuadrantOf(point);
-    for (std::size_t i = 0; i < kTurns.size(); ++i) {
-      const Eigen::Vector2d& normal = normals[quadrant][i];
-      const double distance = normal.dot(Eigen::Vector2d(point.x, point.y));
-      const double blur = state.blur_px * (point.by_pixel.transpose() * normal).norm();
-      const double line =
-          BlurredStroke(distance, -half_width, half_width, std::max(blur, 1e-9)).value;
-      Regression& r = lines[quadrant][i];
+  const double least = 0.35 * inner * 0.35 * inner, most = 0.9 * inner * 0.9 * inner;
+  const SmallPatternWorkspace::Points& points = workspace->points;
+  for (std::size_t i = 0; i < workspace->count; ++i) {
+    const double x = points.x[i], y = points.y[i];
+    const double squared_radius = x * x + y * y;
+    if (squared_radius < least || squared_radius > most) continue;
+    const double residual = points.seen[i] - points.expected[i];
+    std::array<Regression, kLines>& quadrant = lines[QuadrantOf(x, y)];
+    for (std::size_t k = 0; k < kLines; ++k) {
+      const double line = workspace->lines[k][i];
+      Regression& r = quadrant[k];
       ++r.n;
       r.s += line;
       r.ss += line * line;
@@ -91,12 +85,14 @@ double SmallPatternFitter::OtherSpokes(const SmallPatternWorkspace& workspace,
 double SmallPatternFitter::FrameCorners(const SmallPatternWorkspace& workspace,
                                         const State& state) const {
   double n = 0, s = 0, ss = 0, e = 0, se = 0;
-  for (const PlanePoint& point : workspace.points) {
-    const double radius = point.radius();
-    if (radius < pattern_.inner_radius_m()) continue;
-    const double residual = point.gray - point.expected;
+  const double inner = pattern_.inner_radius_m();
+  const SmallPatternWorkspace::Points& points = workspace.points;
+  for (std::size_t i = 0; i < workspace.count; ++i) {
+    const double xx = points.x[i] * points.x[i], yy = points.y[i] * points.y[i];
+    if (xx + yy < inner * inner) continue;
+    const double residual = points.seen[i] - points.expected[i];
     // 1 along the arms, -1 half-way between them: the cosine of four times the direction.
-    const double twice = (point.x * point.x - point.y * point.y) / (radius * radius);
+    const double twice = (xx - yy) / (xx + yy);
     const double wave = 2 * twice * twice - 1;
     ++n;
     s += wave;
@@ -110,14 +106,18 @@ double SmallPatternFitter::FrameCorners(const SmallPatternWorkspace& workspace,
 
 double SmallPatternFitter::CrossCorrelation(const SmallPatternWorkspace& workspace) const {
   double n = 0, g = 0, gg = 0, d = 0, dd = 0, gd = 0;
-  for (const PlanePoint& point : workspace.points) {
-    if (point.radius() > pattern_.arm_half_length_m) continue;
+  const double reach = pattern_.arm_half_length_m;
+  const SmallPatternWorkspace::Points& points = workspace.points;
+  for (std::size_t i = 0; i < workspace.count; ++i) {
+    const double x = points.x[i], y = points.y[i];
+    if (x * x + y * y > reach * reach) continue;
+    const double seen = points.seen[i], expected = points.expected[i];
     ++n;
-    g += point.gray;
-    gg += point.gray * point.gray;
-    d += point.expected;
-    dd += point.expected * point.expected;
-    gd += point.gray * point.expected;
+    g += seen;
+    gg += seen * seen;
+    d += expected;
+    dd += expected * expected;
+    gd += seen * expected;
   }
   const double variance = (gg - g * g / n) * (dd - d * d / n);
   return n > 0 && variance > 0 ? (gd - g * d / n) / std::sqrt(variance) : 0;
@@ -138,7 +138,7 @@ double SmallPatternFitter::BoardDarkness(const cv::Mat& image, const State& stat
         SampleGray(image, static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
     if (seen_gray < 0) continue;
     const double gray = seen_gray * state.edge.Factor(point.x(), point.y());
-    const double white = state.White({point.x(), point.y(), {}});
+    const double white = state.White(point.x(), point.y());
     darkness[seen++] = seen_gray >= kSaturated ? 0 : (white - gray) / state.contrast;
   }
   if (seen == 0) return 0;

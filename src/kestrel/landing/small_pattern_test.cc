@@ -28,7 +28,7 @@ class SmallPatternTest : public ::testing::Test {
     constexpr std::array<double, 1> kOneScale{1.0};
     constexpr std::array<double, 6> kTurns{0, 0.26, 0.52, 0.79, 1.05, 1.31};
     if (!fitter_.FindScale(image, ring, kOneScale, &workspace_)) return std::nullopt;
-    const auto start = fitter_.FindStart(ring, 1, kTurns, workspace_);
+    const auto start = fitter_.FindStart(ring, 1, kTurns, &workspace_);
     return fitter_.Refine(image, start.camera_from_pattern, Light::kEven, 8, &workspace_);
   }
   cv::Mat Draw(const Print& print, const RigidTransform& pose) const {
