@@ -63,12 +63,13 @@ std::int32_t SignedArea(std::span<const GridPoint> points) {
 // Median over places along a border of how much brighter the second pixel on its left is than the
 // first on its right.
 int ContrastAcross(const cv::Mat& image, const GridPoint* points, std::size_t count) {
-  constexpr std::size_t kPlaces = 16;
+  constexpr std::size_t kPlaces = 8;
   std::array<int, kPlaces> contrast;
   std::size_t seen = 0;
   for (std::size_t i = 0; i < kPlaces; ++i) {
-    const GridPoint& from = points[i * count / kPlaces];
-    const GridPoint& to = points[(i * count / kPlaces + 1) % count];
+    const std::size_t at = i * count / kPlaces;
+    const GridPoint& from = points[at];
+    const GridPoint& to = points[at + 1 < count ? at + 1 : 0];
     const cv::Point step(to.x - from.x, to.y - from.y);
     const cv::Point to_left(step.y, -step.x);
     const cv::Point dark(from.x - static_cast<int>(step.x < 0 || step.y > 0),

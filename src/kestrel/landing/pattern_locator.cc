@@ -27,7 +27,7 @@ constexpr std::size_t kMinEdges = 12;      // too few for anything
 constexpr double kWholeRing = 0.75;        // share of its places that have an edge
 constexpr float kLeastStep = 2;            // of an edge, gray values per pixel
 constexpr float kStepInShadow = 0.3f;      // the same against the gray value on its bright side
-constexpr float kLeastShare = 0.02f;       // of the steepest rise, that its neighbours have
+constexpr float kLeastShare = 0.12f;       // of the steepest rise, that its neighbours have
 constexpr double kOnEdgePx = 1.0;          // offset of an edge that is the outline's own
 constexpr double kLensBlurPx = 0.7;        // of optics and pixels, standard deviation
 constexpr double kBlurSpreadPx2 = 0.3;     // of its square, over lenses: 0.45 to 0.9 px
@@ -223,7 +223,10 @@ struct PatternLocator::Residuals {
     }
     const double of_stretches_freedom = stretches - kUnknowns;
     if (of_stretches_freedom < 1) return of_edges;
-    return std::max(of_edges, squares / of_stretches_freedom);
+    // By so much such means differ by chance in one of twenty prints (F distribution).
+    constexpr double kByChance = 1.9;
+    const double of_stretches = squares / of_stretches_freedom;
+    return of_stretches > kByChance * of_edges ? of_stretches : of_edges;
   }
 
   struct Stretch {

@@ -69,7 +69,8 @@ struct Zones {
       Zone& zone = radius < inner   ? quadrants[QuadrantOf(points.x[i], points.y[i])]
                    : radius < outer ? ring
                                     : white;
-      const double residual = std::clamp<double>(points.seen[i] - points.expected[i], -limit, limit);
+      const double residual =
+          std::clamp<double>(points.seen[i] - points.expected[i], -limit, limit);
       zone.squares += residual * residual;
       ++zone.count;
     }
@@ -109,7 +110,7 @@ SmallPatternFitter::SmallPatternFitter(const CameraModel& camera, const RayTable
 }
 
 SmallPatternWorkspace::SmallPatternWorkspace() {
-  constexpr std::size_t kVector = 64;                              // at most, floats
+  constexpr std::size_t kVector = 64;                             // at most, floats
   constexpr std::size_t kMost = kEnoughToFit + 2 * kMaxSide + 1;  // of a box and its border
   const auto make_room = [](auto&... columns) { (columns.resize(kMost + kVector), ...); };
   for (auto* rays : {&pixels.ray, &pixels.ray_by_u, &pixels.ray_by_v}) {
@@ -199,10 +200,10 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
 struct SmallPatternFitter::System {
   Eigen::Matrix<double, kUnknowns, kUnknowns> h;
   Eigen::Matrix<double, kUnknowns, 1> b;
-  double count;        // of the pixels, weighted
-  double sum;          // of the gray values, without highlights
+  double count;  // of the pixels, weighted
+  double sum;    // of the gray values, without highlights
   double sum_squares;
-  double squares;      // of the residuals, without highlights
+  double squares;  // of the residuals, without highlights
 
   double variance() const { return squares / std::max(1.0, count - kUnknowns); }
   double correlation() const {
@@ -371,7 +372,7 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
       highlight[quarter] += gray > state.White(x, y) + state.Highlight();
     }
     // Cut off where the print should be darker than that: it is as good as white.
-    const double seen = gray < kSaturated   ? gray
+    const double seen = gray < kSaturated  ? gray
                         : expected <= gray ? std::max(state.white, gray)
                                            : expected;
     // What a pixel belongs to, in the order of the parts.

@@ -49,10 +49,11 @@ struct SmallPatternWorkspace {
   std::size_t count = 0;  // of the pixels
   Pixels pixels;
   Points points;
-  std::array<Column, kUnknowns + 1> jacobian;  // and the residual, both times the root of the weight
-  std::array<Column, kLines> lines;            // darkness of lines that are not on the print
-  Column u, v;                                 // of the pixels that are gathered
-  Column magnitudes;                           // of the residuals
+  std::array<Column, kUnknowns + 1>
+      jacobian;                      // and the residual, both times the root of the weight
+  std::array<Column, kLines> lines;  // darkness of lines that are not on the print
+  Column u, v;                       // of the pixels that are gathered
+  Column magnitudes;                 // of the residuals
 
   SmallPatternWorkspace();
 };

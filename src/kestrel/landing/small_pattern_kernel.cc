@@ -24,9 +24,7 @@ HWY_INLINE void Put(Vector values, std::vector<float>* column, std::size_t i) {
 HWY_INLINE Vector Dot(Vector a, Vector b, Vector c, const float* weights) {
   return hn::MulAdd(a, Of(weights[0]), hn::MulAdd(b, Of(weights[1]), hn::Mul(c, Of(weights[2]))));
 }
-HWY_INLINE Vector Length(Vector a, Vector b) {
-  return hn::Sqrt(hn::MulAdd(a, a, hn::Mul(b, b)));
-}
+HWY_INLINE Vector Length(Vector a, Vector b) { return hn::Sqrt(hn::MulAdd(a, a, hn::Mul(b, b))); }
 
 // Blurred step from 0 to 1 over a distance in units of the blur's standard deviation: the integral
 // of the biweight kernel of variance one, which is near to a Gaussian and ends at sqrt(7).
@@ -42,8 +40,7 @@ HWY_INLINE Step BlurredStep(Vector z) {
   const Vector rest = hn::Sub(one, square);
   const Vector inner = hn::NegMulAdd(square, Of(3.0f / 16), Of(10.0f / 16));
   const Vector outer = hn::NegMulAdd(square, inner, Of(15.0f / 16));
-  return {hn::MulAdd(t, outer, Of(0.5f)),
-          hn::Mul(hn::Mul(rest, rest), Of(15.0f / 16 / kReach))};
+  return {hn::MulAdd(t, outer, Of(0.5f)), hn::Mul(hn::Mul(rest, rest), Of(15.0f / 16 / kReach))};
 }
 
 // A blurred stroke: where a distance lies between two limits.
@@ -96,9 +93,8 @@ void EvaluatePrint(const PrintModel& model, SmallPatternWorkspace* workspace) {
     // What the blur mixes in from along the ring lies farther from its centre: to second order the
     // blurred ring is narrower by half of this. Left out, small prints seem farther away than they
     // are, by half a percent.
-    const Vector bend =
-        hn::Mul(hn::Mul(Of(0.5f * model.blur_px * model.blur_px), inverse_radius),
-                hn::MulAdd(t_by_u, t_by_u, hn::Mul(t_by_v, t_by_v)));
+    const Vector bend = hn::Mul(hn::Mul(Of(0.5f * model.blur_px * model.blur_px), inverse_radius),
+                                hn::MulAdd(t_by_u, t_by_u, hn::Mul(t_by_v, t_by_v)));
     const Vector sharpness_r = InverseBlur(model.blur_px, Length(r_by_u, r_by_v));
     const Vector sharpness_x = InverseBlur(model.blur_px, Length(x_by_u, x_by_v));
     const Vector sharpness_y = InverseBlur(model.blur_px, Length(y_by_u, y_by_v));
@@ -117,10 +113,9 @@ void EvaluatePrint(const PrintModel& model, SmallPatternWorkspace* workspace) {
     const Vector by_r = hn::Mul(by_ring, ring.by_distance);
     const Vector by_arm_x = hn::Mul(no_ring, no_y);
     const Vector by_arm_y = hn::Mul(no_ring, no_x);
-    const auto by_product = [](const Stroke& a, Vector by_a, const Stroke& b, Vector by_b)
-                                HWY_ATTR {
-      return hn::MulAdd(by_a, b.value, hn::Mul(a.value, by_b));
-    };
+    const auto by_product =
+        [](const Stroke& a, Vector by_a, const Stroke& b, Vector by_b)
+            HWY_ATTR { return hn::MulAdd(by_a, b.value, hn::Mul(a.value, by_b)); };
 
     Put(x, &points.x, i);
     Put(y, &points.y, i);
@@ -144,10 +139,10 @@ void EvaluatePrint(const PrintModel& model, SmallPatternWorkspace* workspace) {
         hn::MulAdd(hn::Add(bend, bend), ring.by_distance, ring.by_log_blur);
     Put(hn::MulAdd(
             by_ring, ring_by_log_blur,
-            hn::MulAdd(by_arm_x,
-                       by_product(x_across, x_across.by_log_blur, x_along, x_along.by_log_blur),
-                       hn::Mul(by_arm_y, by_product(y_across, y_across.by_log_blur, y_along,
-                                                    y_along.by_log_blur)))),
+            hn::MulAdd(
+                by_arm_x, by_product(x_across, x_across.by_log_blur, x_along, x_along.by_log_blur),
+                hn::Mul(by_arm_y,
+                        by_product(y_across, y_across.by_log_blur, y_along, y_along.by_log_blur)))),
         &points.dark_by_log_blur, i);
   }
 }
@@ -156,8 +151,9 @@ void CompareGrays(const PrintLight& light, float limit, SmallPatternWorkspace* w
   SmallPatternWorkspace::Points& points = workspace->points;
   for (std::size_t i = 0; i < workspace->count; i += hn::Lanes(Floats())) {
     const Vector gray = At(workspace->pixels.gray, i);
-    const Vector white = hn::MulAdd(At(points.x, i), Of(light.slope_x),
-                                    hn::MulAdd(At(points.y, i), Of(light.slope_y), Of(light.white)));
+    const Vector white =
+        hn::MulAdd(At(points.x, i), Of(light.slope_x),
+                   hn::MulAdd(At(points.y, i), Of(light.slope_y), Of(light.white)));
     const Vector expected = hn::NegMulAdd(Of(light.contrast), At(points.dark, i), white);
     // Where the image cuts off what is brighter it shows what is expected.
     const auto cut_off = hn::And(hn::Ge(gray, Of(light.saturated)), hn::Gt(expected, gray));
@@ -198,8 +194,9 @@ void Differentiate(const PrintAxes& axes, float contrast, SmallPatternWorkspace*
     };
     const Vector px = component(0), py = component(1), pz = component(2);
     const Vector x = At(points.x, i), y = At(points.y, i);
-    const auto from_center = [&](int k)
-                                 HWY_ATTR { return hn::MulAdd(x, Of(axes.x[k]), hn::Mul(y, Of(axes.y[k]))); };
+    const auto from_center = [&](int k) HWY_ATTR {
+      return hn::MulAdd(x, Of(axes.x[k]), hn::Mul(y, Of(axes.y[k])));
+    };
     const Vector cx = from_center(0), cy = from_center(1), cz = from_center(2);
     Put(px, &jacobian[0], i);
     Put(py, &jacobian[1], i);
@@ -250,12 +247,13 @@ void EvaluateLines(const PrintModel& model,
     const auto in_place = hn::Ge(hn::Mul(At(points.x, i), At(points.y, i)), zero);
     const auto turned = [&](const std::vector<float>& x, const std::vector<float>& y, bool first)
                             HWY_ATTR {
-      return first ? hn::IfThenElse(in_place, At(x, i), At(y, i))
-                   : hn::IfThenElse(in_place, At(y, i), hn::Neg(At(x, i)));
-    };
+                              return first ? hn::IfThenElse(in_place, At(x, i), At(y, i))
+                                           : hn::IfThenElse(in_place, At(y, i), hn::Neg(At(x, i)));
+                            };
     const auto across = [&](const std::vector<float>& x, const std::vector<float>& y,
                             const std::array<float, 2>& normal) HWY_ATTR {
-      return hn::MulAdd(turned(x, y, true), Of(normal[0]), hn::Mul(turned(x, y, false), Of(normal[1])));
+      return hn::MulAdd(turned(x, y, true), Of(normal[0]),
+                        hn::Mul(turned(x, y, false), Of(normal[1])));
     };
     for (std::size_t line = 0; line < normals.size(); ++line) {
       const Vector by_u = across(points.x_by_u, points.y_by_u, normals[line]);

@@ -86,9 +86,9 @@ std::optional<double> SmallPatternFitter::FindScale(const cv::Mat& image, const 
   return best;
 }
 
-SmallPatternFitter::Start SmallPatternFitter::FindStart(
-    const CirclePose& ring, double scale, std::span<const double> arm_angles,
-    SmallPatternWorkspace* workspace) const {
+SmallPatternFitter::Start SmallPatternFitter::FindStart(const CirclePose& ring, double scale,
+                                                        std::span<const double> arm_angles,
+                                                        SmallPatternWorkspace* workspace) const {
   Start best{{}, -1};
   for (const double angle : arm_angles) {
     const RigidTransform pose = PatternPose(Shrunk(ring, scale), angle);
