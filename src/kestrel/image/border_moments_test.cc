@@ -121,7 +121,7 @@ std::vector<GridPoint> WalkAround(const std::vector<GridPoint>& corners) {
 TEST(ComputeHullMoments, OfAConvexBorderAreThoseOfTheBorder) {
   const auto points = WalkAround({{100, 50}, {140, 50}, {140, 75}, {100, 75}});
   const RegionMoments border = ComputeBorderMoments(points.data(), points.size());
-  const RegionMoments hull = ComputeHullMoments(ConvexHull(points.data(), points.size()));
+  const RegionMoments hull = ComputeHullMoments(ConvexHull(points));
   EXPECT_NEAR(hull.area, border.area, 1e-9);
   EXPECT_LT((hull.centroid - border.centroid).norm(), 1e-9);
   EXPECT_LT((hull.covariance - border.covariance).norm(), 1e-9);
@@ -131,7 +131,7 @@ TEST(ComputeHullMoments, FillNotches) {
   // A square of 30 pixels with a gap that leads into it from the right, and what it encloses.
   const auto open =
       WalkAround({{10, 10}, {40, 10}, {40, 24}, {15, 24}, {15, 27}, {40, 27}, {40, 40}, {10, 40}});
-  const RegionMoments hull = ComputeHullMoments(ConvexHull(open.data(), open.size()));
+  const RegionMoments hull = ComputeHullMoments(ConvexHull(open));
   EXPECT_NEAR(hull.area, 900, 1e-9);
   EXPECT_LT((hull.centroid - Eigen::Vector2d(24.5, 24.5)).norm(), 1e-9);
   EXPECT_NEAR(hull.covariance(0, 0), 900.0 / 12, 1e-9);
@@ -141,7 +141,7 @@ TEST(ComputeHullMoments, FillNotches) {
 
 TEST(ComputeHullMoments, OfALineAreNothing) {
   const std::vector<GridPoint> points{{3, 3}, {4, 3}};
-  EXPECT_EQ(ComputeHullMoments(ConvexHull(points.data(), points.size())).area, 0);
+  EXPECT_EQ(ComputeHullMoments(ConvexHull(points)).area, 0);
 }
 
 }  // namespace

@@ -5,28 +5,38 @@
 
 namespace kestrel {
 
-ConvexHull::ConvexHull(const GridPoint* points, std::size_t count) {
+ConvexHull::ConvexHull(Points one, Points other) {
   // The ends of every row hold the hull; one side of it is walked down, the other one up.
   struct Row {
     int left = 1 << 16;
     int right = -1;
   };
   std::array<Row, kMaxHeight + 1> rows;
-  int top = points[0].y, bottom = points[0].y;
-  for (std::size_t i = 0; i < count; ++i) {
-    top = std::min<int>(top, points[i].y);
-    bottom = std::max<int>(bottom, points[i].y);
+  const std::array<Points, 2> borders{one, other};
+  int top = one[0].y, bottom = one[0].y;
+  for (const Points& border : borders) {
+    for (const GridPoint& point : border) {
+      top = std::min<int>(top, point.y);
+      bottom = std::max<int>(bottom, point.y);
+    }
   }
   const int last = std::min(bottom - top, kMaxHeight);
-  for (std::size_t i = 0; i < count; ++i) {
-    Row& row = rows[std::min(points[i].y - top, last)];
-    row.left = std::min<int>(row.left, points[i].x);
-    row.right = std::max<int>(row.right, points[i].x);
+  for (const Points& border : borders) {
+    for (const GridPoint& point : border) {
+      Row& row = rows[std::min(point.y - top, last)];
+      row.left = std::min<int>(row.left, point.x);
+      row.right = std::max<int>(row.right, point.x);
+    }
   }
   const auto corner = [&](int x, int row) { return Eigen::Vector2d(x - 0.5, top + row - 0.5); };
-  for (int row = 0; row <= last; ++row) Append(corner(rows[row].right, row), 0);
+  const auto is_between = [&](int row) { return rows[row].right < rows[row].left; };  // of borders
+  for (int row = 0; row <= last; ++row) {
+    if (!is_between(row)) Append(corner(rows[row].right, row), 0);
+  }
   const std::size_t turn = count_;
-  for (int row = last; row >= 0; --row) Append(corner(rows[row].left, row), turn);
+  for (int row = last; row >= 0; --row) {
+    if (!is_between(row)) Append(corner(rows[row].left, row), turn);
+  }
 }
 
 // Appends a point to the convex chain that starts at corner 'first'; corners that would be dents

@@ -11,15 +11,20 @@
 
 namespace kestrel {
 
-// The convex hull of a border, which may cross itself and run either way. Needs no memory of the
-// heap.
+// The convex hull of a border or of two, which may cross themselves and run either way. Needs no
+// memory of the heap.
 class ConvexHull {
  public:
   // The tallest border that it takes: what lies below is left out.
   static constexpr int kMaxHeight = 63;  // pixels
 
-  // Of at least one point, and one in each row between the first and the last, as a border has.
-  ConvexHull(const GridPoint* points, std::size_t count);
+  using Points = std::span<const GridPoint>;
+
+  // Of at least one point.
+  explicit ConvexHull(Points points) : ConvexHull(points, Points()) {}
+
+  // Of two borders together, the first of at least one point.
+  ConvexHull(Points one, Points other);
 
   // Clockwise in the image, in pixels, integer = centre of a pixel. The uppermost and the lowest
   // one come twice where they are points and no sides.

@@ -14,7 +14,7 @@ namespace {
 using ::testing::ElementsAre;
 
 std::vector<Eigen::Vector2d> Corners(const std::vector<GridPoint>& points) {
-  const ConvexHull hull(points.data(), points.size());
+  const ConvexHull hull(points);
   return {hull.corners().begin(), hull.corners().end()};
 }
 
@@ -33,6 +33,16 @@ TEST(ConvexHull, TheDirectionOfTheWalkDoesNotMatter) {
                                      Eigen::Vector2d(2.5, 1.5), Eigen::Vector2d(4.5, -0.5)));
   std::reverse(points.begin(), points.end());
   EXPECT_EQ(Corners(points), clockwise);
+}
+
+TEST(ConvexHull, OfTwoBordersBridgesTheRowsBetweenThem) {
+  const std::vector<GridPoint> upper{{4, 0}, {6, 0}, {6, 1}, {4, 1}};
+  const std::vector<GridPoint> lower{{4, 5}, {8, 5}, {8, 6}, {4, 6}};
+  const ConvexHull hull(lower, upper);
+  const std::vector<Eigen::Vector2d> corners{hull.corners().begin(), hull.corners().end()};
+  EXPECT_THAT(corners, ElementsAre(Eigen::Vector2d(5.5, -0.5), Eigen::Vector2d(7.5, 4.5),
+                                   Eigen::Vector2d(7.5, 5.5), Eigen::Vector2d(3.5, 5.5),
+                                   Eigen::Vector2d(3.5, -0.5)));
 }
 
 TEST(ConvexHull, WhatIsTallerIsLeftOutAtTheBottom) {

@@ -16,6 +16,10 @@ namespace {
 constexpr double kLeastEllipticity = 0.6;
 constexpr double kMinAxisRatio = 0.15;
 
+ConvexHull::Points PointsOf(const BorderTracer& tracer, const Border& border) {
+  return {tracer.begin(border), border.count};
+}
+
 // Gray values of an image at places of an outline: directions are those of a circle.
 class OutlineSampler {
  public:
@@ -63,7 +67,7 @@ std::optional<DarkArea> TestDarkArea(const BorderTracer& tracer, const Border& b
   area.ellipticity = smooth ? moments.Ellipticity() : 0;
   if (area.ellipticity < kLeastEllipticity) {
     if (std::max(width, height) > max_hull_extent) return std::nullopt;
-    moments = ComputeHullMoments(ConvexHull(tracer.begin(border), border.count));
+    moments = ComputeHullMoments(ConvexHull(PointsOf(tracer, border)));
     area.ellipticity = moments.Ellipticity();
     if (area.ellipticity < kMinEllipticity) return std::nullopt;
   }
@@ -73,6 +77,25 @@ std::optional<DarkArea> TestDarkArea(const BorderTracer& tracer, const Border& b
   return area;
 }
 
+std::optional<Ellipse> OutlineOfPieces(const BorderTracer& tracer, const Border& one,
+                                       const Border& other, double min_minor_px, int max_extent) {
+  constexpr int kMaxGap = 3;  // px, between the bounding boxes
+  if (one.signed_area < 0 || other.signed_area < 0) return std::nullopt;
+  const Eigen::Array2i first(std::min(one.min.x, other.min.x), std::min(one.min.y, other.min.y));
+  const Eigen::Array2i last(std::max(one.max.x, other.max.x), std::max(one.max.y, other.max.y));
+  const Eigen::Array2i extents(one.max.x - one.min.x + other.max.x - other.min.x,
+                               one.max.y - one.min.y + other.max.y - other.min.y);
+  if ((last - first > max_extent).any() || (last - first > extents + kMaxGap).any()) {
+    return std::nullopt;
+  }
+  const RegionMoments moments =
+      ComputeHullMoments(ConvexHull(PointsOf(tracer, one), PointsOf(tracer, other)));
+  if (moments.Ellipticity() < kMinEllipticity) return std::nullopt;
+  const Ellipse outline = EllipseFromMoments(moments);
+  if (2 * outline.semi_minor < min_minor_px) return std::nullopt;
+  return outline;
+}
+
 bool IsCutOff(const BorderTracer& tracer, const Border& border) {
   return border.min.x <= 0 || border.min.y <= 0 || border.max.x >= tracer.image_size().width ||
          border.max.y >= tracer.image_size().height;
@@ -80,7 +103,7 @@ bool IsCutOff(const BorderTracer& tracer, const Border& border) {
 
 std::size_t OutlineInView(const BorderTracer& tracer, const Border& border,
                           std::span<Eigen::Vector2d> outline) {
-  const ConvexHull hull(tracer.begin(border), border.count);
+  const ConvexHull hull(PointsOf(tracer, border));
   const std::span<const Eigen::Vector2d> corners = hull.corners();
   const Eigen::Array2d first = Eigen::Array2d::Constant(-0.5);
   const Eigen::Array2d last =

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 
 #include "kestrel/base/error.h"
 #include "kestrel/landing/test_prints.h"
@@ -48,6 +50,33 @@ TEST_F(LandingPatternDetectorTest, FindsSmallPatternsThatTheImageBorderCutsOff) 
     Eigen::Vector2d center;
     camera_.Project(truth.translation, &center);
     EXPECT_LT((report.detection->center_px - center).norm(), 0.5) << center_px;
+  }
+}
+
+// Rings of 25 x 9 to 11 px, of which the edge of a shadow leaves pieces.
+TEST_F(LandingPatternDetectorTest, FindsFlatPatternsOnTheEdgeOfAShadow) {
+  struct Case {
+    double tilt, tilt_axis, turn;
+    double shadow_angle;  // in the image
+    bool blurred;
+  };
+  for (const Case& c : {Case{1.2, 8.51, 2.3, 20.7, true}, Case{1.2, 17.02, 4.6, 41.4, true}}) {
+    const RigidTransform truth = PrintPose({0.15, -0.1, 9}, c.tilt, c.tilt_axis, c.turn);
+    cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
+    Eigen::Vector2d center;
+    camera_.Project(truth.translation, &center);
+    const Eigen::Vector2d normal(std::cos(c.shadow_angle), std::sin(c.shadow_angle));
+    for (int v = 0; v < image.rows; ++v) {
+      for (int u = 0; u < image.cols; ++u) {
+        if (normal.dot(Eigen::Vector2d(u, v) - center) <= 0) continue;
+        std::uint8_t& gray = image.at<std::uint8_t>(v, u);
+        gray = static_cast<std::uint8_t>(std::lround(0.4 * gray));
+      }
+    }
+    if (c.blurred) cv::GaussianBlur(image, image, {}, 0.6);
+    const LandingReport report = Detect(image);
+    ASSERT_TRUE(report.detection) << c.tilt_axis << ": " << report.reason;
+    EXPECT_LT((report.detection->center_px - center).norm(), 0.5) << c.tilt_axis;
   }
 }
 

@@ -142,6 +142,7 @@ void LandingSearch::SearchRegion() {
   const bool low = !hint_.altitude_m || *hint_.altitude_m <= models_.options.max_partial_altitude_m;
   if (low) run(0, kPartialPasses, [this](std::size_t i) { TestPartial(i); });
   run(kCoarsePasses, kPasses.size(), trace_and_test);
+  run(kPiecesPass, kPiecesPass + 1, [this](std::size_t i) { TestPieces(i); });
   run(kCoarsePasses, kPasses.size(), [this](std::size_t i) { TestQuadrants(i); });
   run(kCoarsePasses - 1, kPasses.size(), [this](std::size_t i) { TestCutAreas(i); });
   run(kCoarsePasses, kPasses.size(), [this](std::size_t i) { TestArcs(i); });

@@ -117,6 +117,7 @@ class LandingSearch {
     bool narrow = false;      // rings beside narrow strokes of white as well
   };
   static constexpr std::size_t kCoarsePasses = 3;   // whose borders are cut into arcs
+  static constexpr std::size_t kPiecesPass = 4;     // that sees thin strokes apart from each other
   static constexpr std::size_t kPartialPasses = 2;  // in which the cross of a near pattern is seen
   static constexpr double kMinFittedCorrelation = 0.84;  // of a small pattern
   static const std::array<Pass, LandingWorkspace::Buffers::kPasses> kPasses;
@@ -145,6 +146,7 @@ class LandingSearch {
   bool IsPlausible(const CirclePose& ring) const;
   void Trace(std::size_t pass_index);
   void TestAreas(std::size_t pass_index);
+  void TestPieces(std::size_t pass_index);
   void TestQuadrants(std::size_t pass_index);
   void TestCutAreas(std::size_t pass_index);
   void TestArcs(std::size_t pass_index);
@@ -153,6 +155,7 @@ class LandingSearch {
   void CollectCandidates(std::size_t pass_index);
   bool AddRay(const Eigen::Vector2d& pixel);
   void TestCandidate(const RingCandidate& candidate, std::size_t pass_index);
+  void TestOutline(const RingCandidate& candidate, std::size_t pass_index, double min_correlation);
   std::optional<RingFit> FitToBorder(const RingCandidate& candidate, std::size_t pass_index);
   std::optional<RingFit> FitToOutline(const RingCandidate& candidate, const ImageRegion& region);
 

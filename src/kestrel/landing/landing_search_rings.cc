@@ -202,6 +202,30 @@ std::optional<RingFit> LandingSearch::FitToBorder(const RingCandidate& candidate
       tolerance_px / focal_px_);
 }
 
+// Small rings that fell apart into two dark areas.
+void LandingSearch::TestPieces(std::size_t pass_index) {
+  std::vector<RingCandidate>& candidates = buffers_.candidates;
+  candidates.clear();
+  {
+    StageTimer timer(&report_, LandingStage::kAreas);
+    const cv::Mat image = buffers_.pyramid.ImageAt(kPasses[pass_index].image_level);
+    const BorderTracer& tracer = buffers_.tracers[pass_index];
+    for (auto one = tracer.borders().begin(); one != tracer.borders().end(); ++one) {
+      for (auto other = one + 1; other != tracer.borders().end(); ++other) {
+        const std::optional<Ellipse> outline =
+            OutlineOfPieces(tracer, *one, *other, models_.options.min_ring_px, kMaxHullExtent);
+        if (!outline || candidates.size() == candidates.capacity()) continue;
+        const double contrast = RingContrast(image, *outline, models_.options.pattern);
+        if (contrast > 0) candidates.push_back({.outer_edge = *outline, .contrast = contrast});
+      }
+    }
+    KeepBest(&candidates);
+  }
+  for (const RingCandidate& candidate : candidates) {
+    TestOutline(candidate, pass_index, kMinFittedCorrelation);
+  }
+}
+
 // Small rings whose white quadrants were seen.
 void LandingSearch::TestQuadrants(std::size_t pass_index) {
   const ImageRegion region{offset_, kPasses[pass_index].image_level};
@@ -220,15 +244,22 @@ void LandingSearch::TestQuadrants(std::size_t pass_index) {
     KeepBest(&candidates);
   }
   for (const RingCandidate& candidate : candidates) {
-    const std::optional<RingFit> ring = FitToOutline(candidate, region);
-    if (!ring || !IsPlausible(ring->poses[0])) continue;
-    Reach(LandingStage::kRing, "no border lies on the image of a circle");
-    const Eigen::Vector2d diameters_px = DiametersPx(ring->poses[0]);
-    if (IsSmall(diameters_px)) {
-      TestSmallRing(*ring, diameters_px, kAreaScales, kMinCorrelationOfQuadrants);
-    } else {
-      TestRing(*ring, diameters_px, ReachPx(diameters_px, region, kUnsure));
-    }
+    TestOutline(candidate, pass_index, kMinCorrelationOfQuadrants);
+  }
+}
+
+// A ring whose outline is that of no single border.
+void LandingSearch::TestOutline(const RingCandidate& candidate, std::size_t pass_index,
+                                double min_correlation) {
+  const ImageRegion region{offset_, kPasses[pass_index].image_level};
+  const std::optional<RingFit> ring = FitToOutline(candidate, region);
+  if (!ring || !IsPlausible(ring->poses[0])) return;
+  Reach(LandingStage::kRing, "no border lies on the image of a circle");
+  const Eigen::Vector2d diameters_px = DiametersPx(ring->poses[0]);
+  if (IsSmall(diameters_px)) {
+    TestSmallRing(*ring, diameters_px, kAreaScales, min_correlation);
+  } else {
+    TestRing(*ring, diameters_px, ReachPx(diameters_px, region, kUnsure));
   }
 }
 
