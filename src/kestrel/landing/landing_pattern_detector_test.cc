@@ -53,14 +53,16 @@ TEST_F(LandingPatternDetectorTest, FindsSmallPatternsThatTheImageBorderCutsOff) 
   }
 }
 
-// Rings of 25 x 9 to 11 px, of which the edge of a shadow leaves pieces.
+// Rings of 25 x 9 to 11 px, of which the edge of a shadow leaves pieces or outlines that lie half a
+// stroke off.
 TEST_F(LandingPatternDetectorTest, FindsFlatPatternsOnTheEdgeOfAShadow) {
   struct Case {
     double tilt, tilt_axis, turn;
     double shadow_angle;  // in the image
     bool blurred;
   };
-  for (const Case& c : {Case{1.2, 8.51, 2.3, 20.7, true}, Case{1.2, 17.02, 4.6, 41.4, true}}) {
+  for (const Case& c : {Case{1.2, 8.51, 2.3, 20.7, true}, Case{1.2, 17.02, 4.6, 41.4, true},
+                        Case{1.1, 16.65, 4.5, 0, false}, Case{1.15, 12.58, 3.4, 0, false}}) {
     const RigidTransform truth = PrintPose({0.15, -0.1, 9}, c.tilt, c.tilt_axis, c.turn);
     cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
     Eigen::Vector2d center;

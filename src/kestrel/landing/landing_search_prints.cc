@@ -40,13 +40,17 @@ constexpr double kMinExplainedBesideEdge =
 // some of them.
 constexpr double kMinRingShare = 0.85;
 constexpr double kMinRingContrast = 5;  // gray values
-constexpr double kWhole = 0.75;         // share of the print in view that is no partial pattern
+// How near the centres of two rings are that are the same, of the shorter axis. A small ring fails
+// its test where it lies half a stroke beside the print: as near it has to be to one that failed.
+constexpr double kSameSign = 0.12;
+constexpr double kSameStart = 0.05;
+constexpr double kWhole = 0.75;  // share of the print in view that is no partial pattern
 
-bool IsAmong(const RingPlace& place, const std::vector<RingPlace>& others) {
-  constexpr double kSamePlace = 0.12;  // of its diameters
+// Whether a place is one of others: its centre to a share of its shorter axis.
+bool IsAmong(const RingPlace& place, const std::vector<RingPlace>& others, double same_center) {
   constexpr double kSameSize = 0.1;
   return std::any_of(others.begin(), others.end(), [&](const RingPlace& other) {
-    return (place.center - other.center).norm() < kSamePlace * place.diameters.y() &&
+    return (place.center - other.center).norm() < same_center * place.diameters.y() &&
            ((place.diameters - other.diameters).array().abs() < kSameSize * place.diameters.array())
                .all();
   });
@@ -109,7 +113,7 @@ std::array<bool, 2> LandingSearch::LevelEnough(const RingFit& ring) const {
 void LandingSearch::TestRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
                              double reach_px) {
   const std::optional<RingPlace> place = PlaceOf(ring.poses[0].center, diameters_px);
-  if (!place || IsAmong(*place, buffers_.other_signs)) return;
+  if (!place || IsAmong(*place, buffers_.other_signs, kSameSign)) return;
   std::array<std::optional<Hypothesis>, 2> hypotheses;
   {
     StageTimer timer(&report_, LandingStage::kCross);
@@ -245,7 +249,7 @@ std::optional<RingPlace> LandingSearch::PlaceOf(const Eigen::Vector3d& center,
 // Whether nearly the same ring was tested before, as another pass saw it; notes it if not.
 bool LandingSearch::WasTested(const RingFit& ring, const Eigen::Vector2d& diameters_px) {
   const std::optional<RingPlace> place = PlaceOf(ring.poses[0].center, diameters_px);
-  if (!place || IsAmong(*place, buffers_.tested)) return true;
+  if (!place || IsAmong(*place, buffers_.tested, kSameStart)) return true;
   Note(*place, &buffers_.tested);
   return false;
 }
