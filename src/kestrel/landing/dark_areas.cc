@@ -105,11 +105,10 @@ std::size_t OutlineInView(const BorderTracer& tracer, const Border& border,
                           std::span<Eigen::Vector2d> outline) {
   const ConvexHull hull(PointsOf(tracer, border));
   const std::span<const Eigen::Vector2d> corners = hull.corners();
-  const Eigen::Array2d first = Eigen::Array2d::Constant(-0.5);
-  const Eigen::Array2d last =
-      first + Eigen::Array2d(tracer.image_size().width, tracer.image_size().height);
+  // Within the outermost pixels the outline already turns along the image border.
+  const Eigen::Array2d last(tracer.image_size().width - 1, tracer.image_size().height - 1);
   const auto at_image_border = [&](const Eigen::Vector2d& point) {
-    return (point.array() <= first).any() || (point.array() >= last).any();
+    return (point.array() <= 0).any() || (point.array() >= last).any();
   };
   std::size_t count = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {

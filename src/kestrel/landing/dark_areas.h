@@ -47,8 +47,8 @@ std::optional<Ellipse> OutlineOfPieces(const BorderTracer& tracer, const Border&
 bool IsCutOff(const BorderTracer& tracer, const Border& border);
 
 // What the image shows of the convex hull of a border that is at most ConvexHull::kMaxHeight pixels
-// high: writes the points of it that do not lie on the image border to 'outline', as many as there
-// is room for and a pixel or less apart, and returns how many.
+// high: writes the points of it that lie between the centres of the outermost pixels to 'outline',
+// as many as there is room for and a pixel or less apart, and returns how many.
 std::size_t OutlineInView(const BorderTracer& tracer, const Border& border,
                           std::span<Eigen::Vector2d> outline);
 
