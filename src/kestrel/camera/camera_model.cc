@@ -401,9 +401,9 @@ ProjectionStatus CameraModel::ProjectPinhole(const Eigen::Vector3d& point, Eigen
   const Eigen::Vector2d undistorted = point.head<2>() / z;
   if (!(undistorted.norm() <= max_tangent_)) return ProjectionStatus::kOutsideModel;
 
-  const DistortedPoint distorted =
-      is_distorted_ ? DistortRadialTangential(k_, undistorted)
-                    : DistortedPoint{undistorted, Eigen::Matrix2d::Identity()};
+  const DistortedPoint distorted = is_distorted_
+                                       ? DistortRadialTangential(k_, undistorted)
+                                       : DistortedPoint{undistorted, Eigen::Matrix2d::Identity()};
   *pixel << intrinsics_.fx_px * distorted.value.x() + intrinsics_.cx_px,
       intrinsics_.fy_px * distorted.value.y() + intrinsics_.cy_px;
   if (jacobian != nullptr) {

@@ -14,6 +14,7 @@ namespace {
 // Edges of the print are found to a tenth of a pixel, blurred ones to a few; the nearest edges of
 // anything else scatter over the whole reach of the search.
 constexpr double kMaxEdgeRmsPx = 0.7;
+constexpr double kMaxEdgeRms = 0.02;     // the same of small rings, share of the mean axis
 constexpr double kInspectedRingPx = 80;  // mean axis below which it is looked for other signs
 constexpr double kMinMajorPx = 9;        // of the smallest ring
 // Differences of the residuals inside of a small ring, on it and around it, share of the contrast.
@@ -365,7 +366,8 @@ void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& 
                          region);
   if (!view.valid()) return;
   PatternMatch match = models_.matcher.Match(buffers_.pyramid.ImageAt(region.level), view);
-  if (location->edge_rms_px > kMaxEdgeRmsPx) return;
+  const double mean_axis_px = std::sqrt(diameters_px.prod());
+  if (location->edge_rms_px > std::min(kMaxEdgeRmsPx, kMaxEdgeRms * mean_axis_px)) return;
   const auto combine = [](std::array<double, 4>* shares, const std::array<double, 4>& edges) {
     for (int k = 0; k < 4; ++k) {
       if ((*shares)[k] >= 0 && edges[k] >= 0) (*shares)[k] = 0.5 * ((*shares)[k] + edges[k]);
@@ -375,12 +377,10 @@ void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& 
   combine(&match.ring, location->ring_share);
   const double quality = match.Quality();
   if (quality < models_.options.min_quality || match.RingShare() < kMinRingShare) return;
-  if (std::sqrt(diameters_px.prod()) < kInspectedRingPx) {
-    if (ShowsOtherSign(location->camera_from_pattern, quality)) {
-      const auto place = PlaceOf(location->camera_from_pattern.translation, diameters_px);
-      if (place) Note(*place, &buffers_.other_signs);
-      return;
-    }
+  if (mean_axis_px < kInspectedRingPx && ShowsOtherSign(location->camera_from_pattern, quality)) {
+    const auto place = PlaceOf(location->camera_from_pattern.translation, diameters_px);
+    if (place) Note(*place, &buffers_.other_signs);
+    return;
   }
   Keep(*location, match.seen < kWhole ? CrossMethod::kPartial : hypothesis.method, quality,
        diameters_px);

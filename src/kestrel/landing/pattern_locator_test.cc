@@ -73,8 +73,8 @@ TEST_F(PatternLocatorTest, TheCovarianceIsThatOfTheErrors) {
       sum += error.dot(location->covariance.ldlt().solve(error)) / 6;
     }
     const double ratio = std::sqrt(sum / kTrials);  // of errors and standard deviations
-    EXPECT_GT(ratio, 0.5) << distance;
-    EXPECT_LT(ratio, 1.5) << distance;
+    EXPECT_GT(ratio, 0.85) << distance;
+    EXPECT_LT(ratio, 1.2) << distance;
   }
 }
 

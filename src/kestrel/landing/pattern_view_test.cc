@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/landing/pattern_view.h"
 
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include "kestrel/camera/test_cameras.h"
+#include "kestrel/image/gray_sampling.h"
 #include "kestrel/landing/test_prints.h"
 
 namespace kestrel {
@@ -39,6 +42,35 @@ TEST(PatternView, AgreesWithTheProjection) {
       }
     }
   }
+}
+
+TEST(PatternView, SamplesTheImageWhereItsPointsAre) {
+  const CameraModel camera = TestPrintCamera();
+  Random random(2);
+  cv::Mat image(camera.height_px(), camera.width_px(), CV_8UC1);
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < image.cols; ++x) {
+      image.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(random.Uniform(0, 256));
+    }
+  }
+  // Half out of the image; more points than are looked at at once.
+  const PatternView view(camera, PrintPose({1.4, 0, 2}, 0.2, 0.3, 0.4), 0.6, {});
+  ASSERT_TRUE(view.valid());
+  constexpr std::size_t kPoints = 151;
+  std::array<float, kPoints> x_m, y_m, x_px, y_px, gray;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    x_m[i] = static_cast<float>(random.Uniform(-0.6, 0.6));
+    y_m[i] = static_cast<float>(random.Uniform(-0.6, 0.6));
+  }
+  view.Project(x_m.data(), y_m.data(), kPoints, x_px.data(), y_px.data());
+  view.Sample(image, x_m.data(), y_m.data(), kPoints, gray.data());
+  int seen = 0;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    EXPECT_NEAR(gray[i], SampleGray(image, x_px[i], y_px[i]), 1e-3);
+    seen += gray[i] >= 0;
+  }
+  EXPECT_GT(seen, 30);
+  EXPECT_LT(seen, 120);
 }
 
 TEST(PatternView, IsNotValidBehindTheCamera) {
