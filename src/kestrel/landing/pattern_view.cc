@@ -45,11 +45,15 @@ void InterpolateNodes(const float* nodes_x, const float* nodes_y, int side, floa
     hn::StoreU(between(nodes_x), d, x_px + i);
     hn::StoreU(between(nodes_y), d, y_px + i);
   };
-  const hn::ScalableTag<float> d;
+  const hn::CappedTag<float, 8> d;
   const std::size_t lanes = hn::Lanes(d);
-  std::size_t i = 0;
-  for (; i + lanes <= count; i += lanes) interpolate(d, i);
-  for (; i < count; ++i) interpolate(hn::CappedTag<float, 1>(), i);
+  if (count < lanes) {
+    for (std::size_t i = 0; i < count; ++i) interpolate(hn::CappedTag<float, 1>(), i);
+    return;
+  }
+  for (std::size_t i = 0; i + lanes <= count; i += lanes) interpolate(d, i);
+  // The last vector overlaps the one before it: some points are computed twice.
+  interpolate(d, count - lanes);
 }
 
 }  // namespace HWY_NAMESPACE

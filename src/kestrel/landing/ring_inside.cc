@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "kestrel/landing/cross.h"
 
@@ -86,10 +87,12 @@ std::optional<RingInside> RectifyInside(const cv::Mat& image, const PatternView&
   const int radius = std::max(2, size * 5 / 16);
   const float margin = 0.05f * (brightest - darkest);
   for (int y = 0; y < size; ++y) {
+    std::uint64_t below = 0;
     for (int x = 0; x < size; ++x) {
-      const float value = gray[y * kMax + x];
-      if (value >= 0 && integral.IsBelowMean(value + margin, x, y, radius)) inside.dark.Set(x, y);
+      const bool is_below = integral.IsBelowMean(gray[y * kMax + x] + margin, x, y, radius);
+      below |= std::uint64_t{is_below} << x;
     }
+    inside.dark.SetRow(y, below & inside.disc.row(y));
   }
   inside.seen = static_cast<double>(seen) / in_disc;
   return inside;
