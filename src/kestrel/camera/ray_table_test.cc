@@ -8,8 +8,8 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
+#include "kestrel/base/test_targets.h"
 #include "kestrel/camera/test_cameras.h"
 
 namespace kestrel {
@@ -75,17 +75,8 @@ void ExpectRaysAreRay(const CameraModel& camera, const RayTable& table) {
   }
 }
 
-// With every instruction set that this machine has, not only with the one it would choose.
 TEST_P(EveryRayTable, RaysIsRayForEveryCountAndInstructionSet) {
-  const std::int64_t supported = hwy::SupportedTargets();
-  for (std::int64_t rest = supported; rest != 0; rest &= rest - 1) {
-    hwy::SetSupportedTargetsForTest(rest & -rest);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    SCOPED_TRACE(hwy::TargetName(rest & -rest));
-    ExpectRaysAreRay(camera_, table_);
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  ForEveryTarget([this] { ExpectRaysAreRay(camera_, table_); });
 }
 
 TEST_P(EveryRayTable, RayIsOfUnitLengthOrZero) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/base/random.h"
+#include "kestrel/base/test_targets.h"
 
 namespace kestrel {
 namespace {
@@ -40,7 +41,7 @@ cv::Mat NoiseImage(int width, int height, Random* random) {
   return image;
 }
 
-TEST(SampleGrays, AreThoseOfOneAfterTheOther) {
+void ExpectSamplesOfOneAfterTheOther() {
   Random random(1);
   const cv::Mat whole = NoiseImage(23, 17, &random);
   // The last rows of the whole image end where its memory does.
@@ -61,6 +62,8 @@ TEST(SampleGrays, AreThoseOfOneAfterTheOther) {
     }
   }
 }
+
+TEST(SampleGrays, AreThoseOfOneAfterTheOther) { ForEveryTarget(ExpectSamplesOfOneAfterTheOther); }
 
 }  // namespace
 }  // namespace kestrel

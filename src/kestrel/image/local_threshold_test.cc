@@ -8,9 +8,9 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include "kestrel/base/random.h"
+#include "kestrel/base/test_targets.h"
 
 namespace kestrel {
 namespace {
@@ -128,19 +128,6 @@ void ExpectBinarizedAsDefined(const cv::Mat& image, int image_level, int tile_le
   }
   EXPECT_EQ(wrong, 0) << image.cols << "x" << image.rows << ", levels " << image_level << " and "
                       << tile_level << ", contrast " << min_contrast;
-}
-
-// Runs a test with every instruction set that this processor has.
-template <class Test>
-void ForEveryTarget(const Test& test) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    test();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
 TEST(TilePyramid, HoldsTheStatisticsOfAllTiles) {

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <gtest/gtest.h>
 
+#include "kestrel/base/test_targets.h"
 #include "kestrel/landing/pattern_pose.h"
 #include "kestrel/landing/small_pattern_model.h"
 #include "kestrel/landing/test_prints.h"
@@ -50,124 +51,138 @@ class SmallPatternKernelTest : public ::testing::Test {
 };
 
 TEST_F(SmallPatternKernelTest, APrintIsDarkWhereItsStrokesAre) {
-  constexpr double kSharp = 0.05;  // px
-  EvaluatePrint(ModelOf(pattern_, pose_, kSharp), &workspace_);
-  const SmallPatternWorkspace::Points& points = workspace_.points;
-  const Print print = SpokedPrint(pattern_, 4);
-  int dark = 0, compared = 0;
-  for (std::size_t i = 0; i < workspace_.count; ++i) {
-    const double x = points.x[i], y = points.y[i];
-    // Only where the print is the same all around.
-    constexpr double kStep = 0.02;
-    const bool is_dark = print(x, y);
-    bool is_even = true;
-    for (const double dx : {-kStep, kStep}) {
-      for (const double dy : {-kStep, kStep}) is_even &= print(x + dx, y + dy) == is_dark;
+  ForEveryTarget([&] {
+    constexpr double kSharp = 0.05;  // px
+    EvaluatePrint(ModelOf(pattern_, pose_, kSharp), &workspace_);
+    const SmallPatternWorkspace::Points& points = workspace_.points;
+    const Print print = SpokedPrint(pattern_, 4);
+    int dark = 0, compared = 0;
+    for (std::size_t i = 0; i < workspace_.count; ++i) {
+      const double x = points.x[i], y = points.y[i];
+      // Only where the print is the same all around.
+      constexpr double kStep = 0.02;
+      const bool is_dark = print(x, y);
+      bool is_even = true;
+      for (const double dx : {-kStep, kStep}) {
+        for (const double dy : {-kStep, kStep}) is_even &= print(x + dx, y + dy) == is_dark;
+      }
+      if (!is_even) continue;
+      EXPECT_NEAR(points.dark[i], is_dark ? 1 : 0, 0.01) << x << " " << y;
+      dark += is_dark;
+      ++compared;
     }
-    if (!is_even) continue;
-    EXPECT_NEAR(points.dark[i], is_dark ? 1 : 0, 0.01) << x << " " << y;
-    dark += is_dark;
-    ++compared;
-  }
-  EXPECT_GT(dark, 30);
-  EXPECT_GT(compared - dark, 100);
+    EXPECT_GT(dark, 30);
+    EXPECT_GT(compared - dark, 100);
+  });
 }
 
 TEST_F(SmallPatternKernelTest, DerivativesAreThoseOfTheGrayValues) {
-  using Unknowns = Eigen::Matrix<double, SmallPatternWorkspace::kUnknowns, 1>;
-  const auto expected_at = [&](const Unknowns& change) {
-    const RigidTransform pose = Moved(pose_, change.head<3>(), change.segment<3>(3));
-    EvaluatePrint(ModelOf(pattern_, pose, 0.8 * std::exp(change(6))), &workspace_);
-    const PrintLight light{.white = static_cast<float>(180 + change(7)),
-                           .slope_x = static_cast<float>(10 + change(9)),
-                           .slope_y = static_cast<float>(-20 + change(10)),
-                           .contrast = static_cast<float>(120 + change(8)),
-                           .highlight = 1000,
-                           .saturated = 254};
-    CompareGrays(light, 1e6f, &workspace_);
-    return std::vector<float>(
-        workspace_.points.expected.begin(),
-        workspace_.points.expected.begin() + static_cast<std::ptrdiff_t>(workspace_.count));
-  };
-  for (int k = 0; k < Unknowns::RowsAtCompileTime; ++k) {
-    const double step = k < 3 ? 0.01 : k < 7 ? 0.02 : 1;
-    const auto after = expected_at(step * Unknowns::Unit(k));
-    const auto before = expected_at(-step * Unknowns::Unit(k));
-    expected_at(Unknowns::Zero());
-    const Eigen::Matrix3f rotation = pose_.rotation.toRotationMatrix().cast<float>();
-    const auto axis = [&rotation](int column) {
-      return std::array<float, 3>{rotation(0, column), rotation(1, column), rotation(2, column)};
+  ForEveryTarget([&] {
+    using Unknowns = Eigen::Matrix<double, SmallPatternWorkspace::kUnknowns, 1>;
+    const auto expected_at = [&](const Unknowns& change) {
+      const RigidTransform pose = Moved(pose_, change.head<3>(), change.segment<3>(3));
+      EvaluatePrint(ModelOf(pattern_, pose, 0.8 * std::exp(change(6))), &workspace_);
+      const PrintLight light{.white = static_cast<float>(180 + change(7)),
+                             .slope_x = static_cast<float>(10 + change(9)),
+                             .slope_y = static_cast<float>(-20 + change(10)),
+                             .contrast = static_cast<float>(120 + change(8)),
+                             .highlight = 1000,
+                             .saturated = 254};
+      CompareGrays(light, 1e6f, &workspace_);
+      return std::vector<float>(
+          workspace_.points.expected.begin(),
+          workspace_.points.expected.begin() + static_cast<std::ptrdiff_t>(workspace_.count));
     };
-    Differentiate({axis(0), axis(1), axis(2)}, 120, &workspace_);
-    double squares = 0, differences = 0;
-    for (std::size_t i = 0; i < workspace_.count; ++i) {
-      const double numeric = (after[i] - before[i]) / (2 * step);
-      squares += numeric * numeric;
-      differences += std::pow(workspace_.jacobian[k][i] - numeric, 2);
+    for (int k = 0; k < Unknowns::RowsAtCompileTime; ++k) {
+      const double step = k < 3 ? 0.01 : k < 7 ? 0.02 : 1;
+      const auto after = expected_at(step * Unknowns::Unit(k));
+      const auto before = expected_at(-step * Unknowns::Unit(k));
+      expected_at(Unknowns::Zero());
+      const Eigen::Matrix3f rotation = pose_.rotation.toRotationMatrix().cast<float>();
+      const auto axis = [&rotation](int column) {
+        return std::array<float, 3>{rotation(0, column), rotation(1, column), rotation(2, column)};
+      };
+      Differentiate({axis(0), axis(1), axis(2)}, 120, &workspace_);
+      double squares = 0, differences = 0;
+      for (std::size_t i = 0; i < workspace_.count; ++i) {
+        const double numeric = (after[i] - before[i]) / (2 * step);
+        squares += numeric * numeric;
+        differences += std::pow(workspace_.jacobian[k][i] - numeric, 2);
+      }
+      EXPECT_GT(squares, 0) << k;
+      // How the width of the blur in the plane changes with the pose is left out.
+      EXPECT_LT(std::sqrt(differences / squares), k < 6 ? 0.2 : 0.01) << k;
     }
-    EXPECT_GT(squares, 0) << k;
-    // How the width of the blur in the plane changes with the pose is left out.
-    EXPECT_LT(std::sqrt(differences / squares), k < 6 ? 0.2 : 0.01) << k;
-  }
+  });
 }
 
 TEST_F(SmallPatternKernelTest, OutliersAndWhatIsCutOffCountLess) {
-  EvaluatePrint(ModelOf(pattern_, pose_, 0.8), &workspace_);
-  const PrintLight light{
-      .white = 300, .slope_x = 0, .slope_y = 0, .contrast = 120, .highlight = 12, .saturated = 254};
-  workspace_.pixels.gray[0] = 255;  // cut off: white is expected to be brighter
-  workspace_.pixels.gray[1] = 240;  // 60 darker than white
-  CompareGrays(light, 30, &workspace_);
-  EXPECT_EQ(workspace_.points.residual[0], 0);
-  EXPECT_EQ(workspace_.points.root_weight[0], 0);
-  EXPECT_FLOAT_EQ(workspace_.points.weight[1], 0.5f);
-  EXPECT_FLOAT_EQ(workspace_.points.root_weight[1], std::sqrt(0.5f));
+  ForEveryTarget([&] {
+    EvaluatePrint(ModelOf(pattern_, pose_, 0.8), &workspace_);
+    const PrintLight light{.white = 300,
+                           .slope_x = 0,
+                           .slope_y = 0,
+                           .contrast = 120,
+                           .highlight = 12,
+                           .saturated = 254};
+    workspace_.pixels.gray[0] = 255;  // cut off: white is expected to be brighter
+    workspace_.pixels.gray[1] = 240;  // 60 darker than white
+    CompareGrays(light, 30, &workspace_);
+    EXPECT_EQ(workspace_.points.residual[0], 0);
+    EXPECT_EQ(workspace_.points.root_weight[0], 0);
+    EXPECT_FLOAT_EQ(workspace_.points.weight[1], 0.5f);
+    EXPECT_FLOAT_EQ(workspace_.points.root_weight[1], std::sqrt(0.5f));
+  });
 }
 
 TEST_F(SmallPatternKernelTest, LinesOfAQuadrantLieWhereTheyShould) {
-  const PrintModel model = ModelOf(pattern_, pose_, 0.05);
-  EvaluatePrint(model, &workspace_);
-  std::array<std::array<float, 2>, SmallPatternWorkspace::kLines> normals;
-  constexpr std::array<double, SmallPatternWorkspace::kLines> kTurns{0.6, 0.785, 1.0};  // rad
-  for (std::size_t k = 0; k < kTurns.size(); ++k) {
-    normals[k] = {static_cast<float>(-std::sin(kTurns[k])),
-                  static_cast<float>(std::cos(kTurns[k]))};
-  }
-  EvaluateLines(model, normals, &workspace_);
-  for (std::size_t i = 0; i < workspace_.count; ++i) {
-    const double x = workspace_.points.x[i], y = workspace_.points.y[i];
-    const double angle = QuadrantOf(x, y) * std::acos(0.0);
+  ForEveryTarget([&] {
+    const PrintModel model = ModelOf(pattern_, pose_, 0.05);
+    EvaluatePrint(model, &workspace_);
+    std::array<std::array<float, 2>, SmallPatternWorkspace::kLines> normals;
+    constexpr std::array<double, SmallPatternWorkspace::kLines> kTurns{0.6, 0.785, 1.0};  // rad
     for (std::size_t k = 0; k < kTurns.size(); ++k) {
-      const double across = y * std::cos(angle + kTurns[k]) - x * std::sin(angle + kTurns[k]);
-      const double away = std::abs(across) - 0.5 * pattern_.arm_width_m;
-      if (std::abs(away) < 0.02) continue;
-      EXPECT_NEAR(workspace_.lines[k][i], away < 0 ? 1 : 0, 0.01) << x << " " << y;
+      normals[k] = {static_cast<float>(-std::sin(kTurns[k])),
+                    static_cast<float>(std::cos(kTurns[k]))};
     }
-  }
+    EvaluateLines(model, normals, &workspace_);
+    for (std::size_t i = 0; i < workspace_.count; ++i) {
+      const double x = workspace_.points.x[i], y = workspace_.points.y[i];
+      const double angle = QuadrantOf(x, y) * std::acos(0.0);
+      for (std::size_t k = 0; k < kTurns.size(); ++k) {
+        const double across = y * std::cos(angle + kTurns[k]) - x * std::sin(angle + kTurns[k]);
+        const double away = std::abs(across) - 0.5 * pattern_.arm_width_m;
+        if (std::abs(away) < 0.02) continue;
+        EXPECT_NEAR(workspace_.lines[k][i], away < 0 ? 1 : 0, 0.01) << x << " " << y;
+      }
+    }
+  });
 }
 
 TEST(SumProducts, AreThoseOfAllPairs) {
-  Random random(1);
-  constexpr std::size_t kColumns = 5;
-  for (const std::size_t count : {0u, 1u, 7u, 16u, 33u, 203u}) {
-    std::array<std::vector<float>, kColumns> columns;
-    std::array<const float*, kColumns> pointers;
-    for (std::size_t k = 0; k < kColumns; ++k) {
-      for (std::size_t i = 0; i < count; ++i) {
-        columns[k].push_back(static_cast<float>(random.Uniform(-1, 1)));
+  ForEveryTarget([&] {
+    Random random(1);
+    constexpr std::size_t kColumns = 5;
+    for (const std::size_t count : {0u, 1u, 7u, 16u, 33u, 203u}) {
+      std::array<std::vector<float>, kColumns> columns;
+      std::array<const float*, kColumns> pointers;
+      for (std::size_t k = 0; k < kColumns; ++k) {
+        for (std::size_t i = 0; i < count; ++i) {
+          columns[k].push_back(static_cast<float>(random.Uniform(-1, 1)));
+        }
+        pointers[k] = columns[k].data();
       }
-      pointers[k] = columns[k].data();
-    }
-    std::array<double, kColumns * kColumns> products;
-    SumProducts(pointers, count, products.data());
-    for (std::size_t a = 0; a < kColumns; ++a) {
-      for (std::size_t b = 0; b < kColumns; ++b) {
-        double sum = 0;
-        for (std::size_t i = 0; i < count; ++i) sum += columns[a][i] * columns[b][i];
-        EXPECT_NEAR(products[a * kColumns + b], sum, 1e-4) << count;
+      std::array<double, kColumns * kColumns> products;
+      SumProducts(pointers, count, products.data());
+      for (std::size_t a = 0; a < kColumns; ++a) {
+        for (std::size_t b = 0; b < kColumns; ++b) {
+          double sum = 0;
+          for (std::size_t i = 0; i < count; ++i) sum += columns[a][i] * columns[b][i];
+          EXPECT_NEAR(products[a * kColumns + b], sum, 1e-4) << count;
+        }
       }
     }
-  }
+  });
 }
 
 }  // namespace
