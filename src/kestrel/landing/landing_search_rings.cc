@@ -212,6 +212,8 @@ void LandingSearch::TestPieces(std::size_t pass_index) {
     const BorderTracer& tracer = buffers_.tracers[pass_index];
     for (auto one = tracer.borders().begin(); one != tracer.borders().end(); ++one) {
       for (auto other = one + 1; other != tracer.borders().end(); ++other) {
+        // In the order of the rows in which they were found: what is so far below is no neighbour.
+        if (tracer.begin(*other)->y > one->max.y + 2 * kMaxHullExtent) break;
         const std::optional<Ellipse> outline =
             OutlineOfPieces(tracer, *one, *other, models_.options.min_ring_px, kMaxHullExtent);
         if (!outline || candidates.size() == candidates.capacity()) continue;
