@@ -128,7 +128,7 @@ double ComputeStrokeShift(double width_px) {
 // The same from a table.
 double StrokeShift(double width_px) {
   constexpr double kFar = 6;  // from where the other edge does not reach here
-  constexpr int kPerPixel = 16;
+  constexpr int kPerPixel = 32;
   static const auto kTable = [] {
     std::array<double, static_cast<std::size_t>(kFar) * kPerPixel + 1> table;
     for (std::size_t i = 0; i < table.size(); ++i) {
@@ -137,7 +137,7 @@ double StrokeShift(double width_px) {
     return table;
   }();
   if (!(width_px < kFar)) return 0;
-  return kTable[static_cast<std::size_t>(std::max(width_px, 0.0) * kPerPixel + 0.5)];
+  return kTable[static_cast<std::size_t>(std::max(width_px, 0.0) * kPerPixel)];
 }
 
 // Moves a pose by a translation and a rotation vector about its origin; false when that is no small
@@ -357,8 +357,7 @@ PatternLocator::Normal PatternLocator::Measure(const cv::Mat& image, const Rigid
                                                double reach_px, double min_step,
                                                double scale_px) const {
   if (enough > 0) {
-    const Normal normal =
-        Accumulate(image, pose, places, kCoarseStride, reach_px, min_step, scale_px);
+    Normal normal = Accumulate(image, pose, places, kCoarseStride, reach_px, min_step, scale_px);
     if (normal.used >= enough) return normal;
   }
   return Accumulate(image, pose, places, 1, reach_px, min_step, scale_px);

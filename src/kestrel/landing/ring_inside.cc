@@ -69,7 +69,7 @@ std::optional<RingInside> RectifyInside(const cv::Mat& image, const PatternView&
     // A tenth of the radius is left to the ring's inner edge.
     const double v = inside.Coordinate(y);
     const double half = 0.5 * size * std::sqrt(std::max(0.0, 0.81 - v * v));
-    const int count = 2 * static_cast<int>(half + 0.5);
+    const int count = 2 * static_cast<int>(std::lround(half));
     const int first = (size - count) / 2;
     view.Sample(image, &x_m[first], y_m.data(), count, values + first);
     in_disc += count;
