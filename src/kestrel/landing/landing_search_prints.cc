@@ -361,13 +361,13 @@ void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& 
       models_.locator.Locate(image_, hypothesis.camera_from_pattern, reach_px,
                              std::max(2.0, 0.12 * hypothesis.contrast), kIterations, level_);
   if (!location) return;
+  const double mean_axis_px = std::sqrt(diameters_px.prod());
+  if (location->edge_rms_px > std::min(kMaxEdgeRmsPx, kMaxEdgeRms * mean_axis_px)) return;
   const ImageRegion region{offset_, ViewLevel(diameters_px.x())};
   const PatternView view(models_.camera, location->camera_from_pattern, models_.matcher.extent_m(),
                          region);
   if (!view.valid()) return;
   PatternMatch match = models_.matcher.Match(buffers_.pyramid.ImageAt(region.level), view);
-  const double mean_axis_px = std::sqrt(diameters_px.prod());
-  if (location->edge_rms_px > std::min(kMaxEdgeRmsPx, kMaxEdgeRms * mean_axis_px)) return;
   const auto combine = [](std::array<double, 4>* shares, const std::array<double, 4>& edges) {
     for (int k = 0; k < 4; ++k) {
       if ((*shares)[k] >= 0 && edges[k] >= 0) (*shares)[k] = 0.5 * ((*shares)[k] + edges[k]);

@@ -16,8 +16,8 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Values at 'side' x 'side' nodes, bilinear between them; (column, row) of a place in units of
-// their distance.
+// Pixels of 'count' points of the plane, bilinear between those of 'side' x 'side' nodes, the first
+// of which lies at 'first' on both axes.
 void InterpolateNodes(const float* nodes_x, const float* nodes_y, int side, float first,
                       float nodes_per_m, const float* x_m, const float* y_m, std::size_t count,
                       float* x_px, float* y_px) {
