@@ -35,8 +35,7 @@ constexpr double kMinCorrelation = 0.35;         // of a start of a small patter
 constexpr double kSureCorrelation = 0.6;         // of a start that quadrants give
 constexpr double kMinCorrelationOfEither = 0.7;  // of the poses of a small pattern
 constexpr double kMinExplained = 0.62;           // of the variance
-constexpr double kMinExplainedBesideEdge =
-    0.7;  // the same: a shadow's edge explains much by itself
+constexpr double kMinExplainedInShadows = 0.75;  // the same: shadows explain much by themselves
 // Edges and contrasts of the ring that are where a circle has them: a frame of another shape has
 // some of them.
 constexpr double kMinRingShare = 0.85;
@@ -328,9 +327,10 @@ bool LandingSearch::TestSmallPose(const CirclePose& pose, const Eigen::Vector2d&
   }
   Reach(LandingStage::kLocate, "no pose explains the edges of ring and cross");
   if (!IsSmallPattern(*fit, diameters_px, min_correlation)) {
-    fit = models_.small.Refine(image_, fit->location.camera_from_pattern, Light::kShadowEdge,
+    fit = models_.small.Refine(image_, fit->location.camera_from_pattern, Light::kShadows,
                                kIterations, &buffers_.small, level_);
-    if (!fit || fit->explained < kMinExplainedBesideEdge ||
+    // Of a print that is cut off too little is left to tell ink from light.
+    if (!fit || fit->match.seen < kWhole || fit->explained < kMinExplainedInShadows ||
         !IsSmallPattern(*fit, diameters_px, min_correlation)) {
       return true;
     }
@@ -340,16 +340,16 @@ bool LandingSearch::TestSmallPose(const CirclePose& pose, const Eigen::Vector2d&
   return true;
 }
 
-// Whether there is another sign where a pattern was located, in even light and in the light that
-// the edge of a shadow leaves. Where every part of the print was seen next to its own white, gray
+// Whether there is another sign where a pattern was located, in even light and without the shadows
+// on it. Where every part of the print was seen next to its own white, gray
 // values that do not fit the whole tell of the light alone.
 bool LandingSearch::ShowsOtherSign(const RigidTransform& pose, double quality) {
   using Light = SmallPatternFitter::Light;
   const auto is_other = quality >= kEveryPart ? HasOtherSpokes : IsOtherSign;
   const auto in_even = models_.small.Inspect(image_, pose, Light::kEven, &buffers_.small);
   if (!in_even || !is_other(*in_even)) return false;
-  const auto beside_edge = models_.small.Inspect(image_, pose, Light::kShadowEdge, &buffers_.small);
-  return !beside_edge || is_other(*beside_edge);
+  const auto evened = models_.small.Inspect(image_, pose, Light::kShadows, &buffers_.small);
+  return !evened || is_other(*evened);
 }
 
 void LandingSearch::Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& diameters_px,

@@ -110,13 +110,15 @@ SmallPatternFitter::SmallPatternFitter(const CameraModel& camera, const RayTable
 }
 
 SmallPatternWorkspace::SmallPatternWorkspace() {
-  constexpr std::size_t kVector = 64;                             // at most, floats
-  constexpr std::size_t kMost = kEnoughToFit + 2 * kMaxSide + 1;  // of a box and its border
+  constexpr std::size_t kVector = 64;                                 // at most, floats
+  constexpr std::size_t kMost = kEnoughToTellInk + 2 * kMaxSide + 1;  // of a box and its border
   const auto make_room = [](auto&... columns) { (columns.resize(kMost + kVector), ...); };
   for (auto* rays : {&pixels.ray, &pixels.ray_by_u, &pixels.ray_by_v}) {
     for (Column& column : *rays) make_room(column);
   }
-  make_room(pixels.gray, u, v, magnitudes);
+  make_room(pixels.gray, u, v, magnitudes, light);
+  make_room(patch.gray, patch.print, patch.dilated);
+  patch.is_print.resize(kMost);
   make_room(points.x, points.y, points.x_by_u, points.x_by_v, points.y_by_u, points.y_by_v);
   make_room(points.dark, points.ring, points.arm_x, points.arm_y);
   make_room(points.dark_by_x, points.dark_by_y, points.dark_by_log_blur);
@@ -152,6 +154,11 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
   if (x1 - x0 < 4 || y1 - y0 < 4 || x1 - x0 > kMaxSide || y1 - y0 > kMaxSide) return false;
   const int stride =
       1 + static_cast<int>(std::sqrt((x1 - x0) * (y1 - y0) / static_cast<double>(enough_pixels)));
+  workspace->patch.left = x0;
+  workspace->patch.top = y0;
+  workspace->patch.stride = stride;
+  workspace->patch.width = (x1 - x0) / stride + 1;
+  workspace->patch.height = (y1 - y0) / stride + 1;
   SmallPatternWorkspace::Pixels& pixels = workspace->pixels;
   std::size_t in_box = 0;
   for (int y = y0; y <= y1; y += stride) {
@@ -312,13 +319,14 @@ bool SmallPatternFitter::Improve(const System& system, const std::optional<Norma
 std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
     const cv::Mat& image, const RigidTransform& initial, Light light, int iterations,
     SmallPatternWorkspace* workspace, const std::optional<NormalPrior>& prior) const {
-  if (!Gather(image, initial, kEnoughToFit, workspace)) return std::nullopt;
+  const int enough = light == Light::kShadows ? kEnoughToTellInk : kEnoughToFit;
+  if (!Gather(image, initial, enough, workspace)) return std::nullopt;
   State state;
   state.pose = initial;
   Predict(state.pose, state.blur_px, workspace);
   MeasureLevels(*workspace, &state);
   if (state.contrast < kMinContrast) return std::nullopt;
-  if (light == Light::kShadowEdge && !EvenOut(workspace, &state)) return std::nullopt;
+  if (light == Light::kShadows && !EvenOut(workspace, &state)) return std::nullopt;
   // The first steps come from far away: then nothing is an outlier.
   double limit = kMaxWhite;
   for (int iteration = 0; iteration < iterations; ++iteration) {

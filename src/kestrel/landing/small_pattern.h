@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -46,9 +47,27 @@ struct SmallPatternWorkspace {
     Column root_weight;  // root of that, 0 where the image is cut off
   };
 
+  // The pixels of the box around a print, in rows: every 'stride'-th of every such row.
+  struct Patch {
+    int left = 0, top = 0;  // of its first pixel in the image
+    int stride = 1;
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> is_print;  // whether a pixel is one of the print's
+    Column gray;
+    Column print;  // the same in even light, white 1
+    Column dilated;
+
+    std::size_t IndexOf(float u, float v) const {
+      return static_cast<std::size_t>((static_cast<int>(v) - top) / stride * width +
+                                      (static_cast<int>(u) - left) / stride);
+    }
+  };
+
   std::size_t count = 0;  // of the pixels
   Pixels pixels;
   Points points;
+  Patch patch;
+  Column light;  // on the pixels
   std::array<Column, kUnknowns + 1>
       jacobian;                      // and the residual, both times the root of the weight
   std::array<Column, kLines> lines;  // darkness of lines that are not on the print
@@ -106,31 +125,29 @@ class SmallPatternFitter {
   Start FindStart(const CirclePose& ring, double scale, std::span<const double> arm_angles,
                   SmallPatternWorkspace* workspace) const;
 
-  // The light on a print: even but for a slope, or with the edge of a shadow across it, which is
-  // taken out of the image first.
-  enum class Light { kEven, kShadowEdge };
+  // The light on a print: even but for a slope, or with shadows on it, which are taken out of the
+  // image first.
+  enum class Light { kEven, kShadows };
 
   // Refines 'initial', which must be within about a stroke's width. Nothing when the image shows
-  // too little of the print, the fit does not converge or the light has no edge. Does not allocate.
+  // too little of the print, the fit does not converge or there are no shadows. Does not allocate.
   std::optional<Fit> Refine(const cv::Mat& image, const RigidTransform& initial, Light light,
                             int iterations, SmallPatternWorkspace* workspace,
                             const std::optional<NormalPrior>& prior = {}) const;
 
   // What there is of other signs in a print that was located in another way; nothing when the image
-  // shows too little of it or the light has no edge. Does not allocate.
+  // shows too little of it or there are no shadows. Does not allocate.
   std::optional<OtherSigns> Inspect(const cv::Mat& image, const RigidTransform& pose, Light light,
                                     SmallPatternWorkspace* workspace) const;
 
  private:
-  struct ShadowEdge;
   struct State;
   struct System;
   bool Gather(const cv::Mat& image, const RigidTransform& pose, int enough_pixels,
               SmallPatternWorkspace* workspace) const;
   void Predict(const RigidTransform& pose, double blur_px, SmallPatternWorkspace* workspace) const;
   void MeasureLevels(const SmallPatternWorkspace& workspace, State* state) const;
-  std::optional<ShadowEdge> FitShadowEdge(const State& state,
-                                          const SmallPatternWorkspace& workspace) const;
+  void MeasureLight(const State& state, SmallPatternWorkspace* workspace) const;
   bool EvenOut(SmallPatternWorkspace* workspace, State* state) const;
   System Linearize(const State& state, double limit, SmallPatternWorkspace* workspace) const;
   bool Improve(const System& system, const std::optional<NormalPrior>& prior,

@@ -1,123 +1,153 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The edge of a shadow on a small print.
+// Shadows on a small print.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "kestrel/landing/small_pattern_model.h"
 
 namespace kestrel {
 namespace {
 
-constexpr int kDirections = 12;        // over half a turn
-constexpr double kOffsetStep = 0.1;    // of the extent
-constexpr int kStrips = 64;            // over twice the extent, along the normal of an edge
-constexpr double kMaxRemaining = 0.6;  // of the residual's square, by the edge
-constexpr double kMaxDarkRatio = 0.8;  // of the light in the shadow to that beside it
-constexpr double kMinDarkRatio = 0.05;
+// What is narrower is ink, what is wider is light: times the width of a stroke. Where two strokes
+// cross there is room for a disc of 1.41 times their width.
+constexpr double kWidestInk = 1.5;
+constexpr double kBlurReachPx = 1;     // by which the blur widens ink on either side
+constexpr double kLeastLight = 0.2;    // in a shadow, share of the light beside it
+constexpr double kMaxRemaining = 0.5;  // of what the print does not explain, without its shadows
+constexpr double kBrightest = 0.9;     // quantile of the light that is that beside the shadows
 
-// Sums over what lies at one distance along the normal of an edge.
-struct Strip {
-  double reflected_squared = 0;
-  double reflected_gray = 0;
+struct Offset {
+  int x, y;
 };
 
-// Sums of a fit of gray values by two lights, each on its side of an edge.
-struct TwoLights {
-  double aa = 0, ab = 0, bb = 0, ag = 0, bg = 0;
+// A disc of the plane as the image shows it, in pixels of a patch: a structuring element.
+class Disc {
+ public:
+  // 'radius_m' wide on the plane of the points and 'radius_px' on top of that.
+  Disc(const SmallPatternWorkspace& workspace, double radius_m, double radius_px) {
+    const Eigen::Matrix2d metres_per_px = MeanDerivative(workspace);
+    const int stride = workspace.patch.stride;
+    for (int y = -kReach; y <= kReach; ++y) {
+      for (int x = -kReach; x <= kReach; ++x) {
+        const Eigen::Vector2d step_px(stride * x, stride * y);
+        const double length_px = step_px.norm();
+        const double px_per_m = length_px / std::max(1e-9, (metres_per_px * step_px).norm());
+        if (length_px <= radius_m * px_per_m + radius_px) offsets_[count_++] = {x, y};
+      }
+    }
+  }
+  std::span<const Offset> offsets() const { return {offsets_.data(), count_}; }
 
-  // 'reflected': what is reflected of the light, squared and times the gray values. 'share': of the
-  // light behind the edge.
-  void Add(double reflected_squared, double reflected_gray, double share) {
-    aa += reflected_squared * (1 - share) * (1 - share);
-    ab += reflected_squared * (1 - share) * share;
-    bb += reflected_squared * share * share;
-    ag += reflected_gray * (1 - share);
-    bg += reflected_gray * share;
+ private:
+  static constexpr int kReach = 9;
+
+  static Eigen::Matrix2d MeanDerivative(const SmallPatternWorkspace& workspace) {
+    const SmallPatternWorkspace::Points& points = workspace.points;
+    Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+    for (std::size_t i = 0; i < workspace.count; ++i) {
+      sum(0, 0) += points.x_by_u[i];
+      sum(0, 1) += points.x_by_v[i];
+      sum(1, 0) += points.y_by_u[i];
+      sum(1, 1) += points.y_by_v[i];
+    }
+    return sum / static_cast<double>(workspace.count);
   }
-  // Light on either side; what of the squared gray values they explain.
-  struct Solution {
-    double before, behind, explained;
-  };
-  Solution Solve() const {
-    const double determinant = aa * bb - ab * ab;
-    if (determinant < 1e-6 * aa * bb + 1e-9) return {0, 0, 0};
-    const double before = (bb * ag - ab * bg) / determinant;
-    const double behind = (aa * bg - ab * ag) / determinant;
-    return {before, behind, before * ag + behind * bg};
-  }
+
+  std::array<Offset, (2 * kReach + 1) * (2 * kReach + 1)> offsets_;
+  std::size_t count_ = 0;
 };
+
+// The best by 'better' of the values within a disc around each pixel of a patch.
+template <typename Better>
+void Filter(const SmallPatternWorkspace::Patch& patch, std::span<const Offset> disc,
+            const SmallPatternWorkspace::Column& from, const Better& better,
+            SmallPatternWorkspace::Column* to) {
+  for (int y = 0; y < patch.height; ++y) {
+    for (int x = 0; x < patch.width; ++x) {
+      const int at = y * patch.width + x;
+      if (!patch.is_print[at]) continue;
+      float best = from[at];
+      for (const Offset& offset : disc) {
+        const int xx = x + offset.x, yy = y + offset.y;
+        if (xx < 0 || yy < 0 || xx >= patch.width || yy >= patch.height) continue;
+        const int other = yy * patch.width + xx;
+        if (patch.is_print[other]) best = better(best, from[other]);
+      }
+      (*to)[at] = best;
+    }
+  }
+}
+
+// Morphological closing: fills what is dark and narrower than the disc.
+void Close(std::span<const Offset> disc, SmallPatternWorkspace::Patch* patch,
+           SmallPatternWorkspace::Column* values) {
+  const auto brighter = [](float a, float b) { return std::max(a, b); };
+  const auto darker = [](float a, float b) { return std::min(a, b); };
+  Filter(*patch, disc, *values, brighter, &patch->dilated);
+  Filter(*patch, disc, patch->dilated, darker, values);
+}
+
+// Share of the variance of the gray values that the print does not explain.
+double Unexplained(const SmallPatternWorkspace& workspace) {
+  const double correlation = CorrelatePrint(workspace);
+  return 1 - correlation * correlation;
+}
 
 }  // namespace
 
-std::optional<SmallPatternFitter::ShadowEdge> SmallPatternFitter::FitShadowEdge(
-    const State& state, const SmallPatternWorkspace& workspace) const {
+// The light on the pixels: closing takes the ink out of the image, because ink is narrow; what the
+// blur leaves of narrow white is compared with what it leaves of it in the print.
+void SmallPatternFitter::MeasureLight(const State& state, SmallPatternWorkspace* workspace) const {
+  SmallPatternWorkspace::Patch& patch = workspace->patch;
+  const Disc disc(*workspace, 0.5 * kWidestInk * pattern_.ring_width_m, kBlurReachPx);
   // What black reflects of the light that white does.
   const double blackness = std::clamp(state.contrast / state.white, 0.3, 0.95);
-  const SmallPatternWorkspace::Points& points = workspace.points;
-  const auto reflected_at = [&](std::size_t i) { return 1 - blackness * points.dark[i]; };
-  double squares = 0, one_light = 0, one_norm = 0;
-  for (std::size_t i = 0; i < workspace.count; ++i) {
-    const double gray = workspace.pixels.gray[i];
-    const double reflected = reflected_at(i);
-    squares += gray * gray;
-    one_light += reflected * gray;
-    one_norm += reflected * reflected;
+  std::fill_n(patch.is_print.begin(), patch.width * patch.height, false);
+  for (std::size_t i = 0; i < workspace->count; ++i) {
+    const std::size_t at = patch.IndexOf(workspace->u[i], workspace->v[i]);
+    patch.is_print[at] = true;
+    patch.gray[at] = workspace->pixels.gray[i];
+    patch.print[at] = static_cast<float>(1 - blackness * workspace->points.dark[i]);
   }
-  const double even_residual = squares - one_light * one_light / one_norm;
-
-  ShadowEdge best;
-  double best_residual = kMaxRemaining * even_residual;
-  for (int i = 0; i < kDirections; ++i) {
-    const double angle = i * std::numbers::pi / kDirections;
-    ShadowEdge edge{{std::cos(angle), std::sin(angle)}, 0, 1, 1};
-    // All edges of a direction have the same distances from the points: those are summed up first.
-    std::array<Strip, kStrips> strips{};
-    for (std::size_t k = 0; k < workspace.count; ++k) {
-      const double reflected = reflected_at(k);
-      const double distance = edge.normal.dot(Eigen::Vector2d(points.x[k], points.y[k]));
-      const auto at = static_cast<int>((distance / extent_m_ + 1) * (0.5 * kStrips));
-      Strip& strip = strips[std::clamp(at, 0, kStrips - 1)];
-      strip.reflected_squared += reflected * reflected;
-      strip.reflected_gray += reflected * workspace.pixels.gray[k];
-    }
-    for (int step = -8; step <= 8; ++step) {
-      edge.offset = step * kOffsetStep * extent_m_;
-      TwoLights lights;
-      for (int k = 0; k < kStrips; ++k) {
-        const double distance = ((k + 0.5) / (0.5 * kStrips) - 1) * extent_m_;
-        lights.Add(strips[k].reflected_squared, strips[k].reflected_gray,
-                   ShadowEdge::ShareAt(distance - edge.offset));
-      }
-      const TwoLights::Solution solution = lights.Solve();
-      const double residual = squares - solution.explained;
-      const double darker = std::min(solution.before, solution.behind);
-      const double brighter = std::max(solution.before, solution.behind);
-      if (residual >= best_residual || darker < kMinDarkRatio * brighter ||
-          darker > kMaxDarkRatio * brighter) {
-        continue;
-      }
-      best_residual = residual;
-      edge.before = darker / solution.before;
-      edge.behind = darker / solution.behind;
-      best = edge;
-    }
+  Close(disc.offsets(), &patch, &patch.gray);
+  Close(disc.offsets(), &patch, &patch.print);
+  for (std::size_t i = 0; i < workspace->count; ++i) {
+    const std::size_t at = patch.IndexOf(workspace->u[i], workspace->v[i]);
+    workspace->light[i] = patch.gray[at] / patch.print[at];
   }
-  if (best.normal.isZero()) return std::nullopt;
-  return best;
 }
 
-// Takes from the gray values of the workspace what the light beside a shadow adds to them. False
-// when there is no such edge.
+// Takes the shadows out of the gray values of the workspace. False when there are none that explain
+// what the print does not.
 bool SmallPatternFitter::EvenOut(SmallPatternWorkspace* workspace, State* state) const {
-  const std::optional<ShadowEdge> edge = FitShadowEdge(*state, *workspace);
-  if (!edge) return false;
-  state->edge = *edge;
+  const double before = Unexplained(*workspace);
+  MeasureLight(*state, workspace);
+  SmallPatternWorkspace::Column& sorted = workspace->magnitudes;
+  const auto last = std::copy_n(workspace->light.begin(), workspace->count, sorted.begin());
+  const auto brightest = sorted.begin() + static_cast<std::ptrdiff_t>(
+                                              kBrightest * static_cast<double>(workspace->count));
+  std::nth_element(sorted.begin(), brightest, last);
+  const auto least = static_cast<float>(kLeastLight) * *brightest;
+
+  std::array<double, kBoardDirections> sum{}, count{};
+  const SmallPatternWorkspace::Points& points = workspace->points;
   for (std::size_t i = 0; i < workspace->count; ++i) {
-    const double factor = edge->Factor(workspace->points.x[i], workspace->points.y[i]);
-    workspace->pixels.gray[i] *= static_cast<float>(factor);
+    const float factor = *brightest / std::clamp(workspace->light[i], least, *brightest);
+    workspace->pixels.gray[i] *= factor;
+    if (std::hypot(points.x[i], points.y[i]) < pattern_.outer_radius_m()) continue;
+    const double turn = std::atan2(points.y[i], points.x[i]) / (2 * std::numbers::pi);
+    const int direction =
+        static_cast<int>(std::floor((turn + 1) * kBoardDirections + 0.5)) % kBoardDirections;
+    sum[direction] += factor;
+    ++count[direction];
   }
+  for (int i = 0; i < kBoardDirections; ++i) {
+    state->board_factor[i] = count[i] > 0 ? sum[i] / count[i] : 1;
+  }
+  if (Unexplained(*workspace) > kMaxRemaining * before) return false;
   MeasureLevels(*workspace, state);
   return state->contrast >= kMinContrast;
 }

@@ -23,6 +23,8 @@ inline constexpr double kSaturated = 254;
 inline constexpr int kEnoughToFit = 1200;
 inline constexpr int kEnoughToStart = 600;
 inline constexpr int kEnoughToInspect = 600;
+inline constexpr int kEnoughToTellInk = 2400;  // from light, by its width
+inline constexpr int kBoardDirections = 24;    // in which the board is looked at
 
 // Ray to homogeneous coordinates of the plane of a pose.
 inline Eigen::Matrix3d PlaneFromRay(const RigidTransform& camera_from_pattern) {
@@ -49,23 +51,35 @@ inline PrintModel ModelOf(const LandingPattern& pattern, const RigidTransform& p
 // Quadrant between the arms, from x to y.
 inline int QuadrantOf(double x, double y) { return x > 0 ? (y > 0 ? 0 : 3) : (y > 0 ? 1 : 2); }
 
-// Where the light over the print changes: a soft straight edge between two lights.
-struct SmallPatternFitter::ShadowEdge {
-  Eigen::Vector2d normal{0, 0};  // unit vector in the plane, zero where there is no edge
-  double offset = 0;             // of the edge along the normal, metres
-  double before = 1;             // factors that make the light even on the two sides
-  double behind = 1;
+// Sums for the correlation of gray values with how dark a print is there.
+class DarknessCorrelation {
+ public:
+  void Add(double gray, double dark) {
+    ++n_;
+    g_ += gray;
+    gg_ += gray * gray;
+    d_ += dark;
+    dd_ += dark * dark;
+    gd_ += gray * dark;
+  }
+  // 1 when the image is bright where the print is not dark; -1 without any contrast.
+  double value() const {
+    const double variance = (gg_ - g_ * g_ / n_) * (dd_ - d_ * d_ / n_);
+    return variance > 0 ? -(gd_ - g_ * d_ / n_) / std::sqrt(variance) : -1;
+  }
 
-  // Share of the light behind the edge, 0 to 1, at so many metres behind it.
-  static double ShareAt(double distance) {
-    constexpr double kSoftness = 0.08;  // metres from the edge to where it ends
-    return std::clamp(0.5 + distance / (2 * kSoftness), 0.0, 1.0);
-  }
-  double Factor(double x, double y) const {
-    const double share = ShareAt(normal.x() * x + normal.y() * y - offset);
-    return 1 / ((1 - share) / before + share / behind);
-  }
+ private:
+  double n_ = 0, g_ = 0, gg_ = 0, d_ = 0, dd_ = 0, gd_ = 0;
 };
+
+// Correlation of the image with the whole print that is predicted.
+inline double CorrelatePrint(const SmallPatternWorkspace& workspace) {
+  DarknessCorrelation correlation;
+  for (std::size_t i = 0; i < workspace.count; ++i) {
+    correlation.Add(workspace.pixels.gray[i], workspace.points.dark[i]);
+  }
+  return correlation.value();
+}
 
 // The unknowns of a fit.
 struct SmallPatternFitter::State {
@@ -74,9 +88,15 @@ struct SmallPatternFitter::State {
   double white = 255;   // gray value, which the image may cut off
   double contrast = 0;  // white minus black
 
-  ShadowEdge edge;              // taken out of the gray values before the fit
   Eigen::Vector2d slope{0, 0};  // of the light over the print, gray values per metre
+  // Factors that take the shadows out of the gray values of the board, by direction.
+  std::array<double, kBoardDirections> board_factor = Filled(1.0);
 
+  static constexpr std::array<double, kBoardDirections> Filled(double value) {
+    std::array<double, kBoardDirections> all{};
+    all.fill(value);
+    return all;
+  }
   double White(double x, double y) const { return white + slope.x() * x + slope.y() * y; }
   // What exceeds white by more is a highlight: the print cannot be so bright.
   double Highlight() const {

@@ -15,13 +15,14 @@ namespace kestrel {
 std::optional<SmallPatternFitter::OtherSigns> SmallPatternFitter::Inspect(
     const cv::Mat& image, const RigidTransform& pose, Light light,
     SmallPatternWorkspace* workspace) const {
-  if (!Gather(image, pose, kEnoughToInspect, workspace)) return std::nullopt;
+  const int enough = light == Light::kShadows ? kEnoughToTellInk : kEnoughToInspect;
+  if (!Gather(image, pose, enough, workspace)) return std::nullopt;
   State state;
   state.pose = pose;
   Predict(state.pose, state.blur_px, workspace);
   MeasureLevels(*workspace, &state);
   if (state.contrast < kMinContrast) return std::nullopt;
-  if (light == Light::kShadowEdge && !EvenOut(workspace, &state)) return std::nullopt;
+  if (light == Light::kShadows && !EvenOut(workspace, &state)) return std::nullopt;
   CompareGrays(state.Light(), std::numeric_limits<float>::max(), workspace);
   return MeasureOthers(image, state, workspace);
 }
@@ -125,11 +126,10 @@ double SmallPatternFitter::CrossCorrelation(const SmallPatternWorkspace& workspa
 
 // The median over the directions in view: a white ring on dark ground has no board.
 double SmallPatternFitter::BoardDarkness(const cv::Mat& image, const State& state) const {
-  constexpr int kDirections = 24;
-  std::array<double, kDirections> darkness;
+  std::array<double, kBoardDirections> darkness;
   int seen = 0;
-  for (int i = 0; i < kDirections; ++i) {
-    const double angle = i * 2 * std::numbers::pi / kDirections;
+  for (int i = 0; i < kBoardDirections; ++i) {
+    const double angle = i * 2 * std::numbers::pi / kBoardDirections;
     const Eigen::Vector3d point(board_radius_m_ * std::cos(angle),
                                 board_radius_m_ * std::sin(angle), 0);
     Eigen::Vector2d pixel;
@@ -137,7 +137,7 @@ double SmallPatternFitter::BoardDarkness(const cv::Mat& image, const State& stat
     const float seen_gray =
         SampleGray(image, static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
     if (seen_gray < 0) continue;
-    const double gray = seen_gray * state.edge.Factor(point.x(), point.y());
+    const double gray = seen_gray * state.board_factor[i];
     const double white = state.White(point.x(), point.y());
     darkness[seen++] = seen_gray >= kSaturated ? 0 : (white - gray) / state.contrast;
   }

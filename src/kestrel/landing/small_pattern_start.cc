@@ -18,27 +18,6 @@ CirclePose Shrunk(const CirclePose& ring, double scale) {
   return {ring.center / scale, ring.normal};
 }
 
-// Sums for the correlation of gray values with how dark a print is there.
-class DarknessCorrelation {
- public:
-  void Add(double gray, double dark) {
-    ++n_;
-    g_ += gray;
-    gg_ += gray * gray;
-    d_ += dark;
-    dd_ += dark * dark;
-    gd_ += gray * dark;
-  }
-  // 1 when the image is bright where the print is not dark; -1 without any contrast.
-  double value() const {
-    const double variance = (gg_ - g_ * g_ / n_) * (dd_ - d_ * d_ / n_);
-    return variance > 0 ? -(gd_ - g_ * d_ / n_) / std::sqrt(variance) : -1;
-  }
-
- private:
-  double n_ = 0, g_ = 0, gg_ = 0, d_ = 0, dd_ = 0, gd_ = 0;
-};
-
 // Correlation of the image with the ring that is predicted, and the white around it. The ring looks
 // the same however it is turned.
 double CorrelateRing(const LandingPattern& pattern, const SmallPatternWorkspace& workspace) {
@@ -50,15 +29,6 @@ double CorrelateRing(const LandingPattern& pattern, const SmallPatternWorkspace&
     if (x * x + y * y > inner * inner) {
       correlation.Add(workspace.pixels.gray[i], points.ring[i]);
     }
-  }
-  return correlation.value();
-}
-
-// Correlation of the image with the whole print that is predicted.
-double CorrelatePrint(const SmallPatternWorkspace& workspace) {
-  DarknessCorrelation correlation;
-  for (std::size_t i = 0; i < workspace.count; ++i) {
-    correlation.Add(workspace.pixels.gray[i], workspace.points.dark[i]);
   }
   return correlation.value();
 }
