@@ -361,6 +361,35 @@ TEST_F(LandingPatternDetectorTest, TheAttitudeResolvesTheMirrorPose) {
   }
 }
 
+// Far prints are as alike under both poses of their ring as their noise: which is reported is
+// mostly the right one, and the covariance knows of the other.
+TEST_F(LandingPatternDetectorTest, TheCovarianceKnowsOfTheMirrorPose) {
+  Random random(11);
+  int mirrored = 0, wrong = 0;
+  for (int i = 0; i < 60; ++i) {
+    const double distance = random.Uniform(7, 11);
+    const RigidTransform truth = PrintPose(
+        {random.Uniform(-0.4, 0.4) * distance, random.Uniform(-0.3, 0.3) * distance, distance},
+        random.Uniform(0.4, 0.7), random.Uniform(0, 6), random.Uniform(0, 6));
+    const cv::Mat image = AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 3, &random);
+    const LandingReport report = Detect(image);
+    ASSERT_TRUE(report.detection) << i << ": " << report.reason;
+    const LandingDetection& detection = *report.detection;
+    if (!detection.mirror_camera_from_pattern) continue;
+    ++mirrored;
+    const RigidTransform& mirror = *detection.mirror_camera_from_pattern;
+    const auto tilt = [&](const RigidTransform& pose) {
+      return PoseError(pose, truth).tail<3>().norm();
+    };
+    wrong += tilt(detection.camera_from_pattern) > tilt(mirror);
+    const Eigen::Vector3d away = mirror.translation - detection.camera_from_pattern.translation;
+    const Eigen::Matrix3d covariance = detection.covariance.topLeftCorner<3, 3>();
+    EXPECT_LT(std::sqrt(away.dot(covariance.ldlt().solve(away))), 5) << i << ": sigma";
+  }
+  EXPECT_GT(mirrored, 30);
+  EXPECT_LT(wrong, 0.1 * mirrored);
+}
+
 TEST_F(LandingPatternDetectorTest, StagesAreCountedAndTimed) {
   const LandingReport report = Detect(image_);
   ASSERT_TRUE(report.detection);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Geometry>
+
 namespace kestrel {
 namespace {
 
@@ -15,18 +17,6 @@ constexpr std::size_t kMaxTested = 64;      // rings that are remembered
 constexpr std::size_t kMinBorders = 24;
 constexpr std::size_t kPixelsPerBorder = 8192;
 constexpr double kAlike = 0.05;  // difference of two qualities that says nothing
-
-// Whether 'a' explains the image better than 'b'. Of poses that agree alike with the part of a
-// print that is in view, the one is right whose edges lie nearer.
-bool IsBetter(const LandingDetection& a, double edge_rms_px_a, const LandingDetection& b,
-              double edge_rms_px_b) {
-  const bool partial = a.method == CrossMethod::kPartial && b.method == CrossMethod::kPartial;
-  const bool have_edges = edge_rms_px_a > 0 && edge_rms_px_b > 0;
-  if (partial && have_edges && std::abs(a.quality - b.quality) < kAlike) {
-    return edge_rms_px_a < edge_rms_px_b;
-  }
-  return a.quality > b.quality;
-}
 
 // Largest standard deviations of the position, shares of the distance. A wrong pose of a print of
 // which little is in view bends until the edges scatter little, but then they hardly hold it.
@@ -39,12 +29,25 @@ double RelativeSigma(const PatternLocation& location) {
          location.camera_from_pattern.translation.norm();
 }
 
+// How often the mirror pose is the right one although it explains the image less well: measured on
+// rendered stills, docs/location.md.
+constexpr double kMirrorIsRight = 0.05;
+
+// From one pose to the other: translation, then rotation vector, in the camera frame.
+Eigen::Matrix<double, 6, 1> Difference(const RigidTransform& from, const RigidTransform& to) {
+  const Eigen::AngleAxisd turn(to.rotation * from.rotation.inverse());
+  Eigen::Matrix<double, 6, 1> difference;
+  difference << to.translation - from.translation, turn.angle() * turn.axis();
+  return difference;
+}
+
 // Whether two detections are the two poses of one ring, between which the image does not decide.
 bool AreMirrorPoses(const LandingDetection& a, const LandingDetection& b) {
   constexpr double kSameCenterPx = 2;
   constexpr double kOtherNormal = 0.99;  // cosine between the normals
+  constexpr double kLikeQuality = 0.2;   // the wrong one bends the print out of its place
   const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
-  return std::abs(a.quality - b.quality) < kAlike &&
+  return std::abs(a.quality - b.quality) < kLikeQuality &&
          (a.center_px - b.center_px).norm() < kSameCenterPx &&
          (a.camera_from_pattern.rotation * z).dot(b.camera_from_pattern.rotation * z) <
              kOtherNormal;
@@ -251,8 +254,28 @@ void LandingSearch::Binarize(const Pass& pass) {
   if (pass.closing) CloseBits(&buffers_.binary.dark, &buffers_.scratch);
 }
 
-// Makes the location the detection, unless there is a better one. Where the image supports two
-// poses of the same ring alike, the other is told as well.
+// Whether 'a' explains the image better than 'b'. Of poses that agree alike with the part of a
+// print that is in view, the one is right whose edges lie nearer.
+bool LandingSearch::IsBetter(const Found& a, const Found& b) {
+  const LandingDetection& one = a.detection;
+  const LandingDetection& other = b.detection;
+  const bool partial = one.method == CrossMethod::kPartial && other.method == CrossMethod::kPartial;
+  const bool by_edges = a.edge_rms_px > 0 && b.edge_rms_px > 0;
+  if (partial && by_edges && std::abs(one.quality - other.quality) < kAlike) {
+    return a.edge_rms_px < b.edge_rms_px;
+  }
+  return one.quality > other.quality;
+}
+
+// Of the two poses of one ring: shares of contrasts that are in their place are the same under
+// both, how near to it they are is not.
+bool LandingSearch::IsBetterMirror(const Found& a, const Found& b) {
+  if (a.edge_rms_px > 0 && b.edge_rms_px > 0) return a.edge_rms_px < b.edge_rms_px;
+  if (a.gray_rms > 0 && b.gray_rms > 0) return a.gray_rms < b.gray_rms;
+  return IsBetter(a, b);
+}
+
+// Makes the location the detection, unless there is a better one.
 void LandingSearch::Keep(const PatternLocation& location, CrossMethod method, double quality,
                          const Eigen::Vector2d& diameters_px) {
   const double sigma = RelativeSigma(location);
@@ -271,17 +294,36 @@ void LandingSearch::Keep(const PatternLocation& location, CrossMethod method, do
     return;
   }
   Reach(LandingStage::kFound, {});
-  std::optional<LandingDetection>& best = report_.detection;
-  const bool better = !best || IsBetter(detection, location.edge_rms_px, *best, best_edge_rms_px_);
-  if (best && AreMirrorPoses(*best, detection)) {
-    LandingDetection& winner = better ? detection : *best;
-    winner.mirror_camera_from_pattern =
-        better ? best->camera_from_pattern : detection.camera_from_pattern;
+  if (KeepBetter({detection, location.edge_rms_px, location.gray_rms})) {
+    is_sure_ = !is_part || sigma <= kMaxSureSigma;
   }
-  if (!better) return;
-  best = detection;
-  best_edge_rms_px_ = location.edge_rms_px;
-  is_sure_ = !is_part || sigma <= kMaxSureSigma;
+  ReportBest();
+}
+
+// Whether what was found is the best so far.
+bool LandingSearch::KeepBetter(const Found& found) {
+  if (best_ && AreMirrorPoses(best_->detection, found.detection)) {
+    const bool better = IsBetterMirror(found, *best_);
+    mirror_ = better ? best_ : found;
+    if (better) best_ = found;
+    return better;
+  }
+  if (best_ && !IsBetter(found, *best_)) return false;
+  if (mirror_ && !AreMirrorPoses(mirror_->detection, found.detection)) mirror_.reset();
+  best_ = found;
+  return true;
+}
+
+// Where the image supports two poses of the same ring alike, the other is told as well, and the
+// covariance is that of both together.
+void LandingSearch::ReportBest() {
+  report_.detection = best_->detection;
+  if (!mirror_) return;
+  LandingDetection& detection = *report_.detection;
+  detection.mirror_camera_from_pattern = mirror_->detection.camera_from_pattern;
+  const Eigen::Matrix<double, 6, 1> difference =
+      Difference(detection.camera_from_pattern, *detection.mirror_camera_from_pattern);
+  detection.covariance += kMirrorIsRight * difference * difference.transpose();
 }
 
 }  // namespace kestrel

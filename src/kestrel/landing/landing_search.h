@@ -133,6 +133,12 @@ class LandingSearch {
     Cross cross;
     CrossMethod method;
   };
+  // A detection and what of the image it leaves unexplained.
+  struct Found {
+    LandingDetection detection;
+    double edge_rms_px;  // 0 where the print was fitted as a whole
+    double gray_rms;     // 0 where edges were used
+  };
 
   void MakeRoom();
   void Binarize(const Pass& pass);
@@ -190,6 +196,10 @@ class LandingSearch {
   void Locate(const Hypothesis& hypothesis, const Eigen::Vector2d& diameters_px, double reach_px);
   void Keep(const PatternLocation& location, CrossMethod method, double quality,
             const Eigen::Vector2d& diameters_px);
+  bool KeepBetter(const Found& found);
+  static bool IsBetter(const Found& a, const Found& b);
+  static bool IsBetterMirror(const Found& a, const Found& b);
+  void ReportBest();
   void Reach(LandingStage stage, std::string_view reason_if_it_ends_here);
 
   const LandingModels& models_;
@@ -202,8 +212,9 @@ class LandingSearch {
   cv::Point offset_{0, 0};            // of that part in the image
   double expected_ring_px_ = 0;       // diameter by the hint; 0 when it says nothing
   LandingReport report_;
-  double best_edge_rms_px_ = 0;  // of its detection
-  bool is_sure_ = false;         // of where that is
+  std::optional<Found> best_;
+  std::optional<Found> mirror_;  // of the best, where it was found too
+  bool is_sure_ = false;         // of where the best is
 };
 
 }  // namespace kestrel

@@ -27,7 +27,7 @@ constexpr double kMinCrossCorrelation = 0.7;
 constexpr double kCrossForDarkBoard = 1.2;
 constexpr double kMaxOtherSpokes = 0.65;
 constexpr double kMaxOtherSpokesOfSmall = 0.58;
-constexpr double kMaxFrameCorners = 0.14;
+constexpr double kMaxFrameCorners = 0.12;
 constexpr double kMaxBoardDarkness = 0.35;
 constexpr double kEveryPart = 0.95;              // quality of a print of which nothing is missing
 constexpr double kSmallMargin = 0.1;             // of the quality of a small pattern
@@ -341,8 +341,8 @@ bool LandingSearch::TestSmallPose(const CirclePose& pose, const Eigen::Vector2d&
 }
 
 // Whether there is another sign where a pattern was located, in even light and without the shadows
-// on it. Where every part of the print was seen next to its own white, gray
-// values that do not fit the whole tell of the light alone.
+// on it. Where every part of the print was seen next to its own white, gray values that do not fit
+// the whole tell of the light alone.
 bool LandingSearch::ShowsOtherSign(const RigidTransform& pose, double quality) {
   using Light = SmallPatternFitter::Light;
   const auto is_other = quality >= kEveryPart ? HasOtherSpokes : IsOtherSign;

@@ -24,6 +24,7 @@ struct PatternLocation {
   double edge_rms_px = 0;  // of the edges used, from the projected pattern
   double edge_share = 0;   // share of the pattern's edges in the image that were found there
   int edges = 0;           // how many were used
+  double gray_rms = 0;     // gray values, of a print that was fitted as a whole, from the model
   // The same share for each arm and for the ring around it; negative when the image shows less than
   // a quarter of it.
   std::array<double, 4> arm_share{};

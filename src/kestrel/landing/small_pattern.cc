@@ -346,6 +346,7 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   Fit fit;
   fit.location.camera_from_pattern = state.pose;
   fit.location.covariance = covariance.topLeftCorner<6, 6>();
+  fit.location.gray_rms = std::sqrt(system.squares / system.count);
   const Zones zones(pattern_, *workspace, limit);
   fit.inside_residual = zones.InsideRms() / state.contrast;
   fit.ring_residual = zones.ring.Rms() / state.contrast;

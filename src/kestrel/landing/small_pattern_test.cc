@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
+#include "kestrel/landing/small_pattern_model.h"
 #include "kestrel/landing/test_prints.h"
 
 namespace kestrel {
@@ -33,6 +36,23 @@ class SmallPatternTest : public ::testing::Test {
   }
   cv::Mat Draw(const Print& print, const RigidTransform& pose) const {
     return DrawPrint(camera_, pattern_, print, pose);
+  }
+  // The image with less light where 'shadow' says so of points of the plane of 'pose'.
+  cv::Mat Shade(const cv::Mat& image, const RigidTransform& pose,
+                const std::function<bool(double, double)>& shadow) const {
+    constexpr double kLight = 0.45;
+    cv::Mat shaded = image.clone();
+    for (int v = 0; v < image.rows; ++v) {
+      for (int u = 0; u < image.cols; ++u) {
+        Eigen::Vector3d ray;
+        camera_.Unproject({static_cast<double>(u), static_cast<double>(v)}, &ray);
+        const Eigen::Vector3d point = PlaneFromRay(pose) * ray;
+        if (!shadow(point.x() / point.z(), point.y() / point.z())) continue;
+        auto& gray = shaded.at<std::uint8_t>(v, u);
+        gray = static_cast<std::uint8_t>(kLight * gray);
+      }
+    }
+    return shaded;
   }
 
   const LandingPattern pattern_{};
@@ -136,34 +156,51 @@ TEST_F(SmallPatternTest, OtherSignsShowWhatThePrintHasNot) {
   }
 }
 
-TEST_F(SmallPatternTest, AShadowEdgeIsTakenOut) {
+// Behind a straight edge, and under the body and the four rotors of a UAV.
+TEST_F(SmallPatternTest, ShadowsAreTakenOut) {
   Random random(6);
+  const auto edge = [](double x, double y) { return 0.6 * x + 0.8 * y > 0.1; };
+  const auto uav = [](double x, double y) {
+    const auto disc = [&](double cx, double cy, double radius) {
+      return std::hypot(x - cx, y - cy) < radius;
+    };
+    return disc(0.2, 0, 0.15) || disc(-0.1, 0.2, 0.14) || disc(-0.1, -0.2, 0.14) ||
+           disc(0.5, 0.2, 0.14) || disc(0.5, -0.2, 0.14);
+  };
+  for (const std::function<bool(double, double)>& shadow :
+       {std::function<bool(double, double)>(edge), std::function<bool(double, double)>(uav)}) {
+    for (const int diameter_px : {18, 24, 28, 40}) {
+      const RigidTransform truth = PoseOf(diameter_px, &random);
+      const cv::Mat even = Draw(SpokedPrint(pattern_, 4), truth);
+      const cv::Mat shaded = AddNoise(Shade(even, truth, shadow), 1.5, &random);
+      const auto lit = fitter_.Inspect(shaded, truth, Light::kEven, &workspace_);
+      const auto evened = fitter_.Inspect(shaded, truth, Light::kShadows, &workspace_);
+      ASSERT_TRUE(lit && evened) << diameter_px;
+      EXPECT_GT(evened->cross_correlation, 0.85) << diameter_px;
+      EXPECT_GT(evened->cross_correlation, lit->cross_correlation + 0.05) << diameter_px;
+      EXPECT_LT(std::abs(evened->board_darkness), 0.2) << diameter_px;
+      const auto fit = fitter_.Refine(shaded, truth, Light::kShadows, 8, &workspace_);
+      ASSERT_TRUE(fit) << diameter_px;
+      EXPECT_GT(fit->correlation, 0.93) << diameter_px;
+      EXPECT_GT(fit->match.Quality(), 0.85) << diameter_px;
+      EXPECT_FALSE(fitter_.Inspect(even, truth, Light::kShadows, &workspace_)) << "there are none";
+    }
+  }
+}
+
+// Their lines are as narrow as those of the print: no shadows explain them.
+TEST_F(SmallPatternTest, ShadowsDoNotExplainOtherSigns) {
+  Random random(9);
+  const Print frame = [this](double x, double y) {
+    const double reach = std::max(std::abs(x + y), std::abs(x - y)) / std::numbers::sqrt2;
+    return std::abs(reach - 0.45) < 0.05 || IsSpoke(x, y, 4, 0.05, 0.6);
+  };
   for (const int diameter_px : {18, 24, 28, 40}) {
     const RigidTransform truth = PoseOf(diameter_px, &random);
-    const cv::Mat even = Draw(SpokedPrint(pattern_, 4), truth);
-    cv::Mat shaded = even.clone();
-    Eigen::Vector2d center;
-    camera_.Project(truth.translation, &center);
-    for (int v = 0; v < shaded.rows; ++v) {
-      for (int u = 0; u < shaded.cols; ++u) {
-        const double behind = 0.6 * (u - center.x()) + 0.8 * (v - center.y()) - 1;
-        const double light = 1 - 0.65 * std::clamp(0.5 + 0.3 * behind, 0.0, 1.0);
-        auto& gray = shaded.at<std::uint8_t>(v, u);
-        gray = static_cast<std::uint8_t>(light * gray);
-      }
+    for (const Print& print : {SpokedPrint(pattern_, 8), SpokedPrint(pattern_, 6), frame}) {
+      const cv::Mat image = AddNoise(Draw(print, truth), 1.5, &random);
+      EXPECT_FALSE(fitter_.Inspect(image, truth, Light::kShadows, &workspace_)) << diameter_px;
     }
-    shaded = AddNoise(shaded, 1.5, &random);
-    const auto lit = fitter_.Inspect(shaded, truth, Light::kEven, &workspace_);
-    const auto evened = fitter_.Inspect(shaded, truth, Light::kShadowEdge, &workspace_);
-    ASSERT_TRUE(lit && evened) << diameter_px;
-    EXPECT_GT(evened->cross_correlation, 0.85) << diameter_px;
-    EXPECT_GT(evened->cross_correlation, lit->cross_correlation + 0.05) << diameter_px;
-    EXPECT_LT(std::abs(evened->board_darkness), 0.2) << diameter_px;
-    const auto fit = fitter_.Refine(shaded, truth, Light::kShadowEdge, 8, &workspace_);
-    ASSERT_TRUE(fit) << diameter_px;
-    EXPECT_GT(fit->correlation, 0.93) << diameter_px;
-    EXPECT_GT(fit->match.Quality(), 0.75) << diameter_px;
-    EXPECT_FALSE(fitter_.Inspect(even, truth, Light::kShadowEdge, &workspace_)) << "there is none";
   }
 }
 
