@@ -290,23 +290,45 @@ void ReportHard(const Options& options, Measured* measured) {
 // Stills of one bin have seeds of their own, the same in every run.
 std::uint64_t Seed(std::size_t bin, std::size_t index) { return 1'000'000 * (bin + 1) + index; }
 
-LandingTally ReportStillsOfBin(std::size_t bin, int stills, FaultLog* faults) {
+std::vector<LandingScore> ReportStillsOfBin(std::size_t bin, int stills, FaultLog* faults) {
   LandingStillOptions options;
   options.min_altitude_m = kAltitudeBins[bin].min_m;
   options.max_altitude_m = kAltitudeBins[bin].max_m;
   const LandingStillMaker maker(options);
   const LandingPatternDetector detector(maker.camera(), {});
   const std::string name = kAltitudeBins[bin].Name();
-  LandingTally t(ScoreFrames(
+  std::vector<LandingScore> scores = ScoreFrames(
       detector, stills, kThreads, HintKind::kNone,
       [&](std::size_t i) { return FrameFromStill(maker, name, Seed(bin, i)); },
-      [&](const LandingFrame& frame, const LandingScore& score) { faults->See(frame, score); }));
-  fmt::print("| {} | {} | {:.1f} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.1f} | {:.1f} |\n",
-             name, t.frames, Percent(t.FoundShare()), t.wrong, Quantile(t.center_errors_px, 0.5),
-             Quantile(t.center_errors_px, 0.95), Percent(Quantile(t.position_errors, 0.5)),
-             Percent(Quantile(t.position_errors, 0.95)), Mean(t.nees), Quantile(t.nees, 0.5));
+      [&](const LandingFrame& frame, const LandingScore& score) { faults->See(frame, score); });
+  const LandingTally t(scores);
+  fmt::print(
+      "| {} | {} | {:.1f} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.1f} | {:.1f} | {} of {} "
+      "|\n",
+      name, t.frames, Percent(t.FoundShare()), t.wrong, Quantile(t.center_errors_px, 0.5),
+      Quantile(t.center_errors_px, 0.95), Percent(Quantile(t.position_errors, 0.5)),
+      Percent(Quantile(t.position_errors, 0.95)), Mean(t.nees), Quantile(t.nees, 0.5), t.mirrored,
+      t.with_mirror);
   std::fflush(stdout);
-  return t;
+  return scores;
+}
+
+// Found of so many, by altitude and by what makes them hard.
+void PrintStillsByGroup(const std::vector<std::vector<LandingScore>>& bins) {
+  fmt::print("\n| found of |");
+  for (const AltitudeBin& bin : kAltitudeBins) fmt::print(" {} |", bin.Name());
+  fmt::print("\n|---|---|---|---|---|---|\n");
+  for (const char* group : kStillGroups) {
+    fmt::print("| {} |", group);
+    for (const std::vector<LandingScore>& scores : bins) {
+      LandingTally tally;
+      for (const LandingScore& score : scores) {
+        if (score.group == group) tally.Add(score);
+      }
+      fmt::print(" {} of {} |", tally.found, tally.frames);
+    }
+    fmt::print("\n");
+  }
 }
 
 LandingTally ScoreLookalikes(int stills, FaultLog* faults) {
@@ -329,19 +351,22 @@ void ReportStills(const Options& options, Measured* measured) {
       "\n## Our own stills\n\nThe paper's lens, tilt to 40 degrees, anywhere in the lens circle, "
       "at least a quarter of the pattern in view. NEES of the position: 3 is right.\n\n"
       "| altitude | stills | found, % | wrong | centre error median, px | 95 %, px | position "
-      "error median, % | 95 %, % | NEES mean | median "
-      "|\n|---|---|---|---|---|---|---|---|---|---|\n");
+      "error median, % | 95 %, % | NEES mean | median | mirror pose was the right one "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|\n");
   FaultLog faults(options);
+  std::vector<std::vector<LandingScore>> bins;
   std::vector<double> position_errors;
   int wrong = 0;
   for (std::size_t bin = 0; bin < kAltitudeBins.size(); ++bin) {
-    const LandingTally tally = ReportStillsOfBin(bin, options.stills, &faults);
+    bins.push_back(ReportStillsOfBin(bin, options.stills, &faults));
+    const LandingTally tally(bins.back());
     (*measured)[fmt::format("stills {}: found, %", kAltitudeBins[bin].Name())] =
         Percent(tally.FoundShare());
     position_errors.insert(position_errors.end(), tally.position_errors.begin(),
                            tally.position_errors.end());
     wrong += tally.wrong;
   }
+  PrintStillsByGroup(bins);
   const LandingTally lookalikes = ScoreLookalikes(options.stills, &faults);
   fmt::print("\nLook-alikes: {} images, {} false detections.\n\n", lookalikes.negatives,
              lookalikes.false_detections);

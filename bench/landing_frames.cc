@@ -121,6 +121,12 @@ RigidTransform PoseAt(const std::vector<PoseSample>& poses, const Frame& frame) 
   return pose->world_from_body;
 }
 
+const char* GroupOf(const LandingStill& still) {
+  if (still.visible_fraction < 1) return kStillGroups[3];
+  if (still.has_highlight) return kStillGroups[2];
+  return kStillGroups[still.has_shadow ? 1 : 0];
+}
+
 LandingFrameSet ReadHardCondition(const fs::path& folder) {
   ImageSequence images = OpenEurocRecording(folder.string());
   const CameraCalibration calibration = ReadCalibration(images.calibration_file());
@@ -190,12 +196,12 @@ std::vector<LandingFrameSet> ReadLandingHard(const std::string& data_dir) {
   return sets;
 }
 
-LandingFrame FrameFromStill(const LandingStillMaker& maker, const std::string& group,
+LandingFrame FrameFromStill(const LandingStillMaker& maker, const std::string& set,
                             std::uint64_t seed) {
   const LandingStill still = maker.MakePattern(seed);
   LandingFrame frame;
-  frame.name = fmt::format("{} seed {}", group, seed);
-  frame.group = group;
+  frame.name = fmt::format("{} seed {}", set, seed);
+  frame.group = GroupOf(still);
   frame.image = still.image;
   frame.truth = PatternTruth::kWhole;
   frame.center_px = still.center_px;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,8 +53,13 @@ std::vector<LandingFrameSet> ReadLandingReal(const std::string& data_dir);
 // in the EuRoC layout). Empty when there is no such folder; throws InputError as above.
 std::vector<LandingFrameSet> ReadLandingHard(const std::string& data_dir);
 
-// A rendered still, named after its group and seed.
-LandingFrame FrameFromStill(const LandingStillMaker& maker, const std::string& group,
+// What a still may have that makes it hard: the groups of rendered stills, a still that has several
+// in the last of them.
+inline constexpr std::array<const char*, 4> kStillGroups{"whole, no shadow or highlight", "shadow",
+                                                         "highlight", "cut off or hidden in part"};
+
+// A rendered still, named after its set and seed.
+LandingFrame FrameFromStill(const LandingStillMaker& maker, const std::string& set,
                             std::uint64_t seed);
 LandingFrame FrameFromLookalikes(const LandingStillMaker& maker, const std::string& group,
                                  std::uint64_t seed);

@@ -32,6 +32,8 @@ struct LandingScore {
   double center_error_px = 0;                             // found, kWhole
   double position_error = 0;  // found, pose known: over the true distance
   double nees = 0;            // found, pose known: squared position error over covariance
+  bool has_mirror = false;    // found, pose known: the mirror pose was told as well,
+  bool is_mirrored = false;   // and has the truer tilt
   LandingStage reached{};
   std::string reason;
 };
@@ -78,6 +80,8 @@ class LandingTally {
   int partial_right = 0;
   int negatives = 0;
   int false_detections = 0;  // in negatives
+  int with_mirror = 0;       // of those whose pose is known
+  int mirrored = 0;          // of these: the mirror pose was the right one
   std::vector<double> center_errors_px;
   std::vector<double> position_errors;
   std::vector<double> nees;

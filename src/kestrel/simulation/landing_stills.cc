@@ -324,6 +324,8 @@ LandingStill LandingStillMaker::PreparePattern(std::uint64_t seed, View* view) c
   AddRandomPattern(still.pattern, &random, &view->scene);
   AddRandomShadow(radius, &random, &view->scene);
   AddRandomGlare(radius, &random, &view->scene);
+  still.has_shadow = !view->scene.shadows.empty();
+  still.has_highlight = !view->scene.glares.empty();
   view->imaging = RandomImaging(still.ring_minor_px, &random);
   AddRandomMotion(camera_, still.camera_from_pattern, still.ring_minor_px, &random, &view->imaging);
 

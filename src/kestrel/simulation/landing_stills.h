@@ -48,8 +48,10 @@ struct LandingStill {
   double altitude_m;                   // of the camera above the pattern's plane
   Eigen::Vector3d up_in_camera;        // unit vector away from the ground
   double visible_fraction;             // of ring and cross, see VisibleFraction
-  double ring_major_px;                // largest and smallest width of the outer ring's image,
-  double ring_minor_px;                // whole, as if the image had no border
+  bool has_shadow = false;     // of the UAV, or the edge of a larger one, on or near the ring
+  bool has_highlight = false;  // a mirrored sun on or near the ring
+  double ring_major_px;        // largest and smallest width of the outer ring's image,
+  double ring_minor_px;        // whole, as if the image had no border
 };
 
 // One rendered image without the landing pattern.
