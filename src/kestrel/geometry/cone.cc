@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -56,6 +57,22 @@ struct PlaneMoments {
   }
 };
 
+// The quadratic coefficients (a, b, c) of the ellipse, 4 a c - b^2 = 1, for which v^T m v is least;
+// 'm' is symmetric and has no negative eigenvalues. With m = l l^T, m v = lambda c v becomes a
+// symmetric problem in w = l^T v, which has one positive eigenvalue, 1 / lambda.
+std::optional<Eigen::Vector3d> LeastEllipse(Eigen::Matrix3d m) {
+  m.diagonal().array() += 1e-14 * m.trace();  // points on an ellipse leave nothing
+  const Eigen::LLT<Eigen::Matrix3d> factor(m);
+  if (factor.info() != Eigen::Success) return std::nullopt;
+  Eigen::Matrix3d constraint;
+  constraint << 0, 0, 2, 0, -1, 0, 2, 0, 0;
+  const Eigen::Matrix3d half = factor.matrixL().solve(constraint);
+  const Eigen::Matrix3d whole = factor.matrixL().solve(half.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(whole);
+  if (!(solver.eigenvalues()(2) > 0)) return std::nullopt;
+  return factor.matrixU().solve(solver.eigenvectors().col(2));
+}
+
 }  // namespace
 
 Eigen::Vector2d Cone::HalfAngles() const {
@@ -89,30 +106,20 @@ std::optional<Cone> FitCone(std::span<const Eigen::Vector3d> rays) {
   if (std::abs(s3.determinant()) < 1e-12) return std::nullopt;
   const Eigen::Matrix3d t = -s3.inverse() * s2.transpose();
   const Eigen::Matrix3d m = s1 + s2 * t;
-  // Inverse of the constraint matrix of 4 a c - b^2 = 1, applied to m.
-  Eigen::Matrix3d constrained;
-  constrained.row(0) = 0.5 * m.row(2);
-  constrained.row(1) = -m.row(1);
-  constrained.row(2) = 0.5 * m.row(0);
-  const Eigen::EigenSolver<Eigen::Matrix3d> solver(constrained);
-  if (solver.info() != Eigen::Success) return std::nullopt;
-  const Eigen::Matrix3d vectors = solver.eigenvectors().real();
-  for (int i = 0; i < 3; ++i) {
-    const Eigen::Vector3d a = vectors.col(i);
-    if (4 * a(0) * a(2) - a(1) * a(1) <= 0) continue;
-    const Eigen::Vector3d b = t * a;
-    Eigen::Matrix3d conic;
-    conic << a(0) * scale * scale, 0.5 * a(1) * scale * scale, 0.5 * b(0) * scale,
-        0.5 * a(1) * scale * scale, a(2) * scale * scale, 0.5 * b(1) * scale,  //
-        0.5 * b(0) * scale, 0.5 * b(1) * scale, b(2);
-    if (a(0) + a(2) < 0) conic = -conic;
-    if (!(conic.determinant() < 0)) return std::nullopt;  // an empty or degenerate conic
-    Cone cone;
-    cone.matrix = tangent_from_camera.transpose() * conic * tangent_from_camera;
-    cone.matrix /= cone.matrix.norm();
-    return cone;
-  }
-  return std::nullopt;
+  const std::optional<Eigen::Vector3d> quadratic = LeastEllipse(m);
+  if (!quadratic) return std::nullopt;
+  const Eigen::Vector3d& a = *quadratic;
+  const Eigen::Vector3d b = t * a;
+  Eigen::Matrix3d conic;
+  conic << a(0) * scale * scale, 0.5 * a(1) * scale * scale, 0.5 * b(0) * scale,
+      0.5 * a(1) * scale * scale, a(2) * scale * scale, 0.5 * b(1) * scale,  //
+      0.5 * b(0) * scale, 0.5 * b(1) * scale, b(2);
+  if (a(0) + a(2) < 0) conic = -conic;
+  if (!(conic.determinant() < 0)) return std::nullopt;  // an empty or degenerate conic
+  Cone cone;
+  cone.matrix = tangent_from_camera.transpose() * conic * tangent_from_camera;
+  cone.matrix /= cone.matrix.norm();
+  return cone;
 }
 
 std::array<CirclePose, 2> CirclePosesFromCone(const Cone& cone, double radius,
