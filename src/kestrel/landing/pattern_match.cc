@@ -38,6 +38,7 @@ struct Seen {
   float ratio;
   bool known() const { return difference != kUnseen; }
 };
+constexpr Seen kNotSeen{kUnseen, kUnseen, kUnseen};
 
 struct Tally {
   static constexpr int kSeenOf = 5;  // at least one in so many
@@ -187,7 +188,7 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
   const auto look_at = [&](const Contrast& contrast) -> Seen {
     const float dark = sample(contrast.dark).first;
     const auto [bright, brighter] = sample(contrast.bright);
-    if (dark < 0 || bright < 0) return {kUnseen, kUnseen, kUnseen};
+    if (dark < 0 || bright < 0) return kNotSeen;
     return {bright - dark, brighter - dark, (bright - dark) / std::max(bright, 1.0f)};
   };
 
@@ -195,8 +196,8 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
   // ring; but not less than a third of what it is over the whole ring. Where the ring is out of
   // view it is that of the arms.
   std::array<Seen, kRingPlaces> of_ring;
-  std::array<float, kRingPlaces> known, known_ratio;
-  std::size_t count = 0;
+  std::array<float, kRingPlaces> known, known_ratio, ink;
+  std::size_t count = 0, ink_count = 0;
   std::array<std::array<float, kRingPlaces>, 4> of_quarter;
   std::array<std::size_t, 4> quarter_count{};
   for (std::size_t i = 0; i < ring_.size(); ++i) {
@@ -204,11 +205,12 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
     if (!of_ring[i].known()) continue;
     known[count] = of_ring[i].difference;
     known_ratio[count++] = of_ring[i].ratio;
+    ink[ink_count++] = sample(ring_[i].dark).first;
     const int q = ring_[i].quarter;
     of_quarter[q][quarter_count[q]++] = of_ring[i].difference;
   }
   if (count < kRingPlaces / 6) {
-    count = 0;
+    count = ink_count = 0;
     for (const Contrast& contrast : arms_) {
       if (count == known.size()) break;
       const Seen arm_contrast = look_at(contrast);
@@ -236,6 +238,13 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
            (value.difference >= least_in_shadow &&
             (value.ratio >= least_ratio || value.brighter_difference >= least_in_light));
   };
+  // What is nearer to black than to white on an arm and beside it hides it, as a landing leg does:
+  // where there is no arm at all there is white.
+  const float middle = Median(&ink, ink_count) + 0.5f * static_cast<float>(match.contrast);
+  const auto hides_arm = [&](const Contrast& contrast) {
+    return ink_count > 0 && sample(contrast.dark).first < middle &&
+           sample(contrast.bright).first < middle;
+  };
   int seen = 0, all = 0;
   const auto count_in = [&](const Contrast& contrast, const Seen& value,
                             std::array<Tally, 4>* tallies) {
@@ -248,7 +257,11 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
     tally.agreed += agrees(value, contrast.quarter);
   };
   for (std::size_t i = 0; i < ring_.size(); ++i) count_in(ring_[i], of_ring[i], &ring);
-  for (const Contrast& contrast : arms_) count_in(contrast, look_at(contrast), &arm);
+  for (const Contrast& contrast : arms_) {
+    const Seen value = look_at(contrast);
+    const bool hidden = value.known() && !agrees(value, contrast.quarter) && hides_arm(contrast);
+    count_in(contrast, hidden ? kNotSeen : value, &arm);
+  }
   std::size_t place = 0;
   for (int q = 0; q < 4; ++q) {
     bool spoke = false;

@@ -66,6 +66,17 @@ TEST_F(PatternMatcherTest, AMissingArmIsSeen) {
   EXPECT_LT(match.Quality(), kMinQuality);
 }
 
+TEST_F(PatternMatcherTest, AnArmBehindALandingLegIsNotMissing) {
+  const Print pattern = SpokedPrint(pattern_, 4);
+  const Print behind_leg = [&](double x, double y) {
+    return pattern(x, y) || (x > 0.1 && std::abs(y) < 0.13);
+  };
+  const PatternMatch match = Match(Draw(behind_leg), pose_);
+  EXPECT_LT(match.arm[0], 0) << "not seen";
+  EXPECT_GT(match.arm[1], 0.9);
+  EXPECT_GT(match.Quality(), 0.65);
+}
+
 TEST_F(PatternMatcherTest, AnArmAlongTheImageBorderIsSeenByItsInnerSide) {
   // The centre 5 px from the border: of the arms along it only one side is in view.
   const RigidTransform pose = PrintPose({-154.5 / 220, 0, 1}, 0, 0, 0);
