@@ -157,13 +157,14 @@ void ThresholdRow(const std::uint8_t* HWY_RESTRICT minimum,
                   const std::uint8_t* HWY_RESTRICT maximum, const std::uint8_t* HWY_RESTRICT mean,
                   const std::uint8_t* HWY_RESTRICT dark_instead,
                   const std::uint8_t* HWY_RESTRICT bright_instead, std::size_t count,
-                  int min_contrast, std::uint8_t* HWY_RESTRICT dark,
+                  int min_contrast, bool black, std::uint8_t* HWY_RESTRICT dark,
                   std::uint8_t* HWY_RESTRICT bright) {
   const auto least = static_cast<std::uint8_t>(min_contrast < 255 ? min_contrast : 255);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t contrast = maximum[i] - minimum[i];
     const std::uint8_t margin = (contrast >> 4) + 1;
-    const std::uint8_t below = mean[i] > margin ? mean[i] - margin : 0;
+    const std::uint8_t below_mean = mean[i] > margin ? mean[i] - margin : 0;
+    const std::uint8_t below = black ? minimum[i] + (contrast >> 2) : below_mean;
     const std::uint8_t above = (mean[i] & maximum[i]) + ((mean[i] ^ maximum[i]) >> 1);
     dark[i] = contrast >= least ? below : dark_instead[i];
     bright[i] = contrast >= least ? above : bright_instead[i];
@@ -343,7 +344,8 @@ int LocalThreshold::ContrastQuantile(double share) const {
   return contrast;
 }
 
-void LocalThreshold::ChooseThresholds(int min_contrast) {
+void LocalThreshold::ChooseThresholds(int min_contrast, Dark what) {
+  const bool black = what == Dark::kBlack;
   const std::size_t columns = fine_box_.columns;
   // A row of coarse thresholds, per fine tile; first what stands where nothing decides.
   row_.Resize(3 * columns);
@@ -356,7 +358,7 @@ void LocalThreshold::ChooseThresholds(int min_contrast) {
     const std::size_t at = static_cast<std::size_t>(y) * coarse_box_.columns;
     HWY_DYNAMIC_DISPATCH(ThresholdRow)
     (&coarse_box_.minimum[at], &coarse_box_.maximum[at], &coarse_box_.mean[at], dark_row,
-     bright_row, coarse_box_.columns, min_contrast, &coarse_.dark[at], &coarse_.bright[at]);
+     bright_row, coarse_box_.columns, min_contrast, black, &coarse_.dark[at], &coarse_.bright[at]);
   }
   fine_.Resize(fine_box_.minimum.size());
   int coarse_y = -1;
@@ -375,7 +377,7 @@ void LocalThreshold::ChooseThresholds(int min_contrast) {
     const std::size_t at = static_cast<std::size_t>(y) * columns;
     HWY_DYNAMIC_DISPATCH(ThresholdRow)
     (&fine_box_.minimum[at], &fine_box_.maximum[at], &fine_box_.mean[at], dark_row, bright_row,
-     columns, min_contrast, &fine_.dark[at], &fine_.bright[at]);
+     columns, min_contrast, black, &fine_.dark[at], &fine_.bright[at]);
   }
 }
 
@@ -393,11 +395,11 @@ void LocalThreshold::ExpandRow(int tile_row, int width) {
 }
 
 void LocalThreshold::Binarize(const cv::Mat& image, const cv::Rect& region, int min_contrast,
-                              BinaryImage* binary) {
+                              BinaryImage* binary, Dark what) {
   binary->dark.Reset(image.cols, image.rows);
   binary->bright.Reset(image.cols, image.rows);
   if (fine_box_.minimum.empty()) return;
-  ChooseThresholds(min_contrast);
+  ChooseThresholds(min_contrast, what);
 
   // Pixels right of the last whole word are compared in a copy, so that nothing is read beyond the
   // row; there nothing is dark or bright beyond the image.

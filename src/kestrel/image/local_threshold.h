@@ -59,6 +59,10 @@ struct BinaryImage {
 // dark; where that has too little as well, a pixel is neither.
 class LocalThreshold {
  public:
+  // What is dark: as above, or only what is within a quarter of the contrast of the darkest pixel
+  // of the box: black paint, but no shadow on white.
+  enum class Dark { kBelowMean, kBlack };
+
   // Computes the boxes for the image at 'image_level' of the pyramid, of tiles of level
   // 'tile_level' > image_level: a box has 3 * 2^(tile_level - image_level) pixels of that image.
   // Does not allocate once it has seen an image of this size; Binarize neither.
@@ -69,11 +73,11 @@ class LocalThreshold {
 
   // Decides the pixels of 'region'; what lies outside is neither dark nor bright.
   // 'min_contrast' >= 1: smallest contrast of a box that decides.
-  void Binarize(const cv::Mat& image, const cv::Rect& region, int min_contrast,
-                BinaryImage* binary);
+  void Binarize(const cv::Mat& image, const cv::Rect& region, int min_contrast, BinaryImage* binary,
+                Dark what = Dark::kBelowMean);
 
  private:
-  void ChooseThresholds(int min_contrast);
+  void ChooseThresholds(int min_contrast, Dark what);
   void ExpandRow(int tile_row, int width);
 
   int tile_px_ = 0;

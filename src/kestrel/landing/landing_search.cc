@@ -61,6 +61,9 @@ const std::array<LandingSearch::Pass, LandingWorkspace::Buffers::kPasses> Landin
         {.image_level = 3, .tile_level = 5, .min_ring_px = 64, .max_ring_px = 1e9},
         {.image_level = 2, .tile_level = 4, .min_ring_px = 32, .max_ring_px = 400},
         {.image_level = 1, .tile_level = 3, .min_ring_px = 16, .max_ring_px = 200},
+        {.image_level = 3, .tile_level = 5, .min_ring_px = 64, .max_ring_px = 1e9, .black = true},
+        {.image_level = 2, .tile_level = 4, .min_ring_px = 32, .max_ring_px = 400, .black = true},
+        {.image_level = 1, .tile_level = 3, .min_ring_px = 16, .max_ring_px = 200, .black = true},
         {.image_level = 0, .tile_level = 1, .min_ring_px = 6, .max_ring_px = 120, .closing = true},
         {.image_level = 0, .tile_level = 2, .min_ring_px = 6, .max_ring_px = 120, .narrow = true},
         {.image_level = 0,
@@ -102,7 +105,7 @@ void LandingSearch::MakeRoom() {
     const cv::Mat image = buffers_.pyramid.ImageAt(kPasses[i].image_level);
     buffers_.tracers[i].Reserve(image.cols, image.rows);
     if (!image.empty()) Binarize(kPasses[i]);
-    if (i < kCoarsePasses) most_points = std::max(most_points, buffers_.tracers[i].capacity());
+    if (i < kFirstFinePass) most_points = std::max(most_points, buffers_.tracers[i].capacity());
   }
   buffers_.candidates.reserve(kMaxCollected);
   buffers_.rays.reserve(2 * LandingWorkspace::Buffers::kMaxRays);
@@ -140,15 +143,22 @@ void LandingSearch::SearchRegion() {
     Trace(i);
     TestAreas(i);
   };
+  const auto test_arcs = [this](std::size_t i) { TestArcs(i); };
+  const auto test_cut_areas = [this](std::size_t i) { TestCutAreas(i); };
   run(0, kCoarsePasses, trace_and_test);
-  run(0, kCoarsePasses, [this](std::size_t i) { TestArcs(i); });
+  run(0, kCoarsePasses, test_arcs);
+  run(kCoarsePasses, kFirstFinePass, [this](std::size_t i) {
+    Trace(i);
+    TestArcs(i);
+  });
   const bool low = !hint_.altitude_m || *hint_.altitude_m <= models_.options.max_partial_altitude_m;
   if (low) run(0, kPartialPasses, [this](std::size_t i) { TestPartial(i); });
-  run(kCoarsePasses, kPasses.size(), trace_and_test);
+  run(kFirstFinePass, kPasses.size(), trace_and_test);
   run(kPiecesPass, kPiecesPass + 1, [this](std::size_t i) { TestPieces(i); });
-  run(kCoarsePasses, kPasses.size(), [this](std::size_t i) { TestQuadrants(i); });
-  run(kCoarsePasses - 1, kPasses.size(), [this](std::size_t i) { TestCutAreas(i); });
-  run(kCoarsePasses, kPasses.size(), [this](std::size_t i) { TestArcs(i); });
+  run(kFirstFinePass, kPasses.size(), [this](std::size_t i) { TestQuadrants(i); });
+  run(kCoarsePasses - 1, kCoarsePasses, test_cut_areas);
+  run(kFirstFinePass, kPasses.size(), test_cut_areas);
+  run(kFirstFinePass, kPasses.size(), test_arcs);
 }
 
 void LandingSearch::BuildPyramid(int last_level) {
@@ -248,8 +258,9 @@ void LandingSearch::Binarize(const Pass& pass) {
   const cv::Mat image = buffers_.pyramid.ImageAt(pass.image_level);
   buffers_.threshold.Measure(buffers_.pyramid, pass.image_level, pass.tile_level);
   const int contrast = std::clamp(buffers_.threshold.ContrastQuantile(0.7), 12, 32);
+  using Dark = LocalThreshold::Dark;
   buffers_.threshold.Binarize(image, cv::Rect(0, 0, image.cols, image.rows), contrast,
-                              &buffers_.binary);
+                              &buffers_.binary, pass.black ? Dark::kBlack : Dark::kBelowMean);
   if (pass.not_bright) InvertBits(buffers_.binary.bright, &buffers_.binary.dark);
   if (pass.closing) CloseBits(&buffers_.binary.dark, &buffers_.scratch);
 }

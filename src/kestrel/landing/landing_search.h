@@ -75,7 +75,7 @@ struct RingPlace {
 };
 
 struct LandingWorkspace::Buffers {
-  static constexpr std::size_t kPasses = 6;
+  static constexpr std::size_t kPasses = 9;
   static constexpr std::size_t kMaxRays = 48;  // of a border
 
   int width_px = 0;  // of the images that there is room for
@@ -112,12 +112,14 @@ class LandingSearch {
     int tile_level;           // tiles of the threshold's box
     double min_ring_px;       // minor axis, full resolution
     double max_ring_px;       // major axis, full resolution
+    bool black = false;       // dark is what is black: not what lies in a shadow
     bool closing = false;     // close gaps of the dark areas first
     bool not_bright = false;  // dark is all that is not bright
     bool narrow = false;      // rings beside narrow strokes of white as well
   };
-  static constexpr std::size_t kCoarsePasses = 3;   // whose borders are cut into arcs
-  static constexpr std::size_t kPiecesPass = 4;     // that sees thin strokes apart from each other
+  static constexpr std::size_t kCoarsePasses = 3;   // whose borders are cut into arcs,
+  static constexpr std::size_t kFirstFinePass = 6;  // those before it too
+  static constexpr std::size_t kPiecesPass = 7;     // that sees thin strokes apart from each other
   static constexpr std::size_t kPartialPasses = 2;  // in which the cross of a near pattern is seen
   static constexpr double kMinFittedCorrelation = 0.84;  // of a small pattern
   static const std::array<Pass, LandingWorkspace::Buffers::kPasses> kPasses;

@@ -17,6 +17,7 @@ constexpr double kMaxEdgeRmsPx = 0.7;
 constexpr double kMaxEdgeRms = 0.02;     // the same of small rings, share of the mean axis
 constexpr double kInspectedRingPx = 80;  // mean axis below which it is looked for other signs
 constexpr double kMinMajorPx = 9;        // of the smallest ring
+constexpr double kMinAxisRatio = 0.08;   // of the flattest one
 // Differences of the residuals inside of a small ring, on it and around it, share of the contrast.
 constexpr double kMaxMoreInside = 0.085;
 constexpr double kMaxMoreOnRing = 0.12;
@@ -306,8 +307,10 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
   }
 }
 
+// Whether too little is left of a ring, or it is seen along its plane.
 bool LandingSearch::IsTooSmall(const Eigen::Vector2d& diameters_px) const {
-  return diameters_px.x() < kMinMajorPx || diameters_px.y() < 0.7 * models_.options.min_ring_px;
+  return diameters_px.x() < kMinMajorPx || diameters_px.y() < 0.7 * models_.options.min_ring_px ||
+         diameters_px.y() < kMinAxisRatio * diameters_px.x();
 }
 
 // Keeps the pattern if there is one; false when there is none under the ring's other pose either.
