@@ -5,6 +5,8 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <span>
 
@@ -32,7 +34,7 @@ std::uint64_t BesideBright(const std::uint64_t* bright, int word, int words, boo
   return narrow ? left | right : left & right;
 }
 
-// How often the size of a border is compared with the limit.
+// After how many steps of a walk the size of its border is compared with the limit.
 constexpr std::size_t kCheckInterval = 32;
 
 // Bounding box of points.
@@ -49,6 +51,105 @@ struct Extent {
   }
   int Longer() const { return std::max(max.x - min.x, max.y - min.y); }
   int Shorter() const { return std::min(max.x - min.x, max.y - min.y); }
+};
+
+// What decides how a walk goes on, in one number: the four pixels around a vertex, row by row, and
+// the direction in which the walk came there.
+constexpr unsigned kSituations = 16 * 4;
+constexpr unsigned Situation(unsigned upper_pair, unsigned lower_pair, unsigned direction) {
+  return 16 * lower_pair + 4 * upper_pair + direction;
+}
+
+// Forth is with the dark pixels on the right. Dark areas are 8-connected: a dark pixel on the left
+// turns left, even where it touches the one on the right at the vertex only; without either the
+// border turns right. Back is the mirror image.
+enum class Sense { kForth, kBack };
+constexpr unsigned NextDirection(unsigned situation, Sense sense) {
+  const unsigned direction = situation % 4;
+  const auto is_dark = [situation](int x, int y) { return (situation >> (5 + 2 * y + x)) & 1; };
+  const unsigned is_left = is_dark(kLeftX[direction], kLeftY[direction]);
+  const unsigned is_right = is_dark(kRightX[direction], kRightY[direction]);
+  const unsigned is_neither = (is_left | is_right) ^ 1;
+  const unsigned quarters =
+      sense == Sense::kForth ? 3 * is_left + is_neither : is_right + 3 * is_neither;
+  return (direction + quarters) % 4;
+}
+
+constexpr std::array<std::uint8_t, kSituations> NextDirections(Sense sense) {
+  std::array<std::uint8_t, kSituations> next{};
+  for (unsigned i = 0; i < kSituations; ++i) {
+    next[i] = static_cast<std::uint8_t>(NextDirection(i, sense));
+  }
+  return next;
+}
+
+// A vertex (above bit 32) and the number of the bit of its pixel: one number, so that a step is one
+// addition.
+std::uint64_t Place(int x, int y, std::ptrdiff_t stride) {
+  return (static_cast<std::uint64_t>(y * 65536 + x) << 32) +
+         static_cast<std::uint64_t>(y * stride + x);
+}
+GridPoint VertexOf(std::uint64_t place) {
+  return std::bit_cast<GridPoint>(static_cast<std::uint32_t>(place >> 32));
+}
+std::uint32_t BitOf(std::uint64_t place) { return static_cast<std::uint32_t>(place); }
+
+// Where a walk stands, and the step that it takes next.
+struct Walk {
+  std::uint64_t place;
+  std::uint64_t step;
+  unsigned direction;
+};
+
+// The step after the last one, of walks of one sense.
+struct Turns {
+  std::array<std::uint8_t, kSituations> direction;
+  std::array<std::uint64_t, kSituations> step;
+};
+
+Turns MakeTurns(Sense sense, std::ptrdiff_t stride) {
+  static constexpr std::array<std::uint8_t, kSituations> kNext[] = {NextDirections(Sense::kForth),
+                                                                    NextDirections(Sense::kBack)};
+  Turns turns{.direction = kNext[static_cast<int>(sense)], .step = {}};
+  std::array<std::uint64_t, 4> steps;
+  for (int d = 0; d < 4; ++d) steps[d] = Place(kStepX[d], kStepY[d], stride);
+  for (unsigned i = 0; i < kSituations; ++i) turns.step[i] = steps[turns.direction[i]];
+  return turns;
+}
+
+// The images that a walk reads and marks, addressed by bytes: two pixels that stand in two words
+// are read as easily as in one, and a mark seldom waits for the one made just before.
+static_assert(std::endian::native == std::endian::little);
+struct WalkedImages {
+  const std::uint8_t* above;  // dark pixels, from the row above the first
+  const std::uint8_t* below;  // the same from the first row
+  std::uint8_t* traced;
+
+  // Pixel 'right' and the one before.
+  static unsigned Pair(const std::uint8_t* pixels, std::uint32_t right) {
+    std::uint16_t bits;
+    std::memcpy(&bits, pixels + right / 8 - 1, sizeof(bits));
+    return (unsigned{bits} >> (right % 8 + 7)) & 3;
+  }
+
+  // Chooses the next step of a walk that has just taken one.
+  void Turn(const Turns& turns, Walk* walk) const {
+    const std::uint32_t bit = BitOf(walk->place);
+    const unsigned now = Situation(Pair(above, bit), Pair(below, bit), walk->direction);
+    walk->direction = turns.direction[now];
+    walk->step = turns.step[now];
+  }
+
+  // Marks the upper edge of the pixel at 'place' if it 'is_walked', and returns whether it was
+  // marked before then. Computed instead of branched on, as in texture every second turn would be
+  // predicted wrong.
+  bool Mark(std::uint64_t place, bool is_walked) const {
+    const unsigned mark = unsigned{is_walked} << (BitOf(place) % 8);
+    std::uint8_t& marks = traced[BitOf(place) / 8];
+    const unsigned before = marks;
+    marks = static_cast<std::uint8_t>(before | mark);
+    return (before & mark) != 0;
+  }
 };
 
 // Area within a closed walk, by Green's theorem: only steps along y sweep area.
@@ -86,6 +187,68 @@ int ContrastAcross(const cv::Mat& image, const GridPoint* points, std::size_t co
 
 }  // namespace
 
+// Walks along the borders of a binary image.
+class BorderWalks {
+ public:
+  BorderWalks(const BitImage& dark, BitImage* traced)
+      : images_{.above = reinterpret_cast<const std::uint8_t*>(dark.row(-1)),
+                .below = reinterpret_cast<const std::uint8_t*>(dark.row(0)),
+                .traced = reinterpret_cast<std::uint8_t*>(traced->row(0))},
+        stride_(std::ptrdiff_t{64} * dark.words_per_row()),
+        forth_(MakeTurns(Sense::kForth, stride_)),
+        back_(MakeTurns(Sense::kBack, stride_)) {}
+
+  // Walks around the border that has the upper edge of pixel (x, y), and returns how many points it
+  // has put at the front of 'room'; 0 if it gave up, as the border is too large for 'max_extent' or
+  // the room, or was given up before. May return a border that is slightly too large.
+  std::size_t WalkAround(int x, int y, int max_extent, std::span<GridPoint> room) const;
+
+ private:
+  WalkedImages images_;
+  std::ptrdiff_t stride_;
+  Turns forth_;
+  Turns back_;
+};
+
+// A border is walked both ways at once: a step has to wait for the one before it, but not for the
+// other walk's. As a closed walk on a grid has an even number of steps, both meet after half of
+// them. The way back fills the room from its end.
+std::size_t BorderWalks::WalkAround(int x, int y, int max_extent, std::span<GridPoint> room) const {
+  const WalkedImages images = images_;  // a copy, which no mark can change for the compiler
+  const std::uint64_t start = Place(x, y, stride_);
+  Walk forth{.place = start, .step = Place(1, 0, stride_), .direction = kRight};
+  Walk back{.place = start, .step = 0, .direction = kLeft};
+  images.Turn(back_, &back);
+  GridPoint* const end = room.data() + room.size();
+  GridPoint* front = room.data();
+  GridPoint* tail = end;
+  Extent seen;
+  for (bool met = false; !met;) {
+    // The limits are looked at after some steps at a time: a step is short.
+    const std::size_t steps = std::min<std::size_t>(kCheckInterval, (tail - front) / 2);
+    GridPoint* const last = front + steps;
+    bool walked = steps == 0;  // no room, or where a border that was given up was walked
+    while (front < last && !met && !walked) {
+      *front++ = VertexOf(forth.place);
+      walked = images.Mark(forth.place, forth.direction == kRight);
+      forth.place += forth.step;
+      images.Turn(forth_, &forth);
+
+      const unsigned came = back.direction;
+      back.place += back.step;
+      *--tail = VertexOf(back.place);
+      walked |= images.Mark(back.place, came == kLeft);
+      images.Turn(back_, &back);
+      met = forth.place == back.place && (forth.direction ^ came) == 2;  // opposite directions
+    }
+    if (walked) return 0;
+    seen.Add(std::span(front - 1, 1));
+    seen.Add(std::span(tail, 1));
+    if (seen.Longer() > max_extent) return 0;
+  }
+  return std::copy(tail, end, front) - room.data();
+}
+
 void BorderTracer::Reserve(int width, int height) {
   constexpr std::size_t kLeast = 4096;
   const std::size_t pixels = static_cast<std::size_t>(width) * height;
@@ -100,6 +263,7 @@ void BorderTracer::Trace(const BinaryImage& binary, const cv::Rect& region,
   Clear();
   const BitImage& dark = binary.dark;
   Reserve(dark.width(), dark.height());
+  const BorderWalks walks(dark, &traced_);
   const int first_word = region.x / 64;
   const int last_word = (region.x + region.width + 63) / 64;
   for (int y = region.y; y < region.y + region.height; ++y) {
@@ -114,7 +278,7 @@ void BorderTracer::Trace(const BinaryImage& binary, const cv::Rect& region,
       // Of a run of neighbouring candidates one is enough.
       std::uint64_t starts = candidates & ~(candidates << 1);
       while ((starts &= ~traced[word]) != 0) {
-        TraceFrom(dark, 64 * word + std::countr_zero(starts), y, limits);
+        TraceFrom(walks, 64 * word + std::countr_zero(starts), y, limits);
         starts &= starts - 1;
       }
     }
@@ -142,55 +306,13 @@ std::span<GridPoint> BorderTracer::Room() {
   return std::span(points_).subspan(used_);
 }
 
-void BorderTracer::TraceFrom(const BitImage& dark, int x, int y, const BorderLimits& limits) {
+void BorderTracer::TraceFrom(const BorderWalks& walks, int x, int y, const BorderLimits& limits) {
   const std::span<GridPoint> room = Room();
-  // Pixels are addressed by the number of their bit, so that a step is one addition.
-  const std::uint64_t* words = dark.row(0);
-  std::uint64_t* traced = traced_.row(0);
-  const std::ptrdiff_t stride = std::ptrdiff_t{64} * dark.words_per_row();
-  const auto bit = [words](std::ptrdiff_t index) {
-    return static_cast<int>((words[index >> 6] >> (index & 63)) & 1);
-  };
-  std::array<std::ptrdiff_t, 4> step, left, right;
-  for (int d = 0; d < 4; ++d) {
-    step[d] = kStepY[d] * stride + kStepX[d];
-    left[d] = kLeftY[d] * stride + kLeftX[d];
-    right[d] = kRightY[d] * stride + kRightX[d];
-  }
-
-  const std::ptrdiff_t start = y * stride + x;
-  std::ptrdiff_t at = start;
-  int direction = kRight;
-  std::size_t count = 0;
+  const std::size_t count = walks.WalkAround(x, y, limits.max_extent, room);
+  if (count == 0 || count < limits.min_count) return;
   Extent extent;
-  bool closed = false;
-  while (!closed) {
-    // The limits are looked at after some steps at a time: a step is short.
-    const std::size_t first = count;
-    const std::size_t last = std::min(count + kCheckInterval, room.size());
-    bool walked = first == last;  // no room, or where a border that was given up was walked
-    while (count < last && !closed && !walked) {
-      room[count++] = {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)};
-      // Steps to the right walk along the upper edge of a pixel: computed instead of branched on,
-      // as in texture every second turn would be predicted wrong.
-      const std::uint64_t upper = std::uint64_t{direction == kRight} << (at & 63);
-      std::uint64_t& traced_word = traced[at >> 6];
-      walked = (traced_word & upper) != 0;
-      traced_word |= upper;
-      x += kStepX[direction];
-      y += kStepY[direction];
-      at += step[direction];
-      // Dark areas are 8-connected: a dark pixel on the left turns left, even where it touches the
-      // one on the right at the vertex only; without either the border turns right.
-      const int is_left = bit(at + left[direction]);
-      const int is_right = bit(at + right[direction]);
-      direction = (direction + 3 * is_left + ((is_left | is_right) ^ 1)) & 3;
-      closed = at == start && direction == kRight;
-    }
-    extent.Add(room.subspan(first, count - first));
-    if (walked || extent.Longer() > limits.max_extent) return;
-  }
-  if (count < limits.min_count || extent.Shorter() < limits.min_extent) return;
+  extent.Add(room.first(count));
+  if (extent.Longer() > limits.max_extent || extent.Shorter() < limits.min_extent) return;
   borders_.push_back({.first = used_,
                       .count = count,
                       .signed_area = SignedArea(room.first(count)),

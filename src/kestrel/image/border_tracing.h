@@ -39,6 +39,8 @@ struct BorderLimits {
   bool narrow = false;         // borders beside bright strokes of less than three pixels as well
 };
 
+class BorderWalks;
+
 // Traces every border of a binary image once (border following, after Suzuki and Abe 1985, on the
 // cracks between the pixels: 8-connected dark areas, 4-connected holes). A border is followed only
 // if, somewhere along an upper edge of it, the three pixels two above are bright, or with
@@ -75,7 +77,7 @@ class BorderTracer {
 
  private:
   std::span<GridPoint> Room();
-  void TraceFrom(const BitImage& dark, int x, int y, const BorderLimits& limits);
+  void TraceFrom(const BorderWalks& walks, int x, int y, const BorderLimits& limits);
 
   BitImage traced_;  // pixels whose upper edge has been walked along
   std::vector<Border> borders_;

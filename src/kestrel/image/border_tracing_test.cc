@@ -114,6 +114,20 @@ TEST(BorderTracer, WalksInUnitStepsWithTheDarkOnItsRight) {
   }
 }
 
+TEST(BorderTracer, ABorderBeginsWithItsUppermostUpperEdge) {
+  const BinaryImage binary = DrawFigure(
+      40, 40, [](int x, int y) { return InDisc(x, y, 20, 20, 14) && !InDisc(x, y, 20, 20, 6); });
+  const BorderTracer tracer = TraceAll(binary);
+  ASSERT_EQ(tracer.borders().size(), 2u);
+  // The topmost of the disc, and of those below the hole the topmost and leftmost.
+  const auto begins_at = [&](std::size_t border, int x, int y) {
+    const GridPoint* points = tracer.begin(tracer.borders()[border]);
+    return points[0].x == x && points[0].y == y && points[1].x == x + 1 && points[1].y == y;
+  };
+  EXPECT_TRUE(begins_at(0, 20, 6));
+  EXPECT_TRUE(begins_at(1, 14, 21));
+}
+
 TEST(BorderTracer, ARingHasAnOuterBorderAndThatOfItsHole) {
   const auto in_hole = [](int x, int y) { return InDisc(x, y, 41, 39, 15); };
   const BinaryImage binary =
