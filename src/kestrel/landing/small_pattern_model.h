@@ -51,34 +51,33 @@ inline PrintModel ModelOf(const LandingPattern& pattern, const RigidTransform& p
 // Quadrant between the arms, from x to y.
 inline int QuadrantOf(double x, double y) { return x > 0 ? (y > 0 ? 0 : 3) : (y > 0 ? 1 : 2); }
 
-// Sums for the correlation of gray values with how dark a print is there.
-class DarknessCorrelation {
+// Correlation of two series, -1 to 1; 0 where one of them does not change.
+class Correlation {
  public:
-  void Add(double gray, double dark) {
+  void Add(double a, double b) {
     ++n_;
-    g_ += gray;
-    gg_ += gray * gray;
-    d_ += dark;
-    dd_ += dark * dark;
-    gd_ += gray * dark;
+    a_ += a;
+    aa_ += a * a;
+    b_ += b;
+    bb_ += b * b;
+    ab_ += a * b;
   }
-  // 1 when the image is bright where the print is not dark; -1 without any contrast.
   double value() const {
-    const double variance = (gg_ - g_ * g_ / n_) * (dd_ - d_ * d_ / n_);
-    return variance > 0 ? -(gd_ - g_ * d_ / n_) / std::sqrt(variance) : -1;
+    const double variances = (aa_ - a_ * a_ / n_) * (bb_ - b_ * b_ / n_);
+    return n_ > 0 && variances > 0 ? (ab_ - a_ * b_ / n_) / std::sqrt(variances) : 0;
   }
 
  private:
-  double n_ = 0, g_ = 0, gg_ = 0, d_ = 0, dd_ = 0, gd_ = 0;
+  double n_ = 0, a_ = 0, aa_ = 0, b_ = 0, bb_ = 0, ab_ = 0;
 };
 
 // Correlation of the image with the whole print that is predicted.
 inline double CorrelatePrint(const SmallPatternWorkspace& workspace) {
-  DarknessCorrelation correlation;
+  Correlation with_dark;
   for (std::size_t i = 0; i < workspace.count; ++i) {
-    correlation.Add(workspace.pixels.gray[i], workspace.points.dark[i]);
+    with_dark.Add(workspace.pixels.gray[i], workspace.points.dark[i]);
   }
-  return correlation.value();
+  return -with_dark.value();
 }
 
 // The unknowns of a fit.

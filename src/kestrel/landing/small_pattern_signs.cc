@@ -106,22 +106,14 @@ double SmallPatternFitter::FrameCorners(const SmallPatternWorkspace& workspace,
 }
 
 double SmallPatternFitter::CrossCorrelation(const SmallPatternWorkspace& workspace) const {
-  double n = 0, g = 0, gg = 0, d = 0, dd = 0, gd = 0;
   const double reach = pattern_.arm_half_length_m;
   const SmallPatternWorkspace::Points& points = workspace.points;
+  Correlation with_expected;
   for (std::size_t i = 0; i < workspace.count; ++i) {
     const double x = points.x[i], y = points.y[i];
-    if (x * x + y * y > reach * reach) continue;
-    const double seen = points.seen[i], expected = points.expected[i];
-    ++n;
-    g += seen;
-    gg += seen * seen;
-    d += expected;
-    dd += expected * expected;
-    gd += seen * expected;
+    if (x * x + y * y <= reach * reach) with_expected.Add(points.seen[i], points.expected[i]);
   }
-  const double variance = (gg - g * g / n) * (dd - d * d / n);
-  return n > 0 && variance > 0 ? (gd - g * d / n) / std::sqrt(variance) : 0;
+  return with_expected.value();
 }
 
 // The median over the directions in view: a white ring on dark ground has no board.

@@ -23,14 +23,14 @@ CirclePose Shrunk(const CirclePose& ring, double scale) {
 double CorrelateRing(const LandingPattern& pattern, const SmallPatternWorkspace& workspace) {
   const auto inner = static_cast<float>(pattern.inner_radius_m());
   const SmallPatternWorkspace::Points& points = workspace.points;
-  DarknessCorrelation correlation;
+  Correlation with_dark;
   for (std::size_t i = 0; i < workspace.count; ++i) {
     const float x = points.x[i], y = points.y[i];
     if (x * x + y * y > inner * inner) {
-      correlation.Add(workspace.pixels.gray[i], points.ring[i]);
+      with_dark.Add(workspace.pixels.gray[i], points.ring[i]);
     }
   }
-  return correlation.value();
+  return -with_dark.value();
 }
 
 }  // namespace
