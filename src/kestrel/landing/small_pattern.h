@@ -57,9 +57,10 @@ struct SmallPatternWorkspace {
     Column print;  // the same in even light, white 1
     Column dilated;
 
-    std::size_t IndexOf(float u, float v) const {
-      return static_cast<std::size_t>((static_cast<int>(v) - top) / stride * width +
-                                      (static_cast<int>(u) - left) / stride);
+    std::size_t IndexOf(float x, float y) const {
+      const auto column = static_cast<std::size_t>((static_cast<int>(x) - left) / stride);
+      const auto row = static_cast<std::size_t>((static_cast<int>(y) - top) / stride);
+      return row * static_cast<std::size_t>(width) + column;
     }
   };
 
