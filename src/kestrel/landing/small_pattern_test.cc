@@ -191,7 +191,7 @@ TEST_F(SmallPatternTest, ShadowsAreTakenOut) {
 // Their lines are as narrow as those of the print: no shadows explain them.
 TEST_F(SmallPatternTest, ShadowsDoNotExplainOtherSigns) {
   Random random(9);
-  const Print frame = [this](double x, double y) {
+  const Print frame = [](double x, double y) {
     const double reach = std::max(std::abs(x + y), std::abs(x - y)) / std::numbers::sqrt2;
     return std::abs(reach - 0.45) < 0.05 || IsSpoke(x, y, 4, 0.05, 0.6);
   };
