@@ -169,8 +169,10 @@ TEST_F(SmallPatternTest, ShadowsAreTakenOut) {
   };
   for (const std::function<bool(double, double)>& shadow :
        {std::function<bool(double, double)>(edge), std::function<bool(double, double)>(uav)}) {
-    for (const int diameter_px : {18, 24, 28, 40}) {
-      const RigidTransform truth = PoseOf(diameter_px, &random);
+    for (const int diameter_px : {20, 24, 28, 40}) {
+      const double distance = 220.0 / diameter_px;
+      const RigidTransform truth =
+          PrintPose({0.1 * distance, -0.05 * distance, distance}, 0.2, 1, 0.04 * diameter_px);
       const cv::Mat even = Draw(SpokedPrint(pattern_, 4), truth);
       const cv::Mat shaded = AddNoise(Shade(even, truth, shadow), 1.5, &random);
       const auto lit = fitter_.Inspect(shaded, truth, Light::kEven, &workspace_);
