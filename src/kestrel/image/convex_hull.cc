@@ -5,38 +5,29 @@
 
 namespace kestrel {
 
-ConvexHull::ConvexHull(Points one, Points other) {
+ConvexHull::ConvexHull(Points points) {
   // The ends of every row hold the hull; one side of it is walked down, the other one up.
   struct Row {
     int left = 1 << 16;
     int right = -1;
   };
   std::array<Row, kMaxHeight + 1> rows;
-  const std::array<Points, 2> borders{one, other};
-  int top = one[0].y, bottom = one[0].y;
-  for (const Points& border : borders) {
-    for (const GridPoint& point : border) {
-      top = std::min<int>(top, point.y);
-      bottom = std::max<int>(bottom, point.y);
-    }
+  int top = points[0].y, bottom = points[0].y;
+  for (const GridPoint& point : points) {
+    top = std::min<int>(top, point.y);
+    bottom = std::max<int>(bottom, point.y);
   }
   const int last = std::min(bottom - top, kMaxHeight);
-  for (const Points& border : borders) {
-    for (const GridPoint& point : border) {
-      Row& row = rows[std::min(point.y - top, last)];
-      row.left = std::min<int>(row.left, point.x);
-      row.right = std::max<int>(row.right, point.x);
-    }
+  for (const GridPoint& point : points) {
+    Row& row = rows[std::min(point.y - top, last)];
+    row.left = std::min<int>(row.left, point.x);
+    row.right = std::max<int>(row.right, point.x);
   }
+  // A border is connected: it has points in every row.
   const auto corner = [&](int x, int row) { return Eigen::Vector2d(x - 0.5, top + row - 0.5); };
-  const auto is_between = [&](int row) { return rows[row].right < rows[row].left; };  // of borders
-  for (int row = 0; row <= last; ++row) {
-    if (!is_between(row)) Append(corner(rows[row].right, row), 0);
-  }
+  for (int row = 0; row <= last; ++row) Append(corner(rows[row].right, row), 0);
   const std::size_t turn = count_;
-  for (int row = last; row >= 0; --row) {
-    if (!is_between(row)) Append(corner(rows[row].left, row), turn);
-  }
+  for (int row = last; row >= 0; --row) Append(corner(rows[row].left, row), turn);
 }
 
 // Appends a point to the convex chain that starts at corner 'first'; corners that would be dents

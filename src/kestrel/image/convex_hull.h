@@ -11,8 +11,8 @@
 
 namespace kestrel {
 
-// The convex hull of a border or of two, which may cross themselves and run either way. Needs no
-// memory of the heap.
+// The convex hull of a border, which may cross itself and run either way. Needs no memory of the
+// heap.
 class ConvexHull {
  public:
   // The tallest border that it takes: what lies below is left out.
@@ -21,10 +21,7 @@ class ConvexHull {
   using Points = std::span<const GridPoint>;
 
   // Of at least one point.
-  explicit ConvexHull(Points points) : ConvexHull(points, Points()) {}
-
-  // Of two borders together, the first of at least one point.
-  ConvexHull(Points one, Points other);
+  explicit ConvexHull(Points points);
 
   // Clockwise in the image, in pixels, integer = centre of a pixel. The uppermost and the lowest
   // one come twice where they are points and no sides.

@@ -35,16 +35,6 @@ TEST(ConvexHull, TheDirectionOfTheWalkDoesNotMatter) {
   EXPECT_EQ(Corners(points), clockwise);
 }
 
-TEST(ConvexHull, OfTwoBordersBridgesTheRowsBetweenThem) {
-  const std::vector<GridPoint> upper{{4, 0}, {6, 0}, {6, 1}, {4, 1}};
-  const std::vector<GridPoint> lower{{4, 5}, {8, 5}, {8, 6}, {4, 6}};
-  const ConvexHull hull(lower, upper);
-  const std::vector<Eigen::Vector2d> corners{hull.corners().begin(), hull.corners().end()};
-  EXPECT_THAT(corners, ElementsAre(Eigen::Vector2d(5.5, -0.5), Eigen::Vector2d(7.5, 4.5),
-                                   Eigen::Vector2d(7.5, 5.5), Eigen::Vector2d(3.5, 5.5),
-                                   Eigen::Vector2d(3.5, -0.5)));
-}
-
 TEST(ConvexHull, WhatIsTallerIsLeftOutAtTheBottom) {
   std::vector<GridPoint> points;
   for (std::int16_t y = 0; y < 200; ++y) {

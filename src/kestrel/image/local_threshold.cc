@@ -95,31 +95,6 @@ void HalveRowMean(const std::uint8_t* upper, const std::uint8_t* lower, std::siz
   HalveRow<Average>(upper, lower, count, out);
 }
 
-// Bit i of 'dark' = pixels[i] < dark_threshold[i], of 'bright' = pixels[i] > bright_threshold[i],
-// for i < count, count a multiple of 64.
-void CompareRow(const std::uint8_t* HWY_RESTRICT pixels,
-                const std::uint8_t* HWY_RESTRICT dark_threshold,
-                const std::uint8_t* HWY_RESTRICT bright_threshold, std::size_t count,
-                std::uint64_t* HWY_RESTRICT dark, std::uint64_t* HWY_RESTRICT bright) {
-#if HWY_TARGET == HWY_SCALAR
-  std::fill(dark, dark + count / 64, 0);
-  std::fill(bright, bright + count / 64, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    dark[i / 64] |= static_cast<std::uint64_t>(pixels[i] < dark_threshold[i]) << (i % 64);
-    bright[i / 64] |= static_cast<std::uint64_t>(pixels[i] > bright_threshold[i]) << (i % 64);
-  }
-#else
-  const hn::CappedTag<std::uint8_t, 64> d;
-  auto* dark_bytes = reinterpret_cast<std::uint8_t*>(dark);
-  auto* bright_bytes = reinterpret_cast<std::uint8_t*>(bright);
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const auto pixel = hn::LoadU(d, pixels + i);
-    hn::StoreMaskBits(d, hn::Lt(pixel, hn::LoadU(d, dark_threshold + i)), dark_bytes + i / 8);
-    hn::StoreMaskBits(d, hn::Gt(pixel, hn::LoadU(d, bright_threshold + i)), bright_bytes + i / 8);
-  }
-#endif
-}
-
 // Smallest, largest and sum of three rows.
 void CombineRows(const std::uint8_t* HWY_RESTRICT a, const std::uint8_t* HWY_RESTRICT b,
                  const std::uint8_t* HWY_RESTRICT c, std::size_t count, bool largest,
@@ -182,7 +157,6 @@ namespace {
 HWY_EXPORT(HalveRowMinimum);
 HWY_EXPORT(HalveRowMaximum);
 HWY_EXPORT(HalveRowMean);
-HWY_EXPORT(CompareRow);
 HWY_EXPORT(CombineRows);
 HWY_EXPORT(SumRows);
 HWY_EXPORT(MeanOfSums);
@@ -317,11 +291,6 @@ cv::Mat TilePyramid::ImageAt(int level) const {
   return cv::Mat(tiles.rows, tiles.columns, CV_8UC1, const_cast<std::uint8_t*>(tiles.mean.data()));
 }
 
-void LocalThreshold::Thresholds::Resize(std::size_t count) {
-  dark.resize(count);
-  bright.resize(count);
-}
-
 void LocalThreshold::Measure(const TilePyramid& pyramid, int image_level, int tile_level) {
   tile_px_ = 1 << (tile_level - image_level);
   Box(pyramid.level(tile_level), &fine_box_);
@@ -394,42 +363,20 @@ void LocalThreshold::ExpandRow(int tile_row, int width) {
   expand(fine_.bright, &row_.bright);
 }
 
-void LocalThreshold::Binarize(const cv::Mat& image, const cv::Rect& region, int min_contrast,
-                              BinaryImage* binary, Dark what) {
+void LocalThreshold::Binarize(const cv::Mat& image, int min_contrast, BinaryImage* binary,
+                              Dark what) {
   binary->dark.Reset(image.cols, image.rows);
   binary->bright.Reset(image.cols, image.rows);
   if (fine_box_.minimum.empty()) return;
   ChooseThresholds(min_contrast, what);
-
-  // Pixels right of the last whole word are compared in a copy, so that nothing is read beyond the
-  // row; there nothing is dark or bright beyond the image.
-  const int padded_width = binary->dark.words_per_row() * 64;
-  row_.dark.assign(padded_width, 0);
-  row_.bright.assign(padded_width, 255);
-  const int first_word = region.x / 64;
-  const int last_word = (region.x + region.width + 63) / 64;
-  const int whole_words = std::min(last_word, image.cols / 64);
-  std::array<std::uint8_t, 64> tail{};
-  const auto compare = [&](const std::uint8_t* pixels, int word, int words, int y) {
-    HWY_DYNAMIC_DISPATCH(CompareRow)
-    (pixels, &row_.dark[64 * static_cast<std::size_t>(word)],
-     &row_.bright[64 * static_cast<std::size_t>(word)], 64 * static_cast<std::size_t>(words),
-     binary->dark.row(y) + word, binary->bright.row(y) + word);
-  };
+  row_.ResetRow(image.cols);
   int tile_row = -1;
-  for (int y = region.y; y < region.y + region.height; ++y) {
+  for (int y = 0; y < image.rows; ++y) {
     if (const int row = std::min(y / tile_px_, fine_box_.rows - 1); row != tile_row) {
       tile_row = row;
       ExpandRow(row, image.cols);
     }
-    const std::uint8_t* pixels = image.ptr(y);
-    if (whole_words > first_word) {
-      compare(pixels + 64 * first_word, first_word, whole_words - first_word, y);
-    }
-    if (last_word > whole_words) {
-      std::memcpy(tail.data(), pixels + 64 * whole_words, image.cols - 64 * whole_words);
-      compare(tail.data(), whole_words, 1, y);
-    }
+    BinarizeRow(image.ptr(y), image.cols, row_, y, binary);
   }
 }
 

@@ -7,7 +7,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "kestrel/image/bit_image.h"
+#include "kestrel/image/binary_image.h"
 
 namespace kestrel {
 
@@ -46,12 +46,6 @@ class TilePyramid {
   std::array<TileImage, kLevels> levels_;
 };
 
-// Dark and bright pixels of an image: what is neither is undecided.
-struct BinaryImage {
-  BitImage dark;
-  BitImage bright;
-};
-
 // The adaptive threshold of the paper (section 2.1), decided per tile instead of per pixel: a pixel
 // is dark when it is below the mean of the box of 3 x 3 tiles around its own tile, and bright when
 // it is nearer to the brightest pixel of the box than to its mean. Where the box has too little
@@ -71,9 +65,8 @@ class LocalThreshold {
   // Contrast (largest minus smallest gray value) below which 'share', 0 to 1, of the boxes lie.
   int ContrastQuantile(double share) const;
 
-  // Decides the pixels of 'region'; what lies outside is neither dark nor bright.
-  // 'min_contrast' >= 1: smallest contrast of a box that decides.
-  void Binarize(const cv::Mat& image, const cv::Rect& region, int min_contrast, BinaryImage* binary,
+  // Decides all pixels. 'min_contrast' >= 1: smallest contrast of a box that decides.
+  void Binarize(const cv::Mat& image, int min_contrast, BinaryImage* binary,
                 Dark what = Dark::kBelowMean);
 
  private:
@@ -83,14 +76,7 @@ class LocalThreshold {
   int tile_px_ = 0;
   TileImage fine_box_;    // statistics over 3 x 3 tiles
   TileImage coarse_box_;  // the same, tiles four times as large
-  // What is darker is dark, what is brighter is bright: per coarse tile, per fine tile, and per
-  // pixel of a row.
-  struct Thresholds {
-    std::vector<std::uint8_t> dark;
-    std::vector<std::uint8_t> bright;
-    void Resize(std::size_t count);
-  };
-  Thresholds coarse_;
+  Thresholds coarse_;     // per coarse tile, per fine tile, and per pixel of a row
   Thresholds fine_;
   Thresholds row_;
 };

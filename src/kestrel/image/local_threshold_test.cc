@@ -2,44 +2,17 @@
 #include "kestrel/image/local_threshold.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
-#include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "kestrel/base/random.h"
 #include "kestrel/base/test_targets.h"
+#include "kestrel/image/test_images.h"
 
 namespace kestrel {
 namespace {
-
-// An image in memory of its own, of exactly the bytes that it has: a sanitizer sees every read
-// beyond them. 'stride' in bytes; the last row ends with its last pixel.
-struct ExactImage {
-  ExactImage(int width, int height, int stride)
-      : bytes(new std::uint8_t[static_cast<std::size_t>(stride) * (height - 1) + width]),
-        image(height, width, CV_8UC1, bytes.get(), stride) {}
-  std::unique_ptr<std::uint8_t[]> bytes;
-  cv::Mat image;
-};
-
-// Blobs and noise of all contrasts, black and white included.
-ExactImage RandomImage(int width, int height, int stride, Random* random) {
-  ExactImage exact(width, height, stride);
-  std::array<int, 4> level;
-  for (int& gray : level) gray = random->Integer(0, 255);
-  const int noise = random->Chance(0.3) ? 0 : random->Integer(1, 40);
-  const int blob = random->Integer(3, 40);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const int gray = level[(x / blob + 2 * (y / blob)) % 4] + random->Integer(-noise, noise);
-      exact.image.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(std::clamp(gray, 0, 255));
-    }
-  }
-  return exact;
-}
 
 struct Statistics {
   int minimum = 255;
@@ -111,7 +84,7 @@ void ExpectBinarizedAsDefined(const cv::Mat& image, int image_level, int tile_le
   LocalThreshold threshold;
   threshold.Measure(pyramid, image_level, tile_level);
   BinaryImage binary;
-  threshold.Binarize(scaled, cv::Rect(0, 0, scaled.cols, scaled.rows), min_contrast, &binary);
+  threshold.Binarize(scaled, min_contrast, &binary);
   const TileImage& fine = pyramid.level(tile_level);
   const bool has_tiles = fine.columns > 0;
   int wrong = 0;
@@ -217,7 +190,7 @@ TEST(LocalThreshold, TakesOnePixel) {
   LocalThreshold threshold;
   threshold.Measure(pyramid, 0, 1);
   BinaryImage binary;
-  threshold.Binarize(image, cv::Rect(0, 0, 1, 1), 1, &binary);
+  threshold.Binarize(image, 1, &binary);
   EXPECT_FALSE(binary.dark.at(0, 0));
   EXPECT_FALSE(binary.bright.at(0, 0));
 }
@@ -232,28 +205,8 @@ TEST(LocalThreshold, TheInsideOfABroadStrokeIsDark) {
   LocalThreshold threshold;
   threshold.Measure(pyramid, 0, 1);
   BinaryImage binary;
-  threshold.Binarize(image, cv::Rect(0, 0, 64, 64), 30, &binary);
+  threshold.Binarize(image, 30, &binary);
   for (int x = 0; x < 64; ++x) EXPECT_EQ(binary.dark.at(x, 32), x >= 24 && x < 34) << x;
-}
-
-TEST(LocalThreshold, LeavesAloneWhatLiesOutsideOfTheRows) {
-  Random random(6);
-  const ExactImage exact = RandomImage(200, 90, 200, &random);
-  TilePyramid pyramid;
-  pyramid.Build(exact.image);
-  LocalThreshold threshold;
-  threshold.Measure(pyramid, 0, 1);
-  BinaryImage all, part;
-  threshold.Binarize(exact.image, cv::Rect(0, 0, 200, 90), 10, &all);
-  const cv::Rect region(64, 30, 64, 20);
-  threshold.Binarize(exact.image, region, 10, &part);
-  for (int y = 0; y < 90; ++y) {
-    for (int x = 0; x < 200; ++x) {
-      const bool inside = region.contains(cv::Point(x, y));
-      ASSERT_EQ(part.dark.at(x, y), inside && all.dark.at(x, y));
-      ASSERT_EQ(part.bright.at(x, y), inside && all.bright.at(x, y));
-    }
-  }
 }
 
 TEST(LocalThreshold, QuantileOfTheContrasts) {

@@ -77,25 +77,6 @@ std::optional<DarkArea> TestDarkArea(const BorderTracer& tracer, const Border& b
   return area;
 }
 
-std::optional<Ellipse> OutlineOfPieces(const BorderTracer& tracer, const Border& one,
-                                       const Border& other, double min_minor_px, int max_extent) {
-  constexpr int kMaxGap = 3;  // px, between the bounding boxes
-  if (one.signed_area < 0 || other.signed_area < 0) return std::nullopt;
-  const Eigen::Array2i first(std::min(one.min.x, other.min.x), std::min(one.min.y, other.min.y));
-  const Eigen::Array2i last(std::max(one.max.x, other.max.x), std::max(one.max.y, other.max.y));
-  const Eigen::Array2i extents(one.max.x - one.min.x + other.max.x - other.min.x,
-                               one.max.y - one.min.y + other.max.y - other.min.y);
-  if ((last - first > max_extent).any() || (last - first > extents + kMaxGap).any()) {
-    return std::nullopt;
-  }
-  const RegionMoments moments =
-      ComputeHullMoments(ConvexHull(PointsOf(tracer, one), PointsOf(tracer, other)));
-  if (moments.Ellipticity() < kMinEllipticity) return std::nullopt;
-  const Ellipse outline = EllipseFromMoments(moments);
-  if (2 * outline.semi_minor < min_minor_px) return std::nullopt;
-  return outline;
-}
-
 bool IsCutOff(const BorderTracer& tracer, const Border& border) {
   return border.min.x <= 0 || border.min.y <= 0 || border.max.x >= tracer.image_size().width ||
          border.max.y >= tracer.image_size().height;

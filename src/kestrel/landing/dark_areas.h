@@ -36,13 +36,6 @@ inline constexpr double kMinEllipticity = 0.9;
 std::optional<DarkArea> TestDarkArea(const BorderTracer& tracer, const Border& border,
                                      double min_minor_px, int max_hull_extent = 0);
 
-// The outline of a small ring of which two dark areas may be the pieces, where it fell apart at the
-// blurred ends of the arms or at the edge of a shadow: that of their convex hull, an ellipse or a
-// parallelogram, no thinner than 'min_minor_px' and at most 'max_extent' pixels wide and high.
-// Nothing when they are no outer borders or no neighbours.
-std::optional<Ellipse> OutlineOfPieces(const BorderTracer& tracer, const Border& one,
-                                       const Border& other, double min_minor_px, int max_extent);
-
 // Whether a border touches that of the image.
 bool IsCutOff(const BorderTracer& tracer, const Border& border);
 

@@ -88,36 +88,6 @@ TEST(TestDarkArea, AnOpenSmallRingIsItsHull) {
   EXPECT_TRUE(Areas(open_ring, 8, 30).empty()) << "larger than small ones";
 }
 
-TEST(OutlineOfPieces, TwoHalvesOfARingAreOne) {
-  const auto tracer_of = [](double gap) {
-    return TraceFigure([=](double x, double y) {
-      const double r = std::hypot(x, y / 0.6);
-      return r > 14 && r < 20 && std::abs(x) > 0.5 * gap;
-    });
-  };
-  const BorderTracer halves = tracer_of(3);
-  ASSERT_EQ(halves.borders().size(), 2u);
-  const Border& left = halves.borders()[0];
-  const Border& right = halves.borders()[1];
-  const auto ring = OutlineOfPieces(halves, left, right, 6, 62);
-  ASSERT_TRUE(ring);
-  EXPECT_LT((ring->center - Eigen::Vector2d(50, 50)).norm(), 0.6);
-  EXPECT_NEAR(ring->semi_major, 20, 0.5);
-  EXPECT_NEAR(ring->semi_minor, 12, 0.5);
-  EXPECT_FALSE(OutlineOfPieces(halves, left, right, 26, 62)) << "too thin";
-  EXPECT_FALSE(OutlineOfPieces(halves, left, right, 6, 30)) << "too large";
-  const BorderTracer apart = tracer_of(6);
-  EXPECT_FALSE(OutlineOfPieces(apart, apart.borders()[0], apart.borders()[1], 6, 62));
-}
-
-TEST(OutlineOfPieces, TwoLinesAreNone) {
-  const BorderTracer tracer = TraceFigure([](double x, double y) {
-    return (std::abs(y) < 3 && x > 3 && x < 40) || (std::abs(x) < 3 && y > 3 && y < 40);
-  });
-  ASSERT_EQ(tracer.borders().size(), 2u);
-  EXPECT_FALSE(OutlineOfPieces(tracer, tracer.borders()[0], tracer.borders()[1], 6, 62));
-}
-
 TEST(OutlineInView, IsThatOfTheRingWithoutTheImageBorder) {
   const Eigen::Vector2d center(85, 40);  // of a ring that the right side of the image cuts off
   const BorderTracer tracer = TraceFigure([&](double x, double y) {

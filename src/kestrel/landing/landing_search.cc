@@ -64,6 +64,12 @@ const std::array<LandingSearch::Pass, LandingWorkspace::Buffers::kPasses> Landin
         {.image_level = 3, .tile_level = 5, .min_ring_px = 64, .max_ring_px = 1e9, .black = true},
         {.image_level = 2, .tile_level = 4, .min_ring_px = 32, .max_ring_px = 400, .black = true},
         {.image_level = 1, .tile_level = 3, .min_ring_px = 16, .max_ring_px = 200, .black = true},
+        {.image_level = 0,
+         .tile_level = 1,
+         .min_ring_px = 6,
+         .max_ring_px = 120,
+         .top_hat = true,
+         .narrow = true},
         {.image_level = 0, .tile_level = 1, .min_ring_px = 6, .max_ring_px = 120, .closing = true},
         {.image_level = 0, .tile_level = 2, .min_ring_px = 6, .max_ring_px = 120, .narrow = true},
         {.image_level = 0,
@@ -109,7 +115,6 @@ void LandingSearch::MakeRoom() {
   }
   buffers_.candidates.reserve(kMaxCollected);
   buffers_.rays.reserve(2 * LandingWorkspace::Buffers::kMaxRays);
-  buffers_.quadrants.Reserve();
   buffers_.arcs.Reserve(most_points);
   buffers_.cross_lines.Reserve();
   buffers_.partial.Reserve(most_points);
@@ -154,8 +159,6 @@ void LandingSearch::SearchRegion() {
   const bool low = !hint_.altitude_m || *hint_.altitude_m <= models_.options.max_partial_altitude_m;
   if (low) run(0, kPartialPasses, [this](std::size_t i) { TestPartial(i); });
   run(kFirstFinePass, kPasses.size(), trace_and_test);
-  run(kPiecesPass, kPiecesPass + 1, [this](std::size_t i) { TestPieces(i); });
-  run(kFirstFinePass, kPasses.size(), [this](std::size_t i) { TestQuadrants(i); });
   run(kCoarsePasses - 1, kCoarsePasses, test_cut_areas);
   run(kFirstFinePass, kPasses.size(), test_cut_areas);
   run(kFirstFinePass, kPasses.size(), test_arcs);
@@ -259,8 +262,12 @@ void LandingSearch::Binarize(const Pass& pass) {
   buffers_.threshold.Measure(buffers_.pyramid, pass.image_level, pass.tile_level);
   const int contrast = std::clamp(buffers_.threshold.ContrastQuantile(0.7), 12, 32);
   using Dark = LocalThreshold::Dark;
-  buffers_.threshold.Binarize(image, cv::Rect(0, 0, image.cols, image.rows), contrast,
-                              &buffers_.binary, pass.black ? Dark::kBlack : Dark::kBelowMean);
+  if (pass.top_hat) {
+    buffers_.top_hat.Binarize(image, contrast, &buffers_.binary);
+  } else {
+    buffers_.threshold.Binarize(image, contrast, &buffers_.binary,
+                                pass.black ? Dark::kBlack : Dark::kBelowMean);
+  }
   if (pass.not_bright) InvertBits(buffers_.binary.bright, &buffers_.binary.dark);
   if (pass.closing) CloseBits(&buffers_.binary.dark, &buffers_.scratch);
 }

@@ -12,6 +12,7 @@
 
 #include "kestrel/camera/ray_table.h"
 #include "kestrel/image/bit_image.h"
+#include "kestrel/image/black_top_hat.h"
 #include "kestrel/image/border_tracing.h"
 #include "kestrel/image/local_threshold.h"
 #include "kestrel/landing/cross.h"
@@ -23,7 +24,6 @@
 #include "kestrel/landing/pattern_view.h"
 #include "kestrel/landing/ring_arcs.h"
 #include "kestrel/landing/ring_fit.h"
-#include "kestrel/landing/ring_quadrants.h"
 #include "kestrel/landing/small_pattern.h"
 
 namespace kestrel {
@@ -75,19 +75,19 @@ struct RingPlace {
 };
 
 struct LandingWorkspace::Buffers {
-  static constexpr std::size_t kPasses = 9;
+  static constexpr std::size_t kPasses = 10;
   static constexpr std::size_t kMaxRays = 48;  // of a border
 
   int width_px = 0;  // of the images that there is room for
   int height_px = 0;
   TilePyramid pyramid;
   LocalThreshold threshold;
+  BlackTopHat top_hat;
   BinaryImage binary;
   BitImage scratch;
   std::array<BorderTracer, kPasses> tracers;  // of each pass
   std::vector<RingCandidate> candidates;
   std::vector<Eigen::Vector3d> rays;
-  RingQuadrantsWorkspace quadrants;
   RingArcsWorkspace arcs;
   CrossLinesWorkspace cross_lines;
   PartialPatternWorkspace partial;
@@ -113,15 +113,14 @@ class LandingSearch {
     double min_ring_px;       // minor axis, full resolution
     double max_ring_px;       // major axis, full resolution
     bool black = false;       // dark is what is black: not what lies in a shadow
+    bool top_hat = false;     // dark is what is narrow: not what lies in a shadow beside light
     bool closing = false;     // close gaps of the dark areas first
     bool not_bright = false;  // dark is all that is not bright
     bool narrow = false;      // rings beside narrow strokes of white as well
   };
   static constexpr std::size_t kCoarsePasses = 3;   // whose borders are cut into arcs,
   static constexpr std::size_t kFirstFinePass = 6;  // those before it too
-  static constexpr std::size_t kPiecesPass = 7;     // that sees thin strokes apart from each other
   static constexpr std::size_t kPartialPasses = 2;  // in which the cross of a near pattern is seen
-  static constexpr double kMinFittedCorrelation = 0.84;  // of a small pattern
   static const std::array<Pass, LandingWorkspace::Buffers::kPasses> kPasses;
 
   // A ring with a pose that was looked at: how well the image agrees.
@@ -154,8 +153,6 @@ class LandingSearch {
   bool IsPlausible(const CirclePose& ring) const;
   void Trace(std::size_t pass_index);
   void TestAreas(std::size_t pass_index);
-  void TestPieces(std::size_t pass_index);
-  void TestQuadrants(std::size_t pass_index);
   void TestCutAreas(std::size_t pass_index);
   void TestArcs(std::size_t pass_index);
   void TestPartial(std::size_t pass_index);
@@ -163,7 +160,6 @@ class LandingSearch {
   void CollectCandidates(std::size_t pass_index);
   bool AddRay(const Eigen::Vector2d& pixel);
   void TestCandidate(const RingCandidate& candidate, std::size_t pass_index);
-  void TestOutline(const RingCandidate& candidate, std::size_t pass_index, double min_correlation);
   std::optional<RingFit> FitToBorder(const RingCandidate& candidate, std::size_t pass_index);
   std::optional<RingFit> FitToOutline(const RingCandidate& candidate, const ImageRegion& region);
 
@@ -173,14 +169,13 @@ class LandingSearch {
   bool IsSmall(const Eigen::Vector2d& diameters_px) const;
   void TestRing(const RingFit& ring, const Eigen::Vector2d& diameters_px, double reach_px);
   void TestSmallRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
-                     std::span<const double> scales,
-                     double min_correlation = kMinFittedCorrelation);
+                     std::span<const double> scales);
   bool IsTooSmall(const Eigen::Vector2d& diameters_px) const;
   bool TestSmallPose(const CirclePose& pose, const Eigen::Vector2d& diameters_px,
-                     std::span<const double> scales, double min_correlation);
+                     std::span<const double> scales);
   SmallPatternFitter::Start FindStart(const CirclePose& pose, std::span<const double> scales);
-  bool IsSmallPattern(const SmallPatternFitter::Fit& fit, const Eigen::Vector2d& diameters_px,
-                      double min_correlation) const;
+  bool IsSmallPattern(const SmallPatternFitter::Fit& fit,
+                      const Eigen::Vector2d& diameters_px) const;
   bool ShowsOtherSign(const RigidTransform& pose, double quality);
   std::optional<RingPlace> PlaceOf(const Eigen::Vector3d& center,
                                    const Eigen::Vector2d& diameters_px) const;

@@ -35,6 +35,7 @@ constexpr double kSmallMargin = 0.1;             // of the quality of a small pa
 constexpr double kMinCorrelation = 0.35;         // of a start of a small pattern
 constexpr double kSureCorrelation = 0.6;         // of a start that quadrants give
 constexpr double kMinCorrelationOfEither = 0.7;  // of the poses of a small pattern
+constexpr double kMinFittedCorrelation = 0.84;   // of a small pattern
 constexpr double kMinExplained = 0.62;           // of the variance
 constexpr double kMinExplainedInShadows = 0.75;  // the same: shadows explain much by themselves
 // Edges and contrasts of the ring that are where a circle has them: a frame of another shape has
@@ -259,15 +260,14 @@ bool LandingSearch::WasTested(const RingFit& ring, const Eigen::Vector2d& diamet
 // in the ring leaves more inside, one in another frame more on the ring and around it. So few
 // pixels tell less than the edges of a near pattern: more is asked of them.
 bool LandingSearch::IsSmallPattern(const SmallPatternFitter::Fit& fit,
-                                   const Eigen::Vector2d& diameters_px,
-                                   double min_correlation) const {
+                                   const Eigen::Vector2d& diameters_px) const {
   const double on_print = std::max(fit.inside_residual, fit.ring_residual);
   constexpr double kTolerance = 0.75;  // of the size, which so few pixels hardly tell
   const RigidTransform& pose = fit.location.camera_from_pattern;
   const CirclePose ring{pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()};
   if (DiametersPx(ring).y() < kTolerance * models_.options.min_ring_px) return false;
   return fit.match.Quality() >= models_.options.min_quality + SmallMargin(diameters_px) &&
-         fit.correlation >= min_correlation && fit.explained >= kMinExplained &&
+         fit.correlation >= kMinFittedCorrelation && fit.explained >= kMinExplained &&
          fit.inside_residual - fit.ring_residual <= kMaxMoreInside &&
          fit.ring_residual - fit.inside_residual <= kMaxMoreOnRing &&
          fit.white_residual <= on_print + kMaxMoreOutside && !IsOtherSign(fit.others) &&
@@ -294,7 +294,7 @@ SmallPatternFitter::Start LandingSearch::FindStart(const CirclePose& pose,
 // Rings whose strokes are no wider than the blur: the print is fitted as a whole. The ring may be
 // smaller than it was seen by the given factors.
 void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
-                                  std::span<const double> scales, double min_correlation) {
+                                  std::span<const double> scales) {
   if (IsTooSmall(diameters_px)) return;
   StageTimer timer(&report_, LandingStage::kCross);
   Reach(LandingStage::kCross, "no cross inside of the ring");
@@ -303,7 +303,7 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
   for (int i = 0; i < 2; ++i) {
     if (!allowed[i]) continue;
     // The two poses of a small ring look much the same: what does not fit one fits neither.
-    if (!TestSmallPose(ring.poses[i], diameters_px, scales, min_correlation)) return;
+    if (!TestSmallPose(ring.poses[i], diameters_px, scales)) return;
   }
 }
 
@@ -315,7 +315,7 @@ bool LandingSearch::IsTooSmall(const Eigen::Vector2d& diameters_px) const {
 
 // Keeps the pattern if there is one; false when there is none under the ring's other pose either.
 bool LandingSearch::TestSmallPose(const CirclePose& pose, const Eigen::Vector2d& diameters_px,
-                                  std::span<const double> scales, double min_correlation) {
+                                  std::span<const double> scales) {
   const SmallPatternFitter::Start start = FindStart(pose, scales);
   if (start.correlation < kMinCorrelation) return false;
   Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
@@ -329,12 +329,12 @@ bool LandingSearch::TestSmallPose(const CirclePose& pose, const Eigen::Vector2d&
     return true;
   }
   Reach(LandingStage::kLocate, "no pose explains the edges of ring and cross");
-  if (!IsSmallPattern(*fit, diameters_px, min_correlation)) {
+  if (!IsSmallPattern(*fit, diameters_px)) {
     fit = models_.small.Refine(image_, fit->location.camera_from_pattern, Light::kShadows,
                                kIterations, &buffers_.small, level_);
     // Of a print that is cut off too little is left to tell ink from light.
     if (!fit || fit->match.seen < kWhole || fit->explained < kMinExplainedInShadows ||
-        !IsSmallPattern(*fit, diameters_px, min_correlation)) {
+        !IsSmallPattern(*fit, diameters_px)) {
       return true;
     }
   }

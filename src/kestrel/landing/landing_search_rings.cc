@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the search of an image comes to rings: closed dark areas, the white board, white quadrants,
-// arcs, the cross alone.
+// How the search of an image comes to rings: closed dark areas, the white board, arcs, the
+// cross alone.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -26,8 +26,6 @@ constexpr double kMinSmallContrast = 5;  // gray values
 constexpr std::array<double, 1> kOneScale{1.0};
 // An outline that grew together with what is beside it is larger than the ring.
 constexpr std::array<double, 2> kAreaScales{1.0, 1.12};
-// Least correlation of a small ring that was found by what looks like the inside of the print.
-constexpr double kMinCorrelationOfQuadrants = 0.87;
 // How far from an area's outline the edges of the ring may be, of its diameter.
 constexpr double kSure = 0.02;
 constexpr double kUnsure = 0.1;
@@ -61,7 +59,7 @@ bool LandingSearch::TestPrediction() {
   if (!IsSmall(kNearlyLarge * diameters_px)) TestPredictedRing(ring, diameters_px);
   if (!report_.detection && IsSmall(diameters_px) && !IsTooSmall(diameters_px)) {
     StageTimer timer(&report_, LandingStage::kCross);
-    TestSmallPose(ring, diameters_px, kOneScale, kMinFittedCorrelation);
+    TestSmallPose(ring, diameters_px, kOneScale);
   }
   return is_sure_;
 }
@@ -200,69 +198,6 @@ std::optional<RingFit> LandingSearch::FitToBorder(const RingCandidate& candidate
       buffers_.rays,
       candidate.edge == RingEdge::kOuter ? pattern.outer_radius_m() : pattern.inner_radius_m(),
       tolerance_px / focal_px_);
-}
-
-// Small rings that fell apart into two dark areas.
-void LandingSearch::TestPieces(std::size_t pass_index) {
-  std::vector<RingCandidate>& candidates = buffers_.candidates;
-  candidates.clear();
-  {
-    StageTimer timer(&report_, LandingStage::kAreas);
-    const cv::Mat image = buffers_.pyramid.ImageAt(kPasses[pass_index].image_level);
-    const BorderTracer& tracer = buffers_.tracers[pass_index];
-    for (auto one = tracer.borders().begin(); one != tracer.borders().end(); ++one) {
-      for (auto other = one + 1; other != tracer.borders().end(); ++other) {
-        // In the order of the rows in which they were found: what is so far below is no neighbour.
-        if (tracer.begin(*other)->y > one->max.y + 2 * kMaxHullExtent) break;
-        const std::optional<Ellipse> outline =
-            OutlineOfPieces(tracer, *one, *other, models_.options.min_ring_px, kMaxHullExtent);
-        if (!outline || candidates.size() == candidates.capacity()) continue;
-        const double contrast = RingContrast(image, *outline, models_.options.pattern);
-        if (contrast > 0) candidates.push_back({.outer_edge = *outline, .contrast = contrast});
-      }
-    }
-    KeepBest(&candidates);
-  }
-  for (const RingCandidate& candidate : candidates) {
-    TestOutline(candidate, pass_index, kMinFittedCorrelation);
-  }
-}
-
-// Small rings whose white quadrants were seen.
-void LandingSearch::TestQuadrants(std::size_t pass_index) {
-  const ImageRegion region{offset_, kPasses[pass_index].image_level};
-  const LandingPattern& pattern = models_.options.pattern;
-  std::vector<RingCandidate>& candidates = buffers_.candidates;
-  candidates.clear();
-  {
-    StageTimer timer(&report_, LandingStage::kAreas);
-    const cv::Mat image = buffers_.pyramid.ImageAt(region.level);
-    FindQuadrantRings(buffers_.tracers[pass_index], pattern, &buffers_.quadrants);
-    for (const Ellipse& outer_edge : buffers_.quadrants.rings) {
-      if (2 * outer_edge.semi_minor * region.scale() < models_.options.min_ring_px) continue;
-      const double contrast = RingContrast(image, outer_edge, pattern);
-      if (contrast > 0) candidates.push_back({.outer_edge = outer_edge, .contrast = contrast});
-    }
-    KeepBest(&candidates);
-  }
-  for (const RingCandidate& candidate : candidates) {
-    TestOutline(candidate, pass_index, kMinCorrelationOfQuadrants);
-  }
-}
-
-// A ring whose outline is that of no single border.
-void LandingSearch::TestOutline(const RingCandidate& candidate, std::size_t pass_index,
-                                double min_correlation) {
-  const ImageRegion region{offset_, kPasses[pass_index].image_level};
-  const std::optional<RingFit> ring = FitToOutline(candidate, region);
-  if (!ring || !IsPlausible(ring->poses[0])) return;
-  Reach(LandingStage::kRing, "no border lies on the image of a circle");
-  const Eigen::Vector2d diameters_px = DiametersPx(ring->poses[0]);
-  if (IsSmall(diameters_px)) {
-    TestSmallRing(*ring, diameters_px, kAreaScales, min_correlation);
-  } else {
-    TestRing(*ring, diameters_px, ReachPx(diameters_px, region, kUnsure));
-  }
 }
 
 // Small rings that the image border cuts off: their moments say nothing, and their arcs are too
