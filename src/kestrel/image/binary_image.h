@@ -15,8 +15,8 @@ struct BinaryImage {
   BitImage bright;
 };
 
-// What is darker than 'dark' is dark, what is brighter than 'bright' is bright: gray values per tile
-// or per pixel.
+// What is darker than 'dark' is dark, what is brighter than 'bright' is bright: gray values per
+// tile or per pixel.
 struct Thresholds {
   std::vector<std::uint8_t> dark;
   std::vector<std::uint8_t> bright;

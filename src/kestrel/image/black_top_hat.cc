@@ -37,9 +37,8 @@ void ExtremeOfFive(const std::uint8_t* const* rows, std::size_t count, bool larg
 }
 
 void StrokeThresholds(const std::uint8_t* HWY_RESTRICT light,
-                      const std::uint8_t* HWY_RESTRICT darkest, std::size_t count,
-                      int min_contrast, std::uint8_t* HWY_RESTRICT dark,
-                      std::uint8_t* HWY_RESTRICT bright) {
+                      const std::uint8_t* HWY_RESTRICT darkest, std::size_t count, int min_contrast,
+                      std::uint8_t* HWY_RESTRICT dark, std::uint8_t* HWY_RESTRICT bright) {
   const auto least = static_cast<std::uint8_t>(min_contrast < 255 ? min_contrast : 255);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t contrast = light[i] - darkest[i];

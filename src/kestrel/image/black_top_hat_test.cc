@@ -77,10 +77,10 @@ TEST(BlackTopHat, TakesEveryWidth) {
 
 TEST(BlackTopHat, SeesStrokesInSunAndShadowAndNoShadow) {
   cv::Mat image(64, 64, CV_8UC1, cv::Scalar(200));
-  image.colRange(20, 22) = 20;   // in the sun
-  image.colRange(32, 64) = 60;   // in a shadow
-  image.colRange(33, 36) = 6;    // at its edge
-  image.colRange(50, 64) = 30;   // dark ground, as wide as the square and wider
+  image.colRange(20, 22) = 20;  // in the sun
+  image.colRange(32, 64) = 60;  // in a shadow
+  image.colRange(33, 36) = 6;   // at its edge
+  image.colRange(50, 64) = 30;  // dark ground, as wide as the square and wider
   BinaryImage binary;
   BlackTopHat().Binarize(image, 20, &binary);
   for (int x = 0; x < 64; ++x) {

@@ -37,7 +37,13 @@ constexpr double kSureCorrelation = 0.6;         // of a start that quadrants gi
 constexpr double kMinCorrelationOfEither = 0.7;  // of the poses of a small pattern
 constexpr double kMinFittedCorrelation = 0.84;   // of a small pattern
 constexpr double kMinExplained = 0.62;           // of the variance
-constexpr double kMinExplainedInShadows = 0.75;  // the same: shadows explain much by themselves
+// Added to that for a small pattern of which an arm is weaker than most are, times what it lacks:
+// two doubts in one.
+constexpr double kExplainedForWeakArm = 0.4;
+constexpr double kStrongArm = 0.8;
+// Where shadows were taken out, which explain much by themselves.
+constexpr double kMinExplainedInShadows = 0.75;
+constexpr double kMinQualityInShadows = 0.84;
 // Edges and contrasts of the ring that are where a circle has them: a frame of another shape has
 // some of them.
 constexpr double kMinRingShare = 0.85;
@@ -84,6 +90,15 @@ bool IsOtherSign(const SmallPatternFitter::OtherSigns& others) {
 bool IsDoubtful(const SmallPatternFitter::OtherSigns& others) {
   return others.cross_correlation <
          kMinCrossCorrelation + kCrossForDarkBoard * std::max(0.0, others.board_darkness);
+}
+
+// Share of the variance that the fit of a small pattern has to explain.
+double LeastExplained(const PatternMatch& match) {
+  double lacking = 0;
+  for (const double arm : match.arm) {
+    if (arm >= 0) lacking = std::max(lacking, kStrongArm - arm);
+  }
+  return kMinExplained + kExplainedForWeakArm * lacking;
 }
 
 // What is asked of the quality of a small pattern beyond that of a near one: the fewer pixels, and
@@ -267,7 +282,7 @@ bool LandingSearch::IsSmallPattern(const SmallPatternFitter::Fit& fit,
   const CirclePose ring{pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()};
   if (DiametersPx(ring).y() < kTolerance * models_.options.min_ring_px) return false;
   return fit.match.Quality() >= models_.options.min_quality + SmallMargin(diameters_px) &&
-         fit.correlation >= kMinFittedCorrelation && fit.explained >= kMinExplained &&
+         fit.correlation >= kMinFittedCorrelation && fit.explained >= LeastExplained(fit.match) &&
          fit.inside_residual - fit.ring_residual <= kMaxMoreInside &&
          fit.ring_residual - fit.inside_residual <= kMaxMoreOnRing &&
          fit.white_residual <= on_print + kMaxMoreOutside && !IsOtherSign(fit.others) &&
@@ -334,7 +349,7 @@ bool LandingSearch::TestSmallPose(const CirclePose& pose, const Eigen::Vector2d&
                                kIterations, &buffers_.small, level_);
     // Of a print that is cut off too little is left to tell ink from light.
     if (!fit || fit->match.seen < kWhole || fit->explained < kMinExplainedInShadows ||
-        !IsSmallPattern(*fit, diameters_px)) {
+        fit->match.Quality() < kMinQualityInShadows || !IsSmallPattern(*fit, diameters_px)) {
       return true;
     }
   }

@@ -160,7 +160,9 @@ class SmallPatternFitter {
   double OtherSpokes(const State& state, SmallPatternWorkspace* workspace) const;
   double FrameCorners(const SmallPatternWorkspace& workspace, const State& state) const;
   double CrossCorrelation(const SmallPatternWorkspace& workspace) const;
-  double BoardDarkness(const cv::Mat& image, const State& state) const;
+  double WhiteDarkness(const State& state, SmallPatternWorkspace* workspace) const;
+  double BoardDarkness(const cv::Mat& image, const State& state,
+                       SmallPatternWorkspace* workspace) const;
 
   const CameraModel& camera_;
   const RayTable& rays_;

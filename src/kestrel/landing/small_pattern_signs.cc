@@ -33,7 +33,7 @@ SmallPatternFitter::OtherSigns SmallPatternFitter::MeasureOthers(
   return {.spokes = OtherSpokes(state, workspace),
           .frame_corners = FrameCorners(*workspace, state),
           .cross_correlation = CrossCorrelation(*workspace),
-          .board_darkness = BoardDarkness(image, state)};
+          .board_darkness = BoardDarkness(image, state, workspace)};
 }
 
 // In each quadrant the darkest line from the centre among those well away from the arms: its depth
@@ -116,8 +116,32 @@ double SmallPatternFitter::CrossCorrelation(const SmallPatternWorkspace& workspa
   return with_expected.value();
 }
 
-// The median over the directions in view: a white ring on dark ground has no board.
-double SmallPatternFitter::BoardDarkness(const cv::Mat& image, const State& state) const {
+// How much darker than expected the darkest of the white inside of the ring is, noise left aside:
+// a highlight on the rest makes the fit expect more.
+double SmallPatternFitter::WhiteDarkness(const State& state,
+                                         SmallPatternWorkspace* workspace) const {
+  constexpr float kWhite = 0.3f;     // darkness by the print
+  constexpr double kDarkest = 0.15;  // quantile
+  const double inner = pattern_.inner_radius_m();
+  const SmallPatternWorkspace::Points& points = workspace->points;
+  SmallPatternWorkspace::Column& residuals = workspace->magnitudes;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < workspace->count; ++i) {
+    if (points.dark[i] > kWhite || std::hypot(points.x[i], points.y[i]) > inner) continue;
+    residuals[count++] = points.seen[i] - points.expected[i];
+  }
+  if (count == 0) return 0;
+  const auto darkest =
+      residuals.begin() + static_cast<std::ptrdiff_t>(kDarkest * static_cast<double>(count));
+  std::nth_element(residuals.begin(), darkest,
+                   residuals.begin() + static_cast<std::ptrdiff_t>(count));
+  return -*darkest / state.contrast;
+}
+
+// The median over the directions in view, beyond the darkest white of the print: a white ring on
+// dark ground has no board.
+double SmallPatternFitter::BoardDarkness(const cv::Mat& image, const State& state,
+                                         SmallPatternWorkspace* workspace) const {
   std::array<double, kBoardDirections> darkness;
   int seen = 0;
   for (int i = 0; i < kBoardDirections; ++i) {
@@ -135,7 +159,7 @@ double SmallPatternFitter::BoardDarkness(const cv::Mat& image, const State& stat
   }
   if (seen == 0) return 0;
   std::nth_element(darkness.begin(), darkness.begin() + seen / 2, darkness.begin() + seen);
-  return darkness[seen / 2];
+  return darkness[seen / 2] - WhiteDarkness(state, workspace);
 }
 
 }  // namespace kestrel
