@@ -156,6 +156,19 @@ TEST_F(SmallPatternTest, OtherSignsShowWhatThePrintHasNot) {
   }
 }
 
+// On half of the inside there is more light than on the board.
+TEST_F(SmallPatternTest, AHighlightMakesNoDarkBoard) {
+  Random random(7);
+  const auto beside_highlight = [](double x, double y) { return std::hypot(x - 0.1, y) > 0.3; };
+  for (const int diameter_px : {16, 22, 28, 50}) {
+    const RigidTransform pose = PoseOf(diameter_px, &random);
+    const cv::Mat image = Shade(Draw(SpokedPrint(pattern_, 4), pose), pose, beside_highlight);
+    const auto signs = fitter_.Inspect(image, pose, Light::kEven, &workspace_);
+    ASSERT_TRUE(signs) << diameter_px;
+    EXPECT_LT(signs->board_darkness, 0.1) << diameter_px;
+  }
+}
+
 // Behind a straight edge, and under the body and the four rotors of a UAV.
 TEST_F(SmallPatternTest, ShadowsAreTakenOut) {
   Random random(6);
