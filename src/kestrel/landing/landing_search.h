@@ -173,6 +173,8 @@ class LandingSearch {
   bool IsTooSmall(const Eigen::Vector2d& diameters_px) const;
   bool TestSmallPose(const CirclePose& pose, const Eigen::Vector2d& diameters_px,
                      std::span<const double> scales);
+  std::optional<SmallPatternFitter::Fit> FitInShadows(const RigidTransform& pose,
+                                                      const Eigen::Vector2d& diameters_px);
   SmallPatternFitter::Start FindStart(const CirclePose& pose, std::span<const double> scales);
   bool IsSmallPattern(const SmallPatternFitter::Fit& fit,
                       const Eigen::Vector2d& diameters_px) const;

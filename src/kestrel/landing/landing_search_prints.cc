@@ -44,6 +44,9 @@ constexpr double kStrongArm = 0.8;
 // Where shadows were taken out, which explain much by themselves.
 constexpr double kMinExplainedInShadows = 0.75;
 constexpr double kMinQualityInShadows = 0.84;
+// Share of the variance below which shadows are looked for on a pattern that is found in even light
+// as well: they bend the pose.
+constexpr double kWellExplained = 0.85;
 // Edges and contrasts of the ring that are where a circle has them: a frame of another shape has
 // some of them.
 constexpr double kMinRingShare = 0.85;
@@ -53,6 +56,7 @@ constexpr double kMinRingContrast = 5;  // gray values
 constexpr double kSameSign = 0.12;
 constexpr double kSameStart = 0.05;
 constexpr double kWhole = 0.75;  // share of the print in view that is no partial pattern
+constexpr int kFitIterations = 8;
 
 // Whether a place is one of others: its centre to a share of its shorter axis.
 bool IsAmong(const RingPlace& place, const std::vector<RingPlace>& others, double same_center) {
@@ -334,28 +338,37 @@ bool LandingSearch::TestSmallPose(const CirclePose& pose, const Eigen::Vector2d&
   const SmallPatternFitter::Start start = FindStart(pose, scales);
   if (start.correlation < kMinCorrelation) return false;
   Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
-  constexpr int kIterations = 8;
-  using Light = SmallPatternFitter::Light;
-  auto fit = models_.small.Refine(image_, start.camera_from_pattern, Light::kEven, kIterations,
-                                  &buffers_.small, level_);
+  auto fit =
+      models_.small.Refine(image_, start.camera_from_pattern, SmallPatternFitter::Light::kEven,
+                           kFitIterations, &buffers_.small, level_);
   if (!fit || fit->correlation < kMinCorrelationOfEither) return false;
   if (!Agrees(start.camera_from_pattern, fit->location.camera_from_pattern,
               models_.options.pattern.outer_radius_m())) {
     return true;
   }
   Reach(LandingStage::kLocate, "no pose explains the edges of ring and cross");
-  if (!IsSmallPattern(*fit, diameters_px)) {
-    fit = models_.small.Refine(image_, fit->location.camera_from_pattern, Light::kShadows,
-                               kIterations, &buffers_.small, level_);
-    // Of a print that is cut off too little is left to tell ink from light.
-    if (!fit || fit->match.seen < kWhole || fit->explained < kMinExplainedInShadows ||
-        fit->match.Quality() < kMinQualityInShadows || !IsSmallPattern(*fit, diameters_px)) {
-      return true;
-    }
+  const bool is_found = IsSmallPattern(*fit, diameters_px);
+  if (!is_found || fit->explained < kWellExplained) {
+    const auto evened = FitInShadows(fit->location.camera_from_pattern, diameters_px);
+    if (!is_found && !evened) return true;
+    if (evened) fit = evened;
   }
   Keep(fit->location, fit->match.seen < kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants,
        fit->match.Quality(), diameters_px);
   return true;
+}
+
+// A small pattern near to 'pose' once the shadows on it are taken out, if there is one.
+std::optional<SmallPatternFitter::Fit> LandingSearch::FitInShadows(
+    const RigidTransform& pose, const Eigen::Vector2d& diameters_px) {
+  auto fit = models_.small.Refine(image_, pose, SmallPatternFitter::Light::kShadows, kFitIterations,
+                                  &buffers_.small, level_);
+  // Of a print that is cut off too little is left to tell ink from light.
+  if (!fit || fit->match.seen < kWhole || fit->explained < kMinExplainedInShadows ||
+      fit->match.Quality() < kMinQualityInShadows || !IsSmallPattern(*fit, diameters_px)) {
+    return std::nullopt;
+  }
+  return fit;
 }
 
 // Whether there is another sign where a pattern was located, in even light and without the shadows
