@@ -70,6 +70,7 @@ void BlackTopHat::FilterRow(const Rows& rows, int width, bool largest, std::uint
   HWY_DYNAMIC_DISPATCH(ExtremeOfFive)(rows.data(), width, largest, column);
   std::fill_n(column - kReach, kReach, column[0]);
   std::fill_n(column + width, kReach, column[width - 1]);
+  static_assert(kSquarePx == 5, "as many rows as ExtremeOfFive takes");
   Rows shifted;
   for (int i = 0; i < kSquarePx; ++i) shifted[i] = column + i - kReach;
   HWY_DYNAMIC_DISPATCH(ExtremeOfFive)(shifted.data(), width, largest, out);

@@ -8,8 +8,8 @@
 
 #include <opencv2/core.hpp>
 
+#include "kestrel/image/binary_image.h"
 #include "kestrel/image/bit_image.h"
-#include "kestrel/image/local_threshold.h"
 
 namespace kestrel {
 

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "kestrel/image/local_threshold.h"
+#include "kestrel/image/binary_image.h"
 
 namespace kestrel {
 

@@ -48,14 +48,10 @@ double Redundancy(const SmallPatternWorkspace& workspace, double limit) {
 
 // Standard deviation of the residuals by their median.
 double RobustScale(SmallPatternWorkspace* workspace) {
-  const auto first = workspace->magnitudes.begin();
-  const auto last = first + static_cast<std::ptrdiff_t>(workspace->count);
-  const auto middle = first + static_cast<std::ptrdiff_t>(workspace->count / 2);
   std::transform(workspace->points.residual.begin(),
-                 workspace->points.residual.begin() + (last - first), first,
-                 [](float residual) { return std::abs(residual); });
-  std::nth_element(first, middle, last);
-  return 1.4826 * *middle;
+                 workspace->points.residual.begin() + static_cast<std::ptrdiff_t>(workspace->count),
+                 workspace->magnitudes.begin(), [](float residual) { return std::abs(residual); });
+  return 1.4826 * Quantile(0.5, workspace->count, &workspace->magnitudes);
 }
 
 // Residuals by where they are, outliers bounded.

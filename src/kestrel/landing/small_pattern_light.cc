@@ -125,17 +125,14 @@ void SmallPatternFitter::MeasureLight(const State& state, SmallPatternWorkspace*
 bool SmallPatternFitter::EvenOut(SmallPatternWorkspace* workspace, State* state) const {
   const double before = Unexplained(*workspace);
   MeasureLight(*state, workspace);
-  SmallPatternWorkspace::Column& sorted = workspace->magnitudes;
-  const auto last = std::copy_n(workspace->light.begin(), workspace->count, sorted.begin());
-  const auto brightest = sorted.begin() + static_cast<std::ptrdiff_t>(
-                                              kBrightest * static_cast<double>(workspace->count));
-  std::nth_element(sorted.begin(), brightest, last);
-  const auto least = static_cast<float>(kLeastLight) * *brightest;
+  std::copy_n(workspace->light.begin(), workspace->count, workspace->magnitudes.begin());
+  const float brightest = Quantile(kBrightest, workspace->count, &workspace->magnitudes);
+  const auto least = static_cast<float>(kLeastLight) * brightest;
 
   std::array<double, kBoardDirections> sum{}, count{};
   const SmallPatternWorkspace::Points& points = workspace->points;
   for (std::size_t i = 0; i < workspace->count; ++i) {
-    const float factor = *brightest / std::clamp(workspace->light[i], least, *brightest);
+    const float factor = brightest / std::clamp(workspace->light[i], least, brightest);
     workspace->pixels.gray[i] *= factor;
     if (std::hypot(points.x[i], points.y[i]) < pattern_.outer_radius_m()) continue;
     const double turn = std::atan2(points.y[i], points.x[i]) / (2 * std::numbers::pi);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
@@ -70,6 +71,14 @@ class Correlation {
  private:
   double n_ = 0, a_ = 0, aa_ = 0, b_ = 0, bb_ = 0, ab_ = 0;
 };
+
+// The value below which 'share', 0 to 1, of the first 'count' >= 1 values lie; changes their order.
+inline float Quantile(double share, std::size_t count, SmallPatternWorkspace::Column* values) {
+  const auto quantile =
+      values->begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(count));
+  std::nth_element(values->begin(), quantile, values->begin() + static_cast<std::ptrdiff_t>(count));
+  return *quantile;
+}
 
 // Correlation of the image with the whole print that is predicted.
 inline double CorrelatePrint(const SmallPatternWorkspace& workspace) {

@@ -130,12 +130,7 @@ double SmallPatternFitter::WhiteDarkness(const State& state,
     if (points.dark[i] > kWhite || std::hypot(points.x[i], points.y[i]) > inner) continue;
     residuals[count++] = points.seen[i] - points.expected[i];
   }
-  if (count == 0) return 0;
-  const auto darkest =
-      residuals.begin() + static_cast<std::ptrdiff_t>(kDarkest * static_cast<double>(count));
-  std::nth_element(residuals.begin(), darkest,
-                   residuals.begin() + static_cast<std::ptrdiff_t>(count));
-  return -*darkest / state.contrast;
+  return count == 0 ? 0 : -Quantile(kDarkest, count, &residuals) / state.contrast;
 }
 
 // The median over the directions in view, beyond the darkest white of the print: a white ring on
