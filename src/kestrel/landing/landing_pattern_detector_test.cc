@@ -191,6 +191,35 @@ TEST_F(LandingPatternDetectorTest, OtherSignsAreNotThePattern) {
   }
 }
 
+// Rings of 44 px that are 6 to 15 px high and blurred: too few pixels across to tell every letter
+// from a cross at sight.
+TEST_F(LandingPatternDetectorTest, LettersInFlatRingsAreNotThePattern) {
+  constexpr int kImages = 300;
+  Random random(12);
+  int found = 0;
+  for (int i = 0; i < kImages; ++i) {
+    const double tilt = random.Uniform(1.22, 1.43), axis = random.Uniform(0, 6);
+    const RigidTransform pose = PrintPose({0.15, -0.1, 5}, tilt, axis, random.Uniform(0, 6));
+    const double side = random.Uniform(0.12, 0.2), bar = random.Uniform(0.03, 0.055);
+    const auto letter_h = [=](double x, double y) {
+      return std::max(std::abs(x), std::abs(y)) < side + bar &&
+             (std::abs(std::abs(x) - side) < bar || std::abs(y) < bar);
+    };
+    const auto letter_t = [=](double x, double y) {
+      return std::abs(y) < bar || (std::abs(x) < bar && y > 0);
+    };
+    const bool is_h = random.Chance(0.5);
+    const Print sign = [&](double x, double y) {
+      return IsRing(pattern_, x, y) || (std::hypot(x, y) < pattern_.outer_radius_m() &&
+                                        (is_h ? letter_h(x, y) : letter_t(x, y)));
+    };
+    cv::Mat image = Draw(sign, pose);
+    cv::GaussianBlur(image, image, {}, random.Uniform(0.4, 1.0));
+    found += Detect(AddNoise(image, 2, &random)).detection.has_value();
+  }
+  EXPECT_LE(found, 3);
+}
+
 TEST_F(LandingPatternDetectorTest, AHintFitsAPatternThatFillsTheImageOfAFisheye) {
   // Half a metre above the board the ring spans 90 degrees: much less than its size over its
   // distance times the focal length.

@@ -41,6 +41,12 @@ constexpr double kMinExplained = 0.62;           // of the variance
 // two doubts in one.
 constexpr double kExplainedForWeakArm = 0.4;
 constexpr double kStrongArm = 0.8;
+// What is asked of the cross in a small ring: its worst arm, and more of it by the logarithm of the
+// ring's axis ratio, less by that of what the image inside lacks of the print's correlation. The
+// weights are those of a logistic regression over rings that passed all other tests.
+constexpr double kCrossByFlatness = 0.25;
+constexpr double kCrossByCorrelation = 0.22;
+constexpr double kLeastCross = 0.99;
 // Where shadows were taken out, which explain much by themselves.
 constexpr double kMinExplainedInShadows = 0.75;
 constexpr double kMinQualityInShadows = 0.84;
@@ -96,13 +102,27 @@ bool IsDoubtful(const SmallPatternFitter::OtherSigns& others) {
          kMinCrossCorrelation + kCrossForDarkBoard * std::max(0.0, others.board_darkness);
 }
 
+// Share of the print's contrast that the worst arm in view has, 0 to 1.
+double WorstArm(const PatternMatch& match) {
+  double worst = 1;
+  for (const double arm : match.arm) {
+    if (arm >= 0) worst = std::min(worst, arm);
+  }
+  return worst;
+}
+
 // Share of the variance that the fit of a small pattern has to explain.
 double LeastExplained(const PatternMatch& match) {
-  double lacking = 0;
-  for (const double arm : match.arm) {
-    if (arm >= 0) lacking = std::max(lacking, kStrongArm - arm);
-  }
-  return kMinExplained + kExplainedForWeakArm * lacking;
+  return kMinExplained + kExplainedForWeakArm * std::max(0.0, kStrongArm - WorstArm(match));
+}
+
+// Whether what is in a small ring is a cross. The flatter the ring is seen, the fewer pixels tell a
+// cross from a letter or from other spokes.
+bool HasCross(const SmallPatternFitter::Fit& fit, const Eigen::Vector2d& diameters_px) {
+  const double lacking = std::max(0.001, 1 - fit.others.cross_correlation);
+  return WorstArm(fit.match) + kCrossByFlatness * std::log(diameters_px.y() / diameters_px.x()) -
+             kCrossByCorrelation * std::log(lacking) >=
+         kLeastCross;
 }
 
 // What is asked of the quality of a small pattern beyond that of a near one: the fewer pixels, and
@@ -284,13 +304,15 @@ bool LandingSearch::IsSmallPattern(const SmallPatternFitter::Fit& fit,
   constexpr double kTolerance = 0.75;  // of the size, which so few pixels hardly tell
   const RigidTransform& pose = fit.location.camera_from_pattern;
   const CirclePose ring{pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()};
-  if (DiametersPx(ring).y() < kTolerance * models_.options.min_ring_px) return false;
+  const Eigen::Vector2d fitted_px = DiametersPx(ring);
+  if (fitted_px.y() < kTolerance * models_.options.min_ring_px) return false;
   return fit.match.Quality() >= models_.options.min_quality + SmallMargin(diameters_px) &&
          fit.correlation >= kMinFittedCorrelation && fit.explained >= LeastExplained(fit.match) &&
          fit.inside_residual - fit.ring_residual <= kMaxMoreInside &&
          fit.ring_residual - fit.inside_residual <= kMaxMoreOnRing &&
          fit.white_residual <= on_print + kMaxMoreOutside && !IsOtherSign(fit.others) &&
-         fit.others.spokes <= kMaxOtherSpokesOfSmall && !IsDoubtful(fit.others);
+         fit.others.spokes <= kMaxOtherSpokesOfSmall && !IsDoubtful(fit.others) &&
+         HasCross(fit, fitted_px);
 }
 
 // The best start for a small pattern whose ring lies as 'pose'; its correlation is -1 when there is

@@ -37,6 +37,13 @@ constexpr int kMoreIterations = 5;         // for a pose that still moves
 constexpr double kMaxCorrelation = 0.9;    // of neighbouring residuals
 constexpr double kSettledPx = 0.08;        // outlines that move by less stay where they are
 constexpr double kRingSettledPx = 0.2;     // the same of a ring that is to be located yet
+// Bright white spreads over the black where the image is overexposed, and ink runs: standard
+// deviation over cameras and prints; least spread that is believed; the same in its own standard
+// deviations. Less is as likely noise, or what narrow strokes do to each other's edges.
+constexpr double kSpreadPx = 0.3;
+constexpr double kLeastSpreadPx = 0.12;
+constexpr double kSureSpread = 4;
+constexpr double kHeld = 1e6;  // weight, in edges, of what is not to move
 
 // Whether the image shows all that FindEdge looks at.
 bool ShowsSearch(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::Vector2d& normal,
@@ -140,31 +147,38 @@ double StrokeShift(double width_px) {
   return kTable[static_cast<std::size_t>(std::max(width_px, 0.0) * kPerPixel)];
 }
 
-// Moves a pose by a translation and a rotation vector about its origin; false when that is no small
-// change.
-bool Move(const Eigen::Matrix<double, 6, 1>& step, RigidTransform* pose) {
-  if (!step.allFinite()) return false;
-  if (step.tail<3>().norm() > 1) return false;
-  *pose = Moved(*pose, step.head<3>(), step.tail<3>());
-  return true;
-}
-
 }  // namespace
 
-// Normal equations of the pose, and the edges that made them.
+// Where the edges are in the image.
+struct PatternLocator::State {
+  RigidTransform pose;
+  double spread_px = 0;  // of the black over the white: how far each edge is off its outline
+
+  // Changes the pose by a translation and a rotation vector about its origin, and the spread; false
+  // when that is no small change.
+  bool Move(const Vector& step) {
+    const Eigen::Vector3d turn = step.segment<3>(3);
+    if (!step.allFinite() || turn.norm() > 1) return false;
+    pose = Moved(pose, step.head<3>(), turn);
+    spread_px += step(kSpread);
+    return true;
+  }
+};
+
+// Normal equations of the state, and the edges that made them.
 struct PatternLocator::Normal {
   static constexpr std::size_t kMaxEdges = 256;
   struct Edge {
     const Place* place;
-    Eigen::Matrix<double, 6, 1> jacobian;  // of the offset, by the pose
-    double offset;                         // px, from the outline
+    Vector jacobian;  // of the offset
+    double offset;    // px, from where the state has it
     double weight;
     bool follows;  // the edge before is its neighbour on the outline
   };
 
-  Eigen::Matrix<double, 6, 6> h = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
-  Eigen::Matrix<double, 6, 1> by_blur = Eigen::Matrix<double, 6, 1>::Zero();  // derivative of g
+  Matrix h = Matrix::Zero();
+  Vector g = Vector::Zero();
+  Vector by_blur = Vector::Zero();  // derivative of g
   double weights = 0;
   int in_image = 0;
   std::array<int, 8> part_places{};  // by part: all, in the image
@@ -182,15 +196,21 @@ struct PatternLocator::Normal {
     return 1.4826 * static_cast<double>(*middle);
   }
 
+  // Draws the spread towards 'state' without any, by a weight in edges.
+  void HoldSpread(const State& state, double weight) {
+    h(kSpread, kSpread) += weight;
+    g(kSpread) -= weight * state.spread_px;
+  }
+
   // By how much (px, root mean square) 'step' moves the outlines in the image.
-  double Movement(const Eigen::Matrix<double, 6, 1>& step) const {
+  double Movement(const Vector& step) const {
     return std::sqrt(std::max(0.0, step.dot(h * step)) / weights);
   }
 };
 
-// What the edges are off the outlines once these have moved by a step.
+// What the edges are off the state once it has moved by a step.
 struct PatternLocator::Residuals {
-  Residuals(const Normal& normal, const Eigen::Matrix<double, 6, 1>& step)
+  Residuals(const Normal& normal, const Vector& step)
       : used(static_cast<double>(normal.used)), weights(normal.weights) {
     double before = 0;
     for (const Normal::Edge& edge : std::span(normal.edges).first(normal.used)) {
@@ -210,9 +230,8 @@ struct PatternLocator::Residuals {
   // Variance of an edge as the pose sees it: what neighbours have in common does not average out,
   // and what whole stretches of an outline have in common shows in how their means differ.
   double EdgeVariance() const {
-    constexpr double kUnknowns = 6;
     constexpr double kStretchEdges = 3;
-    const double freedom = std::max(1.0, used - kUnknowns) / used;
+    const double freedom = std::max(1.0, used - kPoseUnknowns) / used;
     const double of_edges = MeanSquare() / freedom * neighbors.Redundancy(kMaxCorrelation);
     double squares = 0;
     int stretches = 0;
@@ -221,7 +240,7 @@ struct PatternLocator::Residuals {
       squares += stretch.sum * stretch.sum / stretch.weights;
       ++stretches;
     }
-    const double of_stretches_freedom = stretches - kUnknowns;
+    const double of_stretches_freedom = stretches - kPoseUnknowns;
     if (of_stretches_freedom < 1) return of_edges;
     // By so much such means differ by chance in one of twenty prints (F distribution).
     constexpr double kByChance = 1.9;
@@ -288,13 +307,14 @@ bool PatternLocator::AreOnOneOutline(const Place& a, const Place& b) {
   return a.curvature == b.curvature && a.side == b.side && (a.curvature != 0 || a.part == b.part);
 }
 
-// What each 'stride'-th place says of the pose, weighted by Tukey's function of its offset with the
-// given scale.
-PatternLocator::Normal PatternLocator::Accumulate(const cv::Mat& image, const RigidTransform& pose,
+// What each 'stride'-th place says of the state, weighted by Tukey's function of its offset with
+// the given scale.
+PatternLocator::Normal PatternLocator::Accumulate(const cv::Mat& image, const State& state,
                                                   std::span<const Place> places, std::size_t stride,
                                                   double reach_px, double min_step,
                                                   double scale_px) const {
   Normal normal;
+  const RigidTransform& pose = state.pose;
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   const Eigen::Matrix<double, 3, 2> plane = rotation.leftCols<2>();
   const int reach = std::clamp(static_cast<int>(std::ceil(reach_px)), 1, kMaxReach);
@@ -327,7 +347,7 @@ PatternLocator::Normal PatternLocator::Accumulate(const cv::Mat& image, const Ri
     const double bend = 0.5 * place.curvature * std::abs(d_plane.determinant()) /
                         (tangent.squaredNorm() * tangent.norm());
     const double width_px = place.width * across.dot(d_plane * place.normal);
-    *offset += kLensBlurPx * kLensBlurPx * bend - StrokeShift(width_px);
+    *offset += kLensBlurPx * kLensBlurPx * bend - StrokeShift(width_px) - state.spread_px;
     normal.magnitudes[normal.found++] = static_cast<float>(std::abs(*offset));
     const double ratio = *offset / (4 * scale_px);
     if (std::abs(ratio) >= 1) continue;
@@ -336,12 +356,13 @@ PatternLocator::Normal PatternLocator::Accumulate(const cv::Mat& image, const Ri
     const Eigen::Vector3d d_point = d_pixel.transpose() * across;
     edge.place = &place;
     edge.jacobian.head<3>() = d_point;
-    edge.jacobian.tail<3>() = from_center.cross(d_point);
+    edge.jacobian.segment<3>(3) = from_center.cross(d_point);
+    edge.jacobian(kSpread) = 1;
     edge.offset = *offset;
     edge.weight = weight;
     edge.follows = follows;
-    const Eigen::Matrix<double, 6, 1> weighted = weight * edge.jacobian;
-    for (int c = 0; c < 6; ++c) normal.h.col(c) += edge.jacobian(c) * weighted;
+    const Vector weighted = weight * edge.jacobian;
+    for (int c = 0; c < kUnknowns; ++c) normal.h.col(c) += edge.jacobian(c) * weighted;
     normal.g += *offset * weighted;
     normal.by_blur += bend * weighted;
     normal.weights += weight;
@@ -352,36 +373,43 @@ PatternLocator::Normal PatternLocator::Accumulate(const cv::Mat& image, const Ri
 
 // Normal equations by every kCoarseStride-th place if that many edges are enough, else by all.
 // 'enough': 0 to look at all places at once.
-PatternLocator::Normal PatternLocator::Measure(const cv::Mat& image, const RigidTransform& pose,
+PatternLocator::Normal PatternLocator::Measure(const cv::Mat& image, const State& state,
                                                std::span<const Place> places, std::size_t enough,
                                                double reach_px, double min_step,
                                                double scale_px) const {
   if (enough > 0) {
-    Normal normal = Accumulate(image, pose, places, kCoarseStride, reach_px, min_step, scale_px);
+    Normal normal = Accumulate(image, state, places, kCoarseStride, reach_px, min_step, scale_px);
     if (normal.used >= enough) return normal;
   }
-  return Accumulate(image, pose, places, 1, reach_px, min_step, scale_px);
+  return Accumulate(image, state, places, 1, reach_px, min_step, scale_px);
 }
 
-// The pose's step, a prior put to the normal equations first.
-Eigen::Matrix<double, 6, 1> PatternLocator::Solve(const Eigen::Quaterniond& rotation,
-                                                  const std::optional<NormalPrior>& prior,
-                                                  Normal* normal) {
-  if (prior) {
-    const Residuals residuals(*normal, Eigen::Matrix<double, 6, 1>::Zero());
-    prior->AddTo(rotation, residuals.EdgeVariance(), &normal->h, &normal->g);
-  }
+// The state's step, priors put to the normal equations first. The spread stays none unless the
+// edges leave no doubt: to ask for it always would cost a sixth of the accuracy where there is
+// none.
+PatternLocator::Vector PatternLocator::Solve(const State& state,
+                                             const std::optional<NormalPrior>& prior,
+                                             Normal* normal) {
+  const double variance = Residuals(*normal, Vector::Zero()).EdgeVariance();
+  if (prior) prior->AddTo(state.pose.rotation, variance, &normal->h, &normal->g);
+  normal->HoldSpread(state, variance / (kSpreadPx * kSpreadPx));
+  const Eigen::LDLT<Matrix> decomposition(normal->h);
+  const Vector step = decomposition.solve(normal->g);
+  const double variance_of_spread =
+      Residuals(*normal, step).EdgeVariance() * decomposition.solve(Vector::Unit(kSpread))(kSpread);
+  const double least = std::max(kLeastSpreadPx, kSureSpread * std::sqrt(variance_of_spread));
+  if (std::abs(state.spread_px + step(kSpread)) > least) return step;
+  normal->HoldSpread(state, kHeld);
   return normal->h.ldlt().solve(normal->g);
 }
 
 // What 'step' leaves of the offsets makes the covariance of the pose.
-void PatternLocator::Describe(const Normal& normal, const Eigen::Matrix<double, 6, 1>& step,
-                              PatternLocation* location) {
+void PatternLocator::Describe(const Normal& normal, const Vector& step, PatternLocation* location) {
   const Residuals residuals(normal, step);
-  const Eigen::Matrix<double, 6, 6> inverse =
-      normal.h.ldlt().solve(Eigen::Matrix<double, 6, 6>::Identity().eval());
-  const Eigen::Matrix<double, 6, 1> blur = kBlurSpreadPx2 * (inverse * normal.by_blur);
-  location->covariance = residuals.EdgeVariance() * inverse + blur * blur.transpose();
+  const Matrix inverse = normal.h.ldlt().solve(Matrix::Identity().eval());
+  const Eigen::Matrix<double, 6, 1> blur = kBlurSpreadPx2 * (inverse * normal.by_blur).head<6>();
+  location->covariance =
+      residuals.EdgeVariance() * inverse.topLeftCorner<6, 6>() + blur * blur.transpose();
   location->edge_rms_px = std::sqrt(residuals.MeanSquare());
   location->edge_share = residuals.used / std::max(1, normal.in_image);
   location->edges = static_cast<int>(normal.used);
@@ -398,17 +426,16 @@ std::optional<PatternLocation> PatternLocator::Locate(
     const cv::Mat& image, const RigidTransform& initial, double reach_px, double min_step,
     int iterations, const std::optional<NormalPrior>& prior) const {
   PatternLocation location;
-  location.camera_from_pattern = initial;
-  RigidTransform& pose = location.camera_from_pattern;
+  State state{initial};
   double scale = std::max(1.0, 0.5 * reach_px);
   double reach = reach_px;
   for (int iteration = 1; iteration <= iterations + kMoreIterations; ++iteration) {
     // A part of the edges brings the pose near, all of them say where it is.
     const bool coarse = iteration < iterations;
-    Normal normal = Measure(image, pose, places_, coarse ? kFewEdges : 0, reach, min_step, scale);
+    Normal normal = Measure(image, state, places_, coarse ? kFewEdges : 0, reach, min_step, scale);
     if (normal.used < kMinEdges) return std::nullopt;
-    const Eigen::Matrix<double, 6, 1> step = Solve(pose.rotation, prior, &normal);
-    if (!Move(step, &pose)) return std::nullopt;
+    const Vector step = Solve(state, prior, &normal);
+    if (!state.Move(step)) return std::nullopt;
     scale = std::clamp(normal.RobustScale(), 0.25, scale);
     reach = std::clamp(3 * scale, 1.5, reach);
     if (coarse) continue;
@@ -419,26 +446,27 @@ std::optional<PatternLocation> PatternLocator::Locate(
     if (settled) break;
   }
   if (!location.covariance.allFinite()) return std::nullopt;
+  location.camera_from_pattern = state.pose;
   return location;
 }
 
 std::optional<RigidTransform> PatternLocator::LocateRing(
     const cv::Mat& image, const RigidTransform& initial, double reach_px, double min_step,
     int iterations, const std::optional<NormalPrior>& prior) const {
-  RigidTransform pose = initial;
+  State state{initial};
   double scale = std::max(1.0, 0.5 * reach_px);
   double reach = reach_px;
   const std::span<const Place> places = std::span(places_).first(ring_places_);
   const auto whole = static_cast<std::size_t>(kWholeRing * places.size() / kCoarseStride);
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    Normal normal = Measure(image, pose, places, whole, reach, min_step, scale);
+    Normal normal = Measure(image, state, places, whole, reach, min_step, scale);
     if (normal.used < kMinEdges) return std::nullopt;
     // A ring says nothing about turns in its plane, and a short arc little about its far side.
     normal.h.diagonal() *= 1 + 1e-4;
-    const double weight = 1e-6 * normal.h.diagonal().tail<3>().maxCoeff();
+    const double weight = 1e-6 * normal.h.diagonal().segment<3>(3).maxCoeff();
     for (int i = 3; i < 6; ++i) normal.h(i, i) += weight;
-    const Eigen::Matrix<double, 6, 1> step = Solve(pose.rotation, prior, &normal);
-    if (!Move(step, &pose)) return std::nullopt;
+    const Vector step = Solve(state, prior, &normal);
+    if (!state.Move(step)) return std::nullopt;
     const double before = std::exchange(scale, std::clamp(normal.RobustScale(), 0.25, scale));
     reach = std::clamp(3 * scale, 1.5, reach);
     // The edges of anything but a ring stay scattered.
@@ -446,7 +474,7 @@ std::optional<RigidTransform> PatternLocator::LocateRing(
     if (iteration > 0 && scale > kMaxRingScatterPx && !gathers) return std::nullopt;
     if (iteration > 0 && normal.Movement(step) < kRingSettledPx) break;
   }
-  return pose;
+  return state.pose;
 }
 
 }  // namespace kestrel

@@ -56,7 +56,8 @@ struct NormalPrior {
 // Refines a pose from the edges (model-based pose estimation, after Drummond and Cipolla 2002): the
 // outlines of ring and arms are projected through the lens, the edge nearest to each of their
 // points is looked for along the normal, to a fraction of a pixel, and the pose that brings them
-// together is found by Gauss-Newton with robust weights.
+// together is found by Gauss-Newton with robust weights. Where the edges leave no doubt that white
+// has spread over the black (overexposure) or black over the white, by how much is found as well.
 class PatternLocator {
  public:
   PatternLocator(const CameraModel& camera, const LandingPattern& pattern);
@@ -85,20 +86,25 @@ class PatternLocator {
     double width;      // of the stroke whose edge it is, m
     double curvature;  // 1/m; positive where the outline bends around the black side
   };
+  // Pose (translation, then rotation vector), then the spread of the black.
+  static constexpr int kPoseUnknowns = 6;
+  static constexpr int kSpread = kPoseUnknowns;
+  static constexpr int kUnknowns = kPoseUnknowns + 1;
+  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
+  using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+  struct State;
   struct Normal;
   struct Residuals;
 
   static bool AreOnOneOutline(const Place& a, const Place& b);
   void AddCircle(double radius, double sign, int count, double arm_clearance);
   void AddArms();
-  Normal Accumulate(const cv::Mat& image, const RigidTransform& pose, std::span<const Place> places,
+  Normal Accumulate(const cv::Mat& image, const State& state, std::span<const Place> places,
                     std::size_t stride, double reach_px, double min_step, double scale_px) const;
-  Normal Measure(const cv::Mat& image, const RigidTransform& pose, std::span<const Place> places,
+  Normal Measure(const cv::Mat& image, const State& state, std::span<const Place> places,
                  std::size_t enough, double reach_px, double min_step, double scale_px) const;
-  static Eigen::Matrix<double, 6, 1> Solve(const Eigen::Quaterniond& rotation,
-                                           const std::optional<NormalPrior>& prior, Normal* normal);
-  static void Describe(const Normal& normal, const Eigen::Matrix<double, 6, 1>& step,
-                       PatternLocation* location);
+  static Vector Solve(const State& state, const std::optional<NormalPrior>& prior, Normal* normal);
+  static void Describe(const Normal& normal, const Vector& step, PatternLocation* location);
 
   CameraModel camera_;
   LandingPattern pattern_;

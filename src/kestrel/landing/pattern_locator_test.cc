@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 
 #include "kestrel/landing/test_prints.h"
 
@@ -55,6 +56,25 @@ TEST_F(PatternLocatorTest, RecoversThePose) {
       EXPECT_GT(location->arm_share[k], 0.8);
       EXPECT_GT(location->ring_share[k], 0.8);
     }
+  }
+}
+
+// White that the image cuts off spreads over the black: here by half a pixel and more.
+TEST_F(PatternLocatorTest, OverexposureDoesNotMoveIt) {
+  Random random(5);
+  for (int trial = 0; trial < 12; ++trial) {
+    const double distance = random.Uniform(1.3, 3);
+    const RigidTransform truth = PrintPose({0.1, -0.05, distance}, random.Uniform(0.1, 0.5),
+                                           random.Uniform(0, 6), random.Uniform(0, 6));
+    cv::Mat image = Draw(truth);
+    cv::GaussianBlur(image, image, {}, 0.7);
+    image.convertTo(image, CV_8UC1, 2.2, 0);
+    const auto location = locator_.Locate(image, Disturb(truth, &random), 5, 10, 6);
+    ASSERT_TRUE(location);
+    const auto error = PoseError(location->camera_from_pattern, truth);
+    EXPECT_LT(error.head<3>().norm(), 0.003 * distance) << trial;
+    EXPECT_LT(error.tail<3>().norm(), 0.03) << trial;
+    EXPECT_LT(location->edge_rms_px, 0.25) << trial;
   }
 }
 

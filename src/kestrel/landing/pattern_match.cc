@@ -238,9 +238,15 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
            (value.difference >= least_in_shadow &&
             (value.ratio >= least_ratio || value.brighter_difference >= least_in_light));
   };
-  // What is nearer to black than to white on an arm and beside it hides it, as a landing leg does:
-  // where there is no arm at all there is white.
-  const float middle = Median(&ink, ink_count) + 0.5f * static_cast<float>(match.contrast);
+  // What is nearer to black than to the white inside of the ring, on an arm and beside it, hides
+  // the arm, as a landing leg does: where there is no arm at all there is that white.
+  std::array<float, kMaxPlaces> white;
+  std::size_t white_count = 0;
+  for (const Contrast& contrast : quadrants_) {
+    const float bright = sample(contrast.bright).first;
+    if (bright >= 0) white[white_count++] = bright;
+  }
+  const double middle = 0.5 * (Median(&ink, ink_count) + Median(&white, white_count));
   const auto hides_arm = [&](const Contrast& contrast) {
     return ink_count > 0 && sample(contrast.dark).first < middle &&
            sample(contrast.bright).first < middle;

@@ -66,6 +66,27 @@ TEST_F(PatternMatcherTest, AMissingArmIsSeen) {
   EXPECT_LT(match.Quality(), kMinQuality);
 }
 
+// A sign with one bar whose inside is nearer to black than to the white around it: what hides an
+// arm must be darker than the inside.
+TEST_F(PatternMatcherTest, AGrayInsideHidesNoArm) {
+  const Print disc = [this](double x, double y) {
+    return std::hypot(x, y) < pattern_.inner_radius_m();
+  };
+  cv::Mat image = Draw(SpokedPrint(pattern_, 2));
+  const cv::Mat inside = Draw(disc);
+  for (int v = 0; v < image.rows; ++v) {
+    for (int u = 0; u < image.cols; ++u) {
+      auto& gray = image.at<std::uint8_t>(v, u);
+      if (inside.at<std::uint8_t>(v, u) == 40) gray = static_cast<std::uint8_t>(24 + 0.4 * gray);
+    }
+  }
+  const PatternMatch match = Match(image, pose_);
+  EXPECT_GT(match.arm[0], 0.9);
+  EXPECT_GE(match.arm[1], 0) << "seen";
+  EXPECT_LT(match.arm[1], 0.2);
+  EXPECT_LT(match.Quality(), kMinQuality);
+}
+
 TEST_F(PatternMatcherTest, AnArmBehindALandingLegIsNotMissing) {
   const Print pattern = SpokedPrint(pattern_, 4);
   const Print behind_leg = [&](double x, double y) {

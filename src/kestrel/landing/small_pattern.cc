@@ -365,6 +365,7 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
   Matrix h = Matrix::Zero();
   Vector b = Vector::Zero();
   std::array<int, 4> highlight{}, inside{};  // pixels of each quarter
+  std::array<double, 12> area{};             // of the print's parts in the image, m^2
   const double inner = pattern_.inner_radius_m();
   const SmallPatternWorkspace::Points& points = workspace.points;
   for (std::size_t i = 0; i < workspace.count; ++i) {
@@ -388,6 +389,9 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
                                       1,
                                       x,
                                       y};
+    const double pixel_area = std::abs(points.x_by_u[i] * points.y_by_v[i] -  //
+                                       points.x_by_v[i] * points.y_by_u[i]);
+    for (std::size_t k = 0; k < 3; ++k) area[part[k]] += share[k] * pixel_area;
     for (std::size_t row = 0; row < part.size(); ++row) {
       b(part[row]) += share[row] * seen;
       for (std::size_t column = 0; column <= row; ++column) {
@@ -396,13 +400,12 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
     }
   }
   // Parts that the image does not show get no amplitude instead of a wild one.
-  const Vector weight = h.diagonal();
   for (int i = 0; i < kParts; ++i) h(i, i) += 1e-3 + 0.002 * h(i, i);
   const Vector amplitude = h.selfadjointView<Eigen::Lower>().ldlt().solve(b);
   const auto share = [&](double value) { return std::clamp(value / match->contrast, 0.0, 1.0); };
   // A part of which the image shows less than a third of what it shows of its like is not seen.
   const auto seen = [&](int first, int k) {
-    return 3 * weight(first + k) >= weight.segment<4>(first).maxCoeff();
+    return 3 * area[first + k] >= *std::max_element(&area[first], &area[first] + 4);
   };
   // Nor is an arm in a highlight: one that is missing is white, not brighter than that.
   const auto arm_seen = [&](int k) {
