@@ -1,10 +1,11 @@
 # Accuracy and speed of the landing pattern detector (paper, sections 2.1 to 2.5).
 find_package(OpenCV 4.5 REQUIRED COMPONENTS aruco)
 
-add_executable(kestrel_accuracy accuracy.cc landing_frames.cc landing_score.cc)
+add_executable(kestrel_accuracy accuracy.cc landing_frames.cc landing_score.cc
+                                landing_variants.cc)
 target_link_libraries(
   kestrel_accuracy PRIVATE kestrel::landing kestrel::recording kestrel::simulation
-                           CLI11::CLI11 fmt::fmt opencv_imgcodecs)
+                           CLI11::CLI11 fmt::fmt opencv_imgcodecs opencv_imgproc)
 target_compile_definitions(kestrel_accuracy
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
 
