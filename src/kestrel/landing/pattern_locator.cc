@@ -42,7 +42,7 @@ constexpr double kRingSettledPx = 0.2;     // the same of a ring that is to be l
 // deviations. Less is as likely noise, or what narrow strokes do to each other's edges.
 constexpr double kSpreadPx = 0.3;
 constexpr double kLeastSpreadPx = 0.12;
-constexpr double kSureSpread = 4;
+constexpr double kSureSpread = 2;
 constexpr double kHeld = 1e6;  // weight, in edges, of what is not to move
 
 // Whether the image shows all that FindEdge looks at.
