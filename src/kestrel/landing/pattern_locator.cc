@@ -394,13 +394,15 @@ PatternLocator::Vector PatternLocator::Solve(const State& state,
   if (prior) prior->AddTo(state.pose.rotation, variance, &normal->h, &normal->g);
   normal->HoldSpread(state, variance / (kSpreadPx * kSpreadPx));
   const Eigen::LDLT<Matrix> decomposition(normal->h);
-  const Vector step = decomposition.solve(normal->g);
+  Vector step = decomposition.solve(normal->g);
   const double variance_of_spread =
       Residuals(*normal, step).EdgeVariance() * decomposition.solve(Vector::Unit(kSpread))(kSpread);
   const double least = std::max(kLeastSpreadPx, kSureSpread * std::sqrt(variance_of_spread));
-  if (std::abs(state.spread_px + step(kSpread)) > least) return step;
-  normal->HoldSpread(state, kHeld);
-  return normal->h.ldlt().solve(normal->g);
+  if (std::abs(state.spread_px + step(kSpread)) <= least) {
+    normal->HoldSpread(state, kHeld);
+    step = normal->h.ldlt().solve(normal->g);
+  }
+  return step;
 }
 
 // What 'step' leaves of the offsets makes the covariance of the pose.
