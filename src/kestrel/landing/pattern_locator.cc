@@ -37,10 +37,9 @@ constexpr int kMoreIterations = 5;         // for a pose that still moves
 constexpr double kMaxCorrelation = 0.9;    // of neighbouring residuals
 constexpr double kSettledPx = 0.08;        // outlines that move by less stay where they are
 constexpr double kRingSettledPx = 0.2;     // the same of a ring that is to be located yet
-// Bright white spreads over the black where the image is overexposed, and ink runs: standard
-// deviation over cameras and prints; least spread that is believed; the same in its own standard
-// deviations. Less is as likely noise, or what narrow strokes do to each other's edges.
-constexpr double kSpreadPx = 0.3;
+// Bright white spreads over the black where the image is overexposed, and ink runs: least spread
+// that is believed, and the same in its standard deviations. Less is as likely noise, or what
+// narrow strokes do to each other's edges.
 constexpr double kLeastSpreadPx = 0.12;
 constexpr double kSureSpread = 2;
 constexpr double kHeld = 1e6;  // weight, in edges, of what is not to move
@@ -170,15 +169,15 @@ struct PatternLocator::Normal {
   static constexpr std::size_t kMaxEdges = 256;
   struct Edge {
     const Place* place;
-    Vector jacobian;  // of the offset
-    double offset;    // px, from where the state has it
+    PoseVector jacobian;  // of the offset, by the pose; by the spread it is 1
+    double offset;        // px, from where the state has it
     double weight;
     bool follows;  // the edge before is its neighbour on the outline
   };
 
-  Matrix h = Matrix::Zero();
-  Vector g = Vector::Zero();
-  Vector by_blur = Vector::Zero();  // derivative of g
+  Matrix h;
+  Vector g;
+  Vector by_blur;  // derivative of g
   double weights = 0;
   int in_image = 0;
   std::array<int, 8> part_places{};  // by part: all, in the image
@@ -196,12 +195,6 @@ struct PatternLocator::Normal {
     return 1.4826 * static_cast<double>(*middle);
   }
 
-  // Draws the spread towards 'state' without any, by a weight in edges.
-  void HoldSpread(const State& state, double weight) {
-    h(kSpread, kSpread) += weight;
-    g(kSpread) -= weight * state.spread_px;
-  }
-
   // By how much (px, root mean square) 'step' moves the outlines in the image.
   double Movement(const Vector& step) const {
     return std::sqrt(std::max(0.0, step.dot(h * step)) / weights);
@@ -212,9 +205,10 @@ struct PatternLocator::Normal {
 struct PatternLocator::Residuals {
   Residuals(const Normal& normal, const Vector& step)
       : used(static_cast<double>(normal.used)), weights(normal.weights) {
+    const PoseVector pose_step = step.head<kPoseUnknowns>();
     double before = 0;
     for (const Normal::Edge& edge : std::span(normal.edges).first(normal.used)) {
-      const double residual = edge.offset - edge.jacobian.dot(step);
+      const double residual = edge.offset - edge.jacobian.dot(pose_step) - step(kSpread);
       weighted_squares += edge.weight * residual * residual;
       part_used[edge.place->part] += std::abs(residual) <= kOnEdgePx;
       Stretch& stretch = outline[2 * edge.place->part + edge.place->side];
@@ -319,6 +313,9 @@ PatternLocator::Normal PatternLocator::Accumulate(const cv::Mat& image, const St
   const Eigen::Matrix<double, 3, 2> plane = rotation.leftCols<2>();
   const int reach = std::clamp(static_cast<int>(std::ceil(reach_px)), 1, kMaxReach);
   Eigen::Matrix<double, 2, 3> d_pixel;
+  Eigen::Matrix<double, kPoseUnknowns, kPoseUnknowns> h = decltype(h)::Zero();
+  PoseVector sum = PoseVector::Zero(), g = sum, by_blur = sum;
+  double sum_offsets = 0, sum_bends = 0;
   bool has_edge_before = false;  // the place before this one on its outline
   for (std::size_t i = 0; i < places.size(); i += stride) {
     const Place& place = places[i];
@@ -356,18 +353,23 @@ PatternLocator::Normal PatternLocator::Accumulate(const cv::Mat& image, const St
     const Eigen::Vector3d d_point = d_pixel.transpose() * across;
     edge.place = &place;
     edge.jacobian.head<3>() = d_point;
-    edge.jacobian.segment<3>(3) = from_center.cross(d_point);
-    edge.jacobian(kSpread) = 1;
+    edge.jacobian.tail<3>() = from_center.cross(d_point);
     edge.offset = *offset;
     edge.weight = weight;
     edge.follows = follows;
-    const Vector weighted = weight * edge.jacobian;
-    for (int c = 0; c < kUnknowns; ++c) normal.h.col(c) += edge.jacobian(c) * weighted;
-    normal.g += *offset * weighted;
-    normal.by_blur += bend * weighted;
+    const PoseVector weighted = weight * edge.jacobian;
+    for (int c = 0; c < kPoseUnknowns; ++c) h.col(c) += edge.jacobian(c) * weighted;
+    sum += weighted;
+    g += *offset * weighted;
+    by_blur += bend * weighted;
+    sum_offsets += weight * *offset;
+    sum_bends += weight * bend;
     normal.weights += weight;
     has_edge_before = true;
   }
+  normal.h << h, sum, sum.transpose(), normal.weights;
+  normal.g << g, sum_offsets;
+  normal.by_blur << by_blur, sum_bends;
   return normal;
 }
 
@@ -384,25 +386,27 @@ PatternLocator::Normal PatternLocator::Measure(const cv::Mat& image, const State
   return Accumulate(image, state, places, 1, reach_px, min_step, scale_px);
 }
 
-// The state's step, priors put to the normal equations first. The spread stays none unless the
-// edges leave no doubt: to ask for it always would cost a sixth of the accuracy where there is
+// The state's step, a prior put to the normal equations first. The spread is held at none unless
+// the edges leave no doubt: to ask for it always would cost a sixth of the accuracy where there is
 // none.
 PatternLocator::Vector PatternLocator::Solve(const State& state,
                                              const std::optional<NormalPrior>& prior,
-                                             Normal* normal) {
-  const double variance = Residuals(*normal, Vector::Zero()).EdgeVariance();
-  if (prior) prior->AddTo(state.pose.rotation, variance, &normal->h, &normal->g);
-  normal->HoldSpread(state, variance / (kSpreadPx * kSpreadPx));
-  const Eigen::LDLT<Matrix> decomposition(normal->h);
-  Vector step = decomposition.solve(normal->g);
-  const double variance_of_spread =
-      Residuals(*normal, step).EdgeVariance() * decomposition.solve(Vector::Unit(kSpread))(kSpread);
-  const double least = std::max(kLeastSpreadPx, kSureSpread * std::sqrt(variance_of_spread));
-  if (std::abs(state.spread_px + step(kSpread)) <= least) {
-    normal->HoldSpread(state, kHeld);
-    step = normal->h.ldlt().solve(normal->g);
+                                             bool has_spread, Normal* normal) {
+  if (prior) {
+    const Residuals residuals(*normal, Vector::Zero());
+    prior->AddTo(state.pose.rotation, residuals.EdgeVariance(), &normal->h, &normal->g);
   }
-  return step;
+  if (has_spread) {
+    const Eigen::LDLT<Matrix> decomposition(normal->h);
+    Vector step = decomposition.solve(normal->g);
+    const double variance = Residuals(*normal, step).EdgeVariance() *
+                            decomposition.solve(Vector::Unit(kSpread))(kSpread);
+    const double least = std::max(kLeastSpreadPx, kSureSpread * std::sqrt(variance));
+    if (std::abs(state.spread_px + step(kSpread)) > least) return step;
+  }
+  normal->h(kSpread, kSpread) += kHeld;
+  normal->g(kSpread) -= kHeld * state.spread_px;
+  return normal->h.ldlt().solve(normal->g);
 }
 
 // What 'step' leaves of the offsets makes the covariance of the pose.
@@ -436,7 +440,7 @@ std::optional<PatternLocation> PatternLocator::Locate(
     const bool coarse = iteration < iterations;
     Normal normal = Measure(image, state, places_, coarse ? kFewEdges : 0, reach, min_step, scale);
     if (normal.used < kMinEdges) return std::nullopt;
-    const Vector step = Solve(state, prior, &normal);
+    const Vector step = Solve(state, prior, !coarse, &normal);
     if (!state.Move(step)) return std::nullopt;
     scale = std::clamp(normal.RobustScale(), 0.25, scale);
     reach = std::clamp(3 * scale, 1.5, reach);
@@ -467,7 +471,7 @@ std::optional<RigidTransform> PatternLocator::LocateRing(
     normal.h.diagonal() *= 1 + 1e-4;
     const double weight = 1e-6 * normal.h.diagonal().segment<3>(3).maxCoeff();
     for (int i = 3; i < 6; ++i) normal.h(i, i) += weight;
-    const Vector step = Solve(state, prior, &normal);
+    const Vector step = Solve(state, prior, false, &normal);
     if (!state.Move(step)) return std::nullopt;
     const double before = std::exchange(scale, std::clamp(normal.RobustScale(), 0.25, scale));
     reach = std::clamp(3 * scale, 1.5, reach);

@@ -90,6 +90,7 @@ class PatternLocator {
   static constexpr int kPoseUnknowns = 6;
   static constexpr int kSpread = kPoseUnknowns;
   static constexpr int kUnknowns = kPoseUnknowns + 1;
+  using PoseVector = Eigen::Matrix<double, kPoseUnknowns, 1>;
   using Vector = Eigen::Matrix<double, kUnknowns, 1>;
   using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
   struct State;
@@ -103,7 +104,8 @@ class PatternLocator {
                     std::size_t stride, double reach_px, double min_step, double scale_px) const;
   Normal Measure(const cv::Mat& image, const State& state, std::span<const Place> places,
                  std::size_t enough, double reach_px, double min_step, double scale_px) const;
-  static Vector Solve(const State& state, const std::optional<NormalPrior>& prior, Normal* normal);
+  static Vector Solve(const State& state, const std::optional<NormalPrior>& prior, bool has_spread,
+                      Normal* normal);
   static void Describe(const Normal& normal, const Vector& step, PatternLocation* location);
 
   CameraModel camera_;
