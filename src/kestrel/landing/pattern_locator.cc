@@ -440,7 +440,7 @@ std::optional<PatternLocation> PatternLocator::Locate(
     const bool coarse = iteration < iterations;
     Normal normal = Measure(image, state, places_, coarse ? kFewEdges : 0, reach, min_step, scale);
     if (normal.used < kMinEdges) return std::nullopt;
-    const Vector step = Solve(state, prior, !coarse, &normal);
+    const Vector step = Solve(state, prior, iteration + 1 >= iterations, &normal);
     if (!state.Move(step)) return std::nullopt;
     scale = std::clamp(normal.RobustScale(), 0.25, scale);
     reach = std::clamp(3 * scale, 1.5, reach);
