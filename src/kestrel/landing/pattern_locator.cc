@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -193,6 +194,12 @@ struct PatternLocator::Normal {
     std::nth_element(magnitudes.begin(), middle,
                      magnitudes.begin() + static_cast<std::ptrdiff_t>(found));
     return 1.4826 * static_cast<double>(*middle);
+  }
+
+  // Whether a quarter of the places that were looked at is out of view.
+  bool IsPart() const {
+    const int places = std::accumulate(part_places.begin(), part_places.end(), 0);
+    return 4 * in_image < 3 * places;
   }
 
   // By how much (px, root mean square) 'step' moves the outlines in the image.
@@ -388,7 +395,7 @@ PatternLocator::Normal PatternLocator::Measure(const cv::Mat& image, const State
 
 // The state's step, a prior put to the normal equations first. The spread is held at none unless
 // the edges leave no doubt: to ask for it always would cost a sixth of the accuracy where there is
-// none.
+// none, and a part of a print bends to what is beside it.
 PatternLocator::Vector PatternLocator::Solve(const State& state,
                                              const std::optional<NormalPrior>& prior,
                                              bool has_spread, Normal* normal) {
@@ -396,7 +403,7 @@ PatternLocator::Vector PatternLocator::Solve(const State& state,
     const Residuals residuals(*normal, Vector::Zero());
     prior->AddTo(state.pose.rotation, residuals.EdgeVariance(), &normal->h, &normal->g);
   }
-  if (has_spread) {
+  if (has_spread && !normal->IsPart()) {
     const Eigen::LDLT<Matrix> decomposition(normal->h);
     Vector step = decomposition.solve(normal->g);
     const double variance = Residuals(*normal, step).EdgeVariance() *
