@@ -311,12 +311,17 @@ LandingTally ScoreVariant(const std::vector<LandingFrameSet>& sets, const ImageV
 
 void ReportVariants(const Options& options) {
   if (!options.variants) return;
-  fmt::print(
-      "\n## The same frames, other pixels\n\nEvery frame also seen in mirrors: four of each.\n\n"
-      "| variant | real frames | found | wrong | without pattern | false | rendered stills | found "
-      "| wrong | without | false |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+  fmt::print("\n## The same frames, other pixels\n\n");
   const std::vector<LandingFrameSet> real = ReadLandingReal(options.data_dir);
   const std::vector<LandingFrameSet> hard = ReadLandingHard(options.data_dir);
+  if (real.empty() && hard.empty()) {
+    fmt::print("skipped: there is no landing_real or landing_hard in {}\n", options.data_dir);
+    return;
+  }
+  fmt::print(
+      "Every frame also seen in mirrors: four of each.\n\n"
+      "| variant | real frames | found | wrong | without pattern | false | rendered stills | found "
+      "| wrong | without | false |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
   const auto cells = [](const LandingTally& t) {
     return fmt::format("{} | {} | {} | {} | {}", t.frames, t.found, t.wrong, t.negatives,
                        t.false_detections);

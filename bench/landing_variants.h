@@ -22,7 +22,7 @@ struct ImageVariant {
 std::span<const ImageVariant> ImageVariants();
 
 // A set as seen in a mirror that swaps left and right, or top and bottom, or both: images, camera
-// and truth. The print is its own mirror image.
+// and truth. The print is its own mirror image, and so is the lens: without tangential distortion.
 LandingFrameSet Mirrored(const LandingFrameSet& set, bool left_right, bool top_bottom);
 
 }  // namespace kestrel
