@@ -9,6 +9,9 @@
 
 namespace kestrel {
 
+// From which on a gray value tells no more than that it was brighter.
+inline constexpr float kSaturatedGray = 254;
+
 // Gray value of a CV_8UC1 image of at least 2 x 2 pixels between its pixels, bilinear; negative
 // outside of the image and for NaN.
 inline float SampleGray(const cv::Mat& image, float x, float y) {

@@ -11,6 +11,9 @@
 namespace kestrel {
 namespace {
 
+// Share of the least quality from which a pose is worth locating: one that lies beside the print
+// may miss an arm, and be brought to it by the edges.
+constexpr double kWorthLocating = 0.68;
 // Edges of the print are found to a tenth of a pixel, blurred ones to a few; the nearest edges of
 // anything else scatter over the whole reach of the search.
 constexpr double kMaxEdgeRmsPx = 0.7;
@@ -46,7 +49,7 @@ constexpr double kStrongArm = 0.8;
 // weights are those of a logistic regression over rings that passed all other tests.
 constexpr double kCrossByFlatness = 0.25;
 constexpr double kCrossByCorrelation = 0.22;
-constexpr double kLeastCross = 0.99;
+constexpr double kLeastCross = 0.97;
 // Where shadows were taken out, which explain much by themselves.
 constexpr double kMinExplainedInShadows = 0.75;
 constexpr double kMinQualityInShadows = 0.84;
@@ -258,7 +261,7 @@ std::optional<LandingSearch::Hypothesis> LandingSearch::Compare(const RigidTrans
   if (!view.valid()) return std::nullopt;
   const PatternMatch match = models_.matcher.Match(buffers_.pyramid.ImageAt(region.level), view);
   const double quality = match.Quality();
-  if (quality < 0.7 * models_.options.min_quality) return std::nullopt;
+  if (quality < kWorthLocating * models_.options.min_quality) return std::nullopt;
   return Hypothesis{pose, method, quality, match.contrast};
 }
 

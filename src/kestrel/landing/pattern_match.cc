@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
+
+#include "kestrel/image/gray_sampling.h"
 
 namespace kestrel {
 namespace {
@@ -29,6 +32,10 @@ constexpr double kRatioShare = 0.6;
 constexpr double kShareInLight = 0.7;
 constexpr double kLeastInShadow = 4;
 constexpr double kShareInShadow = 0.1;
+// By how much a highlight is brighter than the white of the board, and one that saturates the image
+// at least: of the print's contrast.
+constexpr double kHighlight = 0.4;
+constexpr double kSaturatedHighlight = 0.15;
 
 // A contrast: white minus black on the darker and on the brighter side, gray values; the former
 // relative to the white.
@@ -43,11 +50,14 @@ constexpr Seen kNotSeen{kUnseen, kUnseen, kUnseen};
 struct Tally {
   static constexpr int kSeenOf = 5;  // at least one in so many
   int agreed = 0;
+  int in_highlight = 0;
   int seen = 0;
   int all = 0;
 
+  // Negative where too little is seen, and where a half or more lies in a highlight.
   double Share() const {
-    return kSeenOf * seen < all ? -1.0 : static_cast<double>(agreed) / std::max(seen, 1);
+    if (kSeenOf * seen < all || (in_highlight > 0 && 2 * in_highlight >= seen)) return -1;
+    return static_cast<double>(agreed) / std::max(seen, 1);
   }
 };
 
@@ -56,6 +66,15 @@ double Median(Values* values, std::size_t count) {
   if (count == 0) return 0;
   std::nth_element(values->begin(), values->begin() + count / 2, values->begin() + count);
   return (*values)[count / 2];
+}
+
+// The least gray value that nothing of the print has beside such white of the board, of which there
+// may be none in view.
+double HighlightGray(double white, double contrast) {
+  if (white <= 0) return std::numeric_limits<double>::infinity();
+  const double gray = white + kHighlight * contrast;
+  const bool saturates = white + kSaturatedHighlight * contrast < kSaturatedGray;
+  return saturates ? std::min<double>(gray, kSaturatedGray) : gray;
 }
 
 // The shares of the quarters that can be seen.
@@ -198,7 +217,7 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
   std::array<Seen, kRingPlaces> of_ring;
   std::array<float, kRingPlaces> known, known_ratio, ink;
   std::size_t count = 0, ink_count = 0;
-  std::array<std::array<float, kRingPlaces>, 4> of_quarter;
+  std::array<std::array<float, kRingPlaces>, 4> of_quarter, board;
   std::array<std::size_t, 4> quarter_count{};
   for (std::size_t i = 0; i < ring_.size(); ++i) {
     of_ring[i] = look_at(ring_[i]);
@@ -207,6 +226,7 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
     known_ratio[count++] = of_ring[i].ratio;
     ink[ink_count++] = sample(ring_[i].dark).first;
     const int q = ring_[i].quarter;
+    board[q][quarter_count[q]] = sample(ring_[i].bright).first;
     of_quarter[q][quarter_count[q]++] = of_ring[i].difference;
   }
   if (count < kRingPlaces / 6) {
@@ -246,11 +266,18 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
     const float bright = sample(contrast.bright).first;
     if (bright >= 0) white[white_count++] = bright;
   }
-  const double middle = 0.5 * (Median(&ink, ink_count) + Median(&white, white_count));
+  const double white_inside = Median(&white, white_count);
+  const double middle = 0.5 * (Median(&ink, ink_count) + white_inside);
   const auto hides_arm = [&](const Contrast& contrast) {
     return ink_count > 0 && sample(contrast.dark).first < middle &&
            sample(contrast.bright).first < middle;
   };
+  // A highlight hides an arm too.
+  std::array<double, 4> highlight;
+  for (int q = 0; q < 4; ++q) {
+    const double white_outside = Median(&board[q], quarter_count[q]);
+    highlight[q] = HighlightGray(std::max(white_inside, white_outside), match.contrast);
+  }
   int seen = 0, all = 0;
   const auto count_in = [&](const Contrast& contrast, const Seen& value,
                             std::array<Tally, 4>* tallies) {
@@ -267,6 +294,8 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
     const Seen value = look_at(contrast);
     const bool hidden = value.known() && !agrees(value, contrast.quarter) && hides_arm(contrast);
     count_in(contrast, hidden ? kNotSeen : value, &arm);
+    arm[contrast.quarter].in_highlight +=
+        value.known() && sample(contrast.dark).first >= highlight[contrast.quarter];
   }
   std::size_t place = 0;
   for (int q = 0; q < 4; ++q) {

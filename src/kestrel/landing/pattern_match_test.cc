@@ -98,6 +98,21 @@ TEST_F(PatternMatcherTest, AnArmBehindALandingLegIsNotMissing) {
   EXPECT_GT(match.Quality(), 0.65);
 }
 
+// A highlight is brighter than any white of the print; an arm that is not there is as bright as
+// that.
+TEST_F(PatternMatcherTest, AnArmInAHighlightIsNotMissing) {
+  const Print spot = [](double x, double y) { return std::hypot(x - 0.22, y) < 0.18; };
+  const cv::Mat in_spot = Draw(spot) == 40;
+  cv::Mat image = pattern_image_.clone();
+  image.setTo(255, in_spot);
+  const PatternMatch match = Match(image, pose_);
+  EXPECT_LT(match.arm[0], 0) << "not seen";
+  EXPECT_GT(match.arm[1], 0.9);
+  EXPECT_GT(match.Quality(), kMinQuality);
+  image.setTo(200, in_spot);
+  EXPECT_LT(Match(image, pose_).Quality(), kMinQuality) << "as white as the board";
+}
+
 TEST_F(PatternMatcherTest, AnArmAlongTheImageBorderIsSeenByItsInnerSide) {
   // The centre 5 px from the border: of the arms along it only one side is in view.
   const RigidTransform pose = PrintPose({-154.5 / 220, 0, 1}, 0, 0, 0);

@@ -378,9 +378,9 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
       highlight[quarter] += gray > state.White(x, y) + state.Highlight();
     }
     // Cut off where the print should be darker than that: it is as good as white.
-    const double seen = gray < kSaturated  ? gray
-                        : expected <= gray ? std::max(state.white, gray)
-                                           : expected;
+    const double seen = gray < kSaturatedGray ? gray
+                        : expected <= gray    ? std::max(state.white, gray)
+                                              : expected;
     // What a pixel belongs to, in the order of the parts.
     const std::array<int, 6> part{quarter, 4 + quarter, 8 + QuadrantOf(x, y), 12, 13, 14};
     const std::array<double, 6> share{ring,

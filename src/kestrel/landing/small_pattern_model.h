@@ -12,6 +12,7 @@
 #include <Eigen/LU>
 
 #include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/image/gray_sampling.h"
 #include "kestrel/landing/small_pattern.h"
 #include "kestrel/landing/small_pattern_kernel.h"
 
@@ -19,7 +20,6 @@ namespace kestrel {
 
 inline constexpr double kGoodLensBlurPx = 0.7;  // of optics and pixels, standard deviation
 inline constexpr double kMinContrast = 2;       // gray values
-inline constexpr double kSaturated = 254;
 // Pixels of a box around a print beyond which some may be left out.
 inline constexpr int kEnoughToFit = 1200;
 inline constexpr int kEnoughToStart = 600;
@@ -117,7 +117,7 @@ struct SmallPatternFitter::State {
             .slope_y = static_cast<float>(slope.y()),
             .contrast = static_cast<float>(contrast),
             .highlight = static_cast<float>(Highlight()),
-            .saturated = static_cast<float>(kSaturated)};
+            .saturated = kSaturatedGray};
   }
 };
 

@@ -150,7 +150,7 @@ double SmallPatternFitter::BoardDarkness(const cv::Mat& image, const State& stat
     if (seen_gray < 0) continue;
     const double gray = seen_gray * state.board_factor[i];
     const double white = state.White(point.x(), point.y());
-    darkness[seen++] = seen_gray >= kSaturated ? 0 : (white - gray) / state.contrast;
+    darkness[seen++] = seen_gray >= kSaturatedGray ? 0 : (white - gray) / state.contrast;
   }
   if (seen == 0) return 0;
   std::nth_element(darkness.begin(), darkness.begin() + seen / 2, darkness.begin() + seen);
