@@ -118,13 +118,15 @@ void LandingSearch::MakeRoom() {
   buffers_.arcs.Reserve(most_points);
   buffers_.cross_lines.Reserve();
   buffers_.partial.Reserve(most_points);
-  buffers_.tested.reserve(kMaxTested);
+  buffers_.tested_small.reserve(kMaxTested);
+  buffers_.tested_large.reserve(kMaxTested);
   buffers_.other_signs.reserve(kMaxTested);
 }
 
 LandingReport LandingSearch::Run() {
   MakeRoom();
-  buffers_.tested.clear();
+  buffers_.tested_small.clear();
+  buffers_.tested_large.clear();
   buffers_.other_signs.clear();
   report_.reason = "no outline that could be a ring";
   if (TestPrediction()) return report_;

@@ -72,6 +72,7 @@ struct RingCandidate {
 struct RingPlace {
   Eigen::Vector2d center;
   Eigen::Vector2d diameters;
+  double reach_px = 0;  // within which its edges were looked for
 };
 
 struct LandingWorkspace::Buffers {
@@ -92,7 +93,8 @@ struct LandingWorkspace::Buffers {
   CrossLinesWorkspace cross_lines;
   PartialPatternWorkspace partial;
   SmallPatternWorkspace small;
-  std::vector<RingPlace> tested;       // small rings of this image
+  std::vector<RingPlace> tested_small;  // rings of this image
+  std::vector<RingPlace> tested_large;
   std::vector<RingPlace> other_signs;  // rings of this image that hold another sign
 };
 
@@ -181,7 +183,6 @@ class LandingSearch {
   bool ShowsOtherSign(const RigidTransform& pose, double quality);
   std::optional<RingPlace> PlaceOf(const Eigen::Vector3d& center,
                                    const Eigen::Vector2d& diameters_px) const;
-  bool WasTested(const RingFit& ring, const Eigen::Vector2d& diameters_px);
   std::optional<double> ArmAngleByQuadrants(const CirclePose& pose);
   std::array<bool, 2> LevelEnough(const RingFit& ring) const;
   std::optional<VerifiedCross> VerifyCross(const cv::Mat& image, const PatternView& view,

@@ -64,22 +64,34 @@ constexpr double kMinRingContrast = 5;  // gray values
 // its test where it lies half a stroke beside the print: as near it has to be to one that failed.
 constexpr double kSameSign = 0.12;
 constexpr double kSameStart = 0.05;
+// How far from where a ring was seen its edges are looked for when there is no cross in it: where
+// much of it is cut off or hidden, the rest tells little of its far side. Times the usual reach.
+constexpr std::array<double, 2> kRefinedReaches{1.5, 2.5};
 constexpr double kWhole = 0.75;  // share of the print in view that is no partial pattern
 constexpr int kFitIterations = 8;
 
-// Whether a place is one of others: its centre to a share of its shorter axis.
+// Whether a place is one of others: its centre to a share of its shorter axis, and its edges within
+// what was looked at there.
 bool IsAmong(const RingPlace& place, const std::vector<RingPlace>& others, double same_center) {
   constexpr double kSameSize = 0.1;
   return std::any_of(others.begin(), others.end(), [&](const RingPlace& other) {
     return (place.center - other.center).norm() < same_center * place.diameters.y() &&
            ((place.diameters - other.diameters).array().abs() < kSameSize * place.diameters.array())
-               .all();
+               .all() &&
+           place.reach_px <= other.reach_px;
   });
 }
 
 // Remembers a place as long as there is room.
 void Note(const RingPlace& place, std::vector<RingPlace>* places) {
   if (places->size() < places->capacity()) places->push_back(place);
+}
+
+// Whether nearly the same ring was tested before, as another pass saw it; notes it if not.
+bool WasTested(const RingPlace& place, std::vector<RingPlace>* tested) {
+  if (IsAmong(place, *tested, kSameStart)) return true;
+  Note(place, tested);
+  return false;
 }
 
 // Whether a fitted pose is still that of the ring it started from.
@@ -156,8 +168,10 @@ std::array<bool, 2> LandingSearch::LevelEnough(const RingFit& ring) const {
 
 void LandingSearch::TestRing(const RingFit& ring, const Eigen::Vector2d& diameters_px,
                              double reach_px) {
-  const std::optional<RingPlace> place = PlaceOf(ring.poses[0].center, diameters_px);
+  std::optional<RingPlace> place = PlaceOf(ring.poses[0].center, diameters_px);
   if (!place || IsAmong(*place, buffers_.other_signs, kSameSign)) return;
+  place->reach_px = reach_px;
+  if (WasTested(*place, &buffers_.tested_large)) return;
   std::array<std::optional<Hypothesis>, 2> hypotheses;
   {
     StageTimer timer(&report_, LandingStage::kCross);
@@ -166,13 +180,15 @@ void LandingSearch::TestRing(const RingFit& ring, const Eigen::Vector2d& diamete
     for (int i = 0; i < 2; ++i) {
       if (allowed[i]) hypotheses[i] = TestPose(ring.poses[i], diameters_px.x());
     }
-    const bool none = !hypotheses[0] && !hypotheses[1];
-    for (int i = 0; i < 2 && none; ++i) {
-      if (!allowed[i]) continue;
-      constexpr int kIterations = 4;
-      const std::optional<RigidTransform> refined =
-          RefineRing(ring.poses[i], 1.5 * reach_px, kIterations);
-      if (refined) hypotheses[i] = TestRefinedPose(*refined, diameters_px.x());
+    for (const double farther : kRefinedReaches) {
+      if (hypotheses[0] || hypotheses[1]) break;
+      for (int i = 0; i < 2; ++i) {
+        if (!allowed[i]) continue;
+        constexpr int kIterations = 4;
+        const std::optional<RigidTransform> refined =
+            RefineRing(ring.poses[i], farther * reach_px, kIterations);
+        if (refined) hypotheses[i] = TestRefinedPose(*refined, diameters_px.x());
+      }
     }
   }
   if (hypotheses[0] && hypotheses[1]) {
@@ -290,14 +306,6 @@ std::optional<RingPlace> LandingSearch::PlaceOf(const Eigen::Vector3d& center,
   return place;
 }
 
-// Whether nearly the same ring was tested before, as another pass saw it; notes it if not.
-bool LandingSearch::WasTested(const RingFit& ring, const Eigen::Vector2d& diameters_px) {
-  const std::optional<RingPlace> place = PlaceOf(ring.poses[0].center, diameters_px);
-  if (!place || IsAmong(*place, buffers_.tested, kSameStart)) return true;
-  Note(*place, &buffers_.tested);
-  return false;
-}
-
 // What the print does not explain is spread evenly where the print is: a sign with another figure
 // in the ring leaves more inside, one in another frame more on the ring and around it. So few
 // pixels tell less than the edges of a near pattern: more is asked of them.
@@ -342,7 +350,8 @@ void LandingSearch::TestSmallRing(const RingFit& ring, const Eigen::Vector2d& di
   if (IsTooSmall(diameters_px)) return;
   StageTimer timer(&report_, LandingStage::kCross);
   Reach(LandingStage::kCross, "no cross inside of the ring");
-  if (WasTested(ring, diameters_px)) return;
+  const std::optional<RingPlace> place = PlaceOf(ring.poses[0].center, diameters_px);
+  if (!place || WasTested(*place, &buffers_.tested_small)) return;
   const std::array<bool, 2> allowed = LevelEnough(ring);
   for (int i = 0; i < 2; ++i) {
     if (!allowed[i]) continue;
