@@ -93,9 +93,11 @@ struct LandingWorkspace::Buffers {
   CrossLinesWorkspace cross_lines;
   PartialPatternWorkspace partial;
   SmallPatternWorkspace small;
-  std::vector<RingPlace> tested_small;  // rings of this image
+  // Rings of this image that were tested as a whole, those tested by their edges, and those that
+  // hold another sign.
+  std::vector<RingPlace> tested_small;
   std::vector<RingPlace> tested_large;
-  std::vector<RingPlace> other_signs;  // rings of this image that hold another sign
+  std::vector<RingPlace> other_signs;
 };
 
 // The search of one image: runs the stages on candidates and keeps the best.

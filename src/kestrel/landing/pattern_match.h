@@ -18,7 +18,8 @@ struct PatternMatch {
   // Share, 0 to 1, of the local contrasts of each quarter that stand in the image as in the print;
   // negative when the image shows less than a fifth of it.
   std::array<double, 4> arm{};       // arm darker than the white on both of its sides; not seen
-                                     // where something dark or a highlight hides both
+                                     // where something dark hides both, nor when a half of it
+                                     // lies in a highlight
   std::array<double, 4> quadrant{};  // white between the arms brighter than ring and arms
   std::array<double, 4> ring{};      // ring darker than the white around it
   int spokes = 0;                    // quadrants with a dark line where all should be white
