@@ -24,3 +24,12 @@ target_link_libraries(
           benchmark::benchmark fmt::fmt opencv_aruco opencv_imgproc)
 target_compile_definitions(landing_benchmark
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
+
+add_executable(train_print_score train_print_score.cc print_score_training.cc landing_falsehoods.cc
+                                 landing_frames.cc landing_hardships.cc landing_score.cc
+                                 landing_variants.cc)
+target_link_libraries(train_print_score PRIVATE kestrel::landing kestrel::recording
+                                                kestrel::simulation CLI11::CLI11 fmt::fmt
+                                                opencv_imgcodecs opencv_imgproc)
+target_compile_definitions(train_print_score
+                           PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")

@@ -24,6 +24,7 @@ void DoubtParts(const PatternMatch& match, PrintDoubts* doubts) {
 }
 
 void DoubtGrayValues(const SmallPatternFitter::Fit& fit, PrintDoubts* doubts) {
+  (*doubts)[PrintDoubt::kOtherSpoke] = fit.others.spoke;
   (*doubts)[PrintDoubt::kOtherSpokes] = fit.others.spokes;
   (*doubts)[PrintDoubt::kFrameCorners] = fit.others.frame_corners;
   (*doubts)[PrintDoubt::kDarkBoard] = fit.others.board_darkness;
@@ -38,7 +39,7 @@ void DoubtGrayValues(const SmallPatternFitter::Fit& fit, PrintDoubts* doubts) {
 
 void DoubtView(const Eigen::Vector2d& diameters_px, double relative_sigma, PrintDoubts* doubts) {
   (*doubts)[PrintDoubt::kUncertain] = std::log(std::max(kLeastSigma, relative_sigma));
-  (*doubts)[PrintDoubt::kSmall] = -0.5 * std::log(std::max(1.0, diameters_px.prod()));
+  (*doubts)[PrintDoubt::kSmall] = -std::log(std::max(1.0, diameters_px.y()));
   (*doubts)[PrintDoubt::kFlat] =
       -std::log(std::max(0.01, diameters_px.y() / std::max(1.0, diameters_px.x())));
 }

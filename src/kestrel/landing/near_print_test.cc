@@ -23,6 +23,7 @@ constexpr double kSameSign = 0.12;
 // How far from where a ring was seen its edges are looked for when there is no cross in it: where
 // much of it is cut off or hidden, the rest tells little of its far side. Times the usual reach.
 constexpr std::array<double, 2> kRefinedReaches{1.5, 2.5};
+constexpr int kRefinements = 4;
 constexpr double kPredictedReach = 0.12;  // of the diameter, of a predicted ring
 constexpr double kSureReach = 0.02;       // the same of one whose edges are in place
 constexpr double kCrossReach = 0.03;      // the same of a ring that the cross says
@@ -97,11 +98,16 @@ void NearPrintTest::Test(const RingCandidate& ring) {
     has_cross |= print.has_value();
     if (print && TestPrint(*print, ring.diameters_px, ring.reach_px, ring.poses, order)) return;
   }
+  // Once all of the ring is in its place, to look for it farther away shows nothing else.
+  bool is_whole = false;
   for (const double farther : kRefinedReaches) {
-    if (has_cross) return;
+    if (has_cross || is_whole) return;
     for (const int pose : order.poses) {
+      const auto refined = RefineRing(ring.poses[pose], farther * ring.reach_px, kRefinements);
+      if (!refined) continue;
+      is_whole |= refined->is_whole;
       const std::optional<Hypothesis> print =
-          FindCrossInRefined(ring.poses[pose], diameter_px, farther * ring.reach_px);
+          FindCrossInRefined(refined->camera_from_pattern, diameter_px);
       has_cross |= print.has_value();
       if (print && TestPrint(*print, ring.diameters_px, ring.reach_px, ring.poses, order)) return;
     }
@@ -111,10 +117,10 @@ void NearPrintTest::Test(const RingCandidate& ring) {
 void NearPrintTest::TestPredicted(const CirclePose& predicted,
                                   const Eigen::Vector2d& predicted_px) {
   constexpr int kIterations = 3;
-  const std::optional<RigidTransform> refined =
-      RefineRing(predicted, kPredictedReach * predicted_px.x(), kIterations);
+  const auto refined = RefineRing(predicted, kPredictedReach * predicted_px.x(), kIterations);
   if (!refined) return;
-  const CirclePose ring{refined->translation, refined->rotation * Eigen::Vector3d::UnitZ()};
+  const RigidTransform& pose = refined->camera_from_pattern;
+  const CirclePose ring{pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()};
   const Eigen::Vector2d diameters_px =
       RingDiametersPx(models_.camera, models_.options.pattern.outer_radius_m(), ring);
   if (IsSmallRing(diameters_px)) return;
@@ -167,31 +173,27 @@ std::optional<NearPrintTest::Hypothesis> NearPrintTest::FindCross(const CirclePo
 
 // Where the ring is cut off or broken, what is known of it says little about its far side: the
 // edges of both of its circles bring it into place before its inside is looked at.
-std::optional<RigidTransform> NearPrintTest::RefineRing(const CirclePose& ring, double reach_px,
-                                                        int iterations) {
+std::optional<RingLocation> NearPrintTest::RefineRing(const CirclePose& ring, double reach_px,
+                                                      int iterations) {
   const SearchLog::Timer timer = log_.Time(LandingStage::kRing);
   return models_.locator.LocateRing(image_.whole(), PatternPose(ring, 0), reach_px,
                                     kMinRingContrast / 2, iterations,
                                     prior_.LevelPrior(ring.normal));
 }
 
-std::optional<NearPrintTest::Hypothesis> NearPrintTest::FindCrossInRefined(const CirclePose& ring,
-                                                                           double diameter_px,
-                                                                           double reach_px) {
-  constexpr int kIterations = 4;
-  const std::optional<RigidTransform> refined = RefineRing(ring, reach_px, kIterations);
-  if (!refined) return std::nullopt;
+std::optional<NearPrintTest::Hypothesis> NearPrintTest::FindCrossInRefined(
+    const RigidTransform& ring, double diameter_px) {
   const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
   const ImageRegion region = image_.RegionAt(ViewLevel(diameter_px));
   const cv::Mat image = image_.At(region.level);
-  const PatternView view(models_.camera, *refined, models_.matcher.extent_m(), region);
+  const PatternView view(models_.camera, ring, models_.matcher.extent_m(), region);
   if (!view.valid() || models_.matcher.RingContrast(image, view) < kMinRingContrast) {
     return std::nullopt;
   }
   const std::optional<Cross> cross =
       FindCrossByProfile(image, view, models_.options.pattern, kMinRingContrast / 2);
   if (!cross) return std::nullopt;
-  RigidTransform turned = *refined;
+  RigidTransform turned = ring;
   turned.rotation *=
       Eigen::Quaterniond(Eigen::AngleAxisd(cross->arm_angle, Eigen::Vector3d::UnitZ()));
   return Compare(turned, CrossMethod::kThinning, diameter_px);
@@ -294,8 +296,10 @@ void NearPrintTest::Refuse(const PrintFinding& finding, const PrintAlignment& al
 void NearPrintTest::DoubtParts(const PrintAlignment& alignment, const PatternMatch& match,
                                PrintFinding* finding) {
   kestrel::DoubtParts(match, &finding->doubts);
-  const PartShares::Means edges = alignment.EdgeShares().MeansInView();
-  finding->doubts[PrintDoubt::kArmEdges] = 1 - edges.arms;
+  const PartShares edge_shares = alignment.EdgeShares();
+  const PartShares::Means edges = edge_shares.MeansInView();
+  const bool shows_arms = *std::max_element(edge_shares.arm.begin(), edge_shares.arm.end()) >= 0;
+  finding->doubts[PrintDoubt::kArmEdges] = shows_arms ? 1 - edges.arms : 0;
   finding->doubts[PrintDoubt::kRingEdges] = 1 - edges.ring;
   finding->doubts[PrintDoubt::kOtherSpokes] = 0.5 * match.spokes;
   finding->doubts[PrintDoubt::kScatter] = LogShare(alignment.edge_rms_px, MeanDiameter(*finding));

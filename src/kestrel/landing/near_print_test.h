@@ -54,9 +54,8 @@ class NearPrintTest {
   };
 
   std::optional<Hypothesis> FindCross(const CirclePose& ring, double diameter_px);
-  std::optional<Hypothesis> FindCrossInRefined(const CirclePose& ring, double diameter_px,
-                                               double reach_px);
-  std::optional<RigidTransform> RefineRing(const CirclePose& ring, double reach_px, int iterations);
+  std::optional<Hypothesis> FindCrossInRefined(const RigidTransform& ring, double diameter_px);
+  std::optional<RingLocation> RefineRing(const CirclePose& ring, double reach_px, int iterations);
   std::optional<Hypothesis> Compare(const RigidTransform& pose, CrossMethod method,
                                     double diameter_px);
   bool TestPrint(const Hypothesis& print, const Eigen::Vector2d& diameters_px, double reach_px,

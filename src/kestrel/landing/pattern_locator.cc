@@ -369,7 +369,7 @@ void PatternLocator::Recalibrate(const PrintEdges& edges, const std::optional<No
   }
 }
 
-std::optional<RigidTransform> PatternLocator::LocateRing(
+std::optional<RingLocation> PatternLocator::LocateRing(
     const cv::Mat& image, const RigidTransform& initial, double reach_px, double min_step,
     int iterations, const std::optional<NormalPrior>& prior) const {
   State state{initial};
@@ -377,6 +377,7 @@ std::optional<RigidTransform> PatternLocator::LocateRing(
   double reach = reach_px;
   const std::span<const PrintOutline::Place> places = outline_.ring();
   const auto whole = static_cast<std::size_t>(kWholeRing * places.size() / kCoarseStride);
+  bool is_whole = false;
   PrintEdges edges;
   const auto measure = [&](std::size_t stride) {
     const PlaneWarp warp(camera_, state.pose, outline_.radius_m());
@@ -385,7 +386,11 @@ std::optional<RigidTransform> PatternLocator::LocateRing(
   };
   for (int i = 0; i < iterations; ++i) {
     Linearized linearized = measure(kCoarseStride);
-    if (linearized.used < whole) linearized = measure(1);
+    is_whole = linearized.used >= whole;
+    if (!is_whole) {
+      linearized = measure(1);
+      is_whole = linearized.used >= kCoarseStride * whole;
+    }
     if (linearized.used < kMinEdges) return std::nullopt;
     // A ring says nothing about turns in its plane, and a short arc little about its far side.
     Matrix& h = linearized.equations.h;
@@ -402,7 +407,7 @@ std::optional<RigidTransform> PatternLocator::LocateRing(
     if (i > 0 && scale > kMaxRingScatterPx && !gathers) return std::nullopt;
     if (i > 0 && linearized.Movement(step) < kRingSettledPx) break;
   }
-  return state.pose;
+  return RingLocation{state.pose, is_whole};
 }
 
 }  // namespace kestrel

@@ -53,6 +53,12 @@ struct NormalPrior {
   }
 };
 
+// Where a ring is seen.
+struct RingLocation {
+  RigidTransform camera_from_pattern;  // however the cross is turned
+  bool is_whole;                       // nearly all of it has its edges in the image
+};
+
 // Finds the pose from the edges (model-based pose estimation, after Drummond and Cipolla 2002): the
 // one under which the lens shows the outlines of ring and arms nearest to them, by Gauss-Newton
 // with robust weights. What is usually not so is found as well where the edges leave no doubt:
@@ -73,9 +79,9 @@ class PatternLocator {
   // The pose of the ring near 'initial' by its edges alone, however the cross is turned about its
   // centre: within 'reach_px' the edge nearest to each point of the outline is looked for along the
   // normal, again and again. 'min_step': as in EdgeSearch. Does not allocate.
-  std::optional<RigidTransform> LocateRing(const cv::Mat& image, const RigidTransform& initial,
-                                           double reach_px, double min_step, int iterations,
-                                           const std::optional<NormalPrior>& prior = {}) const;
+  std::optional<RingLocation> LocateRing(const cv::Mat& image, const RigidTransform& initial,
+                                         double reach_px, double min_step, int iterations,
+                                         const std::optional<NormalPrior>& prior = {}) const;
 
  private:
   struct State;

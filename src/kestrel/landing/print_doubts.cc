@@ -16,6 +16,7 @@ constexpr std::array<std::string_view, kPrintDoubts> kReasons = {
     "the ring is broken",
     "the arms of the cross have no edges where they should",
     "the ring has no edges where it should",
+    "there is another line between the arms of the cross",
     "there are other lines between the arms of the cross",
     "the ring has corners",
     "there is no white board around the ring",
@@ -34,24 +35,34 @@ constexpr std::array<std::string_view, kPrintDoubts> kReasons = {
     "there are shadows on it",
 };
 
-}  // namespace
-
-double LogOddsTakenBy(PrintKind kind, const PrintDoubts& doubts, PrintDoubt doubt) {
-  const DoubtWeight& weight =
-      kPrintWeights[static_cast<std::size_t>(kind)].doubts[static_cast<std::size_t>(doubt)];
+double TakenBy(const DoubtWeight& weight, double doubt) {
   double taken = 0;
   for (std::size_t i = 0; i < weight.knots.size(); ++i) {
-    taken += weight.slopes[i] * std::max(0.0, doubts[doubt] - weight.knots[i]);
+    taken += weight.slopes[i] * std::max(0.0, doubt - weight.knots[i]);
   }
   return taken;
 }
 
-double PrintLogOdds(PrintKind kind, const PrintDoubts& doubts) {
-  double log_odds = kPrintWeights[static_cast<std::size_t>(kind)].certain;
+const PrintWeights& WeightsOf(PrintKind kind) {
+  return kPrintWeights[static_cast<std::size_t>(kind)];
+}
+
+}  // namespace
+
+double LogOddsTakenBy(PrintKind kind, const PrintDoubts& doubts, PrintDoubt doubt) {
+  return TakenBy(WeightsOf(kind).doubts[static_cast<std::size_t>(doubt)], doubts[doubt]);
+}
+
+double PrintLogOdds(const PrintWeights& weights, const PrintDoubts& doubts) {
+  double log_odds = weights.certain;
   for (std::size_t i = 0; i < kPrintDoubts; ++i) {
-    log_odds -= LogOddsTakenBy(kind, doubts, static_cast<PrintDoubt>(i));
+    log_odds -= TakenBy(weights.doubts[i], doubts[static_cast<PrintDoubt>(i)]);
   }
   return log_odds;
+}
+
+double PrintLogOdds(PrintKind kind, const PrintDoubts& doubts) {
+  return PrintLogOdds(WeightsOf(kind), doubts);
 }
 
 double ProbabilityOf(double log_odds) { return 1 / (1 + std::exp(-log_odds)); }

@@ -22,7 +22,8 @@ enum class PrintDoubt {
   kBrokenRing,    // share of the contrast that the ring lacks, mean but for the worst quarter
   kArmEdges,      // share of the edges of the arms that are not in their place
   kRingEdges,     // share of the edges of the ring that are not, but for the worst quarter
-  kOtherSpokes,   // darkness of lines between the arms
+  kOtherSpoke,    // darkness of the darkest line between the arms
+  kOtherSpokes,   // the same of the second darkest
   kFrameCorners,  // darkness beyond the ends of the arms, against between them
   kDarkBoard,     // darkness of the board around the ring
   kOtherFigure,   // logarithm of what the correlation inside of the ring lacks of 1
@@ -34,12 +35,12 @@ enum class PrintDoubt {
   kScatter,       // logarithm of the scatter of the edges, of the ring's mean diameter
   kMisfit,        // logarithm of the edges' distance from a flat print seen through the lens
   kUncertain,     // logarithm of the position's standard deviation, of the distance
-  kSmall,         // logarithm of the ring's mean diameter in pixels, negative
+  kSmall,         // logarithm of the ring's shorter diameter in pixels, negative
   kFlat,          // logarithm of its axis ratio, negative
   kHidden,        // share of the print that is not in view
   kShadows,       // 1 where shadows had to be taken out to see it
 };
-inline constexpr std::size_t kPrintDoubts = 22;
+inline constexpr std::size_t kPrintDoubts = 23;
 
 class PrintDoubts {
  public:
@@ -58,9 +59,16 @@ struct DoubtWeight {
   std::array<double, 3> slopes;
 };
 
+// The same of all doubts.
+struct PrintWeights {
+  double certain;  // log odds of a print without any doubt
+  std::array<DoubtWeight, kPrintDoubts> doubts;
+};
+
 // Logarithm of the odds that a print is the landing pattern, and how much of it a doubt takes: an
 // additive model that falls with every doubt (logistic regression with weights that are not
-// negative, tools/train_print_score; the table is in print_score_weights.h).
+// negative, bench/train_print_score; the table is in print_score_weights.h).
+double PrintLogOdds(const PrintWeights& weights, const PrintDoubts& doubts);
 double PrintLogOdds(PrintKind kind, const PrintDoubts& doubts);
 double LogOddsTakenBy(PrintKind kind, const PrintDoubts& doubts, PrintDoubt doubt);
 

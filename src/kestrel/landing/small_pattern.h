@@ -90,7 +90,8 @@ class SmallPatternFitter {
 
   // What tells other signs from the print. Darkness is a share of the print's contrast.
   struct OtherSigns {
-    double spokes;             // second darkest of the lines between the arms, one a quadrant
+    double spoke;              // darkest of the lines between the arms, one a quadrant
+    double spokes;             // the second of them
     double frame_corners;      // beyond the ends of the arms, against between them
     double cross_correlation;  // of image and print inside of the ring, noise left aside: low for
                                // a blot
@@ -160,7 +161,7 @@ class SmallPatternFitter {
                     PatternMatch* match) const;
   OtherSigns MeasureOthers(const MaskedImage& image, const State& state,
                            SmallPatternWorkspace* workspace) const;
-  double OtherSpokes(const State& state, SmallPatternWorkspace* workspace) const;
+  std::array<double, 4> OtherSpokes(const State& state, SmallPatternWorkspace* workspace) const;
   double FrameCorners(const SmallPatternWorkspace& workspace, const State& state) const;
   double CrossCorrelation(const SmallPatternWorkspace& workspace, const State& state) const;
   double WhiteDarkness(const State& state, SmallPatternWorkspace* workspace) const;

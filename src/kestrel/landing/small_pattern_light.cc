@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 
@@ -60,23 +61,29 @@ class Disc {
   std::size_t count_ = 0;
 };
 
-// The best by 'better' of the values within a disc around each pixel of a patch.
+// Gives the pixels of a patch that are none of the print's a value.
+void SetOutside(const SmallPatternWorkspace::Patch& patch, float value,
+                SmallPatternWorkspace::Column* values) {
+  for (int at = 0; at < patch.width * patch.height; ++at) {
+    if (!patch.is_print[at]) (*values)[at] = value;
+  }
+}
+
+// The best by 'better' of the values within a disc around each pixel of a patch, of which 'worst'
+// is none. Row by row for each place of the disc, which compilers turn into vector instructions.
 template <typename Better>
-void Filter(const SmallPatternWorkspace::Patch& patch, std::span<const Offset> disc,
+void Filter(const SmallPatternWorkspace::Patch& patch, std::span<const Offset> disc, float worst,
             const SmallPatternWorkspace::Column& from, const Better& better,
             SmallPatternWorkspace::Column* to) {
+  std::fill_n(to->begin(), patch.width * patch.height, worst);
   for (int y = 0; y < patch.height; ++y) {
-    for (int x = 0; x < patch.width; ++x) {
-      const int at = y * patch.width + x;
-      if (!patch.is_print[at]) continue;
-      float best = from[at];
-      for (const Offset& offset : disc) {
-        const int xx = x + offset.x, yy = y + offset.y;
-        if (xx < 0 || yy < 0 || xx >= patch.width || yy >= patch.height) continue;
-        const int other = yy * patch.width + xx;
-        if (patch.is_print[other]) best = better(best, from[other]);
-      }
-      (*to)[at] = best;
+    float* row = to->data() + y * patch.width;
+    for (const Offset& offset : disc) {
+      const int yy = y + offset.y;
+      if (yy < 0 || yy >= patch.height) continue;
+      const float* values = from.data() + yy * patch.width + offset.x;
+      const int end = std::min(patch.width, patch.width - offset.x);
+      for (int x = std::max(0, -offset.x); x < end; ++x) row[x] = better(row[x], values[x]);
     }
   }
 }
@@ -84,10 +91,13 @@ void Filter(const SmallPatternWorkspace::Patch& patch, std::span<const Offset> d
 // Morphological closing: fills what is dark and narrower than the disc.
 void Close(std::span<const Offset> disc, SmallPatternWorkspace::Patch* patch,
            SmallPatternWorkspace::Column* values) {
-  const auto brighter = [](float a, float b) { return std::max(a, b); };
-  const auto darker = [](float a, float b) { return std::min(a, b); };
-  Filter(*patch, disc, *values, brighter, &patch->dilated);
-  Filter(*patch, disc, patch->dilated, darker, values);
+  constexpr float kMost = std::numeric_limits<float>::max();
+  const auto brighter = [](float a, float b) { return a < b ? b : a; };
+  const auto darker = [](float a, float b) { return b < a ? b : a; };
+  SetOutside(*patch, -kMost, values);
+  Filter(*patch, disc, -kMost, *values, brighter, &patch->dilated);
+  SetOutside(*patch, kMost, &patch->dilated);
+  Filter(*patch, disc, kMost, patch->dilated, darker, values);
 }
 
 // Share of the variance of the gray values that the print does not explain.

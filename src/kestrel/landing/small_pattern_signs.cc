@@ -14,15 +14,18 @@ namespace kestrel {
 // Of a print that is predicted and compared with the image.
 SmallPatternFitter::OtherSigns SmallPatternFitter::MeasureOthers(
     const MaskedImage& image, const State& state, SmallPatternWorkspace* workspace) const {
-  return {.spokes = OtherSpokes(state, workspace),
+  const std::array<double, 4> spokes = OtherSpokes(state, workspace);
+  return {.spoke = spokes[0],
+          .spokes = spokes[1],
           .frame_corners = FrameCorners(*workspace, state),
           .cross_correlation = CrossCorrelation(*workspace, state),
           .board_darkness = BoardDarkness(image, state, workspace)};
 }
 
 // In each quadrant the darkest line from the centre among those well away from the arms: its depth
-// in what the fit left over, against the rest of the quadrant.
-double SmallPatternFitter::OtherSpokes(const State& state, SmallPatternWorkspace* workspace) const {
+// in what the fit left over, against the rest of the quadrant; in order, the darkest first.
+std::array<double, 4> SmallPatternFitter::OtherSpokes(const State& state,
+                                                      SmallPatternWorkspace* workspace) const {
   constexpr std::size_t kLines = SmallPatternWorkspace::kLines;
   constexpr std::array<double, kLines> kTurns{33, 45, 57};  // degrees from the arm before
   std::array<std::array<float, 2>, kLines> normals;
@@ -63,7 +66,7 @@ double SmallPatternFitter::OtherSpokes(const State& state, SmallPatternWorkspace
     }
   }
   std::sort(darkest.begin(), darkest.end(), std::greater<>());
-  return darkest[1];
+  return darkest;
 }
 
 // How much darker the white is beyond the ends of the arms than between them.
