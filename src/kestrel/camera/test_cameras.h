@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "kestrel/camera/camera_model.h"
 
 namespace kestrel {
+
+inline constexpr double kDegree = std::numbers::pi / 180;
 
 struct TestCamera {
   std::string name;

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "kestrel/geometry/angles.h"
 #include "kestrel/simulation/violations.h"
 
 namespace kestrel {
@@ -19,10 +20,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kStep_s = 5e-3;  // of the differences that give velocity and acceleration
-
-double Radians(double degrees) { return degrees * kPi / 180; }
 
 using PlanePath = std::function<Vector2d(double time_s)>;
 

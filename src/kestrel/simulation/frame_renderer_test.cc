@@ -2,11 +2,11 @@
 #include "kestrel/simulation/frame_renderer.h"
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "kestrel/geometry/angles.h"
 #include "kestrel/simulation/flight_camera.h"
 #include "kestrel/simulation/test_worlds.h"
 
@@ -16,8 +16,6 @@ namespace {
 using Eigen::AngleAxisd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr double kPi = std::numbers::pi;
 
 double Bilinear(const cv::Mat& image, const Vector2d& pixel) {
   const int u = static_cast<int>(std::floor(pixel.x()));

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numbers>
 
 #include <opencv2/imgproc.hpp>
 
+#include "kestrel/geometry/angles.h"
 #include "kestrel/simulation/ground_materials.h"
 #include "kestrel/simulation/random_scene.h"
 #include "kestrel/simulation/violations.h"
@@ -17,7 +17,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kDetail_px = 1024;
 constexpr double kDetailSize_m = 2.5;
 constexpr int kMapShift = 4;  // fractional bits of OpenCV's drawing coordinates

@@ -12,6 +12,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/base/error.h"
+#include "kestrel/geometry/angles.h"
 #include "kestrel/simulation/hunt_paint.h"
 #include "kestrel/simulation/random_scene.h"
 #include "kestrel/simulation/solids.h"
@@ -23,7 +24,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kDiscHeight_m = 0.012;
 constexpr double kPostHeight_m = 0.14;  // of the yellow ones, which ride on robots
 constexpr double kOrangeDiameter_m = 0.5;

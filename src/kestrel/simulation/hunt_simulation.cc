@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <utility>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "kestrel/base/options.h"
+#include "kestrel/geometry/angles.h"
 #include "kestrel/simulation/flight.h"
 #include "kestrel/simulation/hash.h"
 #include "kestrel/simulation/hunt_truth.h"
@@ -23,8 +23,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr double kPi = std::numbers::pi;
 
 // Each part of the scene has random numbers of its own: options of one do not change another.
 enum class Part { kObjects = 200, kFlight, kGround, kLight, kSurroundings };

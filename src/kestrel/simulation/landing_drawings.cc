@@ -6,12 +6,12 @@
 #include <initializer_list>
 #include <numbers>
 
+#include "kestrel/geometry/angles.h"
+
 namespace kestrel {
 namespace {
 
 using Eigen::Vector2d;
-
-constexpr double kPi = std::numbers::pi;
 
 Vector2d Direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
 

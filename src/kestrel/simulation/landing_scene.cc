@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "kestrel/geometry/angles.h"
 #include "kestrel/simulation/hash.h"
 #include "kestrel/simulation/landing_drawings.h"
 #include "kestrel/simulation/random_scene.h"
@@ -23,7 +23,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kBoardPaint_px = 2048;
 constexpr int kLookalikePaint_px = 512;
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
 #include <Eigen/Geometry>
@@ -13,6 +12,7 @@
 #include "kestrel/base/error.h"
 #include "kestrel/base/options.h"
 #include "kestrel/base/random.h"
+#include "kestrel/geometry/angles.h"
 #include "kestrel/simulation/landing_drawings.h"
 #include "kestrel/simulation/random_scene.h"
 
@@ -22,10 +22,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kMaxTries = 2000;
-
-double Radians(double degrees) { return degrees * kPi / 180; }
 
 Vector3d OnPlane(const Vector2d& point) { return {point.x(), point.y(), 0}; }
 

@@ -2,10 +2,10 @@
 #include "kestrel/simulation/navigation_model.h"
 
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/Geometry>
 
+#include "kestrel/geometry/angles.h"
 #include "kestrel/simulation/flight.h"
 #include "kestrel/simulation/recording_plan.h"
 #include "kestrel/simulation/violations.h"
@@ -16,8 +16,6 @@ namespace {
 using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-
-double Radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 Vector3d NormalVector(double sigma, Random* random) {
   const double x = random->Normal();

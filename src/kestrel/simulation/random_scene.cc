@@ -3,17 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "kestrel/geometry/angles.h"
 #include "kestrel/simulation/landing_drawings.h"
 
 namespace kestrel {
 namespace {
 
 using Eigen::Vector2d;
-
-constexpr double kPi = std::numbers::pi;
 
 // The shadow of a UAV: body, four arms, four rotors.
 Drawing UavShadow(const Vector2d& center, double size_m, Random* random) {

@@ -30,24 +30,6 @@ constexpr int kTimesMoving = 12;
 // the horizon, a thousand camera heights away.
 constexpr double kHorizonSine = 1e-3;
 
-// A camera pose as the plane sees it.
-struct PlaneView {
-  Eigen::Matrix3d pattern_from_camera;
-  Eigen::Vector3d camera_in_pattern;
-
-  explicit PlaneView(const RigidTransform& camera_from_pattern)
-      : pattern_from_camera(camera_from_pattern.rotation.conjugate().toRotationMatrix()),
-        camera_in_pattern(camera_from_pattern.Inverse().translation) {}
-
-  // Where a ray of any length meets the plane, or false when it does not.
-  bool Hit(const Eigen::Vector3d& ray_in_camera, Eigen::Vector2d* point) const {
-    const Eigen::Vector3d ray = pattern_from_camera * ray_in_camera;
-    if (ray.z() > -kHorizonSine) return false;
-    *point = camera_in_pattern.head<2>() - (camera_in_pattern.z() / ray.z()) * ray.head<2>();
-    return true;
-  }
-};
-
 // The plane's pose at a moment of the exposure, 'time' from its middle.
 RigidTransform PoseAt(const RigidTransform& camera_from_pattern, const ImagingOptions& imaging,
                       double time) {
@@ -156,6 +138,24 @@ class SceneRenderer::PlanePainter {
   }
 
  private:
+  // A camera pose as the plane sees it.
+  struct PlaneView {
+    Eigen::Matrix3d pattern_from_camera;
+    Eigen::Vector3d camera_in_pattern;
+
+    explicit PlaneView(const RigidTransform& camera_from_pattern)
+        : pattern_from_camera(camera_from_pattern.rotation.conjugate().toRotationMatrix()),
+          camera_in_pattern(camera_from_pattern.Inverse().translation) {}
+
+    // Where a ray of any length meets the plane, or false when it does not.
+    bool Hit(const Eigen::Vector3d& ray_in_camera, Eigen::Vector2d* point) const {
+      const Eigen::Vector3d ray = pattern_from_camera * ray_in_camera;
+      if (ray.z() > -kHorizonSine) return false;
+      *point = camera_in_pattern.head<2>() - (camera_in_pattern.z() / ray.z()) * ray.head<2>();
+      return true;
+    }
+  };
+
   // What a pixel sees of the plane.
   struct Footprint {
     bool sky = false;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -11,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/geometry/angles.h"
 #include "kestrel/simulation/landing_drawings.h"
 #include "kestrel/simulation/landing_stills.h"
 
@@ -20,8 +20,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using ::testing::HasSubstr;
-
-constexpr double kPi = std::numbers::pi;
 
 Scene PatternScene() {
   Scene scene;

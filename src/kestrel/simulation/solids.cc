@@ -3,18 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
+
+#include "kestrel/geometry/angles.h"
 
 namespace kestrel {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr double kPi = std::numbers::pi;
 
 using Paint = std::shared_ptr<const Texture>;
 
