@@ -13,6 +13,7 @@
 #include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
 #include "kestrel/camera/calibration_reader.h"
+#include "kestrel/camera/paper_camera.h"
 #include "kestrel/recording/csv_table.h"
 #include "kestrel/recording/euroc_recording.h"
 #include "kestrel/recording/image_file.h"

@@ -188,7 +188,7 @@ TEST(CameraModel, ImageIncludesTheWholeOfItsBorderPixels) {
 }
 
 TEST(CameraModel, ImageOfAnotherSizeIsRefused) {
-  const CameraModel camera(PaperCamera());
+  const CameraIntrinsics camera = PaperCamera();
   EXPECT_NO_THROW(CheckImageSize(camera, 752, 480, "a.png"));
   try {
     CheckImageSize(camera, 640, 480, "a.png");

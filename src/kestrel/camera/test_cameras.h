@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "kestrel/camera/camera_model.h"
+#include "kestrel/camera/paper_camera.h"
 
 namespace kestrel {
 
@@ -21,18 +22,6 @@ struct TestCamera {
 };
 
 inline void PrintTo(const TestCamera& camera, std::ostream* out) { *out << camera.name; }
-
-// The paper's lens (DSL215 on 752x480).
-inline CameraIntrinsics PaperCamera() {
-  return {752,
-          480,
-          261,
-          261,
-          376,
-          240,
-          DistortionModel::kEquidistant,
-          {-0.0448, 0.0686053, -0.072277, 0.027011955}};
-}
 
 // EuRoC MAV cam0.
 inline CameraIntrinsics EurocCamera() {

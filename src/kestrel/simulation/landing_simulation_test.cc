@@ -13,9 +13,9 @@
 #include "kestrel/recording/csv_table.h"
 #include "kestrel/recording/euroc_recording.h"
 #include "kestrel/recording/test_files.h"
+#include "kestrel/rendering/test_worlds.h"
 #include "kestrel/simulation/scenarios.h"
 #include "kestrel/simulation/test_plans.h"
-#include "kestrel/simulation/test_worlds.h"
 
 namespace kestrel {
 namespace {

@@ -9,10 +9,10 @@
 
 #include <Eigen/Geometry>
 
-#include "kestrel/base/options.h"
+#include "kestrel/base/violations.h"
+#include "kestrel/flight/flight_time.h"
 #include "kestrel/pipeline/pattern_area.h"
 #include "kestrel/simulation/truth_text.h"
-#include "kestrel/simulation/violations.h"
 
 namespace kestrel {
 namespace {
