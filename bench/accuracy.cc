@@ -152,7 +152,7 @@ class FaultLog {
   std::map<std::string, std::string> lines_;
 };
 
-std::vector<LandingScore> ScoreSet(const LandingFrameSet& set, HintKind hint, FaultLog* faults) {
+std::vector<LandingScore> ScoreSet(const LandingFrameSet& set, HintOf hint, FaultLog* faults) {
   const LandingPatternDetector detector(CameraModel(set.camera), {});
   return ScoreFrames(
       detector, set.frames.size(), kThreads, hint, [&](std::size_t i) { return set.frames[i]; },
@@ -206,7 +206,7 @@ void ReportReal(const Options& options, Measured* measured) {
   std::vector<LandingScore> all;
   PrintRealHeader("sequence");
   for (const LandingFrameSet& set : sets) {
-    const std::vector<LandingScore> scores = ScoreSet(set, HintKind::kNone, &faults);
+    const std::vector<LandingScore> scores = ScoreSet(set, NoHint, &faults);
     PrintRealRow(set.name, LandingTally(scores));
     all.insert(all.end(), scores.begin(), scores.end());
   }
@@ -268,8 +268,8 @@ void ReportHard(const Options& options, Measured* measured) {
   std::vector<LandingScore> all_blind, all_aided;
   PrintHardHeader("condition");
   for (const LandingFrameSet& set : sets) {
-    const auto blind = ScoreSet(set, HintKind::kNone, &blind_faults);
-    const auto aided = ScoreSet(set, HintKind::kAttitude, &aided_faults);
+    const auto blind = ScoreSet(set, NoHint, &blind_faults);
+    const auto aided = ScoreSet(set, AttitudeHint, &aided_faults);
     PrintHardRow(set.name, LandingTally(blind), LandingTally(aided));
     all_blind.insert(all_blind.end(), blind.begin(), blind.end());
     all_aided.insert(all_aided.end(), aided.begin(), aided.end());
@@ -296,7 +296,7 @@ LandingTally ScoreVariant(const std::vector<LandingFrameSet>& sets, const ImageV
       for (const bool top_bottom : {false, true}) {
         const LandingFrameSet mirrored = Mirrored(set, left_right, top_bottom);
         const LandingPatternDetector detector(CameraModel(mirrored.camera), {});
-        const auto scores = ScoreFrames(detector, mirrored.frames.size(), kThreads, HintKind::kNone,
+        const auto scores = ScoreFrames(detector, mirrored.frames.size(), kThreads, NoHint,
                                         [&](std::size_t i) {
                                           LandingFrame frame = mirrored.frames[i];
                                           frame.image = variant.apply(frame.image, i);
@@ -346,7 +346,7 @@ std::vector<LandingScore> ReportStillsOfBin(std::size_t bin, int stills, FaultLo
   const LandingPatternDetector detector(maker.camera(), {});
   const std::string name = kAltitudeBins[bin].Name();
   std::vector<LandingScore> scores = ScoreFrames(
-      detector, stills, kThreads, HintKind::kNone,
+      detector, stills, kThreads, NoHint,
       [&](std::size_t i) { return FrameFromStill(maker, name, Seed(bin, i)); },
       [&](const LandingFrame& frame, const LandingScore& score) { faults->See(frame, score); });
   const LandingTally t(scores);
@@ -386,7 +386,7 @@ LandingTally ScoreLookalikes(int stills, FaultLog* faults) {
   const LandingStillMaker maker(options);
   const LandingPatternDetector detector(maker.camera(), {});
   return LandingTally(ScoreFrames(
-      detector, stills, kThreads, HintKind::kNone,
+      detector, stills, kThreads, NoHint,
       [&](std::size_t i) {
         return FrameFromLookalikes(maker, "look-alikes", Seed(kAltitudeBins.size(), i));
       },

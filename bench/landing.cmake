@@ -9,6 +9,14 @@ target_link_libraries(
 target_compile_definitions(kestrel_accuracy
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
 
+add_executable(robustness_accuracy robustness_accuracy.cc landing_falsehoods.cc landing_frames.cc
+                                   landing_score.cc)
+target_link_libraries(robustness_accuracy
+                      PRIVATE kestrel::landing kestrel::recording kestrel::stills CLI11::CLI11
+                              fmt::fmt)
+target_compile_definitions(robustness_accuracy
+                           PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
+
 add_executable(landing_benchmark landing_benchmark.cc landing_frames.cc landing_score.cc)
 target_link_libraries(
   landing_benchmark

@@ -104,33 +104,40 @@ LandingScore ScoreLanding(const LandingFrame& frame, const LandingReport& report
   return score;
 }
 
-LandingHint HintFor(const LandingFrame& frame, HintKind kind) {
+LandingHint NoHint(const LandingFrame& /*frame*/) { return {}; }
+
+LandingHint AttitudeHint(const LandingFrame& frame) {
   LandingHint hint;
-  if (kind == HintKind::kAttitude) hint.up_in_camera = frame.up_in_camera;
+  hint.up_in_camera = frame.up_in_camera;
   return hint;
 }
 
+void ForEachIndex(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next = 0;
+  std::vector<std::future<void>> workers;
+  for (int i = 0; i < threads; ++i) {
+    workers.push_back(std::async(std::launch::async, [&] {
+      for (std::size_t index = next++; index < count; index = next++) work(index);
+    }));
+  }
+  for (std::future<void>& worker : workers) worker.get();
+}
+
 std::vector<LandingScore> ScoreFrames(
-    const LandingPatternDetector& detector, std::size_t count, int threads, HintKind hint,
+    const LandingPatternDetector& detector, std::size_t count, int threads, HintOf hint,
     const std::function<LandingFrame(std::size_t)>& make_frame,
     const std::function<void(const LandingFrame&, const LandingScore&)>& sees) {
   std::vector<LandingScore> scores(count);
-  std::atomic<std::size_t> next = 0;
   std::mutex seeing;
-  const auto work = [&] {
-    LandingWorkspace workspace;
-    for (std::size_t i = next++; i < count; i = next++) {
-      const LandingFrame frame = make_frame(i);
-      const LandingReport report = detector.Detect(frame.image, HintFor(frame, hint), workspace);
-      scores[i] = ScoreLanding(frame, report, detector.camera(), detector.options().pattern);
-      if (!sees) continue;
-      const std::lock_guard lock(seeing);
-      sees(frame, scores[i]);
-    }
-  };
-  std::vector<std::future<void>> workers;
-  for (int i = 0; i < threads; ++i) workers.push_back(std::async(std::launch::async, work));
-  for (std::future<void>& worker : workers) worker.get();
+  ForEachIndex(count, threads, [&](std::size_t i) {
+    thread_local LandingWorkspace workspace;
+    const LandingFrame frame = make_frame(i);
+    const LandingReport report = detector.Detect(frame.image, hint(frame), workspace);
+    scores[i] = ScoreLanding(frame, report, detector.camera(), detector.options().pattern);
+    if (!sees) return;
+    const std::lock_guard lock(seeing);
+    sees(frame, scores[i]);
+  });
   return scores;
 }
 
@@ -168,6 +175,25 @@ void LandingTally::Add(const LandingScore& score) {
   nees.push_back(score.nees);
   with_mirror += score.has_mirror;
   mirrored += score.is_mirrored;
+}
+
+void LandingTally::Add(const LandingTally& tally) {
+  frames += tally.frames;
+  found += tally.found;
+  wrong += tally.wrong;
+  partial += tally.partial;
+  partial_found += tally.partial_found;
+  partial_right += tally.partial_right;
+  negatives += tally.negatives;
+  false_detections += tally.false_detections;
+  with_mirror += tally.with_mirror;
+  mirrored += tally.mirrored;
+  const auto append = [](const std::vector<double>& from, std::vector<double>* to) {
+    to->insert(to->end(), from.begin(), from.end());
+  };
+  append(tally.center_errors_px, &center_errors_px);
+  append(tally.position_errors, &position_errors);
+  append(tally.nees, &nees);
 }
 
 double Quantile(std::vector<double> values, double p) {

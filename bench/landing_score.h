@@ -45,13 +45,17 @@ LandingScore ScoreLanding(const LandingFrame& frame, const LandingReport& report
                           const CameraModel& camera, const LandingPattern& pattern);
 
 // What a detector is told before it sees a frame.
-enum class HintKind { kNone, kAttitude };
-LandingHint HintFor(const LandingFrame& frame, HintKind kind);
+using HintOf = LandingHint (*)(const LandingFrame& frame);
+LandingHint NoHint(const LandingFrame& frame);
+LandingHint AttitudeHint(const LandingFrame& frame);
+
+// Calls 'work' with 0 ... count - 1, on 'threads' threads.
+void ForEachIndex(std::size_t count, int threads, const std::function<void(std::size_t)>& work);
 
 // Scores the frames 0 ... count - 1 that 'make_frame' makes, on 'threads' threads with a workspace
 // each; 'sees' (if any) is called for each frame, by one thread at a time. Results are in order.
 std::vector<LandingScore> ScoreFrames(
-    const LandingPatternDetector& detector, std::size_t count, int threads, HintKind hint,
+    const LandingPatternDetector& detector, std::size_t count, int threads, HintOf hint,
     const std::function<LandingFrame(std::size_t)>& make_frame,
     const std::function<void(const LandingFrame&, const LandingScore&)>& sees = {});
 
@@ -71,6 +75,7 @@ class LandingTally {
   LandingTally() = default;
   explicit LandingTally(std::span<const LandingScore> scores);
   void Add(const LandingScore& score);
+  void Add(const LandingTally& tally);
 
   int frames = 0;  // kWhole
   int found = 0;

@@ -1,16 +1,16 @@
-# kestrel_room(NAME SOURCES ... [KERNELS ...] [TESTS ...] [PUBLIC ...] [PRIVATE ...] [TEST_LINKS ...])
+# kestrel_room(NAME SOURCES ... [ALONE ...] [TESTS ...] [PUBLIC ...] [PRIVATE ...] [TEST_LINKS ...])
 #
 # One library per room of src/kestrel, `kestrel_<name>` (alias `kestrel::<name>`). PUBLIC names the
 # rooms and libraries that its headers use: these links are the arrows between the rooms, and
-# scripts/check-layers holds the includes to them. KERNELS are sources that Highway compiles for one
-# instruction set after the other: each is compiled by itself where others are joined (unity build).
-# TESTS become one test binary per room.
+# scripts/check-layers holds the includes to them. ALONE are sources that are not joined with others
+# (unity build): those that Highway compiles for one instruction set after the other, and those that
+# have names in common with another source. TESTS become one test binary per room.
 function(kestrel_room name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;KERNELS;TESTS;PUBLIC;PRIVATE;TEST_LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;ALONE;TESTS;PUBLIC;PRIVATE;TEST_LINKS" ${ARGN})
   set(target kestrel_${name})
   if(ARG_SOURCES)
-    add_library(${target} STATIC ${ARG_SOURCES} ${ARG_KERNELS})
-    set_source_files_properties(${ARG_KERNELS} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    add_library(${target} STATIC ${ARG_SOURCES} ${ARG_ALONE})
+    set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     set(scope PUBLIC)
     target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
     target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Werror)

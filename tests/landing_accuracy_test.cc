@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kThreads = 2;
 
-LandingTally ScoreSets(const std::vector<LandingFrameSet>& sets, HintKind hint) {
+LandingTally ScoreSets(const std::vector<LandingFrameSet>& sets, HintOf hint) {
   LandingTally tally;
   for (const LandingFrameSet& set : sets) {
     const LandingPatternDetector detector(CameraModel(set.camera), {});
@@ -38,7 +38,7 @@ TEST_P(LandingStillsTest, PatternIsFoundWhereItIs) {
   const LandingStillMaker maker(options);
   const LandingPatternDetector detector(maker.camera(), {});
   const LandingTally tally(ScoreFrames(
-      detector, kStills, kThreads, HintKind::kNone,
+      detector, kStills, kThreads, NoHint,
       [&](std::size_t i) { return FrameFromStill(maker, bin.Name(), 100 * GetParam() + i); }));
   EXPECT_GE(tally.FoundShare(), kMinFoundShare[GetParam()]);
   EXPECT_EQ(tally.wrong, 0);
@@ -60,7 +60,7 @@ TEST(LandingLookalikesTest, AreNotTakenForThePattern) {
   const LandingStillMaker maker(options);
   const LandingPatternDetector detector(maker.camera(), {});
   for (const LandingScore& score : ScoreFrames(
-           detector, kStills, kThreads, HintKind::kNone,
+           detector, kStills, kThreads, NoHint,
            [&](std::size_t i) { return FrameFromLookalikes(maker, "look-alikes", 600 + i); })) {
     EXPECT_TRUE(score.outcome == LandingOutcome::kQuiet) << score.name;
   }
@@ -69,7 +69,7 @@ TEST(LandingLookalikesTest, AreNotTakenForThePattern) {
 TEST(LandingRealTest, PatternIsFoundWhereItIs) {
   const std::vector<LandingFrameSet> sets = ReadLandingReal(KESTREL_DATA_DIR);
   if (sets.empty()) GTEST_SKIP() << "there is no " << KESTREL_DATA_DIR << "/landing_real";
-  const LandingTally tally = ScoreSets(sets, HintKind::kNone);
+  const LandingTally tally = ScoreSets(sets, NoHint);
   EXPECT_EQ(tally.frames, 349);
   EXPECT_GE(tally.FoundShare(), 0.99);
   EXPECT_EQ(tally.wrong, 0);
@@ -79,7 +79,7 @@ TEST(LandingRealTest, PatternIsFoundWhereItIs) {
   EXPECT_LE(Quantile(tally.center_errors_px, 0.95), 1);
 }
 
-class LandingHardTest : public testing::TestWithParam<HintKind> {};
+class LandingHardTest : public testing::TestWithParam<HintOf> {};
 
 TEST_P(LandingHardTest, PatternIsFoundWhereItIs) {
   const std::vector<LandingFrameSet> sets = ReadLandingHard(KESTREL_DATA_DIR);
@@ -93,9 +93,9 @@ TEST_P(LandingHardTest, PatternIsFoundWhereItIs) {
   EXPECT_LE(Quantile(tally.position_errors, 0.5), 0.01);
 }
 INSTANTIATE_TEST_SUITE_P(Hints, LandingHardTest,
-                         testing::Values(HintKind::kNone, HintKind::kAttitude),
+                         testing::Values(NoHint, AttitudeHint),
                          [](const auto& info) {
-                           return info.param == HintKind::kNone ? "None" : "Attitude";
+                           return info.param == NoHint ? "None" : "Attitude";
                          });
 
 }  // namespace

@@ -286,18 +286,16 @@ void BorderTracer::Trace(const BinaryImage& binary, const cv::Rect& region,
 }
 
 void BorderTracer::KeepStrongest(const cv::Mat& image, std::size_t most) {
-  if (borders_.size() <= most) return;
   strengths_.clear();
-  for (std::size_t i = 0; i < borders_.size(); ++i) {
-    strengths_.push_back({ContrastAcross(image, begin(borders_[i]), borders_[i].count), i});
+  for (const Border& border : borders_) {
+    strengths_.push_back({ContrastAcross(image, begin(border), border.count), border});
   }
-  const auto last = strengths_.begin() + static_cast<std::ptrdiff_t>(most);
-  std::nth_element(strengths_.begin(), last, strengths_.end(),
-                   [](const Strength& a, const Strength& b) { return a.contrast > b.contrast; });
-  std::sort(strengths_.begin(), last,
-            [](const Strength& a, const Strength& b) { return a.border < b.border; });
-  for (std::size_t i = 0; i < most; ++i) borders_[i] = borders_[strengths_[i].border];
-  borders_.resize(most);
+  const std::size_t kept = std::min(most, borders_.size());
+  std::partial_sort(strengths_.begin(), strengths_.begin() + static_cast<std::ptrdiff_t>(kept),
+                    strengths_.end(),
+                    [](const Strength& a, const Strength& b) { return a.contrast > b.contrast; });
+  borders_.resize(kept);
+  for (std::size_t i = 0; i < kept; ++i) borders_[i] = strengths_[i].border;
 }
 
 // Room for the points of one more border; empty when there is none.

@@ -55,8 +55,9 @@ class BorderTracer {
   // Keeps the borders within the limits.
   void Trace(const BinaryImage& binary, const cv::Rect& region, const BorderLimits& limits);
 
-  // Keeps 'most' of the borders, those across which the image changes most: by the median over
-  // places along the border of how much brighter it is 1.5 px beyond it than 0.5 px within. Of
+  // Keeps 'most' of the borders, those across which the image changes most, these first: by the
+  // median over places along the border of how much brighter it is 1.5 px beyond it than 0.5 px
+  // within. Of
   // 'image' was the binary image made. Does not allocate after Reserve.
   void KeepStrongest(const cv::Mat& image, std::size_t most);
 
@@ -85,7 +86,7 @@ class BorderTracer {
   std::size_t used_ = 0;  // of the points
   struct Strength {
     int contrast;
-    std::size_t border;
+    Border border;
   };
   std::vector<Strength> strengths_;
 };

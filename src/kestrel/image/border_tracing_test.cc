@@ -273,9 +273,9 @@ TEST(BorderTracer, KeepsTheBordersAcrossWhichTheImageChangesMost) {
   EXPECT_EQ(tracer.borders().size(), 4u);
   tracer.KeepStrongest(image, 2);
   ASSERT_EQ(tracer.borders().size(), 2u);
-  EXPECT_GT(tracer.borders()[0].signed_area, 0);
-  EXPECT_EQ(tracer.borders()[0].min.x, 42);
-  EXPECT_LT(tracer.borders()[1].signed_area, 0);
+  EXPECT_LT(tracer.borders()[0].signed_area, 0);
+  EXPECT_GT(tracer.borders()[1].signed_area, 0);
+  EXPECT_EQ(tracer.borders()[1].min.x, 42);
 }
 
 TEST(BorderTracer, ForgetsTheImageBefore) {

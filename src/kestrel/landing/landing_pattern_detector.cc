@@ -56,6 +56,7 @@ std::vector<std::string> LandingPatternDetectorOptions::Validate() const {
   if (!(max_partial_altitude_m >= 0)) {
     violations.push_back("max_partial_altitude_m: must not be negative");
   }
+  if (!(max_search_ms >= 0)) violations.push_back("max_search_ms: must not be negative");
   return violations;
 }
 

@@ -14,6 +14,7 @@
 
 #include "kestrel/camera/camera_model.h"
 #include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/landing/calibration_evidence.h"
 #include "kestrel/landing/landing_pattern.h"
 
 namespace kestrel {
@@ -46,6 +47,8 @@ struct LandingHint {
   // Unit vector away from the ground, in the camera frame: resolves the mirror pose of a circle and
   // helps with the tilt of a far one.
   std::optional<Eigen::Vector3d> up_in_camera;
+  // Where the search of this frame begins: LandingReport::next_step of the frame before.
+  int first_step = 0;
 };
 
 struct LandingDetection {
@@ -55,12 +58,14 @@ struct LandingDetection {
   // the camera frame (rad^2).
   Eigen::Matrix<double, 6, 6> covariance;
   CrossMethod method;
-  // How far the image agrees with the print, 0 to 1: the least of the means of arms, white
-  // quadrants and ring, each the share of its local contrasts and edges that are in their place,
-  // less a part of what the worst arm lacks (PatternMatch::Quality, docs/cross.md).
+  // Probability that this is the pattern, 0 to 1, by what speaks against it (docs/score.md).
   double quality;
   double ring_semi_major_px;
   double ring_semi_minor_px;
+  // Root mean square of what the pose leaves unexplained of the edges, pixels; 0 where there were
+  // none to use. And what the edges say about the calibration.
+  double misfit_px = 0;
+  CalibrationEvidence calibration;
   // The other pose under which the ring looks the same, when the image cannot tell the two apart.
   std::optional<RigidTransform> mirror_camera_from_pattern;
 };
@@ -71,6 +76,8 @@ struct LandingReport {
   std::string_view reason;                         // why it fell, static text; empty when found
   std::array<std::int32_t, kLandingStageCount> candidates{};  // how many entered each stage
   std::array<std::int64_t, kLandingStageCount> stage_ns{};    // time spent in each stage
+  // Where the search was given up for want of time, for the hint of the next frame; 0: it was not.
+  int next_step = 0;
 };
 
 struct LandingPatternDetectorOptions {
@@ -78,24 +85,29 @@ struct LandingPatternDetectorOptions {
   // Smallest minor axis (diameter) of a ring that is searched for, in pixels; smaller is slower and
   // raises the danger of look-alikes.
   double min_ring_px = 6;
-  // Smallest quality that is accepted, 0 to 1.
-  double min_quality = 0.65;
+  // Smallest quality that is accepted, 0 to 1: the probability that it is the pattern.
+  double min_quality = 0.5;
   // How far from level the pattern may lie, standard deviation per axis: of a far one the image
   // hardly tells the tilt, on which its distance hangs. Used where the hint says what is up; larger
   // for a deck that rolls, smaller for a floor.
   double level_sigma_deg = 3;
   // Height of the camera (m) up to which a partial pattern is searched for, when it is known.
   double max_partial_altitude_m = 2.5;
+  // Time (ms) after which the search of a frame is given up, to be continued in the next one; 0: it
+  // never is.
+  double max_search_ms = 0;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor.Group("pattern", self.pattern);
     visitor("min_ring_px", self.min_ring_px, "px", "smallest minor axis of a ring searched for");
-    visitor("min_quality", self.min_quality, "1", "smallest quality that is accepted, 0 to 1");
+    visitor("min_quality", self.min_quality, "1", "smallest probability of the pattern that is accepted, 0 to 1");
     visitor("level_sigma_deg", self.level_sigma_deg, "deg",
             "how far from level the pattern may lie, standard deviation");
     visitor("max_partial_altitude_m", self.max_partial_altitude_m, "m",
             "height up to which a pattern that is cut off by the image border is searched for");
+    visitor("max_search_ms", self.max_search_ms, "ms",
+            "time after which a search goes on in the next frame; 0: no limit");
   }
   std::vector<std::string> Validate() const;
 };
@@ -108,10 +120,10 @@ class LandingWorkspace {
   LandingWorkspace(LandingWorkspace&&) noexcept;
   LandingWorkspace& operator=(LandingWorkspace&&) noexcept;
 
+  struct Buffers;  // of the search
+
  private:
   friend class LandingPatternDetector;
-  friend class LandingSearch;
-  struct Buffers;
   std::unique_ptr<Buffers> buffers_;
 };
 

@@ -1,34 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <optional>
-#include <span>
-#include <vector>
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include "kestrel/camera/camera_model.h"
 #include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/landing/calibration_evidence.h"
 #include "kestrel/landing/landing_pattern.h"
+#include "kestrel/landing/print_edges.h"
+#include "kestrel/landing/print_outline.h"
 
 namespace kestrel {
 
-// Pose of the pattern that explains the edges of its ring and cross, in the image itself.
+// Pose of the pattern that explains the image.
 struct PatternLocation {
   RigidTransform camera_from_pattern;
   // Of the pose error: translation in the camera frame (m), then rotation vector in the camera
   // frame about the pattern's centre (rad).
   Eigen::Matrix<double, 6, 6> covariance;
-  double edge_rms_px = 0;  // of the edges used, from the projected pattern
-  double edge_share = 0;   // share of the pattern's edges in the image that were found there
-  int edges = 0;           // how many were used
-  double gray_rms = 0;     // gray values, of a print that was fitted as a whole, from the model
-  // The same share for each arm and for the ring around it; negative when the image shows less than
-  // a quarter of it.
-  std::array<double, 4> arm_share{};
-  std::array<double, 4> ring_share{};
+  // Root mean square of what the pose leaves unexplained: pixels, of edges; gray values, of a print
+  // that was fitted as a whole. The other one is 0.
+  double edge_rms_px = 0;
+  double gray_rms = 0;
+  // Of edges: where the lens shows the pattern's centre, by what the calibration has to be; and what
+  // that is.
+  Eigen::Vector2d center_px = Eigen::Vector2d::Zero();
+  CalibrationEvidence calibration;
 };
 
 // What is known of the pattern's plane before the image is looked at. The attitude that tells it
@@ -53,65 +53,51 @@ struct NormalPrior {
   }
 };
 
-// Refines a pose from the edges (model-based pose estimation, after Drummond and Cipolla 2002): the
-// outlines of ring and arms are projected through the lens, the edge nearest to each of their
-// points is looked for along the normal, to a fraction of a pixel, and the pose that brings them
-// together is found by Gauss-Newton with robust weights. Where the edges leave no doubt that white
-// has spread over the black (overexposure) or black over the white, by how much is found as well.
+// Finds the pose from the edges (model-based pose estimation, after Drummond and Cipolla 2002): the
+// one under which the lens shows the outlines of ring and arms nearest to them, by Gauss-Newton
+// with robust weights. What is usually not so is found as well where the edges leave no doubt:
+// white that has spread over the black (overexposure), or black over the white; a focal length and
+// a principal point that are not the calibration's.
 class PatternLocator {
  public:
   PatternLocator(const CameraModel& camera, const LandingPattern& pattern);
 
-  // 'image': CV_8UC1 of the camera. 'initial': a pose whose outlines are within 'reach_px' of the
-  // edges. 'min_step': gray values per pixel below which a change in full light is no edge.
-  // 'iterations': of a pose that settles; a few more follow while it does not. 'prior': what tells
-  // the tilt where the image hardly does, of small prints. Nothing when too few edges are found to
-  // fix the six parameters. Does not allocate.
-  std::optional<PatternLocation> Locate(const cv::Mat& image, const RigidTransform& initial,
-                                        double reach_px, double min_step, int iterations,
+  const PrintOutline& outline() const { return outline_; }
+
+  // The pose near 'initial' that explains 'edges'. 'prior': what tells the tilt where the image
+  // hardly does, of small prints. Nothing when too few edges are near to fix the six parameters.
+  // Does not allocate.
+  std::optional<PatternLocation> Locate(const PrintEdges& edges, const RigidTransform& initial,
                                         const std::optional<NormalPrior>& prior = {}) const;
 
-  // The same by the edges of the ring alone, however the cross is turned about its centre.
+  // The pose of the ring near 'initial' by its edges alone, however the cross is turned about its
+  // centre: within 'reach_px' the edge nearest to each point of the outline is looked for along the
+  // normal, again and again. 'min_step': as in EdgeSearch. Does not allocate.
   std::optional<RigidTransform> LocateRing(const cv::Mat& image, const RigidTransform& initial,
                                            double reach_px, double min_step, int iterations,
                                            const std::optional<NormalPrior>& prior = {}) const;
 
  private:
-  // A point of an outline and the unit normal that points from black to white, in the plane.
-  struct Place {
-    Eigen::Vector2d point;
-    Eigen::Vector2d normal;
-    int part;          // 0 to 3: arm, 4 to 7: ring around it
-    int side;          // 0 or 1: of the arm, or the inside and outside of the ring
-    double width;      // of the stroke whose edge it is, m
-    double curvature;  // 1/m; positive where the outline bends around the black side
-  };
-  // Pose (translation, then rotation vector), then the spread of the black.
-  static constexpr int kPoseUnknowns = 6;
-  static constexpr int kSpread = kPoseUnknowns;
-  static constexpr int kUnknowns = kPoseUnknowns + 1;
-  using PoseVector = Eigen::Matrix<double, kPoseUnknowns, 1>;
-  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
-  using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
   struct State;
-  struct Normal;
+  struct Equations;
+  struct Linearized;
   struct Residuals;
+  struct Solution;
 
-  static bool AreOnOneOutline(const Place& a, const Place& b);
-  void AddCircle(double radius, double sign, int count, double arm_clearance);
-  void AddArms();
-  Normal Accumulate(const cv::Mat& image, const State& state, std::span<const Place> places,
-                    std::size_t stride, double reach_px, double min_step, double scale_px) const;
-  Normal Measure(const cv::Mat& image, const State& state, std::span<const Place> places,
-                 std::size_t enough, double reach_px, double min_step, double scale_px) const;
-  static Vector Solve(const State& state, const std::optional<NormalPrior>& prior, bool has_spread,
-                      Normal* normal);
-  static void Describe(const Normal& normal, const Vector& step, PatternLocation* location);
+  Eigen::Vector2d Principal() const;
+  Linearized Linearize(const PrintEdges& edges, const State& state, double scale_px) const;
+  static Solution SolvePose(const Linearized& linearized, const State& state,
+                            const std::optional<NormalPrior>& prior, bool has_spread);
+  Solution SolveCalibration(const Linearized& linearized, const State& state,
+                            const std::optional<NormalPrior>& prior) const;
+  void Recalibrate(const PrintEdges& edges, const std::optional<NormalPrior>& prior,
+                   double scale_px, State* state, PatternLocation* location) const;
+  static CalibrationEvidence Judge(const Solution& solution, const State& state);
+  static void Describe(const Linearized& linearized, const Solution& solution,
+                       PatternLocation* location);
 
   CameraModel camera_;
-  LandingPattern pattern_;
-  std::vector<Place> places_;  // those of the ring first
-  std::size_t ring_places_ = 0;
+  PrintOutline outline_;
 };
 
 }  // namespace kestrel

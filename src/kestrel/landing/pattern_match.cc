@@ -24,7 +24,6 @@ constexpr std::array<double, 3> kQuadrantRadii{0.45, 0.6, 0.75};
 constexpr float kUnseen = -1e9f;
 constexpr double kInsideRadius = 0.65;  // of places inside of the ring, inner radii
 constexpr double kLeastInside = 0.2;    // white there, against the contrast of ring and white
-constexpr double kMissingArm = 0.3;
 // In a shadow a contrast counts by its share of the brightness, relative to that of the print, or
 // when the other side of it, relative to the print's contrast, is in the light; and when it is no
 // noise: gray values, and relative to the print's contrast.
@@ -96,18 +95,21 @@ struct KnownShares {
 
 }  // namespace
 
-double PatternMatch::RingShare() const {
+PartShares::Means PartShares::MeansInView() const {
+  const KnownShares arms(arm);
   const KnownShares rings(ring);
-  if (rings.count == 0) return 1;
-  return rings.count > 1 ? (rings.sum - rings.worst) / (rings.count - 1) : rings.worst;
+  Means means{0, 0, KnownShares(quadrant).Mean(), rings.Mean()};
+  if (arms.count > 0) {
+    means.worst_arm = arms.worst;
+    means.arms = arms.Mean();
+  }
+  if (rings.count > 1) means.ring = (rings.sum - rings.worst) / (rings.count - 1);
+  return means;
 }
 
-double PatternMatch::Quality() const {
-  const KnownShares arms(arm);
-  const KnownShares quadrants(quadrant);
-  if (arms.count == 0 || spokes >= 2) return 0;
-  const double least = std::min({arms.Mean(), quadrants.Mean(), RingShare()});
-  return std::max(0.0, least - kMissingArm * (1 - arms.worst));
+double PatternMatch::Agreement() const {
+  const PartShares::Means means = shares.MeansInView();
+  return std::min({means.arms, means.quadrants, means.ring});
 }
 
 PatternMatcher::PatternMatcher(const LandingPattern& pattern) {
@@ -313,9 +315,9 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
     match.spokes += spoke;
   }
   for (int q = 0; q < 4; ++q) {
-    match.arm[q] = arm[q].Share();
-    match.quadrant[q] = quadrant[q].Share();
-    match.ring[q] = ring[q].Share();
+    match.shares.arm[q] = arm[q].Share();
+    match.shares.quadrant[q] = quadrant[q].Share();
+    match.shares.ring[q] = ring[q].Share();
   }
   match.seen = static_cast<double>(seen) / all;
   return match;

@@ -12,29 +12,36 @@
 
 namespace kestrel {
 
-// How well an image agrees with the pattern under a pose, quarter by quarter of the print: quarter
-// k is the right angle around arm k.
+// Shares, 0 to 1, of what is in its place, quarter by quarter of the print: quarter k is the right
+// angle around arm k. Negative where the image shows too little of it.
+struct PartShares {
+  std::array<double, 4> arm{};
+  std::array<double, 4> quadrant{};  // the white between the arms
+  std::array<double, 4> ring{};
+
+  struct Means {
+    double worst_arm;  // 0 when no arm can be seen
+    double arms;       // the same
+    double quadrants;
+    double ring;  // without its worst quarter: a highlight or the image border may take one away
+  };
+  // Means over what is in view; 1 of ring and quadrants when nothing of them is.
+  Means MeansInView() const;
+};
+
+// How well an image agrees with the pattern under a pose: of the local contrasts those that stand in
+// the image as in the print. Not in view is what the image shows less than a fifth of.
 struct PatternMatch {
-  // Share, 0 to 1, of the local contrasts of each quarter that stand in the image as in the print;
-  // negative when the image shows less than a fifth of it.
-  std::array<double, 4> arm{};       // arm darker than the white on both of its sides; not seen
-                                     // where something dark hides both, nor when a half of it
-                                     // lies in a highlight
-  std::array<double, 4> quadrant{};  // white between the arms brighter than ring and arms
-  std::array<double, 4> ring{};      // ring darker than the white around it
-  int spokes = 0;                    // quadrants with a dark line where all should be white
-  double contrast = 0;               // of ring and white, gray values, median
-  double seen = 0;                   // share of all contrasts that the image shows
+  // Arms: darker than the white on both sides of them; not in view either where something dark
+  // hides both, nor when a half of an arm lies in a highlight. White: brighter than ring and arms.
+  // Ring: darker than the white around it.
+  PartShares shares;
+  int spokes = 0;       // quadrants with a dark line where all should be white
+  double contrast = 0;  // of ring and white, gray values, median
+  double seen = 0;      // share of all contrasts that the image shows
 
-  // What the shares say together, 0 to 1: the least of the means over arms, quadrants and quarters
-  // of the ring (but the worst: a highlight or the image border may take one away), less a part of
-  // what the worst arm lacks, because an arm that is not there at all makes another sign. The ring
-  // and the quadrants count as far as they are in view. 0 when no arm can be seen, and for spokes
-  // in two quadrants.
-  double Quality() const;
-
-  // Mean over the quarters of the ring that are in view, but the worst; 1 when none is.
-  double RingShare() const;
+  // The least of the means of arms, white and ring.
+  double Agreement() const;
 };
 
 // Compares an image with the print at fixed places: differences of gray values between neighbours

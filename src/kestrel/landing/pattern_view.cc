@@ -67,17 +67,17 @@ HWY_EXPORT(InterpolateNodes);
 
 PatternView::PatternView(const CameraModel& camera, const RigidTransform& camera_from_pattern,
                          double extent_m, const ImageRegion& region)
+    : PatternView(PlaneWarp(camera, camera_from_pattern, extent_m), extent_m, region) {}
+
+PatternView::PatternView(const PlaneWarp& warp, double extent_m, const ImageRegion& region)
     : extent_m_(static_cast<float>(extent_m)),
       nodes_per_m_(static_cast<float>((kNodes - 1) / (2 * extent_m))) {
-  const Eigen::Matrix3d rotation = camera_from_pattern.rotation.toRotationMatrix();
   for (int iy = 0; iy < kNodes; ++iy) {
     for (int ix = 0; ix < kNodes; ++ix) {
       const double x = extent_m * (2.0 * ix / (kNodes - 1) - 1);
       const double y = extent_m * (2.0 * iy / (kNodes - 1) - 1);
-      const Eigen::Vector3d point =
-          rotation.col(0) * x + rotation.col(1) * y + camera_from_pattern.translation;
       Eigen::Vector2d pixel;
-      if (camera.Project(point, &pixel) == ProjectionStatus::kOutsideModel) {
+      if (!warp.Project({x, y}, &pixel)) {
         valid_ = false;
         return;
       }

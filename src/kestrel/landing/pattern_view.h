@@ -9,22 +9,10 @@
 
 #include "kestrel/camera/camera_model.h"
 #include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/landing/image_region.h"
+#include "kestrel/landing/plane_warp.h"
 
 namespace kestrel {
-
-// A part of the camera's image at 1 / 2^level of its resolution.
-struct ImageRegion {
-  cv::Point offset{0, 0};  // of its first pixel, at full resolution
-  int level = 0;
-
-  double scale() const { return 1 << level; }
-  Eigen::Vector2d FromFull(const Eigen::Vector2d& pixel) const {
-    return ((pixel - Eigen::Vector2d(offset.x, offset.y)).array() + 0.5) / scale() - 0.5;
-  }
-  Eigen::Vector2d ToFull(const Eigen::Vector2d& pixel) const {
-    return (((pixel.array() + 0.5) * scale() - 0.5).matrix() + Eigen::Vector2d(offset.x, offset.y));
-  }
-};
 
 // The plane of the pattern as an image shows it under an assumed pose: pattern coordinates to
 // pixels. Projects the nodes of a grid exactly and interpolates between them, because a candidate
@@ -34,6 +22,7 @@ class PatternView {
   // Covers |x|, |y| <= 'extent_m' of the plane. Pixels are those of 'region'.
   PatternView(const CameraModel& camera, const RigidTransform& camera_from_pattern, double extent_m,
               const ImageRegion& region);
+  PatternView(const PlaneWarp& warp, double extent_m, const ImageRegion& region);
 
   // False when the lens model does not show the whole extent.
   bool valid() const { return valid_; }

@@ -278,13 +278,14 @@ void RingArcsWorkspace::Reserve(std::size_t border_points) {
   rings.reserve(kMaxRings);
 }
 
-void FindArcRings(const BorderTracer& tracer, const RayTable& rays, const ImageRegion& region,
-                  double tolerance_rad, double min_coverage, RingArcsWorkspace* workspace) {
+void FindArcRings(const BorderTracer& tracer, std::span<const Border> borders, const RayTable& rays,
+                  const ImageRegion& region, double tolerance_rad, double min_coverage,
+                  RingArcsWorkspace* workspace) {
   workspace->points.clear();
   workspace->arcs.clear();
   workspace->rings.clear();
   ArcCutter cutter(tracer.image_size(), workspace);
-  for (const Border& border : tracer.borders()) {
+  for (const Border& border : borders) {
     if (border.count / kStride > workspace->smooth.capacity()) continue;
     SmoothBorder(tracer.begin(border), border.count, &workspace->smooth);
     cutter.Cut();

@@ -12,7 +12,7 @@
 #include "kestrel/geometry/cone.h"
 #include "kestrel/image/border_tracing.h"
 #include "kestrel/landing/dark_areas.h"
-#include "kestrel/landing/pattern_view.h"
+#include "kestrel/landing/image_region.h"
 
 namespace kestrel {
 
@@ -51,10 +51,11 @@ struct RingArcsWorkspace {
 };
 
 // The second way to the ring, where its dark area is broken by a shadow's edge, a highlight, dirt,
-// a landing leg or the image border: cuts the borders into arcs, groups those that lie on one cone
+// a landing leg or the image border: cuts borders of the tracer into arcs, groups those that lie on one cone
 // within 'tolerance_rad', and keeps the groups that cover at least 'min_coverage' of it. Fills
 // workspace->rings, best covered first. Rays are taken through 'rays' from pixels of 'region'.
-void FindArcRings(const BorderTracer& tracer, const RayTable& rays, const ImageRegion& region,
-                  double tolerance_rad, double min_coverage, RingArcsWorkspace* workspace);
+void FindArcRings(const BorderTracer& tracer, std::span<const Border> borders, const RayTable& rays,
+                  const ImageRegion& region, double tolerance_rad, double min_coverage,
+                  RingArcsWorkspace* workspace);
 
 }  // namespace kestrel

@@ -46,6 +46,23 @@ double Redundancy(const SmallPatternWorkspace& workspace, double limit) {
   return neighbors.Redundancy(kMaxCorrelation);
 }
 
+// Variance of the noise of the image, by the median of how much neighbours in a row differ in what
+// the print leaves: dirt and other figures are wider than a pixel.
+double NoiseVariance(SmallPatternWorkspace* workspace) {
+  const SmallPatternWorkspace::Points& points = workspace->points;
+  std::size_t count = 0;
+  const auto stride = static_cast<float>(workspace->patch.stride);
+  for (std::size_t i = 1; i < workspace->count; ++i) {
+    if (workspace->u[i] - workspace->u[i - 1] != stride) continue;
+    const float here = points.seen[i] - points.expected[i];
+    const float before = points.seen[i - 1] - points.expected[i - 1];
+    workspace->magnitudes[count++] = std::abs(here - before);
+  }
+  if (count == 0) return 0;
+  const double difference = 1.4826 * Quantile(0.5, count, &workspace->magnitudes);
+  return 0.5 * difference * difference;
+}
+
 // Standard deviation of the residuals by their median.
 double RobustScale(SmallPatternWorkspace* workspace) {
   std::transform(workspace->points.residual.begin(),
@@ -54,9 +71,10 @@ double RobustScale(SmallPatternWorkspace* workspace) {
   return 1.4826 * Quantile(0.5, workspace->count, &workspace->magnitudes);
 }
 
-// Residuals by where they are, outliers bounded.
+// Residuals by where they are, outliers bounded, without what is noise.
 struct Zones {
-  Zones(const LandingPattern& pattern, const SmallPatternWorkspace& workspace, double limit) {
+  Zones(const LandingPattern& pattern, const SmallPatternWorkspace& workspace, double limit,
+        double noise_variance) {
     const double inner = pattern.inner_radius_m();
     const double outer = pattern.outer_radius_m() + 0.35 * pattern.ring_width_m;
     const SmallPatternWorkspace::Points& points = workspace.points;
@@ -67,7 +85,7 @@ struct Zones {
                                     : white;
       const double residual =
           std::clamp<double>(points.seen[i] - points.expected[i], -limit, limit);
-      zone.squares += residual * residual;
+      zone.squares += residual * residual - noise_variance;
       ++zone.count;
     }
   }
@@ -75,7 +93,7 @@ struct Zones {
   struct Zone {
     double squares = 0;
     int count = 0;
-    double Rms() const { return std::sqrt(squares / std::max(1, count)); }
+    double Rms() const { return std::sqrt(std::max(0.0, squares / std::max(1, count))); }
   };
   // Of the inside but the worst quadrant: dirt or a highlight may spoil one.
   double InsideRms() const {
@@ -125,7 +143,7 @@ SmallPatternWorkspace::SmallPatternWorkspace() {
 
 // Collects the pixels that show the disc of the print and the white around it under 'pose': every
 // second, third, ... of every such row where a box around them has more than 'enough_pixels'.
-bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose, int enough_pixels,
+bool SmallPatternFitter::Gather(const MaskedImage& image, const RigidTransform& pose, int enough_pixels,
                                 SmallPatternWorkspace* workspace) const {
   workspace->count = 0;
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
@@ -145,8 +163,8 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
   }
   const int x0 = std::max(0, static_cast<int>(std::floor(low.x())));
   const int y0 = std::max(0, static_cast<int>(std::floor(low.y())));
-  const int x1 = std::min(image.cols - 1, static_cast<int>(std::ceil(high.x())));
-  const int y1 = std::min(image.rows - 1, static_cast<int>(std::ceil(high.y())));
+  const int x1 = std::min(image.gray.cols - 1, static_cast<int>(std::ceil(high.x())));
+  const int y1 = std::min(image.gray.rows - 1, static_cast<int>(std::ceil(high.y())));
   if (x1 - x0 < 4 || y1 - y0 < 4 || x1 - x0 > kMaxSide || y1 - y0 > kMaxSide) return false;
   const int stride =
       1 + static_cast<int>(std::sqrt((x1 - x0) * (y1 - y0) / static_cast<double>(enough_pixels)));
@@ -175,12 +193,13 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
   for (std::size_t i = 0; i < in_box; ++i) {
     const Eigen::Vector3f ray(pixels.ray[0][i], pixels.ray[1][i], pixels.ray[2][i]);
     const Eigen::Vector3f h = plane_from_ray * ray;
+    const int row = static_cast<int>(workspace->v[i]), column = static_cast<int>(workspace->u[i]);
+    if (image.seen && image.seen->ptr(row)[column] == 0) continue;
     if (!(h.z() > 0) || h.head<2>().squaredNorm() > extent * h.z() * h.z()) continue;
     for (int k = 0; k < 3; ++k) pixels.ray[k][count] = ray(k);
-    const float x = workspace->u[i], y = workspace->v[i];
-    pixels.gray[count] = image.ptr(static_cast<int>(y))[static_cast<int>(x)];
-    workspace->u[count] = x;
-    workspace->v[count++] = y;
+    pixels.gray[count] = image.gray.ptr(row)[column];
+    workspace->u[count] = workspace->u[i];
+    workspace->v[count++] = workspace->v[i];
   }
   workspace->count = count;
   // To one side only: they tell how far the blur reaches, half a pixel beside is near enough.
@@ -209,16 +228,20 @@ struct SmallPatternFitter::System {
   double squares;  // of the residuals, without highlights
 
   double variance() const { return squares / std::max(1.0, count - kUnknowns); }
-  double correlation() const {
-    const double about_mean = sum_squares - sum * sum / count;
-    return std::sqrt(std::max(0.0, 1 - squares / std::max(about_mean, 1e-9)));
+  // Share of the variance of the image, without that of its noise, that the print does not explain.
+  double unexplained(double noise_variance) const {
+    const double noise = noise_variance * count;
+    const double about_mean = sum_squares - sum * sum / count - noise;
+    return std::clamp((squares - noise) / std::max(about_mean, 1e-9), 0.0, 1.0);
+  }
+  double correlation(double noise_variance) const {
+    return std::sqrt(1 - unexplained(noise_variance));
   }
   // Adjusted R^2. Neighbouring pixels share their blur: of so many, one tells something new.
-  double explained() const {
+  double explained(double noise_variance) const {
     constexpr double kPixelsPerSample = 4;
     const double samples = count / kPixelsPerSample;
-    const double unexplained = 1 - correlation() * correlation();
-    return 1 - unexplained * (samples - 1) / std::max(1.0, samples - 1 - kUnknowns);
+    return 1 - unexplained(noise_variance) * (samples - 1) / std::max(1.0, samples - 1 - kUnknowns);
   }
 };
 
@@ -313,7 +336,7 @@ bool SmallPatternFitter::Improve(const System& system, const std::optional<Norma
 }
 
 std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
-    const cv::Mat& image, const RigidTransform& initial, Light light, int iterations,
+    const MaskedImage& image, const RigidTransform& initial, Light light, int iterations,
     SmallPatternWorkspace* workspace, const std::optional<NormalPrior>& prior) const {
   const int enough = light == Light::kShadows ? kEnoughToTellInk : kEnoughToFit;
   if (!Gather(image, initial, enough, workspace)) return std::nullopt;
@@ -327,7 +350,7 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   double limit = kMaxWhite;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     const System system = Linearize(state, limit, workspace);
-    if (iteration == kLateStart && system.correlation() < kMinLateCorrelation) return std::nullopt;
+    if (iteration == kLateStart && system.correlation(0) < kMinLateCorrelation) return std::nullopt;
     if (!Improve(system, prior, *workspace, limit, &state)) return std::nullopt;
     if (2 * iteration >= iterations) {
       limit = kOutlier * std::max(RobustScale(workspace), kLeastNoise * state.contrast);
@@ -343,12 +366,13 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   fit.location.camera_from_pattern = state.pose;
   fit.location.covariance = covariance.topLeftCorner<6, 6>();
   fit.location.gray_rms = std::sqrt(system.squares / system.count);
-  const Zones zones(pattern_, *workspace, limit);
+  state.noise_variance = NoiseVariance(workspace);
+  const Zones zones(pattern_, *workspace, limit, state.noise_variance);
   fit.inside_residual = zones.InsideRms() / state.contrast;
   fit.ring_residual = zones.ring.Rms() / state.contrast;
   fit.white_residual = zones.white.Rms() / state.contrast;
-  fit.correlation = system.correlation();
-  fit.explained = system.explained();
+  fit.correlation = system.correlation(state.noise_variance);
+  fit.explained = system.explained(state.noise_variance);
   fit.match.contrast = state.contrast;
   MeasureParts(*workspace, state, &fit.match);
   fit.others = MeasureOthers(image, state, workspace);
@@ -414,10 +438,10 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
   int parts_seen = 0;
   for (int k = 0; k < 4; ++k) {
     const int before = (k + 3) % 4;
-    match->ring[k] = seen(0, k) ? share(-amplitude(k)) : -1;
-    match->arm[k] = arm_seen(k) ? share(-amplitude(4 + k)) : -1;
+    match->shares.ring[k] = seen(0, k) ? share(-amplitude(k)) : -1;
+    match->shares.arm[k] = arm_seen(k) ? share(-amplitude(4 + k)) : -1;
     // Quarter k has half of quadrant k and half of the one before.
-    match->quadrant[k] = seen(8, k) && seen(8, before)
+    match->shares.quadrant[k] = seen(8, k) && seen(8, before)
                              ? 1 - 0.5 * (share(-amplitude(8 + k)) + share(-amplitude(8 + before)))
                              : -1;
     parts_seen += seen(0, k) + arm_seen(k) + seen(8, k);

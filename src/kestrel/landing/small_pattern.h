@@ -92,14 +92,16 @@ class SmallPatternFitter {
   struct OtherSigns {
     double spokes;             // second darkest of the lines between the arms, one a quadrant
     double frame_corners;      // beyond the ends of the arms, against between them
-    double cross_correlation;  // of image and print inside of the ring: low for a blot
+    double cross_correlation;  // of image and print inside of the ring, noise left aside: low for
+                               // a blot
     double board_darkness;     // around the ring: 0 white, 1 as dark as the ring
   };
 
   struct Fit {
     PatternLocation location;  // without edges
     PatternMatch match;        // amplitudes of arms, white quadrants and ring instead of shares
-    double correlation;        // of the image with the fitted print, -1 to 1
+    // Of the image with the fitted print, noise left aside; 0 to 1.
+    double correlation;
     // Share of the image's variance that the print explains beyond what so many unknowns explain
     // of noise (adjusted R^2): low where few pixels are fitted well, by chance.
     double explained;
@@ -109,6 +111,12 @@ class SmallPatternFitter {
     double ring_residual;
     double white_residual;
     OtherSigns others;
+  };
+
+  // CV_8UC1; where 'seen', of the same kind, is 0, it shows nothing.
+  struct MaskedImage {
+    const cv::Mat& gray;
+    const cv::Mat* seen = nullptr;
   };
 
   struct Start {
@@ -132,19 +140,14 @@ class SmallPatternFitter {
 
   // Refines 'initial', which must be within about a stroke's width. Nothing when the image shows
   // too little of the print, the fit does not converge or there are no shadows. Does not allocate.
-  std::optional<Fit> Refine(const cv::Mat& image, const RigidTransform& initial, Light light,
+  std::optional<Fit> Refine(const MaskedImage& image, const RigidTransform& initial, Light light,
                             int iterations, SmallPatternWorkspace* workspace,
                             const std::optional<NormalPrior>& prior = {}) const;
-
-  // What there is of other signs in a print that was located in another way; nothing when the image
-  // shows too little of it or there are no shadows. Does not allocate.
-  std::optional<OtherSigns> Inspect(const cv::Mat& image, const RigidTransform& pose, Light light,
-                                    SmallPatternWorkspace* workspace) const;
 
  private:
   struct State;
   struct System;
-  bool Gather(const cv::Mat& image, const RigidTransform& pose, int enough_pixels,
+  bool Gather(const MaskedImage& image, const RigidTransform& pose, int enough_pixels,
               SmallPatternWorkspace* workspace) const;
   void Predict(const RigidTransform& pose, double blur_px, SmallPatternWorkspace* workspace) const;
   void MeasureLevels(const SmallPatternWorkspace& workspace, State* state) const;
@@ -155,13 +158,13 @@ class SmallPatternFitter {
                const SmallPatternWorkspace& workspace, double limit, State* state) const;
   void MeasureParts(const SmallPatternWorkspace& workspace, const State& state,
                     PatternMatch* match) const;
-  OtherSigns MeasureOthers(const cv::Mat& image, const State& state,
+  OtherSigns MeasureOthers(const MaskedImage& image, const State& state,
                            SmallPatternWorkspace* workspace) const;
   double OtherSpokes(const State& state, SmallPatternWorkspace* workspace) const;
   double FrameCorners(const SmallPatternWorkspace& workspace, const State& state) const;
-  double CrossCorrelation(const SmallPatternWorkspace& workspace) const;
+  double CrossCorrelation(const SmallPatternWorkspace& workspace, const State& state) const;
   double WhiteDarkness(const State& state, SmallPatternWorkspace* workspace) const;
-  double BoardDarkness(const cv::Mat& image, const State& state,
+  double BoardDarkness(const MaskedImage& image, const State& state,
                        SmallPatternWorkspace* workspace) const;
 
   const CameraModel& camera_;

@@ -23,7 +23,6 @@ inline constexpr double kMinContrast = 2;       // gray values
 // Pixels of a box around a print beyond which some may be left out.
 inline constexpr int kEnoughToFit = 1200;
 inline constexpr int kEnoughToStart = 600;
-inline constexpr int kEnoughToInspect = 600;
 inline constexpr int kEnoughToTellInk = 2400;  // from light, by its width
 inline constexpr int kBoardDirections = 24;    // in which the board is looked at
 
@@ -63,9 +62,12 @@ class Correlation {
     bb_ += b * b;
     ab_ += a * b;
   }
-  double value() const {
-    const double variances = (aa_ - a_ * a_ / n_) * (bb_ - b_ * b_ / n_);
-    return n_ > 0 && variances > 0 ? (ab_ - a_ * b_ / n_) / std::sqrt(variances) : 0;
+  // 'noise_variance': of the first series, which is not correlated with anything.
+  double value(double noise_variance = 0) const {
+    const double of_a = aa_ - a_ * a_ / n_ - n_ * noise_variance;
+    const double variances = of_a * (bb_ - b_ * b_ / n_);
+    if (!(n_ > 0 && of_a > 0 && variances > 0)) return 0;
+    return std::clamp((ab_ - a_ * b_ / n_) / std::sqrt(variances), -1.0, 1.0);
   }
 
  private:
@@ -95,6 +97,7 @@ struct SmallPatternFitter::State {
   double blur_px = kGoodLensBlurPx;
   double white = 255;   // gray value, which the image may cut off
   double contrast = 0;  // white minus black
+  double noise_variance = 0;
 
   Eigen::Vector2d slope{0, 0};  // of the light over the print, gray values per metre
   // Factors that take the shadows out of the gray values of the board, by direction.

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numbers>
 
 #include "kestrel/image/gray_sampling.h"
@@ -12,27 +11,12 @@
 
 namespace kestrel {
 
-std::optional<SmallPatternFitter::OtherSigns> SmallPatternFitter::Inspect(
-    const cv::Mat& image, const RigidTransform& pose, Light light,
-    SmallPatternWorkspace* workspace) const {
-  const int enough = light == Light::kShadows ? kEnoughToTellInk : kEnoughToInspect;
-  if (!Gather(image, pose, enough, workspace)) return std::nullopt;
-  State state;
-  state.pose = pose;
-  Predict(state.pose, state.blur_px, workspace);
-  MeasureLevels(*workspace, &state);
-  if (state.contrast < kMinContrast) return std::nullopt;
-  if (light == Light::kShadows && !EvenOut(workspace, &state)) return std::nullopt;
-  CompareGrays(state.Light(), std::numeric_limits<float>::max(), workspace);
-  return MeasureOthers(image, state, workspace);
-}
-
 // Of a print that is predicted and compared with the image.
 SmallPatternFitter::OtherSigns SmallPatternFitter::MeasureOthers(
-    const cv::Mat& image, const State& state, SmallPatternWorkspace* workspace) const {
+    const MaskedImage& image, const State& state, SmallPatternWorkspace* workspace) const {
   return {.spokes = OtherSpokes(state, workspace),
           .frame_corners = FrameCorners(*workspace, state),
-          .cross_correlation = CrossCorrelation(*workspace),
+          .cross_correlation = CrossCorrelation(*workspace, state),
           .board_darkness = BoardDarkness(image, state, workspace)};
 }
 
@@ -86,11 +70,11 @@ double SmallPatternFitter::OtherSpokes(const State& state, SmallPatternWorkspace
 double SmallPatternFitter::FrameCorners(const SmallPatternWorkspace& workspace,
                                         const State& state) const {
   double n = 0, s = 0, ss = 0, e = 0, se = 0;
-  const double inner = pattern_.inner_radius_m();
+  const double outer = pattern_.outer_radius_m();
   const SmallPatternWorkspace::Points& points = workspace.points;
   for (std::size_t i = 0; i < workspace.count; ++i) {
     const double xx = points.x[i] * points.x[i], yy = points.y[i] * points.y[i];
-    if (xx + yy < inner * inner) continue;
+    if (xx + yy < outer * outer) continue;
     const double residual = points.seen[i] - points.expected[i];
     // 1 along the arms, -1 half-way between them: the cosine of four times the direction.
     const double twice = (xx - yy) / (xx + yy);
@@ -105,7 +89,8 @@ double SmallPatternFitter::FrameCorners(const SmallPatternWorkspace& workspace,
   return spread > 1 ? -(se - s * e / n) / spread / state.contrast : 0;
 }
 
-double SmallPatternFitter::CrossCorrelation(const SmallPatternWorkspace& workspace) const {
+double SmallPatternFitter::CrossCorrelation(const SmallPatternWorkspace& workspace,
+                                            const State& state) const {
   const double reach = pattern_.arm_half_length_m;
   const SmallPatternWorkspace::Points& points = workspace.points;
   Correlation with_expected;
@@ -113,7 +98,7 @@ double SmallPatternFitter::CrossCorrelation(const SmallPatternWorkspace& workspa
     const double x = points.x[i], y = points.y[i];
     if (x * x + y * y <= reach * reach) with_expected.Add(points.seen[i], points.expected[i]);
   }
-  return with_expected.value();
+  return with_expected.value(state.noise_variance);
 }
 
 // How much darker than expected the darkest of the white inside of the ring is, noise left aside:
@@ -135,7 +120,7 @@ double SmallPatternFitter::WhiteDarkness(const State& state,
 
 // The median over the directions in view, beyond the darkest white of the print: a white ring on
 // dark ground has no board.
-double SmallPatternFitter::BoardDarkness(const cv::Mat& image, const State& state,
+double SmallPatternFitter::BoardDarkness(const MaskedImage& image, const State& state,
                                          SmallPatternWorkspace* workspace) const {
   std::array<double, kBoardDirections> darkness;
   int seen = 0;
@@ -145,9 +130,9 @@ double SmallPatternFitter::BoardDarkness(const cv::Mat& image, const State& stat
                                 board_radius_m_ * std::sin(angle), 0);
     Eigen::Vector2d pixel;
     if (camera_.Project(state.pose * point, &pixel) == ProjectionStatus::kOutsideModel) continue;
-    const float seen_gray =
-        SampleGray(image, static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
-    if (seen_gray < 0) continue;
+    const auto x = static_cast<float>(pixel.x()), y = static_cast<float>(pixel.y());
+    const float seen_gray = SampleGray(image.gray, x, y);
+    if (seen_gray < 0 || (image.seen && SampleGray(*image.seen, x, y) < 255)) continue;
     const double gray = seen_gray * state.board_factor[i];
     const double white = state.White(point.x(), point.y());
     darkness[seen++] = seen_gray >= kSaturatedGray ? 0 : (white - gray) / state.contrast;

@@ -130,6 +130,34 @@ void AddRandomMotion(const CameraModel& camera, const RigidTransform& camera_fro
   imaging->velocity_in_camera = motion * (range * angle / imaging->exposure_s);
 }
 
+// A motion across the view during the read-out that skews what is seen by so much a row.
+void AddRollingShutter(const CameraModel& camera, const RigidTransform& camera_from_pattern,
+                       double skew, Random* random, ImagingOptions* imaging) {
+  if (skew == 0) return;
+  imaging->readout_s = 0.033;
+  imaging->exposure_s = 0.001;  // hardly blurs
+  const double range = camera_from_pattern.translation.norm();
+  const double rate = skew * camera.height_px() / imaging->readout_s / camera.intrinsics().fx_px;
+  const Vector3d ray = camera_from_pattern.translation / range;
+  const Vector3d across = ray.unitOrthogonal();
+  const double direction = random->Uniform(0, 2 * kPi);
+  imaging->velocity_in_camera =
+      range * rate * (std::cos(direction) * across + std::sin(direction) * ray.cross(across));
+}
+
+// Where the middle of the print appears: on the sheet's relief, at its row's time.
+Vector2d CenterPx(const CameraModel& camera, const RigidTransform& camera_from_pattern,
+                  const Relief& relief, const ImagingOptions& imaging) {
+  const Vector3d center(0, 0, relief.HeightAt({0, 0}));
+  Vector2d pixel(0, 0.5 * (camera.height_px() - 1));
+  constexpr int kSteps = 5;
+  for (int i = 0; i < kSteps; ++i) {
+    const double time = RowTime(imaging, pixel.y(), camera.height_px());
+    camera.Project(PoseAt(camera_from_pattern, imaging, time) * center, &pixel);
+  }
+  return pixel;
+}
+
 struct LookalikePlace {
   Vector2d center;
   double radius;
@@ -149,12 +177,11 @@ bool IsCircleSeen(const Vector2d& center, double radius, const Lens& lens,
 
 // A place where a look-alike can be told from the pattern by eye and covers no other one, or
 // nothing when the one drawn is not good.
-std::optional<LookalikePlace> RandomPlace(const SceneRenderer& renderer,
+std::optional<LookalikePlace> RandomPlace(const LandingStillOptions& options,
+                                          const SceneRenderer& renderer,
                                           const RigidTransform& camera_from_pattern,
                                           const std::vector<LookalikePlace>& taken,
                                           Random* random) {
-  constexpr double kMinMajorPx = 26;
-  constexpr double kMinMinorPx = 15;
   const double radius = 0.15 * std::pow(8, random->Uniform());  // 0.15 to 1.2 m
   const CameraModel& camera = renderer.camera();
   const std::optional<Vector2d> center = RandomPlacePoint(camera, camera_from_pattern, random);
@@ -167,19 +194,21 @@ std::optional<LookalikePlace> RandomPlace(const SceneRenderer& renderer,
     return std::nullopt;
   }
   const auto extent = ExtentOfCircle(camera, camera_from_pattern, *center, radius);
-  if (!extent || extent->major_px < kMinMajorPx || extent->minor_px < kMinMinorPx) {
+  if (!extent || extent->major_px < options.min_lookalike_major_px ||
+      extent->minor_px < options.min_lookalike_minor_px) {
     return std::nullopt;
   }
   return LookalikePlace{*center, radius, extent->minor_px};
 }
 
-std::vector<LookalikePlace> RandomPlaces(const SceneRenderer& renderer,
+std::vector<LookalikePlace> RandomPlaces(const LandingStillOptions& options,
+                                         const SceneRenderer& renderer,
                                          const RigidTransform& camera_from_pattern, int wanted,
                                          Random* random) {
   constexpr int kTriesPerPose = 40;
   std::vector<LookalikePlace> places;
   for (int i = 0; i < kTriesPerPose && std::ssize(places) < wanted; ++i) {
-    const auto place = RandomPlace(renderer, camera_from_pattern, places, random);
+    const auto place = RandomPlace(options, renderer, camera_from_pattern, places, random);
     if (place) places.push_back(*place);
   }
   return places;
@@ -270,6 +299,13 @@ std::vector<std::string> LandingStillOptions::Validate() const {
           min_visible_fraction, "0 to 1");
   require(min_ring_minor_px >= 0, "min_ring_minor_px", min_ring_minor_px, "0 or more");
   require(min_ring_major_px >= 0, "min_ring_major_px", min_ring_major_px, "0 or more");
+  require(min_lookalike_minor_px >= 0, "min_lookalike_minor_px", min_lookalike_minor_px,
+          "0 or more");
+  require(min_lookalike_major_px >= min_lookalike_minor_px, "min_lookalike_major_px",
+          min_lookalike_major_px, "at least min_lookalike_minor_px");
+  require(std::abs(bulge) <= 0.2, "bulge", bulge, "-0.2 to 0.2");
+  require(std::abs(fold) <= 0.2, "fold", fold, "-0.2 to 0.2");
+  require(std::abs(rolling_skew) <= 0.2, "rolling_skew", rolling_skew, "-0.2 to 0.2");
   return violations;
 }
 
@@ -291,6 +327,11 @@ LandingStill LandingStillMaker::PreparePattern(std::uint64_t seed, View* view) c
   still.has_highlight = !view->scene.glares.empty();
   view->imaging = RandomImaging(still.ring_minor_px, &random);
   AddRandomMotion(camera_, still.camera_from_pattern, still.ring_minor_px, &random, &view->imaging);
+  const double board_m = still.pattern.board_size_m;
+  view->scene.relief = {board_m, options_.bulge * board_m, options_.fold * board_m};
+  AddRollingShutter(camera_, still.camera_from_pattern, options_.rolling_skew, &random,
+                    &view->imaging);
+  still.center_px = CenterPx(camera_, still.camera_from_pattern, view->scene.relief, view->imaging);
 
   const double beside_legs =
       VisibleFraction(still.pattern, still.camera_from_pattern, with_legs_.lens());
@@ -335,7 +376,7 @@ LookalikeStill LandingStillMaker::PrepareLookalikes(std::uint64_t seed, View* vi
     const auto pose = RandomPose(camera_, still.altitude_m, options_.max_tilt_deg, 0, &random);
     if (!pose) continue;
     still.camera_from_pattern = *pose;
-    places = RandomPlaces(*view->renderer, *pose, wanted, &random);
+    places = RandomPlaces(options_, *view->renderer, *pose, wanted, &random);
   }
   if (places.empty()) {
     throw InputError(fmt::format(

@@ -32,6 +32,16 @@ struct LandingStillOptions {
   double min_visible_fraction = 0.25;
   double min_ring_minor_px = 6;
   double min_ring_major_px = 13;
+  // Smallest axes of a look-alike's circle in the image: by default those from which on an eye can
+  // tell each of them from the pattern.
+  double min_lookalike_major_px = 26;
+  double min_lookalike_minor_px = 15;
+  // What makes the print no flat, rigid one: height of the middle of a board that bulges (negative:
+  // sags), and of the creases of a sheet that was folded, shares of the board's size; and by how
+  // much a rolling shutter skews the ring, share of its size.
+  double bulge = 0;
+  double fold = 0;
+  double rolling_skew = 0;
 
   // Every violation in words; empty when stills can be made.
   std::vector<std::string> Validate() const;
@@ -72,8 +82,8 @@ class LandingStillMaker {
   // Throws InputError when no pose within the options shows enough of the pattern.
   LandingStill MakePattern(std::uint64_t seed) const;
 
-  // One to five look-alikes of random kinds, whole and at least 26 px wide and 15 px high, so that
-  // an eye can tell them from the pattern. Throws InputError when none can be placed.
+  // One to five look-alikes of random kinds, whole and as large as the options say. Throws
+  // InputError when none can be placed.
   LookalikeStill MakeLookalikes(std::uint64_t seed) const;
 
   // The same without their images, which are left empty: quick.

@@ -30,13 +30,6 @@ constexpr int kTimesMoving = 12;
 // the horizon, a thousand camera heights away.
 constexpr double kHorizonSine = 1e-3;
 
-// The plane's pose at a moment of the exposure, 'time' from its middle.
-RigidTransform PoseAt(const RigidTransform& camera_from_pattern, const ImagingOptions& imaging,
-                      double time) {
-  return Moved(camera_from_pattern, time * imaging.velocity_in_camera,
-               time * imaging.angular_velocity_in_camera);
-}
-
 // Gray values of radiances in units of white, with noise.
 cv::Mat Expose(const ImagingOptions& imaging, const cv::Mat& radiance) {
   constexpr double kShotNoiseGray = 100;  // gray value at which 'shot_noise' is given
@@ -67,6 +60,16 @@ void CheckPose(const RigidTransform& camera_from_pattern) {
 
 }  // namespace
 
+RigidTransform PoseAt(const RigidTransform& camera_from_pattern, const ImagingOptions& imaging,
+                      double time_s) {
+  return Moved(camera_from_pattern, time_s * imaging.velocity_in_camera,
+               time_s * imaging.angular_velocity_in_camera);
+}
+
+double RowTime(const ImagingOptions& imaging, double row, int rows) {
+  return imaging.readout_s * ((row + 0.5) / rows - 0.5);
+}
+
 std::vector<std::string> Scene::Validate() const {
   std::vector<std::string> violations;
   RequireIn(ground_reflectance, 0, 1, "ground_reflectance", &violations);
@@ -86,6 +89,7 @@ std::vector<std::string> Scene::Validate() const {
     RequireIn(glares[i].sigma_m, 1e-3, 1e3, fmt::format("glares[{}].sigma_m", i), &violations);
     RequireNotNegative(glares[i].strength, fmt::format("glares[{}].strength", i), &violations);
   }
+  AddViolations("relief", relief.Validate(), &violations);
   return violations;
 }
 
@@ -104,6 +108,7 @@ std::vector<std::string> ImagingOptions::Validate() const {
   RequireNotNegative(read_noise, "read_noise", &violations);
   RequireNotNegative(shot_noise, "shot_noise", &violations);
   RequireNotNegative(exposure_s, "exposure_s", &violations);
+  RequireNotNegative(readout_s, "readout_s", &violations);
   RequireFinite(velocity_in_camera.norm(), "velocity_in_camera", &violations);
   RequireFinite(angular_velocity_in_camera.norm(), "angular_velocity_in_camera", &violations);
   return violations;
@@ -112,9 +117,10 @@ std::vector<std::string> ImagingOptions::Validate() const {
 // The radiance of single pixels of one picture.
 class SceneRenderer::PlanePainter {
  public:
-  PlanePainter(const Scene& scene, const RigidTransform& camera_from_pattern,
-               const ImagingOptions& imaging)
-      : scene_(scene), texture_(scene.texture_seed), middle_(camera_from_pattern) {
+  // The arguments must outlive the painter.
+  PlanePainter(const Scene& scene, const GroundTexture& texture,
+               const RigidTransform& camera_from_pattern, const ImagingOptions& imaging)
+      : scene_(scene), texture_(texture), middle_(camera_from_pattern, scene.relief) {
     const bool moving = imaging.exposure_s > 0 && !(imaging.velocity_in_camera.isZero() &&
                                                     imaging.angular_velocity_in_camera.isZero());
     cells_per_side_ = moving ? kCellsPerSideMoving : kCellsPerSideStill;
@@ -123,7 +129,7 @@ class SceneRenderer::PlanePainter {
       const double time = ((i + 0.5) / times - 0.5) * imaging.exposure_s;
       const RigidTransform pose = PoseAt(camera_from_pattern, imaging, time);
       CheckPose(pose);
-      views_.emplace_back(pose);
+      views_.emplace_back(pose, scene.relief);
     }
   }
 
@@ -138,20 +144,28 @@ class SceneRenderer::PlanePainter {
   }
 
  private:
-  // A camera pose as the plane sees it.
+  // A camera pose as the plane sees it, or the sheet on it.
   struct PlaneView {
     Eigen::Matrix3d pattern_from_camera;
     Eigen::Vector3d camera_in_pattern;
+    const Relief& relief;
 
-    explicit PlaneView(const RigidTransform& camera_from_pattern)
+    PlaneView(const RigidTransform& camera_from_pattern, const Relief& sheet)
         : pattern_from_camera(camera_from_pattern.rotation.conjugate().toRotationMatrix()),
-          camera_in_pattern(camera_from_pattern.Inverse().translation) {}
+          camera_in_pattern(camera_from_pattern.Inverse().translation),
+          relief(sheet) {}
 
-    // Where a ray of any length meets the plane, or false when it does not.
+    // The point of the plane that a ray of any length sees, or false when it sees none.
     bool Hit(const Eigen::Vector3d& ray_in_camera, Eigen::Vector2d* point) const {
       const Eigen::Vector3d ray = pattern_from_camera * ray_in_camera;
       if (ray.z() > -kHorizonSine) return false;
-      *point = camera_in_pattern.head<2>() - (camera_in_pattern.z() / ray.z()) * ray.head<2>();
+      const Eigen::Vector2d run = ray.head<2>() / ray.z();
+      *point = camera_in_pattern.head<2>() - camera_in_pattern.z() * run;
+      if (relief.IsFlat()) return true;
+      // The height is that of the point that is seen: by steps towards it.
+      constexpr int kSteps = 8;
+      const Eigen::Vector2d on_plane = *point;
+      for (int i = 0; i < kSteps; ++i) *point = on_plane + relief.HeightAt(*point) * run;
       return true;
     }
   };
@@ -255,7 +269,7 @@ class SceneRenderer::PlanePainter {
   }
 
   const Scene& scene_;
-  GroundTexture texture_;
+  const GroundTexture& texture_;
   PlaneView middle_;
   std::vector<PlaneView> views_;  // at several times of the exposure, in order
   int cells_per_side_ = 1;
@@ -273,15 +287,20 @@ cv::Mat SceneRenderer::Render(const Scene& scene, const RigidTransform& camera_f
 
 cv::Mat SceneRenderer::PaintRadiance(const Scene& scene, const RigidTransform& camera_from_pattern,
                                      const ImagingOptions& imaging) const {
-  const PlanePainter painter(scene, camera_from_pattern, imaging);
+  const GroundTexture texture(scene.texture_seed);
+  std::optional<PlanePainter> painter;
   cv::Mat radiance(lens_.gain().size(), CV_32F, cv::Scalar(0));
   for (int v = 0; v < radiance.rows; ++v) {
+    if (!painter || imaging.readout_s > 0) {
+      const double time = RowTime(imaging, v, radiance.rows);
+      painter.emplace(scene, texture, PoseAt(camera_from_pattern, imaging, time), imaging);
+    }
     for (int u = 0; u < radiance.cols; ++u) {
       if (lens_.gain().at<float>(v, u) <= 0) continue;
       std::array<Eigen::Vector3d, 4> corners;
       std::ranges::transform(lens_.PixelCorners(u, v), corners.begin(),
                              [](const Eigen::Vector3f& ray) { return ray.cast<double>(); });
-      radiance.at<float>(v, u) = static_cast<float>(painter.Radiance(corners));
+      radiance.at<float>(v, u) = static_cast<float>(painter->Radiance(corners));
     }
   }
   return radiance;

@@ -11,6 +11,7 @@
 #include "kestrel/camera/camera_model.h"
 #include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/rendering/lens.h"
+#include "kestrel/stills/relief.h"
 #include "kestrel/world/drawing.h"
 
 namespace kestrel {
@@ -37,8 +38,8 @@ struct Glare {
   double strength = 1;  // at the centre, in units of white
 };
 
-// Everything lies on the plane z = 0 of the pattern's frame P and is seen from above (z > 0); what
-// is in front of the lens belongs to the camera.
+// Everything lies on the plane z = 0 of the pattern's frame P, but for a sheet that is not flat,
+// and is seen from above (z > 0); what is in front of the lens belongs to the camera.
 struct Scene {
   double ground_reflectance = 0.25;  // 0 to 1
   double ground_texture = 0.3;       // relative variation, 0 to 1
@@ -47,6 +48,7 @@ struct Scene {
   std::vector<PaintLayer> layers;
   std::vector<Shadow> shadows;
   std::vector<Glare> glares;
+  Relief relief;  // of the sheet around the origin; seen from flatter than its slopes it is wrong
 
   // Every violation in words; empty when the scene can be rendered.
   std::vector<std::string> Validate() const;
@@ -65,12 +67,21 @@ struct ImagingOptions {
                                    // with the root of the light
   std::uint64_t noise_seed = 1;
   double exposure_s = 0.005;  // >= 0; the pose is that of its middle
+  double readout_s = 0;  // >= 0; from the first row's exposure to the last's (rolling shutter), the
+                         // pose is that of the middle row
   // Motion of the plane in the camera frame during the exposure, about the camera's centre.
   Eigen::Vector3d velocity_in_camera{0, 0, 0};          // m/s, of the pattern's origin
   Eigen::Vector3d angular_velocity_in_camera{0, 0, 0};  // rad/s, of the pattern about its origin
 
   std::vector<std::string> Validate() const;
 };
+
+// The plane's pose in the camera 'time_s' after the middle of the exposure of the middle row.
+RigidTransform PoseAt(const RigidTransform& camera_from_pattern, const ImagingOptions& imaging,
+                      double time_s);
+
+// When one of so many rows is exposed, s after the middle one; fractions allowed.
+double RowTime(const ImagingOptions& imaging, double row, int rows);
 
 // Renders a plane with paint on it as a camera sees it. A pixel with an edge takes 16 rays (48
 // where the plane moves) that each average over their cell of it, so that edges lie within about a

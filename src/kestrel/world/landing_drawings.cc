@@ -211,6 +211,97 @@ Drawing Grid(const Vector2d& center, double radius, double yaw, Random* random) 
   return ink;
 }
 
+// Three spokes of a hub, two of them nearly in line.
+Drawing SteeringWheel(const Vector2d& center, double radius, double yaw, Random* random) {
+  const double droop = random->Uniform(-0.3, 0.3);
+  Drawing ink = WheelOf(Pen(center, radius, yaw), {droop, 0.5 * kPi, kPi - droop}, random);
+  return ink.Add(Pen(center, radius, yaw).Ring(random->Uniform(0.12, 0.3)));
+}
+
+Drawing CrossWithShortArm(const Vector2d& center, double radius, double yaw, Random* random) {
+  const Pen pen(center, radius, yaw);
+  const double width = StrokeWidth(random);
+  const double length = random->Uniform(0.7, 1) * (1 - width);
+  Drawing ink;
+  ink.Add(pen.Ring(1, 1 - width));
+  for (int arm = 0; arm < 4; ++arm) {
+    const double share = arm == 0 ? random->Uniform(0.2, 0.45) : 1;
+    ink.Add(pen.Spoke(arm * 0.5 * kPi, share * length, 0.5 * width));
+  }
+  return ink;
+}
+
+// A cross whose arms are much thinner or much thicker than the ring.
+Drawing OtherStrokes(const Vector2d& center, double radius, double yaw, Random* random) {
+  const Pen pen(center, radius, yaw);
+  const double half_width = random->Chance(0.5) ? random->Uniform(0.02, 0.04) : random->Uniform(0.2, 0.3);
+  return Drawing()
+      .Add(pen.Ring(1, 0.8))
+      .Add(pen.Bar({0, 0}, 0, 0.76, half_width))
+      .Add(pen.Bar({0, 0}, 0.5 * kPi, 0.76, half_width));
+}
+
+// A cross that goes on beyond its ring.
+Drawing Crosshair(const Vector2d& center, double radius, double yaw, Random* random) {
+  const Pen pen(center, radius, yaw);
+  const double ring = random->Uniform(0.5, 0.75);
+  const double half_width = 0.5 * ring * StrokeWidth(random);
+  return Drawing()
+      .Add(pen.Ring(ring, ring - 2 * half_width))
+      .Add(pen.Bar({0, 0}, 0, 1, half_width))
+      .Add(pen.Bar({0, 0}, 0.5 * kPi, 1, half_width));
+}
+
+Drawing CrossInBullseye(const Vector2d& center, double radius, double yaw, Random* random) {
+  const Pen pen(center, radius, yaw);
+  const double width = random->Uniform(0.1, 0.16);
+  const double inner = random->Uniform(0.4, 0.6);
+  return WheelOf(pen, {0, 0.5 * kPi, kPi, 1.5 * kPi}, random)
+      .Add(pen.Ring(inner, inner - width));
+}
+
+// A grating in a ring, as on a manhole.
+Drawing Grating(const Vector2d& center, double radius, double yaw, Random* random) {
+  const Pen pen(center, radius, yaw);
+  const int bars = random->Integer(2, 4);
+  const double half_width = random->Uniform(0.25, 0.4) / bars;
+  Drawing ink;
+  ink.Add(pen.Ring(1, 1 - StrokeWidth(random)));
+  for (int i = 0; i < bars; ++i) {
+    const double across = (2 * i + 1 - bars) * 0.9 / bars;
+    const double half_length = std::sqrt(0.85 - across * across);
+    ink.Add(pen.Bar({0, across}, 0, half_length, half_width));
+    if (random->Chance(0.5)) ink.Add(pen.Bar({across, 0}, 0.5 * kPi, half_length, half_width));
+  }
+  return ink;
+}
+
+// Letters that have strokes through the middle of a ring.
+Drawing LetterInRing(const Vector2d& center, double radius, double yaw, Random* random) {
+  const Pen pen(center, radius, yaw);
+  const double half_width = random->Uniform(0.07, 0.12);
+  const double size = random->Uniform(0.45, 0.65);
+  const auto bar = [&](double x, double y, double angle_deg, double half_length) {
+    return pen.Bar(size * Vector2d(x, y), angle_deg * kPi / 180, size * half_length, half_width);
+  };
+  Drawing ink;
+  ink.Add(pen.Ring(1, 1 - StrokeWidth(random)));
+  switch (random->Integer(0, 5)) {
+    case 0:  // K
+      return ink.Add(bar(-0.5, 0, 90, 1)).Add(bar(0, 0.5, 45, 0.7)).Add(bar(0, -0.5, -45, 0.7));
+    case 1:  // N
+      return ink.Add(bar(-0.6, 0, 90, 1)).Add(bar(0.6, 0, 90, 1)).Add(bar(0, 0, 120, 1.1));
+    case 2:  // Y
+      return ink.Add(bar(0, -0.5, 90, 0.5)).Add(bar(0.35, 0.5, 55, 0.6)).Add(bar(-0.35, 0.5, 125, 0.6));
+    case 3:  // F
+      return ink.Add(bar(-0.4, 0, 90, 1)).Add(bar(0.1, 0.9, 0, 0.6)).Add(bar(0, 0.1, 0, 0.5));
+    case 4:  // A
+      return ink.Add(bar(-0.3, 0, 70, 1)).Add(bar(0.3, 0, 110, 1)).Add(bar(0, -0.3, 0, 0.5));
+    default:  // 4
+      return ink.Add(bar(0.3, 0, 90, 1)).Add(bar(0, -0.2, 0, 0.8)).Add(bar(-0.2, 0.4, 50, 0.8));
+  }
+}
+
 constexpr std::array kLookalikes = {
     Lookalike{"ring", RingOnly},
     Lookalike{"disc", Disc},
@@ -231,6 +322,13 @@ constexpr std::array kLookalikes = {
     Lookalike{"square frame with a cross", FrameWithCross},
     Lookalike{"chessboard", Chessboard},
     Lookalike{"grid", Grid},
+    Lookalike{"steering wheel", SteeringWheel},
+    Lookalike{"cross with a short arm", CrossWithShortArm},
+    Lookalike{"cross of other strokes", OtherStrokes},
+    Lookalike{"crosshair", Crosshair},
+    Lookalike{"cross in a bullseye", CrossInBullseye},
+    Lookalike{"grating", Grating},
+    Lookalike{"letter in a ring", LetterInRing},
 };
 
 }  // namespace

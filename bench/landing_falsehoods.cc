@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "landing_falsehoods.h"
+
+#include <algorithm>
+#include <array>
+
+namespace kestrel {
+namespace {
+
+template <int kPercent>
+CameraIntrinsics WithFocalLength(CameraIntrinsics camera) {
+  camera.fx_px *= 1 + kPercent / 100.0;
+  camera.fy_px *= 1 + kPercent / 100.0;
+  return camera;
+}
+
+template <int kPixels>
+CameraIntrinsics WithPrincipalPoint(CameraIntrinsics camera) {
+  camera.cx_px += 0.8 * kPixels;
+  camera.cy_px -= 0.6 * kPixels;
+  return camera;
+}
+
+CameraIntrinsics WithoutDistortion(CameraIntrinsics camera) {
+  std::fill(camera.distortion.begin(), camera.distortion.end(), 0.0);
+  return camera;
+}
+
+constexpr std::array kCalibrationErrors = {
+    CalibrationError{"right", WithFocalLength<0>},
+    CalibrationError{"focal length -30 %", WithFocalLength<-30>},
+    CalibrationError{"focal length -20 %", WithFocalLength<-20>},
+    CalibrationError{"focal length -10 %", WithFocalLength<-10>},
+    CalibrationError{"focal length +10 %", WithFocalLength<10>},
+    CalibrationError{"focal length +20 %", WithFocalLength<20>},
+    CalibrationError{"focal length +30 %", WithFocalLength<30>},
+    CalibrationError{"principal point off by 20 px", WithPrincipalPoint<20>},
+    CalibrationError{"principal point off by 40 px", WithPrincipalPoint<40>},
+    CalibrationError{"distortion left out", WithoutDistortion},
+};
+
+constexpr std::array kPrintErrors = {
+    PrintError{"flat", 0, 0, 0},
+    PrintError{"bulges by 3 %", 0.03, 0, 0},
+    PrintError{"sags by 3 %", -0.03, 0, 0},
+    PrintError{"folded, creases of 2 %", 0, 0.02, 0},
+    PrintError{"skewed by 5 % (rolling shutter)", 0, 0, 0.05},
+};
+
+LandingHint Nothing(const LandingFrame& /*frame*/) { return {}; }
+
+LandingHint Attitude(const LandingFrame& frame) {
+  LandingHint hint;
+  hint.up_in_camera = frame.up_in_camera;
+  return hint;
+}
+
+template <int kMetres>
+LandingHint AltitudePlus(const LandingFrame& frame) {
+  LandingHint hint = Attitude(frame);
+  hint.altitude_m = frame.altitude_m + kMetres;
+  return hint;
+}
+
+template <int kTimes>
+LandingHint AltitudeTimes(const LandingFrame& frame) {
+  LandingHint hint = Attitude(frame);
+  hint.altitude_m = frame.altitude_m * kTimes;
+  return hint;
+}
+
+LandingHint UpsideDown(const LandingFrame& frame) {
+  LandingHint hint = AltitudePlus<0>(frame);
+  hint.up_in_camera = -*hint.up_in_camera;
+  return hint;
+}
+
+LandingHint TurnedRound(const LandingFrame& frame) {
+  LandingHint hint = AltitudePlus<0>(frame);
+  hint.up_in_camera->head<2>() *= -1;
+  return hint;
+}
+
+LandingHint TiltedBy30Degrees(const LandingFrame& frame) {
+  constexpr double kTilt = 0.5236;
+  LandingHint hint = AltitudePlus<0>(frame);
+  hint.up_in_camera = Eigen::AngleAxisd(kTilt, Eigen::Vector3d::UnitX()) * *hint.up_in_camera;
+  return hint;
+}
+
+LandingHint CenterElsewhere(const LandingFrame& frame) {
+  LandingHint hint = Attitude(frame);
+  hint.center_in_camera = frame.camera_from_pattern->translation;
+  hint.center_in_camera->x() += 0.5 * frame.altitude_m;
+  hint.center_sigma_m = 0.1;
+  return hint;
+}
+
+LandingHint CenterTwiceAsFar(const LandingFrame& frame) {
+  LandingHint hint = Attitude(frame);
+  hint.center_in_camera = 2 * frame.camera_from_pattern->translation;
+  hint.center_sigma_m = 0.1;
+  return hint;
+}
+
+constexpr std::array kToldHints = {
+    ToldHint{"nothing", Nothing},
+    ToldHint{"attitude", Attitude},
+    ToldHint{"attitude and altitude", AltitudePlus<0>},
+    ToldHint{"altitude 10 m too high", AltitudePlus<10>},
+    ToldHint{"altitude 500 m too high (sea level)", AltitudePlus<500>},
+    ToldHint{"altitude three times too high", AltitudeTimes<3>},
+    ToldHint{"altitude negative", AltitudePlus<-20>},
+    ToldHint{"camera upside down", UpsideDown},
+    ToldHint{"camera turned round by 180 degrees", TurnedRound},
+    ToldHint{"attitude wrong by 30 degrees", TiltedBy30Degrees},
+    ToldHint{"track elsewhere", CenterElsewhere},
+    ToldHint{"track at twice the distance", CenterTwiceAsFar},
+};
+
+}  // namespace
+
+std::span<const CalibrationError> CalibrationErrors() { return kCalibrationErrors; }
+std::span<const PrintError> PrintErrors() { return kPrintErrors; }
+std::span<const ToldHint> ToldHints() { return kToldHints; }
+
+}  // namespace kestrel

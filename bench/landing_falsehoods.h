@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "kestrel/camera/camera_model.h"
+#include "kestrel/landing/landing_pattern_detector.h"
+#include "kestrel/stills/landing_stills.h"
+#include "landing_frames.h"
+
+namespace kestrel {
+
+// A calibration that is not the camera's: another unit of the lens, a zoom, a crop, a guess.
+struct CalibrationError {
+  std::string_view name;
+  CameraIntrinsics (*apply)(CameraIntrinsics camera);
+};
+// All of them; the first changes nothing.
+std::span<const CalibrationError> CalibrationErrors();
+
+// A print that is no flat, rigid one.
+struct PrintError {
+  std::string_view name;
+  double bulge;  // as in LandingStillOptions
+  double fold;
+  double rolling_skew;
+};
+std::span<const PrintError> PrintErrors();
+
+// What a caller tells the detector about a frame with known pose, right or wrong.
+struct ToldHint {
+  std::string_view name;
+  LandingHint (*tell)(const LandingFrame& frame);
+};
+std::span<const ToldHint> ToldHints();
+
+}  // namespace kestrel

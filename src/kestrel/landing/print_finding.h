@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "kestrel/landing/landing_pattern_detector.h"
+#include "kestrel/landing/pattern_locator.h"
+#include "kestrel/landing/print_doubts.h"
+
+namespace kestrel {
+
+// A print that was located, whether it is the pattern or not.
+struct PrintFinding {
+  PrintKind kind;
+  CrossMethod method;
+  PatternLocation location;
+  Eigen::Vector2d center_px;     // where the image has the middle of the print
+  Eigen::Vector2d diameters_px;  // of the ring, the longer one first
+  PrintDoubts doubts;
+  double log_odds = 0;  // that it is the pattern, by the doubts and by what is told
+
+  bool is_part() const { return method == CrossMethod::kPartial; }
+  // Standard deviation of the position, share of the distance.
+  double relative_sigma() const;
+};
+
+}  // namespace kestrel
