@@ -14,6 +14,8 @@ function(kestrel_room name)
     set(scope PUBLIC)
     target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
     target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Werror)
+    # Eigen's blocked product is for larger matrices than a state's, and takes seconds to compile.
+    target_compile_definitions(${target} PRIVATE EIGEN_CACHEFRIENDLY_PRODUCT_THRESHOLD=16)
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)
