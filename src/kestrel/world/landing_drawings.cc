@@ -234,7 +234,8 @@ Drawing CrossWithShortArm(const Vector2d& center, double radius, double yaw, Ran
 // A cross whose arms are much thinner or much thicker than the ring.
 Drawing OtherStrokes(const Vector2d& center, double radius, double yaw, Random* random) {
   const Pen pen(center, radius, yaw);
-  const double half_width = random->Chance(0.5) ? random->Uniform(0.02, 0.04) : random->Uniform(0.2, 0.3);
+  const double half_width =
+      random->Chance(0.5) ? random->Uniform(0.02, 0.04) : random->Uniform(0.2, 0.3);
   return Drawing()
       .Add(pen.Ring(1, 0.8))
       .Add(pen.Bar({0, 0}, 0, 0.76, half_width))
@@ -256,8 +257,7 @@ Drawing CrossInBullseye(const Vector2d& center, double radius, double yaw, Rando
   const Pen pen(center, radius, yaw);
   const double width = random->Uniform(0.1, 0.16);
   const double inner = random->Uniform(0.4, 0.6);
-  return WheelOf(pen, {0, 0.5 * kPi, kPi, 1.5 * kPi}, random)
-      .Add(pen.Ring(inner, inner - width));
+  return WheelOf(pen, {0, 0.5 * kPi, kPi, 1.5 * kPi}, random).Add(pen.Ring(inner, inner - width));
 }
 
 // A grating in a ring, as on a manhole.
@@ -292,7 +292,9 @@ Drawing LetterInRing(const Vector2d& center, double radius, double yaw, Random* 
     case 1:  // N
       return ink.Add(bar(-0.6, 0, 90, 1)).Add(bar(0.6, 0, 90, 1)).Add(bar(0, 0, 120, 1.1));
     case 2:  // Y
-      return ink.Add(bar(0, -0.5, 90, 0.5)).Add(bar(0.35, 0.5, 55, 0.6)).Add(bar(-0.35, 0.5, 125, 0.6));
+      return ink.Add(bar(0, -0.5, 90, 0.5))
+          .Add(bar(0.35, 0.5, 55, 0.6))
+          .Add(bar(-0.35, 0.5, 125, 0.6));
     case 3:  // F
       return ink.Add(bar(-0.4, 0, 90, 1)).Add(bar(0.1, 0.9, 0, 0.6)).Add(bar(0, 0.1, 0, 0.5));
     case 4:  // A
