@@ -12,12 +12,12 @@ empty :=
 space := $(empty) $(empty)
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 
-.PHONY: demo test bench accuracy format check asan fuzz install build deps
+.PHONY: demo test bench accuracy format check asan fuzz install command tests build configure deps
 
-demo: build  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
+demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
 	scripts/demo $(BIN) "$(DATA)" "$(CAMERA)"
 
-test: build
+test: tests
 	ctest --preset release -j $$(nproc)
 
 bench: build  ## speed
@@ -47,12 +47,20 @@ fuzz: deps  ## every fuzz target for FUZZ_SECONDS
 	cmake --build --preset asan --target fuzzers
 	scripts/fuzz build/asan/fuzz $(FUZZ_SECONDS)
 
-install: build
+install: command
 	cmake --install $(BIN) --prefix $(PREFIX)
 
-build: deps
-	cmake --preset release
+command: configure  ## the command alone
+	cmake --build --preset release --target kestrel
+
+tests: configure
+	cmake --build --preset release --target tests
+
+build: configure  ## everything: command, tests, benchmarks, tools
 	cmake --build --preset release
+
+configure: deps
+	cmake --preset release
 
 deps:
 	scripts/install-deps

@@ -296,12 +296,12 @@ LandingTally ScoreVariant(const std::vector<LandingFrameSet>& sets, const ImageV
       for (const bool top_bottom : {false, true}) {
         const LandingFrameSet mirrored = Mirrored(set, left_right, top_bottom);
         const LandingPatternDetector detector(CameraModel(mirrored.camera), {});
-        const auto scores = ScoreFrames(detector, mirrored.frames.size(), kThreads, NoHint,
-                                        [&](std::size_t i) {
-                                          LandingFrame frame = mirrored.frames[i];
-                                          frame.image = variant.apply(frame.image, i);
-                                          return frame;
-                                        });
+        const auto scores =
+            ScoreFrames(detector, mirrored.frames.size(), kThreads, NoHint, [&](std::size_t i) {
+              LandingFrame frame = mirrored.frames[i];
+              frame.image = variant.apply(frame.image, i);
+              return frame;
+            });
         for (const LandingScore& score : scores) tally.Add(score);
       }
     }

@@ -4,7 +4,7 @@ find_package(OpenCV 4.5 REQUIRED COMPONENTS aruco)
 add_executable(kestrel_accuracy accuracy.cc landing_frames.cc landing_score.cc
                                 landing_variants.cc)
 target_link_libraries(
-  kestrel_accuracy PRIVATE kestrel::landing kestrel::recording kestrel::simulation
+  kestrel_accuracy PRIVATE kestrel::landing kestrel::recording kestrel::stills
                            CLI11::CLI11 fmt::fmt opencv_imgcodecs opencv_imgproc)
 target_compile_definitions(kestrel_accuracy
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
@@ -12,7 +12,7 @@ target_compile_definitions(kestrel_accuracy
 add_executable(robustness_accuracy robustness_accuracy.cc landing_falsehoods.cc landing_frames.cc
                                    landing_score.cc)
 target_link_libraries(robustness_accuracy
-                      PRIVATE kestrel::landing kestrel::recording kestrel::simulation CLI11::CLI11
+                      PRIVATE kestrel::landing kestrel::recording kestrel::stills CLI11::CLI11
                               fmt::fmt)
 target_compile_definitions(robustness_accuracy
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
@@ -20,7 +20,7 @@ target_compile_definitions(robustness_accuracy
 add_executable(landing_benchmark landing_benchmark.cc landing_frames.cc landing_score.cc)
 target_link_libraries(
   landing_benchmark
-  PRIVATE kestrel::landing kestrel::recording kestrel::simulation CLI11::CLI11 apriltag::apriltag
+  PRIVATE kestrel::landing kestrel::recording kestrel::stills CLI11::CLI11 apriltag::apriltag
           benchmark::benchmark fmt::fmt opencv_aruco opencv_imgproc)
 target_compile_definitions(landing_benchmark
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")

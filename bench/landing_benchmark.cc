@@ -22,6 +22,7 @@
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/random.h"
+#include "kestrel/camera/paper_camera.h"
 #include "kestrel/landing/landing_pattern_detector.h"
 #include "landing_frames.h"
 #include "landing_score.h"

@@ -6,7 +6,7 @@
 
 #include "kestrel/camera/camera_model.h"
 #include "kestrel/landing/landing_pattern_detector.h"
-#include "kestrel/simulation/landing_stills.h"
+#include "kestrel/stills/landing_stills.h"
 #include "landing_frames.h"
 
 namespace kestrel {

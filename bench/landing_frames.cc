@@ -13,6 +13,7 @@
 #include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
 #include "kestrel/camera/calibration_reader.h"
+#include "kestrel/camera/paper_camera.h"
 #include "kestrel/recording/csv_table.h"
 #include "kestrel/recording/euroc_recording.h"
 #include "kestrel/recording/image_file.h"
@@ -26,8 +27,13 @@ using Eigen::Vector3d;
 
 // The camera of the sequences has no published calibration; focal length and principal point were
 // measured on its frames.
-const CameraIntrinsics kSequenceCamera{
-    .width_px = 640, .height_px = 360, .fx_px = 370, .fy_px = 370, .cx_px = 319.5, .cy_px = 179.5};
+const CameraIntrinsics kSequenceCamera{.width_px = 640,
+                                       .height_px = 360,
+                                       .fx_px = 370,
+                                       .fy_px = 370,
+                                       .cx_px = 319.5,
+                                       .cy_px = 179.5,
+                                       .distortion = {}};
 
 PatternTruth TruthOfQuality(std::string_view quality) {
   if (quality == "good" || quality == "fair" || quality == "hand") return PatternTruth::kWhole;

@@ -12,7 +12,7 @@
 #include "kestrel/camera/camera_model.h"
 #include "kestrel/geometry/ellipse.h"
 #include "kestrel/geometry/rigid_transform.h"
-#include "kestrel/simulation/landing_stills.h"
+#include "kestrel/stills/landing_stills.h"
 
 namespace kestrel {
 

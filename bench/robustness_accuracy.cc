@@ -83,9 +83,9 @@ std::string FoundCells(const LandingTally& t) {
 
 std::string StillCells(const LandingTally& t, const LandingTally& right) {
   return fmt::format("{} | {:.3f} | {:.2f} | {:.2f} | {:.2f} | {:.1f}", FoundCells(t),
-                     static_cast<double>(t.found) / right.found,
-                     Quantile(t.center_errors_px, 0.5), Quantile(t.center_errors_px, 0.95),
-                     100 * Quantile(t.position_errors, 0.5), Quantile(t.nees, 0.5));
+                     static_cast<double>(t.found) / right.found, Quantile(t.center_errors_px, 0.5),
+                     Quantile(t.center_errors_px, 0.95), 100 * Quantile(t.position_errors, 0.5),
+                     Quantile(t.nees, 0.5));
 }
 
 constexpr const char* kStillHeader =

@@ -1,16 +1,21 @@
-# kestrel_room(NAME SOURCES ... [TESTS ...] [PUBLIC ...] [PRIVATE ...] [TEST_LINKS ...])
+# kestrel_room(NAME SOURCES ... [ALONE ...] [TESTS ...] [PUBLIC ...] [PRIVATE ...] [TEST_LINKS ...])
 #
 # One library per room of src/kestrel, `kestrel_<name>` (alias `kestrel::<name>`). PUBLIC names the
 # rooms and libraries that its headers use: these links are the arrows between the rooms, and
-# scripts/check-layers holds the includes to them. TESTS become one test binary per room.
+# scripts/check-layers holds the includes to them. ALONE are sources that are not joined with others
+# (unity build): those that Highway compiles for one instruction set after the other, and those that
+# have names in common with another source. TESTS become one test binary per room.
 function(kestrel_room name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;TESTS;PUBLIC;PRIVATE;TEST_LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;ALONE;TESTS;PUBLIC;PRIVATE;TEST_LINKS" ${ARGN})
   set(target kestrel_${name})
   if(ARG_SOURCES)
-    add_library(${target} STATIC ${ARG_SOURCES})
+    add_library(${target} STATIC ${ARG_SOURCES} ${ARG_ALONE})
+    set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     set(scope PUBLIC)
     target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
     target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Werror)
+    # Eigen's blocked product is for larger matrices than a state's, and takes seconds to compile.
+    target_compile_definitions(${target} PRIVATE EIGEN_CACHEFRIENDLY_PRODUCT_THRESHOLD=16)
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)
@@ -24,12 +29,19 @@ function(kestrel_room name)
   set_property(GLOBAL APPEND PROPERTY KESTREL_ROOMS ${target})
   if(KESTREL_BUILD_TESTS AND ARG_TESTS)
     add_executable(${target}_test ${ARG_TESTS})
-    target_link_libraries(
-      ${target}_test PRIVATE ${target} ${ARG_TEST_LINKS} GTest::gmock GTest::gtest_main)
-    target_compile_options(${target}_test PRIVATE -Wall -Wextra -Werror)
-    target_compile_definitions(
-      ${target}_test PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
-    gtest_discover_tests(${target}_test TEST_PREFIX ${name}/ DISCOVERY_MODE PRE_TEST
-                         PROPERTIES TIMEOUT 600)
+    target_link_libraries(${target}_test PRIVATE ${target} ${ARG_TEST_LINKS})
+    kestrel_test(${target}_test ${name})
   endif()
+endfunction()
+
+# kestrel_test(TARGET PREFIX): TARGET is a binary of tests, which ctest knows as PREFIX/<name>. The
+# target `tests` builds all of them.
+function(kestrel_test target prefix)
+  target_link_libraries(${target} PRIVATE GTest::gmock GTest::gtest_main)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Werror)
+  target_compile_definitions(${target}
+                             PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
+  gtest_discover_tests(${target} TEST_PREFIX ${prefix}/ DISCOVERY_MODE PRE_TEST
+                       PROPERTIES TIMEOUT 600)
+  add_dependencies(tests ${target})
 endfunction()

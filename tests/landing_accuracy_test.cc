@@ -37,9 +37,9 @@ TEST_P(LandingStillsTest, PatternIsFoundWhereItIs) {
   options.max_altitude_m = bin.max_m;
   const LandingStillMaker maker(options);
   const LandingPatternDetector detector(maker.camera(), {});
-  const LandingTally tally(ScoreFrames(
-      detector, kStills, kThreads, NoHint,
-      [&](std::size_t i) { return FrameFromStill(maker, bin.Name(), 100 * GetParam() + i); }));
+  const LandingTally tally(ScoreFrames(detector, kStills, kThreads, NoHint, [&](std::size_t i) {
+    return FrameFromStill(maker, bin.Name(), 100 * GetParam() + i);
+  }));
   EXPECT_GE(tally.FoundShare(), kMinFoundShare[GetParam()]);
   EXPECT_EQ(tally.wrong, 0);
   EXPECT_LE(Quantile(tally.center_errors_px, 0.5), 0.2);
@@ -92,8 +92,7 @@ TEST_P(LandingHardTest, PatternIsFoundWhereItIs) {
   EXPECT_EQ(tally.false_detections, 0);
   EXPECT_LE(Quantile(tally.position_errors, 0.5), 0.01);
 }
-INSTANTIATE_TEST_SUITE_P(Hints, LandingHardTest,
-                         testing::Values(NoHint, AttitudeHint),
+INSTANTIATE_TEST_SUITE_P(Hints, LandingHardTest, testing::Values(NoHint, AttitudeHint),
                          [](const auto& info) {
                            return info.param == NoHint ? "None" : "Attitude";
                          });

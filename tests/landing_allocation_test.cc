@@ -7,8 +7,9 @@
 #include <opencv2/core.hpp>
 
 #include "count_allocations.h"
+#include "kestrel/camera/paper_camera.h"
 #include "kestrel/landing/landing_pattern_detector.h"
-#include "kestrel/simulation/landing_stills.h"
+#include "kestrel/stills/landing_stills.h"
 #include "kestrel/tracking/target_tracker.h"
 
 namespace kestrel {

@@ -22,10 +22,10 @@ std::string ErrorOf(const Action& action) {
   return "";
 }
 
-YamlReader Read(const std::string& text) { return YamlReader(text, "file.yaml"); }
+YamlReader ReaderOf(const std::string& text) { return YamlReader(text, "file.yaml"); }
 
 TEST(YamlReader, ReadsWhatIsThere) {
-  const YamlReader root = Read("name: red\nsize: 0.2\ncount: 3\non: true\nmean: [1, 2.5]\n");
+  const YamlReader root = ReaderOf("name: red\nsize: 0.2\ncount: 3\non: true\nmean: [1, 2.5]\n");
   EXPECT_EQ(root["name"].Text(), "red");
   EXPECT_EQ(root["size"].Number(), 0.2);
   EXPECT_EQ(root["count"].Integer(), 3);
@@ -36,21 +36,21 @@ TEST(YamlReader, ReadsWhatIsThere) {
   EXPECT_FALSE(root.Has("other"));
 }
 
-TEST(YamlReader, ReadsJson) { EXPECT_EQ(Read(R"({"a": {"b": 4}})")["a"]["b"].Integer(), 4); }
+TEST(YamlReader, ReadsJson) { EXPECT_EQ(ReaderOf(R"({"a": {"b": 4}})")["a"]["b"].Integer(), 4); }
 
 TEST(YamlReader, ErrorsNameFileLineAndKey) {
-  const YamlReader root = Read("a: 1\nb:\n  size: big\n");
+  const YamlReader root = ReaderOf("a: 1\nb:\n  size: big\n");
   EXPECT_THAT(ErrorOf([&] { root["b"]["size"].Number(); }),
               AllOf(HasSubstr("file.yaml:3:"), HasSubstr("size"), HasSubstr("a finite number")));
   EXPECT_THAT(ErrorOf([&] { root["c"]; }), HasSubstr("'c' is missing"));
-  EXPECT_THAT(ErrorOf([] { Read("a: [1, 2"); }), HasSubstr("file.yaml:"));
+  EXPECT_THAT(ErrorOf([] { ReaderOf("a: [1, 2"); }), HasSubstr("file.yaml:"));
 }
 
 TEST(YamlReader, WrongTypesAreRefused) {
-  const YamlReader root = Read("list: [1, x]\nnumber: 1.5\nhuge: .inf\n");
+  const YamlReader root = ReaderOf("list: [1, x]\nnumber: 1.5\nhuge: .inf\n");
   EXPECT_THAT(ErrorOf([&] { root["list"].Text(); }), HasSubstr("a word"));
   EXPECT_THAT(ErrorOf([&] { root["list"].Numbers(2); }), HasSubstr("a finite number"));
-  EXPECT_THAT(ErrorOf([&] { Read("[1, 2]").Numbers(3); }), HasSubstr("a list of 3 numbers"));
+  EXPECT_THAT(ErrorOf([&] { ReaderOf("[1, 2]").Numbers(3); }), HasSubstr("a list of 3 numbers"));
   EXPECT_THAT(ErrorOf([&] { root["number"].Integer(); }), HasSubstr("a whole number"));
   EXPECT_THAT(ErrorOf([&] { root["number"].Bool(); }), HasSubstr("true or false"));
   EXPECT_THAT(ErrorOf([&] { root["number"].Items(); }), HasSubstr("a list"));
@@ -58,10 +58,10 @@ TEST(YamlReader, WrongTypesAreRefused) {
 }
 
 TEST(YamlReader, KeysAreThoseThatAreKnownAndOnce) {
-  EXPECT_EQ(ErrorOf([] { Read("a: 1\nb: 2\n").RequireKeys({"a", "b", "c"}); }), "");
-  EXPECT_THAT(ErrorOf([] { Read("a: 1\nz: 2\n").RequireKeys({"a"}); }), HasSubstr("'z'"));
-  EXPECT_THAT(ErrorOf([] { Read("a: 1\na: 2\n").RequireKeys({"a"}); }), HasSubstr("twice"));
-  EXPECT_THAT(ErrorOf([] { Read("[1]").RequireKeys({"a"}); }), HasSubstr("name: value"));
+  EXPECT_EQ(ErrorOf([] { ReaderOf("a: 1\nb: 2\n").RequireKeys({"a", "b", "c"}); }), "");
+  EXPECT_THAT(ErrorOf([] { ReaderOf("a: 1\nz: 2\n").RequireKeys({"a"}); }), HasSubstr("'z'"));
+  EXPECT_THAT(ErrorOf([] { ReaderOf("a: 1\na: 2\n").RequireKeys({"a"}); }), HasSubstr("twice"));
+  EXPECT_THAT(ErrorOf([] { ReaderOf("[1]").RequireKeys({"a"}); }), HasSubstr("name: value"));
 }
 
 }  // namespace

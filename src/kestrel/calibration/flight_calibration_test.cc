@@ -2,13 +2,13 @@
 #include "kestrel/calibration/flight_calibration.h"
 
 #include <cmath>
-#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/random.h"
+#include "kestrel/geometry/angles.h"
 
 namespace kestrel {
 namespace {
@@ -16,7 +16,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180;
 
 Eigen::Quaterniond Turn(double angle, const Eigen::Vector3d& axis) {

@@ -322,11 +322,11 @@ std::vector<std::string> CameraIntrinsics::Validate() const {
   return violations;
 }
 
-void CheckImageSize(const CameraModel& camera, int width_px, int height_px,
+void CheckImageSize(const CameraIntrinsics& camera, int width_px, int height_px,
                     const std::string& image) {
-  if (width_px == camera.width_px() && height_px == camera.height_px()) return;
+  if (width_px == camera.width_px && height_px == camera.height_px) return;
   throw InputError(fmt::format("{}: the image is {}x{} px, expected {}x{} px as in the calibration",
-                               image, width_px, height_px, camera.width_px(), camera.height_px()));
+                               image, width_px, height_px, camera.width_px, camera.height_px));
 }
 
 CameraModel::CameraModel(const CameraIntrinsics& intrinsics) : intrinsics_(intrinsics) {

@@ -37,11 +37,9 @@ struct CameraIntrinsics {
   std::vector<std::string> Validate() const;
 };
 
-class CameraModel;
-
 // Throws InputError when an image of another size than the calibration's is given; 'image' is its
 // name in the message.
-void CheckImageSize(const CameraModel& camera, int width_px, int height_px,
+void CheckImageSize(const CameraIntrinsics& camera, int width_px, int height_px,
                     const std::string& image);
 
 // Projects points in the camera frame (x right, y down, z along the optical axis) to pixels and

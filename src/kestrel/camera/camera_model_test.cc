@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 
 #include <Eigen/SVD>
@@ -13,6 +12,7 @@
 
 #include "kestrel/base/error.h"
 #include "kestrel/camera/test_cameras.h"
+#include "kestrel/geometry/angles.h"
 
 namespace kestrel {
 namespace {
@@ -20,9 +20,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180;
 
 class EveryCamera : public ::testing::TestWithParam<TestCamera> {
  protected:
@@ -191,7 +188,7 @@ TEST(CameraModel, ImageIncludesTheWholeOfItsBorderPixels) {
 }
 
 TEST(CameraModel, ImageOfAnotherSizeIsRefused) {
-  const CameraModel camera(PaperCamera());
+  const CameraIntrinsics camera = PaperCamera();
   EXPECT_NO_THROW(CheckImageSize(camera, 752, 480, "a.png"));
   try {
     CheckImageSize(camera, 640, 480, "a.png");

@@ -14,16 +14,16 @@ namespace kestrel {
 namespace {
 
 constexpr int kSaturatedGray = 254;
-constexpr int kSamples = 5000;  // enough for a share of a hundredth
+constexpr int kMeterSamples = 5000;  // enough for a share of a hundredth
 
 // The gray value before the camera's curve.
 double BeforeGamma(double gray, double gamma) { return 255 * std::pow(gray / 255, 1 / gamma); }
 
-// Counts the gray values of about kSamples pixels, all over the image. Returns how many.
+// Counts the gray values of about kMeterSamples pixels, all over the image. Returns how many.
 int CountGrays(const cv::Mat& image, std::array<int, 256>* histogram) {
   histogram->fill(0);
   const int step =
-      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(image.total()) / kSamples)));
+      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(image.total()) / kMeterSamples)));
   int samples = 0;
   for (int v = step / 2; v < image.rows; v += step) {
     const auto* row = image.ptr<std::uint8_t>(v);

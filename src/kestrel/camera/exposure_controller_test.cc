@@ -19,9 +19,9 @@ constexpr double kFullLight_s = 0.001;  // exposure at which white in full light
 
 // A camera before a scene of all brightnesses; 'delay' images after a new exposure still have the
 // old one.
-class TestCamera {
+class DelayedCamera {
  public:
-  TestCamera(double exposure_s, int delay, double gamma = 1)
+  DelayedCamera(double exposure_s, int delay, double gamma = 1)
       : exposures_s_(delay, exposure_s), gamma_(gamma) {}
 
   void SetLight(double light) { light_ = light; }
@@ -52,7 +52,7 @@ int Brightest(const cv::Mat& image) {
 }
 
 // Images until the brightest part is where it should be and stays there for 30 more; 1000 if never.
-int FramesToSettle(ExposureController* controller, TestCamera* camera) {
+int FramesToSettle(ExposureController* controller, DelayedCamera* camera) {
   constexpr int kLongest = 60;
   constexpr int kStays = 30;
   int settled = 0;
@@ -68,7 +68,7 @@ int FramesToSettle(ExposureController* controller, TestCamera* camera) {
 
 TEST(ExposureControllerTest, LeavesAGoodExposure) {
   ExposureController controller({}, kFullLight_s);
-  TestCamera camera(kFullLight_s, 2);
+  DelayedCamera camera(kFullLight_s, 2);
   EXPECT_EQ(FramesToSettle(&controller, &camera), 0);
   EXPECT_EQ(controller.exposure_s(), kFullLight_s);
 }
@@ -77,7 +77,7 @@ TEST(ExposureControllerTest, FollowsStepsOfLightWithoutOscillating) {
   for (const double gamma : {1.0, 0.45}) {
     for (const int delay : {0, 1, 2}) {
       ExposureController controller({.gamma = gamma}, kFullLight_s);
-      TestCamera camera(kFullLight_s, delay, gamma);
+      DelayedCamera camera(kFullLight_s, delay, gamma);
       for (const double light : {1.0, 1.5, 50.0, 1.0, 10.0, 0.2, 1.0}) {
         camera.SetLight(light);
         EXPECT_LE(FramesToSettle(&controller, &camera), 15)
@@ -89,11 +89,11 @@ TEST(ExposureControllerTest, FollowsStepsOfLightWithoutOscillating) {
 
 TEST(ExposureControllerTest, RecoversFromSaturatedAndBlackImages) {
   ExposureController controller({}, 0.01);
-  TestCamera camera(0.01, 2);
+  DelayedCamera camera(0.01, 2);
   EXPECT_EQ(Brightest(camera.Take(0.01)), 255);
   EXPECT_LE(FramesToSettle(&controller, &camera), 12);
   controller = ExposureController({}, 2e-5);
-  camera = TestCamera(2e-5, 2);
+  camera = DelayedCamera(2e-5, 2);
   EXPECT_LE(Brightest(camera.Take(2e-5)), 8);
   EXPECT_LE(FramesToSettle(&controller, &camera), 12);
 }

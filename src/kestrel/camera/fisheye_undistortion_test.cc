@@ -11,8 +11,6 @@
 namespace kestrel {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 Eigen::Vector2d PixelAt(const CameraModel& camera, double angle, double azimuth) {
   Eigen::Vector2d pixel;
   camera.Project(RayAt(angle, azimuth), &pixel);

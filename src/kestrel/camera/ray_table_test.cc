@@ -15,8 +15,6 @@
 namespace kestrel {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 class EveryRayTable : public ::testing::TestWithParam<TestCamera> {
  protected:
   const CameraModel camera_{GetParam().intrinsics};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -9,8 +10,11 @@
 #include <Eigen/Core>
 
 #include "kestrel/camera/camera_model.h"
+#include "kestrel/camera/paper_camera.h"
 
 namespace kestrel {
+
+inline constexpr double kDegree = std::numbers::pi / 180;
 
 struct TestCamera {
   std::string name;
@@ -18,18 +22,6 @@ struct TestCamera {
 };
 
 inline void PrintTo(const TestCamera& camera, std::ostream* out) { *out << camera.name; }
-
-// The paper's lens (DSL215 on 752x480).
-inline CameraIntrinsics PaperCamera() {
-  return {752,
-          480,
-          261,
-          261,
-          376,
-          240,
-          DistortionModel::kEquidistant,
-          {-0.0448, 0.0686053, -0.072277, 0.027011955}};
-}
 
 // EuRoC MAV cam0.
 inline CameraIntrinsics EurocCamera() {

@@ -16,9 +16,8 @@
 #include "kestrel/calibration/flight_calibration.h"
 #include "kestrel/camera/calibration_reader.h"
 #include "kestrel/cli/calibrate_colors_command.h"
-#include "kestrel/cli/interrupt.h"
+#include "kestrel/cli/frame_loop.h"
 #include "kestrel/cli/option_arguments.h"
-#include "kestrel/cli/progress_bar.h"
 #include "kestrel/landing/landing_pattern_detector.h"
 #include "kestrel/pipeline/measurement_noise.h"
 #include "kestrel/recording/euroc_text.h"
@@ -57,19 +56,16 @@ std::vector<TargetSighting> FindSightings(FrameSource* source, const CameraCalib
                                           const LandingPipelineOptions& options) {
   const LandingPatternDetector detector(CameraModel(calibration.intrinsics), options.detector);
   LandingWorkspace workspace;
-  ProgressBar progress(source->frame_count());
   std::vector<TargetSighting> sightings;
-  std::size_t frames = 0;
-  for (Frame frame; !WasInterrupted() && source->Next(&frame); progress.Show(++frames)) {
-    CheckImageSize(detector.camera(), frame.image.cols, frame.image.rows, frame.name);
+  ForEachFrame(source, calibration.intrinsics, [&](const Frame& frame) {
     const LandingReport report = detector.Detect(frame.image, {}, workspace);
-    if (!report.detection) continue;
+    if (!report.detection) return;
     const Eigen::Vector3d& center = report.detection->camera_from_pattern.translation;
     const Eigen::Matrix3d covariance =
         CovarianceInWorld(report.detection->covariance.topLeftCorner<3, 3>(), center,
                           Eigen::Quaterniond::Identity(), options.noise);
     sightings.push_back({frame.time, center, std::sqrt(covariance.trace() / 3)});
-  }
+  });
   return sightings;
 }
 
@@ -121,7 +117,6 @@ void RunCalibrate(const CalibrateArguments& arguments, FlightCalibrationOptions 
   if (poses.empty()) {
     throw InputError(arguments.recording + ": has no poses of the UAV, expected nav0/data.csv");
   }
-  CatchInterrupts();
   const auto sightings = FindSightings(source.get(), calibration, landing);
   const MountAndClock given{*calibration.body_from_camera,
                             ToSeconds(calibration.clock_offset.value_or(Duration::zero()))};

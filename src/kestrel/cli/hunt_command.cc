@@ -1,30 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/cli/hunt_command.h"
 
-#include <fstream>
-#include <iostream>
+#include <array>
+#include <cstddef>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "kestrel/base/error.h"
-#include "kestrel/base/write_file.h"
-#include "kestrel/cli/interrupt.h"
-#include "kestrel/cli/progress_bar.h"
+#include "kestrel/cli/hunt_sink.h"
+#include "kestrel/cli/pipeline_run.h"
 #include "kestrel/cli/source_arguments.h"
-#include "kestrel/mapping/map_file.h"
-#include "kestrel/pipeline/hunt_pipeline.h"
-#include "kestrel/pipeline/pose_feeder.h"
-#include "kestrel/recording/annotated_writer.h"
-#include "kestrel/recording/map_inset.h"
-#include "kestrel/recording/object_csv.h"
-#include "kestrel/recording/object_map_csv.h"
-#include "kestrel/recording/object_overlay.h"
-#include "kestrel/recording/open_source.h"
-#include "kestrel/recording/output_folder.h"
 
 namespace kestrel {
 namespace {
@@ -36,96 +23,54 @@ struct HuntArguments {
   std::vector<double> origin;  // latitude, longitude, degrees; or empty
 };
 
-// Where the results go: files below --output, or the detections to stdout.
-class HuntSink {
+class HuntRun : public PipelineRun {
  public:
-  HuntSink(const HuntArguments& hunt, double rate_hz) : origin_(hunt.origin) {
-    const SourceArguments& arguments = hunt.source;
-    if (!arguments.output.empty()) {
-      folder_.emplace(arguments.output, arguments.force);
-      file_ = folder_->OpenText(kDetections);
-    }
-    if (arguments.annotate == "images") annotated_ = MakeImageWriter(*folder_);
-    if (arguments.annotate == "video") annotated_ = MakeVideoWriter(*folder_, rate_hz);
-    WriteAtOnce(ObjectCsvHeader(), kDetections, &csv());
+  HuntRun(const OpenedSource& opened, const ObjectModel& model, const ColorGrid& grid,
+          const HuntPipelineOptions& options, const HuntArguments& arguments)
+      : pipeline_(opened.calibration, model, grid, options),
+        sink_(arguments.source.Output(opened), arguments.origin),
+        has_map_(opened.has_world() && !options.still) {
+    pipeline_.SetAltitude(arguments.source.altitude_m);
   }
 
-  void Write(const Frame& frame, const HuntObservation& observation, const HuntPipeline& pipeline) {
-    const ObjectModel& model = pipeline.detector().model();
-    WriteAtOnce(ObjectCsvRows(frame.name, observation, model), kDetections, &csv());
-    if (!annotated_) return;
-    cv::Mat drawn = DrawObjectOverlay(frame.image, model, observation);
-    if (const auto& pose = observation.world_from_camera) {
-      DrawMapInset(pipeline.map().Confirmed(), model, pose->translation.head<2>(), &drawn);
-    }
-    annotated_->Write(frame.name, drawn);
+  void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
+
+  // The last row of a rolling shutter.
+  Duration after_frame() const override {
+    return DurationFromSeconds(pipeline_.options().readout_s / 2);
   }
 
-  // The map goes to files only.
-  void WriteMap(const ObjectMap& map, const ObjectModel& model) const {
-    if (!folder_) return;
-    const std::vector<MappedObject> objects = map.Confirmed();
-    WriteFile(folder_->NewFile("object_map.csv").string(), ObjectMapCsv(objects, model));
-    WriteFile(folder_->NewFile("object_map.json").string(), PrintObjects(objects));
-    if (origin_.empty()) return;
-    WriteFile(folder_->NewFile("object_map.geojson").string(),
-              PrintGeoJson(objects, model, {origin_[0], origin_[1]}));
-  }
-
- private:
-  static constexpr char kDetections[] = "object_detections.csv";
-
-  std::ostream& csv() { return file_.is_open() ? file_ : std::cout; }
-
-  std::vector<double> origin_;
-  std::optional<OutputFolder> folder_;
-  std::ofstream file_;
-  std::unique_ptr<AnnotatedWriter> annotated_;
-};
-
-class Summary {
- public:
-  void Add(const HuntObservation& observation) {
-    times_.Add(observation.detect_time);
+  Duration Process(const Frame& frame) override {
+    const HuntObservation& observation = pipeline_.Process(frame.image, frame.time);
+    sink_.Write(frame, observation, pipeline_);
     detections_ += observation.report.detections.size();
     for (std::size_t i = 0; i < kObjectStageCount; ++i) passed_[i] += observation.report.passed[i];
+    return observation.detect_time;
   }
-  std::size_t frames() const { return times_.frames(); }
 
-  // The last line is the paper's Table 3: segments that are left after each step.
-  void Print() const {
-    fmt::print(stderr, "{} frames, {} detections{}\nsegments", frames(), detections_,
-               times_.Summary());
+  void Finish() override {
+    if (has_map_) sink_.WriteMap(pipeline_);
+  }
+
+  std::string Found() const override { return fmt::format("{} detections", detections_); }
+
+  // The paper's Table 3: segments that are left after each step.
+  std::string Remarks() const override {
+    std::string remarks = "segments";
     for (std::size_t i = 0; i < kObjectStageCount; ++i) {
-      fmt::print(stderr, "{} {} {}", i == 0 ? "" : ",", passed_[i],
-                 ToString(static_cast<ObjectStage>(i)));
+      remarks += fmt::format("{} {} {}", i == 0 ? "" : ",", passed_[i],
+                             ToString(static_cast<ObjectStage>(i)));
     }
-    fmt::print(stderr, "\n");
+    return remarks + "\n";
   }
 
  private:
-  DetectTimes times_;
+  HuntPipeline pipeline_;
+  HuntSink sink_;
+  bool has_map_;
   std::size_t detections_ = 0;
   std::array<std::size_t, kObjectStageCount> passed_{};
 };
-
-void ProcessFrames(FrameSource* source, const CameraCalibration& calibration,
-                   HuntPipeline* pipeline, HuntSink* sink, Summary* summary) {
-  // The last row of a rolling shutter is later than the image.
-  const Duration lead = calibration.clock_offset.value_or(Duration::zero()) +
-                        DurationFromSeconds(pipeline->options().readout_s / 2);
-  PoseFeeder poses(source->poses());
-  ProgressBar progress(source->frame_count());
-  Frame frame;
-  while (!WasInterrupted() && source->Next(&frame)) {
-    RequireSize(frame, calibration.intrinsics);
-    poses.FeedUntil(frame.time + lead, pipeline);
-    const HuntObservation& observation = pipeline->Process(frame.image, frame.time);
-    sink->Write(frame, observation, *pipeline);
-    summary->Add(observation);
-    progress.Show(summary->frames());
-  }
-}
 
 void RunHunt(const HuntArguments& arguments) {
   HuntPipelineOptions options = arguments.source.options.Read().hunt;
@@ -135,24 +80,9 @@ void RunHunt(const HuntArguments& arguments) {
   const ColorGrid grid = arguments.grid.empty()
                              ? ColorGrid(model.colors)
                              : ColorGrid::Load(arguments.grid, model.colors.colors.size());
-  const std::unique_ptr<FrameSource> source =
-      OpenSource(arguments.source.sources, PixelFormat::kBgr);
-  const CameraCalibration calibration = arguments.source.FindCalibration(*source);
-  HuntPipeline pipeline(calibration, model, grid, options);
-  pipeline.SetAltitude(arguments.source.altitude_m);
-  HuntSink sink(arguments, source->rate_hz());
-  Summary summary;
-  CatchInterrupts();
-  try {
-    ProcessFrames(source.get(), calibration, &pipeline, &sink, &summary);
-  } catch (const InputError&) {
-    if (summary.frames() > 0) summary.Print();  // these stay
-    throw;
-  }
-  if (!options.still && !source->poses().empty() && calibration.body_from_camera) {
-    sink.WriteMap(pipeline.map(), model);
-  }
-  summary.Print();
+  const OpenedSource opened = arguments.source.Open(PixelFormat::kBgr);
+  HuntRun run(opened, model, grid, options, arguments);
+  RunPipeline(opened, &run);
 }
 
 }  // namespace

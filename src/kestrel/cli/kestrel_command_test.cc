@@ -184,8 +184,8 @@ TEST_F(KestrelCommandTest, SourceAtFaultIsNamed) {
   TestFolder::CutOff(image, 0.5);
   for (const auto& [source, words] :
        {std::pair(deep, "deep.png: is a 16-bit image, expected 8 bits"),
-        std::pair(tiny, "has 1 x 1 px, but the calibration is for 640 x 480"),
-        std::pair(wide, "has 20000 x 2 px, but the calibration is for 640 x 480"),
+        std::pair(tiny, "is 1x1 px, expected 640x480 px as in the calibration"),
+        std::pair(wide, "is 20000x2 px, expected 640x480 px as in the calibration"),
         std::pair(image, "a.png: the image file is cut off")}) {
     const Outcome outcome = Run(fmt::format("land {}{}", source, camera));
     EXPECT_EQ(outcome.status, 1);

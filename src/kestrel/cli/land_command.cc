@@ -3,20 +3,14 @@
 
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "kestrel/base/error.h"
-#include "kestrel/cli/interrupt.h"
 #include "kestrel/cli/landing_sink.h"
-#include "kestrel/cli/progress_bar.h"
+#include "kestrel/cli/pipeline_run.h"
 #include "kestrel/cli/source_arguments.h"
-#include "kestrel/pipeline/landing_pipeline.h"
-#include "kestrel/pipeline/pose_feeder.h"
-#include "kestrel/recording/open_source.h"
 
 namespace kestrel {
 namespace {
@@ -26,79 +20,56 @@ struct LandArguments {
   std::vector<double> predict_s;
 };
 
-class Summary {
+class LandRun : public PipelineRun {
  public:
-  void Add(const LandingObservation& observation) {
-    times_.Add(observation.detect_time);
+  LandRun(const OpenedSource& opened, const LandingPipelineOptions& options,
+          const LandArguments& arguments, bool has_track)
+      : pipeline_(opened.calibration, options),
+        sink_(arguments.source.Output(opened), has_track, arguments.predict_s) {
+    pipeline_.SetAltitude(arguments.source.altitude_m);
+  }
+
+  void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
+
+  Duration Process(const Frame& frame) override {
+    const LandingObservation observation = pipeline_.Process(frame.image, frame.time);
+    sink_.Write(frame, observation, pipeline_);
     ++poses_[observation.pose];
     found_ += observation.report.detection.has_value();
+    return observation.detect_time;
   }
-  std::size_t frames() const { return times_.frames(); }
 
-  void Print() const {
-    fmt::print(stderr, "{} frames, pattern found in {}{}\n", frames(), found_, times_.Summary());
-    PrintMissingPoses();
+  std::string Found() const override { return fmt::format("pattern found in {}", found_); }
+
+  // Only where there are poses for some of the frames; a source that has none is nothing unusual.
+  std::string Remarks() const override {
+    std::string remarks;
+    for (const auto& [pose, count] : poses_) {
+      if (pose == PoseLookup::kFound || pose == PoseLookup::kEmpty) continue;
+      remarks += fmt::format("{} frames without a pose of the UAV: {}\n", count, ToString(pose));
+    }
+    return remarks;
   }
 
  private:
-  // Only where there are poses for some of the frames; a source that has none is nothing unusual.
-  void PrintMissingPoses() const {
-    for (const auto& [pose, count] : poses_) {
-      if (pose == PoseLookup::kFound || pose == PoseLookup::kEmpty) continue;
-      fmt::print(stderr, "{} frames without a pose of the UAV: {}\n", count, ToString(pose));
-    }
-  }
-
-  DetectTimes times_;
+  LandingPipeline pipeline_;
+  LandingSink sink_;
   std::map<PoseLookup, std::size_t> poses_;
   std::size_t found_ = 0;
 };
 
-void ProcessFrames(FrameSource* source, const CameraCalibration& calibration,
-                   LandingPipeline* pipeline, LandingSink* sink, Summary* summary) {
-  const Duration clock_offset = calibration.clock_offset.value_or(Duration::zero());
-  PoseFeeder poses(source->poses());
-  ProgressBar progress(source->frame_count());
-  Frame frame;
-  while (!WasInterrupted() && source->Next(&frame)) {
-    RequireSize(frame, calibration.intrinsics);
-    poses.FeedUntil(frame.time + clock_offset, pipeline);
-    const LandingObservation observation = pipeline->Process(frame.image, frame.time);
-    sink->Write(frame, observation, *pipeline);
-    summary->Add(observation);
-    progress.Show(summary->frames());
-  }
-}
-
 void RunLand(const LandArguments& arguments) {
   LandingPipelineOptions options = arguments.source.options.Read().landing;
   if (arguments.source.still) options.still = true;
-  const std::unique_ptr<FrameSource> source = OpenSource(arguments.source.sources);
-  const CameraCalibration calibration = arguments.source.FindCalibration(*source);
-  const bool has_poses = !source->poses().empty();
-  LandingPipeline pipeline(calibration, options);
-  pipeline.SetAltitude(arguments.source.altitude_m);
-  const bool has_track = has_poses && calibration.body_from_camera && !options.still;
+  const OpenedSource opened = arguments.source.Open(PixelFormat::kGray);
+  const bool has_track = opened.has_world() && !options.still;
   if (!arguments.predict_s.empty() && !has_track) {
     fmt::print(stderr,
                "no prediction: it needs a source with poses, a camera with its mount (T_BS) and no "
                "--still\n");
   }
-  LandingSink sink({.folder = arguments.source.output,
-                    .force = arguments.source.force,
-                    .annotate = arguments.source.annotate,
-                    .rate_hz = source->rate_hz(),
-                    .has_track = has_track,
-                    .predict_s = arguments.predict_s});
-  Summary summary;
-  CatchInterrupts();
-  try {
-    ProcessFrames(source.get(), calibration, &pipeline, &sink, &summary);
-  } catch (const InputError&) {
-    if (summary.frames() > 0) summary.Print();  // these stay
-    throw;
-  }
-  summary.Print();
+  LandRun run(opened, options, arguments, has_track);
+  RunPipeline(opened, &run);
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/cli/landing_sink.h"
 
-#include <iostream>
-
 #include "kestrel/recording/landing_csv.h"
 #include "kestrel/recording/landing_overlay.h"
 #include "kestrel/recording/track_csv.h"
@@ -10,7 +8,6 @@
 namespace kestrel {
 namespace {
 
-constexpr char kDetections[] = "landing_detections.csv";
 constexpr char kTrack[] = "landing_track.csv";
 constexpr char kPrediction[] = "landing_prediction.csv";
 
@@ -37,27 +34,20 @@ void TrackSink::Write(const LandingObservation& observation, const TargetTracker
   }
 }
 
-LandingSink::LandingSink(const LandingSinkOptions& options) {
-  if (!options.folder.empty()) {
-    folder_.emplace(options.folder, options.force);
-    file_ = folder_->OpenText(kDetections);
-    if (options.has_track) track_.emplace(*folder_, options.predict_s);
-  }
-  if (options.annotate == "images") annotated_ = MakeImageWriter(*folder_);
-  if (options.annotate == "video") annotated_ = MakeVideoWriter(*folder_, options.rate_hz);
-  WriteAtOnce(LandingCsvHeader(), kDetections, &csv());
+LandingSink::LandingSink(const OutputOptions& output, bool has_track,
+                         const std::vector<double>& predict_s)
+    : results_(output, "landing_detections.csv", LandingCsvHeader()) {
+  if (has_track && results_.folder()) track_.emplace(*results_.folder(), predict_s);
 }
 
 void LandingSink::Write(const Frame& frame, const LandingObservation& observation,
                         const LandingPipeline& pipeline) {
-  WriteAtOnce(LandingCsvRow(frame.name, observation), kDetections, &csv());
+  results_.WriteRows(LandingCsvRow(frame.name, observation));
   if (track_) track_->Write(observation, pipeline.tracker());
-  if (!annotated_) return;
+  if (!results_.wants_pictures()) return;
   const LandingPatternDetector& detector = pipeline.detector();
-  annotated_->Write(frame.name, DrawLandingOverlay(frame.image, detector.camera(),
-                                                   detector.options().pattern, observation));
+  results_.WritePicture(frame.name, DrawLandingOverlay(frame.image, detector.camera(),
+                                                       detector.options().pattern, observation));
 }
-
-std::ostream& LandingSink::csv() { return file_.is_open() ? file_ : std::cout; }
 
 }  // namespace kestrel

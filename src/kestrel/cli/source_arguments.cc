@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/cli/source_arguments.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/parse_number.h"
 #include "kestrel/camera/calibration_reader.h"
+#include "kestrel/recording/open_source.h"
 
 namespace kestrel {
 namespace {
@@ -64,6 +62,17 @@ void SourceArguments::AddTo(CLI::App* command) {
   command->add_flag("--force", force, "Replace files that exist");
 }
 
+OpenedSource SourceArguments::Open(PixelFormat format) const {
+  OpenedSource opened{OpenSource(sources, format), {}};
+  opened.calibration = FindCalibration(*opened.source);
+  return opened;
+}
+
+OutputOptions SourceArguments::Output(const OpenedSource& opened) const {
+  return {
+      .folder = output, .force = force, .annotate = annotate, .rate_hz = opened.source->rate_hz()};
+}
+
 CameraCalibration SourceArguments::FindCalibration(const FrameSource& source) const {
   const std::string own_file = source.calibration_file();
   if (camera.empty() && own_file.empty()) {
@@ -82,23 +91,6 @@ CameraCalibration SourceArguments::FindCalibration(const FrameSource& source) co
     fmt::print(stderr, "kestrel: the calibration has no mount: no positions in the world\n");
   }
   return calibration;
-}
-
-void RequireSize(const Frame& frame, const CameraIntrinsics& intrinsics) {
-  if (frame.image.cols == intrinsics.width_px && frame.image.rows == intrinsics.height_px) return;
-  throw InputError(fmt::format("{}: the image has {} x {} px, but the calibration is for {} x {}",
-                               frame.name, frame.image.cols, frame.image.rows, intrinsics.width_px,
-                               intrinsics.height_px));
-}
-
-std::string DetectTimes::Summary() const {
-  if (ms_.empty()) return "";
-  std::vector<double> sorted = ms_;
-  std::sort(sorted.begin(), sorted.end());
-  const auto quantile = [&](double part) {  // by nearest rank
-    return sorted[static_cast<std::size_t>(std::ceil(part * sorted.size())) - 1];
-  };
-  return fmt::format(", detect_ms median {:.2f}, p99 {:.2f}", quantile(0.5), quantile(0.99));
 }
 
 }  // namespace kestrel

@@ -45,12 +45,9 @@ void WriteResult(const TouchdownResult& result, std::uint64_t seed, const Output
 // Flies, and writes images and what is found in them as it goes. Nothing when interrupted.
 std::optional<TouchdownResult> FlyInto(const RecordingWriter& writer, const std::string& annotate,
                                        double rate_hz, TouchdownSimulation* simulation) {
-  LandingSink sink({.folder = writer.part().string(),
-                    .force = true,
-                    .annotate = annotate,
-                    .rate_hz = rate_hz,
-                    .has_track = true,
-                    .predict_s = {}});
+  LandingSink sink(
+      {.folder = writer.part().string(), .force = true, .annotate = annotate, .rate_hz = rate_hz},
+      /*has_track=*/true, /*predict_s=*/{});
   CatchInterrupts();
   ProgressBar progress(std::nullopt);
   std::size_t done = 0;

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Duration kMaxGap = std::chrono::milliseconds(200);
+constexpr Duration kMaxPoseGap = std::chrono::milliseconds(200);
 
 std::string RootOf(const std::string& recording) {
   const std::optional<std::string> root = FindEurocRoot(recording);
@@ -52,7 +52,7 @@ PoseHistory ReadPoses(const std::string& root) {
   const std::string file = (fs::path(root) / "state_groundtruth_estimate0" / "data.csv").string();
   const std::vector<PoseSample> samples = ParsePoseRows(ReadFile(file), file, "RS");
   if (samples.empty()) throw InputError(file + ": no rows, expected the true poses of the UAV");
-  PoseHistory poses(samples.size(), kMaxGap);
+  PoseHistory poses(samples.size(), kMaxPoseGap);
   for (const PoseSample& sample : samples) poses.Add(sample);
   return poses;
 }

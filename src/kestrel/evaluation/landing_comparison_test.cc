@@ -1,23 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/evaluation/landing_comparison.h"
 
-#include <numbers>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kestrel/evaluation/landing_tables.h"
 #include "kestrel/evaluation/test_flight.h"
+#include "kestrel/geometry/angles.h"
 
 namespace kestrel {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-constexpr double kPi = std::numbers::pi;
-
-Time FrameTime(int frame) { return TimeFromNanoseconds(TestFlight::TimeNs(frame)); }
 
 // The pattern on the ground, straight below the camera of TestFlight.
 TruePattern PatternBelow(int frame, double visible_fraction = 1) {

@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-constexpr Duration kMaxGap = std::chrono::milliseconds(500);
+constexpr Duration kMaxPatternGap = std::chrono::milliseconds(500);
 
 auto FirstNotBefore(const std::vector<TruePattern>& patterns, Time time) {
   return std::lower_bound(patterns.begin(), patterns.end(), time,
@@ -67,7 +67,7 @@ std::optional<TrueMotion> TrueMotionAt(const std::vector<TruePattern>& patterns,
   if (to == patterns.end()) return std::nullopt;
   if (to->time == time)
     return TrueMotion{to->world_from_pattern.translation, to->velocity_in_world};
-  if (to == patterns.begin() || to->time - (to - 1)->time > kMaxGap) return std::nullopt;
+  if (to == patterns.begin() || to->time - (to - 1)->time > kMaxPatternGap) return std::nullopt;
   const TruePattern& from = *(to - 1);
   return Interpolate(from, *to, ToSeconds(time - from.time) / ToSeconds(to->time - from.time));
 }

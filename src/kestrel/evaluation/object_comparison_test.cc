@@ -16,8 +16,6 @@ using ::testing::HasSubstr;
 
 const TrueObjects kObjects = {{1, {"red", 0.2}}, {2, {"blue", 0.2}}, {3, {"yellow", 0.2}}};
 
-Time FrameTime(int frame) { return TimeFromNanoseconds(TestFlight::TimeNs(frame)); }
-
 // At x metres north of the origin, for the camera of TestFlight.
 TrueSighting Sighting(int id, double x, double visible = 1) {
   return {FrameTime(0), id, {x, 0, 0}, {0, 0, 0}, {320, 240 - 100 * x}, visible};

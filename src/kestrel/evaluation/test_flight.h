@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/base/time.h"
 #include "kestrel/recording/test_files.h"
 
 namespace kestrel {
@@ -47,6 +48,8 @@ class TestFlight {
  private:
   TestFolder folder_;
 };
+
+inline Time FrameTime(int frame) { return TimeFromNanoseconds(TestFlight::TimeNs(frame)); }
 
 inline constexpr char kPatternHeader[] =
     "#timestamp [ns],p_WP_W_x [m],p_WP_W_y [m],p_WP_W_z [m],q_WP_w [],q_WP_x [],q_WP_y [],q_WP_z "

@@ -13,7 +13,6 @@ using Eigen::Vector3d;
 // The paths as 'view' shows them.
 template <class View>
 std::vector<PlotSeries> Series(const std::vector<TouchdownMoment>& path, const View& view) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   PlotSeries vehicle{"pattern", PlotStyle::kLine, {}, {}};
   PlotSeries uav{"UAV", PlotStyle::kLine, {}, {}};
   PlotSeries track{"track", PlotStyle::kLine, {}, {}};
@@ -22,7 +21,7 @@ std::vector<PlotSeries> Series(const std::vector<TouchdownMoment>& path, const V
     vehicle.points.push_back(view(moment.pattern_in_world));
     uav.points.push_back(view(moment.feet_in_world));
     track.points.push_back(moment.target_in_world ? view(*moment.target_in_world)
-                                                  : Vector2d(kNaN, kNaN));
+                                                  : Vector2d(std::nan(""), std::nan("")));
   }
   if (!path.empty()) ends.points = {uav.points.front(), uav.points.back()};
   return {vehicle, uav, track, ends};

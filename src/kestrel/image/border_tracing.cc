@@ -94,64 +94,6 @@ GridPoint VertexOf(std::uint64_t place) {
 }
 std::uint32_t BitOf(std::uint64_t place) { return static_cast<std::uint32_t>(place); }
 
-// Where a walk stands, and the step that it takes next.
-struct Walk {
-  std::uint64_t place;
-  std::uint64_t step;
-  unsigned direction;
-};
-
-// The step after the last one, of walks of one sense.
-struct Turns {
-  std::array<std::uint8_t, kSituations> direction;
-  std::array<std::uint64_t, kSituations> step;
-};
-
-Turns MakeTurns(Sense sense, std::ptrdiff_t stride) {
-  static constexpr std::array<std::uint8_t, kSituations> kNext[] = {NextDirections(Sense::kForth),
-                                                                    NextDirections(Sense::kBack)};
-  Turns turns{.direction = kNext[static_cast<int>(sense)], .step = {}};
-  std::array<std::uint64_t, 4> steps;
-  for (int d = 0; d < 4; ++d) steps[d] = Place(kStepX[d], kStepY[d], stride);
-  for (unsigned i = 0; i < kSituations; ++i) turns.step[i] = steps[turns.direction[i]];
-  return turns;
-}
-
-// The images that a walk reads and marks, addressed by bytes: two pixels that stand in two words
-// are read as easily as in one, and a mark seldom waits for the one made just before.
-static_assert(std::endian::native == std::endian::little);
-struct WalkedImages {
-  const std::uint8_t* above;  // dark pixels, from the row above the first
-  const std::uint8_t* below;  // the same from the first row
-  std::uint8_t* traced;
-
-  // Pixel 'right' and the one before.
-  static unsigned Pair(const std::uint8_t* pixels, std::uint32_t right) {
-    std::uint16_t bits;
-    std::memcpy(&bits, pixels + right / 8 - 1, sizeof(bits));
-    return (unsigned{bits} >> (right % 8 + 7)) & 3;
-  }
-
-  // Chooses the next step of a walk that has just taken one.
-  void Turn(const Turns& turns, Walk* walk) const {
-    const std::uint32_t bit = BitOf(walk->place);
-    const unsigned now = Situation(Pair(above, bit), Pair(below, bit), walk->direction);
-    walk->direction = turns.direction[now];
-    walk->step = turns.step[now];
-  }
-
-  // Marks the upper edge of the pixel at 'place' if it 'is_walked', and returns whether it was
-  // marked before then. Computed instead of branched on, as in texture every second turn would be
-  // predicted wrong.
-  bool Mark(std::uint64_t place, bool is_walked) const {
-    const unsigned mark = unsigned{is_walked} << (BitOf(place) % 8);
-    std::uint8_t& marks = traced[BitOf(place) / 8];
-    const unsigned before = marks;
-    marks = static_cast<std::uint8_t>(before | mark);
-    return (before & mark) != 0;
-  }
-};
-
 // Area within a closed walk, by Green's theorem: only steps along y sweep area.
 std::int32_t SignedArea(std::span<const GridPoint> points) {
   std::int32_t area = 0;
@@ -204,6 +146,64 @@ class BorderWalks {
   std::size_t WalkAround(int x, int y, int max_extent, std::span<GridPoint> room) const;
 
  private:
+  // Where a walk stands, and the step that it takes next.
+  struct Walk {
+    std::uint64_t place;
+    std::uint64_t step;
+    unsigned direction;
+  };
+
+  // The step after the last one, of walks of one sense.
+  struct Turns {
+    std::array<std::uint8_t, kSituations> direction;
+    std::array<std::uint64_t, kSituations> step;
+  };
+
+  static Turns MakeTurns(Sense sense, std::ptrdiff_t stride) {
+    static constexpr std::array<std::uint8_t, kSituations> kNext[] = {NextDirections(Sense::kForth),
+                                                                      NextDirections(Sense::kBack)};
+    Turns turns{.direction = kNext[static_cast<int>(sense)], .step = {}};
+    std::array<std::uint64_t, 4> steps;
+    for (int d = 0; d < 4; ++d) steps[d] = Place(kStepX[d], kStepY[d], stride);
+    for (unsigned i = 0; i < kSituations; ++i) turns.step[i] = steps[turns.direction[i]];
+    return turns;
+  }
+
+  // The images that a walk reads and marks, addressed by bytes: two pixels that stand in two words
+  // are read as easily as in one, and a mark seldom waits for the one made just before.
+  static_assert(std::endian::native == std::endian::little);
+  struct WalkedImages {
+    const std::uint8_t* above;  // dark pixels, from the row above the first
+    const std::uint8_t* below;  // the same from the first row
+    std::uint8_t* traced;
+
+    // Pixel 'right' and the one before.
+    static unsigned Pair(const std::uint8_t* pixels, std::uint32_t right) {
+      std::uint16_t bits;
+      std::memcpy(&bits, pixels + right / 8 - 1, sizeof(bits));
+      return (unsigned{bits} >> (right % 8 + 7)) & 3;
+    }
+
+    // Chooses the next step of a walk that has just taken one.
+    void Turn(const Turns& turns, Walk* walk) const {
+      const std::uint32_t bit = BitOf(walk->place);
+      const unsigned now = Situation(Pair(above, bit), Pair(below, bit), walk->direction);
+      walk->direction = turns.direction[now];
+      walk->step = turns.step[now];
+    }
+
+    // Marks the upper edge of the pixel at 'place' if it 'is_walked', and returns whether it was
+    // marked before then. Computed instead of branched on, as in texture every second turn would be
+    // predicted wrong.
+    bool Mark(std::uint64_t place, bool is_walked) const {
+      const unsigned mark = unsigned{is_walked} << (BitOf(place) % 8);
+      std::uint8_t& marks = traced[BitOf(place) / 8];
+      const unsigned before = marks;
+      marks = static_cast<std::uint8_t>(before | mark);
+      return (before & mark) != 0;
+    }
+  };
+
   WalkedImages images_;
   std::ptrdiff_t stride_;
   Turns forth_;

@@ -9,18 +9,18 @@
 namespace kestrel {
 namespace {
 
-constexpr int kDirections = 96;                 // around the ring
-constexpr int kPerQuarter = kDirections / 4;    // over a right angle
-constexpr int kBeside = kPerQuarter * 28 / 90;  // from the middle of an arm to the white beside
+constexpr int kRingDirections = 96;               // around the ring
+constexpr int kPerQuarter = kRingDirections / 4;  // over a right angle
+constexpr int kBeside = kPerQuarter * 28 / 90;    // from the middle of an arm to the white beside
 constexpr std::array<double, 5> kRadii{0.34, 0.46, 0.58, 0.7, 0.82};  // inner radii of the ring
 constexpr int kMinSeen = 2;  // contrasts without which nothing is said
 
-using DirectionTable = std::array<Eigen::Vector2f, kDirections>;
+using DirectionTable = std::array<Eigen::Vector2f, kRingDirections>;
 const DirectionTable& Directions() {
   static const DirectionTable kTable = [] {
     DirectionTable table;
-    for (int i = 0; i < kDirections; ++i) {
-      const double angle = 2 * std::numbers::pi * i / kDirections;
+    for (int i = 0; i < kRingDirections; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kRingDirections;
       table[i] = Eigen::Vector2d(std::cos(angle), std::sin(angle)).cast<float>();
     }
     return table;
@@ -36,17 +36,17 @@ std::optional<Cross> FindCrossByProfile(const cv::Mat& image, const PatternView&
   // mean over the half arms and radii that the image shows.
   std::array<float, kPerQuarter> sum{};
   std::array<int, kPerQuarter> seen{};
-  std::array<float, kDirections> x, y, gray;
+  std::array<float, kRingDirections> x, y, gray;
   for (const double radius : kRadii) {
     const auto r = static_cast<float>(radius * pattern.inner_radius_m());
-    for (int i = 0; i < kDirections; ++i) {
+    for (int i = 0; i < kRingDirections; ++i) {
       x[i] = r * Directions()[i].x();
       y[i] = r * Directions()[i].y();
     }
-    view.Sample(image, x.data(), y.data(), kDirections, gray.data());
-    for (int i = 0; i < kDirections; ++i) {
-      const float before = gray[(i + kDirections - kBeside) % kDirections];
-      const float after = gray[(i + kBeside) % kDirections];
+    view.Sample(image, x.data(), y.data(), kRingDirections, gray.data());
+    for (int i = 0; i < kRingDirections; ++i) {
+      const float before = gray[(i + kRingDirections - kBeside) % kRingDirections];
+      const float after = gray[(i + kBeside) % kRingDirections];
       if (gray[i] < 0 || (before < 0 && after < 0)) continue;
       // The darker side counts: the edge of a shadow is no arm.
       const float beside = before < 0 ? after : after < 0 ? before : std::min(before, after);
@@ -65,7 +65,7 @@ std::optional<Cross> FindCrossByProfile(const cv::Mat& image, const PatternView&
   const double right = depth[(index + 1) % kPerQuarter];
   const double curvature = left - 2 * *best + right;
   const double shift = curvature < 0 ? 0.5 * (left - right) / curvature : 0;
-  return Cross{(index + shift) * 2 * std::numbers::pi / kDirections};
+  return Cross{(index + shift) * 2 * std::numbers::pi / kRingDirections};
 }
 
 }  // namespace kestrel

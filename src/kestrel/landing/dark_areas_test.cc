@@ -15,7 +15,7 @@ namespace kestrel {
 namespace {
 
 // The borders of a figure of 100 x 100 pixels.
-BorderTracer TraceFigure(const Print& is_dark) {
+BorderTracer TraceSmallFigure(const Print& is_dark) {
   BinaryImage binary;
   binary.dark.Reset(100, 100);
   binary.bright.Reset(100, 100);
@@ -33,7 +33,7 @@ BorderTracer TraceFigure(const Print& is_dark) {
 // The areas that they pass for.
 std::vector<DarkArea> Areas(const Print& is_dark, double min_minor_px = 8,
                             int max_hull_extent = 0) {
-  const BorderTracer tracer = TraceFigure(is_dark);
+  const BorderTracer tracer = TraceSmallFigure(is_dark);
   std::vector<DarkArea> areas;
   for (const Border& border : tracer.borders()) {
     if (const auto area = TestDarkArea(tracer, border, min_minor_px, max_hull_extent)) {
@@ -90,7 +90,7 @@ TEST(TestDarkArea, AnOpenSmallRingIsItsHull) {
 
 TEST(OutlineInView, IsThatOfTheRingWithoutTheImageBorder) {
   const Eigen::Vector2d center(85, 40);  // of a ring that the right side of the image cuts off
-  const BorderTracer tracer = TraceFigure([&](double x, double y) {
+  const BorderTracer tracer = TraceSmallFigure([&](double x, double y) {
     const double r = (Eigen::Vector2d(x, y) - center + Eigen::Vector2d(50, 50)).norm();
     return std::abs(r - 24) < 2;
   });
@@ -107,7 +107,8 @@ TEST(OutlineInView, IsThatOfTheRingWithoutTheImageBorder) {
 }
 
 TEST(IsCutOff, IsNotWhatLiesWithinTheImage) {
-  const BorderTracer tracer = TraceFigure([](double x, double y) { return std::hypot(x, y) < 48; });
+  const BorderTracer tracer =
+      TraceSmallFigure([](double x, double y) { return std::hypot(x, y) < 48; });
   ASSERT_EQ(tracer.borders().size(), 1u);
   EXPECT_FALSE(IsCutOff(tracer, tracer.borders()[0]));
 }

@@ -12,9 +12,9 @@ namespace kestrel {
 namespace {
 
 // In the plane at unit distance, where 1 is the height of the camera.
-constexpr double kTolerance = 0.02;  // of a point from its line
-constexpr double kMinLength = 0.12;  // of a line
-constexpr double kMaxReach = 4;      // of the plane that is looked at
+constexpr double kTolerance = 0.02;   // of a point from its line
+constexpr double kMinLength = 0.12;   // of a line
+constexpr double kMaxPlaneReach = 4;  // of the plane that is looked at
 constexpr std::size_t kMaxSegments = 60;
 constexpr std::size_t kMaxBars = 16;
 constexpr std::size_t kMaxPoses = 4;
@@ -56,7 +56,7 @@ class Finder {
           axes_.transpose() *
           rays_.Ray(static_cast<float>(pixel.x()), static_cast<float>(pixel.y())).cast<double>();
       const Eigen::Vector2d place = ray.head<2>() / std::max(-ray.z(), 1e-9);
-      if (ray.z() < 0 && place.squaredNorm() < kMaxReach * kMaxReach) {
+      if (ray.z() < 0 && place.squaredNorm() < kMaxPlaneReach * kMaxPlaneReach) {
         workspace_.plane.push_back(place);
       } else {
         Cut(false);

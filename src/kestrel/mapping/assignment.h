@@ -7,6 +7,9 @@
 
 namespace kestrel {
 
+// Cost of what cannot be; far above all that can.
+inline constexpr double kImpossibleCost = 1e9;
+
 // The assignment of every row to a column of its own that costs least in all (Hungarian method,
 // Kuhn 1955, in the O(rows^2 columns) form with potentials). Keeps its memory between calls.
 class AssignmentSolver {

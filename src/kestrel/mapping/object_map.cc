@@ -14,7 +14,6 @@ namespace kestrel {
 namespace {
 
 // A pair that cannot be: dearer than any sum of possible ones.
-constexpr double kImpossible = 1e9;
 constexpr double kMinProbability = 1e-6;
 
 double LogOdds(double probability) { return std::log(probability / (1 - probability)); }
@@ -134,7 +133,7 @@ std::vector<MappedObject> ObjectMap::Confirmed() const {
 }
 
 double ObjectMap::Cost(const ObjectMeasurement& measurement, const MappedObject& object) const {
-  if (measurement.shape != object.shape) return kImpossible;
+  if (measurement.shape != object.shape) return kImpossibleCost;
   const Observation observation = ObservationAfter(measurement.delay_s);
   Eigen::Matrix3d covariance =
       observation * object.covariance * observation.transpose() + measurement.covariance;
@@ -143,7 +142,7 @@ double ObjectMap::Cost(const ObjectMeasurement& measurement, const MappedObject&
   const Eigen::Vector3d whitened =
       llt.matrixL().solve(measurement.position - observation * object.state);
   const double distance = whitened.squaredNorm();
-  if (distance > options_.gate) return kImpossible;
+  if (distance > options_.gate) return kImpossibleCost;
   // -2 log of the likelihood.
   return distance + 3 * std::log(2 * std::numbers::pi) +
          2 * llt.matrixL().nestedExpression().diagonal().array().log().sum() +
@@ -201,7 +200,7 @@ void ObjectMap::Assign(Time time) {
   if (rows == 0) return;
   // One column for each object, and one of its own for each detection that is of none.
   auto costs = costs_.topLeftCorner(rows, known + rows);
-  costs.rightCols(rows).setConstant(kImpossible);
+  costs.rightCols(rows).setConstant(kImpossibleCost);
   for (Eigen::Index i = 0; i < rows; ++i) {
     for (Eigen::Index k = 0; k < known; ++k) costs(i, k) = Cost(measurements_[i], predicted_[k]);
     costs(i, known + i) = new_cost_;

@@ -11,10 +11,8 @@
 namespace kestrel {
 namespace {
 
-constexpr double kImpossible = 1e9;
-
 double SquaredDistance(const MappedObject& a, const MappedObject& b, double shared_sigma_m) {
-  if (a.shape != b.shape || a.color_index() != b.color_index()) return kImpossible;
+  if (a.shape != b.shape || a.color_index() != b.color_index()) return kImpossibleCost;
   Eigen::Matrix3d covariance =
       a.covariance.topLeftCorner<3, 3>() + b.covariance.topLeftCorner<3, 3>();
   // The navigation of each UAV has its own bias.
@@ -27,7 +25,7 @@ void FuseInto(const std::vector<MappedObject>& objects, const ObjectMapOptions& 
               std::vector<MappedObject>* fused) {
   const auto rows = static_cast<Eigen::Index>(objects.size());
   const auto known = static_cast<Eigen::Index>(fused->size());
-  Eigen::MatrixXd costs = Eigen::MatrixXd::Constant(rows, known + rows, kImpossible);
+  Eigen::MatrixXd costs = Eigen::MatrixXd::Constant(rows, known + rows, kImpossibleCost);
   for (Eigen::Index i = 0; i < rows; ++i) {
     for (Eigen::Index k = 0; k < known; ++k) {
       const double distance = SquaredDistance(objects[i], (*fused)[k], options.shared_sigma_m);

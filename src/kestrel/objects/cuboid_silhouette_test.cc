@@ -12,14 +12,14 @@ namespace {
 
 constexpr double kHalf = 0.02;
 constexpr double kShrinking = 1 / (1 + 2 * kHalf);  // of the lower face: as high as wide
-const Eigen::Vector2d kCenter(0.5, -0.3);
+const Eigen::Vector2d kTopCenter(0.5, -0.3);
 
 std::vector<Eigen::Vector2d> UpperFace(double yaw) {
   std::vector<Eigen::Vector2d> corners;
   for (int i = 0; i < 4; ++i) {
     const double angle = yaw + std::numbers::pi * (0.25 + 0.5 * i);
-    corners.push_back(kCenter + std::numbers::sqrt2 * kHalf *
-                                    Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    corners.push_back(kTopCenter + std::numbers::sqrt2 * kHalf *
+                                       Eigen::Vector2d(std::cos(angle), std::sin(angle)));
   }
   return corners;
 }
@@ -42,7 +42,7 @@ double CornerError(const CuboidFit& fit, double yaw) {
   return largest / kHalf;
 }
 
-const Eigen::Vector2d kDigit = kCenter + kHalf * Eigen::Vector2d(0.1, -0.15);
+const Eigen::Vector2d kDigit = kTopCenter + kHalf * Eigen::Vector2d(0.1, -0.15);
 
 TEST(FitCuboid, FindsTheUpperFaceOfAnOutlineWithSideFaces) {
   for (double yaw = 0; yaw < 1.5; yaw += 0.1) {
@@ -79,14 +79,14 @@ TEST(FitCuboid, TheImageMayCutTheLowerFaceOff) {
 
 TEST(FitCuboid, OtherShapesLeaveAResidual) {
   std::vector<Eigen::Vector2d> line;
-  for (int i = -3; i <= 3; ++i) line.emplace_back(kCenter + i * Eigen::Vector2d(kHalf, 0));
-  const auto fit = FitCuboid({line, {}, kCenter, 1, kHalf});
+  for (int i = -3; i <= 3; ++i) line.emplace_back(kTopCenter + i * Eigen::Vector2d(kHalf, 0));
+  const auto fit = FitCuboid({line, {}, kTopCenter, 1, kHalf});
   ASSERT_TRUE(fit);
   EXPECT_GT(fit->residual, 0.3);
 }
 
 TEST(FitCuboid, FindsNothingWhenMostOfItIsCutOff) {
-  EXPECT_FALSE(FitCuboid({{}, {}, kCenter, 1, kHalf}));
+  EXPECT_FALSE(FitCuboid({{}, {}, kTopCenter, 1, kHalf}));
   const auto outline = UpperFace(0);
   const auto cut = WithLowerFace(outline);
   EXPECT_FALSE(FitCuboid({{outline.data(), 1}, cut, kDigit, 1, kHalf}));

@@ -119,7 +119,7 @@ float ShareAt(const FaceImage& face, const Figure& figure, const Eigen::Vector2d
 // The figure with its foot where 'down' points to.
 DigitImage ViewFigure(const FaceImage& face, const Figure& figure, const Eigen::Vector2d& down) {
   // The image reaches this many radii from the figure's middle: a digit fits in.
-  constexpr double kReach = 1.8;
+  constexpr double kRadiiShown = 1.8;
   constexpr double kMaxSlant = 0.5;
   constexpr double kMinVariance = 0.5;
   const Eigen::Vector2d right(down.y(), -down.x());
@@ -129,7 +129,7 @@ DigitImage ViewFigure(const FaceImage& face, const Figure& figure, const Eigen::
   const double width = std::max(
       kMinVariance, right.dot(figure.covariance * right) - slant * (2 * lean - slant * height));
   // As wide as high, for fonts are narrow and wide.
-  const double step = 2 * kReach * std::sqrt(width + height) / kDigitSide;
+  const double step = 2 * kRadiiShown * std::sqrt(width + height) / kDigitSide;
   const double stretch = std::pow(width / height, 0.25);
   DigitImage digit;
   for (int row = 0; row < kDigitSide; ++row) {

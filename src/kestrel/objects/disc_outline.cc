@@ -14,7 +14,7 @@
 namespace kestrel {
 namespace {
 
-constexpr int kDirections = 32;  // in which the edge is looked for
+constexpr int kEdgeDirections = 32;  // in which the edge is looked for
 
 // Angle between a ray and the cone, to first order (Sampson's distance), rad; negative inside.
 double DistanceToCone(const Cone& cone, const Eigen::Vector3d& ray) {
@@ -84,14 +84,14 @@ std::optional<Ellipse> CutWithPlane(const Eigen::Matrix3d& conic) {
 
 // What became of a direction in which the edge was looked for.
 enum class Direction { kHidden, kOutside, kFits };
-using Directions = std::array<Direction, kDirections>;
+using Directions = std::array<Direction, kEdgeDirections>;
 
 // The longest row of hidden directions around the circle.
 int LargestGap(const Directions& directions) {
   int largest = 0;
   int run = 0;
-  for (int i = 0; i < 2 * kDirections && largest < kDirections; ++i) {
-    run = directions[i % kDirections] == Direction::kHidden ? run + 1 : 0;
+  for (int i = 0; i < 2 * kEdgeDirections && largest < kEdgeDirections; ++i) {
+    run = directions[i % kEdgeDirections] == Direction::kHidden ? run + 1 : 0;
     largest = std::max(largest, run);
   }
   return largest;
@@ -107,8 +107,8 @@ std::optional<DiscOutline> FitOnce(const cv::Mat& image, const RayTable& rays, d
   workspace->points.clear();
   workspace->directions.clear();
   Directions directions{};
-  for (int i = 0; i < kDirections; ++i) {
-    const double t = 2 * std::numbers::pi * i / kDirections;
+  for (int i = 0; i < kEdgeDirections; ++i) {
+    const double t = 2 * std::numbers::pi * i / kEdgeDirections;
     const Eigen::Vector2d outward = (start.semi_minor * std::cos(t) * start.major_axis() +
                                      start.semi_major * std::sin(t) * start.minor_axis())
                                         .normalized();
@@ -141,8 +141,8 @@ std::optional<DiscOutline> FitOnce(const cv::Mat& image, const RayTable& rays, d
   const auto count = static_cast<double>(workspace->rays.size());
   const double gap = LargestGap(directions);
   const auto outside = static_cast<double>(std::ranges::count(directions, Direction::kOutside));
-  return DiscOutline{*cone, std::sqrt(squares / count), outside / kDirections, gap / kDirections,
-                     count / std::max(1.0, kDirections - outside - gap)};
+  return DiscOutline{*cone, std::sqrt(squares / count), outside / kEdgeDirections,
+                     gap / kEdgeDirections, count / std::max(1.0, kEdgeDirections - outside - gap)};
 }
 
 }  // namespace

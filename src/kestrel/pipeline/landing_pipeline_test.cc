@@ -8,6 +8,7 @@
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/options.h"
+#include "kestrel/geometry/test_rotation.h"
 #include "kestrel/pipeline/test_pattern.h"
 
 namespace kestrel {
@@ -15,10 +16,6 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
-
-Eigen::Quaterniond Rotation(double angle, const Eigen::Vector3d& axis) {
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized()));
-}
 
 // A camera that looks down, a little tilted, from a UAV above a pattern on the ground.
 class LandingPipelineTest : public ::testing::Test {

@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/pipeline/world_location.h"
 
-#include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "kestrel/geometry/angles.h"
+#include "kestrel/geometry/test_rotation.h"
+
 namespace kestrel {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-
-Eigen::Quaterniond Rotation(double angle, const Eigen::Vector3d& axis) {
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized()));
-}
 
 TEST(LocateByAltitude, FindsThePointThatTheRayCameFrom) {
   std::mt19937 random(7);

@@ -20,7 +20,7 @@ const cv::Scalar kRed(40, 40, 255);
 const cv::Scalar kGreen(60, 220, 60);
 const cv::Scalar kBlue(255, 120, 40);
 const cv::Scalar kYellow(0, 230, 255);
-const cv::Scalar kBlack(0, 0, 0);
+const cv::Scalar kOutline(0, 0, 0);
 
 // A lens bends lines: an edge is drawn in as many pieces.
 constexpr int kPiecesPerEdge = 12;
@@ -35,7 +35,7 @@ Polyline Circle(double radius) {
   return points;
 }
 
-Polyline Segment(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+Polyline LineBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   Polyline points;
   for (int i = 0; i <= kPiecesPerEdge; ++i) {
     points.push_back(from + (to - from) * i / kPiecesPerEdge);
@@ -56,7 +56,7 @@ Polyline Cross(const LandingPattern& pattern) {
   }
   Polyline outline;
   for (std::size_t i = 1; i < corners.size(); ++i) {
-    const Polyline edge = Segment(corners[i - 1], corners[i]);
+    const Polyline edge = LineBetween(corners[i - 1], corners[i]);
     outline.insert(outline.end(), edge.begin(), edge.end());
   }
   return outline;
@@ -93,7 +93,7 @@ class Canvas {
   void Write(const std::string& text, const cv::Scalar& color) {
     const double font_scale = 0.6 * std::max(scale_, 0.7);
     const cv::Point origin(static_cast<int>(8 * scale_), static_cast<int>(8 + 22 * font_scale));
-    for (const auto& [thickness, ink] : {std::pair(3, kBlack), std::pair(1, color)}) {
+    for (const auto& [thickness, ink] : {std::pair(3, kOutline), std::pair(1, color)}) {
       cv::putText(image_, text, origin, cv::FONT_HERSHEY_SIMPLEX, font_scale, ink,
                   thickness * Thickness(), cv::LINE_AA);
     }
@@ -131,7 +131,7 @@ void DrawDetection(const LandingDetection& detection, const LandingPattern& patt
   const std::array<cv::Scalar, 3> colors = {kRed, kGreen, kBlue};
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector3d end = pattern.outer_radius_m() * Eigen::Vector3d::Unit(axis);
-    canvas->DrawLine(Segment(Eigen::Vector3d::Zero(), end), pose, colors[axis]);
+    canvas->DrawLine(LineBetween(Eigen::Vector3d::Zero(), end), pose, colors[axis]);
   }
   canvas->DrawCenter(detection.center_px);
   canvas->Write(fmt::format("{}  {:.2f} m  quality {:.2f}", ToString(detection.method),

@@ -4,19 +4,21 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <utility>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "kestrel/base/hash.h"
 #include "kestrel/base/options.h"
-#include "kestrel/simulation/flight.h"
-#include "kestrel/simulation/hash.h"
+#include "kestrel/base/violations.h"
+#include "kestrel/flight/flight_time.h"
+#include "kestrel/flight/multicopter_motion.h"
+#include "kestrel/geometry/angles.h"
 #include "kestrel/simulation/hunt_truth.h"
-#include "kestrel/simulation/solids.h"
 #include "kestrel/simulation/truth_text.h"
-#include "kestrel/simulation/violations.h"
+#include "kestrel/world/motion.h"
+#include "kestrel/world/solids.h"
 
 namespace kestrel {
 namespace {
@@ -24,11 +26,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
-
 // Each part of the scene has random numbers of its own: options of one do not change another.
-enum class Part { kObjects = 200, kFlight, kGround, kLight, kSurroundings };
-Random RandomOf(std::uint64_t seed, Part part) {
+enum class HuntPart { kObjects = 200, kFlight, kGround, kLight, kSurroundings };
+Random RandomOf(std::uint64_t seed, HuntPart part) {
   return Random(Hash(seed, static_cast<std::uint64_t>(part)));
 }
 
@@ -111,18 +111,18 @@ HuntScene MakeHuntScene(const HuntSimulationOptions& options, std::uint64_t seed
   HuntScene scene;
   World& world = scene.world;
   world.channels = 3;
-  Random objects_random = RandomOf(seed, Part::kObjects);
+  Random objects_random = RandomOf(seed, HuntPart::kObjects);
   const Vector2d half_area(0.46 * options.flight.length_m, 0.46 * options.flight.width_m);
   scene.objects = AddHuntObjects(options.objects, half_area, &objects_random, &world);
-  Random flight_random = RandomOf(seed, Part::kFlight);
+  Random flight_random = RandomOf(seed, HuntPart::kFlight);
   scene.world_from_uav =
       UavMotion(options.flight, scene.objects, options.recording.duration_s(), &flight_random);
-  Random ground_random = RandomOf(seed, Part::kGround);
+  Random ground_random = RandomOf(seed, HuntPart::kGround);
   world.ground = MakeGround(options.ground, {}, world.channels, &ground_random);
-  Random light_random = RandomOf(seed, Part::kLight);
+  Random light_random = RandomOf(seed, HuntPart::kLight);
   world.light = MakeLighting(options.light, &light_random);
   world.skyline = MakeSkyline(&light_random);
-  Random surroundings_random = RandomOf(seed, Part::kSurroundings);
+  Random surroundings_random = RandomOf(seed, HuntPart::kSurroundings);
   AddSurroundings(options, &surroundings_random, &world);
   if (options.uav_shadow) {
     world.bodies.push_back(scene.world_from_uav);

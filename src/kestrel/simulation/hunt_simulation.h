@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "kestrel/camera/calibration.h"
-#include "kestrel/simulation/ground_painter.h"
-#include "kestrel/simulation/hunt_objects.h"
-#include "kestrel/simulation/light_options.h"
 #include "kestrel/simulation/recording_plan.h"
 #include "kestrel/simulation/simulated_flight.h"
+#include "kestrel/world/ground_painter.h"
+#include "kestrel/world/hunt_objects.h"
+#include "kestrel/world/light_options.h"
 
 namespace kestrel {
 

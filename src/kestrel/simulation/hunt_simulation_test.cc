@@ -9,11 +9,12 @@
 #include "kestrel/recording/csv_table.h"
 #include "kestrel/recording/test_files.h"
 #include "kestrel/simulation/scenarios.h"
+#include "kestrel/simulation/test_plans.h"
 
 namespace kestrel {
 namespace {
 
-CameraCalibration SmallCamera() {
+CameraCalibration SmallHuntCamera() {
   CameraCalibration camera = HuntCalibration();
   camera.intrinsics = {.width_px = 320,
                        .height_px = 180,
@@ -29,13 +30,6 @@ CameraCalibration SmallCamera() {
 HuntSimulationOptions Small(const char* scenario, std::vector<std::string> settings) {
   settings.insert(settings.end(), {"ground.map_px=256", "rate_hz=2"});
   return ReadHuntSimulation(scenario, "", settings);
-}
-
-std::string TextOf(const RecordingPlan& plan, const std::string& name) {
-  for (const auto& file : plan.files) {
-    if (file.name == name) return file.text;
-  }
-  return "";
 }
 
 // Centre of what is more red than green and blue, within 'reach_px' of a pixel.
@@ -62,7 +56,7 @@ TEST(HuntSimulationTest, ObjectsAreWhereTheirRowsSayRollingShutterAndVibrationIn
                       "objects.orange_bars=0", "objects.distractors=0", "banners=0", "vehicles=0",
                       "navigation.vibration_deg=0.1", "ground.shadows=false", "uav_shadow=false",
                       "objects.gloss=0", "sensor.jpeg_quality=100"}),
-      SmallCamera(), 5);
+      SmallHuntCamera(), 5);
   const std::string text = TextOf(plan, "objects0/data.csv");
   const CsvTable rows(text, "objects");
   int seen = 0;
@@ -81,7 +75,7 @@ TEST(HuntSimulationTest, ObjectsAreWhereTheirRowsSayRollingShutterAndVibrationIn
 }
 
 TEST(HuntSimulationTest, CuboidsHaveDigits) {
-  const RecordingPlan plan = PlanHunt(Small("cuboids", {"frames=3"}), SmallCamera(), 2);
+  const RecordingPlan plan = PlanHunt(Small("cuboids", {"frames=3"}), SmallHuntCamera(), 2);
   const std::string digits_text = TextOf(plan, "objects0/digits.csv");
   const std::string objects_text = TextOf(plan, "objects0/objects.csv");
   const CsvTable digits(digits_text, "digits");
@@ -99,7 +93,7 @@ TEST(HuntSimulationTest, CuboidsHaveDigits) {
 
 TEST(HuntSimulationTest, YellowMovesAndTheOthersDoNot) {
   const RecordingPlan plan =
-      PlanHunt(Small("sweep", {"frames=60", "objects.yellow=6"}), SmallCamera(), 2);
+      PlanHunt(Small("sweep", {"frames=60", "objects.yellow=6"}), SmallHuntCamera(), 2);
   const std::string objects_text = TextOf(plan, "objects0/objects.csv");
   const std::string rows_text = TextOf(plan, "objects0/data.csv");
   const CsvTable objects(objects_text, "objects");
@@ -117,7 +111,7 @@ TEST(HuntSimulationTest, YellowMovesAndTheOthersDoNot) {
 }
 
 TEST(HuntSimulationTest, DescentEndsOverTheFirstObject) {
-  const RecordingPlan plan = PlanHunt(Small("descend", {"frames=20"}), SmallCamera(), 2);
+  const RecordingPlan plan = PlanHunt(Small("descend", {"frames=20"}), SmallHuntCamera(), 2);
   const std::string text = TextOf(plan, "objects0/data.csv");
   const CsvTable rows(text, "objects");
   const std::size_t last = rows.row_count() - 1;

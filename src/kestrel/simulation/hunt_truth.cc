@@ -6,7 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/simulation/occlusion.h"
+#include "kestrel/flight/flight_time.h"
+#include "kestrel/rendering/occlusion.h"
 
 namespace kestrel {
 namespace {

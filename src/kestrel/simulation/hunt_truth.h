@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "kestrel/simulation/hunt_objects.h"
 #include "kestrel/simulation/simulated_flight.h"
+#include "kestrel/world/hunt_objects.h"
 
 namespace kestrel {
 

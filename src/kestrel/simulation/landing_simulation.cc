@@ -11,9 +11,12 @@
 #include <fmt/format.h>
 
 #include "kestrel/base/options.h"
-#include "kestrel/simulation/landing_stills.h"
+#include "kestrel/base/violations.h"
+#include "kestrel/camera/paper_camera.h"
+#include "kestrel/flight/flight_time.h"
 #include "kestrel/simulation/simulated_landing.h"
-#include "kestrel/simulation/violations.h"
+#include "kestrel/stills/landing_stills.h"
+#include "kestrel/world/motion.h"
 
 namespace kestrel {
 namespace {

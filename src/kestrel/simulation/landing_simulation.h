@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "kestrel/camera/calibration.h"
-#include "kestrel/simulation/flight.h"
-#include "kestrel/simulation/landing_scene.h"
+#include "kestrel/flight/landing_flight.h"
 #include "kestrel/simulation/recording_plan.h"
 #include "kestrel/simulation/simulated_flight.h"
 #include "kestrel/simulation/stills_simulation.h"
+#include "kestrel/world/landing_scene.h"
 
 namespace kestrel {
 

@@ -13,8 +13,9 @@
 #include "kestrel/recording/csv_table.h"
 #include "kestrel/recording/euroc_recording.h"
 #include "kestrel/recording/test_files.h"
+#include "kestrel/rendering/test_worlds.h"
 #include "kestrel/simulation/scenarios.h"
-#include "kestrel/simulation/test_worlds.h"
+#include "kestrel/simulation/test_plans.h"
 
 namespace kestrel {
 namespace {
@@ -32,13 +33,6 @@ CameraCalibration SmallCamera() {
   CameraCalibration camera = PaperCalibration();
   camera.intrinsics = SmallFisheye();
   return camera;
-}
-
-const std::string& TextOf(const RecordingPlan& plan, const std::string& name) {
-  for (const auto& file : plan.files) {
-    if (file.name == name) return file.text;
-  }
-  throw InputError("the plan has no " + name);
 }
 
 // Rows of a CSV text by the time in their first column.

@@ -14,10 +14,6 @@
 
 namespace kestrel {
 
-// The image time of time 0 of a simulated flight.
-inline constexpr Time kStartTime = TimeFromNanoseconds(100'000'000'000);
-inline Time TimeOfFlight(double time_s) { return kStartTime + DurationFromSeconds(time_s); }
-
 // A recording that is to be rendered: all but its images is there.
 struct RecordingPlan {
   std::vector<Time> times;  // of the images

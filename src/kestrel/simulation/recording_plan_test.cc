@@ -10,6 +10,7 @@
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
+#include "kestrel/flight/flight_time.h"
 #include "kestrel/recording/euroc_recording.h"
 #include "kestrel/recording/test_files.h"
 

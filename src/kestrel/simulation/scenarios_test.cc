@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/simulation/scenarios.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kestrel/base/options.h"
+#include "kestrel/flight/landing_flight.h"
 #include "kestrel/recording/test_files.h"
+#include "kestrel/world/motion.h"
+#include "kestrel/world/vehicle_motion.h"
 
 namespace kestrel {
 namespace {
 
+using Eigen::Vector3d;
 using ::testing::HasSubstr;
 
 TEST(ScenariosTest, AllAreValid) {
@@ -68,6 +76,57 @@ TEST(ScenariosTest, BadScenarioFilesAreRefusedInWords) {
               HasSubstr("ground.map_px is 1000, expected a power of two"));
   EXPECT_THAT(InputErrorOf([] { ReadLandingSimulation("figure9", "", {}); }),
               HasSubstr("there is no scenario 'figure9', expected calm, aggressive, figure8"));
+}
+
+constexpr double kDeg = 180 / std::numbers::pi;
+
+Vector3d AccelerationOf(const Motion& motion, double time_s) {
+  constexpr double kStep_s = 0.01;
+  return (VelocityOf(motion, time_s + kStep_s) - VelocityOf(motion, time_s - kStep_s)) /
+         (2 * kStep_s);
+}
+
+double RateDeg(const Motion& motion, double time_s) {
+  constexpr double kStep_s = 0.005;
+  return kDeg * motion(time_s).rotation.angularDistance(motion(time_s + kStep_s).rotation) /
+         kStep_s;
+}
+
+double TiltDeg(const RigidTransform& pose) {
+  return kDeg * std::acos((pose.rotation * Vector3d::UnitZ()).z());
+}
+
+Motion FlightOf(const char* scenario, std::uint64_t seed) {
+  const LandingSimulationOptions options = ReadLandingSimulation(scenario, "", {});
+  Random random(seed);
+  const Motion vehicle = VehicleMotion(options.vehicle, &random);
+  const Path target = [vehicle](double time_s) {
+    return Vector3d(vehicle(time_s).translation + 2 * Vector3d::UnitZ());
+  };
+  return LandingFlight(options.flight, target, options.recording.duration_s(), &random);
+}
+
+TEST(ScenarioFlightTest, CalmFlightAcceleratesLessThanThePapersLimit) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Motion motion = FlightOf("calm", seed);
+    for (double time_s = 0.5; time_s < 14.5; time_s += 0.1) {
+      ASSERT_LT(AccelerationOf(motion, time_s).norm(), 0.25) << seed << " at " << time_s;
+    }
+  }
+}
+
+TEST(ScenarioFlightTest, AggressiveFlightTiltsTo40DegreesAndTurnsAt150PerSecond) {
+  const Motion motion = FlightOf("aggressive", 1);
+  double tilt = 0;
+  double rate = 0;
+  for (double time_s = 0; time_s < 10; time_s += 0.02) {
+    tilt = std::max(tilt, TiltDeg(motion(time_s)));
+    rate = std::max(rate, RateDeg(motion, time_s));
+  }
+  EXPECT_GT(tilt, 35);
+  EXPECT_LT(tilt, 50);
+  EXPECT_GT(rate, 110);
+  EXPECT_LT(rate, 220);
 }
 
 }  // namespace

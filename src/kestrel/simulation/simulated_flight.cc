@@ -6,11 +6,10 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/base/hash.h"
+#include "kestrel/base/violations.h"
 #include "kestrel/recording/euroc_text.h"
-#include "kestrel/simulation/flight.h"
-#include "kestrel/simulation/hash.h"
 #include "kestrel/simulation/truth_text.h"
-#include "kestrel/simulation/violations.h"
 
 namespace kestrel {
 namespace {
@@ -19,20 +18,20 @@ namespace {
 constexpr double kMargin_s = 0.5;
 
 // Each has random numbers of its own.
-enum class Part { kErrors = 100, kPoses, kVibration, kGain, kNoise };
-std::uint64_t SeedOf(std::uint64_t seed, Part part) {
+enum class FlightPart { kErrors = 100, kPoses, kVibration, kGain, kNoise };
+std::uint64_t SeedOf(std::uint64_t seed, FlightPart part) {
   return Hash(seed, static_cast<std::uint64_t>(part));
 }
-Random RandomOf(std::uint64_t seed, Part part) { return Random(SeedOf(seed, part)); }
+Random RandomOf(std::uint64_t seed, FlightPart part) { return Random(SeedOf(seed, part)); }
 
 NavigationErrors ErrorsOf(const NavigationOptions& options, std::uint64_t seed) {
-  Random random = RandomOf(seed, Part::kErrors);
+  Random random = RandomOf(seed, FlightPart::kErrors);
   return DrawNavigationErrors(options, &random);
 }
 
 Motion CameraMotion(const Motion& world_from_body, const RigidTransform& body_from_camera,
                     const NavigationOptions& options, std::uint64_t seed) {
-  Random random = RandomOf(seed, Part::kVibration);
+  Random random = RandomOf(seed, FlightPart::kVibration);
   const auto vibration = Vibration(options, &random);
   return [=](double time_s) {
     return world_from_body(time_s) * body_from_camera *
@@ -43,7 +42,7 @@ Motion CameraMotion(const Motion& world_from_body, const RigidTransform& body_fr
 std::function<double(double)> GainControl(const SensorOptions& options, std::uint64_t seed) {
   constexpr double kPeriod_s = 5;
   constexpr double kLeast = 0.1;
-  Random random = RandomOf(seed, Part::kGain);
+  Random random = RandomOf(seed, FlightPart::kGain);
   const auto wander = Wander(options.gain_variation, kPeriod_s, &random);
   return [=](double time_s) { return std::max(1 + wander(time_s), kLeast); };
 }
@@ -84,13 +83,14 @@ SimulatedFlight::SimulatedFlight(const FlightRecordingOptions& options,
 
 cv::Mat SimulatedFlight::Image(std::size_t index, double gain) const {
   const double time_s = times_s_[index];
-  return camera_->Capture(time_s, gain * gain_(time_s), Hash(SeedOf(seed_, Part::kNoise), index));
+  return camera_->Capture(time_s, gain * gain_(time_s),
+                          Hash(SeedOf(seed_, FlightPart::kNoise), index));
 }
 
 void SimulatedFlight::EndBefore(std::size_t index) { times_s_.resize(index); }
 
 NavigationSensor SimulatedFlight::navigation() const {
-  return {options_.navigation, errors_, RandomOf(seed_, Part::kPoses)};
+  return {options_.navigation, errors_, RandomOf(seed_, FlightPart::kPoses)};
 }
 
 double SimulatedFlight::begin_s() const { return -kMargin_s; }

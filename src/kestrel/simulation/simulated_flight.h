@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "kestrel/camera/calibration.h"
-#include "kestrel/simulation/drawing.h"
-#include "kestrel/simulation/flight_camera.h"
-#include "kestrel/simulation/light_options.h"
-#include "kestrel/simulation/navigation_model.h"
+#include "kestrel/flight/navigation_model.h"
+#include "kestrel/rendering/flight_camera.h"
 #include "kestrel/simulation/recording_plan.h"
+#include "kestrel/world/drawing.h"
+#include "kestrel/world/light_options.h"
+#include "kestrel/world/motion.h"
 
 namespace kestrel {
 

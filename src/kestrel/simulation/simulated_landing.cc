@@ -6,9 +6,11 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "kestrel/simulation/landing_stills.h"
-#include "kestrel/simulation/solids.h"
+#include "kestrel/flight/flight_time.h"
+#include "kestrel/rendering/pattern_visibility.h"
 #include "kestrel/simulation/truth_text.h"
+#include "kestrel/stills/landing_stills.h"
+#include "kestrel/world/solids.h"
 
 namespace kestrel {
 namespace {

@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "kestrel/simulation/landing_scene.h"
 #include "kestrel/simulation/simulated_flight.h"
+#include "kestrel/world/landing_scene.h"
+#include "kestrel/world/motion.h"
 
 namespace kestrel {
 

@@ -5,12 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/base/hash.h"
 #include "kestrel/base/options.h"
+#include "kestrel/base/violations.h"
+#include "kestrel/flight/flight_time.h"
 #include "kestrel/recording/euroc_text.h"
-#include "kestrel/simulation/hash.h"
-#include "kestrel/simulation/landing_stills.h"
 #include "kestrel/simulation/truth_text.h"
-#include "kestrel/simulation/violations.h"
+#include "kestrel/stills/landing_stills.h"
 
 namespace kestrel {
 namespace {

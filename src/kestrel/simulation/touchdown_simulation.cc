@@ -9,10 +9,10 @@
 
 #include <Eigen/Geometry>
 
-#include "kestrel/base/options.h"
+#include "kestrel/base/violations.h"
+#include "kestrel/flight/flight_time.h"
 #include "kestrel/pipeline/pattern_area.h"
 #include "kestrel/simulation/truth_text.h"
-#include "kestrel/simulation/violations.h"
 
 namespace kestrel {
 namespace {
@@ -20,7 +20,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kStep_s = 0.005;
+constexpr double kFlightStep_s = 0.005;
 constexpr double kRideOn_s = 1;    // after touchdown, for the navigation's last poses
 constexpr int kExposureDelay = 2;  // images after a new exposure that have the old one
 
@@ -81,7 +81,7 @@ TouchdownSimulation::TouchdownSimulation(const TouchdownSimulationOptions& optio
                                          const CameraCalibration& camera, std::uint64_t seed)
     : options_(Checked(options)),
       seed_(seed),
-      path_(0, kStep_s),
+      path_(0, kFlightStep_s),
       landing_(
           options.recording, options.surroundings, camera,
           MakeLandingScene(options, options.recording.duration_s(), /*channels=*/1, seed),
@@ -125,7 +125,7 @@ std::optional<TouchdownResult> TouchdownSimulation::Fly(const FrameSink& sink) {
   double wind_mps = 0;
   int step = 0;
   for (;; ++step) {
-    const double time_s = step * kStep_s;
+    const double time_s = step * kFlightStep_s;
     path_.Add(multicopter_.world_from_body());
     ReportPoses(time_s);
     TakeImage(time_s);
@@ -135,7 +135,7 @@ std::optional<TouchdownResult> TouchdownSimulation::Fly(const FrameSink& sink) {
     if (HasEnded(time_s, &result)) break;
     const Vector3d wind = wind_(time_s);
     wind_mps += wind.norm();
-    multicopter_.Step(Guide(time_s), wind, kStep_s);
+    multicopter_.Step(Guide(time_s), wind, kFlightStep_s);
   }
   RideOn(result.time_s);
   ReportPoses(path_.end_s());
@@ -240,7 +240,7 @@ void TouchdownSimulation::RideOn(double time_s) {
   const RigidTransform pattern_from_body =
       landing_.world_from_pattern()(time_s).Inverse() * path_.At(time_s);
   while (path_.end_s() < time_s + kRideOn_s) {
-    path_.Add(landing_.world_from_pattern()(path_.end_s() + kStep_s) * pattern_from_body);
+    path_.Add(landing_.world_from_pattern()(path_.end_s() + kFlightStep_s) * pattern_from_body);
   }
 }
 

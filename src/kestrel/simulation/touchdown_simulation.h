@@ -14,14 +14,16 @@
 #include "kestrel/base/options.h"
 #include "kestrel/camera/calibration.h"
 #include "kestrel/camera/exposure_controller.h"
+#include "kestrel/flight/flown_path.h"
+#include "kestrel/flight/multicopter.h"
+#include "kestrel/flight/touchdown_guidance.h"
+#include "kestrel/flight/velocity_command.h"
+#include "kestrel/flight/wind.h"
 #include "kestrel/pipeline/landing_pipeline.h"
-#include "kestrel/simulation/flown_path.h"
-#include "kestrel/simulation/landing_scene.h"
-#include "kestrel/simulation/multicopter.h"
 #include "kestrel/simulation/simulated_landing.h"
-#include "kestrel/simulation/touchdown_guidance.h"
 #include "kestrel/simulation/touchdown_result.h"
-#include "kestrel/simulation/wind.h"
+#include "kestrel/world/landing_scene.h"
+#include "kestrel/world/motion.h"
 
 namespace kestrel {
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/flight/flight_time.h"
 #include "kestrel/simulation/recording_plan.h"
 
 namespace kestrel {
@@ -29,13 +30,6 @@ std::string Indented(const std::string& lines) {
   std::istringstream stream(lines);
   for (std::string line; std::getline(stream, line);) indented += "  " + line + "\n";
   return indented;
-}
-
-Eigen::Vector3d VelocityOf(const Motion& world_from_body, double time_s) {
-  constexpr double kStep_s = 1e-3;
-  return (world_from_body(time_s + kStep_s).translation -
-          world_from_body(time_s - kStep_s).translation) /
-         (2 * kStep_s);
 }
 
 std::string TrueStateText(const Motion& world_from_body, double begin_s, double end_s,

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "kestrel/navigation/pose_history.h"
-#include "kestrel/simulation/world.h"
+#include "kestrel/world/motion.h"
+#include "kestrel/world/world.h"
 
 namespace kestrel {
 
@@ -22,8 +23,5 @@ std::string LandingTruthHeader();
 
 // A text of lines as a part of a YAML map: two blanks before each.
 std::string Indented(const std::string& lines);
-
-// Velocity (m/s) of a body's origin.
-Eigen::Vector3d VelocityOf(const Motion& world_from_body, double time_s);
 
 }  // namespace kestrel

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+
+#include "kestrel/camera/camera_model.h"
+#include "kestrel/recording/frame_source.h"
+
+namespace kestrel {
+
+// Calls 'process' with the frames of a source, one after the other, until its end or Ctrl-C, with a
+// progress bar. Throws InputError when the source does, or a frame is not of the calibration's
+// size.
+void ForEachFrame(FrameSource* source, const CameraIntrinsics& intrinsics,
+                  const std::function<void(const Frame& frame)>& process);
+
+}  // namespace kestrel

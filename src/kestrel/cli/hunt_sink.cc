@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/cli/hunt_sink.h"
+
+#include "kestrel/base/write_file.h"
+#include "kestrel/mapping/map_file.h"
+#include "kestrel/recording/map_inset.h"
+#include "kestrel/recording/object_csv.h"
+#include "kestrel/recording/object_map_csv.h"
+#include "kestrel/recording/object_overlay.h"
+
+namespace kestrel {
+
+HuntSink::HuntSink(const OutputOptions& output, const std::vector<double>& origin)
+    : results_(output, "object_detections.csv", ObjectCsvHeader()), origin_(origin) {}
+
+void HuntSink::Write(const Frame& frame, const HuntObservation& observation,
+                     const HuntPipeline& pipeline) {
+  const ObjectModel& model = pipeline.detector().model();
+  results_.WriteRows(ObjectCsvRows(frame.name, observation, model));
+  if (!results_.wants_pictures()) return;
+  cv::Mat drawn = DrawObjectOverlay(frame.image, model, observation);
+  if (const auto& pose = observation.world_from_camera) {
+    DrawMapInset(pipeline.map().Confirmed(), model, pose->translation.head<2>(), &drawn);
+  }
+  results_.WritePicture(frame.name, drawn);
+}
+
+void HuntSink::WriteMap(const HuntPipeline& pipeline) const {
+  const OutputFolder* const folder = results_.folder();
+  if (!folder) return;
+  const ObjectModel& model = pipeline.detector().model();
+  const std::vector<MappedObject> objects = pipeline.map().Confirmed();
+  WriteFile(folder->NewFile("object_map.csv").string(), ObjectMapCsv(objects, model));
+  WriteFile(folder->NewFile("object_map.json").string(), PrintObjects(objects));
+  if (origin_.empty()) return;
+  WriteFile(folder->NewFile("object_map.geojson").string(),
+            PrintGeoJson(objects, model, {origin_[0], origin_[1]}));
+}
+
+}  // namespace kestrel

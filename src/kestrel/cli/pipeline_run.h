@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "kestrel/base/time.h"
+#include "kestrel/cli/source_arguments.h"
+#include "kestrel/navigation/pose_history.h"
+#include "kestrel/recording/frame.h"
+
+namespace kestrel {
+
+// A pipeline and what becomes of its results: all that the commands differ in.
+class PipelineRun {
+ public:
+  virtual ~PipelineRun() = default;
+
+  virtual void AddPose(const PoseSample& pose) = 0;
+
+  // The last light of a frame is so much later than its time; poses are needed until then.
+  virtual Duration after_frame() const { return Duration::zero(); }
+
+  // Processes the frame and writes what it showed. Returns the time of the detection alone.
+  virtual Duration Process(const Frame& frame) = 0;
+
+  // Writes what there is after the last frame, or after Ctrl-C.
+  virtual void Finish() {}
+
+  // What was found, for the line at the end ("pattern found in 12"); and lines to go below it.
+  virtual std::string Found() const = 0;
+  virtual std::string Remarks() const = 0;
+};
+
+// Gives the run all poses and frames of the source, in the order of time, and says on stderr what
+// was found. When the source ends with an InputError, that is said all the same: the results stay.
+void RunPipeline(const OpenedSource& opened, PipelineRun* run);
+
+}  // namespace kestrel

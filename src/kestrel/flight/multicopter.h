@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kestrel/flight/velocity_command.h"
+#include "kestrel/geometry/rigid_transform.h"
+
+namespace kestrel {
+
+// What the simulated multicopter can do.
+struct MulticopterOptions {
+  double max_tilt_deg = 40;
+  double max_acceleration = 8;   // horizontal, m/s^2
+  double max_speed_mps = 16;     // horizontal
+  double max_climb_mps = 4;      // up and down
+  double attitude_lag_s = 0.06;  // of each of two lags in a row between command and thrust
+  double drag = 0.25;            // acceleration by the air, per m/s of speed through it
+  double velocity_gain = 4;      // of its velocity control, m/s^2 per m/s
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("max_tilt_deg", self.max_tilt_deg, "deg", "largest tilt");
+    visitor("max_acceleration", self.max_acceleration, "m/s^2", "largest horizontal acceleration");
+    visitor("max_speed_mps", self.max_speed_mps, "m/s", "largest horizontal speed");
+    visitor("max_climb_mps", self.max_climb_mps, "m/s", "largest speed up and down");
+    visitor("attitude_lag_s", self.attitude_lag_s, "s",
+            "of each of two lags in a row between the command and the thrust");
+    visitor("drag", self.drag, "1/s", "acceleration by the air, per m/s of speed through it");
+    visitor("velocity_gain", self.velocity_gain, "1/s", "gain of its velocity control");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// A multicopter with its autopilot: a point of mass 1 that is pushed by its thrust, gravity and the
+// air. The thrust's direction is the body's z axis; it follows the command after two lags, which is
+// what attitude control and motors make of it. The autopilot controls the velocity, which it knows
+// (that is what its inertial unit is for), and compensates the air's drag as it feels it, a moment
+// late.
+class Multicopter {
+ public:
+  // Hovers at 'position' and looks towards 'heading' (rad, from x to y).
+  Multicopter(const MulticopterOptions& options, const Eigen::Vector3d& position, double heading);
+
+  // Flies on for 'seconds', a few ms, in the wind (m/s, the air's velocity).
+  void Step(const VelocityCommand& command, const Eigen::Vector3d& wind, double seconds);
+
+  RigidTransform world_from_body() const;
+  const Eigen::Vector3d& position() const { return position_; }
+  const Eigen::Vector3d& velocity() const { return velocity_; }
+
+ private:
+  Eigen::Vector3d WantedThrust(const VelocityCommand& command) const;
+
+  MulticopterOptions options_;
+  Eigen::Vector3d position_;
+  Eigen::Vector3d velocity_{0, 0, 0};
+  Eigen::Vector3d thrust_;   // acceleration by the rotors
+  Eigen::Vector3d lagging_;  // the command after the first lag
+  Eigen::Vector3d felt_drag_{0, 0, 0};
+  double heading_;
+};
+
+}  // namespace kestrel

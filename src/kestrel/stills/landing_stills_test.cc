@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/stills/landing_stills.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <Eigen/Geometry>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/base/error.h"
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using ::testing::HasSubstr;
+
+TEST(LandingStillMakerTest, StillsKeepTheirOptions) {
+  LandingStillOptions options;
+  options.min_altitude_m = 0.35;
+  options.max_altitude_m = 1;
+  const LandingStillMaker maker(options);
+  for (int seed = 0; seed < 6; ++seed) {
+    const LandingStill still = maker.MakePattern(seed);
+    EXPECT_EQ(still.image.size(), cv::Size(752, 480));
+    EXPECT_GE(still.altitude_m, 0.35);
+    EXPECT_LE(still.altitude_m, 1);
+    EXPECT_GE(still.visible_fraction, 0.2);
+    EXPECT_GE(still.ring_minor_px, 6);
+    EXPECT_GE(still.ring_major_px, 13);
+    const double tilt = std::acos(-still.up_in_camera.z());
+    EXPECT_LE(tilt, 40.001 * std::numbers::pi / 180);
+    const Vector3d camera_in_pattern = still.camera_from_pattern.Inverse().translation;
+    EXPECT_NEAR(camera_in_pattern.z(), still.altitude_m, 1e-9);
+  }
+}
+
+// Mean gray value where the still shows ink ('ink') or paper between the arms.
+double MeanOnPattern(const LandingStill& still, const CameraModel& camera, bool ink) {
+  double sum = 0;
+  int count = 0;
+  const double radius = ink ? 0.45 : 0.25;
+  for (double angle = std::numbers::pi / 4; angle < 7; angle += std::numbers::pi / 2) {
+    const Vector3d point(radius * std::cos(angle), radius * std::sin(angle), 0);
+    Vector2d pixel;
+    if (camera.Project(still.camera_from_pattern * point, &pixel) != ProjectionStatus::kOk) {
+      continue;
+    }
+    sum += still.image.at<std::uint8_t>(std::lround(pixel.y()), std::lround(pixel.x()));
+    ++count;
+  }
+  return sum / count;
+}
+
+TEST(LandingStillMakerTest, TruthIsWhereThePatternIs) {
+  LandingStillOptions options;
+  options.min_visible_fraction = 1;
+  options.min_ring_minor_px = 30;
+  const LandingStillMaker maker(options);
+  for (int seed = 0; seed < 8; ++seed) {
+    const LandingStill still = maker.MakePattern(seed);
+    EXPECT_LT(MeanOnPattern(still, maker.camera(), true) + 8,
+              MeanOnPattern(still, maker.camera(), false))
+        << "seed " << seed;
+  }
+}
+
+TEST(LandingStillMakerTest, SameSeedSameBytes) {
+  const LandingStillMaker maker(LandingStillOptions{});
+  const LandingStillMaker twin(LandingStillOptions{});
+  const cv::Mat pattern = maker.MakePattern(4).image;
+  const cv::Mat lookalike = maker.MakeLookalikes(4).image;
+  EXPECT_EQ(cv::norm(pattern, twin.MakePattern(4).image, cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(lookalike, twin.MakeLookalikes(4).image, cv::NORM_INF), 0);
+  EXPECT_GT(cv::norm(pattern, twin.MakePattern(5).image, cv::NORM_INF), 0);
+}
+
+TEST(LandingStillMakerTest, LookalikesHaveNames) {
+  const LandingStillMaker maker(LandingStillOptions{});
+  for (int seed = 0; seed < 4; ++seed) {
+    const LookalikeStill still = maker.MakeLookalikes(seed);
+    EXPECT_FALSE(still.names.empty());
+    EXPECT_LE(still.names.size(), 5u);
+    EXPECT_EQ(still.image.type(), CV_8UC1);
+  }
+}
+
+std::string ErrorOf(const LandingStillOptions& options) {
+  try {
+    LandingStillMaker(options).MakePattern(1);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(LandingStillMakerTest, RefusesBadOptionsInWords) {
+  LandingStillOptions options;
+  options.max_altitude_m = 1;
+  options.max_tilt_deg = 85;
+  options.pattern.ring_width_m = 0.6;
+  EXPECT_THAT(ErrorOf(options), HasSubstr("max_altitude_m is 1, expected at least min_altitude_m"));
+  EXPECT_THAT(ErrorOf(options), HasSubstr("max_tilt_deg is 85, expected 0 to 80"));
+  EXPECT_THAT(ErrorOf(options), HasSubstr("pattern.ring_width_m is 0.6"));
+
+  LandingStillOptions too_high;
+  too_high.min_altitude_m = too_high.max_altitude_m = 100;
+  EXPECT_THAT(ErrorOf(too_high), HasSubstr("no pose at an altitude of 100.00 m"));
+}
+
+}  // namespace
+}  // namespace kestrel
