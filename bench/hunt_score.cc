@@ -92,8 +92,7 @@ void ScoreDigits(const HuntObservation& observation, const std::vector<TrueSight
       if (!detection.digits || (detection.center_px - sighting.center_px).norm() > kReach_px) {
         continue;
       }
-      const auto best = std::max_element(detection.digits->begin(), detection.digits->end());
-      const int found = static_cast<int>(best - detection.digits->begin());
+      const int found = LikeliestDigit(*detection.digits).digit;
       const bool is_right = without_up(found) == without_up(digits.at(sighting.id));
       Count(is_right, &score->digits);
       if (detection.location->position.norm() <= kNear_m) Count(is_right, &score->near_digits);

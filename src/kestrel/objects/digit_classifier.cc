@@ -44,6 +44,11 @@ DigitModel CountPixels(const std::array<std::vector<DigitImage>, kDigitCount>& i
 
 }  // namespace
 
+LikelyDigit LikeliestDigit(const DigitLikelihoods& likelihoods) {
+  const auto best = std::max_element(likelihoods.begin(), likelihoods.end());
+  return {static_cast<int>(best - likelihoods.begin()), *best};
+}
+
 DigitModel ParseDigitModel(const std::string& text, const std::string& file) {
   DigitModel model;
   std::istringstream lines(text);

@@ -3,11 +3,20 @@
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
 
 namespace kestrel {
+namespace {
+
+constexpr int kNone = std::numeric_limits<int>::max();
+
+void Extend(int x, Eigen::Vector2i* extent) {
+  *extent = {std::min(extent->x(), x), std::max(extent->y(), x)};
+}
+
+}  // namespace
 
 void FindBorder(const Segment& segment, const cv::Size& image_size, SegmentBorder* border) {
-  constexpr int kNone = std::numeric_limits<int>::max();
   const auto is_inside = [&](const Eigen::Vector2d& p) {
     return p.x() > 1 && p.y() > 1 && p.x() < image_size.width - 2 && p.y() < image_size.height - 2;
   };
@@ -15,11 +24,8 @@ void FindBorder(const Segment& segment, const cv::Size& image_size, SegmentBorde
   auto& extents = border->extents;
   extents.assign(height + segment.width(), Eigen::Vector2i(kNone, -kNone));
   for (const PixelPosition& at : segment.pixels) {
-    const auto extend = [](Eigen::Vector2i& extent, int x) {
-      extent = {std::min(extent.x(), x), std::max(extent.y(), x)};
-    };
-    extend(extents[at.v - segment.min_v], at.u);
-    extend(extents[height + at.u - segment.min_u], at.v);
+    Extend(at.u, &extents[at.v - segment.min_v]);
+    Extend(at.v, &extents[height + at.u - segment.min_u]);
   }
   border->points.clear();
   border->cut.clear();
@@ -33,6 +39,28 @@ void FindBorder(const Segment& segment, const cv::Size& image_size, SegmentBorde
       } else {
         add({segment.min_u + i - height, x});
       }
+    }
+  }
+}
+
+void AddDiagonalEnds(const Segment& segment, SegmentBorder* border) {
+  // Along a falling diagonal u - v stays and u + v grows, along a rising one the other way round.
+  const int count = segment.width() + segment.height();
+  const int first_sum = segment.min_u + segment.min_v;
+  const int first_difference = segment.min_u - segment.max_v;
+  auto& extents = border->extents;
+  extents.assign(2 * count, Eigen::Vector2i(kNone, -kNone));
+  for (const PixelPosition& at : segment.pixels) {
+    Extend(at.u + at.v, &extents[at.u - at.v - first_difference]);
+    Extend(at.u - at.v, &extents[count + at.u + at.v - first_sum]);
+  }
+  const double half = std::numbers::sqrt2 / 2;
+  for (int i = 0; i < 2 * count; ++i) {
+    if (extents[i].x() == kNone) continue;
+    for (const double end : {extents[i].x() - half, extents[i].y() + half}) {
+      const double sum = i < count ? end : first_sum + i - count;
+      const double difference = i < count ? first_difference + i : end;
+      border->points.emplace_back(0.5 * (sum + difference), 0.5 * (sum - difference));
     }
   }
 }
