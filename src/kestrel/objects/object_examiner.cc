@@ -7,8 +7,6 @@
 
 #include <Eigen/Geometry>
 
-#include "kestrel/objects/touching_discs.h"
-
 namespace kestrel {
 namespace {
 
@@ -265,52 +263,6 @@ double ObjectExaminer::MisfitOfDisc(const DiscOutline& outline, double radius_px
                              : (shape.circularity - 1) / options.max_circularity_error;
   const double uncolored = (1 - ColoredShare(ellipse, kClearOfBlur, segment.label)) / kMaxUncolored;
   return square(edge) + square(hidden) + square(filling) + square(uncolored);
-}
-
-bool ObjectExaminer::TestMerged(const Segment& segment, const SegmentShape& shape,
-                                ObjectDetection* detection) {
-  constexpr double kMaxCircularityError = 0.4;  // three discs in a row have 0.35
-  constexpr double kMaxAspect = 4;              // three discs in a row have 3
-  if (segment.touches_border || std::abs(shape.circularity - 1) > kMaxCircularityError ||
-      shape.ellipse.semi_major > kMaxAspect * shape.ellipse.semi_minor) {
-    return false;
-  }
-  const auto& classes = detector_.model_.classes;
-  const auto is_candidate = [&](const ObjectClass& object) {
-    return object.color + 1 == segment.label && object.shape == ObjectShape::kDisc;
-  };
-  if (std::ranges::none_of(classes, is_candidate)) return false;
-  const PlaneBelow plane(hint_.up_in_camera.value_or(-detection->bearing));
-  const auto on_plane = [&](const Eigen::Vector2d& pixel) { return plane.PointOf(RayAt(pixel)); };
-  FindBorder(segment, image_.size(), &workspace_->border);
-  AddDiagonalEnds(segment, &workspace_->border);
-  for (Eigen::Vector2d& point : workspace_->border.points) point = on_plane(point);
-  workspace_->inside.clear();
-  const std::size_t colored = segment.pixels.size() - segment.ambiguous_pixels;
-  for (std::size_t i = 0; i < colored; i += 1 + colored / kTouchingDiscsPoints) {
-    workspace_->inside.push_back(on_plane({segment.pixels[i].u, segment.pixels[i].v}));
-  }
-  const Eigen::Vector2d& center = shape.moments.centroid;
-  const double pixel = (on_plane(center + Eigen::Vector2d(1, 0)) - on_plane(center)).norm();
-  const auto radius = RadiusOfTouchingDiscs(workspace_->inside, workspace_->border.points, pixel);
-  if (!radius) return false;
-  for (std::size_t i = 0; i < classes.size(); ++i) {
-    if (!is_candidate(classes[i]) || !IsOfSize(*radius, classes[i])) continue;
-    detection->class_index = i;
-    detection->class_probability = ClassProbability(classes[i], detection->color_probabilities);
-    detection->completeness = Completeness::kMerged;
-    return true;
-  }
-  return false;
-}
-
-// 'radius': on the plane at unit distance below the camera.
-bool ObjectExaminer::IsOfSize(double radius, const ObjectClass& disc) const {
-  if (!Ground().is_known()) return true;
-  const double below_m = *hint_.camera_height_m - disc.height_m;
-  const double expected_m = disc.size_m / 2;
-  return below_m > 0 &&
-         std::abs(radius * below_m - expected_m) <= detector_.options_.ground_tolerance * expected_m;
 }
 
 double ObjectExaminer::ClassProbability(const ObjectClass& object,

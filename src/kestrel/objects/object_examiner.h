@@ -67,7 +67,12 @@ class ObjectExaminer {
                       const SegmentShape& shape, const Ellipse& ellipse) const;
   // Whether the segment is discs of a class that touch each other.
   bool TestMerged(const Segment& segment, const SegmentShape& shape, ObjectDetection* detection);
-  bool IsOfSize(double radius, const ObjectClass& disc) const;
+  template <class OnPlane>
+  std::optional<double> RadiusOfDiscsIn(const Segment& segment, const OnPlane& on_plane,
+                                        double pixel);
+  // Of a disc on the ground, on the plane at unit distance below the camera; nothing when the
+  // ground is not known.
+  std::optional<double> RadiusBelow(const ObjectClass& disc) const;
   // Of the class, given its shape and the probabilities of the colours.
   double ClassProbability(const ObjectClass& object, const ColorProbabilities& colors) const;
   // Whether an object at 'position' by its size is on the ground; nothing when the ground is not

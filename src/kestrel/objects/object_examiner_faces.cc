@@ -24,7 +24,12 @@ ObjectExaminer::Outcome ObjectExaminer::TestCuboid(const Segment& segment,
                                                    const ObjectClass& object,
                                                    ObjectDetection* detection,
                                                    ObjectStage* reached) {
-  if (segment.ambiguous_pixels == 0) return Outcome::kNone;
+  // What is white, of all that is seen of a cuboid: its digit, which is 2 to 30 of 100.
+  constexpr double kMinDigitShare = 0.015;
+  constexpr double kMaxDigitShare = 0.4;
+  const auto pixels = static_cast<double>(segment.pixels.size());
+  const double digit_share = segment.ambiguous_pixels / pixels;
+  if (digit_share < kMinDigitShare || digit_share > kMaxDigitShare) return Outcome::kNone;
   if (!hint_.up_in_camera) {
     const auto found = FindCuboidFace(image_, segment, &workspace_->face);
     return found ? TestFace(*found, object, detection, reached) : Outcome::kNone;
@@ -162,19 +167,22 @@ std::array<Eigen::Vector3d, 4> ObjectExaminer::RectangleAround(const Segment& se
       on_plane(shape.ellipse.center + shape.ellipse.semi_major * shape.ellipse.major_axis());
   const Eigen::Vector3d along = (end - origin).normalized();
   const Eigen::Vector3d across = up.cross(along).normalized();
-  const auto place = [&](const PixelPosition& at) {
-    const Eigen::Vector3d offset = on_plane(Eigen::Vector2d(at.u, at.v)) - origin;
+  const auto place = [&](const Eigen::Vector2d& at) {
+    const Eigen::Vector3d offset = on_plane(at) - origin;
     return Eigen::Vector2d(along.dot(offset), across.dot(offset));
   };
   Eigen::AlignedBox2d extent;
-  for (const PixelPosition& at : segment.pixels) extent.extend(place(at));
+  FindBorderPixels(segment, &workspace_->border);
+  for (Eigen::Vector2d& at : workspace_->border.points) {
+    at = place(at);
+    extent.extend(at);
+  }
   // A shaking camera's rows bend what is long: its middle is where its middle part is.
   const double middle = extent.center().x();
   const double reach = kMiddlePart / 2 * extent.sizes().x();
   Eigen::AlignedBox2d middle_part;
-  for (const PixelPosition& at : segment.pixels) {
-    const Eigen::Vector2d here = place(at);
-    if (std::abs(here.x() - middle) <= reach) middle_part.extend(here);
+  for (const Eigen::Vector2d& at : workspace_->border.points) {
+    if (std::abs(at.x() - middle) <= reach) middle_part.extend(at);
   }
   if (!middle_part.isEmpty()) {
     extent.min().y() = middle_part.min().y();

@@ -44,7 +44,7 @@ double DepthOf(const Eigen::Vector2d& point, std::span<const Eigen::Vector2d> bo
 // The deepest points that are far enough from each other, as long as they are about as deep.
 Discs FindCenters(std::span<const Eigen::Vector2d> inside,
                   std::span<const Eigen::Vector2d> border) {
-  constexpr double kMinDepth = 0.85;
+  constexpr double kMinDepth = 0.7;  // of points near a centre, more than in a neck
   std::array<double, 2 * kTouchingDiscsPoints> depths;
   const std::size_t size = std::min(inside.size(), depths.size());
   for (std::size_t i = 0; i < size; ++i) depths[i] = DepthOf(inside[i], border);
@@ -92,8 +92,8 @@ void Refine(std::span<const Eigen::Vector2d> border, Discs* discs) {
 
 // Whether the border is on the circles and takes enough of each, all around the others.
 bool IsBorderOf(const Discs& discs, std::span<const Eigen::Vector2d> border, double pixel) {
-  constexpr double kTolerance = 0.07;
-  constexpr double kMinShare = 0.92;
+  constexpr double kTolerance = 0.05;
+  constexpr double kMinShare = 0.96;
   constexpr std::size_t kSectors = 16;
   constexpr double kMinSeen = 0.3;  // of a disc with three others around it
   std::array<std::bitset<kSectors>, kMaxDiscs> seen;

@@ -10,7 +10,7 @@
 namespace kestrel {
 
 // As many points inside of a figure are enough for RadiusOfTouchingDiscs.
-inline constexpr std::size_t kTouchingDiscsPoints = 300;
+inline constexpr std::size_t kTouchingDiscsPoints = 150;
 
 // The radius of the discs when a figure on a plane is two to eight discs of one size that touch
 // each other: every one lies beside another, and the border is made of arcs of their circles.
