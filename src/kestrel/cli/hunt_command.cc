@@ -109,8 +109,40 @@ class Summary {
   std::array<std::size_t, kObjectStageCount> passed_{};
 };
 
+// Says once what the objects say of the ground, where that contradicts what is told.
+class GroundWarning {
+ public:
+  explicit GroundWarning(std::optional<double> altitude_m) : altitude_m_(altitude_m) {}
+
+  void Check(const HuntPipeline& pipeline, const HuntObservation& observation,
+             const ProgressBar& progress) {
+    const std::optional<GroundHeight> higher = pipeline.ground_contradiction();
+    if (was_said_ || !higher) return;
+    was_said_ = true;
+    if (!observation.world_from_camera) {
+      const double height_m = *altitude_m_ - higher->height_m;
+      progress.Say(
+          fmt::format("by the size of the objects the camera is {0:.2f} m above the ground (standard "
+                      "deviation {1:.2f} m), --altitude says {2:g} m: set --altitude {0:.2f}",
+                      height_m, higher->sigma_m, *altitude_m_));
+      return;
+    }
+    const double ground_m = pipeline.options().ground_height_m;
+    progress.Say(fmt::format(
+        "by the size of the objects the ground is at z = {0:.2f} m of the navigation's world "
+        "(standard deviation {1:.2f} m), hunt.ground_height_m says {2:g} m: set "
+        "hunt.ground_height_m={0:.2f}, or correct the navigation's z or the camera's mount",
+        ground_m + higher->height_m, higher->sigma_m, ground_m));
+  }
+
+ private:
+  std::optional<double> altitude_m_;
+  bool was_said_ = false;
+};
+
 void ProcessFrames(FrameSource* source, const CameraCalibration& calibration,
-                   HuntPipeline* pipeline, HuntSink* sink, Summary* summary) {
+                   HuntPipeline* pipeline, HuntSink* sink, GroundWarning* ground,
+                   Summary* summary) {
   // The last row of a rolling shutter is later than the image.
   const Duration lead = calibration.clock_offset.value_or(Duration::zero()) +
                         DurationFromSeconds(pipeline->options().readout_s / 2);
@@ -122,6 +154,7 @@ void ProcessFrames(FrameSource* source, const CameraCalibration& calibration,
     poses.FeedUntil(frame.time + lead, pipeline);
     const HuntObservation& observation = pipeline->Process(frame.image, frame.time);
     sink->Write(frame, observation, *pipeline);
+    ground->Check(*pipeline, observation, progress);
     summary->Add(observation);
     progress.Show(summary->frames());
   }
@@ -141,10 +174,11 @@ void RunHunt(const HuntArguments& arguments) {
   HuntPipeline pipeline(calibration, model, grid, options);
   pipeline.SetAltitude(arguments.source.altitude_m);
   HuntSink sink(arguments, source->rate_hz());
+  GroundWarning ground(arguments.source.altitude_m);
   Summary summary;
   CatchInterrupts();
   try {
-    ProcessFrames(source.get(), calibration, &pipeline, &sink, &summary);
+    ProcessFrames(source.get(), calibration, &pipeline, &sink, &ground, &summary);
   } catch (const InputError&) {
     if (summary.frames() > 0) summary.Print();  // these stay
     throw;

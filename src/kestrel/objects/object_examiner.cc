@@ -165,11 +165,14 @@ ObjectExaminer::Outcome ObjectExaminer::TestDisc(const Segment& segment, const S
   const double distance = position.norm();
   if (!std::isfinite(distance) || !(distance > 0)) return Outcome::kNone;
   detection->misfit = MisfitOfDisc(*outline, radius_px, segment, shape, *ellipse);
+  // A part must look the more like a disc: the corner of a triangle may have an ellipse through it.
+  constexpr double kMaxMisfitOfPart = 0.6;
+  if (segment.touches_border && detection->misfit > kMaxMisfitOfPart) return Outcome::kNone;
   Outcome outcome = Outcome::kObject;
-  if (const std::optional<bool> is_on_ground = IsOnGround(position, object)) {
-    // A part of an outline says less: its size must say more.
-    const double tolerance =
-        segment.touches_border ? 0.5 * options.ground_tolerance : options.ground_tolerance;
+  // A part of an outline says less of the distance, and its shape must say more.
+  const double tolerance = (segment.touches_border ? 0.7 : 1) * options.ground_tolerance;
+  const double distance_tolerance = (segment.touches_border ? 1.4 : 1) * options.ground_tolerance;
+  if (const auto is_on_ground = IsOnGround(position, object, distance_tolerance)) {
     const double slack_rad = 1 / detector_.focal_px_;
     const auto looks_like_disc_at = [&](double there) {
       return LooksLikeDisc(outline->cone, position / distance, there, *hint_.up_in_camera, radius_m,
@@ -284,12 +287,11 @@ std::optional<double> ObjectExaminer::DistanceOnGround(const Eigen::Vector3d& po
 }
 
 std::optional<bool> ObjectExaminer::IsOnGround(const Eigen::Vector3d& position,
-                                               const ObjectClass& object) const {
+                                               const ObjectClass& object, double tolerance) const {
   if (!Ground().is_known()) return std::nullopt;
-  const ObjectDetectorOptions& options = detector_.options_;
   const auto on_ground = DistanceOnGround(position, object);
   return on_ground && std::abs(position.norm() - *on_ground) <=
-                          options.ground_tolerance * *on_ground + options.ground_tolerance_m;
+                          tolerance * *on_ground + detector_.options_.ground_tolerance_m;
 }
 
 void ObjectExaminer::SetLocation(const Eigen::Vector3d& by_size, const ObjectClass& object,

@@ -75,9 +75,10 @@ class ObjectExaminer {
   std::optional<double> RadiusBelow(const ObjectClass& disc) const;
   // Of the class, given its shape and the probabilities of the colours.
   double ClassProbability(const ObjectClass& object, const ColorProbabilities& colors) const;
-  // Whether an object at 'position' by its size is on the ground; nothing when the ground is not
-  // known.
-  std::optional<bool> IsOnGround(const Eigen::Vector3d& position, const ObjectClass& object) const;
+  // Whether an object at 'position' by its size is on the ground, to a share 'tolerance' of its
+  // distance; nothing when the ground is not known.
+  std::optional<bool> IsOnGround(const Eigen::Vector3d& position, const ObjectClass& object,
+                                 double tolerance) const;
   std::optional<double> DistanceOnGround(const Eigen::Vector3d& position,
                                          const ObjectClass& object) const;
   // 'by_size': where the object is by its size, with 'relative_sigma' of that distance.

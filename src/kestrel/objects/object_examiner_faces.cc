@@ -24,9 +24,10 @@ ObjectExaminer::Outcome ObjectExaminer::TestCuboid(const Segment& segment,
                                                    const ObjectClass& object,
                                                    ObjectDetection* detection,
                                                    ObjectStage* reached) {
-  // What is white, of all that is seen of a cuboid: its digit, which is 2 to 30 of 100.
+  // What is white, of all that is seen of a cuboid: its digit, a fiftieth to a third; more where
+  // the paint is bleached.
   constexpr double kMinDigitShare = 0.015;
-  constexpr double kMaxDigitShare = 0.4;
+  constexpr double kMaxDigitShare = 0.7;
   const auto pixels = static_cast<double>(segment.pixels.size());
   const double digit_share = segment.ambiguous_pixels / pixels;
   if (digit_share < kMinDigitShare || digit_share > kMaxDigitShare) return Outcome::kNone;
@@ -228,8 +229,8 @@ ObjectExaminer::Outcome ObjectExaminer::LocateFace(const std::array<Eigen::Vecto
   }
   const double length = is_bar ? face->sides.maxCoeff() : std::sqrt(face->sides.prod());
   const Eigen::Vector3d position = object.size_m / length * face->center;
-  const Outcome outcome =
-      IsOnGround(position, object).value_or(true) ? Outcome::kObject : Outcome::kElsewhere;
+  const bool is_on_ground = IsOnGround(position, object, options.ground_tolerance).value_or(true);
+  const Outcome outcome = is_on_ground ? Outcome::kObject : Outcome::kElsewhere;
   detection->misfit +=
       is_bar ? Square((side_ratio * object.width_m / object.size_m - 1) / options.ground_tolerance)
              : Square(face->skew / kMaxSkew) + Square((side_ratio - 1) / (kMaxSideRatio - 1));
