@@ -140,8 +140,7 @@ HuntScore ScoreHunt(const std::string& folder) {
   score.comparisons = CompareObjects(truth, objects, sightings, ParseObjectRows(csv, name), name);
   for (const ObjectComparison& c : score.comparisons) {
     if (!c.IsObject() || !c.IsDetected()) continue;
-    const std::string kind =
-        c.is_wanted ? c.true_shape + ", wanted" : "cut off, hidden or small";
+    const std::string kind = c.is_wanted ? c.true_shape + ", wanted" : "cut off, hidden or small";
     score.center_errors_px[kind].push_back(c.center_error_px);
     if (c.is_wanted) score.center_errors_px["all, wanted"].push_back(c.center_error_px);
   }

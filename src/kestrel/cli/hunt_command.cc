@@ -121,17 +121,18 @@ class GroundWarning {
     was_said_ = true;
     if (!observation.world_from_camera) {
       const double height_m = *altitude_m_ - higher->height_m;
-      progress.Say(
-          fmt::format("by the size of the objects the camera is {0:.2f} m above the ground (standard "
-                      "deviation {1:.2f} m), --altitude says {2:g} m: set --altitude {0:.2f}",
-                      height_m, higher->sigma_m, *altitude_m_));
+      progress.Say(fmt::format(
+          "by the size of the objects the camera is {0:.2f} m above the ground (standard "
+          "deviation {1:.2f} m), --altitude says {2:g} m: set --altitude {0:.2f}",
+          height_m, higher->sigma_m, *altitude_m_));
       return;
     }
     const double ground_m = pipeline.options().ground_height_m;
     progress.Say(fmt::format(
         "by the size of the objects the ground is at z = {0:.2f} m of the navigation's world "
         "(standard deviation {1:.2f} m), hunt.ground_height_m says {2:g} m: set "
-        "hunt.ground_height_m={0:.2f}, or correct the navigation's z or the camera's mount",
+        "hunt.ground_height_m={0:.2f}, or correct the navigation's z, its clock or the camera's "
+        "mount",
         ground_m + higher->height_m, higher->sigma_m, ground_m));
   }
 

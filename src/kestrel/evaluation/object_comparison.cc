@@ -169,7 +169,11 @@ std::vector<MapComparison> CompareMap(const TrueObjects& objects,
     const MapRow& row = rows[match.second];
     const TrueSighting* truth = NearestSighting(sightings, match.first, row.last_seen);
     const TrueObject& object = objects.at(match.first);
-    map.push_back({object.class_name, row.class_name, row.shape == object.shape, {}, match.distance,
+    map.push_back({object.class_name,
+                   row.class_name,
+                   row.shape == object.shape,
+                   {},
+                   match.distance,
                    (row.velocity_in_world - truth->velocity_in_world).norm()});
     if (object.digit) {
       map.back().is_digit_right = row.digit && LooksAlike(row.digit->digit, *object.digit);

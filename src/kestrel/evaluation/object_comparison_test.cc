@@ -61,9 +61,9 @@ TEST(CompareObjects, FoundMissedFalseAndOfAnotherClass) {
 
   const ReportTable table = DetectionTable(comparisons);
   const auto& all = table.rows.back();
-  EXPECT_THAT(std::vector(all.begin(), all.begin() + 10),
-              ElementsAre("all", "2", "2", "100.0", "34.2 to 100.0", "3", "1", "66.7", "50.0",
-                          "50.0"));
+  EXPECT_THAT(
+      std::vector(all.begin(), all.begin() + 10),
+      ElementsAre("all", "2", "2", "100.0", "34.2 to 100.0", "3", "1", "66.7", "50.0", "50.0"));
   EXPECT_THAT(ConfusionTable(comparisons).rows,
               ElementsAre(ElementsAre("blue", "1", "0"), ElementsAre("red", "0", "1")));
 }

@@ -25,7 +25,7 @@ struct ObjectRow {
   double semi_major_px = 0;
   std::string class_name;
   double class_probability = 0;
-  std::string shape;                                // disc, cuboid, bar, merged
+  std::string shape;  // disc, cuboid, bar, merged
   std::optional<SaidDigit> digit;
   std::optional<Eigen::Vector3d> center_in_camera;  // of all but merged ones
   std::optional<Eigen::Vector3d> center_in_world;

@@ -62,15 +62,15 @@ const std::string& ListedClass(const ObjectComparison& c) {
 }  // namespace
 
 ReportTable DetectionTable(std::span<const ObjectComparison> comparisons) {
-  ReportTable table{"objects",
-                    "Detection of objects",
-                    "Wanted: sightings wholly in view with at least 50 px. False: detections of "
-                    "nothing that is there, under the class they were given.",
-                    {"class", "wanted", "found", "recall, %", "95 % interval, %", "detections",
-                     "false", "precision, %", "class right, %", "shape right, %",
-                     "centre median, px", "95 %, px",
-                     "depth median, %", "world median, m", "95 %, m"},
-                    {}};
+  ReportTable table{
+      "objects",
+      "Detection of objects",
+      "Wanted: sightings wholly in view with at least 50 px. False: detections of "
+      "nothing that is there, under the class they were given.",
+      {"class", "wanted", "found", "recall, %", "95 % interval, %", "detections", "false",
+       "precision, %", "class right, %", "shape right, %", "centre median, px", "95 %, px",
+       "depth median, %", "world median, m", "95 %, m"},
+      {}};
   std::map<std::string, DetectionTally> by_class;
   DetectionTally all;
   for (const ObjectComparison& comparison : comparisons) {
@@ -111,7 +111,8 @@ ReportTable ProbabilityTable(std::span<const ObjectComparison> comparisons) {
     int right = 0;
   };
   std::array<Tally, kBins.size()> classes, digits;
-  const auto add = [&](double probability, bool is_right, std::array<Tally, kBins.size()>* tallies) {
+  const auto add = [&](double probability, bool is_right,
+                       std::array<Tally, kBins.size()>* tallies) {
     for (std::size_t i = 0; i < kBins.size(); ++i) {
       if (!kBins[i].Contains(probability)) continue;
       (*tallies)[i].said.push_back(probability);
@@ -120,8 +121,8 @@ ReportTable ProbabilityTable(std::span<const ObjectComparison> comparisons) {
   };
   for (const ObjectComparison& c : comparisons) {
     if (!c.IsDetected()) continue;
-    add(c.class_probability,
-        c.true_class == c.detected_class && c.true_shape == c.detected_shape, &classes);
+    add(c.class_probability, c.true_class == c.detected_class && c.true_shape == c.detected_shape,
+        &classes);
     if (c.digit && c.true_digit) {
       add(c.digit->probability, c.digit->digit == *c.true_digit, &digits);
     }
@@ -172,7 +173,8 @@ ReportTable MapTable(std::span<const MapComparison> comparisons) {
         std::to_string(entries), std::to_string(entries - found),
         FormatPercent(Share(found, entries)), FormatPercent(Share(right_class, found)),
         FormatPercent(Share(right_shape, found)), std::to_string(digits),
-        std::to_string(right_digits), FormatFixed(Mean(position_errors_m), 3), FormatFixed(Quantile(position_errors_m, 1), 3),
+        std::to_string(right_digits), FormatFixed(Mean(position_errors_m), 3),
+        FormatFixed(Quantile(position_errors_m, 1), 3),
         FormatFixed(Quantile(velocity_errors_mps, 1), 3)}}};
 }
 

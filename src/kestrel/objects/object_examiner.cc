@@ -258,12 +258,11 @@ double ObjectExaminer::MisfitOfDisc(const DiscOutline& outline, double radius_px
   constexpr double kMaxUncolored = 0.3;
   const auto square = [](double x) { return x * x; };
   const ObjectDetectorOptions& options = detector_.options_;
-  const double edge = outline.residual_px /
-                      (options.outline_tolerance * radius_px + options.outline_tolerance_px);
+  const double edge =
+      outline.residual_px / (options.outline_tolerance * radius_px + options.outline_tolerance_px);
   const double hidden = (1 - (1 - outline.gap) * outline.fit_share) / options.max_gap;
-  const double filling = segment.touches_border
-                             ? 0
-                             : (shape.circularity - 1) / options.max_circularity_error;
+  const double filling =
+      segment.touches_border ? 0 : (shape.circularity - 1) / options.max_circularity_error;
   const double uncolored = (1 - ColoredShare(ellipse, kClearOfBlur, segment.label)) / kMaxUncolored;
   return square(edge) + square(hidden) + square(filling) + square(uncolored);
 }
@@ -302,8 +301,9 @@ void ObjectExaminer::SetLocation(const Eigen::Vector3d& by_size, const ObjectCla
   double sigma_m = relative_sigma * distance;
   if (hint_.up_in_camera) {
     const double descent = -hint_.up_in_camera->dot(ray);
-    detection->height = {distance * descent + 0.5 * (object.height_m + object.max_height_m),
-                         std::hypot(sigma_m * descent, 0.5 * (object.max_height_m - object.height_m))};
+    detection->height = {
+        distance * descent + 0.5 * (object.height_m + object.max_height_m),
+        std::hypot(sigma_m * descent, 0.5 * (object.max_height_m - object.height_m))};
   }
   const auto on_ground = DistanceOnGround(by_size, object);
   if (on_ground && outcome == Outcome::kObject) {

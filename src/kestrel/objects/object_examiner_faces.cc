@@ -41,8 +41,7 @@ ObjectExaminer::Outcome ObjectExaminer::TestCuboid(const Segment& segment,
   if (outcome == Outcome::kObject || !hint_.camera_height_m) return outcome;
   // The height may be wrong: a cuboid of another size may fit, but then not of the right one.
   *detection = before;
-  const Outcome of_any_size =
-      TestSilhouette(segment, object, std::nullopt, detection, reached);
+  const Outcome of_any_size = TestSilhouette(segment, object, std::nullopt, detection, reached);
   return of_any_size == Outcome::kElsewhere ? of_any_size : Outcome::kNone;
 }
 

@@ -34,9 +34,9 @@ bool ObjectExaminer::TestMerged(const Segment& segment, const SegmentShape& shap
   for (std::size_t i = 0; i < classes.size(); ++i) {
     if (classes[i].color + 1 != segment.label || classes[i].shape != ObjectShape::kDisc) continue;
     const std::optional<double> expected = RadiusBelow(classes[i]);
-    const double count = expected ? shape.moments.area * pixel_area /
-                                        (std::numbers::pi * *expected * *expected)
-                                  : kMinCount;
+    const double count =
+        expected ? shape.moments.area * pixel_area / (std::numbers::pi * *expected * *expected)
+                 : kMinCount;
     if (!(count >= kMinCount && count <= kMaxCount)) continue;
     if (!radius) radius = RadiusOfDiscsIn(segment, on_plane, std::sqrt(pixel_area));
     if (!radius) return false;

@@ -72,7 +72,8 @@ Figure Star(int tips, double radius) {
     const Eigen::Vector2d notch = 0.4 * Eigen::Vector2d(std::cos(step / 2), std::sin(step / 2));
     const Eigen::Vector2d edge = notch - Eigen::Vector2d(1, 0);
     const Eigen::Vector2d to =
-        at.norm() / radius * Eigen::Vector2d(std::cos(turn), std::sin(turn)) - Eigen::Vector2d(1, 0);
+        at.norm() / radius * Eigen::Vector2d(std::cos(turn), std::sin(turn)) -
+        Eigen::Vector2d(1, 0);
     return edge.x() * to.y() - edge.y() * to.x() >= 0;
   };
 }
@@ -123,8 +124,7 @@ TEST(RadiusOfTouchingDiscs, OtherFiguresAreNone) {
       {"three lobes", Lobes(3, 1.4, 0.3)},
       {"four lobes", Lobes(4, 1.4, 0.3)},
       {"two squares that touch", either(moved(Box(1, 1), -1, -1), moved(Box(1, 1), 1, 0.9))},
-      {"disc that touches a smaller one",
-       either(disc, moved(Discs({{0, 0}}, 0.6), 1.5, 0))},
+      {"disc that touches a smaller one", either(disc, moved(Discs({{0, 0}}, 0.6), 1.5, 0))},
       {"disc that touches a square", either(disc, moved(Box(1, 1), 1.9, 0))},
   };
   for (const auto& [name, figure] : figures) {

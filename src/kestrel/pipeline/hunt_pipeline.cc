@@ -22,8 +22,14 @@ constexpr double kAltitudeShare = 0.05;
 constexpr double kSizeShare = 0.02;
 
 // The ground does not speak for what contradicts it: an object whose size says where the ground is
-// must have its shape with few doubts.
+// must have its shape with few doubts, which a few pixels do not tell.
 constexpr double kMaxMisfit = 0.75;
+constexpr int kMinPixels = 150;
+
+bool IsClear(const ObjectDetection& detection) {
+  return detection.completeness == Completeness::kWhole && detection.misfit <= kMaxMisfit &&
+         detection.pixels >= kMinPixels;
+}
 
 const HuntPipelineOptions& Checked(const HuntPipelineOptions& options) {
   RequireValid(options);
@@ -76,9 +82,9 @@ const HuntObservation& HuntPipeline::Process(const cv::Mat& image, Time time) {
 
 std::optional<HuntPipeline::ToldHeights> HuntPipeline::HeightsTold() const {
   if (const auto& world_from_camera = observation_.world_from_camera) {
-    return ToldHeights{world_from_camera->translation.z(),
-                       {options_.ground_height_m,
-                        std::hypot(options_.pose_sigma_m, options_.ground_sigma_m)}};
+    return ToldHeights{
+        world_from_camera->translation.z(),
+        {options_.ground_height_m, std::hypot(options_.pose_sigma_m, options_.ground_sigma_m)}};
   }
   if (!altitude_m_) return std::nullopt;
   return ToldHeights{*altitude_m_,
@@ -125,9 +131,7 @@ void HuntPipeline::UpdateGround(const ToldHeights& told) {
   ground_sightings_.clear();
   for (const auto* detections : {&report.detections, &report.elsewhere}) {
     for (const ObjectDetection& detection : *detections) {
-      const bool is_clear =
-          detection.completeness == Completeness::kWhole && detection.misfit <= kMaxMisfit;
-      if (!is_clear || !detection.height) continue;
+      if (!detection.height || !IsClear(detection)) continue;
       ground_sightings_.push_back(ground_by(*detection.height, kSizeShare));
     }
   }

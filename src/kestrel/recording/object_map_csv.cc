@@ -21,12 +21,12 @@ std::string Row(const MappedObject& object, const ObjectModel& model) {
   const auto p = object.position();
   const auto v = object.velocity();
   const auto digit = object.digit();
-  return fmt::format("{},{},{:g},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{},{},{},{},{},{}\n",
-                     object.id, index ? CsvCell(model.classes[*index].name) : "",
-                     ScoreOf(object, model), p.x(), p.y(), p.z(), v.x(), v.y(), v.z(),
-                     object.sigma_m(), object.detections, ToNanoseconds(object.first_seen),
-                     ToNanoseconds(object.last_seen), IsMoving(object) ? 1 : 0, ToString(object.shape),
-                     digit ? fmt::format("{},{:.4f}", digit->digit, digit->probability) : ",");
+  return fmt::format(
+      "{},{},{:g},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{},{},{},{},{},{}\n", object.id,
+      index ? CsvCell(model.classes[*index].name) : "", ScoreOf(object, model), p.x(), p.y(), p.z(),
+      v.x(), v.y(), v.z(), object.sigma_m(), object.detections, ToNanoseconds(object.first_seen),
+      ToNanoseconds(object.last_seen), IsMoving(object) ? 1 : 0, ToString(object.shape),
+      digit ? fmt::format("{},{:.4f}", digit->digit, digit->probability) : ",");
 }
 
 }  // namespace
