@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "hunt_score.h"
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
-#include <map>
-#include <memory>
 #include <sstream>
 
 #include <opencv2/imgproc.hpp>
@@ -16,7 +13,6 @@
 #include "kestrel/camera/calibration_reader.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/pipeline/pose_feeder.h"
-#include "kestrel/recording/csv_table.h"
 #include "kestrel/recording/image_file.h"
 #include "kestrel/recording/object_csv.h"
 #include "kestrel/recording/open_source.h"
@@ -51,50 +47,24 @@ std::vector<AnnotatedDisc> ReadAnnotations(const fs::path& path) {
   return discs;
 }
 
-// Digits of cuboids by their ids.
-std::map<int, int> ReadDigits(const fs::path& root) {
-  const fs::path path = root / "objects0" / "digits.csv";
-  std::map<int, int> digits;
-  if (!fs::exists(path)) return digits;
-  const std::string text = ReadFile(path.string());
-  const CsvTable table(text, path.string());
-  for (std::size_t row = 0; row < table.row_count(); ++row) {
-    digits[static_cast<int>(table.Integer(row, table.Column("id []")))] =
-        static_cast<int>(table.Integer(row, table.Column("digit []")));
-  }
-  return digits;
-}
-
-std::map<int, std::string> ReadShapes(const std::string& objects_file) {
-  const std::string text = ReadFile(objects_file);
-  const CsvTable table(text, objects_file);
-  std::map<int, std::string> shapes;
-  for (std::size_t row = 0; row < table.row_count(); ++row) {
-    shapes[static_cast<int>(table.Integer(row, table.Column("id []")))] =
-        table.Text(row, table.Column("shape []"));
-  }
-  return shapes;
-}
-
 void Count(bool is_right, DigitScore* score) {
   ++score->count;
   score->right += is_right;
 }
 
 void ScoreDigits(const HuntObservation& observation, const std::vector<TrueSighting>& sightings,
-                 const std::map<int, int>& digits, HuntScore* score) {
+                 const TrueObjects& objects, HuntScore* score) {
   constexpr double kReach_px = 10;
   constexpr double kNear_m = 3;
-  const auto without_up = [](int digit) { return digit == 9 ? 6 : digit; };
   for (const TrueSighting& sighting : sightings) {
     if (sighting.time != observation.time || sighting.visible_fraction < 1) continue;
     for (const ObjectDetection& detection : observation.report.detections) {
-      if (!detection.digits || (detection.center_px - sighting.center_px).norm() > kReach_px) {
+      if (!detection.digits || !objects.at(sighting.id).digit ||
+          (detection.center_px - sighting.center_px).norm() > kReach_px) {
         continue;
       }
-      const auto best = std::max_element(detection.digits->begin(), detection.digits->end());
-      const int found = static_cast<int>(best - detection.digits->begin());
-      const bool is_right = without_up(found) == without_up(digits.at(sighting.id));
+      const int found = LikeliestDigit(*detection.digits).digit;
+      const bool is_right = LooksAlike(found, *objects.at(sighting.id).digit);
       Count(is_right, &score->digits);
       if (detection.location->position.norm() <= kNear_m) Count(is_right, &score->near_digits);
     }
@@ -142,9 +112,10 @@ HuntScore ScoreHunt(const std::string& folder) {
   const fs::path root = truth.root();
   const std::string objects_file = (root / "objects0" / "objects.csv").string();
   const std::string sightings_file = (root / "objects0" / "data.csv").string();
-  const TrueObjects objects = ParseTrueObjects(ReadFile(objects_file), objects_file);
+  const std::string digits_file = (root / "objects0" / "digits.csv").string();
+  TrueObjects objects = ParseTrueObjects(ReadFile(objects_file), objects_file);
+  if (fs::exists(digits_file)) ParseTrueDigits(ReadFile(digits_file), digits_file, &objects);
   const auto sightings = ParseTrueSightings(ReadFile(sightings_file), sightings_file, objects);
-  const std::map<int, int> digits = ReadDigits(root);
 
   const auto source = OpenSource({folder}, PixelFormat::kBgr);
   CameraCalibration calibration = ReadCalibration(source->calibration_file());
@@ -163,15 +134,13 @@ HuntScore ScoreHunt(const std::string& folder) {
     poses.FeedUntil(frame.time + lead, &pipeline);
     const HuntObservation& observation = pipeline.Process(frame.image, frame.time);
     csv += ObjectCsvRows(frame.name, observation, pipeline.detector().model());
-    if (!digits.empty()) ScoreDigits(observation, sightings, digits, &score);
+    ScoreDigits(observation, sightings, objects, &score);
   }
   const std::string name = "object_detections.csv";
   score.comparisons = CompareObjects(truth, objects, sightings, ParseObjectRows(csv, name), name);
-  const std::map<int, std::string> shapes = ReadShapes(objects_file);
   for (const ObjectComparison& c : score.comparisons) {
     if (!c.IsObject() || !c.IsDetected()) continue;
-    const std::string kind =
-        c.is_wanted ? shapes.at(*c.true_id) + ", wanted" : "cut off, hidden or small";
+    const std::string kind = c.is_wanted ? c.true_shape + ", wanted" : "cut off, hidden or small";
     score.center_errors_px[kind].push_back(c.center_error_px);
     if (c.is_wanted) score.center_errors_px["all, wanted"].push_back(c.center_error_px);
   }

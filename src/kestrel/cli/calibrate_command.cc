@@ -57,7 +57,7 @@ std::vector<TargetSighting> FindSightings(FrameSource* source, const CameraCalib
   const LandingPatternDetector detector(CameraModel(calibration.intrinsics), options.detector);
   LandingWorkspace workspace;
   std::vector<TargetSighting> sightings;
-  ForEachFrame(source, calibration.intrinsics, [&](const Frame& frame) {
+  ForEachFrame(source, calibration.intrinsics, [&](const Frame& frame, const ProgressBar&) {
     const LandingReport report = detector.Detect(frame.image, {}, workspace);
     if (!report.detection) return;
     const Eigen::Vector3d& center = report.detection->camera_from_pattern.translation;

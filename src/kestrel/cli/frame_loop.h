@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "kestrel/camera/camera_model.h"
+#include "kestrel/cli/progress_bar.h"
 #include "kestrel/recording/frame_source.h"
 
 namespace kestrel {
@@ -12,6 +13,6 @@ namespace kestrel {
 // progress bar. Throws InputError when the source does, or a frame is not of the calibration's
 // size.
 void ForEachFrame(FrameSource* source, const CameraIntrinsics& intrinsics,
-                  const std::function<void(const Frame& frame)>& process);
+                  const std::function<void(const Frame&, const ProgressBar&)>& process);
 
 }  // namespace kestrel

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,14 +24,34 @@ struct HuntArguments {
   std::vector<double> origin;  // latitude, longitude, degrees; or empty
 };
 
+// What the objects say of the ground, where that contradicts what is told.
+std::string GroundWarning(const HuntPipeline& pipeline, std::optional<double> altitude_m,
+                          bool has_world) {
+  const std::optional<GroundHeight> higher = pipeline.ground_contradiction();
+  if (!higher) return "";
+  if (!has_world) {
+    return fmt::format(
+        "by the size of the objects the camera is {0:.2f} m above the ground (standard deviation "
+        "{1:.2f} m), --altitude says {2:g} m: set --altitude {0:.2f}",
+        *altitude_m - higher->height_m, higher->sigma_m, *altitude_m);
+  }
+  const double ground_m = pipeline.options().ground_height_m;
+  return fmt::format(
+      "by the size of the objects the ground is at z = {0:.2f} m of the navigation's world "
+      "(standard deviation {1:.2f} m), hunt.ground_height_m says {2:g} m: set "
+      "hunt.ground_height_m={0:.2f}, or correct the navigation's z, its clock or the camera's mount",
+      ground_m + higher->height_m, higher->sigma_m, ground_m);
+}
+
 class HuntRun : public PipelineRun {
  public:
   HuntRun(const OpenedSource& opened, const ObjectModel& model, const ColorGrid& grid,
           const HuntPipelineOptions& options, const HuntArguments& arguments)
       : pipeline_(opened.calibration, model, grid, options),
         sink_(arguments.source.Output(opened), arguments.origin),
-        has_map_(opened.has_world() && !options.still) {
-    pipeline_.SetAltitude(arguments.source.altitude_m);
+        has_map_(opened.has_world() && !options.still),
+        altitude_m_(arguments.source.altitude_m) {
+    pipeline_.SetAltitude(altitude_m_);
   }
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
@@ -45,7 +66,12 @@ class HuntRun : public PipelineRun {
     sink_.Write(frame, observation, pipeline_);
     detections_ += observation.report.detections.size();
     for (std::size_t i = 0; i < kObjectStageCount; ++i) passed_[i] += observation.report.passed[i];
+    has_world_ = observation.world_from_camera.has_value();
     return observation.detect_time;
+  }
+
+  std::string Warning() const override {
+    return GroundWarning(pipeline_, altitude_m_, has_world_);
   }
 
   void Finish() override {
@@ -68,6 +94,8 @@ class HuntRun : public PipelineRun {
   HuntPipeline pipeline_;
   HuntSink sink_;
   bool has_map_;
+  std::optional<double> altitude_m_;
+  bool has_world_ = false;  // of the last frame
   std::size_t detections_ = 0;
   std::array<std::size_t, kObjectStageCount> passed_{};
 };

@@ -37,11 +37,17 @@ void RunPipeline(const OpenedSource& opened, PipelineRun* run) {
       opened.calibration.clock_offset.value_or(Duration::zero()) + run->after_frame();
   PoseFeeder poses(opened.source->poses());
   std::vector<double> detect_ms;
+  bool was_warned = false;
   try {
-    ForEachFrame(opened.source.get(), opened.calibration.intrinsics, [&](const Frame& frame) {
+    const auto process = [&](const Frame& frame, const ProgressBar& progress) {
       poses.FeedUntil(frame.time + lead, run);
       detect_ms.push_back(1e3 * ToSeconds(run->Process(frame)));
-    });
+      if (was_warned) return;
+      const std::string warning = run->Warning();
+      was_warned = !warning.empty();
+      if (was_warned) progress.Say(warning);
+    };
+    ForEachFrame(opened.source.get(), opened.calibration.intrinsics, process);
   } catch (const InputError&) {
     if (!detect_ms.empty()) PrintSummary(detect_ms, *run);
     throw;

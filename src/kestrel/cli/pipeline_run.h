@@ -23,6 +23,9 @@ class PipelineRun {
   // Processes the frame and writes what it showed. Returns the time of the detection alone.
   virtual Duration Process(const Frame& frame) = 0;
 
+  // What contradicts what, as far as it is known by now; empty where nothing does.
+  virtual std::string Warning() const { return ""; }
+
   // Writes what there is after the last frame, or after Ctrl-C.
   virtual void Finish() {}
 
@@ -32,7 +35,7 @@ class PipelineRun {
 };
 
 // Gives the run all poses and frames of the source, in the order of time, and says on stderr what
-// was found. When the source ends with an InputError, that is said all the same: the results stay.
+// was found, and its first warning as soon as there is one. When the source ends with an InputError, that is said all the same: the results stay.
 void RunPipeline(const OpenedSource& opened, PipelineRun* run);
 
 }  // namespace kestrel

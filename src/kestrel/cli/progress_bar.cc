@@ -35,8 +35,15 @@ ProgressBar::ProgressBar(std::optional<std::size_t> total)
       total_(total),
       started_(std::chrono::steady_clock::now()) {}
 
-ProgressBar::~ProgressBar() {
+ProgressBar::~ProgressBar() { Clear(); }
+
+void ProgressBar::Clear() const {
   if (is_terminal_) fmt::print(stderr, "\r\033[K");
+}
+
+void ProgressBar::Say(const std::string& line) const {
+  Clear();
+  fmt::print(stderr, "{}\n", line);
 }
 
 void ProgressBar::Show(std::size_t done) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <optional>
+#include <string>
 
 namespace kestrel {
 
@@ -18,7 +19,12 @@ class ProgressBar {
 
   void Show(std::size_t done);
 
+  // Prints a line on stderr, terminal or not, above the bar.
+  void Say(const std::string& line) const;
+
  private:
+  void Clear() const;
+
   bool is_terminal_;
   std::optional<std::size_t> total_;
   std::chrono::steady_clock::time_point started_;

@@ -9,6 +9,7 @@ namespace kestrel {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class SimulateCommandTest : public CommandTest {
  protected:
@@ -52,6 +53,23 @@ TEST_F(SimulateCommandTest, SimulatesAHuntWithTheUsersCamera) {
   const cv::Mat image = cv::imread(flight + "/mav0/cam0/data/100000000000.png", -1);
   EXPECT_EQ(image.size(), cv::Size(160, 90));
   EXPECT_EQ(image.channels(), 3);
+}
+
+TEST_F(SimulateCommandTest, HuntSaysOnceThatTheGroundIsElsewhere) {
+  const std::string flight = folder_ / "hunt";
+  const Outcome simulated = Run("simulate hunt --scenario descend --output " + flight + kSmall +
+                                " --set frames=8 --set rate_hz=10"
+                                " --set navigation.clock_offset_min_s=0"
+                                " --set navigation.clock_offset_max_s=0");
+  ASSERT_EQ(simulated.status, 0) << simulated.err;
+  EXPECT_THAT(Run("hunt " + flight).err, Not(HasSubstr("by the size of the objects")));
+  const std::string told = Run("hunt " + flight + " --set hunt.ground_height_m=-5").err;
+  const std::string said = "by the size of the objects the ground is at z = ";
+  const std::size_t at = told.find(said);
+  ASSERT_NE(at, std::string::npos) << told;
+  EXPECT_NEAR(std::stod(told.substr(at + said.size())), 0, 0.5) << told;
+  EXPECT_EQ(told.find(said, at + 1), std::string::npos) << "once";
+  EXPECT_THAT(told, HasSubstr("hunt.ground_height_m says -5 m: set hunt.ground_height_m="));
 }
 
 TEST_F(SimulateCommandTest, FliesATouchdownThatCanBeRunAgain) {

@@ -51,7 +51,9 @@ Report EvaluateHunt(const std::string& recording, const std::string& output) {
   const fs::path truth = fs::path(flight.root()) / "objects0";
   const std::string objects_file = (truth / "objects.csv").string();
   const std::string sightings_file = (truth / "data.csv").string();
-  const TrueObjects objects = ParseTrueObjects(ReadFile(objects_file), objects_file);
+  TrueObjects objects = ParseTrueObjects(ReadFile(objects_file), objects_file);
+  const std::string digits_file = (truth / "digits.csv").string();
+  if (fs::exists(digits_file)) ParseTrueDigits(ReadFile(digits_file), digits_file, &objects);
   const auto sightings = ParseTrueSightings(ReadFile(sightings_file), sightings_file, objects);
   const std::string rows_file = (fs::path(output) / "object_detections.csv").string();
   const ObjectRows rows = ParseObjectRows(ReadFile(rows_file), rows_file);
@@ -60,7 +62,8 @@ Report EvaluateHunt(const std::string& recording, const std::string& output) {
 
   Report report;
   report.title = fmt::format("Hunt: {}", fs::path(recording).lexically_normal().string());
-  report.tables = {DetectionTable(comparisons), ConfusionTable(comparisons)};
+  report.tables = {DetectionTable(comparisons), ConfusionTable(comparisons),
+                   ProbabilityTable(comparisons)};
   std::vector<MapRow> map;
   const std::string map_file = (fs::path(output) / "object_map.csv").string();
   if (fs::exists(map_file)) {

@@ -30,7 +30,8 @@ class EvaluateTest : public ::testing::Test {
   }
   void WriteHunt() const {
     files_.WriteTruth("objects0/objects.csv",
-                      "#id [],class [],diameter [m],shape []\n1,red,0.2,disc\n");
+                      "#id [],class [],diameter [m],shape []\n1,red,0.2,cuboid\n");
+    files_.WriteTruth("objects0/digits.csv", "#id [],digit [],yaw [rad]\n1,6,0\n");
     files_.WriteTruth(
         "objects0/data.csv",
         "#timestamp [ns],id [],p_WO_W_x [m],p_WO_W_y [m],p_WO_W_z [m],v_WO_W_x [m "
@@ -40,9 +41,9 @@ class EvaluateTest : public ::testing::Test {
         "object_detections.csv",
         "frame,timestamp_ns,u_px,v_px,semi_major_px,semi_minor_px,angle_rad,class,class_"
         "probability,p_CO_C_x_m,p_CO_C_y_m,p_CO_C_z_m,p_WO_W_x_m,p_WO_W_y_m,p_WO_W_z_m,sigma_m,"
-        "roundness,circularity,pixels,detect_ms\n"
-        "a,100000000,320,241,10,10,0,red,1,0,0,4.04,0,0,0,0.1,1,1,300,1\n"
-        "b,200000000,,,,,,,,,,,,,,,,,,1\n");
+        "roundness,circularity,pixels,detect_ms,shape,digit,digit_probability\n"
+        "a,100000000,320,241,10,10,0,red,0.98,0,0,4.04,0,0,0,0.1,1,1,300,1,cuboid,9,0.6\n"
+        "b,200000000,,,,,,,,,,,,,,,,,,1,,,\n");
   }
   std::string LandingError() const {
     return InputErrorOf([&] { EvaluateLanding(files_.recording(), files_.output()); });
@@ -83,7 +84,9 @@ TEST_F(EvaluateTest, HuntReportHasTables) {
   WriteHunt();
   const std::string page = ToMarkdown(EvaluateHunt(files_.recording(), files_.output()));
   EXPECT_THAT(page, HasSubstr("| red | 1 | 1 | 100.0 | 20.7 to 100.0 | 1 | 0 | 100.0 | 100.0 | "
-                              "1.00 | 1.00 | 1.00 | 0.000 | 0.000 |"));
+                              "100.0 | 1.00 | 1.00 | 1.00 | 0.000 | 0.000 |"));
+  EXPECT_THAT(page, HasSubstr("| class | 0.9 to 0.99 | 1 | 98.0 | 100.0 |"));
+  EXPECT_THAT(page, HasSubstr("| digit | 0.5 to 0.7 | 1 | 60.0 | 0.0 |")) << "a 6 is no 9";
 }
 
 TEST_F(EvaluateTest, WhatIsMissingIsNamed) {

@@ -2,10 +2,10 @@
 #include "kestrel/evaluation/object_comparison.h"
 
 #include <algorithm>
-#include <iterator>
 #include <map>
 #include <set>
 #include <span>
+#include <string_view>
 
 #include "kestrel/evaluation/matching.h"
 #include "kestrel/evaluation/projected_circle.h"
@@ -17,6 +17,7 @@ constexpr double kMinWantedArea_px = 50;
 constexpr double kMinReach_px = 5;
 constexpr double kMaxMapDistance_m = 1;
 constexpr int kMinSightings = 3;
+constexpr std::string_view kMerged = "merged";
 
 // The elements of 'rows', in order of time, that are of 'time'.
 template <class Row>
@@ -51,13 +52,28 @@ void MeasureErrors(const FlightTruth& flight, const TrueSighting& truth, const O
   }
 }
 
-// Several objects that touch, or a part of one that the image's border cuts off: without a position
-// they are neither right nor wrong.
-std::vector<ObjectRow> Located(std::span<const ObjectRow> detections) {
-  std::vector<ObjectRow> located;
-  std::ranges::copy_if(detections, std::back_inserter(located),
-                       [](const ObjectRow& row) { return row.center_in_camera.has_value(); });
-  return located;
+double ReachOf(const ObjectRow& detection) {
+  return std::max(kMinReach_px, detection.semi_major_px);
+}
+
+// Discs that touch have no position: a row that says so is neither right nor wrong where they are.
+bool IsOfTouchingDiscs(const ObjectRow& detection, const TrueObjects& objects,
+                       std::span<const TrueSighting> sightings) {
+  constexpr int kMinDiscs = 2;
+  if (detection.shape != kMerged) return false;
+  const auto discs = std::ranges::count_if(sightings, [&](const TrueSighting& sighting) {
+    const TrueObject& object = objects.at(sighting.id);
+    return object.shape == "disc" && object.class_name == detection.class_name &&
+           (sighting.center_px - detection.center_px).norm() <= ReachOf(detection);
+  });
+  return discs >= kMinDiscs;
+}
+
+void SetDetection(const ObjectRow& detection, ObjectComparison* comparison) {
+  comparison->detected_class = detection.class_name;
+  comparison->detected_shape = detection.shape;
+  comparison->class_probability = detection.class_probability;
+  comparison->digit = detection.digit;
 }
 
 std::vector<Candidate> NearDetections(std::span<const TrueSighting> sightings,
@@ -65,45 +81,53 @@ std::vector<Candidate> NearDetections(std::span<const TrueSighting> sightings,
   std::vector<Candidate> candidates;
   for (int i = 0; i < static_cast<int>(sightings.size()); ++i) {
     for (int k = 0; k < static_cast<int>(detections.size()); ++k) {
+      if (detections[k].shape == kMerged) continue;
       const double distance = (detections[k].center_px - sightings[i].center_px).norm();
-      if (distance <= std::max(kMinReach_px, detections[k].semi_major_px)) {
-        candidates.push_back({i, k, distance});
-      }
+      if (distance <= ReachOf(detections[k])) candidates.push_back({i, k, distance});
     }
   }
   return candidates;
 }
 
 void CompareFrame(const FlightTruth& flight, const TrueObjects& objects, Time time,
-                  std::span<const TrueSighting> sightings, std::span<const ObjectRow> detections,
+                  std::span<const TrueSighting> sightings, std::span<const ObjectRow> rows,
                   std::vector<ObjectComparison>* comparisons) {
   const std::size_t first = comparisons->size();
   for (const TrueSighting& sighting : sightings) {
     const TrueObject& object = objects.at(sighting.id);
-    comparisons->push_back({time,
-                            sighting.id,
-                            object.class_name,
-                            "",
-                            IsWanted(flight, sighting, object.diameter_m),
-                            0,
-                            {},
-                            {}});
+    ObjectComparison& comparison = comparisons->emplace_back();
+    comparison.time = time;
+    comparison.true_id = sighting.id;
+    comparison.true_class = object.class_name;
+    comparison.true_shape = object.shape;
+    comparison.true_digit = object.digit;
+    comparison.is_wanted = IsWanted(flight, sighting, object.diameter_m);
   }
+  std::vector<ObjectRow> detections(rows.begin(), rows.end());
+  std::erase_if(detections, [&](const ObjectRow& detection) {
+    return IsOfTouchingDiscs(detection, objects, sightings);
+  });
   std::set<int> matched;
   for (const Candidate& match : MatchNearest(NearDetections(sightings, detections))) {
     ObjectComparison& comparison = (*comparisons)[first + match.first];
-    comparison.detected_class = detections[match.second].class_name;
+    SetDetection(detections[match.second], &comparison);
     MeasureErrors(flight, sightings[match.first], detections[match.second], &comparison);
     matched.insert(match.second);
   }
   for (int k = 0; k < static_cast<int>(detections.size()); ++k) {
-    if (!matched.contains(k)) {
-      comparisons->push_back({time, {}, "", detections[k].class_name, false, 0, {}, {}});
-    }
+    if (matched.contains(k)) continue;
+    ObjectComparison& comparison = comparisons->emplace_back();
+    comparison.time = time;
+    SetDetection(detections[k], &comparison);
   }
 }
 
 }  // namespace
+
+bool LooksAlike(int digit, int other) {
+  const auto upright = [](int x) { return x == 9 ? 6 : x; };
+  return upright(digit) == upright(other);
+}
 
 std::vector<ObjectComparison> CompareObjects(const FlightTruth& flight, const TrueObjects& objects,
                                              const std::vector<TrueSighting>& sightings,
@@ -111,8 +135,8 @@ std::vector<ObjectComparison> CompareObjects(const FlightTruth& flight, const Tr
   std::vector<ObjectComparison> comparisons;
   for (const Time time : rows.frames) {
     flight.RequireFrame(time, file);
-    CompareFrame(flight, objects, time, RowsAt(sightings, time),
-                 Located(RowsAt(rows.objects, time)), &comparisons);
+    CompareFrame(flight, objects, time, RowsAt(sightings, time), RowsAt(rows.objects, time),
+                 &comparisons);
   }
   return comparisons;
 }
@@ -144,14 +168,22 @@ std::vector<MapComparison> CompareMap(const TrueObjects& objects,
   for (const Candidate& match : MatchNearest(candidates)) {
     const MapRow& row = rows[match.second];
     const TrueSighting* truth = NearestSighting(sightings, match.first, row.last_seen);
-    map.push_back({objects.at(match.first).class_name, row.class_name, match.distance,
+    const TrueObject& object = objects.at(match.first);
+    map.push_back({object.class_name,
+                   row.class_name,
+                   row.shape == object.shape,
+                   {},
+                   match.distance,
                    (row.velocity_in_world - truth->velocity_in_world).norm()});
+    if (object.digit) {
+      map.back().is_digit_right = row.digit && LooksAlike(row.digit->digit, *object.digit);
+    }
     wanted.erase(match.first);
     matched.insert(match.second);
   }
-  for (const int id : wanted) map.push_back({objects.at(id).class_name, "", 0, 0});
+  for (const int id : wanted) map.push_back({objects.at(id).class_name, "", false, {}, 0, 0});
   for (int k = 0; k < static_cast<int>(rows.size()); ++k) {
-    if (!matched.contains(k)) map.push_back({"", rows[k].class_name, 0, 0});
+    if (!matched.contains(k)) map.push_back({"", rows[k].class_name, false, {}, 0, 0});
   }
   return map;
 }

@@ -14,7 +14,9 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-const TrueObjects kObjects = {{1, {"red", 0.2}}, {2, {"blue", 0.2}}, {3, {"yellow", 0.2}}};
+const TrueObjects kObjects = {{1, {"red", 0.2, "cuboid", 9}},
+                              {2, {"blue", 0.2, "disc", {}}},
+                              {3, {"yellow", 0.2, "disc", {}}}};
 
 // At x metres north of the origin, for the camera of TestFlight.
 TrueSighting Sighting(int id, double x, double visible = 1) {
@@ -22,7 +24,11 @@ TrueSighting Sighting(int id, double x, double visible = 1) {
 }
 
 ObjectRow Detection(const std::string& class_name, const Eigen::Vector2d& center_px) {
-  return {FrameTime(0), center_px, 10, class_name, Eigen::Vector3d(0, 0, 5), {}};
+  return {FrameTime(0), center_px, 10, class_name, 0.9, "disc", {}, Eigen::Vector3d(0, 0, 5), {}};
+}
+
+ObjectRow Merged(const std::string& class_name, const Eigen::Vector2d& center_px) {
+  return {FrameTime(0), center_px, 30, class_name, 0.9, "merged", {}, {}, {}};
 }
 
 TEST(MatchNearest, TakesEveryThingOnce) {
@@ -36,10 +42,9 @@ TEST(MatchNearest, TakesEveryThingOnce) {
 TEST(CompareObjects, FoundMissedFalseAndOfAnotherClass) {
   const TestFlight files;
   const FlightTruth flight(files.recording());
-  ObjectRows rows = {{FrameTime(0)},
-                     {Detection("red", {320, 241}), Detection("green", {323, 144}),
-                      Detection("orange", {30, 30}), Detection("red", {60, 60})}};
-  rows.objects.back().center_in_camera.reset();  // merged objects, or a part of one
+  const ObjectRows rows = {{FrameTime(0)},
+                           {Detection("red", {320, 241}), Detection("green", {323, 144}),
+                            Detection("orange", {30, 30})}};
   const auto comparisons = CompareObjects(
       flight, kObjects, {Sighting(1, 0), Sighting(2, 1), Sighting(3, 2, 0.4)}, rows, "file");
   ASSERT_EQ(comparisons.size(), 4u);
@@ -54,10 +59,42 @@ TEST(CompareObjects, FoundMissedFalseAndOfAnotherClass) {
 
   const ReportTable table = DetectionTable(comparisons);
   const auto& all = table.rows.back();
-  EXPECT_THAT(std::vector(all.begin(), all.begin() + 9),
-              ElementsAre("all", "2", "2", "100.0", "34.2 to 100.0", "3", "1", "66.7", "50.0"));
+  EXPECT_THAT(
+      std::vector(all.begin(), all.begin() + 10),
+      ElementsAre("all", "2", "2", "100.0", "34.2 to 100.0", "3", "1", "66.7", "50.0", "50.0"));
   EXPECT_THAT(ConfusionTable(comparisons).rows,
               ElementsAre(ElementsAre("blue", "1", "0"), ElementsAre("red", "0", "1")));
+}
+
+TEST(CompareObjects, MergedIsRightOnlyWhereDiscsAre) {
+  const TestFlight files;
+  const FlightTruth flight(files.recording());
+  const TrueObjects discs = {{1, {"red", 0.2, "disc", {}}}, {2, {"red", 0.2, "disc", {}}}};
+  const ObjectRows rows = {
+      {FrameTime(0)},
+      {Merged("red", {320, 230}), Merged("blue", {320, 230}), Merged("red", {100, 100})}};
+  const auto comparisons =
+      CompareObjects(flight, discs, {Sighting(1, 0), Sighting(2, 0.2)}, rows, "file");
+  ASSERT_EQ(comparisons.size(), 4u);
+  EXPECT_FALSE(comparisons[0].IsDetected()) << "it touches another one, nobody says where it is";
+  EXPECT_EQ(comparisons[2].detected_class, "blue") << "red ones are there";
+  EXPECT_FALSE(comparisons[2].IsObject());
+  EXPECT_FALSE(comparisons[3].IsObject());
+}
+
+TEST(ParseObjectRows, ObjectsHaveAShapeAndAllButMergedOnesAPosition) {
+  const std::string header =
+      "frame,timestamp_ns,u_px,v_px,semi_major_px,class,class_probability,p_CO_C_x_m,p_CO_C_y_m,"
+      "p_CO_C_z_m,p_WO_W_x_m,p_WO_W_y_m,p_WO_W_z_m,shape,digit,digit_probability\n";
+  const auto parse = [&](const std::string& row) {
+    return ParseObjectRows(header + "a,5,1,2,3,red,0.9," + row, "rows.csv");
+  };
+  EXPECT_EQ(parse("0,0,4,,,,cuboid,7,0.8\n").objects[0].digit->digit, 7);
+  EXPECT_EQ(parse(",,,,,,merged,,\n").objects[0].shape, "merged");
+  EXPECT_THAT(InputErrorOf([&] { parse(",,,,,,disc,,\n"); }),
+              HasSubstr("rows.csv: line 2: a disc without a position"));
+  EXPECT_THAT(InputErrorOf([&] { parse("0,0,4,,,,square,,\n"); }),
+              HasSubstr("shape 'square', expected disc, cuboid, bar, merged"));
 }
 
 TEST(CompareMap, FindsWhatIsMissingAndWhatIsNotThere) {
@@ -65,20 +102,23 @@ TEST(CompareMap, FindsWhatIsMissingAndWhatIsNotThere) {
   sightings[2].velocity_in_world = {0, 1, 0};
   std::vector<ObjectComparison> comparisons;
   for (const int id : {1, 2, 3, 1, 2, 3, 1, 2, 3}) {
-    comparisons.push_back({FrameTime(0), id, kObjects.at(id).class_name, "", true, 0, {}, {}});
+    comparisons.emplace_back().true_id = id;
+    comparisons.back().is_wanted = true;
   }
   const Time later = FrameTime(0) + DurationFromSeconds(2);
-  const std::vector<MapRow> rows = {{1, "red", {0.3, 0.4, 0}, {0, 0, 0}, FrameTime(0)},
-                                    {2, "yellow", {2, 2, 0}, {0, 1, 0.5}, later},
-                                    {3, "red", {9, 9, 0}, {0, 0, 0}, FrameTime(0)}};
+  const std::vector<MapRow> rows = {
+      {1, "red", "cuboid", SaidDigit{6, 0.5}, {0.3, 0.4, 0}, {0, 0, 0}, FrameTime(0)},
+      {2, "yellow", "cuboid", {}, {2, 2, 0}, {0, 1, 0.5}, later},
+      {3, "red", "disc", {}, {9, 9, 0}, {0, 0, 0}, FrameTime(0)}};
   const auto map = CompareMap(kObjects, sightings, comparisons, rows);
   ASSERT_EQ(map.size(), 4u);
   EXPECT_EQ(map[0].true_class, "yellow");  // followed to where it went
   EXPECT_NEAR(map[0].position_error_m, 0, 1e-9);
   EXPECT_NEAR(map[0].velocity_error_mps, 0.5, 1e-9);
   EXPECT_NEAR(map[1].position_error_m, 0.5, 1e-9);
-  EXPECT_THAT(MapTable(map).rows, ElementsAre(ElementsAre("3", "2", "66.7", "3", "1", "66.7",
-                                                          "100.0", "0.250", "0.500", "0.500")));
+  EXPECT_THAT(MapTable(map).rows,
+              ElementsAre(ElementsAre("3", "2", "66.7", "3", "1", "66.7", "100.0", "50.0", "1", "1",
+                                      "0.250", "0.500", "0.500")));
 }
 
 TEST(ParseTrueSightings, ObjectThatIsNotListedIsRefused) {

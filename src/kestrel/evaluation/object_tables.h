@@ -15,6 +15,10 @@ ReportTable DetectionTable(std::span<const ObjectComparison> comparisons);
 // Rows: true classes; columns: the classes that they were given, or nothing.
 ReportTable ConfusionTable(std::span<const ObjectComparison> comparisons);
 
+// What is said to be so probable, and how much of it is right: classes with their shapes, and
+// digits (a 6 is no 9 here: each is said to be as probable as it is).
+ReportTable ProbabilityTable(std::span<const ObjectComparison> comparisons);
+
 // How complete and how right the map is.
 ReportTable MapTable(std::span<const MapComparison> comparisons);
 

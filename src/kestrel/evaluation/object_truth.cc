@@ -14,15 +14,32 @@ TrueObjects ParseTrueObjects(std::string_view text, const std::string& file) {
   const std::size_t id = table.Column("id []");
   const std::size_t class_name = table.Column("class []");
   const std::size_t diameter = table.Column("diameter [m]");
+  const std::size_t shape = table.Column("shape []");
   TrueObjects objects;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
-    const TrueObject object{std::string(table.Text(row, class_name)), table.Number(row, diameter)};
+    const TrueObject object{std::string(table.Text(row, class_name)),
+                            table.Number(row, diameter),
+                            std::string(table.Text(row, shape)),
+                            {}};
     if (!(object.diameter_m > 0)) table.Fail(row, "diameter [m] is not positive");
     if (!objects.emplace(table.Integer(row, id), object).second) {
       table.Fail(row, fmt::format("id {} is there twice", table.Integer(row, id)));
     }
   }
   return objects;
+}
+
+void ParseTrueDigits(std::string_view text, const std::string& file, TrueObjects* objects) {
+  const CsvTable table(text, file);
+  const std::size_t id = table.Column("id []");
+  const std::size_t digit = table.Column("digit []");
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const auto object = objects->find(static_cast<int>(table.Integer(row, id)));
+    if (object == objects->end()) {
+      table.Fail(row, fmt::format("id {}, expected one of objects.csv", table.Integer(row, id)));
+    }
+    object->second.digit = static_cast<int>(table.Integer(row, digit));
+  }
 }
 
 std::vector<TrueSighting> ParseTrueSightings(std::string_view text, const std::string& file,

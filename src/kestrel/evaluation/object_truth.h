@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,10 +13,12 @@
 
 namespace kestrel {
 
-// A row of objects0/objects.csv: what an object is.
+// A row of objects0/objects.csv: what an object is; and its digit, by objects0/digits.csv.
 struct TrueObject {
   std::string class_name;
   double diameter_m = 0;
+  std::string shape;  // disc, cuboid, bar
+  std::optional<int> digit;
 };
 using TrueObjects = std::map<int, TrueObject>;  // by id
 
@@ -32,6 +35,7 @@ struct TrueSighting {
 // Throw InputError with file and line for what is at fault; sightings are in order of time, and
 // their ids must be among 'objects'.
 TrueObjects ParseTrueObjects(std::string_view text, const std::string& file);
+void ParseTrueDigits(std::string_view text, const std::string& file, TrueObjects* objects);
 std::vector<TrueSighting> ParseTrueSightings(std::string_view text, const std::string& file,
                                              const TrueObjects& objects);
 

@@ -50,10 +50,16 @@ std::size_t MappedObject::color_index() const {
   return best - color_log_likelihoods.begin();
 }
 
-std::optional<int> MappedObject::digit() const {
-  if (shape != ObjectShape::kCuboid) return std::nullopt;
-  const auto best = std::max_element(digit_log_likelihoods.begin(), digit_log_likelihoods.end());
-  return static_cast<int>(best - digit_log_likelihoods.begin());
+std::optional<LikelyDigit> MappedObject::digit() const {
+  const DigitLikelihoods& logs = digit_log_likelihoods;
+  const double best = *std::max_element(logs.begin(), logs.end());
+  const bool was_read = std::any_of(logs.begin(), logs.end(), [&](double x) { return x < best; });
+  if (shape != ObjectShape::kCuboid || !was_read) return std::nullopt;
+  DigitLikelihoods likelihoods;
+  double total = 0;
+  for (std::size_t i = 0; i < logs.size(); ++i) total += likelihoods[i] = std::exp(logs[i] - best);
+  for (double& likelihood : likelihoods) likelihood /= total;
+  return LikeliestDigit(likelihoods);
 }
 
 void PredictObject(Time time, const ObjectMotion& motion, MappedObject* object) {
@@ -106,7 +112,7 @@ std::optional<std::size_t> ClassOf(const MappedObject& object, const ObjectModel
 }
 
 double ScoreOf(const MappedObject& object, const ObjectModel& model) {
-  if (const auto digit = object.digit()) return *digit;
+  if (const auto digit = object.digit()) return digit->digit;
   const auto index = ClassOf(object, model);
   return index ? model.classes[*index].score : 0;
 }

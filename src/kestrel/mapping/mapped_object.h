@@ -53,8 +53,8 @@ struct MappedObject {
   // Standard deviation of the position per axis: root of the mean of the three variances.
   double sigma_m() const;
   std::size_t color_index() const;  // the most likely
-  // The digit of a cuboid; of all else nothing.
-  std::optional<int> digit() const;
+  // The likeliest digit of a cuboid; nothing where none was read.
+  std::optional<LikelyDigit> digit() const;
 };
 
 // Objects that move drive: their speed and acceleration upwards is this share of that sideways.

@@ -44,6 +44,11 @@ DigitModel CountPixels(const std::array<std::vector<DigitImage>, kDigitCount>& i
 
 }  // namespace
 
+LikelyDigit LikeliestDigit(const DigitLikelihoods& likelihoods) {
+  const auto best = std::max_element(likelihoods.begin(), likelihoods.end());
+  return {static_cast<int>(best - likelihoods.begin()), *best};
+}
+
 DigitModel ParseDigitModel(const std::string& text, const std::string& file) {
   DigitModel model;
   std::istringstream lines(text);
@@ -122,6 +127,8 @@ DigitLikelihoods DigitClassifier::Classify(const DigitViews& views) const {
       best = std::max(best, kIndependentShare * LogLikelihood(view, figure));
     }
   }
+  // What tells one from the other in a few pixels is chance, which would add up in a map.
+  log_likelihoods[6] = log_likelihoods[9] = std::max(log_likelihoods[6], log_likelihoods[9]);
   const double best = *std::max_element(log_likelihoods.begin(), log_likelihoods.end());
   double total = 0;
   for (double& x : log_likelihoods) total += x = std::exp(x - best);

@@ -11,9 +11,16 @@ namespace kestrel {
 
 inline constexpr int kDigitCount = 10;
 
-// How likely each digit is; they add up to 1. A 6 and a 9 are the same figure turned by a half:
-// where nothing tells which way is up, both are equally likely.
+// How likely each digit is; they add up to 1. A 6 and a 9 are the same figure turned by a half, and
+// nothing tells which way is up: both are equally likely.
 using DigitLikelihoods = std::array<double, kDigitCount>;
+
+// The likeliest digit and its probability; of a 6 and a 9 that are equally likely the 6.
+struct LikelyDigit {
+  int digit = 0;
+  double probability = 0;
+};
+LikelyDigit LikeliestDigit(const DigitLikelihoods& likelihoods);
 
 // A digit looks different in upright, slanted, thin and bold fonts: it has several figures, those
 // of digit d are d * kStyleCount and the next ones.

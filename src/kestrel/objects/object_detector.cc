@@ -98,8 +98,10 @@ ObjectDetector::ObjectDetector(const CameraModel& camera, const ObjectModel& mod
 void ObjectDetector::Detect(const cv::Mat& image, const ObjectHint& hint,
                             ObjectWorkspace& workspace, ObjectReport* report) const {
   using Clock = std::chrono::steady_clock;
-  report->detections.reserve(kUsualDetections);
-  report->detections.clear();
+  for (auto* detections : {&report->detections, &report->elsewhere}) {
+    detections->reserve(kUsualDetections);
+    detections->clear();
+  }
   report->passed.fill(0);
   report->segmentation_time = report->test_time = Duration::zero();
   SegmentSearch search(image, grid_, &workspace.segmentation);

@@ -43,7 +43,7 @@ struct ObjectDetectorOptions {
   double min_outline_share = 0.7;
   // With known attitude and height: how far an object's distance, and the axes of its image, may be
   // from those of an object on the ground. Shares, and metres that are always forgiven.
-  double ground_tolerance = 0.3;
+  double ground_tolerance = 0.22;
   double ground_tolerance_m = 0.15;
   // Standard deviations of a location: across the line of sight (px), and of the radius seen (px).
   double center_sigma_px = 0.3;
@@ -83,7 +83,8 @@ struct TrackedObject {
   std::size_t class_index = 0;
 };
 
-// What is known before the image is looked at. Nothing of it is needed.
+// What is known before the image is looked at. Nothing of it is needed. An object whose size says
+// that it is not on the ground is reported apart, see ObjectReport::elsewhere.
 struct ObjectHint {
   // Mode `track` when there are any: only these are looked for, around where they should be.
   std::span<const TrackedObject> track;
@@ -101,6 +102,7 @@ struct ObjectWorkspace {
   DiscOutlineWorkspace outline;
   CuboidFaceWorkspace face;
   SegmentBorder border;
+  std::vector<Eigen::Vector2d> inside;  // of the segment's pixels, on the ground
 };
 
 // Finds the configured objects in a colour image of a camera that looks down (paper, section 3).

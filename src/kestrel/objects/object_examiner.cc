@@ -74,32 +74,42 @@ bool ObjectExaminer::Run(const Segment& segment) {
   detection.bearing = RayAt(detection.center_px);
 
   ObjectStage furthest = ObjectStage::kSize;
-  bool is_object = false;
+  Outcome outcome = Outcome::kNone;
+  ObjectDetection found;
   const auto& classes = detector_.model_.classes;
-  for (std::size_t i = 0; i < classes.size() && !is_object; ++i) {
+  for (std::size_t i = 0; i < classes.size() && outcome != Outcome::kObject; ++i) {
     if (classes[i].color + 1 != segment.label) continue;
     ObjectStage reached = ObjectStage::kSize;
-    is_object = TestClass(segment, shape, i, &detection, &reached);
+    ObjectDetection candidate = detection;
+    const Outcome tested = TestClass(segment, shape, i, &candidate, &reached);
     furthest = std::max(furthest, reached);
+    if (tested <= outcome) continue;
+    outcome = tested;
+    found = candidate;
   }
   for (int stage = static_cast<int>(ObjectStage::kRoundness); stage <= static_cast<int>(furthest);
        ++stage) {
     ++report_->passed[stage];
   }
-  if (!is_object) is_object = TestMerged(segment, shape, &detection);
-  if (is_object) report_->detections.push_back(detection);
-  return is_object;
+  if (outcome == Outcome::kNone && TestMerged(segment, shape, &detection)) {
+    outcome = Outcome::kObject;
+    found = detection;
+  }
+  if (outcome == Outcome::kObject) report_->detections.push_back(found);
+  if (outcome == Outcome::kElsewhere) report_->elsewhere.push_back(found);
+  return outcome == Outcome::kObject;
 }
 
-bool ObjectExaminer::TestClass(const Segment& segment, const SegmentShape& shape,
-                               std::size_t class_index, ObjectDetection* detection,
-                               ObjectStage* reached) {
+ObjectExaminer::Outcome ObjectExaminer::TestClass(const Segment& segment, const SegmentShape& shape,
+                                                  std::size_t class_index,
+                                                  ObjectDetection* detection,
+                                                  ObjectStage* reached) {
   const ObjectClass& object = detector_.model_.classes[class_index];
   detection->class_index = class_index;
-  detection->class_probability = detection->color_probabilities[object.color];
+  detection->class_probability = ClassProbability(object, detection->color_probabilities);
   detection->completeness = segment.touches_border ? Completeness::kCutOff : Completeness::kWhole;
   const bool is_round = std::abs(shape.roundness - 1) <= detector_.options_.max_roundness_error;
-  if (object.shape != ObjectShape::kBar && !is_round) return false;
+  if (object.shape != ObjectShape::kBar && !is_round) return Outcome::kNone;
   *reached = ObjectStage::kRoundness;
   switch (object.shape) {
     case ObjectShape::kDisc:
@@ -109,41 +119,43 @@ bool ObjectExaminer::TestClass(const Segment& segment, const SegmentShape& shape
     case ObjectShape::kBar:
       return TestBar(segment, shape, object, detection, reached);
   }
-  return false;
+  return Outcome::kNone;
 }
 
-bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
-                              const ObjectClass& object, ObjectDetection* detection,
-                              ObjectStage* reached) {
+ObjectExaminer::Outcome ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
+                                                 const ObjectClass& object,
+                                                 ObjectDetection* detection, ObjectStage* reached) {
   const ObjectDetectorOptions& options = detector_.options_;
   Ellipse start = shape.ellipse;
   if (segment.touches_border) {
     FindBorder(segment, image_.size(), &workspace_->border);
     const auto ellipse = EllipseThrough(workspace_->border.points);
-    if (!ellipse) return false;
+    if (!ellipse) return Outcome::kNone;
     start = *ellipse;
   } else if (std::abs(shape.circularity - 1) > options.max_circularity_error) {
-    return false;
+    return Outcome::kNone;
   }
   *reached = ObjectStage::kShape;
   const auto outline =
       FitDiscOutline(image_, detector_.rays_, detector_.focal_px_, start, &workspace_->outline);
-  if (!outline) return false;
+  if (!outline) return Outcome::kNone;
   const double radius_px = detector_.focal_px_ * std::tan(outline->cone.HalfAngles().minCoeff());
   const double max_gap = segment.touches_border ? options.max_cut_off_gap : options.max_gap;
   if (outline->gap > max_gap || outline->outside > options.max_outside ||
       outline->fit_share < options.min_outline_share) {
-    return false;
+    return Outcome::kNone;
   }
   if (outline->residual_px > options.outline_tolerance * radius_px + options.outline_tolerance_px) {
-    return false;
+    return Outcome::kNone;
   }
   const auto ellipse = EllipseThrough(workspace_->outline.points);
-  if (!ellipse || IsHole(*ellipse, segment.label) || IsRing(*ellipse, segment.label)) return false;
+  if (!ellipse || IsHole(*ellipse, segment.label)) return Outcome::kNone;
+  // A ring: gray is ambiguous for the sake of digits, its hole may be part of the segment.
+  if (ColoredShare(*ellipse, 0.4, segment.label) < 0.5) return Outcome::kNone;
   if (segment.touches_border) {
     // What circularity says of a whole disc.
     constexpr double kMinFill = 0.8;
-    if (FilledShare(segment, *ellipse, image_.size()) < kMinFill) return false;
+    if (FilledShare(segment, *ellipse, image_.size()) < kMinFill) return Outcome::kNone;
   }
   *reached = ObjectStage::kOutline;
   const double radius_m = object.size_m / 2;
@@ -151,19 +163,27 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
       RayAt(start.center + Eigen::Vector2d(1, 0)) - RayAt(start.center - Eigen::Vector2d(1, 0));
   Eigen::Vector3d position = LocateDisc(outline->cone, radius_m, row_direction, hint_.up_in_camera);
   const double distance = position.norm();
-  if (!std::isfinite(distance) || !(distance > 0)) return false;
-  if (const auto on_ground = DistanceOnGround(position, object)) {
-    // A part of an outline says less: its size must say more.
-    const double tolerance =
-        segment.touches_border ? 0.5 * options.ground_tolerance : options.ground_tolerance;
+  if (!std::isfinite(distance) || !(distance > 0)) return Outcome::kNone;
+  detection->misfit = MisfitOfDisc(*outline, radius_px, segment, shape, *ellipse);
+  // A part must look the more like a disc: the corner of a triangle may have an ellipse through it.
+  constexpr double kMaxMisfitOfPart = 0.6;
+  if (segment.touches_border && detection->misfit > kMaxMisfitOfPart) return Outcome::kNone;
+  Outcome outcome = Outcome::kObject;
+  // A part of an outline says less of the distance, and its shape must say more.
+  const double tolerance = (segment.touches_border ? 0.7 : 1) * options.ground_tolerance;
+  const double distance_tolerance = (segment.touches_border ? 1.4 : 1) * options.ground_tolerance;
+  if (const auto is_on_ground = IsOnGround(position, object, distance_tolerance)) {
     const double slack_rad = 1 / detector_.focal_px_;
-    if (!IsOnGround(distance, *on_ground) ||
-        !LooksLikeDisc(outline->cone, position / distance, *on_ground, *hint_.up_in_camera,
-                       radius_m, tolerance, slack_rad)) {
-      return false;
+    const auto looks_like_disc_at = [&](double there) {
+      return LooksLikeDisc(outline->cone, position / distance, there, *hint_.up_in_camera, radius_m,
+                           tolerance, slack_rad);
+    };
+    if (!*is_on_ground || !looks_like_disc_at(*DistanceOnGround(position, object))) {
+      if (!looks_like_disc_at(distance)) return Outcome::kNone;
+      outcome = Outcome::kElsewhere;
     }
   }
-  *reached = ObjectStage::kPosition;
+  if (outcome == Outcome::kObject) *reached = ObjectStage::kPosition;
   if (!hint_.up_in_camera) {
     // Which way the disc is tilted is not known: its centre is taken for that of the ellipse.
     position = distance * RayAt(ellipse->center);
@@ -172,8 +192,8 @@ bool ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
   const double seen = 1 - outline->gap - outline->outside;
   const double less = 1 / (seen * seen);
   SetLocation(position, object, less * options.center_sigma_px,
-              less * options.radius_sigma_px / radius_px, detection);
-  return true;
+              less * options.radius_sigma_px / radius_px, outcome, detection);
+  return outcome;
 }
 
 std::optional<ColorLabel> ObjectExaminer::LabelAt(const Eigen::Vector2d& pixel) const {
@@ -213,58 +233,50 @@ bool ObjectExaminer::IsHole(const Ellipse& outline, ColorLabel label) const {
   return same > kMaxShare * shown;
 }
 
-// Gray is ambiguous for the sake of digits: the hole of a ring may be part of the segment.
-bool ObjectExaminer::IsRing(const Ellipse& outline, ColorLabel label) const {
+double ObjectExaminer::ColoredShare(const Ellipse& outline, double reach, ColorLabel label) const {
   constexpr int kDirections = 16;
-  constexpr std::array kShares = {0.1, 0.2, 0.3, 0.4};  // of the outline: clear of its blur
-  constexpr double kMinShare = 0.5;
+  constexpr int kSteps = 4;
   int shown = 0;
   int same = 0;
   for (int i = 0; i < kDirections; ++i) {
     const Eigen::Vector2d radius =
         outline.At(2 * std::numbers::pi * i / kDirections) - outline.center;
-    for (const double share : kShares) {
-      const std::optional<ColorLabel> seen = LabelAt(outline.center + share * radius);
+    for (int step = 1; step <= kSteps; ++step) {
+      const std::optional<ColorLabel> seen =
+          LabelAt(outline.center + reach * step / kSteps * radius);
       shown += seen.has_value();
       same += seen == label;
     }
   }
-  return same < kMinShare * shown;
+  return static_cast<double>(same) / std::max(1, shown);
 }
 
-// Several discs of one colour that touch make one segment. It is no disc, but as solid as one, and
-// larger where the size of one is known.
-bool ObjectExaminer::TestMerged(const Segment& segment, const SegmentShape& shape,
-                                ObjectDetection* detection) const {
-  constexpr double kMaxCircularityError = 0.4;  // three discs in a row have 0.35
-  constexpr double kMinCount = 1.2;
-  constexpr double kMaxCount = 8;
-  constexpr double kMaxAspect = 4;  // three discs in a row have 3
-  if (segment.touches_border || std::abs(shape.circularity - 1) > kMaxCircularityError ||
-      shape.ellipse.semi_major > kMaxAspect * shape.ellipse.semi_minor) {
-    return false;
-  }
-  const auto& classes = detector_.model_.classes;
-  for (std::size_t i = 0; i < classes.size(); ++i) {
-    if (classes[i].color + 1 != segment.label || classes[i].shape != ObjectShape::kDisc) continue;
-    const std::optional<double> one_px = PixelsOnGround(detection->bearing, classes[i]);
-    const double count = one_px ? shape.moments.area / *one_px : kMinCount;
-    if (count < kMinCount || count > kMaxCount) continue;
-    detection->class_index = i;
-    detection->class_probability = detection->color_probabilities[classes[i].color];
-    detection->completeness = Completeness::kMerged;
-    return true;
-  }
-  return false;
+double ObjectExaminer::MisfitOfDisc(const DiscOutline& outline, double radius_px,
+                                    const Segment& segment, const SegmentShape& shape,
+                                    const Ellipse& ellipse) const {
+  constexpr double kClearOfBlur = 0.7;
+  constexpr double kMaxUncolored = 0.3;
+  const auto square = [](double x) { return x * x; };
+  const ObjectDetectorOptions& options = detector_.options_;
+  const double edge =
+      outline.residual_px / (options.outline_tolerance * radius_px + options.outline_tolerance_px);
+  const double hidden = (1 - (1 - outline.gap) * outline.fit_share) / options.max_gap;
+  const double filling =
+      segment.touches_border ? 0 : (shape.circularity - 1) / options.max_circularity_error;
+  const double uncolored = (1 - ColoredShare(ellipse, kClearOfBlur, segment.label)) / kMaxUncolored;
+  return square(edge) + square(hidden) + square(filling) + square(uncolored);
 }
 
-std::optional<double> ObjectExaminer::PixelsOnGround(const Eigen::Vector3d& ray,
-                                                     const ObjectClass& object) const {
-  const auto distance = Ground().DistanceNear(ray, 0, object.height_m, object.max_height_m);
-  if (!distance) return std::nullopt;
-  const Eigen::Vector2d angles =
-      ConeOfCircle(*distance * ray, *hint_.up_in_camera, object.size_m / 2).HalfAngles();
-  return std::numbers::pi * detector_.focal_px_ * detector_.focal_px_ * angles.prod();
+double ObjectExaminer::ClassProbability(const ObjectClass& object,
+                                        const ColorProbabilities& colors) const {
+  double all = 1;  // with what is none of the colours
+  for (std::size_t i = 0; i < detector_.model_.colors.colors.size(); ++i) {
+    const bool has_class = std::ranges::any_of(
+        detector_.model_.classes,
+        [&](const ObjectClass& other) { return other.color == i && other.shape == object.shape; });
+    if (!has_class) all -= colors[i];
+  }
+  return colors[object.color] / all;
 }
 
 std::optional<double> ObjectExaminer::DistanceOnGround(const Eigen::Vector3d& position,
@@ -273,19 +285,28 @@ std::optional<double> ObjectExaminer::DistanceOnGround(const Eigen::Vector3d& po
   return Ground().DistanceNear(position / distance, distance, object.height_m, object.max_height_m);
 }
 
-bool ObjectExaminer::IsOnGround(double distance, double on_ground) const {
-  const ObjectDetectorOptions& options = detector_.options_;
-  return std::abs(distance - on_ground) <=
-         options.ground_tolerance * on_ground + options.ground_tolerance_m;
+std::optional<bool> ObjectExaminer::IsOnGround(const Eigen::Vector3d& position,
+                                               const ObjectClass& object, double tolerance) const {
+  if (!Ground().is_known()) return std::nullopt;
+  const auto on_ground = DistanceOnGround(position, object);
+  return on_ground && std::abs(position.norm() - *on_ground) <=
+                          tolerance * *on_ground + detector_.options_.ground_tolerance_m;
 }
 
 void ObjectExaminer::SetLocation(const Eigen::Vector3d& by_size, const ObjectClass& object,
-                                 double center_sigma_px, double relative_sigma,
+                                 double center_sigma_px, double relative_sigma, Outcome outcome,
                                  ObjectDetection* detection) const {
   const Eigen::Vector3d ray = by_size.normalized();
   double distance = by_size.norm();
   double sigma_m = relative_sigma * distance;
-  if (const auto on_ground = DistanceOnGround(by_size, object)) {
+  if (hint_.up_in_camera) {
+    const double descent = -hint_.up_in_camera->dot(ray);
+    detection->height = {
+        distance * descent + 0.5 * (object.height_m + object.max_height_m),
+        std::hypot(sigma_m * descent, 0.5 * (object.max_height_m - object.height_m))};
+  }
+  const auto on_ground = DistanceOnGround(by_size, object);
+  if (on_ground && outcome == Outcome::kObject) {
     const double ground_sigma_m = Ground().DistanceSigma(ray, *on_ground);
     const double total = std::hypot(sigma_m, ground_sigma_m);
     const double gain = sigma_m * sigma_m / (total * total);

@@ -16,33 +16,40 @@ bool IsWithin(double value, double expected, double factor) {
   return value <= expected * factor && expected <= value * factor;
 }
 
+double Square(double x) { return x * x; }
+
 }  // namespace
 
-bool ObjectExaminer::TestCuboid(const Segment& segment, const ObjectClass& object,
-                                ObjectDetection* detection, ObjectStage* reached) {
-  if (segment.ambiguous_pixels == 0) return false;
-  const auto found = hint_.up_in_camera ? FindFaceBySilhouette(segment, object)
-                                        : FindCuboidFace(image_, segment, &workspace_->face);
-  if (!found) return false;
-  // Where the image is blurred the sides' edges may be no square's: the silhouette still is right.
-  for (const std::optional<FaceCorners>& corners : {RefineCorners(image_, *found), found}) {
-    const auto digit = corners ? CutOutDigit(image_, *corners) : std::nullopt;
-    if (!digit) continue;
-    *reached = ObjectStage::kOutline;
-    std::array<Eigen::Vector3d, 4> rays;
-    std::ranges::transform(*corners, rays.begin(),
-                           [&](const auto& corner) { return RayAt(corner); });
-    if (!LocateFace(rays, object, detection)) continue;
-    detection->digits = detector_.digits_.Classify(*digit);
-    detection->completeness = Completeness::kWhole;  // its upper face is
-    *reached = ObjectStage::kPosition;
-    return true;
+ObjectExaminer::Outcome ObjectExaminer::TestCuboid(const Segment& segment,
+                                                   const ObjectClass& object,
+                                                   ObjectDetection* detection,
+                                                   ObjectStage* reached) {
+  // What is white, of all that is seen of a cuboid: its digit, a fiftieth to a third; more where
+  // the paint is bleached.
+  constexpr double kMinDigitShare = 0.015;
+  constexpr double kMaxDigitShare = 0.7;
+  const auto pixels = static_cast<double>(segment.pixels.size());
+  const double digit_share = segment.ambiguous_pixels / pixels;
+  if (digit_share < kMinDigitShare || digit_share > kMaxDigitShare) return Outcome::kNone;
+  if (!hint_.up_in_camera) {
+    const auto found = FindCuboidFace(image_, segment, &workspace_->face);
+    return found ? TestFace(*found, object, detection, reached) : Outcome::kNone;
   }
-  return false;
+  const ObjectDetection before = *detection;
+  const Outcome outcome =
+      TestSilhouette(segment, object, hint_.camera_height_m, detection, reached);
+  if (outcome == Outcome::kObject || !hint_.camera_height_m) return outcome;
+  // The height may be wrong: a cuboid of another size may fit, but then not of the right one.
+  *detection = before;
+  const Outcome of_any_size = TestSilhouette(segment, object, std::nullopt, detection, reached);
+  return of_any_size == Outcome::kElsewhere ? of_any_size : Outcome::kNone;
 }
 
-std::optional<FaceCorners> ObjectExaminer::FindFaceBySilhouette(const Segment& segment,
-                                                                const ObjectClass& object) {
+ObjectExaminer::Outcome ObjectExaminer::TestSilhouette(const Segment& segment,
+                                                       const ObjectClass& object,
+                                                       std::optional<double> camera_height_m,
+                                                       ObjectDetection* detection,
+                                                       ObjectStage* reached) {
   constexpr double kMaxResidual = 0.12;
   const PlaneBelow plane(*hint_.up_in_camera);
   const auto on_plane = [&](const Eigen::Vector2d& pixel) { return plane.PointOf(RayAt(pixel)); };
@@ -56,38 +63,64 @@ std::optional<FaceCorners> ObjectExaminer::FindFaceBySilhouette(const Segment& s
   }
   CuboidSilhouette silhouette{
       border.points, border.cut, on_plane(digit), object.height_m / object.size_m, {}};
-  if (hint_.camera_height_m && *hint_.camera_height_m > object.height_m) {
-    silhouette.half_side = 0.5 * object.size_m / (*hint_.camera_height_m - object.height_m);
+  if (camera_height_m && *camera_height_m > object.height_m) {
+    silhouette.half_side = 0.5 * object.size_m / (*camera_height_m - object.height_m);
   }
   const auto fit = FitCuboid(silhouette);
-  if (!fit || fit->residual > kMaxResidual) return std::nullopt;
+  if (!fit || fit->residual > kMaxResidual) return Outcome::kNone;
   FaceCorners corners;
   for (int i = 0; i < 4; ++i) {
     const Eigen::Vector3d ray = plane.RayTo(fit->corners[i]);
-    if (detector_.camera_.Project(ray, &corners[i]) != ProjectionStatus::kOk) return std::nullopt;
+    if (detector_.camera_.Project(ray, &corners[i]) != ProjectionStatus::kOk) return Outcome::kNone;
   }
-  return corners;
+  detection->misfit = Square(fit->residual / kMaxResidual);
+  return TestFace(corners, object, detection, reached);
 }
 
-bool ObjectExaminer::TestBar(const Segment& segment, const SegmentShape& shape,
-                             const ObjectClass& object, ObjectDetection* detection,
-                             ObjectStage* reached) {
+ObjectExaminer::Outcome ObjectExaminer::TestFace(const FaceCorners& found,
+                                                 const ObjectClass& object,
+                                                 ObjectDetection* detection, ObjectStage* reached) {
+  // Where the image is blurred the sides' edges may be no square's: the silhouette still is right.
+  Outcome outcome = Outcome::kNone;
+  const ObjectDetection before = *detection;
+  const std::optional<FaceCorners> refined = RefineCorners(image_, found);
+  for (const std::optional<FaceCorners>& corners : {refined, std::optional(found)}) {
+    const auto digit = corners ? CutOutDigit(image_, *corners) : std::nullopt;
+    if (!digit) continue;
+    *reached = std::max(*reached, ObjectStage::kOutline);
+    std::array<Eigen::Vector3d, 4> rays;
+    std::ranges::transform(*corners, rays.begin(),
+                           [&](const auto& corner) { return RayAt(corner); });
+    ObjectDetection candidate = before;
+    if (corners != refined) candidate.misfit += 1;
+    const Outcome located = LocateFace(rays, object, &candidate);
+    if (located <= outcome) continue;
+    outcome = located;
+    *detection = candidate;
+    detection->digits = detector_.digits_.Classify(*digit);
+    detection->completeness = Completeness::kWhole;  // its upper face is
+    if (outcome == Outcome::kObject) break;
+  }
+  if (outcome == Outcome::kObject) *reached = ObjectStage::kPosition;
+  return outcome;
+}
+
+ObjectExaminer::Outcome ObjectExaminer::TestBar(const Segment& segment, const SegmentShape& shape,
+                                                const ObjectClass& object,
+                                                ObjectDetection* detection, ObjectStage* reached) {
   constexpr double kMinFill = 0.75;
   constexpr double kMaxAspectFactor = 2;
+  // Of a part of a bar nobody can say where its middle is.
+  if (segment.touches_border) return Outcome::kNone;
   const Ellipse& ellipse = shape.ellipse;
   const double box_px = 3 * ellipse.semi_major * ellipse.semi_minor;
-  if (shape.moments.area < kMinFill * box_px) return false;
+  if (shape.moments.area < kMinFill * box_px) return Outcome::kNone;
   const double aspect = ellipse.semi_major / std::max(ellipse.semi_minor, 0.1);
-  // A cut off one is shorter.
-  const double expected = object.size_m / object.width_m;
-  const bool is_long = segment.touches_border ? aspect > 2 && aspect < kMaxAspectFactor * expected
-                                              : IsWithin(aspect, expected, kMaxAspectFactor);
-  if (!is_long) return false;
+  if (!IsWithin(aspect, object.size_m / object.width_m, kMaxAspectFactor)) return Outcome::kNone;
   *reached = ObjectStage::kOutline;
-  if (segment.touches_border) return true;  // its bearing is all that is known
-  if (!LocateFace(RectangleAround(segment, shape), object, detection)) return false;
-  *reached = ObjectStage::kPosition;
-  return true;
+  const Outcome outcome = LocateFace(RectangleAround(segment, shape), object, detection);
+  if (outcome == Outcome::kObject) *reached = ObjectStage::kPosition;
+  return outcome;
 }
 
 // How far from 'side', a point on the ground, the colour ends in the direction 'outward', on the
@@ -134,19 +167,22 @@ std::array<Eigen::Vector3d, 4> ObjectExaminer::RectangleAround(const Segment& se
       on_plane(shape.ellipse.center + shape.ellipse.semi_major * shape.ellipse.major_axis());
   const Eigen::Vector3d along = (end - origin).normalized();
   const Eigen::Vector3d across = up.cross(along).normalized();
-  const auto place = [&](const PixelPosition& at) {
-    const Eigen::Vector3d offset = on_plane(Eigen::Vector2d(at.u, at.v)) - origin;
+  const auto place = [&](const Eigen::Vector2d& at) {
+    const Eigen::Vector3d offset = on_plane(at) - origin;
     return Eigen::Vector2d(along.dot(offset), across.dot(offset));
   };
   Eigen::AlignedBox2d extent;
-  for (const PixelPosition& at : segment.pixels) extent.extend(place(at));
+  FindBorderPixels(segment, &workspace_->border);
+  for (Eigen::Vector2d& at : workspace_->border.points) {
+    at = place(at);
+    extent.extend(at);
+  }
   // A shaking camera's rows bend what is long: its middle is where its middle part is.
   const double middle = extent.center().x();
   const double reach = kMiddlePart / 2 * extent.sizes().x();
   Eigen::AlignedBox2d middle_part;
-  for (const PixelPosition& at : segment.pixels) {
-    const Eigen::Vector2d here = place(at);
-    if (std::abs(here.x() - middle) <= reach) middle_part.extend(here);
+  for (const Eigen::Vector2d& at : workspace_->border.points) {
+    if (std::abs(at.x() - middle) <= reach) middle_part.extend(at);
   }
   if (!middle_part.isEmpty()) {
     extent.min().y() = middle_part.min().y();
@@ -175,30 +211,32 @@ std::array<Eigen::Vector3d, 4> ObjectExaminer::RectangleAround(const Segment& se
   return corners;
 }
 
-bool ObjectExaminer::LocateFace(const std::array<Eigen::Vector3d, 4>& rays,
-                                const ObjectClass& object, ObjectDetection* detection) const {
+ObjectExaminer::Outcome ObjectExaminer::LocateFace(const std::array<Eigen::Vector3d, 4>& rays,
+                                                   const ObjectClass& object,
+                                                   ObjectDetection* detection) const {
   constexpr double kMaxSkew = 0.15;
+  constexpr double kMaxSideRatio = 1.15;
   const ObjectDetectorOptions& options = detector_.options_;
   const bool is_bar = object.shape == ObjectShape::kBar;
   const Eigen::Vector3d up = hint_.up_in_camera.value_or(-detection->bearing);
   const auto face = RectangleOnPlane(rays, up);
-  if (!face) return false;
+  if (!face || !(face->sides.minCoeff() > 0)) return Outcome::kNone;
+  const double side_ratio = face->sides.maxCoeff() / face->sides.minCoeff();
   // Not seen from above, a square may be any parallelogram.
-  const double length = is_bar ? face->sides.maxCoeff() : std::sqrt(face->sides.prod());
-  if (!(length > 0)) return false;
-  if (!is_bar && hint_.up_in_camera &&
-      (face->skew > kMaxSkew ||
-       !IsWithin(face->sides.x(), face->sides.y(), 1 + 0.5 * options.ground_tolerance))) {
-    return false;
+  if (!is_bar && hint_.up_in_camera && (face->skew > kMaxSkew || side_ratio > kMaxSideRatio)) {
+    return Outcome::kNone;
   }
+  const double length = is_bar ? face->sides.maxCoeff() : std::sqrt(face->sides.prod());
   const Eigen::Vector3d position = object.size_m / length * face->center;
-  const double distance = position.norm();
-  const auto on_ground = DistanceOnGround(position, object);
-  if (on_ground && !IsOnGround(distance, *on_ground)) return false;
-  const double radius_px = 0.5 * detector_.focal_px_ * object.size_m / distance;
+  const bool is_on_ground = IsOnGround(position, object, options.ground_tolerance).value_or(true);
+  const Outcome outcome = is_on_ground ? Outcome::kObject : Outcome::kElsewhere;
+  detection->misfit +=
+      is_bar ? Square((side_ratio * object.width_m / object.size_m - 1) / options.ground_tolerance)
+             : Square(face->skew / kMaxSkew) + Square((side_ratio - 1) / (kMaxSideRatio - 1));
+  const double radius_px = 0.5 * detector_.focal_px_ * object.size_m / position.norm();
   SetLocation(position, object, options.center_sigma_px, options.radius_sigma_px / radius_px,
-              detection);
-  return true;
+              outcome, detection);
+  return outcome;
 }
 
 }  // namespace kestrel

@@ -21,4 +21,11 @@ struct SegmentBorder {
 // Overwrites 'border'; allocates only for segments that are larger than any before.
 void FindBorder(const Segment& segment, const cv::Size& image_size, SegmentBorder* border);
 
+// The same, but the pixels themselves, and all in 'points'.
+void FindBorderPixels(const Segment& segment, SegmentBorder* border);
+
+// Adds the ends of the diagonals to 'points': what rows and columns do not see into, like the notch
+// between two discs one of which is up and to the right of the other.
+void AddDiagonalEnds(const Segment& segment, SegmentBorder* border);
+
 }  // namespace kestrel

@@ -17,6 +17,20 @@ constexpr double kRadians = std::numbers::pi / 180;
 constexpr double kTilt_deg = 5;
 constexpr double kAltitudeShare = 0.05;
 
+// What heights by the size of objects have in common, like the error of the focal length: standard
+// deviation, share of the height.
+constexpr double kSizeShare = 0.02;
+
+// The ground does not speak for what contradicts it: an object whose size says where the ground is
+// must have its shape with few doubts, which a few pixels do not tell.
+constexpr double kMaxMisfit = 0.75;
+constexpr int kMinPixels = 150;
+
+bool IsClear(const ObjectDetection& detection) {
+  return detection.completeness == Completeness::kWhole && detection.misfit <= kMaxMisfit &&
+         detection.pixels >= kMinPixels;
+}
+
 const HuntPipelineOptions& Checked(const HuntPipelineOptions& options) {
   RequireValid(options);
   return options;
@@ -66,19 +80,32 @@ const HuntObservation& HuntPipeline::Process(const cv::Mat& image, Time time) {
   return observation_;
 }
 
+std::optional<HuntPipeline::ToldHeights> HuntPipeline::HeightsTold() const {
+  if (const auto& world_from_camera = observation_.world_from_camera) {
+    return ToldHeights{
+        world_from_camera->translation.z(),
+        {options_.ground_height_m, std::hypot(options_.pose_sigma_m, options_.ground_sigma_m)}};
+  }
+  if (!altitude_m_) return std::nullopt;
+  return ToldHeights{*altitude_m_,
+                     {0, std::hypot(kAltitudeShare * *altitude_m_, options_.ground_sigma_m)}};
+}
+
 void HuntPipeline::Detect(const cv::Mat& image) {
   ObjectHint hint;
+  std::optional<ToldHeights> told = HeightsTold();
   if (const auto& world_from_camera = observation_.world_from_camera) {
     hint.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
-    const double height_m = world_from_camera->translation.z() - options_.ground_height_m;
-    if (options_.is_ground_flat && height_m > 0) hint.camera_height_m = height_m;
     hint.up_sigma_rad = kRadians * options_.attitude_sigma_deg;
-    hint.height_sigma_m = std::hypot(options_.pose_sigma_m, options_.ground_sigma_m);
-  } else if (altitude_m_) {
+    if (!options_.is_ground_flat) told.reset();
+  } else if (told) {
     hint.up_in_camera = -Eigen::Vector3d::UnitZ();
-    hint.camera_height_m = altitude_m_;
     hint.up_sigma_rad = kRadians * kTilt_deg;
-    hint.height_sigma_m = std::hypot(kAltitudeShare * *altitude_m_, options_.ground_sigma_m);
+  }
+  if (told) {
+    const GroundHeight ground = options_.still ? told->ground : ground_.Estimate(told->ground);
+    hint.camera_height_m = told->camera_m - ground.height_m;
+    hint.height_sigma_m = ground.sigma_m;
   }
   hint.track = track_;
   saw_all_ = track_.empty();
@@ -91,6 +118,32 @@ void HuntPipeline::Detect(const cv::Mat& image) {
     detector_.Detect(image, hint, workspace_, &report);
   }
   observation_.detect_time = std::chrono::steady_clock::now() - start;
+  if (told) UpdateGround(*told);
+}
+
+// Objects that say together that the ground is elsewhere are right, not what is told.
+void HuntPipeline::UpdateGround(const ToldHeights& told) {
+  ObjectReport& report = observation_.report;
+  const auto ground_by = [&](const HeightBySize& height, double share) {
+    return GroundHeight{told.camera_m - height.camera_height_m,
+                        std::hypot(height.sigma_m, share * height.camera_height_m)};
+  };
+  ground_sightings_.clear();
+  for (const auto* detections : {&report.detections, &report.elsewhere}) {
+    for (const ObjectDetection& detection : *detections) {
+      if (!detection.height || !IsClear(detection)) continue;
+      ground_sightings_.push_back(ground_by(*detection.height, kSizeShare));
+    }
+  }
+  // Independent frames, and those of a flight of which only one altitude is told.
+  if (options_.still || !observation_.world_from_camera) ground_.ForgetSightings();
+  ground_.Update(told.ground, ground_sightings_);
+  const double tolerance = options_.detector.ground_tolerance / 3;
+  std::erase_if(report.elsewhere, [&](const ObjectDetection& detection) {
+    if (!ground_.Supports(ground_by(*detection.height, tolerance))) return false;
+    report.detections.push_back(detection);
+    return true;
+  });
 }
 
 void HuntPipeline::LocateInWorld() {

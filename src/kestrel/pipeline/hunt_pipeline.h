@@ -14,6 +14,7 @@
 #include "kestrel/mapping/object_map.h"
 #include "kestrel/objects/object_detector.h"
 #include "kestrel/pipeline/camera_poses.h"
+#include "kestrel/pipeline/ground_height.h"
 
 namespace kestrel {
 
@@ -22,7 +23,9 @@ struct HuntPipelineOptions {
   ObjectMapOptions map;
   // Frames have nothing to do with each other: no state is carried from one to the next.
   bool still = false;
-  // Height of the ground in the world. With poses, objects that are not on it are discarded.
+  // Height of the ground in the world, which holds until objects that agree with each other say
+  // another one (the navigation's z may be an altitude above sea level). What is not on the ground
+  // by its size is no object.
   double ground_height_m = 0;
   bool is_ground_flat = true;
   // How far from that height a piece of ground may be, standard deviation.
@@ -106,8 +109,21 @@ class HuntPipeline {
   const ObjectMap& map() const { return map_; }
   const HuntPipelineOptions& options() const { return options_; }
 
+  // How much higher the ground is, by the size of the objects, than what is told (the options'
+  // height with the navigation's poses, or the altitude); nothing as long as they agree.
+  std::optional<GroundHeight> ground_contradiction() const { return ground_.Contradiction(); }
+
  private:
+  // What is told of the camera and of the ground, in the world or, with an altitude, in a world
+  // whose z = 0 is the ground.
+  struct ToldHeights {
+    double camera_m;
+    GroundHeight ground;
+  };
+  std::optional<ToldHeights> HeightsTold() const;
+
   void Detect(const cv::Mat& image);
+  void UpdateGround(const ToldHeights& told);
   void LocateInWorld();
   void UpdateMap();
   void RememberForTracking();
@@ -119,6 +135,8 @@ class HuntPipeline {
   CameraPoses poses_;
   std::optional<double> altitude_m_;
   HuntObservation observation_;
+  GroundHeightEstimator ground_;
+  std::vector<GroundHeight> ground_sightings_;  // of the frame
   std::vector<TrackedObject> track_;
   bool saw_all_ = true;  // the last frame was searched as a whole
   ObjectMap map_;

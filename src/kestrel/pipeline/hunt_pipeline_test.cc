@@ -70,13 +70,51 @@ TEST(HuntPipeline, WithoutPosesThereIsNoMapButADistance) {
   EXPECT_THAT(pipeline.map().objects(), IsEmpty());
 }
 
-TEST(HuntPipeline, AltitudeDiscardsWhatIsNotOfItsSize) {
+TEST(HuntPipeline, WhatIsNotOfItsSizeIsDiscardedBesideWhatIs) {
   HuntPipeline pipeline(Calibration(), DefaultObjectModel(), {});
-  const cv::Mat image = DrawDiscs({{320, 240}});
-  pipeline.SetAltitude(4);
-  EXPECT_THAT(pipeline.Process(image, At(0)).report.detections, SizeIs(1));
-  pipeline.SetAltitude(1.5);
-  EXPECT_THAT(pipeline.Process(image, At(1)).report.detections, IsEmpty());
+  ObjectScene scene(kHeight_m, /*tilt=*/0);
+  scene.DrawDisc(scene.PointUnder({150, 150}, 0.012), 0.1, kRedPaint);
+  scene.DrawDisc(scene.PointUnder({450, 150}, 0.012), 0.1, kRedPaint);
+  scene.DrawDisc(scene.PointUnder({320, 350}, 0.012), 0.2, kRedPaint);
+  pipeline.SetAltitude(kHeight_m);
+  const HuntObservation& seen = pipeline.Process(scene.Image(), At(0));
+  ASSERT_THAT(seen.report.detections, SizeIs(2));
+  for (const ObjectDetection& detection : seen.report.detections) {
+    EXPECT_NEAR(detection.center_px.y(), 150, 1);
+  }
+}
+
+TEST(HuntPipeline, AWrongAltitudeDoesNotHideWhatIsSeen) {
+  for (const double told_m : {1.5, 6.0, 14.0}) {
+    HuntPipeline pipeline(Calibration(), DefaultObjectModel(), {});
+    pipeline.SetAltitude(told_m);
+    const cv::Mat image = DrawDiscs({{320, 240}, {420, 140}});
+    for (int i = 0; i < 10; ++i) {
+      EXPECT_EQ(pipeline.ground_contradiction().has_value(), i >= 5);
+      const HuntObservation& seen = pipeline.Process(image, At(i));
+      ASSERT_THAT(seen.report.detections, SizeIs(2)) << told_m << " m told, frame " << i;
+      EXPECT_NEAR(seen.report.detections[0].location->position.z(), 3.988, 0.1);
+    }
+    EXPECT_NEAR(pipeline.ground_contradiction()->height_m, told_m - kHeight_m, 0.1);
+  }
+}
+
+TEST(HuntPipeline, AWrongHeightOfTheNavigationIsCorrectedByWhatIsSeen) {
+  for (const double error_m : {-2.0, 2.0, 10.0, 500.0}) {
+    HuntPipeline pipeline(Calibration(), DefaultObjectModel(), {});
+    const cv::Mat image = DrawDiscs({{420, 140}, {200, 300}});
+    for (int i = 0; i < 10; ++i) {
+      pipeline.AddPose({At(i), {Eigen::Quaterniond::Identity(), {10, 20, kHeight_m + error_m}}});
+      const HuntObservation& seen = pipeline.Process(image, At(i));
+      ASSERT_THAT(seen.report.detections, SizeIs(2)) << error_m << " m, frame " << i;
+      const Eigen::Vector3d expected(10 + 100.5 / 500 * 3.988, 20 + 99.5 / 500 * 3.988,
+                                     0.012 + error_m);
+      EXPECT_LT((seen.in_world[0]->position - expected).norm(), 0.15) << error_m << " m";
+    }
+    ASSERT_TRUE(pipeline.ground_contradiction());
+    EXPECT_NEAR(pipeline.ground_contradiction()->height_m, error_m, 0.1);
+    EXPECT_THAT(pipeline.map().Confirmed(), SizeIs(2));
+  }
 }
 
 TEST(HuntPipeline, RowsOfARollingShutterHaveTheirOwnPose) {

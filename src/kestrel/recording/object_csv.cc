@@ -21,7 +21,17 @@ std::string Sigma(const std::optional<ObjectLocation>& location) {
   return location ? fmt::format("{:.4f}", std::sqrt(location->covariance.trace() / 3)) : "";
 }
 
-// u_px to pixels: what a detection says.
+// shape to digit_probability.
+std::string ShapeCells(const ObjectDetection& detection, const ObjectModel& model) {
+  const char* shape = detection.completeness == Completeness::kMerged
+                          ? ToString(detection.completeness)
+                          : ToString(model.classes[detection.class_index].shape);
+  if (!detection.digits) return fmt::format("{},,", shape);
+  const LikelyDigit digit = LikeliestDigit(*detection.digits);
+  return fmt::format("{},{},{:.4f}", shape, digit.digit, digit.probability);
+}
+
+// u_px to pixels.
 std::string DetectionCells(const ObjectDetection& detection,
                            const std::optional<ObjectLocation>& in_world,
                            const ObjectModel& model) {
@@ -39,7 +49,7 @@ std::string DetectionCells(const ObjectDetection& detection,
 std::string ObjectCsvHeader() {
   return "frame,timestamp_ns,u_px,v_px,semi_major_px,semi_minor_px,angle_rad,class,"
          "class_probability,p_CO_C_x_m,p_CO_C_y_m,p_CO_C_z_m,p_WO_W_x_m,p_WO_W_y_m,p_WO_W_z_m,"
-         "sigma_m,roundness,circularity,pixels,detect_ms\n";
+         "sigma_m,roundness,circularity,pixels,detect_ms,shape,digit,digit_probability\n";
 }
 
 std::string ObjectCsvRows(const std::string& frame_name, const HuntObservation& observation,
@@ -50,10 +60,11 @@ std::string ObjectCsvRows(const std::string& frame_name, const HuntObservation& 
   std::string rows;
   for (std::size_t i = 0; i < observation.report.detections.size(); ++i) {
     const ObjectDetection& detection = observation.report.detections[i];
-    rows += fmt::format("{},{},{}\n", frame,
-                        DetectionCells(detection, observation.in_world[i], model), detect_ms);
+    rows += fmt::format("{},{},{},{}\n", frame,
+                        DetectionCells(detection, observation.in_world[i], model), detect_ms,
+                        ShapeCells(detection, model));
   }
-  if (rows.empty()) rows = fmt::format("{}{:,>18}{}\n", frame, "", detect_ms);
+  if (rows.empty()) rows = fmt::format("{}{:,>18}{},,,\n", frame, "", detect_ms);
   return rows;
 }
 

@@ -7,9 +7,9 @@
 
 namespace kestrel {
 
-// object_detections.csv: a header row, then for every frame one row for each object of which the
-// position is known, or one with the frame alone. Merged objects, and cut off ones without a
-// position, are in the observation and in the annotated image, not here.
+// object_detections.csv: a header row, then for every frame one row for each object, or one with
+// the frame and its times alone. 'shape': disc, cuboid, bar, or merged for discs that touch, which
+// have no position; 'digit': the likeliest, empty where none was read.
 std::string ObjectCsvHeader();
 std::string ObjectCsvRows(const std::string& frame_name, const HuntObservation& observation,
                           const ObjectModel& model);

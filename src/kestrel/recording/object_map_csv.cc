@@ -20,11 +20,13 @@ std::string Row(const MappedObject& object, const ObjectModel& model) {
   const auto index = ClassOf(object, model);
   const auto p = object.position();
   const auto v = object.velocity();
-  return fmt::format("{},{},{:g},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{},{},{},{}\n",
-                     object.id, index ? CsvCell(model.classes[*index].name) : "",
-                     ScoreOf(object, model), p.x(), p.y(), p.z(), v.x(), v.y(), v.z(),
-                     object.sigma_m(), object.detections, ToNanoseconds(object.first_seen),
-                     ToNanoseconds(object.last_seen), IsMoving(object) ? 1 : 0);
+  const auto digit = object.digit();
+  return fmt::format(
+      "{},{},{:g},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{},{},{},{},{},{}\n", object.id,
+      index ? CsvCell(model.classes[*index].name) : "", ScoreOf(object, model), p.x(), p.y(), p.z(),
+      v.x(), v.y(), v.z(), object.sigma_m(), object.detections, ToNanoseconds(object.first_seen),
+      ToNanoseconds(object.last_seen), IsMoving(object) ? 1 : 0, ToString(object.shape),
+      digit ? fmt::format("{},{:.4f}", digit->digit, digit->probability) : ",");
 }
 
 }  // namespace
@@ -32,7 +34,7 @@ std::string Row(const MappedObject& object, const ObjectModel& model) {
 std::string ObjectMapCsv(const std::vector<MappedObject>& objects, const ObjectModel& model) {
   std::string text =
       "id,class,score,p_x_m,p_y_m,p_z_m,v_x_mps,v_y_mps,v_z_mps,sigma_m,detections,first_seen_ns,"
-      "last_seen_ns,moving\n";
+      "last_seen_ns,moving,shape,digit,digit_probability\n";
   for (const MappedObject& object : objects) text += Row(object, model);
   return text;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/recording/object_overlay.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -21,10 +20,7 @@ std::string Label(const ObjectDetection& detection, const ObjectModel& model) {
   if (detection.completeness != Completeness::kWhole) {
     text += fmt::format(", {}", ToString(detection.completeness));
   }
-  if (detection.digits) {
-    const auto best = std::max_element(detection.digits->begin(), detection.digits->end());
-    text += fmt::format(" {}", best - detection.digits->begin());
-  }
+  if (detection.digits) text += fmt::format(" {}", LikeliestDigit(*detection.digits).digit);
   if (detection.location) text += fmt::format(" {:.2f} m", detection.location->position.norm());
   return text;
 }
