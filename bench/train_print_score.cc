@@ -71,13 +71,22 @@ FrameSource Patterns(const PrintError& print, std::size_t count, std::uint64_t s
           {Change::kNone, Change::kOtherCamera, Change::kHardToSee}};
 }
 
-FrameSource Lookalikes(const std::string& name, double min_major_px, double min_minor_px,
-                       std::size_t count, std::uint64_t seed) {
+// Axes of the circles in pixels.
+struct Extent {
+  double min_major_px;
+  double min_minor_px;
+  double max_minor_px;
+};
+
+FrameSource Lookalikes(const std::string& name, const Extent& extent, std::size_t count,
+                       std::uint64_t seed) {
   LandingStillOptions options;
   options.min_altitude_m = kAltitudeBins.front().min_m;
   options.max_altitude_m = kAltitudeBins.back().max_m;
-  options.min_lookalike_major_px = min_major_px;
-  options.min_lookalike_minor_px = min_minor_px;
+  options.min_lookalike_major_px = extent.min_major_px;
+  options.min_lookalike_minor_px = extent.min_minor_px;
+  options.max_lookalike_minor_px = extent.max_minor_px;
+  options.counterfeits = true;
   const auto make = [name, seed, maker = LandingStillMaker(options)](std::size_t i) {
     return FrameFromLookalikes(maker, name, seed + i);
   };
@@ -88,15 +97,17 @@ FrameSource Lookalikes(const std::string& name, double min_major_px, double min_
 // 'stills': with a flat print.
 std::vector<FrameSource> Stills(std::size_t stills) {
   constexpr std::uint64_t kPatternSeed = 20'000'000, kBentSeed = 30'000'000,
-                          kLookalikeSeed = 40'000'000, kSmallSeed = 50'000'000;
+                          kLookalikeSeed = 40'000'000, kSmallSeed = 50'000'000,
+                          kFlatSeed = 60'000'000;
   std::vector<FrameSource> sources;
   const std::span<const PrintError> prints = PrintErrors();
   sources.push_back(Patterns(prints.front(), stills, kPatternSeed));
   for (std::size_t i = 1; i < prints.size(); ++i) {
     sources.push_back(Patterns(prints[i], stills / 7, kBentSeed + 1'000'000 * (i - 1)));
   }
-  sources.push_back(Lookalikes("look-alikes", 26, 15, stills * 5 / 3, kLookalikeSeed));
-  sources.push_back(Lookalikes("small look-alikes", 18, 6, stills, kSmallSeed));
+  sources.push_back(Lookalikes("look-alikes", {26, 15, 1e9}, stills * 5 / 3, kLookalikeSeed));
+  sources.push_back(Lookalikes("small look-alikes", {18, 6, 1e9}, stills, kSmallSeed));
+  sources.push_back(Lookalikes("look-alikes seen from the side", {30, 6, 14}, stills / 2, kFlatSeed));
   return sources;
 }
 

@@ -70,7 +70,10 @@ bool DetectionChoice::Add(const PrintFinding& finding) {
     return false;
   }
   log_.Reach(LandingStage::kFound, {});
-  if (Replaces(finding)) is_sure_ = !finding.is_part() || finding.relative_sigma() <= kMaxSureSigma;
+  if (!Replaces(finding)) return true;
+  // What contradicts the hint ends the search only when it is beyond doubt.
+  is_sure_ = finding.log_odds + finding.told >= least_log_odds_ &&
+             (!finding.is_part() || finding.relative_sigma() <= kMaxSureSigma);
   return true;
 }
 
@@ -82,7 +85,7 @@ bool DetectionChoice::Replaces(const PrintFinding& finding) {
     if (is_better) best_ = finding;
     return is_better;
   }
-  if (best_ && finding.log_odds <= best_->log_odds) return false;
+  if (best_ && finding.log_odds + finding.told <= best_->log_odds + best_->told) return false;
   mirror_.reset();
   best_ = finding;
   return true;

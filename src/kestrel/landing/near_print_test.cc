@@ -98,10 +98,9 @@ void NearPrintTest::Test(const RingCandidate& ring) {
     has_cross |= print.has_value();
     if (print && TestPrint(*print, ring.diameters_px, ring.reach_px, ring.poses, order)) return;
   }
-  // Once all of the ring is in its place, to look for it farther away shows nothing else.
-  bool is_whole = false;
   for (const double farther : kRefinedReaches) {
-    if (has_cross || is_whole) return;
+    if (has_cross) return;
+    bool is_whole = false;
     for (const int pose : order.poses) {
       const auto refined = RefineRing(ring.poses[pose], farther * ring.reach_px, kRefinements);
       if (!refined) continue;
@@ -110,6 +109,12 @@ void NearPrintTest::Test(const RingCandidate& ring) {
           FindCrossInRefined(refined->camera_from_pattern, diameter_px);
       has_cross |= print.has_value();
       if (print && TestPrint(*print, ring.diameters_px, ring.reach_px, ring.poses, order)) return;
+    }
+    // Once all of a ring is in its place and shows no cross, nothing else shows one.
+    if (is_whole && !has_cross) {
+      place.reach_px *= kRefinedReaches.back();
+      buffers_.refused.Note(place);
+      return;
     }
   }
 }
@@ -278,8 +283,8 @@ bool NearPrintTest::Locate(const PrintAlignment& alignment, const RigidTransform
   finding.center_px = CenterPx(*location, alignment);
   finding.doubts[PrintDoubt::kMisfit] = LogShare(location->edge_rms_px, MeanDiameter(finding));
   DoubtView(finding.diameters_px, finding.relative_sigma(), &finding.doubts);
-  finding.log_odds = PrintLogOdds(finding.kind, finding.doubts) +
-                     prior_.LogOddsOfDistance(location->camera_from_pattern.translation);
+  finding.log_odds = PrintLogOdds(finding.kind, finding.doubts);
+  finding.told = prior_.LogOddsOfDistance(location->camera_from_pattern.translation);
   return choice_.Add(finding);
 }
 

@@ -17,7 +17,8 @@ struct PrintFinding {
   Eigen::Vector2d center_px;     // where the image has the middle of the print
   Eigen::Vector2d diameters_px;  // of the ring, the longer one first
   PrintDoubts doubts;
-  double log_odds = 0;  // that it is the pattern, by the doubts and by what is told
+  double log_odds = 0;  // that it is the pattern, by the doubts
+  double told = 0;      // what the hint adds to that; 0 at most
 
   bool is_part() const { return method == CrossMethod::kPartial; }
   // Standard deviation of the position, share of the distance.

@@ -130,8 +130,8 @@ std::optional<PrintFinding> SmallPrintTest::FindingOf(const SmallPatternFitter::
   DoubtGrayValues(fit, &finding.doubts);
   DoubtView(finding.diameters_px, finding.relative_sigma(), &finding.doubts);
   finding.doubts[PrintDoubt::kShadows] = light == Light::kShadows ? 1 : 0;
-  finding.log_odds = PrintLogOdds(finding.kind, finding.doubts) +
-                     prior_.LogOddsOfDistance(pose.translation);
+  finding.log_odds = PrintLogOdds(finding.kind, finding.doubts);
+  finding.told = prior_.LogOddsOfDistance(pose.translation);
   return finding;
 }
 

@@ -195,7 +195,8 @@ std::optional<LookalikePlace> RandomPlace(const LandingStillOptions& options,
   }
   const auto extent = ExtentOfCircle(camera, camera_from_pattern, *center, radius);
   if (!extent || extent->major_px < options.min_lookalike_major_px ||
-      extent->minor_px < options.min_lookalike_minor_px) {
+      extent->minor_px < options.min_lookalike_minor_px ||
+      extent->minor_px > options.max_lookalike_minor_px) {
     return std::nullopt;
   }
   return LookalikePlace{*center, radius, extent->minor_px};
@@ -301,6 +302,8 @@ std::vector<std::string> LandingStillOptions::Validate() const {
   require(min_ring_major_px >= 0, "min_ring_major_px", min_ring_major_px, "0 or more");
   require(min_lookalike_minor_px >= 0, "min_lookalike_minor_px", min_lookalike_minor_px,
           "0 or more");
+  require(max_lookalike_minor_px > min_lookalike_minor_px, "max_lookalike_minor_px",
+          max_lookalike_minor_px, "more than min_lookalike_minor_px");
   require(min_lookalike_major_px >= min_lookalike_minor_px, "min_lookalike_major_px",
           min_lookalike_major_px, "at least min_lookalike_minor_px");
   require(std::abs(bulge) <= 0.2, "bulge", bulge, "-0.2 to 0.2");
@@ -386,7 +389,8 @@ LookalikeStill LandingStillMaker::PrepareLookalikes(std::uint64_t seed, View* vi
   still.up_in_camera = UpInCamera(still.camera_from_pattern);
   view->scene = RandomGround(&random);
   for (const LookalikePlace& place : places) {
-    still.names.emplace_back(AddRandomLookalike(place.center, place.radius, &random, &view->scene));
+    still.names.emplace_back(AddRandomLookalike(place.center, place.radius, options_.counterfeits,
+                                                &random, &view->scene));
   }
   AddRandomShadow(2, &random, &view->scene);
   const double size_px = places.front().minor_px;

@@ -33,9 +33,11 @@ struct LandingStillOptions {
   double min_ring_minor_px = 6;
   double min_ring_major_px = 13;
   // Smallest axes of a look-alike's circle in the image: by default those from which on an eye can
-  // tell each of them from the pattern.
+  // tell each of them from the pattern. And the largest minor one: look-alikes seen from the side.
   double min_lookalike_major_px = 26;
   double min_lookalike_minor_px = 15;
+  double max_lookalike_minor_px = 1e9;
+  bool counterfeits = false;  // among the look-alikes, see Lookalikes
   // What makes the print no flat, rigid one: height of the middle of a board that bulges (negative:
   // sags), and of the creases of a sheet that was folded, shares of the board's size; and by how
   // much a rolling shutter skews the ring, share of its size.

@@ -18,8 +18,8 @@ Scene RandomGround(Random* random);
 void AddRandomPattern(const LandingPattern& pattern, Random* random, Scene* scene);
 
 // A look-alike of a random kind, on a board or painted on the ground; returns its name.
-const char* AddRandomLookalike(const Eigen::Vector2d& center, double radius_m, Random* random,
-                               Scene* scene);
+const char* AddRandomLookalike(const Eigen::Vector2d& center, double radius_m,
+                               bool with_counterfeits, Random* random, Scene* scene);
 
 // In three of ten scenes a shadow within 'reach_m' of the origin: a hard edge or that of a UAV.
 void AddRandomShadow(double reach_m, Random* random, Scene* scene);

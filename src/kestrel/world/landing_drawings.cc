@@ -324,6 +324,7 @@ constexpr std::array kLookalikes = {
     Lookalike{"square frame with a cross", FrameWithCross},
     Lookalike{"chessboard", Chessboard},
     Lookalike{"grid", Grid},
+    // Counterfeits
     Lookalike{"steering wheel", SteeringWheel},
     Lookalike{"cross with a short arm", CrossWithShortArm},
     Lookalike{"cross of other strokes", OtherStrokes},
@@ -362,6 +363,9 @@ void WearInk(const Vector2d& center, double radius_m, int patches, Random* rando
   }
 }
 
-std::span<const Lookalike> Lookalikes() { return kLookalikes; }
+std::span<const Lookalike> Lookalikes(bool with_counterfeits) {
+  constexpr std::size_t kCounterfeits = 7;
+  return std::span(kLookalikes).first(kLookalikes.size() - (with_counterfeits ? 0 : kCounterfeits));
+}
 
 }  // namespace kestrel
