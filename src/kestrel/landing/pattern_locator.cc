@@ -278,13 +278,17 @@ PatternLocator::Solution PatternLocator::SolvePose(const Linearized& linearized,
 PatternLocator::Solution PatternLocator::SolveCalibration(
     const Linearized& linearized, const State& state,
     const std::optional<NormalPrior>& prior) const {
-  Equations equations = linearized.equations;
-  const double variance = Residuals(linearized, Vector::Zero()).EdgeVariance();
-  if (prior) prior->AddTo(state.pose.rotation, variance, &equations.h, &equations.g);
   const double principal_sigma_px = kPrincipalSigma * camera_.intrinsics().fx_px;
-  equations.PullCalibration(state, variance / (kFocalSigma * kFocalSigma),
-                            variance / (principal_sigma_px * principal_sigma_px));
-  return {linearized, equations};
+  const auto solve = [&](double variance) -> Solution {
+    Equations equations = linearized.equations;
+    if (prior) prior->AddTo(state.pose.rotation, variance, &equations.h, &equations.g);
+    equations.PullCalibration(state, variance / (kFocalSigma * kFocalSigma),
+                              variance / (principal_sigma_px * principal_sigma_px));
+    return {linearized, equations};
+  };
+  // What the step explains of the offsets is no variance of the edges.
+  const Solution without_step = solve(Residuals(linearized, Vector::Zero()).EdgeVariance());
+  return solve(without_step.residuals.EdgeVariance());
 }
 
 CalibrationEvidence PatternLocator::Judge(const Solution& solution, const State& state) {

@@ -222,11 +222,13 @@ TEST_F(CalibrationEvidenceTest, AWrongFocalLengthIsSaidWithinItsSigma) {
       const auto location = LocateWith(factor, NearPose(&random), 4, &random);
       ASSERT_TRUE(location);
       const CalibrationEvidence& evidence = location->calibration;
-      EXPECT_LT(evidence.log_focal_sigma, 0.03) << "such a view tells it";
+      EXPECT_LT(evidence.log_focal_sigma, 0.08) << "such a view tells it";
       const double error = (evidence.log_focal + std::log(factor)) / evidence.log_focal_sigma;
       squares += error * error;
     }
-    EXPECT_LT(std::sqrt(squares / kTrials), 1.8) << factor << ": errors in sigma";
+    const double ratio = std::sqrt(squares / kTrials);  // of errors and standard deviations
+    EXPECT_LT(ratio, 1.8) << factor;
+    EXPECT_GT(ratio, 0.4) << factor;
   }
 }
 

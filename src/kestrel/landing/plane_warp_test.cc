@@ -137,9 +137,9 @@ TEST(PlaneWarp, HoldsWhatBoardsAndLensesDo) {
     intrinsics.fx_px *= zoom;
     intrinsics.fy_px *= zoom;
     const CameraModel zoomed(intrinsics);
-    RigidTransform nearer = pose;
-    nearer.translation.z() /= zoom;
-    EXPECT_LT(LeftByFit(zoomed, nearer, [&](const Eigen::Vector2d& p) {
+    RigidTransform as_large = pose;
+    as_large.translation.z() *= zoom;
+    EXPECT_LT(LeftByFit(zoomed, as_large, [&](const Eigen::Vector2d& p) {
                 return see(camera, pose, p.x(), p.y(), 0);
               }), 0.5) << zoom;
   }

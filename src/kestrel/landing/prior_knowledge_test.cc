@@ -2,7 +2,6 @@
 #include "kestrel/landing/prior_knowledge.h"
 
 #include <algorithm>
-#include <cmath>
 #include <array>
 #include <cmath>
 #include <limits>

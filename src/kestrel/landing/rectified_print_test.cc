@@ -76,7 +76,7 @@ TEST_F(RectifiedPrintTest, XIsAlongAnArmAndYUp) {
 }
 
 TEST_F(RectifiedPrintTest, WhatIsOutOfViewIsMasked) {
-  const RigidTransform pose = PrintPose({0.7, 0, 1}, 0, 0, 0);  // its centre 5 px from the border
+  const RigidTransform pose = PrintPose({1.4, 0, 2}, 0, 0, 0);  // its centre 5 px from the border
   const auto fit = Compare(SpokedPrint(pattern_, 4), pose);
   const double seen = cv::countNonZero(buffers_.seen) / static_cast<double>(buffers_.seen.total());
   EXPECT_NEAR(seen, 0.5, 0.05);
@@ -89,8 +89,11 @@ TEST_F(RectifiedPrintTest, ShadowsAreTakenOut) {
   const RigidTransform pose = PrintPose({0, 0, 1.4}, 0.2, 1, 0.3);
   cv::Mat image = DrawPrint(camera_, pattern_, SpokedPrint(pattern_, 4), pose);
   EXPECT_FALSE(Compare(image, pose, Light::kShadows)) << "there are none";
-  cv::Mat shaded = image.colRange(0, 150);
-  shaded.convertTo(shaded, CV_8UC1, 0.4);
+  // Under two rotors.
+  for (const cv::Rect& rotor : {cv::Rect(105, 80, 45, 40), cv::Rect(165, 130, 45, 40)}) {
+    cv::Mat shaded = image(rotor);
+    shaded.convertTo(shaded, CV_8UC1, 0.4);
+  }
   const auto even = Compare(image, pose);
   const auto evened = Compare(image, pose, Light::kShadows);
   ASSERT_TRUE(evened);
