@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+#include <vector>
+
+#include "landing_score.h"
 
 namespace kestrel {
 namespace {
@@ -119,6 +123,29 @@ constexpr std::array kToldHints = {
 };
 
 }  // namespace
+
+LandingFrameSet RenderStills(int per_altitude, const PrintError& print, int threads) {
+  constexpr std::uint64_t kFirstSeed = 5'000'000, kSeedsOfAltitude = 1'000'000;
+  LandingFrameSet set{std::string(print.name), PaperCamera(), {}};
+  std::vector<LandingStillMaker> makers;
+  for (const AltitudeBin& bin : kAltitudeBins) {
+    LandingStillOptions options;
+    options.min_altitude_m = bin.min_m;
+    options.max_altitude_m = bin.max_m;
+    options.bulge = print.bulge;
+    options.fold = print.fold;
+    options.rolling_skew = print.rolling_skew;
+    makers.emplace_back(options);
+  }
+  const auto stills = static_cast<std::size_t>(per_altitude);
+  set.frames.resize(stills * makers.size());
+  ForEachIndex(set.frames.size(), threads, [&](std::size_t i) {
+    const std::size_t bin = i / stills;
+    set.frames[i] = FrameFromStill(makers[bin], kAltitudeBins[bin].Name(),
+                                   kFirstSeed + kSeedsOfAltitude * bin + i % stills);
+  });
+  return set;
+}
 
 std::span<const CalibrationError> CalibrationErrors() { return kCalibrationErrors; }
 std::span<const PrintError> PrintErrors() { return kPrintErrors; }

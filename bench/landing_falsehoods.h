@@ -26,7 +26,11 @@ struct PrintError {
   double fold;
   double rolling_skew;
 };
+// All of them; the first one is flat.
 std::span<const PrintError> PrintErrors();
+
+// So many rendered stills of each of kAltitudeBins, the same in every run.
+LandingFrameSet RenderStills(int per_altitude, const PrintError& print, int threads);
 
 // What a caller tells the detector about a frame with known pose, right or wrong.
 struct ToldHint {

@@ -25,32 +25,6 @@ struct Options {
   bool verbose = false;
 };
 
-// Stills of one bin have seeds of their own, the same in every run.
-std::uint64_t Seed(std::size_t bin, std::size_t index) {
-  return 5'000'000 + 1'000'000 * bin + index;
-}
-
-LandingFrameSet RenderStills(int per_bin, const PrintError& print) {
-  LandingFrameSet set{std::string(print.name), PaperCamera(), {}};
-  std::vector<LandingStillMaker> makers;
-  for (const AltitudeBin& bin : kAltitudeBins) {
-    LandingStillOptions options;
-    options.min_altitude_m = bin.min_m;
-    options.max_altitude_m = bin.max_m;
-    options.bulge = print.bulge;
-    options.fold = print.fold;
-    options.rolling_skew = print.rolling_skew;
-    makers.emplace_back(options);
-  }
-  const auto stills = static_cast<std::size_t>(per_bin);
-  set.frames.resize(stills * makers.size());
-  ForEachIndex(set.frames.size(), kThreads, [&](std::size_t i) {
-    const std::size_t bin = i / stills;
-    set.frames[i] = FrameFromStill(makers[bin], kAltitudeBins[bin].Name(), Seed(bin, i % stills));
-  });
-  return set;
-}
-
 LandingTally Score(const LandingFrameSet& set, const CameraIntrinsics& camera, HintOf hint,
                    bool verbose) {
   const LandingPatternDetector detector{CameraModel(camera), {}};
@@ -131,7 +105,7 @@ void ReportPrints(const Options& options, const LandingFrameSet& flat) {
   LandingTally right;
   for (const PrintError& print : PrintErrors()) {
     const bool is_flat = right.frames == 0;
-    const LandingFrameSet stills = is_flat ? flat : RenderStills(options.stills, print);
+    const LandingFrameSet stills = is_flat ? flat : RenderStills(options.stills, print, kThreads);
     const LandingTally tally = Score(stills, stills.camera, NoHint, options.verbose);
     if (is_flat) right = tally;
     fmt::print("| {} | {} |\n", print.name, StillCells(tally, right));
@@ -148,7 +122,7 @@ int Run(int argc, char** argv) {
   app.add_flag("--verbose", options.verbose, "list what was missed or wrong, and why");
   CLI11_PARSE(app, argc, argv);
   cv::setNumThreads(1);
-  const LandingFrameSet stills = RenderStills(options.stills, PrintErrors().front());
+  const LandingFrameSet stills = RenderStills(options.stills, PrintErrors().front(), kThreads);
   ReportCalibrations(options, stills);
   ReportHints(options, stills);
   ReportPrints(options, stills);

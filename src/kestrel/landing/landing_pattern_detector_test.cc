@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/landing/landing_pattern_detector.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <numeric>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -15,6 +18,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/base/error.h"
+#include "kestrel/landing/search_plan.h"
 #include "kestrel/landing/test_prints.h"
 
 namespace kestrel {
@@ -314,23 +318,85 @@ TEST_F(LandingPatternDetectorTest, ThreadsShareADetector) {
   }
 }
 
+// Two patterns side by side: the one that was expected is taken.
 TEST_F(LandingPatternDetectorTest, AHintSaysWhereToLook) {
-  LandingHint hint;
-  hint.center_in_camera = pose_.translation;
-  hint.center_sigma_m = 0.2;
-  EXPECT_TRUE(Detect(image_, hint).detection);
-  // To the side: what is searched does not hold the pattern.
-  hint.center_in_camera = Eigen::Vector3d(-4, 0.1, 6);
-  hint.center_sigma_m = 0.1;
-  EXPECT_FALSE(Detect(image_, hint).detection);
-  // Out of the image.
-  hint.center_in_camera = Eigen::Vector3d(40, 0, 3);
-  const LandingReport outside = Detect(image_, hint);
-  EXPECT_FALSE(outside.detection);
-  EXPECT_EQ(outside.reached, LandingStage::kBinarize);
-  EXPECT_THAT(std::string(outside.reason), HasSubstr("out of the image"));
-  hint.center_in_camera = Eigen::Vector3d(0, 0, -3);
-  EXPECT_FALSE(Detect(image_, hint).detection);
+  const RigidTransform left = PrintPose({-1.1, 0.1, 4}, 0.1, 1, 0.3);
+  const RigidTransform right = PrintPose({1.1, -0.1, 4}, 0.1, 1, 0.6);
+  cv::Mat image = Draw(SpokedPrint(pattern_, 4), left);
+  const cv::Rect half(image.cols / 2, 0, image.cols / 2, image.rows);
+  Draw(SpokedPrint(pattern_, 4), right)(half).copyTo(image(half));
+  for (const RigidTransform& pose : {left, right}) {
+    LandingHint hint;
+    hint.center_in_camera = pose.translation + Eigen::Vector3d(0.05, 0.05, 0.1);
+    hint.center_sigma_m = 0.1;
+    const LandingReport report = Detect(image, hint);
+    ASSERT_TRUE(report.detection) << report.reason;
+    EXPECT_LT((report.detection->camera_from_pattern.translation - pose.translation).norm(), 0.05);
+  }
+}
+
+// What is told may be wrong in any way: a pattern in plain view is found, and where it is.
+TEST_F(LandingPatternDetectorTest, AWrongHintHidesNothing) {
+  struct Told {
+    const char* what;
+    LandingHint hint;
+  };
+  const auto center = [](const Eigen::Vector3d& at) {
+    LandingHint hint;
+    hint.center_in_camera = at;
+    hint.center_sigma_m = 0.1;
+    return hint;
+  };
+  const auto altitude = [](double altitude_m) {
+    LandingHint hint;
+    hint.altitude_m = altitude_m;
+    return hint;
+  };
+  const auto up = [](const Eigen::Vector3d& in_camera) {
+    LandingHint hint;
+    hint.up_in_camera = in_camera;
+    return hint;
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const double distance : {1.1, 3.0, 9.0}) {
+    const RigidTransform truth =
+        PrintPose({0.05 * distance, -0.03 * distance, distance}, 0.25, 1, 0.3);
+    const Eigen::Vector3d& at = truth.translation;
+    const Eigen::Vector3d normal = truth.rotation * Eigen::Vector3d::UnitZ();
+    Eigen::Vector3d turned_round = normal;
+    turned_round.head<2>() *= -1;
+    LandingHint all_wrong = center({-0.5 * distance, 0.1, 2 * distance});
+    all_wrong.up_in_camera = -normal;
+    all_wrong.altitude_m = distance + 500;
+    const Told wrong[] = {
+        {"altitude + 10 m", altitude(distance + 10)},
+        {"altitude + 500 m", altitude(distance + 500)},
+        {"altitude x 3", altitude(3 * distance)},
+        {"altitude negative", altitude(-20)},
+        {"altitude not a number", altitude(kNan)},
+        {"upside down", up(-normal)},
+        {"turned round", up(turned_round)},
+        {"on edge", up(normal.unitOrthogonal())},
+        {"track beside it", center(at + Eigen::Vector3d(0.5 * distance, 0, 0))},
+        {"track out of the image", center({10 * distance, 0, distance})},
+        {"track behind the camera", center(-at)},
+        {"track three times as far", center(3 * at)},
+        {"track at a third", center(at / 3)},
+        {"track not a number", center({kNan, 0, 1})},
+        {"all of it", all_wrong},
+    };
+    const cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
+    Eigen::Vector2d center_px;
+    camera_.Project(at, &center_px);
+    for (const Told& told : wrong) {
+      const LandingReport report = Detect(image, told.hint);
+      ASSERT_TRUE(report.detection) << told.what << " at " << distance << " m: " << report.reason;
+      EXPECT_LT((report.detection->center_px - center_px).norm(), 0.2)
+          << told.what << " at " << distance << " m";
+      EXPECT_LT((report.detection->camera_from_pattern.translation - at).norm(), 0.04 * distance)
+          << told.what << " at " << distance << " m";
+    }
+  }
 }
 
 TEST_F(LandingPatternDetectorTest, AGoodPredictionNeedsNoSearch) {
@@ -363,16 +429,97 @@ TEST_F(LandingPatternDetectorTest, AGoodPredictionNeedsNoSearch) {
   }
 }
 
-TEST_F(LandingPatternDetectorTest, AHintSaysHowFar) {
+TEST_F(LandingPatternDetectorTest, WhatIsNotAsFarAsToldIsLessProbable) {
   LandingHint hint;
   hint.altitude_m = 3;
-  EXPECT_TRUE(Detect(image_, hint).detection);
+  const LandingReport right = Detect(image_, hint);
   hint.altitude_m = 9;
-  EXPECT_FALSE(Detect(image_, hint).detection);
-  hint.altitude_m.reset();
-  hint.center_in_camera = 3 * pose_.translation;
-  hint.center_sigma_m = 0.1;
-  EXPECT_FALSE(Detect(image_, hint).detection);
+  const LandingReport wrong = Detect(image_, hint);
+  ASSERT_TRUE(right.detection && wrong.detection);
+  EXPECT_EQ(right.detection->quality, Detect(image_).detection->quality);
+  EXPECT_LT(wrong.detection->quality, right.detection->quality);
+}
+
+// An image whose pattern a late step finds, searched by little and little: every frame goes on
+// where the one before stopped.
+TEST_F(LandingPatternDetectorTest, ASearchThatIsOutOfTimeGoesOnInTheNextFrame) {
+  LandingPatternDetectorOptions options;
+  options.max_search_ms = 1e-6;  // one step a frame
+  const LandingPatternDetector bounded(camera_, options);
+  const RigidTransform truth = PrintPose({0.3, -0.2, 12}, 0.2, 1, 0.3);
+  const cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
+  LandingHint hint;
+  int frames = 0;
+  for (;; ++frames) {
+    ASSERT_LT(frames, static_cast<int>(kSearchSteps));
+    const LandingReport report = bounded.Detect(image, hint, workspace_);
+    if (report.detection) {
+      EXPECT_EQ(report.next_step, 0);
+      EXPECT_LT((report.detection->camera_from_pattern.translation - truth.translation).norm(),
+                0.03 * truth.translation.norm());
+      break;
+    }
+    EXPECT_GT(report.next_step, hint.first_step);
+    hint.first_step = report.next_step;
+  }
+  EXPECT_GT(frames, 3) << "the first steps look for larger rings";
+}
+
+TEST_F(LandingPatternDetectorTest, ABoundedSearchOfAnEmptyImageTakesEveryStepInTurn) {
+  LandingPatternDetectorOptions options;
+  options.max_search_ms = 1e-6;
+  const LandingPatternDetector bounded(camera_, options);
+  const cv::Mat image = Draw(SpokedPrint(pattern_, 3), pose_);
+  for (const bool is_told : {false, true}) {
+    LandingHint hint;
+    if (is_told) hint.center_in_camera = pose_.translation;
+    std::set<int> steps;
+    for (int frame = 0; frame < 2 * static_cast<int>(kSearchSteps); ++frame) {
+      const LandingReport report = bounded.Detect(image, hint, workspace_);
+      EXPECT_FALSE(report.detection);
+      steps.insert(report.next_step);
+      hint.first_step = report.next_step;
+    }
+    // Where nothing is told, the likely part is the whole image: one round.
+    EXPECT_GE(steps.size(), kSearchSteps);
+    EXPECT_TRUE(steps.contains(0) || steps.contains(static_cast<int>(kSearchSteps)));
+    EXPECT_TRUE(std::all_of(steps.begin(), steps.end(), [](int step) {
+      return step >= 0 && step < 2 * static_cast<int>(kSearchSteps);
+    }));
+  }
+}
+
+TEST_F(LandingPatternDetectorTest, WithoutABoundEverySearchIsWhole) {
+  LandingPatternDetectorOptions options;
+  options.max_search_ms = 1e9;
+  const LandingPatternDetector generous(camera_, options);
+  const cv::Mat far = Draw(SpokedPrint(pattern_, 4), PrintPose({0.3, -0.2, 9}, 0.2, 1, 0.3));
+  const cv::Mat other = Draw(SpokedPrint(pattern_, 3), pose_);
+  for (const cv::Mat& image : {image_, far, other}) {
+    const LandingReport whole = Detect(image);
+    EXPECT_EQ(whole.next_step, 0);
+    ExpectSame(generous.Detect(image, {}, workspace_), whole);
+    for (const int first_step : {1, 7, 23, 30, -5, 1000}) {
+      LandingHint hint;
+      hint.first_step = first_step;
+      const LandingReport report = Detect(image, hint);
+      EXPECT_EQ(report.detection.has_value(), whole.detection.has_value()) << first_step;
+      EXPECT_EQ(report.next_step, 0) << first_step;
+    }
+  }
+}
+
+// Stricter users get less, none of it improbable.
+TEST_F(LandingPatternDetectorTest, TheQualityThatIsAskedForIsKept) {
+  const double quality = Detect(image_).detection->quality;
+  for (const double least : {0.0, 0.3, 0.9, 1.0}) {
+    LandingPatternDetectorOptions options;
+    options.min_quality = least;
+    const LandingReport report =
+        LandingPatternDetector(camera_, options).Detect(image_, {}, workspace_);
+    ASSERT_EQ(report.detection.has_value(), quality >= least) << least;
+    EXPECT_GE(report.detection ? report.detection->quality : 1, least);
+  }
 }
 
 TEST_F(LandingPatternDetectorTest, TheAttitudeResolvesTheMirrorPose) {
@@ -439,14 +586,16 @@ TEST(LandingPatternDetectorOptions, EveryViolationIsNamed) {
   options.min_ring_px = 1;
   options.min_quality = NAN;
   options.max_partial_altitude_m = -1;
-  EXPECT_EQ(options.Validate().size(), 4u);
+  options.max_search_ms = -1;
+  EXPECT_EQ(options.Validate().size(), 5u);
   const CameraModel camera = TestPrintCamera();
   try {
     LandingPatternDetector detector(camera, options);
     FAIL();
   } catch (const InputError& error) {
     for (const char* key :
-         {"board_size_m", "min_ring_px", "min_quality", "max_partial_altitude_m"}) {
+         {"board_size_m", "min_ring_px", "min_quality", "max_partial_altitude_m",
+          "max_search_ms"}) {
       EXPECT_THAT(error.what(), HasSubstr(key));
     }
   }

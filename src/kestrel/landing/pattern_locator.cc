@@ -278,13 +278,17 @@ PatternLocator::Solution PatternLocator::SolvePose(const Linearized& linearized,
 PatternLocator::Solution PatternLocator::SolveCalibration(
     const Linearized& linearized, const State& state,
     const std::optional<NormalPrior>& prior) const {
-  Equations equations = linearized.equations;
-  const double variance = Residuals(linearized, Vector::Zero()).EdgeVariance();
-  if (prior) prior->AddTo(state.pose.rotation, variance, &equations.h, &equations.g);
   const double principal_sigma_px = kPrincipalSigma * camera_.intrinsics().fx_px;
-  equations.PullCalibration(state, variance / (kFocalSigma * kFocalSigma),
-                            variance / (principal_sigma_px * principal_sigma_px));
-  return {linearized, equations};
+  const auto solve = [&](double variance) -> Solution {
+    Equations equations = linearized.equations;
+    if (prior) prior->AddTo(state.pose.rotation, variance, &equations.h, &equations.g);
+    equations.PullCalibration(state, variance / (kFocalSigma * kFocalSigma),
+                              variance / (principal_sigma_px * principal_sigma_px));
+    return {linearized, equations};
+  };
+  // What the step explains of the offsets is no variance of the edges.
+  const Solution without_step = solve(Residuals(linearized, Vector::Zero()).EdgeVariance());
+  return solve(without_step.residuals.EdgeVariance());
 }
 
 CalibrationEvidence PatternLocator::Judge(const Solution& solution, const State& state) {
@@ -308,6 +312,14 @@ void PatternLocator::Describe(const Linearized& linearized, const Solution& solu
   location->edge_rms_px = std::sqrt(solution.residuals.MeanSquare());
 }
 
+// Where the calibration may be wrong the pose is as uncertain as without it, and by as much as it
+// would move.
+void PatternLocator::DoubtCalibration(const Solution& held, const Solution& free,
+                                      PatternLocation* location) {
+  const PoseVector moved = (free.step - held.step).head<kPoseUnknowns>();
+  location->covariance += free.Covariance().topLeftCorner<6, 6>() + moved * moved.transpose();
+}
+
 std::optional<PatternLocation> PatternLocator::Locate(
     const PrintEdges& edges, const RigidTransform& initial,
     const std::optional<NormalPrior>& prior) const {
@@ -324,10 +336,15 @@ std::optional<PatternLocation> PatternLocator::Locate(
     // there the steps are short of the goal.
     const bool is_last =
         i == kMaxSteps || (near && linearized.Movement(solution.step) < kSettledPx);
-    if (is_last) Describe(linearized, solution, &location);
-    // A part of a print bends to any calibration.
-    if (is_last && !is_part) {
-      location.calibration = Judge(SolveCalibration(linearized, state, prior), state);
+    if (is_last) {
+      Describe(linearized, solution, &location);
+      const Solution free = SolveCalibration(linearized, state, prior);
+      const CalibrationEvidence evidence = Judge(free, state);
+      if (evidence.surprise > kDoubtfulCalibration) {
+        DoubtCalibration(solution, free, &location);
+      }
+      // A part of a print bends to any calibration.
+      if (!is_part) location.calibration = evidence;
     }
     if (!state.Move(solution.step)) return std::nullopt;
     scale = std::clamp(linearized.RobustScale(), kLeastScalePx, scale);

@@ -101,6 +101,8 @@ class PatternLocator {
   static CalibrationEvidence Judge(const Solution& solution, const State& state);
   static void Describe(const Linearized& linearized, const Solution& solution,
                        PatternLocation* location);
+  static void DoubtCalibration(const Solution& held, const Solution& free,
+                               PatternLocation* location);
 
   CameraModel camera_;
   PrintOutline outline_;

@@ -2,11 +2,13 @@
 #include "kestrel/landing/pattern_locator.h"
 
 #include <cmath>
+#include <optional>
 
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "kestrel/landing/print_alignment.h"
 #include "kestrel/landing/test_prints.h"
 
 namespace kestrel {
@@ -21,6 +23,16 @@ class PatternLocatorTest : public ::testing::Test {
     Eigen::Vector2d pixel(-1e9, -1e9);
     camera_.Project(pose.translation, &pixel);
     return pixel;
+  }
+  // Looks for the edges within 'reach_px' of where 'start' has them, and locates the print by them.
+  std::optional<PatternLocation> Locate(const cv::Mat& image, const RigidTransform& start,
+                                        double reach_px, double min_step,
+                                        const std::optional<NormalPrior>& prior = {}) const {
+    PrintAlignment alignment{PlaneWarp(camera_, start, locator_.outline().radius_m()), {}};
+    if (!AlignPrint(image, image, {}, locator_.outline().all(), reach_px, min_step, &alignment)) {
+      return std::nullopt;
+    }
+    return locator_.Locate(alignment.edges, start, prior);
   }
   // A pose some pixels away.
   RigidTransform Disturb(const RigidTransform& pose, Random* random) const {
@@ -44,18 +56,13 @@ TEST_F(PatternLocatorTest, RecoversThePose) {
         PrintPose({random.Uniform(-0.15, 0.15), random.Uniform(-0.1, 0.1), distance},
                   random.Uniform(0, 0.5), random.Uniform(0, 6), random.Uniform(0, 6));
     const cv::Mat image = Draw(truth);
-    const auto location = locator_.Locate(image, Disturb(truth, &random), 5, 10, 6);
+    const auto location = Locate(image, Disturb(truth, &random), 5, 10);
     ASSERT_TRUE(location);
     EXPECT_LT((Center(location->camera_from_pattern) - Center(truth)).norm(), 0.05) << trial;
     const auto error = PoseError(location->camera_from_pattern, truth);
     EXPECT_LT(error.head<3>().norm(), 0.003 * distance) << trial;
     EXPECT_LT(error.tail<3>().norm(), 0.03) << trial;
     EXPECT_LT(location->edge_rms_px, 0.2);
-    EXPECT_GT(location->edge_share, 0.9);
-    for (int k = 0; k < 4; ++k) {
-      EXPECT_GT(location->arm_share[k], 0.8);
-      EXPECT_GT(location->ring_share[k], 0.8);
-    }
   }
 }
 
@@ -69,7 +76,7 @@ TEST_F(PatternLocatorTest, OverexposureDoesNotMoveIt) {
     cv::Mat image = Draw(truth);
     cv::GaussianBlur(image, image, {}, 0.7);
     image.convertTo(image, CV_8UC1, 2.2, 0);
-    const auto location = locator_.Locate(image, Disturb(truth, &random), 5, 10, 6);
+    const auto location = Locate(image, Disturb(truth, &random), 5, 10);
     ASSERT_TRUE(location);
     const auto error = PoseError(location->camera_from_pattern, truth);
     EXPECT_LT(error.head<3>().norm(), 0.003 * distance) << trial;
@@ -87,7 +94,7 @@ TEST_F(PatternLocatorTest, TheCovarianceIsThatOfTheErrors) {
     double sum = 0;
     for (int trial = 0; trial < kTrials; ++trial) {
       const auto location =
-          locator_.Locate(AddNoise(image, 8, &random), Disturb(truth, &random), 4, 30, 3);
+          Locate(AddNoise(image, 8, &random), Disturb(truth, &random), 4, 30);
       ASSERT_TRUE(location);
       const auto error = PoseError(location->camera_from_pattern, truth);
       sum += error.dot(location->covariance.ldlt().solve(error)) / 6;
@@ -103,7 +110,7 @@ TEST_F(PatternLocatorTest, FromStraightAboveItSettles) {
   for (const double distance : {3.0, 4.0}) {
     const RigidTransform truth = PrintPose({0.1, 0.2, distance}, 0.02, 0.5, 0.4);
     const RigidTransform tilted = PrintPose({0.1, 0.2, 1.02 * distance}, 0.35, 0.5, 0.4);
-    const auto location = locator_.Locate(Draw(truth), tilted, 3, 10, 3);
+    const auto location = Locate(Draw(truth), tilted, 3, 10);
     ASSERT_TRUE(location);
     const Eigen::Vector3d error = location->camera_from_pattern.translation - truth.translation;
     EXPECT_LT(error.norm(), 0.0008 * distance);
@@ -120,8 +127,8 @@ TEST_F(PatternLocatorTest, WhatIsKnownOfThePlaneSteadiesTheTilt) {
   for (int trial = 0; trial < 20; ++trial) {
     const cv::Mat noisy = AddNoise(image, 8, &random);
     const RigidTransform start = Disturb(truth, &random);
-    const auto free = locator_.Locate(noisy, start, 3, 10, 3);
-    const auto steady = locator_.Locate(noisy, start, 3, 10, 3, level);
+    const auto free = Locate(noisy, start, 3, 10);
+    const auto steady = Locate(noisy, start, 3, 10, level);
     ASSERT_TRUE(free && steady);
     without += PoseError(free->camera_from_pattern, truth).tail<3>().squaredNorm();
     with += PoseError(steady->camera_from_pattern, truth).tail<3>().squaredNorm();
@@ -132,17 +139,15 @@ TEST_F(PatternLocatorTest, WhatIsKnownOfThePlaneSteadiesTheTilt) {
 TEST_F(PatternLocatorTest, APartOutOfViewSaysNothing) {
   Random random(3);
   const RigidTransform truth = PrintPose({1.05, 0, 1.6}, 0, 0, 0);
-  const auto location = locator_.Locate(Draw(truth), Disturb(truth, &random), 5, 10, 6);
+  const auto location = Locate(Draw(truth), Disturb(truth, &random), 5, 10);
   ASSERT_TRUE(location);
   EXPECT_LT((Center(location->camera_from_pattern) - Center(truth)).norm(), 0.2);
-  EXPECT_LT(location->arm_share[0], 0);
-  EXPECT_GT(location->arm_share[2], 0.8);
 }
 
 TEST_F(PatternLocatorTest, WithoutEdgesThereIsNoPose) {
   const RigidTransform pose = PrintPose({0, 0, 2}, 0, 0, 0);
-  EXPECT_FALSE(locator_.Locate(cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)), pose, 5, 10, 4));
-  EXPECT_FALSE(locator_.Locate(Draw(pose), PrintPose({0, 0, -2}, 0, 0, 0), 5, 10, 4));
+  EXPECT_FALSE(Locate(cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)), pose, 5, 10));
+  EXPECT_FALSE(Locate(Draw(pose), PrintPose({0, 0, -2}, 0, 0, 0), 5, 10));
 }
 
 TEST_F(PatternLocatorTest, TheRingAloneGivesItsPlaneAndCentre) {
@@ -164,6 +169,105 @@ TEST_F(PatternLocatorTest, TheRingAloneGivesItsPlaneAndCentre) {
 TEST_F(PatternLocatorTest, NothingIsLocatedOnAnEvenImage) {
   const cv::Mat even(240, 320, CV_8UC1, cv::Scalar(120));
   EXPECT_FALSE(locator_.LocateRing(even, PrintPose({0, 0, 2}, 0.2, 0, 0), 5, 10, 4));
+}
+
+// What views of a print say about a calibration whose focal length is 'factor' times the camera's.
+class CalibrationEvidenceTest : public PatternLocatorTest {
+ protected:
+  std::optional<PatternLocation> LocateWith(double factor, const RigidTransform& truth,
+                                            double noise, Random* random) const {
+    CameraIntrinsics intrinsics = camera_.intrinsics();
+    intrinsics.fx_px *= factor;
+    intrinsics.fy_px *= factor;
+    const CameraModel assumed(intrinsics);
+    const PatternLocator locator(assumed, pattern_);
+    RigidTransform start = truth;
+    start.translation.z() *= factor;
+    const cv::Mat image = AddNoise(Draw(truth), noise, random);
+    PrintAlignment alignment{PlaneWarp(assumed, start, locator.outline().radius_m()), {}};
+    if (!AlignPrint(image, image, {}, locator.outline().all(), 6, 10, &alignment)) {
+      return std::nullopt;
+    }
+    return locator.Locate(alignment.edges, start);
+  }
+  // Near enough that the perspective tells the distance, and at an angle.
+  static RigidTransform NearPose(Random* random) {
+    return PrintPose({random->Uniform(-0.05, 0.05), random->Uniform(-0.05, 0.05),
+                      random->Uniform(1.1, 1.3)},
+                     random->Uniform(0.5, 0.7), random->Uniform(0, 6), random->Uniform(0, 6));
+  }
+};
+
+TEST_F(CalibrationEvidenceTest, ARightCalibrationIsNotContradicted) {
+  Random random(11);
+  constexpr int kTrials = 60;
+  double surprise = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const auto location = LocateWith(1, NearPose(&random), 4, &random);
+    ASSERT_TRUE(location);
+    const CalibrationEvidence& evidence = location->calibration;
+    EXPECT_FALSE(evidence.contradicts) << trial;
+    EXPECT_LT(std::abs(evidence.log_focal), 4 * evidence.log_focal_sigma) << trial;
+    surprise += evidence.surprise;
+  }
+  EXPECT_LT(surprise / kTrials, 4) << "three on average";
+}
+
+TEST_F(CalibrationEvidenceTest, AWrongFocalLengthIsSaidWithinItsSigma) {
+  Random random(12);
+  for (const double factor : {0.95, 1.05}) {
+    constexpr int kTrials = 30;
+    double squares = 0;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const auto location = LocateWith(factor, NearPose(&random), 4, &random);
+      ASSERT_TRUE(location);
+      const CalibrationEvidence& evidence = location->calibration;
+      EXPECT_LT(evidence.log_focal_sigma, 0.08) << "such a view tells it";
+      const double error = (evidence.log_focal + std::log(factor)) / evidence.log_focal_sigma;
+      squares += error * error;
+    }
+    const double ratio = std::sqrt(squares / kTrials);  // of errors and standard deviations
+    EXPECT_LT(ratio, 1.8) << factor;
+    EXPECT_GT(ratio, 0.4) << factor;
+  }
+}
+
+TEST_F(CalibrationEvidenceTest, AContradictedCalibrationDoesNotBendThePose) {
+  Random random(13);
+  for (const double factor : {0.8, 1.25}) {
+    for (int trial = 0; trial < 8; ++trial) {
+      const RigidTransform truth = NearPose(&random);
+      const auto location = LocateWith(factor, truth, 2, &random);
+      ASSERT_TRUE(location);
+      EXPECT_TRUE(location->calibration.contradicts) << factor;
+      EXPECT_LT((location->center_px - Center(truth)).norm(), 0.5) << factor;
+      EXPECT_LT(location->edge_rms_px, 0.4) << factor;
+      const auto error = PoseError(location->camera_from_pattern, truth);
+      EXPECT_LT(std::sqrt(error.dot(location->covariance.ldlt().solve(error)) / 6), 3) << factor;
+      EXPECT_LT(error.head<3>().norm(), 0.06 * truth.translation.norm()) << factor;
+    }
+  }
+}
+
+// A far print that faces the camera is as large under any focal length.
+TEST_F(CalibrationEvidenceTest, AFarViewSaysLittle) {
+  Random random(14);
+  for (int trial = 0; trial < 10; ++trial) {
+    const auto location =
+        LocateWith(1.1, PrintPose({0.1, 0.05, 4}, 0.1, 1, 0.3), 4, &random);
+    ASSERT_TRUE(location);
+    EXPECT_GT(location->calibration.log_focal_sigma, 0.1);
+    EXPECT_FALSE(location->calibration.contradicts);
+  }
+}
+
+TEST_F(CalibrationEvidenceTest, APartSaysNothing) {
+  Random random(15);
+  const auto location = LocateWith(1.1, PrintPose({1.05, 0, 1.6}, 0, 0, 0), 2, &random);
+  ASSERT_TRUE(location);
+  EXPECT_EQ(location->calibration.log_focal, 0);
+  EXPECT_EQ(location->calibration.log_focal_sigma, CalibrationEvidence().log_focal_sigma);
+  EXPECT_FALSE(location->calibration.contradicts);
 }
 
 }  // namespace

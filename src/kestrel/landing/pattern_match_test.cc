@@ -10,7 +10,14 @@
 namespace kestrel {
 namespace {
 
-constexpr double kMinQuality = 0.65;  // the default of the detector
+// Share below which a part of the print is not in its place.
+constexpr double kInPlace = 0.65;
+
+// Whether a match speaks for the print in all that it measures.
+bool AgreesInAll(const PatternMatch& match) {
+  return match.Agreement() > kInPlace && match.shares.MeansInView().worst_arm > kInPlace &&
+         match.spokes < 2;
+}
 
 class PatternMatcherTest : public ::testing::Test {
  protected:
@@ -29,31 +36,31 @@ class PatternMatcherTest : public ::testing::Test {
 TEST_F(PatternMatcherTest, ThePatternAgreesEverywhere) {
   const PatternMatch match = Match(pattern_image_, pose_);
   for (int k = 0; k < 4; ++k) {
-    EXPECT_GT(match.arm[k], 0.9);
-    EXPECT_GT(match.quadrant[k], 0.95);
-    EXPECT_GT(match.ring[k], 0.95);
+    EXPECT_GT(match.shares.arm[k], 0.9);
+    EXPECT_GT(match.shares.quadrant[k], 0.95);
+    EXPECT_GT(match.shares.ring[k], 0.95);
   }
   EXPECT_EQ(match.seen, 1);
   EXPECT_EQ(match.spokes, 0);
   EXPECT_NEAR(match.contrast, 160, 25);
-  EXPECT_GT(match.Quality(), 0.9);
+  EXPECT_GT(match.Agreement(), 0.9);
 }
 
 TEST_F(PatternMatcherTest, TheDirectionOfTheArmsMatters) {
   const RigidTransform turned = PrintPose({0.1, -0.05, 2.5}, 0.4, 1, 0.3 + 0.785);
-  EXPECT_LT(Match(pattern_image_, turned).Quality(), 0.3);
+  EXPECT_LT(Match(pattern_image_, turned).Agreement(), 0.3);
 }
 
 TEST_F(PatternMatcherTest, OtherFiguresInTheRingDoNotAgree) {
   for (const int spokes : {1, 2, 3, 5, 6, 8}) {
-    EXPECT_LT(Match(Draw(SpokedPrint(pattern_, spokes)), pose_).Quality(), kMinQuality) << spokes;
+    EXPECT_FALSE(AgreesInAll(Match(Draw(SpokedPrint(pattern_, spokes)), pose_))) << spokes;
   }
   const Print empty = [this](double x, double y) { return IsRing(pattern_, x, y); };
-  EXPECT_LT(Match(Draw(empty), pose_).Quality(), kMinQuality);
+  EXPECT_FALSE(AgreesInAll(Match(Draw(empty), pose_)));
   const Print full = [this](double x, double y) {
     return std::hypot(x, y) < pattern_.outer_radius_m();
   };
-  EXPECT_LT(Match(Draw(full), pose_).Quality(), kMinQuality);
+  EXPECT_FALSE(AgreesInAll(Match(Draw(full), pose_)));
 }
 
 TEST_F(PatternMatcherTest, AMissingArmIsSeen) {
@@ -61,9 +68,9 @@ TEST_F(PatternMatcherTest, AMissingArmIsSeen) {
     return SpokedPrint(pattern_, 4)(x, y) && !(x > 0.06 && std::abs(y) < 0.06 && x < 0.39);
   };
   const PatternMatch match = Match(Draw(three), pose_);
-  EXPECT_LT(match.arm[0], 0.2);
-  EXPECT_GT(match.arm[1], 0.9);
-  EXPECT_LT(match.Quality(), kMinQuality);
+  EXPECT_LT(match.shares.arm[0], 0.2);
+  EXPECT_GT(match.shares.arm[1], 0.9);
+  EXPECT_FALSE(AgreesInAll(match));
 }
 
 // A sign with one bar whose inside is nearer to black than to the white around it: what hides an
@@ -81,10 +88,10 @@ TEST_F(PatternMatcherTest, AGrayInsideHidesNoArm) {
     }
   }
   const PatternMatch match = Match(image, pose_);
-  EXPECT_GT(match.arm[0], 0.9);
-  EXPECT_GE(match.arm[1], 0) << "seen";
-  EXPECT_LT(match.arm[1], 0.2);
-  EXPECT_LT(match.Quality(), kMinQuality);
+  EXPECT_GT(match.shares.arm[0], 0.9);
+  EXPECT_GE(match.shares.arm[1], 0) << "seen";
+  EXPECT_LT(match.shares.arm[1], 0.2);
+  EXPECT_FALSE(AgreesInAll(match));
 }
 
 TEST_F(PatternMatcherTest, AnArmBehindALandingLegIsNotMissing) {
@@ -93,9 +100,9 @@ TEST_F(PatternMatcherTest, AnArmBehindALandingLegIsNotMissing) {
     return pattern(x, y) || (x > 0.1 && std::abs(y) < 0.13);
   };
   const PatternMatch match = Match(Draw(behind_leg), pose_);
-  EXPECT_LT(match.arm[0], 0) << "not seen";
-  EXPECT_GT(match.arm[1], 0.9);
-  EXPECT_GT(match.Quality(), 0.65);
+  EXPECT_LT(match.shares.arm[0], 0) << "not seen";
+  EXPECT_GT(match.shares.arm[1], 0.9);
+  EXPECT_TRUE(AgreesInAll(match));
 }
 
 // A highlight is brighter than any white of the print; an arm that is not there is as bright as
@@ -106,11 +113,11 @@ TEST_F(PatternMatcherTest, AnArmInAHighlightIsNotMissing) {
   cv::Mat image = pattern_image_.clone();
   image.setTo(255, in_spot);
   const PatternMatch match = Match(image, pose_);
-  EXPECT_LT(match.arm[0], 0) << "not seen";
-  EXPECT_GT(match.arm[1], 0.9);
-  EXPECT_GT(match.Quality(), kMinQuality);
+  EXPECT_LT(match.shares.arm[0], 0) << "not seen";
+  EXPECT_GT(match.shares.arm[1], 0.9);
+  EXPECT_TRUE(AgreesInAll(match));
   image.setTo(200, in_spot);
-  EXPECT_LT(Match(image, pose_).Quality(), kMinQuality) << "as white as the board";
+  EXPECT_FALSE(AgreesInAll(Match(image, pose_))) << "as white as the board";
 }
 
 TEST_F(PatternMatcherTest, AnArmAlongTheImageBorderIsSeenByItsInnerSide) {
@@ -118,14 +125,14 @@ TEST_F(PatternMatcherTest, AnArmAlongTheImageBorderIsSeenByItsInnerSide) {
   const RigidTransform pose = PrintPose({-154.5 / 220, 0, 1}, 0, 0, 0);
   const PatternMatch match =
       Match(DrawPrint(camera_, pattern_, SpokedPrint(pattern_, 4), pose), pose);
-  EXPECT_GT(match.arm[0], 0.9);
-  EXPECT_GT(match.arm[1], 0.9);
-  EXPECT_LT(match.arm[2], 0);
-  EXPECT_GT(match.arm[3], 0.9);
+  EXPECT_GT(match.shares.arm[0], 0.9);
+  EXPECT_GT(match.shares.arm[1], 0.9);
+  EXPECT_LT(match.shares.arm[2], 0);
+  EXPECT_GT(match.shares.arm[3], 0.9);
   const Print half = [this](double x, double y) {
     return SpokedPrint(pattern_, 4)(x, y) && (std::abs(y) < 0.06 || IsRing(pattern_, x, y));
   };
-  EXPECT_LT(Match(DrawPrint(camera_, pattern_, half, pose), pose).Quality(), kMinQuality);
+  EXPECT_FALSE(AgreesInAll(Match(DrawPrint(camera_, pattern_, half, pose), pose)));
 }
 
 TEST_F(PatternMatcherTest, AShadowBesideAnArmCostsLittle) {
@@ -143,49 +150,61 @@ TEST_F(PatternMatcherTest, AShadowBesideAnArmCostsLittle) {
     }
   }
   const PatternMatch match = Match(shaded, pose_);
-  for (int k = 0; k < 4; ++k) EXPECT_GT(match.arm[k], 0.8) << k;
+  for (int k = 0; k < 4; ++k) EXPECT_GT(match.shares.arm[k], 0.8) << k;
   EXPECT_EQ(match.spokes, 0);
-  EXPECT_GT(match.Quality(), 0.8);
+  EXPECT_GT(match.Agreement(), 0.8);
 }
 
 TEST_F(PatternMatcherTest, AShadowOverAHalfCostsLittle) {
   cv::Mat shaded = pattern_image_.clone();
   cv::Mat left = shaded.colRange(0, 168);
   left.convertTo(left, CV_8UC1, 0.6);
-  EXPECT_GT(Match(shaded, pose_).Quality(), 0.8);
+  EXPECT_GT(Match(shaded, pose_).Agreement(), 0.8);
 }
 
-TEST_F(PatternMatcherTest, WithoutContrastThereIsNoQuality) {
+TEST_F(PatternMatcherTest, WithoutContrastNothingAgrees) {
   const PatternMatch match = Match(cv::Mat(240, 320, CV_8UC1, cv::Scalar(100)), pose_);
-  EXPECT_EQ(match.Quality(), 0);
+  EXPECT_EQ(match.Agreement(), 0);
 }
 
 TEST_F(PatternMatcherTest, QuartersOutOfViewSayNothing) {
   const RigidTransform aside = PrintPose({1.55, 0, 2.2}, 0, 0, 0);
   const PatternMatch match =
       Match(DrawPrint(camera_, pattern_, SpokedPrint(pattern_, 4), aside), aside);
-  EXPECT_LT(match.arm[0], 0);
-  EXPECT_LT(match.ring[0], 0);
-  EXPECT_GT(match.arm[2], 0.9);
+  EXPECT_LT(match.shares.arm[0], 0);
+  EXPECT_LT(match.shares.ring[0], 0);
+  EXPECT_GT(match.shares.arm[2], 0.9);
   EXPECT_LT(match.seen, 0.75);
-  EXPECT_GT(match.Quality(), 0.85);
+  EXPECT_GT(match.Agreement(), 0.85);
 }
 
-TEST(PatternMatch, QualityIsThatOfTheWorstKind) {
+TEST(PatternMatch, AgreementIsThatOfTheWorstKind) {
   PatternMatch match;
-  match.arm = {1, 1, 1, 1};
-  match.quadrant = {0.5, 0.5, 0.5, 0.5};
-  match.ring = {1, 1, 1, 0};  // one quarter of the ring may be lost
-  EXPECT_DOUBLE_EQ(match.Quality(), 0.5);
-  match.quadrant = {1, 1, 1, 1};
-  EXPECT_DOUBLE_EQ(match.Quality(), 1);
-  match.arm = {1, 1, 1, 0};  // an arm may not
-  EXPECT_DOUBLE_EQ(match.Quality(), 0.75 - 0.3);
-  match.arm = {-1, -1, -1, -1};
-  EXPECT_EQ(match.Quality(), 0);
-  match.arm = {1, 1, 1, 1};
-  match.spokes = 2;
-  EXPECT_EQ(match.Quality(), 0);
+  match.shares.arm = {1, 1, 1, 1};
+  match.shares.quadrant = {0.5, 0.5, 0.5, 0.5};
+  match.shares.ring = {1, 1, 1, 0};  // one quarter of the ring may be lost
+  EXPECT_DOUBLE_EQ(match.Agreement(), 0.5);
+  match.shares.quadrant = {1, 1, 1, 1};
+  EXPECT_DOUBLE_EQ(match.Agreement(), 1);
+  match.shares.arm = {1, 1, 1, 0};  // an arm may not
+  EXPECT_DOUBLE_EQ(match.Agreement(), 0.75);
+  match.shares.arm = {-1, -1, -1, -1};
+  EXPECT_EQ(match.Agreement(), 0);
+}
+
+TEST(PartShares, WhatIsNotInViewCountsForNothing) {
+  PartShares shares;
+  shares.arm = {0.8, -1, 0.4, -1};
+  shares.quadrant = {-1, -1, -1, -1};
+  shares.ring = {0.9, 0.2, -1, 0.7};
+  const PartShares::Means means = shares.MeansInView();
+  EXPECT_DOUBLE_EQ(means.worst_arm, 0.4);
+  EXPECT_DOUBLE_EQ(means.arms, 0.6);
+  EXPECT_DOUBLE_EQ(means.quadrants, 1) << "none in view";
+  EXPECT_DOUBLE_EQ(means.ring, 0.8) << "without its worst quarter";
+  shares.arm.fill(-1);
+  EXPECT_EQ(shares.MeansInView().worst_arm, 0) << "arms must be seen";
+  EXPECT_EQ(shares.MeansInView().arms, 0);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ class FindArcRingsTest : public ::testing::Test {
     const BorderTracer tracer = TraceFigure(is_dark, 320, 240);
     workspace_.Reserve(tracer.capacity());
     const double tolerance = 0.7 / camera_.intrinsics().fx_px;
-    FindArcRings(tracer, rays_, {}, tolerance, min_coverage, &workspace_);
+    FindArcRings(tracer, tracer.borders(), rays_, {}, tolerance, min_coverage, &workspace_);
     return workspace_.rings;
   }
   static bool OnRing(double x, double y) {
@@ -43,7 +43,7 @@ TEST_F(FindArcRingsTest, WithoutRoomThereAreNoArcs) {
   const BorderTracer tracer = TraceFigure(OnRing, 320, 240);
   workspace_.Reserve(300);  // the outer edge alone has more points
   const std::size_t room = workspace_.points.capacity();
-  FindArcRings(tracer, rays_, {}, 0.003, 0.25, &workspace_);
+  FindArcRings(tracer, tracer.borders(), rays_, {}, 0.003, 0.25, &workspace_);
   EXPECT_LE(workspace_.points.size(), room);
   EXPECT_EQ(workspace_.points.capacity(), room);
 }
@@ -120,6 +120,20 @@ TEST_F(FindArcRingsTest, ArmsThatTouchTheRingLeaveItsInnerEdge) {
   });
   ASSERT_NE(inner, rings.end());
   ExpectCircle(*inner);
+}
+
+TEST_F(FindArcRingsTest, OnlyTheBordersThatAreAskedForAreCut) {
+  const BorderTracer tracer = TraceFigure(OnRing, 320, 240);
+  ASSERT_EQ(tracer.borders().size(), 2u) << "outer and inner";
+  workspace_.Reserve(tracer.capacity());
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::span one = std::span(tracer.borders()).subspan(i, 1);
+    FindArcRings(tracer, one, rays_, {}, 0.003, 0.25, &workspace_);
+    ASSERT_EQ(workspace_.rings.size(), 1u);
+    ExpectCircle(workspace_.rings[0]);
+  }
+  FindArcRings(tracer, {}, rays_, {}, 0.003, 0.25, &workspace_);
+  EXPECT_TRUE(workspace_.rings.empty());
 }
 
 }  // namespace

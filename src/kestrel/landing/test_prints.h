@@ -41,6 +41,9 @@ inline bool IsRing(const LandingPattern& pattern, double x, double y) {
   return radius > pattern.inner_radius_m() && radius < pattern.outer_radius_m();
 }
 
+// Height (m) of a sheet that should be flat over a point of its plane, metres.
+using SheetHeight = std::function<double(double, double)>;
+
 // The landing pattern with another number of spokes, or the pattern itself: four.
 inline Print SpokedPrint(const LandingPattern& pattern, int spokes) {
   return [=](double x, double y) {
@@ -64,9 +67,10 @@ inline RigidTransform PrintPose(const Eigen::Vector3d& center, double tilt, doub
 }
 
 // The print on a white board on gray ground, each pixel the mean of 8 x 8 rays through it where its
-// corners, sides and centre do not agree.
+// corners, sides and centre do not agree. 'height': of a board that is not flat.
 inline cv::Mat DrawPrint(const CameraModel& camera, const LandingPattern& pattern,
-                         const Print& print, const RigidTransform& camera_from_pattern) {
+                         const Print& print, const RigidTransform& camera_from_pattern,
+                         const SheetHeight& height = {}) {
   const RigidTransform pattern_from_camera = camera_from_pattern.Inverse();
   const Eigen::Matrix3d rotation = pattern_from_camera.rotation.toRotationMatrix();
   const Eigen::Vector3d& origin = pattern_from_camera.translation;
@@ -74,8 +78,15 @@ inline cv::Mat DrawPrint(const CameraModel& camera, const LandingPattern& patter
     Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
     camera.Unproject({u, v}, &ray);
     ray = rotation * ray;
-    const double x = origin.x() - origin.z() / ray.z() * ray.x();
-    const double y = origin.y() - origin.z() / ray.z() * ray.y();
+    const double across = ray.x() / ray.z(), down = ray.y() / ray.z();
+    double x = origin.x() - origin.z() * across;
+    double y = origin.y() - origin.z() * down;
+    // The height is that of the point that is seen: by steps towards it.
+    for (int i = 0; height && i < 6; ++i) {
+      const double lower = origin.z() - height(x, y);
+      x = origin.x() - lower * across;
+      y = origin.y() - lower * down;
+    }
     if (std::max(std::abs(x), std::abs(y)) > 0.5 * pattern.board_size_m) return 120;
     return print(x, y) ? 40 : 200;
   };

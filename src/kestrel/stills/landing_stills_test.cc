@@ -68,6 +68,41 @@ TEST(LandingStillMakerTest, TruthIsWhereThePatternIs) {
   }
 }
 
+// What makes the print no flat, rigid one moves the true centre in the image, and the print with it.
+TEST(LandingStillMakerTest, TruthIsOnTheSheetAtItsTime) {
+  LandingStillOptions flat;
+  flat.min_visible_fraction = 1;
+  flat.min_ring_minor_px = 40;
+  flat.min_altitude_m = 1;
+  flat.max_altitude_m = 2;
+  LandingStillOptions bulging = flat, folded = flat, rolling = flat;
+  bulging.bulge = 0.1;
+  folded.fold = 0.05;
+  rolling.rolling_skew = 0.05;
+  for (const LandingStillOptions& options : {flat, bulging, folded, rolling}) {
+    const LandingStillMaker maker(options);
+    for (int seed = 0; seed < 5; ++seed) {
+      const LandingStill still = maker.MakePattern(seed);
+      EXPECT_LT(MeanOnPattern(still, maker.camera(), true) + 8,
+                MeanOnPattern(still, maker.camera(), false))
+          << "seed " << seed;
+      Vector2d of_flat, of_bulge;
+      maker.camera().Project(still.camera_from_pattern.translation, &of_flat);
+      const double height_m = options.bulge * still.pattern.board_size_m;
+      maker.camera().Project(still.camera_from_pattern * Vector3d(0, 0, height_m), &of_bulge);
+      if (options.rolling_skew == 0) {
+        EXPECT_LT((still.center_px - of_bulge).norm(), 1e-6) << "seed " << seed;
+        continue;
+      }
+      // So much a row; the fisheye shows angles by more or less in its outer parts.
+      const double rows = std::abs(still.center_px.y() - 239.5);
+      const double shift = (still.center_px - of_flat).norm();
+      EXPECT_GT(shift, 0.6 * options.rolling_skew * rows) << "seed " << seed;
+      EXPECT_LT(shift, 1.7 * options.rolling_skew * rows) << "seed " << seed;
+    }
+  }
+}
+
 TEST(LandingStillMakerTest, SameSeedSameBytes) {
   const LandingStillMaker maker(LandingStillOptions{});
   const LandingStillMaker twin(LandingStillOptions{});

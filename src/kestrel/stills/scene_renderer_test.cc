@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numbers>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -86,34 +89,31 @@ struct EdgeErrors {
   double max_abs = 0;
 };
 
-// Errors of the ring's two edges in the image against their projection.
-EdgeErrors MeasureRing(const CameraModel& camera, const RigidTransform& camera_from_pattern,
-                       const cv::Mat& image) {
+// Where an image shows a point of the pattern's plane; nothing out of the lens.
+using ShownAt = std::function<std::optional<Vector2d>(const Vector2d& point)>;
+
+// Errors of the ring's two edges in the image.
+EdgeErrors MeasureRing(const ShownAt& shown_at, const cv::Mat& image) {
   const LandingPattern pattern;
   EdgeErrors errors;
   for (const double radius : {pattern.outer_radius_m(), pattern.inner_radius_m()}) {
     for (double angle = 0.02; angle < 2 * kPi; angle += 0.05) {
       const double from_arm = std::remainder(angle, kPi / 2) * radius;
       if (radius < 0.45 && std::abs(from_arm) < 0.1) continue;  // the arms end near the inner edge
-      const Vector3d outward(std::cos(angle), std::sin(angle), 0);
-      Vector2d pixel;
-      Vector2d beyond;
-      if (camera.Project(camera_from_pattern * (radius * outward), &pixel) !=
-              ProjectionStatus::kOk ||
-          camera.Project(camera_from_pattern * ((radius + 1e-4) * outward), &beyond) !=
-              ProjectionStatus::kOk) {
-        continue;
-      }
-      const Vector2d margin = pixel.cwiseMin(Vector2d(751, 479) - pixel);
+      constexpr double kStep = 1e-4;
+      const Vector2d outward(std::cos(angle), std::sin(angle));
+      const Vector2d tangent(-outward.y(), outward.x());
+      const auto pixel = shown_at(radius * outward);
+      const auto beyond = shown_at((radius + kStep) * outward);
+      const auto next = shown_at(radius * outward + kStep * tangent);
+      if (!pixel || !beyond || !next) continue;
+      const Vector2d margin = pixel->cwiseMin(Vector2d(751, 479) - *pixel);
       if (margin.minCoeff() < 6) continue;
       // The edge's normal in the image: across the image of the tangent.
-      Eigen::Matrix<double, 2, 3> jacobian;
-      camera.Project(camera_from_pattern * (radius * outward), &pixel, &jacobian);
-      const Vector3d tangent(-outward.y(), outward.x(), 0);
-      const Vector2d along = (jacobian * (camera_from_pattern.rotation * tangent)).normalized();
+      const Vector2d along = (*next - *pixel).normalized();
       Vector2d normal(-along.y(), along.x());
-      if (normal.dot(beyond - pixel) < 0) normal = -normal;
-      const double error = EdgeOffset(image, pixel, normal);
+      if (normal.dot(*beyond - *pixel) < 0) normal = -normal;
+      const double error = EdgeOffset(image, *pixel, normal);
       ++errors.count;
       errors.mean += error;
       errors.max_abs = std::max(errors.max_abs, std::abs(error));
@@ -121,6 +121,21 @@ EdgeErrors MeasureRing(const CameraModel& camera, const RigidTransform& camera_f
   }
   errors.mean /= errors.count;
   return errors;
+}
+
+// The same of a flat print that stands still.
+EdgeErrors MeasureRing(const CameraModel& camera, const RigidTransform& camera_from_pattern,
+                       const cv::Mat& image) {
+  return MeasureRing(
+      [&](const Vector2d& point) -> std::optional<Vector2d> {
+        Vector2d pixel;
+        const Vector3d on_plane(point.x(), point.y(), 0);
+        if (camera.Project(camera_from_pattern * on_plane, &pixel) != ProjectionStatus::kOk) {
+          return std::nullopt;
+        }
+        return pixel;
+      },
+      image);
 }
 
 TEST(SceneRendererTest, EdgesLieWhereTheCameraProjectsThem) {
@@ -161,6 +176,55 @@ TEST(SceneRendererTest, MotionBlursWithoutMovingTheEdges) {
   EXPECT_LT(std::abs(errors.mean), 0.02);
   EXPECT_LT(errors.max_abs, 0.1);
   EXPECT_GT(cv::norm(sharp, moved, cv::NORM_INF), 15);
+}
+
+TEST(SceneRendererTest, ASheetLiesWhereItsReliefHasIt) {
+  const CameraModel camera(PaperCamera());
+  const SceneRenderer renderer(camera, ClearLens());
+  const RigidTransform pose = FacingPose(Vector3d(0.1, -0.05, 1), 1.1, 0.6);
+  for (const Relief& relief : {Relief{1.5, 0.045, 0}, Relief{1.5, -0.045, 0}, Relief{1.5, 0, 0.03}}) {
+    Scene scene = PatternScene();
+    scene.relief = relief;
+    const cv::Mat image = renderer.Render(scene, pose, CleanImaging());
+    const EdgeErrors errors = MeasureRing(
+        [&](const Vector2d& point) {
+          Vector2d pixel;
+          camera.Project(pose * Vector3d(point.x(), point.y(), relief.HeightAt(point)), &pixel);
+          return pixel;
+        },
+        image);
+    EXPECT_GT(errors.count, 200);
+    EXPECT_LT(std::abs(errors.mean), 0.02);
+    EXPECT_LT(errors.max_abs, 0.12);
+    EXPECT_GT(MeasureRing(camera, pose, image).max_abs, 1) << "it is not where a flat one would be";
+  }
+}
+
+// The view moves while the rows are read out: by 5 % of their number from the first to the last.
+TEST(SceneRendererTest, ARollingShutterSkewsWhatMoves) {
+  const CameraModel camera(PaperCamera());
+  const SceneRenderer renderer(camera, ClearLens());
+  const RigidTransform pose = NadirPose(1.3);
+  constexpr double kSkew = 0.05;
+  ImagingOptions imaging = CleanImaging();
+  imaging.exposure_s = 0;
+  imaging.readout_s = 0.03;
+  const double shift_m = kSkew * 480 / 261 * 1.3;  // while all rows are read out
+  imaging.velocity_in_camera = Vector3d(shift_m / imaging.readout_s, 0, 0);
+  const cv::Mat image = renderer.Render(PatternScene(), pose, imaging);
+  Vector2d center;
+  camera.Project(pose.translation, &center);
+  const auto skewed = [&](const Vector2d& point) {
+    Vector2d pixel;
+    camera.Project(pose * Vector3d(point.x(), point.y(), 0), &pixel);
+    pixel.x() += kSkew * (pixel.y() - center.y());
+    return pixel;
+  };
+  // A shift of the plane is one of the image but for the lens's distortion: half a percent here.
+  const EdgeErrors errors = MeasureRing(skewed, image);
+  EXPECT_GT(errors.count, 200);
+  EXPECT_LT(errors.max_abs, 0.3);
+  EXPECT_GT(MeasureRing(camera, pose, image).max_abs, 3);
 }
 
 TEST(SceneRendererTest, SameInputSameBytes) {
