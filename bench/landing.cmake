@@ -29,7 +29,7 @@ add_executable(train_print_score train_print_score.cc print_score_training.cc la
                                  landing_frames.cc landing_hardships.cc landing_score.cc
                                  landing_variants.cc)
 target_link_libraries(train_print_score PRIVATE kestrel::landing kestrel::recording
-                                                kestrel::simulation CLI11::CLI11 fmt::fmt
+                                                kestrel::stills CLI11::CLI11 fmt::fmt
                                                 opencv_imgcodecs opencv_imgproc)
 target_compile_definitions(train_print_score
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")

@@ -160,9 +160,9 @@ TEST_F(PatternLocatorTest, TheRingAloneGivesItsPlaneAndCentre) {
     const cv::Mat image = DrawPrint(camera_, pattern_, ring, truth);
     const auto found = locator_.LocateRing(image, Disturb(truth, &random), 5, 10, 6);
     ASSERT_TRUE(found);
-    EXPECT_LT((found->translation - truth.translation).norm(), 0.005 * distance) << trial;
+    EXPECT_LT((found->camera_from_pattern.translation - truth.translation).norm(), 0.005 * distance) << trial;
     const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
-    EXPECT_GT((found->rotation * z).dot(truth.rotation * z), std::cos(0.02)) << trial;
+    EXPECT_GT((found->camera_from_pattern.rotation * z).dot(truth.rotation * z), std::cos(0.02)) << trial;
   }
 }
 
