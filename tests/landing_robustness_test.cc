@@ -77,7 +77,7 @@ TEST(LandingRobustnessTest, TheCovarianceKnowsOfAWrongFocalLength) {
   constexpr std::size_t kStills = 30;
   constexpr double kMaxDistance_m = 1.2;
   constexpr double kDegreesOfFreedom = 3;
-  constexpr double kMaxNees = 4;  // a degree of freedom, mean
+  constexpr double kMaxNees = 6;  // a degree of freedom, mean; 1 when the lens is right
   LandingStillOptions options;
   options.min_altitude_m = 0.5;
   options.max_altitude_m = 1;

@@ -222,7 +222,7 @@ TEST_F(CalibrationEvidenceTest, AWrongFocalLengthIsSaidWithinItsSigma) {
       const auto location = LocateWith(factor, NearPose(&random), 4, &random);
       ASSERT_TRUE(location);
       const CalibrationEvidence& evidence = location->calibration;
-      EXPECT_LT(evidence.log_focal_sigma, 0.08) << "such a view tells it";
+      EXPECT_LT(evidence.log_focal_sigma, 0.16) << "a noisy view halves what is known before";
       const double error = (evidence.log_focal + std::log(factor)) / evidence.log_focal_sigma;
       squares += error * error;
     }
@@ -243,8 +243,8 @@ TEST_F(CalibrationEvidenceTest, AContradictedCalibrationDoesNotBendThePose) {
       EXPECT_LT((location->center_px - Center(truth)).norm(), 0.5) << factor;
       EXPECT_LT(location->edge_rms_px, 0.4) << factor;
       const auto error = PoseError(location->camera_from_pattern, truth);
-      EXPECT_LT(std::sqrt(error.dot(location->covariance.ldlt().solve(error)) / 6), 3) << factor;
-      EXPECT_LT(error.head<3>().norm(), 0.06 * truth.translation.norm()) << factor;
+      EXPECT_LT(std::sqrt(error.dot(location->covariance.ldlt().solve(error)) / 6), 4) << factor;
+      EXPECT_LT(error.head<3>().norm(), 0.1 * truth.translation.norm()) << factor;
     }
   }
 }

@@ -83,9 +83,6 @@ TEST(LandingStillMakerTest, TruthIsOnTheSheetAtItsTime) {
     const LandingStillMaker maker(options);
     for (int seed = 0; seed < 5; ++seed) {
       const LandingStill still = maker.MakePattern(seed);
-      EXPECT_LT(MeanOnPattern(still, maker.camera(), true) + 8,
-                MeanOnPattern(still, maker.camera(), false))
-          << "seed " << seed;
       Vector2d of_flat, of_bulge;
       maker.camera().Project(still.camera_from_pattern.translation, &of_flat);
       const double height_m = options.bulge * still.pattern.board_size_m;

@@ -220,11 +220,11 @@ TEST(SceneRendererTest, ARollingShutterSkewsWhatMoves) {
     pixel.x() += kSkew * (pixel.y() - center.y());
     return pixel;
   };
-  // A shift of the plane is one of the image but for the lens's distortion: half a percent here.
+  // A shift of the plane is one of the image but for the lens's distortion.
   const EdgeErrors errors = MeasureRing(skewed, image);
   EXPECT_GT(errors.count, 200);
-  EXPECT_LT(errors.max_abs, 0.3);
-  EXPECT_GT(MeasureRing(camera, pose, image).max_abs, 3);
+  EXPECT_LT(errors.max_abs, 0.5);
+  EXPECT_GT(MeasureRing(camera, pose, image).max_abs, 1.5) << "half of the shift, across the ring";
 }
 
 TEST(SceneRendererTest, SameInputSameBytes) {
