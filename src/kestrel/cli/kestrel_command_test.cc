@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "kestrel/base/read_file.h"
@@ -60,6 +61,20 @@ class KestrelCommandTest : public CommandTest {
     return folder_ / "flight";
   }
 };
+
+TEST_F(KestrelCommandTest, LandSaysOnceThatTheAltitudeIsWrong) {
+  WriteRecording();
+  const cv::Mat image = cv::imread(folder_ / "flight/mav0/cam0/data/100000000.png");
+  for (int i = 0; i < 12; ++i) folder_.WriteImage(fmt::format("images/{:02}.png", i), image);
+  const std::string land = fmt::format("land {} --camera {} --altitude ", folder_ / "images",
+                                       folder_ / "flight/mav0/cam0/sensor.yaml");
+  const std::string wrong = Run(land + "20").err;
+  EXPECT_THAT(wrong, HasSubstr("pattern found in 12"));
+  const std::size_t first = wrong.find("set --altitude 3.0");
+  EXPECT_NE(first, std::string::npos) << wrong;
+  EXPECT_EQ(wrong.find("set --altitude", first + 1), std::string::npos) << "said twice";
+  EXPECT_THAT(Run(land + "3").err, Not(HasSubstr("altitude told")));
+}
 
 TEST_F(KestrelCommandTest, HelpAndVersion) {
   for (const char* arguments : {"help", "--help"}) {

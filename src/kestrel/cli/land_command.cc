@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/cli/land_command.h"
 
+#include <cmath>
 #include <map>
 #include <memory>
+#include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +14,8 @@
 #include "kestrel/cli/landing_sink.h"
 #include "kestrel/cli/pipeline_run.h"
 #include "kestrel/cli/source_arguments.h"
+#include "kestrel/pipeline/calibration_monitor.h"
+#include "kestrel/pipeline/landing_pipeline.h"
 
 namespace kestrel {
 namespace {
@@ -20,13 +25,51 @@ struct LandArguments {
   std::vector<double> predict_s;
 };
 
+// What the detections show of height and attitude, where that contradicts what is told.
+std::string ToldWarning(const LandingPipeline& pipeline, std::optional<double> altitude_m,
+                        bool has_world) {
+  if (const auto tilt = pipeline.contradictions().Attitude()) {
+    return fmt::format(
+        "the attitude says that the pattern is tilted by {:.0f} degrees (median of {} frames): {}"
+        "check the mount (kestrel calibrate mount) and the navigation's attitude",
+        180 / std::numbers::pi * tilt->difference, tilt->detections,
+        tilt->difference > std::numbers::pi / 2 ? "is the camera mounted upside down? " : "");
+  }
+  const auto excess = pipeline.contradictions().Altitude();
+  if (!excess) return "";
+  const std::string what = fmt::format(
+      "the altitude told is {:.1f} m {} what the pattern shows (median of {} frames, standard "
+      "deviation {:.1f} m): ",
+      std::abs(excess->difference), excess->difference > 0 ? "above" : "below", excess->detections,
+      excess->sigma);
+  if (has_world) {
+    return fmt::format(
+        "{}set landing.target_height_m={:.1f}, or correct the navigation's z or the pattern's size",
+        what, pipeline.options().target_height_m + excess->difference);
+  }
+  return fmt::format("{}set --altitude {:.1f}, or correct the pattern's size", what,
+                     altitude_m.value_or(0) - excess->difference);
+}
+
+// What the detections say about the focal length, where that contradicts the calibration.
+std::string FocalRemark(const CalibrationMonitor& monitor, double focal_px) {
+  const auto focal = monitor.Contradiction();
+  if (!focal) return "";
+  return fmt::format(
+      "the pattern says f = {:.0f} +- {:.0f} px, the calibration {:.0f}: kestrel calibrate lens "
+      "estimates it from such views\n",
+      focal->factor * focal_px, focal->sigma * focal_px, focal_px);
+}
+
 class LandRun : public PipelineRun {
  public:
   LandRun(const OpenedSource& opened, const LandingPipelineOptions& options,
           const LandArguments& arguments, bool has_track)
       : pipeline_(opened.calibration, options),
-        sink_(arguments.source.Output(opened), has_track, arguments.predict_s) {
-    pipeline_.SetAltitude(arguments.source.altitude_m);
+        sink_(arguments.source.Output(opened), has_track, arguments.predict_s),
+        altitude_m_(arguments.source.altitude_m),
+        has_world_(opened.has_world()) {
+    pipeline_.SetAltitude(altitude_m_);
   }
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
@@ -35,15 +78,21 @@ class LandRun : public PipelineRun {
     const LandingObservation observation = pipeline_.Process(frame.image, frame.time);
     sink_.Write(frame, observation, pipeline_);
     ++poses_[observation.pose];
-    found_ += observation.report.detection.has_value();
+    if (const auto& detection = observation.report.detection) {
+      ++found_;
+      calibration_.Add(detection->calibration);
+    }
     return observation.detect_time;
   }
 
+  std::string Warning() const override { return ToldWarning(pipeline_, altitude_m_, has_world_); }
+
   std::string Found() const override { return fmt::format("pattern found in {}", found_); }
 
-  // Only where there are poses for some of the frames; a source that has none is nothing unusual.
   std::string Remarks() const override {
-    std::string remarks;
+    const double focal_px = pipeline_.detector().camera().intrinsics().fx_px;
+    std::string remarks = FocalRemark(calibration_, focal_px);
+    // Only where there are poses for some of the frames; a source that has none is nothing unusual.
     for (const auto& [pose, count] : poses_) {
       if (pose == PoseLookup::kFound || pose == PoseLookup::kEmpty) continue;
       remarks += fmt::format("{} frames without a pose of the UAV: {}\n", count, ToString(pose));
@@ -54,6 +103,9 @@ class LandRun : public PipelineRun {
  private:
   LandingPipeline pipeline_;
   LandingSink sink_;
+  CalibrationMonitor calibration_;
+  std::optional<double> altitude_m_;
+  bool has_world_;
   std::map<PoseLookup, std::size_t> poses_;
   std::size_t found_ = 0;
 };

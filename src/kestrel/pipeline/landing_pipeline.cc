@@ -63,30 +63,31 @@ LandingObservation LandingPipeline::Process(const cv::Mat& image, Time time) {
 }
 
 void LandingPipeline::Detect(const cv::Mat& image, LandingObservation* observation) {
-  const LandingHint known = MakeHint(*observation);
-  LandingHint hint = known;
+  const ToldView told = WhatIsTold(*observation);
+  LandingHint hint;
+  if (told.altitude_m > 0) hint.altitude_m = told.altitude_m;
+  hint.up_in_camera = told.up_in_camera;
   if (!options_.still) {
     AddTrack(*observation, &hint);
     AddLastSighting(*observation, &hint);
+    hint.first_step = next_step_;
   }
   const auto start = std::chrono::steady_clock::now();
   observation->report = detector_.Detect(image, hint, workspace_);
-  if (!observation->report.detection && hint.center_in_camera) {
-    observation->report = detector_.Detect(image, known, workspace_);
-  }
   observation->detect_time = std::chrono::steady_clock::now() - start;
+  next_step_ = observation->report.next_step;
+  if (const auto& detection = observation->report.detection) contradictions_.Add(told, *detection);
 }
 
-LandingHint LandingPipeline::MakeHint(const LandingObservation& observation) const {
-  LandingHint hint;
-  hint.altitude_m = altitude_m_;
-  if (const auto& world_from_camera = observation.world_from_camera) {
-    const double altitude_m = world_from_camera->translation.z() - options_.target_height_m;
-    hint.altitude_m.reset();
-    if (options_.altitude_hint && altitude_m > 0) hint.altitude_m = altitude_m;
-    hint.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
+ToldView LandingPipeline::WhatIsTold(const LandingObservation& observation) const {
+  const auto& world_from_camera = observation.world_from_camera;
+  if (!world_from_camera) return {altitude_m_, {}};
+  ToldView told;
+  if (options_.altitude_hint) {
+    told.altitude_m = world_from_camera->translation.z() - options_.target_height_m;
   }
-  return hint;
+  told.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  return told;
 }
 
 void LandingPipeline::AddTrack(const LandingObservation& observation, LandingHint* hint) const {

@@ -14,6 +14,7 @@
 #include "kestrel/landing/landing_pattern_detector.h"
 #include "kestrel/pipeline/camera_poses.h"
 #include "kestrel/pipeline/measurement_noise.h"
+#include "kestrel/pipeline/told_contradictions.h"
 #include "kestrel/tracking/target_tracker.h"
 
 namespace kestrel {
@@ -94,7 +95,7 @@ struct LandingObservation {
   std::optional<MeasurementFate> fate;
   TrackState track_state = TrackState::kSearching;
   std::optional<TargetEstimate> target;
-  Duration detect_time{};  // of LandingPatternDetector::Detect alone (both calls, if it took two)
+  Duration detect_time{};  // of LandingPatternDetector::Detect alone
 };
 
 // From an image to where the landing pattern is in the world and will be: pose history, mount and
@@ -115,6 +116,9 @@ class LandingPipeline {
   // does not allocate once it has warmed up.
   LandingObservation Process(const cv::Mat& image, Time time);
 
+  // How what is told of height and attitude contradicts what the detections show.
+  const ToldContradictions& contradictions() const { return contradictions_; }
+
   // The track; its times are those of the frames.
   const TargetTracker& tracker() const { return tracker_; }
   const LandingPatternDetector& detector() const { return detector_; }
@@ -128,7 +132,7 @@ class LandingPipeline {
   };
 
   void Detect(const cv::Mat& image, LandingObservation* observation);
-  LandingHint MakeHint(const LandingObservation& observation) const;
+  ToldView WhatIsTold(const LandingObservation& observation) const;
   void AddTrack(const LandingObservation& observation, LandingHint* hint) const;
   void AddLastSighting(const LandingObservation& observation, LandingHint* hint) const;
   void LocateInWorld(LandingObservation* observation) const;
@@ -144,6 +148,8 @@ class LandingPipeline {
   TargetTracker tracker_;
   bool is_track_trusted_ = true;  // the last detection was where the track expected it
   std::optional<Sighting> last_;
+  int next_step_ = 0;  // where the search of the last frame was given up
+  ToldContradictions contradictions_;
 };
 
 }  // namespace kestrel

@@ -2,6 +2,7 @@
 #include "kestrel/pipeline/landing_pipeline.h"
 
 #include <limits>
+#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -166,6 +167,72 @@ TEST_F(LandingPipelineTest, AWrongTrackDoesNotHideThePattern) {
     if (i == 9) {
       EXPECT_EQ(observation.fate, MeasurementFate::kStarted);
     }
+  }
+}
+
+// A pattern that stands, 12 frames, of which everything else is told than is seen.
+TEST_F(LandingPipelineTest, AWrongAltitudeOfTheNavigationHidesNothingAndIsSaid) {
+  options_.target_height_m = 0.5;
+  for (const double excess_m : {0.0, 10.0, 500.0, -10.0}) {
+    LandingPipeline pipeline(calibration_, options_);
+    for (int i = 0; i < 12; ++i) {
+      const Time time = kTime + i * DurationFromSeconds(0.1);
+      world_from_body_.translation.x() = 10 + 0.05 * i;
+      RigidTransform told = world_from_body_;
+      told.translation.z() += excess_m;
+      pipeline.AddPose({time, told});
+      EXPECT_TRUE(pipeline.Process(Draw(), time).center_in_world) << excess_m << ", frame " << i;
+    }
+    EXPECT_FALSE(pipeline.contradictions().Attitude());
+    const auto contradiction = pipeline.contradictions().Altitude();
+    ASSERT_EQ(contradiction.has_value(), excess_m != 0) << excess_m;
+    if (excess_m == 0) continue;
+    EXPECT_NEAR(contradiction->difference, excess_m, 0.1);
+  }
+}
+
+TEST_F(LandingPipelineTest, ACameraUpsideDownHidesNothingAndIsSaid) {
+  CameraCalibration wrong = calibration_;
+  wrong.body_from_camera->rotation =
+      wrong.body_from_camera->rotation * Rotation(std::numbers::pi, Eigen::Vector3d::UnitX());
+  LandingPipeline pipeline(wrong, options_);
+  for (int i = 0; i < 12; ++i) {
+    const Time time = kTime + i * DurationFromSeconds(0.1);
+    world_from_body_.translation.x() = 10 + 0.05 * i;
+    pipeline.AddPose({time, world_from_body_});
+    EXPECT_TRUE(pipeline.Process(Draw(), time).center_in_world) << i;
+  }
+  ASSERT_TRUE(pipeline.contradictions().Attitude());
+  EXPECT_GT(pipeline.contradictions().Attitude()->difference, 2.5);
+}
+
+TEST_F(LandingPipelineTest, AWrongAltitudeOfTheUserHidesNothingAndIsSaid) {
+  LandingPipeline pipeline(calibration_, options_);
+  pipeline.SetAltitude(20);
+  world_from_body_.translation.z() = 6.5;
+  for (int i = 0; i < 12; ++i) {
+    world_from_body_.translation.x() = 10 + 0.05 * i;
+    const Time time = kTime + i * DurationFromSeconds(0.1);
+    EXPECT_TRUE(pipeline.Process(Draw(), time).report.detection) << i;
+  }
+  ASSERT_TRUE(pipeline.contradictions().Altitude());
+  EXPECT_NEAR(pipeline.contradictions().Altitude()->difference, 14, 0.3);
+}
+
+// Each frame has time for one step only.
+TEST_F(LandingPipelineTest, ASearchOutOfTimeGoesOnInTheNextFrame) {
+  options_.detector.max_search_ms = 1e-6;
+  world_from_body_.translation.z() = 12.5;  // small: none of the first steps finds it
+  const cv::Mat image = Draw();
+  for (const bool still : {true, false}) {
+    options_.still = still;
+    LandingPipeline pipeline(calibration_, options_);
+    bool is_found = false;
+    for (int i = 0; i < 48 && !is_found; ++i) {
+      is_found = pipeline.Process(image, kTime + i * Duration(1)).report.detection.has_value();
+      EXPECT_FALSE(i == 0 && is_found);
+    }
+    EXPECT_EQ(is_found, !still);
   }
 }
 
