@@ -18,7 +18,8 @@ namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr std::size_t kMinViews = 8;
-constexpr std::size_t kMaxViews = 200;
+constexpr std::size_t kMaxViews = 100;
+constexpr std::size_t kFewViews = 40;  // enough to find more with
 constexpr double kMaxFocalSigma = 0.02;       // of the focal length
 constexpr double kMaxPrincipalSigma = 0.01;   // of the image's width
 constexpr double kLeastReach = 0.35;          // of the edges, in halves of the image's diagonal
@@ -127,10 +128,12 @@ bool Resect(const CameraIntrinsics& lens, std::vector<LensView>* views) {
   return true;
 }
 
-// What a fit is expected to be off on other views, plus what is the same for all fits of these.
+// What a fit has to be small in: its cost, and what its parameters are expected to have made it too
+// small by, times that of Schwarz's criterion (BIC) for so many edges.
 double Score(const LensFit& fit) {
-  const double views = static_cast<double>(fit.camera_from_pattern.size());
-  return fit.cost + 0.5 * std::log(views) * fit.optimism;
+  double edges = 0;
+  for (const auto& residuals : fit.residuals_px) edges += static_cast<double>(residuals.size());
+  return fit.cost + 0.5 * std::log(edges) * fit.optimism;
 }
 
 // A lens that is written and read as what it is.
@@ -160,25 +163,44 @@ class LensChoice {
   LensChoice(std::vector<LensView> views, std::optional<DistortionModel> model)
       : views_(std::move(views)), model_(model) {}
 
-  // The best of all kinds, aspects and numbers of coefficients from 'start'.
+  // The best of all kinds with all coefficients, from a lens that may be far off.
+  std::optional<LensFit> Begin(const CameraIntrinsics& start) const {
+    std::optional<LensFit> best;
+    for (const DistortionModel kind : Kinds(model_)) {
+      std::optional<LensFit> fit = FitKind(start, kind, kRoughSigmaPx);
+      if (fit && (!best || fit->cost < best->cost)) best = std::move(fit);
+    }
+    return best;
+  }
+
+  // The best of all kinds, numbers of coefficients and aspects, from a lens that is near.
   std::optional<LensFit> Choose(const CameraIntrinsics& start, double edge_sigma_px) const {
     std::optional<LensFit> best;
     for (const DistortionModel kind : Kinds(model_)) {
-      const auto begin = Converted(start, kind, LargestRadiusPx(views_, start));
-      if (!begin) continue;
-      for (const int order : DistortionOrders(kind)) {
-        // Coefficients that are not estimated are 0.
-        CameraIntrinsics from = *begin;
-        std::fill(from.distortion.begin() + order, from.distortion.end(), 0.0);
-        Offer(FitLens(views_, from, {.distortion = order}, edge_sigma_px), &best);
+      std::optional<LensFit> fit = FitKind(start, kind, edge_sigma_px);
+      std::vector<int> orders = DistortionOrders(kind);
+      for (orders.pop_back(); fit; orders.pop_back()) {
+        Offer(*fit, &best);
+        // With fewer coefficients the cost can only rise.
+        if (orders.empty() || (best && fit->cost > Score(*best))) break;
+        fit = FitOrder(*fit, orders.back(), edge_sigma_px);
       }
     }
     if (best) {
       LensFreedom freedom = best->freedom;
       freedom.aspect = true;
-      Offer(FitLens(views_, best->intrinsics, freedom, edge_sigma_px), &best);
+      const auto fit = Refit(*best, best->intrinsics, freedom, edge_sigma_px);
+      if (fit) Offer(*fit, &best);
     }
     return best;
+  }
+
+  // From another fit of these views.
+  std::optional<LensFit> Refit(const LensFit& fit, const CameraIntrinsics& start,
+                               const LensFreedom& freedom, double edge_sigma_px) const {
+    std::vector<LensView> views = views_;
+    SetPoses(fit.camera_from_pattern, &views);
+    return FitLens(views, start, freedom, edge_sigma_px);
   }
 
   // Takes what the fit cannot explain out of the views, and gives the others its poses. Returns how
@@ -209,8 +231,27 @@ class LensChoice {
   std::vector<LensView>& views() { return views_; }
 
  private:
-  static void Offer(std::optional<LensFit> fit, std::optional<LensFit>* best) {
-    if (fit && IsValid(*fit) && (!*best || Score(*fit) < Score(**best))) *best = std::move(fit);
+  // With all coefficients of a kind.
+  std::optional<LensFit> FitKind(const CameraIntrinsics& start, DistortionModel kind,
+                                 double edge_sigma_px) const {
+    const auto begin = Converted(start, kind, LargestRadiusPx(views_, start));
+    if (!begin) return std::nullopt;
+    const std::vector<int> orders = DistortionOrders(kind);
+    const int few = std::min(1, orders.back());
+    const auto rough = FitLens(views_, *begin, {.distortion = few}, edge_sigma_px);
+    if (!rough || few == orders.back()) return rough;
+    return FitOrder(*rough, orders.back(), edge_sigma_px);
+  }
+
+  // With the first 'order' coefficients; the others are 0.
+  std::optional<LensFit> FitOrder(const LensFit& fit, int order, double edge_sigma_px) const {
+    CameraIntrinsics start = fit.intrinsics;
+    std::fill(start.distortion.begin() + order, start.distortion.end(), 0.0);
+    return Refit(fit, start, {.distortion = order}, edge_sigma_px);
+  }
+
+  static void Offer(const LensFit& fit, std::optional<LensFit>* best) {
+    if (IsValid(fit) && (!*best || Score(fit) < Score(**best))) *best = fit;
   }
 
   std::vector<LensView> views_;
@@ -276,13 +317,38 @@ std::vector<std::string> Warnings(const LensCalibration& calibration) {
   return warnings;
 }
 
-// At most kMaxViews of them, evenly taken.
-std::vector<LensView> Thinned(const std::vector<LensView>& views) {
-  if (views.size() <= kMaxViews) return views;
-  std::vector<LensView> thinned;
-  for (std::size_t i = 0; i < kMaxViews; ++i) {
-    thinned.push_back(views[i * views.size() / kMaxViews]);
+// What makes views differ: where the print lies in the image, how near, and its normal.
+using ViewFeatures = Eigen::Vector<double, 6>;
+
+ViewFeatures FeaturesOf(const LensView& view, int width_px) {
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();
+  for (const LensEdge& edge : view.edges) center += edge.pixel;
+  center /= static_cast<double>(view.edges.size()) * width_px;
+  const RigidTransform& pose = view.camera_from_pattern;
+  ViewFeatures features;
+  features << center, 0.3 * std::log(pose.translation.norm()),
+      pose.rotation * Eigen::Vector3d::UnitZ();
+  return features;
+}
+
+// At most so many of them, in their order, each as unlike the others as can be: a camera that
+// hovers shows the same again and again, which says nothing more and outweighs what does.
+std::vector<LensView> Thinned(const std::vector<LensView>& views, std::size_t max_views,
+                              int width_px) {
+  if (views.size() <= max_views) return views;
+  std::vector<ViewFeatures> features;
+  for (const LensView& view : views) features.push_back(FeaturesOf(view, width_px));
+  std::vector<double> distances(views.size(), std::numeric_limits<double>::infinity());
+  std::vector<std::size_t> chosen{0};
+  while (chosen.size() < max_views) {
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      distances[i] = std::min(distances[i], (features[i] - features[chosen.back()]).norm());
+    }
+    chosen.push_back(std::max_element(distances.begin(), distances.end()) - distances.begin());
   }
+  std::sort(chosen.begin(), chosen.end());
+  std::vector<LensView> thinned;
+  for (const std::size_t index : chosen) thinned.push_back(views[index]);
   return thinned;
 }
 
@@ -345,31 +411,34 @@ void RequireOneSize(std::span<const LensImage> images) {
   }
 }
 
-// The lens of the views, told or not.
+// The lens of at most 'max_views' views, told or not.
 LensCalibration Estimate(const std::vector<LensView>& views, const CameraIntrinsics& start,
-                         std::optional<DistortionModel> model) {
+                         std::optional<DistortionModel> model, std::size_t max_views) {
   RequireViews(views.size());
-  LensChoice choice(Thinned(views), model);
+  LensChoice choice(Thinned(views, max_views, start.width_px), model);
   LensCalibration calibration;
-  CameraIntrinsics camera = start;
-  std::optional<LensFit> fit;
-  double sigma_px = kRoughSigmaPx;
-  constexpr int kRounds = 3;
-  for (int round = 0; round < kRounds; ++round) {
-    fit.reset();
-    if (Resect(camera, &choice.views())) fit = choice.Choose(camera, sigma_px);
+  const auto settle = [&](const CameraIntrinsics& lens) {
+    std::optional<LensFit> fit;
+    if (Resect(lens, &choice.views())) fit = choice.Begin(lens);
     if (!fit) throw CannotTell("no lens of this kind shows what they show");
-    camera = fit->intrinsics;
-    if (round + 1 == kRounds) break;
     calibration.outliers += choice.Clean(*fit);
     RequireViews(choice.views().size());
-    sigma_px = std::max(kLeastSigmaPx, RobustSigma(fit->residuals_px));
-  }
-  calibration.intrinsics = Simplified(*fit);
-  SetPoses(fit->camera_from_pattern, &choice.views());
+    return *fit;
+  };
+  LensFit fit = settle(settle(start).intrinsics);
+  const double sigma_px = std::max(kLeastSigmaPx, RobustSigma(fit.residuals_px));
+  std::optional<LensFit> best = choice.Choose(fit.intrinsics, sigma_px);
+  if (!best) throw CannotTell("no lens shows what they show");
+  // Were edges independent, the optimism would be the number of parameters: as much as it is more,
+  // less does an edge tell.
+  const double alike = std::max(1.0, best->optimism / best->freedom.count());
+  auto final_fit = choice.Refit(*best, best->intrinsics, best->freedom, std::sqrt(alike) * sigma_px);
+  if (!final_fit) throw CannotTell("no lens shows what they show");
+  calibration.intrinsics = Simplified(*final_fit);
+  SetPoses(final_fit->camera_from_pattern, &choice.views());
   calibration.views = std::move(choice.views());
   calibration.coverage = CoverageOf(calibration.views, CameraModel(calibration.intrinsics));
-  calibration.fit = std::move(*fit);
+  calibration.fit = std::move(*final_fit);
   calibration.warnings = Warnings(calibration);
   return calibration;
 }
@@ -378,7 +447,7 @@ LensCalibration Estimate(const std::vector<LensView>& views, const CameraIntrins
 
 LensCalibration EstimateLens(const std::vector<LensView>& views, const CameraIntrinsics& start,
                              std::optional<DistortionModel> model) {
-  LensCalibration calibration = Estimate(views, start, model);
+  LensCalibration calibration = Estimate(views, start, model, kMaxViews);
   RequireTold(calibration);
   return calibration;
 }
@@ -392,7 +461,7 @@ LensCalibration CalibrateLens(std::span<const LensImage> images,
   // The better the lens, the more views are found, at the border of the image most of all.
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds && views.size() >= kMinViews; ++round) {
-    camera = Estimate(views, camera, options.model).intrinsics;
+    camera = Estimate(views, camera, options.model, kFewViews).intrinsics;
     std::vector<LensView> more = FindViews(images, 1, camera, options.detector);
     if (more.size() <= views.size()) break;
     views = std::move(more);

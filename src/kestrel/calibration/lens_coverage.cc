@@ -70,7 +70,7 @@ std::string LensCoverage::InWords() const {
   const bool is_one = empty.size() == 1 && empty.front() != "corners";
   return words + fmt::format("; the {} of the image hold{} no edges: distortion beyond {:.0f} "
                              "degrees is extrapolated",
-                             fmt::join(empty, ", the "), is_one ? "s" : "", max_angle_deg);
+                             fmt::join(empty, " and the "), is_one ? "s" : "", max_angle_deg);
 }
 
 LensCoverage CoverageOf(std::span<const LensView> views, const CameraModel& camera) {

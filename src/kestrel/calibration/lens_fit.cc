@@ -19,10 +19,10 @@ constexpr int kViewParameters = 7;
 constexpr int kSpread = 6;
 constexpr double kSpreadSigmaPx = 0.3;
 constexpr double kHuber = 2;  // standard deviations of an edge
-// Before the views are looked at: of the logarithm of the focal length, and of the principal point
-// in widths of the image.
+// Before the views are looked at: of the focal length, in what it is at the start, and of the
+// principal point about the middle of the image, in its widths.
 constexpr double kFocalSigma = 0.7;
-constexpr double kPrincipalSigma = 0.1;
+constexpr double kPrincipalSigma = 0.03;
 
 using LensVector = Eigen::Vector<double, kLensParameters>;
 using LensMatrix = Eigen::Matrix<double, kLensParameters, kLensParameters>;
@@ -98,13 +98,30 @@ std::vector<int> FixedParameters(const LensFreedom& freedom) {
   return fixed;
 }
 
+// Variance of the sum of the views' gradients (columns), of which those that follow each other may
+// be alike (Newey and West 1987), fitted as they are.
+Eigen::MatrixXd ScatterOf(const Eigen::MatrixXd& gradients) {
+  constexpr Eigen::Index kLagShare = 12;  // views per view that another may still be like
+  const Eigen::Index count = gradients.cols();
+  const Eigen::Index lags = count / kLagShare;
+  Eigen::MatrixXd scatter = gradients * gradients.transpose();
+  for (Eigen::Index lag = 1; lag <= lags; ++lag) {
+    const Eigen::MatrixXd across =
+        gradients.leftCols(count - lag) * gradients.rightCols(count - lag).transpose();
+    const double weight = 1 - static_cast<double>(lag) / static_cast<double>(lags + 1);
+    scatter += weight * (across + across.transpose());
+  }
+  const double freedom = std::max<Eigen::Index>(1, count - gradients.rows());
+  return static_cast<double>(count) / freedom * scatter;
+}
+
 // Lens and views as one problem of Ceres.
 class Adjustment {
  public:
   Adjustment(std::span<const LensView> views, const CameraIntrinsics& start,
              const LensFreedom& freedom, double edge_sigma_px)
       : views_(views), freedom_(freedom), edge_sigma_px_(edge_sigma_px),
-        start_(start), lens_(ParametersOf(start)), states_(views.size()) {
+        start_(start), lens_(ParametersOf(start)), states_(views.size()), view_blocks_(views.size()) {
     problem_.AddParameterBlock(lens_.data(), kLensParameters);
     ordering_ = std::make_shared<ceres::ParameterBlockOrdering>();
     ordering_->AddElementToGroup(lens_.data(), 1);
@@ -152,25 +169,26 @@ class Adjustment {
     state << Eigen::Vector3d::Zero(), view.camera_from_pattern.translation, 0;
     for (const LensEdge& edge : view.edges) {
       using Cost = ceres::AutoDiffCostFunction<EdgeError, 1, kLensParameters, kViewParameters>;
-      problem_.AddResidualBlock(
+      view_blocks_[index].push_back(problem_.AddResidualBlock(
           new Cost(new EdgeError{start_.distortion_model, edge, view.camera_from_pattern,
                                  edge_sigma_px_}),
-          new ceres::HuberLoss(kHuber), lens_.data(), state.data());
+          new ceres::HuberLoss(kHuber), lens_.data(), state.data()));
     }
-    problem_.AddResidualBlock(Prior<kViewParameters>::Make(kSpread, 0, kSpreadSigmaPx), nullptr,
-                              state.data());
+    view_blocks_[index].push_back(problem_.AddResidualBlock(
+        Prior<kViewParameters>::Make(kSpread, 0, kSpreadSigmaPx), nullptr, state.data()));
     ordering_->AddElementToGroup(state.data(), 0);
   }
 
   void AddPriors() {
-    const auto hold = [&](int parameter, double sigma) {
+    const auto hold = [&](int parameter, double value, double sigma) {
       if (!freedom_.IsFree(parameter)) return;
-      problem_.AddResidualBlock(
-          Prior<kLensParameters>::Make(parameter, lens_(parameter), sigma), nullptr, lens_.data());
+      lens_blocks_.push_back(problem_.AddResidualBlock(
+          Prior<kLensParameters>::Make(parameter, value, sigma), nullptr, lens_.data()));
     };
-    hold(kFocal, kFocalSigma * start_.fx_px);
-    hold(kPrincipalX, kPrincipalSigma * start_.width_px);
-    hold(kPrincipalY, kPrincipalSigma * start_.width_px);
+    hold(kFocal, start_.fx_px, kFocalSigma * start_.fx_px);
+    const double principal_sigma_px = kPrincipalSigma * start_.width_px;
+    hold(kPrincipalX, 0.5 * (start_.width_px - 1), principal_sigma_px);
+    hold(kPrincipalY, 0.5 * (start_.height_px - 1), principal_sigma_px);
   }
 
   std::vector<double> ResidualsOf(std::size_t index) const {
@@ -190,20 +208,11 @@ class Adjustment {
     Eigen::MatrixXd of_lens, of_view;
     Eigen::VectorXd residuals;
   };
-  Linearized Linearize(ViewVector* view) {
+  Linearized Linearize(const std::vector<ceres::ResidualBlockId>& blocks, ViewVector* view) {
     ceres::Problem::EvaluateOptions options;
     options.parameter_blocks = {lens_.data()};
     if (view != nullptr) options.parameter_blocks.push_back(view->data());
-    std::vector<ceres::ResidualBlockId> of_lens;
-    problem_.GetResidualBlocksForParameterBlock(view ? view->data() : lens_.data(),
-                                                &options.residual_blocks);
-    if (view == nullptr) {
-      std::erase_if(options.residual_blocks, [&](ceres::ResidualBlockId block) {
-        std::vector<double*> parameters;
-        problem_.GetParameterBlocksForResidualBlock(block, &parameters);
-        return parameters.size() > 1;
-      });
-    }
+    options.residual_blocks = blocks;
     ceres::CRSMatrix sparse;
     std::vector<double> residuals;
     problem_.Evaluate(options, nullptr, &residuals, nullptr, &sparse);
@@ -220,26 +229,24 @@ class Adjustment {
 
   // Standard deviations and optimism. With the poses eliminated, each view has a Hessian and a
   // gradient of the lens; were the residuals independent, the variance of the gradients would be
-  // the Hessian. It is larger where a view is off as a whole (Huber's and White's covariance).
+  // the Hessian. It is larger where views are off as a whole (the sandwich of Huber and White).
   void Judge(LensFit* fit) {
     const int count = freedom_.count();
     Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(count, count);
-    Eigen::MatrixXd scatter = hessian;
-    for (ViewVector& state : states_) {
-      const Linearized view = Linearize(&state);
+    Eigen::MatrixXd gradients(count, states_.size());
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+      const Linearized view = Linearize(view_blocks_[i], &states_[i]);
       const Eigen::MatrixXd across = view.of_view.transpose() * view.of_lens;
       const Eigen::LDLT<Eigen::MatrixXd> of_view(
           Eigen::MatrixXd(view.of_view.transpose() * view.of_view));
       const Eigen::MatrixXd elimination = of_view.solve(across);
       hessian += view.of_lens.transpose() * view.of_lens - across.transpose() * elimination;
-      const Eigen::VectorXd gradient =
+      gradients.col(static_cast<Eigen::Index>(i)) =
           (view.of_lens - view.of_view * elimination).transpose() * view.residuals;
-      scatter += gradient * gradient.transpose();
     }
-    const Linearized priors = Linearize(nullptr);
+    const Linearized priors = Linearize(lens_blocks_, nullptr);
     hessian += priors.of_lens.transpose() * priors.of_lens;
-    const double views = static_cast<double>(states_.size());
-    scatter *= views / std::max(1.0, views - count);  // they were fitted
+    const Eigen::MatrixXd scatter = ScatterOf(gradients);
     const Eigen::MatrixXd inverse = hessian.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
     const Eigen::MatrixXd covariance = inverse * scatter * inverse;
     fit->optimism = (inverse * scatter).trace();
@@ -257,6 +264,8 @@ class Adjustment {
   LensVector lens_;
   std::vector<ViewVector> states_;
   ceres::Problem problem_;
+  std::vector<std::vector<ceres::ResidualBlockId>> view_blocks_;
+  std::vector<ceres::ResidualBlockId> lens_blocks_;  // of the priors
   std::shared_ptr<ceres::ParameterBlockOrdering> ordering_;
   double cost_ = 0;
 };

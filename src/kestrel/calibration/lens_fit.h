@@ -44,10 +44,10 @@ struct LensFit {
 
 // Bundle adjustment: lens and poses (and by how much the black of each print has spread over its
 // white) that bring the outlines nearest to the edges across them, from the poses of the views and
-// the lens 'start', with Huber's loss. 'edge_sigma_px': standard deviation of an edge. Principal
-// point and, weakly, the logarithm of the focal length are held to 'start', so that all has a
-// solution: the standard deviations tell what the views do not say. Nothing when the lens cannot
-// show a view.
+// the lens 'start', with Huber's loss. 'edge_sigma_px': standard deviation of an edge. The
+// principal point is held to the middle of the image and, weakly, the focal length to that of
+// 'start', so that all has a solution: the standard deviations tell what the views do not say.
+// Nothing when the lens cannot show a view.
 std::optional<LensFit> FitLens(std::span<const LensView> views, const CameraIntrinsics& start,
                                const LensFreedom& freedom, double edge_sigma_px);
 
