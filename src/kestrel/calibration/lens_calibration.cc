@@ -20,7 +20,10 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr std::size_t kMinViews = 8;
 constexpr std::size_t kMaxViews = 100;
 constexpr std::size_t kFewViews = 40;  // enough to find more with
-constexpr double kMaxFocalSigma = 0.02;       // of the focal length
+// Standard deviations of the focal length, of itself: what is no calibration, and what is no good
+// one.
+constexpr double kMaxFocalSigma = 0.05;
+constexpr double kGoodFocalSigma = 0.01;
 constexpr double kMaxPrincipalSigma = 0.01;   // of the image's width
 constexpr double kLeastReach = 0.35;          // of the edges, in halves of the image's diagonal
 constexpr double kLevelDeg = 12;              // views with less tilt look straight at the pattern
@@ -306,6 +309,13 @@ void RequireTold(const LensCalibration& calibration) {
 
 std::vector<std::string> Warnings(const LensCalibration& calibration) {
   std::vector<std::string> warnings;
+  const double focal_sigma = calibration.fit.sigmas(kFocal) / calibration.intrinsics.fx_px;
+  if (focal_sigma > kGoodFocalSigma) {
+    warnings.push_back(fmt::format(
+        "the views hardly tell the focal length (standard deviation {:.2g} %): take more, near ones "
+        "and with tilts of 20 to 50 degrees to different sides",
+        100 * focal_sigma));
+  }
   const double sigma_px =
       std::max(calibration.fit.sigmas(kPrincipalX), calibration.fit.sigmas(kPrincipalY));
   if (sigma_px > kMaxPrincipalSigma * calibration.intrinsics.width_px) {

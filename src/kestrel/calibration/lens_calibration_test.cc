@@ -59,11 +59,11 @@ std::string Refusal(const std::vector<LensView>& views, const CameraIntrinsics& 
 
 TEST(EstimateLensTest, FindsAFisheye) {
   const CameraIntrinsics truth = PaperCamera();
-  const auto views = MakeLensViews(truth, {.count = 40, .seed = 1});
+  const auto views = MakeLensViews(truth, {.count = 60, .seed = 1, .noise_px = 0.05});
   const LensCalibration lens = EstimateLens(views, Guess(truth, 1.2));
   EXPECT_EQ(lens.intrinsics.distortion_model, DistortionModel::kEquidistant);
   EXPECT_NEAR(lens.intrinsics.fx_px / truth.fx_px, 1, 0.003);
-  EXPECT_LT(MedianDifferencePx(truth, lens.intrinsics, 80), 0.1) << lens.fit.freedom.distortion << " " << lens.intrinsics.fx_px << " " << lens.intrinsics.fy_px << " " << lens.intrinsics.cx_px << " " << lens.intrinsics.cy_px << " " << lens.intrinsics.distortion[0] << " " << lens.intrinsics.distortion[1]<< " " << lens.coverage.InWords() << lens.fit.sigmas;
+  EXPECT_LT(MedianDifferencePx(truth, lens.intrinsics, 80), 0.1);
   EXPECT_GT(lens.coverage.max_angle_deg, 70);
   EXPECT_EQ(lens.outliers, 0);
 }
