@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Prints how well `kestrel calibrate lens` finds lenses: of rendered views against the true one, and
-// of the real sequences, for each of them and with what is found of the pattern by it.
+// Prints how well `kestrel calibrate lens` finds lenses: of rendered views against the true one,
+// and of the real sequences, for each of them and with what is found of the pattern by it.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -40,7 +40,13 @@ struct RenderedLens {
 std::vector<RenderedLens> RenderedLenses() {
   return {{"fisheye of the paper", PaperCamera(), 80},
           {"EuRoC, 80 degrees",
-           {752, 480, 458.654, 457.296, 367.215, 248.375, DistortionModel::kRadialTangential,
+           {752,
+            480,
+            458.654,
+            457.296,
+            367.215,
+            248.375,
+            DistortionModel::kRadialTangential,
             {-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05}},
            80},
           {"pinhole, 90 degrees", {640, 480, 320, 320, 325, 236, DistortionModel::kNone, {}}, 80}};
@@ -87,9 +93,9 @@ void ReportRendered(const Options& options) {
     for (int set = 0; set < options.seeds; ++set) {
       const auto images = RenderViews(rendered.camera, options.views, set);
       const LensCalibration lens = CalibrateLens(images, {});
-      const std::vector<double> differences = LensDifferencePx(
-          CameraModel(rendered.camera), CameraModel(lens.intrinsics),
-          rendered.max_angle_deg * std::numbers::pi / 180);
+      const std::vector<double> differences =
+          LensDifferencePx(CameraModel(rendered.camera), CameraModel(lens.intrinsics),
+                           rendered.max_angle_deg * std::numbers::pi / 180);
       fmt::print("| {} | {} | {}, {} | {} | {:.3f} | {:.3f} | {:.3f} |\n", rendered.name,
                  lens.views.size(), NameOf(lens.intrinsics), lens.fit.freedom.distortion,
                  FocalCells(lens, rendered.camera.fx_px), lens.fit.RootMeanSquare(),

@@ -24,17 +24,16 @@ constexpr std::size_t kFewViews = 40;  // enough to find more with
 // one.
 constexpr double kMaxFocalSigma = 0.05;
 constexpr double kGoodFocalSigma = 0.01;
-constexpr double kMaxPrincipalSigma = 0.01;   // of the image's width
-constexpr double kLeastReach = 0.35;          // of the edges, in halves of the image's diagonal
-constexpr double kLevelDeg = 12;              // views with less tilt look straight at the pattern
+constexpr double kMaxPrincipalSigma = 0.01;  // of the image's width
+constexpr double kLeastReach = 0.35;         // of the edges, in halves of the image's diagonal
+constexpr double kLevelDeg = 12;             // views with less tilt look straight at the pattern
 // Of an edge, px: before it is known, and the least that is believed.
 constexpr double kRoughSigmaPx = 0.5;
 constexpr double kLeastSigmaPx = 0.02;
 constexpr double kOutlier = 4;      // standard deviations, of an edge
 constexpr double kOutlierView = 3;  // its error in those of the view in the middle
-// Angle from the axis to which a lens that has all of its image before it can be told.
+// Angle from the axis from which on no image of a pinhole kind reaches.
 constexpr double kMaxPinholeAngle = 80 / kDegrees;
-constexpr double kPinholeAngleStep = 0.05;
 
 // How many coefficients are estimated, one after the other; the two tangential ones go together.
 std::vector<int> DistortionOrders(DistortionModel model) {
@@ -51,15 +50,16 @@ double LargestRadiusPx(const std::vector<LensView>& views, const CameraIntrinsic
   double largest = 0;
   for (const LensView& view : views) {
     for (const LensEdge& edge : view.edges) {
-      largest = std::max(largest, std::hypot(edge.pixel.x() - camera.cx_px, edge.pixel.y() - camera.cy_px));
+      largest = std::max(largest,
+                         std::hypot(edge.pixel.x() - camera.cx_px, edge.pixel.y() - camera.cy_px));
     }
   }
   return largest;
 }
 
-// A lens of kind 'model' that is like 'camera' out to 'radius_px' from the principal point, with all
-// coefficients that the kind has: by linear least squares over the radius. Nothing where it cannot
-// be.
+// A lens of kind 'model' that is like 'camera' out to 'radius_px' from the principal point, with
+// all coefficients that the kind has: by linear least squares over the radius. Nothing where it
+// cannot be.
 std::optional<CameraIntrinsics> Converted(const CameraIntrinsics& camera, DistortionModel model,
                                           double radius_px) {
   CameraIntrinsics converted = camera;
@@ -267,9 +267,9 @@ InputError CannotTell(const std::string& why) {
 
 void RequireViews(std::size_t count) {
   if (count >= kMinViews) return;
-  throw CannotTell(fmt::format(
-      "the pattern is in {} of them, near enough for its edges, expected at least {}", count,
-      kMinViews));
+  throw CannotTell(
+      fmt::format("the pattern is in {} of them, near enough for its edges, expected at least {}",
+                  count, kMinViews));
 }
 
 // The tilt of the print against the image plane that nine tenths of the views stay below, rad.
@@ -311,10 +311,11 @@ std::vector<std::string> Warnings(const LensCalibration& calibration) {
   std::vector<std::string> warnings;
   const double focal_sigma = calibration.fit.sigmas(kFocal) / calibration.intrinsics.fx_px;
   if (focal_sigma > kGoodFocalSigma) {
-    warnings.push_back(fmt::format(
-        "the views hardly tell the focal length (standard deviation {:.2g} %): take more, near ones "
-        "and with tilts of 20 to 50 degrees to different sides",
-        100 * focal_sigma));
+    warnings.push_back(
+        fmt::format("the views hardly tell the focal length (standard deviation {:.2g} %): take "
+                    "more, near ones "
+                    "and with tilts of 20 to 50 degrees to different sides",
+                    100 * focal_sigma));
   }
   const double sigma_px =
       std::max(calibration.fit.sigmas(kPrincipalX), calibration.fit.sigmas(kPrincipalY));
@@ -427,6 +428,7 @@ LensCalibration Estimate(const std::vector<LensView>& views, const CameraIntrins
   RequireViews(views.size());
   LensChoice choice(Thinned(views, max_views, start.width_px), model);
   LensCalibration calibration;
+  calibration.found = views.size();
   const auto settle = [&](const CameraIntrinsics& lens) {
     std::optional<LensFit> fit;
     if (Resect(lens, &choice.views())) fit = choice.Begin(lens);
@@ -442,7 +444,8 @@ LensCalibration Estimate(const std::vector<LensView>& views, const CameraIntrins
   // Were edges independent, the optimism would be the number of parameters: as much as it is more,
   // less does an edge tell.
   const double alike = std::max(1.0, best->optimism / best->freedom.count());
-  auto final_fit = choice.Refit(*best, best->intrinsics, best->freedom, std::sqrt(alike) * sigma_px);
+  auto final_fit =
+      choice.Refit(*best, best->intrinsics, best->freedom, std::sqrt(alike) * sigma_px);
   if (!final_fit) throw CannotTell("no lens shows what they show");
   calibration.intrinsics = Simplified(*final_fit);
   SetPoses(final_fit->camera_from_pattern, &choice.views());
@@ -465,8 +468,11 @@ LensCalibration EstimateLens(const std::vector<LensView>& views, const CameraInt
 LensCalibration CalibrateLens(std::span<const LensImage> images,
                               const LensCalibrationOptions& options) {
   RequireOneSize(images);
-  CameraIntrinsics camera =
-      options.start ? *options.start : BestGuess(images, options.detector);
+  if (options.start) {
+    const LensImage& first = images.front();
+    CheckImageSize(CameraModel(*options.start), first.image.cols, first.image.rows, first.name);
+  }
+  CameraIntrinsics camera = options.start ? *options.start : BestGuess(images, options.detector);
   std::vector<LensView> views = FindViews(images, 1, camera, options.detector);
   // The better the lens, the more views are found, at the border of the image most of all.
   constexpr int kRounds = 3;

@@ -20,7 +20,8 @@ namespace kestrel {
 struct LensCalibration {
   CameraIntrinsics intrinsics;
   LensFit fit;                  // of the same lens, with its standard deviations
-  std::vector<LensView> views;  // those that were used, as 'fit' has them
+  std::size_t found = 0;        // views in which the pattern was found, near enough
+  std::vector<LensView> views;  // those that were used, as 'fit' has them: not too many alike
   int outliers = 0;             // views that do not fit and were left out
   LensCoverage coverage;
   // What the views do not tell well, in words.
@@ -48,7 +49,8 @@ struct LensCalibrationOptions {
 
 // The lens of a camera from images of one size, in any order: the pattern is detected with guesses
 // of the lens, the lens is estimated from its edges, and with that lens the pattern is looked for
-// again. Throws InputError as EstimateLens does, and when the sizes differ.
+// again. Throws InputError as EstimateLens does, and when the sizes differ or are not that of
+// 'start'.
 LensCalibration CalibrateLens(std::span<const LensImage> images,
                               const LensCalibrationOptions& options);
 

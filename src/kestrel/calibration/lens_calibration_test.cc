@@ -43,9 +43,7 @@ CameraIntrinsics Guess(CameraIntrinsics camera, double zoom) {
   return camera;
 }
 
-CameraIntrinsics Pinhole() {
-  return {640, 480, 400, 400, 325, 236, DistortionModel::kNone, {}};
-}
+CameraIntrinsics Pinhole() { return {640, 480, 400, 400, 325, 236, DistortionModel::kNone, {}}; }
 
 // What EstimateLens says when it refuses; empty when it does not.
 std::string Refusal(const std::vector<LensView>& views, const CameraIntrinsics& start) {
@@ -161,7 +159,8 @@ TEST(LensCoverageTest, SaysWhatHoldsNoEdges) {
 
 TEST(LensCoverageTest, CountsEdgesWhereTheyAre) {
   LensView view;
-  for (const Eigen::Vector2d& pixel : std::vector<Eigen::Vector2d>{{0, 0}, {639, 479}, {325, 236}}) {
+  for (const Eigen::Vector2d& pixel :
+       std::vector<Eigen::Vector2d>{{0, 0}, {639, 479}, {325, 236}}) {
     view.edges.push_back({{0, 0}, pixel, {1, 0}});
   }
   const LensCoverage coverage = CoverageOf({&view, 1}, CameraModel(Pinhole()));
@@ -178,16 +177,15 @@ TEST(ProjectThroughLensTest, AgreesWithTheCameraModel) {
     if (camera.distortion.size() > 5) continue;
     std::array<double, kLensParameters> parameters{camera.fx_px, camera.fy_px / camera.fx_px,
                                                    camera.cx_px, camera.cy_px};
-    std::copy(camera.distortion.begin(), camera.distortion.end(),
-              parameters.begin() + kDistortion);
+    std::copy(camera.distortion.begin(), camera.distortion.end(), parameters.begin() + kDistortion);
     const CameraModel model(camera);
     for (int i = 0; i < 100; ++i) {
       const Eigen::Vector3d ray =
           RayAt(random.Uniform(0, std::min(1.3, model.max_angle())), random.Uniform(0, 2 * kPi));
       Eigen::Vector2d expected, pixel;
       ASSERT_NE(model.Project(ray, &expected), ProjectionStatus::kOutsideModel);
-      ASSERT_TRUE(ProjectThroughLens(camera.distortion_model, parameters.data(), ray.data(),
-                                     pixel.data()));
+      ASSERT_TRUE(
+          ProjectThroughLens(camera.distortion_model, parameters.data(), ray.data(), pixel.data()));
       EXPECT_LT((pixel - expected).norm(), 1e-6) << test.name;
     }
   }
@@ -233,6 +231,9 @@ TEST(CalibrateLensTest, SaysWhatIsWrongWithImages) {
   EXPECT_THROW(CalibrateLens({}, {}), InputError);
   const std::vector<LensImage> empty(10, LensImage{"gray", cv::Mat(240, 320, CV_8UC1, 90)});
   EXPECT_THROW(CalibrateLens(empty, {}), InputError);
+  LensCalibrationOptions large_start;
+  large_start.start = Pinhole();
+  EXPECT_THROW(CalibrateLens(empty, large_start), InputError);
   std::vector<LensImage> mixed = empty;
   mixed[3] = {"large.png", cv::Mat(480, 640, CV_8UC1, 90)};
   try {

@@ -16,8 +16,8 @@ constexpr double kNearly = 0.99;  // of all edges
 
 double NearlyLargest(std::vector<double> values) {
   if (values.empty()) return 0;
-  const auto place =
-      values.begin() + static_cast<std::ptrdiff_t>(kNearly * static_cast<double>(values.size() - 1));
+  const auto place = values.begin() +
+                     static_cast<std::ptrdiff_t>(kNearly * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), place, values.end());
   return *place;
 }
@@ -62,15 +62,16 @@ int LensCoverage::fields() const {
 }
 
 std::string LensCoverage::InWords() const {
-  std::string words =
-      fmt::format("edges lie in {} of {} fields of the image, to {:.0f} degrees from the optical axis",
-                  fields(), edges.size(), max_angle_deg);
+  std::string words = fmt::format(
+      "edges lie in {} of {} fields of the image, to {:.0f} degrees from the optical axis",
+      fields(), edges.size(), max_angle_deg);
   const std::vector<std::string> empty = EmptyParts(*this);
   if (empty.empty()) return words;
   const bool is_one = empty.size() == 1 && empty.front() != "corners";
-  return words + fmt::format("; the {} of the image hold{} no edges: distortion beyond {:.0f} "
-                             "degrees is extrapolated",
-                             fmt::join(empty, " and the "), is_one ? "s" : "", max_angle_deg);
+  return words + fmt::format(
+                     "; the {} of the image hold{} no edges: distortion beyond {:.0f} "
+                     "degrees is extrapolated",
+                     fmt::join(empty, " and the "), is_one ? "s" : "", max_angle_deg);
 }
 
 LensCoverage CoverageOf(std::span<const LensView> views, const CameraModel& camera) {

@@ -32,7 +32,8 @@ using ViewVector = Eigen::Vector<double, kViewParameters>;
 struct EdgeError {
   template <class T>
   bool operator()(const T* lens, const T* view, T* residual) const {
-    const Eigen::Vector3d turned = start.rotation * Eigen::Vector3d(edge.on_print.x(), edge.on_print.y(), 0);
+    const Eigen::Vector3d turned =
+        start.rotation * Eigen::Vector3d(edge.on_print.x(), edge.on_print.y(), 0);
     const T on_print[3] = {T(turned.x()), T(turned.y()), T(turned.z())};
     T point[3], pixel[2];
     ceres::AngleAxisRotatePoint(view, on_print, point);
@@ -120,8 +121,13 @@ class Adjustment {
  public:
   Adjustment(std::span<const LensView> views, const CameraIntrinsics& start,
              const LensFreedom& freedom, double edge_sigma_px)
-      : views_(views), freedom_(freedom), edge_sigma_px_(edge_sigma_px),
-        start_(start), lens_(ParametersOf(start)), states_(views.size()), view_blocks_(views.size()) {
+      : views_(views),
+        freedom_(freedom),
+        edge_sigma_px_(edge_sigma_px),
+        start_(start),
+        lens_(ParametersOf(start)),
+        states_(views.size()),
+        view_blocks_(views.size()) {
     problem_.AddParameterBlock(lens_.data(), kLensParameters);
     ordering_ = std::make_shared<ceres::ParameterBlockOrdering>();
     ordering_->AddElementToGroup(lens_.data(), 1);

@@ -16,9 +16,9 @@ namespace kestrel {
 // Which parameters of a lens are estimated; the others keep their values.
 struct LensFreedom {
   bool focal = true;
-  bool aspect = false;     // fy apart from fx
+  bool aspect = false;  // fy apart from fx
   bool principal = true;
-  int distortion = 0;      // the first so many coefficients
+  int distortion = 0;  // the first so many coefficients
 
   // fx, fy / fx, cx, cy, coefficients.
   bool IsFree(int parameter) const;
@@ -34,7 +34,7 @@ struct LensFit {
   Eigen::Vector<double, kLensParameters> sigmas;
   std::vector<RigidTransform> camera_from_pattern;  // by view
   std::vector<std::vector<double>> residuals_px;    // of each view's edges, across the outline
-  double cost = 0;     // robust, half of the squares over the variance of an edge
+  double cost = 0;  // robust, half of the squares over the variance of an edge
   // By how much the lens has come nearer to these views than it will to others: trace of the
   // inverse Hessian times the variance of the views' gradients (Takeuchi 1976).
   double optimism = 0;

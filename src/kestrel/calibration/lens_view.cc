@@ -9,8 +9,8 @@
 namespace kestrel {
 namespace {
 
-constexpr double kMinRingPx = 40;      // diameter: an arm of a tenth of it has two edges
-constexpr double kReachShare = 0.03;   // of the ring's diameter, in which edges are looked for
+constexpr double kMinRingPx = 40;     // diameter: an arm of a tenth of it has two edges
+constexpr double kReachShare = 0.03;  // of the ring's diameter, in which edges are looked for
 constexpr double kLeastReachPx = 3;
 constexpr double kMinStep = 4;         // of an edge, gray values per pixel
 constexpr double kInPlacePx = 1;       // of an edge from where its neighbours have it

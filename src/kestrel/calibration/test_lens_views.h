@@ -26,8 +26,8 @@ struct TestLensViews {
   double noise_px = 0.1;      // of an edge, standard deviation
 };
 
-// The edges that a camera has of the pattern from random poses, which are told with an error of some
-// degrees and percent.
+// The edges that a camera has of the pattern from random poses, which are told with an error of
+// some degrees and percent.
 inline std::vector<LensView> MakeLensViews(const CameraIntrinsics& intrinsics,
                                            const TestLensViews& options) {
   constexpr double kDegrees = std::numbers::pi / 180;
@@ -47,9 +47,8 @@ inline std::vector<LensView> MakeLensViews(const CameraIntrinsics& intrinsics,
     // Turned towards the camera as far as the options allow.
     const double tilt = random.Uniform(0, options.max_tilt_deg * kDegrees);
     const double tilt_axis = random.Uniform(0, 2 * std::numbers::pi);
-    const RigidTransform pose =
-        PrintPose(random.Uniform(1.3, 2.5) * intrinsics.fx_px / 300 * ray, tilt, tilt_axis,
-                  random.Uniform(0, 2 * std::numbers::pi));
+    const RigidTransform pose = PrintPose(random.Uniform(1.3, 2.5) * intrinsics.fx_px / 300 * ray,
+                                          tilt, tilt_axis, random.Uniform(0, 2 * std::numbers::pi));
     // Looked at from too flat, its edges would not be found.
     if (-(pose.rotation * Eigen::Vector3d::UnitZ()).dot(ray) < 0.4) continue;
     LensView view{"view " + std::to_string(views.size()), {}, pose};
@@ -65,7 +64,8 @@ inline std::vector<LensView> MakeLensViews(const CameraIntrinsics& intrinsics,
           (d_plane * Eigen::Vector2d(-place.normal.y(), place.normal.x())).normalized();
       Eigen::Vector2d across(-along.y(), along.x());
       if (across.dot(d_plane * place.normal) < 0) across = -across;
-      view.edges.push_back({place.point, pixel + options.noise_px * random.Normal() * across, across});
+      view.edges.push_back(
+          {place.point, pixel + options.noise_px * random.Normal() * across, across});
     }
     if (view.edges.size() < kMinEdges) continue;
     view.camera_from_pattern =

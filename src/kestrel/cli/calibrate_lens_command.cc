@@ -88,9 +88,9 @@ LensSources ReadSources(const std::vector<std::string>& arguments) {
 void PrintResult(const LensCalibration& lens, std::size_t images) {
   const CameraIntrinsics& camera = lens.intrinsics;
   const auto& sigmas = lens.fit.sigmas;
-  const auto named =
-      std::find_if(kModels.begin(), kModels.end(),
-                   [&](const auto& model) { return model.second == camera.distortion_model; });
+  const auto named = std::find_if(kModels.begin(), kModels.end(), [&](const auto& model) {
+    return model.second == camera.distortion_model;
+  });
   fmt::print(stderr,
              "focal length: {:.2f} x {:.2f} +- {:.2f} px ({:.2g} %)\n"
              "principal point: ({:.2f}, {:.2f}) +- ({:.2f}, {:.2f}) px\n"
@@ -101,8 +101,10 @@ void PrintResult(const LensCalibration& lens, std::size_t images) {
     fmt::print(stderr, "{} {:.5f} +- {:.5f}", i == 0 ? ":" : ",", camera.distortion[i],
                sigmas(kDistortion + i));
   }
-  fmt::print(stderr, "\n{} views in {} images ({} left out), residual {:.3f} px\n{}\n",
-             lens.views.size(), images, lens.outliers, lens.fit.RootMeanSquare(),
+  fmt::print(stderr,
+             "\npattern found in {} of {} images, {} views used ({} left out), residual {:.3f} px\n"
+             "{}\n",
+             lens.found, images, lens.views.size(), lens.outliers, lens.fit.RootMeanSquare(),
              lens.coverage.InWords());
   for (const std::string& warning : lens.warnings) {
     fmt::print(stderr, "kestrel: warning: {}\n", warning);

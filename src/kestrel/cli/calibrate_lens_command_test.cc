@@ -32,7 +32,8 @@ class CalibrateLensCommandTest : public CommandTest {
     options.max_tilt_deg = 50;
     const LandingStillMaker maker(options);
     for (int i = 0; i < count; ++i) {
-      folder_.WriteImage(fmt::format("stills/{:03}.png", i), maker.MakePattern(8'000'000 + i).image);
+      folder_.WriteImage(fmt::format("stills/{:03}.png", i),
+                         maker.MakePattern(8'000'000 + i).image);
     }
   }
 
@@ -55,11 +56,11 @@ TEST_F(CalibrateLensCommandTest, FindsTheFisheyeFromNothingButImages) {
   WriteStills(truth, 60);
   const std::string camera = folder_ / "camera.yaml";
   const std::string plots = folder_ / "plots";
-  const Outcome outcome = Run("calibrate lens " + (folder_ / "stills") + " --output " + camera +
-                              " --plots " + plots);
+  const Outcome outcome =
+      Run("calibrate lens " + (folder_ / "stills") + " --output " + camera + " --plots " + plots);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("distortion: equidistant: "));
-  EXPECT_THAT(outcome.err, HasSubstr("views in 60 images"));
+  EXPECT_THAT(outcome.err, HasSubstr(" of 60 images, "));
   EXPECT_THAT(outcome.err, HasSubstr("fields of the image, to "));
   const CameraIntrinsics found = ReadCalibration(camera).intrinsics;
   EXPECT_NEAR(found.fx_px / truth.fx_px, 1, 0.003);

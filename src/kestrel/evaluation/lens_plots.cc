@@ -62,7 +62,8 @@ PlotPanel CurvePanel(const CameraModel& camera, double max_angle_deg) {
     if (radius > farthest.norm()) break;
     (angle <= max_angle_deg ? by_edges : beyond).points.emplace_back(angle, radius);
   }
-  return {"angle from the optical axis, degrees", "distance from the principal point, px",
+  return {"angle from the optical axis, degrees",
+          "distance from the principal point, px",
           {by_edges, beyond}};
 }
 
@@ -79,7 +80,8 @@ Plot LensResidualPlot(const LensCalibration& calibration) {
     }
   }
   const PlotSeries spread{"root mean square", PlotStyle::kLine, ByAngle(residuals.points), {}};
-  const PlotPanel panel{"angle from the optical axis, degrees", "residual across the outline, px",
+  const PlotPanel panel{"angle from the optical axis, degrees",
+                        "residual across the outline, px",
                         {residuals, spread}};
   return {"lens_residuals",
           fmt::format("Lens: what it leaves unexplained, {:.3f} px root mean square",
@@ -91,10 +93,11 @@ Plot LensCoveragePlot(const LensCalibration& calibration) {
   const CameraIntrinsics& camera = calibration.intrinsics;
   const double right = camera.width_px - 0.5, bottom = camera.height_px - 0.5;
   PlotPanel panel{"u, px", "v, px", {}, /*equal_axes=*/true, {bottom + 20, -20}};
-  panel.series.push_back({"image", PlotStyle::kDashes,
-                          {{-0.5, -0.5}, {right, -0.5}, {right, bottom}, {-0.5, bottom},
-                           {-0.5, -0.5}},
-                          {}});
+  panel.series.push_back(
+      {"image",
+       PlotStyle::kDashes,
+       {{-0.5, -0.5}, {right, -0.5}, {right, bottom}, {-0.5, bottom}, {-0.5, -0.5}},
+       {}});
   for (int color = 0; color < kColors; ++color) {
     panel.series.push_back({color == 0 ? "edges" : "", PlotStyle::kDots, {}, {}});
   }
