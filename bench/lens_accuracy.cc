@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Prints how well `kestrel calibrate lens` finds lenses: of rendered views against the true one,
 // and of the real sequences, for each of them and with what is found of the pattern by it.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,7 @@
 #include "kestrel/base/error.h"
 #include "kestrel/calibration/lens_calibration.h"
 #include "kestrel/calibration/lens_difference.h"
+#include "kestrel/recording/euroc_text.h"
 #include "kestrel/simulation/landing_stills.h"
 #include "landing_frames.h"
 #include "landing_score.h"
@@ -23,6 +26,7 @@ namespace kestrel {
 namespace {
 
 constexpr int kThreads = 2;
+constexpr double kMaxAngle = 80 * std::numbers::pi / 180;  // to which lenses are compared
 
 struct Options {
   std::string data_dir = KESTREL_DATA_DIR;
@@ -33,23 +37,15 @@ struct Options {
 struct RenderedLens {
   const char* name;
   CameraIntrinsics camera;
-  double max_angle_deg;  // to which it is compared
 };
 
-// The paper's fisheye, and lenses as of a camera of a MAV and of an action camera.
 std::vector<RenderedLens> RenderedLenses() {
-  return {{"fisheye of the paper", PaperCamera(), 80},
-          {"EuRoC, 80 degrees",
-           {752,
-            480,
-            458.654,
-            457.296,
-            367.215,
-            248.375,
-            DistortionModel::kRadialTangential,
-            {-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05}},
-           80},
-          {"pinhole, 90 degrees", {640, 480, 320, 320, 325, 236, DistortionModel::kNone, {}}, 80}};
+  const CameraIntrinsics wide{
+      752, 480, 430, 430, 370, 246, DistortionModel::kRadialTangential, {-0.3, 0.1, 4e-4, -2e-4}};
+  const CameraIntrinsics pinhole{640, 480, 320, 320, 325, 236, DistortionModel::kNone, {}};
+  return {{"fisheye of the paper", PaperCamera()},
+          {"wide angle with a barrel distortion", wide},
+          {"pinhole, 90 degrees", pinhole}};
 }
 
 std::vector<LensImage> RenderViews(const CameraIntrinsics& camera, int count, int set) {
@@ -65,17 +61,6 @@ std::vector<LensImage> RenderViews(const CameraIntrinsics& camera, int count, in
     images[i] = {fmt::format("seed {}", seed), maker.MakePattern(seed).image};
   });
   return images;
-}
-
-const char* NameOf(const CameraIntrinsics& camera) {
-  switch (camera.distortion_model) {
-    case DistortionModel::kEquidistant:
-      return "equidistant";
-    case DistortionModel::kRadialTangential:
-      return "radial-tangential";
-    default:
-      return "none";
-  }
 }
 
 std::string FocalCells(const LensCalibration& lens, double truth_px) {
@@ -94,28 +79,29 @@ void ReportRendered(const Options& options) {
       const auto images = RenderViews(rendered.camera, options.views, set);
       const LensCalibration lens = CalibrateLens(images, {});
       const std::vector<double> differences =
-          LensDifferencePx(CameraModel(rendered.camera), CameraModel(lens.intrinsics),
-                           rendered.max_angle_deg * std::numbers::pi / 180);
+          LensDifferencePx(CameraModel(rendered.camera), CameraModel(lens.intrinsics), kMaxAngle);
       fmt::print("| {} | {} | {}, {} | {} | {:.3f} | {:.3f} | {:.3f} |\n", rendered.name,
-                 lens.views.size(), NameOf(lens.intrinsics), lens.fit.freedom.distortion,
-                 FocalCells(lens, rendered.camera.fx_px), lens.fit.RootMeanSquare(),
-                 Quantile(differences, 0.5), Quantile(differences, 0.95));
+                 lens.views.size(), DistortionName(lens.intrinsics.distortion_model),
+                 lens.fit.freedom.distortion, FocalCells(lens, rendered.camera.fx_px),
+                 lens.fit.RootMeanSquare(), Quantile(differences, 0.5),
+                 Quantile(differences, 0.95));
       std::fflush(stdout);
     }
   }
 }
 
-// The focal length of some views if all else of the lens is known.
-std::string FocalOf(const std::vector<LensView>& views, const CameraIntrinsics& camera) {
+// The fit of some views' focal length, all else of the lens as it is.
+std::optional<LensFit> FitFocal(const std::vector<LensView>& views,
+                                const CameraIntrinsics& camera) {
+  if (views.empty()) return std::nullopt;
   CameraIntrinsics padded = camera;
   padded.distortion.resize(5);
   if (camera.distortion_model == DistortionModel::kNone) {
     padded.distortion_model = DistortionModel::kRadialTangential;
   }
   constexpr LensFreedom kFocalOnly{.focal = true, .aspect = false, .principal = false};
-  const auto fit = FitLens(views, padded, kFocalOnly, 0.2);
-  if (!fit) return "";
-  return fmt::format("{:.1f} +- {:.1f}", fit->intrinsics.fx_px, fit->sigmas(kFocal));
+  constexpr double kEdgeSigmaPx = 0.2;
+  return FitLens(views, padded, kFocalOnly, kEdgeSigmaPx);
 }
 
 LandingTally Score(const LandingFrameSet& set, const CameraIntrinsics& camera) {
@@ -151,18 +137,30 @@ void ReportReal(const Options& options) {
       "used | focal length, px | f = 370: found | centre error median, px | 95 %, px | this lens: "
       "found | centre error median, px | 95 %, px |\n|---|---|---|---|---|---|---|---|---|\n",
       lens.views.size(), camera.fx_px, lens.fit.sigmas(kFocal), camera.cx_px, camera.cy_px,
-      lens.fit.sigmas(kPrincipalX), lens.fit.sigmas(kPrincipalY), NameOf(camera),
-      fmt::join(camera.distortion, ", "), lens.fit.RootMeanSquare(), lens.coverage.InWords());
+      lens.fit.sigmas(kPrincipalX), lens.fit.sigmas(kPrincipalY),
+      DistortionName(camera.distortion_model), fmt::join(camera.distortion, ", "),
+      lens.fit.RootMeanSquare(), lens.coverage.InWords());
+  double squares = 0;
+  int fitted = 0;
   for (const LandingFrameSet& set : sets) {
     std::vector<LensView> views;
     for (const LensView& view : lens.views) {
       if (view.name.starts_with(set.name + "/")) views.push_back(view);
     }
-    fmt::print("| {} | {} | {} | {} | {} |\n", set.name, views.size(),
-               views.empty() ? "" : FocalOf(views, camera), FoundCells(Score(set, set.camera)),
-               FoundCells(Score(set, camera)));
+    const std::optional<LensFit> fit = FitFocal(views, camera);
+    std::string focal = "none";
+    if (fit) {
+      focal = fmt::format("{:.1f} +- {:.1f}", fit->intrinsics.fx_px, fit->sigmas(kFocal));
+      squares += std::pow(fit->intrinsics.fx_px - camera.fx_px, 2);
+      ++fitted;
+    }
+    fmt::print("| {} | {} | {} | {} | {} |\n", set.name, views.size(), focal,
+               FoundCells(Score(set, set.camera)), FoundCells(Score(set, camera)));
     std::fflush(stdout);
   }
+  fmt::print(
+      "\nThe focal lengths of the sequences are {:.1f} px (root mean square) from that of all.\n",
+      std::sqrt(squares / std::max(fitted, 1)));
 }
 
 int Run(int argc, char** argv) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/cli/calibrate_lens_command.h"
 
-#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -10,9 +9,7 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include "kestrel/base/error.h"
 #include "kestrel/calibration/lens_calibration.h"
 #include "kestrel/camera/calibration_reader.h"
 #include "kestrel/cli/calibration_output.h"
@@ -20,16 +17,22 @@
 #include "kestrel/cli/option_arguments.h"
 #include "kestrel/cli/progress_bar.h"
 #include "kestrel/evaluation/lens_plots.h"
+#include "kestrel/recording/euroc_text.h"
 #include "kestrel/recording/open_source.h"
 #include "kestrel/recording/output_folder.h"
 
 namespace kestrel {
 namespace {
 
-const std::map<std::string, DistortionModel> kModels = {
-    {"radial-tangential", DistortionModel::kRadialTangential},
-    {"equidistant", DistortionModel::kEquidistant},
-    {"none", DistortionModel::kNone}};
+// The kinds of distortion that can be asked for, by their names.
+std::map<std::string, DistortionModel> Models() {
+  std::map<std::string, DistortionModel> models;
+  for (const auto model : {DistortionModel::kNone, DistortionModel::kRadialTangential,
+                           DistortionModel::kEquidistant}) {
+    models[DistortionName(model)] = model;
+  }
+  return models;
+}
 
 struct LensArguments {
   std::vector<std::string> sources;
@@ -88,15 +91,13 @@ LensSources ReadSources(const std::vector<std::string>& arguments) {
 void PrintResult(const LensCalibration& lens, std::size_t images) {
   const CameraIntrinsics& camera = lens.intrinsics;
   const auto& sigmas = lens.fit.sigmas;
-  const auto named = std::find_if(kModels.begin(), kModels.end(), [&](const auto& model) {
-    return model.second == camera.distortion_model;
-  });
   fmt::print(stderr,
              "focal length: {:.2f} x {:.2f} +- {:.2f} px ({:.2g} %)\n"
              "principal point: ({:.2f}, {:.2f}) +- ({:.2f}, {:.2f}) px\n"
              "distortion: {}",
              camera.fx_px, camera.fy_px, sigmas(kFocal), 100 * sigmas(kFocal) / camera.fx_px,
-             camera.cx_px, camera.cy_px, sigmas(kPrincipalX), sigmas(kPrincipalY), named->first);
+             camera.cx_px, camera.cy_px, sigmas(kPrincipalX), sigmas(kPrincipalY),
+             DistortionName(camera.distortion_model));
   for (int i = 0; i < lens.fit.freedom.distortion; ++i) {
     fmt::print(stderr, "{} {:.5f} +- {:.5f}", i == 0 ? ":" : ",", camera.distortion[i],
                sigmas(kDistortion + i));
@@ -120,7 +121,7 @@ void WritePlots(const LensCalibration& lens, const OutputFolder& folder) {
 void RunLens(const LensArguments& arguments) {
   LensCalibrationOptions options;
   options.detector = arguments.options.Read().landing.detector;
-  if (!arguments.model.empty()) options.model = kModels.at(arguments.model);
+  if (!arguments.model.empty()) options.model = Models().at(arguments.model);
   CameraCalibration calibration;
   if (!arguments.camera.empty()) {
     calibration = ReadCalibration(arguments.camera);
@@ -155,10 +156,9 @@ void AddCalibrateLensCommand(CLI::App* calibrate) {
       ->type_name("FILE");
   command
       ->add_option("--model", arguments->model,
-                   "Kind of distortion (radial-tangential, equidistant, none), else the one that "
-                   "the views choose")
+                   "Kind of distortion, else the one that the views choose")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"radial-tangential", "equidistant", "none"}));
+      ->check(CLI::IsMember(Models()));
   arguments->options.AddTo(command);
   command
       ->add_option("--output", arguments->output,

@@ -23,20 +23,6 @@ constexpr double kPi = std::numbers::pi;
 
 class CalibrateLensCommandTest : public CommandTest {
  protected:
-  // Stills of a camera that is tilted by up to 50 degrees, with the pattern anywhere in the image.
-  void WriteStills(const CameraIntrinsics& camera, int count) const {
-    LandingStillOptions options;
-    options.camera = camera;
-    options.min_altitude_m = 0.7;
-    options.max_altitude_m = 2.2;
-    options.max_tilt_deg = 50;
-    const LandingStillMaker maker(options);
-    for (int i = 0; i < count; ++i) {
-      folder_.WriteImage(fmt::format("stills/{:03}.png", i),
-                         maker.MakePattern(8'000'000 + i).image);
-    }
-  }
-
   // The pattern from straight above, at places all over the image.
   void WriteLevelViews() const {
     const CameraModel camera({640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}});
@@ -53,11 +39,17 @@ class CalibrateLensCommandTest : public CommandTest {
 
 TEST_F(CalibrateLensCommandTest, FindsTheFisheyeFromNothingButImages) {
   const CameraIntrinsics truth = PaperCamera();
-  WriteStills(truth, 60);
+  const std::string views = folder_ / "views";
+  const Outcome simulated =
+      Run("simulate landing --scenario stills --seed 8 --set frames=60 --set "
+          "stills.min_altitude_m=0.7 --set stills.max_altitude_m=2.2 --set stills.max_tilt_deg=50 "
+          "--output " +
+          views);
+  EXPECT_EQ(simulated.status, 0) << simulated.err;
   const std::string camera = folder_ / "camera.yaml";
   const std::string plots = folder_ / "plots";
   const Outcome outcome =
-      Run("calibrate lens " + (folder_ / "stills") + " --output " + camera + " --plots " + plots);
+      Run("calibrate lens " + views + " --output " + camera + " --plots " + plots);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("distortion: equidistant: "));
   EXPECT_THAT(outcome.err, HasSubstr(" of 60 images, "));
@@ -73,9 +65,11 @@ TEST_F(CalibrateLensCommandTest, FindsTheFisheyeFromNothingButImages) {
   for (const char* name : {"lens_residuals.png", "lens_coverage.png"}) {
     EXPECT_GT(std::filesystem::file_size(plots + "/" + name), 1000u);
   }
-  // The file is one that --camera reads.
-  const Outcome land = Run("land " + (folder_ / "stills/003.png") + " --camera " + camera);
-  EXPECT_EQ(land.status, 0) << land.err;
+  // The mount is the recording's own.
+  const auto own = ReadCalibration(views + "/mav0/cam0/sensor.yaml");
+  ASSERT_TRUE(ReadCalibration(camera).body_from_camera.has_value());
+  EXPECT_TRUE(
+      ReadCalibration(camera).body_from_camera->rotation.isApprox(own.body_from_camera->rotation));
 }
 
 TEST_F(CalibrateLensCommandTest, RefusesLevelViewsAndSaysToTilt) {
