@@ -68,6 +68,26 @@ std::string FocalCells(const LensCalibration& lens, double truth_px) {
                      100 * (lens.intrinsics.fx_px / truth_px - 1));
 }
 
+std::vector<LensImage> ImagesOf(const std::vector<LandingFrameSet>& sets) {
+  std::vector<LensImage> images;
+  for (const LandingFrameSet& set : sets) {
+    for (const LandingFrame& frame : set.frames) images.push_back({frame.name, frame.image});
+  }
+  return images;
+}
+
+void ReportAgainstTruth(const char* name, const CameraIntrinsics& truth,
+                        const std::vector<LensImage>& images) {
+  const LensCalibration lens = CalibrateLens(images, {});
+  const std::vector<double> differences =
+      LensDifferencePx(CameraModel(truth), CameraModel(lens.intrinsics), kMaxAngle);
+  fmt::print("| {} | {} of {} | {}, {} | {} | {:.3f} | {:.3f} | {:.3f} |\n", name,
+             lens.views.size(), images.size(), DistortionName(lens.intrinsics.distortion_model),
+             lens.fit.freedom.distortion, FocalCells(lens, truth.fx_px), lens.fit.RootMeanSquare(),
+             Quantile(differences, 0.5), Quantile(differences, 0.95));
+  std::fflush(stdout);
+}
+
 void ReportRendered(const Options& options) {
   fmt::print(
       "## Rendered views\n\n{} views each, tilt to 50 degrees, 0.7 to 2.2 m. Difference: of the "
@@ -76,18 +96,13 @@ void ReportRendered(const Options& options) {
       options.views);
   for (const RenderedLens& rendered : RenderedLenses()) {
     for (int set = 0; set < options.seeds; ++set) {
-      const auto images = RenderViews(rendered.camera, options.views, set);
-      const LensCalibration lens = CalibrateLens(images, {});
-      const std::vector<double> differences =
-          LensDifferencePx(CameraModel(rendered.camera), CameraModel(lens.intrinsics), kMaxAngle);
-      fmt::print("| {} | {} | {}, {} | {} | {:.3f} | {:.3f} | {:.3f} |\n", rendered.name,
-                 lens.views.size(), DistortionName(lens.intrinsics.distortion_model),
-                 lens.fit.freedom.distortion, FocalCells(lens, rendered.camera.fx_px),
-                 lens.fit.RootMeanSquare(), Quantile(differences, 0.5),
-                 Quantile(differences, 0.95));
-      std::fflush(stdout);
+      ReportAgainstTruth(rendered.name, rendered.camera,
+                         RenderViews(rendered.camera, options.views, set));
     }
   }
+  const std::vector<LandingFrameSet> hard = ReadLandingHard(options.data_dir);
+  if (hard.empty()) return;
+  ReportAgainstTruth("hard stills of another renderer", hard.front().camera, ImagesOf(hard));
 }
 
 // The fit of some views' focal length, all else of the lens as it is.
@@ -124,11 +139,7 @@ void ReportReal(const Options& options) {
     fmt::print("there is no {}/landing_real\n", options.data_dir);
     return;
   }
-  std::vector<LensImage> images;
-  for (const LandingFrameSet& set : sets) {
-    for (const LandingFrame& frame : set.frames) images.push_back({frame.name, frame.image});
-  }
-  const LensCalibration lens = CalibrateLens(images, {});
+  const LensCalibration lens = CalibrateLens(ImagesOf(sets), {});
   const CameraIntrinsics& camera = lens.intrinsics;
   fmt::print(
       "\n## Real sequences\n\nAll of them together, {} views: focal length {:.1f} +- {:.1f} px, "
