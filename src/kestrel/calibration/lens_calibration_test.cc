@@ -2,8 +2,11 @@
 #include "kestrel/calibration/lens_calibration.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,6 +15,7 @@
 #include "kestrel/base/random.h"
 #include "kestrel/calibration/lens_difference.h"
 #include "kestrel/calibration/test_lens_views.h"
+#include "kestrel/calibration/unlike_views.h"
 #include "kestrel/camera/test_cameras.h"
 #include "kestrel/landing/test_prints.h"
 
@@ -139,6 +143,28 @@ TEST(EstimateLensTest, RefusesTooFewViews) {
 TEST(EstimateLensTest, RefusesViewsInTheMiddleOnly) {
   const auto views = MakeLensViews(Pinhole(), {.count = 40, .seed = 10, .share_of_image = 0.05});
   EXPECT_THAT(Refusal(views, Guess(Pinhole(), 1)), HasSubstr("only in the middle of the image"));
+}
+
+TEST(EstimateLensTest, StartsFromARationalLens) {
+  const CameraIntrinsics truth = Pinhole();
+  const auto views = MakeLensViews(truth, {.count = 20, .seed = 14});
+  CameraIntrinsics start = Guess(truth, 1.1);
+  start.distortion_model = DistortionModel::kRadialTangential;
+  start.distortion = {0.1, 0, 0, 0, 0, 0.12, 0, 0};
+  const LensCalibration lens = EstimateLens(views, start);
+  EXPECT_LT(MedianDifferencePx(truth, lens.intrinsics, 45), 0.2);
+}
+
+TEST(UnlikeViewsTest, TakesThoseThatDiffer) {
+  // A camera that hovers, and three views elsewhere.
+  std::vector<LensView> views = MakeLensViews(Pinhole(), {.count = 4, .seed = 15});
+  const LensView hovering = views[0];
+  views.insert(views.begin() + 2, 20, hovering);
+  const std::vector<LensView> unlike = UnlikeViews(views, 4, 640);
+  std::vector<std::string> names;
+  for (const LensView& view : unlike) names.push_back(view.name);
+  EXPECT_THAT(names, ::testing::ElementsAre("view 0", "view 1", "view 2", "view 3"));
+  EXPECT_EQ(UnlikeViews(views, 100, 640).size(), 24u);
 }
 
 TEST(LensCoverageTest, SaysWhatHoldsNoEdges) {

@@ -304,6 +304,19 @@ double LensFit::RootMeanSquare() const {
   return std::sqrt(squares / std::max<std::size_t>(count, 1));
 }
 
+CameraIntrinsics LensFit::Simplified() const {
+  constexpr int kRadialTangential = 4;  // coefficients, at least
+  CameraIntrinsics camera = intrinsics;
+  if (camera.distortion_model == DistortionModel::kEquidistant) return camera;
+  if (freedom.distortion == 0) {
+    camera.distortion_model = DistortionModel::kNone;
+    camera.distortion.clear();
+  } else if (freedom.distortion <= kRadialTangential) {
+    camera.distortion.resize(kRadialTangential);
+  }
+  return camera;
+}
+
 std::optional<LensFit> FitLens(std::span<const LensView> views, const CameraIntrinsics& start,
                                const LensFreedom& freedom, double edge_sigma_px) {
   Adjustment adjustment(views, start, freedom, edge_sigma_px);

@@ -40,14 +40,17 @@ struct LensFit {
   double optimism = 0;
 
   double RootMeanSquare() const;  // of the residuals, px
+
+  // The lens without coefficients that were not estimated, as a calibration file has it.
+  CameraIntrinsics Simplified() const;
 };
 
 // Bundle adjustment: lens and poses (and by how much the black of each print has spread over its
 // white) that bring the outlines nearest to the edges across them, from the poses of the views and
-// the lens 'start', with Huber's loss. 'edge_sigma_px': standard deviation of an edge. The
-// principal point is held to the middle of the image and, weakly, the focal length to that of
-// 'start', so that all has a solution: the standard deviations tell what the views do not say.
-// Nothing when the lens cannot show a view.
+// the lens 'start' (of at most five coefficients), with Huber's loss. 'edge_sigma_px': standard
+// deviation of an edge. The principal point is held to the middle of the image and, weakly, the
+// focal length to that of 'start', so that all has a solution: the standard deviations tell what
+// the views do not say. Nothing when the lens cannot show a view.
 std::optional<LensFit> FitLens(std::span<const LensView> views, const CameraIntrinsics& start,
                                const LensFreedom& freedom, double edge_sigma_px);
 
