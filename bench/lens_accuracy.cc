@@ -76,15 +76,19 @@ std::vector<LensImage> ImagesOf(const std::vector<LandingFrameSet>& sets) {
   return images;
 }
 
-void ReportAgainstTruth(const char* name, const CameraIntrinsics& truth,
+void ReportAgainstTruth(const std::string& name, const CameraIntrinsics& truth,
                         const std::vector<LensImage>& images) {
-  const LensCalibration lens = CalibrateLens(images, {});
-  const std::vector<double> differences =
-      LensDifferencePx(CameraModel(truth), CameraModel(lens.intrinsics), kMaxAngle);
-  fmt::print("| {} | {} of {} | {}, {} | {} | {:.3f} | {:.3f} | {:.3f} |\n", name,
-             lens.views.size(), images.size(), DistortionName(lens.intrinsics.distortion_model),
-             lens.fit.freedom.distortion, FocalCells(lens, truth.fx_px), lens.fit.RootMeanSquare(),
-             Quantile(differences, 0.5), Quantile(differences, 0.95));
+  try {
+    const LensCalibration lens = CalibrateLens(images, {});
+    const std::vector<double> differences =
+        LensDifferencePx(CameraModel(truth), CameraModel(lens.intrinsics), kMaxAngle);
+    fmt::print("| {} | {} of {} | {}, {} | {} | {:.3f} | {:.3f} | {:.3f} |\n", name,
+               lens.views.size(), images.size(), DistortionName(lens.intrinsics.distortion_model),
+               lens.fit.freedom.distortion, FocalCells(lens, truth.fx_px),
+               lens.fit.RootMeanSquare(), Quantile(differences, 0.5), Quantile(differences, 0.95));
+  } catch (const InputError& refusal) {
+    fmt::print("| {} | of {} | {} | | | | | |\n", name, images.size(), refusal.what());
+  }
   std::fflush(stdout);
 }
 
@@ -100,9 +104,10 @@ void ReportRendered(const Options& options) {
                          RenderViews(rendered.camera, options.views, set));
     }
   }
-  const std::vector<LandingFrameSet> hard = ReadLandingHard(options.data_dir);
-  if (hard.empty()) return;
-  ReportAgainstTruth("hard stills of another renderer", hard.front().camera, ImagesOf(hard));
+  // Each of another lens.
+  for (const LandingFrameSet& set : ReadLandingHard(options.data_dir)) {
+    ReportAgainstTruth("another renderer, " + set.name, set.camera, ImagesOf({set}));
+  }
 }
 
 // The fit of some views' focal length, all else of the lens as it is.
@@ -183,7 +188,7 @@ int Run(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber);
   CLI11_PARSE(app, argc, argv);
   cv::setNumThreads(1);
-  if (options.seeds > 0) ReportRendered(options);
+  ReportRendered(options);
   ReportReal(options);
   return 0;
 }

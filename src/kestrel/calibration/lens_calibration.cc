@@ -17,7 +17,9 @@ namespace kestrel {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
+// Views, of which fewer are refused, and of which fewer hardly tell their own spread.
 constexpr std::size_t kMinViews = 8;
+constexpr std::size_t kGoodViews = 20;
 constexpr std::size_t kMaxViews = 100;
 constexpr std::size_t kFewViews = 40;  // enough to find more with
 // Standard deviations of the focal length, of itself: what is no calibration, and what is no good
@@ -75,6 +77,11 @@ void RequireTold(const LensCalibration& calibration) {
 
 std::vector<std::string> Warnings(const LensCalibration& calibration) {
   std::vector<std::string> warnings;
+  if (calibration.views.size() < kGoodViews) {
+    warnings.push_back(fmt::format(
+        "{} views are few: the errors may be larger than the standard deviations say, take thirty",
+        calibration.views.size()));
+  }
   const double focal_sigma = calibration.fit.sigmas(kFocal) / calibration.intrinsics.fx_px;
   if (focal_sigma > kGoodFocalSigma) {
     warnings.push_back(

@@ -135,6 +135,15 @@ TEST(EstimateLensTest, RefusesLevelViewsAndSaysToTilt) {
   EXPECT_THAT(Refusal(views, Guess(Pinhole(), 1)), HasSubstr("tilt the camera"));
 }
 
+TEST(EstimateLensTest, WarnsOfFewViews) {
+  const auto few = MakeLensViews(Pinhole(), {.count = 12, .seed = 16});
+  EXPECT_THAT(EstimateLens(few, Guess(Pinhole(), 1), DistortionModel::kNone).warnings,
+              ::testing::Contains(HasSubstr("12 views are few")));
+  const auto many = MakeLensViews(Pinhole(), {.count = 40, .seed = 16});
+  EXPECT_THAT(EstimateLens(many, Guess(Pinhole(), 1), DistortionModel::kNone).warnings,
+              ::testing::IsEmpty());
+}
+
 TEST(EstimateLensTest, RefusesTooFewViews) {
   const auto views = MakeLensViews(Pinhole(), {.count = 7, .seed = 9});
   EXPECT_THAT(Refusal(views, Guess(Pinhole(), 1)), HasSubstr("in 7 of them"));
@@ -147,7 +156,7 @@ TEST(EstimateLensTest, RefusesViewsInTheMiddleOnly) {
 
 TEST(EstimateLensTest, StartsFromARationalLens) {
   const CameraIntrinsics truth = Pinhole();
-  const auto views = MakeLensViews(truth, {.count = 20, .seed = 14});
+  const auto views = MakeLensViews(truth, {.count = 40, .seed = 14});
   CameraIntrinsics start = Guess(truth, 1.1);
   start.distortion_model = DistortionModel::kRadialTangential;
   start.distortion = {0.1, 0, 0, 0, 0, 0.12, 0, 0};

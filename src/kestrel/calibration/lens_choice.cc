@@ -183,7 +183,7 @@ std::optional<LensFit> LensChoice::FitKind(const CameraIntrinsics& start,
   if (!begin) return std::nullopt;
   const int all = DistortionOrders(kind).back();
   const int few = std::min(1, all);
-  const auto rough = FitLens(views_, *begin, {.distortion = few}, edge_sigma_px_);
+  auto rough = FitLens(views_, *begin, {.distortion = few}, edge_sigma_px_);
   if (!rough || few == all) return rough;
   return FitOrder(*rough, all);
 }
