@@ -2,8 +2,6 @@
 #include "kestrel/cli/calibrate_command.h"
 
 #include <cmath>
-#include <filesystem>
-#include <iostream>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -16,13 +14,13 @@
 #include "kestrel/calibration/flight_calibration.h"
 #include "kestrel/camera/calibration_reader.h"
 #include "kestrel/cli/calibrate_colors_command.h"
+#include "kestrel/cli/calibrate_lens_command.h"
+#include "kestrel/cli/calibration_output.h"
 #include "kestrel/cli/frame_loop.h"
 #include "kestrel/cli/option_arguments.h"
 #include "kestrel/landing/landing_pattern_detector.h"
 #include "kestrel/pipeline/measurement_noise.h"
-#include "kestrel/recording/euroc_text.h"
 #include "kestrel/recording/open_source.h"
-#include "kestrel/recording/output_folder.h"
 
 namespace kestrel {
 namespace {
@@ -92,21 +90,6 @@ void PrintResult(const FlightCalibration& result, const FlightCalibrationOptions
   }
 }
 
-void WriteCalibration(const CalibrateArguments& arguments, const CameraCalibration& calibration,
-                      double rate_hz) {
-  const std::string text =
-      EurocCameraText(calibration, rate_hz) +
-      fmt::format("timeshift_cam_imu: {}\n", ToSeconds(*calibration.clock_offset));
-  if (arguments.output.empty()) {
-    std::cout << text << std::flush;
-    return;
-  }
-  const std::filesystem::path path(arguments.output);
-  OutputFolder(path.has_parent_path() ? path.parent_path() : ".", arguments.force)
-          .OpenText(path.filename())
-      << text;
-}
-
 void RunCalibrate(const CalibrateArguments& arguments, FlightCalibrationOptions options) {
   const LandingPipelineOptions landing = arguments.options.Read().landing;
   if (arguments.both) options.estimate_mount = options.estimate_clock = true;
@@ -124,7 +107,7 @@ void RunCalibrate(const CalibrateArguments& arguments, FlightCalibrationOptions 
   PrintResult(result, options);
   calibration.body_from_camera = result.estimate.body_from_camera;
   calibration.clock_offset = DurationFromSeconds(result.estimate.clock_offset_s);
-  WriteCalibration(arguments, calibration, source->rate_hz());
+  WriteCalibration(calibration, source->rate_hz(), arguments.output, arguments.force);
 }
 
 void AddFlightCalibration(CLI::App* parent, const std::string& name, const std::string& meaning,
@@ -153,7 +136,7 @@ void AddFlightCalibration(CLI::App* parent, const std::string& name, const std::
 }  // namespace
 
 void AddCalibrateCommand(CLI::App* app) {
-  CLI::App* command = app->add_subcommand("calibrate", "Estimate mount, clock or colours");
+  CLI::App* command = app->add_subcommand("calibrate", "Estimate lens, mount, clock or colours");
   command->require_subcommand(1);
   AddFlightCalibration(command, "mount",
                        "The camera's angles in the body, from a slow flight over the pattern",
@@ -161,6 +144,7 @@ void AddCalibrateCommand(CLI::App* app) {
   AddFlightCalibration(command, "clock",
                        "The offset from the images' clock to the navigation's, from a quick flight",
                        {.estimate_mount = false, .estimate_clock = true});
+  AddCalibrateLensCommand(command);
   AddCalibrateColorsCommand(command);
 }
 

@@ -66,6 +66,8 @@ const char* StyleWords(PlotStyle style) {
       return "with linespoints lw 2.5 pt 7 ps 0.3";
     case PlotStyle::kDashes:
       return "with lines lw 2.5 dt 2";
+    case PlotStyle::kDots:
+      return "with points pt 7 ps 0.3";
     case PlotStyle::kPoints:
       return "with points pt 7 ps 1";
     case PlotStyle::kCircles:

@@ -10,7 +10,7 @@
 
 namespace kestrel {
 
-enum class PlotStyle { kLine, kDashes, kPoints, kCircles, kCrosses, kErrorBars };
+enum class PlotStyle { kLine, kDashes, kDots, kPoints, kCircles, kCrosses, kErrorBars };
 
 using Points2d = std::vector<Eigen::Vector2d>;
 

@@ -6,9 +6,7 @@
 #include <fmt/ranges.h>
 
 namespace kestrel {
-namespace {
-
-const char* NameOf(DistortionModel model) {
+const char* DistortionName(DistortionModel model) {
   switch (model) {
     case DistortionModel::kEquidistant:
       return "equidistant";
@@ -18,8 +16,6 @@ const char* NameOf(DistortionModel model) {
       return "none";
   }
 }
-
-}  // namespace
 
 std::string EurocTransformText(const RigidTransform& transform) {
   Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix = Eigen::Matrix4d::Identity();
@@ -40,7 +36,7 @@ std::string EurocCameraText(const CameraCalibration& calibration, double rate_hz
       "distortion_model: {}\n"
       "distortion_coefficients: [{}]\n",
       rate_hz, camera.width_px, camera.height_px, camera.fx_px, camera.fy_px, camera.cx_px,
-      camera.cy_px, NameOf(camera.distortion_model), fmt::join(camera.distortion, ", "));
+      camera.cy_px, DistortionName(camera.distortion_model), fmt::join(camera.distortion, ", "));
   if (calibration.body_from_camera) {
     text += "T_BS:\n" + EurocTransformText(*calibration.body_from_camera);
   }

@@ -9,6 +9,9 @@
 
 namespace kestrel {
 
+// What a calibration file calls it: "equidistant", "radial-tangential" or "none".
+const char* DistortionName(DistortionModel model);
+
 // cam0/sensor.yaml of a recording in the EuRoC layout: lens, size, rate and, where the calibration
 // has one, the mount T_BS. ReadCalibration reads it back, to the last bit.
 std::string EurocCameraText(const CameraCalibration& calibration, double rate_hz);
