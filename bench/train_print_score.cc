@@ -42,7 +42,7 @@ constexpr double kSameSize = 1.33;  // times
 enum class Change { kNone, kOtherCamera, kHardToSee };
 
 // Frames that are made one by one.
-struct FrameSource {
+struct StillSource {
   std::string name;
   CameraIntrinsics camera;
   std::size_t count;
@@ -50,7 +50,7 @@ struct FrameSource {
   std::vector<Change> changes;
 };
 
-FrameSource Patterns(const PrintError& print, std::size_t count, std::uint64_t seed) {
+StillSource Patterns(const PrintError& print, std::size_t count, std::uint64_t seed) {
   std::vector<LandingStillMaker> makers;
   for (const AltitudeBin& bin : kAltitudeBins) {
     LandingStillOptions options;
@@ -78,7 +78,7 @@ struct Extent {
   double max_minor_px;
 };
 
-FrameSource Lookalikes(const std::string& name, const Extent& extent, std::size_t count,
+StillSource Lookalikes(const std::string& name, const Extent& extent, std::size_t count,
                        std::uint64_t seed) {
   LandingStillOptions options;
   options.min_altitude_m = kAltitudeBins.front().min_m;
@@ -95,11 +95,11 @@ FrameSource Lookalikes(const std::string& name, const Extent& extent, std::size_
 }
 
 // 'stills': with a flat print.
-std::vector<FrameSource> Stills(std::size_t stills) {
+std::vector<StillSource> Stills(std::size_t stills) {
   constexpr std::uint64_t kPatternSeed = 20'000'000, kBentSeed = 30'000'000,
                           kLookalikeSeed = 40'000'000, kSmallSeed = 50'000'000,
                           kFlatSeed = 60'000'000;
-  std::vector<FrameSource> sources;
+  std::vector<StillSource> sources;
   const std::span<const PrintError> prints = PrintErrors();
   sources.push_back(Patterns(prints.front(), stills, kPatternSeed));
   for (std::size_t i = 1; i < prints.size(); ++i) {
@@ -111,8 +111,8 @@ std::vector<FrameSource> Stills(std::size_t stills) {
   return sources;
 }
 
-std::vector<FrameSource> RealFrames() {
-  std::vector<FrameSource> sources;
+std::vector<StillSource> RealFrames() {
+  std::vector<StillSource> sources;
   for (const auto& sets : {ReadLandingReal(KESTREL_DATA_DIR), ReadLandingHard(KESTREL_DATA_DIR)}) {
     for (const LandingFrameSet& set : sets) {
       sources.push_back({set.name, set.camera, set.frames.size(),
@@ -149,7 +149,7 @@ std::optional<bool> IsPattern(const PrintFinding& print, const LandingFrame& fra
   return false;
 }
 
-std::vector<ScoredFrame> Search(const FrameSource& source) {
+std::vector<ScoredFrame> Search(const StillSource& source) {
   LandingPatternDetectorOptions options;
   options.min_quality = 1;  // nothing ends the search
   std::vector<std::unique_ptr<LandingModels>> models;
@@ -223,9 +223,9 @@ std::vector<ScoredFrame> Read(const std::string& file) {
   return frames;
 }
 
-std::vector<ScoredFrame> SearchAll(const std::vector<FrameSource>& sources) {
+std::vector<ScoredFrame> SearchAll(const std::vector<StillSource>& sources) {
   std::vector<ScoredFrame> all;
-  for (const FrameSource& source : sources) {
+  for (const StillSource& source : sources) {
     const std::vector<ScoredFrame> frames = Search(source);
     fmt::print(stderr, "{}: {} frames\n", source.name, frames.size());
     all.insert(all.end(), frames.begin(), frames.end());

@@ -203,7 +203,7 @@ LensCalibration CalibrateLens(std::span<const LensImage> images,
   RequireOneSize(images);
   if (options.start) {
     const LensImage& first = images.front();
-    CheckImageSize(CameraModel(*options.start), first.image.cols, first.image.rows, first.name);
+    CheckImageSize(*options.start, first.image.cols, first.image.rows, first.name);
   }
   CameraIntrinsics camera = options.start ? *options.start : BestGuess(images, options.detector);
   std::vector<LensView> views = FindViews(images, 1, camera, options.detector);

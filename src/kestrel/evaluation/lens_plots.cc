@@ -21,7 +21,7 @@ using Eigen::Vector2d;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kBinDeg = 5;
-constexpr int kColors = 5;
+constexpr int kColorCount = 5;
 
 std::optional<double> AngleDeg(const CameraModel& camera, const Vector2d& pixel) {
   Eigen::Vector3d ray;
@@ -98,11 +98,11 @@ Plot LensCoveragePlot(const LensCalibration& calibration) {
        PlotStyle::kDashes,
        {{-0.5, -0.5}, {right, -0.5}, {right, bottom}, {-0.5, bottom}, {-0.5, -0.5}},
        {}});
-  for (int color = 0; color < kColors; ++color) {
+  for (int color = 0; color < kColorCount; ++color) {
     panel.series.push_back({color == 0 ? "edges" : "", PlotStyle::kDots, {}, {}});
   }
   for (std::size_t i = 0; i < calibration.views.size(); ++i) {
-    Points2d& points = panel.series[1 + i % kColors].points;
+    Points2d& points = panel.series[1 + i % kColorCount].points;
     for (const LensEdge& edge : calibration.views[i].edges) points.push_back(edge.pixel);
   }
   panel.series.push_back(
