@@ -92,7 +92,8 @@ class Regression {
         if (print->is_pattern) of_patterns.push_back(print->doubts[static_cast<PrintDoubt>(i)]);
       }
       for (std::size_t k = 0; k < kKnots; ++k) {
-        weights_.doubts[i].knots[k] = std::max(kLeastKnot, Quantile(of_patterns, kKnotQuantiles[k]));
+        weights_.doubts[i].knots[k] =
+            std::max(kLeastKnot, Quantile(of_patterns, kKnotQuantiles[k]));
       }
     }
   }
@@ -259,8 +260,8 @@ std::string ToSource(const PrintScore& score) {
   for (const PrintWeights& weights : score) {
     source += fmt::format("    {{{:.3f},\n     {{{{\n", weights.certain);
     for (const DoubtWeight& weight : weights.doubts) {
-      source += fmt::format("         {{{{{:.4g}}}, {{{:.4g}}}}},\n",
-                            fmt::join(weight.knots, ", "), fmt::join(weight.slopes, ", "));
+      source += fmt::format("         {{{{{:.4g}}}, {{{:.4g}}}}},\n", fmt::join(weight.knots, ", "),
+                            fmt::join(weight.slopes, ", "));
     }
     source += "     }}},\n";
   }

@@ -49,7 +49,7 @@ Reliability MeasureReliability(const PrintScore& score, std::span<const ScoredFr
 
 // Shares of frames at a least quality.
 struct DetectionRates {
-  double found = 0;      // of those with the pattern
+  double found = 0;         // of those with the pattern
   double false_of_all = 0;  // detections in those without
 };
 DetectionRates MeasureRates(const PrintScore& score, std::span<const ScoredFrame> frames,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trains the score that says how probably a print is the pattern, on seeded stills: patterns on flat
-// and bent boards, look-alikes, each still as it is, as another camera has it with a calibration
-// that may be wrong, and hard to see. A fifth of the stills is held out and measured afterwards,
-// and so are the real frames.
+// Trains the score that says how probably a print is the pattern, on seeded stills: patterns on
+// flat and bent boards, look-alikes, each still as it is, as another camera has it with a
+// calibration that may be wrong, and hard to see. A fifth of the stills is held out and measured
+// afterwards, and so are the real frames.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -67,7 +67,10 @@ StillSource Patterns(const PrintError& print, std::size_t count, std::uint64_t s
     return FrameFromStill(makers[bin], std::string(kAltitudeBins[bin].Name()),
                           seed + kBinSeeds * bin + i / makers.size());
   };
-  return {std::string(print.name), PaperCamera(), count, make,
+  return {std::string(print.name),
+          PaperCamera(),
+          count,
+          make,
           {Change::kNone, Change::kOtherCamera, Change::kHardToSee}};
 }
 
@@ -90,8 +93,8 @@ StillSource Lookalikes(const std::string& name, const Extent& extent, std::size_
   const auto make = [name, seed, maker = LandingStillMaker(options)](std::size_t i) {
     return FrameFromLookalikes(maker, name, seed + i);
   };
-  return {name, PaperCamera(), count, make,
-          {Change::kNone, Change::kOtherCamera, Change::kHardToSee}};
+  return {
+      name, PaperCamera(), count, make, {Change::kNone, Change::kOtherCamera, Change::kHardToSee}};
 }
 
 // 'stills': with a flat print.
@@ -107,7 +110,8 @@ std::vector<StillSource> Stills(std::size_t stills) {
   }
   sources.push_back(Lookalikes("look-alikes", {26, 15, 1e9}, stills * 5 / 3, kLookalikeSeed));
   sources.push_back(Lookalikes("small look-alikes", {18, 6, 1e9}, stills, kSmallSeed));
-  sources.push_back(Lookalikes("look-alikes seen from the side", {30, 6, 14}, stills / 2, kFlatSeed));
+  sources.push_back(
+      Lookalikes("look-alikes seen from the side", {30, 6, 14}, stills / 2, kFlatSeed));
   return sources;
 }
 
@@ -115,7 +119,9 @@ std::vector<StillSource> RealFrames() {
   std::vector<StillSource> sources;
   for (const auto& sets : {ReadLandingReal(KESTREL_DATA_DIR), ReadLandingHard(KESTREL_DATA_DIR)}) {
     for (const LandingFrameSet& set : sets) {
-      sources.push_back({set.name, set.camera, set.frames.size(),
+      sources.push_back({set.name,
+                         set.camera,
+                         set.frames.size(),
                          [frames = set.frames](std::size_t i) { return frames[i]; },
                          {Change::kNone}});
     }
@@ -167,8 +173,8 @@ std::vector<ScoredFrame> Search(const StillSource& source) {
       const auto number = static_cast<std::size_t>(change);
       std::size_t calibration = 0;
       const cv::Mat image = Apply(change, 7919 * i + number, frame.image, &calibration);
-      ScoredFrame scored{fmt::format("{}:{}:{}", source.name, i, number),
-                         frame.truth == PatternTruth::kWhole, {}};
+      ScoredFrame scored{
+          fmt::format("{}:{}:{}", source.name, i, number), frame.truth == PatternTruth::kWhole, {}};
       std::replace(scored.name.begin(), scored.name.end(), ' ', '_');
       const FindingObserver observer = [&](const PrintFinding& print) {
         const std::optional<bool> is_pattern = IsPattern(print, frame);
@@ -215,8 +221,9 @@ std::vector<ScoredFrame> Read(const std::string& file) {
       print.kind = static_cast<PrintKind>(kind);
       for (std::size_t i = 0; i < kPrintDoubts; ++i) in >> print.doubts[static_cast<PrintDoubt>(i)];
     }
-    if (!in) throw InputError(fmt::format("{}: frame {}: expected {} prints of {} doubts", file,
-                                          frame.name, prints, kPrintDoubts));
+    if (!in)
+      throw InputError(fmt::format("{}: frame {}: expected {} prints of {} doubts", file,
+                                   frame.name, prints, kPrintDoubts));
     frames.push_back(frame);
   }
   if (frames.empty()) throw InputError(fmt::format("{}: expected findings of frames", file));

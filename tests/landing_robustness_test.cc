@@ -38,8 +38,7 @@ void ExpectAsGood(std::string_view what, const LandingTally& tally, const Landin
 }
 
 TEST(LandingRobustnessTest, AWrongCalibrationCostsLittle) {
-  const LandingFrameSet stills =
-      RenderStills(kStillsPerAltitude, PrintErrors().front(), kThreads);
+  const LandingFrameSet stills = RenderStills(kStillsPerAltitude, PrintErrors().front(), kThreads);
   LandingTally right;
   for (const CalibrationError& error : CalibrationErrors()) {
     const LandingTally tally = Score(stills, error.apply(stills.camera), NoHint);
@@ -52,8 +51,7 @@ TEST(LandingRobustnessTest, AWrongCalibrationCostsLittle) {
 }
 
 TEST(LandingRobustnessTest, AWrongHintCostsNothing) {
-  const LandingFrameSet stills =
-      RenderStills(kStillsPerAltitude, PrintErrors().front(), kThreads);
+  const LandingFrameSet stills = RenderStills(kStillsPerAltitude, PrintErrors().front(), kThreads);
   LandingTally right;
   for (const ToldHint& told : ToldHints()) {
     const LandingTally tally = Score(stills, stills.camera, told.tell);

@@ -39,7 +39,8 @@ std::string GroundWarning(const HuntPipeline& pipeline, std::optional<double> al
   return fmt::format(
       "by the size of the objects the ground is at z = {0:.2f} m of the navigation's world "
       "(standard deviation {1:.2f} m), hunt.ground_height_m says {2:g} m: set "
-      "hunt.ground_height_m={0:.2f}, or correct the navigation's z, its clock or the camera's mount",
+      "hunt.ground_height_m={0:.2f}, or correct the navigation's z, its clock or the camera's "
+      "mount",
       ground_m + higher->height_m, higher->sigma_m, ground_m);
 }
 
@@ -70,9 +71,7 @@ class HuntRun : public PipelineRun {
     return observation.detect_time;
   }
 
-  std::string Warning() const override {
-    return GroundWarning(pipeline_, altitude_m_, has_world_);
-  }
+  std::string Warning() const override { return GroundWarning(pipeline_, altitude_m_, has_world_); }
 
   void Finish() override {
     if (has_map_) sink_.WriteMap(pipeline_);

@@ -35,7 +35,8 @@ class PipelineRun {
 };
 
 // Gives the run all poses and frames of the source, in the order of time, and says on stderr what
-// was found, and its first warning as soon as there is one. When the source ends with an InputError, that is said all the same: the results stay.
+// was found, and its first warning as soon as there is one. When the source ends with an
+// InputError, that is said all the same: the results stay.
 void RunPipeline(const OpenedSource& opened, PipelineRun* run);
 
 }  // namespace kestrel

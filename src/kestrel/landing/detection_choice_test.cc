@@ -94,7 +94,8 @@ TEST_F(DetectionChoiceTest, TheMostProbableIsTaken) {
     const int count = random.Integer(1, 6);
     for (int i = 0; i < count; ++i) {
       findings.push_back(FindingAt({60.0 * i, 40}, random.Uniform(-4, 6)));
-      EXPECT_EQ(choice.Add(findings.back()), ProbabilityOf(findings.back().log_odds) >= min_quality);
+      EXPECT_EQ(choice.Add(findings.back()),
+                ProbabilityOf(findings.back().log_odds) >= min_quality);
     }
     const auto best = std::max_element(
         findings.begin(), findings.end(),

@@ -101,7 +101,8 @@ struct LandingPatternDetectorOptions {
   static void Visit(Self& self, Visitor&& visitor) {
     visitor.Group("pattern", self.pattern);
     visitor("min_ring_px", self.min_ring_px, "px", "smallest minor axis of a ring searched for");
-    visitor("min_quality", self.min_quality, "1", "smallest probability of the pattern that is accepted, 0 to 1");
+    visitor("min_quality", self.min_quality, "1",
+            "smallest probability of the pattern that is accepted, 0 to 1");
     visitor("level_sigma_deg", self.level_sigma_deg, "deg",
             "how far from level the pattern may lie, standard deviation");
     visitor("max_partial_altitude_m", self.max_partial_altitude_m, "m",

@@ -594,9 +594,8 @@ TEST(LandingPatternDetectorOptions, EveryViolationIsNamed) {
     LandingPatternDetector detector(camera, options);
     FAIL();
   } catch (const InputError& error) {
-    for (const char* key :
-         {"board_size_m", "min_ring_px", "min_quality", "max_partial_altitude_m",
-          "max_search_ms"}) {
+    for (const char* key : {"board_size_m", "min_ring_px", "min_quality", "max_partial_altitude_m",
+                            "max_search_ms"}) {
       EXPECT_THAT(error.what(), HasSubstr(key));
     }
   }

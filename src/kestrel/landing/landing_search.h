@@ -8,14 +8,14 @@
 #include "kestrel/landing/detection_choice.h"
 #include "kestrel/landing/landing_models.h"
 #include "kestrel/landing/landing_pattern_detector.h"
-#include "kestrel/landing/near_print_test.h"
+#include "kestrel/landing/near_print_verifier.h"
 #include "kestrel/landing/partial_pattern.h"
 #include "kestrel/landing/prior_knowledge.h"
 #include "kestrel/landing/ring_candidates.h"
 #include "kestrel/landing/search_log.h"
 #include "kestrel/landing/search_plan.h"
 #include "kestrel/landing/searched_image.h"
-#include "kestrel/landing/small_print_test.h"
+#include "kestrel/landing/small_print_verifier.h"
 
 namespace kestrel {
 
@@ -56,8 +56,8 @@ class LandingSearch {
   SearchedImage image_;
   DetectionChoice choice_;
   RingFinder rings_;
-  NearPrintTest near_prints_;
-  SmallPrintTest small_prints_;
+  NearPrintVerifier near_prints_;
+  SmallPrintVerifier small_prints_;
 };
 
 }  // namespace kestrel

@@ -37,8 +37,8 @@ class LandingSearchTest : public ::testing::Test {
 // An ideal print raises no doubt, but for those that its size raises.
 TEST_F(LandingSearchTest, NothingSpeaksAgainstAnIdealPrint) {
   for (const double distance : {1.1, 1.7, 3.0, 5.5, 7.5}) {
-    const auto findings = Findings(SpokedPrint(pattern_, 4),
-                                   PrintPose({0.05, -0.04, distance}, 0.25, 1, 0.3));
+    const auto findings =
+        Findings(SpokedPrint(pattern_, 4), PrintPose({0.05, -0.04, distance}, 0.25, 1, 0.3));
     ASSERT_FALSE(findings.empty()) << distance;
     const PrintFinding& best = Best(findings);
     for (const PrintDoubt doubt :
@@ -46,8 +46,8 @@ TEST_F(LandingSearchTest, NothingSpeaksAgainstAnIdealPrint) {
           PrintDoubt::kBrokenRing, PrintDoubt::kFrameCorners, PrintDoubt::kDarkBoard,
           PrintDoubt::kUnexplained, PrintDoubt::kInside, PrintDoubt::kOnRing, PrintDoubt::kAround,
           PrintDoubt::kHidden, PrintDoubt::kShadows}) {
-      EXPECT_LT(best.doubts[doubt], 0.12) << "doubt " << static_cast<int>(doubt) << " at "
-                                          << distance << " m";
+      EXPECT_LT(best.doubts[doubt], 0.12)
+          << "doubt " << static_cast<int>(doubt) << " at " << distance << " m";
     }
     EXPECT_LT(best.doubts[PrintDoubt::kOtherSpokes], 0.3) << distance;
     EXPECT_LT(std::exp(best.doubts[PrintDoubt::kUnlike]), 0.05) << distance;

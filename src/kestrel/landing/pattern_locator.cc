@@ -25,14 +25,14 @@ using PoseVector = Eigen::Matrix<double, kPoseUnknowns, 1>;
 using Vector = Eigen::Matrix<double, kUnknowns, 1>;
 using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
-constexpr std::size_t kMinEdges = 12;   // too few of those for a pose
+constexpr std::size_t kMinEdges = 12;  // too few of those for a pose
 constexpr int kMaxSteps = 8;
 constexpr int kLeastSteps = 3;
-constexpr double kFarScalePx = 1000;    // of the edges in the first step
+constexpr double kFarScalePx = 1000;  // of the edges in the first step
 constexpr double kLeastScalePx = 0.25;
-constexpr double kSettledPx = 0.08;     // outlines that move by less stay where they are
+constexpr double kSettledPx = 0.08;      // outlines that move by less stay where they are
 constexpr double kMaxCorrelation = 0.9;  // of neighbouring residuals
-constexpr double kBlurSpreadPx2 = 0.3;  // of the blur's square, over lenses: 0.45 to 0.9 px
+constexpr double kBlurSpreadPx2 = 0.3;   // of the blur's square, over lenses: 0.45 to 0.9 px
 // Bright white spreads over the black where the image is overexposed, and ink runs: least spread
 // that is believed, and the same in its standard deviations. Less is as likely noise, or what
 // narrow strokes do to each other's edges.
@@ -45,11 +45,11 @@ constexpr double kFocalSigma = 0.25;
 constexpr double kPrincipalSigma = 0.1;
 constexpr double kSureCalibration = 30;
 constexpr double kDoubtfulCalibration = 8;  // from where it is worth to find out
-constexpr double kHeld = 1e6;  // weight, in edges, of what is not to move
+constexpr double kHeld = 1e6;               // weight, in edges, of what is not to move
 
 // Of rings that are to be located yet.
-constexpr std::size_t kCoarseStride = 3;   // places per place that is looked at first
-constexpr double kWholeRing = 0.75;        // share of the places that have an edge
+constexpr std::size_t kCoarseStride = 3;  // places per place that is looked at first
+constexpr double kWholeRing = 0.75;       // share of the places that have an edge
 constexpr double kRingSettledPx = 0.2;
 constexpr double kMaxRingScatterPx = 1.5;  // standard deviation, after two iterations
 constexpr double kGathering = 0.6;         // of edges that gather still, from step to step
@@ -194,8 +194,7 @@ PatternLocator::Linearized PatternLocator::Linearize(const PrintEdges& edges, co
                                                      double scale_px) const {
   Linearized linearized;
   Equations& equations = linearized.equations;
-  const Eigen::Matrix<double, 3, 2> plane =
-      state.pose.rotation.toRotationMatrix().leftCols<2>();
+  const Eigen::Matrix<double, 3, 2> plane = state.pose.rotation.toRotationMatrix().leftCols<2>();
   const Eigen::Vector2d principal = Principal();
   const double zoom = std::exp(state.log_focal);
   Eigen::Matrix<double, 2, 3> d_pixel;

@@ -25,8 +25,8 @@ struct PatternLocation {
   // that was fitted as a whole. The other one is 0.
   double edge_rms_px = 0;
   double gray_rms = 0;
-  // Of edges: where the lens shows the pattern's centre, by what the calibration has to be; and what
-  // that is.
+  // Of edges: where the lens shows the pattern's centre, by what the calibration has to be; and
+  // what that is.
   Eigen::Vector2d center_px = Eigen::Vector2d::Zero();
   CalibrationEvidence calibration;
 };

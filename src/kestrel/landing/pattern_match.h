@@ -29,8 +29,8 @@ struct PartShares {
   Means MeansInView() const;
 };
 
-// How well an image agrees with the pattern under a pose: of the local contrasts those that stand in
-// the image as in the print. Not in view is what the image shows less than a fifth of.
+// How well an image agrees with the pattern under a pose: of the local contrasts those that stand
+// in the image as in the print. Not in view is what the image shows less than a fifth of.
 struct PatternMatch {
   // Arms: darker than the white on both sides of them; not in view either where something dark
   // hides both, nor when a half of an arm lies in a highlight. White: brighter than ring and arms.

@@ -128,10 +128,13 @@ TEST(PlaneWarp, HoldsWhatBoardsAndLensesDo) {
     lens.Project(at * Eigen::Vector3d(x, y, z), &pixel);
     return pixel;
   };
-  EXPECT_LT(LeftByFit(camera, pose, [&](const Eigen::Vector2d& p) {
-              const double height = 0.045 * (1 - p.squaredNorm() / (0.75 * 0.75));  // bulge
-              return see(camera, pose, p.x(), p.y(), height);
-            }), 0.3);
+  EXPECT_LT(LeftByFit(camera, pose,
+                      [&](const Eigen::Vector2d& p) {
+                        const double height =
+                            0.045 * (1 - p.squaredNorm() / (0.75 * 0.75));  // bulge
+                        return see(camera, pose, p.x(), p.y(), height);
+                      }),
+            0.3);
   for (const double zoom : {0.7, 1.3}) {
     CameraIntrinsics intrinsics = camera.intrinsics();
     intrinsics.fx_px *= zoom;
@@ -139,17 +142,20 @@ TEST(PlaneWarp, HoldsWhatBoardsAndLensesDo) {
     const CameraModel zoomed(intrinsics);
     RigidTransform as_large = pose;
     as_large.translation.z() *= zoom;
-    EXPECT_LT(LeftByFit(zoomed, as_large, [&](const Eigen::Vector2d& p) {
-                return see(camera, pose, p.x(), p.y(), 0);
-              }), 0.5) << zoom;
+    EXPECT_LT(
+        LeftByFit(zoomed, as_large,
+                  [&](const Eigen::Vector2d& p) { return see(camera, pose, p.x(), p.y(), 0); }),
+        0.5)
+        << zoom;
   }
   CameraIntrinsics barrel = camera.intrinsics();
   barrel.distortion_model = DistortionModel::kRadialTangential;
   barrel.distortion = {-0.28, 0.07, 0, 0};
   const CameraModel distorted(barrel);
-  EXPECT_LT(LeftByFit(camera, pose, [&](const Eigen::Vector2d& p) {
-              return see(distorted, pose, p.x(), p.y(), 0);
-            }), 0.5);
+  EXPECT_LT(
+      LeftByFit(camera, pose,
+                [&](const Eigen::Vector2d& p) { return see(distorted, pose, p.x(), p.y(), 0); }),
+      0.5);
 }
 
 TEST(PlaneWarp, ShowsNothingBehindTheCamera) {

@@ -22,8 +22,8 @@ constexpr double kLeastReachPx = 1.5;
 constexpr double kFarReachPx = 6;  // at least, pixels of the view
 constexpr double kLeastRmsPx = 0.05;
 constexpr double kSpreadSigmaPx = 0.3;  // before the image is looked at
-constexpr int kFarSteps = 2;   // on the view
-constexpr int kNearSteps = 3;  // on the image
+constexpr int kFarSteps = 2;            // on the view
+constexpr int kNearSteps = 3;           // on the image
 // Places per place that all steps but the last look at: odd, so that both sides of the arms have
 // some; and too few edges of those.
 constexpr std::size_t kCoarseStride = 3;
@@ -95,8 +95,8 @@ void Step(double scale_px, double ring_radius_px, PrintAlignment* alignment) {
   equations.AddPrior(*alignment, scale_px, ring_radius_px);
   Eigen::Matrix<double, kUnknowns, kUnknowns> h;
   Eigen::Matrix<double, kUnknowns, 1> g;
-  h << equations.xx, equations.xy, equations.x_spread,         //
-      equations.xy, equations.yy, equations.y_spread,          //
+  h << equations.xx, equations.xy, equations.x_spread,  //
+      equations.xy, equations.yy, equations.y_spread,   //
       equations.x_spread.transpose(), equations.y_spread.transpose(), equations.weights;
   g << equations.x, equations.y, equations.spread;
   const Eigen::LDLT<decltype(h)> decomposition(h);

@@ -58,10 +58,9 @@ class PrintAlignmentTest : public ::testing::Test {
     Random random(1);
     for (const double distance : {0.9, 1.4, 2.5}) {
       for (int trial = 0; trial < 4; ++trial) {
-        const RigidTransform truth =
-            PrintPose({random.Uniform(-0.1, 0.1) * distance, random.Uniform(-0.1, 0.1) * distance,
-                       distance},
-                      random.Uniform(0, 0.5), random.Uniform(0, 6), random.Uniform(0, 6));
+        const RigidTransform truth = PrintPose(
+            {random.Uniform(-0.1, 0.1) * distance, random.Uniform(-0.1, 0.1) * distance, distance},
+            random.Uniform(0, 0.5), random.Uniform(0, 6), random.Uniform(0, 6));
         RigidTransform start = truth;
         start.translation.z() *= assumed.intrinsics().fx_px / camera.intrinsics().fx_px;
         const Print print = SpokedPrint(pattern_, 4);
@@ -182,8 +181,8 @@ TEST_F(PrintAlignmentTest, ASmallerImageBringsItNear) {
   TilePyramid pyramid;
   pyramid.Build(image, 1);
   PrintAlignment alignment = AlignmentAt(camera_, start);
-  ASSERT_TRUE(AlignPrint(image, pyramid.ImageAt(1), {{0, 0}, 1}, outline_.all(), 16, kMinStep,
-                         &alignment));
+  ASSERT_TRUE(
+      AlignPrint(image, pyramid.ImageAt(1), {{0, 0}, 1}, outline_.all(), 16, kMinStep, &alignment));
   const AlignmentError error = ErrorOf(alignment, camera_, truth, {});
   EXPECT_LT(error.center_px, 0.2);
   EXPECT_LT(error.edges_px, 0.5);

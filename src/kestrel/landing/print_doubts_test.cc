@@ -104,8 +104,7 @@ TEST(PrintDoubts, EveryReasonIsAnotherOne) {
     const bool as_a_whole = LogOddsTakenBy(PrintKind::kAsAWhole, doubts, DoubtAt(i)) > 0;
     if (!by_edges && !as_a_whole) continue;
     ++weighed;
-    reasons.emplace(
-        MainDoubt(by_edges ? PrintKind::kByEdges : PrintKind::kAsAWhole, doubts));
+    reasons.emplace(MainDoubt(by_edges ? PrintKind::kByEdges : PrintKind::kAsAWhole, doubts));
   }
   EXPECT_EQ(reasons.size(), weighed);
   EXPECT_GT(weighed, 5u);

@@ -12,10 +12,10 @@
 namespace kestrel {
 namespace {
 
-constexpr int kMaxReach = 12;  // px
-constexpr float kLeastStep = 2;            // of an edge, gray values per pixel
-constexpr float kStepInShadow = 0.3f;      // the same against the gray value on its bright side
-constexpr float kLeastShare = 0.12f;       // of the steepest rise, that its neighbours have
+constexpr int kMaxReach = 12;          // px
+constexpr float kLeastStep = 2;        // of an edge, gray values per pixel
+constexpr float kStepInShadow = 0.3f;  // the same against the gray value on its bright side
+constexpr float kLeastShare = 0.12f;   // of the steepest rise, that its neighbours have
 
 // Whether the image shows all that FindEdge looks at.
 bool ShowsSearch(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::Vector2d& normal,

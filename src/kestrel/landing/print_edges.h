@@ -32,7 +32,7 @@ struct PrintEdge {
 struct PrintEdges {
   std::array<PrintEdge, PrintOutline::kMaxPlaces> edges;
   std::size_t count = 0;
-  int in_image = 0;  // places whose surroundings the image shows
+  int in_image = 0;                                     // places whose surroundings the image shows
   std::array<int, PrintOutline::kParts> part_places{};  // by part: looked for, in the image
   std::array<int, PrintOutline::kParts> part_in_image{};
   double spread_px = 0;  // of the black over the white: by how much all edges are off
@@ -51,8 +51,8 @@ struct PrintEdges {
 
 // How edges are looked for.
 struct EdgeSearch {
-  double reach_px;      // how far from where they are expected, pixels of the image
-  double min_step;      // gray values per pixel below which a change in full light is no edge
+  double reach_px;         // how far from where they are expected, pixels of the image
+  double min_step;         // gray values per pixel below which a change in full light is no edge
   std::size_t stride = 1;  // every so many places
 };
 

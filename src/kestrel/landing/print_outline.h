@@ -38,8 +38,7 @@ class PrintOutline {
 
   // Whether two places follow each other on a circle or on a side of an arm.
   static bool AreOnOneOutline(const Place& a, const Place& b) {
-    return a.curvature == b.curvature && a.side == b.side &&
-           (a.curvature != 0 || a.part == b.part);
+    return a.curvature == b.curvature && a.side == b.side && (a.curvature != 0 || a.part == b.part);
   }
 
  private:

@@ -56,10 +56,9 @@ TEST_F(PriorKnowledgeTest, ThePartHoldsTheBoardWhereverItMayBe) {
   for (int trial = 0; trial < 200; ++trial) {
     const double distance = random.Uniform(0.5, 12);
     const double sigma_m = random.Uniform(0, 0.3);
-    const RigidTransform truth =
-        PrintPose({random.Uniform(-0.6, 0.6) * distance, random.Uniform(-0.4, 0.4) * distance,
-                   distance},
-                  random.Uniform(0, 0.5), random.Uniform(0, 6), random.Uniform(0, 6));
+    const RigidTransform truth = PrintPose(
+        {random.Uniform(-0.6, 0.6) * distance, random.Uniform(-0.4, 0.4) * distance, distance},
+        random.Uniform(0, 0.5), random.Uniform(0, 6), random.Uniform(0, 6));
     Vector3d told = truth.translation;
     for (int k = 0; k < 2; ++k) told(k) += random.Uniform(-1, 1) * sigma_m;
     const LandingHint hint = CenterAt(told);
@@ -143,7 +142,8 @@ TEST_F(PriorKnowledgeTest, WhatIsNotAsFarAsToldIsLessProbableAndNothingIsMore) {
   // What is known is bounded: the image can say more.
   Random random(2);
   for (int trial = 0; trial < 300; ++trial) {
-    LandingHint any = CenterAt({random.Uniform(-9, 9), random.Uniform(-9, 9), random.Uniform(-9, 9)});
+    LandingHint any =
+        CenterAt({random.Uniform(-9, 9), random.Uniform(-9, 9), random.Uniform(-9, 9)});
     any.altitude_m = trial % 7 == 0 ? kNan : random.Uniform(-600, 600);
     if (trial % 2) any.up_in_camera = UpTilted(random.Uniform(0, 6));
     const double log_odds = Of(any).LogOddsOfDistance(

@@ -7,7 +7,7 @@
 namespace kestrel {
 namespace {
 
-constexpr int kSidePx = 40;  // the ring is as large as a small one may be
+constexpr int kSidePx = 40;       // the ring is as large as a small one may be
 constexpr double kExtent = 1.46;  // half a side, outer radii of the ring
 
 // Sees the square from a height of half its side.

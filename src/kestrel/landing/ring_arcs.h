@@ -51,9 +51,10 @@ struct RingArcsWorkspace {
 };
 
 // The second way to the ring, where its dark area is broken by a shadow's edge, a highlight, dirt,
-// a landing leg or the image border: cuts borders of the tracer into arcs, groups those that lie on one cone
-// within 'tolerance_rad', and keeps the groups that cover at least 'min_coverage' of it. Fills
-// workspace->rings, best covered first. Rays are taken through 'rays' from pixels of 'region'.
+// a landing leg or the image border: cuts borders of the tracer into arcs, groups those that lie on
+// one cone within 'tolerance_rad', and keeps the groups that cover at least 'min_coverage' of it.
+// Fills workspace->rings, best covered first. Rays are taken through 'rays' from pixels of
+// 'region'.
 void FindArcRings(const BorderTracer& tracer, std::span<const Border> borders, const RayTable& rays,
                   const ImageRegion& region, double tolerance_rad, double min_coverage,
                   RingArcsWorkspace* workspace);

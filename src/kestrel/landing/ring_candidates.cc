@@ -108,8 +108,8 @@ void RingFinder::CollectOutlines(const cv::Mat& image, const BorderTracer& trace
   const double scale = 1 << pass.image_level;
   std::vector<Outline>& outlines = buffers_.outlines;
   outlines.clear();
-  for (std::size_t i = 0;
-       i < tracer.borders().size() && outlines.size() + 2 <= outlines.capacity(); ++i) {
+  for (std::size_t i = 0; i < tracer.borders().size() && outlines.size() + 2 <= outlines.capacity();
+       ++i) {
     const Border& border = tracer.borders()[i];
     const std::optional<DarkArea> area =
         TestDarkArea(tracer, border, std::max(4.0, 0.7 * pass.min_ring_px / scale),
@@ -121,8 +121,8 @@ void RingFinder::CollectOutlines(const cv::Mat& image, const BorderTracer& trace
       ring.outer_edge.Scale(pattern.outer_radius_m() / pattern.inner_radius_m());
     }
     ring.contrast = RingContrast(image, ring.outer_edge, pattern);
-    const bool small =
-        IsSmallRing(2 * scale * Eigen::Vector2d(area->outline.semi_major, area->outline.semi_minor));
+    const bool small = IsSmallRing(
+        2 * scale * Eigen::Vector2d(area->outline.semi_major, area->outline.semi_minor));
     const bool is_elliptic = area->ellipticity >= kMinEllipticity;
     if (ring.contrast > 0 && (small || is_elliptic)) outlines.push_back(ring);
 

@@ -25,10 +25,13 @@ TEST(SearchPlan, NoStepIsTakenTwiceAndNoPassIsIdle) {
 TEST(SearchPlan, RingsOfAllSizesAreLookedForInEveryWay) {
   for (const SearchMethod method : {SearchMethod::kAreas, SearchMethod::kArcs}) {
     for (double ring_px = 6; ring_px < 2000; ring_px *= 1.1) {
-      EXPECT_TRUE(std::any_of(kSteps.begin(), kSteps.end(), [&](const SearchStep& step) {
-        const SearchPass& pass = kPasses[step.pass];
-        return step.method == method && pass.min_ring_px <= ring_px && ring_px <= pass.max_ring_px;
-      })) << ring_px << " px";
+      EXPECT_TRUE(std::any_of(kSteps.begin(), kSteps.end(),
+                              [&](const SearchStep& step) {
+                                const SearchPass& pass = kPasses[step.pass];
+                                return step.method == method && pass.min_ring_px <= ring_px &&
+                                       ring_px <= pass.max_ring_px;
+                              }))
+          << ring_px << " px";
     }
   }
 }

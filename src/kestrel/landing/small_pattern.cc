@@ -143,8 +143,8 @@ SmallPatternWorkspace::SmallPatternWorkspace() {
 
 // Collects the pixels that show the disc of the print and the white around it under 'pose': every
 // second, third, ... of every such row where a box around them has more than 'enough_pixels'.
-bool SmallPatternFitter::Gather(const MaskedImage& image, const RigidTransform& pose, int enough_pixels,
-                                SmallPatternWorkspace* workspace) const {
+bool SmallPatternFitter::Gather(const MaskedImage& image, const RigidTransform& pose,
+                                int enough_pixels, SmallPatternWorkspace* workspace) const {
   workspace->count = 0;
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
@@ -441,9 +441,10 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
     match->shares.ring[k] = seen(0, k) ? share(-amplitude(k)) : -1;
     match->shares.arm[k] = arm_seen(k) ? share(-amplitude(4 + k)) : -1;
     // Quarter k has half of quadrant k and half of the one before.
-    match->shares.quadrant[k] = seen(8, k) && seen(8, before)
-                             ? 1 - 0.5 * (share(-amplitude(8 + k)) + share(-amplitude(8 + before)))
-                             : -1;
+    match->shares.quadrant[k] =
+        seen(8, k) && seen(8, before)
+            ? 1 - 0.5 * (share(-amplitude(8 + k)) + share(-amplitude(8 + before)))
+            : -1;
     parts_seen += seen(0, k) + arm_seen(k) + seen(8, k);
   }
   match->seen = parts_seen / 12.0;

@@ -210,8 +210,7 @@ TEST_F(SmallPatternTest, ShadowsAreTakenOut) {
       // A straight edge through the print is nearly a slope of the light, which is fitted anyway.
       if (is_edge) continue;
       const auto lit = FitInPlace(shaded, truth, Light::kEven);
-      EXPECT_GT(evened->others.cross_correlation,
-                (lit ? lit->others.cross_correlation : 0) + 0.05)
+      EXPECT_GT(evened->others.cross_correlation, (lit ? lit->others.cross_correlation : 0) + 0.05)
           << diameter_px;
     }
   }

@@ -68,7 +68,8 @@ TEST(LandingStillMakerTest, TruthIsWhereThePatternIs) {
   }
 }
 
-// What makes the print no flat, rigid one moves the true centre in the image, and the print with it.
+// What makes the print no flat, rigid one moves the true centre in the image, and the print with
+// it.
 TEST(LandingStillMakerTest, TruthIsOnTheSheetAtItsTime) {
   LandingStillOptions flat;
   flat.min_visible_fraction = 1;

@@ -91,8 +91,8 @@ void AddRandomPattern(const LandingPattern& pattern, Random* random, Scene* scen
   scene->layers.push_back({ink, random->Uniform(0.03, 0.15), dirt});
 }
 
-const char* AddRandomLookalike(const Vector2d& center, double radius_m,
-                               bool with_counterfeits, Random* random, Scene* scene) {
+const char* AddRandomLookalike(const Vector2d& center, double radius_m, bool with_counterfeits,
+                               Random* random, Scene* scene) {
   const auto kinds = Lookalikes(with_counterfeits);
   const Lookalike& kind = kinds[random->Integer(0, static_cast<int>(kinds.size()) - 1)];
   const double yaw = random->Uniform(0, 2 * kPi);

@@ -12,8 +12,7 @@ namespace {
 // A point of the sheet by its sides, -1 to 1 of half the side each.
 Eigen::Vector2d At(const Relief& relief, double across, double along) {
   const double half = 0.5 * relief.size_m;
-  return half * std::sqrt(0.5) *
-         (across * Eigen::Vector2d(1, 1) + along * Eigen::Vector2d(-1, 1));
+  return half * std::sqrt(0.5) * (across * Eigen::Vector2d(1, 1) + along * Eigen::Vector2d(-1, 1));
 }
 
 TEST(Relief, IsFlatWithoutHeights) {

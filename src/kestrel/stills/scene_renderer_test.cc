@@ -182,7 +182,8 @@ TEST(SceneRendererTest, ASheetLiesWhereItsReliefHasIt) {
   const CameraModel camera(PaperCamera());
   const SceneRenderer renderer(camera, ClearLens());
   const RigidTransform pose = FacingPose(Vector3d(0.1, -0.05, 1), 1.1, 0.6);
-  for (const Relief& relief : {Relief{1.5, 0.045, 0}, Relief{1.5, -0.045, 0}, Relief{1.5, 0, 0.03}}) {
+  for (const Relief& relief :
+       {Relief{1.5, 0.045, 0}, Relief{1.5, -0.045, 0}, Relief{1.5, 0, 0.03}}) {
     Scene scene = PatternScene();
     scene.relief = relief;
     const cv::Mat image = renderer.Render(scene, pose, CleanImaging());

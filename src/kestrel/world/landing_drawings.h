@@ -28,8 +28,8 @@ struct Lookalike {
   Drawing (*draw)(const Eigen::Vector2d& center, double radius, double yaw, Random* random);
 };
 
-// All kinds of look-alikes; 'with_counterfeits': those too that differ from the pattern in one thing
-// only, which an eye may overlook.
+// All kinds of look-alikes; 'with_counterfeits': those too that differ from the pattern in one
+// thing only, which an eye may overlook.
 std::span<const Lookalike> Lookalikes(bool with_counterfeits = false);
 
 }  // namespace kestrel

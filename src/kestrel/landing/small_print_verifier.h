@@ -14,7 +14,7 @@
 
 namespace kestrel {
 
-// Memory of SmallPrintTest, which does not allocate once it is reserved.
+// Memory of SmallPrintVerifier, which does not allocate once it is reserved.
 struct SmallPrintBuffers {
   SmallPatternWorkspace gray_values;
   RingMemory tested;
@@ -24,11 +24,11 @@ struct SmallPrintBuffers {
 
 // Tests whether a ring whose strokes are no wider than the blur is that of the print, and locates
 // it: fits the whole print to the gray values (docs/small_pattern.md).
-class SmallPrintTest {
+class SmallPrintVerifier {
  public:
   // The arguments must outlive the test.
-  SmallPrintTest(const LandingModels& models, const PriorKnowledge& prior, SearchedImage* image,
-                 SmallPrintBuffers* buffers, DetectionChoice* choice, SearchLog* log);
+  SmallPrintVerifier(const LandingModels& models, const PriorKnowledge& prior, SearchedImage* image,
+                     SmallPrintBuffers* buffers, DetectionChoice* choice, SearchLog* log);
 
   void Test(const RingCandidate& ring);
 

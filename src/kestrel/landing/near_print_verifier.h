@@ -17,7 +17,7 @@
 
 namespace kestrel {
 
-// Memory of NearPrintTest, which does not allocate once it is reserved.
+// Memory of NearPrintVerifier, which does not allocate once it is reserved.
 struct NearPrintBuffers {
   CrossLinesWorkspace cross_lines;
   RectifiedPrintBuffers rectified;
@@ -30,12 +30,12 @@ struct NearPrintBuffers {
 // Tests whether a ring whose strokes have edges is that of the print, and locates it: looks for the
 // cross inside, aligns the print with the edges of the image, measures what speaks against it, and
 // finds the pose (paper, sections 2.3 to 2.5).
-class NearPrintTest {
+class NearPrintVerifier {
  public:
   // The arguments must outlive the test.
-  NearPrintTest(const LandingModels& models, const PriorKnowledge& prior, SearchedImage* image,
-                NearPrintBuffers* buffers, SmallPatternWorkspace* gray_values,
-                DetectionChoice* choice, SearchLog* log);
+  NearPrintVerifier(const LandingModels& models, const PriorKnowledge& prior, SearchedImage* image,
+                    NearPrintBuffers* buffers, SmallPatternWorkspace* gray_values,
+                    DetectionChoice* choice, SearchLog* log);
 
   void Test(const RingCandidate& ring);
 

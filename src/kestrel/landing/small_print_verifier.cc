@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/landing/small_print_test.h"
+#include "kestrel/landing/small_print_verifier.h"
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,7 @@ using Light = SmallPatternFitter::Light;
 constexpr double kMinMajorPx = 9;       // of the smallest ring
 constexpr double kMinAxisRatio = 0.08;  // of the flattest one
 constexpr double kSmallest = 0.7;       // of the least ring that is searched for: outlines are thin
-constexpr double kMinInsideContrast = 6;  // gray values
+constexpr double kMinInsideContrast = 6;         // gray values
 constexpr double kMinCorrelation = 0.35;         // of a start
 constexpr double kSureCorrelation = 0.6;         // of a start that quadrants give
 constexpr double kMinCorrelationOfEither = 0.7;  // of the poses of a ring
@@ -40,9 +40,9 @@ bool Agrees(const RigidTransform& start, const RigidTransform& fitted, double ra
 
 }  // namespace
 
-SmallPrintTest::SmallPrintTest(const LandingModels& models, const PriorKnowledge& prior,
-                               SearchedImage* image, SmallPrintBuffers* buffers,
-                               DetectionChoice* choice, SearchLog* log)
+SmallPrintVerifier::SmallPrintVerifier(const LandingModels& models, const PriorKnowledge& prior,
+                                       SearchedImage* image, SmallPrintBuffers* buffers,
+                                       DetectionChoice* choice, SearchLog* log)
     : models_(models),
       prior_(prior),
       image_(*image),
@@ -50,7 +50,7 @@ SmallPrintTest::SmallPrintTest(const LandingModels& models, const PriorKnowledge
       choice_(*choice),
       log_(*log) {}
 
-void SmallPrintTest::Test(const RingCandidate& ring) {
+void SmallPrintVerifier::Test(const RingCandidate& ring) {
   if (IsTooSmall(ring.diameters_px)) return;
   const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
   log_.Reach(LandingStage::kCross, "no cross inside of the ring");
@@ -69,21 +69,22 @@ void SmallPrintTest::Test(const RingCandidate& ring) {
   }
 }
 
-void SmallPrintTest::TestPredicted(const CirclePose& ring, const Eigen::Vector2d& diameters_px) {
+void SmallPrintVerifier::TestPredicted(const CirclePose& ring,
+                                       const Eigen::Vector2d& diameters_px) {
   if (IsTooSmall(diameters_px)) return;
   const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
   TestPose(ring, kOneScale);
 }
 
 // Whether too little is left of a ring, or it is seen along its plane.
-bool SmallPrintTest::IsTooSmall(const Eigen::Vector2d& diameters_px) const {
+bool SmallPrintVerifier::IsTooSmall(const Eigen::Vector2d& diameters_px) const {
   return diameters_px.x() < kMinMajorPx ||
          diameters_px.y() < kSmallest * models_.options.min_ring_px ||
          diameters_px.y() < kMinAxisRatio * diameters_px.x();
 }
 
-SmallPrintTest::Outcome SmallPrintTest::TestPose(const CirclePose& pose,
-                                                 std::span<const double> scales) {
+SmallPrintVerifier::Outcome SmallPrintVerifier::TestPose(const CirclePose& pose,
+                                                         std::span<const double> scales) {
   const SmallPatternFitter::Start start = FindStart(pose, scales);
   // The two poses of a small ring look much the same: what does not fit one fits neither.
   if (start.correlation < kMinCorrelation) return Outcome::kNothing;
@@ -110,8 +111,8 @@ SmallPrintTest::Outcome SmallPrintTest::TestPose(const CirclePose& pose,
 }
 
 // Nothing of a print that is smaller than what is searched for.
-std::optional<PrintFinding> SmallPrintTest::FindingOf(const SmallPatternFitter::Fit& fit,
-                                                      Light light) const {
+std::optional<PrintFinding> SmallPrintVerifier::FindingOf(const SmallPatternFitter::Fit& fit,
+                                                          Light light) const {
   constexpr double kTolerance = 0.75;  // of the size, which so few pixels hardly tell
   const RigidTransform& pose = fit.location.camera_from_pattern;
   PrintFinding finding;
@@ -137,8 +138,8 @@ std::optional<PrintFinding> SmallPrintTest::FindingOf(const SmallPatternFitter::
 
 // The best start for a small pattern whose ring lies as 'pose'; its correlation is -1 when there is
 // none.
-SmallPatternFitter::Start SmallPrintTest::FindStart(const CirclePose& pose,
-                                                    std::span<const double> scales) {
+SmallPatternFitter::Start SmallPrintVerifier::FindStart(const CirclePose& pose,
+                                                        std::span<const double> scales) {
   const std::optional<double> scale =
       models_.small.FindScale(image_.whole(), pose, scales, &buffers_.gray_values);
   if (!scale) return {{}, -1};
@@ -153,12 +154,12 @@ SmallPatternFitter::Start SmallPrintTest::FindStart(const CirclePose& pose,
 }
 
 // Direction of an arm of a small cross by its quadrants.
-std::optional<double> SmallPrintTest::ArmAngleByQuadrants(const CirclePose& pose) {
+std::optional<double> SmallPrintVerifier::ArmAngleByQuadrants(const CirclePose& pose) {
   constexpr int kSize = 24;
   const PatternView view(models_.camera, PatternPose(pose, 0), models_.matcher.extent_m(), {});
   if (!view.valid()) return std::nullopt;
-  const auto inside = RectifyInside(image_.whole(), view, models_.options.pattern, kSize,
-                                    kMinInsideContrast);
+  const auto inside =
+      RectifyInside(image_.whole(), view, models_.options.pattern, kSize, kMinInsideContrast);
   if (!inside) return std::nullopt;
   const std::optional<Cross> cross = FindCrossByQuadrants(*inside);
   if (!cross) return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/landing/near_print_test.h"
+#include "kestrel/landing/near_print_verifier.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,10 +68,10 @@ void NearPrintBuffers::Reserve() {
   refused.Reserve();
 }
 
-NearPrintTest::NearPrintTest(const LandingModels& models, const PriorKnowledge& prior,
-                             SearchedImage* image, NearPrintBuffers* buffers,
-                             SmallPatternWorkspace* gray_values, DetectionChoice* choice,
-                             SearchLog* log)
+NearPrintVerifier::NearPrintVerifier(const LandingModels& models, const PriorKnowledge& prior,
+                                     SearchedImage* image, NearPrintBuffers* buffers,
+                                     SmallPatternWorkspace* gray_values, DetectionChoice* choice,
+                                     SearchLog* log)
     : models_(models),
       prior_(prior),
       image_(*image),
@@ -80,7 +80,7 @@ NearPrintTest::NearPrintTest(const LandingModels& models, const PriorKnowledge& 
       choice_(*choice),
       log_(*log) {}
 
-void NearPrintTest::Test(const RingCandidate& ring) {
+void NearPrintVerifier::Test(const RingCandidate& ring) {
   RingPlace place{{}, ring.diameters_px, ring.reach_px};
   if (models_.camera.Project(ring.poses[0].center, &place.center_px) ==
           ProjectionStatus::kOutsideModel ||
@@ -119,8 +119,8 @@ void NearPrintTest::Test(const RingCandidate& ring) {
   }
 }
 
-void NearPrintTest::TestPredicted(const CirclePose& predicted,
-                                  const Eigen::Vector2d& predicted_px) {
+void NearPrintVerifier::TestPredicted(const CirclePose& predicted,
+                                      const Eigen::Vector2d& predicted_px) {
   constexpr int kIterations = 3;
   const auto refined = RefineRing(predicted, kPredictedReach * predicted_px.x(), kIterations);
   if (!refined) return;
@@ -136,9 +136,10 @@ void NearPrintTest::TestPredicted(const CirclePose& predicted,
   TestPrint(*print, diameters_px, reach_px, {&ring, 1}, {});
 }
 
-void NearPrintTest::TestCross(const RigidTransform& pose, const ImageRegion& region) {
+void NearPrintVerifier::TestCross(const RigidTransform& pose, const ImageRegion& region) {
   log_.Reach(LandingStage::kCross, "lines of a cross without the pattern around them");
-  const double angle = std::atan2(models_.options.pattern.outer_radius_m(), pose.translation.norm());
+  const double angle =
+      std::atan2(models_.options.pattern.outer_radius_m(), pose.translation.norm());
   const double diameter_px = 2 * models_.camera.intrinsics().fx_px * angle;
   const std::optional<Hypothesis> print = Compare(pose, CrossMethod::kPartial, diameter_px);
   if (!print) return;
@@ -148,8 +149,8 @@ void NearPrintTest::TestCross(const RigidTransform& pose, const ImageRegion& reg
 }
 
 // The print whose ring lies as 'ring', turned by the cross inside; not compared with the image yet.
-std::optional<NearPrintTest::Hypothesis> NearPrintTest::FindCross(const CirclePose& ring,
-                                                                  double diameter_px) {
+std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCross(const CirclePose& ring,
+                                                                          double diameter_px) {
   constexpr int kThinningSize = 32, kLinesSize = 64;
   const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
   const LandingPattern& pattern = models_.options.pattern;
@@ -178,15 +179,15 @@ std::optional<NearPrintTest::Hypothesis> NearPrintTest::FindCross(const CirclePo
 
 // Where the ring is cut off or broken, what is known of it says little about its far side: the
 // edges of both of its circles bring it into place before its inside is looked at.
-std::optional<RingLocation> NearPrintTest::RefineRing(const CirclePose& ring, double reach_px,
-                                                      int iterations) {
+std::optional<RingLocation> NearPrintVerifier::RefineRing(const CirclePose& ring, double reach_px,
+                                                          int iterations) {
   const SearchLog::Timer timer = log_.Time(LandingStage::kRing);
   return models_.locator.LocateRing(image_.whole(), PatternPose(ring, 0), reach_px,
                                     kMinRingContrast / 2, iterations,
                                     prior_.LevelPrior(ring.normal));
 }
 
-std::optional<NearPrintTest::Hypothesis> NearPrintTest::FindCrossInRefined(
+std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCrossInRefined(
     const RigidTransform& ring, double diameter_px) {
   const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
   const ImageRegion region = image_.RegionAt(ViewLevel(diameter_px));
@@ -205,9 +206,9 @@ std::optional<NearPrintTest::Hypothesis> NearPrintTest::FindCrossInRefined(
 }
 
 // What is not at all like the print is not worth locating.
-std::optional<NearPrintTest::Hypothesis> NearPrintTest::Compare(const RigidTransform& pose,
-                                                                CrossMethod method,
-                                                                double diameter_px) {
+std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::Compare(const RigidTransform& pose,
+                                                                        CrossMethod method,
+                                                                        double diameter_px) {
   const SearchLog::Timer timer = log_.Time(LandingStage::kMatch);
   log_.Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
   const ImageRegion region = image_.RegionAt(ViewLevel(diameter_px));
@@ -220,16 +221,16 @@ std::optional<NearPrintTest::Hypothesis> NearPrintTest::Compare(const RigidTrans
 
 // Whether the print is the pattern: whether it looks so is a question to the image, where it is one
 // to the lens.
-bool NearPrintTest::TestPrint(const Hypothesis& print, const Eigen::Vector2d& diameters_px,
-                              double reach_px, std::span<const CirclePose> rings,
-                              const PriorKnowledge::Order& order) {
+bool NearPrintVerifier::TestPrint(const Hypothesis& print, const Eigen::Vector2d& diameters_px,
+                                  double reach_px, std::span<const CirclePose> rings,
+                                  const PriorKnowledge::Order& order) {
   const SearchLog::Timer timer = log_.Time(LandingStage::kLocate);
   log_.Reach(LandingStage::kLocate, "ring and cross have too few edges");
   const ImageRegion region = image_.RegionAt(ViewLevel(diameters_px.x()));
   const cv::Mat image = image_.At(region.level);
-  PrintAlignment alignment{PlaneWarp(models_.camera, print.camera_from_pattern,
-                                     models_.locator.outline().radius_m()),
-                           {}};
+  PrintAlignment alignment{
+      PlaneWarp(models_.camera, print.camera_from_pattern, models_.locator.outline().radius_m()),
+      {}};
   const double min_step = std::max(kLeastStep, kMinStep * print.contrast);
   if (!AlignPrint(image_.whole(), image, region, models_.locator.outline().all(), reach_px,
                   min_step, &alignment)) {
@@ -258,8 +259,8 @@ bool NearPrintTest::TestPrint(const Hypothesis& print, const Eigen::Vector2d& di
 }
 
 // The print whose ring lies as 'ring', turned as it is in the image.
-RigidTransform NearPrintTest::WithArmOf(const PrintAlignment& alignment,
-                                        const CirclePose& ring) const {
+RigidTransform NearPrintVerifier::WithArmOf(const PrintAlignment& alignment,
+                                            const CirclePose& ring) const {
   RigidTransform pose = PatternPose(ring, 0);
   Eigen::Vector2d pixel;
   Eigen::Vector3d ray;
@@ -273,8 +274,8 @@ RigidTransform NearPrintTest::WithArmOf(const PrintAlignment& alignment,
 }
 
 // Whether the print, located near 'initial', is the pattern.
-bool NearPrintTest::Locate(const PrintAlignment& alignment, const RigidTransform& initial,
-                           PrintFinding finding) {
+bool NearPrintVerifier::Locate(const PrintAlignment& alignment, const RigidTransform& initial,
+                               PrintFinding finding) {
   const Eigen::Vector3d normal = initial.rotation * Eigen::Vector3d::UnitZ();
   const std::optional<PatternLocation> location =
       models_.locator.Locate(alignment.edges, initial, prior_.LevelPrior(normal));
@@ -289,8 +290,8 @@ bool NearPrintTest::Locate(const PrintAlignment& alignment, const RigidTransform
 }
 
 // Notes that a ring whose edges were found is something else.
-void NearPrintTest::Refuse(const PrintFinding& finding, const PrintAlignment& alignment,
-                           double reach_px) {
+void NearPrintVerifier::Refuse(const PrintFinding& finding, const PrintAlignment& alignment,
+                               double reach_px) {
   log_.Reach(LandingStage::kLocate, MainDoubt(finding.kind, finding.doubts));
   RingPlace place{{}, finding.diameters_px, reach_px};
   if (alignment.warp.Project(Eigen::Vector2d::Zero(), &place.center_px)) {
@@ -298,8 +299,8 @@ void NearPrintTest::Refuse(const PrintFinding& finding, const PrintAlignment& al
   }
 }
 
-void NearPrintTest::DoubtParts(const PrintAlignment& alignment, const PatternMatch& match,
-                               PrintFinding* finding) {
+void NearPrintVerifier::DoubtParts(const PrintAlignment& alignment, const PatternMatch& match,
+                                   PrintFinding* finding) {
   kestrel::DoubtParts(match, &finding->doubts);
   const PartShares edge_shares = alignment.EdgeShares();
   const PartShares::Means edges = edge_shares.MeansInView();
@@ -311,8 +312,8 @@ void NearPrintTest::DoubtParts(const PrintAlignment& alignment, const PatternMat
 }
 
 // In even light, or without the shadows on the print if it is more like the pattern so.
-void NearPrintTest::DoubtGrayValues(const PrintAlignment& alignment, const ImageRegion& region,
-                                    PrintDoubts* doubts) {
+void NearPrintVerifier::DoubtGrayValues(const PrintAlignment& alignment, const ImageRegion& region,
+                                        PrintDoubts* doubts) {
   using Light = SmallPatternFitter::Light;
   const PatternView view(alignment.warp, models_.rectified.extent_m(), region);
   if (!view.valid()) return;
