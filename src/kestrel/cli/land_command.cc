@@ -78,10 +78,7 @@ class LandRun : public PipelineRun {
     const LandingObservation observation = pipeline_.Process(frame.image, frame.time);
     sink_.Write(frame, observation, pipeline_);
     ++poses_[observation.pose];
-    if (const auto& detection = observation.report.detection) {
-      ++found_;
-      calibration_.Add(detection->calibration);
-    }
+    found_ += observation.report.detection.has_value();
     return observation.detect_time;
   }
 
@@ -91,7 +88,7 @@ class LandRun : public PipelineRun {
 
   std::string Remarks() const override {
     const double focal_px = pipeline_.detector().camera().intrinsics().fx_px;
-    std::string remarks = FocalRemark(calibration_, focal_px);
+    std::string remarks = FocalRemark(pipeline_.calibration_monitor(), focal_px);
     // Only where there are poses for some of the frames; a source that has none is nothing unusual.
     for (const auto& [pose, count] : poses_) {
       if (pose == PoseLookup::kFound || pose == PoseLookup::kEmpty) continue;
@@ -103,7 +100,6 @@ class LandRun : public PipelineRun {
  private:
   LandingPipeline pipeline_;
   LandingSink sink_;
-  CalibrationMonitor calibration_;
   std::optional<double> altitude_m_;
   bool has_world_;
   std::map<PoseLookup, std::size_t> poses_;

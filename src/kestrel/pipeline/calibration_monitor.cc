@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace kestrel {
 namespace {
@@ -20,15 +19,7 @@ constexpr double kSharedSigma = 0.003;
 constexpr double kSigmaOfDeviation = 1.4826;
 constexpr double kSigmaOfMedian = 1.2533;
 
-// The value that half of the weight lies below.
-double WeightedMedian(std::vector<WeightedValue> values) {
-  std::ranges::sort(values, {}, &WeightedValue::value);
-  double half = 0;
-  for (const WeightedValue& each : values) half += 0.5 * each.weight;
-  auto it = values.begin();
-  for (; it + 1 != values.end() && half >= it->weight; ++it) half -= it->weight;
-  return it->value;
-}
+constexpr double kBinWidth = 0.001;
 
 }  // namespace
 
@@ -39,28 +30,46 @@ void CalibrationMonitor::Add(const CalibrationEvidence& evidence) {
   const double of_view = 1 - std::pow(evidence.log_focal_sigma / expected_sigma, 2);
   const double variance = std::pow(evidence.log_focal_sigma, 2) / of_view;
   if (!(of_view > 0 && variance > 0 && variance < kMaxSigma * kMaxSigma)) return;
-  views_.push_back({evidence.log_focal / of_view, 1 / (variance + kSharedSigma * kSharedSigma)});
+  const double weight = 1 / (variance + kSharedSigma * kSharedSigma);
+  const double bin = std::round(evidence.log_focal / of_view / kBinWidth) + kBins / 2;
+  if (!std::isfinite(bin)) return;
+  weights_[static_cast<int>(std::clamp(bin, 0.0, kBins - 1.0))] += weight;
+  weight_ += weight;
+  squared_weights_ += weight * weight;
+  ++views_;
+}
+
+// The bin that half of the weight lies below.
+int CalibrationMonitor::MedianBin() const {
+  int bin = 0;
+  for (double below = weights_[0]; below < 0.5 * weight_ && bin + 1 < kBins;) {
+    below += weights_[++bin];
+  }
+  return bin;
+}
+
+double CalibrationMonitor::MedianDeviation(int from_bin) const {
+  const auto weight_of = [&](int bin) { return bin >= 0 && bin < kBins ? weights_[bin] : 0; };
+  int reach = 0;
+  for (double within = weights_[from_bin]; within < 0.5 * weight_ && reach < kBins;) {
+    ++reach;
+    within += weight_of(from_bin - reach) + weight_of(from_bin + reach);
+  }
+  return kBinWidth * reach;
 }
 
 std::optional<FocalFactor> CalibrationMonitor::Focal() const {
-  if (views_.size() < kMinViews) return std::nullopt;
-  const double log_focal = WeightedMedian(views_);
-  std::vector<WeightedValue> deviations = views_;
-  double weights = 0;
-  double squared_weights = 0;
-  for (WeightedValue& each : deviations) {
-    each.value = std::abs(each.value - log_focal);
-    weights += each.weight;
-    squared_weights += each.weight * each.weight;
-  }
+  if (views_ < kMinViews) return std::nullopt;
+  const int median = MedianBin();
   // By the views' own standard deviations, or by how far they scatter where that is more.
-  const double told_variance = 1 / weights;
-  const double scatter = kSigmaOfDeviation * WeightedMedian(std::move(deviations));
-  const double seen_variance = scatter * scatter * squared_weights / (weights * weights);
+  const double told_variance = 1 / weight_;
+  const double scatter = kSigmaOfDeviation * MedianDeviation(median);
+  const double seen_variance = scatter * scatter * squared_weights_ / (weight_ * weight_);
   const double sigma =
       std::hypot(kSharedSigma, kSigmaOfMedian * std::sqrt(std::max(told_variance, seen_variance)));
+  const double log_focal = kBinWidth * (median - kBins / 2);
   const double factor = std::exp(log_focal);
-  return FocalFactor{factor, factor * sigma, views_.size()};
+  return FocalFactor{factor, factor * sigma, views_};
 }
 
 std::optional<FocalFactor> CalibrationMonitor::Contradiction() const {

@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
-#include <vector>
 
 #include "kestrel/landing/calibration_evidence.h"
 
 namespace kestrel {
-
-struct WeightedValue {
-  double value;
-  double weight;
-};
 
 // The focal length as a factor of the calibration's.
 struct FocalFactor {
@@ -21,7 +16,8 @@ struct FocalFactor {
   std::size_t detections;  // how many say so
 };
 
-// Keeps count of what the detections of a run say about the calibration's focal length.
+// Keeps count of what the detections of a run say about the calibration's focal length. Does not
+// allocate, however long the run is.
 class CalibrationMonitor {
  public:
   // Views that say nothing of the focal length are left out.
@@ -34,7 +30,16 @@ class CalibrationMonitor {
   std::optional<FocalFactor> Contradiction() const;
 
  private:
-  std::vector<WeightedValue> views_;  // logarithm of the factor, one over its variance
+  static constexpr int kBins = 1001;  // of 0.1 %, the middle one around 0
+
+  int MedianBin() const;
+  double MedianDeviation(int from_bin) const;
+
+  // Of the views, by the logarithm of the factor: sum of the inverse variances.
+  std::array<double, kBins> weights_{};
+  double weight_ = 0;           // of all
+  double squared_weights_ = 0;  // of all views, their sum
+  std::size_t views_ = 0;
 };
 
 }  // namespace kestrel

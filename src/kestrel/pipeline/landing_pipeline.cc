@@ -65,7 +65,7 @@ LandingObservation LandingPipeline::Process(const cv::Mat& image, Time time) {
 void LandingPipeline::Detect(const cv::Mat& image, LandingObservation* observation) {
   const ToldView told = WhatIsTold(*observation);
   LandingHint hint;
-  if (told.altitude_m > 0) hint.altitude_m = told.altitude_m;
+  if (told.altitude_m > AltitudeExcess()) hint.altitude_m = *told.altitude_m - AltitudeExcess();
   hint.up_in_camera = told.up_in_camera;
   if (!options_.still) {
     AddTrack(*observation, &hint);
@@ -76,7 +76,27 @@ void LandingPipeline::Detect(const cv::Mat& image, LandingObservation* observati
   observation->report = detector_.Detect(image, hint, workspace_);
   observation->detect_time = std::chrono::steady_clock::now() - start;
   next_step_ = observation->report.next_step;
-  if (const auto& detection = observation->report.detection) contradictions_.Add(told, *detection);
+  auto& detection = observation->report.detection;
+  if (!detection) return;
+  contradictions_.Add(told, *detection);
+  calibration_monitor_.Add(detection->calibration);
+  if (!options_.still) AddErrorOfFocalLength(&*detection);
+}
+
+// By how much (m) the altitude is told too large, as far as the detections so far contradict it.
+double LandingPipeline::AltitudeExcess() const {
+  if (options_.still) return 0;
+  const auto excess = contradictions_.Altitude();
+  return excess ? excess->difference : 0;
+}
+
+// Where the focal length is wrong every distance is, by the same part of it. Views that contradict
+// the calibration themselves were located with a focal length of their own.
+void LandingPipeline::AddErrorOfFocalLength(LandingDetection* detection) const {
+  const auto focal = calibration_monitor_.Contradiction();
+  if (!focal || detection->calibration.contradicts) return;
+  const Eigen::Vector3d error_m = (focal->factor - 1) * detection->camera_from_pattern.translation;
+  detection->covariance.topLeftCorner<3, 3>() += error_m * error_m.transpose();
 }
 
 ToldView LandingPipeline::WhatIsTold(const LandingObservation& observation) const {
@@ -124,8 +144,8 @@ void LandingPipeline::LocateInWorld(LandingObservation* observation) const {
       ProjectionStatus::kOutsideModel) {
     return;
   }
-  const auto by_altitude =
-      LocateByAltitude(ray_in_camera, *world_from_camera, options_.target_height_m);
+  const auto by_altitude = LocateByAltitude(ray_in_camera, *world_from_camera,
+                                            options_.target_height_m + AltitudeExcess());
   if (!by_altitude) return;
   observation->center_in_world = by_altitude;
   observation->position_method = PositionMethod::kAltitude;

@@ -12,6 +12,7 @@
 #include "kestrel/camera/calibration.h"
 #include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/landing/landing_pattern_detector.h"
+#include "kestrel/pipeline/calibration_monitor.h"
 #include "kestrel/pipeline/camera_poses.h"
 #include "kestrel/pipeline/measurement_noise.h"
 #include "kestrel/pipeline/told_contradictions.h"
@@ -29,7 +30,8 @@ struct LandingPipelineOptions {
   // in the image. Better only where the altitude is known to a few cm and the pattern is small.
   bool position_by_altitude = false;
   // Height of the pattern's face above the world's z = 0. With it the navigation's z becomes the
-  // height above the pattern, for the hint and for position_by_altitude.
+  // height above the pattern, for the hint and for position_by_altitude. It holds until the
+  // detections contradict it: the navigation's z may be an altitude above sea level.
   double target_height_m = 0;
   // The pattern turns with the vehicle: its yaw tells the tracker how the path bends. Switch off
   // where it lies on something that turns by itself.
@@ -119,6 +121,9 @@ class LandingPipeline {
   // How what is told of height and attitude contradicts what the detections show.
   const ToldContradictions& contradictions() const { return contradictions_; }
 
+  // What the detections say about the calibration.
+  const CalibrationMonitor& calibration_monitor() const { return calibration_monitor_; }
+
   // The track; its times are those of the frames.
   const TargetTracker& tracker() const { return tracker_; }
   const LandingPatternDetector& detector() const { return detector_; }
@@ -133,6 +138,8 @@ class LandingPipeline {
 
   void Detect(const cv::Mat& image, LandingObservation* observation);
   ToldView WhatIsTold(const LandingObservation& observation) const;
+  double AltitudeExcess() const;
+  void AddErrorOfFocalLength(LandingDetection* detection) const;
   void AddTrack(const LandingObservation& observation, LandingHint* hint) const;
   void AddLastSighting(const LandingObservation& observation, LandingHint* hint) const;
   void LocateInWorld(LandingObservation* observation) const;
@@ -150,6 +157,7 @@ class LandingPipeline {
   std::optional<Sighting> last_;
   int next_step_ = 0;  // where the search of the last frame was given up
   ToldContradictions contradictions_;
+  CalibrationMonitor calibration_monitor_;
 };
 
 }  // namespace kestrel

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/pipeline/landing_pipeline.h"
 
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -217,6 +218,52 @@ TEST_F(LandingPipelineTest, AWrongAltitudeOfTheUserHidesNothingAndIsSaid) {
   }
   ASSERT_TRUE(pipeline.contradictions().Altitude());
   EXPECT_NEAR(pipeline.contradictions().Altitude()->difference, 14, 0.3);
+}
+
+TEST_F(LandingPipelineTest, LocatesByAltitudeWhateverTheWorldsZeroIs) {
+  options_.position_by_altitude = true;
+  LandingPipeline pipeline(calibration_, options_);
+  const cv::Mat image = Draw();
+  RigidTransform told = world_from_body_;
+  told.translation.z() += 100;
+  LandingObservation observation;
+  for (int i = 0; i < 12; ++i) {
+    const Time time = kTime + i * DurationFromSeconds(0.1);
+    pipeline.AddPose({time, told});
+    observation = pipeline.Process(image, time);
+  }
+  ASSERT_TRUE(observation.center_in_world);
+  EXPECT_EQ(observation.position_method, PositionMethod::kAltitude);
+  const Eigen::Vector3d expected = world_from_pattern_.translation + Eigen::Vector3d(0, 0, 100);
+  EXPECT_LT((*observation.center_in_world - expected).norm(), 0.1);
+}
+
+// Near and tilted views say that the focal length is wrong; of a far one the distance is then not
+// sure, but its direction is.
+TEST_F(LandingPipelineTest, AWrongFocalLengthMakesDistancesUnsure) {
+  const CameraModel camera(calibration_.intrinsics);
+  calibration_.intrinsics.fx_px = calibration_.intrinsics.fy_px = 1.15 * 400;
+  const auto covariance_of_far_one = [&](int near_views) {
+    LandingPipeline pipeline(calibration_, options_);
+    const auto see = [&](double distance_m, double tilt, int i) {
+      const RigidTransform pose = {Rotation(0.2 * i, {0, 0, 1}) * Rotation(tilt, {1, 0, 0}) *
+                                       Rotation(std::numbers::pi, {1, 0, 0}),
+                                   {0, 0, distance_m}};
+      return pipeline.Process(DrawPattern(camera, options_.detector.pattern, pose),
+                              kTime + i * DurationFromSeconds(0.1));
+    };
+    for (int i = 0; i < near_views; ++i) see(2.2, 1, i);
+    EXPECT_EQ(pipeline.calibration_monitor().Contradiction().has_value(), near_views > 0);
+    const LandingObservation far = see(9, 0, near_views);
+    EXPECT_TRUE(far.report.detection);
+    return far.report.detection ? far.report.detection->covariance
+                                : Eigen::Matrix<double, 6, 6>::Zero().eval();
+  };
+  const auto before = covariance_of_far_one(0);
+  const auto after = covariance_of_far_one(20);
+  EXPECT_LT(std::sqrt(before(2, 2)), 0.02 * 9);
+  EXPECT_NEAR(std::sqrt(after(2, 2)), 0.13 * 9 * 1.15, 0.4) << "it seems to be 1.35 m farther away";
+  EXPECT_LT(std::sqrt(after(0, 0)), 0.02);
 }
 
 // Each frame has time for one step only.
