@@ -8,5 +8,6 @@ namespace kestrel {
 inline constexpr double kPi = std::numbers::pi;
 
 constexpr double Radians(double degrees) { return degrees * kPi / 180; }
+constexpr double Degrees(double radians) { return radians * 180 / kPi; }
 
 }  // namespace kestrel

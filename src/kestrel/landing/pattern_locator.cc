@@ -265,7 +265,7 @@ PatternLocator::Solution PatternLocator::SolvePose(const Linearized& linearized,
   }
   equations.PullCalibration(state, kHeld, kHeld);
   if (has_spread) {
-    const Solution solution(linearized, equations);
+    Solution solution(linearized, equations);
     const double least = std::max(kLeastSpreadPx, kSureSpread * solution.Sigma(kSpread));
     if (std::abs(state.spread_px + solution.step(kSpread)) > least) return solution;
   }

@@ -48,7 +48,7 @@ void RectifiedPrint::Rectify(const cv::Mat& image, const PatternView& view,
       const bool is_seen = gray[i] >= 0;
       buffers->seen.at<std::uint8_t>(row, i) = is_seen ? 255 : 0;
       buffers->gray.at<std::uint8_t>(row, i) =
-          is_seen ? static_cast<std::uint8_t>(gray[i] + 0.5f) : 0;
+          is_seen ? cv::saturate_cast<std::uint8_t>(gray[i]) : 0;
     }
   }
 }

@@ -5,15 +5,24 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "kestrel/base/time.h"
 #include "kestrel/geometry/rigid_transform.h"
 
 namespace kestrel {
 
+// How the body moves.
+struct BodyMotion {
+  Eigen::Vector3d velocity_in_world{0, 0, 0};  // m/s
+  Eigen::Vector3d rate_in_body{0, 0, 0};       // angular velocity, rad/s
+};
+
 // Where the body (FLU) was in the world (ENU) at an instant of the navigation's clock.
 struct PoseSample {
   Time time;
   RigidTransform world_from_body;
+  std::optional<BodyMotion> motion = std::nullopt;  // where the navigation tells it
 };
 
 enum class PoseStatus {
