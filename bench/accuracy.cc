@@ -20,6 +20,7 @@
 #include "landing_frames.h"
 #include "landing_score.h"
 #include "landing_variants.h"
+#include "report_main.h"
 
 namespace kestrel {
 namespace {
@@ -449,10 +450,5 @@ int Run(int argc, char** argv) {
 }  // namespace kestrel
 
 int main(int argc, char** argv) {
-  try {
-    return kestrel::Run(argc, argv);
-  } catch (const kestrel::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
+  return kestrel::ReportMain([&] { return kestrel::Run(argc, argv); });
 }

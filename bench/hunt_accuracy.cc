@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "hunt_score.h"
-#include "kestrel/base/error.h"
 #include "kestrel/evaluation/object_tables.h"
+#include "report_main.h"
 
 namespace kestrel {
 namespace {
@@ -69,11 +69,8 @@ int main(int argc, char** argv) {
   app.add_option("--data", data, "Folder with hunt_real and hunt_hard");
   app.add_option("recordings", recordings, "Recordings with objects0, in place of these");
   CLI11_PARSE(app, argc, argv);
-  try {
+  return kestrel::ReportMain([&] {
     kestrel::Run(data, recordings);
-  } catch (const kestrel::InputError& error) {
-    fmt::print(stderr, "hunt_accuracy: {}\n", error.what());
-    return 1;
-  }
-  return 0;
+    return 0;
+  });
 }

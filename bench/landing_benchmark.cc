@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <string>
@@ -20,12 +21,12 @@
 #include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "kestrel/base/error.h"
 #include "kestrel/base/random.h"
 #include "kestrel/camera/paper_camera.h"
 #include "kestrel/landing/landing_pattern_detector.h"
 #include "landing_frames.h"
 #include "landing_score.h"
+#include "report_main.h"
 
 namespace kestrel {
 namespace {
@@ -139,23 +140,33 @@ Contestant Detect(const Scenes& scenes, bool with_hint) {
   };
 }
 
+// AprilTag 3 on one thread.
+class AprilTagSearch {
+ public:
+  explicit AprilTagSearch(float decimate) : family_(tag36h11_create(), tag36h11_destroy) {
+    apriltag_detector_add_family(detector_.get(), family_.get());
+    detector_->nthreads = 1;
+    detector_->quad_decimate = decimate;
+  }
+
+  void Search(const cv::Mat& image) const {
+    image_u8_t view = {.width = image.cols,
+                       .height = image.rows,
+                       .stride = static_cast<int>(image.step[0]),
+                       .buf = image.data};
+    apriltag_detections_destroy(apriltag_detector_detect(detector_.get(), &view));
+  }
+
+ private:
+  // The detector refers to the family, which must outlive it.
+  std::shared_ptr<apriltag_family_t> family_;
+  std::shared_ptr<apriltag_detector_t> detector_{apriltag_detector_create(),
+                                                 apriltag_detector_destroy};
+};
+
 Contestant AprilTag(const Scenes& scenes, float decimate) {
-  const std::shared_ptr<apriltag_family_t> family(tag36h11_create(), tag36h11_destroy);
-  const std::shared_ptr<apriltag_detector_t> detector(
-      apriltag_detector_create(),
-      // The detector refers to the family, which must outlive it.
-      [family](apriltag_detector_t* d) { apriltag_detector_destroy(d); });
-  apriltag_detector_add_family(detector.get(), family.get());
-  detector->nthreads = 1;
-  detector->quad_decimate = decimate;
-  return [&scenes, detector] {
-    for (const cv::Mat& image : scenes.images) {
-      image_u8_t view = {.width = image.cols,
-                         .height = image.rows,
-                         .stride = static_cast<int>(image.step[0]),
-                         .buf = image.data};
-      apriltag_detections_destroy(apriltag_detector_detect(detector.get(), &view));
-    }
+  return [&scenes, tags = AprilTagSearch(decimate)] {
+    for (const cv::Mat& image : scenes.images) tags.Search(image);
   };
 }
 
@@ -329,6 +340,61 @@ void PrintSpread(const LandingFrameSet& set) {
   PrintSlowest(times);
 }
 
+// --- Frames without the pattern: the whole image is searched by every pass. ---
+
+LandingFrameSet LookalikeFrames() {
+  constexpr int kCount = 100;
+  LandingStillOptions options;
+  options.camera = PaperCamera();
+  const LandingStillMaker maker(options);
+  LandingFrameSet set{"rendered look-alikes 752x480", options.camera, {}};
+  for (int seed = 0; seed < kCount; ++seed) {
+    set.frames.push_back(FrameFromLookalikes(maker, set.name, seed));
+  }
+  return set;
+}
+
+// The frames of all sets that have no pattern; the sets are of one camera.
+LandingFrameSet WithoutPattern(const std::string& name, const std::vector<LandingFrameSet>& sets) {
+  LandingFrameSet without{name, sets.front().camera, {}};
+  for (const LandingFrameSet& set : sets) {
+    std::copy_if(set.frames.begin(), set.frames.end(), std::back_inserter(without.frames),
+                 [](const LandingFrame& frame) { return frame.truth == PatternTruth::kNone; });
+  }
+  return without;
+}
+
+// A row: each frame's time is its median over the rounds.
+void PrintSearchTime(const LandingFrameSet& set) {
+  const LandingPatternDetector detector(CameraModel(set.camera), {});
+  LandingWorkspace workspace;
+  const AprilTagSearch tags(2);
+  std::vector<double> detect_ms, tags_ms;
+  for (const LandingFrame& frame : set.frames) {
+    std::vector<double> ours_ms, theirs_ms;
+    for (int round = 0; round < kRounds; ++round) {
+      ours_ms.push_back(MillisecondsOf([&] { detector.Detect(frame.image, {}, workspace); }));
+      theirs_ms.push_back(MillisecondsOf([&] { tags.Search(frame.image); }));
+    }
+    detect_ms.push_back(Quantile(ours_ms, 0.5));
+    tags_ms.push_back(Quantile(theirs_ms, 0.5));
+  }
+  const double p99 = Quantile(detect_ms, 0.99);
+  const double wanted = Quantile(tags_ms, 0.5);
+  fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | p99 <= {:.2f} {} |\n", set.name,
+             set.frames.size(), Quantile(detect_ms, 0.5), p99, wanted, Quantile(tags_ms, 0.99),
+             wanted, Verdict(p99 <= wanted));
+}
+
+void PrintSearchTimes(const std::string& data_dir) {
+  fmt::print(
+      "\n## Frames without the pattern\n\n| frames | number | Detect, median ms | p99 | AprilTag "
+      "3, decimate 2, median ms | p99 | wanted |\n|---|---|---|---|---|---|---|\n");
+  PrintSearchTime(LookalikeFrames());
+  const std::vector<LandingFrameSet> hard = ReadLandingHard(data_dir);
+  if (!hard.empty()) PrintSearchTime(WithoutPattern("landing_hard, none in it", hard));
+}
+
 // The real frames camera by camera, those without the pattern too.
 void PrintSpreads(const std::vector<LandingFrameSet>& real) {
   LandingFrameSet sequences{"All real 640x360 frames", {}, {}};
@@ -410,6 +476,7 @@ int Run(int argc, char** argv) {
   benchmark::RunSpecifiedBenchmarks(&reporter);
   PrintContest(scenes, reporter);
   PrintSpreads(real);
+  PrintSearchTimes(data_dir);
   PrintCostBySize();
   return 0;
 }
@@ -418,10 +485,5 @@ int Run(int argc, char** argv) {
 }  // namespace kestrel
 
 int main(int argc, char** argv) {
-  try {
-    return kestrel::Run(argc, argv);
-  } catch (const kestrel::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
+  return kestrel::ReportMain([&] { return kestrel::Run(argc, argv); });
 }

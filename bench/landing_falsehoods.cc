@@ -124,9 +124,7 @@ constexpr std::array kToldHints = {
 
 }  // namespace
 
-LandingFrameSet RenderStills(int per_altitude, const PrintError& print, int threads) {
-  constexpr std::uint64_t kFirstSeed = 5'000'000, kSeedsOfAltitude = 1'000'000;
-  LandingFrameSet set{std::string(print.name), PaperCamera(), {}};
+std::vector<LandingStillMaker> StillMakers(const PrintError& print) {
   std::vector<LandingStillMaker> makers;
   for (const AltitudeBin& bin : kAltitudeBins) {
     LandingStillOptions options;
@@ -137,6 +135,13 @@ LandingFrameSet RenderStills(int per_altitude, const PrintError& print, int thre
     options.rolling_skew = print.rolling_skew;
     makers.emplace_back(options);
   }
+  return makers;
+}
+
+LandingFrameSet RenderStills(int per_altitude, const PrintError& print, int threads) {
+  constexpr std::uint64_t kFirstSeed = 5'000'000, kSeedsOfAltitude = 1'000'000;
+  LandingFrameSet set{std::string(print.name), PaperCamera(), {}};
+  const std::vector<LandingStillMaker> makers = StillMakers(print);
   const auto stills = static_cast<std::size_t>(per_altitude);
   set.frames.resize(stills * makers.size());
   ForEachIndex(set.frames.size(), threads, [&](std::size_t i) {

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "kestrel/camera/camera_model.h"
 #include "kestrel/landing/landing_pattern_detector.h"
@@ -28,6 +29,9 @@ struct PrintError {
 };
 // All of them; the first one is flat.
 std::span<const PrintError> PrintErrors();
+
+// Makers of stills with such a print, one for each of kAltitudeBins.
+std::vector<LandingStillMaker> StillMakers(const PrintError& print);
 
 // So many rendered stills of each of kAltitudeBins, the same in every run.
 LandingFrameSet RenderStills(int per_altitude, const PrintError& print, int threads);

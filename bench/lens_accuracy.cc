@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,16 +16,18 @@
 #include "kestrel/base/error.h"
 #include "kestrel/calibration/lens_calibration.h"
 #include "kestrel/calibration/lens_difference.h"
+#include "kestrel/geometry/angles.h"
 #include "kestrel/recording/euroc_text.h"
 #include "kestrel/stills/landing_stills.h"
 #include "landing_frames.h"
 #include "landing_score.h"
+#include "report_main.h"
 
 namespace kestrel {
 namespace {
 
 constexpr int kThreads = 2;
-constexpr double kMaxAngle = 80 * std::numbers::pi / 180;  // to which lenses are compared
+constexpr double kMaxAngle = Radians(80);  // to which lenses are compared
 
 struct Options {
   std::string data_dir = KESTREL_DATA_DIR;
@@ -197,10 +198,5 @@ int Run(int argc, char** argv) {
 }  // namespace kestrel
 
 int main(int argc, char** argv) {
-  try {
-    return kestrel::Run(argc, argv);
-  } catch (const kestrel::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
+  return kestrel::ReportMain([&] { return kestrel::Run(argc, argv); });
 }

@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
 
-#include "kestrel/base/error.h"
 #include "landing_falsehoods.h"
 #include "landing_frames.h"
 #include "landing_score.h"
+#include "report_main.h"
 
 namespace kestrel {
 namespace {
@@ -133,10 +133,5 @@ int Run(int argc, char** argv) {
 }  // namespace kestrel
 
 int main(int argc, char** argv) {
-  try {
-    return kestrel::Run(argc, argv);
-  } catch (const kestrel::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
+  return kestrel::ReportMain([&] { return kestrel::Run(argc, argv); });
 }

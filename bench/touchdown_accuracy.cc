@@ -14,11 +14,11 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "kestrel/base/error.h"
 #include "kestrel/evaluation/statistics.h"
 #include "kestrel/simulation/landing_simulation.h"
 #include "kestrel/simulation/scenarios.h"
 #include "kestrel/simulation/touchdown_simulation.h"
+#include "report_main.h"
 
 namespace kestrel {
 namespace {
@@ -97,10 +97,8 @@ int main(int argc, char** argv) {
   app.add_option("--set", arguments.settings, "One option, as key=value; may be given again")
       ->allow_extra_args(false);
   CLI11_PARSE(app, argc, argv);
-  try {
+  return kestrel::ReportMain([&] {
     kestrel::Run(arguments);
-  } catch (const kestrel::InputError& error) {
-    std::cerr << error.what() << "\n";
-    return 1;
-  }
+    return 0;
+  });
 }

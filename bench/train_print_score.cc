@@ -26,6 +26,7 @@
 #include "landing_score.h"
 #include "landing_variants.h"
 #include "print_score_training.h"
+#include "report_main.h"
 
 namespace kestrel {
 namespace {
@@ -51,17 +52,7 @@ struct StillSource {
 };
 
 StillSource Patterns(const PrintError& print, std::size_t count, std::uint64_t seed) {
-  std::vector<LandingStillMaker> makers;
-  for (const AltitudeBin& bin : kAltitudeBins) {
-    LandingStillOptions options;
-    options.min_altitude_m = bin.min_m;
-    options.max_altitude_m = bin.max_m;
-    options.bulge = print.bulge;
-    options.fold = print.fold;
-    options.rolling_skew = print.rolling_skew;
-    makers.emplace_back(options);
-  }
-  const auto make = [makers, seed](std::size_t i) {
+  const auto make = [makers = StillMakers(print), seed](std::size_t i) {
     constexpr std::uint64_t kBinSeeds = 1'000'000;
     const std::size_t bin = i % makers.size();
     return FrameFromStill(makers[bin], std::string(kAltitudeBins[bin].Name()),
@@ -297,10 +288,8 @@ int main(int argc, char** argv) {
   app.add_option("--stills", stills, "Stills with a flat print; of others in proportion");
   CLI11_PARSE(app, argc, argv);
   cv::setNumThreads(1);
-  try {
+  return kestrel::ReportMain([&] {
     kestrel::Run(output, findings, stills);
-  } catch (const kestrel::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
+    return 0;
+  });
 }

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include <Eigen/LU>
@@ -15,11 +14,11 @@
 #include "kestrel/base/error.h"
 #include "kestrel/calibration/pose_smoothing.h"
 #include "kestrel/calibration/target_path.h"
+#include "kestrel/geometry/angles.h"
 
 namespace kestrel {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;
 constexpr std::size_t kMinSightings = 20;
 constexpr int kRounds = 3;  // of leaving out what does not fit
 constexpr Duration kMaxGap = std::chrono::milliseconds(200);
@@ -202,7 +201,7 @@ Parameters SearchGrid(const FlightFit& fit, const Parameters& given,
     for (int pitch = -reach; pitch <= reach; ++pitch) {
       for (int yaw = -reach; yaw <= reach; ++yaw) {
         candidate.head<kAngles>() =
-            options.angle_step_deg * kRadians * Eigen::Vector3d(roll, pitch, yaw);
+            Radians(options.angle_step_deg) * Eigen::Vector3d(roll, pitch, yaw);
         offer(candidate);
       }
     }
@@ -263,7 +262,7 @@ Parameters Sigmas(const FlightFit& fit, const Parameters& parameters,
 }
 
 std::vector<std::string> Warnings(const Parameters& sigmas) {
-  constexpr double kMaxAngleSigma = 0.1 * kRadians;
+  constexpr double kMaxAngleSigma = Radians(0.1);
   constexpr double kMaxClockSigma_s = 0.005;
   constexpr std::array<const char*, kAngles> kNames = {"roll", "pitch", "yaw"};
   std::vector<std::string> warnings;
@@ -272,7 +271,7 @@ std::vector<std::string> Warnings(const Parameters& sigmas) {
     warnings.push_back(fmt::format(
         "the flight cannot tell the {} of the mount (standard deviation {:.2g} degrees): fly "
         "slowly around a standing pattern, at several heights and headings",
-        kNames[i], sigmas(i) / kRadians));
+        kNames[i], Degrees(sigmas(i))));
   }
   if (sigmas(kClock) > kMaxClockSigma_s) {
     warnings.push_back(fmt::format(

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,11 +11,11 @@
 #include "kestrel/base/error.h"
 #include "kestrel/calibration/lens_choice.h"
 #include "kestrel/calibration/unlike_views.h"
+#include "kestrel/geometry/angles.h"
 
 namespace kestrel {
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 // Views, of which fewer are refused, and of which fewer hardly tell their own spread.
 constexpr std::size_t kMinViews = 8;
 constexpr std::size_t kGoodViews = 20;
@@ -55,7 +54,7 @@ void RequireTold(const LensCalibration& calibration) {
   const double focal_sigma = calibration.fit.sigmas(kFocal) / calibration.intrinsics.fx_px;
   const std::string found =
       fmt::format("the standard deviation of the focal length is {:.2g} %", 100 * focal_sigma);
-  const double tilt_deg = UsualTilt(calibration.views) * kDegrees;
+  const double tilt_deg = Degrees(UsualTilt(calibration.views));
   if (!(focal_sigma <= kMaxFocalSigma)) {
     if (tilt_deg < kLevelDeg) {
       throw CannotTell(fmt::format(

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -17,14 +16,13 @@
 #include "kestrel/calibration/test_lens_views.h"
 #include "kestrel/calibration/unlike_views.h"
 #include "kestrel/camera/test_cameras.h"
+#include "kestrel/geometry/angles.h"
 #include "kestrel/landing/test_prints.h"
 
 namespace kestrel {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr double kPi = std::numbers::pi;
 
 double Median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + std::ssize(values) / 2, values.end());

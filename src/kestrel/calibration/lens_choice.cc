@@ -3,20 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include "kestrel/geometry/angles.h"
+
 namespace kestrel {
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kLeastSigmaPx = 0.02;  // of an edge
 constexpr double kOutlier = 4;          // standard deviations, of an edge
 constexpr double kOutlierView = 3;      // its error in those of the view in the middle
 // Lenses of a pinhole kind show nothing farther from their axis, in practice.
-constexpr double kMaxPinholeAngle = 80 / kDegrees;
+constexpr double kMaxPinholeAngle = Radians(80);
 
 // How many coefficients are estimated, one after the other; the two tangential ones go together.
 std::vector<int> DistortionOrders(DistortionModel model) {

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "kestrel/geometry/angles.h"
 
 namespace kestrel {
 namespace {
@@ -89,7 +90,7 @@ LensCoverage CoverageOf(std::span<const LensView> views, const CameraModel& came
       angles.push_back(std::atan2(ray.head<2>().norm(), ray.z()));
     }
   }
-  coverage.max_angle_deg = NearlyLargest(angles) * 180 / std::numbers::pi;
+  coverage.max_angle_deg = Degrees(NearlyLargest(angles));
   coverage.reach = NearlyLargest(distances);
   return coverage;
 }

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "kestrel/cli/calibration_output.h"
 #include "kestrel/cli/frame_loop.h"
 #include "kestrel/cli/option_arguments.h"
+#include "kestrel/geometry/angles.h"
 #include "kestrel/landing/landing_pattern_detector.h"
 #include "kestrel/pipeline/measurement_noise.h"
 #include "kestrel/recording/open_source.h"
@@ -68,10 +68,9 @@ std::vector<TargetSighting> FindSightings(FrameSource* source, const CameraCalib
 }
 
 void PrintResult(const FlightCalibration& result, const FlightCalibrationOptions& options) {
-  constexpr double kDegrees = 180 / std::numbers::pi;
   if (options.estimate_mount) {
-    const Eigen::Vector3d angles = kDegrees * result.angles;
-    const Eigen::Vector3d sigmas = kDegrees * result.angle_sigmas;
+    const Eigen::Vector3d angles = Degrees(1) * result.angles;
+    const Eigen::Vector3d sigmas = Degrees(1) * result.angle_sigmas;
     fmt::print(stderr,
                "mount: turned by roll {:.3f} +- {:.3f}, pitch {:.3f} +- {:.3f}, yaw {:.3f} +- "
                "{:.3f} degrees\n",

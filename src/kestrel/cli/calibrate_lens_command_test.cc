@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "kestrel/calibration/lens_difference.h"
 #include "kestrel/camera/calibration_reader.h"
 #include "kestrel/cli/test_command.h"
+#include "kestrel/geometry/angles.h"
 #include "kestrel/pipeline/test_pattern.h"
 #include "kestrel/stills/landing_stills.h"
 
@@ -18,8 +18,6 @@ namespace kestrel {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr double kPi = std::numbers::pi;
 
 class CalibrateLensCommandTest : public CommandTest {
  protected:

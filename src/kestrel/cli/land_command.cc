@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "kestrel/cli/landing_sink.h"
 #include "kestrel/cli/pipeline_run.h"
 #include "kestrel/cli/source_arguments.h"
+#include "kestrel/geometry/angles.h"
 #include "kestrel/pipeline/calibration_monitor.h"
 #include "kestrel/pipeline/landing_pipeline.h"
 
@@ -32,8 +32,8 @@ std::string ToldWarning(const LandingPipeline& pipeline, std::optional<double> a
     return fmt::format(
         "the attitude says that the pattern is tilted by {:.0f} degrees (median of {} frames): {}"
         "check the mount (kestrel calibrate mount) and the navigation's attitude",
-        180 / std::numbers::pi * tilt->difference, tilt->detections,
-        tilt->difference > std::numbers::pi / 2 ? "is the camera mounted upside down? " : "");
+        Degrees(tilt->difference), tilt->detections,
+        tilt->difference > kPi / 2 ? "is the camera mounted upside down? " : "");
   }
   const auto excess = pipeline.contradictions().Altitude();
   if (!excess) return "";

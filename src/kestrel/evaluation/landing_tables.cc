@@ -4,19 +4,18 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "kestrel/evaluation/bins.h"
 #include "kestrel/evaluation/statistics.h"
+#include "kestrel/geometry/angles.h"
 
 namespace kestrel {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kDegrees = 180 / std::numbers::pi;
 
 // Counts of images.
 struct Tally {
@@ -116,7 +115,7 @@ std::vector<std::string> ErrorCells(std::span<const LandingComparison> compariso
     return e.in_world ? Value(e.in_world->norm()) : std::nullopt;
   });
   const auto yaw = ErrorsOf(comparisons, bin, [](const auto& e) -> Value {
-    return e.yaw ? Value(kDegrees * std::abs(*e.yaw)) : std::nullopt;
+    return e.yaw ? Value(Degrees(std::abs(*e.yaw))) : std::nullopt;
   });
   return {std::to_string(center.size()),
           FormatFixed(Median(center), 2),
@@ -173,7 +172,7 @@ ReportTable TiltTable(std::span<const LandingComparison> comparisons) {
                    {{0, 10}, {10, 20}, {20, 30}, {30, kInfinity}},
                    [](const LandingComparison& c) -> std::optional<double> {
                      if (!c.IsVisible() || !c.tilt) return std::nullopt;
-                     return kDegrees * *c.tilt;
+                     return Degrees(*c.tilt);
                    });
 }
 

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -13,20 +12,20 @@
 
 #include "kestrel/camera/camera_model.h"
 #include "kestrel/evaluation/statistics.h"
+#include "kestrel/geometry/angles.h"
 
 namespace kestrel {
 namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kBinDeg = 5;
 constexpr int kColorCount = 5;
 
 std::optional<double> AngleDeg(const CameraModel& camera, const Vector2d& pixel) {
   Eigen::Vector3d ray;
   if (camera.Unproject(pixel, &ray) == ProjectionStatus::kOutsideModel) return std::nullopt;
-  return std::atan2(ray.head<2>().norm(), ray.z()) * kDegrees;
+  return Degrees(std::atan2(ray.head<2>().norm(), ray.z()));
 }
 
 // Root mean squares of 'residuals' (angle, px) in bins of the angle.
@@ -51,8 +50,8 @@ PlotPanel CurvePanel(const CameraModel& camera, double max_angle_deg) {
   const Vector2d principal(camera.intrinsics().cx_px, camera.intrinsics().cy_px);
   const Vector2d farthest(std::max(principal.x(), camera.width_px() - principal.x()),
                           std::max(principal.y(), camera.height_px() - principal.y()));
-  for (double angle = 0; angle < camera.max_angle() * kDegrees; ++angle) {
-    const double radians = angle / kDegrees;
+  for (double angle = 0; angle < Degrees(camera.max_angle()); ++angle) {
+    const double radians = Radians(angle);
     Vector2d pixel;
     if (camera.Project({std::sin(radians), 0, std::cos(radians)}, &pixel) ==
         ProjectionStatus::kOutsideModel) {

@@ -2,13 +2,13 @@
 #include "kestrel/evaluation/scene_truth.h"
 
 #include <cstdint>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/parse_number.h"
+#include "kestrel/geometry/angles.h"
 
 namespace kestrel {
 namespace {
@@ -45,8 +45,7 @@ class Section {
 
 Eigen::Quaterniond MountError(const Section& section) {
   const auto turn = [&](const char* key, const Eigen::Vector3d& axis) {
-    constexpr double kRadians = std::numbers::pi / 180;
-    return Eigen::AngleAxisd(kRadians * section.Number(key).value_or(0), axis);
+    return Eigen::AngleAxisd(Radians(section.Number(key).value_or(0)), axis);
   };
   return turn("yaw_deg", Eigen::Vector3d::UnitZ()) * turn("pitch_deg", Eigen::Vector3d::UnitY()) *
          turn("roll_deg", Eigen::Vector3d::UnitX());

@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "kestrel/geometry/angles.h"
 
 namespace kestrel {
 namespace {
@@ -24,7 +25,7 @@ PriorKnowledge::PriorKnowledge(const LandingHint& hint,
     : hint_(hint),
       camera_(camera),
       radius_m_(options.pattern.outer_radius_m()),
-      level_sigma_(options.level_sigma_deg * std::numbers::pi / 180),
+      level_sigma_(Radians(options.level_sigma_deg)),
       max_partial_altitude_m_(options.max_partial_altitude_m) {
   if (hint.center_in_camera && hint.center_in_camera->norm() > 0) {
     expected_ring_px_ = ExpectedRingPx();

@@ -53,7 +53,7 @@ Discs FindCenters(std::span<const Eigen::Vector2d> inside,
     const auto deepest = std::max_element(depths.begin(), depths.begin() + size);
     if (discs.count == 0) discs.radius = *deepest;
     if (!(*deepest > kMinDepth * discs.radius)) break;
-    const Eigen::Vector2d center = inside[deepest - depths.begin()];
+    const Eigen::Vector2d& center = inside[deepest - depths.begin()];
     discs.centers[discs.count++] = center;
     for (std::size_t i = 0; i < size; ++i) {
       if ((inside[i] - center).norm() < 0.9 * kMinSpacing * discs.radius) depths[i] = 0;

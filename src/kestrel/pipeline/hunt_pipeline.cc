@@ -3,15 +3,13 @@
 
 #include <chrono>
 #include <cmath>
-#include <numbers>
 
 #include "kestrel/base/options.h"
+#include "kestrel/geometry/angles.h"
 #include "kestrel/pipeline/object_view.h"
 
 namespace kestrel {
 namespace {
-
-constexpr double kRadians = std::numbers::pi / 180;
 
 // Of a flight whose attitude is not known and whose altitude somebody told: standard deviations.
 constexpr double kTilt_deg = 5;
@@ -96,11 +94,11 @@ void HuntPipeline::Detect(const cv::Mat& image) {
   std::optional<ToldHeights> told = HeightsTold();
   if (const auto& world_from_camera = observation_.world_from_camera) {
     hint.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
-    hint.up_sigma_rad = kRadians * options_.attitude_sigma_deg;
+    hint.up_sigma_rad = Radians(options_.attitude_sigma_deg);
     if (!options_.is_ground_flat) told.reset();
   } else if (told) {
     hint.up_in_camera = -Eigen::Vector3d::UnitZ();
-    hint.up_sigma_rad = kRadians * kTilt_deg;
+    hint.up_sigma_rad = Radians(kTilt_deg);
   }
   if (told) {
     const GroundHeight ground = options_.still ? told->ground : ground_.Estimate(told->ground);
@@ -172,7 +170,7 @@ void HuntPipeline::UpdateMap() {
     measurement.delay_s = ToSeconds(TimeOfRow(detection.center_px.y()) - observation_.time);
     measurement.position = in_world->position;
     const double swing_m =
-        kRadians * options_.attitude_sigma_deg * detection.location->position.norm();
+        Radians(options_.attitude_sigma_deg) * detection.location->position.norm();
     measurement.covariance = in_world->covariance;
     measurement.covariance.diagonal().array() +=
         options_.pose_sigma_m * options_.pose_sigma_m + swing_m * swing_m;

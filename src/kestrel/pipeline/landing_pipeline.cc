@@ -65,7 +65,8 @@ LandingObservation LandingPipeline::Process(const cv::Mat& image, Time time) {
 void LandingPipeline::Detect(const cv::Mat& image, LandingObservation* observation) {
   const ToldView told = WhatIsTold(*observation);
   LandingHint hint;
-  if (told.altitude_m > AltitudeExcess()) hint.altitude_m = *told.altitude_m - AltitudeExcess();
+  const double excess_m = AltitudeExcess();
+  if (told.altitude_m > excess_m) hint.altitude_m = *told.altitude_m - excess_m;
   hint.up_in_camera = told.up_in_camera;
   if (!options_.still) {
     AddTrack(*observation, &hint);

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/pipeline/measurement_noise.h"
 
-#include <numbers>
+#include "kestrel/geometry/angles.h"
 
 namespace kestrel {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 // Of a position at 'center' by errors of the attitude (rad per axis) and of the scale, both in the
 // camera's axes.
 Eigen::Matrix3d SwingAndScale(const Eigen::Vector3d& center, double attitude_deg, double scale) {
-  const double attitude = attitude_deg * kDegree;
+  const double attitude = Radians(attitude_deg);
   const Eigen::Matrix3d along = center * center.transpose();
   const Eigen::Matrix3d across = center.squaredNorm() * Eigen::Matrix3d::Identity() - along;
   return attitude * attitude * across + scale * scale * along;
@@ -52,7 +50,7 @@ double YawVarianceInWorld(const Eigen::Matrix3d& covariance_in_camera,
                           const Eigen::Quaterniond& world_from_camera,
                           const MeasurementNoise& noise) {
   const Eigen::Vector3d up = world_from_camera.conjugate() * Eigen::Vector3d::UnitZ();
-  const double attitude = noise.attitude_sigma_deg * kDegree;
+  const double attitude = Radians(noise.attitude_sigma_deg);
   return up.dot(covariance_in_camera * up) + attitude * attitude;
 }
 

@@ -3,24 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
+#include "kestrel/geometry/angles.h"
 #include "kestrel/geometry/rigid_transform.h"
 
 namespace kestrel {
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 constexpr std::size_t kLeastDetections = 10;
 constexpr double kTolerance = 3;
 // Standard deviations of what all detections of a flight may have in common: of the altitude, of
 // the focal length and the size of the print (as a part of the distance), of attitude and mount.
 constexpr double kAltitudeSigma_m = 0.3;
 constexpr double kScaleSigma = 0.04;
-constexpr double kAttitudeSigma = 2 * kRadiansPerDegree;
+constexpr double kAttitudeSigma = Radians(2);
 // How far from level the pattern may lie.
-constexpr double kMaxSlope = 15 * kRadiansPerDegree;
+constexpr double kMaxSlope = Radians(15);
 // The altitude may be that above the ground on which a vehicle stands.
 constexpr double kMaxVehicleHeight_m = 3;
 

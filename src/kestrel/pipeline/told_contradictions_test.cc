@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/pipeline/told_contradictions.h"
 
-#include <numbers>
-
 #include <gtest/gtest.h>
 
 #include "kestrel/base/random.h"
+#include "kestrel/geometry/angles.h"
 #include "kestrel/geometry/test_rotation.h"
 
 namespace kestrel {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // Detections of a level pattern from a camera that looks down, tilted by up to 20 degrees, at 5 m.
 class ToldContradictionsTest : public ::testing::Test {

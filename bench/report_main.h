@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <fmt/format.h>
+
+#include "kestrel/base/error.h"
+
+namespace kestrel {
+
+// Exit status of a report: what 'run' returns, or 1, with a line on stderr, when input is at fault.
+template <class Run>
+int ReportMain(const Run& run) {
+  try {
+    return run();
+  } catch (const InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace kestrel
