@@ -2,6 +2,7 @@
 #include "kestrel/cli/frame_loop.h"
 
 #include <cstddef>
+#include <variant>
 
 #include "kestrel/cli/interrupt.h"
 
@@ -9,8 +10,9 @@ namespace kestrel {
 
 void ForEachFrame(FrameSource* source, const CameraIntrinsics& intrinsics,
                   const std::function<void(const Frame&, const ProgressBar&)>& process) {
-  FrameEvents frames(source);
-  ForEachEvent(&frames, source->frame_count(), intrinsics, [](const PoseSample&) {}, process);
+  RecordingEvents frames(source, {}, Duration::zero());
+  ForEachEvent(
+      &frames, source->frame_count(), intrinsics, [](const PoseSample&) {}, process);
 }
 
 void ForEachEvent(EventSource* source, std::optional<std::size_t> frame_count,
