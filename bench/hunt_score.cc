@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <sstream>
+#include <variant>
 
 #include <opencv2/imgproc.hpp>
 
@@ -12,7 +13,7 @@
 #include "kestrel/base/read_file.h"
 #include "kestrel/camera/calibration_reader.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
-#include "kestrel/pipeline/pose_feeder.h"
+#include "kestrel/recording/event_source.h"
 #include "kestrel/recording/image_file.h"
 #include "kestrel/recording/object_csv.h"
 #include "kestrel/recording/open_source.h"
@@ -127,13 +128,16 @@ HuntScore ScoreHunt(const std::string& folder) {
   HuntPipeline pipeline(calibration, DefaultObjectModel(), options);
   // As in flight: poses up to the one after the last row.
   const Duration lead = *calibration.clock_offset + DurationFromSeconds(kReadout_s / 2);
-  PoseFeeder poses(source->poses());
+  RecordingEvents events(source.get(), source->poses(), lead);
   HuntScore score;
   std::string csv = ObjectCsvHeader();
-  for (Frame frame; source->Next(&frame);) {
-    poses.FeedUntil(frame.time + lead, &pipeline);
-    const HuntObservation& observation = pipeline.Process(frame.image, frame.time);
-    csv += ObjectCsvRows(frame.name, observation, pipeline.detector().model());
+  for (Event event = events.Next(); !std::holds_alternative<EndOfStream>(event);
+       event = events.Next()) {
+    if (const auto* pose = std::get_if<PoseSample>(&event)) pipeline.AddPose(*pose);
+    const auto* frame = std::get_if<Frame>(&event);
+    if (frame == nullptr) continue;
+    const HuntObservation& observation = pipeline.Process(frame->image, frame->time);
+    csv += ObjectCsvRows(frame->name, observation, pipeline.detector().model());
     ScoreDigits(observation, sightings, objects, &score);
   }
   const std::string name = "object_detections.csv";

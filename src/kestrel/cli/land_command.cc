@@ -91,7 +91,10 @@ class LandRun : public PipelineRun {
     std::string remarks = FocalRemark(pipeline_.calibration_monitor(), focal_px);
     // Only where there are poses for some of the frames; a source that has none is nothing unusual.
     for (const auto& [pose, count] : poses_) {
-      if (pose == PoseLookup::kFound || pose == PoseLookup::kEmpty) continue;
+      if (pose == PoseLookup::kFound || pose == PoseLookup::kEmpty ||
+          pose == PoseLookup::kPredicted) {
+        continue;
+      }
       remarks += fmt::format("{} frames without a pose of the UAV: {}\n", count, ToString(pose));
     }
     return remarks;

@@ -10,7 +10,7 @@
 
 #include "kestrel/base/error.h"
 #include "kestrel/cli/frame_loop.h"
-#include "kestrel/pipeline/pose_feeder.h"
+#include "kestrel/recording/event_source.h"
 
 namespace kestrel {
 namespace {
@@ -35,19 +35,20 @@ void PrintSummary(const std::vector<double>& detect_ms, const PipelineRun& run) 
 void RunPipeline(const OpenedSource& opened, PipelineRun* run) {
   const Duration lead =
       opened.calibration.clock_offset.value_or(Duration::zero()) + run->after_frame();
-  PoseFeeder poses(opened.source->poses());
+  RecordingEvents events(opened.source.get(), opened.source->poses(), lead);
   std::vector<double> detect_ms;
   bool was_warned = false;
   try {
     const auto process = [&](const Frame& frame, const ProgressBar& progress) {
-      poses.FeedUntil(frame.time + lead, run);
       detect_ms.push_back(1e3 * ToSeconds(run->Process(frame)));
       if (was_warned) return;
       const std::string warning = run->Warning();
       was_warned = !warning.empty();
       if (was_warned) progress.Say(warning);
     };
-    ForEachFrame(opened.source.get(), opened.calibration.intrinsics, process);
+    ForEachEvent(
+        &events, opened.source->frame_count(), opened.calibration.intrinsics,
+        [run](const PoseSample& pose) { run->AddPose(pose); }, process);
   } catch (const InputError&) {
     if (!detect_ms.empty()) PrintSummary(detect_ms, *run);
     throw;

@@ -4,11 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kestrel/base/violations.h"
+
 namespace kestrel {
 namespace {
 
-bool IsValid(const RigidTransform& pose) {
-  return pose.translation.allFinite() && std::abs(pose.rotation.norm() - 1) < 0.01;
+bool IsValid(const PoseSample& sample) {
+  const RigidTransform& pose = sample.world_from_body;
+  const auto& motion = sample.motion;
+  return pose.translation.allFinite() && std::abs(pose.rotation.norm() - 1) < 0.01 &&
+         (!motion || (motion->velocity_in_world.allFinite() && motion->rate_in_body.allFinite()));
 }
 
 RigidTransform Interpolate(const RigidTransform& from, const RigidTransform& to, double part) {
@@ -16,7 +21,22 @@ RigidTransform Interpolate(const RigidTransform& from, const RigidTransform& to,
           from.translation + part * (to.translation - from.translation)};
 }
 
+// Standard deviation of what changes within 'ahead' at a rate and an acceleration that are not
+// known; the rate is already 'age' old.
+double Growth(double rate_sigma, double acceleration, double ahead, double age) {
+  return std::hypot(rate_sigma * ahead, acceleration * ahead * (0.5 * ahead + age));
+}
+
 }  // namespace
+
+std::vector<std::string> UnmodelledMotion::Validate() const {
+  std::vector<std::string> violations;
+  RequireNotNegative(acceleration_mps2, "acceleration_mps2", &violations);
+  RequireNotNegative(angular_acceleration_radps2, "angular_acceleration_radps2", &violations);
+  RequireNotNegative(velocity_sigma_mps, "velocity_sigma_mps", &violations);
+  RequireNotNegative(rate_sigma_radps, "rate_sigma_radps", &violations);
+  return violations;
+}
 
 const char* ToString(PoseLookup lookup) {
   switch (lookup) {
@@ -30,6 +50,8 @@ const char* ToString(PoseLookup lookup) {
       return "too new";
     case PoseLookup::kGap:
       return "gap";
+    case PoseLookup::kPredicted:
+      return "predicted";
   }
   return "";
 }
@@ -38,7 +60,7 @@ PoseHistory::PoseHistory(std::size_t capacity, Duration max_gap)
     : ring_(std::max<std::size_t>(capacity, 1)), max_gap_(max_gap) {}
 
 PoseStatus PoseHistory::Add(const PoseSample& sample) {
-  if (!IsValid(sample.world_from_body)) return PoseStatus::kInvalid;
+  if (!IsValid(sample)) return PoseStatus::kInvalid;
   if (size_ > 0 && sample.time <= At(size_ - 1).time) return PoseStatus::kOutOfOrder;
   PoseSample& slot = ring_[(first_ + size_) % ring_.size()];
   slot = sample;
@@ -110,6 +132,41 @@ std::optional<RigidTransform> PoseHistory::Smooth(Time time, Duration half_windo
   if (count < kMinSamples) return pose;
   const Vector6 offset = (sum_tt * sum - sum_t * sum_times_t) / (count * sum_tt - sum_t * sum_t);
   return Moved(*pose, offset.head<3>(), offset.tail<3>());
+}
+
+std::optional<PoseHistory::NewestMotion> PoseHistory::MotionOfNewest() const {
+  constexpr Duration kBaseline = std::chrono::milliseconds(50);
+  const PoseSample& newest = At(size_ - 1);
+  if (newest.motion) return NewestMotion{*newest.motion, Duration::zero()};
+  if (size_ < 2) return std::nullopt;
+  const std::size_t index = std::min(FirstNotBefore(newest.time - kBaseline), size_ - 2);
+  if (newest.time - At(index).time > max_gap_) return std::nullopt;
+  const RigidTransform& from = At(index).world_from_body;
+  const RigidTransform& to = newest.world_from_body;
+  const Duration span = newest.time - At(index).time;
+  const double rate = 1 / ToSeconds(span);
+  return NewestMotion{{rate * (to.translation - from.translation),
+                       rate * RotationVector(from.rotation.conjugate() * to.rotation)},
+                      span / 2};
+}
+
+std::optional<PredictedPose> PoseHistory::Predict(Time time, Duration max_ahead,
+                                                  const UnmodelledMotion& unmodelled) const {
+  if (const auto pose = Lookup(time)) return PredictedPose{*pose, {}};
+  if (Check(time) != PoseLookup::kTooNew) return std::nullopt;
+  const PoseSample& newest = At(size_ - 1);
+  if (time - newest.time > max_ahead) return std::nullopt;
+  const auto newest_motion = MotionOfNewest();
+  if (!newest_motion) return std::nullopt;
+  const auto& [motion, motion_age] = *newest_motion;
+  const double ahead = ToSeconds(time - newest.time);
+  const double age = ToSeconds(motion_age);
+  const RigidTransform& pose = newest.world_from_body;
+  return PredictedPose{
+      {(pose.rotation * RotationBy(ahead * motion.rate_in_body)).normalized(),
+       pose.translation + ahead * motion.velocity_in_world},
+      {Growth(unmodelled.velocity_sigma_mps, unmodelled.acceleration_mps2, ahead, age),
+       Growth(unmodelled.rate_sigma_radps, unmodelled.angular_acceleration_radps2, ahead, age)}};
 }
 
 }  // namespace kestrel

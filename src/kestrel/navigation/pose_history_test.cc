@@ -140,5 +140,69 @@ TEST(PoseHistory, TooFewPosesAreNotSmoothed) {
   EXPECT_FALSE(history.Smooth(At(0.75), half_window));
 }
 
+constexpr Duration kAhead = std::chrono::milliseconds(100);
+
+TEST(PoseHistory, PredictsByTheMotionOfTheNewestSample) {
+  PoseHistory history(4, kMaxGap);
+  PoseSample sample = Sample(1, 10, 0.5);
+  sample.motion = BodyMotion{{2, 0, -1}, {0, 0, 3}};
+  history.Add(Sample(0.9, 0));
+  history.Add(sample);
+  const auto pose = history.Predict(At(1.1), kAhead, {});
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR(pose->world_from_body.translation.x(), 10.2, 1e-9);
+  EXPECT_NEAR(pose->world_from_body.translation.z(), -0.1, 1e-9);
+  EXPECT_NEAR(RotationVector(pose->world_from_body.rotation).z(), 0.8, 1e-9);
+  EXPECT_FALSE(history.Predict(At(1.101), kAhead, {}));
+}
+
+TEST(PoseHistory, APredictionCostsMoreTheFurtherItGoes) {
+  PoseHistory history(4, kMaxGap);
+  PoseSample sample = Sample(1, 10);
+  sample.motion = BodyMotion{};
+  history.Add(Sample(0.9, 10));
+  history.Add(sample);
+  const UnmodelledMotion unmodelled{.acceleration_mps2 = 3,
+                                    .angular_acceleration_radps2 = 8,
+                                    .velocity_sigma_mps = 0,
+                                    .rate_sigma_radps = 0};
+  const PoseUncertainty between = history.Predict(At(0.95), kAhead, unmodelled)->uncertainty;
+  EXPECT_EQ(between.position_m, 0);
+  EXPECT_EQ(between.attitude_rad, 0);
+  const PoseUncertainty ahead = history.Predict(At(1.1), kAhead, unmodelled)->uncertainty;
+  EXPECT_NEAR(ahead.position_m, 0.015, 1e-9);
+  EXPECT_NEAR(ahead.attitude_rad, 0.04, 1e-9);
+  UnmodelledMotion noisy = unmodelled;
+  noisy.velocity_sigma_mps = 0.2;
+  EXPECT_NEAR(history.Predict(At(1.1), kAhead, noisy)->uncertainty.position_m, 0.025, 1e-9);
+}
+
+TEST(PoseHistory, PredictsWithoutAToldMotionFromTheLastSamples) {
+  PoseHistory history(10, kMaxGap);
+  history.Add(Sample(0.99, 0.99 * 4, 0.99));
+  EXPECT_FALSE(history.Predict(At(1), kAhead, {})) << "one sample has no motion";
+  for (int i = 0; i <= 6; ++i) {
+    const double t = 1 + 0.01 * i;
+    history.Add(Sample(t, 4 * t, t));
+  }
+  const auto pose = history.Predict(At(1.09), kAhead, {});
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR(pose->world_from_body.translation.x(), 4 * 1.09, 1e-9);
+  EXPECT_NEAR(RotationVector(pose->world_from_body.rotation).z(), 1.09, 1e-9);
+  PoseSample told = Sample(1.07, 4 * 1.07, 1.07);
+  told.motion = BodyMotion{{4, 0, 0}, {0, 0, 1}};
+  history.Add(told);
+  EXPECT_LT(history.Predict(At(1.1), kAhead, {})->uncertainty.position_m,
+            pose->uncertainty.position_m)
+      << "a motion that is told is newer than a mean one";
+}
+
+TEST(PoseHistory, RefusesAMotionThatIsNone) {
+  PoseHistory history(4, kMaxGap);
+  PoseSample sample = Sample(1, 0);
+  sample.motion = BodyMotion{{0, std::numeric_limits<double>::quiet_NaN(), 0}, {0, 0, 0}};
+  EXPECT_EQ(history.Add(sample), PoseStatus::kInvalid);
+}
+
 }  // namespace
 }  // namespace kestrel

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kestrel/base/options.h"
+#include "kestrel/base/violations.h"
 #include "kestrel/geometry/angles.h"
 #include "kestrel/pipeline/object_view.h"
 
@@ -52,6 +53,9 @@ std::vector<std::string> HuntPipelineOptions::Validate() const {
   require(attitude_sigma_deg >= 0, "attitude_sigma_deg must not be negative");
   require(pose_capacity >= 2, "pose_capacity must be at least 2");
   require(pose_gap_s > 0 && pose_gap_s < 1e6, "pose_gap_s must be positive and below 1e6");
+  require(pose_extrapolation_s >= 0 && pose_extrapolation_s <= 1,
+          "pose_extrapolation_s must be in 0 to 1");
+  AddViolations("unmodelled", unmodelled.Validate(), &violations);
   require(pose_smoothing_s >= 0 && pose_smoothing_s <= 1, "pose_smoothing_s must be in 0 to 1");
   return violations;
 }
@@ -65,12 +69,16 @@ HuntPipeline::HuntPipeline(const CameraCalibration& calibration, const ObjectMod
     : options_(Checked(options)),
       detector_(CameraModel(calibration.intrinsics), model, grid, options.detector),
       poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s),
-             DurationFromSeconds(options.pose_smoothing_s)),
+             DurationFromSeconds(options.pose_smoothing_s),
+             {DurationFromSeconds(options.pose_extrapolation_s), options.unmodelled}),
       map_(model, options.map) {}
 
 const HuntObservation& HuntPipeline::Process(const cv::Mat& image, Time time) {
   observation_.time = time;
-  observation_.world_from_camera = poses_.At(time);
+  observation_.world_from_camera.reset();
+  if (const auto camera = poses_.At(time)) {
+    observation_.world_from_camera = camera->world_from_camera;
+  }
   Detect(image);
   LocateInWorld();
   UpdateMap();
@@ -150,11 +158,15 @@ void HuntPipeline::LocateInWorld() {
   for (const ObjectDetection& detection : observation_.report.detections) {
     in_world.emplace_back();
     if (!detection.location) continue;
-    const auto world_from_camera = poses_.At(TimeOfRow(detection.center_px.y()));
-    if (!world_from_camera) continue;
-    const Eigen::Matrix3d rotation = world_from_camera->rotation.toRotationMatrix();
-    in_world.back() = {*world_from_camera * detection.location->position,
+    const auto camera = poses_.At(TimeOfRow(detection.center_px.y()));
+    if (!camera) continue;
+    const RigidTransform& world_from_camera = camera->world_from_camera;
+    const Eigen::Matrix3d rotation = world_from_camera.rotation.toRotationMatrix();
+    in_world.back() = {world_from_camera * detection.location->position,
                        rotation * detection.location->covariance * rotation.transpose()};
+    const double swing_m = camera->uncertainty.attitude_rad * detection.location->position.norm();
+    in_world.back()->covariance.diagonal().array() +=
+        camera->uncertainty.position_m * camera->uncertainty.position_m + swing_m * swing_m;
   }
 }
 

@@ -43,6 +43,10 @@ struct HuntPipelineOptions {
   // How many poses are kept, and the longest gap between two of them that is interpolated.
   int pose_capacity = 1000;
   double pose_gap_s = 0.5;
+  // A frame after the newest pose is placed by that pose and its motion, at most so far ahead, less
+  // surely the further it is. In a recording every pose is there, and 0 does.
+  double pose_extrapolation_s = 0;
+  UnmodelledMotion unmodelled;
   // Poses are smoothed over so much before and, as far as they have come, after an instant; 0: are
   // taken as they are.
   double pose_smoothing_s = 0.1;
@@ -65,6 +69,9 @@ struct HuntPipelineOptions {
             "of the navigation's attitude, per axis");
     visitor("pose_capacity", self.pose_capacity, "1", "how many poses are kept");
     visitor("pose_gap_s", self.pose_gap_s, "s", "longest gap between poses that is interpolated");
+    visitor("pose_extrapolation_s", self.pose_extrapolation_s, "s",
+            "how far after the newest pose it is predicted, 0 for not at all");
+    visitor.Group("unmodelled", self.unmodelled);
     visitor("pose_smoothing_s", self.pose_smoothing_s, "s",
             "poses this long before (and after, if there) are averaged, 0 for none");
   }
@@ -92,8 +99,8 @@ class HuntPipeline {
   HuntPipeline(const CameraCalibration& calibration, const ObjectModel& model,
                const ColorGrid& grid, const HuntPipelineOptions& options);
 
-  // A pose from the navigation, on its clock; the one after a frame's time should come before the
-  // frame, or the frame has no pose.
+  // A pose from the navigation, on its clock, later than those before; it may be of a time before
+  // the last frame. A frame that comes before the pose after its time has none, or a predicted one.
   PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
 
   // Height (m) of the camera above the ground, for frames without a pose; nothing: not known. The

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "kestrel/base/options.h"
+#include "kestrel/base/violations.h"
 #include "kestrel/pipeline/world_location.h"
 
 namespace kestrel {
@@ -35,6 +36,9 @@ std::vector<std::string> LandingPipelineOptions::Validate() const {
   require(hint_age_s >= 0, "hint_age_s must not be negative");
   require(pose_capacity >= 2, "pose_capacity must be at least 2");
   require(pose_gap_s > 0 && pose_gap_s < 1e6, "pose_gap_s must be positive and below 1e6");
+  require(pose_extrapolation_s >= 0 && pose_extrapolation_s <= 1,
+          "pose_extrapolation_s must be in 0 to 1");
+  AddViolations("unmodelled", unmodelled.Validate(), &violations);
   return violations;
 }
 
@@ -46,13 +50,18 @@ LandingPipeline::LandingPipeline(const CameraCalibration& calibration,
                                  const LandingPipelineOptions& options)
     : options_(Checked(options)),
       detector_(CameraModel(calibration.intrinsics), options.detector),
-      poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s)),
+      poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s),
+             Duration::zero(),
+             {DurationFromSeconds(options.pose_extrapolation_s), options.unmodelled}),
       tracker_(options.tracker) {}
 
 LandingObservation LandingPipeline::Process(const cv::Mat& image, Time time) {
   LandingObservation observation;
   observation.time = time;
-  observation.world_from_camera = poses_.At(time);
+  if (const auto camera = poses_.At(time)) {
+    observation.world_from_camera = camera->world_from_camera;
+    observation.pose_uncertainty = camera->uncertainty;
+  }
   observation.pose = poses_.Check(time);
   Detect(image, &observation);
   LocateInWorld(&observation);
@@ -116,9 +125,11 @@ void LandingPipeline::AddTrack(const LandingObservation& observation, LandingHin
   if (!world_from_camera || !is_track_trusted_) return;
   const std::optional<TargetEstimate> target = tracker_.Predict(observation.time);
   if (!target) return;
-  hint->center_in_camera =
-      world_from_camera->Inverse() * Eigen::Vector3d(target->motion.position());
-  hint->center_sigma_m = options_.hint_sigma_m + target->position_sigma_m();
+  const Eigen::Vector3d center = world_from_camera->Inverse() * target->motion.position();
+  const PoseUncertainty& pose = observation.pose_uncertainty;
+  hint->center_in_camera = center;
+  hint->center_sigma_m = options_.hint_sigma_m + target->position_sigma_m() + pose.position_m +
+                         pose.attitude_rad * center.norm();
   const double altitude_m = world_from_camera->translation.z() - target->motion.position().z();
   if (altitude_m > 0) hint->altitude_m = altitude_m;
 }
@@ -156,16 +167,17 @@ TargetMeasurement LandingPipeline::MeasurementOf(const LandingObservation& obser
   const LandingDetection& detection = *observation.report.detection;
   const Eigen::Vector3d& center = detection.camera_from_pattern.translation;
   const Eigen::Quaterniond& rotation = observation.world_from_camera->rotation;
+  const MeasurementNoise noise = WithPose(options_.noise, observation.pose_uncertainty);
   TargetMeasurement measurement;
   measurement.time = observation.time;
   measurement.position_in_world = *observation.center_in_world;
-  measurement.covariance = CovarianceInWorld(detection.covariance.topLeftCorner<3, 3>(), center,
-                                             rotation, options_.noise);
-  measurement.shared_covariance = SharedCovarianceInWorld(center, rotation, options_.noise);
+  measurement.covariance =
+      CovarianceInWorld(detection.covariance.topLeftCorner<3, 3>(), center, rotation, noise);
+  measurement.shared_covariance = SharedCovarianceInWorld(center, rotation, noise);
   if (!options_.track_yaw) return measurement;
   measurement.yaw = observation.yaw_in_world;
   measurement.yaw_variance =
-      YawVarianceInWorld(detection.covariance.bottomRightCorner<3, 3>(), rotation, options_.noise);
+      YawVarianceInWorld(detection.covariance.bottomRightCorner<3, 3>(), rotation, noise);
   return measurement;
 }
 

@@ -50,6 +50,10 @@ struct LandingPipelineOptions {
   // How many poses are kept, and the longest gap between two of them that is interpolated.
   int pose_capacity = 1000;
   double pose_gap_s = 0.5;
+  // A frame after the newest pose is placed by that pose and its motion, at most so far ahead, less
+  // surely the further it is. In a recording every pose is there, and 0 does.
+  double pose_extrapolation_s = 0;
+  UnmodelledMotion unmodelled;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -73,6 +77,9 @@ struct LandingPipelineOptions {
             "a detection older than this is no hint, where there are no poses");
     visitor("pose_capacity", self.pose_capacity, "1", "how many poses are kept");
     visitor("pose_gap_s", self.pose_gap_s, "s", "longest gap between poses that is interpolated");
+    visitor("pose_extrapolation_s", self.pose_extrapolation_s, "s",
+            "how far after the newest pose it is predicted, 0 for not at all");
+    visitor.Group("unmodelled", self.unmodelled);
   }
   std::vector<std::string> Validate() const;
 };
@@ -87,6 +94,7 @@ struct LandingObservation {
   LandingReport report;                             // the detection in the camera frame, or why not
   std::optional<RigidTransform> world_from_camera;  // when there was a pose for this time
   PoseLookup pose = PoseLookup::kEmpty;             // or why there was none
+  PoseUncertainty pose_uncertainty;                 // of a predicted pose
   // With a detection and a pose: the pattern's centre in the world (ENU, m), by what it was found,
   // and the yaw of the pattern, see PatternYaw.
   std::optional<Eigen::Vector3d> center_in_world;
@@ -107,8 +115,8 @@ class LandingPipeline {
   // Throws InputError when the calibration or the options are not valid.
   LandingPipeline(const CameraCalibration& calibration, const LandingPipelineOptions& options);
 
-  // A pose from the navigation, on its clock; the one after a frame's time should come before the
-  // frame, or the frame has no pose.
+  // A pose from the navigation, on its clock, later than those before; it may be of a time before
+  // the last frame. A frame that comes before the pose after its time has none, or a predicted one.
   PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
 
   // Height (m) of the camera above the pattern, for frames without a pose; nothing: not known.

@@ -137,6 +137,29 @@ TEST_F(LandingPipelineTest, FollowsAndPredictsThePattern) {
   EXPECT_NEAR(ahead->motion.position().x(), 9.5 + 0.2 * 7 + 1, 0.15);
 }
 
+// The pose before the frame's time moves; the one after it comes when the frame is done.
+TEST_F(LandingPipelineTest, PredictsAPoseThatIsLateAndTakesItWhenItComes) {
+  const BodyMotion motion{{2, 0, 0}, {0, 0, 0}};
+  RigidTransform before = world_from_body_;
+  before.translation.x() -= 0.04;
+  options_.pose_extrapolation_s = 0.05;
+  LandingPipeline pipeline(calibration_, options_);
+  pipeline.AddPose({kTime - DurationFromSeconds(0.02), before, motion});
+  const auto late = pipeline.Process(Draw(), kTime);
+  ASSERT_TRUE(late.center_in_world);
+  EXPECT_EQ(late.pose, PoseLookup::kPredicted);
+  EXPECT_LT((*late.center_in_world - world_from_pattern_.translation).norm(), 0.03);
+  EXPECT_GT(late.pose_uncertainty.position_m, 0);
+  EXPECT_EQ(pipeline.AddPose({kTime - DurationFromSeconds(0.001), world_from_body_, motion}),
+            PoseStatus::kOk);
+  EXPECT_EQ(pipeline.Process(Draw(), kTime + DurationFromSeconds(0.06)).pose, PoseLookup::kTooNew);
+
+  LandingPipeline sure(calibration_, options_);
+  sure.AddPose({kTime, world_from_body_, motion});
+  EXPECT_LT(sure.Process(Draw(), kTime).target->position_sigma_m(),
+            late.target->position_sigma_m());
+}
+
 // The pattern turns where it stands, at 0.4 rad/s.
 TEST_F(LandingPipelineTest, SeesThePatternTurnUnlessItIsToldNotTo) {
   for (const bool track_yaw : {true, false}) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/pipeline/measurement_noise.h"
 
+#include <cmath>
+
 #include "kestrel/geometry/angles.h"
 
 namespace kestrel {
@@ -36,6 +38,13 @@ std::vector<std::string> MeasurementNoise::Validate() const {
   require(attitude_bias_deg >= 0 && attitude_bias_deg < 90, "attitude_bias_deg must be 0 to 90");
   require(scale_bias >= 0 && scale_bias < 1, "scale_bias must be 0 to 1");
   return violations;
+}
+
+MeasurementNoise WithPose(const MeasurementNoise& noise, const PoseUncertainty& pose) {
+  MeasurementNoise sum = noise;
+  sum.pose_sigma_m = std::hypot(noise.pose_sigma_m, pose.position_m);
+  sum.attitude_sigma_deg = std::hypot(noise.attitude_sigma_deg, Degrees(pose.attitude_rad));
+  return sum;
 }
 
 Eigen::Matrix3d CovarianceInWorld(const Eigen::Matrix3d& covariance_in_camera,

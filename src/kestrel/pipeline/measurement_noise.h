@@ -7,6 +7,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "kestrel/navigation/pose_history.h"
+
 namespace kestrel {
 
 // What is wrong with a position in the world besides the detector's error in the image: standard
@@ -32,6 +34,9 @@ struct MeasurementNoise {
   }
   std::vector<std::string> Validate() const;
 };
+
+// The noise of a frame whose pose is less sure than others.
+MeasurementNoise WithPose(const MeasurementNoise& noise, const PoseUncertainty& pose);
 
 // Covariance (m^2) of what differs from frame to frame in a position in the world that was seen at
 // 'center_in_camera' with 'covariance_in_camera'.

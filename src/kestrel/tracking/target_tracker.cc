@@ -120,13 +120,16 @@ std::vector<std::string> TargetTrackerOptions::Validate() const {
   return violations;
 }
 
+TurnNoise TargetTrackerOptions::Noise() const {
+  return {acceleration_noise,
+          climb_noise,
+          turn_noise,
+          turn_time_s,
+          {sway_sigma_m, sway_frequency_hz, sway_damping}};
+}
+
 TargetTracker::TargetTracker(const TargetTrackerOptions& options)
-    : options_(Checked(options)),
-      noise_{options.acceleration_noise,
-             options.climb_noise,
-             options.turn_noise,
-             options.turn_time_s,
-             {options.sway_sigma_m, options.sway_frequency_hz, options.sway_damping}} {
+    : options_(Checked(options)), noise_(options.Noise()) {
   entries_.reserve(options_.history + 1);
 }
 

@@ -115,6 +115,8 @@ struct TargetTrackerOptions {
     visitor("history", self.history, "1", "measurements remembered for late ones");
   }
   std::vector<std::string> Validate() const;
+
+  TurnNoise Noise() const;  // of the motion
 };
 
 // Follows one ground vehicle by measured positions and, where it is known, the yaw of what it

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kestrel/base/time.h"
+#include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/link/target_report.h"
+#include "kestrel/navigation/pose_history.h"
+#include "kestrel/tracking/target_tracker.h"
+
+namespace kestrel {
+
+// What the vision knows of the target after a frame. Times are those of the navigation's clock.
+struct TrackSnapshot {
+  Time captured;  // the frame's light
+  TrackState state = TrackState::kSearching;
+  std::optional<TargetEstimate> target;  // at 'captured', in the world
+  std::optional<double> yaw_in_world;    // of the pattern, where this frame shows it
+  Duration detect_time{};
+  int frames = 0;      // so far
+  int detections = 0;  // frames that showed the target
+};
+
+struct TargetReporterOptions {
+  double link_delay_s = 0.01;
+  double max_sigma_m = 0.5;
+  double max_pose_age_s = 0.3;
+  double contact_height_m = 0.6;
+  double contact_speed_mps = 0.25;
+  double contact_time_s = 0.5;
+  double contact_below_m = 0.2;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("link_delay_s", self.link_delay_s, "s", "from sending to the autopilot's use");
+    visitor("max_sigma_m", self.max_sigma_m, "m",
+            "a target known no better than this, standard deviation per axis, is not sent");
+    visitor("max_pose_age_s", self.max_pose_age_s, "s",
+            "without a pose for so long nothing is sent");
+    visitor("contact_height_m", self.contact_height_m, "m",
+            "the body is at most so high above the pattern when the legs touch it");
+    visitor("contact_speed_mps", self.contact_speed_mps, "m/s",
+            "and comes nearer to it by less than this");
+    visitor("contact_time_s", self.contact_time_s, "s", "for so long");
+    visitor("contact_below_m", self.contact_below_m, "m",
+            "after contact the target is said to be so far below the body");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// What is known of the target's whereabouts, for people.
+enum class TargetPhase {
+  kSearching,  // not seen yet
+  kFound,      // tracked, or predicted well enough
+  kLost,       // was found, and is not any more
+  kContact,    // the UAV stands on it
+};
+const char* ToString(TargetPhase phase);  // "searching", "found", "lost", "contact"
+
+// From the track to what the autopilot is told, at any instant: the target predicted to when the
+// message is used, seen from where the UAV will be then. After contact the camera sees nothing any
+// more and the track fades; the deck is then straight below, and moves as the UAV does: without
+// being told so an autopilot brakes, and never disarms on a deck that drives on.
+class TargetReporter {
+ public:
+  // 'tracker': of the track that is predicted. Throws InputError when the options are not valid.
+  TargetReporter(const TargetReporterOptions& options, const TargetTrackerOptions& tracker);
+
+  // The target at 'now' + the link's delay - 'autopilot_lag' (the autopilot uses a measurement as
+  // one of so long ago). 'newest': the newest pose of the UAV. Nothing while the target or the pose
+  // is not known well enough. To be called in order of time.
+  std::optional<TargetReport> Report(Time now, Duration autopilot_lag, const TrackSnapshot& track,
+                                     const PoseSample& newest);
+
+  // After the UAV has been disarmed: a next flight begins.
+  void Reset();
+
+  TargetPhase phase() const { return phase_; }
+  // Of the body above the target, by the newest report, m.
+  double height_m() const { return height_m_; }
+
+ private:
+  std::optional<TargetReport> FromTrack(Time time_of_use, const TrackSnapshot& track,
+                                        const PoseSample& newest) const;
+  void LookForContact(Time now, const TargetReport& report);
+  TargetReport Below(Time time_of_use, const PoseSample& newest) const;
+
+  TargetReporterOptions options_;
+  TurnNoise noise_;
+  TargetPhase phase_ = TargetPhase::kSearching;
+  double height_m_ = 0;
+  std::optional<Time> resting_since_;  // as on the deck
+  double contact_z_m_ = 0;             // of the body, at contact
+};
+
+}  // namespace kestrel
