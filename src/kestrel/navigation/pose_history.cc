@@ -152,7 +152,10 @@ std::optional<PoseHistory::NewestMotion> PoseHistory::MotionOfNewest() const {
 
 std::optional<PredictedPose> PoseHistory::Predict(Time time, Duration max_ahead,
                                                   const UnmodelledMotion& unmodelled) const {
-  if (const auto pose = Lookup(time)) return PredictedPose{*pose, {}};
+  if (const auto pose = Lookup(time)) {
+    const auto newest = MotionOfNewest();
+    return PredictedPose{*pose, {}, newest ? newest->motion : BodyMotion{}};
+  }
   if (Check(time) != PoseLookup::kTooNew) return std::nullopt;
   const PoseSample& newest = At(size_ - 1);
   if (time - newest.time > max_ahead) return std::nullopt;
@@ -166,7 +169,8 @@ std::optional<PredictedPose> PoseHistory::Predict(Time time, Duration max_ahead,
       {(pose.rotation * RotationBy(ahead * motion.rate_in_body)).normalized(),
        pose.translation + ahead * motion.velocity_in_world},
       {Growth(unmodelled.velocity_sigma_mps, unmodelled.acceleration_mps2, ahead, age),
-       Growth(unmodelled.rate_sigma_radps, unmodelled.angular_acceleration_radps2, ahead, age)}};
+       Growth(unmodelled.rate_sigma_radps, unmodelled.angular_acceleration_radps2, ahead, age)},
+      motion};
 }
 
 }  // namespace kestrel

@@ -56,6 +56,7 @@ struct PoseUncertainty {
 struct PredictedPose {
   RigidTransform world_from_body;
   PoseUncertainty uncertainty;  // 0 between the samples
+  BodyMotion motion;            // at the newest sample; 0 where it is not known
 };
 
 enum class PoseStatus {

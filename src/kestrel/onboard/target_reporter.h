@@ -72,10 +72,10 @@ class TargetReporter {
   TargetReporter(const TargetReporterOptions& options, const TargetTrackerOptions& tracker);
 
   // The target at 'now' + the link's delay - 'autopilot_lag' (the autopilot uses a measurement as
-  // one of so long ago). 'newest': the newest pose of the UAV. Nothing while the target or the pose
+  // one of so long ago). 'poses': the newest ones of the UAV. Nothing while the target or the pose
   // is not known well enough. To be called in order of time.
   std::optional<TargetReport> Report(Time now, Duration autopilot_lag, const TrackSnapshot& track,
-                                     const PoseSample& newest);
+                                     const PoseHistory& poses);
 
   // After the UAV has been disarmed: a next flight begins.
   void Reset();
@@ -85,10 +85,10 @@ class TargetReporter {
   double height_m() const { return height_m_; }
 
  private:
-  std::optional<TargetReport> FromTrack(Time time_of_use, const TrackSnapshot& track,
-                                        const PoseSample& newest) const;
-  void LookForContact(Time now, const TargetReport& report);
-  TargetReport Below(Time time_of_use, const PoseSample& newest) const;
+  bool PredictTarget(const TrackSnapshot& track, TargetReport* report) const;
+  bool HasContact(Time now, const TargetReport& report);
+  bool StaysInContact(const TargetReport& report) const;
+  TargetReport Below(TargetReport report) const;
 
   TargetReporterOptions options_;
   TurnNoise noise_;

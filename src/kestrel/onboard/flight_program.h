@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kestrel/base/time.h"
+#include "kestrel/link/autopilot.h"
+#include "kestrel/link/connection.h"
+#include "kestrel/link/target_profile.h"
+#include "kestrel/navigation/pose_history.h"
+#include "kestrel/onboard/bounded_queue.h"
+#include "kestrel/onboard/flight_recorder.h"
+#include "kestrel/onboard/flight_vision.h"
+#include "kestrel/onboard/latency_statistics.h"
+#include "kestrel/onboard/latest_value.h"
+#include "kestrel/onboard/live_events.h"
+#include "kestrel/onboard/live_source.h"
+#include "kestrel/onboard/target_reporter.h"
+#include "kestrel/onboard/thread_setup.h"
+
+namespace kestrel {
+
+struct FlightOptions {
+  double rate_hz = 50;
+  // When it is no use to wait any longer: the flight has ended, badly.
+  double source_timeout_s = 60;
+  double autopilot_timeout_s = 60;
+  TargetReporterOptions target;
+  LiveEventsOptions events;
+  ThreadOptions vision_thread;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("rate_hz", self.rate_hz, "Hz", "of landing targets");
+    visitor("source_timeout_s", self.source_timeout_s, "s",
+            "without an image for so long the flight ends");
+    visitor("autopilot_timeout_s", self.autopilot_timeout_s, "s",
+            "without a heartbeat for so long the flight ends");
+    visitor.Group("target", self.target);
+    visitor.Group("events", self.events);
+    visitor.Group("vision_thread", self.vision_thread);
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// How a flight ended.
+enum class FlightEnd {
+  kStopped,      // by the user
+  kLanded,       // disarmed after it had flown
+  kSourceEnded,  // a recording, to its end
+  kFailed,       // camera or autopilot are gone for good
+};
+
+// What a flight is made of; all outlive the program. Null where there is none.
+struct FlightParts {
+  LiveSource* source = nullptr;
+  FlightVision* vision = nullptr;
+  Connection* connection = nullptr;
+  Autopilot* autopilot = nullptr;  // on the connection
+  FlightRecorder* recorder = nullptr;
+  std::optional<LinkProfile> profile;                  // nothing: by the heartbeat
+  std::function<void(const PoseSample&)> watch_pose;   // of every pose of the autopilot
+};
+
+// The program that flies: capture, vision, link and output, each in a thread of its own. Between
+// them are hand-overs that nobody waits at: frames that are late are dropped, the newest track and
+// the newest pose count.
+class FlightProgram {
+ public:
+  // 'tracker': of the vision's track. 'say': a line for the user, by any thread. Throws InputError
+  // when the options are not valid.
+  FlightProgram(const FlightOptions& options, const TargetTrackerOptions& tracker,
+                const FlightParts& parts, std::function<void(const std::string&)> say);
+
+  // Flies until it has landed, the source ends or 'is_stopped'. Once only.
+  FlightEnd Run(const std::function<bool()>& is_stopped);
+
+  // The latency of each step, what was dropped and what was sent; a few lines.
+  std::string Summary() const;
+  // One line of how things are now.
+  std::string State() const;
+
+ private:
+  // The steps whose latency is measured.
+  enum Step { kArrival, kPose, kDetection, kMessage, kSteps };
+
+  void Capture();
+  void See();
+  void Communicate();
+  void WriteResults();
+
+  void TakePose(const PoseSample& pose);
+  void TellTarget(Time now);
+  void SayPhase();
+  void WatchFlight(Time now);
+  void End(FlightEnd end);
+
+  FlightOptions options_;
+  FlightParts parts_;
+  std::function<void(const std::string&)> say_;
+  LiveEvents events_;
+  LatestValue<TrackSnapshot> track_;
+  TargetReporter reporter_;
+  PoseHistory poses_;  // the link's
+  LatencyStatistics latency_;
+  std::atomic<bool> is_over_{false};
+  std::atomic<FlightEnd> end_{FlightEnd::kStopped};
+
+  // Of the link.
+  Time next_message_;
+  Time told_frame_;  // the newest frame that a message was made from
+  TargetPhase said_phase_ = TargetPhase::kSearching;
+  bool has_flown_ = false;
+  std::optional<double> armed_z_m_;
+  std::atomic<int> messages_{0};
+};
+
+}  // namespace kestrel

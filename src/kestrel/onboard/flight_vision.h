@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "kestrel/base/time.h"
+#include "kestrel/navigation/pose_history.h"
+#include "kestrel/onboard/target_reporter.h"
+#include "kestrel/recording/frame.h"
+
+namespace kestrel {
+
+// A pipeline in flight. AddPose and Process are the vision thread's, the rest the output thread's:
+// what waits for a disk is not done where the vision would wait for it.
+class FlightVision {
+ public:
+  virtual ~FlightVision() = default;
+
+  virtual void AddPose(const PoseSample& pose) = 0;
+
+  // How much later than a frame's time, on the navigation's clock, the last pose is that it needs.
+  virtual Duration pose_lead() const = 0;
+
+  virtual TrackSnapshot Process(const Frame& frame) = 0;
+
+  // Writes the rows of the frames that were processed meanwhile; false when the disk does not take
+  // them any more (then they are lost, and said to be).
+  virtual bool WriteResults() = 0;
+
+  // What was found, for the line at the end.
+  virtual std::string Found() const = 0;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/onboard/hunt_vision.h"
+
+#include <fmt/format.h>
+
+#include "kestrel/base/error.h"
+#include "kestrel/base/write_file.h"
+#include "kestrel/recording/object_csv.h"
+#include "kestrel/recording/object_map_csv.h"
+
+namespace kestrel {
+namespace {
+
+constexpr char kObjects[] = "object_detections.csv";
+constexpr std::size_t kFrames = 256;  // whose rows wait for the disk
+
+}  // namespace
+
+HuntVision::HuntVision(const CameraCalibration& calibration, const ObjectModel& model,
+                       const HuntPipelineOptions& options, const OutputFolder* output)
+    : pipeline_(calibration, model, options),
+      clock_offset_(calibration.clock_offset.value_or(Duration::zero())),
+      rows_(kFrames) {
+  if (output == nullptr) return;
+  file_ = output->OpenText(kObjects);
+  WriteAtOnce(ObjectCsvHeader(), kObjects, &*file_);
+}
+
+// The last row of a rolling shutter is later than the frame.
+Duration HuntVision::pose_lead() const {
+  return clock_offset_ + DurationFromSeconds(pipeline_.options().readout_s / 2);
+}
+
+TrackSnapshot HuntVision::Process(const Frame& frame) {
+  const HuntObservation& observation = pipeline_.Process(frame.image, frame.time);
+  snapshot_.captured = frame.time + clock_offset_;
+  snapshot_.detect_time = observation.detect_time;
+  ++snapshot_.frames;
+  if (!observation.report.detections.empty()) ++snapshot_.detections;
+  objects_ += observation.report.detections.size();
+  if (file_) rows_.Push(ObjectCsvRows(frame.name, observation, pipeline_.detector().model()));
+  return snapshot_;
+}
+
+bool HuntVision::WriteResults() {
+  try {
+    while (const auto rows = rows_.TryPop()) WriteAtOnce(*rows, kObjects, &*file_);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+std::string HuntVision::Found() const {
+  return fmt::format("{} detections, {} objects in the map", objects_,
+                     pipeline_.map().Confirmed().size());
+}
+
+void HuntVision::WriteMap(const OutputFolder& output) const {
+  WriteFile(output.NewFile("object_map.csv").string(),
+            ObjectMapCsv(pipeline_.map().Confirmed(), pipeline_.detector().model()));
+}
+
+}  // namespace kestrel

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include "kestrel/camera/calibration.h"
+#include "kestrel/objects/object_model.h"
+#include "kestrel/onboard/bounded_queue.h"
+#include "kestrel/onboard/flight_vision.h"
+#include "kestrel/pipeline/hunt_pipeline.h"
+#include "kestrel/recording/output_folder.h"
+
+namespace kestrel {
+
+// The pipeline of coloured objects in flight; writes object_detections.csv, and at the end
+// object_map.csv. It has no landing target.
+class HuntVision : public FlightVision {
+ public:
+  // As LandingVision.
+  HuntVision(const CameraCalibration& calibration, const ObjectModel& model,
+             const HuntPipelineOptions& options, const OutputFolder* output);
+
+  void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
+  Duration pose_lead() const override;
+  TrackSnapshot Process(const Frame& frame) override;
+  bool WriteResults() override;
+  std::string Found() const override;
+
+  // The map of all that was seen; after the last frame. Throws InputError when it cannot be written.
+  void WriteMap(const OutputFolder& output) const;
+
+ private:
+  HuntPipeline pipeline_;
+  Duration clock_offset_;
+  TrackSnapshot snapshot_;
+  std::size_t objects_ = 0;
+  BoundedQueue<std::string> rows_;
+  std::optional<std::ofstream> file_;
+};
+
+}  // namespace kestrel

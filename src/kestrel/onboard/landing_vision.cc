@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/onboard/landing_vision.h"
+
+#include <fmt/format.h>
+
+#include "kestrel/base/error.h"
+#include "kestrel/recording/landing_csv.h"
+#include "kestrel/recording/track_csv.h"
+
+namespace kestrel {
+namespace {
+
+constexpr char kDetections[] = "landing_detections.csv";
+constexpr char kTrack[] = "landing_track.csv";
+constexpr std::size_t kResults = 256;  // that wait for the disk
+
+}  // namespace
+
+LandingVision::LandingVision(const CameraCalibration& calibration,
+                             const LandingPipelineOptions& options, const OutputFolder* output)
+    : pipeline_(calibration, options),
+      clock_offset_(calibration.clock_offset.value_or(Duration::zero())),
+      results_(kResults) {
+  if (output == nullptr) return;
+  detections_ = output->OpenText(kDetections);
+  track_ = output->OpenText(kTrack);
+  WriteAtOnce(LandingCsvHeader(), kDetections, &*detections_);
+  WriteAtOnce(TrackCsvHeader(), kTrack, &*track_);
+}
+
+TrackSnapshot LandingVision::Process(const Frame& frame) {
+  const LandingObservation observation = pipeline_.Process(frame.image, frame.time);
+  snapshot_.captured = frame.time + clock_offset_;
+  snapshot_.state = observation.track_state;
+  snapshot_.target = observation.target;
+  snapshot_.yaw_in_world = observation.yaw_in_world;
+  snapshot_.detect_time = observation.detect_time;
+  ++snapshot_.frames;
+  if (observation.report.detection) ++snapshot_.detections;
+  if (detections_) results_.Push({frame.name, observation});
+  return snapshot_;
+}
+
+bool LandingVision::WriteResults() {
+  try {
+    while (const auto result = results_.TryPop()) {
+      WriteAtOnce(LandingCsvRow(result->frame_name, result->observation), kDetections,
+                  &*detections_);
+      has_track_begun_ = has_track_begun_ || result->observation.fate;
+      if (has_track_begun_) WriteAtOnce(TrackCsvRow(result->observation), kTrack, &*track_);
+    }
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+std::string LandingVision::Found() const {
+  return fmt::format("pattern found in {}", snapshot_.detections);
+}
+
+}  // namespace kestrel

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include "kestrel/camera/calibration.h"
+#include "kestrel/onboard/bounded_queue.h"
+#include "kestrel/onboard/flight_vision.h"
+#include "kestrel/pipeline/landing_pipeline.h"
+#include "kestrel/recording/output_folder.h"
+
+namespace kestrel {
+
+// The landing pipeline in flight; writes landing_detections.csv and landing_track.csv.
+class LandingVision : public FlightVision {
+ public:
+  // 'output': where the tables go; null: nowhere. Throws InputError when calibration or options are
+  // not valid, or the files cannot be written.
+  LandingVision(const CameraCalibration& calibration, const LandingPipelineOptions& options,
+                const OutputFolder* output);
+
+  void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
+  Duration pose_lead() const override { return clock_offset_; }
+  TrackSnapshot Process(const Frame& frame) override;
+  bool WriteResults() override;
+  std::string Found() const override;
+
+ private:
+  struct Result {
+    std::string frame_name;
+    LandingObservation observation;
+  };
+
+  LandingPipeline pipeline_;
+  Duration clock_offset_;
+  TrackSnapshot snapshot_;
+  BoundedQueue<Result> results_;
+  std::optional<std::ofstream> detections_, track_;
+  bool has_track_begun_ = false;
+};
+
+}  // namespace kestrel
