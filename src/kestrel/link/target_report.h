@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
-
 #include <Eigen/Core>
 
 #include "kestrel/base/time.h"
@@ -16,7 +14,6 @@ struct TargetReport {
   Eigen::Vector3d position_in_world{0, 0, 0};
   Eigen::Vector3d velocity_in_world{0, 0, 0};
   Eigen::Matrix3d covariance_in_world = Eigen::Matrix3d::Zero();  // of the position
-  std::optional<double> yaw_in_world;                             // of the pattern, rad
   RigidTransform world_from_body;                                 // of the UAV at that time
   Eigen::Vector3d body_velocity_in_world{0, 0, 0};
 

@@ -2,8 +2,11 @@
 #include "kestrel/onboard/flight_program.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <iterator>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <variant>
@@ -12,6 +15,7 @@
 
 #include "kestrel/base/options.h"
 #include "kestrel/base/violations.h"
+#include "kestrel/link/mavlink_enums.h"
 
 namespace kestrel {
 namespace {
@@ -24,6 +28,15 @@ constexpr Duration kPoseGap = std::chrono::milliseconds(500);
 constexpr double kFlownHeight_m = 1;  // a UAV that has risen or sunk by this has flown
 // A message that is due so soon goes at once, when there is something new to tell.
 constexpr double kEarly = 0.5;  // of the period
+
+// ArduPilot's: the delay that it reckons with, and where it takes the camera to be.
+constexpr std::string_view kLag = "PLND_LAG", kCameraX = "PLND_CAM_POS_X",
+                           kCameraY = "PLND_CAM_POS_Y", kCameraZ = "PLND_CAM_POS_Z";
+constexpr std::array kParameters = {kLag, kCameraX, kCameraY, kCameraZ};
+constexpr double kDefaultLag_s = 0.02;
+
+// Of the pattern, as far as it is seen.
+constexpr double kLeastRange_m = 0.1, kLargestRange_m = 30;
 
 const char* const kStepNames[] = {"capture to arrival", "arrival to pose and detection",
                                   "detection", "capture to message"};
@@ -130,6 +143,8 @@ void FlightProgram::See() {
     latency_.step(kPose).Add(Now() - frame.time);
     const TrackSnapshot snapshot = parts_.vision->Process(frame);
     latency_.step(kDetection).Add(snapshot.detect_time);
+    frames_ = snapshot.frames;
+    detections_ = snapshot.detections;
     track_.Set(snapshot);
   }
 }
@@ -152,7 +167,8 @@ void FlightProgram::WriteResults() {
 
 void FlightProgram::Communicate() {
   SetUpThisThread("link", {});
-  next_message_ = Now();
+  due_ = heard_ = Now();
+  for (const std::string_view parameter : kParameters) parts_.autopilot->parameters().Want(parameter);
   while (!is_over_) {
     parts_.connection->Receive(kLinkPatience, [this](const mavlink::Packet& packet, Time received) {
       parts_.autopilot->Handle(packet, received);
@@ -162,6 +178,146 @@ void FlightProgram::Communicate() {
     TellTarget(now);
     WatchFlight(now);
   }
+}
+
+void FlightProgram::TakeAutopilotPose(const PoseSample& pose) {
+  poses_.Add(pose);
+  newest_pose_ = pose;
+  TakePose(pose);
+}
+
+// At a steady rate, and at once what a new frame has shown.
+void FlightProgram::TellTarget(Time now) {
+  const TrackSnapshot& track = track_.Get();
+  const Duration period = DurationFromSeconds(1 / options_.rate_hz);
+  const bool is_news = track.captured != told_frame_;
+  if (now < due_ - (is_news ? std::chrono::duration_cast<Duration>(kEarly * period)
+                            : Duration::zero())) {
+    return;
+  }
+  due_ = std::max(due_ + period, now + period / 2);
+  const std::optional<LinkProfile> profile = Profile();
+  if (!profile || !parts_.autopilot->is_here()) return;
+  const auto report = reporter_.Report(now, AutopilotLag(), track, poses_);
+  SayPhase();
+  if (!report || !Send(*profile, *report)) return;
+  messages_.fetch_add(1, std::memory_order_relaxed);
+  if (is_news) latency_.step(kMessage).Add(Now() - track.captured);
+  told_frame_ = track.captured;
+}
+
+std::optional<LinkProfile> FlightProgram::Profile() const {
+  return parts_.profile ? parts_.profile : ProfileOf(parts_.autopilot->kind());
+}
+
+// ArduPilot takes a target for one that was seen so long ago.
+Duration FlightProgram::AutopilotLag() const {
+  if (parts_.autopilot->kind() != AutopilotKind::kArduPilot) return Duration::zero();
+  return DurationFromSeconds(parts_.autopilot->parameters().Find(kLag).value_or(kDefaultLag_s));
+}
+
+bool FlightProgram::Send(LinkProfile profile, const TargetReport& report) {
+  const TimeSync& clock = parts_.autopilot->time_sync();
+  if (!clock.is_known()) return false;
+  // A stamp in the future is refused: what is predicted ahead of it is stamped now.
+  const std::int64_t now_ns = clock.ToRemote(std::min(report.time, Now()));
+  const auto time_us = static_cast<std::uint64_t>(std::max<std::int64_t>(now_ns / 1000, 0));
+  const auto boot_ms = static_cast<std::uint32_t>(time_us / 1000);
+  Connection& connection = *parts_.connection;
+  if (options_.send_distance) {
+    connection.Send(TargetDistance(report, boot_ms, kLeastRange_m, kLargestRange_m));
+  }
+  if (const auto origin = parts_.autopilot->origin(); options_.send_follow_target && origin) {
+    connection.Send(TargetToFollow(report, parts_.autopilot->kind(), *origin, boot_ms));
+  }
+  switch (profile) {
+    case LinkProfile::kArduPilot: {
+      const ParameterReader& parameters = parts_.autopilot->parameters();
+      const auto offset = [&](std::string_view name) { return parameters.Find(name).value_or(0); };
+      const Eigen::Vector3d camera(offset(kCameraX), offset(kCameraY), offset(kCameraZ));
+      return connection.Send(ArduPilotTarget(report, time_us, camera, parts_.pattern_size_m));
+    }
+    case LinkProfile::kPx4: return connection.Send(Px4Target(report, time_us));
+    case LinkProfile::kPx4Vte: return connection.Send(Px4VteTarget(report, time_us));
+  }
+  return false;
+}
+
+// Tells the user and the ground station when the target is found, lost, stood on.
+void FlightProgram::SayPhase() {
+  const TargetPhase phase = reporter_.phase();
+  phase_ = phase;
+  height_m_ = reporter_.height_m();
+  if (phase == said_phase_) return;
+  said_phase_ = phase;
+  std::string text;
+  std::uint8_t severity = mavlink::kSeverityInfo;
+  switch (phase) {
+    case TargetPhase::kSearching: return;
+    case TargetPhase::kFound:
+      text = fmt::format("pattern found, {:.1f} m below", reporter_.height_m());
+      break;
+    case TargetPhase::kLost:
+      text = "pattern lost";
+      severity = mavlink::kSeverityWarning;
+      break;
+    case TargetPhase::kContact: text = "on the pattern"; break;
+  }
+  say_(text);
+  parts_.autopilot->Announce(severity, "Kestrel: " + text);
+}
+
+void FlightProgram::WatchFlight(Time now) {
+  if (parts_.autopilot->is_here()) {
+    heard_ = now;
+    return WatchLanding();
+  }
+  if (ToSeconds(now - heard_) < options_.autopilot_timeout_s) return;
+  say_(fmt::format("no heartbeat of the autopilot for {:g} s", options_.autopilot_timeout_s));
+  End(FlightEnd::kFailed);
+}
+
+// It has landed when it is disarmed after it was in the air.
+void FlightProgram::WatchLanding() {
+  const Autopilot& autopilot = *parts_.autopilot;
+  const double z = newest_pose_ ? newest_pose_->world_from_body.translation.z() : 0;
+  if (!autopilot.is_armed()) {
+    if (was_armed_ && has_flown_) return End(FlightEnd::kLanded);
+    was_armed_ = has_flown_ = false;
+    return;
+  }
+  if (!was_armed_) armed_z_m_ = z;
+  was_armed_ = true;
+  const LandedState state = autopilot.landed_state();
+  has_flown_ = has_flown_ || std::abs(z - armed_z_m_) > kFlownHeight_m ||
+               state == LandedState::kInAir || state == LandedState::kLanding;
+}
+
+// --- In words ---
+
+std::string FlightProgram::State() const {
+  const CaptureCounters capture = parts_.source->counters();
+  std::string state = fmt::format("{} frames, {} with the target", frames_, detections_);
+  if (capture.missed > 0) state += fmt::format(", {} missed", capture.missed);
+  if (parts_.autopilot == nullptr) return state;
+  state += fmt::format("; target {}", ToString(phase_));
+  if (phase_ == TargetPhase::kFound) state += fmt::format(", {:.1f} m below", height_m_.load());
+  return state + fmt::format("; {} messages sent", messages_);
+}
+
+std::string FlightProgram::Summary() const {
+  const LiveEvents::Counters events = events_.counters();
+  const CaptureCounters capture = parts_.source->counters();
+  std::string summary = fmt::format("{} frames, {}", frames_, parts_.vision->Found());
+  summary += fmt::format("; {} missed by the camera, {} dropped before the vision, {} without "
+                         "a pose in time\n",
+                         capture.missed, events.dropped_frames, events.unposed_frames);
+  summary += latency_.InWords();
+  if (parts_.connection == nullptr) return summary;
+  const ConnectionCounters link = parts_.connection->counters();
+  summary += fmt::format("{} targets sent; {} packets received, {} sent, {} not sent; {} damaged\n",
+                         messages_, link.received, link.sent, link.unsent, link.bad_checksums);
+  return summary;
 }
 
 }  // namespace kestrel

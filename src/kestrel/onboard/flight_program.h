@@ -29,6 +29,9 @@ struct FlightOptions {
   // When it is no use to wait any longer: the flight has ended, badly.
   double source_timeout_s = 60;
   double autopilot_timeout_s = 60;
+  // Further messages, for autopilots that are set up for them.
+  bool send_distance = false;
+  bool send_follow_target = false;
   TargetReporterOptions target;
   LiveEventsOptions events;
   ThreadOptions vision_thread;
@@ -40,6 +43,10 @@ struct FlightOptions {
             "without an image for so long the flight ends");
     visitor("autopilot_timeout_s", self.autopilot_timeout_s, "s",
             "without a heartbeat for so long the flight ends");
+    visitor("send_distance", self.send_distance, "",
+            "also DISTANCE_SENSOR: the height above the pattern, as of a range finder");
+    visitor("send_follow_target", self.send_follow_target, "",
+            "also FOLLOW_TARGET: where the pattern is on the globe, and its velocity");
     visitor.Group("target", self.target);
     visitor.Group("events", self.events);
     visitor.Group("vision_thread", self.vision_thread);
@@ -62,8 +69,8 @@ struct FlightParts {
   Connection* connection = nullptr;
   Autopilot* autopilot = nullptr;  // on the connection
   FlightRecorder* recorder = nullptr;
-  std::optional<LinkProfile> profile;                  // nothing: by the heartbeat
-  std::function<void(const PoseSample&)> watch_pose;   // of every pose of the autopilot
+  std::optional<LinkProfile> profile;  // nothing: by the heartbeat
+  double pattern_size_m = 1;           // its outer diameter
 };
 
 // The program that flies: capture, vision, link and output, each in a thread of its own. Between
@@ -76,13 +83,18 @@ class FlightProgram {
   FlightProgram(const FlightOptions& options, const TargetTrackerOptions& tracker,
                 const FlightParts& parts, std::function<void(const std::string&)> say);
 
-  // Flies until it has landed, the source ends or 'is_stopped'. Once only.
+  // Flies until it has landed, the source ends or 'is_stopped', which is asked ten times a second.
+  // Once only.
   FlightEnd Run(const std::function<bool()>& is_stopped);
 
-  // The latency of each step, what was dropped and what was sent; a few lines.
-  std::string Summary() const;
-  // One line of how things are now.
+  // One line of how things are now. By any thread.
   std::string State() const;
+  // The latency of each step, what was dropped and what was sent; a few lines. After the flight.
+  std::string Summary() const;
+
+  // A pose of the autopilot, on the local clock: what its listener gets. By the thread that Run
+  // lets the connection receive in.
+  void TakeAutopilotPose(const PoseSample& pose);
 
  private:
   // The steps whose latency is measured.
@@ -93,10 +105,15 @@ class FlightProgram {
   void Communicate();
   void WriteResults();
 
+  void Take(Event event);
   void TakePose(const PoseSample& pose);
   void TellTarget(Time now);
+  bool Send(LinkProfile profile, const TargetReport& report);
+  std::optional<LinkProfile> Profile() const;
+  Duration AutopilotLag() const;
   void SayPhase();
   void WatchFlight(Time now);
+  void WatchLanding();
   void End(FlightEnd end);
 
   FlightOptions options_;
@@ -107,16 +124,22 @@ class FlightProgram {
   TargetReporter reporter_;
   PoseHistory poses_;  // the link's
   LatencyStatistics latency_;
-  std::atomic<bool> is_over_{false};
-  std::atomic<FlightEnd> end_{FlightEnd::kStopped};
+  std::atomic<bool> is_ending_{false}, is_over_{false};
+  FlightEnd end_ = FlightEnd::kStopped;
 
-  // Of the link.
-  Time next_message_;
+  // Of the link's thread.
+  Time due_;         // the next message
+  Time heard_;       // the autopilot, the last time
   Time told_frame_;  // the newest frame that a message was made from
+  std::optional<PoseSample> newest_pose_;
   TargetPhase said_phase_ = TargetPhase::kSearching;
+  bool was_armed_ = false;
   bool has_flown_ = false;
-  std::optional<double> armed_z_m_;
-  std::atomic<int> messages_{0};
+  double armed_z_m_ = 0;
+
+  std::atomic<int> frames_{0}, detections_{0}, messages_{0};
+  std::atomic<TargetPhase> phase_{TargetPhase::kSearching};
+  std::atomic<double> height_m_{0};
 };
 
 }  // namespace kestrel

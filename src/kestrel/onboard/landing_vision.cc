@@ -33,7 +33,6 @@ TrackSnapshot LandingVision::Process(const Frame& frame) {
   snapshot_.captured = frame.time + clock_offset_;
   snapshot_.state = observation.track_state;
   snapshot_.target = observation.target;
-  snapshot_.yaw_in_world = observation.yaw_in_world;
   snapshot_.detect_time = observation.detect_time;
   ++snapshot_.frames;
   if (observation.report.detection) ++snapshot_.detections;

@@ -70,7 +70,6 @@ bool TargetReporter::PredictTarget(const TrackSnapshot& track, TargetReport* rep
   report->position_in_world = target.position();
   report->velocity_in_world = target.velocity();
   report->covariance_in_world = target.covariance.topLeftCorner<3, 3>();
-  report->yaw_in_world = track.yaw_in_world;
   // Written so that what is not finite is refused.
   return report->covariance_in_world.trace() <= 3 * std::pow(options_.max_sigma_m, 2) &&
          report->position_in_world.allFinite();

@@ -20,7 +20,6 @@ struct TrackSnapshot {
   Time captured;  // the frame's light
   TrackState state = TrackState::kSearching;
   std::optional<TargetEstimate> target;  // at 'captured', in the world
-  std::optional<double> yaw_in_world;    // of the pattern, where this frame shows it
   Duration detect_time{};
   int frames = 0;      // so far
   int detections = 0;  // frames that showed the target
