@@ -34,7 +34,8 @@ LatencySummary LatencyHistogram::Summary() const {
   summary.max_s = 1e-9 * static_cast<double>(max_ns_.load(kOrder));
   // By nearest rank, the middle of its bin.
   const auto quantile_s = [&](double part) {
-    const auto rank = static_cast<std::uint64_t>(std::ceil(part * static_cast<double>(summary.count)));
+    const auto rank =
+        static_cast<std::uint64_t>(std::ceil(part * static_cast<double>(summary.count)));
     std::uint64_t below = 0;
     std::size_t bin = 0;
     while ((below += counts[bin]) < rank) ++bin;

@@ -28,9 +28,9 @@ struct LiveEventsOptions {
   std::vector<std::string> Validate() const;
 };
 
-// The stream of a flight: frames and poses that threads of their own put in, for the one thread that
-// processes them. Of the frames that come while it is busy only the newest that has its pose is
-// given out. Nobody who puts in waits, and nothing is allocated once the memory of images is.
+// The stream of a flight: frames and poses that threads of their own put in, for the one thread
+// that processes them. Of the frames that come while it is busy only the newest that has its pose
+// is given out. Nobody who puts in waits, and nothing is allocated once the memory of images is.
 class LiveEvents : public EventSource {
  public:
   // 'lead': the time of a frame + 'lead' is until when it needs poses, see RecordingEvents. Throws
@@ -47,7 +47,7 @@ class LiveEvents : public EventSource {
   Event Next() override;
 
   struct Counters {
-    std::uint64_t frames = 0;         // given out
+    std::uint64_t frames = 0;          // given out
     std::uint64_t dropped_frames = 0;  // made room for a newer one
     std::uint64_t unposed_frames = 0;  // given out before the pose after them
     std::uint64_t dropped_poses = 0;   // made room for newer ones
@@ -72,7 +72,7 @@ class LiveEvents : public EventSource {
   std::vector<PoseSample> poses_;  // a ring
   std::size_t first_pose_ = 0;
   std::size_t pose_count_ = 0;
-  std::optional<Time> newest_pose_;       // that was given out
+  std::optional<Time> newest_pose_;      // that was given out
   std::optional<WaitingFrame> waiting_;  // the next to be given out
   std::optional<WaitingFrame> newest_;   // came after that
   Counters counters_;

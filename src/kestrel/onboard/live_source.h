@@ -19,7 +19,7 @@ struct CaptureCounters {
 };
 
 // Where frames (and poses, of a recording) come from while they happen. All times are those of
-// Now(). One thread at a time.
+// Now(). Next by one thread; the other functions by any.
 class LiveSource {
  public:
   virtual ~LiveSource() = default;

@@ -45,9 +45,8 @@ std::vector<std::string> ThreadOptions::Validate() const {
   constexpr int kMaxPriority = 99;
   std::vector<std::string> violations;
   if (cpu < -1 || cpu >= CpuCount()) {
-    violations.push_back(
-        fmt::format("cpu is {}, expected -1 or 0 to {}, which this computer has", cpu,
-                    CpuCount() - 1));
+    violations.push_back(fmt::format("cpu is {}, expected -1 or 0 to {}, which this computer has",
+                                     cpu, CpuCount() - 1));
   }
   if (priority < 0 || priority > kMaxPriority) {
     violations.push_back(fmt::format("priority is {}, expected 0 to {}", priority, kMaxPriority));
