@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/onboard/gstreamer_pipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <gst/app/gstappsink.h>
+
+#include "kestrel/base/error.h"
+
+namespace kestrel {
+namespace {
+
+using GstClockPointer = std::unique_ptr<GstClock, GstReleaser<gst_object_unref>>;
+using GstCapsPointer = std::unique_ptr<GstCaps, GstReleaser<gst_caps_unref>>;
+using GstMessagePointer = std::unique_ptr<GstMessage, GstReleaser<gst_message_unref>>;
+using GstErrorPointer = std::unique_ptr<GError, GstReleaser<g_error_free>>;
+
+void InitialiseGstreamer() {
+  GError* error = nullptr;
+  if (gst_init_check(nullptr, nullptr, &error) != FALSE) return;
+  const GstErrorPointer owner(error);
+  throw InputError(fmt::format("GStreamer does not start: {}", error ? error->message : "unknown"));
+}
+
+GstElementPointer Parse(const std::string& text, const std::string& camera) {
+  InitialiseGstreamer();
+  GError* error = nullptr;
+  GstElementPointer pipeline(
+      gst_parse_launch_full(text.c_str(), nullptr, GST_PARSE_FLAG_FATAL_ERRORS, &error));
+  const GstErrorPointer owner(error);
+  if (error != nullptr) throw InputError(fmt::format("{}: GStreamer: {}", camera, error->message));
+  if (!GST_IS_PIPELINE(pipeline.get())) {
+    throw InputError(camera + ": is no GStreamer pipeline, expected elements joined by '!'");
+  }
+  return pipeline;
+}
+
+GstElementPointer FindAppSink(GstElement* pipeline, const std::string& camera) {
+  GstIterator* sinks = gst_bin_iterate_sinks(GST_BIN(pipeline));
+  const auto is_other = [](gconstpointer item, gconstpointer) {
+    return GST_IS_APP_SINK(g_value_get_object(static_cast<const GValue*>(item))) ? 0 : 1;
+  };
+  GValue found = G_VALUE_INIT;
+  const bool is_found = gst_iterator_find_custom(sinks, is_other, &found, nullptr) != FALSE;
+  gst_iterator_free(sinks);
+  if (!is_found) throw InputError(camera + ": the pipeline has no appsink at its end");
+  GstElementPointer sink(GST_ELEMENT(g_value_dup_object(&found)));
+  g_value_unset(&found);
+  return sink;
+}
+
+}  // namespace
+
+GstExposureProperty::GstExposureProperty(GstElement* pipeline, const std::string& name, double unit_s) : unit_s_(unit_s) {
+  const std::size_t dot = name.find('.');
+  const std::string element = name.substr(0, dot);
+  element_.reset(gst_bin_get_by_name(GST_BIN(pipeline), element.c_str()));
+  if (dot == std::string::npos || !element_) {
+    throw InputError(fmt::format(
+        "exposure_property is '{}', expected ELEMENT.PROPERTY with an element that the pipeline "
+        "names (name={})",
+        name, element));
+  }
+  property_ = g_object_class_find_property(G_OBJECT_GET_CLASS(element_.get()),
+                                           name.c_str() + dot + 1);
+  if (property_ == nullptr) {
+    throw InputError(fmt::format("exposure_property is '{}': element {} has no such property",
+                                 name, element));
+  }
+}
+
+void GstExposureProperty::Set(double exposure_s) {
+  const GType type = G_PARAM_SPEC_VALUE_TYPE(property_);
+  const bool is_real = type == G_TYPE_DOUBLE || type == G_TYPE_FLOAT;
+  const double units = exposure_s / unit_s_;
+  GValue value = G_VALUE_INIT;
+  g_value_init(&value, G_TYPE_DOUBLE);
+  g_value_set_double(&value, is_real ? units : std::round(units));
+  g_object_set_property(G_OBJECT(element_.get()), property_->name, &value);
+  g_value_unset(&value);
+}
+
+GstreamerPipeline::GstreamerPipeline(const std::string& text, const std::string& camera,
+                                     PixelFormat format)
+    : camera_(camera),
+      pipeline_(Parse(text, camera)),
+      sink_(FindAppSink(pipeline_.get(), camera)),
+      bus_(gst_element_get_bus(pipeline_.get())) {
+  SetUpSink(format);
+  UseMonotonicClock();
+}
+
+GstreamerPipeline::~GstreamerPipeline() { gst_element_set_state(pipeline_.get(), GST_STATE_NULL); }
+
+void GstreamerPipeline::UseExposureProperty(const std::string& name, double unit_s) {
+  exposure_.emplace(pipeline_.get(), name, unit_s);
+}
+
+GstSamplePointer GstreamerPipeline::Pull(Duration timeout) {
+  const auto ns = static_cast<GstClockTime>(std::max<std::int64_t>(timeout.count(), 0));
+  return GstSamplePointer(gst_app_sink_try_pull_sample(GST_APP_SINK(sink_.get()), ns));
+}
+
+std::optional<Time> GstreamerPipeline::DriverTime(GstSample* sample) const {
+  const GstClockTime pts = GST_BUFFER_PTS(gst_sample_get_buffer(sample));
+  if (!GST_CLOCK_TIME_IS_VALID(pts)) return std::nullopt;
+  const GstClockTime running =
+      gst_segment_to_running_time(gst_sample_get_segment(sample), GST_FORMAT_TIME, pts);
+  if (!GST_CLOCK_TIME_IS_VALID(running)) return std::nullopt;
+  const GstClockTime base = gst_element_get_base_time(pipeline_.get());
+  return TimeFromNanoseconds(static_cast<std::int64_t>(base + running));
+}
+
+std::uint64_t GstreamerPipeline::MissedBefore(GstSample* sample) {
+  const GstBuffer* buffer = gst_sample_get_buffer(sample);
+  const guint64 number = std::exchange(last_number_, GST_BUFFER_OFFSET(buffer));
+  const GstClockTime time = std::exchange(last_pts_, GST_BUFFER_PTS(buffer));
+  if (number != GST_BUFFER_OFFSET_NONE && last_number_ != GST_BUFFER_OFFSET_NONE) {
+    return last_number_ > number ? last_number_ - number - 1 : 0;
+  }
+  const GstClockTime period = GST_BUFFER_DURATION(buffer);
+  if (!GST_CLOCK_TIME_IS_VALID(time) || !GST_CLOCK_TIME_IS_VALID(last_pts_) ||
+      !GST_CLOCK_TIME_IS_VALID(period) || period == 0 || last_pts_ <= time) {
+    return 0;
+  }
+  return std::max<GstClockTime>((last_pts_ - time + period / 2) / period, 1) - 1;
+}
+
+bool GstreamerPipeline::HasEnded() const {
+  return gst_app_sink_is_eos(GST_APP_SINK(sink_.get())) != FALSE;
+}
+
+std::string GstreamerPipeline::Fault() {
+  const GstMessagePointer message(gst_bus_pop_filtered(bus_.get(), GST_MESSAGE_ERROR));
+  if (!message) return "";
+  GError* error = nullptr;
+  gst_message_parse_error(message.get(), &error, nullptr);
+  const GstErrorPointer owner(error);
+  return fmt::format("{}: {}", camera_, error->message);
+}
+
+bool GstreamerPipeline::SetExposure(double exposure_s) {
+  if (exposure_) exposure_->Set(exposure_s);
+  return exposure_.has_value();
+}
+
+void GstreamerPipeline::SetUpSink(PixelFormat format) {
+  GstAppSink* sink = GST_APP_SINK(sink_.get());
+  const GstCapsPointer caps(gst_caps_new_simple("video/x-raw", "format", G_TYPE_STRING,
+                                             format == PixelFormat::kGray ? "GRAY8" : "BGR",
+                                             nullptr));
+  gst_app_sink_set_caps(sink, caps.get());
+  gst_app_sink_set_max_buffers(sink, 1);
+  gst_app_sink_set_drop(sink, TRUE);
+  gst_app_sink_set_emit_signals(sink, FALSE);
+  gst_base_sink_set_sync(GST_BASE_SINK(sink), FALSE);
+}
+
+// Else a source may bring a clock of its own, whose times are not those of Now().
+void GstreamerPipeline::UseMonotonicClock() {
+  const GstClockPointer clock(GST_CLOCK(g_object_new(GST_TYPE_SYSTEM_CLOCK, "name", "kestrel",
+                                                  "clock-type", GST_CLOCK_TYPE_MONOTONIC,
+                                                  nullptr)));
+  gst_object_ref_sink(clock.get());
+  gst_pipeline_use_clock(GST_PIPELINE(pipeline_.get()), clock.get());
+}
+
+// What is not live would come as fast as it can be read: the sink then keeps it to its pace.
+void GstreamerPipeline::Start() {
+  const GstStateChangeReturn paused = gst_element_set_state(pipeline_.get(), GST_STATE_PAUSED);
+  is_live_ = paused == GST_STATE_CHANGE_NO_PREROLL;
+  if (!is_live_) gst_base_sink_set_sync(GST_BASE_SINK(sink_.get()), TRUE);
+  if (paused != GST_STATE_CHANGE_FAILURE &&
+      gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING) != GST_STATE_CHANGE_FAILURE) {
+    return;
+  }
+  const std::string fault = Fault();
+  gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
+  throw InputError(fault.empty() ? camera_ + ": the camera does not start" : fault);
+}
+
+}  // namespace kestrel

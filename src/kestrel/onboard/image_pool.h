@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+namespace kestrel {
+
+// Memory for images that go from thread to thread: an image whose last user has let go of it is
+// given out again. One thread takes; any may let go.
+class ImagePool {
+ public:
+  // Keeps up to 'capacity' images; those beyond are allocated each time.
+  explicit ImagePool(std::size_t capacity) { images_.reserve(capacity); }
+
+  // An image that nobody else has; what is in it is not said.
+  cv::Mat Take(cv::Size size, int type) {
+    for (cv::Mat& image : images_) {
+      if (!IsUnused(image)) continue;
+      image.create(size, type);
+      return image;
+    }
+    cv::Mat image(size, type);
+    if (images_.size() < images_.capacity()) images_.push_back(image);
+    return image;
+  }
+
+ private:
+  // Another thread's last use of the pixels is before its release of them, which acquire sees.
+  static bool IsUnused(const cv::Mat& image) {
+    return std::atomic_ref(image.u->refcount).load(std::memory_order_acquire) == 1;
+  }
+
+  std::vector<cv::Mat> images_;
+};
+
+}  // namespace kestrel
