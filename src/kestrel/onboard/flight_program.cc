@@ -46,6 +46,7 @@ const char* const kStepNames[] = {"capture to arrival", "arrival to pose and det
 std::vector<std::string> FlightOptions::Validate() const {
   std::vector<std::string> violations;
   RequireIn(rate_hz, 1, 400, "rate_hz", &violations);
+  RequireIn(link_delay_s, -1, 2, "link_delay_s", &violations);
   RequirePositive(source_timeout_s, "source_timeout_s", &violations);
   RequirePositive(autopilot_timeout_s, "autopilot_timeout_s", &violations);
   AddViolations("target", target.Validate(), &violations);
@@ -113,16 +114,21 @@ void FlightProgram::Capture() {
 }
 
 void FlightProgram::Take(Event event) {
-  if (const auto* pose = std::get_if<PoseSample>(&event)) return TakePose(*pose);
-  Frame& frame = std::get<Frame>(event);
+  if (const auto* pose = std::get_if<PoseSample>(&event)) {
+    source_pose_.Set(*pose);
+    return TakePose(*pose);
+  }
+  auto& frame = std::get<Frame>(event);
   latency_.step(kArrival).Add(Now() - frame.time);
-  if (parts_.recorder != nullptr) parts_.recorder->Add(frame);
+  if (parts_.recorder != nullptr) {
+    parts_.recorder->AddFrame(frame, parts_.truth ? parts_.truth(frame) : std::nullopt);
+  }
   events_.Push(std::move(frame));
 }
 
 void FlightProgram::TakePose(const PoseSample& pose) {
   events_.Push(pose);
-  if (parts_.recorder != nullptr) parts_.recorder->Add(pose);
+  if (parts_.recorder != nullptr) parts_.recorder->AddPose(pose);
 }
 
 // --- The vision thread ---
@@ -173,6 +179,7 @@ void FlightProgram::Communicate() {
     parts_.connection->Receive(kLinkPatience, [this](const mavlink::Packet& packet, Time received) {
       parts_.autopilot->Handle(packet, received);
     });
+    if (parts_.source_has_poses) poses_.Add(source_pose_.Get());  // once: another is out of order
     const Time now = Now();
     parts_.autopilot->Tick(now);
     TellTarget(now);
@@ -181,8 +188,9 @@ void FlightProgram::Communicate() {
 }
 
 void FlightProgram::TakeAutopilotPose(const PoseSample& pose) {
-  poses_.Add(pose);
   newest_pose_ = pose;
+  if (parts_.source_has_poses) return;
+  poses_.Add(pose);
   TakePose(pose);
 }
 
@@ -198,7 +206,7 @@ void FlightProgram::TellTarget(Time now) {
   due_ = std::max(due_ + period, now + period / 2);
   const std::optional<LinkProfile> profile = Profile();
   if (!profile || !parts_.autopilot->is_here()) return;
-  const auto report = reporter_.Report(now, AutopilotLag(), track, poses_);
+  const auto report = reporter_.Report(now, UntilUse(), track, poses_);
   SayPhase();
   if (!report || !Send(*profile, *report)) return;
   messages_.fetch_add(1, std::memory_order_relaxed);
@@ -210,10 +218,13 @@ std::optional<LinkProfile> FlightProgram::Profile() const {
   return parts_.profile ? parts_.profile : ProfileOf(parts_.autopilot->kind());
 }
 
-// ArduPilot takes a target for one that was seen so long ago.
-Duration FlightProgram::AutopilotLag() const {
-  if (parts_.autopilot->kind() != AutopilotKind::kArduPilot) return Duration::zero();
-  return DurationFromSeconds(parts_.autopilot->parameters().Find(kLag).value_or(kDefaultLag_s));
+// The link takes some time; and ArduPilot takes a target for one that was seen some time ago.
+Duration FlightProgram::UntilUse() const {
+  const Autopilot& autopilot = *parts_.autopilot;
+  const Duration delay = options_.link_delay_s >= 0 ? DurationFromSeconds(options_.link_delay_s)
+                                                    : autopilot.time_sync().round_trip() / 2;
+  if (autopilot.kind() != AutopilotKind::kArduPilot) return delay;
+  return delay - DurationFromSeconds(autopilot.parameters().Find(kLag).value_or(kDefaultLag_s));
 }
 
 bool FlightProgram::Send(LinkProfile profile, const TargetReport& report) {

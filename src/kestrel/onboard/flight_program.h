@@ -26,6 +26,9 @@ namespace kestrel {
 
 struct FlightOptions {
   double rate_hz = 50;
+  // From sending to the autopilot's use, s; negative: half of the fastest round trip that TIMESYNC
+  // measures. Give it where the link delays much more often than not.
+  double link_delay_s = -1;
   // When it is no use to wait any longer: the flight has ended, badly.
   double source_timeout_s = 60;
   double autopilot_timeout_s = 60;
@@ -39,6 +42,8 @@ struct FlightOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("rate_hz", self.rate_hz, "Hz", "of landing targets");
+    visitor("link_delay_s", self.link_delay_s, "s",
+            "from sending to the autopilot's use; negative: as measured");
     visitor("source_timeout_s", self.source_timeout_s, "s",
             "without an image for so long the flight ends");
     visitor("autopilot_timeout_s", self.autopilot_timeout_s, "s",
@@ -69,7 +74,10 @@ struct FlightParts {
   Connection* connection = nullptr;
   Autopilot* autopilot = nullptr;  // on the connection
   FlightRecorder* recorder = nullptr;
+  bool source_has_poses = false;       // then those of the autopilot are not used
   std::optional<LinkProfile> profile;  // nothing: by the heartbeat
+  // Of the pattern when a frame was taken, where a simulation knows it.
+  std::function<std::optional<TruePattern>(const Frame&)> truth;
   double pattern_size_m = 1;           // its outer diameter
 };
 
@@ -110,7 +118,7 @@ class FlightProgram {
   void TellTarget(Time now);
   bool Send(LinkProfile profile, const TargetReport& report);
   std::optional<LinkProfile> Profile() const;
-  Duration AutopilotLag() const;
+  Duration UntilUse() const;
   void SayPhase();
   void WatchFlight(Time now);
   void WatchLanding();
@@ -121,6 +129,7 @@ class FlightProgram {
   std::function<void(const std::string&)> say_;
   LiveEvents events_;
   LatestValue<TrackSnapshot> track_;
+  LatestValue<PoseSample> source_pose_;
   TargetReporter reporter_;
   PoseHistory poses_;  // the link's
   LatencyStatistics latency_;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/onboard/landing_vision.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/pipeline/pattern_area.h"
 #include "kestrel/recording/landing_csv.h"
 #include "kestrel/recording/track_csv.h"
 
@@ -17,10 +20,12 @@ constexpr std::size_t kResults = 256;  // that wait for the disk
 }  // namespace
 
 LandingVision::LandingVision(const CameraCalibration& calibration,
-                             const LandingPipelineOptions& options, const OutputFolder* output)
+                             const LandingPipelineOptions& options, const OutputFolder* output,
+                             std::optional<ExposureDrive> exposure)
     : pipeline_(calibration, options),
       clock_offset_(calibration.clock_offset.value_or(Duration::zero())),
-      results_(kResults) {
+      results_(kResults),
+      exposure_(std::move(exposure)) {
   if (output == nullptr) return;
   detections_ = output->OpenText(kDetections);
   track_ = output->OpenText(kTrack);
@@ -36,8 +41,17 @@ TrackSnapshot LandingVision::Process(const Frame& frame) {
   snapshot_.detect_time = observation.detect_time;
   ++snapshot_.frames;
   if (observation.report.detection) ++snapshot_.detections;
+  if (exposure_) ControlExposure(frame.image, observation);
   if (detections_) results_.Push({frame.name, observation});
   return snapshot_;
+}
+
+void LandingVision::ControlExposure(const cv::Mat& image, const LandingObservation& observation) {
+  const LandingPatternDetector& detector = pipeline_.detector();
+  const auto& detection = observation.report.detection;
+  exposure_->Update(image, detection ? PatternArea(*detection, detector.options().pattern,
+                                                   detector.camera())
+                                     : cv::Rect());
 }
 
 bool LandingVision::WriteResults() {

@@ -7,6 +7,7 @@
 
 #include "kestrel/camera/calibration.h"
 #include "kestrel/onboard/bounded_queue.h"
+#include "kestrel/onboard/exposure_drive.h"
 #include "kestrel/onboard/flight_vision.h"
 #include "kestrel/pipeline/landing_pipeline.h"
 #include "kestrel/recording/output_folder.h"
@@ -16,10 +17,10 @@ namespace kestrel {
 // The landing pipeline in flight; writes landing_detections.csv and landing_track.csv.
 class LandingVision : public FlightVision {
  public:
-  // 'output': where the tables go; null: nowhere. Throws InputError when calibration or options are
-  // not valid, or the files cannot be written.
+  // 'output': where the tables go; null: nowhere. 'exposure': keeps the pattern's white right.
+  // Throws InputError when calibration or options are not valid, or the files cannot be written.
   LandingVision(const CameraCalibration& calibration, const LandingPipelineOptions& options,
-                const OutputFolder* output);
+                const OutputFolder* output, std::optional<ExposureDrive> exposure = std::nullopt);
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
   Duration pose_lead() const override { return clock_offset_; }
@@ -33,12 +34,15 @@ class LandingVision : public FlightVision {
     LandingObservation observation;
   };
 
+  void ControlExposure(const cv::Mat& image, const LandingObservation& observation);
+
   LandingPipeline pipeline_;
   Duration clock_offset_;
   TrackSnapshot snapshot_;
   BoundedQueue<Result> results_;
   std::optional<std::ofstream> detections_, track_;
   bool has_track_begun_ = false;
+  std::optional<ExposureDrive> exposure_;
 };
 
 }  // namespace kestrel

@@ -10,7 +10,6 @@ namespace kestrel {
 
 std::vector<std::string> TargetReporterOptions::Validate() const {
   std::vector<std::string> violations;
-  RequireIn(link_delay_s, 0, 2, "link_delay_s", &violations);
   RequirePositive(max_sigma_m, "max_sigma_m", &violations);
   RequireIn(max_pose_age_s, 0.01, 5, "max_pose_age_s", &violations);
   RequirePositive(contact_height_m, "contact_height_m", &violations);
@@ -34,10 +33,10 @@ TargetReporter::TargetReporter(const TargetReporterOptions& options,
                                const TargetTrackerOptions& tracker)
     : options_(Checked(options)), noise_(Checked(tracker).Noise()) {}
 
-std::optional<TargetReport> TargetReporter::Report(Time now, Duration autopilot_lag,
+std::optional<TargetReport> TargetReporter::Report(Time now, Duration until_use,
                                                    const TrackSnapshot& track,
                                                    const PoseHistory& poses) {
-  const Time time_of_use = now + DurationFromSeconds(options_.link_delay_s) - autopilot_lag;
+  const Time time_of_use = now + until_use;
   const auto pose = poses.Predict(time_of_use, DurationFromSeconds(options_.max_pose_age_s), {});
   if (!pose) return std::nullopt;
   TargetReport report;

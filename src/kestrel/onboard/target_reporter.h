@@ -26,7 +26,6 @@ struct TrackSnapshot {
 };
 
 struct TargetReporterOptions {
-  double link_delay_s = 0.01;
   double max_sigma_m = 0.5;
   double max_pose_age_s = 0.3;
   double contact_height_m = 0.6;
@@ -36,7 +35,6 @@ struct TargetReporterOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("link_delay_s", self.link_delay_s, "s", "from sending to the autopilot's use");
     visitor("max_sigma_m", self.max_sigma_m, "m",
             "a target known no better than this, standard deviation per axis, is not sent");
     visitor("max_pose_age_s", self.max_pose_age_s, "s",
@@ -70,10 +68,10 @@ class TargetReporter {
   // 'tracker': of the track that is predicted. Throws InputError when the options are not valid.
   TargetReporter(const TargetReporterOptions& options, const TargetTrackerOptions& tracker);
 
-  // The target at 'now' + the link's delay - 'autopilot_lag' (the autopilot uses a measurement as
-  // one of so long ago). 'poses': the newest ones of the UAV. Nothing while the target or the pose
-  // is not known well enough. To be called in order of time.
-  std::optional<TargetReport> Report(Time now, Duration autopilot_lag, const TrackSnapshot& track,
+  // The target 'until_use' after 'now': after the link's delay, and before now where the autopilot
+  // uses a measurement as one of some time ago. 'poses': the newest ones of the UAV. Nothing while
+  // the target or the pose is not known well enough. To be called in order of time.
+  std::optional<TargetReport> Report(Time now, Duration until_use, const TrackSnapshot& track,
                                      const PoseHistory& poses);
 
   // After the UAV has been disarmed: a next flight begins.

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr Time kStart = TimeFromNanoseconds(1'000'000'000);
-constexpr Duration kNoLag = Duration::zero();
+constexpr Duration kAtOnce = Duration::zero();
 
 Time At(double seconds) { return kStart + DurationFromSeconds(seconds); }
 
@@ -50,17 +50,15 @@ TargetReporter MakeReporter(TargetReporterOptions options = {}) { return {option
 
 TEST(TargetReporterTest, TellsNothingBeforeThereIsATrackOrAPose) {
   TargetReporter reporter = MakeReporter();
-  EXPECT_FALSE(reporter.Report(At(1), kNoLag, {}, Uav().PosesUntil(1)));
+  EXPECT_FALSE(reporter.Report(At(1), kAtOnce, {}, Uav().PosesUntil(1)));
   const PoseHistory no_poses(10, std::chrono::milliseconds(500));
-  EXPECT_FALSE(reporter.Report(At(1), kNoLag, TrackAt(1, {0, 0, 0}, {0, 0, 0}), no_poses));
+  EXPECT_FALSE(reporter.Report(At(1), kAtOnce, TrackAt(1, {0, 0, 0}, {0, 0, 0}), no_poses));
   EXPECT_EQ(reporter.phase(), TargetPhase::kSearching);
 }
 
 // Target and UAV are both where they will be when the autopilot uses the message.
 TEST(TargetReporterTest, PredictsBothToTheTimeOfUse) {
-  TargetReporterOptions options;
-  options.link_delay_s = 0.1;
-  TargetReporter reporter = MakeReporter(options);
+  TargetReporter reporter = MakeReporter();
   const Uav uav{{0, 0, 5}, {2, 0, 0}};
   const auto report = reporter.Report(At(1.05), DurationFromSeconds(0.05),
                                       TrackAt(1, {3, 0, 0}, {4, 0, 0}), uav.PosesUntil(1.02));
@@ -76,15 +74,15 @@ TEST(TargetReporterTest, IsSilentWhenThePredictionIsWorseThanTheLimit) {
   TargetReporter reporter = MakeReporter();
   const Vector3d still = Vector3d::Zero();
   ASSERT_TRUE(
-      reporter.Report(At(1), kNoLag, TrackAt(1, {0, 0, 0}, still), Uav().PosesUntil(1)));
+      reporter.Report(At(1), kAtOnce, TrackAt(1, {0, 0, 0}, still), Uav().PosesUntil(1)));
   EXPECT_FALSE(
-      reporter.Report(At(2), kNoLag, TrackAt(2, {0, 0, 0}, still, 0.6), Uav().PosesUntil(2)));
+      reporter.Report(At(2), kAtOnce, TrackAt(2, {0, 0, 0}, still, 0.6), Uav().PosesUntil(2)));
   EXPECT_EQ(reporter.phase(), TargetPhase::kLost);
 }
 
 TEST(TargetReporterTest, IsSilentWithoutAFreshPose) {
   TargetReporter reporter = MakeReporter();
-  EXPECT_FALSE(reporter.Report(At(1.5), kNoLag, TrackAt(1.5, {0, 0, 0}, {0, 0, 0}),
+  EXPECT_FALSE(reporter.Report(At(1.5), kAtOnce, TrackAt(1.5, {0, 0, 0}, {0, 0, 0}),
                                Uav().PosesUntil(1)));
 }
 
@@ -94,7 +92,7 @@ TargetReporter RideOn(double height_m, const Vector3d& velocity, const Vector3d&
   for (int i = 0; i <= 50; ++i) {
     const double t = 1 + 0.02 * i;
     const Uav uav{{0, 0, 1 + height_m}, velocity};
-    reporter.Report(At(t), kNoLag, TrackAt(t, Vector3d(0, 0, 1) + t * deck_velocity, deck_velocity),
+    reporter.Report(At(t), kAtOnce, TrackAt(t, Vector3d(0, 0, 1) + t * deck_velocity, deck_velocity),
                     uav.PosesUntil(t));
   }
   return reporter;
@@ -106,7 +104,7 @@ TEST(TargetReporterTest, AfterContactTheDeckIsBelowAndMovesAsTheUav) {
   ASSERT_EQ(reporter.phase(), TargetPhase::kContact);
   // The camera sees nothing any more, and the track is lost.
   const auto report =
-      reporter.Report(At(9), kNoLag, {}, Uav{{0, 0, 1.35}, drive}.PosesUntil(9));
+      reporter.Report(At(9), kAtOnce, {}, Uav{{0, 0, 1.35}, drive}.PosesUntil(9));
   ASSERT_TRUE(report);
   EXPECT_LT((report->PositionInBody() - Vector3d(0, 0, -0.2)).norm(), 1e-9);
   EXPECT_EQ(report->velocity_in_world, drive);
@@ -123,7 +121,7 @@ TEST(TargetReporterTest, ContactEndsWhenTheUavRises) {
   const Vector3d still = Vector3d::Zero();
   TargetReporter reporter = RideOn(0.35, still, still);
   ASSERT_EQ(reporter.phase(), TargetPhase::kContact);
-  const auto report = reporter.Report(At(3), kNoLag, TrackAt(3, {0, 0, 1}, still),
+  const auto report = reporter.Report(At(3), kAtOnce, TrackAt(3, {0, 0, 1}, still),
                                       Uav{{0, 0, 3}, still}.PosesUntil(3));
   ASSERT_TRUE(report);
   EXPECT_EQ(reporter.phase(), TargetPhase::kFound);

@@ -37,12 +37,8 @@ std::unique_ptr<FrameSource> OpenFile(const std::string& path) {
 }
 
 std::unique_ptr<FrameSource> OpenOne(const std::string& source) {
-  const bool exists = Exists(source);
-  const bool is_pipeline = !exists && source.find('!') != std::string::npos;
-  if (source.starts_with(kVideoDevice) || is_pipeline) {
-    return std::make_unique<VideoSource>(OpenCamera(source));
-  }
-  if (!exists) throw InputError(source + ": no such file or folder");
+  if (IsCamera(source)) return std::make_unique<VideoSource>(OpenCamera(source));
+  if (!Exists(source)) throw InputError(source + ": no such file or folder");
   return fs::is_directory(source) ? OpenFolder(source) : OpenFile(source);
 }
 
@@ -60,6 +56,11 @@ std::unique_ptr<FrameSource> Open(const std::vector<std::string>& arguments) {
 }
 
 }  // namespace
+
+bool IsCamera(const std::string& source) {
+  if (source.starts_with(kVideoDevice) || source.starts_with("rtsp://")) return true;
+  return source.find('!') != std::string::npos && !Exists(source);
+}
 
 std::unique_ptr<FrameSource> OpenSource(const std::vector<std::string>& arguments,
                                         PixelFormat format) {

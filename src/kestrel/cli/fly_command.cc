@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/cli/fly_command.h"
+
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/base/error.h"
+#include "kestrel/base/parse_number.h"
+#include "kestrel/cli/fly_source.h"
+#include "kestrel/cli/interrupt.h"
+#include "kestrel/onboard/hunt_vision.h"
+#include "kestrel/onboard/landing_vision.h"
+#include "kestrel/recording/output_folder.h"
+
+namespace kestrel {
+namespace {
+
+constexpr double kStatePeriod_s = 5;
+constexpr char kSimulatedArduPilot[] = "sim:ardupilot", kSimulatedPx4[] = "sim:px4";
+constexpr char kLoopback[] = "127.0.0.1";
+
+struct FlyArguments {
+  SourceArguments source;
+  std::string autopilot;
+  std::string profile = "auto";
+  std::optional<double> rate_hz;
+  std::string link_delay = "auto";
+  std::string signing_key;
+  std::string record;
+  bool hunt = false;
+  bool loop = false;
+};
+
+// Lines for the user, with the time since the start; by any thread.
+class FlightLog {
+ public:
+  void Say(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    fmt::print(stderr, "{:8.1f} s  {}\n", ToSeconds(Now() - start_), text);
+  }
+
+ private:
+  std::mutex mutex_;
+  Time start_ = Now();
+};
+
+// One flight: its parts, in the order in which they need each other.
+class Flight {
+ public:
+  explicit Flight(const FlyArguments& arguments)
+      : arguments_(arguments), all_options_(arguments.source.options.Read()) {
+    FlyOptions& options = all_options_.fly;
+    if (arguments.rate_hz) options.flight.rate_hz = *arguments.rate_hz;
+    if (!arguments.signing_key.empty()) options.link.signing_key = arguments.signing_key;
+    SetLinkDelay(&options.flight);
+    const PixelFormat format = arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray;
+    source_ = OpenFlySource(arguments.source, format, options, arguments.loop);
+    OpenVision();
+    OpenRecorder();
+    if (!arguments.autopilot.empty()) OpenAutopilot();
+    program_.emplace(options.flight, all_options_.landing.tracker, Parts(),
+                     [this](const std::string& text) { log_.Say(text); });
+  }
+
+  FlightEnd Run() {
+    CatchInterrupts();
+    if (simulated_autopilot_) simulated_autopilot_->Start();
+    Time next_state = Now();
+    const FlightEnd end = program_->Run([&] {
+      if (Now() >= next_state) {
+        log_.Say(program_->State());
+        next_state += DurationFromSeconds(kStatePeriod_s);
+      }
+      return WasInterrupted();
+    });
+    if (simulated_autopilot_) simulated_autopilot_->Stop();
+    if (hunt_ != nullptr && output_) hunt_->WriteMap(*output_);
+    Finish(end);
+    return end;
+  }
+
+ private:
+  void SetLinkDelay(FlightOptions* options) const {
+    if (arguments_.link_delay == "auto") return;
+    const auto delay_s = ParseNumber<double>(arguments_.link_delay);
+    if (!delay_s || !(*delay_s >= 0)) {
+      throw InputError(fmt::format("--link-delay '{}': expected seconds or auto",
+                                   arguments_.link_delay));
+    }
+    options->link_delay_s = *delay_s;
+  }
+
+  void OpenVision() {
+    if (!arguments_.source.output.empty()) {
+      output_.emplace(arguments_.source.output, arguments_.source.force);
+    }
+    const OutputFolder* const output = output_ ? &*output_ : nullptr;
+    if (arguments_.hunt) {
+      auto hunt = std::make_unique<HuntVision>(source_.calibration, DefaultObjectModel(),
+                                               all_options_.hunt, output);
+      hunt_ = hunt.get();
+      vision_ = std::move(hunt);
+      return;
+    }
+    vision_ = std::make_unique<LandingVision>(source_.calibration, all_options_.landing, output,
+                                              Exposure());
+  }
+
+  std::optional<ExposureDrive> Exposure() const {
+    const FlyOptions& options = all_options_.fly;
+    if (!options.control_exposure) return std::nullopt;
+    if (source_.actuator == nullptr) {
+      throw InputError("fly.control_exposure: the source is no camera whose exposure can be set");
+    }
+    return ExposureDrive(options.exposure, options.exposure.max_exposure_s, source_.actuator);
+  }
+
+  void OpenRecorder() {
+    if (arguments_.record.empty()) return;
+    recorder_ = std::make_unique<FlightRecorder>(
+        arguments_.record, arguments_.source.force, source_.calibration, source_.rate_hz,
+        all_options_.fly.recorder, [this](const std::string& text) { log_.Say(text); });
+  }
+
+  void OpenAutopilot() {
+    std::string url = arguments_.autopilot;
+    if (url == kSimulatedArduPilot || url == kSimulatedPx4) url = StartSimulated(url);
+    Connection::Tap tap;
+    if (recorder_) {
+      tap = [this](std::span<const std::uint8_t> frame, Time time) {
+        recorder_->AddPacket(time, frame);
+      };
+    }
+    connection_.emplace(url, all_options_.fly.link, tap);
+    AutopilotOptions options = all_options_.fly.autopilot;
+    options.wants_true_pose = source_.simulated != nullptr;
+    autopilot_.emplace(options, &*connection_,
+                       AutopilotListener{
+                           .pose = [this](const PoseSample& pose) { TakePose(pose); },
+                           .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
+                           .event = [this](const AutopilotEvent& e) { log_.Say(e.text); },
+                           .text =
+                               [this](std::uint8_t /*severity*/, std::string_view text) {
+                                 log_.Say(fmt::format("autopilot: {}", text));
+                               },
+                       });
+  }
+
+  // Returns where it can be reached.
+  std::string StartSimulated(const std::string& name) {
+    FlyOptions& options = all_options_.fly;
+    options.sim_autopilot.firmware = name.substr(std::string_view("sim:").size());
+    options.sim_autopilot.signing_key = options.link.signing_key;
+    const auto seed = static_cast<std::uint64_t>(options.sim_seed);
+    if (!source_.world) {
+      source_.world =
+          std::make_unique<VehicleWorld>(ReadVehicleWorld("standing", {}), Now(), seed);
+    }
+    const int port = FreeUdpPort();
+    simulated_autopilot_ = std::make_unique<SimulatedAutopilot>(
+        options.sim_autopilot, fmt::format("udpout://{}:{}", kLoopback, port), source_.world.get(),
+        seed);
+    return fmt::format("udpin://{}:{}", kLoopback, port);
+  }
+
+  FlightParts Parts() {
+    FlightParts parts;
+    parts.source = source_.source.get();
+    parts.vision = vision_.get();
+    parts.connection = connection_ ? &*connection_ : nullptr;
+    parts.autopilot = autopilot_ ? &*autopilot_ : nullptr;
+    parts.recorder = recorder_.get();
+    parts.source_has_poses = source_.has_poses;
+    parts.pattern_size_m = all_options_.landing.detector.pattern.outer_diameter_m;
+    if (arguments_.profile != "auto") parts.profile = ParseLinkProfile(arguments_.profile);
+    if (source_.simulated != nullptr) {
+      parts.truth = [camera = source_.simulated](const Frame& frame) {
+        return camera->Truth(frame);
+      };
+    }
+    return parts;
+  }
+
+  void TakePose(const PoseSample& pose) {
+    program_->TakeAutopilotPose(pose);
+    if (source_.simulated != nullptr && !has_true_poses_) source_.simulated->AddPose(pose);
+  }
+
+  void TakeTruePose(const PoseSample& pose) {
+    has_true_poses_ = true;
+    if (source_.simulated != nullptr) source_.simulated->AddPose(pose);
+    if (recorder_) recorder_->AddTruePose(pose);
+  }
+
+  void Finish(FlightEnd end) {
+    recorder_.reset();  // writes what is left
+    fmt::print(stderr, "{}", program_->Summary());
+    if (simulated_autopilot_) fmt::print(stderr, "{}", InWords(simulated_autopilot_->result()));
+    if (end == FlightEnd::kLanded) fmt::print(stderr, "landed\n");
+  }
+
+  FlyArguments arguments_;
+  KestrelOptions all_options_;
+  FlightLog log_;
+  FlySource source_;
+  std::optional<OutputFolder> output_;
+  std::unique_ptr<FlightVision> vision_;
+  HuntVision* hunt_ = nullptr;  // the vision, when it is one
+  std::unique_ptr<FlightRecorder> recorder_;
+  std::unique_ptr<SimulatedAutopilot> simulated_autopilot_;
+  std::optional<Connection> connection_;
+  std::optional<Autopilot> autopilot_;
+  std::optional<FlightProgram> program_;
+  bool has_true_poses_ = false;
+};
+
+void RunFly(const FlyArguments& arguments) {
+  Flight flight(arguments);
+  if (flight.Run() == FlightEnd::kFailed) {
+    throw FlightFailed("the flight ended because camera or autopilot failed for good");
+  }
+}
+
+}  // namespace
+
+void AddFlyCommand(CLI::App* app) {
+  CLI::App* command =
+      app->add_subcommand("fly", "On board: live camera and autopilot in, landing target out");
+  const auto arguments = std::make_shared<FlyArguments>();
+  arguments->source.AddTo(command);
+  command
+      ->add_option("--autopilot", arguments->autopilot,
+                   "serial:///dev/ttyAMA0:921600, udpin://0.0.0.0:14550, udpout://HOST:PORT, "
+                   "tcpout://HOST:PORT, tcpin://HOST:PORT; sim:ardupilot, sim:px4: a simulated one")
+      ->type_name("URL");
+  command
+      ->add_option("--profile", arguments->profile,
+                   "What the autopilot is told: auto (by its heartbeat), ardupilot, px4, px4-vte")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"auto", "ardupilot", "px4", "px4-vte"}));
+  command->add_option("--rate", arguments->rate_hz, "Landing targets per second (50)")
+      ->type_name("HZ")
+      ->check(InRange(0.999, 400.001, "1 to 400 per second"));
+  command
+      ->add_option("--link-delay", arguments->link_delay,
+                   "From sending to the autopilot's use; auto: half of the round trip")
+      ->type_name("S");
+  command
+      ->add_option("--signing-key", arguments->signing_key,
+                   "MAVLink 2 signing: sign, and refuse what is not signed")
+      ->type_name("FILE");
+  command
+      ->add_option("--record", arguments->record,
+                   "Record the flight: a EuRoC folder with images and poses, and mavlink.tlog")
+      ->type_name("DIR");
+  command->add_flag("--hunt", arguments->hunt, "Coloured objects instead of the landing pattern");
+  command->add_flag("--loop", arguments->loop, "Play a recording again and again");
+  command->callback([arguments] { RunFly(*arguments); });
+}
+
+}  // namespace kestrel

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/cli/fly_source.h"
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "kestrel/base/error.h"
+#include "kestrel/camera/calibration_reader.h"
+#include "kestrel/onboard/gstreamer_camera.h"
+#include "kestrel/onboard/realtime_replay.h"
+#include "kestrel/recording/open_source.h"
+
+namespace kestrel {
+namespace {
+
+constexpr std::string_view kSimulated = "sim:";
+
+// The rendered camera as a live source.
+class SimulatedSource : public LiveSource {
+ public:
+  SimulatedSource(const SimulatedCameraOptions& options, VehicleWorld* world, Time start,
+                  std::uint64_t seed)
+      : camera_(options, world, start, seed) {}
+
+  std::optional<Event> Next(Duration timeout) override {
+    Frame frame;
+    if (!camera_.Next(&frame, timeout)) return std::nullopt;
+    ++captured_;
+    return Event(std::move(frame));
+  }
+
+  CaptureCounters counters() const override {
+    return {.captured = captured_, .missed = static_cast<std::uint64_t>(camera_.left_out())};
+  }
+
+  SimulatedCamera& camera() { return camera_; }
+
+ private:
+  SimulatedCamera camera_;
+  std::atomic<std::uint64_t> captured_{0};
+};
+
+// "straight,a=1,b=2" -> "straight", "a=1", "b=2".
+std::vector<std::string> Split(std::string_view text) {
+  std::vector<std::string> parts;
+  for (;;) {
+    const std::size_t comma = text.find(',');
+    parts.emplace_back(text.substr(0, comma));
+    if (comma == std::string_view::npos) return parts;
+    text.remove_prefix(comma + 1);
+  }
+}
+
+FlySource OpenSimulated(std::string_view scenario, const FlyOptions& options) {
+  std::vector<std::string> settings = Split(scenario);
+  const std::string name = settings.front();
+  settings.erase(settings.begin());
+  const auto seed = static_cast<std::uint64_t>(options.sim_seed);
+  const Time start = Now();
+  FlySource opened;
+  opened.world = std::make_unique<VehicleWorld>(ReadVehicleWorld(name, settings), start, seed);
+  auto source =
+      std::make_unique<SimulatedSource>(options.sim_camera, opened.world.get(), start, seed);
+  opened.simulated = &source->camera();
+  opened.calibration = source->camera().calibration();
+  opened.rate_hz = options.sim_camera.rate_hz;
+  opened.source = std::move(source);
+  return opened;
+}
+
+FlySource OpenCamera(const SourceArguments& arguments, PixelFormat format,
+                     const FlyOptions& options) {
+  if (arguments.camera.empty()) {
+    throw InputError(
+        "no calibration: a camera needs one, give it by --camera FILE (kestrel calibrate lens makes "
+        "one)");
+  }
+  FlySource opened;
+  opened.calibration = ReadCalibration(arguments.camera);
+  if (arguments.clock_offset) {
+    opened.calibration.clock_offset = DurationFromSeconds(*arguments.clock_offset);
+  }
+  auto camera = std::make_unique<GstreamerCamera>(
+      arguments.sources.front(), opened.calibration.intrinsics, format, options.camera);
+  opened.actuator = camera.get();
+  opened.rate_hz = kNominalRateHz;
+  opened.source = std::move(camera);
+  return opened;
+}
+
+FlySource OpenReplay(const SourceArguments& arguments, PixelFormat format, bool is_looped) {
+  OpenedSource recording = arguments.Open(format);
+  FlySource opened;
+  opened.calibration = recording.calibration;
+  opened.rate_hz = recording.source->rate_hz();
+  opened.has_poses = !recording.source->poses().empty();
+  const auto open = [sources = arguments.sources, format] { return OpenSource(sources, format); };
+  opened.source = std::make_unique<RealtimeReplay>(
+      open, opened.calibration.clock_offset.value_or(Duration::zero()), is_looped);
+  return opened;
+}
+
+}  // namespace
+
+FlySource OpenFlySource(const SourceArguments& arguments, PixelFormat format,
+                        const FlyOptions& options, bool is_looped) {
+  const std::string& first = arguments.sources.front();
+  if (first.starts_with(kSimulated)) {
+    return OpenSimulated(std::string_view(first).substr(kSimulated.size()), options);
+  }
+  if (IsCamera(first)) return OpenCamera(arguments, format, options);
+  return OpenReplay(arguments, format, is_looped);
+}
+
+}  // namespace kestrel

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "kestrel/camera/calibration.h"
+#include "kestrel/cli/fly_options.h"
+#include "kestrel/cli/source_arguments.h"
+#include "kestrel/onboard/exposure_drive.h"
+#include "kestrel/onboard/live_source.h"
+#include "kestrel/sitl/simulated_camera.h"
+#include "kestrel/sitl/vehicle_world.h"
+
+namespace kestrel {
+
+// Where the images of a flight come from.
+struct FlySource {
+  std::unique_ptr<VehicleWorld> world;  // of a simulation: "sim:SCENARIO"
+  std::unique_ptr<LiveSource> source;
+  CameraCalibration calibration;
+  double rate_hz = 0;
+  bool has_poses = false;  // the source's own: a recording
+  // Of 'source', where it is such; else null.
+  SimulatedCamera* simulated = nullptr;
+  ExposureActuator* actuator = nullptr;
+};
+
+// Opens what the arguments name: "sim:SCENARIO" with further settings as
+// "sim:straight,vehicle.speed_mps=4", a camera (/dev/video0, rtsp://..., a GStreamer pipeline), or a
+// recording, played in real time, again and again when 'is_looped'. Throws InputError with what is
+// wrong with it.
+FlySource OpenFlySource(const SourceArguments& arguments, PixelFormat format,
+                        const FlyOptions& options, bool is_looped);
+
+}  // namespace kestrel
