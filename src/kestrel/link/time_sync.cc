@@ -16,6 +16,13 @@ constexpr int kMinRoundTrips = 3;
 
 }  // namespace
 
+// Whether differences of such times can be computed: those of a clock that counts from its start or
+// from 1970 can.
+bool TimeSync::IsClock(std::int64_t remote_ns) {
+  constexpr std::int64_t kLimit = std::int64_t{1} << 61;
+  return remote_ns > -kLimit && remote_ns < kLimit;
+}
+
 void TimeSync::Start(std::int64_t remote_ns, Time local) {
   has_origin_ = true;
   local_origin_ = local;
@@ -60,7 +67,7 @@ bool TimeSync::IsPossible(double excess_s, int* impossible) {
 }
 
 void TimeSync::AddRoundTrip(Time sent, std::int64_t remote_ns, Time received) {
-  if (received < sent) return;
+  if (received < sent || !IsClock(remote_ns)) return;
   if (!has_origin_) Start(remote_ns, sent);
   const double sent_s = Seconds(sent);
   const double there_s = OffsetOf(remote_ns, sent_s);
@@ -73,6 +80,7 @@ void TimeSync::AddRoundTrip(Time sent, std::int64_t remote_ns, Time received) {
 }
 
 void TimeSync::AddOneWay(std::int64_t remote_ns, Time received) {
+  if (!IsClock(remote_ns)) return;
   if (!has_origin_) Start(remote_ns, received);
   if (AddBack(remote_ns, Seconds(received))) Fit(Seconds(received));
 }

@@ -13,8 +13,8 @@ namespace kestrel {
 // What the clock of another computer says and how fast it runs, from messages that say it: the
 // remote time of a round trip lies between two local ones, and a stamped message was not received
 // before it was sent. A message that was held up says little; so the clock is taken to run along
-// the middle of the widest straight strip that no message of the last minute and a half lies in, between
-// the fastest ways there and the fastest ways back. Fixed memory; not thread-safe.
+// the middle of the widest straight strip that no message of the last minute and a half lies in,
+// between the fastest ways there and the fastest ways back. Fixed memory; not thread-safe.
 class TimeSync {
  public:
   // A question sent at 'sent' was answered with the remote time 'remote_ns', received at
@@ -86,6 +86,7 @@ class TimeSync {
 
   static constexpr std::size_t kCells = 450;
 
+  static bool IsClock(std::int64_t remote_ns);
   void Start(std::int64_t remote_ns, Time local);
   Cell& CellAt(double time_s);
   double Seconds(Time time) const { return ToSeconds(time - local_origin_); }
