@@ -65,8 +65,8 @@ double ArduPilotLanding::ClimbRate(const FlightState& state) const {
   const double to_low_m = state.position().z() - 0.01 * parameters_["LAND_ALT_LOW"];
   const double gain = parameters_["PSC_NE_POS_P"];
   const double fall_mps = to_low_m > 0 ? BrakingSpeed(to_low_m, gain, parameters_["WP_ACC"]) : 0;
-  const double climb = -std::clamp(fall_mps, land_mps,
-                                   std::max(parameters_["WP_SPD_DN"], land_mps));
+  const double climb =
+      -std::clamp(fall_mps, land_mps, std::max(parameters_["WP_SPD_DN"], land_mps));
   if (!target_.is_acquired()) return climb;
   const double error_m = target_.position().norm();
   const double max_error_m = parameters_["PLND_XY_DIST_MAX"];

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "kestrel/geometry/angles.h"
-#include "kestrel/link/frames.h"
-#include "kestrel/sitl/mavlink_enums.h"
+#include "kestrel/link/mavlink_enums.h"
+#include "kestrel/sitl/aerospace_frames.h"
 
 namespace kestrel {
 namespace {
@@ -31,8 +31,7 @@ constexpr int kMaxOutliers = 3;
 Eigen::Quaterniond WrongLocalFrame(const Eigen::Quaterniond& world_from_body) {
   const Vector3d forward = world_from_body * Vector3d::UnitX();
   const double north_from_heading = std::atan2(forward.x(), forward.y());
-  return Eigen::Quaterniond(
-      Eigen::AngleAxisd(0.5 * kPi + north_from_heading, Vector3d::UnitZ()));
+  return Eigen::Quaterniond(Eigen::AngleAxisd(0.5 * kPi + north_from_heading, Vector3d::UnitZ()));
 }
 
 }  // namespace

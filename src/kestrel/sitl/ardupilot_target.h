@@ -55,7 +55,7 @@ class ArduPilotTarget {
 
   const AutopilotParameters& parameters_;
   Announce announce_;
-  std::deque<InertialSample> history_;  // oldest first; the oldest is PLND_LAG old
+  std::deque<InertialSample> history_;              // oldest first; the oldest is PLND_LAG old
   std::optional<Eigen::Vector3d> sighted_in_body_;  // not yet used, m
   std::optional<Eigen::Vector3d> sighted_in_world_;
   Time sighted_at_;

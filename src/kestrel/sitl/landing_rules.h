@@ -16,11 +16,11 @@ namespace kestrel {
 
 // What an autopilot knows of its own flight at one step.
 struct FlightState {
-  Time time;                  // on the local clock
-  std::int64_t boot_us = 0;   // the same instant on the autopilot's own clock
-  double step_s = 0;          // since the step before
-  PoseSample pose;            // its estimate, with motion
-  bool is_standing = false;   // its weight is on its feet
+  Time time;                 // on the local clock
+  std::int64_t boot_us = 0;  // the same instant on the autopilot's own clock
+  double step_s = 0;         // since the step before
+  PoseSample pose;           // its estimate, with motion
+  bool is_standing = false;  // its weight is on its feet
 
   const Eigen::Vector3d& position() const { return pose.world_from_body.translation; }
   const Eigen::Vector3d& velocity() const { return pose.motion->velocity_in_world; }

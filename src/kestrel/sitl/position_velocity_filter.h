@@ -9,8 +9,7 @@ namespace kestrel {
 // velocity are measured. The estimator of the autopilots that we imitate (ArduPilot's PosVelEKF).
 class PositionVelocityFilter {
  public:
-  void Start(double position, double position_variance, double velocity,
-             double velocity_variance) {
+  void Start(double position, double position_variance, double velocity, double velocity_variance) {
     position_ = position;
     velocity_ = velocity;
     position_variance_ = position_variance;

@@ -88,8 +88,8 @@ bool Px4Landing::CanApproach(const FlightState& state) const {
 }
 
 bool Px4Landing::IsNearGround(const FlightState& state) const {
-  return is_valid_ && state.position().z() - target_.place()->in_world.z() <
-                          parameters_["PLD_FAPPR_ALT"];
+  return is_valid_ &&
+         state.position().z() - target_.place()->in_world.z() < parameters_["PLD_FAPPR_ALT"];
 }
 
 bool Px4Landing::CanDescend(const FlightState& state) const {
@@ -106,8 +106,8 @@ void Px4Landing::ChoosePhase(const FlightState& state) {
         altitude_ = state.position().z();
         Enter(Phase::kApproach, state);
       } else if (phase_s_ > kPatience_s) {
-        const bool may_search = parameters_["PLD_SRCH_TOUT"] > 0 &&
-                                searches_ < parameters_["PLD_MAX_SRCH"];
+        const bool may_search =
+            parameters_["PLD_SRCH_TOUT"] > 0 && searches_ < parameters_["PLD_MAX_SRCH"];
         Enter(may_search ? Phase::kSearch : Phase::kFallback, state);
       }
       return;
@@ -157,8 +157,8 @@ bool Px4Landing::Sinks() const {
 double Px4Landing::ClimbRate(const FlightState& state) const {
   if (!Sinks()) {
     constexpr double kGain = 1;
-    return std::clamp(kGain * (altitude_ - state.position().z()),
-                      -parameters_["MPC_Z_V_AUTO_DN"], parameters_["MPC_Z_VEL_MAX_UP"]);
+    return std::clamp(kGain * (altitude_ - state.position().z()), -parameters_["MPC_Z_V_AUTO_DN"],
+                      parameters_["MPC_Z_VEL_MAX_UP"]);
   }
   const double high = parameters_["MPC_LAND_ALT1"];
   const double low = parameters_["MPC_LAND_ALT2"];
@@ -168,10 +168,9 @@ double Px4Landing::ClimbRate(const FlightState& state) const {
 
 void Px4Landing::DetectLanding(const FlightState& state, const VelocityCommand& command) {
   constexpr double kStill_mps = 0.25;
-  const bool settles =
-      state.is_standing && command.velocity.z() < 0 &&
-      state.velocity().head<2>().norm() < parameters_["LNDMC_XY_VEL_MAX"] &&
-      std::abs(state.velocity().z()) < kStill_mps;
+  const bool settles = state.is_standing && command.velocity.z() < 0 &&
+                       state.velocity().head<2>().norm() < parameters_["LNDMC_XY_VEL_MAX"] &&
+                       std::abs(state.velocity().z()) < kStill_mps;
   settled_s_ = settles ? settled_s_ + state.step_s : 0;
 }
 

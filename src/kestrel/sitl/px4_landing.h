@@ -49,13 +49,13 @@ class Px4Landing : public LandingRules {
   const AutopilotParameters& parameters_;
   Px4Target target_;
   Phase phase_ = Phase::kStart;
-  double phase_s_ = 0;        // how long it has been in it
-  double above_s_ = 0;        // for how long it has been above the target in the approach
-  bool is_valid_ = false;     // the target is not older than PLD_BTOUT
-  bool is_updated_ = false;   // and was told since the last step
-  Eigen::Vector2d goal_{0, 0};     // where it wants to be
+  double phase_s_ = 0;               // how long it has been in it
+  double above_s_ = 0;               // for how long it has been above the target in the approach
+  bool is_valid_ = false;            // the target is not older than PLD_BTOUT
+  bool is_updated_ = false;          // and was told since the last step
+  Eigen::Vector2d goal_{0, 0};       // where it wants to be
   Eigen::Vector2d set_point_{0, 0};  // on the way there, smoothly
-  double altitude_ = 0;            // of the approach, or of the search
+  double altitude_ = 0;              // of the approach, or of the search
   int searches_ = 0;
   double settled_s_ = 0;  // for how long it has stood
 };

@@ -8,8 +8,8 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "kestrel/link/frames.h"
-#include "kestrel/sitl/mavlink_enums.h"
+#include "kestrel/link/mavlink_enums.h"
+#include "kestrel/sitl/aerospace_frames.h"
 
 namespace kestrel {
 namespace {
@@ -58,8 +58,7 @@ void Px4Target::Handle(const mavlink::TargetRelative& target, const FlightState&
     return;
   }
   const Time seen = OwnInstant(static_cast<std::int64_t>(target.timestamp));
-  const auto place = InWorld(
-      target, poses_.Lookup(seen).value_or(state.pose.world_from_body));
+  const auto place = InWorld(target, poses_.Lookup(seen).value_or(state.pose.world_from_body));
   const Vector3d sigma(target.pos_std[0], target.pos_std[1], target.pos_std[2]);
   if (place && place->allFinite() && sigma.allFinite()) Fuse(*place, sigma, state);
 }

@@ -113,9 +113,8 @@ bool SimulatedCamera::Next(Frame* frame, Duration timeout) {
     std::unique_lock lock(mutex_);
     const Time pose_deadline =
         std::min(deadline, capture + DurationFromSeconds(options_.pose_wait_s));
-    pose_came_.wait_for(lock, pose_deadline - Now(), [&] {
-      return newest_pose_ && newest_pose_->time >= capture;
-    });
+    pose_came_.wait_for(lock, pose_deadline - Now(),
+                        [&] { return newest_pose_ && newest_pose_->time >= capture; });
   }
   auto captured = Capture(capture);
   if (!captured) {

@@ -25,9 +25,9 @@ struct SimulatedCameraOptions {
   SimulatedCameraOptions();
 
   double rate_hz = 20;
-  double scale = 0.5;          // of the paper's image of 752x480
-  double clock_offset_s = 0;   // t_nav = t_image + clock_offset_s; a late stamp is negative
-  double pose_wait_s = 0.3;    // longest that an image waits for its pose, then it is extrapolated
+  double scale = 0.5;         // of the paper's image of 752x480
+  double clock_offset_s = 0;  // t_nav = t_image + clock_offset_s; a late stamp is negative
+  double pose_wait_s = 0.3;   // longest that an image waits for its pose, then it is extrapolated
   LensViewOptions lens;
   ShutterOptions shutter;
   SensorOptions sensor;

@@ -37,9 +37,9 @@ struct SimulatedUavOptions {
 // Where a UAV came down.
 struct Contact {
   Time time;
-  bool on_board = false;                         // else on the ground
-  Eigen::Vector3d feet_in_pattern{0, 0, 0};      // middle of its feet, m
-  Eigen::Vector3d velocity_in_world{0, 0, 0};    // relative to what it came down on, m/s
+  bool on_board = false;                       // else on the ground
+  Eigen::Vector3d feet_in_pattern{0, 0, 0};    // middle of its feet, m
+  Eigen::Vector3d velocity_in_world{0, 0, 0};  // relative to what it came down on, m/s
 };
 
 // The true UAV: a multicopter in the wind that stands on the ground or on the vehicle's board when

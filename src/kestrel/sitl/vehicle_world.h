@@ -65,7 +65,7 @@ class VehicleWorld {
   // Seconds since the start: the time of the scene's motions.
   double SceneTime(Time time) const { return ToSeconds(time - start_); }
 
-  RigidTransform PatternAt(Time time) const;  // world_from_pattern
+  RigidTransform PatternAt(Time time) const;    // world_from_pattern
   Eigen::Vector3d VelocityAt(Time time) const;  // of the pattern's centre in the world, m/s
 
   // Whether a point of the pattern's plane (in the pattern's frame) is on the board.
