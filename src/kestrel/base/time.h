@@ -32,4 +32,11 @@ inline Duration DurationFromSeconds(double seconds) {
 }
 inline constexpr double ToSeconds(Duration duration) { return 1e-9 * duration.count(); }
 
+// The clock of this computer, which everything live is timed by: Linux' CLOCK_MONOTONIC, since
+// boot. It never jumps, and GStreamer's cameras use the same one.
+inline Time Now() {
+  return Time(
+      std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now().time_since_epoch()));
+}
+
 }  // namespace kestrel

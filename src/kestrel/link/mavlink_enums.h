@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+// Numbers of MAVLink's enums that Kestrel speaks in.
+namespace kestrel::mavlink {
+
+// MAV_TYPE
+inline constexpr std::uint8_t kTypeQuadrotor = 2;
+inline constexpr std::uint8_t kTypeGcs = 6;
+inline constexpr std::uint8_t kTypeOnboardController = 18;
+
+// MAV_AUTOPILOT
+inline constexpr std::uint8_t kAutopilotArduPilot = 3;
+inline constexpr std::uint8_t kAutopilotInvalid = 8;  // the sender is no autopilot
+inline constexpr std::uint8_t kAutopilotPx4 = 12;
+
+// MAV_COMPONENT
+inline constexpr std::uint8_t kComponentAutopilot = 1;
+inline constexpr std::uint8_t kComponentOnboardComputer = 191;
+
+// MAV_MODE_FLAG
+inline constexpr std::uint8_t kModeFlagCustom = 1;
+inline constexpr std::uint8_t kModeFlagArmed = 128;
+
+// MAV_STATE
+inline constexpr std::uint8_t kStateStandby = 3;
+inline constexpr std::uint8_t kStateActive = 4;
+
+// MAV_CMD
+inline constexpr std::uint16_t kCommandDoSetMode = 176;
+inline constexpr std::uint16_t kCommandArmDisarm = 400;
+inline constexpr std::uint16_t kCommandSetMessageInterval = 511;
+inline constexpr std::uint16_t kCommandRequestMessage = 512;
+
+// MAV_RESULT
+inline constexpr std::uint8_t kResultAccepted = 0;
+inline constexpr std::uint8_t kResultDenied = 2;
+inline constexpr std::uint8_t kResultUnsupported = 3;
+inline constexpr std::uint8_t kResultFailed = 4;
+
+// MAV_FRAME
+inline constexpr std::uint8_t kFrameLocalNed = 1;
+inline constexpr std::uint8_t kFrameBodyFrd = 12;
+inline constexpr std::uint8_t kFrameLocalFrd = 20;
+
+// TARGET_OBS_FRAME of TARGET_RELATIVE
+inline constexpr std::uint8_t kTargetFrameLocalNed = 0;
+inline constexpr std::uint8_t kTargetFrameBodyFrd = 1;
+inline constexpr std::uint8_t kTargetFrameLocalOffsetNed = 2;
+inline constexpr std::uint8_t kTargetFrameOther = 3;
+
+// LANDING_TARGET_TYPE
+inline constexpr std::uint8_t kTargetTypeVisionFiducial = 2;
+inline constexpr std::uint8_t kTargetTypeVisionOther = 3;
+
+// MAV_LANDED_STATE
+inline constexpr std::uint8_t kLandedUndefined = 0;
+inline constexpr std::uint8_t kLandedOnGround = 1;
+inline constexpr std::uint8_t kLandedInAir = 2;
+inline constexpr std::uint8_t kLandedTakeoff = 3;
+inline constexpr std::uint8_t kLandedLanding = 4;
+
+// MAV_SEVERITY
+inline constexpr std::uint8_t kSeverityCritical = 2;
+inline constexpr std::uint8_t kSeverityError = 3;
+inline constexpr std::uint8_t kSeverityWarning = 4;
+inline constexpr std::uint8_t kSeverityNotice = 5;
+inline constexpr std::uint8_t kSeverityInfo = 6;
+
+// MAV_PARAM_TYPE
+inline constexpr std::uint8_t kParamUint32 = 5;
+inline constexpr std::uint8_t kParamInt32 = 6;
+inline constexpr std::uint8_t kParamReal32 = 9;
+
+// MAV_DISTANCE_SENSOR, MAV_SENSOR_ORIENTATION
+inline constexpr std::uint8_t kDistanceLaser = 0;
+inline constexpr std::uint8_t kDistanceUnknown = 4;
+inline constexpr std::uint8_t kOrientationDown = 25;  // pitched by 270 degrees
+
+// MAV_DATA_STREAM
+inline constexpr std::uint8_t kStreamPosition = 6;
+inline constexpr std::uint8_t kStreamExtra1 = 10;  // attitude
+inline constexpr std::uint8_t kStreamExtra3 = 12;  // range, system time
+
+}  // namespace kestrel::mavlink
