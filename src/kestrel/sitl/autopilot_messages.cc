@@ -7,8 +7,8 @@
 #include <Eigen/Geometry>
 
 #include "kestrel/geometry/angles.h"
-#include "kestrel/sitl/aerospace_frames.h"
 #include "kestrel/link/mavlink_enums.h"
+#include "kestrel/sitl/aerospace_frames.h"
 
 namespace kestrel {
 namespace {
@@ -175,9 +175,8 @@ mavlink::ParamValue ParamValueOf(const AutopilotParameters& parameters, std::siz
   const bool as_bits = parameter.is_integer && firmware == AutopilotFirmware::kPx4;
   mavlink::ParamValue message;
   message.param_id = CharsOf<16>(parameter.name);
-  message.param_value =
-      as_bits ? std::bit_cast<float>(static_cast<std::int32_t>(parameter.value))
-              : static_cast<float>(parameter.value);
+  message.param_value = as_bits ? std::bit_cast<float>(static_cast<std::int32_t>(parameter.value))
+                                : static_cast<float>(parameter.value);
   message.param_type = parameter.is_integer ? mavlink::kParamInt32 : mavlink::kParamReal32;
   message.param_count = static_cast<std::uint16_t>(parameters.size());
   message.param_index = static_cast<std::uint16_t>(index);

@@ -41,9 +41,8 @@ constexpr std::uint32_t kPx4TakeOff = Px4Mode(4, 2);
 constexpr std::uint32_t kPx4Loiter = Px4Mode(4, 3);
 constexpr std::uint32_t kPx4Land = Px4Mode(4, 6);
 constexpr std::uint32_t kPx4PrecisionLand = Px4Mode(4, 9);
-constexpr std::array<std::uint32_t, 12> kArduPilotModes = {0, 2,  3,  kArduPilotGuided,
-                                                           kArduPilotLoiter, 6, 7, kArduPilotLand,
-                                                           16, 17, 21, 23};
+constexpr std::array<std::uint32_t, 12> kArduPilotModes = {
+    0, 2, 3, kArduPilotGuided, kArduPilotLoiter, 6, 7, kArduPilotLand, 16, 17, 21, 23};
 constexpr std::uint32_t kPx4LastMain = 8;
 constexpr std::uint32_t kPx4LastSub = 9;
 
@@ -166,8 +165,7 @@ AutopilotModel::AutopilotModel(AutopilotFirmware firmware, const AutopilotModelO
 std::int64_t AutopilotModel::OwnTime(Time now) const {
   const double rate = 1 + 1e-6 * options_.drift_ppm;
   const auto since_boot = static_cast<double>((now - booted_at_).count());
-  return std::llround(1e9 * boot_uptime_s_) + std::llround(rate * since_boot) +
-         clock_jump_.count();
+  return std::llround(1e9 * boot_uptime_s_) + std::llround(rate * since_boot) + clock_jump_.count();
 }
 
 void AutopilotModel::Step(Time now) {
@@ -263,8 +261,8 @@ void AutopilotModel::FinishLanding(Time now) {
   is_armed_ = false;
   result_.is_disarmed = true;
   if (result_.contact) result_.disarm_s = ToSeconds(now - result_.contact->time);
-  Say(Severity::kInfo, firmware_ == AutopilotFirmware::kPx4 ? "Disarmed by landing"
-                                                            : "Disarming motors");
+  Say(Severity::kInfo,
+      firmware_ == AutopilotFirmware::kPx4 ? "Disarmed by landing" : "Disarming motors");
 }
 
 void AutopilotModel::Reboot(Time now) {
@@ -297,8 +295,8 @@ mavlink::Heartbeat AutopilotModel::HeartbeatOf() const {
   constexpr std::uint8_t kVersion = 3;
   mavlink::Heartbeat message;
   message.type = mavlink::kTypeQuadrotor;
-  message.autopilot = firmware_ == AutopilotFirmware::kPx4 ? mavlink::kAutopilotPx4
-                                                           : mavlink::kAutopilotArduPilot;
+  message.autopilot =
+      firmware_ == AutopilotFirmware::kPx4 ? mavlink::kAutopilotPx4 : mavlink::kAutopilotArduPilot;
   message.base_mode = mavlink::kModeFlagCustom;
   if (is_armed_) message.base_mode |= mavlink::kModeFlagArmed;
   message.custom_mode = custom_mode_;
@@ -398,9 +396,8 @@ void AutopilotModel::Receive(const mavlink::TargetRelative& message, Time /*now*
 
 void AutopilotModel::Receive(const mavlink::ParamRequestRead& message, Time /*now*/) {
   if (message.target_system != options_.system_id) return;
-  const auto index = message.param_index < 0
-                         ? parameters_.Find(TextOf(message.param_id))
-                         : std::optional<std::size_t>(message.param_index);
+  const auto index = message.param_index < 0 ? parameters_.Find(TextOf(message.param_id))
+                                             : std::optional<std::size_t>(message.param_index);
   if (index && *index < parameters_.size()) send_(ParamValueOf(parameters_, *index, firmware_));
 }
 
@@ -440,7 +437,8 @@ std::uint8_t AutopilotModel::Execute(const mavlink::CommandLong& command, Time n
     case mavlink::kCommandSetMessageInterval:
       return has_id ? streams_.SetInterval(id, command.param2) : mavlink::kResultDenied;
     case mavlink::kCommandRequestMessage:
-      return has_id && SendMessage(id, now) ? mavlink::kResultAccepted : mavlink::kResultUnsupported;
+      return has_id && SendMessage(id, now) ? mavlink::kResultAccepted
+                                            : mavlink::kResultUnsupported;
     case mavlink::kCommandDoSetMode:
       return SetModeBy(command, now);
     case mavlink::kCommandArmDisarm:

@@ -53,8 +53,8 @@ struct AutopilotModelOptions {
   AutopilotModelOptions();
 
   int system_id = 1;
-  double uptime_s = 100;  // its own clock at the start
-  double drift_ppm = 0;   // by which its clock is fast
+  double uptime_s = 100;   // its own clock at the start
+  double drift_ppm = 0;    // by which its clock is fast
   std::string parameters;  // "NAME=value,NAME=value": other than the defaults
   SimulatedUavOptions uav;
   NavigationOptions navigation;  // errors of its estimate
@@ -106,14 +106,14 @@ class AutopilotModel {
               Time now);
 
   // Injected faults.
-  void Reboot(Time now);           // of all but the flight: clock, streams, and silent for a while
+  void Reboot(Time now);            // of all but the flight: clock, streams, and silent for a while
   void JumpClock(Duration change);  // of its own clock
   void set_nan_attitude(bool nan) { nan_attitude_ = nan; }
 
   // Its own clock, ns since boot.
   std::int64_t OwnTime(Time now) const;
 
-  const PoseSample& truth() const { return uav_.pose(); }       // at the last step
+  const PoseSample& truth() const { return uav_.pose(); }  // at the last step
   const PoseSample& estimate() const { return state_.pose; }
   std::uint32_t custom_mode() const { return custom_mode_; }
   bool is_armed() const { return is_armed_; }

@@ -17,10 +17,10 @@ struct DefaultRate {
 };
 
 constexpr DefaultRate kDefaultRates[] = {
-    {mavlink::Heartbeat::kId, 1, 1},          {mavlink::Timesync::kId, 0.1, 10},
-    {mavlink::Attitude::kId, 0, 100},         {mavlink::AttitudeQuaternion::kId, 0, 50},
-    {mavlink::LocalPositionNed::kId, 0, 30},  {mavlink::GlobalPositionInt::kId, 0, 50},
-    {mavlink::ExtendedSysState::kId, 0, 5},   {mavlink::GpsGlobalOrigin::kId, 0, 1},
+    {mavlink::Heartbeat::kId, 1, 1},         {mavlink::Timesync::kId, 0.1, 10},
+    {mavlink::Attitude::kId, 0, 100},        {mavlink::AttitudeQuaternion::kId, 0, 50},
+    {mavlink::LocalPositionNed::kId, 0, 30}, {mavlink::GlobalPositionInt::kId, 0, 50},
+    {mavlink::ExtendedSysState::kId, 0, 5},  {mavlink::GpsGlobalOrigin::kId, 0, 1},
 };
 
 }  // namespace

@@ -98,8 +98,7 @@ class TestAutopilot {
   mavlink::TargetRelative RelativeMessage() const {
     const Eigen::Vector3f in_frd = FrdFromFlu(PatternInBody()).cast<float>();
     mavlink::TargetRelative message;
-    message.timestamp =
-        static_cast<std::uint64_t>(model.OwnTime(model.truth().time) / 1000);
+    message.timestamp = static_cast<std::uint64_t>(model.OwnTime(model.truth().time) / 1000);
     message.frame = mavlink::kTargetFrameBodyFrd;
     message.x = in_frd.x();
     message.y = in_frd.y();
