@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/sitl/autopilot_model.h"
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -24,6 +25,16 @@ template <class MakeMessage>
 SitlResult Land(TestAutopilot* autopilot, MakeMessage&& message, double seconds = kLongest_s) {
   autopilot->Run(seconds, [&] { autopilot->Tell(message()); });
   return autopilot->model.result();
+}
+
+mavlink::CommandLong Command(std::uint16_t command, const std::array<float, 7>& parameters) {
+  mavlink::CommandLong message;
+  message.target_system = 1;
+  message.command = command;
+  message.param1 = parameters[0];
+  message.param2 = parameters[1];
+  message.param7 = parameters[6];
+  return message;
 }
 
 AutopilotModelOptions WithParameters(const std::string& parameters) {
@@ -246,10 +257,7 @@ TEST(AutopilotModelTest, ArduPilotSendsOnlyWhatItIsAskedFor) {
   EXPECT_EQ(autopilot.Sent<mavlink::Heartbeat>().size(), 2);
   EXPECT_EQ(autopilot.Sent<mavlink::Attitude>().size(), 0);
   const auto ask = [&](float id, float interval_us) {
-    autopilot.Tell(mavlink::CommandLong{.param1 = id,
-                                        .param2 = interval_us,
-                                        .command = mavlink::kCommandSetMessageInterval,
-                                        .target_system = 1});
+    autopilot.Tell(Command(mavlink::kCommandSetMessageInterval, {id, interval_us}));
     return autopilot.Sent<mavlink::CommandAck>().back().result;
   };
   EXPECT_EQ(ask(mavlink::Attitude::kId, 20000), mavlink::kResultAccepted);
@@ -267,10 +275,7 @@ TEST(AutopilotModelTest, Px4SendsItsOnboardStreams) {
   EXPECT_NEAR(autopilot.Sent<mavlink::Attitude>().size(), 200, 3);
   EXPECT_NEAR(autopilot.Sent<mavlink::LocalPositionNed>().size(), 60, 2);
   EXPECT_NEAR(autopilot.Sent<mavlink::Timesync>().size(), 20, 1);
-  autopilot.Tell(mavlink::CommandLong{.param1 = mavlink::SimState::kId,
-                                      .param2 = 20000,
-                                      .command = mavlink::kCommandSetMessageInterval,
-                                      .target_system = 1});
+  autopilot.Tell(Command(mavlink::kCommandSetMessageInterval, {mavlink::SimState::kId, 20000}));
   EXPECT_EQ(autopilot.Sent<mavlink::CommandAck>().back().result, mavlink::kResultFailed);
 }
 
@@ -342,8 +347,7 @@ TEST(AutopilotModelTest, FliesAsItIsCommanded) {
   options.pilot.start_altitude_m = 0;
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, options, TestVehicle("circle", 2));
   const auto command = [&](std::uint16_t number, float p1, float p2 = 0, float p7 = 0) {
-    autopilot.Tell(mavlink::CommandLong{
-        .param1 = p1, .param2 = p2, .param7 = p7, .command = number, .target_system = 1});
+    autopilot.Tell(Command(number, {p1, p2, 0, 0, 0, 0, p7}));
     return autopilot.Sent<mavlink::CommandAck>().back().result;
   };
   constexpr std::uint16_t kTakeOff = 22;
@@ -365,8 +369,7 @@ TEST(AutopilotModelTest, FliesAsItIsCommanded) {
 TEST(AutopilotModelTest, ForceStopsTheMotorsInFlight) {
   TestAutopilot autopilot(AutopilotFirmware::kPx4, {}, TestVehicle("standing", 0));
   autopilot.Run(1);
-  autopilot.Tell(mavlink::CommandLong{
-      .param2 = 21196, .command = mavlink::kCommandArmDisarm, .target_system = 1});
+  autopilot.Tell(Command(mavlink::kCommandArmDisarm, {0, 21196}));
   autopilot.Run(3);
   EXPECT_FALSE(autopilot.model.is_armed());
   EXPECT_LT(autopilot.model.truth().world_from_body.translation.z(), 1);

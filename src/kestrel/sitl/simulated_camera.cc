@@ -97,33 +97,38 @@ void SimulatedCamera::AddPose(const PoseSample& pose) {
 
 bool SimulatedCamera::Next(Frame* frame, Duration timeout) {
   const Time deadline = Now() + timeout;
-  const double period_s = 1 / options_.rate_hz;
-  const auto due = static_cast<std::int64_t>(std::floor(ToSeconds(Now() - start_) / period_s));
-  if (due > next_) {
-    left_out_ += due - next_;
-    next_ = due;
+  for (;;) {
+    const Time capture = NextCapture();
+    if (capture > deadline) break;
+    std::this_thread::sleep_for(capture - Now());
+    WaitForPose(capture, deadline);
+    ++next_;
+    if (auto captured = Capture(capture)) {
+      *frame = std::move(*captured);
+      return true;
+    }
+    ++left_out_;
   }
-  const Time capture = start_ + DurationFromSeconds(static_cast<double>(next_) * period_s);
-  if (capture > deadline) {
-    std::this_thread::sleep_for(timeout);
-    return false;
+  std::this_thread::sleep_for(deadline - Now());
+  return false;
+}
+
+// When the next image is taken: the newest one whose time has come, or the next to come.
+Time SimulatedCamera::NextCapture() {
+  const double due = std::floor(ToSeconds(Now() - start_) * options_.rate_hz);
+  const auto newest = static_cast<std::int64_t>(due);
+  if (newest > next_) {
+    left_out_ += newest - next_;
+    next_ = newest;
   }
-  std::this_thread::sleep_for(capture - Now());
-  {
-    std::unique_lock lock(mutex_);
-    const Time pose_deadline =
-        std::min(deadline, capture + DurationFromSeconds(options_.pose_wait_s));
-    pose_came_.wait_for(lock, pose_deadline - Now(),
-                        [&] { return newest_pose_ && newest_pose_->time >= capture; });
-  }
-  auto captured = Capture(capture);
-  if (!captured) {
-    std::this_thread::sleep_for(deadline - Now());
-    return false;
-  }
-  ++next_;
-  *frame = std::move(*captured);
-  return true;
+  return start_ + DurationFromSeconds(static_cast<double>(next_) / options_.rate_hz);
+}
+
+void SimulatedCamera::WaitForPose(Time capture, Time deadline) {
+  std::unique_lock lock(mutex_);
+  const Time until = std::min(deadline, capture + DurationFromSeconds(options_.pose_wait_s));
+  pose_came_.wait_for(lock, until - Now(),
+                      [&] { return newest_pose_ && newest_pose_->time >= capture; });
 }
 
 std::optional<Frame> SimulatedCamera::Capture(Time capture) {

@@ -80,7 +80,7 @@ class SimulatedCamera {
   // it. Same thread as Next.
   std::string TruthRow(const Frame& frame) const;
 
-  std::int64_t left_out() const { return left_out_; }  // images, for lack of time
+  std::int64_t left_out() const { return left_out_; }  // images, for lack of time or pose
 
  private:
   // A pose with its motion, as it is while one image is exposed.
@@ -90,6 +90,8 @@ class SimulatedCamera {
     BodyMotion motion;
   };
 
+  Time NextCapture();
+  void WaitForPose(Time capture, Time deadline);
   RigidTransform BodyAt(double time_s) const;
   std::optional<Snapshot> SnapshotAt(Time capture);
   Time StampOf(Time capture) const;
