@@ -29,15 +29,22 @@ void ArduPilotLanding::Handle(const mavlink::LandingTarget& target, const Flight
 void ArduPilotLanding::Handle(const mavlink::TargetRelative& /*target*/,
                               const FlightState& /*state*/) {}
 
-void ArduPilotLanding::StartLanding(const FlightState& /*state*/) {
+void ArduPilotLanding::StartLanding(const FlightState& state) {
+  path_position_ = state.position().head<2>();
+  path_velocity_ = state.velocity().head<2>();
+  path_acceleration_.setZero();
   had_target_ = false;
   settled_s_ = 0;
 }
 
 VelocityCommand ArduPilotLanding::Land(const FlightState& state) {
   had_target_ = had_target_ || target_.is_acquired();
+  ShapePath(state);
   VelocityCommand command;
-  command.velocity << HorizontalVelocity(state), Hovers() ? 0 : ClimbRate(state);
+  const Vector2d way = path_position_ - state.position().head<2>();
+  command.velocity << path_velocity_ + parameters_["PSC_NE_POS_P"] * way,
+      Hovers() ? 0 : ClimbRate(state);
+  command.acceleration.head<2>() = path_acceleration_;
   DetectLanding(state, command);
   return command;
 }
@@ -48,15 +55,30 @@ bool ArduPilotLanding::Hovers() const {
   return had_target_ && !target_.is_acquired() && parameters_["PLND_STRICT"] == kVeryStrict;
 }
 
-Vector2d ArduPilotLanding::HorizontalVelocity(const FlightState& state) const {
-  if (!target_.is_acquired()) return Vector2d::Zero();
-  constexpr int kMovingTarget = 1;
-  const bool moves = (static_cast<int>(parameters_["PLND_OPTIONS"]) & kMovingTarget) != 0 &&
-                     parameters_["PLND_EST_TYPE"] == 1;
-  Vector2d velocity = BrakingVelocity(target_.position(), parameters_["PSC_NE_POS_P"],
-                                      parameters_["WP_ACC"], parameters_["WP_SPD"]);
-  if (moves) velocity += target_.velocity() + state.velocity().head<2>();
-  return velocity;
+// Towards the target within the limits of acceleration and jerk; to a stop while there is none.
+void ArduPilotLanding::ShapePath(const FlightState& state) {
+  const double max_acceleration = parameters_["WP_ACC"];
+  const double max_jerk = parameters_["PSC_JERK_NE"];
+  const double acceleration_gain = max_jerk / max_acceleration;
+  Vector2d wanted_velocity(0, 0);
+  if (target_.is_acquired()) {
+    constexpr int kMovingTarget = 1;
+    const bool moves = (static_cast<int>(parameters_["PLND_OPTIONS"]) & kMovingTarget) != 0 &&
+                       parameters_["PLND_EST_TYPE"] == 1;
+    const Vector2d way = state.position().head<2>() + target_.position() - path_position_;
+    wanted_velocity =
+        BrakingVelocity(way, 0.5 * acceleration_gain, max_acceleration, parameters_["WP_SPD"]);
+    if (moves) wanted_velocity += target_.velocity() + state.velocity().head<2>();
+  } else {
+    path_position_ = state.position().head<2>();
+  }
+  const Vector2d wanted_acceleration = BrakingVelocity(
+      wanted_velocity - path_velocity_, acceleration_gain, max_jerk, max_acceleration);
+  const Vector2d change = wanted_acceleration - path_acceleration_;
+  const double max_change = max_jerk * state.step_s;
+  path_acceleration_ += std::min(1.0, max_change / std::max(change.norm(), max_change)) * change;
+  path_position_ += state.step_s * (path_velocity_ + 0.5 * state.step_s * path_acceleration_);
+  path_velocity_ += state.step_s * path_acceleration_;
 }
 
 double ArduPilotLanding::ClimbRate(const FlightState& state) const {

@@ -27,14 +27,18 @@ class ArduPilotLanding : public LandingRules {
 
  private:
   bool Hovers() const;
-  Eigen::Vector2d HorizontalVelocity(const FlightState& state) const;
+  void ShapePath(const FlightState& state);
   double ClimbRate(const FlightState& state) const;
   void DetectLanding(const FlightState& state, const VelocityCommand& command);
 
   const AutopilotParameters& parameters_;
   ArduPilotTarget target_;
   bool had_target_ = false;  // since the mode began
-  double settled_s_ = 0;     // for how long it stands without braking
+  // The path that it follows, horizontally: smooth, whatever the target does.
+  Eigen::Vector2d path_position_{0, 0};
+  Eigen::Vector2d path_velocity_{0, 0};
+  Eigen::Vector2d path_acceleration_{0, 0};
+  double settled_s_ = 0;  // for how long it stands without braking
 };
 
 }  // namespace kestrel

@@ -9,6 +9,7 @@
 
 #include "kestrel/base/options.h"
 #include "kestrel/base/violations.h"
+#include "kestrel/link/link_url.h"
 #include "kestrel/link/mavlink_enums.h"
 #include "kestrel/link/transport.h"
 
@@ -127,7 +128,7 @@ void SimulatedAutopilot::JumpClock(Duration change) {
 
 void SimulatedAutopilot::SendGarbage(std::size_t bytes) {
   constexpr std::size_t kDatagram = 1000;
-  const auto transport = OpenTransport(url_);
+  const auto transport = OpenTransport(ParseLinkUrl(url_));
   Random random(bytes);
   std::vector<std::uint8_t> garbage;
   for (; bytes > 0; bytes -= garbage.size()) {

@@ -56,9 +56,9 @@ Eigen::Vector2d TruePixel(const SimulatedCamera& camera, const PoseSample& pose,
       pose.world_from_body * *camera.calibration().body_from_camera;
   Eigen::Vector2d pixel;
   const CameraModel model(camera.calibration().intrinsics);
-  EXPECT_EQ(model.Project(world_from_camera.Inverse() * camera.PatternAt(stamp).translation,
-                          &pixel),
-            ProjectionStatus::kOk);
+  EXPECT_EQ(
+      model.Project(world_from_camera.Inverse() * camera.PatternAt(stamp).translation, &pixel),
+      ProjectionStatus::kOk);
   return pixel;
 }
 

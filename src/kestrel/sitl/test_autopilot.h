@@ -81,6 +81,13 @@ class TestAutopilot {
     return model.truth().world_from_body.Inverse() * world.PatternAt(now).translation;
   }
 
+  // How far the UAV is beside the pattern, m.
+  double HorizontalError() const {
+    const Eigen::Vector3d way =
+        world.PatternAt(now).translation - model.truth().world_from_body.translation;
+    return way.head<2>().norm();
+  }
+
   // What the profiles send, made of the truth. With contact the point stays below the body.
   mavlink::LandingTarget ArduPilotTargetMessage() const {
     Eigen::Vector3d in_frd = FrdFromFlu(PatternInBody());
