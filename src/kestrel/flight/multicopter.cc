@@ -37,9 +37,10 @@ std::vector<std::string> MulticopterOptions::Validate() const {
 }
 
 Multicopter::Multicopter(const MulticopterOptions& options, const Vector3d& position,
-                         double heading)
+                         double heading, const Vector3d& velocity)
     : options_(options),
       position_(position),
+      velocity_(velocity),
       thrust_(kGravity * Vector3d::UnitZ()),
       lagging_(thrust_),
       heading_(heading) {}

@@ -42,8 +42,9 @@ struct MulticopterOptions {
 // late.
 class Multicopter {
  public:
-  // Hovers at 'position' and looks towards 'heading' (rad, from x to y).
-  Multicopter(const MulticopterOptions& options, const Eigen::Vector3d& position, double heading);
+  // Level at 'position', looking towards 'heading' (rad, from x to y); hovers, or has a velocity.
+  Multicopter(const MulticopterOptions& options, const Eigen::Vector3d& position, double heading,
+              const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero());
 
   // Flies on for 'seconds', a few ms, in the wind (m/s, the air's velocity).
   void Step(const VelocityCommand& command, const Eigen::Vector3d& wind, double seconds);
@@ -57,7 +58,7 @@ class Multicopter {
 
   MulticopterOptions options_;
   Eigen::Vector3d position_;
-  Eigen::Vector3d velocity_{0, 0, 0};
+  Eigen::Vector3d velocity_;
   Eigen::Vector3d thrust_;   // acceleration by the rotors
   Eigen::Vector3d lagging_;  // the command after the first lag
   Eigen::Vector3d felt_drag_{0, 0, 0};

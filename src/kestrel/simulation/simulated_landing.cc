@@ -3,19 +3,15 @@
 
 #include <utility>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "kestrel/flight/flight_time.h"
-#include "kestrel/rendering/pattern_visibility.h"
 #include "kestrel/simulation/truth_text.h"
 #include "kestrel/stills/landing_stills.h"
 #include "kestrel/world/solids.h"
 
 namespace kestrel {
 namespace {
-
-using Eigen::Vector3d;
 
 Drawing AirframeOf(const SurroundingsOptions& options, const CameraCalibration& camera) {
   return options.landing_legs ? LandingLegs(camera.intrinsics, /*four=*/true) : Drawing();
@@ -49,28 +45,13 @@ std::string SimulatedLanding::SceneText(const std::string& kind, const std::stri
 
 std::vector<RecordingFile> SimulatedLanding::Files() const {
   std::string rows = LandingTruthHeader();
-  for (const double time_s : flight_.times_s()) rows += TruthRow(time_s);
+  for (const double time_s : flight_.times_s()) {
+    rows += LandingTruthRow(TimeOfFlight(time_s), time_s, flight_.camera(), pattern_,
+                            world_from_pattern_);
+  }
   std::vector<RecordingFile> files = flight_.Files();
   files.push_back({"landing_pattern0/data.csv", rows});
   return files;
-}
-
-std::string SimulatedLanding::TruthRow(double time_s) const {
-  const FlightCamera& camera = flight_.camera();
-  const RigidTransform pattern = world_from_pattern_(time_s);
-  const RigidTransform pattern_from_camera = pattern.Inverse() * camera.WorldFromCamera(time_s);
-  const auto pixel = camera.Project(
-      time_s, [this](double row_time_s) { return world_from_pattern_(row_time_s).translation; });
-  if (!pixel) return "";
-  const Vector3d& p = pattern.translation;
-  const Eigen::Quaterniond& q = pattern.rotation;
-  const Vector3d v = VelocityOf(world_from_pattern_, time_s);
-  const double visible = VisibleFraction(pattern_, pattern_from_camera.Inverse(), camera.lens());
-  return fmt::format(
-      "{},{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f},{:.6f},{:.6f},{:.6f},"
-      "{:.4f},{:.4f},{:.6f},{:.4f}\n",
-      ToNanoseconds(TimeOfFlight(time_s)), p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), v.x(),
-      v.y(), v.z(), pixel->x(), pixel->y(), pattern_from_camera.translation.z(), visible);
 }
 
 }  // namespace kestrel

@@ -32,8 +32,6 @@ class SimulatedLanding {
   std::vector<RecordingFile> Files() const;
 
  private:
-  std::string TruthRow(double time_s) const;
-
   LandingPattern pattern_;
   Motion world_from_pattern_;
   SimulatedFlight flight_;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/flight/flight_time.h"
+#include "kestrel/rendering/pattern_visibility.h"
 #include "kestrel/simulation/recording_plan.h"
 
 namespace kestrel {
@@ -63,6 +64,20 @@ std::string LandingTruthHeader() {
          "q_WP_w [],q_WP_x [],q_WP_y [],q_WP_z [],"
          "v_WP_W_x [m s^-1],v_WP_W_y [m s^-1],v_WP_W_z [m s^-1],"
          "u [px],v [px],altitude [m],visible_fraction []\n";
+}
+
+std::string LandingTruthRow(Time stamp, double time_s, const FlightCamera& camera,
+                            const LandingPattern& pattern, const Motion& world_from_pattern) {
+  const RigidTransform pose = world_from_pattern(time_s);
+  const auto pixel = camera.Project(
+      time_s, [&](double row_time_s) { return world_from_pattern(row_time_s).translation; });
+  if (!pixel) return "";
+  const RigidTransform pattern_from_camera = pose.Inverse() * camera.WorldFromCamera(time_s);
+  const Eigen::Vector3d v = VelocityOf(world_from_pattern, time_s);
+  const double visible = VisibleFraction(pattern, pattern_from_camera.Inverse(), camera.lens());
+  return fmt::format("{},{:.6f},{:.6f},{:.6f},{:.4f},{:.4f},{:.6f},{:.4f}\n",
+                     PoseCells(stamp, pose), v.x(), v.y(), v.z(), pixel->x(), pixel->y(),
+                     pattern_from_camera.translation.z(), visible);
 }
 
 }  // namespace kestrel

@@ -4,7 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/base/time.h"
+#include "kestrel/landing/landing_pattern.h"
 #include "kestrel/navigation/pose_history.h"
+#include "kestrel/rendering/flight_camera.h"
 #include "kestrel/world/motion.h"
 #include "kestrel/world/world.h"
 
@@ -20,6 +23,11 @@ std::string TrueStateText(const std::vector<PoseSample>& poses);
 
 // The header of landing_pattern0/data.csv.
 std::string LandingTruthHeader();
+
+// A row of it: the pattern in the image that 'camera' takes at 'time_s', whose stamp is 'stamp';
+// empty where the camera's model does not see the pattern's centre.
+std::string LandingTruthRow(Time stamp, double time_s, const FlightCamera& camera,
+                            const LandingPattern& pattern, const Motion& world_from_pattern);
 
 // A text of lines as a part of a YAML map: two blanks before each.
 std::string Indented(const std::string& lines);

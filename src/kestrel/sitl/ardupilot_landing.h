@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "kestrel/sitl/ardupilot_target.h"
+#include "kestrel/sitl/autopilot_parameters.h"
+#include "kestrel/sitl/landing_rules.h"
+
+namespace kestrel {
+
+// ArduCopter's LAND mode with precision landing.
+class ArduPilotLanding : public LandingRules {
+ public:
+  // The parameters must outlive it.
+  ArduPilotLanding(const AutopilotParameters& parameters, Announce announce);
+
+  void Handle(const mavlink::LandingTarget& target, const FlightState& state) override;
+  void Handle(const mavlink::TargetRelative& target, const FlightState& state) override;
+  void Estimate(const FlightState& state) override { target_.Estimate(state); }
+  void StartLanding(const FlightState& state) override;
+  VelocityCommand Land(const FlightState& state) override;
+  bool has_landed() const override { return disarms(); }
+  bool disarms() const override;
+
+  const ArduPilotTarget& target() const { return target_; }
+
+ private:
+  bool Hovers() const;
+  void ShapePath(const FlightState& state);
+  double ClimbRate(const FlightState& state) const;
+  void DetectLanding(const FlightState& state, const VelocityCommand& command);
+
+  const AutopilotParameters& parameters_;
+  ArduPilotTarget target_;
+  bool had_target_ = false;  // since the mode began
+  // The path that it follows, horizontally: smooth, whatever the target does.
+  Eigen::Vector2d path_position_{0, 0};
+  Eigen::Vector2d path_velocity_{0, 0};
+  Eigen::Vector2d path_acceleration_{0, 0};
+  double settled_s_ = 0;  // for how long it stands without braking
+};
+
+}  // namespace kestrel

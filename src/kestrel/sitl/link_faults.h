@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <deque>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kestrel/base/random.h"
+#include "kestrel/base/time.h"
+#include "kestrel/base/violations.h"
+
+namespace kestrel {
+
+// What a link does to the messages on it, in either direction.
+struct LinkFaultOptions {
+  double delay_s = 0;   // of each message
+  double jitter_s = 0;  // the delay varies by up to this to both sides; the order stays
+  double loss = 0;      // part of the messages that are lost
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("delay_s", self.delay_s, "s", "of each message, one way");
+    visitor("jitter_s", self.jitter_s, "s", "by which the delay varies to both sides");
+    visitor("loss", self.loss, "1", "part of the messages that get lost");
+  }
+  std::vector<std::string> Validate() const {
+    std::vector<std::string> violations;
+    RequireIn(delay_s, 0, 10, "delay_s", &violations);
+    RequireIn(jitter_s, 0, 10, "jitter_s", &violations);
+    RequireIn(loss, 0, 1, "loss", &violations);
+    return violations;
+  }
+};
+
+// One direction of a link: messages come out later, in order, or not at all.
+template <class Message>
+class DelayLine {
+ public:
+  DelayLine(const LinkFaultOptions& options, Random random)
+      : options_(options), random_(std::move(random)) {}
+
+  void Push(Time now, Message message) {
+    if (random_.Chance(options_.loss)) return;
+    const double delay_s = options_.delay_s + random_.Uniform(-1, 1) * options_.jitter_s;
+    last_due_ = std::max(last_due_, now + DurationFromSeconds(std::max(delay_s, 0.0)));
+    messages_.emplace_back(last_due_, std::move(message));
+  }
+
+  // The next message that has arrived by 'now'.
+  std::optional<Message> Pop(Time now) {
+    if (messages_.empty() || messages_.front().first > now) return std::nullopt;
+    std::optional<Message> message = std::move(messages_.front().second);
+    messages_.pop_front();
+    return message;
+  }
+
+  void Clear() { messages_.clear(); }
+
+ private:
+  LinkFaultOptions options_;
+  Random random_;
+  Time last_due_;
+  std::deque<std::pair<Time, Message>> messages_;
+};
+
+}  // namespace kestrel
