@@ -2,15 +2,15 @@
 #include "kestrel/cli/kestrel_options.h"
 
 #include "kestrel/base/options.h"
+#include "kestrel/base/violations.h"
 
 namespace kestrel {
 
 std::vector<std::string> KestrelOptions::Validate() const {
   std::vector<std::string> violations;
-  for (const std::string& violation : landing.Validate()) {
-    violations.push_back("landing." + violation);
-  }
-  for (const std::string& violation : hunt.Validate()) violations.push_back("hunt." + violation);
+  AddViolations("landing", landing.Validate(), &violations);
+  AddViolations("hunt", hunt.Validate(), &violations);
+  AddViolations("fly", fly.Validate(), &violations);
   return violations;
 }
 

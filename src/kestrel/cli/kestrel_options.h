@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/cli/fly_options.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/pipeline/landing_pipeline.h"
 
@@ -13,11 +14,13 @@ namespace kestrel {
 struct KestrelOptions {
   LandingPipelineOptions landing;
   HuntPipelineOptions hunt;
+  FlyOptions fly;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor.Group("landing", self.landing);
     visitor.Group("hunt", self.hunt);
+    visitor.Group("fly", self.fly);
   }
   std::vector<std::string> Validate() const;
 };

@@ -9,6 +9,7 @@
 #include "kestrel/cli/calibrate_command.h"
 #include "kestrel/cli/config_command.h"
 #include "kestrel/cli/evaluate_command.h"
+#include "kestrel/cli/fly_command.h"
 #include "kestrel/cli/help_command.h"
 #include "kestrel/cli/hunt_command.h"
 #include "kestrel/cli/land_command.h"
@@ -18,6 +19,7 @@ namespace {
 
 constexpr int kInputAtFault = 1;
 constexpr int kWrongUsage = 2;
+constexpr int kFlightFailed = 3;
 
 // What is wrong is said once and in our words; the decoders' own messages would bury it.
 void SilenceDecoders() {
@@ -34,6 +36,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   kestrel::AddLandCommand(&app);
   kestrel::AddHuntCommand(&app);
+  kestrel::AddFlyCommand(&app);
   kestrel::AddSimulateCommand(&app);
   kestrel::AddEvaluateCommand(&app);
   kestrel::AddCalibrateCommand(&app);
@@ -51,6 +54,9 @@ int main(int argc, char** argv) {
     }
     app.exit(error);
     return kWrongUsage;
+  } catch (const kestrel::FlightFailed& failure) {
+    fmt::print(stderr, "kestrel: {}\n", failure.what());
+    return kFlightFailed;
   } catch (const std::exception& error) {
     fmt::print(stderr, "kestrel: {}\n", error.what());
     return kInputAtFault;

@@ -39,15 +39,6 @@ std::string ErrorOfUrl(const std::string& url) {
   return ErrorOf([&] { Connection(url, {}); });
 }
 
-// A port that nobody uses.
-int FreePort() {
-  const LinkUrl url{"", LinkScheme::kTcpIn, "127.0.0.1", 0};
-  const FileDescriptor file = BindSocket(url, ResolveAddress(url), SOCK_STREAM);
-  SocketAddress address;
-  getsockname(file.number(), address.get(), &address.size);
-  return ntohs(reinterpret_cast<const sockaddr_in*>(&address.storage)->sin_port);
-}
-
 std::string Url(const std::string& scheme, int port) {
   return scheme + "://127.0.0.1:" + std::to_string(port);
 }
@@ -110,7 +101,7 @@ TEST(ConnectionTest, SaysWhatIsNotThere) {
 }
 
 TEST(ConnectionTest, SaysThatThePortIsInUse) {
-  const int port = FreePort();
+  const int port = FreeLoopbackPort();
   const Connection first(Url("udpin", port), {});
   EXPECT_THAT(ErrorOfUrl(Url("udpin", port)), testing::HasSubstr("is in use by another program"));
   const Connection server(Url("tcpin", port), {});
@@ -118,7 +109,7 @@ TEST(ConnectionTest, SaysThatThePortIsInUse) {
 }
 
 TEST(ConnectionTest, SpeaksOverUdp) {
-  const int port = FreePort();
+  const int port = FreeLoopbackPort();
   Connection in(Url("udpin", port), {});
   EXPECT_FALSE(in.Send(mavlink::Heartbeat{}));  // nobody has spoken yet
   EXPECT_EQ(in.counters().unsent, 1u);
@@ -127,7 +118,7 @@ TEST(ConnectionTest, SpeaksOverUdp) {
 }
 
 TEST(ConnectionTest, AnswersOnlyThoseWhoSpeakMavlink) {
-  const int port = FreePort();
+  const int port = FreeLoopbackPort();
   Connection in(Url("udpin", port), {});
   const auto stranger = OpenTransport(ParseLinkUrl(Url("udpout", port)));
   const std::vector<std::uint8_t> garbage(100, 0xfd);
@@ -140,7 +131,7 @@ TEST(ConnectionTest, AnswersOnlyThoseWhoSpeakMavlink) {
 }
 
 TEST(ConnectionTest, FindsAUdpAutopilotThatWasStartedAgain) {
-  const int port = FreePort();
+  const int port = FreeLoopbackPort();
   Connection in(Url("udpin", port), {});
   for (int i = 0; i < 6; ++i) {
     Connection out(Url("udpout", port), {});
@@ -150,7 +141,7 @@ TEST(ConnectionTest, FindsAUdpAutopilotThatWasStartedAgain) {
 }
 
 TEST(ConnectionTest, SpeaksOverTcpAndConnectsAgain) {
-  const int port = FreePort();
+  const int port = FreeLoopbackPort();
   Connection client(Url("tcpout", port), {});  // before there is a server
   client.Receive(milliseconds(1), [](const mavlink::Packet&, Time) {});
   EXPECT_FALSE(client.Send(mavlink::Heartbeat{}));
@@ -161,7 +152,7 @@ TEST(ConnectionTest, SpeaksOverTcpAndConnectsAgain) {
 }
 
 TEST(ConnectionTest, AServerTakesTheNextClient) {
-  const int port = FreePort();
+  const int port = FreeLoopbackPort();
   Connection server(Url("tcpin", port), {});
   for (int i = 0; i < 3; ++i) {
     Connection client(Url("tcpout", port), {});
@@ -170,7 +161,7 @@ TEST(ConnectionTest, AServerTakesTheNextClient) {
 }
 
 TEST(ConnectionTest, DropsWhatTheLineDoesNotTake) {
-  const int port = FreePort();
+  const int port = FreeLoopbackPort();
   Connection server(Url("tcpin", port), {});
   Connection client(Url("tcpout", port), {});
   ExpectBothWays(&client, &server);
@@ -254,7 +245,7 @@ class SignedConnectionTest : public testing::Test {
 };
 
 TEST_F(SignedConnectionTest, SpeaksWithItsLikeOnly) {
-  const int port = FreePort();
+  const int port = FreeLoopbackPort();
   Connection in(Url("udpin", port), options_);
   Connection out(Url("udpout", port), options_);
   ExpectBothWays(&out, &in);
@@ -266,7 +257,7 @@ TEST_F(SignedConnectionTest, SpeaksWithItsLikeOnly) {
 }
 
 TEST_F(SignedConnectionTest, RefusesAnotherKey) {
-  const int port = FreePort();
+  const int port = FreeLoopbackPort();
   Connection in(Url("udpin", port), options_);
   WriteKey(path_ + "2", std::string(32, 'k'));
   ConnectionOptions other;
@@ -278,7 +269,7 @@ TEST_F(SignedConnectionTest, RefusesAnotherKey) {
 }
 
 TEST_F(SignedConnectionTest, RefusesWhatWasSentBefore) {
-  const int port = FreePort();
+  const int port = FreeLoopbackPort();
   std::vector<std::uint8_t> frame;
   Connection in(Url("udpin", port), options_,
                 [&](auto bytes, Time) { frame.assign(bytes.begin(), bytes.end()); });
@@ -291,7 +282,7 @@ TEST_F(SignedConnectionTest, RefusesWhatWasSentBefore) {
 }
 
 TEST_F(SignedConnectionTest, RemembersItsTimestamps) {
-  const int port = FreePort();
+  const int port = FreeLoopbackPort();
   { const Connection first(Url("udpin", port), options_); }
   const std::uint64_t year_2100 = 268'000'000'000'000;
   WriteFile(path_ + ".timestamp", std::to_string(year_2100) + "\n");

@@ -65,4 +65,12 @@ FileDescriptor BindSocket(const LinkUrl& url, const SocketAddress& address, int 
   return bound;
 }
 
+int FreeLoopbackPort() {
+  const LinkUrl url{"udpin://127.0.0.1:0", LinkScheme::kUdpIn, "127.0.0.1", 0};
+  const FileDescriptor file = BindSocket(url, ResolveAddress(url), SOCK_DGRAM);
+  SocketAddress address;
+  getsockname(file.number(), address.get(), &address.size);
+  return ntohs(reinterpret_cast<const sockaddr_in*>(&address.storage)->sin_port);
+}
+
 }  // namespace kestrel

@@ -27,6 +27,10 @@ SocketAddress ResolveAddress(const LinkUrl& url);
 // when the port is in use or the address is not this computer's.
 FileDescriptor BindSocket(const LinkUrl& url, const SocketAddress& address, int type);
 
+// A port of 127.0.0.1 that nobody uses now, for programs that talk to each other on one computer.
+// Throws InputError when there is none.
+int FreeLoopbackPort();
+
 // InputError with the URL, what failed and the system's own words for 'error' (errno).
 [[noreturn]] void ThrowLinkError(const LinkUrl& url, const char* what, int error);
 
