@@ -62,15 +62,9 @@ std::string SimulatedLanding::TruthRow(double time_s) const {
   const auto pixel = camera.Project(
       time_s, [this](double row_time_s) { return world_from_pattern_(row_time_s).translation; });
   if (!pixel) return "";
-  const Vector3d& p = pattern.translation;
-  const Eigen::Quaterniond& q = pattern.rotation;
-  const Vector3d v = VelocityOf(world_from_pattern_, time_s);
-  const double visible = VisibleFraction(pattern_, pattern_from_camera.Inverse(), camera.lens());
-  return fmt::format(
-      "{},{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f},{:.6f},{:.6f},{:.6f},"
-      "{:.4f},{:.4f},{:.6f},{:.4f}\n",
-      ToNanoseconds(TimeOfFlight(time_s)), p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), v.x(),
-      v.y(), v.z(), pixel->x(), pixel->y(), pattern_from_camera.translation.z(), visible);
+  return LandingTruthRow({TimeOfFlight(time_s), pattern, VelocityOf(world_from_pattern_, time_s),
+                          *pixel, pattern_from_camera.translation.z(),
+                          VisibleFraction(pattern_, pattern_from_camera.Inverse(), camera.lens())});
 }
 
 }  // namespace kestrel
