@@ -4,8 +4,6 @@
 #include <filesystem>
 #include <iostream>
 
-#include <fmt/format.h>
-
 #include "kestrel/recording/euroc_text.h"
 #include "kestrel/recording/output_folder.h"
 
@@ -13,10 +11,7 @@ namespace kestrel {
 
 void WriteCalibration(const CameraCalibration& calibration, double rate_hz, const std::string& file,
                       bool force) {
-  std::string text = EurocCameraText(calibration, rate_hz);
-  if (calibration.clock_offset) {
-    text += fmt::format("timeshift_cam_imu: {}\n", ToSeconds(*calibration.clock_offset));
-  }
+  const std::string text = EurocCalibrationText(calibration, rate_hz);
   if (file.empty()) {
     std::cout << text << std::flush;
     return;

@@ -14,6 +14,7 @@
 #include "kestrel/base/parse_number.h"
 #include "kestrel/cli/fly_source.h"
 #include "kestrel/cli/interrupt.h"
+#include "kestrel/link/socket_address.h"
 #include "kestrel/onboard/hunt_vision.h"
 #include "kestrel/onboard/landing_vision.h"
 #include "kestrel/recording/output_folder.h"
@@ -90,8 +91,8 @@ class Flight {
     if (arguments_.link_delay == "auto") return;
     const auto delay_s = ParseNumber<double>(arguments_.link_delay);
     if (!delay_s || !(*delay_s >= 0)) {
-      throw InputError(fmt::format("--link-delay '{}': expected seconds or auto",
-                                   arguments_.link_delay));
+      throw InputError(
+          fmt::format("--link-delay '{}': expected seconds or auto", arguments_.link_delay));
     }
     options->link_delay_s = *delay_s;
   }
@@ -140,16 +141,15 @@ class Flight {
     connection_.emplace(url, all_options_.fly.link, tap);
     AutopilotOptions options = all_options_.fly.autopilot;
     options.wants_true_pose = source_.simulated != nullptr;
-    autopilot_.emplace(options, &*connection_,
-                       AutopilotListener{
-                           .pose = [this](const PoseSample& pose) { TakePose(pose); },
-                           .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
-                           .event = [this](const AutopilotEvent& e) { log_.Say(e.text); },
-                           .text =
-                               [this](std::uint8_t /*severity*/, std::string_view text) {
-                                 log_.Say(fmt::format("autopilot: {}", text));
-                               },
-                       });
+    autopilot_.emplace(
+        options, &*connection_,
+        AutopilotListener{
+            .pose = [this](const PoseSample& pose) { TakePose(pose); },
+            .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
+            .event = [this](const AutopilotEvent& e) { log_.Say(e.text); },
+            .text = [this](std::uint8_t /*severity*/,
+                           std::string_view text) { log_.Say(fmt::format("autopilot: {}", text)); },
+        });
   }
 
   // Returns where it can be reached.
@@ -159,10 +159,9 @@ class Flight {
     options.sim_autopilot.signing_key = options.link.signing_key;
     const auto seed = static_cast<std::uint64_t>(options.sim_seed);
     if (!source_.world) {
-      source_.world =
-          std::make_unique<VehicleWorld>(ReadVehicleWorld("standing", {}), Now(), seed);
+      source_.world = std::make_unique<VehicleWorld>(ReadVehicleWorld("standing", {}), Now(), seed);
     }
-    const int port = FreeUdpPort();
+    const int port = FreeLoopbackPort();
     simulated_autopilot_ = std::make_unique<SimulatedAutopilot>(
         options.sim_autopilot, fmt::format("udpout://{}:{}", kLoopback, port), source_.world.get(),
         seed);

@@ -76,7 +76,8 @@ FlySource OpenCamera(const SourceArguments& arguments, PixelFormat format,
                      const FlyOptions& options) {
   if (arguments.camera.empty()) {
     throw InputError(
-        "no calibration: a camera needs one, give it by --camera FILE (kestrel calibrate lens makes "
+        "no calibration: a camera needs one, give it by --camera FILE (kestrel calibrate lens "
+        "makes "
         "one)");
   }
   FlySource opened;

@@ -26,9 +26,9 @@ struct FlySource {
 };
 
 // Opens what the arguments name: "sim:SCENARIO" with further settings as
-// "sim:straight,vehicle.speed_mps=4", a camera (/dev/video0, rtsp://..., a GStreamer pipeline), or a
-// recording, played in real time, again and again when 'is_looped'. Throws InputError with what is
-// wrong with it.
+// "sim:straight,vehicle.speed_mps=4", a camera (/dev/video0, rtsp://..., a GStreamer pipeline), or
+// a recording, played in real time, again and again when 'is_looped'. Throws InputError with what
+// is wrong with it.
 FlySource OpenFlySource(const SourceArguments& arguments, PixelFormat format,
                         const FlyOptions& options, bool is_looped);
 

@@ -10,18 +10,9 @@
 
 #include "kestrel/base/time.h"
 #include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/simulation/truth_text.h"
 
 namespace kestrel {
-
-// A row of landing_pattern0/data.csv: where the pattern was when an image was taken.
-struct TruePattern {
-  Time time;
-  RigidTransform world_from_pattern;
-  Eigen::Vector3d velocity_in_world = Eigen::Vector3d::Zero();
-  Eigen::Vector2d center_px = Eigen::Vector2d::Zero();  // may lie outside of the image
-  double altitude_m = 0;                                // of the camera above the pattern
-  double visible_fraction = 0;  // part of ring and cross that the image shows
-};
 
 // Rows in order of time. Throws InputError with file and line for what is at fault.
 std::vector<TruePattern> ParseTruePatterns(std::string_view text, const std::string& file);

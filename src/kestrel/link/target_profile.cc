@@ -67,17 +67,19 @@ std::optional<LinkProfile> ParseLinkProfile(std::string_view name) {
 
 std::optional<LinkProfile> ProfileOf(AutopilotKind kind) {
   switch (kind) {
-    case AutopilotKind::kArduPilot: return LinkProfile::kArduPilot;
-    case AutopilotKind::kPx4: return LinkProfile::kPx4;
-    default: return std::nullopt;
+    case AutopilotKind::kArduPilot:
+      return LinkProfile::kArduPilot;
+    case AutopilotKind::kPx4:
+      return LinkProfile::kPx4;
+    default:
+      return std::nullopt;
   }
 }
 
 mavlink::LandingTarget ArduPilotTarget(const TargetReport& report, std::uint64_t time_us,
                                        const Vector3d& camera_in_frd, double size_m) {
   const Vector3d position = FrdFromFlu(report.PositionInBody()) - camera_in_frd;
-  mavlink::LandingTarget message =
-      LandingTargetAt(time_us, mavlink::kFrameBodyFrd, position);
+  mavlink::LandingTarget message = LandingTargetAt(time_us, mavlink::kFrameBodyFrd, position);
   const double distance = position.norm();
   message.distance = static_cast<float>(distance);
   // Of the image of a camera that looks down: x to the right, y backwards.
@@ -88,8 +90,8 @@ mavlink::LandingTarget ArduPilotTarget(const TargetReport& report, std::uint64_t
 }
 
 mavlink::LandingTarget Px4Target(const TargetReport& report, std::uint64_t time_us) {
-  mavlink::LandingTarget message = LandingTargetAt(time_us, mavlink::kFrameLocalNed,
-                                                   NedFromEnu(report.position_in_world));
+  mavlink::LandingTarget message =
+      LandingTargetAt(time_us, mavlink::kFrameLocalNed, NedFromEnu(report.position_in_world));
   message.distance = static_cast<float>(report.PositionInBody().norm());
   return message;
 }

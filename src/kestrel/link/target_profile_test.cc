@@ -73,7 +73,7 @@ TEST(TargetProfileTest, TheTargetEstimatorGetsTheUncertaintyAlongTheBodysAxes) {
 
 TEST(TargetProfileTest, ATiltedUavSeesTheTargetAside) {
   TargetReport report = LookingEast();
-  report.position_in_world = {10, 18, 1};  // straight below
+  report.position_in_world = {10, 18, 1};                                        // straight below
   report.world_from_body.rotation = AngleAxisd(Radians(20), Vector3d::UnitX());  // left side up
   const mavlink::LandingTarget message = ArduPilotTarget(report, 0, Vector3d::Zero(), 1);
   EXPECT_NEAR(message.y, 5 * std::sin(Radians(20)), 1e-6);

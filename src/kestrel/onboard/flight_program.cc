@@ -56,8 +56,7 @@ std::vector<std::string> FlightOptions::Validate() const {
 }
 
 FlightProgram::FlightProgram(const FlightOptions& options, const TargetTrackerOptions& tracker,
-                             const FlightParts& parts,
-                             std::function<void(const std::string&)> say)
+                             const FlightParts& parts, std::function<void(const std::string&)> say)
     : options_(Checked(options)),
       parts_(parts),
       say_(std::move(say)),
@@ -174,7 +173,8 @@ void FlightProgram::WriteResults() {
 void FlightProgram::Communicate() {
   SetUpThisThread("link", {});
   due_ = heard_ = Now();
-  for (const std::string_view parameter : kParameters) parts_.autopilot->parameters().Want(parameter);
+  for (const std::string_view parameter : kParameters)
+    parts_.autopilot->parameters().Want(parameter);
   while (!is_over_) {
     parts_.connection->Receive(kLinkPatience, [this](const mavlink::Packet& packet, Time received) {
       parts_.autopilot->Handle(packet, received);
@@ -199,8 +199,8 @@ void FlightProgram::TellTarget(Time now) {
   const TrackSnapshot& track = track_.Get();
   const Duration period = DurationFromSeconds(1 / options_.rate_hz);
   const bool is_news = track.captured != told_frame_;
-  if (now < due_ - (is_news ? std::chrono::duration_cast<Duration>(kEarly * period)
-                            : Duration::zero())) {
+  if (now <
+      due_ - (is_news ? std::chrono::duration_cast<Duration>(kEarly * period) : Duration::zero())) {
     return;
   }
   due_ = std::max(due_ + period, now + period / 2);
@@ -248,8 +248,10 @@ bool FlightProgram::Send(LinkProfile profile, const TargetReport& report) {
       const Eigen::Vector3d camera(offset(kCameraX), offset(kCameraY), offset(kCameraZ));
       return connection.Send(ArduPilotTarget(report, time_us, camera, parts_.pattern_size_m));
     }
-    case LinkProfile::kPx4: return connection.Send(Px4Target(report, time_us));
-    case LinkProfile::kPx4Vte: return connection.Send(Px4VteTarget(report, time_us));
+    case LinkProfile::kPx4:
+      return connection.Send(Px4Target(report, time_us));
+    case LinkProfile::kPx4Vte:
+      return connection.Send(Px4VteTarget(report, time_us));
   }
   return false;
 }
@@ -264,7 +266,8 @@ void FlightProgram::SayPhase() {
   std::string text;
   std::uint8_t severity = mavlink::kSeverityInfo;
   switch (phase) {
-    case TargetPhase::kSearching: return;
+    case TargetPhase::kSearching:
+      return;
     case TargetPhase::kFound:
       text = fmt::format("pattern found, {:.1f} m below", reporter_.height_m());
       break;
@@ -272,7 +275,9 @@ void FlightProgram::SayPhase() {
       text = "pattern lost";
       severity = mavlink::kSeverityWarning;
       break;
-    case TargetPhase::kContact: text = "on the pattern"; break;
+    case TargetPhase::kContact:
+      text = "on the pattern";
+      break;
   }
   say_(text);
   parts_.autopilot->Announce(severity, "Kestrel: " + text);
@@ -320,9 +325,10 @@ std::string FlightProgram::Summary() const {
   const LiveEvents::Counters events = events_.counters();
   const CaptureCounters capture = parts_.source->counters();
   std::string summary = fmt::format("{} frames, {}", frames_, parts_.vision->Found());
-  summary += fmt::format("; {} missed by the camera, {} dropped before the vision, {} without "
-                         "a pose in time\n",
-                         capture.missed, events.dropped_frames, events.unposed_frames);
+  summary += fmt::format(
+      "; {} missed by the camera, {} dropped before the vision, {} without "
+      "a pose in time\n",
+      capture.missed, events.dropped_frames, events.unposed_frames);
   summary += latency_.InWords();
   if (parts_.connection == nullptr) return summary;
   const ConnectionCounters link = parts_.connection->counters();

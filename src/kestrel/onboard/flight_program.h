@@ -21,6 +21,7 @@
 #include "kestrel/onboard/live_source.h"
 #include "kestrel/onboard/target_reporter.h"
 #include "kestrel/onboard/thread_setup.h"
+#include "kestrel/simulation/truth_text.h"
 
 namespace kestrel {
 
@@ -78,7 +79,7 @@ struct FlightParts {
   std::optional<LinkProfile> profile;  // nothing: by the heartbeat
   // Of the pattern when a frame was taken, where a simulation knows it.
   std::function<std::optional<TruePattern>(const Frame&)> truth;
-  double pattern_size_m = 1;           // its outer diameter
+  double pattern_size_m = 1;  // its outer diameter
 };
 
 // The program that flies: capture, vision, link and output, each in a thread of its own. Between

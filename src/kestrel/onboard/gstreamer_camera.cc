@@ -2,12 +2,12 @@
 #include "kestrel/onboard/gstreamer_camera.h"
 
 #include <algorithm>
+#include <gst/video/video.h>
 #include <string_view>
 #include <thread>
 #include <utility>
 
 #include <fmt/format.h>
-#include <gst/video/video.h>
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/options.h"
@@ -18,7 +18,7 @@ namespace kestrel {
 namespace {
 
 constexpr std::string_view kDevice = "/dev/video";
-constexpr std::size_t kPooledImages = 16;  // what queues, vision and recorder have at a time
+constexpr std::size_t kPooledImages = 64;  // what vision and the recorder's queue have at a time
 
 std::string SourceElements(const std::string& camera, const CameraIntrinsics& calibration,
                            const GstreamerCameraOptions& options) {
@@ -94,8 +94,8 @@ GstreamerCamera::GstreamerCamera(const std::string& camera, const CameraIntrinsi
 GstreamerCamera::~GstreamerCamera() = default;
 
 void GstreamerCamera::Open() {
-  auto pipeline = std::make_unique<GstreamerPipeline>(PipelineText(camera_, calibration_, options_), camera_,
-                                             format_);
+  auto pipeline = std::make_unique<GstreamerPipeline>(PipelineText(camera_, calibration_, options_),
+                                                      camera_, format_);
   if (!options_.exposure_property.empty()) {
     pipeline->UseExposureProperty(options_.exposure_property, options_.exposure_unit_s);
   }

@@ -58,10 +58,10 @@ struct GstreamerCameraOptions {
 // less half of the exposure and the read-out.
 class GstreamerCamera : public LiveSource, public ExposureActuator {
  public:
-  // 'camera': "/dev/video0", "rtsp://..." or a pipeline ("videotestsrc is-live=true ! ..."), with or
-  // without an appsink at its end. Waits for the first frame, up to 10 s. Throws InputError with one
-  // line: no such device, a pipeline that does not parse or start, frames of another size than the
-  // calibration's, options that are not valid.
+  // 'camera': "/dev/video0", "rtsp://..." or a pipeline ("videotestsrc is-live=true ! ..."), with
+  // or without an appsink at its end. Waits for the first frame, up to 10 s. Throws InputError with
+  // one line: no such device, a pipeline that does not parse or start, frames of another size than
+  // the calibration's, options that are not valid.
   GstreamerCamera(const std::string& camera, const CameraIntrinsics& calibration,
                   PixelFormat format, const GstreamerCameraOptions& options);
   ~GstreamerCamera() override;

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <gst/app/gstappsink.h>
 #include <utility>
 
 #include <fmt/format.h>
-#include <gst/app/gstappsink.h>
 
 #include "kestrel/base/error.h"
 
@@ -54,7 +54,9 @@ GstElementPointer FindAppSink(GstElement* pipeline, const std::string& camera) {
 
 }  // namespace
 
-GstExposureProperty::GstExposureProperty(GstElement* pipeline, const std::string& name, double unit_s) : unit_s_(unit_s) {
+GstExposureProperty::GstExposureProperty(GstElement* pipeline, const std::string& name,
+                                         double unit_s)
+    : unit_s_(unit_s) {
   const std::size_t dot = name.find('.');
   const std::string element = name.substr(0, dot);
   element_.reset(gst_bin_get_by_name(GST_BIN(pipeline), element.c_str()));
@@ -64,11 +66,11 @@ GstExposureProperty::GstExposureProperty(GstElement* pipeline, const std::string
         "names (name={})",
         name, element));
   }
-  property_ = g_object_class_find_property(G_OBJECT_GET_CLASS(element_.get()),
-                                           name.c_str() + dot + 1);
+  property_ =
+      g_object_class_find_property(G_OBJECT_GET_CLASS(element_.get()), name.c_str() + dot + 1);
   if (property_ == nullptr) {
-    throw InputError(fmt::format("exposure_property is '{}': element {} has no such property",
-                                 name, element));
+    throw InputError(
+        fmt::format("exposure_property is '{}': element {} has no such property", name, element));
   }
 }
 
@@ -150,8 +152,8 @@ bool GstreamerPipeline::SetExposure(double exposure_s) {
 void GstreamerPipeline::SetUpSink(PixelFormat format) {
   GstAppSink* sink = GST_APP_SINK(sink_.get());
   const GstCapsPointer caps(gst_caps_new_simple("video/x-raw", "format", G_TYPE_STRING,
-                                             format == PixelFormat::kGray ? "GRAY8" : "BGR",
-                                             nullptr));
+                                                format == PixelFormat::kGray ? "GRAY8" : "BGR",
+                                                nullptr));
   gst_app_sink_set_caps(sink, caps.get());
   gst_app_sink_set_max_buffers(sink, 1);
   gst_app_sink_set_drop(sink, TRUE);
@@ -161,9 +163,8 @@ void GstreamerPipeline::SetUpSink(PixelFormat format) {
 
 // Else a source may bring a clock of its own, whose times are not those of Now().
 void GstreamerPipeline::UseMonotonicClock() {
-  const GstClockPointer clock(GST_CLOCK(g_object_new(GST_TYPE_SYSTEM_CLOCK, "name", "kestrel",
-                                                  "clock-type", GST_CLOCK_TYPE_MONOTONIC,
-                                                  nullptr)));
+  const GstClockPointer clock(GST_CLOCK(g_object_new(
+      GST_TYPE_SYSTEM_CLOCK, "name", "kestrel", "clock-type", GST_CLOCK_TYPE_MONOTONIC, nullptr)));
   gst_object_ref_sink(clock.get());
   gst_pipeline_use_clock(GST_PIPELINE(pipeline_.get()), clock.get());
 }

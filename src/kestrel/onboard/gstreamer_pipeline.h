@@ -2,11 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <gst/gst.h>
 #include <memory>
 #include <optional>
 #include <string>
-
-#include <gst/gst.h>
 
 #include "kestrel/base/time.h"
 #include "kestrel/recording/frame.h"

@@ -28,7 +28,8 @@ class HuntVision : public FlightVision {
   bool WriteResults() override;
   std::string Found() const override;
 
-  // The map of all that was seen; after the last frame. Throws InputError when it cannot be written.
+  // The map of all that was seen; after the last frame. Throws InputError when it cannot be
+  // written.
   void WriteMap(const OutputFolder& output) const;
 
  private:

@@ -49,9 +49,9 @@ TrackSnapshot LandingVision::Process(const Frame& frame) {
 void LandingVision::ControlExposure(const cv::Mat& image, const LandingObservation& observation) {
   const LandingPatternDetector& detector = pipeline_.detector();
   const auto& detection = observation.report.detection;
-  exposure_->Update(image, detection ? PatternArea(*detection, detector.options().pattern,
-                                                   detector.camera())
-                                     : cv::Rect());
+  exposure_->Update(
+      image, detection ? PatternArea(*detection, detector.options().pattern, detector.camera())
+                       : cv::Rect());
 }
 
 bool LandingVision::WriteResults() {

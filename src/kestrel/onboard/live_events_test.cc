@@ -13,9 +13,9 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-Time Ms(int ms) { return Time(milliseconds(ms)); }
-Frame FrameAt(int ms) { return {"", Ms(ms), {}}; }
-PoseSample PoseAt(int ms) { return {Ms(ms), {}}; }
+Time AtMs(int ms) { return Time(milliseconds(ms)); }
+Frame EmptyFrame(int ms) { return {"", AtMs(ms), {}}; }
+PoseSample UnitPose(int ms) { return {AtMs(ms), {}}; }
 
 // "f20" or "p10", "end".
 std::string InWords(const Event& event) {
@@ -30,14 +30,14 @@ std::string InWords(const Event& event) {
 
 TEST(LiveEvents, AFrameWaitsForThePoseAfterIt) {
   LiveEvents events({.pose_wait_s = 1}, milliseconds(5));
-  events.Push(FrameAt(20));
-  events.Push(PoseAt(10));
-  events.Push(PoseAt(24));
+  events.Push(EmptyFrame(20));
+  events.Push(UnitPose(10));
+  events.Push(UnitPose(24));
   EXPECT_EQ(InWords(events.Next()), "p10");
   EXPECT_EQ(InWords(events.Next()), "p24");
   std::thread autopilot([&] {
     std::this_thread::sleep_for(milliseconds(20));
-    events.Push(PoseAt(25));
+    events.Push(UnitPose(25));
   });
   EXPECT_EQ(InWords(events.Next()), "p25") << "20 + the lead";
   EXPECT_EQ(InWords(events.Next()), "f20");
@@ -47,9 +47,9 @@ TEST(LiveEvents, AFrameWaitsForThePoseAfterIt) {
 
 TEST(LiveEvents, AFrameWaitsNoLongerThanAsked) {
   LiveEvents events({.pose_wait_s = 0.02}, Duration::zero());
-  events.Push(PoseAt(10));
+  events.Push(UnitPose(10));
   const Time start = Now();
-  events.Push(FrameAt(20));
+  events.Push(EmptyFrame(20));
   EXPECT_EQ(InWords(events.Next()), "p10");
   EXPECT_EQ(InWords(events.Next()), "f20");
   EXPECT_GE(Now() - start, milliseconds(20));
@@ -58,8 +58,8 @@ TEST(LiveEvents, AFrameWaitsNoLongerThanAsked) {
 
 TEST(LiveEvents, TheNewestFrameWinsWhileTheReaderIsBusy) {
   LiveEvents events({.pose_wait_s = 1}, Duration::zero());
-  for (int ms = 0; ms < 100; ms += 10) events.Push(FrameAt(ms));
-  events.Push(PoseAt(200));
+  for (int ms = 0; ms < 100; ms += 10) events.Push(EmptyFrame(ms));
+  events.Push(UnitPose(200));
   EXPECT_EQ(InWords(events.Next()), "p200");
   EXPECT_EQ(InWords(events.Next()), "f90");
   EXPECT_EQ(events.counters().dropped_frames, 9u);
@@ -68,11 +68,11 @@ TEST(LiveEvents, TheNewestFrameWinsWhileTheReaderIsBusy) {
 // Else poses that are later than the next frame would let none through.
 TEST(LiveEvents, NewerFramesDoNotReplaceTheOneThatWaits) {
   LiveEvents events({.pose_wait_s = 1}, Duration::zero());
-  for (int ms = 0; ms < 50; ms += 10) events.Push(FrameAt(ms));
-  events.Push(PoseAt(5));
+  for (int ms = 0; ms < 50; ms += 10) events.Push(EmptyFrame(ms));
+  events.Push(UnitPose(5));
   EXPECT_EQ(InWords(events.Next()), "p5");
   EXPECT_EQ(InWords(events.Next()), "f0");
-  events.Push(PoseAt(45));
+  events.Push(UnitPose(45));
   EXPECT_EQ(InWords(events.Next()), "p45");
   EXPECT_EQ(InWords(events.Next()), "f40");
   EXPECT_EQ(events.counters().dropped_frames, 3u);
@@ -91,7 +91,7 @@ TEST(LiveEvents, EndsAtOnceWhenItIsClosed) {
 
 TEST(LiveEvents, TooManyPosesDropTheOldest) {
   LiveEvents events({}, Duration::zero());
-  for (int ms = 0; ms < 300; ++ms) events.Push(PoseAt(ms));
+  for (int ms = 0; ms < 300; ++ms) events.Push(UnitPose(ms));
   EXPECT_EQ(events.counters().dropped_poses, 300u - 256u);
   EXPECT_EQ(InWords(events.Next()), "p44");
 }

@@ -21,10 +21,14 @@ std::vector<std::string> TargetReporterOptions::Validate() const {
 
 const char* ToString(TargetPhase phase) {
   switch (phase) {
-    case TargetPhase::kSearching: return "searching";
-    case TargetPhase::kFound: return "found";
-    case TargetPhase::kLost: return "lost";
-    case TargetPhase::kContact: return "contact";
+    case TargetPhase::kSearching:
+      return "searching";
+    case TargetPhase::kFound:
+      return "found";
+    case TargetPhase::kLost:
+      return "lost";
+    case TargetPhase::kContact:
+      return "contact";
   }
   return "";
 }
@@ -79,8 +83,7 @@ bool TargetReporter::PredictTarget(const TrackSnapshot& track, TargetReport* rep
 // is straight below.
 bool TargetReporter::HasContact(Time now, const TargetReport& report) {
   const double sink_mps = report.velocity_in_world.z() - report.body_velocity_in_world.z();
-  const Eigen::Vector3d offset =
-      report.position_in_world - report.world_from_body.translation;
+  const Eigen::Vector3d offset = report.position_in_world - report.world_from_body.translation;
   const bool rests = height_m_ < options_.contact_height_m &&
                      offset.head<2>().norm() < options_.contact_height_m &&
                      std::abs(sink_mps) < options_.contact_speed_mps;

@@ -24,7 +24,8 @@ struct Uav {
     PoseHistory poses(100, std::chrono::milliseconds(500));
     for (int i = 20; i >= 0; --i) {
       const double t = seconds - 0.01 * i;
-      poses.Add({At(t), {Eigen::Quaterniond::Identity(), position + t * velocity},
+      poses.Add({At(t),
+                 {Eigen::Quaterniond::Identity(), position + t * velocity},
                  BodyMotion{velocity, Vector3d::Zero()}});
     }
     return poses;
@@ -40,8 +41,7 @@ TrackSnapshot TrackAt(double seconds, const Vector3d& position, const Vector3d& 
   TargetEstimate target{At(seconds), {}};
   target.motion.mean.head<3>() = position;
   target.motion.mean.segment<3>(3) = velocity;
-  target.motion.covariance.topLeftCorner<3, 3>() =
-      sigma_m * sigma_m * Eigen::Matrix3d::Identity();
+  target.motion.covariance.topLeftCorner<3, 3>() = sigma_m * sigma_m * Eigen::Matrix3d::Identity();
   track.target = target;
   return track;
 }
@@ -73,8 +73,7 @@ TEST(TargetReporterTest, PredictsBothToTheTimeOfUse) {
 TEST(TargetReporterTest, IsSilentWhenThePredictionIsWorseThanTheLimit) {
   TargetReporter reporter = MakeReporter();
   const Vector3d still = Vector3d::Zero();
-  ASSERT_TRUE(
-      reporter.Report(At(1), kAtOnce, TrackAt(1, {0, 0, 0}, still), Uav().PosesUntil(1)));
+  ASSERT_TRUE(reporter.Report(At(1), kAtOnce, TrackAt(1, {0, 0, 0}, still), Uav().PosesUntil(1)));
   EXPECT_FALSE(
       reporter.Report(At(2), kAtOnce, TrackAt(2, {0, 0, 0}, still, 0.6), Uav().PosesUntil(2)));
   EXPECT_EQ(reporter.phase(), TargetPhase::kLost);
@@ -82,8 +81,8 @@ TEST(TargetReporterTest, IsSilentWhenThePredictionIsWorseThanTheLimit) {
 
 TEST(TargetReporterTest, IsSilentWithoutAFreshPose) {
   TargetReporter reporter = MakeReporter();
-  EXPECT_FALSE(reporter.Report(At(1.5), kAtOnce, TrackAt(1.5, {0, 0, 0}, {0, 0, 0}),
-                               Uav().PosesUntil(1)));
+  EXPECT_FALSE(
+      reporter.Report(At(1.5), kAtOnce, TrackAt(1.5, {0, 0, 0}, {0, 0, 0}), Uav().PosesUntil(1)));
 }
 
 // Flies with a deck, 'height_m' above it, for a second.
@@ -92,7 +91,8 @@ TargetReporter RideOn(double height_m, const Vector3d& velocity, const Vector3d&
   for (int i = 0; i <= 50; ++i) {
     const double t = 1 + 0.02 * i;
     const Uav uav{{0, 0, 1 + height_m}, velocity};
-    reporter.Report(At(t), kAtOnce, TrackAt(t, Vector3d(0, 0, 1) + t * deck_velocity, deck_velocity),
+    reporter.Report(At(t), kAtOnce,
+                    TrackAt(t, Vector3d(0, 0, 1) + t * deck_velocity, deck_velocity),
                     uav.PosesUntil(t));
   }
   return reporter;
@@ -103,8 +103,7 @@ TEST(TargetReporterTest, AfterContactTheDeckIsBelowAndMovesAsTheUav) {
   TargetReporter reporter = RideOn(0.35, drive, drive);
   ASSERT_EQ(reporter.phase(), TargetPhase::kContact);
   // The camera sees nothing any more, and the track is lost.
-  const auto report =
-      reporter.Report(At(9), kAtOnce, {}, Uav{{0, 0, 1.35}, drive}.PosesUntil(9));
+  const auto report = reporter.Report(At(9), kAtOnce, {}, Uav{{0, 0, 1.35}, drive}.PosesUntil(9));
   ASSERT_TRUE(report);
   EXPECT_LT((report->PositionInBody() - Vector3d(0, 0, -0.2)).norm(), 1e-9);
   EXPECT_EQ(report->velocity_in_world, drive);

@@ -43,19 +43,36 @@ std::string EurocCameraText(const CameraCalibration& calibration, double rate_hz
   return text;
 }
 
+std::string EurocCalibrationText(const CameraCalibration& calibration, double rate_hz) {
+  std::string text = EurocCameraText(calibration, rate_hz);
+  if (calibration.clock_offset) {
+    text += fmt::format("timeshift_cam_imu: {}\n", ToSeconds(*calibration.clock_offset));
+  }
+  return text;
+}
+
 std::string EurocPoseSensorText(double rate_hz) {
   return fmt::format("sensor_type: pose\nrate_hz: {}\n", rate_hz);
 }
 
+std::string EurocPoseColumns(const std::string& frames) {
+  return fmt::format(
+      "#timestamp [ns],p_{0}_{1}_x [m],p_{0}_{1}_y [m],p_{0}_{1}_z [m],"
+      "q_{0}_w [],q_{0}_x [],q_{0}_y [],q_{0}_z []",
+      frames, frames.front());
+}
+
+std::string EurocPoseCells(Time time, const RigidTransform& pose) {
+  const Eigen::Vector3d& p = pose.translation;
+  const Eigen::Quaterniond& q = pose.rotation;
+  return fmt::format("{},{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f}", ToNanoseconds(time),
+                     p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
+}
+
 std::string EurocPoseText(const std::vector<PoseSample>& poses) {
-  std::string text =
-      "#timestamp [ns],p_WB_W_x [m],p_WB_W_y [m],p_WB_W_z [m],"
-      "q_WB_w [],q_WB_x [],q_WB_y [],q_WB_z []\n";
+  std::string text = EurocPoseColumns("WB") + "\n";
   for (const PoseSample& pose : poses) {
-    const Eigen::Vector3d& p = pose.world_from_body.translation;
-    const Eigen::Quaterniond& q = pose.world_from_body.rotation;
-    text += fmt::format("{},{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f}\n",
-                        ToNanoseconds(pose.time), p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
+    text += EurocPoseCells(pose.time, pose.world_from_body) + "\n";
   }
   return text;
 }

@@ -16,10 +16,19 @@ const char* DistortionName(DistortionModel model);
 // has one, the mount T_BS. ReadCalibration reads it back, to the last bit.
 std::string EurocCameraText(const CameraCalibration& calibration, double rate_hz);
 
+// The same with the clock offset, where the calibration has one.
+std::string EurocCalibrationText(const CameraCalibration& calibration, double rate_hz);
+
 // nav0/sensor.yaml.
 std::string EurocPoseSensorText(double rate_hz);
 
-// nav0/data.csv: position (to a micrometre) and quaternion (w x y z) of the body in the world.
+// The columns of a pose's file, without the end of the line, and a row of it: position (to a
+// micrometre) and quaternion (w x y z). 'frames': the two in their names, "WB" in nav0, "RS" in
+// EuRoC's ground truth.
+std::string EurocPoseColumns(const std::string& frames);
+std::string EurocPoseCells(Time time, const RigidTransform& pose);
+
+// nav0/data.csv: the body in the world.
 std::string EurocPoseText(const std::vector<PoseSample>& poses);
 
 // A matrix as EuRoC files have it, rows in a flat list: "  cols: 4\n  rows: 4\n  data: [...]\n".

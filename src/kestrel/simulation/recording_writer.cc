@@ -43,7 +43,11 @@ void WriteText(const fs::path& path, const std::string& text) {
   WriteWhole(path, text.data(), text.size());
 }
 
-void RequireFree(const fs::path& output, bool replace) {
+constexpr char kImages[] = "mav0/cam0/data";
+
+}  // namespace
+
+void RequireFreeForRecording(const fs::path& output, bool replace) {
   if (!fs::exists(output)) return;
   if (!fs::is_directory(output)) {
     throw InputError(output.string() + ": is a file, not a folder");
@@ -55,10 +59,6 @@ void RequireFree(const fs::path& output, bool replace) {
   if (!replace) throw InputError(output.string() + ": exists already; --force replaces it");
 }
 
-constexpr char kImages[] = "mav0/cam0/data";
-
-}  // namespace
-
 fs::path RecordedImagePath(Time time) {
   return fs::path(kImages) / fmt::format("{}.png", ToNanoseconds(time));
 }
@@ -66,7 +66,7 @@ fs::path RecordedImagePath(Time time) {
 RecordingWriter::RecordingWriter(const fs::path& output, bool replace, const std::string& scene) {
   const fs::path path = fs::absolute(output).lexically_normal();
   output_ = path.has_filename() ? path : path.parent_path();
-  RequireFree(output_, replace);
+  RequireFreeForRecording(output_, replace);
   part_ = output_.string() + ".part";
   MakeFolder(part_);
   lock_.emplace(part_.string());

@@ -19,6 +19,10 @@ struct RecordingFile {
   std::string text;
 };
 
+// Throws InputError when there is something at 'output' that a recording must not take the place
+// of: a file, a folder with other things in it, or a recording, unless 'replace'.
+void RequireFreeForRecording(const std::filesystem::path& output, bool replace);
+
 // An image's path in a recording.
 std::filesystem::path RecordedImagePath(Time time);
 

@@ -46,8 +46,9 @@ std::string SimulatedLanding::SceneText(const std::string& kind, const std::stri
 std::vector<RecordingFile> SimulatedLanding::Files() const {
   std::string rows = LandingTruthHeader();
   for (const double time_s : flight_.times_s()) {
-    rows += LandingTruthRow(TimeOfFlight(time_s), time_s, flight_.camera(), pattern_,
-                            world_from_pattern_);
+    const auto seen =
+        SeenPattern(TimeOfFlight(time_s), time_s, flight_.camera(), pattern_, world_from_pattern_);
+    if (seen) rows += LandingTruthRow(*seen);
   }
   std::vector<RecordingFile> files = flight_.Files();
   files.push_back({"landing_pattern0/data.csv", rows});

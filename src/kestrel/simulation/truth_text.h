@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "kestrel/base/time.h"
+#include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/landing/landing_pattern.h"
 #include "kestrel/navigation/pose_history.h"
 #include "kestrel/rendering/flight_camera.h"
@@ -12,6 +16,16 @@
 #include "kestrel/world/world.h"
 
 namespace kestrel {
+
+// A row of landing_pattern0/data.csv: where the pattern was when an image was taken.
+struct TruePattern {
+  Time time;
+  RigidTransform world_from_pattern;
+  Eigen::Vector3d velocity_in_world = Eigen::Vector3d::Zero();
+  Eigen::Vector2d center_px = Eigen::Vector2d::Zero();  // may lie outside of the image
+  double altitude_m = 0;                                // of the camera above the pattern
+  double visible_fraction = 0;  // part of ring and cross that the image shows
+};
 
 // state_groundtruth_estimate0/data.csv of a flight: the true pose and velocity at 100 Hz from
 // 'begin_s' to 'end_s', and at all image times.
@@ -21,13 +35,20 @@ std::string TrueStateText(const Motion& world_from_body, double begin_s, double 
 // The same of poses that have nothing to do with each other: without velocities.
 std::string TrueStateText(const std::vector<PoseSample>& poses);
 
-// The header of landing_pattern0/data.csv.
-std::string LandingTruthHeader();
+// Header and row of that file.
+std::string TrueStateHeader();
+std::string TrueStateRow(Time time, const RigidTransform& world_from_body,
+                         const Eigen::Vector3d& velocity);
 
-// A row of it: the pattern in the image that 'camera' takes at 'time_s', whose stamp is 'stamp';
-// empty where the camera's model does not see the pattern's centre.
-std::string LandingTruthRow(Time stamp, double time_s, const FlightCamera& camera,
-                            const LandingPattern& pattern, const Motion& world_from_pattern);
+// Header and row of landing_pattern0/data.csv.
+std::string LandingTruthHeader();
+std::string LandingTruthRow(const TruePattern& pattern);
+
+// The pattern in the image that 'camera' takes at 'time_s', whose stamp is 'stamp'; nothing where
+// the camera's model does not see the pattern's centre.
+std::optional<TruePattern> SeenPattern(Time stamp, double time_s, const FlightCamera& camera,
+                                       const LandingPattern& pattern,
+                                       const Motion& world_from_pattern);
 
 // A text of lines as a part of a YAML map: two blanks before each.
 std::string Indented(const std::string& lines);

@@ -503,4 +503,16 @@ std::uint8_t AutopilotModel::TakeOff(double altitude, Time now) {
   return mavlink::kResultAccepted;
 }
 
+std::string InWords(const SitlResult& result) {
+  if (!result.contact) return "did not come down in a landing mode\n";
+  const std::string where =
+      result.contact->on_board
+          ? fmt::format("on the board, {:.3f} m from the pattern's centre", result.offset_m())
+          : fmt::format("beside the board, {:.2f} m from the pattern's centre", result.offset_m());
+  const std::string disarmed =
+      result.is_disarmed ? fmt::format("disarmed {:.1f} s later", result.disarm_s) : "not disarmed";
+  return fmt::format("came down {}, {:.1f} s after the landing began; {}\n", where,
+                     result.landing_s, disarmed);
+}
+
 }  // namespace kestrel

@@ -86,6 +86,9 @@ struct SitlResult {
   double offset_m() const { return contact->feet_in_pattern.head<2>().norm(); }
 };
 
+// A line: "came down on the board, 0.03 m from the centre, after 18.2 s; disarmed 2.1 s later".
+std::string InWords(const SitlResult& result);
+
 // A UAV with its autopilot, as far as a companion computer can tell it from a real one: its clock,
 // messages, modes, parameters, and how it lands by what it is told. Steps on whatever clock it is
 // given; no thread, no socket.

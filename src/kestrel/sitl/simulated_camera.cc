@@ -191,9 +191,9 @@ RigidTransform SimulatedCamera::PatternAt(Time stamp) const {
   return world_.PatternAt(CaptureOf(stamp));
 }
 
-std::string SimulatedCamera::TruthRow(const Frame& frame) const {
-  return LandingTruthRow(frame.time, world_.SceneTime(CaptureOf(frame.time)), *camera_,
-                         world_.scene().pattern, world_.scene().world_from_pattern);
+std::optional<TruePattern> SimulatedCamera::Truth(const Frame& frame) const {
+  return SeenPattern(frame.time, world_.SceneTime(CaptureOf(frame.time)), *camera_,
+                     world_.scene().pattern, world_.scene().world_from_pattern);
 }
 
 }  // namespace kestrel

@@ -15,6 +15,7 @@
 #include "kestrel/navigation/pose_history.h"
 #include "kestrel/recording/frame.h"
 #include "kestrel/rendering/flight_camera.h"
+#include "kestrel/simulation/truth_text.h"
 #include "kestrel/sitl/vehicle_world.h"
 #include "kestrel/world/light_options.h"
 #include "kestrel/world/world.h"
@@ -76,9 +77,8 @@ class SimulatedCamera {
   // world_from_pattern when the image with that stamp was taken.
   RigidTransform PatternAt(Time stamp) const;
 
-  // A row of landing_pattern0/data.csv for the newest frame; empty when the pattern cannot be in
-  // it. Same thread as Next.
-  std::string TruthRow(const Frame& frame) const;
+  // Of the pattern in the newest frame; nothing when it cannot be in it. Same thread as Next.
+  std::optional<TruePattern> Truth(const Frame& frame) const;
 
   std::int64_t left_out() const { return left_out_; }  // images, for lack of time or pose
 

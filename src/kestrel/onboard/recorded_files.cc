@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/onboard/recorded_files.h"
+
+#include <cerrno>
+#include <fcntl.h>
+#include <system_error>
+#include <unistd.h>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/base/error.h"
+
+namespace kestrel {
+namespace {
+
+// Appends the whole text, or nothing. Returns 0 or what the system says.
+int AppendWhole(int descriptor, std::int64_t size, std::string_view text) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t written = pwrite(descriptor, text.data() + done, text.size() - done,
+                                   size + static_cast<std::int64_t>(done));
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) {
+      const int error = written == 0 ? ENOSPC : errno;
+      return ftruncate(descriptor, size) == 0 ? error : EIO;
+    }
+    done += static_cast<std::size_t>(written);
+  }
+  return 0;
+}
+
+}  // namespace
+
+RecordedFiles::RecordedFiles(const std::filesystem::path& folder, std::vector<File> files)
+    : folder_descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (folder_descriptor_ < 0) throw InputError(folder.string() + ": cannot be opened");
+  for (File& file : files) files_.push_back({std::move(file), {}, {}});
+}
+
+RecordedFiles::~RecordedFiles() {
+  for (const Growing& file : files_) {
+    if (file.descriptor >= 0) close(file.descriptor);
+  }
+  close(folder_descriptor_);
+}
+
+void RecordedFiles::Add(std::size_t index, std::string_view rows) {
+  constexpr std::size_t kMost = std::size_t{16} << 20;
+  const std::lock_guard lock(mutex_);
+  std::string& added = files_[index].added;
+  if (added.size() + rows.size() <= kMost) added += rows;
+}
+
+std::string RecordedFiles::Commit() {
+  {
+    const std::lock_guard lock(mutex_);
+    for (Growing& file : files_) {
+      if (file.committed.empty()) std::swap(file.committed, file.added);
+    }
+  }
+  syncfs(folder_descriptor_);
+  std::string failure;
+  for (Growing& file : files_) {
+    if (file.committed.empty()) continue;
+    const std::string error = Write(&file);
+    if (failure.empty()) failure = error;
+  }
+  return failure;
+}
+
+std::string RecordedFiles::Write(Growing* file) {
+  const auto failed = [&](int error) {
+    return fmt::format("{}: cannot be written: {}", file->file.path.string(),
+                       std::generic_category().message(error));
+  };
+  constexpr int kMode = 0644;
+  if (file->descriptor < 0) {
+    file->descriptor =
+        open(file->file.path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
+    if (file->descriptor < 0) return failed(errno);
+  }
+  if (file->size == 0 && !file->file.header.empty()) {
+    const int error = AppendWhole(file->descriptor, 0, file->file.header);
+    if (error != 0) return failed(error);
+    file->size = static_cast<std::int64_t>(file->file.header.size());
+  }
+  const int error = AppendWhole(file->descriptor, file->size, file->committed);
+  if (error != 0) return failed(error);
+  file->size += static_cast<std::int64_t>(file->committed.size());
+  file->committed.clear();
+  return fdatasync(file->descriptor) == 0 ? "" : failed(errno);
+}
+
+}  // namespace kestrel
