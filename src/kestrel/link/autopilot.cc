@@ -487,7 +487,7 @@ void Autopilot::SendRequests(Time now) {
     question->target_component = component_;
     connection_->Send(*question);
   }
-  MessageStreams::Request request;
+  StreamRequests::Request request;
   if (streams_.Next(now, &request)) SendStreamRequest(request);
   const std::string_view name = parameters_.Next(now);
   if (!name.empty()) {
@@ -515,7 +515,7 @@ void Autopilot::SendQuestions(Time now) {
   if (!origin_) ask(mavlink::GpsGlobalOrigin::kId);
 }
 
-void Autopilot::SendStreamRequest(const MessageStreams::Request& request) {
+void Autopilot::SendStreamRequest(const StreamRequests::Request& request) {
   SendInterval(request.id, request.rate_hz);
   const bool is_attitude = request.id == mavlink::AttitudeQuaternion::kId;
   if (!is_attitude && request.id != mavlink::LocalPositionNed::kId) return;

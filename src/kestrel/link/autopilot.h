@@ -16,9 +16,9 @@
 #include "kestrel/link/clock_exchange.h"
 #include "kestrel/link/connection.h"
 #include "kestrel/link/global_position.h"
-#include "kestrel/link/message_streams.h"
 #include "kestrel/link/messages.h"
 #include "kestrel/link/parameter_reader.h"
+#include "kestrel/link/stream_requests.h"
 #include "kestrel/navigation/pose_history.h"
 
 namespace kestrel {
@@ -150,7 +150,7 @@ class Autopilot {
   std::optional<GlobalPosition> origin() const { return origin_; }  // of the local frame
 
   const TimeSync& time_sync() const { return clock_.sync(); }
-  const MessageStreams& streams() const { return streams_; }
+  const StreamRequests& streams() const { return streams_; }
   ParameterReader& parameters() { return parameters_; }
   const ParameterReader& parameters() const { return parameters_; }
   const AutopilotCounters& counters() const { return counters_; }
@@ -201,7 +201,7 @@ class Autopilot {
   void SendRequests(Time now);
   void WantStreams();
   void WantTimesync();
-  void SendStreamRequest(const MessageStreams::Request& request);
+  void SendStreamRequest(const StreamRequests::Request& request);
   void SendOldStreamRequest(bool is_attitude, double rate_hz);
   void SendInterval(std::uint32_t id, double rate_hz);
   void SendCommand(std::uint16_t command, float param1, float param2);
@@ -228,7 +228,7 @@ class Autopilot {
 
   ClockExchange clock_;
   int jumps_ = 0;  // of the clock, that were seen
-  MessageStreams streams_;
+  StreamRequests streams_;
   ParameterReader parameters_;
   std::optional<Position> position_;
   StampOrder attitude_order_;

@@ -3,46 +3,88 @@
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
+#include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
-#include "kestrel/link/autopilot_kind.h"
+#include "kestrel/base/time.h"
+#include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/link/autopilot.h"
+#include "kestrel/link/connection.h"
 #include "kestrel/link/global_position.h"
 #include "kestrel/link/messages.h"
-#include "kestrel/link/target_report.h"
 
 namespace kestrel {
 
-// How an autopilot is told of the landing target; what each does with it is in docs/fly.md.
+// How an autopilot is told of a landing target.
 enum class LinkProfile {
-  kArduPilot,  // LANDING_TARGET, relative, in the body's axes
-  kPx4,        // LANDING_TARGET, a place in the local frame
-  kPx4Vte,     // TARGET_RELATIVE with its uncertainty
+  kArduPilot,  // LANDING_TARGET relative to the body: all that ArduPilot takes
+  kPx4,        // LANDING_TARGET as a place in the local frame: all that PX4 takes without the next
+  kPx4Vte,     // TARGET_RELATIVE with its uncertainty, for PX4's vision target estimator (VTE_EN)
 };
 const char* ToString(LinkProfile profile);  // "ardupilot", "px4", "px4-vte"
 
-// Nothing for a name that is none.
-std::optional<LinkProfile> ParseLinkProfile(std::string_view name);
-// The profile that every autopilot of this kind takes; nothing where none is known to.
-std::optional<LinkProfile> ProfileOf(AutopilotKind kind);
+// Of a name as above. Throws InputError when it is none.
+LinkProfile ParseLinkProfile(const std::string& name);
 
-// Each from the target at 'report.time', which is 'time_us' on the autopilot's clock.
+// What suits an autopilot of this kind: kPx4 for PX4, kArduPilot for all others.
+LinkProfile ProfileFor(AutopilotKind kind);
 
-// 'camera_in_frd': where the autopilot takes the camera to be (PLND_CAM_POS, m): it
-// adds that to what it is told. 'size_m': of the pattern.
-mavlink::LandingTarget ArduPilotTarget(const TargetReport& report, std::uint64_t time_us,
-                                       const Eigen::Vector3d& camera_in_frd, double size_m);
-mavlink::LandingTarget Px4Target(const TargetReport& report, std::uint64_t time_us);
-mavlink::TargetRelative Px4VteTarget(const TargetReport& report, std::uint64_t time_us);
+// Where the target and the UAV are at an instant, mostly a predicted one: when the autopilot will
+// use it.
+struct TargetReport {
+  Time time;                       // local clock
+  RigidTransform world_from_body;  // UAV (FLU) in the world (ENU)
+  Eigen::Vector3d position_in_world{0, 0, 0};
+  Eigen::Vector3d velocity_in_world{0, 0, 0};
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of the position relative to the UAV, m^2
+  std::optional<double> yaw = std::nullopt;  // of the target in the world, rad from east to north
+  double yaw_sigma = 0;                      // rad
+  double size_m = 0;                         // across the pattern; 0: not known
 
-// The height of the body above the target as a range finder that looks down would measure it;
-// 'minimum_m' and 'maximum_m': of what can be measured.
-mavlink::DistanceSensor TargetDistance(const TargetReport& report, std::uint32_t time_boot_ms,
-                                       double minimum_m, double maximum_m);
+  Eigen::Vector3d position_in_body() const { return world_from_body.Inverse() * position_in_world; }
+};
 
-// 'origin': of the autopilot's local frame.
-mavlink::FollowTarget TargetToFollow(const TargetReport& report, AutopilotKind kind,
-                                     const GlobalPosition& origin, std::uint32_t time_boot_ms);
+// The messages. 'stamp_us' is the report's time on the autopilot's clock (see TimeSync::ToRemote),
+// in us; 0 where that is not known.
+mavlink::LandingTarget LandingTargetForArduPilot(const TargetReport& report,
+                                                 std::uint64_t stamp_us);
+mavlink::LandingTarget LandingTargetForPx4(const TargetReport& report, std::uint64_t stamp_us);
+mavlink::TargetRelative TargetRelativeForPx4(const TargetReport& report, std::uint64_t stamp_us);
+
+// What a rangefinder under the UAV would measure to the plane of the target; nothing when that is
+// not below, or beyond 'max_m'. 'boot_ms': the report's time on the autopilot's clock.
+std::optional<mavlink::DistanceSensor> DistanceSensorOf(const TargetReport& report, double max_m,
+                                                        std::uint32_t boot_ms);
+
+// Where the target is on the Earth, for follow modes.
+mavlink::FollowTarget FollowTargetOf(const TargetReport& report, AutopilotKind kind,
+                                     const GlobalPosition& origin, std::uint64_t boot_ms);
+
+// Which messages are sent beside that of the profile.
+struct TargetMessageOptions {
+  bool sends_distance = false;
+  double max_distance_m = 40;
+  bool sends_follow_target = false;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("sends_distance", self.sends_distance, "",
+            "also DISTANCE_SENSOR: the height above the target, as a rangefinder's");
+    visitor("max_distance_m", self.max_distance_m, "m", "largest distance of that");
+    visitor("sends_follow_target", self.sends_follow_target, "",
+            "also FOLLOW_TARGET, once the autopilot has told its origin");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// Sends what the profile says of the report, and what the options say. False when the target's
+// message was not sent: the line did not take it, or kPx4Vte does not know the autopilot's clock
+// yet. PX4's estimator refuses the future: a report of kPx4Vte is to be of 'now' at the latest, a
+// later one is stamped with 'now'.
+bool SendTarget(LinkProfile profile, const TargetMessageOptions& options,
+                const TargetReport& report, const Autopilot& autopilot, Time now,
+                Connection* connection);
 
 }  // namespace kestrel

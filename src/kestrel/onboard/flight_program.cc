@@ -16,6 +16,7 @@
 #include "kestrel/base/options.h"
 #include "kestrel/base/violations.h"
 #include "kestrel/link/mavlink_enums.h"
+#include "kestrel/link/ned.h"
 
 namespace kestrel {
 namespace {
@@ -35,12 +36,6 @@ constexpr std::string_view kLag = "PLND_LAG", kCameraX = "PLND_CAM_POS_X",
 constexpr std::array kParameters = {kLag, kCameraX, kCameraY, kCameraZ};
 constexpr double kDefaultLag_s = 0.02;
 
-// Of the pattern, as far as it is seen.
-constexpr double kLeastRange_m = 0.1, kLargestRange_m = 30;
-
-const char* const kStepNames[] = {"capture to arrival", "arrival to pose and detection",
-                                  "detection", "capture to message"};
-
 }  // namespace
 
 std::vector<std::string> FlightOptions::Validate() const {
@@ -50,6 +45,7 @@ std::vector<std::string> FlightOptions::Validate() const {
   RequirePositive(source_timeout_s, "source_timeout_s", &violations);
   RequirePositive(autopilot_timeout_s, "autopilot_timeout_s", &violations);
   AddViolations("target", target.Validate(), &violations);
+  AddViolations("messages", messages.Validate(), &violations);
   AddViolations("events", events.Validate(), &violations);
   AddViolations("vision_thread", vision_thread.Validate(), &violations);
   return violations;
@@ -204,18 +200,28 @@ void FlightProgram::TellTarget(Time now) {
     return;
   }
   due_ = std::max(due_ + period, now + period / 2);
-  const std::optional<LinkProfile> profile = Profile();
-  if (!profile || !parts_.autopilot->is_here()) return;
-  const auto report = reporter_.Report(now, UntilUse(), track, poses_);
+  Autopilot& autopilot = *parts_.autopilot;
+  if (!autopilot.is_here()) return;
+  auto report = reporter_.Report(now, UntilUse(), track, poses_);
   SayPhase();
-  if (!report || !Send(*profile, *report)) return;
+  if (!report) return;
+  const LinkProfile profile = parts_.profile.value_or(ProfileFor(autopilot.kind()));
+  report->size_m = parts_.pattern_size_m;
+  if (profile == LinkProfile::kArduPilot) {
+    report->position_in_world -= report->world_from_body.rotation * CameraOfArduPilot();
+  }
+  if (!SendTarget(profile, options_.messages, *report, autopilot, now, parts_.connection)) return;
   messages_.fetch_add(1, std::memory_order_relaxed);
   if (is_news) latency_.step(kMessage).Add(Now() - track.captured);
   told_frame_ = track.captured;
 }
 
-std::optional<LinkProfile> FlightProgram::Profile() const {
-  return parts_.profile ? parts_.profile : ProfileOf(parts_.autopilot->kind());
+// Where ArduPilot takes the camera to be (FLU): it adds that to what it is told, which is measured
+// from the body's origin.
+Eigen::Vector3d FlightProgram::CameraOfArduPilot() const {
+  const ParameterReader& parameters = parts_.autopilot->parameters();
+  const auto in_frd = [&](std::string_view name) { return parameters.Find(name).value_or(0); };
+  return FluFromFrd({in_frd(kCameraX), in_frd(kCameraY), in_frd(kCameraZ)});
 }
 
 // The link takes some time; and ArduPilot takes a target for one that was seen some time ago.
@@ -225,35 +231,6 @@ Duration FlightProgram::UntilUse() const {
                                                     : autopilot.time_sync().round_trip() / 2;
   if (autopilot.kind() != AutopilotKind::kArduPilot) return delay;
   return delay - DurationFromSeconds(autopilot.parameters().Find(kLag).value_or(kDefaultLag_s));
-}
-
-bool FlightProgram::Send(LinkProfile profile, const TargetReport& report) {
-  const TimeSync& clock = parts_.autopilot->time_sync();
-  if (!clock.is_known()) return false;
-  // A stamp in the future is refused: what is predicted ahead of it is stamped now.
-  const std::int64_t now_ns = clock.ToRemote(std::min(report.time, Now()));
-  const auto time_us = static_cast<std::uint64_t>(std::max<std::int64_t>(now_ns / 1000, 0));
-  const auto boot_ms = static_cast<std::uint32_t>(time_us / 1000);
-  Connection& connection = *parts_.connection;
-  if (options_.send_distance) {
-    connection.Send(TargetDistance(report, boot_ms, kLeastRange_m, kLargestRange_m));
-  }
-  if (const auto origin = parts_.autopilot->origin(); options_.send_follow_target && origin) {
-    connection.Send(TargetToFollow(report, parts_.autopilot->kind(), *origin, boot_ms));
-  }
-  switch (profile) {
-    case LinkProfile::kArduPilot: {
-      const ParameterReader& parameters = parts_.autopilot->parameters();
-      const auto offset = [&](std::string_view name) { return parameters.Find(name).value_or(0); };
-      const Eigen::Vector3d camera(offset(kCameraX), offset(kCameraY), offset(kCameraZ));
-      return connection.Send(ArduPilotTarget(report, time_us, camera, parts_.pattern_size_m));
-    }
-    case LinkProfile::kPx4:
-      return connection.Send(Px4Target(report, time_us));
-    case LinkProfile::kPx4Vte:
-      return connection.Send(Px4VteTarget(report, time_us));
-  }
-  return false;
 }
 
 // Tells the user and the ground station when the target is found, lost, stood on.

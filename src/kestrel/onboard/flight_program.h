@@ -33,10 +33,8 @@ struct FlightOptions {
   // When it is no use to wait any longer: the flight has ended, badly.
   double source_timeout_s = 60;
   double autopilot_timeout_s = 60;
-  // Further messages, for autopilots that are set up for them.
-  bool send_distance = false;
-  bool send_follow_target = false;
   TargetReporterOptions target;
+  TargetMessageOptions messages;
   LiveEventsOptions events;
   ThreadOptions vision_thread;
 
@@ -49,11 +47,8 @@ struct FlightOptions {
             "without an image for so long the flight ends");
     visitor("autopilot_timeout_s", self.autopilot_timeout_s, "s",
             "without a heartbeat for so long the flight ends");
-    visitor("send_distance", self.send_distance, "",
-            "also DISTANCE_SENSOR: the height above the pattern, as of a range finder");
-    visitor("send_follow_target", self.send_follow_target, "",
-            "also FOLLOW_TARGET: where the pattern is on the globe, and its velocity");
     visitor.Group("target", self.target);
+    visitor.Group("messages", self.messages);
     visitor.Group("events", self.events);
     visitor.Group("vision_thread", self.vision_thread);
   }
@@ -117,8 +112,7 @@ class FlightProgram {
   void Take(Event event);
   void TakePose(const PoseSample& pose);
   void TellTarget(Time now);
-  bool Send(LinkProfile profile, const TargetReport& report);
-  std::optional<LinkProfile> Profile() const;
+  Eigen::Vector3d CameraOfArduPilot() const;
   Duration UntilUse() const;
   void SayPhase();
   void WatchFlight(Time now);

@@ -46,8 +46,10 @@ std::optional<TargetReport> TargetReporter::Report(Time now, Duration until_use,
   TargetReport report;
   report.time = time_of_use;
   report.world_from_body = pose->world_from_body;
-  report.body_velocity_in_world = pose->motion.velocity_in_world;
-  if (phase_ == TargetPhase::kContact && StaysInContact(report)) return Below(report);
+  const Eigen::Vector3d& body_velocity = pose->motion.velocity_in_world;
+  if (phase_ == TargetPhase::kContact && StaysInContact(report)) {
+    return Below(report, body_velocity);
+  }
   if (!PredictTarget(track, &report)) {
     if (phase_ != TargetPhase::kSearching) phase_ = TargetPhase::kLost;
     resting_since_.reset();
@@ -55,10 +57,10 @@ std::optional<TargetReport> TargetReporter::Report(Time now, Duration until_use,
   }
   phase_ = TargetPhase::kFound;
   height_m_ = report.world_from_body.translation.z() - report.position_in_world.z();
-  if (!HasContact(now, report)) return report;
+  if (!HasContact(now, report, body_velocity)) return report;
   phase_ = TargetPhase::kContact;
   contact_z_m_ = report.world_from_body.translation.z();
-  return Below(report);
+  return Below(report, body_velocity);
 }
 
 void TargetReporter::Reset() {
@@ -72,17 +74,18 @@ bool TargetReporter::PredictTarget(const TrackSnapshot& track, TargetReport* rep
   const TurnState target = Propagate(track.target->motion, std::max(ahead_s, 0.0), noise_);
   report->position_in_world = target.position();
   report->velocity_in_world = target.velocity();
-  report->covariance_in_world = target.covariance.topLeftCorner<3, 3>();
+  report->covariance = target.covariance.topLeftCorner<3, 3>();
   // Written so that what is not finite is refused.
-  return report->covariance_in_world.trace() <= 3 * std::pow(options_.max_sigma_m, 2) &&
+  return report->covariance.trace() <= 3 * std::pow(options_.max_sigma_m, 2) &&
          report->position_in_world.allFinite();
 }
 
 // Whether the body has been as near to the deck, and as much at rest against it, as it is when the
 // legs stand there. A UAV that is held in the air so low is told the truth all the same: the deck
 // is straight below.
-bool TargetReporter::HasContact(Time now, const TargetReport& report) {
-  const double sink_mps = report.velocity_in_world.z() - report.body_velocity_in_world.z();
+bool TargetReporter::HasContact(Time now, const TargetReport& report,
+                                const Eigen::Vector3d& body_velocity) {
+  const double sink_mps = report.velocity_in_world.z() - body_velocity.z();
   const Eigen::Vector3d offset = report.position_in_world - report.world_from_body.translation;
   const bool rests = height_m_ < options_.contact_height_m &&
                      offset.head<2>().norm() < options_.contact_height_m &&
@@ -99,11 +102,12 @@ bool TargetReporter::StaysInContact(const TargetReport& report) const {
   return report.world_from_body.translation.z() < contact_z_m_ + options_.contact_height_m;
 }
 
-TargetReport TargetReporter::Below(TargetReport report) const {
+TargetReport TargetReporter::Below(TargetReport report,
+                                   const Eigen::Vector3d& body_velocity) const {
   report.position_in_world = report.world_from_body.translation;
   report.position_in_world.z() -= options_.contact_below_m;
-  report.velocity_in_world = report.body_velocity_in_world;
-  report.covariance_in_world = std::pow(0.1, 2) * Eigen::Matrix3d::Identity();
+  report.velocity_in_world = body_velocity;
+  report.covariance = std::pow(0.1, 2) * Eigen::Matrix3d::Identity();
   return report;
 }
 

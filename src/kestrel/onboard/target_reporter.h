@@ -9,7 +9,7 @@
 
 #include "kestrel/base/time.h"
 #include "kestrel/geometry/rigid_transform.h"
-#include "kestrel/link/target_report.h"
+#include "kestrel/link/target_profile.h"
 #include "kestrel/navigation/pose_history.h"
 #include "kestrel/tracking/target_tracker.h"
 
@@ -83,9 +83,9 @@ class TargetReporter {
 
  private:
   bool PredictTarget(const TrackSnapshot& track, TargetReport* report) const;
-  bool HasContact(Time now, const TargetReport& report);
+  bool HasContact(Time now, const TargetReport& report, const Eigen::Vector3d& body_velocity);
   bool StaysInContact(const TargetReport& report) const;
-  TargetReport Below(TargetReport report) const;
+  TargetReport Below(TargetReport report, const Eigen::Vector3d& body_velocity) const;
 
   TargetReporterOptions options_;
   TurnNoise noise_;

@@ -66,7 +66,7 @@ TEST(TargetReporterTest, PredictsBothToTheTimeOfUse) {
   EXPECT_EQ(report->time, At(1.1));
   EXPECT_NEAR(report->position_in_world.x(), 3.4, 1e-6);
   EXPECT_NEAR(report->world_from_body.translation.x(), 2.2, 1e-6);
-  EXPECT_NEAR(report->PositionInBody().x(), 1.2, 1e-6);
+  EXPECT_NEAR(report->position_in_body().x(), 1.2, 1e-6);
   EXPECT_EQ(reporter.phase(), TargetPhase::kFound);
 }
 
@@ -105,7 +105,7 @@ TEST(TargetReporterTest, AfterContactTheDeckIsBelowAndMovesAsTheUav) {
   // The camera sees nothing any more, and the track is lost.
   const auto report = reporter.Report(At(9), kAtOnce, {}, Uav{{0, 0, 1.35}, drive}.PosesUntil(9));
   ASSERT_TRUE(report);
-  EXPECT_LT((report->PositionInBody() - Vector3d(0, 0, -0.2)).norm(), 1e-9);
+  EXPECT_LT((report->position_in_body() - Vector3d(0, 0, -0.2)).norm(), 1e-9);
   EXPECT_EQ(report->velocity_in_world, drive);
   EXPECT_EQ(reporter.phase(), TargetPhase::kContact);
 }
@@ -124,7 +124,7 @@ TEST(TargetReporterTest, ContactEndsWhenTheUavRises) {
                                       Uav{{0, 0, 3}, still}.PosesUntil(3));
   ASSERT_TRUE(report);
   EXPECT_EQ(reporter.phase(), TargetPhase::kFound);
-  EXPECT_NEAR(report->PositionInBody().z(), -2, 1e-9);
+  EXPECT_NEAR(report->position_in_body().z(), -2, 1e-9);
 }
 
 TEST(TargetReporterTest, RefusesOptionsThatAreNone) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/link/message_streams.h"
+#include "kestrel/link/stream_requests.h"
 
 #include <algorithm>
 
 namespace kestrel {
 
-void MessageStreams::Want(std::uint32_t id, double rate_hz) {
+void StreamRequests::Want(std::uint32_t id, double rate_hz) {
   for (Stream& stream : streams_) {
     if (stream.id != id) continue;
     if (stream.rate_hz == rate_hz) return;
@@ -20,7 +20,7 @@ void MessageStreams::Want(std::uint32_t id, double rate_hz) {
   streams_.push_back(stream);
 }
 
-void MessageStreams::Count(std::uint32_t id) {
+void StreamRequests::Count(std::uint32_t id) {
   for (Stream& stream : streams_) {
     if (stream.id != id) continue;
     ++stream.count;
@@ -29,7 +29,7 @@ void MessageStreams::Count(std::uint32_t id) {
   }
 }
 
-void MessageStreams::Measure(Time now) {
+void StreamRequests::Measure(Time now) {
   constexpr double kWindow_s = 1;
   const double past_s = ToSeconds(now - measured_);
   if (past_s >= 0 && past_s < kWindow_s) return;
@@ -40,7 +40,7 @@ void MessageStreams::Measure(Time now) {
   measured_ = now;
 }
 
-bool MessageStreams::Next(Time now, Request* request) {
+bool StreamRequests::Next(Time now, Request* request) {
   constexpr double kEnough = 0.7;
   constexpr int kQuickRequests = 5;
   constexpr Duration kQuick = std::chrono::milliseconds(1100);  // a whole measurement
@@ -58,7 +58,7 @@ bool MessageStreams::Next(Time now, Request* request) {
   return false;
 }
 
-void MessageStreams::AskAgain() {
+void StreamRequests::AskAgain() {
   for (Stream& stream : streams_) {
     stream.requests = 0;
     stream.has_come = false;
@@ -66,7 +66,7 @@ void MessageStreams::AskAgain() {
   }
 }
 
-double MessageStreams::RateOf(std::uint32_t id) const {
+double StreamRequests::RateOf(std::uint32_t id) const {
   const auto is_it = [&](const Stream& stream) { return stream.id == id; };
   const auto found = std::find_if(streams_.begin(), streams_.end(), is_it);
   return found == streams_.end() ? 0 : found->measured_hz;

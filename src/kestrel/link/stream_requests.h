@@ -10,7 +10,7 @@ namespace kestrel {
 
 // How often the messages that are wanted of an autopilot come, and when it has to be asked again:
 // another ground station may ask for less, parameters on their way slow all down, a reboot forgets.
-class MessageStreams {
+class StreamRequests {
  public:
   struct Request {
     std::uint32_t id = 0;
