@@ -49,6 +49,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto parser = std::make_unique<kestrel::mavlink::PacketParser>();
   kestrel::Time now = kestrel::TimeFromNanoseconds(1'000'000'000);
   const auto handle = [&](const Packet& packet) {
+    autopilot.Tick(now);
     signing.Check(packet, 1'700'000'000'000'000'000);
     autopilot.Handle(packet, now);
     autopilot.Handle(FromAutopilot(packet), now);
@@ -61,7 +62,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (chunk % 2 == 0) parser->EndDatagram(handle);
     bytes = bytes.subspan(count);
     now += std::chrono::milliseconds(20);
-    autopilot.Tick(now);
   }
   return 0;
 }
