@@ -35,6 +35,7 @@ struct FlyArguments {
   std::string signing_key;
   std::string record;
   bool hunt = false;
+  std::string model;  // of the objects
   bool loop = false;
 };
 
@@ -60,6 +61,7 @@ class Flight {
     if (arguments.rate_hz) options.flight.rate_hz = *arguments.rate_hz;
     if (!arguments.signing_key.empty()) options.link.signing_key = arguments.signing_key;
     SetLinkDelay(&options.flight);
+    PredictPoses();
     const PixelFormat format = arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray;
     source_ = OpenFlySource(arguments.source, format, options, arguments.loop);
     OpenVision();
@@ -97,14 +99,25 @@ class Flight {
     options->link_delay_s = *delay_s;
   }
 
+  // What a recording has, a flight may have to do without: the pose after a frame.
+  void PredictPoses() {
+    constexpr double kLongest_s = 0.2;
+    for (double* const ahead_s :
+         {&all_options_.landing.pose_extrapolation_s, &all_options_.hunt.pose_extrapolation_s}) {
+      if (*ahead_s == 0) *ahead_s = kLongest_s;
+    }
+  }
+
   void OpenVision() {
     if (!arguments_.source.output.empty()) {
       output_.emplace(arguments_.source.output, arguments_.source.force);
     }
     const OutputFolder* const output = output_ ? &*output_ : nullptr;
     if (arguments_.hunt) {
-      auto hunt = std::make_unique<HuntVision>(source_.calibration, DefaultObjectModel(),
-                                               all_options_.hunt, output);
+      auto hunt = std::make_unique<HuntVision>(
+          source_.calibration,
+          arguments_.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments_.model),
+          all_options_.hunt, output);
       hunt_ = hunt.get();
       vision_ = std::move(hunt);
       return;
@@ -258,7 +271,11 @@ void AddFlyCommand(CLI::App* app) {
       ->add_option("--record", arguments->record,
                    "Record the flight: a EuRoC folder with images and poses, and mavlink.tlog")
       ->type_name("DIR");
-  command->add_flag("--hunt", arguments->hunt, "Coloured objects instead of the landing pattern");
+  CLI::Option* hunt = command->add_flag("--hunt", arguments->hunt,
+                                        "Coloured objects instead of the landing pattern");
+  command->add_option("--model", arguments->model, "Objects and their colours (YAML), with --hunt")
+      ->type_name("FILE")
+      ->needs(hunt);
   command->add_flag("--loop", arguments->loop, "Play a recording again and again");
   command->callback([arguments] { RunFly(*arguments); });
 }

@@ -5,7 +5,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <iterator>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -53,13 +52,15 @@ std::vector<std::string> FlightOptions::Validate() const {
 
 FlightProgram::FlightProgram(const FlightOptions& options, const TargetTrackerOptions& tracker,
                              const FlightParts& parts, std::function<void(const std::string&)> say)
-    : options_(Checked(options)),
+    : options_(options),
       parts_(parts),
       say_(std::move(say)),
       events_(options.events, parts.vision->pose_lead()),
       reporter_(options.target, tracker),
       poses_(kPoses, kPoseGap),
-      latency_({std::begin(kStepNames), std::end(kStepNames)}) {}
+      latency_({"capture to arrival", "capture to vision", "detection", "capture to message"}) {
+  RequireValid(options);
+}
 
 FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
   std::vector<std::thread> threads;

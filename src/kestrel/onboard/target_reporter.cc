@@ -35,7 +35,10 @@ const char* ToString(TargetPhase phase) {
 
 TargetReporter::TargetReporter(const TargetReporterOptions& options,
                                const TargetTrackerOptions& tracker)
-    : options_(Checked(options)), noise_(Checked(tracker).Noise()) {}
+    : options_(options), noise_(tracker.Noise()) {
+  RequireValid(options);
+  RequireValid(tracker);
+}
 
 std::optional<TargetReport> TargetReporter::Report(Time now, Duration until_use,
                                                    const TrackSnapshot& track,
