@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/link/stream_requests.h"
+
+#include <algorithm>
+
+namespace kestrel {
+
+void StreamRequests::Want(std::uint32_t id, double rate_hz) {
+  for (Stream& stream : streams_) {
+    if (stream.id != id) continue;
+    if (stream.rate_hz == rate_hz) return;
+    stream.rate_hz = rate_hz;
+    stream.requests = 0;
+    stream.due = {};
+    return;
+  }
+  Stream stream;
+  stream.id = id;
+  stream.rate_hz = rate_hz;
+  streams_.push_back(stream);
+}
+
+void StreamRequests::Count(std::uint32_t id) {
+  for (Stream& stream : streams_) {
+    if (stream.id != id) continue;
+    ++stream.count;
+    stream.has_come = true;
+    return;
+  }
+}
+
+void StreamRequests::Measure(Time now) {
+  constexpr double kWindow_s = 1;
+  const double past_s = ToSeconds(now - measured_);
+  if (past_s >= 0 && past_s < kWindow_s) return;
+  for (Stream& stream : streams_) {
+    stream.measured_hz = stream.count / past_s;
+    stream.count = 0;
+  }
+  measured_ = now;
+}
+
+bool StreamRequests::Next(Time now, Request* request) {
+  constexpr double kEnough = 0.7;
+  constexpr int kQuickRequests = 5;
+  constexpr Duration kQuick = std::chrono::milliseconds(1100);  // a whole measurement
+  constexpr Duration kSlow = std::chrono::seconds(5);
+  Measure(now);
+  for (Stream& stream : streams_) {
+    if (stream.rate_hz <= 0 || now < stream.due) continue;
+    if (stream.requests > 0 && stream.measured_hz >= kEnough * stream.rate_hz) continue;
+    *request = {stream.id, stream.rate_hz, stream.requests,
+                stream.requests > 1 && !stream.has_come};
+    ++stream.requests;
+    stream.due = now + (stream.requests < kQuickRequests ? kQuick : kSlow);
+    return true;
+  }
+  return false;
+}
+
+void StreamRequests::AskAgain() {
+  for (Stream& stream : streams_) {
+    stream.requests = 0;
+    stream.has_come = false;
+    stream.due = {};
+  }
+}
+
+double StreamRequests::RateOf(std::uint32_t id) const {
+  const auto is_it = [&](const Stream& stream) { return stream.id == id; };
+  const auto found = std::find_if(streams_.begin(), streams_.end(), is_it);
+  return found == streams_.end() ? 0 : found->measured_hz;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/link/time_sync.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kestrel {
+namespace {
+
+constexpr double kCell_s = 0.2;
+constexpr double kWindow_s = 90;
+constexpr double kMaxDrift = 500e-6;    // of any clock that works
+constexpr double kDriftSigma = 50e-6;   // of crystals
+constexpr double kDriftWander = 20e-6;  // how well the drift is known once nobody tells any more
+constexpr int kMinRoundTrips = 3;
+
+}  // namespace
+
+// Whether differences of such times can be computed: those of a clock that counts from its start or
+// from 1970 can.
+bool TimeSync::IsClock(std::int64_t remote_ns) {
+  constexpr std::int64_t kLimit = std::int64_t{1} << 61;
+  return remote_ns > -kLimit && remote_ns < kLimit;
+}
+
+void TimeSync::Start(std::int64_t remote_ns, Time local) {
+  has_origin_ = true;
+  local_origin_ = local;
+  remote_origin_ = remote_ns;
+}
+
+void TimeSync::Reset() {
+  const int jumps = jumps_;
+  *this = TimeSync();
+  jumps_ = jumps;
+}
+
+TimeSync::Cell& TimeSync::CellAt(double time_s) {
+  const auto index = static_cast<std::int64_t>(std::floor(time_s / kCell_s));
+  const auto count = static_cast<std::int64_t>(kCells);
+  Cell& cell = cells_[static_cast<std::size_t>(((index % count) + count) % count)];
+  if (cell.index != index) cell = {index, {}, {}};
+  return cell;
+}
+
+double TimeSync::OffsetOf(std::int64_t remote_ns, double time_s) const {
+  return ToSeconds(Duration(remote_ns - remote_origin_)) - time_s;
+}
+
+double TimeSync::OffsetAt(double time_s) const {
+  return line_.offset_s + line_.drift * (time_s - line_.time_s);
+}
+
+// 'excess_s': by how much a message was faster than no time at all, were the offset as it is
+// thought to be. The offset is wrong by no more than half of the fastest round trip.
+bool TimeSync::IsPossible(double excess_s, int* impossible) {
+  constexpr double kMargin_s = 0.005;
+  constexpr int kMaxImpossible = 3;
+  if (!is_known_ || round_trips_ < kMinRoundTrips || excess_s < line_.width_s / 2 + kMargin_s) {
+    *impossible = 0;
+    return true;
+  }
+  if (++*impossible < kMaxImpossible) return false;
+  ++jumps_;
+  Reset();
+  return false;
+}
+
+void TimeSync::AddRoundTrip(Time sent, std::int64_t remote_ns, Time received) {
+  if (received < sent || !IsClock(remote_ns)) return;
+  if (!has_origin_) Start(remote_ns, sent);
+  const double sent_s = Seconds(sent);
+  const double there_s = OffsetOf(remote_ns, sent_s);
+  if (!IsPossible(OffsetAt(sent_s) - there_s, &impossible_there_)) return;
+  if (!AddBack(remote_ns, Seconds(received))) return;
+  Sample& fastest = CellAt(sent_s).there;
+  if (there_s < fastest.bound_s) fastest = {sent_s, there_s};
+  ++round_trips_;
+  Fit(Seconds(received));
+}
+
+void TimeSync::AddOneWay(std::int64_t remote_ns, Time received) {
+  if (!IsClock(remote_ns)) return;
+  if (!has_origin_) Start(remote_ns, received);
+  if (AddBack(remote_ns, Seconds(received))) Fit(Seconds(received));
+}
+
+bool TimeSync::AddBack(std::int64_t remote_ns, double received_s) {
+  const double back_s = -OffsetOf(remote_ns, received_s);
+  if (!IsPossible(-OffsetAt(received_s) - back_s, &impossible_back_)) return false;
+  Sample& fastest = CellAt(received_s).back;
+  if (back_s < fastest.bound_s) fastest = {received_s, back_s};
+  newest_s_ = std::max(newest_s_, received_s);
+  return true;
+}
+
+TimeSync::Strip TimeSync::Sum(double now_s) const {
+  Strip strip;
+  double sum_s = 0;
+  double there_sum_s = 0;
+  double back_sum_s = 0;
+  double first_there_s = std::numeric_limits<double>::infinity();
+  double first_back_s = first_there_s;
+  const auto oldest = static_cast<std::int64_t>(std::floor((now_s - kWindow_s) / kCell_s));
+  for (const Cell& cell : cells_) {
+    if (cell.index <= oldest) continue;
+    if (std::isfinite(cell.there.bound_s)) {
+      ++strip.there;
+      sum_s += cell.there.time_s;
+      there_sum_s += cell.there.bound_s;
+      first_there_s = std::min(first_there_s, cell.there.bound_s);
+    }
+    if (std::isfinite(cell.back.bound_s)) {
+      ++strip.back;
+      sum_s += cell.back.time_s;
+      back_sum_s += cell.back.bound_s;
+      first_back_s = std::min(first_back_s, cell.back.bound_s);
+    }
+  }
+  strip.newest_s = now_s;
+  if (strip.there + strip.back > 0) strip.mean_time_s = sum_s / (strip.there + strip.back);
+  if (strip.there > 0 && strip.back > 0) {
+    strip.mean_slack_s =
+        (there_sum_s / strip.there - first_there_s + back_sum_s / strip.back - first_back_s) / 2;
+  }
+  return strip;
+}
+
+TimeSync::Bounds TimeSync::BoundsFor(double drift, double center_s) const {
+  const auto oldest = static_cast<std::int64_t>(std::floor((newest_s_ - kWindow_s) / kCell_s));
+  Bounds bounds = {std::numeric_limits<double>::infinity(),
+                   std::numeric_limits<double>::infinity()};
+  for (const Cell& cell : cells_) {
+    if (cell.index <= oldest) continue;
+    bounds.there_s =
+        std::min(bounds.there_s, cell.there.bound_s - drift * (cell.there.time_s - center_s));
+    bounds.back_s =
+        std::min(bounds.back_s, cell.back.bound_s + drift * (cell.back.time_s - center_s));
+  }
+  return bounds;
+}
+
+// The drift with the widest strip, which is a concave function of it, less what a clock that drifts
+// so much is unlikely: the likeliest one when delays beyond the fastest are distributed
+// exponentially. By golden section.
+double TimeSync::BestDrift(const Strip& strip) const {
+  constexpr double kGolden = 0.6180339887498949;
+  constexpr int kSteps = 25;  // to 0.01 ppm
+  const double weight =
+      strip.mean_slack_s / (std::min(strip.there, strip.back) * kDriftSigma * kDriftSigma) / 2;
+  const auto worth = [&](double drift) {
+    return BoundsFor(drift, strip.mean_time_s).width_s() - weight * drift * drift;
+  };
+  double low = -kMaxDrift;
+  double high = kMaxDrift;
+  double left = high - kGolden * (high - low);
+  double right = low + kGolden * (high - low);
+  double left_worth = worth(left);
+  double right_worth = worth(right);
+  for (int i = 0; i < kSteps; ++i) {
+    if (left_worth > right_worth) {
+      high = right;
+      right = left;
+      right_worth = left_worth;
+      left = high - kGolden * (high - low);
+      left_worth = worth(left);
+    } else {
+      low = left;
+      left = right;
+      left_worth = right_worth;
+      right = low + kGolden * (high - low);
+      right_worth = worth(right);
+    }
+  }
+  return (low + high) / 2;
+}
+
+void TimeSync::Fit(double now_s) {
+  constexpr double kEvery_s = 0.05;
+  if (round_trips_ > kMinRoundTrips && now_s - fitted_s_ < kEvery_s && now_s >= fitted_s_) return;
+  fitted_s_ = now_s;
+  const Strip strip = Sum(newest_s_ = std::max(newest_s_, now_s));
+  if (round_trips_ >= kMinRoundTrips && strip.there > 0 && strip.back > 0) {
+    FitBoth(strip);
+  } else if (round_trips_ == 0) {
+    FitOneWay(strip);
+  }
+}
+
+// An estimate stays as long as it is worth more than one of the messages that are there: after a
+// pause there are few.
+void TimeSync::FitBoth(const Strip& strip) {
+  constexpr double kSpread = 1.0;  // of the fit's error, measured, in units of slack per message
+  const int count = std::min(strip.there, strip.back);
+  Line line;
+  line.time_s = strip.mean_time_s;
+  line.drift = BestDrift(strip);
+  const Bounds bounds = BoundsFor(line.drift, line.time_s);
+  line.offset_s = (bounds.there_s - bounds.back_s) / 2;
+  line.width_s = std::max(bounds.width_s(), 0.0);
+  line.fit_sigma_s =
+      kSpread * strip.mean_slack_s / count + (count < kMinRoundTrips ? line.width_s / 2 : 0);
+  // Both at the newest message.
+  line.offset_s += line.drift * (strip.newest_s - line.time_s);
+  line.time_s = strip.newest_s;
+  constexpr int kEnough = 50;
+  const bool was_fitted = is_known_ && round_trips_ > kMinRoundTrips;
+  if (was_fitted && count < kEnough && SigmaAt(line.time_s) < line.fit_sigma_s) return;
+  line_ = line;
+  is_known_ = true;
+}
+
+void TimeSync::FitOneWay(const Strip& strip) {
+  constexpr int kMinCells = 10;
+  constexpr double kSigma_s = 0.02;
+  if (strip.back < kMinCells) return;
+  const Bounds bounds = BoundsFor(0, strip.mean_time_s);
+  line_ = {strip.newest_s, -bounds.back_s, 0, 0, kSigma_s};
+  is_known_ = true;
+}
+
+Time TimeSync::ToLocal(std::int64_t remote_ns) const {
+  const double remote_s = ToSeconds(Duration(remote_ns - remote_origin_));
+  const double since_s = (remote_s - line_.time_s - line_.offset_s) / (1 + line_.drift);
+  return local_origin_ + DurationFromSeconds(line_.time_s + since_s);
+}
+
+std::int64_t TimeSync::ToRemote(Time time) const {
+  const double time_s = Seconds(time);
+  return remote_origin_ + DurationFromSeconds(time_s + OffsetAt(time_s)).count();
+}
+
+double TimeSync::SigmaAt(double time_s) const {
+  return line_.fit_sigma_s + kDriftWander * std::max(time_s - line_.time_s, 0.0);
+}
+
+double TimeSync::sigma_s(Time now) const {
+  constexpr double kAsymmetry = 0.05;  // of the fastest round trip
+  return std::hypot(SigmaAt(Seconds(now)), kAsymmetry * line_.width_s);
+}
+
+}  // namespace kestrel
