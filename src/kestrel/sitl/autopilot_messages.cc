@@ -169,6 +169,18 @@ mavlink::GpsGlobalOrigin GlobalOriginOf(const GlobalOrigin& origin, std::int64_t
           .time_usec = static_cast<std::uint64_t>(boot_us)};
 }
 
+// Home is at the local frame's origin.
+mavlink::HomePosition HomePositionOf(const GlobalOrigin& origin, std::int64_t boot_us) {
+  const GlobalPosition at = GlobalPositionAt(Vector3d::Zero(), origin);
+  mavlink::HomePosition message;
+  message.latitude = at.latitude;
+  message.longitude = at.longitude;
+  message.altitude = static_cast<std::int32_t>(std::lround(1000 * at.altitude_m));
+  message.q = {1, 0, 0, 0};
+  message.time_usec = static_cast<std::uint64_t>(boot_us);
+  return message;
+}
+
 mavlink::ParamValue ParamValueOf(const AutopilotParameters& parameters, std::size_t index,
                                  AutopilotFirmware firmware) {
   const AutopilotParameter& parameter = parameters.at(index);

@@ -57,8 +57,6 @@ class DelayLine {
     return message;
   }
 
-  void Clear() { messages_.clear(); }
-
  private:
   LinkFaultOptions options_;
   Random random_;

@@ -106,10 +106,9 @@ TEST(SimulatedAutopilotOptionsTest, NamesWhatIsWrong) {
   options.link.loss = 2;
   options.model.pilot.heading_deg = 1000;
   EXPECT_THAT(options.Validate(),
-              testing::UnorderedElementsAre(
-                  "firmware is 'inav', expected ardupilot or px4",
-                  "link.loss is 2, expected 0 to 1",
-                  "pilot.heading_deg is 1000, expected -360 to 360"));
+              testing::UnorderedElementsAre("firmware is 'inav', expected ardupilot or px4",
+                                            "link.loss is 2, expected 0 to 1",
+                                            "pilot.heading_deg is 1000, expected -360 to 360"));
 }
 
 }  // namespace
