@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/link/mavlink_enums.h"
-#include "kestrel/sitl/aerospace_frames.h"
+#include "kestrel/link/ned.h"
 
 namespace kestrel {
 namespace {
