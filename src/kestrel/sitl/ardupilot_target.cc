@@ -8,20 +8,18 @@
 
 #include "kestrel/geometry/angles.h"
 #include "kestrel/link/mavlink_enums.h"
-#include "kestrel/sitl/aerospace_frames.h"
+#include "kestrel/link/ned.h"
 
 namespace kestrel {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using std::chrono_literals::operator""ms;
-using std::chrono_literals::operator""s;
 
-constexpr Duration kTargetTimeout = 2s;
-constexpr Duration kSightTimeout = 1s;
-constexpr Duration kStartPeriod = 2s;
-constexpr Duration kStartGap = 500ms;
+constexpr Duration kTargetTimeout = std::chrono::seconds(2);
+constexpr Duration kSightTimeout = std::chrono::seconds(1);
+constexpr Duration kStartPeriod = std::chrono::seconds(2);
+constexpr Duration kStartGap = std::chrono::milliseconds(500);
 constexpr double kAccelerationNoise = 2.5;  // PLND_ACC_P_NSE, m/s^2
 constexpr double kMaxInnovationRatio = 3;
 constexpr int kMaxOutliers = 3;

@@ -8,7 +8,7 @@
 
 #include "kestrel/geometry/angles.h"
 #include "kestrel/link/mavlink_enums.h"
-#include "kestrel/sitl/aerospace_frames.h"
+#include "kestrel/link/ned.h"
 
 namespace kestrel {
 namespace {
@@ -74,7 +74,7 @@ std::optional<CompanionMessage> CompanionMessageOf(const mavlink::Packet& packet
 }
 
 mavlink::Attitude AttitudeOf(const PoseSample& pose, std::uint32_t boot_ms) {
-  const EulerAngles angles = EulerAnglesOf(NedFromFrd(pose.world_from_body.rotation));
+  const EulerAngles angles = EulerAnglesOf(NedFrdFromEnuFlu(pose.world_from_body.rotation));
   const Vector3d rate = FrdFromFlu(pose.motion->rate_in_body);
   return {.time_boot_ms = boot_ms,
           .roll = angles.roll,
@@ -86,7 +86,7 @@ mavlink::Attitude AttitudeOf(const PoseSample& pose, std::uint32_t boot_ms) {
 }
 
 mavlink::AttitudeQuaternion AttitudeQuaternionOf(const PoseSample& pose, std::uint32_t boot_ms) {
-  const Eigen::Quaternionf q = NedFromFrd(pose.world_from_body.rotation).cast<float>();
+  const Eigen::Quaternionf q = NedFrdFromEnuFlu(pose.world_from_body.rotation).cast<float>();
   const Eigen::Vector3f rate = FrdFromFlu(pose.motion->rate_in_body).cast<float>();
   mavlink::AttitudeQuaternion message;
   message.time_boot_ms = boot_ms;
@@ -117,7 +117,7 @@ mavlink::GlobalPositionInt GlobalPositionOf(const PoseSample& pose, const Global
   const Vector3d& position = pose.world_from_body.translation;
   const GlobalPosition at = GlobalPositionAt(position, origin);
   const Vector3d v = NedFromEnu(pose.motion->velocity_in_world);
-  const double yaw = EulerAnglesOf(NedFromFrd(pose.world_from_body.rotation)).yaw;
+  const double yaw = EulerAnglesOf(NedFrdFromEnuFlu(pose.world_from_body.rotation)).yaw;
   constexpr int kFullTurn_cdeg = 36000;
   const int heading = static_cast<int>(std::lround(100 * Degrees(yaw)));
   return {.time_boot_ms = boot_ms,
@@ -132,7 +132,7 @@ mavlink::GlobalPositionInt GlobalPositionOf(const PoseSample& pose, const Global
 }
 
 mavlink::SimState SimStateOf(const PoseSample& pose, const GlobalOrigin& origin) {
-  const Eigen::Quaterniond rotation = NedFromFrd(pose.world_from_body.rotation);
+  const Eigen::Quaterniond rotation = NedFrdFromEnuFlu(pose.world_from_body.rotation);
   const EulerAngles angles = EulerAnglesOf(rotation);
   const Eigen::Quaternionf q = rotation.cast<float>();
   const Eigen::Vector3f rate = FrdFromFlu(pose.motion->rate_in_body).cast<float>();
@@ -167,6 +167,18 @@ mavlink::GpsGlobalOrigin GlobalOriginOf(const GlobalOrigin& origin, std::int64_t
           .longitude = at.longitude,
           .altitude = static_cast<std::int32_t>(std::lround(1000 * at.altitude_m)),
           .time_usec = static_cast<std::uint64_t>(boot_us)};
+}
+
+// Home is at the local frame's origin.
+mavlink::HomePosition HomePositionOf(const GlobalOrigin& origin, std::int64_t boot_us) {
+  const GlobalPosition at = GlobalPositionAt(Vector3d::Zero(), origin);
+  mavlink::HomePosition message;
+  message.latitude = at.latitude;
+  message.longitude = at.longitude;
+  message.altitude = static_cast<std::int32_t>(std::lround(1000 * at.altitude_m));
+  message.q = {1, 0, 0, 0};
+  message.time_usec = static_cast<std::uint64_t>(boot_us);
+  return message;
 }
 
 mavlink::ParamValue ParamValueOf(const AutopilotParameters& parameters, std::size_t index,

@@ -21,9 +21,9 @@ namespace kestrel {
 using AutopilotMessage =
     std::variant<mavlink::Heartbeat, mavlink::Attitude, mavlink::AttitudeQuaternion,
                  mavlink::LocalPositionNed, mavlink::GlobalPositionInt, mavlink::GpsGlobalOrigin,
-                 mavlink::SimState, mavlink::ExtendedSysState, mavlink::Timesync,
-                 mavlink::Statustext, mavlink::AutopilotVersion, mavlink::ParamValue,
-                 mavlink::CommandAck>;
+                 mavlink::HomePosition, mavlink::SimState, mavlink::ExtendedSysState,
+                 mavlink::Timesync, mavlink::Statustext, mavlink::AutopilotVersion,
+                 mavlink::ParamValue, mavlink::CommandAck>;
 
 // All that it listens to.
 using CompanionMessage =
@@ -55,6 +55,7 @@ mavlink::LocalPositionNed LocalPositionOf(const PoseSample& pose, std::uint32_t 
 mavlink::GlobalPositionInt GlobalPositionOf(const PoseSample& pose, const GlobalOrigin& origin,
                                             std::uint32_t boot_ms);
 mavlink::SimState SimStateOf(const PoseSample& pose, const GlobalOrigin& origin);
+mavlink::HomePosition HomePositionOf(const GlobalOrigin& origin, std::int64_t boot_us);
 mavlink::GpsGlobalOrigin GlobalOriginOf(const GlobalOrigin& origin, std::int64_t boot_us);
 
 // PX4 puts the bits of an integer into the float, ArduPilot its value.

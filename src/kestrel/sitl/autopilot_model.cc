@@ -176,24 +176,23 @@ void AutopilotModel::Step(Time now) {
 }
 
 void AutopilotModel::StepOnce(Time now) {
-  ObserveFlight(now);
+  uav_.Step(now, Fly(now), is_armed_);
   world_.ObserveUav(now, uav_.pose().world_from_body.translation);
+  ObserveFlight(now);
   rules_->Estimate(state_);
   FollowScript(now);
-  uav_.Step(now, Fly(now), is_armed_);
   FinishLanding(now);
   if (now - booted_at_ < kBootTime && booted_at_ != start_) return;
   streams_.SendDue(OwnMicroseconds(now), [&](std::uint32_t id) { SendMessage(id, now); });
 }
 
-// What it believes of its flight, of the step before.
 void AutopilotModel::ObserveFlight(Time now) {
   const PoseSample& truth = uav_.pose();
   state_.step_s = ToSeconds(now - state_.time);
   state_.time = now;
   state_.boot_us = OwnMicroseconds(now);
   state_.pose = navigation_.Report(world_.SceneTime(truth.time), truth.world_from_body);
-  state_.pose.time = truth.time;
+  state_.pose.time = now;
   state_.pose.motion = truth.motion;
   state_.is_standing = uav_.is_standing();
 }
@@ -311,13 +310,15 @@ mavlink::AutopilotVersion AutopilotModel::VersionOf() const {
   constexpr std::uint32_t kPx4118 = 1u << 24 | 18u << 16;
   mavlink::AutopilotVersion message;
   message.flight_sw_version = firmware_ == AutopilotFirmware::kPx4 ? kPx4118 : kArduPilot47;
+  constexpr std::uint64_t kSpeaksMavlink2 = 8192;
+  message.capabilities = kSpeaksMavlink2;
   message.uid = static_cast<std::uint64_t>(options_.system_id);
   return message;
 }
 
 bool AutopilotModel::SendMessage(std::uint32_t id, Time now) {
   const PoseSample& pose = state_.pose;
-  const std::int64_t own_us = OwnMicroseconds(pose.time);
+  const std::int64_t own_us = state_.boot_us;
   const auto own_ms = static_cast<std::uint32_t>(own_us / 1000);
   switch (id) {
     case mavlink::Heartbeat::kId:
@@ -343,6 +344,9 @@ bool AutopilotModel::SendMessage(std::uint32_t id, Time now) {
       return true;
     case mavlink::GpsGlobalOrigin::kId:
       send_(GlobalOriginOf(options_.origin, own_us));
+      return true;
+    case mavlink::HomePosition::kId:
+      send_(HomePositionOf(options_.origin, own_us));
       return true;
     case mavlink::SimState::kId:
       send_(SimStateOf(uav_.pose(), options_.origin));
@@ -497,7 +501,8 @@ std::uint8_t AutopilotModel::TakeOff(double altitude, Time now) {
                                         : state_.position().z() + kPx4Default_m;
     return mavlink::kResultAccepted;
   }
-  if (custom_mode_ != kArduPilotGuided || !(altitude > 0)) return mavlink::kResultFailed;
+  if (custom_mode_ != kArduPilotGuided || !std::isfinite(altitude) || altitude <= 0)
+    return mavlink::kResultFailed;
   pilot_flies_ = false;
   hold_.z() = altitude;
   return mavlink::kResultAccepted;

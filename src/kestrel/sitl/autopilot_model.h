@@ -117,7 +117,6 @@ class AutopilotModel {
   std::int64_t OwnTime(Time now) const;
 
   const PoseSample& truth() const { return uav_.pose(); }  // at the last step
-  const PoseSample& estimate() const { return state_.pose; }
   std::uint32_t custom_mode() const { return custom_mode_; }
   bool is_armed() const { return is_armed_; }
   const SitlResult& result() const { return result_; }

@@ -39,8 +39,8 @@ struct LinkFaultOptions {
 template <class Message>
 class DelayLine {
  public:
-  DelayLine(const LinkFaultOptions& options, Random random)
-      : options_(options), random_(std::move(random)) {}
+  DelayLine(const LinkFaultOptions& options, const Random& random)
+      : options_(options), random_(random) {}
 
   void Push(Time now, Message message) {
     if (random_.Chance(options_.loss)) return;
@@ -56,8 +56,6 @@ class DelayLine {
     messages_.pop_front();
     return message;
   }
-
-  void Clear() { messages_.clear(); }
 
  private:
   LinkFaultOptions options_;

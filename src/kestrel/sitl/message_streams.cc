@@ -21,6 +21,7 @@ constexpr DefaultRate kDefaultRates[] = {
     {mavlink::Attitude::kId, 0, 100},        {mavlink::AttitudeQuaternion::kId, 0, 50},
     {mavlink::LocalPositionNed::kId, 0, 30}, {mavlink::GlobalPositionInt::kId, 0, 50},
     {mavlink::ExtendedSysState::kId, 0, 5},  {mavlink::GpsGlobalOrigin::kId, 0, 1},
+    {mavlink::HomePosition::kId, 0, 0.5},
 };
 
 }  // namespace

@@ -68,11 +68,15 @@ VelocityCommand Px4Landing::Land(const FlightState& state) {
 void Px4Landing::ObserveTarget(const FlightState& state) {
   is_updated_ = target_.TakeUpdated();
   is_valid_ = is_valid_ || is_updated_;
-  const auto& place = target_.place();
-  if (!place || 1e-6 * static_cast<double>(std::abs(state.boot_us - place->stamp_us)) >
-                    parameters_["PLD_BTOUT"]) {
+  if (!target_.place() || std::abs(AgeOfTarget(state)) > parameters_["PLD_BTOUT"]) {
     is_valid_ = false;
   }
+}
+
+// In seconds, by its stamp: negative when that is in the future.
+double Px4Landing::AgeOfTarget(const FlightState& state) const {
+  return 1e-6 *
+         (static_cast<double>(state.boot_us) - static_cast<double>(target_.place()->stamp_us));
 }
 
 bool Px4Landing::IsAbove(const FlightState& state) const {
@@ -93,9 +97,9 @@ bool Px4Landing::IsNearGround(const FlightState& state) const {
 }
 
 bool Px4Landing::CanDescend(const FlightState& state) const {
-  constexpr std::int64_t kCriticalAge_us = 500'000;
+  constexpr double kCriticalAge_s = 0.5;
   if (phase_ != Phase::kDescend) return is_updated_ && IsAbove(state);
-  if (IsNearGround(state)) return state.boot_us - target_.place()->stamp_us < kCriticalAge_us;
+  if (IsNearGround(state)) return AgeOfTarget(state) < kCriticalAge_s;
   return is_valid_;
 }
 

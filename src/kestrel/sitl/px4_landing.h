@@ -34,6 +34,7 @@ class Px4Landing : public LandingRules {
  private:
   void Enter(Phase phase, const FlightState& state);
   void ObserveTarget(const FlightState& state);
+  double AgeOfTarget(const FlightState& state) const;
   bool CanApproach(const FlightState& state) const;
   bool CanDescend(const FlightState& state) const;
   bool IsNearGround(const FlightState& state) const;

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/link/mavlink_enums.h"
-#include "kestrel/sitl/aerospace_frames.h"
+#include "kestrel/link/ned.h"
 
 namespace kestrel {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kRememberedPoses = 512;
-constexpr std::int64_t kOldestVision_us = 500'000;
+constexpr std::uint64_t kOldestVision_us = 500'000;
 
 Time OwnInstant(std::int64_t own_us) { return TimeFromNanoseconds(1000 * own_us); }
 
@@ -49,8 +49,8 @@ void Px4Target::Handle(const mavlink::TargetRelative& target, const FlightState&
   constexpr int kUsesVision = 2;  // bit of VTE_AID_MASK
   if (!uses_vision_estimator()) return;
   if ((static_cast<int>(parameters_["VTE_AID_MASK"]) & kUsesVision) == 0) return;
-  const std::int64_t age_us = state.boot_us - static_cast<std::int64_t>(target.timestamp);
-  if (age_us < 0 || age_us > kOldestVision_us) {
+  const auto own_us = static_cast<std::uint64_t>(state.boot_us);
+  if (target.timestamp > own_us || own_us - target.timestamp > kOldestVision_us) {
     constexpr std::int64_t kTellEvery_us = 3'000'000;
     if (state.boot_us - told_old_us_ < kTellEvery_us) return;
     told_old_us_ = state.boot_us;
@@ -80,22 +80,29 @@ std::optional<Vector3d> Px4Target::InWorld(const mavlink::TargetRelative& target
 void Px4Target::Fuse(const Vector3d& in_world, const Vector3d& sigma, const FlightState& state) {
   constexpr double kLeastVariance = 1e-4;
   constexpr double kMaxRatio = 3.84;  // 95 % of one axis
+  constexpr int kMaxOutliers = 3;     // in a row; what goes on is no outlier
   constexpr std::int64_t kTimeout_us = 2'000'000;
   if (!is_filtering_ || state.boot_us - fused_us_ > kTimeout_us) {
     for (int i = 0; i < 3; ++i) filters_[i].Start(in_world[i], 1, 0, 1);
     is_filtering_ = true;
     fused_us_ = state.boot_us;
   }
+  const Vector3d variance = sigma.cwiseAbs2().cwiseMax(kLeastVariance);
+  double ratio = 0;
   for (int i = 0; i < 3; ++i) {
-    const double variance = std::max(sigma[i] * sigma[i], kLeastVariance);
-    if (filters_[i].InnovationRatio(in_world[i], variance) > kMaxRatio) continue;
-    filters_[i].Fuse(in_world[i], variance);
-    fused_us_ = state.boot_us;
+    ratio = std::max(ratio, filters_[i].InnovationRatio(in_world[i], variance[i]));
   }
+  if (ratio > kMaxRatio && outliers_ < kMaxOutliers) {
+    ++outliers_;
+    return;
+  }
+  outliers_ = 0;
+  fused_us_ = state.boot_us;
+  for (int i = 0; i < 3; ++i) filters_[i].Fuse(in_world[i], variance[i]);
 }
 
 void Px4Target::Estimate(const FlightState& state) {
-  constexpr double kTargetNoise = 1;  // m/s^2
+  constexpr double kTargetNoise = 0.02;  // m/s, per root of a second
   PoseSample pose = state.pose;
   pose.time = OwnInstant(state.boot_us);
   poses_.Add(pose);

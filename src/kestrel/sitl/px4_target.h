@@ -54,6 +54,7 @@ class Px4Target {
   std::array<PositionVelocityFilter, 3> filters_;  // of the target in the world
   bool is_filtering_ = false;
   std::int64_t fused_us_ = 0;
+  int outliers_ = 0;  // in a row
   std::int64_t told_old_us_ = 0;
 };
 

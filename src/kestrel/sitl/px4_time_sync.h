@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 namespace kestrel {
@@ -29,7 +30,9 @@ class Px4TimeSync {
   // A stamp of the companion on the own clock.
   std::int64_t OwnTime(std::uint64_t stamp_us, std::int64_t now_us) const {
     if (!is_converged()) return now_us;
-    return static_cast<std::int64_t>(stamp_us) + static_cast<std::int64_t>(offset_us_);
+    // A stamp is whatever came over the wire: as unsigned numbers the sum may run over.
+    return static_cast<std::int64_t>(stamp_us +
+                                     static_cast<std::uint64_t>(std::llround(offset_us_)));
   }
 
  private:

@@ -75,9 +75,9 @@ void SimulatedAutopilot::Step(Duration wait) {
     const auto message = CompanionMessageOf(packet);
     if (message) incoming_.Push(received, {*message, packet.system, packet.component});
   });
-  const Time now = Now();
   const bool is_down = is_link_down_;
   {
+    const Time now = Now();
     const std::lock_guard lock(mutex_);
     while (const auto received = incoming_.Pop(now)) {
       if (is_down) continue;
@@ -85,6 +85,7 @@ void SimulatedAutopilot::Step(Duration wait) {
     }
     model_.Step(now);
   }
+  const Time now = Now();
   while (const auto message = outgoing_.Pop(now)) {
     if (is_down) continue;
     std::visit([this](const auto& typed) { connection_.Send(typed); }, *message);

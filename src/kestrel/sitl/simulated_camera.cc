@@ -20,11 +20,9 @@
 namespace kestrel {
 namespace {
 
-using std::chrono_literals::operator""ms;
-
 constexpr std::size_t kCameraPoses = 1000;
 // The autopilot's link may be away for so long and its pose between is still told.
-constexpr Duration kLongestPoseGap = 500ms;
+constexpr Duration kLongestPoseGap = std::chrono::milliseconds(500);
 
 const SimulatedCameraOptions& CheckedCamera(const SimulatedCameraOptions& options) {
   RequireValid(options);
@@ -146,7 +144,7 @@ std::optional<Frame> SimulatedCamera::Capture(Time capture) {
 // The pose at 'capture' and how it changes, from the poses around; from the newest one where none
 // is later.
 std::optional<SimulatedCamera::Snapshot> SimulatedCamera::SnapshotAt(Time capture) {
-  constexpr Duration kStep = 10ms;
+  constexpr Duration kStep = std::chrono::milliseconds(10);
   const std::lock_guard lock(mutex_);
   if (!newest_pose_ || capture - newest_pose_->time > kLongestPoseGap) return std::nullopt;
   Snapshot snapshot;

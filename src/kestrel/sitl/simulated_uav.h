@@ -21,6 +21,9 @@
 namespace kestrel {
 
 struct SimulatedUavOptions {
+  // The autopilots measure accelerations, which is what makes so stiff a velocity control work.
+  SimulatedUavOptions() { multicopter.velocity_gain = 6; }
+
   MulticopterOptions multicopter;
   WindOptions wind;
   double leg_m = 0.35;  // from the body's origin down to its feet

@@ -13,7 +13,7 @@
 #include "kestrel/base/time.h"
 #include "kestrel/link/mavlink_enums.h"
 #include "kestrel/link/messages.h"
-#include "kestrel/sitl/aerospace_frames.h"
+#include "kestrel/link/ned.h"
 #include "kestrel/sitl/autopilot_model.h"
 #include "kestrel/sitl/vehicle_world.h"
 
