@@ -209,11 +209,12 @@ bool FlightRecorder::HasRoom() {
   if (Now() < next_attempt_) return false;
   struct statvfs disk {};
   if (statvfs(folder_.c_str(), &disk) != 0) return true;  // writing will tell
-  const double free_mb = 1e-6 * static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize);
+  const double free_mb =
+      1e-6 * static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize);
   const double floor_mb = options_.free_space_mb * (are_images_stopped_ ? kMore : 1);
   if (free_mb >= floor_mb) return true;
-  StopImages(fmt::format("{:.0f} MB are free, {:.0f} are to stay", free_mb,
-                         options_.free_space_mb));
+  StopImages(
+      fmt::format("{:.0f} MB are free, {:.0f} are to stay", free_mb, options_.free_space_mb));
   return false;
 }
 
@@ -268,9 +269,8 @@ void FlightRecorder::WriteRecord(const PoseSample& pose) {
 void FlightRecorder::WriteRecord(const TruePose& truth) {
   const PoseSample& pose = truth.pose;
   if (!IsNext(kTruePoses, pose.time)) return;
-  files_.Add(kTruePoses,
-             TrueStateRow(pose.time, pose.world_from_body,
-                          pose.motion.value_or(BodyMotion()).velocity_in_world));
+  files_.Add(kTruePoses, TrueStateRow(pose.time, pose.world_from_body,
+                                      pose.motion.value_or(BodyMotion()).velocity_in_world));
 }
 
 void FlightRecorder::WriteRecord(const Exposure& exposure) {

@@ -57,10 +57,10 @@ struct FlightRecorderOptions {
   std::vector<std::string> Validate() const;
 };
 
-// Writes a flight as a recording in the EuRoC layout (docs/recording.md) that `kestrel land`, `hunt`,
-// `calibrate` and `evaluate` read, with threads of its own: nobody who gives it something waits, and
-// what the disk cannot keep up with is dropped. Every image that is listed is whole, whatever
-// happens: it is written under another name, and listed once it is on the disk.
+// Writes a flight as a recording in the EuRoC layout (docs/recording.md) that `kestrel land`,
+// `hunt`, `calibrate` and `evaluate` read, with threads of its own: nobody who gives it something
+// waits, and what the disk cannot keep up with is dropped. Every image that is listed is whole,
+// whatever happens: it is written under another name, and listed once it is on the disk.
 //
 //   mav0/cam0/data.csv, data/*.png, sensor.yaml   images, as they were given out by the camera
 //   mav0/cam0/exposure.csv                        timestamp, exposure (s) from that image on
@@ -96,9 +96,9 @@ class FlightRecorder {
   void AddPacket(Time time, std::span<const std::uint8_t> bytes);
 
   struct Counters {
-    std::uint64_t images = 0;   // written
-    std::uint64_t dropped = 0;  // images that are not, see dropped.csv
-    std::uint64_t bytes = 0;    // of the images that are written
+    std::uint64_t images = 0;        // written
+    std::uint64_t dropped = 0;       // images that are not, see dropped.csv
+    std::uint64_t bytes = 0;         // of the images that are written
     std::uint64_t lost_records = 0;  // poses, exposures and packets for which there was no time
   };
   Counters counters() const;

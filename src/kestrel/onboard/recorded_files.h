@@ -31,8 +31,8 @@ class RecordedFiles {
   // Whole rows for the file 'index'; more than 16 MB that wait are dropped. By any thread.
   void Add(std::size_t index, std::string_view rows);
 
-  // Writes all rows that were added, and waits for the disk. Returns an empty text or, in words, why
-  // some rows could not be written; these are tried again. One thread at a time.
+  // Writes all rows that were added, and waits for the disk. Returns an empty text or, in words,
+  // why some rows could not be written; these are tried again. One thread at a time.
   std::string Commit();
 
  private:
@@ -43,7 +43,10 @@ class RecordedFiles {
     int descriptor = -1;
     std::int64_t size = 0;
   };
+  // What went wrong: in words, or 0 or the system's number.
   std::string Write(Growing* file);
+  static int Begin(Growing* file);
+  static int Append(const std::string& text, Growing* file);
 
   int folder_descriptor_;
   std::mutex mutex_;

@@ -31,7 +31,7 @@ void CalibrationMonitor::Add(const CalibrationEvidence& evidence) {
   const double variance = std::pow(evidence.log_focal_sigma, 2) / of_view;
   if (!(of_view > 0 && variance > 0 && variance < kMaxSigma * kMaxSigma)) return;
   const double weight = 1 / (variance + kSharedSigma * kSharedSigma);
-  const double bin = std::round(evidence.log_focal / of_view / kBinWidth) + kBins / 2;
+  const double bin = std::round(evidence.log_focal / of_view / kBinWidth) + kMiddleBin;
   if (!std::isfinite(bin)) return;
   weights_[static_cast<int>(std::clamp(bin, 0.0, kBins - 1.0))] += weight;
   weight_ += weight;
@@ -67,7 +67,7 @@ std::optional<FocalFactor> CalibrationMonitor::Focal() const {
   const double seen_variance = scatter * scatter * squared_weights_ / (weight_ * weight_);
   const double sigma =
       std::hypot(kSharedSigma, kSigmaOfMedian * std::sqrt(std::max(told_variance, seen_variance)));
-  const double log_focal = kBinWidth * (median - kBins / 2);
+  const double log_focal = kBinWidth * (median - kMiddleBin);
   const double factor = std::exp(log_focal);
   return FocalFactor{factor, factor * sigma, views_};
 }

@@ -30,7 +30,8 @@ class CalibrationMonitor {
   std::optional<FocalFactor> Contradiction() const;
 
  private:
-  static constexpr int kBins = 1001;  // of 0.1 %, the middle one around 0
+  static constexpr int kMiddleBin = 500;            // the one around 0
+  static constexpr int kBins = 2 * kMiddleBin + 1;  // of 0.1 %
 
   int MedianBin() const;
   double MedianDeviation(int from_bin) const;
