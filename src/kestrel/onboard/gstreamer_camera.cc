@@ -36,7 +36,7 @@ std::string SourceElements(const std::string& camera, const CameraIntrinsics& ca
 
 std::string PipelineText(const std::string& camera, const CameraIntrinsics& calibration,
                          const GstreamerCameraOptions& options) {
-  const std::string source = SourceElements(camera, calibration, options);
+  std::string source = SourceElements(camera, calibration, options);
   if (source.find("appsink") != std::string::npos) return source;
   return source + " ! videoconvert ! appsink";
 }

@@ -13,10 +13,10 @@
 namespace kestrel {
 namespace {
 
-using GstClockPointer = std::unique_ptr<GstClock, GstReleaser<gst_object_unref>>;
-using GstCapsPointer = std::unique_ptr<GstCaps, GstReleaser<gst_caps_unref>>;
-using GstMessagePointer = std::unique_ptr<GstMessage, GstReleaser<gst_message_unref>>;
-using GstErrorPointer = std::unique_ptr<GError, GstReleaser<g_error_free>>;
+using GstClockPointer = std::unique_ptr<GstClock, GstReleaser>;
+using GstCapsPointer = std::unique_ptr<GstCaps, GstReleaser>;
+using GstMessagePointer = std::unique_ptr<GstMessage, GstReleaser>;
+using GstErrorPointer = std::unique_ptr<GError, GstReleaser>;
 
 void InitialiseGstreamer() {
   GError* error = nullptr;

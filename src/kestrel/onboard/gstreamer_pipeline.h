@@ -13,16 +13,19 @@
 namespace kestrel {
 
 // Owners of GStreamer's objects.
-template <auto release>
 struct GstReleaser {
+  void operator()(GstCaps* caps) const { gst_caps_unref(caps); }
+  void operator()(GstSample* sample) const { gst_sample_unref(sample); }
+  void operator()(GstMessage* message) const { gst_message_unref(message); }
+  void operator()(GError* error) const { g_error_free(error); }
   template <class T>
   void operator()(T* object) const {
-    release(object);
+    gst_object_unref(object);
   }
 };
-using GstElementPointer = std::unique_ptr<GstElement, GstReleaser<gst_object_unref>>;
-using GstBusPointer = std::unique_ptr<GstBus, GstReleaser<gst_object_unref>>;
-using GstSamplePointer = std::unique_ptr<GstSample, GstReleaser<gst_sample_unref>>;
+using GstElementPointer = std::unique_ptr<GstElement, GstReleaser>;
+using GstBusPointer = std::unique_ptr<GstBus, GstReleaser>;
+using GstSamplePointer = std::unique_ptr<GstSample, GstReleaser>;
 
 // "element.property" of a pipeline that sets the exposure.
 class GstExposureProperty {

@@ -2,6 +2,7 @@
 #include "kestrel/onboard/recorded_files.h"
 
 #include <cerrno>
+#include <cstdio>
 #include <fcntl.h>
 #include <system_error>
 #include <unistd.h>
@@ -69,26 +70,38 @@ std::string RecordedFiles::Commit() {
 }
 
 std::string RecordedFiles::Write(Growing* file) {
-  const auto failed = [&](int error) {
-    return fmt::format("{}: cannot be written: {}", file->file.path.string(),
-                       std::generic_category().message(error));
-  };
+  const std::string path = file->file.path.string();
+  const int error = file->descriptor < 0 ? Begin(file) : Append(file->committed, file);
+  if (error == 0) {
+    file->committed.clear();
+    return "";
+  }
+  return fmt::format("{}: cannot be written: {}", path, std::generic_category().message(error));
+}
+
+// Header and first rows go under another name until they are on the disk: there is never an empty
+// file.
+int RecordedFiles::Begin(Growing* file) {
   constexpr int kMode = 0644;
-  if (file->descriptor < 0) {
-    file->descriptor =
-        open(file->file.path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
-    if (file->descriptor < 0) return failed(errno);
-  }
-  if (file->size == 0 && !file->file.header.empty()) {
-    const int error = AppendWhole(file->descriptor, 0, file->file.header);
-    if (error != 0) return failed(error);
-    file->size = static_cast<std::int64_t>(file->file.header.size());
-  }
-  const int error = AppendWhole(file->descriptor, file->size, file->committed);
-  if (error != 0) return failed(error);
-  file->size += static_cast<std::int64_t>(file->committed.size());
-  file->committed.clear();
-  return fdatasync(file->descriptor) == 0 ? "" : failed(errno);
+  const std::string draft = file->file.path.string() + ".part";
+  file->descriptor = open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
+  if (file->descriptor < 0) return errno;
+  int error = Append(file->file.header + file->committed, file);
+  if (error == 0 && rename(draft.c_str(), file->file.path.c_str()) != 0) error = errno;
+  if (error == 0) return 0;
+  close(file->descriptor);
+  unlink(draft.c_str());
+  file->descriptor = -1;
+  file->size = 0;
+  return error;
+}
+
+int RecordedFiles::Append(const std::string& text, Growing* file) {
+  const int error = AppendWhole(file->descriptor, file->size, text);
+  if (error != 0) return error;
+  if (fdatasync(file->descriptor) != 0) return errno;  // the next attempt writes over it
+  file->size += static_cast<std::int64_t>(text.size());
+  return 0;
 }
 
 }  // namespace kestrel

@@ -43,7 +43,10 @@ class RecordedFiles {
     int descriptor = -1;
     std::int64_t size = 0;
   };
+  // What went wrong: in words, or 0 or the system's number.
   std::string Write(Growing* file);
+  static int Begin(Growing* file);
+  static int Append(const std::string& text, Growing* file);
 
   int folder_descriptor_;
   std::mutex mutex_;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/onboard/recorded_files.h"
 
+#include <csignal>
+#include <filesystem>
+#include <sys/resource.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,13 +29,37 @@ TEST(RecordedFiles, RowsAreThereWhenTheyAreCommitted) {
   EXPECT_FALSE(std::filesystem::exists(folder / "b.csv")) << "no row, no file";
 }
 
-TEST(RecordedFiles, AFullDiskIsToldAndHoldsUpNoOtherFile) {
+TEST(RecordedFiles, AFileThatCannotBeWrittenIsToldAndHoldsUpNoOther) {
   const TestFolder folder;
-  RecordedFiles files(folder.path(), {{"/dev/full", ""}, {folder / "b.csv", "#b\n"}});
+  RecordedFiles files(folder.path(), {{folder / "no/a.csv", ""}, {folder / "b.csv", "#b\n"}});
   files.Add(0, "1\n");
   files.Add(1, "2\n");
-  EXPECT_THAT(files.Commit(), HasSubstr("/dev/full: cannot be written"));
+  EXPECT_THAT(files.Commit(), HasSubstr("no/a.csv: cannot be written"));
   EXPECT_EQ(ReadFile(folder / "b.csv"), "#b\n2\n");
+}
+
+// A limit on the size of files stands for a full disk.
+TEST(RecordedFiles, WhatDoesNotFitLeavesNoPartOfIt) {
+  const TestFolder folder;
+  RecordedFiles files(folder.path(), {{folder / "a.csv", "#a\n"}, {folder / "b.csv", "#b\n"}});
+  files.Add(0, "1\n");
+  EXPECT_EQ(files.Commit(), "");
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{8, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  files.Add(0, "22222222\n");
+  files.Add(1, "33333333\n");
+  const std::string failure = files.Commit();
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_THAT(failure, HasSubstr("a.csv: cannot be written"));
+  EXPECT_EQ(ReadFile(folder / "a.csv"), "#a\n1\n");
+  EXPECT_FALSE(std::filesystem::exists(folder / "b.csv"));
+  EXPECT_EQ(files.Commit(), "");
+  EXPECT_EQ(ReadFile(folder / "a.csv"), "#a\n1\n22222222\n");
+  EXPECT_EQ(ReadFile(folder / "b.csv"), "#b\n33333333\n");
 }
 
 TEST(RecordedFiles, RowsWaitUntilThereIsRoom) {
