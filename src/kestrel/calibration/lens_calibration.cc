@@ -207,8 +207,8 @@ LensCalibration CalibrateLens(std::span<const LensImage> images,
   CameraIntrinsics camera = options.start ? *options.start : BestGuess(images, options.detector);
   std::vector<LensView> views = FindViews(images, 1, camera, options.detector);
   // The better the lens, the more views are found, at the border of the image most of all.
-  constexpr int kRounds = 3;
-  for (int round = 0; round < kRounds && views.size() >= kMinViews; ++round) {
+  constexpr int kSearches = 3;
+  for (int round = 0; round < kSearches && views.size() >= kMinViews; ++round) {
     camera = Estimate(views, camera, options.model, kFewViews).intrinsics;
     std::vector<LensView> more = FindViews(images, 1, camera, options.detector);
     if (more.size() <= views.size()) break;

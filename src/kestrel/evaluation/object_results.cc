@@ -28,7 +28,7 @@ class ShapeColumns {
         probability_(table.Column("digit_probability")) {}
 
   std::string ParseShape(std::size_t row) const {
-    const std::string shape(table_.Text(row, shape_));
+    std::string shape(table_.Text(row, shape_));
     if (std::ranges::find(shapes_, shape) == shapes_.end()) {
       table_.Fail(row, fmt::format("shape '{}', expected {}", shape, fmt::join(shapes_, ", ")));
     }

@@ -36,7 +36,7 @@ class PriorKnowledgeTest : public ::testing::Test {
   }
 
   const CameraModel camera_ = TestPrintCamera();
-  const LandingPatternDetectorOptions options_;
+  const LandingPatternDetectorOptions options_{};
 };
 
 TEST_F(PriorKnowledgeTest, WithoutAHintNothingIsKnown) {

@@ -131,7 +131,10 @@ TEST(RadiusOfTouchingDiscs, OtherFiguresAreNone) {
     for (const double size : {6.0, 12.0, 20.0}) {
       for (int i = 0; i < 8; ++i) {
         const double turn = std::numbers::pi * i / 8;
-        const Figure scaled = [&](const Eigen::Vector2d& at) { return figure(at / size); };
+        // clang 14 captures no structured binding without an initializer.
+        const Figure scaled = [size, &of_size_one = figure](const Eigen::Vector2d& at) {
+          return of_size_one(at / size);
+        };
         EXPECT_FALSE(RadiusIn(scaled, turn)) << name << " of " << size << " px, turned by " << turn;
       }
     }
