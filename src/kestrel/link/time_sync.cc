@@ -8,10 +8,22 @@ namespace kestrel {
 namespace {
 
 constexpr double kCell_s = 0.2;
-constexpr double kWindow_s = 90;
-constexpr double kMaxDrift = 500e-6;    // of any clock that works
-constexpr double kDriftSigma = 50e-6;   // of crystals
-constexpr double kDriftWander = 20e-6;  // how well the drift is known once nobody tells any more
+
+// How a clock runs.
+struct ClockKind {
+  double window_s;      // for so long its drift is the same
+  double max_drift;     // of any such clock that works
+  double drift_sigma;   // usual
+  double drift_wander;  // how well the drift is known once nobody tells any more
+  double jump_s;        // what it does at once is a jump, not a drift
+};
+constexpr ClockKind kCrystal = {90, 500e-6, 50e-6, 20e-6, 0.1};
+// An autopilot in software, whose time is that of a simulation which falls behind by a percent or
+// so, as the computer has time for it.
+constexpr ClockKind kSimulated = {1.5, 0.1, 0.02, 5e-3, 1};
+
+constexpr const ClockKind& KindOf(bool is_crystal) { return is_crystal ? kCrystal : kSimulated; }
+
 constexpr int kMinRoundTrips = 3;
 
 }  // namespace
@@ -31,8 +43,10 @@ void TimeSync::Start(std::int64_t remote_ns, Time local) {
 
 void TimeSync::Reset() {
   const int jumps = jumps_;
+  const bool is_crystal = is_crystal_;
   *this = TimeSync();
   jumps_ = jumps;
+  is_crystal_ = is_crystal;
 }
 
 TimeSync::Cell& TimeSync::CellAt(double time_s) {
@@ -61,9 +75,17 @@ bool TimeSync::IsPossible(double excess_s, int* impossible) {
     return true;
   }
   if (++*impossible < kMaxImpossible) return false;
-  ++jumps_;
-  Reset();
-  return false;
+  if (excess_s > KindOf(is_crystal_).jump_s) {
+    ++jumps_;
+    Reset();
+    return false;
+  }
+  // It drifts as no crystal does. The last estimate holds until there is a new one.
+  is_crystal_ = false;
+  cells_ = {};
+  round_trips_ = 0;
+  *impossible = 0;
+  return true;
 }
 
 void TimeSync::AddRoundTrip(Time sent, std::int64_t remote_ns, Time received) {
@@ -101,7 +123,8 @@ TimeSync::Strip TimeSync::Sum(double now_s) const {
   double back_sum_s = 0;
   double first_there_s = std::numeric_limits<double>::infinity();
   double first_back_s = first_there_s;
-  const auto oldest = static_cast<std::int64_t>(std::floor((now_s - kWindow_s) / kCell_s));
+  const auto oldest =
+      static_cast<std::int64_t>(std::floor((now_s - KindOf(is_crystal_).window_s) / kCell_s));
   for (const Cell& cell : cells_) {
     if (cell.index <= oldest) continue;
     if (std::isfinite(cell.there.bound_s)) {
@@ -127,7 +150,8 @@ TimeSync::Strip TimeSync::Sum(double now_s) const {
 }
 
 TimeSync::Bounds TimeSync::BoundsFor(double drift, double center_s) const {
-  const auto oldest = static_cast<std::int64_t>(std::floor((newest_s_ - kWindow_s) / kCell_s));
+  const auto oldest =
+      static_cast<std::int64_t>(std::floor((newest_s_ - KindOf(is_crystal_).window_s) / kCell_s));
   Bounds bounds = {std::numeric_limits<double>::infinity(),
                    std::numeric_limits<double>::infinity()};
   for (const Cell& cell : cells_) {
@@ -145,14 +169,16 @@ TimeSync::Bounds TimeSync::BoundsFor(double drift, double center_s) const {
 // exponentially. By golden section.
 double TimeSync::BestDrift(const Strip& strip) const {
   constexpr double kGolden = 0.6180339887498949;
-  constexpr int kSteps = 25;  // to 0.01 ppm
-  const double weight =
-      strip.mean_slack_s / (std::min(strip.there, strip.back) * kDriftSigma * kDriftSigma) / 2;
+  constexpr int kSteps = 25;  // to 0.01 ppm of a crystal
+  const ClockKind& kind = KindOf(is_crystal_);
+  const double weight = strip.mean_slack_s /
+                        (std::min(strip.there, strip.back) * kind.drift_sigma * kind.drift_sigma) /
+                        2;
   const auto worth = [&](double drift) {
     return BoundsFor(drift, strip.mean_time_s).width_s() - weight * drift * drift;
   };
-  double low = -kMaxDrift;
-  double high = kMaxDrift;
+  double low = -kind.max_drift;
+  double high = kind.max_drift;
   double left = high - kGolden * (high - low);
   double right = low + kGolden * (high - low);
   double left_worth = worth(left);
@@ -205,7 +231,8 @@ void TimeSync::FitBoth(const Strip& strip) {
   line.time_s = strip.newest_s;
   constexpr int kEnough = 50;
   const bool was_fitted = is_known_ && round_trips_ > kMinRoundTrips;
-  if (was_fitted && count < kEnough && SigmaAt(line.time_s) < line.fit_sigma_s) return;
+  if (is_crystal_ && was_fitted && count < kEnough && SigmaAt(line.time_s) < line.fit_sigma_s)
+    return;
   line_ = line;
   is_known_ = true;
 }
@@ -231,7 +258,8 @@ std::int64_t TimeSync::ToRemote(Time time) const {
 }
 
 double TimeSync::SigmaAt(double time_s) const {
-  return line_.fit_sigma_s + kDriftWander * std::max(time_s - line_.time_s, 0.0);
+  return line_.fit_sigma_s +
+         KindOf(is_crystal_).drift_wander * std::max(time_s - line_.time_s, 0.0);
 }
 
 double TimeSync::sigma_s(Time now) const {

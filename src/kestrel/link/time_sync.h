@@ -47,7 +47,8 @@ class TimeSync {
   Duration round_trip() const { return DurationFromSeconds(line_.width_s); }
 
   // How often the remote clock was found to have jumped: three messages in a row that it cannot
-  // have sent unless it did.
+  // have sent unless it did. One that drifts as no crystal does (an autopilot in software) does
+  // not: from then on it is followed from second to second.
   int jumps() const { return jumps_; }
 
  private:
@@ -104,6 +105,7 @@ class TimeSync {
 
   bool has_origin_ = false;
   bool is_known_ = false;
+  bool is_crystal_ = true;  // it runs as steadily as clocks do, as far as is known
   Time local_origin_{};
   std::int64_t remote_origin_ = 0;
   std::array<Cell, kCells> cells_;

@@ -203,10 +203,16 @@ void FlightProgram::TellTarget(Time now) {
   due_ = std::max(due_ + period, now + period / 2);
   Autopilot& autopilot = *parts_.autopilot;
   if (!autopilot.is_here()) return;
+  WantParameters();
+  const LinkProfile profile = parts_.profile.value_or(ProfileFor(autopilot.kind()));
   auto report = reporter_.Report(now, UntilUse(), track, poses_);
   SayPhase();
+  // PX4's target estimator filters by itself, and corrects the UAV's velocity by what it is told:
+  // a track, which has the UAV's own estimate in it, would lead it in a circle. It gets what each
+  // frame shows, with its time.
+  if (profile == LinkProfile::kPx4Vte) report = is_news ? track.sighting : std::nullopt;
+  told_frame_ = track.captured;
   if (!report) return;
-  const LinkProfile profile = parts_.profile.value_or(ProfileFor(autopilot.kind()));
   report->size_m = parts_.pattern_size_m;
   if (profile == LinkProfile::kArduPilot) {
     report->position_in_world -= report->world_from_body.rotation * CameraOfArduPilot();
@@ -214,7 +220,15 @@ void FlightProgram::TellTarget(Time now) {
   if (!SendTarget(profile, options_.messages, *report, autopilot, now, parts_.connection)) return;
   messages_.fetch_add(1, std::memory_order_relaxed);
   if (is_news) latency_.step(kMessage).Add(Now() - track.captured);
-  told_frame_ = track.captured;
+}
+
+// What an autopilot does not have it is not asked for.
+void FlightProgram::WantParameters() {
+  if (asked_parameters_ || parts_.autopilot->kind() != AutopilotKind::kArduPilot) return;
+  asked_parameters_ = true;
+  for (const std::string_view parameter : kParameters) {
+    parts_.autopilot->parameters().Want(parameter);
+  }
 }
 
 // Where ArduPilot takes the camera to be (FLU): it adds that to what it is told, which is measured

@@ -112,6 +112,7 @@ class FlightProgram {
   void Take(Event event);
   void TakePose(const PoseSample& pose);
   void TellTarget(Time now);
+  void WantParameters();
   Eigen::Vector3d CameraOfArduPilot() const;
   Duration UntilUse() const;
   void SayPhase();
@@ -137,6 +138,7 @@ class FlightProgram {
   Time told_frame_;  // the newest frame that a message was made from
   std::optional<PoseSample> newest_pose_;
   TargetPhase said_phase_ = TargetPhase::kSearching;
+  bool asked_parameters_ = false;
   bool was_armed_ = false;
   bool has_flown_ = false;
   double armed_z_m_ = 0;

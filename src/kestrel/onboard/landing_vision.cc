@@ -17,12 +17,18 @@ constexpr char kDetections[] = "landing_detections.csv";
 constexpr char kTrack[] = "landing_track.csv";
 constexpr std::size_t kResults = 256;  // that wait for the disk
 
+std::optional<RigidTransform> InverseOf(const std::optional<RigidTransform>& transform) {
+  if (!transform) return std::nullopt;
+  return transform->Inverse();
+}
+
 }  // namespace
 
 LandingVision::LandingVision(const CameraCalibration& calibration,
                              const LandingPipelineOptions& options, const OutputFolder* output,
                              std::optional<ExposureDrive> exposure)
     : pipeline_(calibration, options),
+      camera_from_body_(InverseOf(calibration.body_from_camera)),
       clock_offset_(calibration.clock_offset.value_or(Duration::zero())),
       results_(kResults),
       exposure_(std::move(exposure)) {
@@ -38,12 +44,26 @@ TrackSnapshot LandingVision::Process(const Frame& frame) {
   snapshot_.captured = frame.time + clock_offset_;
   snapshot_.state = observation.track_state;
   snapshot_.target = observation.target;
+  snapshot_.sighting = Sighting(observation);
   snapshot_.detect_time = observation.detect_time;
   ++snapshot_.frames;
   if (observation.report.detection) ++snapshot_.detections;
   if (exposure_) ControlExposure(frame.image, observation);
   if (detections_) results_.Push({frame.name, observation});
   return snapshot_;
+}
+
+std::optional<TargetReport> LandingVision::Sighting(const LandingObservation& observation) const {
+  const auto& detection = observation.report.detection;
+  if (!detection || !observation.world_from_camera || !camera_from_body_) return std::nullopt;
+  const RigidTransform& world_from_camera = *observation.world_from_camera;
+  const Eigen::Matrix3d rotation = world_from_camera.rotation.toRotationMatrix();
+  TargetReport report;
+  report.time = snapshot_.captured;
+  report.world_from_body = world_from_camera * *camera_from_body_;
+  report.position_in_world = world_from_camera * detection->camera_from_pattern.translation;
+  report.covariance = rotation * detection->covariance.topLeftCorner<3, 3>() * rotation.transpose();
+  return report;
 }
 
 void LandingVision::ControlExposure(const cv::Mat& image, const LandingObservation& observation) {

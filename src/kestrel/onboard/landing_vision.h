@@ -34,9 +34,11 @@ class LandingVision : public FlightVision {
     LandingObservation observation;
   };
 
+  std::optional<TargetReport> Sighting(const LandingObservation& observation) const;
   void ControlExposure(const cv::Mat& image, const LandingObservation& observation);
 
   LandingPipeline pipeline_;
+  std::optional<RigidTransform> camera_from_body_;
   Duration clock_offset_;
   TrackSnapshot snapshot_;
   BoundedQueue<Result> results_;

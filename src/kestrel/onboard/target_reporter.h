@@ -20,6 +20,8 @@ struct TrackSnapshot {
   Time captured;  // the frame's light
   TrackState state = TrackState::kSearching;
   std::optional<TargetEstimate> target;  // at 'captured', in the world
+  // What this frame alone showed, seen from where the UAV was then.
+  std::optional<TargetReport> sighting;
   Duration detect_time{};
   int frames = 0;      // so far
   int detections = 0;  // frames that showed the target

@@ -54,8 +54,10 @@ const VehicleWorldOptions& CheckedWorld(const VehicleWorldOptions& options) {
 
 }  // namespace
 
-// Few things around: every surface costs time of each frame. And a coarser ground is drawn sooner.
+// The board is where the ground of an autopilot in software is, which lands on nothing else. Few
+// things around: every surface costs time of each frame. And a coarser ground is drawn sooner.
 VehicleWorldOptions::VehicleWorldOptions() {
+  board.carrier = "none";
   ground.map_px = 2048;
   surroundings.vehicles = 1;
   surroundings.lookalikes = 1;

@@ -60,11 +60,12 @@ std::shared_ptr<const Texture> BoardPaint(const LandingPattern& pattern,
 RigidTransform AddBoard(int vehicle, const LandingPattern& pattern, const BoardOptions& options,
                         Random* random, World* world) {
   const Color color = CarColor(random);
-  double height = 0.25;
+  double height = options.carrier == "box" ? 0.25 : 0;
   if (options.carrier == "pickup") height = AddPickup(vehicle, color, random, world);
   if (options.carrier == "car") height = AddCar(vehicle, color, random, world);
   constexpr double kThickness_m = 0.04;
-  const double gap = 0.1;  // between the roof and the board on its rack
+  // Between the roof and the board on its rack.
+  const double gap = options.carrier == "none" ? 0 : 0.1;
   const double half = 0.5 * pattern.board_size_m + options.border_m;
   const double top = height + gap + kThickness_m;
   const auto dark = PlainPaint(Gray(0.04), world->channels);
@@ -149,8 +150,9 @@ Random RandomOf(std::uint64_t seed, LandingPart part) {
 
 std::vector<std::string> BoardOptions::Validate() const {
   std::vector<std::string> violations;
-  if (carrier != "pickup" && carrier != "car" && carrier != "box") {
-    violations.push_back(fmt::format("carrier is '{}', expected pickup, car or box", carrier));
+  if (carrier != "pickup" && carrier != "car" && carrier != "box" && carrier != "none") {
+    violations.push_back(
+        fmt::format("carrier is '{}', expected pickup, car, box or none", carrier));
   }
   RequireIn(border_m, 0, 1, "border_m", &violations);
   RequireIn(arm_variation_m, 0, 0.2, "arm_variation_m", &violations);

@@ -17,7 +17,7 @@ namespace kestrel {
 
 // The board with the pattern, and the vehicle that carries it.
 struct BoardOptions {
-  std::string carrier = "pickup";  // pickup, car or box (0.4 m high)
+  std::string carrier = "pickup";  // pickup, car, box (0.4 m high) or none: on the ground
   double border_m = 0.08;          // dark frame around the white board
   double arm_variation_m = 0.03;   // the arms' length is drawn up to this above or below
   double dirt = 0.06;              // relative variation of the print
@@ -27,7 +27,8 @@ struct BoardOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("carrier", self.carrier, "", "what carries the board: pickup, car or box");
+    visitor("carrier", self.carrier, "",
+            "what carries the board: pickup, car, box, or none: it slides over the ground");
     visitor("border_m", self.border_m, "m", "dark frame around the white board");
     visitor("arm_variation_m", self.arm_variation_m, "m",
             "the arms may be this much shorter or longer");
