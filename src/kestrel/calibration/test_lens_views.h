@@ -47,8 +47,9 @@ inline std::vector<LensView> MakeLensViews(const CameraIntrinsics& intrinsics,
     // Turned towards the camera as far as the options allow.
     const double tilt = random.Uniform(0, options.max_tilt_deg * kDegrees);
     const double tilt_axis = random.Uniform(0, 2 * std::numbers::pi);
-    const RigidTransform pose = PrintPose(random.Uniform(1.3, 2.5) * intrinsics.fx_px / 300 * ray,
-                                          tilt, tilt_axis, random.Uniform(0, 2 * std::numbers::pi));
+    const double distance = random.Uniform(1.3, 2.5) * intrinsics.fx_px / 300;
+    const double yaw = random.Uniform(0, 2 * std::numbers::pi);
+    const RigidTransform pose = PrintPose(distance * ray, tilt, tilt_axis, yaw);
     // Looked at from too flat, its edges would not be found.
     if (-(pose.rotation * Eigen::Vector3d::UnitZ()).dot(ray) < 0.4) continue;
     LensView view{"view " + std::to_string(views.size()), {}, pose};
