@@ -12,13 +12,18 @@ empty :=
 space := $(empty) $(empty)
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 
-.PHONY: demo test bench accuracy format check asan fuzz install command tests build configure deps
+.PHONY: demo test interop bench accuracy format check asan fuzz install command tests build configure deps
 
 demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
 	scripts/demo $(BIN) "$(DATA)" "$(CAMERA)"
 
 test: tests
 	ctest --preset release -j $$(nproc)
+
+interop: tests  ## MAVLink against node-mavlink, which npm installs
+	scripts/install-deps --interop
+	cmake --preset release
+	ctest --preset release -R mavlink_interop --no-tests=error
 
 bench: build  ## speed
 	@for program in $(BIN)/bench/*_benchmark; do echo "== $$program"; $$program || exit; done
