@@ -52,6 +52,23 @@ class FlightLog {
   Time start_ = Now();
 };
 
+// Keeps count of what a camera's exposure was.
+class RecordedActuator : public ExposureActuator {
+ public:
+  RecordedActuator(ExposureActuator* camera, FlightRecorder* recorder)
+      : camera_(camera), recorder_(recorder) {}
+
+  bool SetExposure(double exposure_s) override {
+    if (!camera_->SetExposure(exposure_s)) return false;
+    if (recorder_ != nullptr) recorder_->AddExposure(Now(), exposure_s);
+    return true;
+  }
+
+ private:
+  ExposureActuator* camera_;
+  FlightRecorder* recorder_;
+};
+
 // One flight: its parts, in the order in which they need each other.
 class Flight {
  public:
@@ -64,8 +81,8 @@ class Flight {
     PredictPoses();
     const PixelFormat format = arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray;
     source_ = OpenFlySource(arguments.source, format, options, arguments.loop);
-    OpenVision();
     OpenRecorder();
+    OpenVision();
     if (!arguments.autopilot.empty()) OpenAutopilot();
     program_.emplace(options.flight, all_options_.landing.tracker, Parts(),
                      [this](const std::string& text) { log_.Say(text); });
@@ -126,13 +143,14 @@ class Flight {
                                               Exposure());
   }
 
-  std::optional<ExposureDrive> Exposure() const {
+  std::optional<ExposureDrive> Exposure() {
     const FlyOptions& options = all_options_.fly;
     if (!options.control_exposure) return std::nullopt;
     if (source_.actuator == nullptr) {
       throw InputError("fly.control_exposure: the source is no camera whose exposure can be set");
     }
-    return ExposureDrive(options.exposure, options.exposure.max_exposure_s, source_.actuator);
+    actuator_.emplace(source_.actuator, recorder_.get());
+    return ExposureDrive(options.exposure, options.exposure.max_exposure_s, &*actuator_);
   }
 
   void OpenRecorder() {
@@ -224,6 +242,7 @@ class Flight {
   std::optional<OutputFolder> output_;
   std::unique_ptr<FlightVision> vision_;
   HuntVision* hunt_ = nullptr;  // the vision, when it is one
+  std::optional<RecordedActuator> actuator_;
   std::unique_ptr<FlightRecorder> recorder_;
   std::unique_ptr<SimulatedAutopilot> simulated_autopilot_;
   std::optional<Connection> connection_;

@@ -210,6 +210,7 @@ void FlightProgram::TellTarget(Time now) {
   // PX4's target estimator filters by itself, and corrects the UAV's velocity by what it is told:
   // a track, which has the UAV's own estimate in it, would lead it in a circle. It gets what each
   // frame shows, with its time.
+  if (report && profile != LinkProfile::kArduPilot) WarnOfSpeed(report->velocity_in_world);
   if (profile == LinkProfile::kPx4Vte) report = is_news ? track.sighting : std::nullopt;
   told_frame_ = track.captured;
   if (!report) return;
@@ -248,6 +249,22 @@ Duration FlightProgram::UntilUse() const {
   return delay - DurationFromSeconds(autopilot.parameters().Find(kLag).value_or(kDefaultLag_s));
 }
 
+// Said once, when it is sure.
+void FlightProgram::WarnOfSpeed(const Eigen::Vector3d& velocity) {
+  constexpr double kStanding_mps = 1;
+  constexpr int kSure = 50;  // messages in a row
+  const double speed_mps = velocity.head<2>().norm();
+  moving_messages_ = speed_mps > kStanding_mps ? moving_messages_ + 1 : 0;
+  if (moving_messages_ != kSure || is_warned_) return;
+  is_warned_ = true;
+  say_(
+      fmt::format("the pattern moves at {:.1f} m/s: PX4's own precision landing is for patterns "
+                  "that stand, and trails behind this one",
+                  speed_mps));
+  parts_.autopilot->Announce(mavlink::kSeverityWarning,
+                             "Kestrel: the pattern moves, PX4 will not land on it");
+}
+
 // Tells the user and the ground station when the target is found, lost, stood on.
 void FlightProgram::SayPhase() {
   const TargetPhase phase = reporter_.phase();
@@ -275,9 +292,20 @@ void FlightProgram::SayPhase() {
   parts_.autopilot->Announce(severity, "Kestrel: " + text);
 }
 
+// And when the autopilot begins to land by it.
+void FlightProgram::SayLanding() {
+  const bool is_landing = parts_.autopilot->is_landing_mode() && parts_.autopilot->is_armed();
+  if (is_landing && !was_landing_) {
+    parts_.autopilot->Announce(mavlink::kSeverityInfo, fmt::format("Kestrel: landing, pattern {}",
+                                                                   ToString(reporter_.phase())));
+  }
+  was_landing_ = is_landing;
+}
+
 void FlightProgram::WatchFlight(Time now) {
   if (parts_.autopilot->is_here()) {
     heard_ = now;
+    SayLanding();
     return WatchLanding();
   }
   if (ToSeconds(now - heard_) < options_.autopilot_timeout_s) return;

@@ -115,7 +115,9 @@ class FlightProgram {
   void WantParameters();
   Eigen::Vector3d CameraOfArduPilot() const;
   Duration UntilUse() const;
+  void WarnOfSpeed(const Eigen::Vector3d& velocity);
   void SayPhase();
+  void SayLanding();
   void WatchFlight(Time now);
   void WatchLanding();
   void End(FlightEnd end);
@@ -138,6 +140,9 @@ class FlightProgram {
   Time told_frame_;  // the newest frame that a message was made from
   std::optional<PoseSample> newest_pose_;
   TargetPhase said_phase_ = TargetPhase::kSearching;
+  int moving_messages_ = 0;  // in a row of which the target moved
+  bool is_warned_ = false;
+  bool was_landing_ = false;
   bool asked_parameters_ = false;
   bool was_armed_ = false;
   bool has_flown_ = false;
