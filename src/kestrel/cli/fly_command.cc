@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,6 +14,7 @@
 #include "kestrel/cli/fly_source.h"
 #include "kestrel/cli/interrupt.h"
 #include "kestrel/link/socket_address.h"
+#include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/hunt_vision.h"
 #include "kestrel/onboard/landing_vision.h"
 #include "kestrel/recording/output_folder.h"
@@ -39,16 +39,20 @@ struct FlyArguments {
   bool loop = false;
 };
 
-// Lines for the user, with the time since the start; by any thread.
+// Lines for the user, with the time since the start. Any thread may say something and does not wait
+// for the terminal; one shows what was said.
 class FlightLog {
  public:
   void Say(const std::string& text) {
-    const std::lock_guard lock(mutex_);
-    fmt::print(stderr, "{:8.1f} s  {}\n", ToSeconds(Now() - start_), text);
+    lines_.Push(fmt::format("{:8.1f} s  {}\n", ToSeconds(Now() - start_), text));
+  }
+  void Show() {
+    while (const auto line = lines_.TryPop()) fmt::print(stderr, "{}", *line);
   }
 
  private:
-  std::mutex mutex_;
+  static constexpr std::size_t kLines = 256;
+  BoundedQueue<std::string> lines_{kLines};
   Time start_ = Now();
 };
 
@@ -93,6 +97,7 @@ class Flight {
     if (simulated_autopilot_) simulated_autopilot_->Start();
     Time next_state = Now();
     const FlightEnd end = program_->Run([&] {
+      log_.Show();
       if (Now() >= next_state) {
         log_.Say(program_->State());
         next_state += DurationFromSeconds(kStatePeriod_s);
@@ -230,6 +235,7 @@ class Flight {
 
   void Finish(FlightEnd end) {
     recorder_.reset();  // writes what is left
+    log_.Show();
     fmt::print(stderr, "{}", program_->Summary());
     if (simulated_autopilot_) fmt::print(stderr, "{}", InWords(simulated_autopilot_->result()));
     if (end == FlightEnd::kLanded) fmt::print(stderr, "landed\n");
@@ -251,7 +257,18 @@ class Flight {
   bool has_true_poses_ = false;
 };
 
+// What `land` can do and a flight cannot.
+void RequireFlyable(const SourceArguments& source) {
+  if (source.sources.size() > 1) throw InputError("fly takes one SOURCE");
+  if (source.still) throw InputError("--still: the frames of a flight follow each other");
+  if (!source.annotate.empty()) {
+    throw InputError("--annotate: record the flight, then kestrel land DIR --annotate");
+  }
+  if (source.altitude_m) throw InputError("--altitude: a flight has the autopilot's poses");
+}
+
 void RunFly(const FlyArguments& arguments) {
+  RequireFlyable(arguments.source);
   Flight flight(arguments);
   if (flight.Run() == FlightEnd::kFailed) {
     throw FlightFailed("the flight ended because camera or autopilot failed for good");

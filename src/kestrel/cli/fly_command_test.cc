@@ -77,6 +77,8 @@ TEST_F(FlyCommandTest, FaultsAreNamed) {
   ExpectInputError("fly 'videotestsrc is-live=true ! video/x-raw,width=64'", "no calibration");
   ExpectInputError("fly " + folder_ / "missing", "no such file or folder");
   ExpectInputError(source + "sim:ardupilot --link-delay soon", "--link-delay 'soon'");
+  ExpectInputError("fly sim:standing --still", "--still");
+  ExpectInputError("fly sim:standing --annotate --output " + folder_ / "out", "kestrel land");
   ExpectInputError("fly sim:standing --set fly.rate_hz=0", "rate_hz");
   const std::string key = folder_.Write("key", std::string(64, 'a'));
   fs::permissions(key, fs::perms::owner_read | fs::perms::others_read);
