@@ -94,7 +94,11 @@ void FlightProgram::Capture() {
   Time last = Now();
   while (!is_over_) {
     std::optional<Event> event = parts_.source->Next(kPatience);
-    if (event && std::holds_alternative<EndOfStream>(*event)) return End(FlightEnd::kSourceEnded);
+    if (event && std::holds_alternative<EndOfStream>(*event)) {
+      // The last frame may still wait for its pose.
+      std::this_thread::sleep_for(DurationFromSeconds(options_.events.pose_wait_s) + kPatience);
+      return End(FlightEnd::kSourceEnded);
+    }
     if (event) {
       last = Now();
       Take(std::move(*event));

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/onboard/landing_vision.h"
 
-#include <utility>
-
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/pipeline/measurement_noise.h"
 #include "kestrel/pipeline/pattern_area.h"
 #include "kestrel/recording/landing_csv.h"
 #include "kestrel/recording/track_csv.h"
@@ -26,12 +25,12 @@ std::optional<RigidTransform> InverseOf(const std::optional<RigidTransform>& tra
 
 LandingVision::LandingVision(const CameraCalibration& calibration,
                              const LandingPipelineOptions& options, const OutputFolder* output,
-                             std::optional<ExposureDrive> exposure)
+                             const std::optional<ExposureDrive>& exposure)
     : pipeline_(calibration, options),
       camera_from_body_(InverseOf(calibration.body_from_camera)),
       clock_offset_(calibration.clock_offset.value_or(Duration::zero())),
       results_(kResults),
-      exposure_(std::move(exposure)) {
+      exposure_(exposure) {
   if (output == nullptr) return;
   detections_ = output->OpenText(kDetections);
   track_ = output->OpenText(kTrack);
@@ -57,12 +56,17 @@ std::optional<TargetReport> LandingVision::Sighting(const LandingObservation& ob
   const auto& detection = observation.report.detection;
   if (!detection || !observation.world_from_camera || !camera_from_body_) return std::nullopt;
   const RigidTransform& world_from_camera = *observation.world_from_camera;
-  const Eigen::Matrix3d rotation = world_from_camera.rotation.toRotationMatrix();
+  const Eigen::Vector3d& center = detection->camera_from_pattern.translation;
+  // Relative to the UAV: of its pose the attitude counts, with all that frames have in common.
+  MeasurementNoise noise = pipeline_.options().noise;
+  noise.pose_sigma_m = noise.pose_bias_m = 0;
   TargetReport report;
   report.time = snapshot_.captured;
   report.world_from_body = world_from_camera * *camera_from_body_;
-  report.position_in_world = world_from_camera * detection->camera_from_pattern.translation;
-  report.covariance = rotation * detection->covariance.topLeftCorner<3, 3>() * rotation.transpose();
+  report.position_in_world = world_from_camera * center;
+  report.covariance = CovarianceInWorld(detection->covariance.topLeftCorner<3, 3>(), center,
+                                        world_from_camera.rotation, noise) +
+                      SharedCovarianceInWorld(center, world_from_camera.rotation, noise);
   return report;
 }
 

@@ -20,7 +20,8 @@ class LandingVision : public FlightVision {
   // 'output': where the tables go; null: nowhere. 'exposure': keeps the pattern's white right.
   // Throws InputError when calibration or options are not valid, or the files cannot be written.
   LandingVision(const CameraCalibration& calibration, const LandingPipelineOptions& options,
-                const OutputFolder* output, std::optional<ExposureDrive> exposure = std::nullopt);
+                const OutputFolder* output,
+                const std::optional<ExposureDrive>& exposure = std::nullopt);
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
   Duration pose_lead() const override { return clock_offset_; }

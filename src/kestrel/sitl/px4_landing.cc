@@ -144,13 +144,13 @@ void Px4Landing::Descend(const FlightState& state) {
 }
 
 void Px4Landing::Search(const FlightState& state) {
-  constexpr double kSettle_s = 1;
+  constexpr double kSettled_s = 1;
   if (is_updated_ && above_s_ == 0) {
     above_s_ = state.step_s;
     altitude_ = std::min(altitude_, state.position().z() + 1);
   }
   if (above_s_ > 0) above_s_ += state.step_s;
-  if (above_s_ > kSettle_s && CanApproach(state)) return Enter(Phase::kApproach, state);
+  if (above_s_ > kSettled_s && CanApproach(state)) return Enter(Phase::kApproach, state);
   if (phase_s_ > parameters_["PLD_SRCH_TOUT"]) Enter(Phase::kFallback, state);
 }
 
