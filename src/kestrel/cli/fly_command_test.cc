@@ -47,11 +47,12 @@ TEST_F(FlyCommandTest, ASimulatedArduPilotLandsByWhatItIsTold) {
 }
 
 TEST_F(FlyCommandTest, ASimulatedPx4LandsByBothProfiles) {
-  for (const std::string profile : {"px4", "px4-vte"}) {
+  for (const std::string arguments :
+       {"px4", "px4-vte --set fly.sim_autopilot.parameters=VTE_EN=1"}) {
     const Outcome outcome =
-        Run("fly sim:standing --autopilot sim:px4 --profile " + profile + kNear);
+        Run("fly sim:standing --autopilot sim:px4 --profile " + arguments + kNear);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_LT(MissOf(outcome), 0.15) << profile << "\n" << outcome.err;
+    EXPECT_LT(MissOf(outcome), 0.15) << arguments << "\n" << outcome.err;
   }
 }
 
