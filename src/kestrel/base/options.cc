@@ -150,7 +150,10 @@ struct ValuePrinter {
   std::string operator()(const bool* value) const { return *value ? "true" : "false"; }
   std::string operator()(const int* value) const { return fmt::to_string(*value); }
   std::string operator()(const double* value) const { return fmt::to_string(*value); }
-  std::string operator()(const std::string* value) const { return *value; }
+  // Without quotes nothing at all would be read back as no value.
+  std::string operator()(const std::string* value) const {
+    return value->empty() ? "\"\"" : *value;
+  }
 };
 
 std::vector<std::string> SplitKey(const std::string& key) {

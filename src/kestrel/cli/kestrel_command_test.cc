@@ -94,7 +94,7 @@ TEST_F(KestrelCommandTest, HelpAndVersion) {
 
 TEST_F(KestrelCommandTest, WrongUsageIsStatusTwo) {
   for (const char* arguments :
-       {"", "fly", "help fly", "land", "land a.png --altitude nan", "land a.png --altitude -1",
+       {"", "swim", "help swim", "land", "land a.png --altitude nan", "land a.png --altitude -1",
         "land a.png --clock-offset inf", "land a.png --annotate", "land a.png --colour",
         "land a.png --output o --annotate=gif", "land a.png --predict 1", "calibrate",
         "land a.png --output o --predict 0.5,-1"}) {

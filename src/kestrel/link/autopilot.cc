@@ -279,6 +279,7 @@ void Autopilot::Restart() {
   attitude_order_ = euler_order_ = position_order_ = {};
   landed_ = LandedState::kUnknown;
   questions_ = 0;
+  questions_due_ = {};
   Tell(AutopilotEventKind::kRestarted,
        "the autopilot started again: its clock is learned and its streams are asked for anew");
 }

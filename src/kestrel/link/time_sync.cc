@@ -15,12 +15,11 @@ struct ClockKind {
   double max_drift;     // of any such clock that works
   double drift_sigma;   // usual
   double drift_wander;  // how well the drift is known once nobody tells any more
-  double jump_s;        // what it does at once is a jump, not a drift
 };
-constexpr ClockKind kCrystal = {90, 500e-6, 50e-6, 20e-6, 0.1};
+constexpr ClockKind kCrystal = {90, 500e-6, 50e-6, 20e-6};
 // An autopilot in software, whose time is that of a simulation which falls behind by a percent or
-// so, as the computer has time for it.
-constexpr ClockKind kSimulated = {1.5, 0.1, 0.02, 5e-3, 1};
+// so, stalls and catches up, as the computer has time for it.
+constexpr ClockKind kSimulated = {1.5, 0.1, 0.02, 5e-3};
 
 constexpr const ClockKind& KindOf(bool is_crystal) { return is_crystal ? kCrystal : kSimulated; }
 
@@ -70,12 +69,13 @@ double TimeSync::OffsetAt(double time_s) const {
 bool TimeSync::IsPossible(double excess_s, int* impossible) {
   constexpr double kMargin_s = 0.005;
   constexpr int kMaxImpossible = 3;
+  constexpr double kJump_s = 1;  // no clock stalls or catches up by so much
   if (!is_known_ || round_trips_ < kMinRoundTrips || excess_s < line_.width_s / 2 + kMargin_s) {
     *impossible = 0;
     return true;
   }
   if (++*impossible < kMaxImpossible) return false;
-  if (excess_s > KindOf(is_crystal_).jump_s) {
+  if (excess_s > kJump_s) {
     ++jumps_;
     Reset();
     return false;
