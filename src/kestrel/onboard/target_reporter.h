@@ -30,8 +30,10 @@ struct TrackSnapshot {
 struct TargetReporterOptions {
   double max_sigma_m = 0.5;
   double max_pose_age_s = 0.3;
+  // Contact: less than what an autopilot sinks by near the ground (ArduPilot with a range finder
+  // 0.2 m/s), longer than the bottom of a bounce takes.
   double contact_height_m = 0.6;
-  double contact_speed_mps = 0.25;
+  double contact_speed_mps = 0.1;
   double contact_time_s = 0.5;
   double contact_below_m = 0.2;
 
