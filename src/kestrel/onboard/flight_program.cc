@@ -174,8 +174,6 @@ void FlightProgram::WriteResults() {
 void FlightProgram::Communicate() {
   SetUpThisThread("link", {});
   due_ = heard_ = Now();
-  for (const std::string_view parameter : kParameters)
-    parts_.autopilot->parameters().Want(parameter);
   while (!is_over_) {
     parts_.connection->Receive(kLinkPatience, [this](const mavlink::Packet& packet, Time received) {
       parts_.autopilot->Handle(packet, received);
