@@ -92,4 +92,11 @@ void RequireValid(const Options& options) {
   ThrowIfAny(options.Validate());
 }
 
+// The same, for the initializers of a constructor: returns the options.
+template <class Options>
+const Options& Checked(const Options& options) {
+  RequireValid(options);
+  return options;
+}
+
 }  // namespace kestrel

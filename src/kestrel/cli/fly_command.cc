@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/cli/fly_command.h"
 
-#include <chrono>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -56,7 +58,7 @@ class FlightLog {
   Time start_ = Now();
 };
 
-// Keeps count of what a camera's exposure was.
+// Records what a camera's exposure is from when on.
 class RecordedActuator : public ExposureActuator {
  public:
   RecordedActuator(ExposureActuator* camera, FlightRecorder* recorder)
@@ -105,8 +107,8 @@ class Flight {
       return WasInterrupted();
     });
     if (simulated_autopilot_) simulated_autopilot_->Stop();
-    if (hunt_ != nullptr && output_) hunt_->WriteMap(*output_);
     Finish(end);
+    if (hunt_ != nullptr && output_) hunt_->WriteMap(*output_);
     return end;
   }
 
@@ -176,7 +178,7 @@ class Flight {
     }
     connection_.emplace(url, all_options_.fly.link, tap);
     AutopilotOptions options = all_options_.fly.autopilot;
-    options.wants_true_pose = source_.simulated != nullptr;
+    options.wants_true_pose = options.wants_true_pose || source_.simulated != nullptr;
     autopilot_.emplace(
         options, &*connection_,
         AutopilotListener{

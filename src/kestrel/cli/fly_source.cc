@@ -77,8 +77,7 @@ FlySource OpenCamera(const SourceArguments& arguments, PixelFormat format,
   if (arguments.camera.empty()) {
     throw InputError(
         "no calibration: a camera needs one, give it by --camera FILE (kestrel calibrate lens "
-        "makes "
-        "one)");
+        "makes one)");
   }
   FlySource opened;
   opened.calibration = ReadCalibration(arguments.camera);

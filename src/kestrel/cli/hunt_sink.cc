@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/cli/hunt_sink.h"
 
-#include "kestrel/base/write_file.h"
-#include "kestrel/mapping/map_file.h"
 #include "kestrel/recording/map_inset.h"
 #include "kestrel/recording/object_csv.h"
-#include "kestrel/recording/object_map_csv.h"
+#include "kestrel/recording/object_map_files.h"
 #include "kestrel/recording/object_overlay.h"
 
 namespace kestrel {
@@ -26,15 +24,8 @@ void HuntSink::Write(const Frame& frame, const HuntObservation& observation,
 }
 
 void HuntSink::WriteMap(const HuntPipeline& pipeline) const {
-  const OutputFolder* const folder = results_.folder();
-  if (!folder) return;
-  const ObjectModel& model = pipeline.detector().model();
-  const std::vector<MappedObject> objects = pipeline.map().Confirmed();
-  WriteFile(folder->NewFile("object_map.csv").string(), ObjectMapCsv(objects, model));
-  WriteFile(folder->NewFile("object_map.json").string(), PrintObjects(objects));
-  if (origin_.empty()) return;
-  WriteFile(folder->NewFile("object_map.geojson").string(),
-            PrintGeoJson(objects, model, {origin_[0], origin_[1]}));
+  if (const OutputFolder* const folder = results_.folder())
+    WriteObjectMap(pipeline, origin_, *folder);
 }
 
 }  // namespace kestrel

@@ -18,11 +18,6 @@ constexpr double kMinProbability = 1e-6;
 
 double LogOdds(double probability) { return std::log(probability / (1 - probability)); }
 
-const ObjectMapOptions& Checked(const ObjectMapOptions& options) {
-  RequireValid(options);
-  return options;
-}
-
 bool IsUsable(const ObjectMeasurement& measurement) {
   return measurement.position.allFinite() && measurement.covariance.allFinite() &&
          measurement.covariance.llt().info() == Eigen::Success;

@@ -16,16 +16,6 @@ namespace {
 // Room for the detections of a frame, so that a report seldom grows.
 constexpr std::size_t kUsualDetections = 64;
 
-const ObjectModel& Checked(const ObjectModel& model) {
-  RequireValid(model);
-  return model;
-}
-
-const ObjectDetectorOptions& Checked(const ObjectDetectorOptions& options) {
-  RequireValid(options);
-  return options;
-}
-
 const CameraModel& Checked(const CameraModel& camera) {
   if (std::max(camera.width_px(), camera.height_px()) > kMaxImageSide) {
     throw InputError(fmt::format("the image has {} x {} px, expected sides up to {}",

@@ -52,15 +52,13 @@ std::vector<std::string> FlightOptions::Validate() const {
 
 FlightProgram::FlightProgram(const FlightOptions& options, const TargetTrackerOptions& tracker,
                              const FlightParts& parts, std::function<void(const std::string&)> say)
-    : options_(options),
+    : options_(Checked(options)),
       parts_(parts),
       say_(std::move(say)),
       events_(options.events, parts.vision->pose_lead()),
       reporter_(options.target, tracker),
       poses_(kPoses, kPoseGap),
-      latency_({"capture to arrival", "capture to vision", "detection", "capture to message"}) {
-  RequireValid(options);
-}
+      latency_({"capture to arrival", "capture to vision", "detection", "capture to message"}) {}
 
 FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
   std::vector<std::thread> threads;
@@ -79,11 +77,10 @@ FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
 
 // The first reason counts.
 void FlightProgram::End(FlightEnd end) {
-  bool is_over = false;
-  if (is_ending_.compare_exchange_strong(is_over, true)) {
+  std::call_once(ended_, [&] {
     end_ = end;
     is_over_ = true;
-  }
+  });
 }
 
 // --- The capture thread ---
@@ -146,7 +143,7 @@ void FlightProgram::See() {
       continue;
     }
     const auto& frame = std::get<Frame>(event);
-    latency_.step(kPose).Add(Now() - frame.time);
+    latency_.step(kVision).Add(Now() - frame.time);
     const TrackSnapshot snapshot = parts_.vision->Process(frame);
     latency_.step(kDetection).Add(snapshot.detect_time);
     frames_ = snapshot.frames;

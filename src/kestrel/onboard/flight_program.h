@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -102,7 +103,7 @@ class FlightProgram {
 
  private:
   // The steps whose latency is measured.
-  enum Step { kArrival, kPose, kDetection, kMessage, kSteps };
+  enum Step { kArrival, kVision, kDetection, kMessage };
 
   void Capture();
   void See();
@@ -131,8 +132,9 @@ class FlightProgram {
   TargetReporter reporter_;
   PoseHistory poses_;  // the link's
   LatencyStatistics latency_;
-  std::atomic<bool> is_ending_{false}, is_over_{false};
-  FlightEnd end_ = FlightEnd::kStopped;
+  std::once_flag ended_;
+  std::atomic<bool> is_over_{false};
+  FlightEnd end_ = FlightEnd::kStopped;  // once it is over
 
   // Of the link's thread.
   Time due_;         // the next message

@@ -54,11 +54,6 @@ bool CopyPixels(GstSample* sample, const GstVideoInfo& info, cv::Mat* image) {
   return true;
 }
 
-const GstreamerCameraOptions& CheckedCamera(const GstreamerCameraOptions& options) {
-  RequireValid(options);
-  return options;
-}
-
 }  // namespace
 
 std::vector<std::string> GstreamerCameraOptions::Validate() const {
@@ -77,7 +72,7 @@ GstreamerCamera::GstreamerCamera(const std::string& camera, const CameraIntrinsi
     : camera_(camera),
       calibration_(calibration),
       format_(format),
-      options_(CheckedCamera(options)),
+      options_(Checked(options)),
       exposure_s_(options.exposure_s),
       images_(kPooledImages),
       back_off_(DurationFromSeconds(options.reopen_s)) {

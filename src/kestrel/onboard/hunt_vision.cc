@@ -4,9 +4,8 @@
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
-#include "kestrel/base/write_file.h"
 #include "kestrel/recording/object_csv.h"
-#include "kestrel/recording/object_map_csv.h"
+#include "kestrel/recording/object_map_files.h"
 
 namespace kestrel {
 namespace {
@@ -57,8 +56,7 @@ std::string HuntVision::Found() const {
 }
 
 void HuntVision::WriteMap(const OutputFolder& output) const {
-  WriteFile(output.NewFile("object_map.csv").string(),
-            ObjectMapCsv(pipeline_.map().Confirmed(), pipeline_.detector().model()));
+  WriteObjectMap(pipeline_, /*origin=*/{}, output);
 }
 
 }  // namespace kestrel

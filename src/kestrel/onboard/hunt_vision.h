@@ -14,8 +14,8 @@
 
 namespace kestrel {
 
-// The pipeline of coloured objects in flight; writes object_detections.csv, and at the end
-// object_map.csv. It has no landing target.
+// The pipeline of coloured objects in flight; writes object_detections.csv, and at the end the
+// map. It has no landing target.
 class HuntVision : public FlightVision {
  public:
   // As LandingVision.

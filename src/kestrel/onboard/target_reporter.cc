@@ -35,10 +35,7 @@ const char* ToString(TargetPhase phase) {
 
 TargetReporter::TargetReporter(const TargetReporterOptions& options,
                                const TargetTrackerOptions& tracker)
-    : options_(options), noise_(tracker.Noise()) {
-  RequireValid(options);
-  RequireValid(tracker);
-}
+    : options_(Checked(options)), noise_(Checked(tracker).Noise()) {}
 
 std::optional<TargetReport> TargetReporter::Report(Time now, Duration until_use,
                                                    const TrackSnapshot& track,
@@ -64,11 +61,6 @@ std::optional<TargetReport> TargetReporter::Report(Time now, Duration until_use,
   phase_ = TargetPhase::kContact;
   contact_z_m_ = report.world_from_body.translation.z();
   return Below(report, body_velocity);
-}
-
-void TargetReporter::Reset() {
-  phase_ = TargetPhase::kSearching;
-  resting_since_.reset();
 }
 
 bool TargetReporter::PredictTarget(const TrackSnapshot& track, TargetReport* report) const {

@@ -78,9 +78,6 @@ class TargetReporter {
   std::optional<TargetReport> Report(Time now, Duration until_use, const TrackSnapshot& track,
                                      const PoseHistory& poses);
 
-  // After the UAV has been disarmed: a next flight begins.
-  void Reset();
-
   TargetPhase phase() const { return phase_; }
   // Of the body above the target, by the newest report, m.
   double height_m() const { return height_m_; }

@@ -30,11 +30,6 @@ bool IsClear(const ObjectDetection& detection) {
          detection.pixels >= kMinPixels;
 }
 
-const HuntPipelineOptions& Checked(const HuntPipelineOptions& options) {
-  RequireValid(options);
-  return options;
-}
-
 }  // namespace
 
 std::vector<std::string> HuntPipelineOptions::Validate() const {

@@ -8,14 +8,7 @@
 #include "kestrel/pipeline/world_location.h"
 
 namespace kestrel {
-namespace {
-
-const LandingPipelineOptions& Checked(const LandingPipelineOptions& options) {
-  RequireValid(options);
-  return options;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 std::vector<std::string> LandingPipelineOptions::Validate() const {
   std::vector<std::string> violations;

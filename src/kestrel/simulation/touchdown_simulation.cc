@@ -24,11 +24,6 @@ constexpr double kFlightStep_s = 0.005;
 constexpr double kRideOn_s = 1;    // after touchdown, for the navigation's last poses
 constexpr int kExposureDelay = 2;  // images after a new exposure that have the old one
 
-const TouchdownSimulationOptions& Checked(const TouchdownSimulationOptions& options) {
-  RequireValid(options);
-  return options;
-}
-
 CameraCalibration WithClockOffset(CameraCalibration camera, Duration clock_offset) {
   camera.clock_offset = clock_offset;
   return camera;

@@ -46,11 +46,6 @@ constexpr std::array<std::uint32_t, 12> kArduPilotModes = {
 constexpr std::uint32_t kPx4LastMain = 8;
 constexpr std::uint32_t kPx4LastSub = 9;
 
-const AutopilotModelOptions& CheckedModel(const AutopilotModelOptions& options) {
-  RequireValid(options);
-  return options;
-}
-
 // "NAME=value,NAME=value"
 void SetParameters(const std::string& list, AutopilotParameters* parameters) {
   for (std::size_t begin = 0; begin < list.size();) {
@@ -134,7 +129,7 @@ std::vector<std::string> AutopilotModelOptions::Validate() const {
 AutopilotModel::AutopilotModel(AutopilotFirmware firmware, const AutopilotModelOptions& options,
                                VehicleWorld* world, Time start, std::uint64_t seed, Send send)
     : firmware_(firmware),
-      options_(CheckedModel(options)),
+      options_(Checked(options)),
       world_(*world),
       send_(std::move(send)),
       random_(seed),

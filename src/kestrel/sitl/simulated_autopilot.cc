@@ -18,11 +18,6 @@ namespace {
 
 constexpr const char* kPx4Name = "px4";
 
-const SimulatedAutopilotOptions& CheckedAutopilot(const SimulatedAutopilotOptions& options) {
-  RequireValid(options);
-  return options;
-}
-
 AutopilotFirmware FirmwareOf(const std::string& name) {
   return name == kPx4Name ? AutopilotFirmware::kPx4 : AutopilotFirmware::kArduPilot;
 }
@@ -50,7 +45,7 @@ SimulatedAutopilot::SimulatedAutopilot(const SimulatedAutopilotOptions& options,
                                        const std::string& url, VehicleWorld* world,
                                        std::uint64_t seed)
     : url_(url),
-      connection_(url, ConnectionOf(CheckedAutopilot(options))),
+      connection_(url, ConnectionOf(Checked(options))),
       random_(seed),
       outgoing_(options.link, Random(random_.Bits())),
       incoming_(options.link, Random(random_.Bits())),

@@ -10,6 +10,7 @@
 
 #include "kestrel/base/error.h"
 #include "kestrel/link/connection.h"
+#include "kestrel/link/socket_address.h"
 #include "kestrel/sitl/test_autopilot.h"
 
 namespace kestrel {
@@ -18,13 +19,12 @@ namespace {
 using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 
-constexpr const char* kListen = "udpin://127.0.0.1:24580";
-constexpr const char* kSpeak = "udpout://127.0.0.1:24580";
-
 class SimulatedAutopilotTest : public testing::Test {
  protected:
   SimulatedAutopilotTest()
-      : world_(TestVehicle("standing", 0), Now(), 1), companion_(kListen, ConnectionOptions()) {}
+      : world_(TestVehicle("standing", 0), Now(), 1),
+        address_("127.0.0.1:" + std::to_string(FreeLoopbackPort())),
+        companion_("udpin://" + address_, ConnectionOptions()) {}
 
   // Listens until 'done' or the time is over.
   bool Listen(Duration longest, const std::function<bool(const mavlink::Packet&)>& done) {
@@ -45,6 +45,8 @@ class SimulatedAutopilotTest : public testing::Test {
   }
 
   VehicleWorld world_;
+  // A port of its own: tests that run at the same time must not hear each other.
+  std::string address_;
   Connection companion_;
 };
 
@@ -52,7 +54,7 @@ TEST_F(SimulatedAutopilotTest, SpeaksMavlinkOverUdp) {
   SimulatedAutopilotOptions options;
   options.firmware = "px4";
   options.model.uptime_s = 500;
-  SimulatedAutopilot autopilot(options, kSpeak, &world_, 1);
+  SimulatedAutopilot autopilot(options, "udpout://" + address_, &world_, 1);
   autopilot.Start();
   ASSERT_TRUE(HearsHeartbeat(3s));
   companion_.Send(mavlink::Timesync{.tc1 = 0, .ts1 = 42});
@@ -67,7 +69,7 @@ TEST_F(SimulatedAutopilotTest, SpeaksMavlinkOverUdp) {
 TEST_F(SimulatedAutopilotTest, ALinkThatIsDownIsSilent) {
   SimulatedAutopilotOptions options;
   options.firmware = "px4";
-  SimulatedAutopilot autopilot(options, kSpeak, &world_, 1);
+  SimulatedAutopilot autopilot(options, "udpout://" + address_, &world_, 1);
   autopilot.Start();
   ASSERT_TRUE(HearsHeartbeat(3s));
   autopilot.set_link_down(true);

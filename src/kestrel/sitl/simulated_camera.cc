@@ -24,11 +24,6 @@ constexpr std::size_t kCameraPoses = 1000;
 // The autopilot's link may be away for so long and its pose between is still told.
 constexpr Duration kLongestPoseGap = std::chrono::milliseconds(500);
 
-const SimulatedCameraOptions& CheckedCamera(const SimulatedCameraOptions& options) {
-  RequireValid(options);
-  return options;
-}
-
 // The paper's camera with 'scale' times its pixels. The corners of the image stay where they are.
 CameraCalibration ScaledCalibration(double scale) {
   CameraCalibration calibration = PaperCalibration();
@@ -61,7 +56,7 @@ std::vector<std::string> SimulatedCameraOptions::Validate() const {
 
 SimulatedCamera::SimulatedCamera(const SimulatedCameraOptions& options, VehicleWorld* world,
                                  Time start, std::uint64_t seed)
-    : options_(CheckedCamera(options)),
+    : options_(Checked(options)),
       world_(*world),
       start_(start),
       seed_(seed),

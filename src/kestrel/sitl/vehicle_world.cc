@@ -47,11 +47,6 @@ const SitlScenario& FindSitlScenario(const std::string& name) {
       fmt::format("there is no scenario 'sim:{}', expected {}", name, fmt::join(names, ", ")));
 }
 
-const VehicleWorldOptions& CheckedWorld(const VehicleWorldOptions& options) {
-  RequireValid(options);
-  return options;
-}
-
 }  // namespace
 
 // The board is where the ground of an autopilot in software is, which lands on nothing else. Few
@@ -85,7 +80,7 @@ VehicleWorldOptions ReadVehicleWorld(const std::string& scenario,
 }
 
 VehicleWorld::VehicleWorld(const VehicleWorldOptions& options, Time start, std::uint64_t seed)
-    : options_(CheckedWorld(options)),
+    : options_(Checked(options)),
       start_(start),
       departure_s_(kWaiting),
       scene_(MakeLandingScene(options, kTrackDuration_s, /*channels=*/1, seed)) {

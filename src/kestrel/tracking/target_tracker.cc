@@ -38,11 +38,6 @@ double RootMeanVariance(const Eigen::Matrix3d& covariance) {
   return std::sqrt(std::max(0.0, covariance.trace() / 3));
 }
 
-const TargetTrackerOptions& Checked(const TargetTrackerOptions& options) {
-  RequireValid(options);
-  return options;
-}
-
 }  // namespace
 
 const char* ToString(MeasurementFate fate) {

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/recording/object_map_files.h"
+
+#include "kestrel/base/write_file.h"
+#include "kestrel/mapping/map_file.h"
+#include "kestrel/recording/object_map_csv.h"
+
+namespace kestrel {
+
+void WriteObjectMap(const HuntPipeline& pipeline, const std::vector<double>& origin,
+                    const OutputFolder& folder) {
+  const ObjectModel& model = pipeline.detector().model();
+  const std::vector<MappedObject> objects = pipeline.map().Confirmed();
+  WriteFile(folder.NewFile("object_map.csv").string(), ObjectMapCsv(objects, model));
+  WriteFile(folder.NewFile("object_map.json").string(), PrintObjects(objects));
+  if (origin.empty()) return;
+  WriteFile(folder.NewFile("object_map.geojson").string(),
+            PrintGeoJson(objects, model, {origin[0], origin[1]}));
+}
+
+}  // namespace kestrel
