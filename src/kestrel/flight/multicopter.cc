@@ -45,7 +45,7 @@ Multicopter::Multicopter(const MulticopterOptions& options, const Vector3d& posi
       lagging_(thrust_),
       heading_(heading) {}
 
-void Multicopter::Step(const VelocityCommand& command, const Vector3d& wind, double seconds) {
+void Multicopter::Step(const SetPoint& command, const Vector3d& wind, double seconds) {
   const double lag = 1 - std::exp(-seconds / options_.attitude_lag_s);
   lagging_ += lag * (WantedThrust(command) - lagging_);
   thrust_ += lag * (lagging_ - thrust_);
@@ -56,7 +56,7 @@ void Multicopter::Step(const VelocityCommand& command, const Vector3d& wind, dou
   velocity_ += seconds * acceleration;
 }
 
-Vector3d Multicopter::WantedThrust(const VelocityCommand& command) const {
+Vector3d Multicopter::WantedThrust(const SetPoint& command) const {
   constexpr double kMaxVertical = 5;  // m/s^2; the rotors neither stop nor have double power
   // Limited together: the acceleration must not bring it beyond the speed either.
   const Vector3d velocity =

@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/flight/velocity_command.h"
 #include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/navigation/set_point.h"
 
 namespace kestrel {
 
@@ -47,14 +47,14 @@ class Multicopter {
               const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero());
 
   // Flies on for 'seconds', a few ms, in the wind (m/s, the air's velocity).
-  void Step(const VelocityCommand& command, const Eigen::Vector3d& wind, double seconds);
+  void Step(const SetPoint& command, const Eigen::Vector3d& wind, double seconds);
 
   RigidTransform world_from_body() const;
   const Eigen::Vector3d& position() const { return position_; }
   const Eigen::Vector3d& velocity() const { return velocity_; }
 
  private:
-  Eigen::Vector3d WantedThrust(const VelocityCommand& command) const;
+  Eigen::Vector3d WantedThrust(const SetPoint& command) const;
 
   MulticopterOptions options_;
   Eigen::Vector3d position_;

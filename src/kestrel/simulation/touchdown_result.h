@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 
 #include "kestrel/base/time.h"
-#include "kestrel/flight/touchdown_guidance.h"
+#include "kestrel/guidance/landing_guidance.h"
 
 namespace kestrel {
 

@@ -190,7 +190,7 @@ bool TouchdownSimulation::ProcessImages(double until_s, const FrameSink& sink,
   return true;
 }
 
-VelocityCommand TouchdownSimulation::Guide(double time_s) {
+SetPoint TouchdownSimulation::Guide(double time_s) {
   const Time now = TimeOfFlight(time_s);
   const TargetTracker& tracker = pipeline_.tracker();
   UavState uav;

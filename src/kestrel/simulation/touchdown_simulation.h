@@ -16,9 +16,9 @@
 #include "kestrel/camera/exposure_controller.h"
 #include "kestrel/flight/flown_path.h"
 #include "kestrel/flight/multicopter.h"
-#include "kestrel/flight/touchdown_guidance.h"
-#include "kestrel/flight/velocity_command.h"
 #include "kestrel/flight/wind.h"
+#include "kestrel/guidance/landing_guidance.h"
+#include "kestrel/navigation/set_point.h"
 #include "kestrel/pipeline/landing_pipeline.h"
 #include "kestrel/simulation/simulated_landing.h"
 #include "kestrel/simulation/touchdown_result.h"
@@ -124,7 +124,7 @@ class TouchdownSimulation {
   void ReportPoses(double time_s);
   void TakeImage(double time_s);
   bool ProcessImages(double until_s, const FrameSink& sink, TouchdownResult* result);
-  VelocityCommand Guide(double time_s);
+  SetPoint Guide(double time_s);
   bool HasEnded(double time_s, TouchdownResult* result) const;
   TouchdownOutcome OutcomeOf(const Eigen::Vector3d& feet_on_board,
                              const TouchdownResult& result) const;
@@ -138,7 +138,7 @@ class TouchdownSimulation {
   Path wind_;
   Start start_;
   Multicopter multicopter_;
-  TouchdownGuidance guidance_;
+  LandingGuidance guidance_;
   NavigationSensor navigation_;
   PoseSample newest_pose_;
   int poses_ = 0;  // reported

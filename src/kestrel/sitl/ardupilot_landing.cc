@@ -37,10 +37,10 @@ void ArduPilotLanding::StartLanding(const FlightState& state) {
   settled_s_ = 0;
 }
 
-VelocityCommand ArduPilotLanding::Land(const FlightState& state) {
+SetPoint ArduPilotLanding::Land(const FlightState& state) {
   had_target_ = had_target_ || target_.is_acquired();
   ShapePath(state);
-  VelocityCommand command;
+  SetPoint command;
   const Vector2d way = path_position_ - state.position().head<2>();
   command.velocity << path_velocity_ + parameters_["PSC_NE_POS_P"] * way,
       Hovers() ? 0 : ClimbRate(state);
@@ -105,7 +105,7 @@ double ArduPilotLanding::ClimbRate(const FlightState& state) const {
 
 // Its detector has no horizontal speed in it; but a UAV that brakes against the deck that carries
 // it along does not idle.
-void ArduPilotLanding::DetectLanding(const FlightState& state, const VelocityCommand& command) {
+void ArduPilotLanding::DetectLanding(const FlightState& state, const SetPoint& command) {
   const Vector2d braking = command.velocity.head<2>() - state.velocity().head<2>();
   const bool settles =
       state.is_standing && command.velocity.z() < 0 && braking.norm() < kBraking_mps;

@@ -19,7 +19,7 @@ class ArduPilotLanding : public LandingRules {
   void Handle(const mavlink::TargetRelative& target, const FlightState& state) override;
   void Estimate(const FlightState& state) override { target_.Estimate(state); }
   void StartLanding(const FlightState& state) override;
-  VelocityCommand Land(const FlightState& state) override;
+  SetPoint Land(const FlightState& state) override;
   bool has_landed() const override { return disarms(); }
   bool disarms() const override;
 
@@ -29,7 +29,7 @@ class ArduPilotLanding : public LandingRules {
   bool Hovers() const;
   void ShapePath(const FlightState& state);
   double ClimbRate(const FlightState& state) const;
-  void DetectLanding(const FlightState& state, const VelocityCommand& command);
+  void DetectLanding(const FlightState& state, const SetPoint& command);
 
   const AutopilotParameters& parameters_;
   ArduPilotTarget target_;

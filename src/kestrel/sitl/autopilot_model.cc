@@ -203,27 +203,27 @@ bool AutopilotModel::Lands() const {
                                               : custom_mode_ == kArduPilotLand;
 }
 
-VelocityCommand AutopilotModel::Fly(Time now) {
+SetPoint AutopilotModel::Fly(Time now) {
   if (Lands()) return rules_->Land(state_);
   if (pilot_flies_ && options_.pilot.follows_vehicle) return FollowVehicle(now);
   return Hold();
 }
 
-VelocityCommand AutopilotModel::FollowVehicle(Time now) const {
+SetPoint AutopilotModel::FollowVehicle(Time now) const {
   constexpr double kGain = 1;
   constexpr double kMax_mps = 5;
   const Vector3d way = PilotPlace(options_.pilot, world_, now) - state_.position();
-  VelocityCommand command;
+  SetPoint command;
   command.velocity = world_.VelocityAt(now);
   command.velocity.head<2>() += BrakingVelocity(way.head<2>(), kGain, 2.5, kMax_mps);
   command.velocity.z() = std::clamp(kGain * way.z(), -1.5, 1.5);
   return command;
 }
 
-VelocityCommand AutopilotModel::Hold() const {
+SetPoint AutopilotModel::Hold() const {
   constexpr double kMax_mps = 5;
   const Vector3d way = hold_ - state_.position();
-  VelocityCommand command;
+  SetPoint command;
   command.velocity.head<2>() = BrakingVelocity(way.head<2>(), 1, 2.5, kMax_mps);
   command.velocity.z() = std::clamp(way.z(), -1.5, 2.5);
   // PX4's plain LAND goes straight down.

@@ -13,7 +13,7 @@
 #include "kestrel/base/random.h"
 #include "kestrel/base/time.h"
 #include "kestrel/flight/navigation_model.h"
-#include "kestrel/flight/velocity_command.h"
+#include "kestrel/navigation/set_point.h"
 #include "kestrel/sitl/autopilot_messages.h"
 #include "kestrel/sitl/autopilot_parameters.h"
 #include "kestrel/sitl/landing_rules.h"
@@ -125,9 +125,9 @@ class AutopilotModel {
  private:
   void StepOnce(Time now);
   void ObserveFlight(Time now);
-  VelocityCommand Fly(Time now);
-  VelocityCommand FollowVehicle(Time now) const;
-  VelocityCommand Hold() const;
+  SetPoint Fly(Time now);
+  SetPoint FollowVehicle(Time now) const;
+  SetPoint Hold() const;
   void FollowScript(Time now);
   void EnterMode(std::uint32_t custom_mode, Time now);
   bool Lands() const;

@@ -8,9 +8,9 @@
 #include <Eigen/Core>
 
 #include "kestrel/base/time.h"
-#include "kestrel/flight/velocity_command.h"
 #include "kestrel/link/messages.h"
 #include "kestrel/navigation/pose_history.h"
+#include "kestrel/navigation/set_point.h"
 
 namespace kestrel {
 
@@ -47,7 +47,7 @@ class LandingRules {
   // The landing mode begins.
   virtual void StartLanding(const FlightState& state) = 0;
   // One step of it: how to fly.
-  virtual VelocityCommand Land(const FlightState& state) = 0;
+  virtual SetPoint Land(const FlightState& state) = 0;
   // Whether it has landed, and whether it stops its motors.
   virtual bool has_landed() const = 0;
   virtual bool disarms() const = 0;

@@ -45,12 +45,12 @@ void Px4Landing::Enter(Phase phase, const FlightState& state) {
   }
 }
 
-VelocityCommand Px4Landing::Land(const FlightState& state) {
+SetPoint Px4Landing::Land(const FlightState& state) {
   ObserveTarget(state);
   phase_s_ += state.step_s;
   ChoosePhase(state);
   set_point_ += std::min(state.step_s / kSmoothing_s, 1.0) * (goal_ - set_point_);
-  VelocityCommand command;
+  SetPoint command;
   Vector2d horizontal =
       BrakingVelocity(set_point_ - state.position().head<2>(), parameters_["MPC_XY_P"],
                       kAcceleration, parameters_["MPC_XY_CRUISE"]);
@@ -170,7 +170,7 @@ double Px4Landing::ClimbRate(const FlightState& state) const {
   return -std::lerp(parameters_["MPC_LAND_SPEED"], parameters_["MPC_Z_V_AUTO_DN"], part);
 }
 
-void Px4Landing::DetectLanding(const FlightState& state, const VelocityCommand& command) {
+void Px4Landing::DetectLanding(const FlightState& state, const SetPoint& command) {
   constexpr double kStill_mps = 0.25;
   const bool settles = state.is_standing && command.velocity.z() < 0 &&
                        state.velocity().head<2>().norm() < parameters_["LNDMC_XY_VEL_MAX"] &&

@@ -24,7 +24,7 @@ class Px4Landing : public LandingRules {
   }
   void Estimate(const FlightState& state) override { target_.Estimate(state); }
   void StartLanding(const FlightState& state) override;
-  VelocityCommand Land(const FlightState& state) override;
+  SetPoint Land(const FlightState& state) override;
   bool has_landed() const override;
   bool disarms() const override;
 
@@ -45,7 +45,7 @@ class Px4Landing : public LandingRules {
   void Search(const FlightState& state);
   bool Sinks() const;
   double ClimbRate(const FlightState& state) const;
-  void DetectLanding(const FlightState& state, const VelocityCommand& command);
+  void DetectLanding(const FlightState& state, const SetPoint& command);
 
   const AutopilotParameters& parameters_;
   Px4Target target_;

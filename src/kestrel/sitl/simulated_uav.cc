@@ -49,7 +49,7 @@ SimulatedUav::SimulatedUav(const SimulatedUavOptions& options, const VehicleWorl
   StandOn(false);
 }
 
-void SimulatedUav::Step(Time now, const VelocityCommand& command, bool motors) {
+void SimulatedUav::Step(Time now, const SetPoint& command, bool motors) {
   const double seconds = ToSeconds(now - pose_.time);
   if (!(seconds > 0)) return;
   const RigidTransform before = pose_.world_from_body;
@@ -76,7 +76,7 @@ void SimulatedUav::RideAlong(double seconds) {
   pose_.motion->velocity_in_world = (pose_.world_from_body.translation - before) / seconds;
 }
 
-void SimulatedUav::Fly(double seconds, const VelocityCommand& command, bool motors) {
+void SimulatedUav::Fly(double seconds, const SetPoint& command, bool motors) {
   if (!motors) {
     Vector3d& velocity = pose_.motion->velocity_in_world;
     velocity.z() -= kGravity * seconds;

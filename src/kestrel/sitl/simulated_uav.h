@@ -11,10 +11,10 @@
 #include "kestrel/base/time.h"
 #include "kestrel/base/violations.h"
 #include "kestrel/flight/multicopter.h"
-#include "kestrel/flight/velocity_command.h"
 #include "kestrel/flight/wind.h"
 #include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/navigation/pose_history.h"
+#include "kestrel/navigation/set_point.h"
 #include "kestrel/sitl/vehicle_world.h"
 #include "kestrel/world/motion.h"
 
@@ -57,7 +57,7 @@ class SimulatedUav {
                Random* random);
 
   // Goes on to 'now', a few ms later. Without motors it falls.
-  void Step(Time now, const VelocityCommand& command, bool motors);
+  void Step(Time now, const SetPoint& command, bool motors);
 
   // The truth: world_from_body, velocity and angular rate, at the time of the last step.
   const PoseSample& pose() const { return pose_; }
@@ -68,7 +68,7 @@ class SimulatedUav {
  private:
   void StandOn(bool board);
   void RideAlong(double seconds);
-  void Fly(double seconds, const VelocityCommand& command, bool motors);
+  void Fly(double seconds, const SetPoint& command, bool motors);
   void ComeDown();
   RigidTransform Support() const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/flight/touchdown_guidance.h"
+#include "kestrel/guidance/landing_guidance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,8 +72,8 @@ std::vector<std::string> GuidanceOptions::Validate() const {
   return violations;
 }
 
-VelocityCommand TouchdownGuidance::Command(const UavState& uav,
-                                           const std::optional<TargetEstimate>& target) {
+SetPoint LandingGuidance::Command(const UavState& uav,
+                                  const std::optional<TargetEstimate>& target) {
   if (!target) {
     if (phase_ == LandingPhase::kDescend || phase_ == LandingPhase::kCommit) ++go_arounds_;
     phase_ = LandingPhase::kSearch;
@@ -89,7 +89,7 @@ VelocityCommand TouchdownGuidance::Command(const UavState& uav,
   const Vector2d towards = distance_m > 0 ? Vector2d(offset / distance_m) : Vector2d::Zero();
   const Vector3d velocity = Smoothed(*target);
   const Vector3d slip = velocity - uav.velocity_in_world;
-  VelocityCommand command;
+  SetPoint command;
   command.velocity = velocity;
   command.velocity.head<2>() += closing.speed * towards;
   command.velocity.z() = ClimbRate(uav, *target);
@@ -98,11 +98,11 @@ VelocityCommand TouchdownGuidance::Command(const UavState& uav,
   return command;
 }
 
-VelocityCommand TouchdownGuidance::Search(const UavState& uav) const {
+SetPoint LandingGuidance::Search(const UavState& uav) const {
   const Vector2d offset = place_ - uav.feet_in_world.head<2>();
   const double distance_m = offset.norm();
   const Closing closing = ClosingSpeed(distance_m, options_.position_gain, options_.braking);
-  VelocityCommand command;
+  SetPoint command;
   if (distance_m > 0) command.velocity.head<2>() = closing.speed / distance_m * offset;
   command.acceleration.head<2>() = -closing.rate * uav.velocity_in_world.head<2>();
   command.velocity.z() = kHeightGain * (options_.search_altitude_m - uav.feet_in_world.z());
@@ -110,7 +110,7 @@ VelocityCommand TouchdownGuidance::Search(const UavState& uav) const {
 }
 
 // A low pass that turns with the target: it does not lag in curves.
-Vector3d TouchdownGuidance::Smoothed(const TargetEstimate& target) {
+Vector3d LandingGuidance::Smoothed(const TargetEstimate& target) {
   const Vector3d velocity = target.motion.velocity();
   if (!smoothed_) smoothed_ = {target.time, velocity};
   const double seconds = ToSeconds(target.time - smoothed_->time);
@@ -120,7 +120,7 @@ Vector3d TouchdownGuidance::Smoothed(const TargetEstimate& target) {
   return smoothed_->in_world;
 }
 
-void TouchdownGuidance::ChoosePhase(const UavState& uav, const TargetEstimate& target) {
+void LandingGuidance::ChoosePhase(const UavState& uav, const TargetEstimate& target) {
   const Vector3d from_target = uav.feet_in_world - target.motion.position();
   const double off_m = from_target.head<2>().norm();
   const double height_m = from_target.z();
@@ -141,7 +141,7 @@ void TouchdownGuidance::ChoosePhase(const UavState& uav, const TargetEstimate& t
   }
 }
 
-double TouchdownGuidance::ClimbRate(const UavState& uav, const TargetEstimate& target) const {
+double LandingGuidance::ClimbRate(const UavState& uav, const TargetEstimate& target) const {
   const Vector3d from_target = uav.feet_in_world - target.motion.position();
   const double off_m = from_target.head<2>().norm();
   const double height_m = from_target.z();

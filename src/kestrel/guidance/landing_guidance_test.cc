@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/flight/touchdown_guidance.h"
+#include "kestrel/guidance/landing_guidance.h"
 
 #include <cmath>
 
@@ -46,14 +46,14 @@ struct Flight {
   double Height() const { return multicopter.position().z() - kBoard_m; }
 
   Multicopter multicopter;
-  TouchdownGuidance guidance;
+  LandingGuidance guidance;
   double time_s = 0;
 };
 
 const auto kKnown = [](double time_s) { return std::optional(OnCircle(time_s)); };
 const auto kUnknown = [](double) { return std::optional<TargetEstimate>(); };
 
-TEST(TouchdownGuidanceTest, ComesDownOnATargetThatTurns) {
+TEST(LandingGuidanceTest, ComesDownOnATargetThatTurns) {
   Flight flight;
   flight.FlyUntil(30, kKnown);
   EXPECT_LT(flight.time_s, 15);
@@ -67,14 +67,14 @@ TEST(TouchdownGuidanceTest, ComesDownOnATargetThatTurns) {
   EXPECT_NEAR(-slip.z(), 0.7, 0.15);
 }
 
-TEST(TouchdownGuidanceTest, WaitsWhereTheVehicleShouldPass) {
+TEST(LandingGuidanceTest, WaitsWhereTheVehicleShouldPass) {
   Flight flight;
   flight.FlyUntil(12, kUnknown);
   EXPECT_EQ(flight.guidance.phase(), LandingPhase::kSearch);
   EXPECT_LT((flight.multicopter.position() - Vector3d(8, 0, 10)).norm(), 0.3);
 }
 
-TEST(TouchdownGuidanceTest, ClimbsAndSearchesWhenTheTargetIsLost) {
+TEST(LandingGuidanceTest, ClimbsAndSearchesWhenTheTargetIsLost) {
   Flight flight;
   while (flight.Height() > 1) flight.FlyUntil(flight.time_s + kControlStep_s, kKnown);
   EXPECT_EQ(flight.guidance.phase(), LandingPhase::kDescend);
@@ -86,7 +86,7 @@ TEST(TouchdownGuidanceTest, ClimbsAndSearchesWhenTheTargetIsLost) {
   EXPECT_NEAR(flight.multicopter.position().z(), 10, 0.3);
 }
 
-TEST(TouchdownGuidanceTest, DoesNotGoDownOnWhatItHardlyKnows) {
+TEST(LandingGuidanceTest, DoesNotGoDownOnWhatItHardlyKnows) {
   Flight flight;
   flight.FlyUntil(20, [](double time_s) { return std::optional(OnCircle(time_s, 0.4)); });
   EXPECT_EQ(flight.guidance.phase(), LandingPhase::kApproach);

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/flight/velocity_command.h"
+#include "kestrel/navigation/set_point.h"
 #include "kestrel/tracking/target_tracker.h"
 
 namespace kestrel {
@@ -81,14 +81,14 @@ struct UavState {
 // these need
 //   (the target's in its curve, that of closing in) are given along, so that it does not lag;
 // - vertically, a height that depends on the phase.
-class TouchdownGuidance {
+class LandingGuidance {
  public:
   // 'place': where the vehicle should pass, m.
-  TouchdownGuidance(const GuidanceOptions& options, const Eigen::Vector2d& place)
+  LandingGuidance(const GuidanceOptions& options, const Eigen::Vector2d& place)
       : options_(options), place_(place) {}
 
   // 'target': at the present time, by the track; nothing while there is none or it is lost.
-  VelocityCommand Command(const UavState& uav, const std::optional<TargetEstimate>& target);
+  SetPoint Command(const UavState& uav, const std::optional<TargetEstimate>& target);
 
   LandingPhase phase() const { return phase_; }
   int go_arounds() const { return go_arounds_; }  // how often it went up again
@@ -99,7 +99,7 @@ class TouchdownGuidance {
     Eigen::Vector3d in_world;
   };
 
-  VelocityCommand Search(const UavState& uav) const;
+  SetPoint Search(const UavState& uav) const;
   Eigen::Vector3d Smoothed(const TargetEstimate& target);
   void ChoosePhase(const UavState& uav, const TargetEstimate& target);
   double ClimbRate(const UavState& uav, const TargetEstimate& target) const;
