@@ -69,8 +69,12 @@ class FlightLimits {
   const FlightLimitsOptions& options() const { return options_; }
 
  private:
+  void LimitHeight(double z_m, bool follows_target, SetPoint* limited) const;
+  void KeepInFence(const Eigen::Vector2d& position, SetPoint* limited) const;
+
   FlightLimitsOptions options_;
   Eigen::Vector2d center_;
+  double max_acceleration_;  // horizontal, m/s^2
 };
 
 }  // namespace kestrel
