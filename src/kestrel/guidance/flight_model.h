@@ -53,6 +53,9 @@ class FlightModel {
   void Observe(Time now, const Eigen::Vector3d& velocity, const Eigen::Vector3d& up,
                const std::optional<SetPoint>& sent, double link_delay_s);
 
+  // The UAV is not known for a moment: what comes next has nothing to do with what was before.
+  void Forgo() { newest_.reset(); }
+
   // From sending a set-point to its effect, s.
   double delay_s() const { return delay_s_; }
 

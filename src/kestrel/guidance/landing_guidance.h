@@ -13,6 +13,8 @@
 #include "kestrel/guidance/flight_limits.h"
 #include "kestrel/guidance/flight_model.h"
 #include "kestrel/guidance/guidance_options.h"
+#include "kestrel/guidance/search_path.h"
+#include "kestrel/guidance/target_pursuit.h"
 #include "kestrel/navigation/set_point.h"
 #include "kestrel/tracking/target_tracker.h"
 
@@ -98,10 +100,73 @@ class LandingGuidance {
   const FlightModel& model() const { return model_; }
 
  private:
+  // Where the UAV is, by what is known of it and of the target.
+  struct Situation {
+    Eigen::Vector3d feet;
+    Eigen::Vector3d velocity;
+    double height_m = 0;  // of the feet above the target
+    double off_m = 0;     // horizontally
+    double slip_mps = 0;  // horizontal speed against the target
+    bool is_in_sight = false;
+    bool is_known = false;  // well enough to go down
+    bool is_credible = true;
+  };
+
+  // Beginning and end.
+  void FollowMode(const GuidanceInput& input);
+  void Start(const GuidanceInput& input);
+  void End(const char* reason);
+  bool HasLink(const GuidanceInput& input);
+  bool GivesUp(const GuidanceInput& input);
+  bool Obeys(const GuidanceInput& input);
+
+  // What is sent.
+  GuidanceOutput Idle(const GuidanceInput& input) const;
+  GuidanceOutput Blind(const GuidanceInput& input);
+  GuidanceOutput Fly(const GuidanceInput& input);
+  SetPoint Search(const GuidanceInput& input, const Situation& now);
+  SetPoint Pursue(const GuidanceInput& input, const Situation& now);
+  SetPoint Rest(const Situation& now) const;
+  double ClimbRate(const GuidanceInput& input, const Situation& now) const;
+  GuidanceRequest RequestInContact(const GuidanceInput& input) const;
+  GuidanceOutput Output(const std::optional<SetPoint>& set_point, GuidanceRequest request) const;
+
+  // Which phase.
+  Situation Look(const GuidanceInput& input) const;
+  void ChoosePhase(const GuidanceInput& input, const Situation& now);
+  void ChooseAbove(const Situation& now);
+  void ChooseDescent(const GuidanceInput& input, const Situation& now);
+  bool FindContact(const GuidanceInput& input, const Situation& now);
+  void Enter(GuidancePhase phase, const char* reason);
+  void GoAround(const char* reason);
+  double Cone(double height_m) const;
+  bool IsLow() const;  // in a phase in which it goes down
+
   GuidanceOptions options_;
+  bool has_place_;
+  FlightLimits limits_;
   FlightModel model_;
+  TargetPursuit pursuit_;
+  SearchPath search_;
+  ContactDetector contact_;
+
   GuidancePhase phase_ = GuidancePhase::kIdle;
+  const char* reason_;
   int go_arounds_ = 0;
+  bool is_active_ = false;
+  bool has_given_up_ = false;  // and asks for hold while it has the mode
+  bool may_stream_;
+  std::optional<bool> was_guided_;  // nothing: not told yet
+  Time last_;                       // time of the last update
+  std::optional<Time> link_lost_;   // since when there is none
+  std::optional<Time> mode_wanted_since_;  // the autopilot has not told its mode since
+  std::optional<Time> poses_lost_;
+  std::optional<Time> camera_lost_;
+  std::optional<Time> disobeys_since_;
+  std::optional<Time> contact_since_;
+  Eigen::Vector2d place_{0, 0};  // where the vehicle was last, or should pass
+  double yaw_ = 0;               // that the nose keeps, rad
+  std::optional<SetPoint> sent_;
 };
 
 }  // namespace kestrel
