@@ -17,7 +17,8 @@ namespace kestrel {
 
 // What the vision knows of the target after a frame. Times are those of the navigation's clock.
 struct TrackSnapshot {
-  Time captured;  // the frame's light
+  Time captured;             // the frame's light
+  std::optional<Time> seen;  // of the newest frame that showed the target where the track has it
   TrackState state = TrackState::kSearching;
   std::optional<TargetEstimate> target;  // at 'captured', in the world
   // What this frame alone showed, seen from where the UAV was then.
