@@ -34,6 +34,8 @@ struct FlightLimitsOptions {
     visitor("max_tilt_deg", self.max_tilt_deg, "deg", "the acceleration commanded needs no more");
   }
   std::vector<std::string> Validate() const;
+
+  double max_acceleration() const;  // horizontal, of the largest tilt, m/s^2
 };
 
 // What the autopilot itself limits, as far as its parameters are known: beyond that it would not
@@ -43,6 +45,8 @@ struct AutopilotLimits {
   std::optional<double> max_climb_mps;
   std::optional<double> max_sink_mps;
   std::optional<double> max_tilt_deg;
+  // Horizontal, m/s^2: ArduCopter shapes what it is told by WPNAV_ACCEL (4.7: WP_ACC).
+  std::optional<double> max_acceleration;
 };
 
 // One line for each limit that is beyond the autopilot's own.
@@ -74,7 +78,7 @@ class FlightLimits {
 
   FlightLimitsOptions options_;
   Eigen::Vector2d center_;
-  double max_acceleration_;  // horizontal, m/s^2
+  double max_acceleration_;  // m/s^2
 };
 
 }  // namespace kestrel

@@ -20,6 +20,9 @@ constexpr double kCommitCones = 3;
 // A mode that the autopilot has not told for so long is not known: it tells it once a second.
 constexpr double kMaxModeAge_s = 3.5;
 constexpr double kLongestStep_s = 0.2;
+// Over so long a change of the velocity is judged, and at least so much (m/s^2) is obedience.
+constexpr double kTrend_s = 1;
+constexpr double kLeastObedience = 0.5;
 
 constexpr const char* kWaits = "waits for the pilot to give the mode";
 constexpr const char* kWasGuided = "the mode was on already: leave it and give it anew";
@@ -179,6 +182,7 @@ void LandingGuidance::Start(const GuidanceInput& input) {
   poses_lost_.reset();
   camera_lost_.reset();
   disobeys_since_.reset();
+  velocity_trend_ = input.uav->velocity_in_world;
   contact_.Reset();
   contact_since_.reset();
   pursuit_.Reset();
@@ -264,10 +268,16 @@ bool LandingGuidance::GivesUp(const GuidanceInput& input) {
   return true;
 }
 
+// An autopilot that does not fly what it is told does not even come nearer to it.
 bool LandingGuidance::Obeys(const GuidanceInput& input) {
-  const bool differs =
-      sent_ && (sent_->velocity - input.uav->velocity_in_world).norm() > options_.disobey_mps;
-  Remember(differs, input.now, &disobeys_since_);
+  const Vector3d& velocity = input.uav->velocity_in_world;
+  const double part = std::min(ToSeconds(input.now - last_) / kTrend_s, 1.0);
+  velocity_trend_ += part * (velocity - velocity_trend_);
+  const Vector3d error = sent_ ? Vector3d(sent_->velocity - velocity) : Vector3d::Zero();
+  const double size = error.norm();
+  const double nearer = (velocity - velocity_trend_).dot(error) / kTrend_s;
+  const bool disobeys = size > options_.disobey_mps && nearer < kLeastObedience * size;
+  Remember(disobeys, input.now, &disobeys_since_);
   return !IsLongerThan(options_.disobey_s, disobeys_since_, input.now);
 }
 
