@@ -12,10 +12,10 @@
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
-#include "kestrel/base/parse_number.h"
+#include "kestrel/cli/fly_arguments.h"
+#include "kestrel/cli/fly_autopilot.h"
 #include "kestrel/cli/fly_source.h"
 #include "kestrel/cli/interrupt.h"
-#include "kestrel/link/socket_address.h"
 #include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/hunt_vision.h"
 #include "kestrel/onboard/landing_vision.h"
@@ -25,21 +25,6 @@ namespace kestrel {
 namespace {
 
 constexpr double kStatePeriod_s = 5;
-constexpr char kSimulatedArduPilot[] = "sim:ardupilot", kSimulatedPx4[] = "sim:px4";
-constexpr char kLoopback[] = "127.0.0.1";
-
-struct FlyArguments {
-  SourceArguments source;
-  std::string autopilot;
-  std::string profile = "auto";
-  std::optional<double> rate_hz;
-  std::string link_delay = "auto";
-  std::string signing_key;
-  std::string record;
-  bool hunt = false;
-  std::string model;  // of the objects
-  bool loop = false;
-};
 
 // Lines for the user, with the time since the start. Any thread may say something and does not wait
 // for the terminal; one shows what was said.
@@ -79,12 +64,8 @@ class RecordedActuator : public ExposureActuator {
 class Flight {
  public:
   explicit Flight(const FlyArguments& arguments)
-      : arguments_(arguments), all_options_(arguments.source.options.Read()) {
-    FlyOptions& options = all_options_.fly;
-    if (arguments.rate_hz) options.flight.rate_hz = *arguments.rate_hz;
-    if (!arguments.signing_key.empty()) options.link.signing_key = arguments.signing_key;
-    SetLinkDelay(&options.flight);
-    PredictPoses();
+      : arguments_(arguments), all_options_(arguments.ReadOptions()) {
+    const FlyOptions& options = all_options_.fly;
     const PixelFormat format = arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray;
     source_ = OpenFlySource(arguments.source, format, options, arguments.loop);
     OpenRecorder();
@@ -113,25 +94,6 @@ class Flight {
   }
 
  private:
-  void SetLinkDelay(FlightOptions* options) const {
-    if (arguments_.link_delay == "auto") return;
-    const auto delay_s = ParseNumber<double>(arguments_.link_delay);
-    if (!delay_s || !(*delay_s >= 0)) {
-      throw InputError(
-          fmt::format("--link-delay '{}': expected seconds or auto", arguments_.link_delay));
-    }
-    options->link_delay_s = *delay_s;
-  }
-
-  // What a recording has, a flight may have to do without: the pose after a frame.
-  void PredictPoses() {
-    constexpr double kLongest_s = 0.2;
-    for (double* const ahead_s :
-         {&all_options_.landing.pose_extrapolation_s, &all_options_.hunt.pose_extrapolation_s}) {
-      if (*ahead_s == 0) *ahead_s = kLongest_s;
-    }
-  }
-
   void OpenVision() {
     if (!arguments_.source.output.empty()) {
       output_.emplace(arguments_.source.output, arguments_.source.force);
@@ -168,15 +130,15 @@ class Flight {
   }
 
   void OpenAutopilot() {
-    std::string url = arguments_.autopilot;
-    if (url == kSimulatedArduPilot || url == kSimulatedPx4) url = StartSimulated(url);
+    FlyAutopilot opened = MakeFlyAutopilot(arguments_.autopilot, all_options_.fly, &source_);
+    simulated_autopilot_ = std::move(opened.simulated);
     Connection::Tap tap;
     if (recorder_) {
       tap = [this](std::span<const std::uint8_t> frame, Time time) {
         recorder_->AddPacket(time, frame);
       };
     }
-    connection_.emplace(url, all_options_.fly.link, tap);
+    connection_.emplace(opened.url, all_options_.fly.link, tap);
     AutopilotOptions options = all_options_.fly.autopilot;
     options.wants_true_pose = options.wants_true_pose || source_.simulated != nullptr;
     autopilot_.emplace(
@@ -188,22 +150,6 @@ class Flight {
             .text = [this](std::uint8_t /*severity*/,
                            std::string_view text) { log_.Say(fmt::format("autopilot: {}", text)); },
         });
-  }
-
-  // Returns where it can be reached.
-  std::string StartSimulated(const std::string& name) {
-    FlyOptions& options = all_options_.fly;
-    options.sim_autopilot.firmware = name.substr(std::string_view("sim:").size());
-    options.sim_autopilot.signing_key = options.link.signing_key;
-    const auto seed = static_cast<std::uint64_t>(options.sim_seed);
-    if (!source_.world) {
-      source_.world = std::make_unique<VehicleWorld>(ReadVehicleWorld("standing", {}), Now(), seed);
-    }
-    const int port = FreeLoopbackPort();
-    simulated_autopilot_ = std::make_unique<SimulatedAutopilot>(
-        options.sim_autopilot, fmt::format("udpout://{}:{}", kLoopback, port), source_.world.get(),
-        seed);
-    return fmt::format("udpin://{}:{}", kLoopback, port);
   }
 
   FlightParts Parts() {
@@ -259,18 +205,7 @@ class Flight {
   bool has_true_poses_ = false;
 };
 
-// What `land` can do and a flight cannot.
-void RequireFlyable(const SourceArguments& source) {
-  if (source.sources.size() > 1) throw InputError("fly takes one SOURCE");
-  if (source.still) throw InputError("--still: the frames of a flight follow each other");
-  if (!source.annotate.empty()) {
-    throw InputError("--annotate: record the flight, then kestrel land DIR --annotate");
-  }
-  if (source.altitude_m) throw InputError("--altitude: a flight has the autopilot's poses");
-}
-
 void RunFly(const FlyArguments& arguments) {
-  RequireFlyable(arguments.source);
   Flight flight(arguments);
   if (flight.Run() == FlightEnd::kFailed) {
     throw FlightFailed("the flight ended because camera or autopilot failed for good");
@@ -283,38 +218,7 @@ void AddFlyCommand(CLI::App* app) {
   CLI::App* command =
       app->add_subcommand("fly", "On board: live camera and autopilot in, landing target out");
   const auto arguments = std::make_shared<FlyArguments>();
-  arguments->source.AddTo(command);
-  command
-      ->add_option("--autopilot", arguments->autopilot,
-                   "serial:///dev/ttyAMA0:921600, udpin://0.0.0.0:14550, udpout://HOST:PORT, "
-                   "tcpout://HOST:PORT, tcpin://HOST:PORT; sim:ardupilot, sim:px4: a simulated one")
-      ->type_name("URL");
-  command
-      ->add_option("--profile", arguments->profile,
-                   "What the autopilot is told: auto (by its heartbeat), ardupilot, px4, px4-vte")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"auto", "ardupilot", "px4", "px4-vte"}));
-  command->add_option("--rate", arguments->rate_hz, "Landing targets per second (50)")
-      ->type_name("HZ")
-      ->check(InRange(0.999, 400.001, "1 to 400 per second"));
-  command
-      ->add_option("--link-delay", arguments->link_delay,
-                   "From sending to the autopilot's use; auto: half of the round trip")
-      ->type_name("S");
-  command
-      ->add_option("--signing-key", arguments->signing_key,
-                   "MAVLink 2 signing: sign, and refuse what is not signed")
-      ->type_name("FILE");
-  command
-      ->add_option("--record", arguments->record,
-                   "Record the flight: a EuRoC folder with images and poses, and mavlink.tlog")
-      ->type_name("DIR");
-  CLI::Option* hunt = command->add_flag("--hunt", arguments->hunt,
-                                        "Coloured objects instead of the landing pattern");
-  command->add_option("--model", arguments->model, "Objects and their colours (YAML), with --hunt")
-      ->type_name("FILE")
-      ->needs(hunt);
-  command->add_flag("--loop", arguments->loop, "Play a recording again and again");
+  arguments->AddTo(command);
   command->callback([arguments] { RunFly(*arguments); });
 }
 

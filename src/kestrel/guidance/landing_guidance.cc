@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
-
-#include "kestrel/base/violations.h"
+#include "kestrel/base/options.h"
 
 namespace kestrel {
 namespace {
@@ -16,145 +14,424 @@ using Eigen::Vector3d;
 
 constexpr double kHeightGain = 1;      // climb rate per metre that it is too low
 constexpr double kMaxClosing_mps = 1;  // faster over the target it does not go down
+// Following ends where it is so many cones off, the last bit where it is so many off.
+constexpr double kFollowCones = 4;
+constexpr double kCommitCones = 3;
+// A mode that the autopilot has not told for so long is not known: it tells it once a second.
+constexpr double kMaxModeAge_s = 3.5;
+constexpr double kLongestStep_s = 0.2;
 
-// Speed at which to close in on something 'distance_m' away, and its derivative by the distance: in
-// proportion to it while that can be braked, by the root further away.
-struct Closing {
-  double speed;
-  double rate;
-};
-Closing ClosingSpeed(double distance_m, double gain, double braking) {
-  const double reach = braking / (gain * gain);  // where the straight line touches the parabola
-  if (distance_m <= reach) return {gain * distance_m, gain};
-  const double speed = std::sqrt(braking * (2 * distance_m - reach));
-  return {speed, braking / speed};
+constexpr const char* kWaits = "waits for the pilot to give the mode";
+constexpr const char* kWasGuided = "the mode was on already: leave it and give it anew";
+
+bool IsLongerThan(double seconds, const std::optional<Time>& since, Time now) {
+  return since && ToSeconds(now - *since) >= seconds;
 }
 
-// How the target's velocity will change in its curve, 'ahead_s' from now.
-Vector3d AccelerationAhead(const TurnState& motion, double ahead_s) {
-  const Eigen::AngleAxisd turn(motion.turn_rate() * ahead_s, Vector3d::UnitZ());
-  const Vector3d velocity = turn * Vector3d(motion.velocity());
-  return motion.turn_rate() * Vector3d(-velocity.y(), velocity.x(), 0);
+// Since when 'is' has been so.
+void Remember(bool is, Time now, std::optional<Time>* since) {
+  if (!is) {
+    since->reset();
+  } else if (!*since) {
+    *since = now;
+  }
+}
+
+double HeadingOf(const RigidTransform& world_from_body) {
+  const Vector3d forward = world_from_body.rotation * Vector3d::UnitX();
+  return std::atan2(forward.y(), forward.x());
+}
+
+bool IsFinite(const UavState& uav) {
+  return uav.world_from_body.translation.allFinite() &&
+         uav.world_from_body.rotation.coeffs().allFinite() && uav.velocity_in_world.allFinite();
 }
 
 }  // namespace
 
-const char* ToString(LandingPhase phase) {
+const char* ToString(GuidancePhase phase) {
   switch (phase) {
-    case LandingPhase::kSearch:
+    case GuidancePhase::kIdle:
+      return "idle";
+    case GuidancePhase::kSearch:
       return "search";
-    case LandingPhase::kApproach:
+    case GuidancePhase::kApproach:
       return "approach";
-    case LandingPhase::kDescend:
+    case GuidancePhase::kFollow:
+      return "follow";
+    case GuidancePhase::kDescend:
       return "descend";
-    case LandingPhase::kCommit:
+    case GuidancePhase::kCommit:
       return "commit";
+    case GuidancePhase::kGoAround:
+      return "go-around";
+    case GuidancePhase::kLanded:
+      return "landed";
   }
   return "";
 }
 
-std::vector<std::string> GuidanceOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(search_altitude_m, 1, 100, "search_altitude_m", &violations);
-  RequireIn(follow_height_m, 0.1, 100, "follow_height_m", &violations);
-  RequireIn(glide, 0, 10, "glide", &violations);
-  RequireIn(position_gain, 0.1, 5, "position_gain", &violations);
-  RequireIn(braking, 0.1, 20, "braking", &violations);
-  RequireIn(lead_s, 0, 1, "lead_s", &violations);
-  RequireIn(smoothing_s, 0.01, 10, "smoothing_s", &violations);
-  RequireIn(sink_gain, 0.05, 5, "sink_gain", &violations);
-  RequireIn(max_sink_mps, 0.1, 10, "max_sink_mps", &violations);
-  RequireIn(touchdown_sink_mps, 0.1, 10, "touchdown_sink_mps", &violations);
-  RequireIn(cone_m, 0.01, 10, "cone_m", &violations);
-  RequireIn(cone_slope, 0, 10, "cone_slope", &violations);
-  RequireIn(commit_height_m, 0, 10, "commit_height_m", &violations);
-  RequireIn(max_sigma_m, 0.01, 10, "max_sigma_m", &violations);
-  return violations;
+const char* ToString(GuidanceRequest request) {
+  switch (request) {
+    case GuidanceRequest::kNone:
+      return "none";
+    case GuidanceRequest::kLand:
+      return "land";
+    case GuidanceRequest::kHold:
+      return "hold";
+    case GuidanceRequest::kDisarm:
+      return "disarm";
+  }
+  return "";
 }
 
-SetPoint LandingGuidance::Command(const UavState& uav,
-                                  const std::optional<TargetEstimate>& target) {
-  if (!target) {
-    if (phase_ == LandingPhase::kDescend || phase_ == LandingPhase::kCommit) ++go_arounds_;
-    phase_ = LandingPhase::kSearch;
-    smoothed_.reset();
-    return Search(uav);
+LandingGuidance::LandingGuidance(const GuidanceOptions& options,
+                                 const std::optional<Vector2d>& place)
+    : options_(Checked(options)),
+      has_place_(place.has_value()),
+      limits_(options.limits, place.value_or(Vector2d::Zero())),
+      model_(options.model),
+      pursuit_(options),
+      search_(options),
+      contact_(options.contact),
+      reason_(kWaits),
+      may_stream_(options.stream_before_start),
+      place_(place.value_or(Vector2d::Zero())) {}
+
+void LandingGuidance::Rearm() { may_stream_ = options_.stream_before_start; }
+
+GuidanceOutput LandingGuidance::Update(const GuidanceInput& input) {
+  if (!HasLink(input)) {
+    last_ = input.now;
+    sent_.reset();
+    return Output(std::nullopt, GuidanceRequest::kNone);
   }
-  const TurnState& motion = target->motion;
-  place_ = motion.position().head<2>();
-  ChoosePhase(uav, *target);
-  const Vector2d offset = place_ - uav.feet_in_world.head<2>();
-  const double distance_m = offset.norm();
-  const Closing closing = ClosingSpeed(distance_m, options_.position_gain, options_.braking);
-  const Vector2d towards = distance_m > 0 ? Vector2d(offset / distance_m) : Vector2d::Zero();
-  const Vector3d velocity = Smoothed(*target);
-  const Vector3d slip = velocity - uav.velocity_in_world;
+  FollowMode(input);
+  GuidanceOutput output;
+  if (!is_active_) {
+    output = Idle(input);
+  } else if (!input.uav || !IsFinite(*input.uav)) {
+    output = Blind(input);
+  } else {
+    output = Fly(input);
+  }
+  sent_ = output.set_point;
+  last_ = input.now;
+  return output;
+}
+
+// Whether there is a link and the mode is known. After a long gap both are waited for: the
+// autopilot may have left the mode meanwhile, and PX4 would go back to it for a set-point.
+bool LandingGuidance::HasLink(const GuidanceInput& input) {
+  const bool is_gone = !input.is_link_up || !(input.mode_age_s <= kMaxModeAge_s);
+  if (is_gone) {
+    if (!link_lost_ && is_active_) reason_ = "the link is gone";
+    Remember(true, input.now, &link_lost_);
+    return false;
+  }
+  if (IsLongerThan(options_.lose_link_s, link_lost_, input.now)) mode_wanted_since_ = input.now;
+  link_lost_.reset();
+  if (!mode_wanted_since_) return true;
+  if (input.mode_age_s > ToSeconds(input.now - *mode_wanted_since_)) return false;
+  mode_wanted_since_.reset();
+  if (IsLow() || phase_ == GuidancePhase::kFollow) GoAround("the link was gone");
+  pursuit_.Reset();
+  return true;
+}
+
+void LandingGuidance::FollowMode(const GuidanceInput& input) {
+  const bool was_guided = was_guided_.value_or(input.is_guided);
+  if (!was_guided_ && input.is_guided) reason_ = kWasGuided;
+  was_guided_ = input.is_guided;
+  if (input.is_guided && !was_guided) Start(input);
+  if (!input.is_guided && was_guided) {
+    End(phase_ == GuidancePhase::kLanded ? "landed; guidance has ended"
+                                         : "the mode was left: give it anew to begin again");
+    has_given_up_ = false;
+  }
+}
+
+void LandingGuidance::Start(const GuidanceInput& input) {
+  may_stream_ = false;
+  has_given_up_ = true;  // until nothing speaks against it
+  if (!input.uav || !IsFinite(*input.uav)) return End("refused: the UAV's position is not known");
+  if (!input.is_armed || input.is_landed) {
+    has_given_up_ = false;  // nothing to hold
+    return End("refused: the UAV is on the ground");
+  }
+  const Vector3d& position = input.uav->world_from_body.translation;
+  if (!has_place_) {
+    place_ = position.head<2>();
+    limits_.set_center(place_);
+  }
+  if (!limits_.Contains(position)) {
+    return End("refused: the UAV is outside of the geofence or above the ceiling");
+  }
+  has_given_up_ = false;
+  is_active_ = true;
+  yaw_ = HeadingOf(input.uav->world_from_body);
+  last_ = input.now;
+  go_arounds_ = 0;
+  poses_lost_.reset();
+  camera_lost_.reset();
+  disobeys_since_.reset();
+  contact_.Reset();
+  contact_since_.reset();
+  pursuit_.Reset();
+  search_.Start(place_);
+  Enter(GuidancePhase::kSearch, "the pilot has given the mode");
+}
+
+void LandingGuidance::End(const char* reason) {
+  is_active_ = false;
+  if (phase_ != GuidancePhase::kLanded) phase_ = GuidancePhase::kIdle;
+  reason_ = reason;
+}
+
+GuidanceOutput LandingGuidance::Idle(const GuidanceInput& input) const {
+  if (has_given_up_) return Output(std::nullopt, GuidanceRequest::kHold);
+  if (!may_stream_ || input.is_guided || !input.uav) {
+    return Output(std::nullopt, GuidanceRequest::kNone);
+  }
+  SetPoint hold;
+  hold.yaw = HeadingOf(input.uav->world_from_body);
+  return Output(hold, GuidanceRequest::kNone);
+}
+
+// Without a pose: level on for a moment, then standing still, then not at all.
+GuidanceOutput LandingGuidance::Blind(const GuidanceInput& input) {
+  Remember(true, input.now, &poses_lost_);
+  model_.Forgo();
+  if (IsLongerThan(options_.lose_pose_s, poses_lost_, input.now)) {
+    has_given_up_ = true;
+    End("the poses have stopped: gave up");
+    return Idle(input);
+  }
+  SetPoint on = sent_.value_or(SetPoint());
+  on.acceleration.setZero();
+  if (phase_ != GuidancePhase::kLanded) on.velocity.z() = std::max(on.velocity.z(), 0.0);
+  if (IsLongerThan(options_.hold_pose_s, poses_lost_, input.now)) {
+    on.velocity.setZero();
+    reason_ = "the poses have stopped";
+  }
+  return Output(on, GuidanceRequest::kNone);
+}
+
+GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
+  if (IsLongerThan(options_.hold_pose_s, poses_lost_, input.now) && IsLow()) {
+    GoAround("the poses had stopped");
+  }
+  poses_lost_.reset();
+  if (GivesUp(input)) return Idle(input);
+  const Situation now = Look(input);
+  ChoosePhase(input, now);
+  if (!is_active_) return Idle(input);
+  SetPoint wanted;
+  if (phase_ == GuidancePhase::kLanded) {
+    wanted = Rest(now);
+  } else {
+    wanted = input.target ? Pursue(input, now) : Search(input, now);
+  }
+  wanted.yaw = yaw_;
+  const Vector3d& position = input.uav->world_from_body.translation;
+  const SetPoint limited = limits_.Limited(wanted, position, input.target.has_value());
+  const bool is_flying = phase_ != GuidancePhase::kLanded;
+  model_.Observe(input.now, now.velocity, input.uav->world_from_body.rotation * Vector3d::UnitZ(),
+                 is_flying ? std::optional(limited) : std::nullopt, input.link_delay_s);
+  return Output(limited, RequestInContact(input));
+}
+
+// What ends guidance while the pilot still leaves it the mode.
+bool LandingGuidance::GivesUp(const GuidanceInput& input) {
+  if (!input.is_armed) {
+    End(phase_ == GuidancePhase::kLanded ? "landed and disarmed" : "the motors are off");
+    return true;
+  }
+  if (phase_ == GuidancePhase::kLanded) return false;
+  const char* reason = nullptr;
+  Remember(!input.is_camera_up, input.now, &camera_lost_);
+  if (IsLongerThan(options_.lose_camera_s, camera_lost_, input.now)) {
+    reason = "no new images: gave up";
+  }
+  if (!Obeys(input)) reason = "the autopilot does not obey the set-points: gave up";
+  if (!reason) return false;
+  has_given_up_ = true;
+  End(reason);
+  return true;
+}
+
+bool LandingGuidance::Obeys(const GuidanceInput& input) {
+  const bool differs =
+      sent_ && (sent_->velocity - input.uav->velocity_in_world).norm() > options_.disobey_mps;
+  Remember(differs, input.now, &disobeys_since_);
+  return !IsLongerThan(options_.disobey_s, disobeys_since_, input.now);
+}
+
+LandingGuidance::Situation LandingGuidance::Look(const GuidanceInput& input) const {
+  Situation now;
+  now.feet = input.uav->world_from_body * Vector3d(0, 0, -options_.leg_m);
+  now.velocity = input.uav->velocity_in_world;
+  if (!input.target) return now;
+  const TurnState& target = input.target->motion;
+  const Vector3d from_target = now.feet - target.position();
+  now.height_m = from_target.z();
+  now.off_m = from_target.head<2>().norm();
+  now.slip_mps = (target.velocity() - now.velocity).head<2>().norm();
+  now.is_in_sight = input.is_camera_up && input.target_age_s <= options_.sight_s;
+  now.is_known = input.target->position_sigma_m() <= options_.max_sigma_m;
+  const double climb_sigma = std::sqrt(std::max(target.covariance(5, 5), 0.0));
+  now.is_credible =
+      std::abs(target.velocity().z()) <= options_.max_target_climb_mps + 2 * climb_sigma;
+  return now;
+}
+
+void LandingGuidance::ChoosePhase(const GuidanceInput& input, const Situation& now) {
+  if (FindContact(input, now)) return;
+  if (!input.target) {
+    if (IsLow()) ++go_arounds_;
+    if (phase_ != GuidancePhase::kSearch) {
+      search_.Start(place_);
+      pursuit_.Reset();
+      Enter(GuidancePhase::kSearch, "the target is lost");
+    }
+    return;
+  }
+  place_ = input.target->motion.position().head<2>();
+  if (phase_ == GuidancePhase::kSearch) Enter(GuidancePhase::kApproach, "the target is found");
+  if (phase_ == GuidancePhase::kGoAround && now.height_m >= options_.sight_height_m) {
+    Enter(GuidancePhase::kApproach, "high enough to come again");
+  }
+  ChooseAbove(now);
+  ChooseDescent(input, now);
+}
+
+// Approach, follow and the beginning of the descent.
+void LandingGuidance::ChooseAbove(const Situation& now) {
+  const double cone_m = Cone(now.height_m);
+  if (phase_ == GuidancePhase::kApproach && now.off_m < cone_m && now.slip_mps < kMaxClosing_mps) {
+    Enter(GuidancePhase::kFollow, "above the target");
+  }
+  if (phase_ != GuidancePhase::kFollow) return;
+  if (now.off_m > kFollowCones * cone_m) {
+    Enter(GuidancePhase::kApproach, "too far from the target");
+  } else if (now.is_known && now.is_credible && now.is_in_sight && now.off_m < cone_m &&
+             now.slip_mps < kMaxClosing_mps) {
+    Enter(GuidancePhase::kDescend, "above the target, which is in sight");
+  }
+}
+
+// The descent: through to the deck, or up again.
+void LandingGuidance::ChooseDescent(const GuidanceInput& input, const Situation& now) {
+  const double cone_m = Cone(now.height_m);
+  if (phase_ == GuidancePhase::kDescend) {
+    if (!now.is_known) return GoAround("the target is not known well enough");
+    if (!now.is_credible) return GoAround("the target rises or sinks: not a deck");
+    if (now.off_m > 2 * cone_m) return GoAround("too far beside the target");
+    if (!now.is_in_sight && now.height_m < options_.sight_height_m) {
+      return GoAround("low, and the target is not in sight");
+    }
+    if (now.height_m < options_.commit_height_m && now.off_m < cone_m) {
+      Enter(GuidancePhase::kCommit, "near the deck, within the cone");
+    }
+  }
+  if (phase_ != GuidancePhase::kCommit) return;
+  if (!(input.target_age_s <= options_.commit_sight_s)) {
+    return GoAround("near the deck, and the target was not in sight for too long");
+  }
+  if (now.is_in_sight && now.off_m > kCommitCones * cone_m) GoAround("beside the deck");
+  if (now.height_m > 2 * options_.commit_height_m) GoAround("has risen from the deck");
+}
+
+// Whether it stands on the deck, by its own rest against it or by what the autopilot says.
+bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& now) {
+  std::optional<ContactDetector::Deck> deck;
+  if (input.target) {
+    deck = ContactDetector::Deck{input.target->motion.position(), input.target->motion.velocity()};
+  }
+  const bool was_in_contact = phase_ == GuidancePhase::kLanded;
+  const bool may_touch = IsLow() || was_in_contact;
+  if (!may_touch) contact_.Reset();
+  const bool touches =
+      may_touch && contact_.Update(input.now, now.feet, now.velocity, deck);
+  Remember(touches, input.now, &contact_since_);
+  if (touches || (may_touch && input.is_landed)) {
+    if (!was_in_contact) Enter(GuidancePhase::kLanded, "contact with the deck");
+    return true;
+  }
+  if (was_in_contact) GoAround("has lost contact with the deck");
+  if (input.is_landed) End("the UAV is on the ground");
+  return false;
+}
+
+GuidanceRequest LandingGuidance::RequestInContact(const GuidanceInput& input) const {
+  if (phase_ != GuidancePhase::kLanded) return GuidanceRequest::kNone;
+  if (options_.disarm_after_s > 0 &&
+      IsLongerThan(options_.disarm_after_s, contact_since_, input.now)) {
+    return GuidanceRequest::kDisarm;
+  }
+  return options_.land_in_contact ? GuidanceRequest::kLand : GuidanceRequest::kNone;
+}
+
+// On the deck: a descent that goes on, with the velocity that the deck has given the UAV. So the
+// autopilot finds that it has landed, and does not lean against the deck.
+SetPoint LandingGuidance::Rest(const Situation& now) const {
   SetPoint command;
-  command.velocity = velocity;
-  command.velocity.head<2>() += closing.speed * towards;
-  command.velocity.z() = ClimbRate(uav, *target);
-  command.acceleration = AccelerationAhead(motion, options_.lead_s);
-  command.acceleration.head<2>() += closing.rate * slip.head<2>();
+  command.velocity << now.velocity.head<2>(), -options_.touchdown_sink_mps;
   return command;
 }
 
-SetPoint LandingGuidance::Search(const UavState& uav) const {
-  const Vector2d offset = place_ - uav.feet_in_world.head<2>();
-  const double distance_m = offset.norm();
-  const Closing closing = ClosingSpeed(distance_m, options_.position_gain, options_.braking);
-  SetPoint command;
-  if (distance_m > 0) command.velocity.head<2>() = closing.speed / distance_m * offset;
-  command.acceleration.head<2>() = -closing.rate * uav.velocity_in_world.head<2>();
-  command.velocity.z() = kHeightGain * (options_.search_altitude_m - uav.feet_in_world.z());
+SetPoint LandingGuidance::Search(const GuidanceInput& input, const Situation& now) {
+  const double seconds = std::clamp(ToSeconds(input.now - last_), 0.0, kLongestStep_s);
+  const Vector2d place = search_.Advance(now.feet.head<2>(), seconds);
+  SetPoint command = pursuit_.To(place, {now.feet.head<2>(), now.velocity.head<2>()}, model_,
+                                 options_.limits.max_speed_mps);
+  command.velocity.z() = kHeightGain * (options_.search_altitude_m - now.feet.z());
   return command;
 }
 
-// A low pass that turns with the target: it does not lag in curves.
-Vector3d LandingGuidance::Smoothed(const TargetEstimate& target) {
-  const Vector3d velocity = target.motion.velocity();
-  if (!smoothed_) smoothed_ = {target.time, velocity};
-  const double seconds = ToSeconds(target.time - smoothed_->time);
-  const double part = 1 - std::exp(-seconds / options_.smoothing_s);
-  const Vector3d turned = smoothed_->in_world + seconds * AccelerationAhead(target.motion, 0);
-  smoothed_ = {target.time, turned + part * (velocity - turned)};
-  return smoothed_->in_world;
+SetPoint LandingGuidance::Pursue(const GuidanceInput& input, const Situation& now) {
+  SetPoint command =
+      pursuit_.Above(*input.target, {now.feet.head<2>(), now.velocity.head<2>()}, model_);
+  command.velocity.z() = ClimbRate(input, now);
+  // Out of sight nothing goes down but the last bit.
+  if (!now.is_in_sight && phase_ != GuidancePhase::kCommit) {
+    command.velocity.z() = std::max(command.velocity.z(), 0.0);
+  }
+  return command;
 }
 
-void LandingGuidance::ChoosePhase(const UavState& uav, const TargetEstimate& target) {
-  const Vector3d from_target = uav.feet_in_world - target.motion.position();
-  const double off_m = from_target.head<2>().norm();
-  const double height_m = from_target.z();
-  const double slip_mps = (target.motion.velocity() - uav.velocity_in_world).head<2>().norm();
-  const bool is_known = target.position_sigma_m() <= options_.max_sigma_m;
-  const double cone_m = Cone(std::max(height_m, 0.0));
-  if (phase_ == LandingPhase::kSearch) phase_ = LandingPhase::kApproach;
-  if (phase_ == LandingPhase::kApproach && is_known && off_m < cone_m &&
-      slip_mps < kMaxClosing_mps) {
-    phase_ = LandingPhase::kDescend;
-  }
-  if (phase_ == LandingPhase::kDescend && height_m < options_.commit_height_m && off_m < cone_m) {
-    phase_ = LandingPhase::kCommit;
-  }
-  if (phase_ == LandingPhase::kDescend && (!is_known || off_m > 2 * cone_m)) {
-    phase_ = LandingPhase::kApproach;
-    ++go_arounds_;
-  }
-}
-
-double LandingGuidance::ClimbRate(const UavState& uav, const TargetEstimate& target) const {
-  const Vector3d from_target = uav.feet_in_world - target.motion.position();
-  const double off_m = from_target.head<2>().norm();
-  const double height_m = from_target.z();
-  const double sink =
-      std::clamp(options_.sink_gain * height_m, options_.touchdown_sink_mps, options_.max_sink_mps);
-  if (phase_ == LandingPhase::kCommit) return -sink;
-  if (phase_ == LandingPhase::kDescend) return off_m < Cone(height_m) ? -sink : 0;
-  const double top_m = options_.search_altitude_m - target.motion.position().z();
-  const bool is_unknown = target.position_sigma_m() > 2 * options_.max_sigma_m;
+double LandingGuidance::ClimbRate(const GuidanceInput& input, const Situation& now) const {
+  const double sink = std::max(options_.sink_gain * now.height_m, options_.touchdown_sink_mps);
+  if (phase_ == GuidancePhase::kCommit) return -sink;
+  if (phase_ == GuidancePhase::kDescend) return now.off_m < Cone(now.height_m) ? -sink : 0;
+  const double top_m = options_.search_altitude_m - input.target->motion.position().z();
+  const bool is_unknown = input.target->position_sigma_m() > 2 * options_.max_sigma_m;
   const double wanted_m =
-      is_unknown ? top_m : std::max(options_.follow_height_m, options_.glide * off_m);
-  return std::clamp(kHeightGain * (std::min(wanted_m, top_m) - height_m), -options_.max_sink_mps,
-                    options_.max_sink_mps);
+      is_unknown ? top_m : std::max(options_.follow_height_m, options_.glide * now.off_m);
+  return kHeightGain * (std::min(wanted_m, top_m) - now.height_m);
+}
+
+void LandingGuidance::Enter(GuidancePhase phase, const char* reason) {
+  phase_ = phase;
+  reason_ = reason;
+}
+
+void LandingGuidance::GoAround(const char* reason) {
+  ++go_arounds_;
+  Enter(GuidancePhase::kGoAround, reason);
+}
+
+double LandingGuidance::Cone(double height_m) const {
+  return options_.cone_m + options_.cone_slope * std::max(height_m, 0.0);
+}
+
+bool LandingGuidance::IsLow() const {
+  return phase_ == GuidancePhase::kDescend || phase_ == GuidancePhase::kCommit;
+}
+
+GuidanceOutput LandingGuidance::Output(const std::optional<SetPoint>& set_point,
+                                       GuidanceRequest request) const {
+  return {set_point, phase_, request, reason_};
 }
 
 }  // namespace kestrel

@@ -1,115 +1,172 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <Eigen/Core>
 
+#include "kestrel/base/time.h"
+#include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/guidance/contact_detector.h"
+#include "kestrel/guidance/flight_limits.h"
+#include "kestrel/guidance/flight_model.h"
+#include "kestrel/guidance/guidance_options.h"
+#include "kestrel/guidance/search_path.h"
+#include "kestrel/guidance/target_pursuit.h"
 #include "kestrel/navigation/set_point.h"
 #include "kestrel/tracking/target_tracker.h"
 
 namespace kestrel {
 
-struct GuidanceOptions {
-  double search_altitude_m = 10;  // above the world's z = 0
-  // Height of the feet above the board at which it follows the vehicle before it goes down; further
-  // away it flies higher, by 'glide' per metre.
-  double follow_height_m = 2.5;
-  double glide = 0.7;
-  // Speed towards the target: in proportion to the distance, further away as fast as it can still
-  // be braked.
-  double position_gain = 2.5;
-  double braking = 3;
-  // How long before it is needed an acceleration is commanded: the attitude lags by as much.
-  double lead_s = 0.12;
-  // Over how long the target's velocity is smoothed: a vehicle sways on its springs, faster than a
-  // UAV can follow.
-  double smoothing_s = 0.5;
-  // It goes down, in proportion to the height, while the target is within a cone: 'cone_m' wide on
-  // the board and 'cone_slope' wider per metre of height.
-  double sink_gain = 0.8;
-  double max_sink_mps = 2.5;
-  double touchdown_sink_mps = 0.7;
-  double cone_m = 0.15;
-  double cone_slope = 0.35;
-  // Below this height it goes through with it.
-  double commit_height_m = 0.35;
-  // Where the target is known no better (standard deviation per axis) it does not go down, and
-  // twice as badly it climbs.
-  double max_sigma_m = 0.25;
-
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("search_altitude_m", self.search_altitude_m, "m", "height above ground of the search");
-    visitor("follow_height_m", self.follow_height_m, "m", "height above the board to follow in");
-    visitor("glide", self.glide, "m/m", "height in approach, per metre of distance");
-    visitor("position_gain", self.position_gain, "1/s", "speed towards the target per metre");
-    visitor("braking", self.braking, "m/s^2", "deceleration that it counts on when far away");
-    visitor("lead_s", self.lead_s, "s", "acceleration is commanded so long before it is needed");
-    visitor("smoothing_s", self.smoothing_s, "s",
-            "over how long the target's velocity is smoothed");
-    visitor("sink_gain", self.sink_gain, "1/s", "speed of the descent per metre of height");
-    visitor("max_sink_mps", self.max_sink_mps, "m/s", "fastest descent");
-    visitor("touchdown_sink_mps", self.touchdown_sink_mps, "m/s", "slowest descent");
-    visitor("cone_m", self.cone_m, "m", "how far off it may be at the board to go down");
-    visitor("cone_slope", self.cone_slope, "m/m", "and more, per metre of height");
-    visitor("commit_height_m", self.commit_height_m, "m", "below it goes through with it");
-    visitor("max_sigma_m", self.max_sigma_m, "m", "known no better it does not go down");
-  }
-  std::vector<std::string> Validate() const;
-};
-
-enum class LandingPhase {
-  kSearch,    // to the place where the vehicle should pass, or was last, and wait there
-  kApproach,  // to above the target, or to follow it there
+enum class GuidancePhase {
+  kIdle,      // not begun, refused, or ended: the pilot flies
+  kSearch,    // to where the vehicle was last or should pass, waits there, then circles outwards
+  kApproach,  // to above the target
+  kFollow,    // above it, at the height of following, until it may go down
   kDescend,   // down above it
-  kCommit,    // the last bit, whatever happens
+  kCommit,    // the last bit
+  kGoAround,  // up again
+  kLanded,    // in contact with the deck; stays so until guidance begins anew
 };
-const char* ToString(LandingPhase phase);  // "search", "approach", "descend", "commit"
+// "idle", "search", "approach", "follow", "descend", "commit", "go-around", "landed"
+const char* ToString(GuidancePhase phase);
+
+// What the autopilot should be asked for, beside the set-points. Repeated for as long as it holds:
+// the caller limits how often it asks.
+enum class GuidanceRequest {
+  kNone,
+  kLand,    // its LAND mode, in contact
+  kHold,    // LOITER or HOLD: guidance has given up
+  kDisarm,  // by force, in contact
+};
+const char* ToString(GuidanceRequest request);  // "none", "land", "hold", "disarm"
 
 // What the UAV knows of itself.
 struct UavState {
-  Eigen::Vector3d feet_in_world{0, 0, 0};  // middle of its feet
-  Eigen::Vector3d velocity_in_world{0, 0, 0};
+  RigidTransform world_from_body;                 // FLU to ENU
+  Eigen::Vector3d velocity_in_world{0, 0, 0};     // m/s
+  std::optional<double> position_sigma_m = {};    // per axis, where it is known
 };
 
-// Flies a multicopter onto a moving target by the predicted track, and nothing else. A plain
-// controller, there to judge the vision:
-// - horizontally, the target's smoothed velocity plus a speed towards it; the accelerations that
-// these need
-//   (the target's in its curve, that of closing in) are given along, so that it does not lag;
-// - vertically, a height that depends on the phase.
+// All that guidance knows at an instant.
+struct GuidanceInput {
+  Time now;                              // never earlier than the one before
+  std::optional<UavState> uav;           // predicted to now; nothing when the poses have stopped
+  std::optional<TargetEstimate> target;  // predicted to now; nothing while there is none, or lost
+  // Since a frame was taken that showed the target, s.
+  double target_age_s = std::numeric_limits<double>::infinity();
+  bool is_guided = false;   // the mode in which the autopilot obeys set-points, by its heartbeat
+  bool is_armed = false;
+  bool is_landed = false;   // the autopilot says that it is on the ground
+  bool is_link_up = true;   // messages come from the autopilot
+  bool is_camera_up = true; // new images come that are not the same as before
+  double mode_age_s = 0;    // since the autopilot told the mode, s
+  double link_delay_s = 0;  // from sending a set-point to its use, s
+};
+
+struct GuidanceOutput {
+  std::optional<SetPoint> set_point;  // nothing: send none
+  GuidancePhase phase = GuidancePhase::kIdle;
+  GuidanceRequest request = GuidanceRequest::kNone;
+  const char* reason = "";  // why the phase is what it is, for the user; a literal
+};
+
+// Flies a multicopter to a moving target, by set-points, and down onto it. A state machine without
+// clock, socket or thread: all that happens is in the inputs. docs/guidance.md has its phases and
+// what it does about each loss.
+//
+// It begins when is_guided turns true, and ends when it turns false; the mode must then be left and
+// given anew. Update does not allocate and does not throw.
 class LandingGuidance {
  public:
-  // 'place': where the vehicle should pass, m.
-  LandingGuidance(const GuidanceOptions& options, const Eigen::Vector2d& place)
-      : options_(options), place_(place) {}
+  // 'place': where the vehicle should pass (m, world) and the geofence's middle; nothing: where
+  // guidance begins. Throws InputError when the options are not valid.
+  explicit LandingGuidance(const GuidanceOptions& options,
+                           const std::optional<Eigen::Vector2d>& place = std::nullopt);
 
-  // 'target': at the present time, by the track; nothing while there is none or it is lost.
-  SetPoint Command(const UavState& uav, const std::optional<TargetEstimate>& target);
+  // To be called at 20 Hz or more, in order of time.
+  GuidanceOutput Update(const GuidanceInput& input);
 
-  LandingPhase phase() const { return phase_; }
+  // Set-points of standing still are sent again before the mode is given (stream_before_start):
+  // after the mode was left they are not, until this is called. PX4 would go back to OFFBOARD by
+  // itself. Nothing happens while guidance flies.
+  void Rearm();
+
+  GuidancePhase phase() const { return phase_; }
   int go_arounds() const { return go_arounds_; }  // how often it went up again
+  // What the flight has told of the wind, the drag and the autopilot.
+  const FlightModel& model() const { return model_; }
 
  private:
-  struct Velocity {
-    Time time;
-    Eigen::Vector3d in_world;
+  // Where the UAV is, by what is known of it and of the target.
+  struct Situation {
+    Eigen::Vector3d feet;
+    Eigen::Vector3d velocity;
+    double height_m = 0;  // of the feet above the target
+    double off_m = 0;     // horizontally
+    double slip_mps = 0;  // horizontal speed against the target
+    bool is_in_sight = false;
+    bool is_known = false;  // well enough to go down
+    bool is_credible = true;
   };
 
-  SetPoint Search(const UavState& uav) const;
-  Eigen::Vector3d Smoothed(const TargetEstimate& target);
-  void ChoosePhase(const UavState& uav, const TargetEstimate& target);
-  double ClimbRate(const UavState& uav, const TargetEstimate& target) const;
-  double Cone(double height_m) const { return options_.cone_m + options_.cone_slope * height_m; }
+  // Beginning and end.
+  void FollowMode(const GuidanceInput& input);
+  void Start(const GuidanceInput& input);
+  void End(const char* reason);
+  bool HasLink(const GuidanceInput& input);
+  bool GivesUp(const GuidanceInput& input);
+  bool Obeys(const GuidanceInput& input);
+
+  // What is sent.
+  GuidanceOutput Idle(const GuidanceInput& input) const;
+  GuidanceOutput Blind(const GuidanceInput& input);
+  GuidanceOutput Fly(const GuidanceInput& input);
+  SetPoint Search(const GuidanceInput& input, const Situation& now);
+  SetPoint Pursue(const GuidanceInput& input, const Situation& now);
+  SetPoint Rest(const Situation& now) const;
+  double ClimbRate(const GuidanceInput& input, const Situation& now) const;
+  GuidanceRequest RequestInContact(const GuidanceInput& input) const;
+  GuidanceOutput Output(const std::optional<SetPoint>& set_point, GuidanceRequest request) const;
+
+  // Which phase.
+  Situation Look(const GuidanceInput& input) const;
+  void ChoosePhase(const GuidanceInput& input, const Situation& now);
+  void ChooseAbove(const Situation& now);
+  void ChooseDescent(const GuidanceInput& input, const Situation& now);
+  bool FindContact(const GuidanceInput& input, const Situation& now);
+  void Enter(GuidancePhase phase, const char* reason);
+  void GoAround(const char* reason);
+  double Cone(double height_m) const;
+  bool IsLow() const;  // in a phase in which it goes down
 
   GuidanceOptions options_;
-  Eigen::Vector2d place_;
-  LandingPhase phase_ = LandingPhase::kSearch;
+  bool has_place_;
+  FlightLimits limits_;
+  FlightModel model_;
+  TargetPursuit pursuit_;
+  SearchPath search_;
+  ContactDetector contact_;
+
+  GuidancePhase phase_ = GuidancePhase::kIdle;
+  const char* reason_;
   int go_arounds_ = 0;
-  std::optional<Velocity> smoothed_;  // of the target
+  bool is_active_ = false;
+  bool has_given_up_ = false;  // and asks for hold while it has the mode
+  bool may_stream_;
+  std::optional<bool> was_guided_;  // nothing: not told yet
+  Time last_;                       // time of the last update
+  std::optional<Time> link_lost_;   // since when there is none
+  std::optional<Time> mode_wanted_since_;  // the autopilot has not told its mode since
+  std::optional<Time> poses_lost_;
+  std::optional<Time> camera_lost_;
+  std::optional<Time> disobeys_since_;
+  std::optional<Time> contact_since_;
+  Eigen::Vector2d place_{0, 0};  // where the vehicle was last, or should pass
+  double yaw_ = 0;               // that the nose keeps, rad
+  std::optional<SetPoint> sent_;
 };
 
 }  // namespace kestrel

@@ -13,48 +13,18 @@
 #include "kestrel/link/connection.h"
 #include "kestrel/link/target_profile.h"
 #include "kestrel/navigation/pose_history.h"
-#include "kestrel/onboard/bounded_queue.h"
+#include "kestrel/onboard/flight_options.h"
 #include "kestrel/onboard/flight_recorder.h"
 #include "kestrel/onboard/flight_vision.h"
+#include "kestrel/onboard/landing_watch.h"
 #include "kestrel/onboard/latency_statistics.h"
 #include "kestrel/onboard/latest_value.h"
 #include "kestrel/onboard/live_events.h"
 #include "kestrel/onboard/live_source.h"
-#include "kestrel/onboard/target_reporter.h"
-#include "kestrel/onboard/thread_setup.h"
+#include "kestrel/onboard/target_sender.h"
 #include "kestrel/simulation/truth_text.h"
 
 namespace kestrel {
-
-struct FlightOptions {
-  double rate_hz = 50;
-  // From sending to the autopilot's use, s; negative: half of the fastest round trip that TIMESYNC
-  // measures. Give it where the link delays much more often than not.
-  double link_delay_s = -1;
-  // When it is no use to wait any longer: the flight has ended, badly.
-  double source_timeout_s = 60;
-  double autopilot_timeout_s = 60;
-  TargetReporterOptions target;
-  TargetMessageOptions messages;
-  LiveEventsOptions events;
-  ThreadOptions vision_thread;
-
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("rate_hz", self.rate_hz, "Hz", "of landing targets");
-    visitor("link_delay_s", self.link_delay_s, "s",
-            "from sending to the autopilot's use; negative: as measured");
-    visitor("source_timeout_s", self.source_timeout_s, "s",
-            "without an image for so long the flight ends");
-    visitor("autopilot_timeout_s", self.autopilot_timeout_s, "s",
-            "without a heartbeat for so long the flight ends");
-    visitor.Group("target", self.target);
-    visitor.Group("messages", self.messages);
-    visitor.Group("events", self.events);
-    visitor.Group("vision_thread", self.vision_thread);
-  }
-  std::vector<std::string> Validate() const;
-};
 
 // How a flight ended.
 enum class FlightEnd {
@@ -113,14 +83,7 @@ class FlightProgram {
   void Take(Event event);
   void TakePose(const PoseSample& pose);
   void TellTarget(Time now);
-  void WantParameters();
-  Eigen::Vector3d CameraOfArduPilot() const;
-  Duration UntilUse() const;
-  void WarnOfSpeed(const Eigen::Vector3d& velocity);
-  void SayPhase();
-  void SayLanding();
   void WatchFlight(Time now);
-  void WatchLanding();
   void End(FlightEnd end);
 
   FlightOptions options_;
@@ -129,7 +92,6 @@ class FlightProgram {
   LiveEvents events_;
   LatestValue<TrackSnapshot> track_;
   LatestValue<PoseSample> source_pose_;
-  TargetReporter reporter_;
   PoseHistory poses_;  // the link's
   LatencyStatistics latency_;
   std::once_flag ended_;
@@ -137,18 +99,10 @@ class FlightProgram {
   FlightEnd end_ = FlightEnd::kStopped;  // once it is over
 
   // Of the link's thread.
-  Time due_;         // the next message
-  Time heard_;       // the autopilot, the last time
-  Time told_frame_;  // the newest frame that a message was made from
+  std::optional<TargetSender> sender_;
+  LandingWatch landing_;
+  Time heard_;  // the autopilot, the last time
   std::optional<PoseSample> newest_pose_;
-  TargetPhase said_phase_ = TargetPhase::kSearching;
-  int moving_messages_ = 0;  // in a row of which the target moved
-  bool is_warned_ = false;
-  bool was_landing_ = false;
-  bool asked_parameters_ = false;
-  bool was_armed_ = false;
-  bool has_flown_ = false;
-  double armed_z_m_ = 0;
 
   std::atomic<int> frames_{0}, detections_{0}, messages_{0};
   std::atomic<TargetPhase> phase_{TargetPhase::kSearching};

@@ -24,7 +24,7 @@ const char* ToString(TouchdownOutcome outcome);  // "landed", "too fast", ...
 // Where things were when an image was taken (for plots).
 struct TouchdownMoment {
   Time time;
-  LandingPhase phase = LandingPhase::kSearch;
+  GuidancePhase phase = GuidancePhase::kIdle;
   Eigen::Vector3d feet_in_world{0, 0, 0};          // true
   Eigen::Vector3d pattern_in_world{0, 0, 0};       // true
   std::optional<Eigen::Vector3d> target_in_world;  // by the track

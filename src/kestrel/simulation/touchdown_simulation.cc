@@ -59,6 +59,12 @@ TouchdownSimulationOptions::TouchdownSimulationOptions() {
   recording.navigation.mount_error_deg = 0;
   recording.navigation.clock_offset_min_s = 0;
   recording.navigation.clock_offset_max_s = 0;
+  // What the multicopter can do, and more room than the vehicle takes.
+  guidance.limits = {.geofence_radius_m = 300,
+                     .max_speed_mps = multicopter.max_speed_mps,
+                     .max_climb_mps = 2.5,
+                     .max_sink_mps = 2.5,
+                     .max_tilt_deg = multicopter.max_tilt_deg};
 }
 
 std::vector<std::string> TouchdownSimulationOptions::Validate() const {
@@ -178,6 +184,7 @@ bool TouchdownSimulation::ProcessImages(double until_s, const FrameSink& sink,
     const auto& detection = observation.report.detection;
     pattern_area_ = {};
     if (detection) {
+      last_seen_ = time;
       pattern_area_ = PatternArea(*detection, options_.pattern, pipeline_.detector().camera());
       if (!result->first_seen_s) result->first_seen_s = image_s;
     }
@@ -190,17 +197,24 @@ bool TouchdownSimulation::ProcessImages(double until_s, const FrameSink& sink,
   return true;
 }
 
+// The pilot gives the mode at once; the link is perfect.
 SetPoint TouchdownSimulation::Guide(double time_s) {
-  const Time now = TimeOfFlight(time_s);
-  const TargetTracker& tracker = pipeline_.tracker();
+  GuidanceInput input;
+  input.now = TimeOfFlight(time_s);
+  input.is_armed = true;
+  input.is_guided = time_s > 0;
   UavState uav;
   uav.velocity_in_world = multicopter_.velocity();
-  const Duration age = now + clock_offset_ - newest_pose_.time;
-  uav.feet_in_world = newest_pose_.world_from_body * Vector3d(0, 0, -options_.touchdown.leg_m) +
-                      ToSeconds(age) * uav.velocity_in_world;
-  std::optional<TargetEstimate> target;
-  if (tracker.StateAt(now) != TrackState::kSearching) target = tracker.Predict(now);
-  return guidance_.Command(uav, target);
+  const Duration age = input.now + clock_offset_ - newest_pose_.time;
+  uav.world_from_body = newest_pose_.world_from_body;
+  uav.world_from_body.translation += ToSeconds(age) * uav.velocity_in_world;
+  input.uav = uav;
+  const TargetTracker& tracker = pipeline_.tracker();
+  if (tracker.StateAt(input.now) != TrackState::kSearching) {
+    input.target = tracker.Predict(input.now);
+  }
+  if (last_seen_) input.target_age_s = ToSeconds(input.now - *last_seen_);
+  return guidance_.Update(input).set_point.value_or(SetPoint());
 }
 
 bool TouchdownSimulation::HasEnded(double time_s, TouchdownResult* result) const {

@@ -149,6 +149,7 @@ class TouchdownSimulation {
   cv::Rect pattern_area_;           // in the newest image processed
   std::deque<TakenImage> images_;   // taken, not yet processed
   std::size_t next_image_ = 0;
+  std::optional<Time> last_seen_;  // when the last image was taken that showed the target
 };
 
 }  // namespace kestrel

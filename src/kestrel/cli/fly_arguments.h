@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "kestrel/cli/kestrel_options.h"
+#include "kestrel/cli/source_arguments.h"
+
+namespace kestrel {
+
+// The arguments that `fly` and `doctor` share. Must live until the command line is parsed.
+struct FlyArguments {
+  SourceArguments source;
+  std::string autopilot;  // URL, or "sim:ardupilot", "sim:px4"; empty: none
+  std::string profile = "auto";
+  std::optional<double> rate_hz;
+  std::string link_delay = "auto";
+  std::string signing_key;
+  std::string record;
+  bool hunt = false;
+  std::string model;  // of the objects
+  bool loop = false;
+
+  void AddTo(CLI::App* command);
+
+  // The options with what these arguments say of them. Throws InputError with what `land` can do
+  // and a flight cannot, and where options are not valid.
+  KestrelOptions ReadOptions() const;
+};
+
+}  // namespace kestrel
