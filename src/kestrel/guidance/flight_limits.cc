@@ -115,10 +115,9 @@ void FlightLimits::KeepInFence(const Vector2d& position, SetPoint* limited) cons
   const double distance_m = from_center.norm();
   if (!(distance_m > 0)) return;
   const Vector2d outwards = from_center / distance_m;
-  const double allowed =
-      std::max(SpeedTowards(options_.geofence_radius_m - distance_m,
-                            kBrakingPart * max_acceleration_),
-               -options_.max_speed_mps);
+  const double allowed = std::max(
+      SpeedTowards(options_.geofence_radius_m - distance_m, kBrakingPart * max_acceleration_),
+      -options_.max_speed_mps);
   const double excess = limited->velocity.head<2>().dot(outwards) - allowed;
   if (excess <= 0) return;
   limited->velocity.head<2>() -= excess * outwards;

@@ -351,8 +351,7 @@ bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& n
   const bool was_in_contact = phase_ == GuidancePhase::kLanded;
   const bool may_touch = IsLow() || was_in_contact;
   if (!may_touch) contact_.Reset();
-  const bool touches =
-      may_touch && contact_.Update(input.now, now.feet, now.velocity, deck);
+  const bool touches = may_touch && contact_.Update(input.now, now.feet, now.velocity, deck);
   Remember(touches, input.now, &contact_since_);
   if (touches || (may_touch && input.is_landed)) {
     if (!was_in_contact) Enter(GuidancePhase::kLanded, "contact with the deck");

@@ -74,8 +74,7 @@ class TestUav {
       return;
     }
     const double gain = options_.shaping_jerk / options_.shaping_accel;
-    Eigen::Vector3d wanted =
-        gain * (command_.velocity - shaped_.velocity) + command_.acceleration;
+    Eigen::Vector3d wanted = gain * (command_.velocity - shaped_.velocity) + command_.acceleration;
     const double size = wanted.head<2>().norm();
     if (size > options_.shaping_accel) wanted.head<2>() *= options_.shaping_accel / size;
     Eigen::Vector3d change = wanted - shaped_.acceleration;
@@ -94,8 +93,7 @@ class TestUav {
     wanted.z() = std::clamp(shaped_.acceleration.z() + 4 * error.z(), -5.0, 5.0);
     const Eigen::Vector3d drag = options_.drag * (wind - velocity_);
     if (options_.compensates_drag) wanted -= drag;
-    const double most =
-        std::tan(options_.max_tilt_deg * EIGEN_PI / 180) * (kGravity + wanted.z());
+    const double most = std::tan(options_.max_tilt_deg * EIGEN_PI / 180) * (kGravity + wanted.z());
     const double size = wanted.head<2>().norm();
     if (size > most) {
       wanted.head<2>() *= most / size;

@@ -29,8 +29,7 @@ void ArduPilotGuided::Handle(const mavlink::SetPositionTargetLocalNed& message,
   constexpr double kFastest_mps = 1000;
   if (!is_guided) return;
   told_.reset();
-  const bool has_place =
-      (message.type_mask & mavlink::kIgnorePosition) != mavlink::kIgnorePosition;
+  const bool has_place = (message.type_mask & mavlink::kIgnorePosition) != mavlink::kIgnorePosition;
   if (!IsFrameOfGuided(message.coordinate_frame) || has_place) return;
   const auto order = VelocityOrderOf(message, state);
   if (!order || order->set_point.velocity.norm() > kFastest_mps) return;

@@ -211,7 +211,7 @@ FlightCommand AutopilotModel::Fly() {
   } else if (IsIn(FlightMode::kReturn)) {
     command.set_point = return_.Fly(state_);
   } else if (pilot_flies_ && pilot_.follows_vehicle()) {
-    command.set_point = pilot_.FollowVehicle(state_);
+    command.set_point = pilot_.FollowVehicle(state_.time, truth().world_from_body.translation);
   } else {
     command.set_point = Hold();
   }

@@ -46,8 +46,7 @@ void LandDetector::Observe(const FlightState& state, const SetPoint& command) {
 }
 
 double LandDetector::landed_s() const {
-  return settled_s_ -
-         (firmware_ == AutopilotFirmware::kPx4 ? kPx4Detect_s : kArduPilotDetect_s);
+  return settled_s_ - (firmware_ == AutopilotFirmware::kPx4 ? kPx4Detect_s : kArduPilotDetect_s);
 }
 
 }  // namespace kestrel

@@ -63,8 +63,8 @@ Vector3d Px4Offboard::WithinLimits(const Vector3d& velocity) const {
   const double most = parameters_["MPC_XY_VEL_MAX"];
   Vector3d limited = velocity;
   if (speed > most) limited.head<2>() *= most / speed;
-  limited.z() = std::clamp(limited.z(), -parameters_["MPC_Z_VEL_MAX_DN"],
-                           parameters_["MPC_Z_VEL_MAX_UP"]);
+  limited.z() =
+      std::clamp(limited.z(), -parameters_["MPC_Z_VEL_MAX_DN"], parameters_["MPC_Z_VEL_MAX_UP"]);
   return limited;
 }
 
@@ -97,8 +97,7 @@ Vector3d Px4Offboard::ControlVelocity(const FlightState& state, const Vector3d& 
   if (state.is_standing) {
     integral_.setZero();
   } else if ((control + wanted_.acceleration).head<2>().norm() < most) {
-    integral_ +=
-        state.step_s * gains("MPC_XY_VEL_I_ACC", "MPC_Z_VEL_I_ACC").cwiseProduct(error);
+    integral_ += state.step_s * gains("MPC_XY_VEL_I_ACC", "MPC_Z_VEL_I_ACC").cwiseProduct(error);
   }
   return control;
 }

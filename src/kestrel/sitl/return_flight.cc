@@ -18,6 +18,12 @@ void ReturnFlight::Start(const FlightState& state) {
   from_ = state.position().head<2>();
 }
 
+double ReturnFlight::SinkAt(double height_m) const {
+  constexpr double kHigh_m = 10;
+  constexpr double kHigh_mps = 1.5;
+  return height_m > kHigh_m ? kHigh_mps : parameters_[sink_];
+}
+
 SetPoint ReturnFlight::Fly(const FlightState& state) {
   constexpr double kNear_m = 0.5;
   constexpr double kBraking = 2.5;
@@ -31,7 +37,7 @@ SetPoint ReturnFlight::Fly(const FlightState& state) {
       BrakingVelocity(goal - state.position().head<2>(), 1, kBraking, parameters_[speed_]);
   // One that is higher already stays so.
   command.velocity.z() =
-      leg_ == Leg::kDown ? -parameters_[sink_] : std::clamp(to_climb_m, 0.0, kClimb_mps);
+      leg_ == Leg::kDown ? -SinkAt(state.position().z()) : std::clamp(to_climb_m, 0.0, kClimb_mps);
   return command;
 }
 

@@ -18,6 +18,8 @@ class ReturnFlight {
  private:
   enum class Leg { kUp, kHome, kDown };
 
+  double SinkAt(double height_m) const;
+
   const AutopilotParameters& parameters_;
   const char* altitude_;  // names of parameters
   const char* speed_;

@@ -5,6 +5,7 @@
 
 #include "kestrel/base/options.h"
 #include "kestrel/base/violations.h"
+#include "kestrel/sitl/landing_rules.h"
 
 namespace kestrel {
 
@@ -32,14 +33,14 @@ Vector3d SimulatedPilot::PlaceAt(Time now) const {
          Vector3d(options_.offset_east_m, options_.offset_north_m, options_.start_altitude_m);
 }
 
-SetPoint SimulatedPilot::FollowVehicle(const FlightState& state) const {
+SetPoint SimulatedPilot::FollowVehicle(Time now, const Vector3d& position) const {
   constexpr double kGain = 1;
   constexpr double kBraking = 2.5;
   constexpr double kMax_mps = 5;
   constexpr double kMaxClimb_mps = 1.5;
-  const Vector3d way = PlaceAt(state.time) - state.position();
+  const Vector3d way = PlaceAt(now) - position;
   SetPoint command;
-  command.velocity = world_.VelocityAt(state.time);
+  command.velocity = world_.VelocityAt(now);
   command.velocity.head<2>() += BrakingVelocity(way.head<2>(), kGain, kBraking, kMax_mps);
   command.velocity.z() = std::clamp(kGain * way.z(), -kMaxClimb_mps, kMaxClimb_mps);
   return command;

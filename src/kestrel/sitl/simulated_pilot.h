@@ -10,7 +10,6 @@
 #include "kestrel/base/time.h"
 #include "kestrel/link/autopilot_kind.h"
 #include "kestrel/navigation/set_point.h"
-#include "kestrel/sitl/landing_rules.h"
 #include "kestrel/sitl/vehicle_world.h"
 
 namespace kestrel {
@@ -57,12 +56,12 @@ class SimulatedPilot {
 
   // Where the pilot keeps the UAV.
   Eigen::Vector3d PlaceAt(Time now) const;
-  // How, until somebody else takes over.
-  SetPoint FollowVehicle(const FlightState& state) const;
+  // How, by eye, until somebody else takes over; 'position': where the UAV truly is.
+  SetPoint FollowVehicle(Time now, const Eigen::Vector3d& position) const;
   bool follows_vehicle() const { return options_.follows_vehicle; }
 
-  // To which mode the pilot switches at 'now'; 'flies': nobody else has taken over. The mode that is
-  // guided the pilot tries again and again.
+  // To which mode the pilot switches at 'now'; 'flies': nobody else has taken over. The mode that
+  // is guided the pilot tries again and again.
   std::optional<FlightMode> Switch(Time now, bool flies);
   // The battery is low from now on; true once.
   bool LosesBattery(Time now);

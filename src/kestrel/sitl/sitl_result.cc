@@ -21,12 +21,12 @@ std::string LandingInWords(const SitlResult& result) {
 
 std::string GuidingInWords(const SitlResult& result) {
   if (result.guided_entries == 0) return "";
-  std::string words = fmt::format("guided for {:.1f} s by {} set-points", result.guided_s,
-                                  result.set_points);
+  std::string words =
+      fmt::format("guided for {:.1f} s by {} set-points", result.guided_s, result.set_points);
   if (result.guided_entries > 1) words += fmt::format(", {} times", result.guided_entries);
   if (result.left) {
-    words += fmt::format("; {} set-points after the mode was left",
-                         result.set_points_after_take_back);
+    words +=
+        fmt::format("; {} set-points after the mode was left", result.set_points_after_take_back);
     if (result.set_points_after_take_back > 0) {
       words += fmt::format(", the last {:.2f} s later", result.last_set_point_after_s);
     }

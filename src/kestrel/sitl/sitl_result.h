@@ -16,12 +16,12 @@ struct SitlResult {
   double disarm_s = 0;             // from contact
 
   // Of the mode that is guided by set-points.
-  double guided_s = 0;        // how long it was on
-  int set_points = 0;         // that came in it
-  int guided_entries = 0;     // how often it began
-  int modes_by_link = 0;      // how often the companion asked for a mode
-  bool was_forced = false;    // the companion stopped the motors by force
-  std::optional<Time> left;   // when it was left last, for whatever mode
+  double guided_s = 0;       // how long it was on
+  int set_points = 0;        // that came in it
+  int guided_entries = 0;    // how often it began
+  int modes_by_link = 0;     // how often the companion asked for a mode
+  bool was_forced = false;   // the companion stopped the motors by force
+  std::optional<Time> left;  // when it was left last, for whatever mode
   // Set-points that came after it was left, and the last of them so long after.
   int set_points_after_take_back = 0;
   double last_set_point_after_s = 0;
