@@ -14,6 +14,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kDragLag_s = 0.2;
+constexpr double kMaxVertical = 5;  // m/s^2; the rotors neither stop nor have double power
 
 // 'vector' with its horizontal part and its height no longer than these.
 Vector3d Limited(const Vector3d& vector, double horizontal, double vertical) {
@@ -33,6 +34,7 @@ std::vector<std::string> MulticopterOptions::Validate() const {
   RequireIn(attitude_lag_s, 0.01, 1, "attitude_lag_s", &violations);
   RequireIn(drag, 0, 5, "drag", &violations);
   RequireIn(velocity_gain, 0.1, 10, "velocity_gain", &violations);
+  RequireIn(max_turn_dps, 0, 1000, "max_turn_dps", &violations);
   return violations;
 }
 
@@ -46,8 +48,20 @@ Multicopter::Multicopter(const MulticopterOptions& options, const Vector3d& posi
       heading_(heading) {}
 
 void Multicopter::Step(const SetPoint& command, const Vector3d& wind, double seconds) {
+  Move(WantedThrust(command), wind, seconds);
+  Turn(command.yaw, seconds);
+}
+
+void Multicopter::StepByThrust(const Vector3d& acceleration, std::optional<double> yaw,
+                               const Vector3d& wind, double seconds) {
+  const Vector3d limited = Limited(acceleration, options_.max_acceleration, kMaxVertical);
+  Move(WithinTilt(limited + kGravity * Vector3d::UnitZ()), wind, seconds);
+  Turn(yaw, seconds);
+}
+
+void Multicopter::Move(const Vector3d& wanted_thrust, const Vector3d& wind, double seconds) {
   const double lag = 1 - std::exp(-seconds / options_.attitude_lag_s);
-  lagging_ += lag * (WantedThrust(command) - lagging_);
+  lagging_ += lag * (wanted_thrust - lagging_);
   thrust_ += lag * (lagging_ - thrust_);
   const Vector3d drag = options_.drag * (wind - velocity_);
   felt_drag_ += (1 - std::exp(-seconds / kDragLag_s)) * (drag - felt_drag_);
@@ -56,15 +70,23 @@ void Multicopter::Step(const SetPoint& command, const Vector3d& wind, double sec
   velocity_ += seconds * acceleration;
 }
 
+void Multicopter::Turn(std::optional<double> yaw, double seconds) {
+  if (!yaw) return;
+  const double most = seconds * options_.max_turn_dps * std::numbers::pi / 180;
+  heading_ += std::clamp(std::remainder(*yaw - heading_, 2 * std::numbers::pi), -most, most);
+}
+
 Vector3d Multicopter::WantedThrust(const SetPoint& command) const {
-  constexpr double kMaxVertical = 5;  // m/s^2; the rotors neither stop nor have double power
   // Limited together: the acceleration must not bring it beyond the speed either.
   const Vector3d velocity =
       Limited(command.velocity + command.acceleration / options_.velocity_gain,
               options_.max_speed_mps, options_.max_climb_mps);
   const Vector3d wanted = Limited(options_.velocity_gain * (velocity - velocity_),
                                   options_.max_acceleration, kMaxVertical);
-  const Vector3d thrust = wanted - felt_drag_ + kGravity * Vector3d::UnitZ();
+  return WithinTilt(wanted - felt_drag_ + kGravity * Vector3d::UnitZ());
+}
+
+Vector3d Multicopter::WithinTilt(const Vector3d& thrust) const {
   const double max_tilt = options_.max_tilt_deg * std::numbers::pi / 180;
   return Limited(thrust, std::tan(max_tilt) * thrust.z(), thrust.z());
 }

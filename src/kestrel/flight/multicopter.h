@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct MulticopterOptions {
   double attitude_lag_s = 0.06;  // of each of two lags in a row between command and thrust
   double drag = 0.25;            // acceleration by the air, per m/s of speed through it
   double velocity_gain = 4;      // of its velocity control, m/s^2 per m/s
+  double max_turn_dps = 60;      // of its nose, deg/s
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -31,6 +33,7 @@ struct MulticopterOptions {
             "of each of two lags in a row between the command and the thrust");
     visitor("drag", self.drag, "1/s", "acceleration by the air, per m/s of speed through it");
     visitor("velocity_gain", self.velocity_gain, "1/s", "gain of its velocity control");
+    visitor("max_turn_dps", self.max_turn_dps, "deg/s", "largest rate of turn");
   }
   std::vector<std::string> Validate() const;
 };
@@ -49,12 +52,20 @@ class Multicopter {
   // Flies on for 'seconds', a few ms, in the wind (m/s, the air's velocity).
   void Step(const SetPoint& command, const Eigen::Vector3d& wind, double seconds);
 
+  // The same for an autopilot that controls the velocity by itself: the rotors are to give
+  // 'acceleration' (world, m/s^2) beyond what carries the weight, whatever the air does to it.
+  void StepByThrust(const Eigen::Vector3d& acceleration, std::optional<double> yaw,
+                    const Eigen::Vector3d& wind, double seconds);
+
   RigidTransform world_from_body() const;
   const Eigen::Vector3d& position() const { return position_; }
   const Eigen::Vector3d& velocity() const { return velocity_; }
 
  private:
   Eigen::Vector3d WantedThrust(const SetPoint& command) const;
+  Eigen::Vector3d WithinTilt(const Eigen::Vector3d& thrust) const;
+  void Move(const Eigen::Vector3d& wanted_thrust, const Eigen::Vector3d& wind, double seconds);
+  void Turn(std::optional<double> yaw, double seconds);
 
   MulticopterOptions options_;
   Eigen::Vector3d position_;

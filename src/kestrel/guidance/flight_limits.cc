@@ -65,9 +65,7 @@ std::vector<std::string> ViolationsOf(const AutopilotLimits& autopilot,
 }
 
 FlightLimits::FlightLimits(const FlightLimitsOptions& options, const Vector2d& center)
-    : options_(Checked(options)),
-      center_(center),
-      max_acceleration_(options.max_acceleration()) {}
+    : options_(Checked(options)), center_(center), max_acceleration_(options.max_acceleration()) {}
 
 bool FlightLimits::Contains(const Vector3d& position) const {
   return (position.head<2>() - center_).norm() <= options_.geofence_radius_m &&

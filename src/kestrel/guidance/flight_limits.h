@@ -14,7 +14,7 @@ namespace kestrel {
 // Where guidance may fly, and how fast. The defaults are within those that ArduCopter and PX4 come
 // with.
 struct FlightLimitsOptions {
-  double geofence_radius_m = 100;  // horizontal, around the home position
+  double geofence_radius_m = 100;  // horizontal, around where guidance began or the place given
   double ceiling_m = 30;           // above the world's z = 0
   double floor_m = 3;              // the same, of the body while it follows no target
   double max_speed_mps = 12;       // horizontal
@@ -25,7 +25,7 @@ struct FlightLimitsOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("geofence_radius_m", self.geofence_radius_m, "m",
-            "how far it may fly from the home position");
+            "how far it may fly from where guidance began, or from the place given");
     visitor("ceiling_m", self.ceiling_m, "m", "how high, above the world's z = 0");
     visitor("floor_m", self.floor_m, "m", "how low while no target is followed");
     visitor("max_speed_mps", self.max_speed_mps, "m/s", "largest horizontal speed");
@@ -41,12 +41,10 @@ struct FlightLimitsOptions {
 // What the autopilot itself limits, as far as its parameters are known: beyond that it would not
 // follow.
 struct AutopilotLimits {
-  std::optional<double> max_speed_mps;  // horizontal
-  std::optional<double> max_climb_mps;
-  std::optional<double> max_sink_mps;
-  std::optional<double> max_tilt_deg;
-  // Horizontal, m/s^2: ArduCopter shapes what it is told by WPNAV_ACCEL (4.7: WP_ACC).
-  std::optional<double> max_acceleration;
+  std::optional<double> max_speed_mps = std::nullopt;  // horizontal
+  std::optional<double> max_climb_mps = std::nullopt;
+  std::optional<double> max_sink_mps = std::nullopt;
+  std::optional<double> max_tilt_deg = std::nullopt;
 };
 
 // One line for each limit that is beyond the autopilot's own.

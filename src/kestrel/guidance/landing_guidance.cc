@@ -50,6 +50,10 @@ bool IsFinite(const UavState& uav) {
          uav.world_from_body.rotation.coeffs().allFinite() && uav.velocity_in_world.allFinite();
 }
 
+bool IsFinite(const TargetEstimate& target) {
+  return target.motion.mean.allFinite() && target.motion.covariance.diagonal().allFinite();
+}
+
 }  // namespace
 
 const char* ToString(GuidancePhase phase) {
@@ -92,7 +96,6 @@ LandingGuidance::LandingGuidance(const GuidanceOptions& options,
                                  const std::optional<Vector2d>& place)
     : options_(Checked(options)),
       has_place_(place.has_value()),
-      has_fence_center_(false),
       limits_(options.limits, place.value_or(Vector2d::Zero())),
       model_(options.model),
       pursuit_(options),
@@ -102,14 +105,14 @@ LandingGuidance::LandingGuidance(const GuidanceOptions& options,
       may_stream_(options.stream_before_start),
       place_(place.value_or(Vector2d::Zero())) {}
 
-void LandingGuidance::SetFenceCenter(const Vector2d& center) {
-  has_fence_center_ = true;
-  limits_.set_center(center);
-}
-
 void LandingGuidance::Rearm() { may_stream_ = options_.stream_before_start; }
 
 GuidanceOutput LandingGuidance::Update(const GuidanceInput& input) {
+  if (input.target && !IsFinite(*input.target)) {
+    GuidanceInput without = input;
+    without.target.reset();
+    return Update(without);
+  }
   if (!HasLink(input)) {
     last_ = input.now;
     sent_.reset();
@@ -169,8 +172,10 @@ void LandingGuidance::Start(const GuidanceInput& input) {
     return End("refused: the UAV is on the ground");
   }
   const Vector3d& position = input.uav->world_from_body.translation;
-  if (!has_place_) place_ = position.head<2>();
-  if (!has_fence_center_) limits_.set_center(place_);
+  if (!has_place_) {
+    place_ = position.head<2>();
+    limits_.set_center(place_);
+  }
   if (!limits_.Contains(position)) {
     return End("refused: the UAV is outside of the geofence or above the ceiling");
   }
@@ -242,8 +247,9 @@ GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
   }
   wanted.yaw = yaw_;
   const Vector3d& position = input.uav->world_from_body.translation;
-  const SetPoint limited = limits_.Limited(wanted, position, input.target.has_value());
   const bool is_flying = phase_ != GuidancePhase::kLanded;
+  const SetPoint limited =
+      limits_.Limited(wanted, position, input.target.has_value() || !is_flying);
   model_.Observe(input.now, now.velocity, input.uav->world_from_body.rotation * Vector3d::UnitZ(),
                  is_flying ? std::optional(limited) : std::nullopt, input.link_delay_s);
   return Output(limited, RequestInContact(input));

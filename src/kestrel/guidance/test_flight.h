@@ -178,6 +178,12 @@ struct TestFlight {
     input.target_age_s = 0.05;
     input.is_guided = time_s > 0;
     input.is_armed = true;
+    if (is_on_deck) {
+      const Eigen::Vector3d feet(0.1, 0, 0.35);
+      input.uav = UavState{{Eigen::Quaterniond::Identity(), target.Position(time_s) + feet},
+                           target.Velocity(time_s),
+                           std::nullopt};
+    }
     return input;
   }
 
@@ -187,9 +193,7 @@ struct TestFlight {
     GuidanceInput input = Input();
     change(input);
     output = guidance.Update(input);
-    if (!is_on_deck) {
-      uav.Step(output.set_point, wind(time_s));
-    }
+    uav.Step(output.set_point, wind(time_s));
     time_s += kTestStep_s;
     return output;
   }
@@ -210,6 +214,13 @@ struct TestFlight {
   }
   bool FlyUntilPhase(GuidancePhase phase, double longest_s = 60) {
     return FlyUntil([&] { return output.phase == phase; }, longest_s);
+  }
+
+  // Comes down and is carried by the deck until guidance has found that.
+  void LandOnDeck() {
+    FlyUntil([&] { return Height() <= 0; });
+    is_on_deck = true;
+    FlyUntilPhase(GuidancePhase::kLanded, 1);
   }
 
   Eigen::Vector3d Feet() const { return uav.position() - Eigen::Vector3d(0, 0, 0.35); }

@@ -13,7 +13,7 @@ namespace kestrel {
 struct SetPoint {
   Eigen::Vector3d velocity{0, 0, 0};
   Eigen::Vector3d acceleration{0, 0, 0};
-  std::optional<double> yaw;
+  std::optional<double> yaw = std::nullopt;
 };
 
 }  // namespace kestrel

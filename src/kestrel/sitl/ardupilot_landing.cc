@@ -10,12 +10,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-// From contact until the motors stop: three seconds until the throttle has come down, one at its
-// lower limit (measured: 4 s).
-constexpr double kSettle_s = 4;
-// While it wants to change its speed by more, its motors are not at their lower limit.
-constexpr double kBraking_mps = 1;
-
 }  // namespace
 
 ArduPilotLanding::ArduPilotLanding(const AutopilotParameters& parameters, Announce announce)
@@ -30,22 +24,18 @@ void ArduPilotLanding::Handle(const mavlink::TargetRelative& /*target*/,
                               const FlightState& /*state*/) {}
 
 void ArduPilotLanding::StartLanding(const FlightState& state) {
-  path_position_ = state.position().head<2>();
-  path_velocity_ = state.velocity().head<2>();
-  path_acceleration_.setZero();
+  path_.Start(state.position().head<2>(), state.velocity().head<2>());
   had_target_ = false;
-  settled_s_ = 0;
 }
 
 SetPoint ArduPilotLanding::Land(const FlightState& state) {
   had_target_ = had_target_ || target_.is_acquired();
   ShapePath(state);
   SetPoint command;
-  const Vector2d way = path_position_ - state.position().head<2>();
-  command.velocity << path_velocity_ + parameters_["PSC_NE_POS_P"] * way,
+  const Vector2d way = path_.position() - state.position().head<2>();
+  command.velocity << path_.velocity() + parameters_["PSC_NE_POS_P"] * way,
       Hovers() ? 0 : ClimbRate(state);
-  command.acceleration.head<2>() = path_acceleration_;
-  DetectLanding(state, command);
+  command.acceleration.head<2>() = path_.acceleration();
   return command;
 }
 
@@ -65,26 +55,20 @@ void ArduPilotLanding::ShapePath(const FlightState& state) {
     constexpr int kMovingTarget = 1;
     const bool moves = (static_cast<int>(parameters_["PLND_OPTIONS"]) & kMovingTarget) != 0 &&
                        parameters_["PLND_EST_TYPE"] == 1;
-    const Vector2d way = state.position().head<2>() + target_.position() - path_position_;
+    const Vector2d way = state.position().head<2>() + target_.position() - path_.position();
     wanted_velocity =
         BrakingVelocity(way, 0.5 * acceleration_gain, max_acceleration, parameters_["WP_SPD"]);
     if (moves) wanted_velocity += target_.velocity() + state.velocity().head<2>();
   } else {
-    path_position_ = state.position().head<2>();
+    path_.MoveTo(state.position().head<2>());
   }
-  const Vector2d wanted_acceleration = BrakingVelocity(
-      wanted_velocity - path_velocity_, acceleration_gain, max_jerk, max_acceleration);
-  const Vector2d change = wanted_acceleration - path_acceleration_;
-  const double max_change = max_jerk * state.step_s;
-  path_acceleration_ += std::min(1.0, max_change / std::max(change.norm(), max_change)) * change;
-  path_position_ += state.step_s * (path_velocity_ + 0.5 * state.step_s * path_acceleration_);
-  path_velocity_ += state.step_s * path_acceleration_;
+  path_.Step(wanted_velocity, Vector2d::Zero(), max_acceleration, max_jerk, state.step_s);
 }
 
 double ArduPilotLanding::ClimbRate(const FlightState& state) const {
   const double land_mps = parameters_["LAND_SPD_MS"];
   // Altitude is above home: without a rangefinder it knows nothing of what is below.
-  const double to_low_m = state.position().z() - 0.01 * parameters_["LAND_ALT_LOW"];
+  const double to_low_m = state.position().z() - parameters_["LAND_ALT_LOW_M"];
   const double gain = parameters_["PSC_NE_POS_P"];
   const double fall_mps = to_low_m > 0 ? BrakingSpeed(to_low_m, gain, parameters_["WP_ACC"]) : 0;
   const double climb =
@@ -102,16 +86,5 @@ double ArduPilotLanding::ClimbRate(const FlightState& state) const {
   }
   return climb;
 }
-
-// Its detector has no horizontal speed in it; but a UAV that brakes against the deck that carries
-// it along does not idle.
-void ArduPilotLanding::DetectLanding(const FlightState& state, const SetPoint& command) {
-  const Vector2d braking = command.velocity.head<2>() - state.velocity().head<2>();
-  const bool settles =
-      state.is_standing && command.velocity.z() < 0 && braking.norm() < kBraking_mps;
-  settled_s_ = settles ? settled_s_ + state.step_s : 0;
-}
-
-bool ArduPilotLanding::disarms() const { return settled_s_ >= kSettle_s; }
 
 }  // namespace kestrel

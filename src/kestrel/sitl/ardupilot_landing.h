@@ -6,6 +6,7 @@
 #include "kestrel/sitl/ardupilot_target.h"
 #include "kestrel/sitl/autopilot_parameters.h"
 #include "kestrel/sitl/landing_rules.h"
+#include "kestrel/sitl/shaped_path.h"
 
 namespace kestrel {
 
@@ -20,8 +21,6 @@ class ArduPilotLanding : public LandingRules {
   void Estimate(const FlightState& state) override { target_.Estimate(state); }
   void StartLanding(const FlightState& state) override;
   SetPoint Land(const FlightState& state) override;
-  bool has_landed() const override { return disarms(); }
-  bool disarms() const override;
 
   const ArduPilotTarget& target() const { return target_; }
 
@@ -29,16 +28,11 @@ class ArduPilotLanding : public LandingRules {
   bool Hovers() const;
   void ShapePath(const FlightState& state);
   double ClimbRate(const FlightState& state) const;
-  void DetectLanding(const FlightState& state, const SetPoint& command);
 
   const AutopilotParameters& parameters_;
   ArduPilotTarget target_;
   bool had_target_ = false;  // since the mode began
-  // The path that it follows, horizontally: smooth, whatever the target does.
-  Eigen::Vector2d path_position_{0, 0};
-  Eigen::Vector2d path_velocity_{0, 0};
-  Eigen::Vector2d path_acceleration_{0, 0};
-  double settled_s_ = 0;  // for how long it stands without braking
+  ShapedPath<2> path_;       // that it follows, horizontally
 };
 
 }  // namespace kestrel

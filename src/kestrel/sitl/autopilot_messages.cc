@@ -181,6 +181,29 @@ mavlink::HomePosition HomePositionOf(const GlobalOrigin& origin, std::int64_t bo
   return message;
 }
 
+mavlink::SysStatus SysStatusOf(bool has_low_battery) {
+  // Gyros, accelerometers, compass, barometer, GNSS, attitude and position control, motors.
+  constexpr std::uint32_t kSensors = 0x0001 | 0x0002 | 0x0004 | 0x0008 | 0x0020 | 0x4000 | 0x8000;
+  mavlink::SysStatus message;
+  message.onboard_control_sensors_present = kSensors;
+  message.onboard_control_sensors_enabled = kSensors;
+  message.onboard_control_sensors_health = kSensors;
+  message.voltage_battery = has_low_battery ? 13600 : 15400;
+  message.current_battery = 1800;
+  message.battery_remaining = has_low_battery ? 10 : 80;
+  return message;
+}
+
+std::uint16_t EstimatorFlags(bool has_position) {
+  constexpr std::uint16_t kPredicted = 256 | 512;
+  constexpr std::uint16_t kWithout = mavlink::kEstimatorAttitude |
+                                     mavlink::kEstimatorVelocityVertical |
+                                     mavlink::kEstimatorPositionVertical;
+  if (!has_position) return kWithout | mavlink::kEstimatorConstantPosition;
+  return kWithout | mavlink::kEstimatorVelocityHorizontal | mavlink::kEstimatorPositionRelative |
+         mavlink::kEstimatorPositionAbsolute | kPredicted;
+}
+
 mavlink::ParamValue ParamValueOf(const AutopilotParameters& parameters, std::size_t index,
                                  AutopilotFirmware firmware) {
   const AutopilotParameter& parameter = parameters.at(index);

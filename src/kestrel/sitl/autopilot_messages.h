@@ -23,13 +23,14 @@ using AutopilotMessage =
                  mavlink::LocalPositionNed, mavlink::GlobalPositionInt, mavlink::GpsGlobalOrigin,
                  mavlink::HomePosition, mavlink::SimState, mavlink::ExtendedSysState,
                  mavlink::Timesync, mavlink::Statustext, mavlink::AutopilotVersion,
-                 mavlink::ParamValue, mavlink::CommandAck>;
+                 mavlink::ParamValue, mavlink::CommandAck, mavlink::SysStatus,
+                 mavlink::EkfStatusReport, mavlink::EstimatorStatus>;
 
 // All that it listens to.
 using CompanionMessage =
     std::variant<mavlink::Heartbeat, mavlink::CommandLong, mavlink::SetMode, mavlink::Timesync,
                  mavlink::LandingTarget, mavlink::TargetRelative, mavlink::ParamRequestRead,
-                 mavlink::ParamRequestList, mavlink::ParamSet>;
+                 mavlink::ParamRequestList, mavlink::ParamSet, mavlink::SetPositionTargetLocalNed>;
 
 // What a packet says, if it listens to that.
 std::optional<CompanionMessage> CompanionMessageOf(const mavlink::Packet& packet);
@@ -57,6 +58,12 @@ mavlink::GlobalPositionInt GlobalPositionOf(const PoseSample& pose, const Global
 mavlink::SimState SimStateOf(const PoseSample& pose, const GlobalOrigin& origin);
 mavlink::HomePosition HomePositionOf(const GlobalOrigin& origin, std::int64_t boot_us);
 mavlink::GpsGlobalOrigin GlobalOriginOf(const GlobalOrigin& origin, std::int64_t boot_us);
+
+// Battery and sensors; a low battery, or a good one.
+mavlink::SysStatus SysStatusOf(bool has_low_battery);
+
+// Flags of EKF_STATUS_REPORT and of ESTIMATOR_STATUS, with and without a position.
+std::uint16_t EstimatorFlags(bool has_position);
 
 // PX4 puts the bits of an integer into the float, ArduPilot its value.
 mavlink::ParamValue ParamValueOf(const AutopilotParameters& parameters, std::size_t index,

@@ -26,6 +26,14 @@ struct FlightState {
   const Eigen::Vector3d& velocity() const { return pose.motion->velocity_in_world; }
 };
 
+// How the UAV is to fly.
+struct FlightCommand {
+  SetPoint set_point;
+  // The autopilot controls its velocity by itself: the acceleration is what the rotors are to give,
+  // whatever the air does, and the velocity only says what it is for.
+  bool is_thrust = false;
+};
+
 // MAV_SEVERITY of STATUSTEXT.
 enum class Severity : std::uint8_t { kCritical = 2, kWarning = 4, kInfo = 6 };
 
@@ -48,9 +56,6 @@ class LandingRules {
   virtual void StartLanding(const FlightState& state) = 0;
   // One step of it: how to fly.
   virtual SetPoint Land(const FlightState& state) = 0;
-  // Whether it has landed, and whether it stops its motors.
-  virtual bool has_landed() const = 0;
-  virtual bool disarms() const = 0;
 };
 
 // Speed for a distance: in proportion to it near by, and further away what can still be braked with

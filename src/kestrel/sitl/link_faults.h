@@ -19,19 +19,31 @@ struct LinkFaultOptions {
   double delay_s = 0;   // of each message
   double jitter_s = 0;  // the delay varies by up to this to both sides; the order stays
   double loss = 0;      // part of the messages that are lost
+  // Silence in both directions: from so long after the start on (negative: never), for so long.
+  double down_after_s = -1;
+  double down_for_s = 2;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("delay_s", self.delay_s, "s", "of each message, one way");
     visitor("jitter_s", self.jitter_s, "s", "by which the delay varies to both sides");
     visitor("loss", self.loss, "1", "part of the messages that get lost");
+    visitor("down_after_s", self.down_after_s, "s",
+            "silence in both directions from so long after the start on; negative: never");
+    visitor("down_for_s", self.down_for_s, "s", "for so long");
   }
   std::vector<std::string> Validate() const {
     std::vector<std::string> violations;
     RequireIn(delay_s, 0, 10, "delay_s", &violations);
     RequireIn(jitter_s, 0, 10, "jitter_s", &violations);
     RequireIn(loss, 0, 1, "loss", &violations);
+    RequireIn(down_after_s, -1, 10000, "down_after_s", &violations);
+    RequireIn(down_for_s, 0, 10000, "down_for_s", &violations);
     return violations;
+  }
+  bool IsDown(double since_start_s) const {
+    return down_after_s >= 0 && since_start_s >= down_after_s &&
+           since_start_s < down_after_s + down_for_s;
   }
 };
 

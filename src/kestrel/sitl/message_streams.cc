@@ -21,7 +21,7 @@ constexpr DefaultRate kDefaultRates[] = {
     {mavlink::Attitude::kId, 0, 100},        {mavlink::AttitudeQuaternion::kId, 0, 50},
     {mavlink::LocalPositionNed::kId, 0, 30}, {mavlink::GlobalPositionInt::kId, 0, 50},
     {mavlink::ExtendedSysState::kId, 0, 5},  {mavlink::GpsGlobalOrigin::kId, 0, 1},
-    {mavlink::HomePosition::kId, 0, 0.5},
+    {mavlink::HomePosition::kId, 0, 0.5},    {mavlink::SysStatus::kId, 0, 5},
 };
 
 }  // namespace
@@ -33,8 +33,14 @@ MessageStreams::MessageStreams(AutopilotFirmware firmware) : firmware_(firmware)
     const std::int64_t interval_us = hz > 0 ? std::llround(1e6 / hz) : 0;
     streams_.push_back({rate.id, interval_us, interval_us});
   }
-  // The truth is what only ArduPilot's simulator tells.
-  if (!is_px4) streams_.push_back({mavlink::SimState::kId, 0, 0});
+  if (is_px4) {
+    constexpr std::int64_t kEstimator_us = 1'000'000;
+    streams_.push_back({mavlink::EstimatorStatus::kId, kEstimator_us, kEstimator_us});
+  } else {
+    streams_.push_back({mavlink::EkfStatusReport::kId, 0, 0});
+    // The truth is what only ArduPilot's simulator tells.
+    streams_.push_back({mavlink::SimState::kId, 0, 0});
+  }
 }
 
 bool MessageStreams::Has(std::uint32_t id) const {

@@ -10,8 +10,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-// From contact until it is "landed" (ground contact, maybe landed, landed; measured: 3 to 4 s).
-constexpr double kDetect_s = 3.5;
 // Set-points of a mission are smoothed; with MPC_XY_P this trails a moving target by 2 s in all,
 // as measured.
 constexpr double kSmoothing_s = 0.95;
@@ -30,7 +28,6 @@ void Px4Landing::StartLanding(const FlightState& state) {
   set_point_ = goal_;
   altitude_ = state.position().z();
   searches_ = 0;
-  settled_s_ = 0;
   Enter(Phase::kStart, state);
 }
 
@@ -61,7 +58,6 @@ SetPoint Px4Landing::Land(const FlightState& state) {
     set_point_ += state.step_s * target_.place()->velocity;
   }
   command.velocity << horizontal, ClimbRate(state);
-  DetectLanding(state, command);
   return command;
 }
 
@@ -168,21 +164,6 @@ double Px4Landing::ClimbRate(const FlightState& state) const {
   const double low = parameters_["MPC_LAND_ALT2"];
   const double part = std::clamp((state.position().z() - low) / (high - low), 0.0, 1.0);
   return -std::lerp(parameters_["MPC_LAND_SPEED"], parameters_["MPC_Z_V_AUTO_DN"], part);
-}
-
-void Px4Landing::DetectLanding(const FlightState& state, const SetPoint& command) {
-  constexpr double kStill_mps = 0.25;
-  const bool settles = state.is_standing && command.velocity.z() < 0 &&
-                       state.velocity().head<2>().norm() < parameters_["LNDMC_XY_VEL_MAX"] &&
-                       std::abs(state.velocity().z()) < kStill_mps;
-  settled_s_ = settles ? settled_s_ + state.step_s : 0;
-}
-
-bool Px4Landing::has_landed() const { return settled_s_ >= kDetect_s; }
-
-bool Px4Landing::disarms() const {
-  const double wait_s = parameters_["COM_DISARM_LAND"];
-  return wait_s > 0 && settled_s_ >= kDetect_s + wait_s;
 }
 
 }  // namespace kestrel

@@ -25,8 +25,6 @@ class Px4Landing : public LandingRules {
   void Estimate(const FlightState& state) override { target_.Estimate(state); }
   void StartLanding(const FlightState& state) override;
   SetPoint Land(const FlightState& state) override;
-  bool has_landed() const override;
-  bool disarms() const override;
 
   enum class Phase { kStart, kApproach, kDescend, kFinal, kSearch, kFallback };
   Phase phase() const { return phase_; }
@@ -45,7 +43,6 @@ class Px4Landing : public LandingRules {
   void Search(const FlightState& state);
   bool Sinks() const;
   double ClimbRate(const FlightState& state) const;
-  void DetectLanding(const FlightState& state, const SetPoint& command);
 
   const AutopilotParameters& parameters_;
   Px4Target target_;
@@ -58,7 +55,6 @@ class Px4Landing : public LandingRules {
   Eigen::Vector2d set_point_{0, 0};  // on the way there, smoothly
   double altitude_ = 0;              // of the approach, or of the search
   int searches_ = 0;
-  double settled_s_ = 0;  // for how long it has stood
 };
 
 }  // namespace kestrel

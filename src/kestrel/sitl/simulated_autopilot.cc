@@ -45,11 +45,13 @@ SimulatedAutopilot::SimulatedAutopilot(const SimulatedAutopilotOptions& options,
                                        const std::string& url, VehicleWorld* world,
                                        std::uint64_t seed)
     : url_(url),
+      link_(options.link),
+      start_(Now()),
       connection_(url, ConnectionOf(Checked(options))),
       random_(seed),
       outgoing_(options.link, Random(random_.Bits())),
       incoming_(options.link, Random(random_.Bits())),
-      model_(FirmwareOf(options.firmware), options.model, world, Now(), random_.Bits(),
+      model_(FirmwareOf(options.firmware), options.model, world, start_, random_.Bits(),
              [this](const AutopilotMessage& message) { outgoing_.Push(Now(), message); }) {}
 
 void SimulatedAutopilot::Start() {
@@ -70,7 +72,7 @@ void SimulatedAutopilot::Step(Duration wait) {
     const auto message = CompanionMessageOf(packet);
     if (message) incoming_.Push(received, {*message, packet.system, packet.component});
   });
-  const bool is_down = is_link_down_;
+  const bool is_down = is_link_down_ || link_.IsDown(ToSeconds(Now() - start_));
   {
     const Time now = Now();
     const std::lock_guard lock(mutex_);

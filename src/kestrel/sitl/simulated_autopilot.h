@@ -62,7 +62,9 @@ class SimulatedAutopilot {
   std::uint32_t custom_mode() const;
 
   // Faults, besides those of the options.
-  void set_link_down(bool down) { is_link_down_ = down; }  // silence in both directions
+  void set_link_down(bool down) {
+    is_link_down_ = down;
+  }  // as by the options, until it is up again
   void SetNanAttitude(bool nan);
   void Reboot();
   void JumpClock(Duration change);
@@ -76,6 +78,8 @@ class SimulatedAutopilot {
   };
 
   std::string url_;
+  LinkFaultOptions link_;
+  Time start_;
   std::atomic<bool> is_link_down_ = false;
   std::atomic<bool> stops_ = false;
   Connection connection_;

@@ -79,6 +79,17 @@ TEST_F(SimulatedAutopilotTest, ALinkThatIsDownIsSilent) {
   EXPECT_TRUE(HearsHeartbeat(3s));
 }
 
+TEST_F(SimulatedAutopilotTest, ALinkIsDownForAWhileByItsOptions) {
+  SimulatedAutopilotOptions options;
+  options.firmware = "px4";
+  options.link.down_after_s = 0;
+  options.link.down_for_s = 0.5;
+  SimulatedAutopilot autopilot(options, "udpout://" + address_, &world_, 1);
+  autopilot.Start();
+  EXPECT_FALSE(Listen(300ms, [](const mavlink::Packet&) { return true; }));
+  EXPECT_TRUE(HearsHeartbeat(3s));
+}
+
 TEST(LinkFaultsTest, MessagesComeLateInOrderOrNotAtAll) {
   LinkFaultOptions options;
   options.delay_s = 0.1;

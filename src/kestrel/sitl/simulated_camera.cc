@@ -51,6 +51,7 @@ std::vector<std::string> SimulatedCameraOptions::Validate() const {
   AddViolations("lens", lens.Validate(), &violations);
   AddViolations("shutter", shutter.Validate(), &violations);
   AddViolations("sensor", sensor.Validate(), &violations);
+  AddViolations("fault", fault.Validate(), &violations);
   return violations;
 }
 
@@ -93,6 +94,10 @@ bool SimulatedCamera::Next(Frame* frame, Duration timeout) {
   for (;;) {
     const Time capture = NextCapture();
     if (capture > deadline) break;
+    if (IsLeftOut(capture)) {
+      ++next_;
+      continue;
+    }
     std::this_thread::sleep_for(capture - Now());
     WaitForPose(capture, deadline);
     ++next_;
@@ -104,6 +109,19 @@ bool SimulatedCamera::Next(Frame* frame, Duration timeout) {
   }
   std::this_thread::sleep_for(deadline - Now());
   return false;
+}
+
+CameraFault SimulatedCamera::FaultAt(Time capture) const {
+  return options_.fault.At(ToSeconds(capture - start_));
+}
+
+// By its fault.
+bool SimulatedCamera::IsLeftOut(Time capture) const {
+  constexpr double kSlow_hz = 3;
+  const CameraFault fault = FaultAt(capture);
+  if (fault == CameraFault::kStopped) return true;
+  const auto slower = static_cast<std::int64_t>(std::max(options_.rate_hz / kSlow_hz, 1.0));
+  return fault == CameraFault::kSlow && next_ % slower != 0;
 }
 
 // When the next image is taken: the newest one whose time has come, or the next to come.
@@ -128,11 +146,22 @@ std::optional<Frame> SimulatedCamera::Capture(Time capture) {
   const auto snapshot = SnapshotAt(capture);
   if (!snapshot) return std::nullopt;
   snapshot_ = *snapshot;
+  const CameraFault fault = FaultAt(capture);
+  constexpr double kBeside_m = 1.5;
+  constexpr double kBright = 30;
+  if (fault == CameraFault::kBeside) snapshot_.world_from_body.translation.x() += kBeside_m;
   const auto noise = static_cast<std::uint64_t>(ToNanoseconds(capture));
   Frame frame;
   frame.time = StampOf(capture);
   frame.name = fmt::format("{}.png", ToNanoseconds(frame.time));
-  frame.image = camera_->Capture(snapshot_.time_s, 1, Hash(seed_, noise));
+  if (fault == CameraFault::kFrozen && !last_image_.empty()) {
+    frame.image = last_image_.clone();
+    return frame;
+  }
+  const double gain = fault == CameraFault::kBright ? kBright : 1;
+  frame.image = camera_->Capture(snapshot_.time_s, gain, Hash(seed_, noise));
+  if (fault == CameraFault::kBlack) frame.image.setTo(0);
+  if (options_.fault.kind == "frozen") last_image_ = frame.image.clone();
   return frame;
 }
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <opencv2/core/mat.hpp>
+
 #include "kestrel/base/time.h"
 #include "kestrel/camera/calibration.h"
 #include "kestrel/geometry/rigid_transform.h"
@@ -16,6 +18,7 @@
 #include "kestrel/recording/frame.h"
 #include "kestrel/rendering/flight_camera.h"
 #include "kestrel/simulation/truth_text.h"
+#include "kestrel/sitl/camera_faults.h"
 #include "kestrel/sitl/vehicle_world.h"
 #include "kestrel/world/light_options.h"
 #include "kestrel/world/world.h"
@@ -32,6 +35,7 @@ struct SimulatedCameraOptions {
   LensViewOptions lens;
   ShutterOptions shutter;
   SensorOptions sensor;
+  CameraFaultOptions fault;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -44,6 +48,7 @@ struct SimulatedCameraOptions {
     visitor.Group("lens", self.lens);
     visitor.Group("shutter", self.shutter);
     visitor.Group("sensor", self.sensor);
+    visitor.Group("fault", self.fault);
   }
   std::vector<std::string> Validate() const;
 };
@@ -90,6 +95,8 @@ class SimulatedCamera {
     BodyMotion motion;
   };
 
+  CameraFault FaultAt(Time capture) const;
+  bool IsLeftOut(Time capture) const;
   Time NextCapture();
   void WaitForPose(Time capture, Time deadline);
   RigidTransform BodyAt(double time_s) const;
@@ -105,6 +112,7 @@ class SimulatedCamera {
   World drawn_;  // with the UAV's shadow
   std::unique_ptr<FlightCamera> camera_;
   Snapshot snapshot_;
+  cv::Mat last_image_;
   std::int64_t next_ = 0;  // index of the next image
   std::int64_t left_out_ = 0;
 

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
 #include "kestrel/base/error.h"
 #include "kestrel/camera/camera_model.h"
@@ -157,6 +158,62 @@ TEST(VehicleWorldTest, UnknownScenariosAreNamed) {
                  "there is no scenario 'sim:figure9', expected standing, straight, circle, "
                  "figure8");
   }
+}
+
+TEST_F(SimulatedCameraTest, HasFaultsForAWhile) {
+  const auto image_at = [&](const std::string& fault, Duration after_start) {
+    SimulatedCameraOptions options;
+    options.scale = 0.2;
+    options.fault.kind = fault;
+    options.fault.after_s = 0.5;
+    options.fault.for_s = 0.5;
+    SimulatedCamera camera(options, &world_, kStart, /*seed=*/3);
+    Fly(&camera, 6, 0, 2);
+    camera.Capture(kStart + 400ms);
+    return camera.Capture(kStart + after_start)->image;
+  };
+  const auto differs = [](const cv::Mat& a, const cv::Mat& b) {
+    return cv::countNonZero(a != b) > 0;
+  };
+  const cv::Mat before = image_at("none", 400ms);
+  const cv::Mat during = image_at("none", 700ms);
+  EXPECT_FALSE(differs(image_at("frozen", 700ms), before));
+  EXPECT_FALSE(differs(image_at("frozen", 1200ms), image_at("none", 1200ms)));
+  EXPECT_EQ(cv::countNonZero(image_at("black", 700ms)), 0);
+  EXPECT_GT(cv::mean(image_at("bright", 700ms))[0], 150);
+  EXPECT_TRUE(differs(image_at("beside", 700ms), during));
+}
+
+TEST_F(SimulatedCameraTest, GivesFewerImagesWhenItIsSlow) {
+  const auto count = [&](const std::string& fault) {
+    const Time start = Now();
+    SimulatedCameraOptions options;
+    options.scale = 0.1;
+    options.fault.kind = fault;
+    options.fault.after_s = 0;
+    options.fault.for_s = 10;
+    VehicleWorld world(ReadVehicleWorld("standing", {}), start, 3);
+    SimulatedCamera camera(options, &world, start, /*seed=*/3);
+    PoseSample pose = PoseOver(Vector3d(0, 0, 6), kStart);
+    for (int i = 0; i < 100; ++i) {
+      pose.time = start + i * 20ms;
+      camera.AddPose(pose);
+    }
+    int images = 0;
+    Frame frame;
+    for (const Time end = Now() + 1000ms; Now() < end;) images += camera.Next(&frame, 50ms) ? 1 : 0;
+    return images;
+  };
+  EXPECT_LE(count("slow"), 6);
+  EXPECT_EQ(count("stopped"), 0);
+}
+
+TEST(SimulatedCameraOptionsTest, NamesAFaultThatIsNone) {
+  SimulatedCameraOptions options;
+  options.fault.kind = "foggy";
+  EXPECT_THAT(options.Validate(),
+              testing::ElementsAre("fault.kind is 'foggy', expected none, frozen, black, bright, "
+                                   "slow, stopped or beside"));
 }
 
 }  // namespace

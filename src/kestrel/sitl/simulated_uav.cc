@@ -49,12 +49,12 @@ SimulatedUav::SimulatedUav(const SimulatedUavOptions& options, const VehicleWorl
   StandOn(false);
 }
 
-void SimulatedUav::Step(Time now, const SetPoint& command, bool motors) {
+void SimulatedUav::Step(Time now, const FlightCommand& command, bool motors) {
   const double seconds = ToSeconds(now - pose_.time);
   if (!(seconds > 0)) return;
   const RigidTransform before = pose_.world_from_body;
   pose_.time = now;
-  if (body_in_support_ && motors && command.velocity.z() > kLiftOff_mps) {
+  if (body_in_support_ && motors && command.set_point.velocity.z() > kLiftOff_mps) {
     heading_ = HeadingOf(before.rotation);
     multicopter_ = Multicopter(options_.multicopter, before.translation, heading_,
                                pose_.motion->velocity_in_world);
@@ -76,14 +76,20 @@ void SimulatedUav::RideAlong(double seconds) {
   pose_.motion->velocity_in_world = (pose_.world_from_body.translation - before) / seconds;
 }
 
-void SimulatedUav::Fly(double seconds, const SetPoint& command, bool motors) {
+void SimulatedUav::Fly(double seconds, const FlightCommand& command, bool motors) {
   if (!motors) {
     Vector3d& velocity = pose_.motion->velocity_in_world;
     velocity.z() -= kGravity * seconds;
     pose_.world_from_body.translation += seconds * velocity;
     return;
   }
-  multicopter_.Step(command, wind_(world_.SceneTime(pose_.time)), seconds);
+  const Vector3d wind = wind_(world_.SceneTime(pose_.time));
+  const SetPoint& set_point = command.set_point;
+  if (command.is_thrust) {
+    multicopter_.StepByThrust(set_point.acceleration, set_point.yaw, wind, seconds);
+  } else {
+    multicopter_.Step(set_point, wind, seconds);
+  }
   pose_.world_from_body = multicopter_.world_from_body();
   pose_.motion->velocity_in_world = multicopter_.velocity();
 }

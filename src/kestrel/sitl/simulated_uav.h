@@ -15,6 +15,7 @@
 #include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/navigation/pose_history.h"
 #include "kestrel/navigation/set_point.h"
+#include "kestrel/sitl/landing_rules.h"
 #include "kestrel/sitl/vehicle_world.h"
 #include "kestrel/world/motion.h"
 
@@ -57,7 +58,7 @@ class SimulatedUav {
                Random* random);
 
   // Goes on to 'now', a few ms later. Without motors it falls.
-  void Step(Time now, const SetPoint& command, bool motors);
+  void Step(Time now, const FlightCommand& command, bool motors);
 
   // The truth: world_from_body, velocity and angular rate, at the time of the last step.
   const PoseSample& pose() const { return pose_; }
@@ -68,7 +69,7 @@ class SimulatedUav {
  private:
   void StandOn(bool board);
   void RideAlong(double seconds);
-  void Fly(double seconds, const SetPoint& command, bool motors);
+  void Fly(double seconds, const FlightCommand& command, bool motors);
   void ComeDown();
   RigidTransform Support() const;
 
