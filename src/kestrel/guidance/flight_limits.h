@@ -14,10 +14,10 @@ namespace kestrel {
 // Where guidance may fly, and how fast. The defaults are within those that ArduCopter and PX4 come
 // with.
 struct FlightLimitsOptions {
-  double geofence_radius_m = 100;  // horizontal, around where guidance began or the place given
+  double geofence_radius_m = 100;  // horizontal, around the home position
   double ceiling_m = 30;           // above the world's z = 0
   double floor_m = 3;              // the same, of the body while it follows no target
-  double max_speed_mps = 12;       // horizontal
+  double max_speed_mps = 10;       // horizontal
   double max_climb_mps = 2.5;
   double max_sink_mps = 1.5;
   double max_tilt_deg = 30;  // limits the acceleration that is commanded
@@ -25,7 +25,7 @@ struct FlightLimitsOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("geofence_radius_m", self.geofence_radius_m, "m",
-            "how far it may fly from where guidance began, or from the place given");
+            "how far it may fly from the home position");
     visitor("ceiling_m", self.ceiling_m, "m", "how high, above the world's z = 0");
     visitor("floor_m", self.floor_m, "m", "how low while no target is followed");
     visitor("max_speed_mps", self.max_speed_mps, "m/s", "largest horizontal speed");

@@ -96,6 +96,7 @@ LandingGuidance::LandingGuidance(const GuidanceOptions& options,
                                  const std::optional<Vector2d>& place)
     : options_(Checked(options)),
       has_place_(place.has_value()),
+      has_fence_center_(false),
       limits_(options.limits, place.value_or(Vector2d::Zero())),
       model_(options.model),
       pursuit_(options),
@@ -104,6 +105,11 @@ LandingGuidance::LandingGuidance(const GuidanceOptions& options,
       reason_(kWaits),
       may_stream_(options.stream_before_start),
       place_(place.value_or(Vector2d::Zero())) {}
+
+void LandingGuidance::SetFenceCenter(const Vector2d& center) {
+  has_fence_center_ = true;
+  limits_.set_center(center);
+}
 
 void LandingGuidance::Rearm() { may_stream_ = options_.stream_before_start; }
 
@@ -172,10 +178,8 @@ void LandingGuidance::Start(const GuidanceInput& input) {
     return End("refused: the UAV is on the ground");
   }
   const Vector3d& position = input.uav->world_from_body.translation;
-  if (!has_place_) {
-    place_ = position.head<2>();
-    limits_.set_center(place_);
-  }
+  if (!has_place_) place_ = position.head<2>();
+  if (!has_fence_center_) limits_.set_center(place_);
   if (!limits_.Contains(position)) {
     return End("refused: the UAV is outside of the geofence or above the ceiling");
   }

@@ -81,8 +81,8 @@ struct GuidanceOutput {
 // given anew. Update does not allocate and does not throw.
 class LandingGuidance {
  public:
-  // 'place': where the vehicle should pass (m, world) and the geofence's middle; nothing: where
-  // guidance begins. Throws InputError when the options are not valid.
+  // 'place': where the vehicle should pass (m, world); nothing: where guidance begins. Throws
+  // InputError when the options are not valid.
   explicit LandingGuidance(const GuidanceOptions& options,
                            const std::optional<Eigen::Vector2d>& place = std::nullopt);
 
@@ -93,6 +93,9 @@ class LandingGuidance {
   // after the mode was left they are not, until this is called. PX4 would go back to OFFBOARD by
   // itself. Nothing happens while guidance flies.
   void Rearm();
+
+  // The geofence's middle from now on, instead of where guidance begins.
+  void SetFenceCenter(const Eigen::Vector2d& center);
 
   GuidancePhase phase() const { return phase_; }
   int go_arounds() const { return go_arounds_; }  // how often it went up again
@@ -144,6 +147,7 @@ class LandingGuidance {
 
   GuidanceOptions options_;
   bool has_place_;
+  bool has_fence_center_;
   FlightLimits limits_;
   FlightModel model_;
   TargetPursuit pursuit_;
