@@ -65,9 +65,7 @@ std::vector<std::string> ViolationsOf(const AutopilotLimits& autopilot,
 }
 
 FlightLimits::FlightLimits(const FlightLimitsOptions& options, const Vector2d& center)
-    : options_(Checked(options)),
-      center_(center),
-      max_acceleration_(options.max_acceleration()) {}
+    : options_(Checked(options)), center_(center), max_acceleration_(options.max_acceleration()) {}
 
 bool FlightLimits::Contains(const Vector3d& position) const {
   return (position.head<2>() - center_).norm() <= options_.geofence_radius_m &&
@@ -119,10 +117,9 @@ void FlightLimits::KeepInFence(const Vector2d& position, SetPoint* limited) cons
   const double distance_m = from_center.norm();
   if (!(distance_m > 0)) return;
   const Vector2d outwards = from_center / distance_m;
-  const double allowed =
-      std::max(SpeedTowards(options_.geofence_radius_m - distance_m,
-                            kBrakingPart * max_acceleration_),
-               -options_.max_speed_mps);
+  const double allowed = std::max(
+      SpeedTowards(options_.geofence_radius_m - distance_m, kBrakingPart * max_acceleration_),
+      -options_.max_speed_mps);
   const double excess = limited->velocity.head<2>().dot(outwards) - allowed;
   if (excess <= 0) return;
   limited->velocity.head<2>() -= excess * outwards;

@@ -41,12 +41,10 @@ struct FlightLimitsOptions {
 // What the autopilot itself limits, as far as its parameters are known: beyond that it would not
 // follow.
 struct AutopilotLimits {
-  std::optional<double> max_speed_mps;  // horizontal
-  std::optional<double> max_climb_mps;
-  std::optional<double> max_sink_mps;
-  std::optional<double> max_tilt_deg;
-  // Horizontal, m/s^2: ArduCopter shapes what it is told by WPNAV_ACCEL (4.7: WP_ACC).
-  std::optional<double> max_acceleration;
+  std::optional<double> max_speed_mps = std::nullopt;  // horizontal
+  std::optional<double> max_climb_mps = std::nullopt;
+  std::optional<double> max_sink_mps = std::nullopt;
+  std::optional<double> max_tilt_deg = std::nullopt;
 };
 
 // One line for each limit that is beyond the autopilot's own.

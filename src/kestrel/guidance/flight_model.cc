@@ -16,18 +16,18 @@ using Answer = Eigen::Matrix<double, 5, 1>;
 using Air = Eigen::Vector3d;
 
 constexpr double kSample_s = 0.02;
-constexpr int kWindow = 10;     // samples over which the motion is averaged
-constexpr int kLearnEvery = 5;  // samples
-constexpr int kDelayStep = 2;   // samples between the delays tried
+constexpr int kWindow = 10;      // samples over which the motion is averaged
+constexpr int kLearnEvery = 5;   // samples
+constexpr int kDelayStep = 2;    // samples between the delays tried
 constexpr double kGap_s = 0.25;  // after which what was before is of no use
 // Deviations from the model (gusts above all) last so long: measurements are not independent.
 constexpr double kCorrelation_s = 0.5;
 constexpr double kWeight = kLearnEvery * kSample_s / kCorrelation_s;  // of one
 constexpr double kNoise_mps = 0.6;
-constexpr double kDelaySigma_s = 0.03;  // of what is assumed
+constexpr double kDelaySigma_s = 0.03;   // of what is assumed
 constexpr double kGravityOfLean = 9.81;  // m/s^2
 constexpr double kAirMemory_s = 20;
-constexpr double kAirNoise = 0.3;  // m/s^2
+constexpr double kAirNoise = 0.3;      // m/s^2
 constexpr double kMaxAirSigma = 0.06;  // of the drag, 1/s
 
 // What it is further from the command than this is a limit of the autopilot's, not its answer.
@@ -122,8 +122,7 @@ void FlightModel::Learn() {
 void FlightModel::LearnAir(const Sums& begin, const Sums& end, const Vector3d& acceleration) {
   const Vector2d velocity = (end.velocity - begin.velocity) / kWindow;
   const Vector2d lean = (end.lean - begin.lean) / kWindow;
-  const Vector2d by_air =
-      acceleration.head<2>() - (kGravityOfLean + acceleration.z()) * lean;
+  const Vector2d by_air = acceleration.head<2>() - (kGravityOfLean + acceleration.z()) * lean;
   by_lean_.Forget(std::exp(-kLearnEvery * kSample_s / kAirMemory_s));
   for (int axis = 0; axis < 2; ++axis) {
     Air row(-velocity(axis), 0, 0);
@@ -142,8 +141,7 @@ void FlightModel::Weigh() {
   std::array<double, kDelays> chi2;
   for (int i = 0; i < kDelays; ++i) {
     fits[i] = by_delay_[i].Solve();
-    chi2[i] = fits[i].chi2 +
-              std::pow((i * kDelayStep * kSample_s - assumed_s) / kDelaySigma_s, 2);
+    chi2[i] = fits[i].chi2 + std::pow((i * kDelayStep * kSample_s - assumed_s) / kDelaySigma_s, 2);
   }
   const double best = *std::ranges::min_element(chi2);
   double sum = 0;

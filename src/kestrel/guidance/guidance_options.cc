@@ -39,8 +39,7 @@ std::vector<std::string> GuidanceOptions::Validate() const {
   AddViolations("limits", limits.Validate(), &violations);
   AddViolations("model", model.Validate(), &violations);
   if (search_altitude_m < limits.floor_m || search_altitude_m > limits.ceiling_m) {
-    violations.push_back(
-        "search_altitude_m is not between limits.floor_m and limits.ceiling_m");
+    violations.push_back("search_altitude_m is not between limits.floor_m and limits.ceiling_m");
   }
   return violations;
 }

@@ -50,6 +50,10 @@ bool IsFinite(const UavState& uav) {
          uav.world_from_body.rotation.coeffs().allFinite() && uav.velocity_in_world.allFinite();
 }
 
+bool IsFinite(const TargetEstimate& target) {
+  return target.motion.mean.allFinite() && target.motion.covariance.diagonal().allFinite();
+}
+
 }  // namespace
 
 const char* ToString(GuidancePhase phase) {
@@ -104,6 +108,11 @@ LandingGuidance::LandingGuidance(const GuidanceOptions& options,
 void LandingGuidance::Rearm() { may_stream_ = options_.stream_before_start; }
 
 GuidanceOutput LandingGuidance::Update(const GuidanceInput& input) {
+  if (input.target && !IsFinite(*input.target)) {
+    GuidanceInput without = input;
+    without.target.reset();
+    return Update(without);
+  }
   if (!HasLink(input)) {
     last_ = input.now;
     sent_.reset();
@@ -238,8 +247,9 @@ GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
   }
   wanted.yaw = yaw_;
   const Vector3d& position = input.uav->world_from_body.translation;
-  const SetPoint limited = limits_.Limited(wanted, position, input.target.has_value());
   const bool is_flying = phase_ != GuidancePhase::kLanded;
+  const SetPoint limited =
+      limits_.Limited(wanted, position, input.target.has_value() || !is_flying);
   model_.Observe(input.now, now.velocity, input.uav->world_from_body.rotation * Vector3d::UnitZ(),
                  is_flying ? std::optional(limited) : std::nullopt, input.link_delay_s);
   return Output(limited, RequestInContact(input));
@@ -361,8 +371,7 @@ bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& n
   const bool was_in_contact = phase_ == GuidancePhase::kLanded;
   const bool may_touch = IsLow() || was_in_contact;
   if (!may_touch) contact_.Reset();
-  const bool touches =
-      may_touch && contact_.Update(input.now, now.feet, now.velocity, deck);
+  const bool touches = may_touch && contact_.Update(input.now, now.feet, now.velocity, deck);
   Remember(touches, input.now, &contact_since_);
   if (touches || (may_touch && input.is_landed)) {
     if (!was_in_contact) Enter(GuidancePhase::kLanded, "contact with the deck");

@@ -45,9 +45,9 @@ const char* ToString(GuidanceRequest request);  // "none", "land", "hold", "disa
 
 // What the UAV knows of itself.
 struct UavState {
-  RigidTransform world_from_body;                 // FLU to ENU
-  Eigen::Vector3d velocity_in_world{0, 0, 0};     // m/s
-  std::optional<double> position_sigma_m = {};    // per axis, where it is known
+  RigidTransform world_from_body;               // FLU to ENU
+  Eigen::Vector3d velocity_in_world{0, 0, 0};   // m/s
+  std::optional<double> position_sigma_m = {};  // per axis, where it is known
 };
 
 // All that guidance knows at an instant.
@@ -57,13 +57,13 @@ struct GuidanceInput {
   std::optional<TargetEstimate> target;  // predicted to now; nothing while there is none, or lost
   // Since a frame was taken that showed the target, s.
   double target_age_s = std::numeric_limits<double>::infinity();
-  bool is_guided = false;   // the mode in which the autopilot obeys set-points, by its heartbeat
+  bool is_guided = false;  // the mode in which the autopilot obeys set-points, by its heartbeat
   bool is_armed = false;
-  bool is_landed = false;   // the autopilot says that it is on the ground
-  bool is_link_up = true;   // messages come from the autopilot
-  bool is_camera_up = true; // new images come that are not the same as before
-  double mode_age_s = 0;    // since the autopilot told the mode, s
-  double link_delay_s = 0;  // from sending a set-point to its use, s
+  bool is_landed = false;    // the autopilot says that it is on the ground
+  bool is_link_up = true;    // messages come from the autopilot
+  bool is_camera_up = true;  // new images come that are not the same as before
+  double mode_age_s = 0;     // since the autopilot told the mode, s
+  double link_delay_s = 0;   // from sending a set-point to its use, s
 };
 
 struct GuidanceOutput {
@@ -156,9 +156,9 @@ class LandingGuidance {
   bool is_active_ = false;
   bool has_given_up_ = false;  // and asks for hold while it has the mode
   bool may_stream_;
-  std::optional<bool> was_guided_;  // nothing: not told yet
-  Time last_;                       // time of the last update
-  std::optional<Time> link_lost_;   // since when there is none
+  std::optional<bool> was_guided_;         // nothing: not told yet
+  Time last_;                              // time of the last update
+  std::optional<Time> link_lost_;          // since when there is none
   std::optional<Time> mode_wanted_since_;  // the autopilot has not told its mode since
   std::optional<Time> poses_lost_;
   std::optional<Time> camera_lost_;

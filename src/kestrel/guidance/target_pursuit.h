@@ -55,7 +55,7 @@ class TargetPursuit {
              SetPoint* command) const;
 
   GuidanceOptions options_;
-  double braking_;  // m/s^2
+  double braking_;                    // m/s^2
   std::optional<Velocity> smoothed_;  // of the target
   std::optional<Time> integrated_;    // until when
   Eigen::Vector2d integral_{0, 0};    // m/s

@@ -75,8 +75,7 @@ class TestUav {
       return;
     }
     const double gain = options_.shaping_jerk / options_.shaping_accel;
-    Eigen::Vector3d wanted =
-        gain * (command_.velocity - shaped_.velocity) + command_.acceleration;
+    Eigen::Vector3d wanted = gain * (command_.velocity - shaped_.velocity) + command_.acceleration;
     const double size = wanted.head<2>().norm();
     if (size > options_.shaping_accel) wanted.head<2>() *= options_.shaping_accel / size;
     Eigen::Vector3d change = wanted - shaped_.acceleration;
@@ -95,8 +94,7 @@ class TestUav {
     wanted.z() = std::clamp(shaped_.acceleration.z() + 4 * error.z(), -5.0, 5.0);
     const Eigen::Vector3d drag = options_.drag * (wind - velocity_);
     if (options_.compensates_drag) wanted -= drag;
-    const double most =
-        std::tan(options_.max_tilt_deg * EIGEN_PI / 180) * (kGravity + wanted.z());
+    const double most = std::tan(options_.max_tilt_deg * EIGEN_PI / 180) * (kGravity + wanted.z());
     const double size = wanted.head<2>().norm();
     if (size > most) {
       wanted.head<2>() *= most / size;
@@ -180,6 +178,12 @@ struct TestFlight {
     input.target_age_s = 0.05;
     input.is_guided = time_s > 0;
     input.is_armed = true;
+    if (is_on_deck) {
+      const Eigen::Vector3d feet(0.1, 0, 0.35);
+      input.uav = UavState{{Eigen::Quaterniond::Identity(), target.Position(time_s) + feet},
+                           target.Velocity(time_s),
+                           std::nullopt};
+    }
     return input;
   }
 
@@ -189,9 +193,7 @@ struct TestFlight {
     GuidanceInput input = Input();
     change(input);
     output = guidance.Update(input);
-    if (!is_on_deck) {
-      uav.Step(output.set_point, wind(time_s));
-    }
+    uav.Step(output.set_point, wind(time_s));
     time_s += kTestStep_s;
     return output;
   }
@@ -212,6 +214,13 @@ struct TestFlight {
   }
   bool FlyUntilPhase(GuidancePhase phase, double longest_s = 60) {
     return FlyUntil([&] { return output.phase == phase; }, longest_s);
+  }
+
+  // Comes down and is carried by the deck until guidance has found that.
+  void LandOnDeck() {
+    FlyUntil([&] { return Height() <= 0; });
+    is_on_deck = true;
+    FlyUntilPhase(GuidancePhase::kLanded, 1);
   }
 
   Eigen::Vector3d Feet() const { return uav.position() - Eigen::Vector3d(0, 0, 0.35); }
