@@ -105,7 +105,9 @@ LandingGuidance::LandingGuidance(const GuidanceOptions& options,
       may_stream_(options.stream_before_start),
       place_(place.value_or(Vector2d::Zero())) {}
 
-void LandingGuidance::Rearm() { may_stream_ = options_.stream_before_start; }
+void LandingGuidance::Rearm() {
+  if (!is_active_) may_stream_ = options_.stream_before_start;
+}
 
 GuidanceOutput LandingGuidance::Update(const GuidanceInput& input) {
   if (input.target && !IsFinite(*input.target)) {
