@@ -36,7 +36,7 @@ constexpr double kMaxSlack_mps = 1.5;
 // Before anything is known: the autopilot knows its own velocity without delay, so that what is
 // commanded ahead by the delay is too much by the delay times the acceleration.
 Answer AssumedAnswer(double delay_s) { return {0.3, -delay_s, 0, 0, 0}; }
-Answer AnswerSigma() { return {0.3, 0.05, 0.1, 0.1, 0.1}; }
+Answer AnswerSigma() { return {0.3, 0.05, 0.1, 0.3, 0.3}; }
 
 }  // namespace
 

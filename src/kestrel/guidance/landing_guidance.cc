@@ -96,7 +96,6 @@ LandingGuidance::LandingGuidance(const GuidanceOptions& options,
                                  const std::optional<Vector2d>& place)
     : options_(Checked(options)),
       has_place_(place.has_value()),
-      has_fence_center_(false),
       limits_(options.limits, place.value_or(Vector2d::Zero())),
       model_(options.model),
       pursuit_(options),
@@ -111,7 +110,9 @@ void LandingGuidance::SetFenceCenter(const Vector2d& center) {
   limits_.set_center(center);
 }
 
-void LandingGuidance::Rearm() { may_stream_ = options_.stream_before_start; }
+void LandingGuidance::Rearm() {
+  if (!is_active_) may_stream_ = options_.stream_before_start;
+}
 
 GuidanceOutput LandingGuidance::Update(const GuidanceInput& input) {
   if (input.target && !IsFinite(*input.target)) {

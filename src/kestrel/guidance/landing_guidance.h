@@ -81,8 +81,7 @@ struct GuidanceOutput {
 // given anew. Update does not allocate and does not throw.
 class LandingGuidance {
  public:
-  // 'place': where the vehicle should pass (m, world); nothing: where guidance begins. Throws
-  // InputError when the options are not valid.
+  // 'place': where the vehicle should pass (m, world); nothing: where guidance begins. Throws InputError when the options are not valid.
   explicit LandingGuidance(const GuidanceOptions& options,
                            const std::optional<Eigen::Vector2d>& place = std::nullopt);
 
@@ -147,7 +146,7 @@ class LandingGuidance {
 
   GuidanceOptions options_;
   bool has_place_;
-  bool has_fence_center_;
+  bool has_fence_center_ = false;
   FlightLimits limits_;
   FlightModel model_;
   TargetPursuit pursuit_;

@@ -157,6 +157,7 @@ TEST(LandingGuidanceTest, StreamsBeforeTheFirstStartOnlyAndAfterRearm) {
   ASSERT_TRUE(flight.output.set_point);
   EXPECT_EQ(flight.output.set_point->velocity.norm(), 0);
   flight.FlyUntil([] { return false; }, 2);
+  flight.guidance.Rearm();  // nothing while it flies
   for (int i = 0; i < 20; ++i) EXPECT_FALSE(flight.Step(kTakenBack).set_point);
   flight.guidance.Rearm();
   EXPECT_TRUE(flight.Step(kTakenBack).set_point);
