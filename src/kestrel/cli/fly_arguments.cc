@@ -19,6 +19,13 @@ void RequireFlyable(const SourceArguments& source) {
   if (source.altitude_m) throw InputError("--altitude: a flight has the autopilot's poses");
 }
 
+// Set-points end with the mode, which the heartbeat tells: once a second is too seldom.
+void RequireGuidable(const FlyArguments& arguments, AutopilotOptions* autopilot) {
+  constexpr double kHeartbeat_hz = 10;
+  if (arguments.autopilot.empty()) throw InputError("--guide: expected --autopilot URL");
+  if (autopilot->heartbeat_rate_hz == 0) autopilot->heartbeat_rate_hz = kHeartbeat_hz;
+}
+
 double ParseLinkDelay(const std::string& text) {
   const auto delay_s = ParseNumber<double>(text);
   if (!delay_s || !(*delay_s >= 0)) {
@@ -50,7 +57,7 @@ void FlyArguments::AddTo(CLI::App* command) {
                    "What the autopilot is told: auto (by its heartbeat), ardupilot, px4, px4-vte")
       ->type_name("NAME")
       ->check(CLI::IsMember({"auto", "ardupilot", "px4", "px4-vte"}));
-  command->add_option("--rate", rate_hz, "Landing targets per second (50)")
+  command->add_option("--rate", rate_hz, "Landing targets or set-points per second (50)")
       ->type_name("HZ")
       ->check(InRange(0.999, 400.001, "1 to 400 per second"));
   command
@@ -65,11 +72,14 @@ void FlyArguments::AddTo(CLI::App* command) {
       ->add_option("--record", record,
                    "Record the flight: a EuRoC folder with images and poses, and mavlink.tlog")
       ->type_name("DIR");
+  CLI::Option* guide_flag = command->add_flag(
+      "--guide", guide, "Fly the UAV by set-points when the pilot gives it GUIDED or OFFBOARD");
   CLI::Option* hunt_flag =
       command->add_flag("--hunt", hunt, "Coloured objects instead of the landing pattern");
   command->add_option("--model", model, "Objects and their colours (YAML), with --hunt")
       ->type_name("FILE")
       ->needs(hunt_flag);
+  guide_flag->excludes(hunt_flag);
   command->add_flag("--loop", loop, "Play a recording again and again");
 }
 
@@ -79,6 +89,7 @@ KestrelOptions FlyArguments::ReadOptions() const {
   if (rate_hz) options.fly.flight.rate_hz = *rate_hz;
   if (!signing_key.empty()) options.fly.link.signing_key = signing_key;
   if (link_delay != "auto") options.fly.flight.link_delay_s = ParseLinkDelay(link_delay);
+  if (guide) RequireGuidable(*this, &options.fly.autopilot);
   PredictPoses(&options);
   return options;
 }

@@ -159,6 +159,7 @@ class Flight {
     parts.connection = connection_ ? &*connection_ : nullptr;
     parts.autopilot = autopilot_ ? &*autopilot_ : nullptr;
     parts.recorder = recorder_.get();
+    parts.guides = arguments_.guide;
     parts.source_has_poses = source_.has_poses;
     parts.pattern_size_m = all_options_.landing.detector.pattern.outer_diameter_m;
     if (arguments_.profile != "auto") parts.profile = ParseLinkProfile(arguments_.profile);

@@ -50,6 +50,10 @@ std::vector<std::string> FlightLimitsOptions::Validate() const {
   return violations;
 }
 
+double FlightLimitsOptions::max_acceleration() const {
+  return kFenceGravity * std::tan(Radians(max_tilt_deg));
+}
+
 std::vector<std::string> ViolationsOf(const AutopilotLimits& autopilot,
                                       const FlightLimitsOptions& limits) {
   std::vector<std::string> violations;
@@ -61,9 +65,7 @@ std::vector<std::string> ViolationsOf(const AutopilotLimits& autopilot,
 }
 
 FlightLimits::FlightLimits(const FlightLimitsOptions& options, const Vector2d& center)
-    : options_(Checked(options)),
-      center_(center),
-      max_acceleration_(kFenceGravity * std::tan(Radians(options.max_tilt_deg))) {}
+    : options_(Checked(options)), center_(center), max_acceleration_(options.max_acceleration()) {}
 
 bool FlightLimits::Contains(const Vector3d& position) const {
   return (position.head<2>() - center_).norm() <= options_.geofence_radius_m &&

@@ -34,15 +34,17 @@ struct FlightLimitsOptions {
     visitor("max_tilt_deg", self.max_tilt_deg, "deg", "the acceleration commanded needs no more");
   }
   std::vector<std::string> Validate() const;
+
+  double max_acceleration() const;  // horizontal, of the largest tilt, m/s^2
 };
 
 // What the autopilot itself limits, as far as its parameters are known: beyond that it would not
 // follow.
 struct AutopilotLimits {
-  std::optional<double> max_speed_mps;  // horizontal
-  std::optional<double> max_climb_mps;
-  std::optional<double> max_sink_mps;
-  std::optional<double> max_tilt_deg;
+  std::optional<double> max_speed_mps = std::nullopt;  // horizontal
+  std::optional<double> max_climb_mps = std::nullopt;
+  std::optional<double> max_sink_mps = std::nullopt;
+  std::optional<double> max_tilt_deg = std::nullopt;
 };
 
 // One line for each limit that is beyond the autopilot's own.
@@ -74,7 +76,7 @@ class FlightLimits {
 
   FlightLimitsOptions options_;
   Eigen::Vector2d center_;
-  double max_acceleration_;  // horizontal, m/s^2
+  double max_acceleration_;  // m/s^2
 };
 
 }  // namespace kestrel

@@ -23,17 +23,20 @@ constexpr double kGap_s = 0.25;  // after which what was before is of no use
 // Deviations from the model (gusts above all) last so long: measurements are not independent.
 constexpr double kCorrelation_s = 0.5;
 constexpr double kWeight = kLearnEvery * kSample_s / kCorrelation_s;  // of one
-constexpr double kNoise_mps = 0.15;
-constexpr double kDelaySigma_s = 0.08;   // of what is assumed
+constexpr double kNoise_mps = 0.6;
+constexpr double kDelaySigma_s = 0.03;   // of what is assumed
 constexpr double kGravityOfLean = 9.81;  // m/s^2
 constexpr double kAirMemory_s = 20;
 constexpr double kAirNoise = 0.3;      // m/s^2
 constexpr double kMaxAirSigma = 0.06;  // of the drag, 1/s
 
+// What it is further from the command than this is a limit of the autopilot's, not its answer.
+constexpr double kMaxSlack_mps = 1.5;
+
 // Before anything is known: the autopilot knows its own velocity without delay, so that what is
 // commanded ahead by the delay is too much by the delay times the acceleration.
 Answer AssumedAnswer(double delay_s) { return {0.3, -delay_s, 0, 0, 0}; }
-const Answer kAnswerSigma(0.3, 0.25, 0.2, 1, 1);
+Answer AnswerSigma() { return {0.3, 0.05, 0.1, 0.1, 0.1}; }
 
 }  // namespace
 
@@ -49,7 +52,7 @@ FlightModel::FlightModel(const FlightModelOptions& options)
       by_lean_(Air(0.1, 0, 0), Air(0.15, 1, 1), kAirNoise),
       delay_s_(options.delay_s),
       answer_(AssumedAnswer(options.delay_s)) {
-  by_delay_.fill(ForgettingRegression<5>(answer_, kAnswerSigma, kNoise_mps));
+  by_delay_.fill(ForgettingRegression<5>(answer_, AnswerSigma(), kNoise_mps));
 }
 
 void FlightModel::Observe(Time now, const Vector3d& velocity, const Vector3d& up,
@@ -105,6 +108,7 @@ void FlightModel::Learn() {
         (sent_end.commanded_velocity - sent_begin.commanded_velocity) / kWindow;
     const Vector2d pushed =
         (sent_end.commanded_acceleration - sent_begin.commanded_acceleration) / kWindow;
+    if ((commanded - velocity).norm() > kMaxSlack_mps) continue;
     by_delay_[i].Forget(std::exp(-kLearnEvery * kSample_s / options_.memory_s));
     for (int axis = 0; axis < 2; ++axis) {
       Answer row(acceleration(axis) - pushed(axis), pushed(axis), velocity(axis), 0, 0);

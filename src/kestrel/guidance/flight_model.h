@@ -19,7 +19,7 @@ struct FlightModelOptions {
   bool is_used = true;  // false: what is assumed is kept
   // What is assumed until the flight has told better.
   double delay_s = 0.12;  // of attitude and thrust after the autopilot's command
-  double memory_s = 8;    // what is longer ago is forgotten
+  double memory_s = 20;   // what is longer ago is forgotten
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {

@@ -27,7 +27,7 @@ struct GuidanceOptions {
   double position_gain = 2.5;
   double braking = 3;
   // Speed per metre and second that it stays off: what remains of the wind and the curve.
-  double integral_gain = 0.3;
+  double integral_gain = 0.2;
   // Over how long the target's velocity is smoothed: a vehicle sways on its springs, faster than a
   // UAV can follow.
   double smoothing_s = 0.5;
@@ -57,8 +57,8 @@ struct GuidanceOptions {
   // After a link that was away for so long it sends nothing until the autopilot has told its mode
   // anew, and then goes around.
   double lose_link_s = 0.8;
-  // A velocity that differs so much from the one commanded, for so long, says that the autopilot
-  // does not obey.
+  // A velocity that differs so much from the one commanded and comes no nearer to it, for so long,
+  // says that the autopilot does not obey.
   double disobey_mps = 3;
   double disobey_s = 3;
   // Streams set-points of standing still before the mode is given: PX4 does not go to OFFBOARD

@@ -20,6 +20,9 @@ constexpr double kCommitCones = 3;
 // A mode that the autopilot has not told for so long is not known: it tells it once a second.
 constexpr double kMaxModeAge_s = 3.5;
 constexpr double kLongestStep_s = 0.2;
+// Over so long a change of the velocity is judged, and at least so much (m/s^2) is obedience.
+constexpr double kTrend_s = 1;
+constexpr double kLeastObedience = 0.5;
 
 constexpr const char* kWaits = "waits for the pilot to give the mode";
 constexpr const char* kWasGuided = "the mode was on already: leave it and give it anew";
@@ -45,6 +48,10 @@ double HeadingOf(const RigidTransform& world_from_body) {
 bool IsFinite(const UavState& uav) {
   return uav.world_from_body.translation.allFinite() &&
          uav.world_from_body.rotation.coeffs().allFinite() && uav.velocity_in_world.allFinite();
+}
+
+bool IsFinite(const TargetEstimate& target) {
+  return target.motion.mean.allFinite() && target.motion.covariance.diagonal().allFinite();
 }
 
 }  // namespace
@@ -101,6 +108,11 @@ LandingGuidance::LandingGuidance(const GuidanceOptions& options,
 void LandingGuidance::Rearm() { may_stream_ = options_.stream_before_start; }
 
 GuidanceOutput LandingGuidance::Update(const GuidanceInput& input) {
+  if (input.target && !IsFinite(*input.target)) {
+    GuidanceInput without = input;
+    without.target.reset();
+    return Update(without);
+  }
   if (!HasLink(input)) {
     last_ = input.now;
     sent_.reset();
@@ -175,6 +187,7 @@ void LandingGuidance::Start(const GuidanceInput& input) {
   poses_lost_.reset();
   camera_lost_.reset();
   disobeys_since_.reset();
+  velocity_trend_ = input.uav->velocity_in_world;
   contact_.Reset();
   contact_since_.reset();
   pursuit_.Reset();
@@ -234,8 +247,9 @@ GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
   }
   wanted.yaw = yaw_;
   const Vector3d& position = input.uav->world_from_body.translation;
-  const SetPoint limited = limits_.Limited(wanted, position, input.target.has_value());
   const bool is_flying = phase_ != GuidancePhase::kLanded;
+  const SetPoint limited =
+      limits_.Limited(wanted, position, input.target.has_value() || !is_flying);
   model_.Observe(input.now, now.velocity, input.uav->world_from_body.rotation * Vector3d::UnitZ(),
                  is_flying ? std::optional(limited) : std::nullopt, input.link_delay_s);
   return Output(limited, RequestInContact(input));
@@ -260,10 +274,16 @@ bool LandingGuidance::GivesUp(const GuidanceInput& input) {
   return true;
 }
 
+// An autopilot that does not fly what it is told does not even come nearer to it.
 bool LandingGuidance::Obeys(const GuidanceInput& input) {
-  const bool differs =
-      sent_ && (sent_->velocity - input.uav->velocity_in_world).norm() > options_.disobey_mps;
-  Remember(differs, input.now, &disobeys_since_);
+  const Vector3d& velocity = input.uav->velocity_in_world;
+  const double part = std::min(ToSeconds(input.now - last_) / kTrend_s, 1.0);
+  velocity_trend_ += part * (velocity - velocity_trend_);
+  const Vector3d error = sent_ ? Vector3d(sent_->velocity - velocity) : Vector3d::Zero();
+  const double size = error.norm();
+  const double nearer = (velocity - velocity_trend_).dot(error) / kTrend_s;
+  const bool disobeys = size > options_.disobey_mps && nearer < kLeastObedience * size;
+  Remember(disobeys, input.now, &disobeys_since_);
   return !IsLongerThan(options_.disobey_s, disobeys_since_, input.now);
 }
 

@@ -163,6 +163,7 @@ class LandingGuidance {
   std::optional<Time> poses_lost_;
   std::optional<Time> camera_lost_;
   std::optional<Time> disobeys_since_;
+  Eigen::Vector3d velocity_trend_{0, 0, 0};  // of the UAV, a low pass
   std::optional<Time> contact_since_;
   Eigen::Vector2d place_{0, 0};  // where the vehicle was last, or should pass
   double yaw_ = 0;               // that the nose keeps, rad

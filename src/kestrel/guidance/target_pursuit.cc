@@ -14,16 +14,20 @@ using Eigen::Vector3d;
 
 // Largest product of the position's gain and the delay: beyond, it would swing about the target.
 constexpr double kMaxGainDelay = 0.35;
+// Of the acceleration that the limits allow: with so much it brakes before a place.
+constexpr double kBrakingShare = 0.6;
 constexpr double kIntegrateWithin_m = 1;
 constexpr double kMaxIntegral_mps = 0.8;
 
-// The target's velocity, turned on by its curve for 'ahead_s', and how it changes then.
-Vector3d Turned(const TurnState& motion, const Vector3d& velocity, double ahead_s) {
-  return Eigen::AngleAxisd(motion.turn_rate() * ahead_s, Vector3d::UnitZ()) * velocity;
+// A vector turned on by the target's curve for 'ahead_s', and how the velocity changes then.
+Vector3d Turned(const TurnState& motion, const Vector3d& vector, double ahead_s) {
+  const double angle = (motion.turn_rate() + 0.5 * ahead_s * motion.turn_change()) * ahead_s;
+  return Eigen::AngleAxisd(angle, Vector3d::UnitZ()) * vector;
 }
 Vector3d AccelerationAhead(const TurnState& motion, double ahead_s) {
   const Vector3d velocity = Turned(motion, motion.velocity(), ahead_s);
-  return motion.turn_rate() * Vector3d(-velocity.y(), velocity.x(), 0);
+  const double turn_rate = motion.turn_rate() + ahead_s * motion.turn_change();
+  return turn_rate * Vector3d(-velocity.y(), velocity.x(), 0);
 }
 
 }  // namespace
@@ -34,6 +38,10 @@ Closing ClosingSpeed(double distance_m, double gain, double braking) {
   const double speed = std::sqrt(braking * (2 * distance_m - reach));
   return {speed, braking / speed};
 }
+
+TargetPursuit::TargetPursuit(const GuidanceOptions& options)
+    : options_(options),
+      braking_(std::min(options.braking, kBrakingShare * options.limits.max_acceleration())) {}
 
 SetPoint TargetPursuit::To(const Vector2d& place, const Motion& uav, const FlightModel& model,
                            double max_speed_mps) const {
@@ -79,7 +87,7 @@ double TargetPursuit::Gain(const FlightModel& model) const {
 void TargetPursuit::Close(const Vector2d& offset, const Vector2d& slip, double gain,
                           SetPoint* command) const {
   const double distance_m = offset.norm();
-  const Closing closing = ClosingSpeed(distance_m, gain, options_.braking);
+  const Closing closing = ClosingSpeed(distance_m, gain, braking_);
   if (distance_m > 0) command->velocity.head<2>() += closing.speed / distance_m * offset;
   command->acceleration.head<2>() += closing.rate * slip;
 }

@@ -28,7 +28,7 @@ Closing ClosingSpeed(double distance_m, double gain, double braking);
 // turns with the target.
 class TargetPursuit {
  public:
-  explicit TargetPursuit(const GuidanceOptions& options) : options_(options) {}
+  explicit TargetPursuit(const GuidanceOptions& options);
 
   struct Motion {
     Eigen::Vector2d position;
@@ -55,6 +55,7 @@ class TargetPursuit {
              SetPoint* command) const;
 
   GuidanceOptions options_;
+  double braking_;                    // m/s^2
   std::optional<Velocity> smoothed_;  // of the target
   std::optional<Time> integrated_;    // until when
   Eigen::Vector2d integral_{0, 0};    // m/s

@@ -56,7 +56,8 @@ class TestUav {
     if (sent) pipe_.push_back(*sent);
     const auto late = static_cast<std::size_t>(std::lround(options_.delay_s / kTestStep_s));
     for (; pipe_.size() > late; pipe_.pop_front()) command_ = pipe_.front();
-    constexpr int kSubsteps = 8;
+    if (!sent) command_ = SetPoint();
+    constexpr int kSubsteps = 4;
     for (int i = 0; i < kSubsteps; ++i) SubStep(wind, kTestStep_s / kSubsteps);
   }
 
@@ -133,14 +134,12 @@ class TestTarget {
   Eigen::Vector3d Velocity(double time_s) const { return VelocityOf(motion_, time_s); }
 
   TargetEstimate Estimate(Time time, double time_s, double sigma_m = 0.03) const {
-    const Eigen::Vector3d before = Velocity(time_s - 0.05);
-    const Eigen::Vector3d after = Velocity(time_s + 0.05);
     TargetEstimate target;
     target.time = time;
     target.motion.mean.head<3>() = Position(time_s);
     target.motion.mean.segment<3>(3) = Velocity(time_s);
-    const double speed2 = std::max(before.squaredNorm(), 1e-6);
-    target.motion.mean(6) = (before.x() * after.y() - before.y() * after.x()) / speed2 / 0.1;
+    target.motion.mean(6) = TurnRate(time_s);
+    target.motion.mean(7) = (TurnRate(time_s + 0.1) - TurnRate(time_s - 0.1)) / 0.2;
     for (int axis = 0; axis < 2; ++axis) {
       target.motion.mean(axis) += 0.02 * wander_[axis](time_s);
       target.motion.mean(3 + axis) += 0.05 * wander_[2 + axis](time_s);
@@ -150,6 +149,13 @@ class TestTarget {
   }
 
  private:
+  double TurnRate(double time_s) const {
+    const Eigen::Vector3d before = Velocity(time_s - 0.05);
+    const Eigen::Vector3d after = Velocity(time_s + 0.05);
+    const double speed2 = std::max(before.squaredNorm(), 1e-6);
+    return (before.x() * after.y() - before.y() * after.x()) / speed2 / 0.1;
+  }
+
   Motion motion_;
   std::function<double(double)> wander_[4];
 };
@@ -172,6 +178,12 @@ struct TestFlight {
     input.target_age_s = 0.05;
     input.is_guided = time_s > 0;
     input.is_armed = true;
+    if (is_on_deck) {
+      const Eigen::Vector3d feet(0.1, 0, 0.35);
+      input.uav = UavState{{Eigen::Quaterniond::Identity(), target.Position(time_s) + feet},
+                           target.Velocity(time_s),
+                           std::nullopt};
+    }
     return input;
   }
 
@@ -181,9 +193,7 @@ struct TestFlight {
     GuidanceInput input = Input();
     change(input);
     output = guidance.Update(input);
-    if (!is_on_deck) {
-      uav.Step(output.set_point, wind(time_s));
-    }
+    uav.Step(output.set_point, wind(time_s));
     time_s += kTestStep_s;
     return output;
   }
@@ -204,6 +214,13 @@ struct TestFlight {
   }
   bool FlyUntilPhase(GuidancePhase phase, double longest_s = 60) {
     return FlyUntil([&] { return output.phase == phase; }, longest_s);
+  }
+
+  // Comes down and is carried by the deck until guidance has found that.
+  void LandOnDeck() {
+    FlyUntil([&] { return Height() <= 0; });
+    is_on_deck = true;
+    FlyUntilPhase(GuidancePhase::kLanded, 1);
   }
 
   Eigen::Vector3d Feet() const { return uav.position() - Eigen::Vector3d(0, 0, 0.35); }

@@ -42,6 +42,7 @@ std::vector<std::string> AutopilotOptions::Validate() const {
   RequireIn(landed_rate_hz, 0, kMaxRate_hz, "landed_rate_hz", &violations);
   RequireIn(range_rate_hz, 0, kMaxRate_hz, "range_rate_hz", &violations);
   RequireIn(status_rate_hz, 0, kMaxRate_hz, "status_rate_hz", &violations);
+  RequireIn(heartbeat_rate_hz, 0, kMaxRate_hz, "heartbeat_rate_hz", &violations);
   RequireIn(true_pose_rate_hz, 0, kMaxRate_hz, "true_pose_rate_hz", &violations);
   RequirePositive(away_after_s, "away_after_s", &violations);
   RequirePositive(position_age_s, "position_age_s", &violations);
@@ -169,6 +170,7 @@ void Autopilot::Adopt(const mavlink::Packet& packet, const mavlink::Heartbeat& h
 }
 
 void Autopilot::HandleFromAutopilot(const mavlink::Packet& packet, Time received) {
+  received_ = received;
   CountLost(packet);
   streams_.Count(packet.id);
   if (const auto timesync = packet.As<mavlink::Timesync>()) {
@@ -348,6 +350,7 @@ void Autopilot::WantStreams() {
   streams_.Want(mavlink::AttitudeQuaternion::kId, options_.attitude_rate_hz);
   streams_.Want(mavlink::LocalPositionNed::kId, options_.position_rate_hz);
   streams_.Want(mavlink::ExtendedSysState::kId, options_.landed_rate_hz);
+  streams_.WantIfThere(mavlink::Heartbeat::kId, options_.heartbeat_rate_hz);
   // Not every vehicle has one.
   streams_.WantIfThere(mavlink::DistanceSensor::kId, options_.range_rate_hz);
   const bool is_px4 = kind_ == AutopilotKind::kPx4;

@@ -34,6 +34,8 @@ struct AutopilotOptions {
   double landed_rate_hz = 5;
   double range_rate_hz = 20;
   double status_rate_hz = 2;
+  // Its heartbeat tells the mode: where set-points depend on that, more often than once a second.
+  double heartbeat_rate_hz = 0;
   // Ask for the true pose, which only simulated vehicles know, and how often.
   bool wants_true_pose = false;
   double true_pose_rate_hz = 100;
@@ -54,6 +56,8 @@ struct AutopilotOptions {
     visitor("range_rate_hz", self.range_rate_hz, "Hz", "asked of distance sensors");
     visitor("status_rate_hz", self.status_rate_hz, "Hz",
             "asked of the battery and of the health of its estimate");
+    visitor("heartbeat_rate_hz", self.heartbeat_rate_hz, "Hz",
+            "asked of heartbeats; 0: as often as it sends them by itself");
     visitor("wants_true_pose", self.wants_true_pose, "",
             "ask a simulated vehicle for its true pose");
     visitor("true_pose_rate_hz", self.true_pose_rate_hz, "Hz", "how often");
@@ -131,6 +135,8 @@ class Autopilot {
 
   // A heartbeat was heard lately.
   bool is_here() const { return is_here_; }
+  Time heard() const { return heard_; }        // its newest heartbeat
+  Time received() const { return received_; }  // the newest message
   AutopilotKind kind() const { return kind_; }
   std::uint8_t system() const { return system_; }
   std::uint8_t component() const { return component_; }
@@ -225,6 +231,7 @@ class Autopilot {
   AutopilotKind kind_ = AutopilotKind::kUnknown;
   mavlink::Heartbeat heartbeat_;
   Time heard_{};
+  Time received_{};
   std::optional<std::uint8_t> sequence_;
 
   ClockExchange clock_;

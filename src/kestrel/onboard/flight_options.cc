@@ -13,6 +13,7 @@ std::vector<std::string> FlightOptions::Validate() const {
   RequirePositive(autopilot_timeout_s, "autopilot_timeout_s", &violations);
   AddViolations("target", target.Validate(), &violations);
   AddViolations("messages", messages.Validate(), &violations);
+  AddViolations("guidance", guidance.Validate(), &violations);
   AddViolations("events", events.Validate(), &violations);
   AddViolations("vision_thread", vision_thread.Validate(), &violations);
   return violations;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/guidance/guidance_options.h"
 #include "kestrel/link/target_profile.h"
 #include "kestrel/onboard/live_events.h"
 #include "kestrel/onboard/target_reporter.h"
@@ -21,12 +22,13 @@ struct FlightOptions {
   double autopilot_timeout_s = 60;
   TargetReporterOptions target;
   TargetMessageOptions messages;
+  GuidanceOptions guidance;
   LiveEventsOptions events;
   ThreadOptions vision_thread;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("rate_hz", self.rate_hz, "Hz", "of landing targets");
+    visitor("rate_hz", self.rate_hz, "Hz", "of landing targets or set-points");
     visitor("link_delay_s", self.link_delay_s, "s",
             "from sending to the autopilot's use; negative: as measured");
     visitor("source_timeout_s", self.source_timeout_s, "s",
@@ -35,6 +37,7 @@ struct FlightOptions {
             "without a heartbeat for so long the flight ends");
     visitor.Group("target", self.target);
     visitor.Group("messages", self.messages);
+    visitor.Group("guidance", self.guidance);
     visitor.Group("events", self.events);
     visitor.Group("vision_thread", self.vision_thread);
   }

@@ -28,10 +28,12 @@ FlightProgram::FlightProgram(const FlightOptions& options, const TargetTrackerOp
       say_(std::move(say)),
       events_(options.events, parts.vision->pose_lead()),
       poses_(kPoses, kPoseGap),
-      latency_({"capture to arrival", "capture to vision", "detection", "capture to message"}) {
+      latency_({"capture to arrival", "capture to vision", "detection", "capture to message",
+                "capture to set-point"}) {
   if (parts.connection == nullptr) return;
   sender_.emplace(options, tracker, parts.profile, parts.pattern_size_m, parts.autopilot,
                   parts.connection, say_);
+  if (parts.guides) guided_.emplace(options, tracker, parts.autopilot, parts.connection, say_);
 }
 
 FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
@@ -117,6 +119,7 @@ void FlightProgram::See() {
       continue;
     }
     const auto& frame = std::get<Frame>(event);
+    if (IsFrozen(frame)) continue;
     latency_.step(kVision).Add(Now() - frame.time);
     const TrackSnapshot snapshot = parts_.vision->Process(frame);
     latency_.step(kDetection).Add(snapshot.detect_time);
@@ -124,6 +127,17 @@ void FlightProgram::See() {
     detections_ = snapshot.detections;
     track_.Set(snapshot);
   }
+}
+
+// What a camera repeats shows where the target was, not where it is.
+bool FlightProgram::IsFrozen(const Frame& frame) {
+  constexpr int kFrozen = 5;  // repetitions: no accident of a driver any more
+  const bool was_frozen = repeated_image_.in_a_row() >= kFrozen;
+  const bool is_repeated = repeated_image_.IsRepeated(frame.image);
+  if (is_repeated) ++repeated_frames_;
+  if (repeated_image_.in_a_row() == kFrozen) say_("the camera repeats its image");
+  if (was_frozen && !is_repeated) say_("the camera's images move again");
+  return is_repeated;
 }
 
 // --- The output thread ---
@@ -163,6 +177,10 @@ void FlightProgram::TellTarget(Time now) {
   phase_ = sender_->phase();
   height_m_ = sender_->height_m();
   messages_ = sender_->messages();
+  if (!guided_) return;
+  if (guided_->Fly(now, track, poses_)) latency_.step(kSetPoint).Add(Now() - track.captured);
+  guidance_phase_ = guided_->phase();
+  set_points_ = guided_->set_points();
 }
 
 void FlightProgram::TakeAutopilotPose(const PoseSample& pose) {
@@ -194,6 +212,7 @@ std::string FlightProgram::State() const {
   if (parts_.autopilot == nullptr) return state;
   state += fmt::format("; target {}", ToString(phase_));
   if (phase_ == TargetPhase::kFound) state += fmt::format(", {:.1f} m below", height_m_.load());
+  if (guided_) return state + fmt::format("; guidance: {}", ToString(guidance_phase_.load()));
   return state + fmt::format("; {} messages sent", messages_);
 }
 
@@ -202,14 +221,15 @@ std::string FlightProgram::Summary() const {
   const CaptureCounters capture = parts_.source->counters();
   std::string summary = fmt::format("{} frames, {}", frames_, parts_.vision->Found());
   summary += fmt::format(
-      "; {} missed by the camera, {} dropped before the vision, {} without "
+      "; {} missed and {} repeated by the camera, {} dropped before the vision, {} without "
       "a pose in time\n",
-      capture.missed, events.dropped_frames, events.unposed_frames);
+      capture.missed, repeated_frames_, events.dropped_frames, events.unposed_frames);
   summary += latency_.InWords();
   if (parts_.connection == nullptr) return summary;
   const ConnectionCounters link = parts_.connection->counters();
-  summary += fmt::format("{} targets sent; {} packets received, {} sent, {} not sent; {} damaged\n",
-                         messages_, link.received, link.sent, link.unsent, link.bad_checksums);
+  summary += fmt::format(
+      "{} targets and {} set-points sent; {} packets received, {} sent, {} not sent; {} damaged\n",
+      messages_, set_points_, link.received, link.sent, link.unsent, link.bad_checksums);
   return summary;
 }
 

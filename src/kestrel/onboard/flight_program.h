@@ -16,11 +16,13 @@
 #include "kestrel/onboard/flight_options.h"
 #include "kestrel/onboard/flight_recorder.h"
 #include "kestrel/onboard/flight_vision.h"
+#include "kestrel/onboard/guided_flight.h"
 #include "kestrel/onboard/landing_watch.h"
 #include "kestrel/onboard/latency_statistics.h"
 #include "kestrel/onboard/latest_value.h"
 #include "kestrel/onboard/live_events.h"
 #include "kestrel/onboard/live_source.h"
+#include "kestrel/onboard/repeated_image.h"
 #include "kestrel/onboard/target_sender.h"
 #include "kestrel/simulation/truth_text.h"
 
@@ -41,6 +43,7 @@ struct FlightParts {
   Connection* connection = nullptr;
   Autopilot* autopilot = nullptr;  // on the connection
   FlightRecorder* recorder = nullptr;
+  bool guides = false;                 // flies by set-points when the pilot gives the mode
   bool source_has_poses = false;       // then those of the autopilot are not used
   std::optional<LinkProfile> profile;  // nothing: by the heartbeat
   // Of the pattern when a frame was taken, where a simulation knows it.
@@ -73,13 +76,14 @@ class FlightProgram {
 
  private:
   // The steps whose latency is measured.
-  enum Step { kArrival, kVision, kDetection, kMessage };
+  enum Step { kArrival, kVision, kDetection, kMessage, kSetPoint };
 
   void Capture();
   void See();
   void Communicate();
   void WriteResults();
 
+  bool IsFrozen(const Frame& frame);
   void Take(Event event);
   void TakePose(const PoseSample& pose);
   void TellTarget(Time now);
@@ -100,12 +104,17 @@ class FlightProgram {
 
   // Of the link's thread.
   std::optional<TargetSender> sender_;
+  std::optional<GuidedFlight> guided_;
   LandingWatch landing_;
   Time heard_;  // the autopilot, the last time
   std::optional<PoseSample> newest_pose_;
 
-  std::atomic<int> frames_{0}, detections_{0}, messages_{0};
+  RepeatedImage repeated_image_;  // of the vision's thread
+
+  std::atomic<int> repeated_frames_{0}, frames_{0}, detections_{0}, messages_{0};
   std::atomic<TargetPhase> phase_{TargetPhase::kSearching};
+  std::atomic<GuidancePhase> guidance_phase_{GuidancePhase::kIdle};
+  std::atomic<int> set_points_{0};
   std::atomic<double> height_m_{0};
 };
 

@@ -52,6 +52,13 @@ GstElementPointer FindAppSink(GstElement* pipeline, const std::string& camera) {
   return sink;
 }
 
+// The source's number of a frame; GST_BUFFER_OFFSET_NONE where it has none: what counts bytes does
+// not end one further.
+guint64 FrameNumber(const GstBuffer* buffer) {
+  const guint64 number = GST_BUFFER_OFFSET(buffer);
+  return number + 1 == GST_BUFFER_OFFSET_END(buffer) ? number : GST_BUFFER_OFFSET_NONE;
+}
+
 }  // namespace
 
 GstExposureProperty::GstExposureProperty(GstElement* pipeline, const std::string& name,
@@ -118,7 +125,7 @@ std::optional<Time> GstreamerPipeline::DriverTime(GstSample* sample) const {
 
 std::uint64_t GstreamerPipeline::MissedBefore(GstSample* sample) {
   const GstBuffer* buffer = gst_sample_get_buffer(sample);
-  const guint64 number = std::exchange(last_number_, GST_BUFFER_OFFSET(buffer));
+  const guint64 number = std::exchange(last_number_, FrameNumber(buffer));
   const GstClockTime time = std::exchange(last_pts_, GST_BUFFER_PTS(buffer));
   if (number != GST_BUFFER_OFFSET_NONE && last_number_ != GST_BUFFER_OFFSET_NONE) {
     return last_number_ > number ? last_number_ - number - 1 : 0;

@@ -43,6 +43,10 @@ TrackSnapshot LandingVision::Process(const Frame& frame) {
   snapshot_.captured = frame.time + clock_offset_;
   snapshot_.state = observation.track_state;
   snapshot_.target = observation.target;
+  if (observation.fate == MeasurementFate::kStarted ||
+      observation.fate == MeasurementFate::kAccepted) {
+    snapshot_.seen = snapshot_.captured;
+  }
   snapshot_.sighting = Sighting(observation);
   snapshot_.detect_time = observation.detect_time;
   ++snapshot_.frames;

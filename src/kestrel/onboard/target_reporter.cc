@@ -12,9 +12,7 @@ std::vector<std::string> TargetReporterOptions::Validate() const {
   std::vector<std::string> violations;
   RequirePositive(max_sigma_m, "max_sigma_m", &violations);
   RequireIn(max_pose_age_s, 0.01, 5, "max_pose_age_s", &violations);
-  RequirePositive(contact_height_m, "contact_height_m", &violations);
-  RequirePositive(contact_speed_mps, "contact_speed_mps", &violations);
-  RequirePositive(contact_time_s, "contact_time_s", &violations);
+  AddViolations("contact", contact.Validate(), &violations);
   RequirePositive(contact_below_m, "contact_below_m", &violations);
   return violations;
 }
@@ -35,7 +33,7 @@ const char* ToString(TargetPhase phase) {
 
 TargetReporter::TargetReporter(const TargetReporterOptions& options,
                                const TargetTrackerOptions& tracker)
-    : options_(Checked(options)), noise_(Checked(tracker).Noise()) {}
+    : options_(Checked(options)), noise_(Checked(tracker).Noise()), contact_(options.contact) {}
 
 std::optional<TargetReport> TargetReporter::Report(Time now, Duration until_use,
                                                    const TrackSnapshot& track,
@@ -47,20 +45,23 @@ std::optional<TargetReport> TargetReporter::Report(Time now, Duration until_use,
   report.time = time_of_use;
   report.world_from_body = pose->world_from_body;
   const Eigen::Vector3d& body_velocity = pose->motion.velocity_in_world;
-  if (phase_ == TargetPhase::kContact && StaysInContact(report)) {
+  std::optional<ContactDetector::Deck> deck;
+  if (PredictTarget(track, &report)) {
+    deck = ContactDetector::Deck{report.position_in_world, report.velocity_in_world};
+    height_m_ = report.world_from_body.translation.z() - report.position_in_world.z();
+  }
+  // A UAV that is held in the air so low is told the truth all the same: the deck is straight
+  // below.
+  if (contact_.Update(now, report.world_from_body.translation, body_velocity, deck)) {
+    phase_ = TargetPhase::kContact;
     return Below(report, body_velocity);
   }
-  if (!PredictTarget(track, &report)) {
-    if (phase_ != TargetPhase::kSearching) phase_ = TargetPhase::kLost;
-    resting_since_.reset();
-    return std::nullopt;
+  if (deck) {
+    phase_ = TargetPhase::kFound;
+    return report;
   }
-  phase_ = TargetPhase::kFound;
-  height_m_ = report.world_from_body.translation.z() - report.position_in_world.z();
-  if (!HasContact(now, report, body_velocity)) return report;
-  phase_ = TargetPhase::kContact;
-  contact_z_m_ = report.world_from_body.translation.z();
-  return Below(report, body_velocity);
+  if (phase_ != TargetPhase::kSearching) phase_ = TargetPhase::kLost;
+  return std::nullopt;
 }
 
 bool TargetReporter::PredictTarget(const TrackSnapshot& track, TargetReport* report) const {
@@ -73,28 +74,6 @@ bool TargetReporter::PredictTarget(const TrackSnapshot& track, TargetReport* rep
   // Written so that what is not finite is refused.
   return report->covariance.trace() <= 3 * std::pow(options_.max_sigma_m, 2) &&
          report->position_in_world.allFinite();
-}
-
-// Whether the body has been as near to the deck, and as much at rest against it, as it is when the
-// legs stand there. A UAV that is held in the air so low is told the truth all the same: the deck
-// is straight below.
-bool TargetReporter::HasContact(Time now, const TargetReport& report,
-                                const Eigen::Vector3d& body_velocity) {
-  const double sink_mps = report.velocity_in_world.z() - body_velocity.z();
-  const Eigen::Vector3d offset = report.position_in_world - report.world_from_body.translation;
-  const bool rests = height_m_ < options_.contact_height_m &&
-                     offset.head<2>().norm() < options_.contact_height_m &&
-                     std::abs(sink_mps) < options_.contact_speed_mps;
-  if (!rests) {
-    resting_since_.reset();
-    return false;
-  }
-  if (!resting_since_) resting_since_ = now;
-  return now - *resting_since_ >= DurationFromSeconds(options_.contact_time_s);
-}
-
-bool TargetReporter::StaysInContact(const TargetReport& report) const {
-  return report.world_from_body.translation.z() < contact_z_m_ + options_.contact_height_m;
 }
 
 TargetReport TargetReporter::Below(TargetReport report,

@@ -9,6 +9,7 @@
 
 #include "kestrel/base/time.h"
 #include "kestrel/geometry/rigid_transform.h"
+#include "kestrel/guidance/contact_detector.h"
 #include "kestrel/link/target_profile.h"
 #include "kestrel/navigation/pose_history.h"
 #include "kestrel/tracking/target_tracker.h"
@@ -17,7 +18,8 @@ namespace kestrel {
 
 // What the vision knows of the target after a frame. Times are those of the navigation's clock.
 struct TrackSnapshot {
-  Time captured;  // the frame's light
+  Time captured;             // the frame's light
+  std::optional<Time> seen;  // of the newest frame that showed the target where the track has it
   TrackState state = TrackState::kSearching;
   std::optional<TargetEstimate> target;  // at 'captured', in the world
   // What this frame alone showed, seen from where the UAV was then.
@@ -30,11 +32,8 @@ struct TrackSnapshot {
 struct TargetReporterOptions {
   double max_sigma_m = 0.5;
   double max_pose_age_s = 0.3;
-  // Contact: less than what an autopilot sinks by near the ground (ArduPilot with a range finder
-  // 0.2 m/s), longer than the bottom of a bounce takes.
-  double contact_height_m = 0.6;
-  double contact_speed_mps = 0.1;
-  double contact_time_s = 0.5;
+  // Contact: of the body, which is that much above the deck when the legs stand there.
+  ContactOptions contact = {.height_m = 0.6, .reach_m = 0.6};
   double contact_below_m = 0.2;
 
   template <class Self, class Visitor>
@@ -43,11 +42,7 @@ struct TargetReporterOptions {
             "a target known no better than this, standard deviation per axis, is not sent");
     visitor("max_pose_age_s", self.max_pose_age_s, "s",
             "without a pose for so long nothing is sent");
-    visitor("contact_height_m", self.contact_height_m, "m",
-            "the body is at most so high above the pattern when the legs touch it");
-    visitor("contact_speed_mps", self.contact_speed_mps, "m/s",
-            "and comes nearer to it by less than this");
-    visitor("contact_time_s", self.contact_time_s, "s", "for so long");
+    visitor.Group("contact", self.contact);
     visitor("contact_below_m", self.contact_below_m, "m",
             "after contact the target is said to be so far below the body");
   }
@@ -84,16 +79,13 @@ class TargetReporter {
 
  private:
   bool PredictTarget(const TrackSnapshot& track, TargetReport* report) const;
-  bool HasContact(Time now, const TargetReport& report, const Eigen::Vector3d& body_velocity);
-  bool StaysInContact(const TargetReport& report) const;
   TargetReport Below(TargetReport report, const Eigen::Vector3d& body_velocity) const;
 
   TargetReporterOptions options_;
   TurnNoise noise_;
   TargetPhase phase_ = TargetPhase::kSearching;
   double height_m_ = 0;
-  std::optional<Time> resting_since_;  // as on the deck
-  double contact_z_m_ = 0;             // of the body, at contact
+  ContactDetector contact_;
 };
 
 }  // namespace kestrel

@@ -26,6 +26,7 @@ struct TurnState {
   auto position() const { return mean.head<3>(); }
   auto velocity() const { return mean.segment<3>(3); }
   double turn_rate() const { return mean(6); }
+  double turn_change() const { return mean(7); }  // derivative of the turn rate
 };
 
 // The swaying left alone: standard deviation (m; 0: none), frequency and damping ratio (0 to 1,

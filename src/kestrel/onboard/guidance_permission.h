@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "kestrel/base/time.h"
+#include "kestrel/guidance/flight_limits.h"
+#include "kestrel/link/autopilot.h"
+
+namespace kestrel {
+
+// Asks for the parameters that the functions below need.
+void WantGuidanceParameters(Autopilot* autopilot);
+
+// The autopilot's own limits, as far as its parameters tell.
+AutopilotLimits LimitsOf(const Autopilot& autopilot);
+
+// Its home position in the world, where it has told that.
+std::optional<Eigen::Vector2d> HomeOf(const Autopilot& autopilot);
+
+// One line on why guidance must not begin with this autopilot and the body at 'position' at 'now':
+// not a multicopter, no estimate of its position, no home, limits beyond its own, out of the
+// geofence around home. Empty when it may.
+std::string WhyNotGuide(const Autopilot& autopilot, const FlightLimitsOptions& limits,
+                        const Eigen::Vector3d& position, Time now);
+
+// One line on a setting with which losing this program is dangerous; empty: none.
+std::string DangerOfGuidance(const Autopilot& autopilot);
+
+}  // namespace kestrel

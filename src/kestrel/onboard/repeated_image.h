@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <opencv2/core.hpp>
+
+namespace kestrel {
+
+// Notices images that are the one before once more: a camera or a driver that hangs repeats what it
+// has, with new times, and what stands still in the image seems to fly along.
+class RepeatedImage {
+ public:
+  // Whether 'image' has the pixels of the one before, in every eighth of its rows: the noise of a
+  // sensor makes any two images differ there. Does not allocate.
+  bool IsRepeated(const cv::Mat& image);
+
+  int in_a_row() const { return in_a_row_; }  // repetitions up to the newest image
+
+ private:
+  std::optional<std::uint64_t> hash_;  // of the newest image
+  int in_a_row_ = 0;
+};
+
+}  // namespace kestrel
