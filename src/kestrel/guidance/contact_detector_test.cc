@@ -17,11 +17,10 @@ struct Contacts {
     for (int i = 0; i < seconds / 0.02; ++i) {
       time_s += 0.02;
       const Vector3d deck = Vector3d(0, 0, 1.8) + time_s * kDeckVelocity;
-      has_contact = detector.Update(TimeFromNanoseconds(0) + DurationFromSeconds(time_s),
-                                    deck + from_deck, kDeckVelocity - Vector3d(0, 0, sink_mps),
-                                    knows_deck ? std::optional(ContactDetector::Deck{
-                                                     deck, kDeckVelocity})
-                                               : std::nullopt);
+      has_contact = detector.Update(
+          TimeFromNanoseconds(0) + DurationFromSeconds(time_s), deck + from_deck,
+          kDeckVelocity - Vector3d(0, 0, sink_mps),
+          knows_deck ? std::optional(ContactDetector::Deck{deck, kDeckVelocity}) : std::nullopt);
     }
     return has_contact;
   }

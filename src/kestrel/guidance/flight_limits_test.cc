@@ -54,8 +54,9 @@ TEST(FlightLimitsTest, TheFloorIsForFlightWithoutATarget) {
 TEST(FlightLimitsTest, SaysInOneLineWhyNotToBegin) {
   const FlightLimits limits({}, {10, 0});
   EXPECT_THAT(limits.WhyNot({0, 0, 10}), IsEmpty());
-  EXPECT_THAT(limits.WhyNot({-95, 0, 10}),
-              HasSubstr("105.0 m from the middle of the geofence, limits.geofence_radius_m is 100"));
+  EXPECT_THAT(
+      limits.WhyNot({-95, 0, 10}),
+      HasSubstr("105.0 m from the middle of the geofence, limits.geofence_radius_m is 100"));
   EXPECT_THAT(limits.WhyNot({0, 0, 31}), HasSubstr("31.0 m high, limits.ceiling_m is 30"));
   EXPECT_FALSE(limits.Contains({-95, 0, 10}));
 }
@@ -65,16 +66,13 @@ TEST(FlightLimitsTest, LimitsBeyondTheAutopilotsOwnAreNamed) {
   // ArduCopter's and PX4's defaults.
   EXPECT_THAT(ViolationsOf({.max_climb_mps = 2.5, .max_sink_mps = 1.5, .max_tilt_deg = 30}, {}),
               IsEmpty());
-  EXPECT_THAT(ViolationsOf({.max_speed_mps = 12,
-                            .max_climb_mps = 3,
-                            .max_sink_mps = 1.5,
-                            .max_tilt_deg = 45},
-                           {}),
-              IsEmpty());
   EXPECT_THAT(
-      ViolationsOf({.max_speed_mps = 5, .max_tilt_deg = 20}, {}),
-      ElementsAre("limits.max_speed_mps is 12 m/s, the autopilot's own limit is 5 m/s",
-                  "limits.max_tilt_deg is 30 deg, the autopilot's own limit is 20 deg"));
+      ViolationsOf(
+          {.max_speed_mps = 12, .max_climb_mps = 3, .max_sink_mps = 1.5, .max_tilt_deg = 45}, {}),
+      IsEmpty());
+  EXPECT_THAT(ViolationsOf({.max_speed_mps = 5, .max_tilt_deg = 20}, {}),
+              ElementsAre("limits.max_speed_mps is 12 m/s, the autopilot's own limit is 5 m/s",
+                          "limits.max_tilt_deg is 30 deg, the autopilot's own limit is 20 deg"));
 }
 
 }  // namespace

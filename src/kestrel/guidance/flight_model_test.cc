@@ -101,8 +101,8 @@ TEST(FlightModelTest, GapsAndIrregularCallsDoNoHarm) {
     const Vector3d velocity(std::sin(time_s), std::cos(time_s), 0);
     std::optional<SetPoint> sent;
     if (i % 50 > 5) sent = SetPoint{velocity, Vector3d::Zero(), std::nullopt};
-    model.Observe(TimeFromNanoseconds(0) + DurationFromSeconds(time_s), velocity,
-                  Vector3d::UnitZ(), sent, 0.02);
+    model.Observe(TimeFromNanoseconds(0) + DurationFromSeconds(time_s), velocity, Vector3d::UnitZ(),
+                  sent, 0.02);
     ASSERT_TRUE(model.VelocityCommand({1, 1}, {1, 1}).allFinite());
     ASSERT_GE(model.delay_s(), 0);
     ASSERT_LE(model.delay_s(), 0.5);
