@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace kestrel {
 namespace {
@@ -18,12 +19,22 @@ struct ClockKind {
 };
 constexpr ClockKind kCrystal = {90, 500e-6, 50e-6, 20e-6};
 // An autopilot in software, whose time is that of a simulation which falls behind by a percent or
-// so, stalls and catches up, as the computer has time for it.
-constexpr ClockKind kSimulated = {1.5, 0.1, 0.02, 5e-3};
+// so, stalls and catches up, as the computer has time for it. What is wanted of such a clock is not
+// its stalls but what it shows mostly.
+constexpr ClockKind kSimulated = {8, 0.1, 0.02, 5e-3};
+constexpr double kSimulatedOffset_s = 2;  // of its window, for what it shows now
+constexpr int kSimulatedCells = 40;       // of its window
 
 constexpr const ClockKind& KindOf(bool is_crystal) { return is_crystal ? kCrystal : kSimulated; }
 
 constexpr int kMinRoundTrips = 3;
+
+// The value in the middle of 'values', which are put into another order; there has to be one.
+double MedianOf(std::span<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 }  // namespace
 
@@ -70,6 +81,11 @@ bool TimeSync::IsPossible(double excess_s, int* impossible) {
   constexpr double kMargin_s = 0.005;
   constexpr int kMaxImpossible = 3;
   constexpr double kJump_s = 1;  // no clock stalls or catches up by so much
+  // Its stalls are outliers of a fit that bears them.
+  if (!is_crystal_ && excess_s <= kJump_s) {
+    *impossible = 0;
+    return true;
+  }
   if (!is_known_ || round_trips_ < kMinRoundTrips || excess_s < line_.width_s / 2 + kMargin_s) {
     *impossible = 0;
     return true;
@@ -82,8 +98,6 @@ bool TimeSync::IsPossible(double excess_s, int* impossible) {
   }
   // It drifts as no crystal does. The last estimate holds until there is a new one.
   is_crystal_ = false;
-  cells_ = {};
-  round_trips_ = 0;
   *impossible = 0;
   return true;
 }
@@ -207,7 +221,11 @@ void TimeSync::Fit(double now_s) {
   fitted_s_ = now_s;
   const Strip strip = Sum(newest_s_ = std::max(newest_s_, now_s));
   if (round_trips_ >= kMinRoundTrips && strip.there > 0 && strip.back > 0) {
-    FitBoth(strip);
+    if (is_crystal_) {
+      FitBoth(strip);
+    } else {
+      FitSimulated(strip.newest_s);
+    }
   } else if (round_trips_ == 0) {
     FitOneWay(strip);
   }
@@ -233,6 +251,67 @@ void TimeSync::FitBoth(const Strip& strip) {
   const bool was_fitted = is_known_ && round_trips_ > kMinRoundTrips;
   if (is_crystal_ && was_fitted && count < kEnough && SigmaAt(line.time_s) < line.fit_sigma_s)
     return;
+  line_ = line;
+  is_known_ = true;
+}
+
+// The middles between there and back of all cells with both, the newest last; returns how many.
+std::size_t TimeSync::CollectMiddles(double now_s, std::span<Middle> middles) const {
+  const auto newest = static_cast<std::int64_t>(std::floor(now_s / kCell_s));
+  const auto count = static_cast<std::int64_t>(kCells);
+  std::size_t size = 0;
+  for (auto index = newest - static_cast<std::int64_t>(middles.size()) + 1; index <= newest;
+       ++index) {
+    const Cell& cell = cells_[static_cast<std::size_t>(((index % count) + count) % count)];
+    if (cell.index != index || !std::isfinite(cell.there.bound_s + cell.back.bound_s)) continue;
+    middles[size++] = {(cell.there.time_s + cell.back.time_s) / 2,
+                       (cell.there.bound_s - cell.back.bound_s) / 2,
+                       cell.there.bound_s + cell.back.bound_s};
+  }
+  return size;
+}
+
+// The median slope of all pairs, drawn to nothing where they are close together.
+double TimeSync::MedianDrift(std::span<const Middle> middles) {
+  constexpr double kSure_s = 1;
+  std::array<double, kSimulatedCells*(kSimulatedCells - 1) / 2> slopes;
+  std::size_t size = 0;
+  for (std::size_t i = 1; i < middles.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double apart_s = middles[i].time_s - middles[j].time_s;
+      if (apart_s > kCell_s / 2) {
+        slopes[size++] = (middles[i].offset_s - middles[j].offset_s) / apart_s;
+      }
+    }
+  }
+  if (size == 0) return 0;
+  const double span_s = middles.back().time_s - middles.front().time_s;
+  const double weight = span_s * span_s / (span_s * span_s + kSure_s * kSure_s);
+  return weight *
+         std::clamp(MedianOf({slopes.data(), size}), -kSimulated.max_drift, kSimulated.max_drift);
+}
+
+// A line that the middles lie around, whatever the fewer half of the newest ones are.
+void TimeSync::FitSimulated(double now_s) {
+  constexpr double kLeastSigma_s = 1e-3;
+  std::array<Middle, kSimulatedCells> all;
+  const std::span<Middle> middles(all.data(), CollectMiddles(now_s, all));
+  if (middles.empty()) return;
+  Line line;
+  line.time_s = now_s;
+  line.drift = MedianDrift(middles);
+  std::array<double, kSimulatedCells> values;
+  std::array<double, kSimulatedCells> widths;
+  std::size_t size = 0;
+  for (const Middle& middle : middles) {
+    if (middle.time_s < middles.back().time_s - kSimulatedOffset_s) continue;
+    widths[size] = middle.width_s;
+    values[size++] = middle.offset_s + line.drift * (now_s - middle.time_s);
+  }
+  line.offset_s = MedianOf({values.data(), size});
+  line.width_s = std::max(MedianOf({widths.data(), size}), 0.0);
+  for (double& value : std::span(values.data(), size)) value = std::abs(value - line.offset_s);
+  line.fit_sigma_s = kLeastSigma_s + MedianOf({values.data(), size});
   line_ = line;
   is_known_ = true;
 }

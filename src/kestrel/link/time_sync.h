@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "kestrel/base/time.h"
 
@@ -43,12 +44,12 @@ class TimeSync {
   // By how much the remote clock is faster, 1: 5e-5 gains 50 us in a second.
   double drift() const { return line_.drift; }
 
-  // The fastest round trip of the last minute and a half.
+  // The fastest round trip of the last minute and a half; of a clock in software what it is mostly.
   Duration round_trip() const { return DurationFromSeconds(line_.width_s); }
 
   // How often the remote clock was found to have jumped: three messages in a row that it cannot
   // have sent unless it did. One that drifts as no crystal does (an autopilot in software) does
-  // not: from then on it is followed from second to second.
+  // not: from then on what it shows mostly is followed over some seconds, and its stalls are not.
   int jumps() const { return jumps_; }
 
  private:
@@ -85,6 +86,13 @@ class TimeSync {
     double width_s() const { return there_s + back_s; }
   };
 
+  // Between the fastest ways there and back of a cell.
+  struct Middle {
+    double time_s = 0;
+    double offset_s = 0;
+    double width_s = 0;
+  };
+
   static constexpr std::size_t kCells = 450;
 
   static bool IsClock(std::int64_t remote_ns);
@@ -97,7 +105,10 @@ class TimeSync {
   bool AddBack(std::int64_t remote_ns, double received_s);
   void Fit(double now_s);
   void FitBoth(const Strip& strip);
+  void FitSimulated(double now_s);
   void FitOneWay(const Strip& strip);
+  std::size_t CollectMiddles(double now_s, std::span<Middle> middles) const;
+  static double MedianDrift(std::span<const Middle> middles);
   Strip Sum(double now_s) const;
   Bounds BoundsFor(double drift, double center_s) const;
   double BestDrift(const Strip& strip) const;

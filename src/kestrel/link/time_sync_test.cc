@@ -142,6 +142,84 @@ TEST(TimeSyncTest, FollowsASimulatedClockFromSecondToSecond) {
   }
 }
 
+// An autopilot in software: it stalls, answers nothing meanwhile, and catches up at three times its
+// rate.
+class StallingClock {
+ public:
+  StallingClock(unsigned seed, double rate) : random_(seed), rate_(rate) {}
+
+  Time Local(double time_s) const {
+    return TimeFromNanoseconds(std::llround(1e9 * (100 + time_s)));
+  }
+  // What it shows mostly.
+  std::int64_t Mostly(double time_s) const { return std::llround(1e9 * (50 + rate_ * time_s)); }
+
+  void Ask(double time_s, TimeSync* sync) {
+    constexpr double kEvery_s = 3;
+    std::uniform_real_distribution<double> delay_s(0.0002, 0.002);
+    std::uniform_real_distribution<double> part(0, 1);
+    if (time_s > stall_end_s_ + stall_s_ && part(random_) < 0.1 / kEvery_s) {
+      stall_s_ = 0.02 + 0.08 * part(random_);
+      stall_end_s_ = time_s + stall_s_ * part(random_);
+    }
+    const double there_s = std::max(time_s + delay_s(random_), stall_end_s_);
+    const double behind_s = std::max(0.0, stall_s_ - 2 * (there_s - stall_end_s_));
+    const std::int64_t shown_ns = Mostly(there_s) - std::llround(1e9 * behind_s);
+    sync->AddRoundTrip(Local(time_s), shown_ns, Local(there_s + delay_s(random_)));
+  }
+  double ErrorOf(const TimeSync& sync, double time_s) const {
+    return ToSeconds(sync.ToLocal(Mostly(time_s)) - Local(time_s));
+  }
+
+ private:
+  std::mt19937 random_;
+  double rate_;
+  double stall_s_ = 0;
+  double stall_end_s_ = -10;
+};
+
+TEST(TimeSyncTest, IsCalmWhileASimulatedClockStalls) {
+  for (const double rate : {0.99, 1.0}) {
+    std::vector<double> errors_s;
+    for (unsigned seed = 0; seed < 10; ++seed) {
+      StallingClock clock(seed, rate);
+      TimeSync sync;
+      for (int i = 0; i < 1200; ++i) {
+        clock.Ask(0.1 * i, &sync);
+        if (i < 100) continue;
+        // Until just before the next question.
+        for (const double later_s : {0.0, 0.05, 0.1}) {
+          errors_s.push_back(std::abs(clock.ErrorOf(sync, 0.1 * i + later_s)));
+        }
+      }
+      EXPECT_EQ(sync.jumps(), 0);
+    }
+    std::sort(errors_s.begin(), errors_s.end());
+    const double p99_s = errors_s[errors_s.size() * 99 / 100];
+    RecordProperty(rate < 1 ? "slow_p99_us" : "p99_us", static_cast<int>(1e6 * p99_s));
+    RecordProperty(rate < 1 ? "slow_most_us" : "most_us", static_cast<int>(1e6 * errors_s.back()));
+    EXPECT_LT(p99_s, 0.005) << rate;
+    EXPECT_LT(errors_s.back(), 0.02) << rate;
+  }
+}
+
+TEST(TimeSyncTest, FollowsASimulatedClockThatSlowsDown) {
+  SimulatedClocks clocks(5, -0.01, 0.0001, 0.0003);
+  TimeSync sync;
+  for (int i = 0; i < 200; ++i) clocks.Ask(0.1 * i, &sync);
+  EXPECT_NEAR(sync.drift(), -0.01, 3e-4);
+  // Two percent from now on.
+  double most_s = 0;
+  for (int i = 200; i < 400; ++i) {
+    clocks.Jump(-0.001);
+    clocks.Ask(0.1 * i, &sync);
+    most_s = std::max(most_s, std::abs(clocks.ErrorOf(sync, 0.1 * i)));
+  }
+  EXPECT_LT(most_s, 0.02);
+  EXPECT_NEAR(sync.drift(), -0.02, 1e-3);
+  EXPECT_LT(std::abs(clocks.ErrorOf(sync, 40)), 0.003);
+}
+
 TEST(TimeSyncTest, OneForgedAnswerChangesNothing) {
   SimulatedClocks clocks(3, 0, 0.005, 0.02);
   TimeSync sync;

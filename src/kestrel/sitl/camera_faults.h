@@ -8,7 +8,7 @@ namespace kestrel {
 
 enum class CameraFault {
   kNone,
-  kFrozen,   // the same image again and again, with new stamps
+  kFrozen,  // the same image again and again, with new stamps
   kBlack,
   kBright,   // nearly all of it saturated
   kSlow,     // three images a second

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -30,14 +32,23 @@ inline VehicleWorldOptions TestVehicle(const std::string& path, double speed_mps
   return options;
 }
 
+// The world of such a vehicle, which does not change: made once, because its paint takes a while.
+inline VehicleWorld& TestWorld(const VehicleWorldOptions& vehicle) {
+  static std::map<std::pair<std::string, double>, VehicleWorld> worlds;
+  return worlds
+      .try_emplace({vehicle.vehicle.path, vehicle.vehicle.speed_mps}, vehicle, kTestStart,
+                   /*seed=*/1)
+      .first->second;
+}
+
 // A simulated autopilot on a clock that runs as fast as it can, with a companion that knows the
 // truth.
 class TestAutopilot {
  public:
   TestAutopilot(AutopilotFirmware firmware, const AutopilotModelOptions& options,
-                const VehicleWorldOptions& vehicle, std::uint64_t seed = 1)
-      : world(vehicle, kTestStart, seed),
-        model(firmware, options, &world, kTestStart, seed,
+                const VehicleWorldOptions& vehicle)
+      : world(TestWorld(vehicle)),
+        model(firmware, options, &world, kTestStart, /*seed=*/1,
               [this](const AutopilotMessage& message) { sent.push_back(message); }) {}
 
   void Tell(const CompanionMessage& message) {
@@ -115,7 +126,7 @@ class TestAutopilot {
     return message;
   }
 
-  VehicleWorld world;
+  VehicleWorld& world;
   std::vector<AutopilotMessage> sent;
   AutopilotModel model;
   Time now = kTestStart;
