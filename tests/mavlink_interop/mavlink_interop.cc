@@ -105,8 +105,8 @@ void ForEachMessage(const Visitor& visitor) {
             ParamValue, ParamSet, Attitude, AttitudeQuaternion, LocalPositionNed, GlobalPositionInt,
             GpsGlobalOrigin, RcChannels, RequestDataStream, CommandLong, CommandAck,
             SetPositionTargetLocalNed, SimState, Timesync, HilStateQuaternion, DistanceSensor,
-            FollowTarget, AutopilotVersion, LandingTarget, HomePosition, MessageInterval,
-            ExtendedSysState, Statustext, TargetRelative>(visitor);
+            FollowTarget, AutopilotVersion, LandingTarget, EkfStatusReport, EstimatorStatus,
+            HomePosition, MessageInterval, ExtendedSysState, Statustext, TargetRelative>(visitor);
 }
 
 void Print(std::uint32_t id, std::string_view name, const std::string& fields,

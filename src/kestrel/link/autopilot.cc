@@ -10,76 +10,27 @@
 #include "kestrel/base/options.h"
 #include "kestrel/base/violations.h"
 #include "kestrel/link/mavlink_enums.h"
-#include "kestrel/link/ned.h"
 
 namespace kestrel {
 namespace {
 
-using Eigen::Quaterniond;
-using Eigen::Vector3d;
 using std::chrono::seconds;
-
-constexpr double kHalfMillisecond_ms = 0.5;
-
-// Stamps in milliseconds are cut off: half of one is missing on average.
-std::int64_t RemoteNanoseconds(std::uint32_t boot_ms) {
-  constexpr double kNsPerMs = 1e6;
-  return static_cast<std::int64_t>((boot_ms + kHalfMillisecond_ms) * kNsPerMs);
-}
-
-// Signed, s; right over the wrap after 49 days.
-double SecondsBetween(std::uint32_t from_ms, std::uint32_t to_ms) {
-  return 1e-3 * static_cast<std::int32_t>(to_ms - from_ms);
-}
-
-Quaterniond FromEulerAngles(double roll, double pitch, double yaw) {
-  return Quaterniond(Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) *
-                     Eigen::AngleAxisd(pitch, Vector3d::UnitY()) *
-                     Eigen::AngleAxisd(roll, Vector3d::UnitX()));
-}
-
-bool IsRotation(const Quaterniond& rotation) {
-  constexpr double kTolerance = 0.01;
-  return std::abs(rotation.norm() - 1) < kTolerance;  // false for NaN
-}
 
 bool IsAutopilotHeartbeat(const mavlink::Heartbeat& heartbeat) {
   return heartbeat.autopilot != mavlink::kAutopilotInvalid && heartbeat.type != mavlink::kTypeGcs &&
          heartbeat.type != mavlink::kTypeOnboardController;
 }
 
-LandedState LandedStateOf(std::uint8_t state) {
-  switch (state) {
-    case mavlink::kLandedOnGround:
-      return LandedState::kOnGround;
-    case mavlink::kLandedInAir:
-      return LandedState::kInAir;
-    case mavlink::kLandedTakeoff:
-      return LandedState::kTakingOff;
-    case mavlink::kLandedLanding:
-      return LandedState::kLanding;
-    default:
-      return LandedState::kUnknown;
-  }
+bool IsArmed(const mavlink::Heartbeat& heartbeat) {
+  return (heartbeat.base_mode & mavlink::kModeFlagArmed) != 0;
+}
+
+bool IsInFailsafe(const mavlink::Heartbeat& heartbeat) {
+  return heartbeat.system_status == mavlink::kStateCritical ||
+         heartbeat.system_status == mavlink::kStateEmergency;
 }
 
 }  // namespace
-
-const char* ToString(LandedState state) {
-  switch (state) {
-    case LandedState::kUnknown:
-      return "unknown";
-    case LandedState::kOnGround:
-      return "on ground";
-    case LandedState::kInAir:
-      return "in air";
-    case LandedState::kTakingOff:
-      return "taking off";
-    case LandedState::kLanding:
-      return "landing";
-  }
-  return "";
-}
 
 std::vector<std::string> AutopilotOptions::Validate() const {
   constexpr int kMaxId = 255;
@@ -90,6 +41,7 @@ std::vector<std::string> AutopilotOptions::Validate() const {
   RequireIn(position_rate_hz, 0, kMaxRate_hz, "position_rate_hz", &violations);
   RequireIn(landed_rate_hz, 0, kMaxRate_hz, "landed_rate_hz", &violations);
   RequireIn(range_rate_hz, 0, kMaxRate_hz, "range_rate_hz", &violations);
+  RequireIn(status_rate_hz, 0, kMaxRate_hz, "status_rate_hz", &violations);
   RequireIn(true_pose_rate_hz, 0, kMaxRate_hz, "true_pose_rate_hz", &violations);
   RequirePositive(away_after_s, "away_after_s", &violations);
   RequirePositive(position_age_s, "position_age_s", &violations);
@@ -98,11 +50,24 @@ std::vector<std::string> AutopilotOptions::Validate() const {
 
 Autopilot::Autopilot(const AutopilotOptions& options, Connection* connection,
                      AutopilotListener listener)
-    : options_(options), connection_(connection), listener_(std::move(listener)) {
+    : options_(options),
+      connection_(connection),
+      listener_(std::move(listener)),
+      poses_(options.position_age_s) {
   RequireValid(options);
 }
 
-bool Autopilot::is_armed() const { return (heartbeat_.base_mode & mavlink::kModeFlagArmed) != 0; }
+bool Autopilot::is_armed() const { return IsArmed(heartbeat_); }
+
+bool Autopilot::is_in_failsafe() const { return IsInFailsafe(heartbeat_); }
+
+std::optional<bool> Autopilot::is_position_good(Time now) const {
+  const auto& estimator = status_.estimator();
+  if (!estimator || ToSeconds(now - estimator->received) > options_.away_after_s) {
+    return std::nullopt;
+  }
+  return estimator->is_good;
+}
 
 void Autopilot::Tell(AutopilotEventKind kind, std::string text) {
   if (listener_.event) listener_.event({kind, std::move(text)});
@@ -162,23 +127,29 @@ void Autopilot::HandleHeartbeat(const mavlink::Packet& packet, const mavlink::He
     });
     return;
   }
-  const bool has_changed =
-      heartbeat.custom_mode != heartbeat_.custom_mode ||
-      ((heartbeat.base_mode ^ heartbeat_.base_mode) & mavlink::kModeFlagArmed) != 0;
-  heartbeat_ = heartbeat;
+  const mavlink::Heartbeat before = std::exchange(heartbeat_, heartbeat);
   heard_ = received;
-  if (!is_here_) {
-    is_here_ = true;
-    const bool is_first = kind_ == AutopilotKind::kUnknown;
-    kind_ = AutopilotKindOf(heartbeat.autopilot);
-    WantStreams();
-    Tell(is_first ? AutopilotEventKind::kHeard : AutopilotEventKind::kBack,
-         fmt::format("{} (system {}) {}, {}, {}", ToString(kind_), system_,
-                     is_first ? "heard" : "is back", mode_name(),
-                     is_armed() ? "armed" : "disarmed"));
-  } else if (has_changed) {
+  if (is_here_) return TellChange(before);
+  is_here_ = true;
+  const bool is_first = kind_ == AutopilotKind::kUnknown;
+  kind_ = AutopilotKindOf(heartbeat.autopilot);
+  WantStreams();
+  Tell(is_first ? AutopilotEventKind::kHeard : AutopilotEventKind::kBack,
+       fmt::format("{} (system {}) {}, {}, {}", ToString(kind_), system_,
+                   is_first ? "heard" : "is back", mode_name(), is_armed() ? "armed" : "disarmed"));
+}
+
+void Autopilot::TellChange(const mavlink::Heartbeat& before) {
+  if (heartbeat_.custom_mode != before.custom_mode && heartbeat_.custom_mode != requested_mode_) {
+    commands_.Drop(mavlink::kCommandDoSetMode);
+  }
+  if (heartbeat_.custom_mode != before.custom_mode || is_armed() != IsArmed(before)) {
     Tell(AutopilotEventKind::kModeChanged,
          fmt::format("mode {}, {}", mode_name(), is_armed() ? "armed" : "disarmed"));
+  }
+  if (is_in_failsafe() && !IsInFailsafe(before)) {
+    Tell(AutopilotEventKind::kFailsafe,
+         fmt::format("the autopilot reports a failsafe, mode {}", mode_name()));
   }
 }
 
@@ -202,37 +173,89 @@ void Autopilot::HandleFromAutopilot(const mavlink::Packet& packet, Time received
   streams_.Count(packet.id);
   if (const auto timesync = packet.As<mavlink::Timesync>()) {
     HandleTimesync(*timesync, received);
-  } else if (const auto quaternion = packet.As<mavlink::AttitudeQuaternion>()) {
-    HandleQuaternion(*quaternion, received);
-  } else if (const auto attitude = packet.As<mavlink::Attitude>()) {
-    HandleEulerAngles(*attitude, received);
-  } else if (const auto position = packet.As<mavlink::LocalPositionNed>()) {
-    HandlePosition(*position);
-  } else if (const auto sim_state = packet.As<mavlink::SimState>()) {
-    HandleSimState(*sim_state, received);
-  } else if (const auto hil_state = packet.As<mavlink::HilStateQuaternion>()) {
-    HandleHilState(*hil_state);
-  } else {
-    HandleState(packet);
+  } else if (const auto ack = packet.As<mavlink::CommandAck>()) {
+    HandleAck(*ack);
+  } else if (const auto value = packet.As<mavlink::ParamValue>()) {
+    parameters_.Handle(kind_, *value);
+    writes_.Handle(kind_, *value, parameters_);
+  } else if (const auto text = packet.As<mavlink::Statustext>()) {
+    if (listener_.text) listener_.text(text->severity, TextOf(text->text));
+  } else if (!HandlePose(packet, received) && !HandleTruePose(packet, received)) {
+    HandleStatus(packet, received);
   }
 }
 
+bool Autopilot::HandlePose(const mavlink::Packet& packet, Time received) {
+  PoseSample pose;
+  if (const auto quaternion = packet.As<mavlink::AttitudeQuaternion>()) {
+    TellPose(poses_.Handle(*quaternion, received, &clock_, &pose), "attitude", pose);
+  } else if (const auto attitude = packet.As<mavlink::Attitude>()) {
+    TellPose(poses_.Handle(*attitude, received, &clock_, &pose), "attitude", pose);
+  } else if (const auto position = packet.As<mavlink::LocalPositionNed>()) {
+    const PoseFate fate = poses_.Handle(*position);
+    // By itself it makes no pose.
+    TellPose(fate == PoseFate::kUsed ? PoseFate::kNone : fate, "position", pose);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void Autopilot::TellPose(PoseFate fate, const char* what, const PoseSample& pose) {
+  switch (fate) {
+    case PoseFate::kUsed:
+      if (listener_.pose) listener_.pose(pose);
+      break;
+    case PoseFate::kNone:
+      return;
+    case PoseFate::kNotFinite:
+      return TellNotFinite(what);
+    case PoseFate::kBackwards:
+      ++counters_.backwards;
+      return TellOnce(AutopilotEventKind::kTimeBackwards, [&] {
+        return fmt::format(
+            "a message of the autopilot is {:.3f} s older than the one before: ignored",
+            poses_.back_s());
+      });
+    case PoseFate::kRestarted:
+      ++counters_.backwards;
+      return Restart();
+    case PoseFate::kWithoutClock:
+      ++counters_.without_clock;
+      return;
+    case PoseFate::kWithoutPosition:
+      ++counters_.without_position;
+      break;
+  }
+  if (!clock_.is_one_way()) return;
+  TellOnce(AutopilotEventKind::kNoTimeSync, [] {
+    return std::string(
+        "the autopilot does not answer TIMESYNC: its clock is known by the delay of the line only");
+  });
+}
+
+bool Autopilot::HandleTruePose(const mavlink::Packet& packet, Time received) {
+  const auto sim_state = packet.As<mavlink::SimState>();
+  const auto hil_state = packet.As<mavlink::HilStateQuaternion>();
+  if (!sim_state && !hil_state) return false;
+  const auto origin = status_.origin();
+  if (!listener_.true_pose || !origin) return true;
+  PoseSample pose;
+  const PoseFate fate = sim_state
+                            ? TruePoseOf(*sim_state, kind_, *origin, clock_.sync(), received, &pose)
+                            : TruePoseOf(*hil_state, kind_, *origin, clock_.sync(), &pose);
+  if (fate == PoseFate::kNotFinite) TellNotFinite("true pose");
+  if (fate == PoseFate::kUsed) listener_.true_pose(pose);
+  return true;
+}
+
 // Messages that come seldom.
-void Autopilot::HandleState(const mavlink::Packet& packet) {
-  if (const auto state = packet.As<mavlink::ExtendedSysState>()) HandleExtendedState(*state);
-  if (const auto range = packet.As<mavlink::DistanceSensor>()) HandleRange(*range);
-  if (const auto value = packet.As<mavlink::ParamValue>()) parameters_.Handle(kind_, *value);
-  if (const auto origin = packet.As<mavlink::GpsGlobalOrigin>()) {
-    origin_ = {origin->latitude, origin->longitude, 1e-3 * origin->altitude};
+void Autopilot::HandleStatus(const mavlink::Packet& packet, Time received) {
+  const LandedState before = status_.landed();
+  status_.Handle(packet, clock_.sync(), received);
+  if (status_.landed() != before) {
+    Tell(AutopilotEventKind::kModeChanged, ToString(status_.landed()));
   }
-  if (const auto version = packet.As<mavlink::AutopilotVersion>()) {
-    const std::uint32_t number = version->flight_sw_version;
-    version_ =
-        AutopilotVersion{static_cast<int>(number >> 24), static_cast<int>(number >> 16 & 0xff),
-                         static_cast<int>(number >> 8 & 0xff)};
-  }
-  const auto text = packet.As<mavlink::Statustext>();
-  if (text && listener_.text) listener_.text(text->severity, TextOf(text->text));
 }
 
 void Autopilot::CountLost(const mavlink::Packet& packet) {
@@ -244,14 +267,19 @@ void Autopilot::CountLost(const mavlink::Packet& packet) {
   sequence_ = packet.sequence;
 }
 
+// 0 is for everybody.
+bool Autopilot::IsForThis(std::uint8_t target_system, std::uint8_t target_component) const {
+  return (target_system == 0 || target_system == connection_->system()) &&
+         (target_component == 0 || target_component == connection_->component());
+}
+
+void Autopilot::HandleAck(const mavlink::CommandAck& message) {
+  if (!IsForThis(message.target_system, message.target_component)) return;
+  if (const auto ending = commands_.Handle(message)) TellEnding(*ending);
+}
+
 void Autopilot::HandleTimesync(const mavlink::Timesync& message, Time received) {
-  const auto is_other = [](std::uint8_t told, std::uint8_t own) {
-    return told != 0 && told != own;
-  };
-  if (is_other(message.target_system, connection_->system()) ||
-      is_other(message.target_component, connection_->component())) {
-    return;
-  }
+  if (!IsForThis(message.target_system, message.target_component)) return;
   auto answer = clock_.Handle(message, received);
   if (answer) {
     answer->target_system = system_;
@@ -271,163 +299,19 @@ void Autopilot::Restart() {
   clock_.Reset();
   streams_.AskAgain();
   parameters_.AskAgain();
-  position_.reset();
-  origin_.reset();
-  version_.reset();
-  range_.reset();
+  poses_.Reset();
+  status_.Reset();
   sequence_.reset();
-  attitude_order_ = euler_order_ = position_order_ = {};
-  landed_ = LandedState::kUnknown;
   questions_ = 0;
   questions_due_ = {};
   Tell(AutopilotEventKind::kRestarted,
        "the autopilot started again: its clock is learned and its streams are asked for anew");
 }
 
-// Packets overtake each other by some milliseconds; several in a row that are older come from a
-// clock that began anew.
-bool Autopilot::IsNewer(std::uint32_t boot_ms, StampOrder* order) {
-  constexpr int kRestartAfter = 3;
-  constexpr double kRestartBack_s = 1;
-  if (!order->newest_ms || SecondsBetween(*order->newest_ms, boot_ms) > 0) {
-    *order = {boot_ms, 0};
-    return true;
-  }
-  const double back_s = SecondsBetween(boot_ms, *order->newest_ms);
-  if (back_s == 0) return false;  // sent twice
-  ++counters_.backwards;
-  order->backwards = back_s > kRestartBack_s ? order->backwards + 1 : 0;
-  if (order->backwards == kRestartAfter) {
-    Restart();
-    return true;
-  }
-  TellOnce(AutopilotEventKind::kTimeBackwards, [&] {
-    return fmt::format("a message of the autopilot is {:.3f} s older than the one before: ignored",
-                       back_s);
-  });
-  return false;
-}
-
-bool Autopilot::IsFinite(bool is_finite, const char* what) {
-  if (is_finite) return true;
+void Autopilot::TellNotFinite(const char* what) {
   ++counters_.not_finite;
   TellOnce(AutopilotEventKind::kNotFinite,
            [&] { return fmt::format("the autopilot's {} is not a number: ignored", what); });
-  return false;
-}
-
-void Autopilot::HandleQuaternion(const mavlink::AttitudeQuaternion& message, Time received) {
-  const Quaterniond rotation(message.q1, message.q2, message.q3, message.q4);
-  const Vector3d rate(message.rollspeed, message.pitchspeed, message.yawspeed);
-  if (!IsFinite(IsRotation(rotation) && rate.allFinite(), "attitude")) return;
-  if (!IsNewer(message.time_boot_ms, &attitude_order_)) return;
-  has_quaternions_ = true;
-  HandleAttitude({message.time_boot_ms, rotation.normalized(), rate}, received);
-}
-
-// Of an autopilot that sends both, the quaternions are used.
-void Autopilot::HandleEulerAngles(const mavlink::Attitude& message, Time received) {
-  constexpr double kQuaternionsEnd_s = 0.5;
-  const Vector3d angles(message.roll, message.pitch, message.yaw);
-  const Vector3d rate(message.rollspeed, message.pitchspeed, message.yawspeed);
-  if (!IsFinite(angles.allFinite() && rate.allFinite(), "attitude")) return;
-  if (!IsNewer(message.time_boot_ms, &euler_order_)) return;
-  if (has_quaternions_ && attitude_order_.newest_ms &&
-      SecondsBetween(*attitude_order_.newest_ms, message.time_boot_ms) < kQuaternionsEnd_s) {
-    return;
-  }
-  has_quaternions_ = false;
-  HandleAttitude({message.time_boot_ms, FromEulerAngles(angles.x(), angles.y(), angles.z()), rate},
-                 received);
-}
-
-void Autopilot::HandleAttitude(const AttitudeSample& sample, Time received) {
-  clock_.HandleStamp(RemoteNanoseconds(sample.boot_ms), received);
-  if (!clock_.sync().is_known()) {
-    ++counters_.without_clock;
-    return;
-  }
-  if (clock_.is_one_way()) {
-    TellOnce(AutopilotEventKind::kNoTimeSync, [] {
-      return std::string(
-          "the autopilot does not answer TIMESYNC: its clock is known by the delay of the line "
-          "only");
-    });
-  }
-  const double age_s = position_ ? SecondsBetween(position_->boot_ms, sample.boot_ms) : 0;
-  if (!position_ || std::abs(age_s) > options_.position_age_s) {
-    ++counters_.without_position;
-    return;
-  }
-  if (!listener_.pose) return;
-  PoseSample pose;
-  pose.time = clock_.sync().ToLocal(RemoteNanoseconds(sample.boot_ms));
-  pose.world_from_body = {EnuFluFromNedFrd(sample.ned_from_frd).normalized(),
-                          position_->in_world + age_s * position_->velocity_in_world};
-  pose.motion = BodyMotion{position_->velocity_in_world, FluFromFrd(sample.rate_in_frd)};
-  listener_.pose(pose);
-}
-
-void Autopilot::HandlePosition(const mavlink::LocalPositionNed& message) {
-  const Vector3d position(message.x, message.y, message.z);
-  const Vector3d velocity(message.vx, message.vy, message.vz);
-  if (!IsFinite(position.allFinite() && velocity.allFinite(), "position")) return;
-  if (!IsNewer(message.time_boot_ms, &position_order_)) return;
-  position_ = {message.time_boot_ms, EnuFromNed(position), EnuFromNed(velocity)};
-}
-
-// SIM_STATE has no time of its own: it was sent when the fastest message would have had to be.
-void Autopilot::HandleSimState(const mavlink::SimState& message, Time received) {
-  if (!listener_.true_pose || !origin_ || !clock_.sync().is_known()) return;
-  const Quaterniond rotation(message.q1, message.q2, message.q3, message.q4);
-  const Vector3d velocity(message.vn, message.ve, message.vd);
-  const Vector3d rate(message.xgyro, message.ygyro, message.zgyro);
-  const bool is_finite = IsRotation(rotation) && velocity.allFinite() && rate.allFinite() &&
-                         std::isfinite(message.alt);
-  if (!IsFinite(is_finite, "true pose")) return;
-  PoseSample pose;
-  pose.time = received - clock_.sync().round_trip() / 2;
-  pose.world_from_body = {
-      EnuFluFromNedFrd(rotation).normalized(),
-      LocalFromGlobal(kind_, *origin_, {message.lat_int, message.lon_int, message.alt})};
-  pose.motion = BodyMotion{EnuFromNed(velocity), FluFromFrd(rate)};
-  listener_.true_pose(pose);
-}
-
-void Autopilot::HandleHilState(const mavlink::HilStateQuaternion& message) {
-  constexpr std::uint64_t kMaxStamp_us = std::uint64_t{1} << 50;
-  if (!listener_.true_pose || !origin_ || !clock_.sync().is_known()) return;
-  const auto& q = message.attitude_quaternion;
-  const Quaterniond rotation(q[0], q[1], q[2], q[3]);
-  const Vector3d rate(message.rollspeed, message.pitchspeed, message.yawspeed);
-  const bool is_finite =
-      IsRotation(rotation) && rate.allFinite() && message.time_usec < kMaxStamp_us;
-  if (!IsFinite(is_finite, "true pose")) return;
-  PoseSample pose;
-  pose.time = clock_.sync().ToLocal(static_cast<std::int64_t>(1000 * message.time_usec));
-  pose.world_from_body = {
-      EnuFluFromNedFrd(rotation).normalized(),
-      LocalFromGlobal(kind_, *origin_, {message.lat, message.lon, 1e-3 * message.alt})};
-  pose.motion =
-      BodyMotion{EnuFromNed(Vector3d(message.vx, message.vy, message.vz) / 100), FluFromFrd(rate)};
-  listener_.true_pose(pose);
-}
-
-void Autopilot::HandleExtendedState(const mavlink::ExtendedSysState& message) {
-  const LandedState landed = LandedStateOf(message.landed_state);
-  if (landed == landed_) return;
-  landed_ = landed;
-  Tell(AutopilotEventKind::kModeChanged, ToString(landed));
-}
-
-void Autopilot::HandleRange(const mavlink::DistanceSensor& message) {
-  if (message.orientation != mavlink::kOrientationDown || !clock_.sync().is_known()) return;
-  if (message.current_distance < message.min_distance ||
-      message.current_distance > message.max_distance) {
-    return;
-  }
-  range_ = {clock_.sync().ToLocal(RemoteNanoseconds(message.time_boot_ms)),
-            1e-2 * message.current_distance};
 }
 
 void Autopilot::Tick(Time now) {
@@ -464,9 +348,13 @@ void Autopilot::WantStreams() {
   streams_.Want(mavlink::AttitudeQuaternion::kId, options_.attitude_rate_hz);
   streams_.Want(mavlink::LocalPositionNed::kId, options_.position_rate_hz);
   streams_.Want(mavlink::ExtendedSysState::kId, options_.landed_rate_hz);
-  streams_.Want(mavlink::DistanceSensor::kId, options_.range_rate_hz);
+  // Not every vehicle has one.
+  streams_.WantIfThere(mavlink::DistanceSensor::kId, options_.range_rate_hz);
+  const bool is_px4 = kind_ == AutopilotKind::kPx4;
+  streams_.WantIfThere(is_px4 ? mavlink::EstimatorStatus::kId : mavlink::EkfStatusReport::kId,
+                       options_.status_rate_hz);
+  streams_.WantIfThere(mavlink::SysStatus::kId, options_.status_rate_hz);
   if (options_.wants_true_pose) {
-    const bool is_px4 = kind_ == AutopilotKind::kPx4;
     streams_.Want(is_px4 ? mavlink::HilStateQuaternion::kId : mavlink::SimState::kId,
                   options_.true_pose_rate_hz);
   }
@@ -490,6 +378,12 @@ void Autopilot::SendRequests(Time now) {
   }
   StreamRequests::Request request;
   if (streams_.Next(now, &request)) SendStreamRequest(request);
+  SendCommands(now);
+  SendParameterRequests(now);
+  SendQuestions(now);
+}
+
+void Autopilot::SendParameterRequests(Time now) {
   const std::string_view name = parameters_.Next(now);
   if (!name.empty()) {
     mavlink::ParamRequestRead read;
@@ -499,7 +393,60 @@ void Autopilot::SendRequests(Time now) {
     read.param_index = -1;
     connection_->Send(read);
   }
-  SendQuestions(now);
+  if (auto write = writes_.Next(kind_, parameters_, now)) {
+    write->target_system = system_;
+    write->target_component = component_;
+    connection_->Send(*write);
+  }
+}
+
+void Autopilot::SetParameter(std::string_view name, double value) {
+  if (!parameters_.EntryOf(name)) parameters_.Want(name);
+  writes_.Set(name, value);
+}
+
+bool Autopilot::RequestMode(FlightMode mode) {
+  constexpr std::uint32_t kByte = 0xff;
+  const std::uint32_t custom_mode = CustomModeOf(kind_, mode);
+  if (custom_mode == 0) return false;
+  requested_mode_ = custom_mode;
+  const bool is_px4 = kind_ == AutopilotKind::kPx4;
+  mavlink::CommandLong command =
+      MakeCommand(mavlink::kCommandDoSetMode, mavlink::kModeFlagCustom,
+                  static_cast<float>(is_px4 ? custom_mode >> 16 & kByte : custom_mode));
+  if (is_px4) command.param3 = static_cast<float>(custom_mode >> 24);
+  commands_.Want(command);
+  return true;
+}
+
+void Autopilot::DisarmByForce() {
+  commands_.Want(MakeCommand(mavlink::kCommandArmDisarm, 0, mavlink::kArmByForce));
+}
+
+bool Autopilot::is_request_pending() const {
+  return commands_.IsWanted(mavlink::kCommandDoSetMode) ||
+         commands_.IsWanted(mavlink::kCommandArmDisarm);
+}
+
+void Autopilot::SendCommands(Time now) {
+  std::optional<CommandRequests::Ending> ended;
+  if (const auto command = commands_.Next(now, &ended)) connection_->Send(*command);
+  if (ended) TellEnding(*ended);
+}
+
+void Autopilot::TellEnding(const CommandRequests::Ending& ending) {
+  const bool is_mode = ending.command.command == mavlink::kCommandDoSetMode;
+  const std::string what =
+      is_mode ? "mode " + ModeName(kind_, requested_mode_) : std::string("disarming");
+  if (!ending.result) {
+    Tell(AutopilotEventKind::kCommandUnanswered,
+         fmt::format("the autopilot was asked for {} and does not answer", what));
+  } else if (ending.is_accepted()) {
+    Tell(AutopilotEventKind::kCommandAccepted, fmt::format("the autopilot accepts {}", what));
+  } else {
+    Tell(AutopilotEventKind::kCommandRefused,
+         fmt::format("the autopilot refuses {}: {}", what, CommandResultName(*ending.result)));
+  }
 }
 
 // What is told once, when it is asked for.
@@ -510,10 +457,11 @@ void Autopilot::SendQuestions(Time now) {
   questions_due_ = now + (questions_ < kQuick ? Duration(seconds(1)) : kSlow);
   ++questions_;
   const auto ask = [&](std::uint32_t id) {
-    SendCommand(mavlink::kCommandRequestMessage, static_cast<float>(id), 0);
+    connection_->Send(MakeCommand(mavlink::kCommandRequestMessage, static_cast<float>(id), 0));
   };
-  if (!version_ && questions_ < kQuick) ask(mavlink::AutopilotVersion::kId);
-  if (!origin_) ask(mavlink::GpsGlobalOrigin::kId);
+  if (!version() && questions_ < kQuick) ask(mavlink::AutopilotVersion::kId);
+  if (!origin()) ask(mavlink::GpsGlobalOrigin::kId);
+  if (!home()) ask(mavlink::HomePosition::kId);
 }
 
 void Autopilot::SendStreamRequest(const StreamRequests::Request& request) {
@@ -546,18 +494,19 @@ void Autopilot::SendOldStreamRequest(bool is_attitude, double rate_hz) {
 
 void Autopilot::SendInterval(std::uint32_t id, double rate_hz) {
   constexpr double kMicroseconds = 1e6;
-  SendCommand(mavlink::kCommandSetMessageInterval, static_cast<float>(id),
-              static_cast<float>(std::round(kMicroseconds / rate_hz)));
+  connection_->Send(MakeCommand(mavlink::kCommandSetMessageInterval, static_cast<float>(id),
+                                static_cast<float>(std::round(kMicroseconds / rate_hz))));
 }
 
-void Autopilot::SendCommand(std::uint16_t command, float param1, float param2) {
+mavlink::CommandLong Autopilot::MakeCommand(std::uint16_t command, float param1,
+                                            float param2) const {
   mavlink::CommandLong message;
   message.target_system = system_;
   message.target_component = component_;
   message.command = command;
   message.param1 = param1;
   message.param2 = param2;
-  connection_->Send(message);
+  return message;
 }
 
 void Autopilot::Announce(std::uint8_t severity, std::string_view text) {

@@ -9,15 +9,17 @@
 #include <string_view>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "kestrel/base/time.h"
 #include "kestrel/link/autopilot_kind.h"
+#include "kestrel/link/autopilot_poses.h"
+#include "kestrel/link/autopilot_status.h"
 #include "kestrel/link/clock_exchange.h"
+#include "kestrel/link/command_requests.h"
 #include "kestrel/link/connection.h"
 #include "kestrel/link/global_position.h"
 #include "kestrel/link/messages.h"
 #include "kestrel/link/parameter_reader.h"
+#include "kestrel/link/parameter_writer.h"
 #include "kestrel/link/stream_requests.h"
 #include "kestrel/navigation/pose_history.h"
 
@@ -31,6 +33,7 @@ struct AutopilotOptions {
   double position_rate_hz = 50;
   double landed_rate_hz = 5;
   double range_rate_hz = 20;
+  double status_rate_hz = 2;
   // Ask for the true pose, which only simulated vehicles know, and how often.
   bool wants_true_pose = false;
   double true_pose_rate_hz = 100;
@@ -49,6 +52,8 @@ struct AutopilotOptions {
     visitor("position_rate_hz", self.position_rate_hz, "Hz", "asked of positions");
     visitor("landed_rate_hz", self.landed_rate_hz, "Hz", "asked of the landed state");
     visitor("range_rate_hz", self.range_rate_hz, "Hz", "asked of distance sensors");
+    visitor("status_rate_hz", self.status_rate_hz, "Hz",
+            "asked of the battery and of the health of its estimate");
     visitor("wants_true_pose", self.wants_true_pose, "",
             "ask a simulated vehicle for its true pose");
     visitor("true_pose_rate_hz", self.true_pose_rate_hz, "Hz", "how often");
@@ -60,15 +65,16 @@ struct AutopilotOptions {
   std::vector<std::string> Validate() const;
 };
 
-enum class LandedState { kUnknown, kOnGround, kInAir, kTakingOff, kLanding };
-const char* ToString(LandedState state);  // "unknown", "on ground", "in air", ...
-
 enum class AutopilotEventKind {
   kHeard,              // there it is
   kAway,               // no heartbeat any more
   kBack,               // and there it is again
   kRestarted,          // it began anew: its clock, and all that it was asked
   kModeChanged,        // mode, armed or landed state
+  kFailsafe,           // it says that it is in an emergency
+  kCommandAccepted,    // a request of this program; no proof that it is done
+  kCommandRefused,     // and why
+  kCommandUnanswered,  // however often it was sent
   kOtherAutopilot,     // another autopilot is on the link, and ignored
   kIdClash,            // somebody else sends with this program's ids
   kOwnIdIsAutopilots,  // this program's ids are the autopilot's: it will ignore all
@@ -95,18 +101,6 @@ struct AutopilotCounters {
   std::uint64_t backwards = 0;
   std::uint64_t without_position = 0;  // attitudes for which no position is young enough
   std::uint64_t without_clock = 0;     // attitudes before the clock was known
-};
-
-struct AutopilotVersion {
-  int major = 0;
-  int minor = 0;
-  int patch = 0;
-};
-
-// Distance to the ground below, by the autopilot's own sensor.
-struct AutopilotRange {
-  Time time;
-  double distance_m;
 };
 
 // Which poses and words come of an autopilot. All are called in the thread that calls Handle.
@@ -140,61 +134,69 @@ class Autopilot {
   AutopilotKind kind() const { return kind_; }
   std::uint8_t system() const { return system_; }
   std::uint8_t component() const { return component_; }
-  std::optional<AutopilotVersion> version() const { return version_; }
   std::uint32_t custom_mode() const { return heartbeat_.custom_mode; }
   std::string mode_name() const { return ModeName(kind_, heartbeat_.custom_mode); }
   bool is_landing_mode() const { return IsLandingMode(kind_, heartbeat_.custom_mode); }
+  bool is_guided_mode() const { return IsGuidedMode(kind_, heartbeat_.custom_mode); }
   bool is_armed() const;
-  LandedState landed_state() const { return landed_; }
-  std::optional<AutopilotRange> range() const { return range_; }
-  std::optional<GlobalPosition> origin() const { return origin_; }  // of the local frame
+  // It says that it is in an emergency, and does what it is set to do then.
+  bool is_in_failsafe() const;
+  std::uint8_t vehicle_type() const { return heartbeat_.type; }  // MAV_TYPE
+  bool is_multicopter() const { return IsMulticopter(heartbeat_.type); }
+  LandedState landed_state() const { return status_.landed(); }
+  // What it says about itself, each where it was told.
+  const AutopilotStatus& status() const { return status_; }
+  std::optional<AutopilotVersion> version() const { return status_.version(); }
+  std::optional<AutopilotRange> range() const { return status_.range(); }
+  std::optional<GlobalPosition> origin() const { return status_.origin(); }  // of the local frame
+  std::optional<GlobalPosition> home() const { return status_.home(); }
+  std::optional<AutopilotBattery> battery() const { return status_.battery(); }
+  // Whether it trusts its own attitude, velocity and place; nothing: it does not say, or not for
+  // 'away_after_s' any more.
+  std::optional<bool> is_position_good(Time now) const;
 
   const TimeSync& time_sync() const { return clock_.sync(); }
   const StreamRequests& streams() const { return streams_; }
   ParameterReader& parameters() { return parameters_; }
   const ParameterReader& parameters() const { return parameters_; }
+  const ParameterWriter& parameter_writes() const { return writes_; }
   const AutopilotCounters& counters() const { return counters_; }
   int restarts() const { return restarts_; }
+
+  // Asks for this mode until it is answered, which an event tells; whether it was entered the mode
+  // tells. Given up at once when the autopilot goes to yet another mode, which somebody else wants
+  // then. False: an autopilot of this kind cannot be asked.
+  bool RequestMode(FlightMode mode);
+  // Stops the motors at once, also in flight.
+  void DisarmByForce();
+  // An answer to one of the two is awaited.
+  bool is_request_pending() const;
+
+  // Sets a parameter by its first name and in that one's unit (parameter_names.h), until the
+  // autopilot tells it back: parameter_writes() tells whether it did.
+  void SetParameter(std::string_view name, double value);
 
   // A text for the ground station, in pieces of 50 characters where it is longer; 'severity' as
   // MAV_SEVERITY.
   void Announce(std::uint8_t severity, std::string_view text);
 
  private:
-  struct Position {
-    std::uint32_t boot_ms;
-    Eigen::Vector3d in_world;
-    Eigen::Vector3d velocity_in_world;
-  };
-  struct AttitudeSample {
-    std::uint32_t boot_ms;
-    Eigen::Quaterniond ned_from_frd;
-    Eigen::Vector3d rate_in_frd;
-  };
-  // Time stamps of one kind of message, which only rise unless the autopilot starts again.
-  struct StampOrder {
-    std::optional<std::uint32_t> newest_ms;
-    int backwards = 0;  // in a row
-  };
-
   bool IsFromAutopilot(const mavlink::Packet& packet);
+  bool IsForThis(std::uint8_t target_system, std::uint8_t target_component) const;
   void HandleHeartbeat(const mavlink::Packet& packet, const mavlink::Heartbeat& heartbeat,
                        Time received);
   void Adopt(const mavlink::Packet& packet, const mavlink::Heartbeat& heartbeat);
+  void TellChange(const mavlink::Heartbeat& before);
   void HandleFromAutopilot(const mavlink::Packet& packet, Time received);
-  void HandleState(const mavlink::Packet& packet);
+  bool HandlePose(const mavlink::Packet& packet, Time received);
+  bool HandleTruePose(const mavlink::Packet& packet, Time received);
+  void TellPose(PoseFate fate, const char* what, const PoseSample& pose);
+  void TellTruePose(PoseFate fate, const PoseSample& pose);
+  void HandleStatus(const mavlink::Packet& packet, Time received);
   void HandleTimesync(const mavlink::Timesync& message, Time received);
-  void HandleQuaternion(const mavlink::AttitudeQuaternion& message, Time received);
-  void HandleEulerAngles(const mavlink::Attitude& message, Time received);
-  void HandleAttitude(const AttitudeSample& sample, Time received);
-  void HandlePosition(const mavlink::LocalPositionNed& message);
-  void HandleSimState(const mavlink::SimState& message, Time received);
-  void HandleHilState(const mavlink::HilStateQuaternion& message);
-  void HandleExtendedState(const mavlink::ExtendedSysState& message);
-  void HandleRange(const mavlink::DistanceSensor& message);
+  void HandleAck(const mavlink::CommandAck& message);
   void CountLost(const mavlink::Packet& packet);
-  bool IsNewer(std::uint32_t boot_ms, StampOrder* order);
-  bool IsFinite(bool is_finite, const char* what);
+  void TellNotFinite(const char* what);
   void Restart();
   void CheckPresence(Time now);
   void SendHeartbeat(Time now);
@@ -204,7 +206,10 @@ class Autopilot {
   void SendStreamRequest(const StreamRequests::Request& request);
   void SendOldStreamRequest(bool is_attitude, double rate_hz);
   void SendInterval(std::uint32_t id, double rate_hz);
-  void SendCommand(std::uint16_t command, float param1, float param2);
+  mavlink::CommandLong MakeCommand(std::uint16_t command, float param1, float param2) const;
+  void SendCommands(Time now);
+  void TellEnding(const CommandRequests::Ending& ending);
+  void SendParameterRequests(Time now);
   void SendQuestions(Time now);
   void Tell(AutopilotEventKind kind, std::string text);
   template <class Text>
@@ -220,21 +225,17 @@ class Autopilot {
   AutopilotKind kind_ = AutopilotKind::kUnknown;
   mavlink::Heartbeat heartbeat_;
   Time heard_{};
-  std::optional<AutopilotVersion> version_;
-  LandedState landed_ = LandedState::kUnknown;
-  std::optional<AutopilotRange> range_;
-  std::optional<GlobalPosition> origin_;
   std::optional<std::uint8_t> sequence_;
 
   ClockExchange clock_;
   int jumps_ = 0;  // of the clock, that were seen
+  AutopilotStatus status_;
+  AutopilotPoses poses_;
   StreamRequests streams_;
+  CommandRequests commands_;
+  std::uint32_t requested_mode_ = 0;
   ParameterReader parameters_;
-  std::optional<Position> position_;
-  StampOrder attitude_order_;
-  StampOrder euler_order_;
-  StampOrder position_order_;
-  bool has_quaternions_ = false;
+  ParameterWriter writes_;
 
   Time heartbeat_due_{};
   Time questions_due_{};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/link/autopilot_kind.h"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <utility>
@@ -12,38 +13,59 @@
 namespace kestrel {
 namespace {
 
+constexpr std::uint32_t kArduCopterGuided = 4;
+constexpr std::uint32_t kArduCopterLoiter = 5;
+constexpr std::uint32_t kArduCopterReturn = 6;
 constexpr std::uint32_t kArduCopterLand = 9;
+constexpr std::uint32_t kArduCopterBrake = 17;
 
 constexpr std::array<std::pair<std::uint32_t, std::string_view>, 22> kArduCopterModes = {
-    {{0, "STABILIZE"}, {1, "ACRO"},          {2, "ALT_HOLD"},   {3, "AUTO"},      {4, "GUIDED"},
-     {5, "LOITER"},    {6, "RTL"},           {7, "CIRCLE"},     {9, "LAND"},      {11, "DRIFT"},
-     {13, "SPORT"},    {14, "FLIP"},         {15, "AUTOTUNE"},  {16, "POSHOLD"},  {17, "BRAKE"},
-     {18, "THROW"},    {20, "GUIDED_NOGPS"}, {21, "SMART_RTL"}, {22, "FLOWHOLD"}, {23, "FOLLOW"},
-     {24, "ZIGZAG"},   {27, "AUTO_RTL"}}};
+    {{0, "STABILIZE"},
+     {1, "ACRO"},
+     {2, "ALT_HOLD"},
+     {3, "AUTO"},
+     {kArduCopterGuided, "GUIDED"},
+     {kArduCopterLoiter, "LOITER"},
+     {kArduCopterReturn, "RTL"},
+     {7, "CIRCLE"},
+     {kArduCopterLand, "LAND"},
+     {11, "DRIFT"},
+     {13, "SPORT"},
+     {14, "FLIP"},
+     {15, "AUTOTUNE"},
+     {16, "POSHOLD"},
+     {kArduCopterBrake, "BRAKE"},
+     {18, "THROW"},
+     {20, "GUIDED_NOGPS"},
+     {21, "SMART_RTL"},
+     {22, "FLOWHOLD"},
+     {23, "FOLLOW"},
+     {24, "ZIGZAG"},
+     {27, "AUTO_RTL"}}};
 
-// PX4 has the main mode in the third byte and, of its automatic modes, which one in the fourth.
-constexpr std::uint32_t Px4Mode(std::uint32_t main, std::uint32_t sub) {
-  return main << 16 | sub << 24;
-}
-constexpr std::uint32_t kPx4Land = Px4Mode(4, 6);
-constexpr std::uint32_t kPx4Precland = Px4Mode(4, 9);
+constexpr std::uint32_t kPx4Position = Px4CustomMode(3, 0);
+constexpr std::uint32_t kPx4Loiter = Px4CustomMode(4, 3);
+constexpr std::uint32_t kPx4Return = Px4CustomMode(4, 5);
+constexpr std::uint32_t kPx4Land = Px4CustomMode(4, 6);
+constexpr std::uint32_t kPx4Precland = Px4CustomMode(4, 9);
+constexpr std::uint32_t kPx4Offboard = Px4CustomMode(6, 0);
 
 constexpr std::array<std::pair<std::uint32_t, std::string_view>, 15> kPx4Modes = {
-    {{Px4Mode(1, 0), "MANUAL"},
-     {Px4Mode(2, 0), "ALTCTL"},
-     {Px4Mode(3, 0), "POSCTL"},
-     {Px4Mode(4, 1), "READY"},
-     {Px4Mode(4, 2), "TAKEOFF"},
-     {Px4Mode(4, 3), "LOITER"},
-     {Px4Mode(4, 4), "MISSION"},
-     {Px4Mode(4, 5), "RTL"},
+    {{Px4CustomMode(1, 0), "MANUAL"},
+     {Px4CustomMode(2, 0), "ALTCTL"},
+     {kPx4Position, "POSCTL"},
+     {Px4CustomMode(4, 1), "READY"},
+     {Px4CustomMode(4, 2), "TAKEOFF"},
+     {kPx4Loiter, "LOITER"},
+     {Px4CustomMode(4, 4), "MISSION"},
+     {kPx4Return, "RTL"},
      {kPx4Land, "LAND"},
-     {Px4Mode(4, 8), "FOLLOW"},
+     {Px4CustomMode(4, 8), "FOLLOW"},
      {kPx4Precland, "PRECLAND"},
-     {Px4Mode(5, 0), "ACRO"},
-     {Px4Mode(6, 0), "OFFBOARD"},
-     {Px4Mode(7, 0), "STABILIZED"},
-     {Px4Mode(8, 0), "RATTITUDE"}}};
+     {Px4CustomMode(5, 0), "ACRO"},
+     {kPx4Offboard, "OFFBOARD"},
+     {Px4CustomMode(7, 0), "STABILIZED"},
+     {Px4CustomMode(8, 0), "RATTITUDE"}}};
 
 template <class Modes>
 std::string NameIn(const Modes& modes, std::uint32_t custom_mode) {
@@ -51,6 +73,41 @@ std::string NameIn(const Modes& modes, std::uint32_t custom_mode) {
     if (mode == custom_mode) return std::string(name);
   }
   return fmt::format("mode {}", custom_mode);
+}
+
+std::uint32_t ArduCopterMode(FlightMode mode) {
+  switch (mode) {
+    case FlightMode::kGuided:
+      return kArduCopterGuided;
+    case FlightMode::kLand:
+    case FlightMode::kPrecisionLand:
+      return kArduCopterLand;
+    case FlightMode::kHold:
+      return kArduCopterBrake;
+    case FlightMode::kPilot:
+      return kArduCopterLoiter;
+    case FlightMode::kReturn:
+      return kArduCopterReturn;
+  }
+  return 0;
+}
+
+std::uint32_t Px4Mode(FlightMode mode) {
+  switch (mode) {
+    case FlightMode::kGuided:
+      return kPx4Offboard;
+    case FlightMode::kLand:
+      return kPx4Land;
+    case FlightMode::kPrecisionLand:
+      return kPx4Precland;
+    case FlightMode::kHold:
+      return kPx4Loiter;
+    case FlightMode::kPilot:
+      return kPx4Position;
+    case FlightMode::kReturn:
+      return kPx4Return;
+  }
+  return 0;
 }
 
 }  // namespace
@@ -75,6 +132,36 @@ AutopilotKind AutopilotKindOf(std::uint8_t mav_autopilot) {
   return AutopilotKind::kOther;
 }
 
+bool IsMulticopter(std::uint8_t mav_type) {
+  constexpr std::array<std::uint8_t, 8> kTypes = {
+      mavlink::kTypeQuadrotor,   mavlink::kTypeCoaxial,   mavlink::kTypeHelicopter,
+      mavlink::kTypeHexarotor,   mavlink::kTypeOctorotor, mavlink::kTypeTricopter,
+      mavlink::kTypeDodecarotor, mavlink::kTypeDecarotor};
+  return std::find(kTypes.begin(), kTypes.end(), mav_type) != kTypes.end();
+}
+
+const char* VehicleName(std::uint8_t mav_type) {
+  if (IsMulticopter(mav_type)) return "a multicopter";
+  if (mav_type >= mavlink::kTypeVtolFirst && mav_type <= mavlink::kTypeVtolLast) return "a VTOL";
+  switch (mav_type) {
+    case mavlink::kTypeFixedWing:
+      return "a plane";
+    case mavlink::kTypeGroundRover:
+      return "a rover";
+    case mavlink::kTypeSurfaceBoat:
+      return "a boat";
+    case mavlink::kTypeSubmarine:
+      return "a submarine";
+    default:
+      return "no multicopter";
+  }
+}
+
+std::uint32_t CustomModeOf(AutopilotKind kind, FlightMode mode) {
+  if (kind == AutopilotKind::kArduPilot) return ArduCopterMode(mode);
+  return kind == AutopilotKind::kPx4 ? Px4Mode(mode) : 0;
+}
+
 std::string ModeName(AutopilotKind kind, std::uint32_t custom_mode) {
   if (kind == AutopilotKind::kArduPilot) return NameIn(kArduCopterModes, custom_mode);
   if (kind == AutopilotKind::kPx4) return NameIn(kPx4Modes, custom_mode);
@@ -84,6 +171,11 @@ std::string ModeName(AutopilotKind kind, std::uint32_t custom_mode) {
 bool IsLandingMode(AutopilotKind kind, std::uint32_t custom_mode) {
   if (kind == AutopilotKind::kArduPilot) return custom_mode == kArduCopterLand;
   return kind == AutopilotKind::kPx4 && (custom_mode == kPx4Land || custom_mode == kPx4Precland);
+}
+
+bool IsGuidedMode(AutopilotKind kind, std::uint32_t custom_mode) {
+  if (kind == AutopilotKind::kArduPilot) return custom_mode == kArduCopterGuided;
+  return kind == AutopilotKind::kPx4 && custom_mode == kPx4Offboard;
 }
 
 }  // namespace kestrel

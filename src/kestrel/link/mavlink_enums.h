@@ -7,9 +7,22 @@
 namespace kestrel::mavlink {
 
 // MAV_TYPE
+inline constexpr std::uint8_t kTypeFixedWing = 1;
 inline constexpr std::uint8_t kTypeQuadrotor = 2;
+inline constexpr std::uint8_t kTypeCoaxial = 3;
+inline constexpr std::uint8_t kTypeHelicopter = 4;
 inline constexpr std::uint8_t kTypeGcs = 6;
+inline constexpr std::uint8_t kTypeGroundRover = 10;
+inline constexpr std::uint8_t kTypeSurfaceBoat = 11;
+inline constexpr std::uint8_t kTypeSubmarine = 12;
+inline constexpr std::uint8_t kTypeHexarotor = 13;
+inline constexpr std::uint8_t kTypeOctorotor = 14;
+inline constexpr std::uint8_t kTypeTricopter = 15;
 inline constexpr std::uint8_t kTypeOnboardController = 18;
+inline constexpr std::uint8_t kTypeVtolFirst = 19;  // to kTypeVtolLast: with wings and rotors
+inline constexpr std::uint8_t kTypeVtolLast = 25;
+inline constexpr std::uint8_t kTypeDodecarotor = 29;
+inline constexpr std::uint8_t kTypeDecarotor = 35;
 
 // MAV_AUTOPILOT
 inline constexpr std::uint8_t kAutopilotArduPilot = 3;
@@ -27,8 +40,11 @@ inline constexpr std::uint8_t kModeFlagArmed = 128;
 // MAV_STATE
 inline constexpr std::uint8_t kStateStandby = 3;
 inline constexpr std::uint8_t kStateActive = 4;
+inline constexpr std::uint8_t kStateCritical = 5;
+inline constexpr std::uint8_t kStateEmergency = 6;
 
 // MAV_CMD
+inline constexpr std::uint16_t kCommandTakeOff = 22;
 inline constexpr std::uint16_t kCommandDoSetMode = 176;
 inline constexpr std::uint16_t kCommandArmDisarm = 400;
 inline constexpr std::uint16_t kCommandSetMessageInterval = 511;
@@ -36,12 +52,40 @@ inline constexpr std::uint16_t kCommandRequestMessage = 512;
 
 // MAV_RESULT
 inline constexpr std::uint8_t kResultAccepted = 0;
+inline constexpr std::uint8_t kResultTemporarilyRejected = 1;
 inline constexpr std::uint8_t kResultDenied = 2;
 inline constexpr std::uint8_t kResultUnsupported = 3;
 inline constexpr std::uint8_t kResultFailed = 4;
+inline constexpr std::uint8_t kResultInProgress = 5;
+
+// Parameter 2 of kCommandArmDisarm: at once, also in flight.
+inline constexpr float kArmByForce = 21196;
+
+// POSITION_TARGET_TYPEMASK: what of a set-point is not to be used.
+inline constexpr std::uint16_t kIgnorePosition = 0x007;
+inline constexpr std::uint16_t kIgnoreVelocity = 0x038;
+inline constexpr std::uint16_t kIgnoreAcceleration = 0x1c0;
+inline constexpr std::uint16_t kForceNotAcceleration = 0x200;
+inline constexpr std::uint16_t kIgnoreYaw = 0x400;
+inline constexpr std::uint16_t kIgnoreYawRate = 0x800;
+
+// ESTIMATOR_STATUS_FLAGS; of EKF_STATUS_FLAGS those with the same names are the same.
+inline constexpr std::uint16_t kEstimatorAttitude = 1;
+inline constexpr std::uint16_t kEstimatorVelocityHorizontal = 2;
+inline constexpr std::uint16_t kEstimatorVelocityVertical = 4;
+inline constexpr std::uint16_t kEstimatorPositionRelative = 8;
+inline constexpr std::uint16_t kEstimatorPositionAbsolute = 16;
+inline constexpr std::uint16_t kEstimatorPositionVertical = 32;
+inline constexpr std::uint16_t kEstimatorConstantPosition = 128;
+inline constexpr std::uint16_t kEstimatorGpsGlitch = 1024;
+inline constexpr std::uint16_t kEkfUninitialized = 1024;
+inline constexpr std::uint16_t kEkfGpsGlitching = 32768;
 
 // MAV_FRAME
 inline constexpr std::uint8_t kFrameLocalNed = 1;
+inline constexpr std::uint8_t kFrameLocalOffsetNed = 7;
+inline constexpr std::uint8_t kFrameBodyNed = 8;
+inline constexpr std::uint8_t kFrameBodyOffsetNed = 9;
 inline constexpr std::uint8_t kFrameBodyFrd = 12;
 inline constexpr std::uint8_t kFrameLocalFrd = 20;
 

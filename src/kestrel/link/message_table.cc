@@ -21,8 +21,9 @@ constexpr auto kTable =
               ParamValue, ParamSet, Attitude, AttitudeQuaternion, LocalPositionNed,
               GlobalPositionInt, GpsGlobalOrigin, RcChannels, RequestDataStream, CommandLong,
               CommandAck, SetPositionTargetLocalNed, SimState, Timesync, HilStateQuaternion,
-              DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget, HomePosition,
-              MessageInterval, ExtendedSysState, Statustext, TargetRelative>();
+              DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget, EkfStatusReport,
+              EstimatorStatus, HomePosition, MessageInterval, ExtendedSysState, Statustext,
+              TargetRelative>();
 
 constexpr bool IsSortedById() {
   return std::is_sorted(kTable.begin(), kTable.end(),
@@ -63,6 +64,8 @@ static_assert(Is<DistanceSensor>(85, 14, 39));
 static_assert(Is<FollowTarget>(127, 93, 93));
 static_assert(Is<AutopilotVersion>(178, 60, 78));
 static_assert(Is<LandingTarget>(200, 30, 60));
+static_assert(Is<EkfStatusReport>(71, 22, 26));
+static_assert(Is<EstimatorStatus>(163, 42, 42));
 static_assert(Is<HomePosition>(104, 52, 60));
 static_assert(Is<MessageInterval>(95, 6, 6));
 static_assert(Is<ExtendedSysState>(130, 2, 2));

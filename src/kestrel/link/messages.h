@@ -715,6 +715,59 @@ struct LandingTarget {
   }
 };
 
+struct EkfStatusReport {
+  static constexpr std::uint32_t kId = 193;
+  static constexpr std::string_view kName = "EKF_STATUS_REPORT";
+  std::uint16_t flags = 0;
+  float velocity_variance = 0;
+  float pos_horiz_variance = 0;
+  float pos_vert_variance = 0;
+  float compass_variance = 0;
+  float terrain_alt_variance = 0;
+  float airspeed_variance = 0;
+
+  template <class Self, class Visitor>
+  static constexpr void Visit(Self& self, Visitor&& visitor) {
+    visitor("flags", self.flags, "");
+    visitor("velocity_variance", self.velocity_variance, "");
+    visitor("pos_horiz_variance", self.pos_horiz_variance, "");
+    visitor("pos_vert_variance", self.pos_vert_variance, "");
+    visitor("compass_variance", self.compass_variance, "");
+    visitor("terrain_alt_variance", self.terrain_alt_variance, "");
+    visitor.Extensions();
+    visitor("airspeed_variance", self.airspeed_variance, "");
+  }
+};
+
+struct EstimatorStatus {
+  static constexpr std::uint32_t kId = 230;
+  static constexpr std::string_view kName = "ESTIMATOR_STATUS";
+  std::uint64_t time_usec = 0;
+  std::uint16_t flags = 0;
+  float vel_ratio = 0;
+  float pos_horiz_ratio = 0;
+  float pos_vert_ratio = 0;
+  float mag_ratio = 0;
+  float hagl_ratio = 0;
+  float tas_ratio = 0;
+  float pos_horiz_accuracy = 0;
+  float pos_vert_accuracy = 0;
+
+  template <class Self, class Visitor>
+  static constexpr void Visit(Self& self, Visitor&& visitor) {
+    visitor("time_usec", self.time_usec, "us");
+    visitor("flags", self.flags, "");
+    visitor("vel_ratio", self.vel_ratio, "");
+    visitor("pos_horiz_ratio", self.pos_horiz_ratio, "");
+    visitor("pos_vert_ratio", self.pos_vert_ratio, "");
+    visitor("mag_ratio", self.mag_ratio, "");
+    visitor("hagl_ratio", self.hagl_ratio, "");
+    visitor("tas_ratio", self.tas_ratio, "");
+    visitor("pos_horiz_accuracy", self.pos_horiz_accuracy, "m");
+    visitor("pos_vert_accuracy", self.pos_vert_accuracy, "m");
+  }
+};
+
 struct HomePosition {
   static constexpr std::uint32_t kId = 242;
   static constexpr std::string_view kName = "HOME_POSITION";

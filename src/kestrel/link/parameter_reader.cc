@@ -2,9 +2,11 @@
 #include "kestrel/link/parameter_reader.h"
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
+#include <cmath>
 
 #include "kestrel/link/mavlink_enums.h"
+#include "kestrel/link/parameter_names.h"
 
 namespace kestrel {
 namespace {
@@ -25,16 +27,22 @@ void SetText(std::string_view text, std::span<char> field) {
 
 double ParameterValue(AutopilotKind kind, const mavlink::ParamValue& message) {
   if (kind == AutopilotKind::kPx4 && message.param_type == mavlink::kParamInt32) {
-    std::int32_t value = 0;
-    std::memcpy(&value, &message.param_value, sizeof(value));
-    return value;
+    return std::bit_cast<std::int32_t>(message.param_value);
   }
   if (kind == AutopilotKind::kPx4 && message.param_type == mavlink::kParamUint32) {
-    std::uint32_t value = 0;
-    std::memcpy(&value, &message.param_value, sizeof(value));
-    return value;
+    return std::bit_cast<std::uint32_t>(message.param_value);
   }
   return message.param_value;
+}
+
+float ParameterOnWire(AutopilotKind kind, std::uint8_t type, double value) {
+  if (kind == AutopilotKind::kPx4 && type == mavlink::kParamInt32) {
+    return std::bit_cast<float>(static_cast<std::int32_t>(std::lround(value)));
+  }
+  if (kind == AutopilotKind::kPx4 && type == mavlink::kParamUint32) {
+    return std::bit_cast<float>(static_cast<std::uint32_t>(std::lround(value)));
+  }
+  return static_cast<float>(value);
 }
 
 const ParameterReader::Parameter* ParameterReader::Get(std::string_view name) const {
@@ -43,27 +51,40 @@ const ParameterReader::Parameter* ParameterReader::Get(std::string_view name) co
   return found == parameters_.end() ? nullptr : &*found;
 }
 
+void ParameterReader::Start(Parameter* parameter) {
+  parameter->is_wanted = true;
+  parameter->requests = 0;
+  parameter->asked = 0;
+  parameter->due = {};
+}
+
 void ParameterReader::Want(std::string_view name) {
   for (Parameter& parameter : parameters_) {
-    if (parameter.name != name) continue;
-    parameter.is_wanted = true;
-    parameter.requests = 0;
-    parameter.due = {};
-    return;
+    if (parameter.name == name) return Start(&parameter);
   }
   Parameter parameter;
   parameter.name = name;
+  for (const ParameterNames::Name& known : NamesOf(name).names) {
+    if (!known.name.empty()) parameter.names.push_back({std::string(known.name), known.scale});
+  }
   parameters_.push_back(parameter);
 }
 
 std::optional<double> ParameterReader::Find(std::string_view name) const {
   const Parameter* parameter = Get(name);
-  return parameter != nullptr ? parameter->value : std::nullopt;
+  if (parameter == nullptr || !parameter->own) return std::nullopt;
+  return parameter->value;
 }
 
 bool ParameterReader::IsMissing(std::string_view name) const {
   const Parameter* parameter = Get(name);
-  return parameter != nullptr && !parameter->is_wanted && !parameter->value;
+  return parameter != nullptr && !parameter->is_wanted && !parameter->own;
+}
+
+std::optional<ParameterReader::Entry> ParameterReader::EntryOf(std::string_view name) const {
+  const Parameter* parameter = Get(name);
+  if (parameter == nullptr || !parameter->own) return std::nullopt;
+  return parameter->names[*parameter->own];
 }
 
 bool ParameterReader::is_done() const {
@@ -74,18 +95,19 @@ bool ParameterReader::is_done() const {
 void ParameterReader::Handle(AutopilotKind kind, const mavlink::ParamValue& message) {
   const std::string_view name = TextOf(message.param_id);
   for (Parameter& parameter : parameters_) {
-    if (parameter.name != name) continue;
-    parameter.value = ParameterValue(kind, message);
-    parameter.is_wanted = false;
+    for (std::size_t i = 0; i < parameter.names.size(); ++i) {
+      Entry& entry = parameter.names[i];
+      if (entry.name != name) continue;
+      entry.type = message.param_type;
+      parameter.own = i;
+      parameter.value = entry.scale * ParameterValue(kind, message);
+      parameter.is_wanted = false;
+    }
   }
 }
 
 void ParameterReader::AskAgain() {
-  for (Parameter& parameter : parameters_) {
-    parameter.is_wanted = true;
-    parameter.requests = 0;
-    parameter.due = {};
-  }
+  for (Parameter& parameter : parameters_) Start(&parameter);
 }
 
 std::string_view ParameterReader::Next(Time now) {
@@ -98,10 +120,15 @@ std::string_view ParameterReader::Next(Time now) {
       parameter.is_wanted = false;
       continue;
     }
-    ++parameter.requests;
-    parameter.due = now + kPatience;
+    const std::string_view name = parameter.names[parameter.asked].name;
     next_ = now + kBetween;
-    return parameter.name;
+    // All of its names one after the other, then the autopilot has time to answer.
+    if (++parameter.asked == parameter.names.size()) {
+      parameter.asked = 0;
+      ++parameter.requests;
+      parameter.due = now + kPatience;
+    }
+    return name;
   }
   return {};
 }

@@ -21,35 +21,40 @@ class StreamRequests {
 
   // Wants message 'id' 'rate_hz' times a second from now on, or no longer (0).
   void Want(std::uint32_t id, double rate_hz);
+  // The same for a message that the autopilot may not have: when it does not come it is soon asked
+  // for once a minute only.
+  void WantIfThere(std::uint32_t id, double rate_hz);
 
   // Such a message was received.
   void Count(std::uint32_t id);
 
   // A request that is due at 'now', one at a time; false: none is. To be called every second at
-  // least. A message that comes with less than 0.7 of its rate over a second is asked for again,
-  // each second at first and every five seconds later.
+  // least. A message that comes with less than 0.7 of its rate is asked for again, each second at
+  // first and every five seconds later.
   bool Next(Time now, Request* request);
 
   // The autopilot forgot all that it was asked.
   void AskAgain();
 
-  // Of the last whole second, 1/s.
+  // Of the last whole second, or of the last four messages that should have come; 1/s.
   double RateOf(std::uint32_t id) const;
 
  private:
   struct Stream {
     std::uint32_t id = 0;
     double rate_hz = 0;
+    bool is_optional = false;
     int count = 0;
+    Time counted_from{};
     bool has_come = false;
     double measured_hz = 0;
     int requests = 0;
     Time due{};
   };
-  void Measure(Time now);
+  Stream& Get(std::uint32_t id);
+  static void Measure(Time now, Stream* stream);
 
   std::vector<Stream> streams_;
-  Time measured_{};
 };
 
 }  // namespace kestrel
