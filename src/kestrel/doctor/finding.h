@@ -13,7 +13,7 @@ const char* ToString(Verdict verdict);  // "good", "doubtful", "wrong", "not che
 
 // A parameter of the autopilot as it should be.
 struct ParameterFix {
-  std::string name;  // as the autopilot that was asked calls it
+  std::string name;  // the first of its names, in whose unit the value is
   double value = 0;
   bool needs_reboot = false;
 };
