@@ -28,10 +28,10 @@ FlyAutopilot MakeFlyAutopilot(const std::string& argument, const FlyOptions& opt
     source->world = std::make_unique<VehicleWorld>(ReadVehicleWorld("standing", {}), Now(), seed);
   }
   const int port = FreeLoopbackPort();
-  return {fmt::format("udpin://{}:{}", kLoopback, port),
-          std::make_unique<SimulatedAutopilot>(
-              simulated, fmt::format("udpout://{}:{}", kLoopback, port), source->world.get(),
-              seed)};
+  return {
+      fmt::format("udpin://{}:{}", kLoopback, port),
+      std::make_unique<SimulatedAutopilot>(
+          simulated, fmt::format("udpout://{}:{}", kLoopback, port), source->world.get(), seed)};
 }
 
 }  // namespace kestrel

@@ -65,9 +65,9 @@ Finding CheckImageSize(const CameraIntrinsics& intrinsics, const CameraObservati
                  "the calibration's size (fly.camera.device_caps)");
   }
   if (camera.width_px == 0) return NotChecked(check, "no image");
-  const std::string measured = fmt::format("{}x{} px, calibration {}x{} px", camera.width_px,
-                                           camera.height_px, intrinsics.width_px,
-                                           intrinsics.height_px);
+  const std::string measured =
+      fmt::format("{}x{} px, calibration {}x{} px", camera.width_px, camera.height_px,
+                  intrinsics.width_px, intrinsics.height_px);
   if (camera.width_px == intrinsics.width_px && camera.height_px == intrinsics.height_px) {
     return Good(check, measured);
   }
@@ -80,7 +80,8 @@ Finding CheckImageSize(const CameraIntrinsics& intrinsics, const CameraObservati
 }
 
 Finding CheckLensModel(const CameraIntrinsics& intrinsics) {
-  constexpr double kCorners = 0.6;  // of the border; the rest may be black beside a fisheye's circle
+  constexpr double kCorners =
+      0.6;  // of the border; the rest may be black beside a fisheye's circle
   const std::string check = "lens model";
   if (const auto violations = intrinsics.Validate(); !violations.empty()) {
     return Wrong(check, violations.front(), kCalibrateAdvice);
@@ -88,10 +89,10 @@ Finding CheckLensModel(const CameraIntrinsics& intrinsics) {
   const CameraModel model(intrinsics);
   const BorderReach reach = ReachOf(model);
   const std::optional<double> view = FieldOfView(model);
-  const std::string measured = fmt::format(
-      "valid to {:.0f} deg from the axis, {:.0f} % of the image's border{}",
-      Degrees(model.max_angle()), 100.0 * reach.reached / reach.pixels,
-      view ? fmt::format(", {:.0f} deg wide", Degrees(*view)) : "");
+  const std::string measured =
+      fmt::format("valid to {:.0f} deg from the axis, {:.0f} % of the image's border{}",
+                  Degrees(model.max_angle()), 100.0 * reach.reached / reach.pixels,
+                  view ? fmt::format(", {:.0f} deg wide", Degrees(*view)) : "");
   if (reach.reached == reach.pixels) return Good(check, measured);
   const std::string advice =
       "the distortion bends back before the rim: calibrate with views at the border and in the "
@@ -125,9 +126,10 @@ Finding CheckCalibrationByPattern(const VisionObservations& vision) {
   constexpr double kMostContradict = 0.5;
   const std::string check = "calibration by the pattern";
   if (vision.patterns.size() < kFewest) {
-    return NotChecked(check, fmt::format("pattern in view in {} of {} images",
-                                         vision.patterns.size(), vision.frames),
-                      "hold the camera 2 to 5 m above the pattern");
+    return NotChecked(
+        check,
+        fmt::format("pattern in view in {} of {} images", vision.patterns.size(), vision.frames),
+        "hold the camera 2 to 5 m above the pattern");
   }
   std::vector<double> misfits;
   std::size_t contradict = 0;
@@ -138,15 +140,14 @@ Finding CheckCalibrationByPattern(const VisionObservations& vision) {
   const double misfit_px = MedianOf(std::move(misfits));
   std::string measured =
       fmt::format("misfit {:.2f} px in {} images", misfit_px, vision.patterns.size());
-  constexpr double kPercent = 100;
   if (vision.focal) {
     measured += fmt::format(", focal length {:.3f} +- {:.3f} of the file's", vision.focal->factor,
                             vision.focal->sigma);
   }
   if (vision.focal_contradiction) {
-    return Wrong(check, measured,
-                 std::string("it is the calibration of another lens, zoom or size: ") +
-                     kCalibrateAdvice);
+    return Wrong(
+        check, measured,
+        std::string("it is the calibration of another lens, zoom or size: ") + kCalibrateAdvice);
   }
   const auto all = static_cast<double>(vision.patterns.size());
   if (static_cast<double>(contradict) > kMostContradict * all || misfit_px > kMost_px) {

@@ -16,8 +16,6 @@ namespace {
 
 constexpr std::size_t kFewestFrames = 4;
 constexpr char kTooFewFrames[] = "too few images";
-constexpr double kPercent = 100;
-constexpr double kMilliseconds = 1000;
 
 bool HasTooFew(const CameraObservations& camera) { return camera.frames.size() < kFewestFrames; }
 
@@ -29,7 +27,7 @@ std::vector<double> Intervals(const CameraObservations& camera) {
   return intervals;
 }
 
-double MedianOfQualities(const CameraObservations& camera, double ImageQuality::* value) {
+double MedianOfQualities(const CameraObservations& camera, double ImageQuality::*value) {
   std::vector<double> values;
   for (const ImageQuality& quality : camera.qualities) values.push_back(quality.*value);
   return MedianOf(std::move(values));
@@ -51,8 +49,9 @@ int LongestFreeze(const CameraObservations& camera) {
 Finding CheckImages(const CameraObservations& camera) {
   const std::string check = "images";
   if (!camera.open_error.empty()) {
-    return Wrong(check, camera.open_error,
-                 "the source has to open first: its name, its cable, whether another program uses it");
+    return Wrong(
+        check, camera.open_error,
+        "the source has to open first: its name, its cable, whether another program uses it");
   }
   if (camera.frames.empty()) {
     const std::string error = camera.error.empty() ? "" : ": " + camera.error;
@@ -183,8 +182,8 @@ Finding CheckCaptureClock(const CameraObservations& camera) {
   if (age_s > kTooOld_s) return Wrong(check, measured, age_advice);
   if (age_s > kOld_s) return Doubtful(check, measured, age_advice);
   if (camera.counters.untimed > 0) {
-    return Doubtful(check, fmt::format("{} images without a time of their own",
-                                       camera.counters.untimed),
+    return Doubtful(check,
+                    fmt::format("{} images without a time of their own", camera.counters.untimed),
                     "they get that of their arrival: measure the rest by kestrel calibrate clock");
   }
   return Good(check, measured);
@@ -202,10 +201,12 @@ Finding CheckExposure(const CameraObservations& camera) {
   const double saturated = MedianOfQualities(camera, &ImageQuality::saturated_share);
   const std::string measured = fmt::format("mean {:.0f}, brightest {:.0f} of 255, {:.1f} % white",
                                            mean, bright, kPercent * saturated);
-  const std::string darker = "shorter exposure or less gain, so that white paper is at 200 to 240 "
-                             "(fly.control_exposure=true does it)";
-  const std::string brighter = "longer exposure (up to 5 ms) or more gain: is the cap off, the iris "
-                               "open? (fly.control_exposure=true does it)";
+  const std::string darker =
+      "shorter exposure or less gain, so that white paper is at 200 to 240 "
+      "(fly.control_exposure=true does it)";
+  const std::string brighter =
+      "longer exposure (up to 5 ms) or more gain: is the cap off, the iris "
+      "open? (fly.control_exposure=true does it)";
   if (saturated > kMuchSaturated) return Wrong(check, measured + ": saturated", darker);
   if (bright < kDark) return Wrong(check, measured + ": dark", brighter);
   if (saturated > kSaturated) return Doubtful(check, measured + ": saturated", darker);
@@ -227,8 +228,9 @@ Finding CheckFocus(const CameraObservations& camera) {
   }
   const double edge_px = MedianOf(std::move(edges));
   const std::string measured = fmt::format("sharp edges are {:.1f} px wide", edge_px);
-  const std::string advice = "turn the lens until edges at 5 m are less than 3 px wide, fix it, "
-                             "calibrate again; in flight: a shorter exposure, a softer mount";
+  const std::string advice =
+      "turn the lens until edges at 5 m are less than 3 px wide, fix it, "
+      "calibrate again; in flight: a shorter exposure, a softer mount";
   if (edge_px > kBlurred_px) return Wrong(check, measured + ": blurred", advice);
   if (edge_px > kSoft_px) return Doubtful(check, measured + ": soft", advice);
   return Good(check, measured);

@@ -10,12 +10,12 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/doctor/statistics.h"
+
 namespace kestrel {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kPercent = 100;
 
 // Of all thermal zones, deg C.
 std::optional<double> HottestZone() {
@@ -71,7 +71,6 @@ ComputerObservations ObserveComputer(const std::string& record) {
 Finding CheckDetectionTime(const DoctorObservations& observations) {
   constexpr double kComfortable = 0.6;  // of the frames' period
   constexpr double kMostDropped = 0.3;
-  constexpr double kMilliseconds = 1000;
   const std::string check = "detection time";
   const VisionObservations& vision = observations.vision;
   const auto& frames = observations.camera.frames;
@@ -109,7 +108,7 @@ Finding CheckLoad(const ComputerObservations& computer) {
 Finding CheckHeat(const ComputerObservations& computer) {
   constexpr double kHot = 78;
   constexpr double kTooHot = 90;
-  constexpr std::uint32_t kNow = 0xf;       // low voltage, capped, throttled, soft limit: now
+  constexpr std::uint32_t kNow = 0xf;        // low voltage, capped, throttled, soft limit: now
   constexpr std::uint32_t kSince = 0xf0000;  // the same since the start
   const std::string check = "heat, power";
   if (!computer.hottest_c && !computer.throttled) return NotChecked(check, "no sensor");
@@ -137,9 +136,8 @@ Finding CheckDisk(const DoctorObservations& observations) {
   if (!computer.free_disk_mb) return Wrong(check, "cannot be asked", "the folder of --record");
   const double needed_mb =
       computer.least_disk_mb + kFlight_s * kRate_hz * kCompressed * computer.frame_mb;
-  const std::string measured =
-      fmt::format("{:.0f} MB free, a flight of {:.0f} min needs {:.0f}", *computer.free_disk_mb,
-                  kFlight_s / 60, needed_mb);
+  const std::string measured = fmt::format("{:.0f} MB free, a flight of {:.0f} min needs {:.0f}",
+                                           *computer.free_disk_mb, kFlight_s / 60, needed_mb);
   const std::string advice =
       "remove old recordings, or fly.recorder.compression=jpg (a fifth of the size)";
   if (*computer.free_disk_mb < computer.least_disk_mb) return Wrong(check, measured, advice);

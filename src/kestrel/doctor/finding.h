@@ -20,10 +20,10 @@ struct ParameterFix {
 
 // What a check came to.
 struct Finding {
-  std::string check;                             // its name, as "frame rate"
-  Verdict verdict = Verdict::kNotChecked;        //
-  std::string measured;                          // what was seen, or why nothing was
-  std::string advice = {};                       // what to do; empty where all is well
+  std::string check;                               // its name, as "frame rate"
+  Verdict verdict = Verdict::kNotChecked;          //
+  std::string measured;                            // what was seen, or why nothing was
+  std::string advice = {};                         // what to do; empty where all is well
   std::optional<ParameterFix> fix = std::nullopt;  // that would make it good
 };
 

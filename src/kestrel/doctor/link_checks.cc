@@ -8,11 +8,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "kestrel/doctor/statistics.h"
+
 namespace kestrel {
 namespace {
-
-constexpr double kPercent = 100;
-constexpr double kMilliseconds = 1000;
 
 bool IsSerial(const LinkObservations& link) {
   return link.scheme == LinkScheme::kSerial || link.scheme == LinkScheme::kSerialFlowControl;
@@ -28,20 +27,21 @@ Finding SilentLine(const std::string& check, const LinkObservations& link) {
   const ConnectionCounters& counters = link.counters;
   const std::uint64_t rubbish = counters.garbage_bytes + counters.bad_checksums;
   if (rubbish > kGarbage) {
-    return Wrong(check,
-                 fmt::format("{} bytes, and no message in them", counters.garbage_bytes),
-                 IsSerial(link)
-                     ? fmt::format("wrong baud, most likely: {} here; ArduPilot SERIALn_BAUD (921 = "
-                                   "921600, 57 = 57600), PX4 SER_TEL2_BAUD",
-                                   link.baud)
-                     : "who sends there does not speak MAVLink");
+    return Wrong(
+        check, fmt::format("{} bytes, and no message in them", counters.garbage_bytes),
+        IsSerial(link)
+            ? fmt::format("wrong baud, most likely: {} here; ArduPilot SERIALn_BAUD (921 = "
+                          "921600, 57 = 57600), PX4 SER_TEL2_BAUD",
+                          link.baud)
+            : "who sends there does not speak MAVLink");
   }
-  return Wrong(check, "silence",
-               IsSerial(link)
-                   ? "TX to RX crossed, ground joined, the right port; ArduPilot SERIALn_PROTOCOL 2, "
-                     "PX4 MAV_1_CONFIG 102 (TELEM2), MAV_1_MODE 2; no login console on that line"
-                   : "address and port; does the autopilot send there (udpin waits to be spoken "
-                     "to), and does no firewall drop it?");
+  return Wrong(
+      check, "silence",
+      IsSerial(link)
+          ? "TX to RX crossed, ground joined, the right port; ArduPilot SERIALn_PROTOCOL 2, "
+            "PX4 MAV_1_CONFIG 102 (TELEM2), MAV_1_MODE 2; no login console on that line"
+          : "address and port; does the autopilot send there (udpin waits to be spoken "
+            "to), and does no firewall drop it?");
 }
 
 Finding CheckStream(const std::string& check, int messages, double listened_s, double age_s,
@@ -92,10 +92,10 @@ Finding CheckLine(const LinkObservations& link) {
       fmt::format("{} packets; {:.1f} % lost, {} damaged, {} bytes of garbage; {:.1f} % not sent",
                   counters.received, kPercent * lost, counters.bad_checksums,
                   counters.garbage_bytes, kPercent * unsent);
-  const std::string advice =
-      IsSerial(link) ? "shorter or shielded wires, ground joined, flow control "
-                       "(serial_flowcontrol://), fewer messages"
-                     : "a better radio link, or a wire";
+  const std::string advice = IsSerial(link)
+                                 ? "shorter or shielded wires, ground joined, flow control "
+                                   "(serial_flowcontrol://), fewer messages"
+                                 : "a better radio link, or a wire";
   const double worst = std::max(lost, unsent);
   if (worst > kMuchLost) return Wrong(check, measured, advice);
   if (worst > kLost) return Doubtful(check, measured, advice);
@@ -130,13 +130,13 @@ Finding CheckSigning(const LinkObservations& link) {
 Finding CheckHeartbeat(const LinkObservations& link) {
   const std::string check = "heartbeat";
   if (!link.is_heard) {
-    return Wrong(check, fmt::format("none of an autopilot, {} packets of others",
-                                    link.counters.received),
+    return Wrong(check,
+                 fmt::format("none of an autopilot, {} packets of others", link.counters.received),
                  "see the line above; is the autopilot started, and its port set to MAVLink 2?");
   }
-  const std::string measured = fmt::format("{}, {} heartbeats, mode {}{}", ToString(link.kind),
-                                           link.heartbeats, link.mode,
-                                           link.is_armed ? ", armed" : "");
+  const std::string measured =
+      fmt::format("{}, {} heartbeats, mode {}{}", ToString(link.kind), link.heartbeats, link.mode,
+                  link.is_armed ? ", armed" : "");
   if (link.restarts > 0) {
     return Wrong(check, measured + fmt::format("; started anew {} times", link.restarts),
                  "its power supply");
@@ -167,10 +167,11 @@ Finding CheckVersion(const LinkObservations& link) {
 Finding CheckVehicle(const LinkObservations& link) {
   const std::string check = "vehicle";
   if (!link.vehicle_type) return NotChecked(check, "not told");
-  const std::string measured = fmt::format("MAV_TYPE {}", *link.vehicle_type);
-  if (IsMulticopter(*link.vehicle_type)) return Good(check, measured + ", a multicopter");
-  return Wrong(check, measured + ", no multicopter",
-               "Kestrel lands multicopters; is this the right autopilot (fly.autopilot.system_id)?");
+  const std::string measured = VehicleName(*link.vehicle_type);
+  if (IsMulticopter(*link.vehicle_type)) return Good(check, measured);
+  return Wrong(
+      check, measured + ", no multicopter",
+      "Kestrel lands multicopters; is this the right autopilot (fly.autopilot.system_id)?");
 }
 
 Finding CheckAttitudes(const LinkObservations& link, const DoctorUse& use) {

@@ -21,8 +21,7 @@ constexpr char kShakeAdvice[] =
     "hold the UAV 1 to 3 m above the pattern and tilt it by 20 deg forward, back and to the sides "
     "while doctor runs, or fly over it";
 
-std::vector<const PatternSample*> PosedPatterns(const VisionObservations& vision,
-                                                double least_px) {
+std::vector<const PatternSample*> PosedPatterns(const VisionObservations& vision, double least_px) {
   std::vector<const PatternSample*> posed;
   for (const PatternSample& pattern : vision.patterns) {
     if (pattern.world_from_body && pattern.ring_px >= least_px) posed.push_back(&pattern);
@@ -59,9 +58,9 @@ double Wandering(const std::vector<const PatternSample*>& patterns,
   Eigen::MatrixXd motion = Eigen::MatrixXd::Ones(rows, target_moves ? 2 : 1);
   for (Eigen::Index i = 0; i < rows; ++i) {
     const PatternSample& pattern = *patterns[static_cast<std::size_t>(i)];
-    places.row(i) = (*pattern.world_from_body *
-                     (body_from_camera * pattern.camera_from_pattern.translation))
-                        .transpose();
+    places.row(i) =
+        (*pattern.world_from_body * (body_from_camera * pattern.camera_from_pattern.translation))
+            .transpose();
     if (target_moves) motion(i, 1) = ToSeconds(pattern.time - patterns.front()->time);
   }
   const Eigen::MatrixXd way = motion.colPivHouseholderQr().solve(places);
@@ -94,9 +93,9 @@ std::string InWords(const Quaterniond& turn) {
   if (std::abs(axis.z()) > kAlong) {
     const bool is_half = degrees > 179;
     return fmt::format("{:.0f} deg{} about its optical axis{}", degrees,
-                       is_half         ? ""
+                       is_half        ? ""
                        : axis.z() > 0 ? " clockwise (seen from behind)"
-                                       : " counterclockwise (seen from behind)",
+                                      : " counterclockwise (seen from behind)",
                        is_half ? " (upside down)" : "");
   }
   return fmt::format("{:.0f} deg about ({:.1f}, {:.1f}, {:.1f}) of its axes right, down, ahead",
@@ -158,8 +157,9 @@ Finding CheckMountGiven(const std::optional<RigidTransform>& body_from_camera) {
       "looks {:.0f} deg from straight down, the image's right is {} of (ahead, left, up), {:.2f} m "
       "from the middle",
       from_down, direction(right), distance_m);
-  const std::string advice = "T_BS is body_from_camera: body x ahead, y left, z up; is it the "
-                             "inverse, or in forward-right-down?";
+  const std::string advice =
+      "T_BS is body_from_camera: body x ahead, y left, z up; is it the "
+      "inverse, or in forward-right-down?";
   if (from_down > kSideways) return Wrong(check, measured, advice);
   if (from_down > kSteepest || distance_m > kFarthest_m) return Doubtful(check, measured, advice);
   return Good(check, measured);
@@ -174,8 +174,8 @@ Finding CheckMountByGravity(const std::optional<RigidTransform>& body_from_camer
   if (!body_from_camera) return NotChecked(check, "no mount");
   const auto patterns = PosedPatterns(vision, kLeast_px);
   if (patterns.size() < kFewestPatterns) {
-    return NotChecked(check, fmt::format("pattern and attitude together in {} images",
-                                         patterns.size()),
+    return NotChecked(check,
+                      fmt::format("pattern and attitude together in {} images", patterns.size()),
                       kShakeAdvice);
   }
   const double tilt = Degrees(MedianTilt(patterns, body_from_camera->rotation));
@@ -199,23 +199,23 @@ Finding CheckMountByMotion(const std::optional<RigidTransform>& body_from_camera
   if (!body_from_camera) return NotChecked(check, "no mount");
   const auto patterns = PosedPatterns(vision, kLeast_px);
   if (patterns.size() < kFewestPatterns) {
-    return NotChecked(check, fmt::format("pattern and attitude together in {} images",
-                                         patterns.size()),
+    return NotChecked(check,
+                      fmt::format("pattern and attitude together in {} images", patterns.size()),
                       kShakeAdvice);
   }
   const double wandering_m = Wandering(patterns, *body_from_camera, target_moves);
   const auto other = BestTurned(patterns, *body_from_camera, target_moves);
   if (!other) return NotChecked(check, "the pattern does not lie level by any mount", kShakeAdvice);
-  const std::string measured = fmt::format(
-      "the pattern wanders by {:.0f} cm by this mount, by {:.0f} cm by the next best",
-      kCentimetres * wandering_m, kCentimetres * other->wandering_m);
+  const std::string measured =
+      fmt::format("the pattern wanders by {:.0f} cm by this mount, by {:.0f} cm by the next best",
+                  kCentimetres * wandering_m, kCentimetres * other->wandering_m);
   const double difference_m = wandering_m - other->wandering_m;
   if (difference_m > kLeast_m && other->wandering_m < kClear * wandering_m) {
-    return Wrong(check, measured,
-                 fmt::format("the camera (or the compass) is turned by {}; the rotation of T_BS "
-                             "would be [{}]",
-                             InWords(other->turn),
-                             MatrixText(body_from_camera->rotation * other->turn)));
+    return Wrong(
+        check, measured,
+        fmt::format("the camera (or the compass) is turned by {}; the rotation of T_BS "
+                    "would be [{}]",
+                    InWords(other->turn), MatrixText(body_from_camera->rotation * other->turn)));
   }
   if (-difference_m > kLeast_m && wandering_m < kClear * other->wandering_m) {
     return Good(check, measured);

@@ -9,9 +9,9 @@ namespace kestrel {
 
 // A parameter as the autopilot told it.
 struct ToldParameter {
-  double value = 0;       // in the unit of its first name (link/parameter_names.h)
-  std::string own_name;   // what this autopilot calls it
-  double scale = 1;       // value over that of the autopilot's own unit
+  double value = 0;      // in the unit of its first name (link/parameter_names.h)
+  std::string own_name;  // what this autopilot calls it
+  double scale = 1;      // value over that of the autopilot's own unit
 };
 
 // By first name, those that were told.

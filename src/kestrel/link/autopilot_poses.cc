@@ -70,9 +70,8 @@ PoseFate AutopilotPoses::Handle(const mavlink::Attitude& message, Time received,
     return PoseFate::kNone;
   }
   has_quaternions_ = false;
-  return MakePose(
-      {message.time_boot_ms, FromEulerAngles(angles.x(), angles.y(), angles.z()), rate}, received,
-      clock, pose);
+  return MakePose({message.time_boot_ms, FromEulerAngles(angles.x(), angles.y(), angles.z()), rate},
+                  received, clock, pose);
 }
 
 PoseFate AutopilotPoses::Handle(const mavlink::LocalPositionNed& message) {
@@ -85,8 +84,8 @@ PoseFate AutopilotPoses::Handle(const mavlink::LocalPositionNed& message) {
   return PoseFate::kUsed;
 }
 
-PoseFate AutopilotPoses::MakePose(const AttitudeSample& sample, Time received,
-                                  ClockExchange* clock, PoseSample* pose) const {
+PoseFate AutopilotPoses::MakePose(const AttitudeSample& sample, Time received, ClockExchange* clock,
+                                  PoseSample* pose) const {
   const std::int64_t remote_ns = NanosecondsOfBoot(sample.boot_ms);
   clock->HandleStamp(remote_ns, received);
   if (!clock->sync().is_known()) return PoseFate::kWithoutClock;

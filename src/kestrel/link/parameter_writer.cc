@@ -76,8 +76,8 @@ std::optional<mavlink::ParamSet> ParameterWriter::Next(AutopilotKind kind,
     if (write.state != ParameterWriteState::kWaiting || now < write.due) continue;
     const auto entry = reader.EntryOf(write.name);
     if (write.requests == kMaxWriteRequests || (!entry && reader.IsMissing(write.name))) {
-      write.state = write.was_answered ? ParameterWriteState::kRefused
-                                       : ParameterWriteState::kUnanswered;
+      write.state =
+          write.was_answered ? ParameterWriteState::kRefused : ParameterWriteState::kUnanswered;
       continue;
     }
     if (!entry) continue;

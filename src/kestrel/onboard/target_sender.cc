@@ -99,7 +99,7 @@ void TargetSender::WarnOfSpeed(const Eigen::Vector3d& velocity) {
                   "that stand, and trails behind this one",
                   speed_mps));
   autopilot_.Announce(mavlink::kSeverityWarning,
-                             "Kestrel: the pattern moves, PX4 will not land on it");
+                      "Kestrel: the pattern moves, PX4 will not land on it");
 }
 
 // Tells the user and the ground station when the target is found, lost, stood on.
