@@ -24,8 +24,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::array kProfiles = {LinkProfile::kArduPilot, LinkProfile::kPx4,
-                                  LinkProfile::kPx4Vte};
+constexpr std::array kProfiles = {LinkProfile::kArduPilot, LinkProfile::kPx4, LinkProfile::kPx4Vte};
 constexpr std::int64_t kBoot_us = 100'000'000;  // the autopilot's own clock at the start
 constexpr Duration kStep = std::chrono::milliseconds(4);
 constexpr Duration kTold = std::chrono::seconds(4);
@@ -87,8 +86,7 @@ void AskArduPilot(const ExplainedScene& scene, LinkProfile profile, Understandin
   });
   if (!target.is_acquired()) return;
   const Vector3d from_body(target.position().x(), target.position().y(), -target.depth());
-  understanding->ardupilot_in_ned =
-      NedFromEnu(report.world_from_body.translation + from_body);
+  understanding->ardupilot_in_ned = NedFromEnu(report.world_from_body.translation + from_body);
 }
 
 void AskPx4(const ExplainedScene& scene, LinkProfile profile, Understanding* understanding) {
@@ -103,9 +101,8 @@ void AskPx4(const ExplainedScene& scene, LinkProfile profile, Understanding* und
     if (is_vte) {
       target.Handle(TargetRelativeForPx4(report, stamp_us), state);
     } else {
-      target.Handle(profile == LinkProfile::kArduPilot
-                        ? LandingTargetForArduPilot(report, stamp_us)
-                        : LandingTargetForPx4(report, stamp_us),
+      target.Handle(profile == LinkProfile::kArduPilot ? LandingTargetForArduPilot(report, stamp_us)
+                                                       : LandingTargetForPx4(report, stamp_us),
                     state);
     }
   });
@@ -163,8 +160,7 @@ std::string MessageOf(const ExplainedScene& scene, LinkProfile profile) {
 }
 
 std::string PlaceInWords(const ExplainedScene& scene, const Vector3d& in_ned) {
-  const Vector3d body =
-      FrdFromFlu(BodyOf(scene).Inverse() * EnuFromNed(in_ned));
+  const Vector3d body = FrdFromFlu(BodyOf(scene).Inverse() * EnuFromNed(in_ned));
   return fmt::format(
       "{:.2f} north, {:.2f} east, {:.2f} down, which is {:.2f} m ahead, {:.2f} right, {:.2f} below",
       in_ned.x(), in_ned.y(), in_ned.z() + 0.0, body.x(), body.y(), body.z());
@@ -190,7 +186,8 @@ std::string Explain(const ExplainedScene& scene) {
   const TargetReport report = ReportOf(scene);
   std::string text = fmt::format(
       "A pattern {:g} m ahead, {:g} m right, {:g} m below a UAV that is {:g} m north, {:g} m east, "
-      "{:g} m up\nof its origin, level, its nose {:g} deg clockwise from north. The pattern is {}.\n",
+      "{:g} m up\nof its origin, level, its nose {:g} deg clockwise from north. The pattern is "
+      "{}.\n",
       scene.pattern_in_body.x(), scene.pattern_in_body.y(), scene.pattern_in_body.z(),
       scene.uav_in_ned.x(), scene.uav_in_ned.y(), -scene.uav_in_ned.z(), scene.heading_deg,
       PlaceInWords(scene, NedFromEnu(report.position_in_world)));
@@ -199,8 +196,7 @@ std::string Explain(const ExplainedScene& scene) {
     text += fmt::format("\n--profile {}\n", ToString(profile)) + MessageOf(scene, profile) +
             ThoughtOf(scene, "ArduPilot", understanding.ardupilot_in_ned,
                       understanding.ardupilot_text) +
-            ThoughtOf(scene,
-                      profile == LinkProfile::kPx4Vte ? "PX4 (VTE_EN 1)" : "PX4 (VTE_EN 0)",
+            ThoughtOf(scene, profile == LinkProfile::kPx4Vte ? "PX4 (VTE_EN 1)" : "PX4 (VTE_EN 0)",
                       understanding.px4_in_ned, understanding.px4_text);
   }
   return text;

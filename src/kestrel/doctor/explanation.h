@@ -12,10 +12,10 @@ namespace kestrel {
 
 // A UAV and a pattern of which it is known where they are.
 struct ExplainedScene {
-  Eigen::Vector3d uav_in_ned{10, 20, -30};       // m, in the autopilot's local frame
-  double heading_deg = 60;                       // of the nose, clockwise from north
-  Eigen::Vector3d pattern_in_body{2, 1, 5};      // m ahead, right, below
-  double size_m = 1;                             // of the pattern
+  Eigen::Vector3d uav_in_ned{10, 20, -30};   // m, in the autopilot's local frame
+  double heading_deg = 60;                   // of the nose, clockwise from north
+  Eigen::Vector3d pattern_in_body{2, 1, 5};  // m ahead, right, below
+  double size_m = 1;                         // of the pattern
 };
 
 // Where the autopilots will think that the pattern is, by their rules (sitl/), after some seconds

@@ -18,16 +18,16 @@ namespace kestrel {
 namespace {
 
 constexpr std::array<std::string_view, 18> kOfArduPilot = {
-    "PLND_ENABLED", "PLND_TYPE",     "PLND_EST_TYPE", "PLND_OPTIONS",  "PLND_LAG",
-    "PLND_STRICT",  "PLND_RET_MAX",  "PLND_ORIENT",   "PLND_YAW_ALIGN", "PLND_XY_DIST_MAX",
-    "RNGFND1_TYPE", "EK3_SRC1_POSZ", "EK3_SRC1_VELXY", "WP_SPD",        "ATC_ANGLE_MAX",
+    "PLND_ENABLED", "PLND_TYPE",     "PLND_EST_TYPE",  "PLND_OPTIONS",   "PLND_LAG",
+    "PLND_STRICT",  "PLND_RET_MAX",  "PLND_ORIENT",    "PLND_YAW_ALIGN", "PLND_XY_DIST_MAX",
+    "RNGFND1_TYPE", "EK3_SRC1_POSZ", "EK3_SRC1_VELXY", "WP_SPD",         "ATC_ANGLE_MAX",
     "GUID_TIMEOUT", "MAV_GCS_SYSID", "MAV_OPTIONS"};
 
 constexpr std::array<std::string_view, 18> kOfPx4 = {
-    "VTE_EN",           "VTE_AID_MASK",     "LTEST_MODE",     "PLD_HACC_RAD",    "EKF2_HGT_REF",
-    "EKF2_RNG_CTRL",    "EKF2_OF_CTRL",     "COM_DISARM_LAND", "MPC_LAND_SPEED", "MPC_Z_VEL_MAX_DN",
-    "MPC_XY_VEL_MAX",   "MPC_TILTMAX_AIR",  "COM_OF_LOSS_T",  "COM_OBL_RC_ACT",  "NAV_RCL_ACT",
-    "COM_RC_OVERRIDE",  "MAN_OVERRIDE_SPD", "LNDMC_XY_VEL_MAX"};
+    "VTE_EN",          "VTE_AID_MASK",     "LTEST_MODE",      "PLD_HACC_RAD",   "EKF2_HGT_REF",
+    "EKF2_RNG_CTRL",   "EKF2_OF_CTRL",     "COM_DISARM_LAND", "MPC_LAND_SPEED", "MPC_Z_VEL_MAX_DN",
+    "MPC_XY_VEL_MAX",  "MPC_TILTMAX_AIR",  "COM_OF_LOSS_T",   "COM_OBL_RC_ACT", "NAV_RCL_ACT",
+    "COM_RC_OVERRIDE", "MAN_OVERRIDE_SPD", "LNDMC_XY_VEL_MAX"};
 
 // Of a vehicle of which nothing is told, the paper's: 15 km/h.
 constexpr double kUsualSpeed_mps = 4.2;
@@ -66,9 +66,9 @@ class ParameterRules {
     if (!is_good(told.value)) {
       finding.verdict = otherwise;
       finding.measured += fmt::format(": {}", wanted.why);
-      finding.advice = fmt::format("param set {} {:g}{}; or kestrel doctor --fix", told.own_name,
-                                   wanted.value / told.scale,
-                                   wanted.needs_reboot ? ", then reboot" : "");
+      finding.advice =
+          fmt::format("param set {} {:g}{}; or kestrel doctor --fix", told.own_name,
+                      wanted.value / told.scale, wanted.needs_reboot ? ", then reboot" : "");
       finding.fix = ParameterFix{std::string(name), wanted.value, wanted.needs_reboot};
     }
     findings_.push_back(std::move(finding));
@@ -104,13 +104,14 @@ void CheckPrecisionLandingOfArduPilot(ParameterRules* rules) {
   if (rules->Find("PLND_ENABLED").value_or(0) == 0 && !rules->Find("PLND_TYPE")) {
     // ArduPilot hides the others until then.
     rules->WantExactly("PLND_ENABLED", Verdict::kWrong,
-                       {1, "precision landing is off, and its parameters hidden until it is on "
-                           "and the autopilot restarted", true});
+                       {1,
+                        "precision landing is off, and its parameters hidden until it is on "
+                        "and the autopilot restarted",
+                        true});
     return;
   }
   rules->WantExactly("PLND_ENABLED", Verdict::kWrong, {1, "targets are ignored", true});
-  rules->WantExactly("PLND_TYPE", Verdict::kWrong,
-                     {1, "targets by MAVLink are ignored", true});
+  rules->WantExactly("PLND_TYPE", Verdict::kWrong, {1, "targets by MAVLink are ignored", true});
   constexpr double kDown = 25;
   rules->WantExactly("PLND_ORIENT", Verdict::kWrong,
                      {kDown, "targets are taken for ones in another direction", true});
@@ -152,11 +153,9 @@ void CheckEstimatorOfArduPilot(ParameterRules* rules) {
   constexpr double kRangeFinder = 2;
   constexpr double kOpticalFlow = 5;
   const Verdict otherwise = rules->moves() ? Verdict::kWrong : Verdict::kDoubtful;
-  rules->Want("EK3_SRC1_POSZ", otherwise,
-              {1, "height by range finder jumps over the deck", true},
+  rules->Want("EK3_SRC1_POSZ", otherwise, {1, "height by range finder jumps over the deck", true},
               [](double source) { return source != kRangeFinder; });
-  rules->Want("EK3_SRC1_VELXY", otherwise,
-              {3, "speed by optical flow is the deck's", true},
+  rules->Want("EK3_SRC1_VELXY", otherwise, {3, "speed by optical flow is the deck's", true},
               [](double source) { return source != kOpticalFlow; });
 }
 
@@ -166,8 +165,9 @@ void CheckTrustOfArduPilot(ParameterRules* rules) {
   if (!ground_station || !is_enforced) return;
   const int own = rules->all().link.own_system;
   rules->WantExactly("MAV_GCS_SYSID", Verdict::kWrong,
-                     {static_cast<double>(own), "only this system is listened to (MAV_OPTIONS bit "
-                                                "0), and Kestrel is another"});
+                     {static_cast<double>(own),
+                      "only this system is listened to (MAV_OPTIONS bit "
+                      "0), and Kestrel is another"});
 }
 
 void CheckGuidanceOfArduPilot(ParameterRules* rules) {
@@ -210,8 +210,9 @@ void CheckTargetsOfPx4(ParameterRules* rules) {
   }
   if (rules->moves()) {
     rules->WantExactly("LTEST_MODE", Verdict::kWrong,
-                       {0, "a target that moves is taken for one that stands, and its speed for "
-                           "the UAV's"});
+                       {0,
+                        "a target that moves is taken for one that stands, and its speed for "
+                        "the UAV's"});
   }
   if (rules->moves() && !rules->all().use.guides) {
     rules->Add(Wrong("moving target",
@@ -225,10 +226,11 @@ void CheckLandingOfPx4(ParameterRules* rules) {
   constexpr double kUsualLanding_mps = 0.7;
   const double landing_mps = rules->Find("MPC_LAND_SPEED").value_or(kUsualLanding_mps);
   rules->WantAtLeast("MPC_Z_VEL_MAX_DN", Verdict::kWrong, landing_mps,
-                     {std::max(landing_mps, 1.5), "slower than MPC_LAND_SPEED: contact is never "
-                                                  "detected"});
-  rules->Want("COM_DISARM_LAND", Verdict::kDoubtful,
-              {2, "the motors run on after the landing"}, [](double s) { return s > 0; });
+                     {std::max(landing_mps, 1.5),
+                      "slower than MPC_LAND_SPEED: contact is never "
+                      "detected"});
+  rules->Want("COM_DISARM_LAND", Verdict::kDoubtful, {2, "the motors run on after the landing"},
+              [](double s) { return s > 0; });
 }
 
 void CheckEstimatorOfPx4(ParameterRules* rules) {
@@ -242,7 +244,8 @@ void CheckEstimatorOfPx4(ParameterRules* rules) {
   rules->Want("EKF2_RNG_CTRL", Verdict::kDoubtful,
               {1, "the range finder corrects the height over the deck too"},
               [](double control) { return control < kAlways; });
-  rules->WantExactly("EKF2_OF_CTRL", Verdict::kDoubtful, {0, "speed by optical flow is the deck's"});
+  rules->WantExactly("EKF2_OF_CTRL", Verdict::kDoubtful,
+                     {0, "speed by optical flow is the deck's"});
 }
 
 void CheckLossOfPx4(ParameterRules* rules) {
@@ -288,11 +291,13 @@ void CheckGuidanceOfPx4(ParameterRules* rules) {
   CheckPilotOfPx4(rules);
   const double landing_mps = std::max(1.5, std::ceil(kLandingMargin * rules->target_mps()));
   rules->WantAtLeast("LNDMC_XY_VEL_MAX", Verdict::kWrong, rules->target_mps(),
-                     {landing_mps, "on a deck that is faster it never notices that it has landed, "
-                                   "and does not disarm"});
+                     {landing_mps,
+                      "on a deck that is faster it never notices that it has landed, "
+                      "and does not disarm"});
   rules->WantAtLeast("MPC_XY_VEL_MAX", Verdict::kWrong, rules->target_mps() + 1,
-                     {std::ceil(rules->wanted_mps()), "slower than the target and a margin: it "
-                                                      "falls behind"});
+                     {std::ceil(rules->wanted_mps()),
+                      "slower than the target and a margin: it "
+                      "falls behind"});
   rules->WantAtLeast("MPC_TILTMAX_AIR", Verdict::kDoubtful, kLeastTilt_deg,
                      {kTilt_deg, "too little tilt to follow in wind"});
 }
@@ -360,12 +365,12 @@ Finding CheckLatency(const DoctorObservations& observations) {
     if (difference_s > kGood_s) {
       const double wanted_s =
           std::clamp(std::round(kRound * latency_s) / kRound, kShortestLag_s, kLongestLag_s);
-      Finding finding{check, difference_s > kWrong_s ? Verdict::kWrong : Verdict::kDoubtful,
-                      fmt::format("{}; PLND_LAG {:g} s: Kestrel predicts over the difference, and "
-                                  "ArduPilot circles where the prediction is wrong",
-                                  measured, lag->second.value),
-                      fmt::format("param set PLND_LAG {:g}, then reboot; or kestrel doctor --fix",
-                                  wanted_s)};
+      Finding finding{
+          check, difference_s > kWrong_s ? Verdict::kWrong : Verdict::kDoubtful,
+          fmt::format("{}; PLND_LAG {:g} s: Kestrel predicts over the difference, and "
+                      "ArduPilot circles where the prediction is wrong",
+                      measured, lag->second.value),
+          fmt::format("param set PLND_LAG {:g}, then reboot; or kestrel doctor --fix", wanted_s)};
       finding.fix = ParameterFix{"PLND_LAG", wanted_s, true};
       return finding;
     }
