@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <functional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -325,6 +326,9 @@ std::vector<Fault> ComputerFaults() {
   };
 }
 
+// For the names of failed tests.
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+
 class DoctorFaultTest : public ::testing::TestWithParam<Fault> {};
 
 TEST_P(DoctorFaultTest, IsNamed) {
@@ -374,8 +378,4 @@ TEST(DoctorTest, NothingAtAllIsFoundWrongAndNotFatal) {
 }
 
 }  // namespace
-
-// For the names of failed tests.
-void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
-
 }  // namespace kestrel
