@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/cli/doctor_command.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -12,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -124,8 +123,7 @@ class DoctorVisit {
     link.is_asked = true;
     link.is_signed = !options_.fly.link.signing_key.empty();
     try {
-      FlyAutopilot opened =
-          MakeFlyAutopilot(arguments_.flight.autopilot, options_.fly, &source_);
+      FlyAutopilot opened = MakeFlyAutopilot(arguments_.flight.autopilot, options_.fly, &source_);
       const LinkUrl url = ParseLinkUrl(opened.url);
       link.scheme = url.scheme;
       link.baud = url.number;
@@ -229,7 +227,8 @@ void AddDoctorCommand(CLI::App* app) {
   const auto arguments = std::make_shared<DoctorArguments>();
   arguments->flight.AddTo(command);
   command->get_option("SOURCE")->required(false);  // --explain needs none
-  command->add_flag("--guide", arguments->guide, "Check for guidance by set-points, as fly --guide");
+  command->add_flag("--guide", arguments->guide,
+                    "Check for guidance by set-points, as fly --guide");
   command
       ->add_flag("--moving{4.2}", arguments->moving_mps,
                  "Check for a target that moves, with 4.2 m/s or --moving=SPEED")
@@ -237,10 +236,10 @@ void AddDoctorCommand(CLI::App* app) {
   command->add_option("--duration", arguments->duration_s, "How long to look (8 s)")
       ->type_name("S")
       ->check(InRange(0.999, 600.001, "1 to 600 seconds"));
-  CLI::Option* explain =
-      command->add_flag("--explain", arguments->explain,
-                        "Only print what is sent for a pattern 2 m ahead, 1 m right, 5 m below, and "
-                        "where the autopilots will think it is");
+  CLI::Option* explain = command->add_flag(
+      "--explain", arguments->explain,
+      "Only print what is sent for a pattern 2 m ahead, 1 m right, 5 m below, and "
+      "where the autopilots will think it is");
   command->add_flag("--json", arguments->json, "The findings as JSON")->excludes(explain);
   command
       ->add_flag("--fix", arguments->fix,

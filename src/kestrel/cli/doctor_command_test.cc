@@ -33,8 +33,8 @@ class DoctorCommandTest : public CommandTest {
   // this computer is are left out.
   static std::vector<std::string> Checks(const Outcome& outcome, const std::string& verdict) {
     static const std::set<std::string> kOfTime = {
-        "frame rate", "steadiness", "missed images", "detection time",    "load",
-        "heat, power", "latency",   "attitude",      "autopilot's clock", "round trip"};
+        "frame rate",  "steadiness", "missed images", "detection time",    "load",
+        "heat, power", "latency",    "attitude",      "autopilot's clock", "round trip"};
     std::vector<std::string> checks;
     for (const auto& finding : nlohmann::json::parse(outcome.out)["findings"]) {
       const std::string check = finding["check"];
@@ -85,21 +85,19 @@ TEST_F(DoctorCommandTest, ACalibrationOfAnotherSizeOrLensIsNamed) {
                                      "distortion_coefficients: [0, 0, 0, 0]\n",
                                      focal, (width - 1) / 2.0, (height - 1) / 2.0, width, height));
   };
-  const Outcome swapped =
-      Look("--json --autopilot sim:ardupilot --camera " + camera(192, 301, 90));
+  const Outcome swapped = Look("--json --autopilot sim:ardupilot --camera " + camera(192, 301, 90));
   EXPECT_EQ(swapped.status, 1);
   EXPECT_THAT(Checks(swapped, "wrong"), Contains("image size")) << swapped.out;
   EXPECT_THAT(swapped.out, HasSubstr("swapped"));
-  const Outcome other =
-      Look("--json --autopilot sim:ardupilot --camera " + camera(301, 192, 200));
+  const Outcome other = Look("--json --autopilot sim:ardupilot --camera " + camera(301, 192, 200));
   EXPECT_EQ(other.status, 1);
   EXPECT_THAT(Checks(other, "wrong"), Contains("calibration by the pattern")) << other.out;
 }
 
 TEST_F(DoctorCommandTest, WhatCannotBeOpenedIsNamed) {
-  const Outcome outcome = Run(
-      "doctor /dev/no_such_camera --camera " + folder_.Write("camera.yaml", "") +
-      " --autopilot serial:///dev/no_such_line:57600 --duration 1");
+  const Outcome outcome =
+      Run("doctor /dev/no_such_camera --camera " + folder_.Write("camera.yaml", "") +
+          " --autopilot serial:///dev/no_such_line:57600 --duration 1");
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("images"), HasSubstr("/dev/no_such_line")));
   EXPECT_THAT(Run("doctor sim:standing --duration 1 --autopilot udpin://127.0.0.1:0").out,

@@ -30,8 +30,8 @@ inline RigidTransform DownwardMount() {
 // A UAV that is held above the origin and tilted about.
 inline RigidTransform HeldPose(double time_s, double tilt_deg) {
   const Eigen::Quaterniond level(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()));
-  const Eigen::Vector3d tilt = Radians(tilt_deg) * Eigen::Vector3d(std::sin(2 * time_s),
-                                                                  std::cos(1.3 * time_s), 0);
+  const Eigen::Vector3d tilt =
+      Radians(tilt_deg) * Eigen::Vector3d(std::sin(2 * time_s), std::cos(1.3 * time_s), 0);
   return {level * RotationBy(tilt), {0.3, -0.2, 2.5}};
 }
 
@@ -83,7 +83,8 @@ inline LinkObservations GoodLink(AutopilotKind kind) {
   link.counters.sent = 200;
   link.is_heard = true;
   link.kind = kind;
-  link.version = kind == AutopilotKind::kPx4 ? AutopilotVersion{1, 18, 0} : AutopilotVersion{4, 7, 0};
+  link.version =
+      kind == AutopilotKind::kPx4 ? AutopilotVersion{1, 18, 0} : AutopilotVersion{4, 7, 0};
   link.vehicle_type = mavlink::kTypeQuadrotor;
   link.mode = "LOITER";
   link.heartbeats = 8;
