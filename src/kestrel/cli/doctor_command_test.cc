@@ -20,10 +20,10 @@ class DoctorCommandTest : public CommandTest {
  protected:
   // A UAV in the air beside the pattern, quickly rendered, that nobody lands.
   static constexpr const char* kHover =
-      " --duration 6 --set fly.sim_autopilot.pilot.start_altitude_m=4"
-      " --set fly.sim_autopilot.pilot.land_after_s=-1 --set fly.sim_camera.scale=0.4"
-      " --set fly.sim_autopilot.pilot.offset_east_m=0.5"
-      " --set fly.sim_autopilot.pilot.offset_north_m=-0.5";
+      " --duration 5 --set fly.sim_autopilot.pilot.start_altitude_m=2.5"
+      " --set fly.sim_autopilot.pilot.land_after_s=-1"
+      " --set fly.sim_autopilot.pilot.offset_east_m=0.3"
+      " --set fly.sim_autopilot.pilot.offset_north_m=-0.3";
 
   Outcome Look(const std::string& arguments, const std::string& input = "") const {
     return Run("doctor sim:standing" + std::string(kHover) + " " + arguments, input);
@@ -85,11 +85,11 @@ TEST_F(DoctorCommandTest, ACalibrationOfAnotherSizeOrLensIsNamed) {
                                      "distortion_coefficients: [0, 0, 0, 0]\n",
                                      focal, (width - 1) / 2.0, (height - 1) / 2.0, width, height));
   };
-  const Outcome swapped = Look("--json --autopilot sim:ardupilot --camera " + camera(192, 301, 90));
+  const Outcome swapped = Look("--json --autopilot sim:ardupilot --camera " + camera(240, 376, 90));
   EXPECT_EQ(swapped.status, 1);
   EXPECT_THAT(Checks(swapped, "wrong"), Contains("image size")) << swapped.out;
   EXPECT_THAT(swapped.out, HasSubstr("swapped"));
-  const Outcome other = Look("--json --autopilot sim:ardupilot --camera " + camera(301, 192, 200));
+  const Outcome other = Look("--json --autopilot sim:ardupilot --camera " + camera(376, 240, 200));
   EXPECT_EQ(other.status, 1);
   EXPECT_THAT(Checks(other, "wrong"), Contains("calibration by the pattern")) << other.out;
 }

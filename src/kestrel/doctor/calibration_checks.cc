@@ -125,21 +125,22 @@ Finding CheckCalibrationByPattern(const VisionObservations& vision) {
   constexpr double kMost_px = 1.5;
   constexpr double kMostContradict = 0.5;
   const std::string check = "calibration by the pattern";
-  if (vision.patterns.size() < kFewest) {
-    return NotChecked(
-        check,
-        fmt::format("pattern in view in {} of {} images", vision.patterns.size(), vision.frames),
-        "hold the camera 2 to 5 m above the pattern");
-  }
   std::vector<double> misfits;
   std::size_t contradict = 0;
   for (const PatternSample& pattern : vision.patterns) {
-    misfits.push_back(pattern.misfit_px);
+    if (pattern.misfit_px > 0) misfits.push_back(pattern.misfit_px);
     if (pattern.contradicts) ++contradict;
   }
+  if (misfits.size() < kFewest) {
+    return NotChecked(check,
+                      fmt::format("pattern in view in {} of {} images, with edges to "
+                                  "measure in {}",
+                                  vision.patterns.size(), vision.frames, misfits.size()),
+                      "hold the camera 1 to 4 m above the pattern");
+  }
+  std::string measured = fmt::format("in {} images misfit ", misfits.size());
   const double misfit_px = MedianOf(std::move(misfits));
-  std::string measured =
-      fmt::format("misfit {:.2f} px in {} images", misfit_px, vision.patterns.size());
+  measured += fmt::format("{:.2f} px", misfit_px);
   if (vision.focal) {
     measured += fmt::format(", focal length {:.3f} +- {:.3f} of the file's", vision.focal->factor,
                             vision.focal->sigma);

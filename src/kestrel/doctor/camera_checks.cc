@@ -215,8 +215,8 @@ Finding CheckExposure(const CameraObservations& camera) {
 }
 
 Finding CheckFocus(const CameraObservations& camera) {
-  constexpr double kSoft_px = 4;
-  constexpr double kBlurred_px = 6;
+  constexpr double kSoft_px = 3.5;
+  constexpr double kBlurred_px = 5;
   const std::string check = "focus";
   std::vector<double> edges;
   for (const ImageQuality& quality : camera.qualities) {

@@ -94,13 +94,11 @@ Finding CheckDetectionTime(const DoctorObservations& observations) {
 }
 
 Finding CheckLoad(const ComputerObservations& computer) {
-  constexpr double kBusy = 0.9;  // of the cores
-  constexpr double kTooBusy = 2;
+  constexpr double kBusy = 1.5;  // of the cores
   const std::string check = "load";
   const std::string measured =
       fmt::format("{:.1f} processes on {} cores", computer.load, computer.cores);
   const std::string advice = "stop what is not needed in flight: desktop, updates, logging (top)";
-  if (computer.load > kTooBusy * computer.cores) return Wrong(check, measured, advice);
   if (computer.load > kBusy * computer.cores) return Doubtful(check, measured, advice);
   return Good(check, measured);
 }

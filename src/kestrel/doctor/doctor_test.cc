@@ -186,13 +186,14 @@ std::vector<Fault> MountFaults() {
        },
        "mount", Verdict::kWrong, "180 deg from straight down"},
       {"mount turned by 90 degrees", Setup::kArduPilot, TurnedCamera(kAxis, 90),
-       "mount against motion", Verdict::kWrong, "90 deg clockwise about its optical axis"},
+       "mount against motion", Verdict::kWrong,
+       "90 deg clockwise (seen from behind) about its optical axis"},
       {"mount turned the other way", Setup::kPx4, TurnedCamera(kAxis, -90), "mount against motion",
        Verdict::kWrong, "counterclockwise"},
       {"camera upside down", Setup::kArduPilot, TurnedCamera(kAxis, 180), "mount against motion",
        Verdict::kWrong, "upside down"},
       {"camera tilted by 45 degrees", Setup::kPx4, TurnedCamera(Eigen::Vector3d::UnitX(), 45),
-       "mount against gravity", Verdict::kWrong, "45"},
+       "mount against gravity", Verdict::kWrong, "from level"},
   };
 }
 
@@ -317,7 +318,7 @@ std::vector<Fault> ComputerFaults() {
       {"too slow a computer", Setup::kPx4,
        [](DoctorObservations* all) { all->vision.detect_s = all->vision.detect_p90_s = 0.08; },
        "detection time", Verdict::kWrong, "smaller images"},
-      {"a busy computer", Setup::kPx4, [](DoctorObservations* all) { all->computer.load = 6; },
+      {"a busy computer", Setup::kPx4, [](DoctorObservations* all) { all->computer.load = 8; },
        "load", Verdict::kDoubtful, "top"},
       {"throttled", Setup::kPx4, [](DoctorObservations* all) { all->computer.throttled = 0x5; },
        "heat, power", Verdict::kWrong, "5 V"},

@@ -17,6 +17,9 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 constexpr std::size_t kFewestPatterns = 10;
+// How far from level the pattern may lie, rad, by a mount that is turned by quarters and taken into
+// account: when the UAV tilts, more than by the right one.
+constexpr double kLevel = 0.6;
 constexpr char kShakeAdvice[] =
     "hold the UAV 1 to 3 m above the pattern and tilt it by 20 deg forward, back and to the sides "
     "while doctor runs, or fly over it";
@@ -113,6 +116,13 @@ std::string MatrixText(const Quaterniond& rotation) {
   return text;
 }
 
+Finding TooFewPatterns(const std::string& check, std::size_t patterns, double least_px) {
+  return NotChecked(check,
+                    fmt::format("pattern of {:.0f} px or more, with an attitude, in {} images",
+                                least_px, patterns),
+                    kShakeAdvice);
+}
+
 // How another mount would do.
 struct OtherMount {
   Quaterniond turn;
@@ -122,7 +132,6 @@ struct OtherMount {
 // Of those turned mounts by which the pattern lies level, the one that keeps it in place best.
 std::optional<OtherMount> BestTurned(const std::vector<const PatternSample*>& patterns,
                                      const RigidTransform& body_from_camera, bool target_moves) {
-  constexpr double kLevel = 0.35;  // rad
   std::optional<OtherMount> best;
   const std::vector<Quaterniond> turns = QuarterTurns();
   for (std::size_t i = 1; i < turns.size(); ++i) {
@@ -173,11 +182,7 @@ Finding CheckMountByGravity(const std::optional<RigidTransform>& body_from_camer
   const std::string check = "mount against gravity";
   if (!body_from_camera) return NotChecked(check, "no mount");
   const auto patterns = PosedPatterns(vision, kLeast_px);
-  if (patterns.size() < kFewestPatterns) {
-    return NotChecked(check,
-                      fmt::format("pattern and attitude together in {} images", patterns.size()),
-                      kShakeAdvice);
-  }
+  if (patterns.size() < kFewestPatterns) return TooFewPatterns(check, patterns.size(), kLeast_px);
   const double tilt = Degrees(MedianTilt(patterns, body_from_camera->rotation));
   const std::string measured =
       fmt::format("by mount and attitude the pattern lies {:.1f} deg from level", tilt);
@@ -198,14 +203,14 @@ Finding CheckMountByMotion(const std::optional<RigidTransform>& body_from_camera
   const std::string check = "mount against motion";
   if (!body_from_camera) return NotChecked(check, "no mount");
   const auto patterns = PosedPatterns(vision, kLeast_px);
-  if (patterns.size() < kFewestPatterns) {
-    return NotChecked(check,
-                      fmt::format("pattern and attitude together in {} images", patterns.size()),
-                      kShakeAdvice);
-  }
+  if (patterns.size() < kFewestPatterns) return TooFewPatterns(check, patterns.size(), kLeast_px);
   const double wandering_m = Wandering(patterns, *body_from_camera, target_moves);
   const auto other = BestTurned(patterns, *body_from_camera, target_moves);
-  if (!other) return NotChecked(check, "the pattern does not lie level by any mount", kShakeAdvice);
+  if (!other) {
+    return MedianTilt(patterns, body_from_camera->rotation) < kLevel
+               ? Good(check, "by no mount turned by quarters the pattern lies level")
+               : NotChecked(check, "the pattern does not lie level by any mount", kShakeAdvice);
+  }
   const std::string measured =
       fmt::format("the pattern wanders by {:.0f} cm by this mount, by {:.0f} cm by the next best",
                   kCentimetres * wandering_m, kCentimetres * other->wandering_m);
