@@ -5,7 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kestrel/camera/paper_camera.h"
 #include "kestrel/cli/test_command.h"
+#include "kestrel/geometry/angles.h"
+#include "kestrel/recording/euroc_text.h"
 
 namespace kestrel {
 namespace {
@@ -36,7 +39,8 @@ class DoctorCommandTest : public CommandTest {
         "frame rate",  "steadiness", "missed images", "detection time",    "load",
         "heat, power", "latency",    "attitude",      "autopilot's clock", "round trip"};
     std::vector<std::string> checks;
-    for (const auto& finding : nlohmann::json::parse(outcome.out)["findings"]) {
+    const nlohmann::json json = nlohmann::json::parse(outcome.out);
+    for (const auto& finding : json["findings"]) {
       const std::string check = finding["check"];
       if (finding["verdict"] == verdict && !kOfTime.contains(check)) checks.push_back(check);
     }
@@ -52,7 +56,7 @@ TEST_F(DoctorCommandTest, AGoodSetupIsGood) {
     EXPECT_THAT(Checks(outcome, "good"),
                 AllOf(Contains("image size"), Contains("focus"), Contains("exposure"),
                       Contains("calibration by the pattern"), Contains("mount against gravity"),
-                      Contains("heartbeat"), Contains("position estimate")))
+                      Contains("mount against motion"), Contains("heartbeat")))
         << outcome.out;
   }
 }
@@ -92,6 +96,27 @@ TEST_F(DoctorCommandTest, ACalibrationOfAnotherSizeOrLensIsNamed) {
   const Outcome other = Look("--json --autopilot sim:ardupilot --camera " + camera(376, 240, 200));
   EXPECT_EQ(other.status, 1);
   EXPECT_THAT(Checks(other, "wrong"), Contains("calibration by the pattern")) << other.out;
+}
+
+TEST_F(DoctorCommandTest, AMountThatIsTurnedIsNamed) {
+  CameraCalibration calibration;
+  // The simulated one's, half of the paper's.
+  calibration.intrinsics = PaperCamera();
+  calibration.intrinsics.width_px = 376;
+  calibration.intrinsics.height_px = 240;
+  calibration.intrinsics.fx_px = calibration.intrinsics.fy_px = 130.5;
+  calibration.intrinsics.cx_px = 187.75;
+  calibration.intrinsics.cy_px = 119.75;
+  // Its image's up is where the UAV's is ahead; said is: to the right.
+  calibration.body_from_camera.emplace();
+  calibration.body_from_camera->rotation = Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX());
+  const std::string camera =
+      folder_.Write("turned.yaml", EurocCameraText(calibration, /*rate_hz=*/20));
+  const Outcome outcome = Look("--json --autopilot sim:ardupilot --camera " + camera +
+                               " --set fly.sim_autopilot.uav.wind.min_mps=5"
+                               " --set fly.sim_autopilot.uav.wind.max_mps=7");
+  EXPECT_THAT(Checks(outcome, "wrong"), Contains("mount against motion")) << outcome.out;
+  EXPECT_THAT(outcome.out, HasSubstr("turned by 90 deg"));
 }
 
 TEST_F(DoctorCommandTest, WhatCannotBeOpenedIsNamed) {

@@ -123,6 +123,8 @@ Finding CheckCalibrationByPattern(const VisionObservations& vision) {
   constexpr std::size_t kFewest = 5;
   constexpr double kGood_px = 0.6;
   constexpr double kMost_px = 1.5;
+  constexpr double kFocalDoubtful = 0.09;
+  constexpr double kFocalWrong = 0.13;
   constexpr double kMostContradict = 0.5;
   const std::string check = "calibration by the pattern";
   std::vector<double> misfits;
@@ -145,7 +147,10 @@ Finding CheckCalibrationByPattern(const VisionObservations& vision) {
     measured += fmt::format(", focal length {:.3f} +- {:.3f} of the file's", vision.focal->factor,
                             vision.focal->sigma);
   }
-  if (vision.focal_contradiction) {
+  // Images of one place share their errors, which the standard deviation does not know of.
+  const double focal_off =
+      vision.focal_contradiction ? std::abs(std::log(vision.focal_contradiction->factor)) : 0;
+  if (focal_off > kFocalWrong) {
     return Wrong(
         check, measured,
         std::string("it is the calibration of another lens, zoom or size: ") + kCalibrateAdvice);
@@ -159,7 +164,9 @@ Finding CheckCalibrationByPattern(const VisionObservations& vision) {
                              "pattern: ") +
                      kCalibrateAdvice);
   }
-  if (misfit_px > kGood_px) return Doubtful(check, measured, kCalibrateAdvice);
+  if (misfit_px > kGood_px || focal_off > kFocalDoubtful) {
+    return Doubtful(check, measured, kCalibrateAdvice);
+  }
   return Good(check, measured);
 }
 
