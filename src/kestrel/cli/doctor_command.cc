@@ -18,6 +18,7 @@
 #include <fmt/ranges.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/camera/calibration_reader.h"
 #include "kestrel/cli/fly_arguments.h"
 #include "kestrel/cli/fly_autopilot.h"
 #include "kestrel/cli/fly_source.h"
@@ -112,6 +113,7 @@ class DoctorVisit {
     } catch (const ImageSizeError& error) {
       camera.open_error = error.what();
       camera.has_other_size = true;
+      source_.calibration = ReadCalibration(arguments_.flight.source.camera);
     } catch (const InputError& error) {
       camera.open_error = error.what();
     }

@@ -41,8 +41,9 @@ Examination::Examination(const LandingPipelineOptions& options, const LiveEvents
                          const ExaminationParts& parts)
     : parts_(parts),
       events_(events, ClockOffsetOf(parts.calibration)),
-      pipeline_(WithoutMount(parts.calibration), options),
-      poses_(kRememberedPoses, kLargestGap) {}
+      poses_(kRememberedPoses, kLargestGap) {
+  if (parts.source != nullptr) pipeline_.emplace(WithoutMount(parts.calibration), options);
+}
 
 void Examination::Run(Duration duration, const std::function<bool()>& is_stopped,
                       DoctorObservations* observations) {
@@ -100,7 +101,7 @@ void Examination::See() {
 
 void Examination::Look(const Frame& frame) {
   constexpr Duration kFurthestPose = std::chrono::milliseconds(100);
-  const LandingObservation seen = pipeline_.Process(frame.image, frame.time);
+  const LandingObservation seen = pipeline_->Process(frame.image, frame.time);
   detect_s_.push_back(ToSeconds(seen.detect_time));
   const Time taken = frame.time + ClockOffsetOf(parts_.calibration);
   latency_s_.push_back(ToSeconds(Now() - taken));
@@ -200,8 +201,8 @@ void Examination::SummarizeVision(VisionObservations* vision) const {
   vision->frames = static_cast<int>(detect_s_.size());
   vision->dropped_frames = static_cast<int>(events_.counters().dropped_frames);
   vision->patterns = patterns_;
-  vision->focal = pipeline_.calibration_monitor().Focal();
-  vision->focal_contradiction = pipeline_.calibration_monitor().Contradiction();
+  vision->focal = pipeline_->calibration_monitor().Focal();
+  vision->focal_contradiction = pipeline_->calibration_monitor().Contradiction();
   if (detect_s_.empty()) return;
   vision->detect_s = MedianOf(detect_s_);
   vision->detect_p90_s = QuantileOf(detect_s_, kMostOf);

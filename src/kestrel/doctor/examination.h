@@ -60,8 +60,9 @@ class Examination {
 
   ExaminationParts parts_;
   LiveEvents events_;
-  LandingPipeline pipeline_;  // without mount: what it finds owes nothing to the attitude
-  PoseHistory poses_;         // the vision thread's
+  // Where there is a source. Without mount: what it finds owes nothing to the attitude.
+  std::optional<LandingPipeline> pipeline_;
+  PoseHistory poses_;  // the vision thread's
   std::atomic<bool> is_over_{false};
 
   // Of the capture thread.
