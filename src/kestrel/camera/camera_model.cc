@@ -325,8 +325,10 @@ std::vector<std::string> CameraIntrinsics::Validate() const {
 void CheckImageSize(const CameraIntrinsics& camera, int width_px, int height_px,
                     const std::string& image) {
   if (width_px == camera.width_px && height_px == camera.height_px) return;
-  throw InputError(fmt::format("{}: the image is {}x{} px, expected {}x{} px as in the calibration",
-                               image, width_px, height_px, camera.width_px, camera.height_px));
+  const bool is_swapped = width_px == camera.height_px && height_px == camera.width_px;
+  throw ImageSizeError(fmt::format(
+      "{}: the image is {}x{} px, expected {}x{} px as in the calibration{}", image, width_px,
+      height_px, camera.width_px, camera.height_px, is_swapped ? " (swapped)" : ""));
 }
 
 CameraModel::CameraModel(const CameraIntrinsics& intrinsics) : intrinsics_(intrinsics) {

@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+#include "kestrel/base/error.h"
+
 namespace kestrel {
 
 enum class ProjectionStatus {
@@ -37,8 +39,14 @@ struct CameraIntrinsics {
   std::vector<std::string> Validate() const;
 };
 
-// Throws InputError when an image of another size than the calibration's is given; 'image' is its
-// name in the message.
+// An image has another size than the calibration's.
+class ImageSizeError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+// Throws ImageSizeError when an image of another size than the calibration's is given; 'image' is
+// its name in the message.
 void CheckImageSize(const CameraIntrinsics& camera, int width_px, int height_px,
                     const std::string& image);
 

@@ -55,7 +55,21 @@ std::vector<std::string> Split(std::string_view text) {
   }
 }
 
-FlySource OpenSimulated(std::string_view scenario, const FlyOptions& options) {
+// The simulated camera's own, or what --camera says of it instead; a file without a mount takes the
+// camera's.
+CameraCalibration SimulatedCalibration(const SourceArguments& arguments,
+                                       const CameraCalibration& own) {
+  if (arguments.camera.empty()) return own;
+  CameraCalibration calibration = ReadCalibration(arguments.camera);
+  CheckImageSize(calibration.intrinsics, own.intrinsics.width_px, own.intrinsics.height_px,
+                 arguments.sources.front());
+  if (!calibration.body_from_camera) calibration.body_from_camera = own.body_from_camera;
+  return calibration;
+}
+
+FlySource OpenSimulated(const SourceArguments& arguments, const FlyOptions& options) {
+  const std::string_view scenario =
+      std::string_view(arguments.sources.front()).substr(kSimulated.size());
   std::vector<std::string> settings = Split(scenario);
   const std::string name = settings.front();
   settings.erase(settings.begin());
@@ -66,7 +80,7 @@ FlySource OpenSimulated(std::string_view scenario, const FlyOptions& options) {
   auto source =
       std::make_unique<SimulatedSource>(options.sim_camera, opened.world.get(), start, seed);
   opened.simulated = &source->camera();
-  opened.calibration = source->camera().calibration();
+  opened.calibration = SimulatedCalibration(arguments, source->camera().calibration());
   opened.rate_hz = options.sim_camera.rate_hz;
   opened.source = std::move(source);
   return opened;
@@ -109,9 +123,7 @@ FlySource OpenReplay(const SourceArguments& arguments, PixelFormat format, bool 
 FlySource OpenFlySource(const SourceArguments& arguments, PixelFormat format,
                         const FlyOptions& options, bool is_looped) {
   const std::string& first = arguments.sources.front();
-  if (first.starts_with(kSimulated)) {
-    return OpenSimulated(std::string_view(first).substr(kSimulated.size()), options);
-  }
+  if (first.starts_with(kSimulated)) return OpenSimulated(arguments, options);
   if (IsCamera(first)) return OpenCamera(arguments, format, options);
   return OpenReplay(arguments, format, is_looped);
 }

@@ -8,6 +8,7 @@
 
 #include "kestrel/cli/calibrate_command.h"
 #include "kestrel/cli/config_command.h"
+#include "kestrel/cli/doctor_command.h"
 #include "kestrel/cli/evaluate_command.h"
 #include "kestrel/cli/fly_command.h"
 #include "kestrel/cli/help_command.h"
@@ -37,6 +38,7 @@ int main(int argc, char** argv) {
   kestrel::AddLandCommand(&app);
   kestrel::AddHuntCommand(&app);
   kestrel::AddFlyCommand(&app);
+  kestrel::AddDoctorCommand(&app);
   kestrel::AddSimulateCommand(&app);
   kestrel::AddEvaluateCommand(&app);
   kestrel::AddCalibrateCommand(&app);

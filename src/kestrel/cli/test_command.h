@@ -27,11 +27,13 @@ inline auto Lines(const std::string& text) { return std::count(text.begin(), tex
 // Runs the binary `kestrel` as a user does, with a folder of the test's own.
 class CommandTest : public ::testing::Test {
  protected:
-  Outcome Run(const std::string& arguments) const {
+  // 'input': what it reads from stdin.
+  Outcome Run(const std::string& arguments, const std::string& input = "") const {
     const std::string out = folder_ / "stdout";
     const std::string err = folder_ / "stderr";
+    const std::string in = input.empty() ? "/dev/null" : folder_.Write("stdin", input);
     const int status = std::system(
-        fmt::format("{} {} >'{}' 2>'{}' </dev/null", KESTREL_COMMAND, arguments, out, err).c_str());
+        fmt::format("{} {} >'{}' 2>'{}' <'{}'", KESTREL_COMMAND, arguments, out, err, in).c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadFile(out), ReadFile(err)};
   }
   // Exit status 1 and one line on stderr that has 'words' in it.
