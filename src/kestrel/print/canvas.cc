@@ -3,6 +3,7 @@
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
+
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"

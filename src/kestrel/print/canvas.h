@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cairo.h>
 #include <functional>
 #include <memory>
 #include <string>
 
 #include <Eigen/Core>
-#include <cairo.h>
 
 namespace kestrel {
 

@@ -99,7 +99,8 @@ void DrawNotes(const LandingPattern& pattern, Canvas* canvas) {
   lines.insert(lines.begin(), "Kestrel landing pattern");
   lines.push_back("Print at 100 %, matt, on a flat, stiff board; measure both rulers.");
   const double height = 0.75 * scale * kTextHeight_m;
-  DrawLines(lines, {size - border, size - border - 1.4 * height * (static_cast<double>(lines.size()) - 1)},
+  DrawLines(lines,
+            {size - border, size - border - 1.4 * height * (static_cast<double>(lines.size()) - 1)},
             height, 1, canvas);
   const double line = scale * kThinLine_m;
   const auto corner_of = [&](int i) {
@@ -190,8 +191,8 @@ void DrawOverview(const LandingPattern& pattern, const Tiling& tiling, Canvas* c
   constexpr double kBorder_m = 0.015;
   const double height = kTextHeight_m * std::min(tiling.sheet.x() / 0.21, 3.0);
   const double text = 1.4 * height * static_cast<double>(lines.size());
-  const double side = std::min(tiling.sheet.x() - 2 * kBorder_m,
-                               tiling.sheet.y() - 2 * kBorder_m - text - height);
+  const double side =
+      std::min(tiling.sheet.x() - 2 * kBorder_m, tiling.sheet.y() - 2 * kBorder_m - text - height);
   const double scale = side / pattern.board_size_m;
   canvas->Within({0.5 * (tiling.sheet.x() - side), kBorder_m}, 0, scale, [&] {
     DrawBoard(pattern, canvas);
@@ -259,8 +260,7 @@ void PrintTilesPdf(const LandingPattern& pattern, const Tiling& tiling, const st
 
 void PrintOverviewSvg(const LandingPattern& pattern, const Tiling& tiling,
                       const std::string& file) {
-  PrintSvg(pattern, tiling, file,
-           [&](Canvas* canvas) { DrawOverview(pattern, tiling, canvas); });
+  PrintSvg(pattern, tiling, file, [&](Canvas* canvas) { DrawOverview(pattern, tiling, canvas); });
 }
 
 void PrintTileSvg(const LandingPattern& pattern, const Tiling& tiling, int row, int column,

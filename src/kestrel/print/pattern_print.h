@@ -20,8 +20,9 @@ double RulerLength(const LandingPattern& pattern);
 void PrintPatternPdf(const LandingPattern& pattern, const std::string& file);
 void PrintPatternSvg(const LandingPattern& pattern, const std::string& file);
 
-// First an overview with the dimensions and what to do, then one page a tile, row by row, with marks
-// where to cut, the tile's place and a ruler. An SVG is one page: the overview, or a tile (from 0).
+// First an overview with the dimensions and what to do, then one page a tile, row by row, with
+// marks where to cut, the tile's place and a ruler. An SVG is one page: the overview, or a tile
+// (from 0).
 void PrintTilesPdf(const LandingPattern& pattern, const Tiling& tiling, const std::string& file);
 void PrintOverviewSvg(const LandingPattern& pattern, const Tiling& tiling, const std::string& file);
 void PrintTileSvg(const LandingPattern& pattern, const Tiling& tiling, int row, int column,

@@ -32,9 +32,8 @@ bool CanRun(const std::string& program) {
 // A page (from 1) as an image; the renderer rounds its size up to whole pixels.
 cv::Mat RenderPdf(const std::string& file, int page, double pixels_per_m) {
   const std::string image = file + ".page";
-  const std::string command =
-      fmt::format("pdftoppm -r {} -f {} -l {} -gray -singlefile '{}' '{}'", pixels_per_m * kInch_m,
-                  page, page, file, image);
+  const std::string command = fmt::format("pdftoppm -r {} -f {} -l {} -gray -singlefile '{}' '{}'",
+                                          pixels_per_m * kInch_m, page, page, file, image);
   EXPECT_EQ(std::system(command.c_str()), 0) << command;
   return cv::imread(image + ".pgm", cv::IMREAD_GRAYSCALE);
 }
@@ -175,8 +174,7 @@ cv::Mat Assemble(const std::vector<std::string>& sheets, double scale, const Til
     const Vector2d down = CutMarks(sheet.t(), scale, turned);
     EXPECT_NEAR((across[1] - across[0]) / scale, tiling.tile.x(), 0.0001);
     EXPECT_NEAR((down[1] - down[0]) / scale, tiling.tile.y(), 0.0001);
-    const Vector2d corner =
-        scale * tiling.TileOnBoard(i / tiling.columns, i % tiling.columns);
+    const Vector2d corner = scale * tiling.TileOnBoard(i / tiling.columns, i % tiling.columns);
     const Vector2d end = corner + scale * tiling.tile;
     const cv::Rect place(cv::Point(cvRound(corner.x()), cvRound(corner.y())),
                          cv::Point(cvRound(end.x()), cvRound(end.y())));
@@ -202,9 +200,8 @@ TEST_F(PatternPrintTest, TilesMeet) {
   for (const char* paper : {"a4", "a2"}) {
     const Tiling tiling = TileBoard(pattern.board_size_m, *PaperSize(paper));
     PrintTilesPdf(pattern, tiling, folder_ / "tiles.pdf");
-    const std::string command =
-        fmt::format("pdftoppm -r {} -gray -f 2 '{}' '{}'", scale * kInch_m, folder_ / "tiles.pdf",
-                    folder_ / paper);
+    const std::string command = fmt::format("pdftoppm -r {} -gray -f 2 '{}' '{}'", scale * kInch_m,
+                                            folder_ / "tiles.pdf", folder_ / paper);
     ASSERT_EQ(std::system(command.c_str()), 0);
     std::vector<std::string> sheets;
     cv::glob(folder_ / (std::string(paper) + "-*.pgm"), sheets);

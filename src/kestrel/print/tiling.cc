@@ -20,8 +20,8 @@ struct Paper {
 constexpr std::array kPapers{Paper{"a0", 0.841, 1.189}, Paper{"a1", 0.594, 0.841},
                              Paper{"a2", 0.420, 0.594}, Paper{"a3", 0.297, 0.420},
                              Paper{"a4", 0.210, 0.297}};
-constexpr double kMargin_m = 0.010;        // left, right and above
-constexpr double kLowerMargin_m = 0.015;   // with a line of text
+constexpr double kMargin_m = 0.010;       // left, right and above
+constexpr double kLowerMargin_m = 0.015;  // with a line of text
 constexpr int kMaxSheets = 1000;
 
 Tiling TileOver(double board_size_m, const Eigen::Vector2d& sheet) {

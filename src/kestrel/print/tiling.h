@@ -19,9 +19,9 @@ std::optional<Eigen::Vector2d> PaperSize(std::string_view name);
 // A square board cut into equal tiles, one a sheet, that meet without overlap. Metres; x to the
 // right, y down from the upper left corner of sheet or board.
 struct Tiling {
-  Eigen::Vector2d sheet;           // its size
-  Eigen::Vector2d tile;            // its size
-  Eigen::Vector2d tile_on_sheet;   // upper left corner
+  Eigen::Vector2d sheet;          // its size
+  Eigen::Vector2d tile;           // its size
+  Eigen::Vector2d tile_on_sheet;  // upper left corner
   int rows;
   int columns;
 
