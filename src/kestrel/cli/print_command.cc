@@ -36,17 +36,18 @@ struct PrintArguments {
   std::optional<double> ruler_m;
 };
 
-// Paths of new files, which are named as they are made.
+// New files in one folder, which are named when they are written.
 class PrintFiles {
  public:
   PrintFiles(const std::filesystem::path& folder, bool force) : folder_(folder, force) {}
 
-  std::string New(const std::string& name) const {
-    std::string path = folder_.NewFile(name).lexically_normal().string();
-    fmt::print(stderr, "{}\n", path);
-    return path;
+  // 'write' is given the path, which is returned.
+  template <class Write>
+  std::string Add(const std::string& name, Write&& write) const {
+    const std::filesystem::path path = folder_.NewFile(name);
+    write(path.string());
+    return path.lexically_normal().string();
   }
-  std::string NewQuietly(const std::string& name) const { return folder_.NewFile(name).string(); }
 
  private:
   OutputFolder folder_;
@@ -54,25 +55,36 @@ class PrintFiles {
 
 void PrintWhole(const LandingPattern& pattern, const std::string& name, const std::string& kind,
                 const PrintFiles& files) {
-  if (kind != kSvg) PrintPatternPdf(pattern, files.New(name + kPdf));
-  if (kind != kPdf) PrintPatternSvg(pattern, files.New(name + kSvg));
+  using Write = void (*)(const LandingPattern&, const std::string&);
+  const auto add = [&](const char* end, Write write) {
+    const std::string path =
+        files.Add(name + end, [&](const std::string& file) { write(pattern, file); });
+    fmt::print(stderr, "{}\n", path);
+  };
+  if (kind != kSvg) add(kPdf, PrintPatternPdf);
+  if (kind != kPdf) add(kSvg, PrintPatternSvg);
 }
 
 // The SVGs, of one page each, in a folder.
 void PrintTiled(const LandingPattern& pattern, const Tiling& tiling, const std::string& name,
                 const std::string& kind, const PrintFiles& files) {
-  if (kind != kSvg) PrintTilesPdf(pattern, tiling, files.New(name + kPdf));
+  if (kind != kSvg) {
+    const std::string path = files.Add(
+        name + kPdf, [&](const std::string& file) { PrintTilesPdf(pattern, tiling, file); });
+    fmt::print(stderr, "{}: {} sheets, {} rows of {}\n", path, tiling.count(), tiling.rows,
+               tiling.columns);
+  }
   if (kind == kPdf) return;
-  PrintOverviewSvg(pattern, tiling, files.New(name + "/overview" + kSvg));
+  const std::string overview = files.Add(name + "/overview" + kSvg, [&](const std::string& file) {
+    PrintOverviewSvg(pattern, tiling, file);
+  });
   for (int row = 0; row < tiling.rows; ++row) {
     for (int column = 0; column < tiling.columns; ++column) {
-      PrintTileSvg(
-          pattern, tiling, row, column,
-          files.NewQuietly(fmt::format("{}/sheet_{}.{}{}", name, row + 1, column + 1, kSvg)));
+      files.Add(fmt::format("{}/sheet_{}.{}{}", name, row + 1, column + 1, kSvg),
+                [&](const std::string& file) { PrintTileSvg(pattern, tiling, row, column, file); });
     }
   }
-  fmt::print(stderr, "and beside it {} sheets, {} rows of {}\n", tiling.count(), tiling.rows,
-             tiling.columns);
+  fmt::print(stderr, "{}, and its sheets beside it\n", overview);
 }
 
 PrintMeasurement Measure(const PrintArguments& arguments,

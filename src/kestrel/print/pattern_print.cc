@@ -205,8 +205,9 @@ void DrawOverview(const LandingPattern& pattern, const Tiling& tiling, Canvas* c
 Canvas OnePage(Canvas::Format format, const LandingPattern& pattern, const std::string& file) {
   RequireValid(pattern);
   if (format == Canvas::Format::kPdf && pattern.board_size_m > kMaxPage_m) {
-    throw InputError(fmt::format("a board of {} m is more than a page can have, {} m: tile it",
-                                 pattern.board_size_m, kMaxPage_m));
+    throw InputError(
+        fmt::format("a board of {} m is more than a page can have, {} m: tile it (--paper)",
+                    pattern.board_size_m, kMaxPage_m));
   }
   return Canvas(format, file, Vector2d::Constant(pattern.board_size_m));
 }

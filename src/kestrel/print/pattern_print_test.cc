@@ -110,16 +110,16 @@ TEST_F(PatternPrintTest, APageHasThePatternsDimensions) {
                              .arm_half_length_m = 0.1,
                              .board_size_m = 0.4};
   for (const LandingPattern& pattern : {large, small}) {
-    const double scale = 4000;  // px/m
+    const double scale = 3000;  // px/m
     PrintPatternPdf(pattern, folder_ / "p.pdf");
     const cv::Mat pdf = RenderPdf(folder_ / "p.pdf", 1, scale);
     ASSERT_NEAR(pdf.cols, scale * pattern.board_size_m, 1);
     ASSERT_NEAR(pdf.rows, scale * pattern.board_size_m, 1);
-    ExpectDimensions(pdf, scale, pattern, 0.0001);
+    ExpectDimensions(pdf, scale, pattern, 0.00015);
     PrintPatternSvg(pattern, folder_ / "p.svg");
     const cv::Mat svg = RenderSvg(folder_ / "p.svg", scale);
     ASSERT_NEAR(svg.cols, scale * pattern.board_size_m, 1);
-    ExpectDimensions(svg, scale, pattern, 0.0001);
+    ExpectDimensions(svg, scale, pattern, 0.00015);
   }
 }
 
@@ -217,7 +217,7 @@ TEST_F(PatternPrintTest, RulersAreTrue) {
   const LandingPattern pattern;
   EXPECT_DOUBLE_EQ(RulerLength(pattern), 0.2);
   EXPECT_DOUBLE_EQ(RulerLength({.outer_diameter_m = 0.3, .board_size_m = 0.43}), 0.1);
-  const double scale = 4000;
+  const double scale = 2000;
   PrintPatternSvg(pattern, folder_ / "p.svg");
   const cv::Mat page = RenderSvg(folder_ / "p.svg", scale);
   // The long ticks at the ends of the lower ruler reach beyond those between.

@@ -15,9 +15,8 @@ constexpr double kLeastGap_px = 6;  // between arm and ring, that is seen
 PrintVerdict Judge(const CheckedDimension& dimension) {
   const double difference = std::abs(dimension.measured->value_m - dimension.configured_m);
   if (difference > dimension.tolerance_m()) return PrintVerdict::kWrong;
-  return dimension.tolerance_m() > kMaxTolerance * dimension.configured_m
-             ? PrintVerdict::kTooCoarse
-             : PrintVerdict::kGood;
+  return dimension.tolerance_m() > kMaxTolerance * dimension.configured_m ? PrintVerdict::kTooCoarse
+                                                                          : PrintVerdict::kGood;
 }
 
 CheckedDimension Check(const char* option, double configured_m, const MeasuredLength& measured,
@@ -33,9 +32,9 @@ CheckedDimension Check(const char* option, double configured_m, const MeasuredLe
 
 CheckedDimension CheckArmsWithoutEnds(const LandingPattern& configured, double pixel_m) {
   const double gap = configured.inner_radius_m() - configured.arm_half_length_m;
-  const PrintVerdict verdict = gap <= 0                        ? PrintVerdict::kGood
+  const PrintVerdict verdict = gap <= 0                       ? PrintVerdict::kGood
                                : gap > kLeastGap_px * pixel_m ? PrintVerdict::kWrong
-                                                               : PrintVerdict::kTooCoarse;
+                                                              : PrintVerdict::kTooCoarse;
   return {"arm_half_length_m", configured.arm_half_length_m, std::nullopt, verdict};
 }
 
@@ -74,8 +73,7 @@ std::vector<CheckedDimension> CheckPrint(const LandingPattern& configured,
     const double diameter = configured.outer_diameter_m;
     dimensions.push_back(Check("outer_diameter_m", diameter, {diameter, 0}, by));
   }
-  dimensions.push_back(
-      Check("ring_width_m", configured.ring_width_m, print.ring_width, by));
+  dimensions.push_back(Check("ring_width_m", configured.ring_width_m, print.ring_width, by));
   dimensions.push_back(Check("arm_width_m", configured.arm_width_m, print.arm_width, by));
   if (print.arm_half_length) {
     dimensions.push_back(

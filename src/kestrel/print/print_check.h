@@ -21,7 +21,8 @@ const char* ToString(PrintVerdict verdict);  // "good", "WRONG", "cannot tell"
 struct CheckedDimension {
   std::string option;
   double configured_m;
-  std::optional<MeasuredLength> measured;  // nothing: the arms reach the ring, as far as can be seen
+  std::optional<MeasuredLength>
+      measured;  // nothing: the arms reach the ring, as far as can be seen
   PrintVerdict verdict;
 
   double tolerance_m() const { return measured ? 3 * measured->sigma_m : 0; }
@@ -32,8 +33,8 @@ struct PrintScale {
   double value;
   double sigma;
 };
-// By the camera's distance from the middle of the pattern, measured to a hundredth, and by the ruler
-// on the print, measured to a fifth of a millimetre.
+// By the camera's distance from the middle of the pattern, measured to a hundredth, and by the
+// ruler on the print, measured to a fifth of a millimetre.
 PrintScale ScaleByDistance(double distance_m, const PrintMeasurement& print);
 PrintScale ScaleByRuler(double ruler_m, const LandingPattern& configured);
 

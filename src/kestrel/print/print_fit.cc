@@ -32,7 +32,7 @@ constexpr double kSpreadSigma_px = 0.4;  // of optics, exposure and gamma
 constexpr double kEdgeSigma_px = 0.2;    // before anything is known
 constexpr double kLeastSigma_px = 0.05;
 constexpr double kUnmodelled_px = 0.15;  // of a dimension: gaps of few pixels, more of the lens
-constexpr double kHuber = 2;  // standard deviations
+constexpr double kHuber = 2;             // standard deviations
 // Of 180, about 100, 96 and 28.
 constexpr int kMinCircle = 60, kMinSides = 40, kMinEnds = 14;
 
@@ -117,9 +117,9 @@ class LineFit {
     state_[kArmWidth] = print.pattern.arm_width_m;
     state_[kArmHalfLength] = print.pattern.arm_half_length_m;
     const CameraIntrinsics& camera = print.camera;
-    corner_ = Eigen::Vector2d(0.5 * camera.width_px / camera.fx_px,
-                              0.5 * camera.height_px / camera.fy_px)
-                  .squaredNorm();
+    corner_ =
+        Eigen::Vector2d(0.5 * camera.width_px / camera.fx_px, 0.5 * camera.height_px / camera.fy_px)
+            .squaredNorm();
   }
 
   void Add(const PrintLineEdge& edge) {
@@ -128,7 +128,7 @@ class LineFit {
     const double off_axis = ray.head<2>().squaredNorm() / ray.squaredNorm();
     errors_.push_back({edge.line, edge.outwards, ray, off_axis / corner_,
                        pose().rotation.toRotationMatrix().transpose(),
-                       start_.pattern.outer_radius_m(),                       kEdgeSigma_px * start_.pixel_m});
+                       start_.pattern.outer_radius_m(), kEdgeSigma_px * start_.pixel_m});
   }
 
   // Once with the scatter that is expected and again with the one that there is. False when that

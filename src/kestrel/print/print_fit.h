@@ -20,15 +20,15 @@ struct FoundPrint {
 
 // What is known of a lens before a print is looked at.
 struct LensPrior {
-  double zoom_sigma;       // relative, of the focal length
-  double bend_sigma;       // by what part the corners of the image may lie farther out
-  double focal_px;         // the likeliest
+  double zoom_sigma;  // relative, of the focal length
+  double bend_sigma;  // by what part the corners of the image may lie farther out
+  double focal_px;    // the likeliest
 };
 
 struct PrintFit {
   PrintMeasurement measurement;
-  FoundPrint print;      // by what was measured
-  bool is_consistent;    // the edges lie on outlines, and black and white spread no more than usual
+  FoundPrint print;    // by what was measured
+  bool is_consistent;  // the edges lie on outlines, and black and white spread no more than usual
 };
 
 // Dimensions, pose and lens that bring the outlines of 'print' nearest to 'edges', robust least

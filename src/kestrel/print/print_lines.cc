@@ -103,8 +103,8 @@ Vector2d Direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
 void FindCircles(const LandingPattern& pattern, PrintLines* lines,
                  std::vector<PrintLineEdge>* edges) {
   constexpr int kCount = 180;
-  constexpr double kBeside = 0.35;   // rad from an arm, where the white between arm and ring ends
-  constexpr double kBeyond = 0.15;   // of the outer radius, that is looked at outside of it
+  constexpr double kBeside = 0.35;  // rad from an arm, where the white between arm and ring ends
+  constexpr double kBeyond = 0.15;  // of the outer radius, that is looked at outside of it
   const double middle = pattern.outer_radius_m() - 0.5 * pattern.ring_width_m;
   const double inside = 0.7 * pattern.inner_radius_m();
   for (int i = 0; i < kCount; ++i) {
@@ -125,8 +125,7 @@ void FindCircles(const LandingPattern& pattern, PrintLines* lines,
 }
 
 // Across the sides of the arms, from their axes; and along them over their ends.
-void FindArms(const LandingPattern& pattern, PrintLines* lines,
-              std::vector<PrintLineEdge>* edges) {
+void FindArms(const LandingPattern& pattern, PrintLines* lines, std::vector<PrintLineEdge>* edges) {
   constexpr int kSides = 12, kEnds = 7;
   const double first = 1.8 * pattern.arm_width_m;
   const double last = 0.85 * pattern.arm_half_length_m;

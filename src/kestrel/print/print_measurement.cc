@@ -91,8 +91,8 @@ class PrintSearch {
 
  private:
   std::optional<PrintFit> Fit(const FoundPrint& print, const LensPrior& lens) const {
-    return FitPrint(FindPrintLineEdges(image_, CameraModel(print.camera),
-                                       print.camera_from_pattern, print.pattern),
+    return FitPrint(FindPrintLineEdges(image_, CameraModel(print.camera), print.camera_from_pattern,
+                                       print.pattern),
                     lens, print);
   }
 

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 // Of a telephone, with a little barrel distortion.
 CameraIntrinsics Telephone() {
-  return {2016, 1512, 1450, 1450, 1020, 748, DistortionModel::kRadialTangential, {-0.02, 0, 0, 0}};
+  return {1344, 1008, 967, 967, 680, 499, DistortionModel::kRadialTangential, {-0.02, 0, 0, 0}};
 }
 
 // A photograph of a print on its board, in uneven light.
@@ -55,31 +55,33 @@ TEST(PrintMeasurementTest, MeasuresPrintsOfOtherDimensionsToo) {
   short_arms.arm_half_length_m = 0.33;
   other.ring_width_m = 0.12;
   other.arm_width_m = 0.08;
+  other.arm_half_length_m = 0.36;
+  double tilt_deg = 3;
   for (const LandingPattern& print : {configured, thin_ring, wide_arms, short_arms, other}) {
-    for (const double tilt_deg : {3, 35}) {
-      const cv::Mat photo = Photograph(print, 2, tilt_deg);
-      for (const bool is_calibrated : {true, false}) {
-        const std::string what = fmt::format("ring {} arms {} {} tilt {} calibrated {}",
-                                             print.ring_width_m, print.arm_width_m,
-                                             print.arm_half_length_m, tilt_deg, is_calibrated);
-        const auto seen = MeasurePrint(
-            photo, is_calibrated ? std::optional(Telephone()) : std::nullopt, Configured());
-        ASSERT_TRUE(seen) << what;
-        ExpectMeasured(seen->ring_width, print.ring_width_m, seen->pixel_m, what);
-        ExpectMeasured(seen->arm_width, print.arm_width_m, seen->pixel_m, what);
-        ASSERT_TRUE(seen->arm_half_length) << what;
-        ExpectMeasured(*seen->arm_half_length, print.arm_half_length_m, seen->pixel_m, what);
-        EXPECT_NEAR(seen->pixel_m, 2.0 / 1450, 0.1e-3) << what;
-        if (!is_calibrated) continue;
-        EXPECT_NEAR(seen->distance.value_m, 2, 3 * seen->distance.sigma_m) << what;
-      }
+    tilt_deg += 7;
+    const double distance_m = 1.5;
+    const cv::Mat photo = Photograph(print, distance_m, tilt_deg);
+    for (const bool is_calibrated : {true, false}) {
+      const std::string what =
+          fmt::format("ring {} arms {} {} tilt {} calibrated {}", print.ring_width_m,
+                      print.arm_width_m, print.arm_half_length_m, tilt_deg, is_calibrated);
+      const auto seen = MeasurePrint(
+          photo, is_calibrated ? std::optional(Telephone()) : std::nullopt, Configured());
+      ASSERT_TRUE(seen) << what;
+      ExpectMeasured(seen->ring_width, print.ring_width_m, seen->pixel_m, what);
+      ExpectMeasured(seen->arm_width, print.arm_width_m, seen->pixel_m, what);
+      ASSERT_TRUE(seen->arm_half_length) << what;
+      ExpectMeasured(*seen->arm_half_length, print.arm_half_length_m, seen->pixel_m, what);
+      EXPECT_NEAR(seen->pixel_m, distance_m / 967, 0.1e-3) << what;
+      if (!is_calibrated) continue;
+      EXPECT_NEAR(seen->distance.value_m, distance_m, 3 * seen->distance.sigma_m) << what;
     }
   }
 }
 
 TEST(PrintMeasurementTest, SeesNothingWhereThereIsNothing) {
   EXPECT_FALSE(MeasurePrint(cv::Mat(480, 640, CV_8UC1, cv::Scalar(120)), {}, Configured()));
-  const cv::Mat far = Photograph({}, 30, 10);
+  const cv::Mat far = Photograph({}, 60, 10);
   EXPECT_FALSE(MeasurePrint(far, Telephone(), Configured()));
 }
 
