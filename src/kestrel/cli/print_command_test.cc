@@ -31,8 +31,7 @@ class PrintCommandTest : public CommandTest {
  protected:
   // The page of a PDF on a board on the ground, by the simulator's camera 1.8 m above it.
   static cv::Mat Photograph(const std::string& pdf, double size_m) {
-    const std::string command =
-        fmt::format("pdftoppm -r 50.8 -gray -singlefile '{0}' '{0}'", pdf);
+    const std::string command = fmt::format("pdftoppm -r 50.8 -gray -singlefile '{0}' '{0}'", pdf);
     EXPECT_EQ(std::system(command.c_str()), 0) << command;
     cv::Mat paint = cv::imread(pdf + ".pgm", cv::IMREAD_GRAYSCALE);
     EXPECT_FALSE(paint.empty());
@@ -109,15 +108,16 @@ TEST_F(PrintCommandTest, OneFileIsOneFormat) {
 }
 
 TEST_F(PrintCommandTest, SaysWhatIsWrong) {
-  ExpectInputError("print --output " + folder_ / "o" +
-                       " --set landing.detector.pattern.ring_width_m=0.7",
-                   "ring_width_m");
-  ExpectInputError("print --output " + folder_ / "o" +
-                       " --set landing.detector.pattern.board_size_m=7",
-                   "--paper");
+  ExpectInputError(
+      "print --output " + folder_ / "o" + " --set landing.detector.pattern.ring_width_m=0.7",
+      "ring_width_m");
+  ExpectInputError(
+      "print --output " + folder_ / "o" + " --set landing.detector.pattern.board_size_m=7",
+      "--paper");
   const std::string gray = folder_.WriteImage("gray.png", cv::Mat(480, 640, CV_8UC1, 100));
   ExpectInputError("print --check " + gray, "no landing pattern that can be measured");
-  ExpectInputError("print --check " + gray + " --camera " + WriteCamera(), "the image is 640x480 px");
+  ExpectInputError("print --check " + gray + " --camera " + WriteCamera(),
+                   "the image is 640x480 px");
   ExpectInputError("print --check " + folder_ / "none.png", "none.png");
   for (const char* wrong :
        {"print --paper a5", "print --distance 2", "print --check x.png --distance 2",
