@@ -40,14 +40,16 @@ TEST(ExamplesTest, TheUnitAndItsEnvironmentAgree) {
   const std::regex variable("KESTREL_[A-Z]+");
   int count = 0;
   for (std::sregex_iterator name(unit.begin(), unit.end(), variable), end; name != end; ++name) {
-    EXPECT_THAT(environment, ::testing::HasSubstr("\n" + name->str() + "=")) << name->str();
+    EXPECT_THAT(environment, ::testing::HasSubstr(fmt::format("\n{}=", name->str())))
+        << name->str();
     ++count;
   }
   EXPECT_GE(count, 5);
   std::smatch config;
   ASSERT_TRUE(std::regex_search(environment, config,
                                 std::regex("\nKESTREL_CONFIG=/etc/kestrel/([a-z_]+\\.yaml)\n")));
-  EXPECT_TRUE(std::filesystem::exists(kExamples + "/" + config[1].str())) << config[1];
+  EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(kExamples) / config[1].str()))
+      << config[1];
 }
 
 class ExampleCommandTest : public CommandTest {};
