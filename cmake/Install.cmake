@@ -16,6 +16,9 @@ install(
   PATTERN "test_*.h" EXCLUDE
   PATTERN "cli" EXCLUDE)
 
+# Configurations of boards and cameras, and the unit that flies from power-on.
+install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kestrel)
+
 configure_package_config_file(cmake/kestrelConfig.cmake.in kestrelConfig.cmake
                               INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(kestrelConfigVersion.cmake COMPATIBILITY SameMinorVersion)

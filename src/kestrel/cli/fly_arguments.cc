@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/cli/fly_arguments.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
@@ -19,11 +21,14 @@ void RequireFlyable(const SourceArguments& source) {
   if (source.altitude_m) throw InputError("--altitude: a flight has the autopilot's poses");
 }
 
-// Set-points end with the mode, which the heartbeat tells: once a second is too seldom.
-void RequireGuidable(const FlyArguments& arguments, AutopilotOptions* autopilot) {
+// Set-points end with the mode, which the heartbeat tells: once a second is too seldom. And a
+// simulated pilot gives the mode when it would have landed.
+void PrepareGuidance(FlyOptions* options) {
   constexpr double kHeartbeat_hz = 10;
-  if (arguments.autopilot.empty()) throw InputError("--guide: expected --autopilot URL");
-  if (autopilot->heartbeat_rate_hz == 0) autopilot->heartbeat_rate_hz = kHeartbeat_hz;
+  double& heartbeat_hz = options->autopilot.heartbeat_rate_hz;
+  if (heartbeat_hz == 0) heartbeat_hz = kHeartbeat_hz;
+  PilotOptions& pilot = options->sim_autopilot.model.pilot;
+  if (pilot.guide_after_s < 0) pilot.guide_after_s = std::exchange(pilot.land_after_s, -1);
 }
 
 double ParseLinkDelay(const std::string& text) {
@@ -89,7 +94,8 @@ KestrelOptions FlyArguments::ReadOptions() const {
   if (rate_hz) options.fly.flight.rate_hz = *rate_hz;
   if (!signing_key.empty()) options.fly.link.signing_key = signing_key;
   if (link_delay != "auto") options.fly.flight.link_delay_s = ParseLinkDelay(link_delay);
-  if (guide) RequireGuidable(*this, &options.fly.autopilot);
+  if (guide && autopilot.empty()) throw InputError("--guide: expected --autopilot URL");
+  if (guide) PrepareGuidance(&options.fly);
   PredictPoses(&options);
   return options;
 }

@@ -14,6 +14,7 @@
 #include "kestrel/cli/help_command.h"
 #include "kestrel/cli/hunt_command.h"
 #include "kestrel/cli/land_command.h"
+#include "kestrel/cli/print_command.h"
 #include "kestrel/cli/simulate_command.h"
 
 namespace {
@@ -42,6 +43,7 @@ int main(int argc, char** argv) {
   kestrel::AddSimulateCommand(&app);
   kestrel::AddEvaluateCommand(&app);
   kestrel::AddCalibrateCommand(&app);
+  kestrel::AddPrintCommand(&app);
   kestrel::AddConfigCommand(&app);
   kestrel::AddHelpCommand(&app);
   try {

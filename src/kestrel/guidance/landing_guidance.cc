@@ -13,6 +13,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kHeightGain = 1;      // climb rate per metre that it is too low
+constexpr double kStanding_mps = 0.5;  // a deck that is slower stands
 constexpr double kMaxClosing_mps = 1;  // faster over the target it does not go down
 // Following ends where it is so many cones off, the last bit where it is so many off.
 constexpr double kFollowCones = 4;
@@ -393,7 +394,11 @@ GuidanceRequest LandingGuidance::RequestInContact(const GuidanceInput& input) co
       IsLongerThan(options_.disarm_after_s, contact_since_, input.now)) {
     return GuidanceRequest::kDisarm;
   }
-  return options_.land_in_contact ? GuidanceRequest::kLand : GuidanceRequest::kNone;
+  // On a deck that drives on LAND would brake, unless the autopilot has found that it has landed:
+  // until then the set-points go on.
+  const bool may_land =
+      input.is_landed || input.uav->velocity_in_world.head<2>().norm() < kStanding_mps;
+  return options_.land_in_contact && may_land ? GuidanceRequest::kLand : GuidanceRequest::kNone;
 }
 
 // On the deck: a descent that goes on, with the velocity that the deck has given the UAV. So the

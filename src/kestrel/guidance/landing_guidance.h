@@ -81,7 +81,8 @@ struct GuidanceOutput {
 // given anew. Update does not allocate and does not throw.
 class LandingGuidance {
  public:
-  // 'place': where the vehicle should pass (m, world); nothing: where guidance begins. Throws InputError when the options are not valid.
+  // 'place': where the vehicle should pass (m, world); nothing: where guidance begins. Throws
+  // InputError when the options are not valid.
   explicit LandingGuidance(const GuidanceOptions& options,
                            const std::optional<Eigen::Vector2d>& place = std::nullopt);
 
