@@ -24,7 +24,7 @@ void SearchPath::Start(const Vector2d& place) {
 }
 
 Vector2d SearchPath::Advance(const Vector2d& uav, double seconds) {
-  const Vector2d point = Point();
+  Vector2d point = Point();
   const bool keeps_up = (point - uav).norm() < kReached_m;
   if (options_.search_radius_m == 0 || !keeps_up) return point;
   if (waited_s_ < options_.search_wait_s) {
