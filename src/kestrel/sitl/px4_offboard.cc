@@ -90,9 +90,8 @@ Vector3d Px4Offboard::ControlVelocity(const FlightState& state, const Vector3d& 
   const double blend = std::min(1.0, state.step_s / kFilter_s);
   change_ += blend * ((state.velocity() - last_velocity_) / state.step_s - change_);
   last_velocity_ = state.velocity();
-  const Vector3d control = gains("MPC_XY_VEL_P_ACC", "MPC_Z_VEL_P_ACC").cwiseProduct(error) +
-                           integral_ -
-                           gains("MPC_XY_VEL_D_ACC", "MPC_Z_VEL_D_ACC").cwiseProduct(change_);
+  Vector3d control = gains("MPC_XY_VEL_P_ACC", "MPC_Z_VEL_P_ACC").cwiseProduct(error) + integral_ -
+                     gains("MPC_XY_VEL_D_ACC", "MPC_Z_VEL_D_ACC").cwiseProduct(change_);
   const double most = kGravity * std::tan(Radians(parameters_["MPC_TILTMAX_AIR"]));
   if (state.is_standing) {
     integral_.setZero();
