@@ -92,7 +92,7 @@ std::string InWords(const Quaterniond& turn) {
   constexpr double kAlong = 0.99;
   const Eigen::AngleAxisd angle_axis(turn);
   const double degrees = Degrees(angle_axis.angle());
-  const Vector3d axis = angle_axis.axis();
+  const Vector3d& axis = angle_axis.axis();
   if (std::abs(axis.z()) > kAlong) {
     const bool is_half = degrees > 179;
     return fmt::format("{:.0f} deg{} about its optical axis{}", degrees,

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -15,7 +15,7 @@ inline constexpr double kMilliseconds = 1000;  // per second
 // The value that 'share' (0 to 1) of the values do not exceed; 'values' must not be empty.
 inline double QuantileOf(std::vector<double> values, double share) {
   const auto last = static_cast<double>(values.size() - 1);
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * last + 0.5);
+  const auto place = values.begin() + std::lround(share * last);
   std::nth_element(values.begin(), place, values.end());
   return *place;
 }
