@@ -34,7 +34,6 @@ namespace {
 
 struct DoctorArguments {
   FlyArguments flight;
-  bool guide = false;
   double moving_mps = 0;  // 0: the target stands
   double duration_s = 8;
   bool explain = false;
@@ -96,7 +95,7 @@ class DoctorVisit {
     DoctorUse& use = observations_.use;
     const FlyArguments& flight = arguments_.flight;
     if (flight.profile != "auto") use.profile = ParseLinkProfile(flight.profile);
-    use.guides = arguments_.guide;
+    use.guides = arguments_.flight.guide;
     if (arguments_.moving_mps > 0) use.target_mps = arguments_.moving_mps;
     use.sends_distance = options_.fly.flight.messages.sends_distance;
     use.attitude_rate_hz = options_.fly.autopilot.attitude_rate_hz;
@@ -229,8 +228,6 @@ void AddDoctorCommand(CLI::App* app) {
   const auto arguments = std::make_shared<DoctorArguments>();
   arguments->flight.AddTo(command);
   command->get_option("SOURCE")->required(false);  // --explain needs none
-  command->add_flag("--guide", arguments->guide,
-                    "Check for guidance by set-points, as fly --guide");
   command
       ->add_flag("--moving{4.2}", arguments->moving_mps,
                  "Check for a target that moves, with 4.2 m/s or --moving=SPEED")

@@ -180,8 +180,7 @@ void DrawOverview(const LandingPattern& pattern, const Tiling& tiling, Canvas* c
                                           tiling.count(), tiling.rows, tiling.columns));
   lines.insert(
       lines.end(),
-      {"1. Print at 100 % (\"actual size\", not \"fit to page\") on matt paper: gloss mirrors the "
-       "sun.",
+      {"1. Print at 100 % (not \"fit to page\") on matt paper: gloss mirrors the sun.",
        fmt::format("2. Measure the ruler of a sheet: {:.1f} mm. If it is not, the printer scaled: "
                    "print again.",
                    1000 * RulerLength(pattern)),

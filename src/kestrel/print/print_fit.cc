@@ -28,8 +28,9 @@ enum Parameter {
   kArmHalfLength,
   kParameters
 };
-constexpr double kSpreadSigma_px = 0.4;  // of optics, exposure and gamma
-constexpr double kEdgeSigma_px = 0.2;    // before anything is known
+constexpr double kSpreadSigma_px =
+    0.6;                               // of optics, exposure and gamma: real frames have up to 1.1
+constexpr double kEdgeSigma_px = 0.2;  // before anything is known
 constexpr double kLeastSigma_px = 0.05;
 constexpr double kUnmodelled_px = 0.15;  // of a dimension: gaps of few pixels, more of the lens
 constexpr double kHuber = 2;             // standard deviations
