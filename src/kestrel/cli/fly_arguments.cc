@@ -21,14 +21,16 @@ void RequireFlyable(const SourceArguments& source) {
   if (source.altitude_m) throw InputError("--altitude: a flight has the autopilot's poses");
 }
 
-// Set-points end with the mode, which the heartbeat tells: once a second is too seldom. And a
-// simulated pilot gives the mode when it would have landed.
-void PrepareGuidance(FlyOptions* options) {
+// Set-points end with the mode, which the heartbeat tells: once a second is too seldom. A simulated
+// pilot gives the mode when it would have landed, and has set its PX4 up for decks that drive.
+void PrepareGuidance(const std::string& autopilot, FlyOptions* options) {
   constexpr double kHeartbeat_hz = 10;
   double& heartbeat_hz = options->autopilot.heartbeat_rate_hz;
   if (heartbeat_hz == 0) heartbeat_hz = kHeartbeat_hz;
   PilotOptions& pilot = options->sim_autopilot.model.pilot;
   if (pilot.guide_after_s < 0) pilot.guide_after_s = std::exchange(pilot.land_after_s, -1);
+  std::string& parameters = options->sim_autopilot.model.parameters;
+  if (autopilot == "sim:px4" && parameters.empty()) parameters = "LNDMC_XY_VEL_MAX=12";
 }
 
 double ParseLinkDelay(const std::string& text) {
@@ -95,7 +97,7 @@ KestrelOptions FlyArguments::ReadOptions() const {
   if (!signing_key.empty()) options.fly.link.signing_key = signing_key;
   if (link_delay != "auto") options.fly.flight.link_delay_s = ParseLinkDelay(link_delay);
   if (guide && autopilot.empty()) throw InputError("--guide: expected --autopilot URL");
-  if (guide) PrepareGuidance(&options.fly);
+  if (guide) PrepareGuidance(autopilot, &options.fly);
   PredictPoses(&options);
   return options;
 }

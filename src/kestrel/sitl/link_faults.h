@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <optional>
 #include <string>
@@ -19,9 +20,11 @@ struct LinkFaultOptions {
   double delay_s = 0;   // of each message
   double jitter_s = 0;  // the delay varies by up to this to both sides; the order stays
   double loss = 0;      // part of the messages that are lost
-  // Silence in both directions: from so long after the start on (negative: never), for so long.
+  // Silence in both directions: from so long after the start on (negative: never), for so long, and
+  // again every so often (0: once).
   double down_after_s = -1;
   double down_for_s = 2;
+  double down_every_s = 0;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -31,6 +34,7 @@ struct LinkFaultOptions {
     visitor("down_after_s", self.down_after_s, "s",
             "silence in both directions from so long after the start on; negative: never");
     visitor("down_for_s", self.down_for_s, "s", "for so long");
+    visitor("down_every_s", self.down_every_s, "s", "and again so often; 0: once");
   }
   std::vector<std::string> Validate() const {
     std::vector<std::string> violations;
@@ -39,11 +43,14 @@ struct LinkFaultOptions {
     RequireIn(loss, 0, 1, "loss", &violations);
     RequireIn(down_after_s, -1, 10000, "down_after_s", &violations);
     RequireIn(down_for_s, 0, 10000, "down_for_s", &violations);
+    RequireIn(down_every_s, 0, 10000, "down_every_s", &violations);
     return violations;
   }
   bool IsDown(double since_start_s) const {
-    return down_after_s >= 0 && since_start_s >= down_after_s &&
-           since_start_s < down_after_s + down_for_s;
+    double since_s = since_start_s - down_after_s;
+    if (down_after_s < 0 || since_s < 0) return false;
+    if (down_every_s > 0) since_s = std::fmod(since_s, down_every_s);
+    return since_s < down_for_s;
   }
 };
 
