@@ -247,7 +247,7 @@ GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
   if (!is_active_) return Idle(input);
   SetPoint wanted;
   if (phase_ == GuidancePhase::kLanded) {
-    wanted = Rest(now);
+    wanted = Rest(input, now);
   } else {
     wanted = input.target ? Pursue(input, now) : Search(input, now);
   }
@@ -380,7 +380,10 @@ bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& n
   const bool touches = may_touch && contact_.Update(input.now, now.feet, now.velocity, deck);
   Remember(touches, input.now, &contact_since_);
   if (touches || (may_touch && input.is_landed)) {
-    if (!was_in_contact) Enter(GuidancePhase::kLanded, "contact with the deck");
+    if (!was_in_contact) {
+      ride_.Reset();
+      Enter(GuidancePhase::kLanded, "contact with the deck");
+    }
     return true;
   }
   if (was_in_contact) GoAround("has lost contact with the deck");
@@ -401,11 +404,13 @@ GuidanceRequest LandingGuidance::RequestInContact(const GuidanceInput& input) co
   return options_.land_in_contact && may_land ? GuidanceRequest::kLand : GuidanceRequest::kNone;
 }
 
-// On the deck: a descent that goes on, with the velocity that the deck has given the UAV. So the
-// autopilot finds that it has landed, and does not lean against the deck.
-SetPoint LandingGuidance::Rest(const Situation& now) const {
+// On the deck: a descent that goes on, and along with the deck. So the autopilot finds that it has
+// landed, and does not lean against what carries it.
+SetPoint LandingGuidance::Rest(const GuidanceInput& input, const Situation& now) {
+  ride_.Observe(input.now, now.velocity.head<2>());
   SetPoint command;
-  command.velocity << now.velocity.head<2>(), -options_.touchdown_sink_mps;
+  command.velocity << ride_.Velocity(model_.delay_s()), -options_.touchdown_sink_mps;
+  command.acceleration.head<2>() = ride_.acceleration();
   return command;
 }
 

@@ -10,6 +10,7 @@
 #include "kestrel/base/time.h"
 #include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/guidance/contact_detector.h"
+#include "kestrel/guidance/deck_ride.h"
 #include "kestrel/guidance/flight_limits.h"
 #include "kestrel/guidance/flight_model.h"
 #include "kestrel/guidance/guidance_options.h"
@@ -129,7 +130,7 @@ class LandingGuidance {
   GuidanceOutput Fly(const GuidanceInput& input);
   SetPoint Search(const GuidanceInput& input, const Situation& now);
   SetPoint Pursue(const GuidanceInput& input, const Situation& now);
-  SetPoint Rest(const Situation& now) const;
+  SetPoint Rest(const GuidanceInput& input, const Situation& now);
   double ClimbRate(const GuidanceInput& input, const Situation& now) const;
   GuidanceRequest RequestInContact(const GuidanceInput& input) const;
   GuidanceOutput Output(const std::optional<SetPoint>& set_point, GuidanceRequest request) const;
@@ -153,6 +154,7 @@ class LandingGuidance {
   TargetPursuit pursuit_;
   SearchPath search_;
   ContactDetector contact_;
+  DeckRide ride_;
 
   GuidancePhase phase_ = GuidancePhase::kIdle;
   const char* reason_;

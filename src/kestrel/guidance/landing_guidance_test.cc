@@ -484,6 +484,8 @@ TEST(LandingGuidanceTest, AsksForLandOrDisarmsOnlyByOptionAndInContact) {
       },
       30);
   flight.LandOnDeck();
+  EXPECT_EQ(flight.output.request, GuidanceRequest::kNone) << "LAND brakes where a deck drives";
+  flight.Step([](GuidanceInput& input) { input.is_landed = true; });
   EXPECT_EQ(flight.output.request, GuidanceRequest::kLand);
   flight.FlyUntil([] { return false; }, 2.1, kNoTarget);
   EXPECT_EQ(flight.output.request, GuidanceRequest::kDisarm);
