@@ -13,6 +13,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kHeightGain = 1;      // climb rate per metre that it is too low
+constexpr double kResting_mps = 0.25;  // what is told to go down and sinks no faster rests
 constexpr double kStanding_mps = 0.5;  // a deck that is slower stands
 constexpr double kMaxClosing_mps = 1;  // faster over the target it does not go down
 // Following ends where it is so many cones off, the last bit where it is so many off.
@@ -21,6 +22,7 @@ constexpr double kCommitCones = 3;
 // A mode that the autopilot has not told for so long is not known: it tells it once a second.
 constexpr double kMaxModeAge_s = 3.5;
 constexpr double kLongestStep_s = 0.2;
+constexpr double kCommitAcceleration = 0.2;  // m/s^2, downwards
 // Over so long a change of the velocity is judged, and at least so much (m/s^2) is obedience.
 constexpr double kTrend_s = 1;
 constexpr double kLeastObedience = 0.5;
@@ -361,7 +363,9 @@ void LandingGuidance::ChooseDescent(const GuidanceInput& input, const Situation&
     }
   }
   if (phase_ != GuidancePhase::kCommit) return;
-  if (!(input.target_age_s <= options_.commit_sight_s)) {
+  // One that does not sink any more stands on the deck, where the camera may see nothing.
+  const bool sinks = now.velocity.z() - input.target->motion.velocity().z() < -kResting_mps;
+  if (sinks && !(input.target_age_s <= options_.commit_sight_s)) {
     return GoAround("near the deck, and the target was not in sight for too long");
   }
   if (now.is_in_sight && now.off_m > kCommitCones * cone_m) GoAround("beside the deck");
@@ -436,7 +440,10 @@ SetPoint LandingGuidance::Pursue(const GuidanceInput& input, const Situation& no
 
 double LandingGuidance::ClimbRate(const GuidanceInput& input, const Situation& now) const {
   const double sink = std::max(options_.sink_gain * now.height_m, options_.touchdown_sink_mps);
-  if (phase_ == GuidancePhase::kCommit) return -sink;
+  if (phase_ == GuidancePhase::kCommit) {
+    // Ever faster: an autopilot that is told so does not take the deck for its own braking.
+    return -sink - kCommitAcceleration * ToSeconds(input.now - entered_);
+  }
   if (phase_ == GuidancePhase::kDescend) return now.off_m < Cone(now.height_m) ? -sink : 0;
   const double top_m = options_.search_altitude_m - input.target->motion.position().z();
   const bool is_unknown = input.target->position_sigma_m() > 2 * options_.max_sigma_m;
@@ -448,6 +455,7 @@ double LandingGuidance::ClimbRate(const GuidanceInput& input, const Situation& n
 void LandingGuidance::Enter(GuidancePhase phase, const char* reason) {
   phase_ = phase;
   reason_ = reason;
+  entered_ = last_;
 }
 
 void LandingGuidance::GoAround(const char* reason) {

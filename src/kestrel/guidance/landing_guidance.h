@@ -159,6 +159,7 @@ class LandingGuidance {
   GuidancePhase phase_ = GuidancePhase::kIdle;
   const char* reason_;
   int go_arounds_ = 0;
+  Time entered_;  // the phase
   bool is_active_ = false;
   bool has_given_up_ = false;  // and asks for hold while it has the mode
   bool may_stream_;

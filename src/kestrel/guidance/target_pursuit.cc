@@ -16,6 +16,10 @@ using Eigen::Vector3d;
 constexpr double kMaxGainDelay = 0.35;
 // Of the acceleration that the limits allow: with so much it brakes before a place.
 constexpr double kBrakingShare = 0.6;
+// Closing in from so far away with a gain k changes the acceleration by k^3 times the distance per
+// second; a jerk that the autopilot does not have makes it swing. Braking sets in within so long.
+constexpr double kJerkReach_m = 2.5;
+constexpr double kBrakingOnset_s = 0.4;
 constexpr double kIntegrateWithin_m = 1;
 constexpr double kMaxIntegral_mps = 0.8;
 
@@ -41,7 +45,12 @@ Closing ClosingSpeed(double distance_m, double gain, double braking) {
 
 TargetPursuit::TargetPursuit(const GuidanceOptions& options)
     : options_(options),
-      braking_(std::min(options.braking, kBrakingShare * options.limits.max_acceleration())) {}
+      gain_(options.position_gain),
+      braking_(std::min(options.braking, kBrakingShare * options.limits.max_acceleration())) {
+  if (options.autopilot_jerk == 0) return;
+  gain_ = std::min(gain_, std::cbrt(options.autopilot_jerk / kJerkReach_m));
+  braking_ = std::min(braking_, kBrakingOnset_s * options.autopilot_jerk);
+}
 
 SetPoint TargetPursuit::To(const Vector2d& place, const Motion& uav, const FlightModel& model,
                            double max_speed_mps) const {
@@ -81,7 +90,7 @@ void TargetPursuit::Reset() {
 }
 
 double TargetPursuit::Gain(const FlightModel& model) const {
-  return std::min(options_.position_gain, kMaxGainDelay / std::max(model.delay_s(), 0.01));
+  return std::min(gain_, kMaxGainDelay / std::max(model.delay_s(), 0.01));
 }
 
 void TargetPursuit::Close(const Vector2d& offset, const Vector2d& slip, double gain,

@@ -55,6 +55,7 @@ class TargetPursuit {
              SetPoint* command) const;
 
   GuidanceOptions options_;
+  double gain_;                       // speed per metre, 1/s
   double braking_;                    // m/s^2
   std::optional<Velocity> smoothed_;  // of the target
   std::optional<Time> integrated_;    // until when

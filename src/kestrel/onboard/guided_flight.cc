@@ -31,13 +31,6 @@ const FlightOptions& CheckedRate(const FlightOptions& options) {
   return options;
 }
 
-GuidanceOptions OptionsFor(AutopilotKind kind, GuidanceOptions options) {
-  options.stream_before_start = options.stream_before_start || kind == AutopilotKind::kPx4;
-  // PX4's LAND would brake on a deck that drives on.
-  options.land_in_contact = options.land_in_contact || kind == AutopilotKind::kArduPilot;
-  return options;
-}
-
 }  // namespace
 
 GuidedFlight::GuidedFlight(const FlightOptions& options, const TargetTrackerOptions& tracker,
@@ -76,7 +69,7 @@ bool GuidedFlight::Fly(Time now, const TrackSnapshot& track, const PoseHistory& 
 void GuidedFlight::KnowAutopilot(Time now) {
   if (!autopilot_.is_here() || autopilot_.kind() == kind_) return;
   kind_ = autopilot_.kind();
-  guidance_.emplace(OptionsFor(kind_, options_.guidance));
+  guidance_.emplace(OptionsFor(autopilot_, options_.guidance));
   WantGuidanceParameters(&autopilot_);
   permission_due_ = now;
   was_mode_ = autopilot_.is_guided_mode();
@@ -113,8 +106,10 @@ void GuidedFlight::CheckPermission(const GuidanceInput& input, Time now) {
                                      input.uav->world_from_body.translation, now)
                        : "no position is told";
   may_begin_ = refusal_.empty();
-  if (is_warned_ || !autopilot_.parameters().is_done()) return;
-  is_warned_ = true;
+  if (knows_parameters_ || !autopilot_.parameters().is_done()) return;
+  knows_parameters_ = true;
+  guidance_.emplace(OptionsFor(autopilot_, options_.guidance));
+  guidance_->Update(input);  // which has not begun
   if (const std::string danger = DangerOfGuidance(autopilot_); !danger.empty()) {
     Tell(mavlink::kSeverityWarning, danger);
   }

@@ -60,7 +60,7 @@ class GuidedFlight {
   Time permission_due_{};
   bool may_begin_ = false;  // nothing speaks against it
   std::string refusal_;     // what does
-  bool is_warned_ = false;
+  bool knows_parameters_ = false;
 
   Time told_frame_;  // the newest frame that a set-point was made from
   Time asked_{};     // the autopilot, for a mode or to disarm
