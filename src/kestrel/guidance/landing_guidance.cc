@@ -14,6 +14,7 @@ using Eigen::Vector3d;
 
 constexpr double kHeightGain = 1;      // climb rate per metre that it is too low
 constexpr double kResting_mps = 0.25;  // what is told to go down and sinks no faster rests
+constexpr double kToldDown_mps = 0.3;
 constexpr double kStanding_mps = 0.5;  // a deck that is slower stands
 constexpr double kMaxClosing_mps = 1;  // faster over the target it does not go down
 // Following ends where it is so many cones off, the last bit where it is so many off.
@@ -26,6 +27,7 @@ constexpr double kCommitAcceleration = 0.2;  // m/s^2, downwards
 // Over so long a change of the velocity is judged, and at least so much (m/s^2) is obedience.
 constexpr double kTrend_s = 1;
 constexpr double kLeastObedience = 0.5;
+constexpr double kLeastAcceleration = 1;  // m/s^2; no autopilot is set up for less
 
 constexpr const char* kWaits = "waits for the pilot to give the mode";
 constexpr const char* kWasGuided = "the mode was on already: leave it and give it anew";
@@ -290,7 +292,8 @@ bool LandingGuidance::Obeys(const GuidanceInput& input) {
   const Vector3d error = sent_ ? Vector3d(sent_->velocity - velocity) : Vector3d::Zero();
   const double size = error.norm();
   const double nearer = (velocity - velocity_trend_).dot(error) / kTrend_s;
-  const bool disobeys = size > options_.disobey_mps && nearer < kLeastObedience * size;
+  const double least = std::min(kLeastObedience * size, kLeastAcceleration);
+  const bool disobeys = size > options_.disobey_mps && nearer < least;
   Remember(disobeys, input.now, &disobeys_since_);
   return !IsLongerThan(options_.disobey_s, disobeys_since_, input.now);
 }
@@ -374,8 +377,10 @@ void LandingGuidance::ChooseDescent(const GuidanceInput& input, const Situation&
 
 // Whether it stands on the deck, by its own rest against it or by what the autopilot says.
 bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& now) {
+  // What is not told to go down may hover there.
+  const bool is_told_down = sent_ && sent_->velocity.z() < -kToldDown_mps;
   std::optional<ContactDetector::Deck> deck;
-  if (input.target) {
+  if (input.target && is_told_down) {
     deck = ContactDetector::Deck{input.target->motion.position(), input.target->motion.velocity()};
   }
   const bool was_in_contact = phase_ == GuidancePhase::kLanded;
