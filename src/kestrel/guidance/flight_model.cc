@@ -41,8 +41,9 @@ constexpr double kSteadyAcceleration = 1;
 Answer AssumedAnswer(double delay_s) { return {0.3, -delay_s, 0, 0, 0}; }
 Answer AnswerSigma() { return {0.3, 0.05, 0.1, 0.3, 0.3}; }
 
-// Whether a UAV that is by 'slack' slower than it was told is at a limit of its autopilot, which says
-// nothing of how it answers. One that is and does not come nearer has drag that nobody compensates.
+// Whether a UAV that is by 'slack' slower than it was told is at a limit of its autopilot, which
+// says nothing of how it answers. One that is and does not come nearer has drag that nobody
+// compensates.
 bool IsAtLimit(const Eigen::Vector2d& slack, const Eigen::Vector2d& acceleration) {
   const double size = slack.norm();
   if (size <= kMaxSlack_mps) return false;

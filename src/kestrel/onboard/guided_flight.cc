@@ -91,7 +91,7 @@ void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
   if (!is_begun_ && now >= permission_due_) CheckPermission(input, now);
   const LandedState landed = autopilot_.landed_state();
   const bool is_flying =
-      input.is_armed && landed != LandedState::kOnGround && landed != LandedState::kTakingOff;
+      input.is_armed && (landed == LandedState::kInAir || landed == LandedState::kLanding);
   if (!is_given_ || is_begun_ || !is_flying) return;
   CheckPermission(input, now);
   is_begun_ = may_begin_;
