@@ -42,7 +42,7 @@ std::vector<std::string> AutopilotOptions::Validate() const {
   RequireIn(landed_rate_hz, 0, kMaxRate_hz, "landed_rate_hz", &violations);
   RequireIn(range_rate_hz, 0, kMaxRate_hz, "range_rate_hz", &violations);
   RequireIn(status_rate_hz, 0, kMaxRate_hz, "status_rate_hz", &violations);
-  RequireIn(heartbeat_rate_hz, 0, kMaxRate_hz, "heartbeat_rate_hz", &violations);
+  RequireIn(mode_rate_hz, 0, kMaxRate_hz, "mode_rate_hz", &violations);
   RequireIn(true_pose_rate_hz, 0, kMaxRate_hz, "true_pose_rate_hz", &violations);
   RequirePositive(away_after_s, "away_after_s", &violations);
   RequirePositive(position_age_s, "position_age_s", &violations);
@@ -129,7 +129,7 @@ void Autopilot::HandleHeartbeat(const mavlink::Packet& packet, const mavlink::He
     return;
   }
   const mavlink::Heartbeat before = std::exchange(heartbeat_, heartbeat);
-  heard_ = received;
+  heard_ = mode_told_ = received;
   if (is_here_) return TellChange(before);
   is_here_ = true;
   const bool is_first = kind_ == AutopilotKind::kUnknown;
@@ -173,7 +173,12 @@ void Autopilot::HandleFromAutopilot(const mavlink::Packet& packet, Time received
   received_ = received;
   CountLost(packet);
   streams_.Count(packet.id);
-  if (const auto timesync = packet.As<mavlink::Timesync>()) {
+  if (const auto mode = packet.As<mavlink::CurrentMode>()) {
+    const mavlink::Heartbeat before = heartbeat_;
+    heartbeat_.custom_mode = mode->custom_mode;
+    mode_told_ = received;
+    TellChange(before);
+  } else if (const auto timesync = packet.As<mavlink::Timesync>()) {
     HandleTimesync(*timesync, received);
   } else if (const auto ack = packet.As<mavlink::CommandAck>()) {
     HandleAck(*ack);
@@ -350,10 +355,11 @@ void Autopilot::WantStreams() {
   streams_.Want(mavlink::AttitudeQuaternion::kId, options_.attitude_rate_hz);
   streams_.Want(mavlink::LocalPositionNed::kId, options_.position_rate_hz);
   streams_.Want(mavlink::ExtendedSysState::kId, options_.landed_rate_hz);
-  streams_.WantIfThere(mavlink::Heartbeat::kId, options_.heartbeat_rate_hz);
   // Not every vehicle has one.
   streams_.WantIfThere(mavlink::DistanceSensor::kId, options_.range_rate_hz);
   const bool is_px4 = kind_ == AutopilotKind::kPx4;
+  streams_.WantIfThere(is_px4 ? mavlink::CurrentMode::kId : mavlink::Heartbeat::kId,
+                       options_.mode_rate_hz);
   streams_.WantIfThere(is_px4 ? mavlink::EstimatorStatus::kId : mavlink::EkfStatusReport::kId,
                        options_.status_rate_hz);
   streams_.WantIfThere(mavlink::SysStatus::kId, options_.status_rate_hz);

@@ -95,8 +95,12 @@ class GuidedFlightTest : public testing::Test {
   static constexpr std::uint32_t kOffboard = 6 << 16, kPositionControl = 3 << 16;
 
   Time now_ = TimeFromNanoseconds(1'000'000'000'000);
-  mavlink::Heartbeat heartbeat_{
-      mavlink::kTypeQuadrotor, mavlink::kAutopilotArduPilot, mavlink::kModeFlagArmed, kLoiter, 4, 3};
+  mavlink::Heartbeat heartbeat_{mavlink::kTypeQuadrotor,
+                                mavlink::kAutopilotArduPilot,
+                                mavlink::kModeFlagArmed,
+                                kLoiter,
+                                4,
+                                3};
   std::uint8_t landed_ = mavlink::kLandedInAir;
   std::uint16_t ekf_flags_ = 0x3f;  // attitude, velocities and positions
   bool has_home_ = true;
