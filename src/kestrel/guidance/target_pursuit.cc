@@ -21,7 +21,7 @@ constexpr double kBrakingShare = 0.6;
 constexpr double kJerkReach_m = 2.5;
 constexpr double kBrakingOnset_s = 0.4;
 constexpr double kMaxLag_mps = 1;
-constexpr double kIntegrateWithin_m = 1;
+constexpr double kIntegrateWithin_m = 0.5;
 constexpr double kMaxIntegral_mps = 0.8;
 
 // A vector turned on by the target's curve for 'ahead_s', and how the velocity changes then.
