@@ -31,6 +31,8 @@ class GuidedFlight {
   // Sends what is due at 'now'; true when it was the first set-point of a new frame.
   bool Fly(Time now, const TrackSnapshot& track, const PoseHistory& poses);
 
+  // It flies the UAV, which has not landed.
+  bool is_flying() const { return is_begun_ && phase() != GuidancePhase::kLanded; }
   GuidancePhase phase() const { return guidance_->phase(); }
   int set_points() const { return set_points_; }  // sent
 
