@@ -211,6 +211,7 @@ bool Autopilot::HandlePose(const mavlink::Packet& packet, Time received) {
 void Autopilot::TellPose(PoseFate fate, const char* what, const PoseSample& pose) {
   switch (fate) {
     case PoseFate::kUsed:
+      newest_pose_ = pose.time;
       if (listener_.pose) listener_.pose(pose);
       break;
     case PoseFate::kNone:
@@ -251,9 +252,18 @@ bool Autopilot::HandleTruePose(const mavlink::Packet& packet, Time received) {
   const PoseFate fate = sim_state
                             ? TruePoseOf(*sim_state, kind_, *origin, clock_.sync(), received, &pose)
                             : TruePoseOf(*hil_state, kind_, *origin, clock_.sync(), &pose);
+  if (sim_state) pose.time = BetweenAttitudes(pose.time);
   if (fate == PoseFate::kNotFinite) TellNotFinite("true pose");
   if (fate == PoseFate::kUsed) listener_.true_pose(pose);
   return true;
+}
+
+// The time of a message that has none of its own, by when it came, which a link that delays as it
+// likes makes wrong: it was sent between the attitude before it and the next one.
+Time Autopilot::BetweenAttitudes(Time guess) const {
+  if (!newest_pose_ || options_.attitude_rate_hz == 0) return guess;
+  const Duration period = DurationFromSeconds(1 / options_.attitude_rate_hz);
+  return std::clamp(guess, *newest_pose_, *newest_pose_ + period);
 }
 
 // Messages that come seldom.
@@ -307,6 +317,7 @@ void Autopilot::Restart() {
   streams_.AskAgain();
   parameters_.AskAgain();
   poses_.Reset();
+  newest_pose_.reset();
   status_.Reset();
   sequence_.reset();
   questions_ = 0;

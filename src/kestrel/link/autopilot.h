@@ -198,7 +198,7 @@ class Autopilot {
   bool HandlePose(const mavlink::Packet& packet, Time received);
   bool HandleTruePose(const mavlink::Packet& packet, Time received);
   void TellPose(PoseFate fate, const char* what, const PoseSample& pose);
-  void TellTruePose(PoseFate fate, const PoseSample& pose);
+  Time BetweenAttitudes(Time guess) const;
   void HandleStatus(const mavlink::Packet& packet, Time received);
   void HandleTimesync(const mavlink::Timesync& message, Time received);
   void HandleAck(const mavlink::CommandAck& message);
@@ -240,6 +240,7 @@ class Autopilot {
   int jumps_ = 0;  // of the clock, that were seen
   AutopilotStatus status_;
   AutopilotPoses poses_;
+  std::optional<Time> newest_pose_;
   StreamRequests streams_;
   CommandRequests commands_;
   std::uint32_t requested_mode_ = 0;
