@@ -436,8 +436,12 @@ SetPoint LandingGuidance::Pursue(const GuidanceInput& input, const Situation& no
   SetPoint command =
       pursuit_.Above(*input.target, {now.feet.head<2>(), now.velocity.head<2>()}, model_);
   command.velocity.z() = ClimbRate(input, now);
-  // Out of sight nothing goes down but the last bit.
-  if (!now.is_in_sight && phase_ != GuidancePhase::kCommit) {
+  // Out of sight nothing goes down but the last bit. Low it stops at once, for it takes a UAV a
+  // while to, and goes around when that has lasted.
+  const double patience_s =
+      now.height_m < options_.sight_height_m ? 0.5 * options_.sight_s : options_.sight_s;
+  const bool is_seen = now.is_in_sight && input.target_age_s <= patience_s;
+  if (!is_seen && phase_ != GuidancePhase::kCommit) {
     command.velocity.z() = std::max(command.velocity.z(), 0.0);
   }
   return command;
