@@ -6,6 +6,7 @@
 
 #include "kestrel/base/options.h"
 #include "kestrel/base/violations.h"
+#include "kestrel/navigation/gravity.h"
 
 namespace kestrel {
 namespace {
@@ -24,8 +25,7 @@ constexpr double kGap_s = 0.25;  // after which what was before is of no use
 constexpr double kCorrelation_s = 0.5;
 constexpr double kWeight = kLearnEvery * kSample_s / kCorrelation_s;  // of one
 constexpr double kNoise_mps = 0.6;
-constexpr double kDelaySigma_s = 0.03;   // of what is assumed
-constexpr double kGravityOfLean = 9.81;  // m/s^2
+constexpr double kDelaySigma_s = 0.03;  // of what is assumed
 constexpr double kAirMemory_s = 20;
 constexpr double kAirNoise = 0.3;      // m/s^2
 constexpr double kMaxAirSigma = 0.06;  // of the drag, 1/s
@@ -134,7 +134,7 @@ void FlightModel::Learn() {
 void FlightModel::LearnAir(const Sums& begin, const Sums& end, const Vector3d& acceleration) {
   const Vector2d velocity = (end.velocity - begin.velocity) / kWindow;
   const Vector2d lean = (end.lean - begin.lean) / kWindow;
-  const Vector2d by_air = acceleration.head<2>() - (kGravityOfLean + acceleration.z()) * lean;
+  const Vector2d by_air = acceleration.head<2>() - (kGravity + acceleration.z()) * lean;
   by_lean_.Forget(std::exp(-kLearnEvery * kSample_s / kAirMemory_s));
   for (int axis = 0; axis < 2; ++axis) {
     Air row(-velocity(axis), 0, 0);

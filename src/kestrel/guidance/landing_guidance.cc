@@ -45,11 +45,6 @@ void Remember(bool is, Time now, std::optional<Time>* since) {
   }
 }
 
-double HeadingOf(const RigidTransform& world_from_body) {
-  const Vector3d forward = world_from_body.rotation * Vector3d::UnitX();
-  return std::atan2(forward.y(), forward.x());
-}
-
 bool IsFinite(const UavState& uav) {
   return uav.world_from_body.translation.allFinite() &&
          uav.world_from_body.rotation.coeffs().allFinite() && uav.velocity_in_world.allFinite();
@@ -191,7 +186,7 @@ void LandingGuidance::Start(const GuidanceInput& input) {
   }
   has_given_up_ = false;
   is_active_ = true;
-  yaw_ = HeadingOf(input.uav->world_from_body);
+  yaw_ = HeadingOf(input.uav->world_from_body.rotation);
   last_ = input.now;
   go_arounds_ = 0;
   poses_lost_.reset();
@@ -217,7 +212,7 @@ GuidanceOutput LandingGuidance::Idle(const GuidanceInput& input) const {
     return Output(std::nullopt, GuidanceRequest::kNone);
   }
   SetPoint hold;
-  hold.yaw = HeadingOf(input.uav->world_from_body);
+  hold.yaw = HeadingOf(input.uav->world_from_body.rotation);
   return Output(hold, GuidanceRequest::kNone);
 }
 

@@ -83,7 +83,7 @@ struct Autopilot {
   TestUavOptions uav;
 };
 
-// What the issue asks for, with autopilots that differ in all that guidance is not told.
+// Autopilots that differ in all that guidance is not told.
 TEST(LandingGuidanceTest, LandsWithWhateverAutopilot) {
   TestUavOptions stiff;
   stiff.compensates_drag = true;

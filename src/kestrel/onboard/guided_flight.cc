@@ -69,7 +69,6 @@ bool GuidedFlight::Fly(Time now, const TrackSnapshot& track, const PoseHistory& 
 void GuidedFlight::KnowAutopilot(Time now) {
   if (!autopilot_.is_here() || autopilot_.kind() == kind_) return;
   kind_ = autopilot_.kind();
-  guidance_.emplace(OptionsFor(autopilot_, options_.guidance));
   WantGuidanceParameters(&autopilot_);
   permission_due_ = now;
   was_mode_ = autopilot_.is_guided_mode();

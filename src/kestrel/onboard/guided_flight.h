@@ -51,7 +51,7 @@ class GuidedFlight {
   Autopilot& autopilot_;
   Connection* connection_;
   std::function<void(const std::string&)> say_;
-  std::optional<LandingGuidance> guidance_;  // of the autopilot's kind, once that is known
+  std::optional<LandingGuidance> guidance_;  // for this autopilot, once its parameters are known
   AutopilotKind kind_ = AutopilotKind::kUnknown;
   SendSchedule schedule_;
 
