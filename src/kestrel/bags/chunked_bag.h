@@ -70,11 +70,11 @@ class ChunkedBag : public BagReader {
   std::vector<Chunk> chunks_;  // in the order of the file
   std::string remark_;
 
-  std::vector<bool> is_wanted_;      // by topic
+  std::vector<bool> is_wanted_;  // by topic
   std::size_t next_chunk_ = 0;
-  std::string decompressed_;         // the records that are read, or
+  std::string decompressed_;             // the records that are read, or
   std::unique_ptr<ByteSource> records_;  // where they are; null between chunks
-  std::uint64_t offset_ = 0;         // of the next record
+  std::uint64_t offset_ = 0;             // of the next record
 };
 
 }  // namespace kestrel

@@ -2,14 +2,14 @@
 #include "kestrel/bags/decompression.h"
 
 #include <algorithm>
+#include <bzlib.h>
 #include <cstddef>
 #include <limits>
-#include <memory>
-
-#include <bzlib.h>
-#include <fmt/format.h>
 #include <lz4frame.h>
+#include <memory>
 #include <zstd.h>
+
+#include <fmt/format.h>
 
 #include "kestrel/base/error.h"
 
@@ -107,8 +107,8 @@ void RunStream(std::string_view input, std::uint64_t size, const std::string& na
   }
   output->resize(written);
   if (written > size || (is_done && written < size)) {
-    throw InputError(fmt::format("{}: has not the {} bytes that it should when decompressed", name,
-                                 size));
+    throw InputError(
+        fmt::format("{}: has not the {} bytes that it should when decompressed", name, size));
   }
 }
 

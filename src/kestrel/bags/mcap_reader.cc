@@ -169,7 +169,7 @@ void McapReader::ReadThrough() {
     for (; !has_end && ReadRecord(&file(), offset, &record); offset = record.end()) {
       if (record.opcode == 0) throw InputError(record.name + ": is no record");
       const bool is_message = record.opcode == kMessageOpcode;
-      if (is_message && !loose) loose = Chunk{.offset = offset};
+      if (is_message && !loose) loose.emplace().offset = offset;
       if (!is_message && record.opcode != kSchemaOpcode && record.opcode != kChannelOpcode) {
         finish_loose();
       }
@@ -254,9 +254,8 @@ void McapReader::AddChannel(std::string_view content, const std::string& name) {
 std::size_t McapReader::TopicOfChannel(std::uint16_t channel, const std::string& name) const {
   const auto topic = topics_of_channels_.find(channel);
   if (topic == topics_of_channels_.end()) {
-    throw InputError(
-        fmt::format("{}: has a message of channel {}, which the file does not describe", name,
-                    channel));
+    throw InputError(fmt::format(
+        "{}: has a message of channel {}, which the file does not describe", name, channel));
   }
   return topic->second;
 }
@@ -266,16 +265,16 @@ bool McapReader::NextMessage(ByteSource* records, std::uint64_t* offset, BagMess
   while (ReadRecord(records, *offset, &record)) {
     *offset = record.end();
     if (record.opcode != kMessageOpcode) continue;
+    if (record.content_size < kMessageHead) {
+      throw InputError(record.name + ": the message has no times, expected two");
+    }
     ByteCursor cursor(records->View(record.content_offset, kMessageHead), record.name);
     message->topic = TopicOfChannel(cursor.Take<std::uint16_t>(), record.name);
     if (!IsWanted(message->topic)) continue;
     cursor.Take<std::uint32_t>();  // sequence
     message->arrival = TimeFromNanoseconds(cursor.Take<std::int64_t>());
-    if (record.content_size < kMessageHead) {
-      throw InputError(record.name + ": the message has no times, expected two");
-    }
-    message->data = records->View(record.content_offset + kMessageHead,
-                                  record.content_size - kMessageHead);
+    message->data =
+        records->View(record.content_offset + kMessageHead, record.content_size - kMessageHead);
     return true;
   }
   return false;

@@ -81,7 +81,8 @@ struct Ros1Bag::Record {
 
 Ros1Bag::Ros1Bag(const std::string& path) : ChunkedBag(path) {
   if (file().View(0, kRos1BagMagic.size()) != kRos1BagMagic) {
-    throw InputError(path + ": is no ROS 1 bag of version 2.0, expected it to begin '#ROSBAG V2.0'");
+    throw InputError(path +
+                     ": is no ROS 1 bag of version 2.0, expected it to begin '#ROSBAG V2.0'");
   }
   Record head;
   if (ReadRecord(&file(), kRos1BagMagic.size(), &head) == RecordStatus::kCut) {

@@ -22,10 +22,10 @@ WireReader::WireReader(std::string_view bytes, WireFormat format, const std::str
   if (format_ != WireFormat::kCdr) return;
   const std::string_view head = Take(kEncapsulation);
   if (head[0] != 0 || (head[1] != 0 && head[1] != 1)) {
-    throw InputError(fmt::format("{}: is serialized as {:02x}{:02x}, expected plain CDR (0000 or "
-                                 "0001)",
-                                 name, static_cast<unsigned char>(head[0]),
-                                 static_cast<unsigned char>(head[1])));
+    throw InputError(fmt::format(
+        "{}: is serialized as {:02x}{:02x}, expected plain CDR (0000 or "
+        "0001)",
+        name, static_cast<unsigned char>(head[0]), static_cast<unsigned char>(head[1])));
   }
   is_big_endian_ = head[1] == 0;
 }
@@ -60,8 +60,8 @@ void WireReader::Align(std::size_t size) {
 
 std::string_view WireReader::Take(std::size_t count) {
   if (count > bytes_.size() - offset_) {
-    throw InputError(fmt::format("{}: the message ends after {} bytes, expected more", *name_,
-                                 bytes_.size()));
+    throw InputError(
+        fmt::format("{}: the message ends after {} bytes, expected more", *name_, bytes_.size()));
   }
   const std::string_view taken = bytes_.substr(offset_, count);
   offset_ += count;

@@ -30,7 +30,7 @@ class WireReader {
   WireReader(std::string_view bytes, WireFormat format, const std::string& name);
 
   template <class Number>
-    requires std::is_arithmetic_v<Number>
+  requires std::is_arithmetic_v<Number>
   void operator()(Number& number) {
     Align(sizeof(Number));
     char bytes[sizeof(Number)];
@@ -41,10 +41,8 @@ class WireReader {
   void operator()(Time& time);
   void operator()(std::string& text);
   template <class Message>
-    requires std::is_class_v<Message>
-  void operator()(Message& message) {
-    Message::Fields(message, *this);
-  }
+  requires std::is_class_v<Message>
+  void operator()(Message& message) { Message::Fields(message, *this); }
 
   void OfRos1(std::uint32_t& number) {
     if (format_ == WireFormat::kRos1) (*this)(number);
@@ -76,7 +74,7 @@ class WireWriter {
   explicit WireWriter(WireFormat format);
 
   template <class Number>
-    requires std::is_arithmetic_v<Number>
+  requires std::is_arithmetic_v<Number>
   void operator()(const Number& number) {
     Align(sizeof(Number));
     bytes_.append(reinterpret_cast<const char*>(&number), sizeof(Number));
@@ -84,10 +82,8 @@ class WireWriter {
   void operator()(const Time& time);
   void operator()(const std::string& text);
   template <class Message>
-    requires std::is_class_v<Message>
-  void operator()(const Message& message) {
-    Message::Fields(message, *this);
-  }
+  requires std::is_class_v<Message>
+  void operator()(const Message& message) { Message::Fields(message, *this); }
 
   void OfRos1(const std::uint32_t& number) {
     if (format_ == WireFormat::kRos1) (*this)(number);
