@@ -119,7 +119,7 @@ HuntScore ScoreHunt(const std::string& folder) {
   const auto sightings = ParseTrueSightings(ReadFile(sightings_file), sightings_file, objects);
 
   const auto source = OpenSource({folder}, PixelFormat::kBgr);
-  CameraCalibration calibration = ReadCalibration(source->calibration_file());
+  CameraCalibration calibration = *source->calibration();
   calibration.clock_offset = DurationFromSeconds(truth.scene().clock_offset_s);
   calibration.body_from_camera->rotation =
       truth.scene().mount_error * calibration.body_from_camera->rotation;

@@ -13,6 +13,7 @@
 #include "kestrel/bags/ros1_bag.h"
 #include "kestrel/bags/sqlite_bag.h"
 #include "kestrel/base/error.h"
+#include "kestrel/recording/euroc_recording.h"
 
 namespace kestrel {
 namespace {
@@ -138,7 +139,7 @@ class SplitBag : public BagReader {
 }  // namespace
 
 bool IsBag(const std::string& path) {
-  return BagKindOf(path) != BagKind::kNone || IsBagFolder(path);
+  return BagKindOf(path) != BagKind::kNone || (!FindEurocRoot(path) && IsBagFolder(path));
 }
 
 std::unique_ptr<BagReader> OpenBag(const std::string& path) {
