@@ -11,7 +11,6 @@
 #include "kestrel/base/error.h"
 #include "kestrel/base/parse_number.h"
 #include "kestrel/base/read_file.h"
-#include "kestrel/camera/calibration_reader.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/recording/event_source.h"
 #include "kestrel/recording/image_file.h"

@@ -33,7 +33,8 @@ StampedPose ParsePose(const BagTopic& topic, std::string_view data, const std::s
     return {message.header.stamp, "", message.pose, std::nullopt};
   }
   if (topic.type == PoseWithCovarianceStampedMessage::kType) {
-    const auto message = ParseMessage<PoseWithCovarianceStampedMessage>(data, topic.wire_format, name);
+    const auto message =
+        ParseMessage<PoseWithCovarianceStampedMessage>(data, topic.wire_format, name);
     return {message.header.stamp, "", message.pose, std::nullopt};
   }
   if (topic.type == TransformStampedMessage::kType) {
@@ -79,9 +80,8 @@ class PoseList {
     }
     std::stable_sort(poses_.begin(), poses_.end(),
                      [](const PoseSample& a, const PoseSample& b) { return a.time < b.time; });
-    const auto end = std::unique(poses_.begin(), poses_.end(), [](const auto& a, const auto& b) {
-      return a.time == b.time;
-    });
+    const auto end = std::unique(poses_.begin(), poses_.end(),
+                                 [](const auto& a, const auto& b) { return a.time == b.time; });
     const auto repeated = poses_.end() - end;
     poses_.erase(end, poses_.end());
     if (invalid_ + unstamped_ > 0) {

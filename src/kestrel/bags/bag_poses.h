@@ -16,9 +16,9 @@ namespace kestrel {
 
 // Where the UAV was by a bag, and where the camera sits on it.
 struct BagPoses {
-  std::vector<PoseSample> poses;                  // in order of time, no two of one
+  std::vector<PoseSample> poses;                   // in order of time, no two of one
   std::optional<RigidTransform> body_from_camera;  // where tf tells
-  std::string remark;  // what was left out, on one line; else empty
+  std::string remark;                              // what was left out, on one line; else empty
 };
 
 // Reads the poses of a bag in one pass, in two where tf has them. The body is the child frame of

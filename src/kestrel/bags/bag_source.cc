@@ -47,9 +47,8 @@ void BagSource::ReadCameraInfo() {
   bag_->Select({*topics_.camera_info});
   BagMessage message;
   if (!bag_->Next(&message)) return;
-  camera_info_ = ParseMessage<CameraInfoMessage>(message.data,
-                                                 bag_->topics()[message.topic].wire_format,
-                                                 NameOf(message.topic));
+  camera_info_ = ParseMessage<CameraInfoMessage>(
+      message.data, bag_->topics()[message.topic].wire_format, NameOf(message.topic));
 }
 
 std::optional<CameraCalibration> BagSource::calibration() const {
@@ -74,8 +73,8 @@ std::string BagSource::ReadFirstImages() {
   BagMessage message;
   while (times.size() < kImagesForRate && bag_->Next(&message)) {
     // Both kinds of images begin with the header.
-    const auto header = ParseMessage<HeaderMessage>(message.data, topic.wire_format,
-                                                    NameOf(message.topic));
+    const auto header =
+        ParseMessage<HeaderMessage>(message.data, topic.wire_format, NameOf(message.topic));
     if (times.empty()) camera_frame = header.frame_id;
     times.push_back(TimeOf(header, message));
   }
@@ -99,8 +98,7 @@ Time BagSource::TimeOf(const HeaderMessage& header, const BagMessage& message) c
 template <class Message>
 Frame BagSource::FrameOf(const BagMessage& message) const {
   const BagTopic& topic = bag_->topics()[message.topic];
-  const auto image =
-      ParseMessage<Message>(message.data, topic.wire_format, NameOf(message.topic));
+  const auto image = ParseMessage<Message>(message.data, topic.wire_format, NameOf(message.topic));
   Frame frame;
   frame.time = TimeOf(image.header, message);
   frame.name = fmt::format("{}/{}", topic.name.substr(topic.name.starts_with('/')),
@@ -123,15 +121,16 @@ bool BagSource::Next(Frame* frame) {
     if (!ReadFrame(&read)) {
       has_ended_ = true;
       if (left_out_ > 0) {
-        Tell(fmt::format("{}: {} images with the stamp of another, or late by more than {} images, "
-                         "are left out",
-                         NameOf(topics_.image), left_out_, kMaxWaiting));
+        Tell(
+            fmt::format("{}: {} images with the stamp of another, or late by more than {} images, "
+                        "are left out",
+                        NameOf(topics_.image), left_out_, kMaxWaiting));
       }
       break;
     }
-    const auto place = std::lower_bound(
-        waiting_.begin(), waiting_.end(), read.time,
-        [](const Frame& waiting, Time time) { return waiting.time < time; });
+    const auto place =
+        std::lower_bound(waiting_.begin(), waiting_.end(), read.time,
+                         [](const Frame& waiting, Time time) { return waiting.time < time; });
     const bool is_repeated = place != waiting_.end() && place->time == read.time;
     if (is_repeated || (last_time_ && read.time <= *last_time_)) {
       ++left_out_;

@@ -25,7 +25,8 @@ struct BagChoice {
 };
 
 // The images of a bag with its camera's calibration (camera_info, and the mount from tf) and its
-// poses. A frame's name is its topic with its time below it: "camera/image_raw/1403636579763555584".
+// poses. A frame's name is its topic with its time below it:
+// "camera/image_raw/1403636579763555584".
 class BagSource : public FrameSource {
  public:
   // Throws InputError with what is wrong with the bag: broken, no images, several cameras, no

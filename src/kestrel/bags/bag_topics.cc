@@ -31,7 +31,8 @@ TopicUse UseOf(const BagTopic& topic) {
   constexpr std::array kPoseTypes = {PoseStampedMessage::kType,
                                      PoseWithCovarianceStampedMessage::kType,
                                      TransformStampedMessage::kType, OdometryMessage::kType};
-  const bool is_pose = std::find(kPoseTypes.begin(), kPoseTypes.end(), topic.type) != kPoseTypes.end();
+  const bool is_pose =
+      std::find(kPoseTypes.begin(), kPoseTypes.end(), topic.type) != kPoseTypes.end();
   return is_pose ? TopicUse::kPose : TopicUse::kNone;
 }
 
@@ -103,17 +104,17 @@ class TopicChooser {
   }
 
   void CheckName(const std::string& name) const {
-    const auto topic =
-        std::find_if(topics_.begin(), topics_.end(),
-                     [&](const BagTopic& candidate) { return candidate.name == name; });
+    const auto topic = std::find_if(topics_.begin(), topics_.end(), [&](const BagTopic& candidate) {
+      return candidate.name == name;
+    });
     if (topic == topics_.end()) {
-      throw InputError(fmt::format("{}: has no topic {}, expected one of {}", bag_, name,
-                                   Listed(AllIndices())));
+      throw InputError(
+          fmt::format("{}: has no topic {}, expected one of {}", bag_, name, Listed(AllIndices())));
     }
     if (UseOf(*topic) == TopicUse::kNone) {
-      throw InputError(fmt::format(
-          "{}: the topic {} is of type {}, expected images, camera_info, poses or tf", bag_, name,
-          topic->type));
+      throw InputError(
+          fmt::format("{}: the topic {} is of type {}, expected images, camera_info, poses or tf",
+                      bag_, name, topic->type));
     }
   }
 
@@ -171,6 +172,8 @@ BagTopics ChooseTopics(const std::vector<BagTopic>& topics, const std::vector<st
   return chosen;
 }
 
-bool IsRectified(const std::string& topic) { return topic.find("/image_rect") != std::string::npos; }
+bool IsRectified(const std::string& topic) {
+  return topic.find("/image_rect") != std::string::npos;
+}
 
 }  // namespace kestrel

@@ -14,7 +14,7 @@ namespace kestrel {
 struct BagTopics {
   std::size_t image = 0;
   std::optional<std::size_t> camera_info;
-  std::optional<std::size_t> pose;     // nothing: from tf
+  std::optional<std::size_t> pose;      // nothing: from tf
   std::vector<std::size_t> transforms;  // tf and static tf
 };
 

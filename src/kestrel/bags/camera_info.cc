@@ -22,9 +22,9 @@ std::string PlainName(std::string name) {
 
 void RequireWholeImage(const CameraInfoMessage& message, const std::string& name) {
   const RegionOfInterestMessage& roi = message.roi;
-  const bool is_cropped =
-      roi.x_offset != 0 || roi.y_offset != 0 || (roi.width != 0 && roi.width != message.width) ||
-      (roi.height != 0 && roi.height != message.height);
+  const bool is_cropped = roi.x_offset != 0 || roi.y_offset != 0 ||
+                          (roi.width != 0 && roi.width != message.width) ||
+                          (roi.height != 0 && roi.height != message.height);
   if (is_cropped || message.binning_x > 1 || message.binning_y > 1) {
     throw InputError(name + ": tells of binning or a region of interest, expected whole images");
   }
@@ -40,11 +40,11 @@ CameraCalibration CalibrationOf(const CameraInfoMessage& message, bool is_rectif
       is_rectified ? std::array<double, 9>{p[0], p[1], p[2], p[4], p[5], p[6], p[8], p[9], p[10]}
                    : message.k;
   const bool is_distorted = !is_rectified && !message.d.empty();
-  const std::string text = fmt::format(
-      "width: {}\nheight: {}\nK: [{}]\ndistortion_model: {}\nD: [{}]\n", message.width,
-      message.height, fmt::join(k, ", "),
-      is_distorted ? PlainName(message.distortion_model) : "none",
-      fmt::join(is_distorted ? message.d : std::vector<double>(), ", "));
+  const std::string text =
+      fmt::format("width: {}\nheight: {}\nK: [{}]\ndistortion_model: {}\nD: [{}]\n", message.width,
+                  message.height, fmt::join(k, ", "),
+                  is_distorted ? PlainName(message.distortion_model) : "none",
+                  fmt::join(is_distorted ? message.d : std::vector<double>(), ", "));
   return ParseCalibration(text, name);
 }
 

@@ -40,13 +40,20 @@ bool ChunkedBag::HasWanted(const Chunk& chunk) const {
 
 ByteSource* ChunkedBag::OpenChunk(const Chunk& chunk) {
   if (chunk.compression == Compression::kNone) {
-    records_ = std::make_unique<BytesPart>(&file_, chunk.offset, chunk.stored_size);
+    const std::uint64_t size = chunk.records_end.value_or(chunk.stored_size);
+    records_ = std::make_unique<BytesPart>(&file_, chunk.offset, size);
   } else {
     Decompress(chunk.compression, file_.View(chunk.offset, chunk.stored_size), chunk.size,
                Place(chunk.offset), &decompressed_);
-    records_ = std::make_unique<MemoryBytes>(decompressed_);
+    const std::string_view records = decompressed_;
+    records_ = std::make_unique<MemoryBytes>(
+        records.substr(0, chunk.records_end.value_or(records.size())));
   }
   return records_.get();
+}
+
+void ChunkedBag::CountMessage(std::size_t topic) {
+  topics_[topic].messages = topics_[topic].messages.value_or(0) + 1;
 }
 
 std::size_t ChunkedBag::TopicOf(const BagTopic& topic) {

@@ -30,7 +30,9 @@ class ChunkedBag : public BagReader {
     std::uint64_t offset = 0;  // of its bytes in the file
     std::uint64_t stored_size = 0;
     Compression compression = Compression::kNone;
-    std::uint64_t size = 0;  // decompressed
+    std::optional<std::uint64_t> size;  // decompressed; not known of one that was not finished
+    // Where what makes no sense begins in the records, of a bag that was damaged.
+    std::optional<std::uint64_t> records_end;
     // The topics (indices) of which it has messages, where that is known.
     std::optional<std::vector<std::size_t>> topics;
   };
@@ -49,6 +51,8 @@ class ChunkedBag : public BagReader {
 
   // Index of the topic with this name and type, which is added when it is new.
   std::size_t TopicOf(const BagTopic& topic);
+
+  void CountMessage(std::size_t topic);
 
   // "flight.bag: byte 4711": for messages.
   std::string Place(std::uint64_t offset) const;

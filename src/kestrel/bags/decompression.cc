@@ -86,8 +86,9 @@ class ZstdStream {
 // Steps until the end of the input or of the stream. The output grows with what is there, whatever
 // size is claimed.
 template <class Stream>
-void RunStream(std::string_view input, std::uint64_t size, const std::string& name,
-               std::string* output) {
+void RunStream(std::string_view input, std::optional<std::uint64_t> expected,
+               const std::string& name, std::string* output) {
+  const std::uint64_t size = expected.value_or(kMaxDecompressed);
   constexpr std::size_t kFirstRoom = 1 << 16;
   Stream stream;
   std::size_t written = 0;
@@ -106,7 +107,7 @@ void RunStream(std::string_view input, std::uint64_t size, const std::string& na
     if (step.read == 0 && step.written == 0) break;  // cut off
   }
   output->resize(written);
-  if (written > size || (is_done && written < size)) {
+  if (written > size || (expected && is_done && written < size)) {
     throw InputError(
         fmt::format("{}: has not the {} bytes that it should when decompressed", name, size));
   }
@@ -122,15 +123,15 @@ Compression CompressionOf(std::string_view word, const std::string& name) {
   throw InputError(name + ": has an unknown compression, expected none, bz2, lz4 or zstd");
 }
 
-void Decompress(Compression compression, std::string_view bytes, std::uint64_t size,
+void Decompress(Compression compression, std::string_view bytes, std::optional<std::uint64_t> size,
                 const std::string& name, std::string* output) {
-  if (size > kMaxDecompressed) {
-    throw InputError(fmt::format("{}: claims to have {} bytes, expected at most {}", name, size,
+  if (size && *size > kMaxDecompressed) {
+    throw InputError(fmt::format("{}: claims to have {} bytes, expected at most {}", name, *size,
                                  kMaxDecompressed));
   }
   switch (compression) {
     case Compression::kNone:
-      output->assign(bytes.substr(0, size));
+      output->assign(bytes);
       return;
     case Compression::kBz2:
       return RunStream<Bz2Stream>(bytes, size, name, output);

@@ -47,15 +47,16 @@ void FrameTree::Add(const TransformStampedMessage& transform) {
   if (!parent_from_frame || frame == parent) return;
   const auto [link, is_new] = links_.try_emplace(frame, Link{parent, *parent_from_frame});
   if (is_new) return;
-  if (link->second.parent != parent || !IsSame(link->second.parent_from_frame, *parent_from_frame)) {
+  if (link->second.parent != parent ||
+      !IsSame(link->second.parent_from_frame, *parent_from_frame)) {
     link->second.is_fixed = false;
   }
 }
 
 bool FrameTree::Has(const std::string& frame) const {
-  return links_.contains(frame) ||
-         std::any_of(links_.begin(), links_.end(),
-                     [&](const auto& link) { return link.second.parent == frame; });
+  return links_.contains(frame) || std::any_of(links_.begin(), links_.end(), [&](const auto& link) {
+           return link.second.parent == frame;
+         });
 }
 
 bool FrameTree::IsFixed(const std::string& frame) const {

@@ -162,8 +162,7 @@ void McapReader::ReadThrough() {
     if (!loose) return;
     loose->stored_size = offset - loose->offset;
     BytesPart records(&file(), loose->offset, loose->stored_size);
-    Chunk chunk = *std::exchange(loose, std::nullopt);
-    ReadRecordsThrough(&records, &chunk);
+    ReadRecordsThrough(&records, *std::exchange(loose, std::nullopt));
   };
   try {
     for (; !has_end && ReadRecord(&file(), offset, &record); offset = record.end()) {
@@ -176,8 +175,8 @@ void McapReader::ReadThrough() {
       if (record.opcode == kSchemaOpcode) AddSchema(record.Content(&file()), record.name);
       if (record.opcode == kChannelOpcode) AddChannel(record.Content(&file()), record.name);
       if (record.opcode == kChunkOpcode) {
-        Chunk chunk = ReadChunkHead(record);
-        ReadRecordsThrough(OpenChunk(chunk), &chunk);
+        const Chunk chunk = ReadChunkHead(record);
+        ReadRecordsThrough(OpenChunk(chunk), chunk);
       }
       has_end = record.opcode == kDataEndOpcode;
     }
@@ -185,8 +184,8 @@ void McapReader::ReadThrough() {
     if (has_end) return;
     // The last chunk may be there in part: what is whole of it counts.
     if (record.content_offset > offset && record.opcode == kChunkOpcode) {
-      Chunk chunk = ReadChunkHead(record);
-      ReadRecordsThrough(OpenChunk(chunk), &chunk);
+      const Chunk chunk = ReadChunkHead(record, /*is_cut=*/true);
+      ReadRecordsThrough(OpenChunk(chunk), chunk);
     }
   } catch (const InputError&) {
     finish_loose();
@@ -195,24 +194,35 @@ void McapReader::ReadThrough() {
   SetCutRemark(offset);
 }
 
-void McapReader::ReadRecordsThrough(ByteSource* records, Chunk* chunk) {
+// Adds the chunk, with what is before a record that makes no sense.
+void McapReader::ReadRecordsThrough(ByteSource* records, Chunk chunk) {
   std::set<std::size_t> topics;
   Record record;
-  for (std::uint64_t offset = 0; ReadRecord(records, offset, &record); offset = record.end()) {
-    if (record.opcode == kSchemaOpcode) AddSchema(record.Content(records), record.name);
-    if (record.opcode == kChannelOpcode) AddChannel(record.Content(records), record.name);
-    if (record.opcode != kMessageOpcode) continue;
-    ByteCursor cursor(records->View(record.content_offset, kMessageHead), record.name);
-    const std::size_t topic = TopicOfChannel(cursor.Take<std::uint16_t>(), record.name);
-    auto& messages = mutable_topics()[topic].messages;
-    messages = messages.value_or(0) + 1;
-    topics.insert(topic);
+  std::uint64_t offset = 0;
+  const auto add = [&] {
+    chunk.topics.emplace(topics.begin(), topics.end());
+    chunks().push_back(chunk);
+  };
+  try {
+    for (; ReadRecord(records, offset, &record); offset = record.end()) {
+      if (record.opcode == 0) throw InputError(record.name + ": is no record");
+      if (record.opcode == kSchemaOpcode) AddSchema(record.Content(records), record.name);
+      if (record.opcode == kChannelOpcode) AddChannel(record.Content(records), record.name);
+      if (record.opcode != kMessageOpcode) continue;
+      ByteCursor cursor(records->View(record.content_offset, kMessageHead), record.name);
+      const std::size_t topic = TopicOfChannel(cursor.Take<std::uint16_t>(), record.name);
+      CountMessage(topic);
+      topics.insert(topic);
+    }
+  } catch (const InputError&) {
+    chunk.records_end = offset;
+    add();
+    throw;
   }
-  chunk->topics.emplace(topics.begin(), topics.end());
-  chunks().push_back(std::move(*chunk));
+  add();
 }
 
-ChunkedBag::Chunk McapReader::ReadChunkHead(const Record& record) {
+ChunkedBag::Chunk McapReader::ReadChunkHead(const Record& record, bool is_cut) {
   constexpr std::uint64_t kMaxHead = 128;  // the name of the compression is the only text in it
   const std::string_view bytes =
       file().View(record.content_offset, std::min(record.content_size, kMaxHead));
@@ -224,7 +234,7 @@ ChunkedBag::Chunk McapReader::ReadChunkHead(const Record& record) {
   chunk.compression = CompressionOf(cursor.Text(), record.name);
   chunk.stored_size = cursor.Take<std::uint64_t>();
   chunk.offset = record.content_offset + (bytes.size() - cursor.left());
-  if (chunk.stored_size > record.end() - chunk.offset) {
+  if (!is_cut && chunk.stored_size > record.end() - chunk.offset) {
     throw InputError(record.name + ": the chunk's records are longer than the chunk");
   }
   return chunk;

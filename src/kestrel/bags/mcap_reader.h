@@ -35,8 +35,8 @@ class McapReader : public ChunkedBag {
   bool ReadSummary();
   bool ReadSummaryRecords(std::uint64_t offset, std::uint64_t end);
   void ReadThrough();
-  void ReadRecordsThrough(ByteSource* records, Chunk* chunk);
-  Chunk ReadChunkHead(const Record& record);
+  void ReadRecordsThrough(ByteSource* records, Chunk chunk);
+  Chunk ReadChunkHead(const Record& record, bool is_cut = false);
   void AddSchema(std::string_view content, const std::string& name);
   void AddChannel(std::string_view content, const std::string& name);
   std::size_t TopicOfChannel(std::uint16_t channel, const std::string& name) const;

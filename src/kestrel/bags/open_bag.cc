@@ -113,7 +113,8 @@ class SplitBag : public BagReader {
       return;
     }
     auto& messages = topics_[index].messages;
-    messages = messages && topic.messages ? std::optional(*messages + *topic.messages) : std::nullopt;
+    messages =
+        messages && topic.messages ? std::optional(*messages + *topic.messages) : std::nullopt;
   }
   void OpenPart(const std::string& file) {
     part_ = OpenBagFile(file, folder_.has_compressed_messages);

@@ -172,36 +172,52 @@ void Ros1Bag::ReadThrough(std::uint64_t offset) {
       const std::uint8_t kind = record.kind();
       if (kind == kChunkInfo) has_index = true;
       if (kind == kConnection) AddConnection(record, &file());
-      if (kind == kChunk) ReadChunkThrough(record);
+      if (kind != kChunk) continue;
+      if (record.data_size == 0) break;  // not finished: its sizes are filled in at its end
+      ReadChunkThrough(ReadChunkHead(record));
     }
     if (offset == file().size() && has_index) return;
-    // The last chunk may be there in part: what is whole of it counts.
-    if (record.data_offset > offset && record.kind() == kChunk) ReadChunkThrough(record);
+    // What is whole of the last chunk counts.
+    if (record.data_offset > offset && record.kind() == kChunk) {
+      Chunk chunk = ReadChunkHead(record);
+      if (record.data_size == 0) {
+        chunk.stored_size = file().size() - chunk.offset;
+        chunk.size.reset();
+      }
+      ReadChunkThrough(std::move(chunk));
+    }
   } catch (const InputError&) {
     if (chunks().empty()) throw;
   }
   SetCutRemark(offset);
 }
 
-void Ros1Bag::ReadChunkThrough(const Record& chunk_record) {
-  Chunk chunk = ReadChunkHead(chunk_record);
+// Adds the chunk, with what is before a record that makes no sense.
+void Ros1Bag::ReadChunkThrough(Chunk chunk) {
   ByteSource* records = OpenChunk(chunk);
   std::set<std::size_t> topics;
   Record record;
-  for (std::uint64_t offset = 0; ReadRecord(records, offset, &record) == RecordStatus::kOk;
-       offset = record.end()) {
-    if (record.kind() == kConnection) {
-      AddConnection(record, records);
-    } else if (record.kind() == kMessageData) {
+  std::uint64_t offset = 0;
+  const auto add = [&] {
+    chunk.topics.emplace(topics.begin(), topics.end());
+    chunks().push_back(chunk);
+  };
+  try {
+    for (; ReadRecord(records, offset, &record) == RecordStatus::kOk; offset = record.end()) {
+      const std::uint8_t kind = record.kind();
+      if (kind == kConnection) AddConnection(record, records);
+      if (kind != kMessageData) continue;
       const std::size_t topic =
           TopicOfConnection(record.fields().Get<std::uint32_t>("conn"), chunk.offset);
-      auto& messages = mutable_topics()[topic].messages;
-      messages = messages.value_or(0) + 1;
+      CountMessage(topic);
       topics.insert(topic);
     }
+  } catch (const InputError&) {
+    chunk.records_end = offset;
+    add();
+    throw;
   }
-  chunk.topics.emplace(topics.begin(), topics.end());
-  chunks().push_back(std::move(chunk));
+  add();
 }
 
 ChunkedBag::Chunk Ros1Bag::ReadChunkHead(const Record& record) {
@@ -209,6 +225,7 @@ ChunkedBag::Chunk Ros1Bag::ReadChunkHead(const Record& record) {
           .stored_size = record.data_size,
           .compression = CompressionOf(record.fields().Text("compression"), record.name),
           .size = record.fields().Get<std::uint32_t>("size"),
+          .records_end = std::nullopt,
           .topics = std::nullopt};
 }
 

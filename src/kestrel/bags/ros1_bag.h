@@ -29,7 +29,7 @@ class Ros1Bag : public ChunkedBag {
 
   bool ReadIndex(std::uint64_t index_offset);
   void ReadThrough(std::uint64_t offset);
-  void ReadChunkThrough(const Record& chunk_record);
+  void ReadChunkThrough(Chunk chunk);
   void AddConnection(const Record& record, ByteSource* records);
   std::size_t TopicOfConnection(std::uint32_t connection, std::uint64_t offset) const;
   static Chunk ReadChunkHead(const Record& record);

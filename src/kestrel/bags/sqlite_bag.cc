@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <sqlite3.h>
 #include <string_view>
+#include <zstd.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sqlite3.h>
-#include <zstd.h>
 
 #include "kestrel/bags/decompression.h"
 #include "kestrel/base/error.h"

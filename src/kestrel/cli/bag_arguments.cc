@@ -17,10 +17,9 @@ void BagArguments::AddTo(CLI::App* command) {
 
 std::unique_ptr<FrameSource> BagArguments::Open(const std::vector<std::string>& sources,
                                                 PixelFormat format) const {
-  return OpenSourceOrBag(
-      sources, format, {topics, use_arrival_times, [](const std::string& text) {
-                          fmt::print(stderr, "kestrel: {}\n", text);
-                        }});
+  return OpenSourceOrBag(sources, format, {topics, use_arrival_times, [](const std::string& text) {
+                                             fmt::print(stderr, "kestrel: {}\n", text);
+                                           }});
 }
 
 }  // namespace kestrel

@@ -99,7 +99,8 @@ void RunCalibrate(const CalibrateArguments& arguments, FlightCalibrationOptions 
   CameraCalibration calibration = ReadGiven(arguments, *source);
   const std::vector<PoseSample> poses = source->poses();
   if (poses.empty()) {
-    throw InputError(arguments.recording + ": has no poses of the UAV, expected nav0/data.csv or a topic");
+    throw InputError(arguments.recording +
+                     ": has no poses of the UAV, expected nav0/data.csv or a topic");
   }
   const auto sightings = FindSightings(source.get(), calibration, landing);
   const MountAndClock given{*calibration.body_from_camera,

@@ -68,8 +68,8 @@ class EvenSample {
 // What the sources hold, and what their files say beside the lens.
 struct LensSources {
   std::vector<LensImage> images;
-  CameraMount mount;    // of the first
-  double rate_hz = 0;   // of the first
+  CameraMount mount;   // of the first
+  double rate_hz = 0;  // of the first
 };
 
 LensSources ReadSources(const std::vector<std::string>& arguments, const BagArguments& bag) {
@@ -150,9 +150,10 @@ void AddCalibrateLensCommand(CLI::App* calibrate) {
       "lens", "Focal length, principal point and distortion from views of the landing pattern");
   const auto arguments = std::make_shared<LensArguments>();
   command
-      ->add_option("SOURCE", arguments->sources,
-                   "Recording folders (EuRoC), bags, folders of images, image files or videos of "
-                   "one camera, that show the pattern near and far, tilted, and in all of the image")
+      ->add_option(
+          "SOURCE", arguments->sources,
+          "Recording folders (EuRoC), bags, folders of images, image files or videos of "
+          "one camera, that show the pattern near and far, tilted, and in all of the image")
       ->required();
   arguments->bag.AddTo(command);
   command

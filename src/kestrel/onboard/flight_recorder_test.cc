@@ -12,7 +12,6 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/base/read_file.h"
-#include "kestrel/camera/calibration_reader.h"
 #include "kestrel/evaluation/flight_truth.h"
 #include "kestrel/evaluation/landing_truth.h"
 #include "kestrel/recording/csv_table.h"
