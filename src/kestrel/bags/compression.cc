@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/bags/compression.h"
 
-#include <cstddef>
-
 #include <bzlib.h>
+#include <cstddef>
 #include <lz4frame.h>
 #include <zstd.h>
 
@@ -31,8 +30,8 @@ std::string CompressLz4(std::string_view bytes) {
   preferences.frameInfo.blockSizeID = LZ4F_max4MB;
   preferences.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
   std::string output(LZ4F_compressFrameBound(bytes.size(), &preferences), '\0');
-  const std::size_t size = LZ4F_compressFrame(output.data(), output.size(), bytes.data(),
-                                              bytes.size(), &preferences);
+  const std::size_t size =
+      LZ4F_compressFrame(output.data(), output.size(), bytes.data(), bytes.size(), &preferences);
   if (LZ4F_isError(size)) throw InputError("lz4 has no memory to compress");
   output.resize(size);
   return output;
@@ -40,8 +39,8 @@ std::string CompressLz4(std::string_view bytes) {
 
 std::string CompressZstd(std::string_view bytes) {
   std::string output(ZSTD_compressBound(bytes.size()), '\0');
-  const std::size_t size = ZSTD_compress(output.data(), output.size(), bytes.data(), bytes.size(),
-                                         ZSTD_CLEVEL_DEFAULT);
+  const std::size_t size =
+      ZSTD_compress(output.data(), output.size(), bytes.data(), bytes.size(), ZSTD_CLEVEL_DEFAULT);
   if (ZSTD_isError(size)) throw InputError("zstd has no memory to compress");
   output.resize(size);
   return output;

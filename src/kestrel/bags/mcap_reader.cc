@@ -10,21 +10,11 @@
 #include <fmt/format.h>
 
 #include "kestrel/bags/byte_cursor.h"
+#include "kestrel/bags/mcap_opcodes.h"
 #include "kestrel/base/error.h"
 
 namespace kestrel {
 namespace {
-
-enum Opcode : std::uint8_t {
-  kFooterOpcode = 0x02,
-  kSchemaOpcode = 0x03,
-  kChannelOpcode = 0x04,
-  kMessageOpcode = 0x05,
-  kChunkOpcode = 0x06,
-  kChunkIndexOpcode = 0x08,
-  kStatisticsOpcode = 0x0b,
-  kDataEndOpcode = 0x0f,
-};
 
 constexpr std::uint64_t kRecordHead = 9;    // opcode and length
 constexpr std::uint64_t kFooterSize = 20;   // without its head
@@ -85,7 +75,7 @@ bool McapReader::ReadSummary() {
   if (size < kMcapMagic.size() + kEnd) return false;
   if (file().View(size - kMcapMagic.size(), kMcapMagic.size()) != kMcapMagic) return false;
   Record footer;
-  if (!ReadRecord(&file(), size - kEnd, &footer) || footer.opcode != kFooterOpcode ||
+  if (!ReadRecord(&file(), size - kEnd, &footer) || footer.opcode != kMcapFooter ||
       footer.content_size != kFooterSize) {
     return false;
   }
@@ -105,10 +95,10 @@ bool McapReader::ReadSummaryRecords(std::uint64_t offset, std::uint64_t end) {
   Record record;
   for (; offset < end && ReadRecord(&file(), offset, &record); offset = record.end()) {
     const std::string content(record.Content(&file()));
-    if (record.opcode == kSchemaOpcode) AddSchema(content, record.name);
-    if (record.opcode == kChannelOpcode) AddChannel(content, record.name);
-    if (record.opcode == kStatisticsOpcode) statistics = content;
-    if (record.opcode == kChunkIndexOpcode) chunk_indexes.emplace_back(record, content);
+    if (record.opcode == kMcapSchema) AddSchema(content, record.name);
+    if (record.opcode == kMcapChannel) AddChannel(content, record.name);
+    if (record.opcode == kMcapStatistics) statistics = content;
+    if (record.opcode == kMcapChunkIndex) chunk_indexes.emplace_back(record, content);
   }
   if (offset != end || !statistics) return false;
 
@@ -125,7 +115,7 @@ bool McapReader::ReadSummaryRecords(std::uint64_t offset, std::uint64_t end) {
     ByteCursor cursor(content, index.name);
     cursor.Bytes(8 + 8);  // first and last time
     Record head;
-    if (!ReadRecord(&file(), cursor.Take<std::uint64_t>(), &head) || head.opcode != kChunkOpcode) {
+    if (!ReadRecord(&file(), cursor.Take<std::uint64_t>(), &head) || head.opcode != kMcapChunk) {
       return false;
     }
     Chunk chunk = ReadChunkHead(head);
@@ -167,23 +157,23 @@ void McapReader::ReadThrough() {
   try {
     for (; !has_end && ReadRecord(&file(), offset, &record); offset = record.end()) {
       if (record.opcode == 0) throw InputError(record.name + ": is no record");
-      const bool is_message = record.opcode == kMessageOpcode;
+      const bool is_message = record.opcode == kMcapMessage;
       if (is_message && !loose) loose.emplace().offset = offset;
-      if (!is_message && record.opcode != kSchemaOpcode && record.opcode != kChannelOpcode) {
+      if (!is_message && record.opcode != kMcapSchema && record.opcode != kMcapChannel) {
         finish_loose();
       }
-      if (record.opcode == kSchemaOpcode) AddSchema(record.Content(&file()), record.name);
-      if (record.opcode == kChannelOpcode) AddChannel(record.Content(&file()), record.name);
-      if (record.opcode == kChunkOpcode) {
+      if (record.opcode == kMcapSchema) AddSchema(record.Content(&file()), record.name);
+      if (record.opcode == kMcapChannel) AddChannel(record.Content(&file()), record.name);
+      if (record.opcode == kMcapChunk) {
         const Chunk chunk = ReadChunkHead(record);
         ReadRecordsThrough(OpenChunk(chunk), chunk);
       }
-      has_end = record.opcode == kDataEndOpcode;
+      has_end = record.opcode == kMcapDataEnd;
     }
     finish_loose();
     if (has_end) return;
     // The last chunk may be there in part: what is whole of it counts.
-    if (record.content_offset > offset && record.opcode == kChunkOpcode) {
+    if (record.content_offset > offset && record.opcode == kMcapChunk) {
       const Chunk chunk = ReadChunkHead(record, /*is_cut=*/true);
       ReadRecordsThrough(OpenChunk(chunk), chunk);
     }
@@ -206,9 +196,9 @@ void McapReader::ReadRecordsThrough(ByteSource* records, Chunk chunk) {
   try {
     for (; ReadRecord(records, offset, &record); offset = record.end()) {
       if (record.opcode == 0) throw InputError(record.name + ": is no record");
-      if (record.opcode == kSchemaOpcode) AddSchema(record.Content(records), record.name);
-      if (record.opcode == kChannelOpcode) AddChannel(record.Content(records), record.name);
-      if (record.opcode != kMessageOpcode) continue;
+      if (record.opcode == kMcapSchema) AddSchema(record.Content(records), record.name);
+      if (record.opcode == kMcapChannel) AddChannel(record.Content(records), record.name);
+      if (record.opcode != kMcapMessage) continue;
       ByteCursor cursor(records->View(record.content_offset, kMessageHead), record.name);
       const std::size_t topic = TopicOfChannel(cursor.Take<std::uint16_t>(), record.name);
       CountMessage(topic);
@@ -274,7 +264,7 @@ bool McapReader::NextMessage(ByteSource* records, std::uint64_t* offset, BagMess
   Record record;
   while (ReadRecord(records, *offset, &record)) {
     *offset = record.end();
-    if (record.opcode != kMessageOpcode) continue;
+    if (record.opcode != kMcapMessage) continue;
     if (record.content_size < kMessageHead) {
       throw InputError(record.name + ": the message has no times, expected two");
     }

@@ -40,10 +40,8 @@ std::string UriOf(const std::string& path) {
 
 }  // namespace
 
-void SqliteBag::CloseDatabase::operator()(sqlite3* database) const { sqlite3_close(database); }
-void SqliteBag::FinalizeStatement::operator()(sqlite3_stmt* statement) const {
-  sqlite3_finalize(statement);
-}
+void CloseSqlite::operator()(sqlite3* database) const { sqlite3_close(database); }
+void FinalizeSqlite::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 
 SqliteBag::SqliteBag(const std::string& path, bool has_compressed_messages)
     : path_(path), has_compressed_messages_(has_compressed_messages) {
@@ -60,14 +58,12 @@ SqliteBag::SqliteBag(const std::string& path, bool has_compressed_messages)
   ReadTopics();
 }
 
-SqliteBag::~SqliteBag() = default;
-
-SqliteBag::Statement SqliteBag::Prepare(const std::string& sql) const {
+SqliteStatement SqliteBag::Prepare(const std::string& sql) const {
   sqlite3_stmt* statement = nullptr;
   if (sqlite3_prepare_v2(database_.get(), sql.c_str(), -1, &statement, nullptr) != SQLITE_OK) {
     Fail();
   }
-  return Statement(statement);
+  return SqliteStatement(statement);
 }
 
 bool SqliteBag::Step(sqlite3_stmt* statement) const {
@@ -82,7 +78,7 @@ void SqliteBag::Fail() const {
 }
 
 void SqliteBag::ReadTopics() {
-  const Statement topics =
+  const SqliteStatement topics =
       Prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
   while (Step(topics.get())) {
     BagTopic topic;
@@ -95,7 +91,7 @@ void SqliteBag::ReadTopics() {
 }
 
 bool SqliteBag::HasTimeIndex() const {
-  const Statement index = Prepare(
+  const SqliteStatement index = Prepare(
       "SELECT 1 FROM sqlite_master WHERE type='index' AND tbl_name='messages' AND "
       "name='timestamp_idx'");
   return Step(index.get());

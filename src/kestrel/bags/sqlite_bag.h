@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kestrel/bags/bag_reader.h"
-
-struct sqlite3;
-struct sqlite3_stmt;
+#include "kestrel/bags/sqlite_handles.h"
 
 namespace kestrel {
 
@@ -21,9 +21,6 @@ class SqliteBag : public BagReader {
   // 'has_compressed_messages': each is zstd, as metadata.yaml says it (compression_mode: MESSAGE).
   // Throws InputError when the file is no such bag or is broken.
   explicit SqliteBag(const std::string& path, bool has_compressed_messages = false);
-  ~SqliteBag() override;
-  SqliteBag(const SqliteBag&) = delete;
-  SqliteBag& operator=(const SqliteBag&) = delete;
 
   const std::vector<BagTopic>& topics() const override { return topics_; }
   void Select(const std::vector<std::size_t>& topics) override;
@@ -31,15 +28,7 @@ class SqliteBag : public BagReader {
   std::string remark() const override { return remark_; }
 
  private:
-  struct CloseDatabase {
-    void operator()(sqlite3* database) const;
-  };
-  struct FinalizeStatement {
-    void operator()(sqlite3_stmt* statement) const;
-  };
-  using Statement = std::unique_ptr<sqlite3_stmt, FinalizeStatement>;
-
-  Statement Prepare(const std::string& sql) const;
+  SqliteStatement Prepare(const std::string& sql) const;
   bool Step(sqlite3_stmt* statement) const;  // whether there is a row
   [[noreturn]] void Fail() const;
   bool HasTimeIndex() const;
@@ -48,10 +37,10 @@ class SqliteBag : public BagReader {
 
   std::string path_;
   bool has_compressed_messages_;
-  std::unique_ptr<sqlite3, CloseDatabase> database_;
+  SqliteDatabase database_;
   std::vector<BagTopic> topics_;
   std::vector<std::int64_t> ids_;  // of the topics
-  Statement messages_;
+  SqliteStatement messages_;
   std::string decompressed_;
   std::string remark_;
 };
