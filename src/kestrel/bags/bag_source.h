@@ -18,10 +18,10 @@ namespace kestrel {
 
 // How a bag is read.
 struct BagChoice {
-  std::vector<std::string> topics;  // where the types of the topics leave a choice
-  bool use_arrival_times = false;   // instead of the stamps in the headers
+  std::vector<std::string> topics = {};  // where the types of the topics leave a choice
+  bool use_arrival_times = false;        // instead of the stamps in the headers
   // What the user should know: what was cut off or left out, a line each. May be empty.
-  std::function<void(const std::string&)> tell;
+  std::function<void(const std::string&)> tell = {};
 };
 
 // The images of a bag with its camera's calibration (camera_info, and the mount from tf) and its

@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 #include "kestrel/base/error.h"
 
 namespace kestrel {
@@ -15,6 +17,8 @@ namespace {
 
 // What is read at least: the heads of records lie close together, and a call costs more than them.
 constexpr std::uint64_t kReadAhead = 4096;
+// What no message, no chunk and no summary is larger than.
+constexpr std::uint64_t kMaxPiece = 1 << 30;
 
 // How many of 'size' bytes from 'offset' on there are in a source of 'total'.
 std::uint64_t BytesThere(std::uint64_t offset, std::uint64_t size, std::uint64_t total) {
@@ -50,6 +54,10 @@ std::string_view FileBytes::View(std::uint64_t offset, std::uint64_t size) {
 }
 
 void FileBytes::Fill(std::uint64_t offset, std::uint64_t size) {
+  if (size > kMaxPiece) {
+    throw InputError(fmt::format("{}: byte {}: a record claims {} bytes, expected at most {}",
+                                 path_, offset, size, kMaxPiece));
+  }
   buffer_.resize(size);
   buffer_offset_ = offset;
   std::uint64_t filled = 0;

@@ -41,7 +41,7 @@ class FileBytes : public ByteSource {
   FileBytes& operator=(const FileBytes&) = delete;
 
   std::uint64_t size() const override { return size_; }
-  // Throws InputError when the disk fails.
+  // Throws InputError when the disk fails, and for more than 1 GiB.
   std::string_view View(std::uint64_t offset, std::uint64_t size) override;
 
  private:

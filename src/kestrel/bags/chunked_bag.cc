@@ -34,8 +34,8 @@ bool ChunkedBag::Next(BagMessage* message) {
 }
 
 bool ChunkedBag::HasWanted(const Chunk& chunk) const {
-  return !chunk.topics || std::any_of(chunk.topics->begin(), chunk.topics->end(),
-                                      [this](std::size_t topic) { return is_wanted_[topic]; });
+  return !chunk.has_topics || std::any_of(chunk.topics.begin(), chunk.topics.end(),
+                                          [this](std::size_t topic) { return is_wanted_[topic]; });
 }
 
 ByteSource* ChunkedBag::OpenChunk(const Chunk& chunk) {
@@ -43,7 +43,10 @@ ByteSource* ChunkedBag::OpenChunk(const Chunk& chunk) {
     const std::uint64_t size = chunk.records_end.value_or(chunk.stored_size);
     records_ = std::make_unique<BytesPart>(&file_, chunk.offset, size);
   } else {
-    Decompress(chunk.compression, file_.View(chunk.offset, chunk.stored_size), chunk.size,
+    // What is larger is no chunk, whatever it claims; it is cut off here.
+    constexpr std::uint64_t kMaxStored = 1 << 30;
+    const std::uint64_t stored_size = std::min(chunk.stored_size, kMaxStored);
+    Decompress(chunk.compression, file_.View(chunk.offset, stored_size), chunk.size,
                Place(chunk.offset), &decompressed_);
     const std::string_view records = decompressed_;
     records_ = std::make_unique<MemoryBytes>(

@@ -34,7 +34,8 @@ class ChunkedBag : public BagReader {
     // Where what makes no sense begins in the records, of a bag that was damaged.
     std::optional<std::uint64_t> records_end;
     // The topics (indices) of which it has messages, where that is known.
-    std::optional<std::vector<std::size_t>> topics;
+    bool has_topics = false;
+    std::vector<std::size_t> topics;
   };
 
   explicit ChunkedBag(const std::string& path) : path_(path), file_(path) {}

@@ -121,9 +121,9 @@ bool McapReader::ReadSummaryRecords(std::uint64_t offset, std::uint64_t end) {
     Chunk chunk = ReadChunkHead(head);
     cursor.Bytes(8);  // the chunk's length
     ByteCursor channels(cursor.Text(), index.name);
-    if (channels.left() > 0) chunk.topics.emplace();
+    chunk.has_topics = channels.left() > 0;
     while (channels.left() > 0) {
-      chunk.topics->push_back(TopicOfChannel(channels.Take<std::uint16_t>(), index.name));
+      chunk.topics.push_back(TopicOfChannel(channels.Take<std::uint16_t>(), index.name));
       channels.Bytes(8);  // where the index of its messages is
     }
     chunks().push_back(std::move(chunk));
@@ -190,7 +190,8 @@ void McapReader::ReadRecordsThrough(ByteSource* records, Chunk chunk) {
   Record record;
   std::uint64_t offset = 0;
   const auto add = [&] {
-    chunk.topics.emplace(topics.begin(), topics.end());
+    chunk.has_topics = true;
+    chunk.topics.assign(topics.begin(), topics.end());
     chunks().push_back(chunk);
   };
   try {

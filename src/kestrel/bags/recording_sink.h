@@ -30,7 +30,7 @@ class RecordingSink {
 // What a new recording is to have.
 struct RecordingHead {
   std::optional<CameraCalibration> calibration;
-  double rate_hz = 0;      // of the images
+  double rate_hz = 0;  // of the images
   bool has_poses = false;
   bool has_motion = false;  // velocity and angular rates in the poses
 };

@@ -143,14 +143,14 @@ bool Ros1Bag::ReadIndex(std::uint64_t index_offset) {
         return false;
       }
       Chunk chunk = ReadChunkHead(head);
-      chunk.topics.emplace();
+      chunk.has_topics = true;
       const std::string counts(file().View(info.data_offset, info.data_size));
       ByteCursor cursor(counts, info.name);
       while (cursor.left() > 0) {
         const std::size_t topic = TopicOfConnection(cursor.Take<std::uint32_t>(), info.offset);
         auto& messages = mutable_topics()[topic].messages;
         messages = messages.value_or(0) + cursor.Take<std::uint32_t>();
-        chunk.topics->push_back(topic);
+        chunk.topics.push_back(topic);
       }
       chunks().push_back(std::move(chunk));
     }
@@ -199,7 +199,8 @@ void Ros1Bag::ReadChunkThrough(Chunk chunk) {
   Record record;
   std::uint64_t offset = 0;
   const auto add = [&] {
-    chunk.topics.emplace(topics.begin(), topics.end());
+    chunk.has_topics = true;
+    chunk.topics.assign(topics.begin(), topics.end());
     chunks().push_back(chunk);
   };
   try {
@@ -221,12 +222,12 @@ void Ros1Bag::ReadChunkThrough(Chunk chunk) {
 }
 
 ChunkedBag::Chunk Ros1Bag::ReadChunkHead(const Record& record) {
-  return {.offset = record.data_offset,
-          .stored_size = record.data_size,
-          .compression = CompressionOf(record.fields().Text("compression"), record.name),
-          .size = record.fields().Get<std::uint32_t>("size"),
-          .records_end = std::nullopt,
-          .topics = std::nullopt};
+  Chunk chunk;
+  chunk.offset = record.data_offset;
+  chunk.stored_size = record.data_size;
+  chunk.compression = CompressionOf(record.fields().Text("compression"), record.name);
+  chunk.size = record.fields().Get<std::uint32_t>("size");
+  return chunk;
 }
 
 void Ros1Bag::AddConnection(const Record& record, ByteSource* records) {

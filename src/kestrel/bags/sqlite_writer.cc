@@ -2,9 +2,8 @@
 #include "kestrel/bags/sqlite_writer.h"
 
 #include <filesystem>
-#include <system_error>
-
 #include <sqlite3.h>
+#include <system_error>
 
 #include "kestrel/bags/growing_file.h"
 #include "kestrel/bags/message_definitions.h"
@@ -38,11 +37,12 @@ SqliteWriter::SqliteWriter(const std::string& path, bool replace) : path_(path) 
   std::error_code ignored;
   std::filesystem::remove(part, ignored);
   sqlite3* database = nullptr;
-  const int status = sqlite3_open_v2(part.c_str(), &database,
-                                     SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
+  const int status =
+      sqlite3_open_v2(part.c_str(), &database, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
   database_.reset(database);
   if (status != SQLITE_OK) Fail();
-  // Until Close the file has another name, and nobody needs it: no journal, no waiting for the disk.
+  // Until Close the file has another name, and nobody needs it: no journal, no waiting for the
+  // disk.
   Execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; BEGIN;");
   Execute(kTables);
   topic_ = Prepare("INSERT INTO topics VALUES (?, ?, ?, 'cdr', ?)");

@@ -96,8 +96,7 @@ void AddConvertCommand(CLI::App* app) {
                    "A bag (.bag: ROS 1; .mcap, .db3: ROS 2), or a folder (EuRoC)")
       ->required();
   arguments->bag.AddTo(command);
-  command
-      ->add_option("--camera", arguments->camera, "Calibration; overrides the source's")
+  command->add_option("--camera", arguments->camera, "Calibration; overrides the source's")
       ->type_name("FILE");
   command
       ->add_option("--compression", arguments->compression,
