@@ -24,8 +24,7 @@ using ::testing::IsEmpty;
 std::vector<int> ImagesOf(FrameSource* source) {
   std::vector<int> images;
   for (Frame frame; source->Next(&frame);) {
-    const auto image =
-        static_cast<int>((ToNanoseconds(frame.time) - kBagStart_ns) / kBagPeriod_ns);
+    const auto image = static_cast<int>((ToNanoseconds(frame.time) - kBagStart_ns) / kBagPeriod_ns);
     EXPECT_EQ(cv::norm(frame.image, BagImage(image), cv::NORM_INF), 0) << frame.name;
     images.push_back(image);
   }
@@ -276,10 +275,9 @@ TEST(OpenSourceOrBag, TellsThemApart) {
   const std::string image = folder.WriteImage("a.png", BagImage(1));
   EXPECT_EQ(OpenSourceOrBag({folder / "flight.bag"}, PixelFormat::kGray, {})->frame_count(), 2u);
   EXPECT_EQ(OpenSourceOrBag({image}, PixelFormat::kGray, {})->frame_count(), 1u);
-  EXPECT_THAT(InputErrorOf([&] {
-                OpenSourceOrBag({image}, PixelFormat::kGray, {.topics = {"/camera"}});
-              }),
-              HasSubstr("for bags"));
+  EXPECT_THAT(
+      InputErrorOf([&] { OpenSourceOrBag({image}, PixelFormat::kGray, {.topics = {"/camera"}}); }),
+      HasSubstr("for bags"));
   EXPECT_THAT(InputErrorOf([&] {
                 OpenSourceOrBag({image, folder / "flight.bag"}, PixelFormat::kGray, {});
               }),

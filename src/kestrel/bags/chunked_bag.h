@@ -31,7 +31,7 @@ class ChunkedBag : public BagReader {
     std::uint64_t stored_size = 0;
     Compression compression = Compression::kNone;
     std::optional<std::uint64_t> size;  // decompressed; not known of one that was not finished
-    // Where what makes no sense begins in the records, of a bag that was damaged.
+    // Up to where the records can be trusted, of a bag that was damaged.
     std::optional<std::uint64_t> records_end;
     // The topics (indices) of which it has messages, where that is known.
     bool has_topics = false;

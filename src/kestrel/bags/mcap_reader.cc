@@ -68,12 +68,15 @@ bool McapReader::ReadRecord(ByteSource* records, std::uint64_t offset, Record* r
   return record->content_size <= records->size() - record->content_offset;
 }
 
+bool McapReader::HasEndMagic() {
+  return file().View(file().size() - kMcapMagic.size(), kMcapMagic.size()) == kMcapMagic;
+}
+
 // False when there is no summary, or none that is enough to find all messages.
 bool McapReader::ReadSummary() {
   constexpr std::uint64_t kEnd = kRecordHead + kFooterSize + kMcapMagic.size();
   const std::uint64_t size = file().size();
-  if (size < kMcapMagic.size() + kEnd) return false;
-  if (file().View(size - kMcapMagic.size(), kMcapMagic.size()) != kMcapMagic) return false;
+  if (size < kMcapMagic.size() + kEnd || !HasEndMagic()) return false;
   Record footer;
   if (!ReadRecord(&file(), size - kEnd, &footer) || footer.opcode != kMcapFooter ||
       footer.content_size != kFooterSize) {
@@ -171,7 +174,7 @@ void McapReader::ReadThrough() {
       has_end = record.opcode == kMcapDataEnd;
     }
     finish_loose();
-    if (has_end) return;
+    if (has_end && HasEndMagic()) return;
     // The last chunk may be there in part: what is whole of it counts.
     if (record.content_offset > offset && record.opcode == kMcapChunk) {
       const Chunk chunk = ReadChunkHead(record, /*is_cut=*/true);
@@ -184,18 +187,19 @@ void McapReader::ReadThrough() {
   SetCutRemark(offset);
 }
 
-// Adds the chunk, with what is before a record that makes no sense.
+// Adds the chunk. Where a record makes no sense the one before it may be half written, too.
 void McapReader::ReadRecordsThrough(ByteSource* records, Chunk chunk) {
   std::set<std::size_t> topics;
   Record record;
   std::uint64_t offset = 0;
+  std::uint64_t last_offset = 0;
   const auto add = [&] {
     chunk.has_topics = true;
     chunk.topics.assign(topics.begin(), topics.end());
     chunks().push_back(chunk);
   };
   try {
-    for (; ReadRecord(records, offset, &record); offset = record.end()) {
+    for (; ReadRecord(records, offset, &record); last_offset = offset, offset = record.end()) {
       if (record.opcode == 0) throw InputError(record.name + ": is no record");
       if (record.opcode == kMcapSchema) AddSchema(record.Content(records), record.name);
       if (record.opcode == kMcapChannel) AddChannel(record.Content(records), record.name);
@@ -206,7 +210,7 @@ void McapReader::ReadRecordsThrough(ByteSource* records, Chunk chunk) {
       topics.insert(topic);
     }
   } catch (const InputError&) {
-    chunk.records_end = offset;
+    chunk.records_end = last_offset;
     add();
     throw;
   }

@@ -32,6 +32,7 @@ class McapReader : public ChunkedBag {
   };
   bool ReadRecord(ByteSource* records, std::uint64_t offset, Record* record) const;
 
+  bool HasEndMagic();
   bool ReadSummary();
   bool ReadSummaryRecords(std::uint64_t offset, std::uint64_t end);
   void ReadThrough();

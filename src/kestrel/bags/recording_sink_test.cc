@@ -60,15 +60,13 @@ TEST_P(ThereAndBack, ARecordingIsTheSame) {
   const std::string bag = folder / GetParam();
   CopyTo(bag, folder / "flight");
   CopyTo(folder / "back", bag);
-  for (const char* file :
-       {"mav0/cam0/data.csv", "mav0/cam0/sensor.yaml", "mav0/nav0/data.csv"}) {
+  for (const char* file : {"mav0/cam0/data.csv", "mav0/cam0/sensor.yaml", "mav0/nav0/data.csv"}) {
     EXPECT_EQ(ReadFile(folder / ("back/" + std::string(file))),
               ReadFile(folder / ("flight/" + std::string(file))));
   }
   const auto images = std::filesystem::path(folder / "flight/mav0/cam0/data");
   for (const auto& entry : std::filesystem::directory_iterator(images)) {
-    const std::string back =
-        folder / ("back/mav0/cam0/data/" + entry.path().filename().string());
+    const std::string back = folder / ("back/mav0/cam0/data/" + entry.path().filename().string());
     const cv::Mat a = cv::imread(entry.path(), cv::IMREAD_UNCHANGED);
     const cv::Mat b = cv::imread(back, cv::IMREAD_UNCHANGED);
     ASSERT_EQ(a.type(), b.type());
@@ -96,9 +94,8 @@ TEST(NewRecording, ReplacesNothingUnasked) {
 TEST(NewRecording, SaysWhichCompressionsThereAre) {
   const TestFolder folder;
   for (const char* name : {"flight.bag", "flight.db3"}) {
-    EXPECT_THAT(
-        InputErrorOf([&] { NewRecording(folder / name, {}, Compression::kZstd, false); }),
-        HasSubstr("cannot be written with compression zstd"));
+    EXPECT_THAT(InputErrorOf([&] { NewRecording(folder / name, {}, Compression::kZstd, false); }),
+                HasSubstr("cannot be written with compression zstd"));
   }
 }
 

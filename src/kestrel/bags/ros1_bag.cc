@@ -192,19 +192,21 @@ void Ros1Bag::ReadThrough(std::uint64_t offset) {
   SetCutRemark(offset);
 }
 
-// Adds the chunk, with what is before a record that makes no sense.
+// Adds the chunk. Where a record makes no sense the one before it may be half written, too.
 void Ros1Bag::ReadChunkThrough(Chunk chunk) {
   ByteSource* records = OpenChunk(chunk);
   std::set<std::size_t> topics;
   Record record;
   std::uint64_t offset = 0;
+  std::uint64_t last_offset = 0;
   const auto add = [&] {
     chunk.has_topics = true;
     chunk.topics.assign(topics.begin(), topics.end());
     chunks().push_back(chunk);
   };
   try {
-    for (; ReadRecord(records, offset, &record) == RecordStatus::kOk; offset = record.end()) {
+    for (; ReadRecord(records, offset, &record) == RecordStatus::kOk;
+         last_offset = offset, offset = record.end()) {
       const std::uint8_t kind = record.kind();
       if (kind == kConnection) AddConnection(record, records);
       if (kind != kMessageData) continue;
@@ -214,7 +216,7 @@ void Ros1Bag::ReadChunkThrough(Chunk chunk) {
       topics.insert(topic);
     }
   } catch (const InputError&) {
-    chunk.records_end = offset;
+    chunk.records_end = last_offset;
     add();
     throw;
   }

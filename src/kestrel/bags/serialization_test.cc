@@ -42,10 +42,10 @@ TEST(Serialization, OfRos1HasNoAlignmentAndTheNumberOfTheHeader) {
 
 // Texts end with a zero that counts; the first double begins at 32 of the 8 that it is aligned to.
 TEST(Serialization, OfRos2IsAlignedFromTheFourthByteOn) {
-  EXPECT_EQ(SerializeMessage(ExampleTransform(), WireFormat::kCdr),
-            Joined({"\0\1\0\0"sv, "\3\0\0\0\4\0\0\0"sv, "\4\0\0\0map\0"sv, "\4\0\0\0uav\0"sv,
-                    "\0\0\0\0\0\0\0\0"sv.substr(0, 0), kOne, kTwo, kThree, kZero, kZero, kZero,
-                    kOne}));
+  EXPECT_EQ(
+      SerializeMessage(ExampleTransform(), WireFormat::kCdr),
+      Joined({"\0\1\0\0"sv, "\3\0\0\0\4\0\0\0"sv, "\4\0\0\0map\0"sv, "\4\0\0\0uav\0"sv,
+              "\0\0\0\0\0\0\0\0"sv.substr(0, 0), kOne, kTwo, kThree, kZero, kZero, kZero, kOne}));
 }
 
 TEST(Serialization, IsReadBackInBothFormats) {
@@ -73,8 +73,7 @@ TEST(Serialization, IsReadBackInBothFormats) {
 }
 
 TEST(Serialization, ReadsBigEndianCdr) {
-  const std::string bytes =
-      Joined({"\0\0\0\0"sv, "\0\0\0\3\0\0\0\4"sv, "\0\0\0\4map\0"sv});
+  const std::string bytes = Joined({"\0\0\0\0"sv, "\0\0\0\3\0\0\0\4"sv, "\0\0\0\4map\0"sv});
   const auto header = ParseMessage<HeaderMessage>(bytes, WireFormat::kCdr, "header");
   EXPECT_EQ(header.stamp, kStamp);
   EXPECT_EQ(header.frame_id, "map");
@@ -94,10 +93,9 @@ TEST(Serialization, RefusesBytesThatEndAnywhere) {
 }
 
 TEST(Serialization, RefusesLengthsThatAreLies) {
-  EXPECT_NE(InputErrorOf([] {
-              ParseMessage<TfMessage>("\xff\xff\xff\xff"sv, WireFormat::kRos1, "/tf");
-            }),
-            "");
+  EXPECT_NE(
+      InputErrorOf([] { ParseMessage<TfMessage>("\xff\xff\xff\xff"sv, WireFormat::kRos1, "/tf"); }),
+      "");
   EXPECT_NE(InputErrorOf([] {
               ParseMessage<HeaderMessage>("\0\1\0\0\3\0\0\0\4\0\0\0\xff\xff\xff\xff"sv,
                                           WireFormat::kCdr, "header");
@@ -106,10 +104,9 @@ TEST(Serialization, RefusesLengthsThatAreLies) {
 }
 
 TEST(Serialization, RefusesOtherRepresentationsOfRos2) {
-  EXPECT_EQ(InputErrorOf([] {
-              ParseMessage<HeaderMessage>("\0\7\0\0"sv, WireFormat::kCdr, "header");
-            }),
-            "header: is serialized as 0007, expected plain CDR (0000 or 0001)");
+  EXPECT_EQ(
+      InputErrorOf([] { ParseMessage<HeaderMessage>("\0\7\0\0"sv, WireFormat::kCdr, "header"); }),
+      "header: is serialized as 0007, expected plain CDR (0000 or 0001)");
 }
 
 }  // namespace

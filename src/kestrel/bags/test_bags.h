@@ -90,8 +90,8 @@ class TestBag {
 inline void WriteTestFlight(const std::string& path, int images,
                             Compression compression = Compression::kNone) {
   TestBag bag(path, compression);
-  bag.Add("/tf_static",
-          TfMessage{{BagTransform("base_link", "camera", BagTime(0), 0.25)}}, BagTime(0));
+  bag.Add("/tf_static", TfMessage{{BagTransform("base_link", "camera", BagTime(0), 0.25)}},
+          BagTime(0));
   bag.AddCameraInfo();
   for (int i = 0; i < images; ++i) {
     bag.AddPose(i);
