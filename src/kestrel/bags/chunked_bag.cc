@@ -74,9 +74,10 @@ std::string ChunkedBag::Place(std::uint64_t offset) const {
 }
 
 void ChunkedBag::SetCutRemark(std::uint64_t offset) {
-  remark_ =
-      fmt::format("{}: was not closed, or is damaged (a power loss?): read up to byte {} of {}",
-                  path_, offset, file_.size());
+  remark_ = fmt::format(
+      "{}: was not closed, or is damaged (a power loss?): it is read up to there; its last whole "
+      "record ends at byte {} of {}",
+      path_, offset, file_.size());
 }
 
 }  // namespace kestrel
