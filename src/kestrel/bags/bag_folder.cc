@@ -9,6 +9,7 @@
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
+#include "kestrel/base/shown.h"
 
 namespace kestrel {
 namespace {
@@ -61,7 +62,7 @@ BagFolder ParseMetadata(const std::string& text, const fs::path& folder) {
   if (mode == "MESSAGE" || mode == "message") {
     if (format != "zstd") {
       throw InputError(
-          fmt::format("{}: 'compression_format' is '{}', expected zstd", file, format));
+          fmt::format("{}: 'compression_format' is '{}', expected zstd", file, Shown(format)));
     }
     result.has_compressed_messages = true;
   } else if (mode == "FILE" || mode == "file") {
@@ -81,7 +82,7 @@ BagFolder ParseMetadata(const std::string& text, const fs::path& folder) {
     const fs::path& found = fs::exists(path) ? path : beside;
     if (!fs::is_regular_file(found)) {
       throw InputError(
-          fmt::format("{}: the file {} is not there, expected it", file, path.string()));
+          fmt::format("{}: the file {} is not there, expected it", file, Shown(path.string())));
     }
     result.files.push_back(found.string());
   }

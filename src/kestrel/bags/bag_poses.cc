@@ -9,6 +9,7 @@
 #include "kestrel/bags/messages.h"
 #include "kestrel/bags/serialization.h"
 #include "kestrel/base/error.h"
+#include "kestrel/base/shown.h"
 
 namespace kestrel {
 namespace {
@@ -157,7 +158,7 @@ std::vector<PoseSample> ReadTransformPoses(BagReader* bag, const std::vector<std
                                            std::string* remark) {
   TransformPoses transform_poses(tree, body);
   if (!transform_poses.HasPoses()) return {};
-  PoseList poses(use_arrival_times, fmt::format("{}: tf of {}", path, body));
+  PoseList poses(use_arrival_times, fmt::format("{}: tf of {}", path, Shown(body)));
   bag->Select(topics);
   for (BagMessage message; bag->Next(&message);) {
     const std::string name = NameOfTopic(*bag, message.topic, path);

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kestrel/base/shown.h"
 #include "kestrel/base/time.h"
 
 namespace kestrel {
@@ -54,5 +55,12 @@ class BagReader {
 
 // The type by the one name that it has here: "sensor_msgs/msg/Image" is "sensor_msgs/Image".
 std::string NormalTypeName(std::string_view type);
+
+// A topic's or type's name as it was read, fit for messages and results: what ROS allows in names
+// stays as it is, what would break a line does not.
+inline std::string PlainTopicName(std::string_view name) {
+  constexpr std::size_t kMaxLength = 256;
+  return Shown(name, kMaxLength);
+}
 
 }  // namespace kestrel

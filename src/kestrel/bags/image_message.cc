@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/base/error.h"
+#include "kestrel/base/shown.h"
 #include "kestrel/recording/image_file.h"
 
 namespace kestrel {
@@ -46,14 +47,6 @@ constexpr std::array kEncodings = {
     Encoding{"yuyv", 2, cv::COLOR_YUV2GRAY_YUY2, cv::COLOR_YUV2BGR_YUY2, true},
 };
 
-// A name out of a bag as a message can show it.
-std::string ShownEncoding(std::string_view name) {
-  std::string shown(name.substr(0, 40));
-  std::replace_if(
-      shown.begin(), shown.end(), [](unsigned char c) { return c < ' ' || c > '~'; }, '?');
-  return shown;
-}
-
 const Encoding& FindEncoding(const std::string& encoding, const std::string& name) {
   const auto known =
       std::find_if(kEncodings.begin(), kEncodings.end(),
@@ -62,7 +55,7 @@ const Encoding& FindEncoding(const std::string& encoding, const std::string& nam
   throw InputError(
       fmt::format("{}: has the encoding '{}', expected 8 bits a channel: mono8, bgr8, rgb8, bgra8, "
                   "rgba8, bayer_*8, yuv422 or yuv422_yuy2",
-                  name, ShownEncoding(encoding)));
+                  name, Shown(encoding)));
 }
 
 void CheckSize(const ImageMessage& message, const Encoding& encoding, const std::string& name) {

@@ -248,9 +248,9 @@ void McapReader::AddChannel(std::string_view content, const std::string& name) {
   const auto id = cursor.Take<std::uint16_t>();
   const auto schema = schemas_.find(cursor.Take<std::uint16_t>());
   BagTopic topic;
-  topic.name = cursor.Text();
+  topic.name = PlainTopicName(cursor.Text());
   if (schema != schemas_.end()) {
-    topic.type = NormalTypeName(schema->second.name);
+    topic.type = PlainTopicName(NormalTypeName(schema->second.name));
     topic.wire_format = WireFormatOf(cursor.Text(), schema->second.encoding);
   }
   topics_of_channels_[id] = TopicOf(topic);

@@ -236,8 +236,8 @@ void Ros1Bag::AddConnection(const Record& record, ByteSource* records) {
   const auto connection = record.fields().Get<std::uint32_t>("conn");
   const Fields data(records->View(record.data_offset, record.data_size), record.name);
   BagTopic topic;
-  topic.name = record.fields().Text("topic");
-  topic.type = data.Text("type");
+  topic.name = PlainTopicName(record.fields().Text("topic"));
+  topic.type = PlainTopicName(data.Text("type"));
   topic.wire_format = WireFormat::kRos1;
   topics_of_connections_[connection] = TopicOf(topic);
 }

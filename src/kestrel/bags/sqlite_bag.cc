@@ -82,8 +82,8 @@ void SqliteBag::ReadTopics() {
       Prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
   while (Step(topics.get())) {
     BagTopic topic;
-    topic.name = TextOf(topics.get(), 1);
-    topic.type = NormalTypeName(TextOf(topics.get(), 2));
+    topic.name = PlainTopicName(TextOf(topics.get(), 1));
+    topic.type = PlainTopicName(NormalTypeName(TextOf(topics.get(), 2)));
     if (TextOf(topics.get(), 3) == "cdr") topic.wire_format = WireFormat::kCdr;
     ids_.push_back(sqlite3_column_int64(topics.get(), 0));
     topics_.push_back(topic);
