@@ -20,7 +20,7 @@ constexpr const char* kMetadata = "metadata.yaml";
 constexpr const char* kRoot = "rosbag2_bagfile_information";
 
 bool IsStorageFile(const fs::path& path) {
-  return path.extension() == ".db3" || path.extension() == ".mcap";
+  return path.extension() == ".db3" || path.extension() == ".mcap" || IsCompressedBagFile(path);
 }
 
 // The number that rosbag2 puts before the extension of its parts ("flight_12.mcap"); 0 without.
@@ -68,7 +68,7 @@ BagFolder ParseMetadata(const std::string& text, const fs::path& folder) {
   } else if (mode == "FILE" || mode == "file") {
     throw InputError(
         fmt::format("{}: the bag's files are compressed as a whole, expected them decompressed "
-                    "(zstd -d, and without 'compression_mode')",
+                    "(zstd -d -o NAME.mcap NAME.mcap.zstd) and given one by one",
                     file));
   }
   const YAML::Node paths = bag["relative_file_paths"];
@@ -90,6 +90,11 @@ BagFolder ParseMetadata(const std::string& text, const fs::path& folder) {
 }
 
 }  // namespace
+
+bool IsCompressedBagFile(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return name.ends_with(".db3.zstd") || name.ends_with(".mcap.zstd");
+}
 
 bool IsBagFolder(const fs::path& folder) {
   std::error_code ignored;

@@ -13,7 +13,11 @@ struct BagFolder {
   bool has_compressed_messages = false;  // each by zstd
 };
 
-// Whether the folder is a bag of rosbag2: with its metadata.yaml, or with .db3 or .mcap files.
+// Whether rosbag2 has compressed the file as a whole (.db3.zstd, .mcap.zstd), which is not read.
+bool IsCompressedBagFile(const std::filesystem::path& file);
+
+// Whether the folder is a bag of rosbag2: with its metadata.yaml, or with .db3 or .mcap files,
+// compressed ones too.
 bool IsBagFolder(const std::filesystem::path& folder);
 
 // By metadata.yaml; without it, as a power loss leaves it, all .db3 or .mcap files in natural

@@ -177,8 +177,8 @@ TEST(BagSource, TakesTheRawImagesWhereTheyAreCompressedToo) {
   const std::string path = folder / "flight.mcap";
   std::vector<unsigned char> png;
   cv::imencode(".png", BagImage(4), png);
-  const CompressedImageMessage compressed{
-      {0, BagTime(4), "camera"}, "png", {reinterpret_cast<const char*>(png.data()), png.size()}};
+  const CompressedImageMessage compressed = BagCompressedMessage(
+      {reinterpret_cast<const char*>(png.data()), png.size()}, BagTime(4), "png");
   TestBag bag(path);
   bag.Add("/camera/image_raw/compressed", compressed);
   bag.AddImage(1);

@@ -165,19 +165,13 @@ const BrokenBag kBrokenBags[] = {
      },
      "has an unknown compression"},
     {"damaged bz2",
-     [](const TestFolder& f) {
-       return Damaged(Flight(f, "flight.bag", Compression::kBz2), 0.65);
-     },
+     [](const TestFolder& f) { return Damaged(Flight(f, "flight.bag", Compression::kBz2), 0.65); },
      "its compressed bytes are broken"},
     {"damaged lz4",
-     [](const TestFolder& f) {
-       return Damaged(Flight(f, "flight.bag", Compression::kLz4), 0.65);
-     },
+     [](const TestFolder& f) { return Damaged(Flight(f, "flight.bag", Compression::kLz4), 0.65); },
      "its compressed bytes are broken"},
     {"damaged zstd",
-     [](const TestFolder& f) {
-       return Damaged(Flight(f, "flight.mcap", Compression::kZstd), 0.3);
-     },
+     [](const TestFolder& f) { return Damaged(Flight(f, "flight.mcap", Compression::kZstd), 0.3); },
      "its compressed bytes are broken"},
     {"a damaged .db3", [](const TestFolder& f) { return Damaged(Flight(f, "flight.db3"), 0.5); },
      "malformed"},
@@ -268,7 +262,7 @@ const BrokenBag kBrokenBags[] = {
      "has 0x24 pixels, expected 1 to 32768 each way"},
     {"a compressed image that is none",
      [](const TestFolder& f) {
-       return Single(f, CompressedImageMessage{{0, BagTime(0), "camera"}, "jpeg", "no image"});
+       return Single(f, BagCompressedMessage("no image", BagTime(0), "jpeg"));
      },
      "cannot be decoded as an image"},
     {"a camera that is not calibrated",
@@ -285,8 +279,7 @@ const BrokenBag kBrokenBags[] = {
      "/camera/camera_info"},
     {"a lens that nobody knows",
      [](const TestFolder& f) {
-       return WrongCamera(f,
-                          [](CameraInfoMessage* info) { info->distortion_model = "kaleido\n"; });
+       return WrongCamera(f, [](CameraInfoMessage* info) { info->distortion_model = "kaleido\n"; });
      },
      "kaleido_"},
     {"too few coefficients",
@@ -294,12 +287,13 @@ const BrokenBag kBrokenBags[] = {
        return WrongCamera(f, [](CameraInfoMessage* info) { info->d.resize(2); });
      },
      "/camera/camera_info"},
-    {"binning", [](const TestFolder& f) {
+    {"binning",
+     [](const TestFolder& f) {
        return WrongCamera(f, [](CameraInfoMessage* info) { info->binning_x = 2; });
      },
      "tells of binning or a region of interest"},
-    {"metadata.yaml that is no YAML",
-     [](const TestFolder& f) { return WithMetadata(f, "{\n"); }, "metadata.yaml:"},
+    {"metadata.yaml that is no YAML", [](const TestFolder& f) { return WithMetadata(f, "{\n"); },
+     "metadata.yaml:"},
     {"metadata.yaml without a bag", [](const TestFolder& f) { return WithMetadata(f, "a: 1\n"); },
      "has no key 'rosbag2_bagfile_information'"},
     {"metadata.yaml without files",
@@ -321,6 +315,15 @@ const BrokenBag kBrokenBags[] = {
                            "  relative_file_paths: [flight_0.mcap.zstd]\n");
      },
      "compressed as a whole"},
+    {"a file compressed as a whole",
+     [](const TestFolder& f) { return f.Write("flight_0.mcap.zstd", "\x28\xb5\x2f\xfd"); },
+     "is compressed as a whole, expected it decompressed (zstd -d -o flight_0.mcap "},
+    {"a folder of files compressed as a whole",
+     [](const TestFolder& f) {
+       f.Write("flight/flight_0.db3.zstd", "\x28\xb5\x2f\xfd");
+       return f / "flight";
+     },
+     "flight_0.db3.zstd: is compressed as a whole"},
     {"messages compressed by what nobody knows",
      [](const TestFolder& f) {
        return WithMetadata(f,

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "kestrel/bags/bag_folder.h"
 #include "kestrel/bags/mcap_reader.h"
 #include "kestrel/bags/ros1_bag.h"
@@ -30,7 +32,7 @@ std::string BeginOf(const std::string& path) {
   return bytes;
 }
 
-enum class BagKind { kNone, kRos1, kMcap, kSqlite };
+enum class BagKind { kNone, kRos1, kMcap, kSqlite, kCompressed };
 
 // By the content; by the name where a cut left no content that tells.
 BagKind BagKindOf(const std::string& path) {
@@ -40,6 +42,7 @@ BagKind BagKindOf(const std::string& path) {
   if (begin.starts_with(kAnyRos1Bag)) return BagKind::kRos1;
   if (begin.starts_with(kMcapMagic)) return BagKind::kMcap;
   if (begin == kSqliteMagic) return BagKind::kSqlite;
+  if (IsCompressedBagFile(path)) return BagKind::kCompressed;
   const std::string extension = fs::path(path).extension().string();
   if (extension == ".bag") return BagKind::kRos1;
   if (extension == ".mcap") return BagKind::kMcap;
@@ -57,6 +60,10 @@ std::unique_ptr<BagReader> OpenBagFile(const std::string& path, bool has_compres
       return std::make_unique<McapReader>(path);
     case BagKind::kSqlite:
       return std::make_unique<SqliteBag>(path, has_compressed_messages);
+    case BagKind::kCompressed:
+      throw InputError(fmt::format(
+          "{0}: is compressed as a whole, expected it decompressed (zstd -d -o {1} {0})", path,
+          fs::path(path).stem().string()));
     case BagKind::kNone:
       break;
   }

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include <opencv2/core.hpp>
 
@@ -43,6 +44,17 @@ inline ImageMessage BagImageMessage(const cv::Mat& image, Time stamp,
   message.step = static_cast<std::uint32_t>(image.step[0]);
   message.encoding = encoding;
   message.data = {reinterpret_cast<const char*>(image.data), image.total() * image.elemSize()};
+  return message;
+}
+
+// 'bytes': an image file's; they must outlive it.
+inline CompressedImageMessage BagCompressedMessage(std::string_view bytes, Time stamp,
+                                                   const std::string& format) {
+  CompressedImageMessage message;
+  message.header.stamp = stamp;
+  message.header.frame_id = "camera";
+  message.format = format;
+  message.data = bytes;
   return message;
 }
 
