@@ -81,8 +81,8 @@ BagFolder ParseMetadata(const std::string& text, const fs::path& folder) {
     const fs::path beside = folder / path.filename();
     const fs::path& found = fs::exists(path) ? path : beside;
     if (!fs::is_regular_file(found)) {
-      throw InputError(
-          fmt::format("{}: the file {} is not there, expected it", file, Shown(path.string())));
+      throw InputError(fmt::format("{}: the file {} is not there, expected it", file,
+                                   Shown(path.string(), /*max_length=*/1000)));
     }
     result.files.push_back(found.string());
   }

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/bags/bag_source.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -267,6 +270,37 @@ TEST(BagSource, ReadsTheFolderOfABagInParts) {
                "rosbag2_bagfile_information:\n  relative_file_paths: [lost.mcap]\n");
   EXPECT_THAT(InputErrorOf([&] { BagSource(folder / "flight", {}); }),
               HasSubstr("lost.mcap is not there"));
+}
+
+// Bytes of this process in memory.
+std::size_t ResidentBytes() {
+  std::ifstream statm("/proc/self/statm");
+  std::size_t pages = 0;
+  statm >> pages >> pages;
+  return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+TEST(BagSource, TakesTheMemoryOfAFewImagesOfABagOfAHundred) {
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+  GTEST_SKIP() << "the sanitizer keeps what was freed";
+#endif
+#endif
+  const TestFolder folder;
+  constexpr std::size_t kImageSize = 1 << 20;
+  for (const char* name : {"flight.bag", "flight.mcap", "flight.db3"}) {
+    const std::string path = folder / name;
+    TestBag bag(path);
+    const cv::Mat image = NoiseImage(1 << 10, 1 << 10, CV_8UC1);
+    for (int i = 0; i < 100; ++i) bag.Add("/camera/image_raw", BagImageMessage(image, BagTime(i)));
+    bag.Close();
+    const std::size_t before = ResidentBytes();
+    std::size_t most = before;
+    BagSource source(path, {});
+    for (Frame frame; source.Next(&frame);) most = std::max(most, ResidentBytes());
+    EXPECT_LT(most - before, 30 * kImageSize) << name;
+    std::filesystem::remove(path);
+  }
 }
 
 TEST(OpenSourceOrBag, TellsThemApart) {
