@@ -59,7 +59,7 @@ class TopicChooser {
     if (images.empty()) {
       throw InputError(fmt::format(
           "{}: has no images, expected a topic of sensor_msgs Image or CompressedImage among {}",
-          bag_, Listed(topics_.size() > 0 ? AllIndices() : std::vector<std::size_t>())));
+          bag_, Listed(AllIndices())));
     }
     if (images.size() > 1) std::erase_if(images, [&](std::size_t image) { return IsCopy(image); });
     if (images.size() > 1) FailAmbiguous("cameras", images);
