@@ -80,7 +80,7 @@ void SqliteWriter::Run(const SqliteStatement& statement) {
 
 std::size_t SqliteWriter::AddTopic(const std::string& name, std::string_view type,
                                    bool is_latched) {
-  sqlite3_bind_int64(topic_.get(), 1, static_cast<sqlite3_int64>(topics_ + 1));
+  sqlite3_bind_int64(topic_.get(), 1, static_cast<sqlite3_int64>(topics_) + 1);
   BindText(topic_.get(), 2, name);
   BindText(topic_.get(), 3, Ros2TypeName(type));
   BindText(topic_.get(), 4, QosText(is_latched));
@@ -89,7 +89,7 @@ std::size_t SqliteWriter::AddTopic(const std::string& name, std::string_view typ
 }
 
 void SqliteWriter::Write(std::size_t topic, Time time, std::string_view data) {
-  sqlite3_bind_int64(message_.get(), 1, static_cast<sqlite3_int64>(topic + 1));
+  sqlite3_bind_int64(message_.get(), 1, static_cast<sqlite3_int64>(topic) + 1);
   sqlite3_bind_int64(message_.get(), 2, ToNanoseconds(time));
   sqlite3_bind_blob64(message_.get(), 3, data.data(), data.size(), SQLITE_STATIC);
   Run(message_);
