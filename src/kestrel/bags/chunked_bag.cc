@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/base/error.h"
+
 namespace kestrel {
 
 std::string NormalTypeName(std::string_view type) {
@@ -46,8 +48,12 @@ ByteSource* ChunkedBag::OpenChunk(const Chunk& chunk) {
     // What is larger is no chunk, whatever it claims; it is cut off here.
     constexpr std::uint64_t kMaxStored = 1 << 30;
     const std::uint64_t stored_size = std::min(chunk.stored_size, kMaxStored);
-    Decompress(chunk.compression, file_.View(chunk.offset, stored_size), chunk.size,
-               Place(chunk.offset), &decompressed_);
+    const std::string_view stored = file_.View(chunk.offset, stored_size);
+    const bool is_whole = stored.size() == chunk.stored_size;
+    Decompress(chunk.compression, stored, chunk.size, Place(chunk.offset), &decompressed_);
+    if (is_whole && chunk.size && decompressed_.size() < *chunk.size) {
+      throw InputError(Place(chunk.offset) + ": its compressed bytes are broken");
+    }
     const std::string_view records = decompressed_;
     records_ = std::make_unique<MemoryBytes>(
         records.substr(0, chunk.records_end.value_or(records.size())));

@@ -4,6 +4,7 @@
 #include <bzlib.h>
 #include <cstddef>
 #include <lz4frame.h>
+#include <memory>
 #include <zstd.h>
 
 #include "kestrel/base/error.h"
@@ -39,8 +40,12 @@ std::string CompressLz4(std::string_view bytes) {
 
 std::string CompressZstd(std::string_view bytes) {
   std::string output(ZSTD_compressBound(bytes.size()), '\0');
+  const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(),
+                                                                     ZSTD_freeCCtx);
+  if (!context) throw InputError("zstd has no memory to compress");
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
   const std::size_t size =
-      ZSTD_compress(output.data(), output.size(), bytes.data(), bytes.size(), ZSTD_CLEVEL_DEFAULT);
+      ZSTD_compress2(context.get(), output.data(), output.size(), bytes.data(), bytes.size());
   if (ZSTD_isError(size)) throw InputError("zstd has no memory to compress");
   output.resize(size);
   return output;
