@@ -40,7 +40,7 @@ class ConvertCommandTest : public CommandTest {
   std::string Simulate(const std::string& what) const {
     const std::string flight = folder_ / "flight";
     const Outcome outcome = Run("simulate " + what + " --seed 2 --output " + flight +
-                                " --set frames=3 --set rate_hz=10 --set ground.map_px=256"
+                                " --set frames=3 --set rate_hz=2 --set ground.map_px=256"
                                 " --set shutter.rays_per_pixel=4");
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return flight;
