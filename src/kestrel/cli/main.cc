@@ -8,6 +8,7 @@
 
 #include "kestrel/cli/calibrate_command.h"
 #include "kestrel/cli/config_command.h"
+#include "kestrel/cli/convert_command.h"
 #include "kestrel/cli/doctor_command.h"
 #include "kestrel/cli/evaluate_command.h"
 #include "kestrel/cli/fly_command.h"
@@ -44,6 +45,7 @@ int main(int argc, char** argv) {
   kestrel::AddEvaluateCommand(&app);
   kestrel::AddCalibrateCommand(&app);
   kestrel::AddPrintCommand(&app);
+  kestrel::AddConvertCommand(&app);
   kestrel::AddConfigCommand(&app);
   kestrel::AddHelpCommand(&app);
   try {

@@ -6,7 +6,6 @@
 #include "kestrel/base/error.h"
 #include "kestrel/base/parse_number.h"
 #include "kestrel/camera/calibration_reader.h"
-#include "kestrel/recording/open_source.h"
 
 namespace kestrel {
 namespace {
@@ -34,9 +33,11 @@ CLI::Option* AddAnnotateFlag(CLI::App* command, std::string* annotate) {
 void SourceArguments::AddTo(CLI::App* command) {
   command
       ->add_option("SOURCE", sources,
-                   "A recording folder (EuRoC), a folder of images, image files, a video file, a "
-                   "camera (/dev/video0) or a GStreamer pipeline")
+                   "A recording folder (EuRoC), a ROS bag (.bag, .mcap, .db3 or its folder), a "
+                   "folder of images, image files, a video file, a camera (/dev/video0) or a "
+                   "GStreamer pipeline")
       ->required();
+  bag.AddTo(command);
   command
       ->add_option("--camera", camera,
                    "Calibration: EuRoC sensor.yaml, Kalibr camchain.yaml, ROS camera_info YAML or "
@@ -63,7 +64,7 @@ void SourceArguments::AddTo(CLI::App* command) {
 }
 
 OpenedSource SourceArguments::Open(PixelFormat format) const {
-  OpenedSource opened{OpenSource(sources, format), {}};
+  OpenedSource opened{bag.Open(sources, format), {}};
   opened.calibration = FindCalibration(*opened.source);
   return opened;
 }
@@ -74,15 +75,20 @@ OutputOptions SourceArguments::Output(const OpenedSource& opened) const {
 }
 
 CameraCalibration SourceArguments::FindCalibration(const FrameSource& source) const {
-  const std::string own_file = source.calibration_file();
-  if (camera.empty() && own_file.empty()) {
-    throw InputError(
-        "no calibration: the source has none, give one by --camera FILE (EuRoC sensor.yaml, Kalibr "
-        "camchain.yaml, ROS camera_info YAML or OpenCV YAML)");
+  CameraCalibration calibration;
+  if (camera.empty()) {
+    const std::optional<CameraCalibration> own = source.calibration();
+    if (!own) {
+      throw InputError(
+          "no calibration: the source has none, give one by --camera FILE (EuRoC sensor.yaml, "
+          "Kalibr camchain.yaml, ROS camera_info YAML or OpenCV YAML)");
+    }
+    calibration = *own;
+  } else {
+    calibration = ReadCalibration(camera);
   }
-  CameraCalibration calibration = ReadCalibration(camera.empty() ? own_file : camera);
-  if (!calibration.body_from_camera && !own_file.empty()) {
-    const CameraCalibration own = ReadCalibration(own_file);
+  if (!calibration.body_from_camera) {
+    const CameraMount own = source.mount();
     calibration.body_from_camera = own.body_from_camera;
     if (!calibration.clock_offset) calibration.clock_offset = own.clock_offset;
   }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "kestrel/base/error.h"
+#include "kestrel/camera/calibration_reader.h"
 #include "kestrel/recording/file_kind.h"
 #include "kestrel/recording/image_file.h"
 
@@ -75,6 +76,11 @@ bool ImageSequence::Next(Frame* frame) {
   frame->time = item.time;
   frame->image = ReadImage(item.path, format());
   return true;
+}
+
+std::optional<CameraCalibration> ImageSequence::calibration() const {
+  if (calibration_file_.empty()) return std::nullopt;
+  return ReadCalibration(calibration_file_);
 }
 
 double ImageSequence::rate_hz() const {
