@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import {
+  nextTheme,
+  seekTrouble,
+  step,
+  takeSnapshot,
+  toggleHelp,
+  toggleLayer,
+  togglePlaying,
+  toggleRecording,
+} from "./actions";
+import { layers } from "./protocol";
+import { store } from "./store";
+
+export interface Key {
+  keys: string[];
+  meaning: string;
+  act: () => void;
+}
+
+export const keys: Key[] = [
+  ...layers.map((layer, i) => ({
+    keys: [String(i + 1)],
+    meaning: `show ${layer}`,
+    act: () => toggleLayer(layer),
+  })),
+  { keys: ["k"], meaning: "freeze the image; play or hold a recording", act: togglePlaying },
+  { keys: ["."], meaning: "a frame forward", act: () => step(1) },
+  { keys: [","], meaning: "a frame back", act: () => step(-1) },
+  { keys: ["n"], meaning: "to the next lost or false frames", act: () => seekTrouble(1) },
+  { keys: ["p"], meaning: "to those before", act: () => seekTrouble(-1) },
+  { keys: ["r"], meaning: "start or stop recording", act: toggleRecording },
+  { keys: ["s"], meaning: "keep a snapshot", act: takeSnapshot },
+  { keys: ["t"], meaning: "next theme: auto, light, dark, sun", act: nextTheme },
+  { keys: ["?", "h"], meaning: "show or hide these keys", act: toggleHelp },
+];
+
+export function handleKey(event: KeyboardEvent): void {
+  if (event.ctrlKey || event.altKey || event.metaKey) return;
+  if (event.key === "Escape" && store.state.isHelpShown) return toggleHelp();
+  const key = keys.find((one) => one.keys.includes(event.key));
+  if (!key) return;
+  event.preventDefault();
+  key.act();
+}
