@@ -41,9 +41,21 @@ export function fitView(points: [number, number][], width: number, height: numbe
   };
 }
 
-export function pointsOf(map: MapMessage, track: [number, number][]): [number, number][] {
+/** What the view has to show: positions, and the boxes around the ellipses of k sigma. */
+export function pointsOf(
+  map: MapMessage,
+  track: [number, number][],
+  sigmas: number,
+): [number, number][] {
   const objects = [...map.objects, ...map.prediction, ...(map.target ? [map.target] : [])];
-  return [...track, ...(map.uav ? [map.uav] : []), ...objects.map((object) => object.position)];
+  const corners = objects.flatMap(({ position: [x, y], covariance: [xx, , yy] }) => {
+    const [dx, dy] = [sigmas * Math.sqrt(xx), sigmas * Math.sqrt(yy)];
+    return [
+      [x - dx, y - dy],
+      [x + dx, y + dy],
+    ] as [number, number][];
+  });
+  return [...track, ...(map.uav ? [map.uav] : []), ...corners];
 }
 
 /** Half axes (m) and direction of the longer one (rad from east) of the ellipse of k sigma. */

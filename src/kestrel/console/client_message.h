@@ -33,7 +33,8 @@ struct ConsoleCommand {
 
 using ClientMessage = std::variant<ImageAck, ImageWish, ConsoleCommand>;
 
-// What a browser has sent; nothing when it is not one of those above, to the letter. Does not throw.
+// What a browser has sent; nothing when it is not one of those above, to the letter. Does not
+// throw.
 std::optional<ClientMessage> ParseClientMessage(std::string_view text);
 
 }  // namespace kestrel

@@ -15,6 +15,11 @@ std::string Text(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+// Null where it is not known.
+Json Milliseconds(std::optional<Duration> time) {
+  return time ? Json(time->count() / 1e6) : Json();
+}
+
 std::string TimeText(Time time) { return std::to_string(ToNanoseconds(time)); }
 
 // Pixels to a twentieth: what is drawn is not finer, and the text half as long.
@@ -141,7 +146,7 @@ std::string FrameJson(const ConsoleFrame& frame, std::optional<Duration> age) {
   for (const OverlayShape& shape : frame.shapes) shapes.push_back(Shape(shape));
   return Text({{"sequence", frame.sequence},
                {"time", TimeText(frame.captured)},
-               {"age_ms", age ? Json(1e3 * ToSeconds(*age)) : Json()},
+               {"age_ms", Milliseconds(age)},
                {"width", frame.image.cols},
                {"height", frame.image.rows},
                {"shapes", std::move(shapes)}});
@@ -151,7 +156,7 @@ std::string ToJson(const LinkReport& report) {
   return Text({{"kind", "link"},
                {"dropped", report.dropped_messages},
                {"images", report.images},
-               {"draw_ms", report.draw_time ? Json(1e3 * ToSeconds(*report.draw_time)) : Json()},
+               {"draw_ms", Milliseconds(report.draw_time)},
                {"clients", report.clients}});
 }
 

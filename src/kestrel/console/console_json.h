@@ -19,10 +19,10 @@ std::string FrameJson(const ConsoleFrame& frame, std::optional<Duration> age);
 
 // How one browser's connection is.
 struct LinkReport {
-  std::uint64_t dropped_messages = 0;        // for want of its reading them
-  std::uint64_t images = 0;                  // sent
-  std::optional<Duration> draw_time;         // from capture until it said that the image is drawn
-  int clients = 0;                           // all that look
+  std::uint64_t dropped_messages = 0;  // for want of its reading them
+  std::uint64_t images = 0;            // sent
+  std::optional<Duration> draw_time;   // from capture until it said that the image is drawn
+  int clients = 0;                     // all that look
 };
 std::string ToJson(const LinkReport& report);
 

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/console/console_options.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
+#include <boost/asio/ip/address.hpp>
 #include <cctype>
 #include <cstdint>
 #include <sstream>
+#include <unistd.h>
 
-#include <boost/asio/ip/address.hpp>
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"

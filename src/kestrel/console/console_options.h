@@ -8,14 +8,14 @@ namespace kestrel {
 
 // Where the web page is served, to whom, and what it may cost.
 struct ConsoleOptions {
-  // IPv4 or IPv6 address. One that others can reach, any but 127.0.0.0/8 and ::1, needs a token: one
-  // is made where none is given.
+  // IPv4 or IPv6 address. One that others can reach, any but 127.0.0.0/8 and ::1, needs a token:
+  // one is made where none is given.
   std::string address = "127.0.0.1";
   int port = 8080;  // 0: any free one
   // 16 to 128 of A-Z, a-z, 0-9, - and _.
   std::string token;
-  // Names, with commas between them, that the page may be asked by, as "kestrel.local". Addresses and
-  // localhost always may; any other name is a page that poses as this one (DNS rebinding).
+  // Names, with commas between them, that the page may be asked by, as "kestrel.local". Addresses
+  // and localhost always may; any other name is a page that poses as this one (DNS rebinding).
   std::string host_names;
   int max_connections = 64;
   double max_image_rate_hz = 20;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/console/http_session.h"
 
-#include <utility>
-
 #include <boost/beast/websocket.hpp>
+#include <utility>
 
 #include "kestrel/console/socket_session.h"
 
@@ -70,16 +69,15 @@ void HttpSession::Read() {
   parser_->header_limit(kMaxHeaderBytes);
   parser_->body_limit(0);
   stream_.expires_after(kTimeout);
-  http::async_read(stream_, buffer_, *parser_,
-                   [self = shared_from_this()](beast::error_code error, std::size_t) {
-                     if (!error) return self->Answer(self->parser_->get());
-                     const bool is_malformed =
-                         error.category() ==
-                             http::make_error_code(http::error::bad_method).category() &&
-                         error != http::error::end_of_stream &&
-                         error != http::error::partial_message;
-                     if (is_malformed) self->Refuse(Status::bad_request, error.message());
-                   });
+  http::async_read(
+      stream_, buffer_, *parser_,
+      [self = shared_from_this()](beast::error_code error, std::size_t) {
+        if (!error) return self->Answer(self->parser_->get());
+        const bool is_malformed =
+            error.category() == http::make_error_code(http::error::bad_method).category() &&
+            error != http::error::end_of_stream && error != http::error::partial_message;
+        if (is_malformed) self->Refuse(Status::bad_request, error.message());
+      });
 }
 
 void HttpSession::Answer(const Request& request) {

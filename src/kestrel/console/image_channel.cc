@@ -20,9 +20,8 @@ std::optional<ImageChannel::Image> ImageChannel::NewestAfter(std::uint64_t seen,
 }
 
 void ImageChannel::Encode(const ConsoleFrame& frame, Time now) {
-  const std::optional<Duration> age = feed_->description().is_live
-                                          ? std::optional<Duration>(now - frame.captured)
-                                          : std::nullopt;
+  const std::optional<Duration> age =
+      feed_->description().is_live ? std::optional<Duration>(now - frame.captured) : std::nullopt;
   const std::string text = FrameJson(frame, age);
   auto message = std::make_shared<std::string>();
   for (int shift = 0; shift < 32; shift += 8) {

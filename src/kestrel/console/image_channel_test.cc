@@ -26,10 +26,10 @@ struct Unpacked {
 };
 Unpacked Unpack(const std::string& message) {
   std::size_t size = 0;
-  for (int i = 0; i < 4; ++i) size |= static_cast<std::size_t>(static_cast<unsigned char>(message[i])) << 8 * i;
+  for (int i = 0; i < 4; ++i)
+    size |= static_cast<std::size_t>(static_cast<unsigned char>(message[i])) << 8 * i;
   const std::vector<char> jpeg(message.begin() + 4 + size, message.end());
-  return {nlohmann::json::parse(message.substr(4, size)),
-          cv::imdecode(jpeg, cv::IMREAD_UNCHANGED)};
+  return {nlohmann::json::parse(message.substr(4, size)), cv::imdecode(jpeg, cv::IMREAD_UNCHANGED)};
 }
 
 TEST(ImageChannelTest, OneMessageHoldsTheImageAndWhatWasFoundInIt) {

@@ -21,10 +21,9 @@ bool JpegEncoder::Append(const cv::Mat& image, std::string* output) {
   if (memory_.size() < bound) memory_.resize(bound);
   auto* jpeg = reinterpret_cast<unsigned char*>(memory_.data());
   unsigned long size = memory_.size();
-  const int error =
-      tjCompress2(compressor_, image.data, image.cols, static_cast<int>(image.step), image.rows,
-                  is_gray ? TJPF_GRAY : TJPF_BGR, &jpeg, &size, sampling, quality_,
-                  TJFLAG_NOREALLOC | TJFLAG_FASTDCT);
+  const int error = tjCompress2(compressor_, image.data, image.cols, static_cast<int>(image.step),
+                                image.rows, is_gray ? TJPF_GRAY : TJPF_BGR, &jpeg, &size, sampling,
+                                quality_, TJFLAG_NOREALLOC | TJFLAG_FASTDCT);
   if (error != 0) return false;
   output->append(memory_, 0, size);
   return true;

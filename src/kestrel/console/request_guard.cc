@@ -2,9 +2,9 @@
 #include "kestrel/console/request_guard.h"
 
 #include <algorithm>
+#include <boost/asio/ip/address.hpp>
 #include <cctype>
 
-#include <boost/asio/ip/address.hpp>
 #include <fmt/format.h>
 
 namespace kestrel {

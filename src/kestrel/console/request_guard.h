@@ -12,9 +12,9 @@ namespace kestrel {
 
 // The part of an HTTP request that says whose it is.
 struct RequestHead {
-  std::string_view target = {};                     // path and query
-  std::string_view host = {};                       // as "localhost:8080"
-  std::optional<std::string_view> origin = {};      // of the page that asks, where a browser says it
+  std::string_view target = {};                 // path and query
+  std::string_view host = {};                   // as "localhost:8080"
+  std::optional<std::string_view> origin = {};  // of the page that asks, where a browser says it
   std::optional<std::string_view> fetch_site = {};  // Sec-Fetch-Site
   std::optional<std::string_view> fetch_mode = {};  // Sec-Fetch-Mode
   std::string_view cookies = {};

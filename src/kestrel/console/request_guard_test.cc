@@ -27,8 +27,9 @@ TEST(RequestGuardTest, OnThisComputerOnlyItsOwnNamesAreServed) {
   for (const char* host : {"localhost", "LocalHost:9000", "127.0.0.1:8080", "[::1]:8080"}) {
     EXPECT_EQ(guard.Admit(Page(host)), Admission::kServed) << host;
   }
-  for (const char* host : {"", "evil.example", "localhost.evil.example:8080", "10.0.0.5", "2130706433",
-                           "[::1", "[]", "127.0.0.1.nip.io", "localhost@evil.example"}) {
+  for (const char* host :
+       {"", "evil.example", "localhost.evil.example:8080", "10.0.0.5", "2130706433", "[::1", "[]",
+        "127.0.0.1.nip.io", "localhost@evil.example"}) {
     EXPECT_EQ(guard.Admit(Page(host)), Admission::kWrongHost) << host;
   }
 }
@@ -82,8 +83,9 @@ TEST(RequestGuardTest, TheTokenBecomesACookie) {
 TEST(RequestGuardTest, ReadsItsCookieAmongOthers) {
   const RequestGuard guard(OptionsAt("10.0.0.5", kToken), 8080);
   RequestHead head = Socket("10.0.0.5:8080", "http://10.0.0.5:8080");
-  for (const char* cookies : {"kestrel_8080=0123456789abcdef", "a=b; kestrel_8080=0123456789abcdef ",
-                              "kestrel_8080=old;kestrel_8080=0123456789abcdef"}) {
+  for (const char* cookies :
+       {"kestrel_8080=0123456789abcdef", "a=b; kestrel_8080=0123456789abcdef ",
+        "kestrel_8080=old;kestrel_8080=0123456789abcdef"}) {
     head.cookies = cookies;
     EXPECT_EQ(guard.Admit(head), Admission::kServed) << cookies;
   }

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/console/web_server.h"
 
-#include <sys/resource.h>
-
-#include <thread>
-#include <utility>
-
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <sys/resource.h>
+#include <thread>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"

@@ -130,9 +130,9 @@ TEST_F(WebServerTest, WrongHostsAndOriginsAreRefused) {
   auto request = foreign.Get("/");
   request.set("Origin", "http://evil.example");
   EXPECT_EQ(foreign.Send(request).result_int(), 403u);
-  EXPECT_EQ(TestSocket(server.port(), "http://evil.example").status(), 403u);
-  EXPECT_EQ(TestSocket(server.port(), "").status(), 403u);
-  EXPECT_EQ(TestSocket(server.port()).status(), 101u);
+  EXPECT_FALSE(TestSocket(server.port(), "http://evil.example").is_open());
+  EXPECT_FALSE(TestSocket(server.port(), "").is_open());
+  EXPECT_TRUE(TestSocket(server.port()).is_open());
 }
 
 TEST_F(WebServerTest, WithATokenNothingIsSaidWithoutIt) {
@@ -146,8 +146,8 @@ TEST_F(WebServerTest, WithATokenNothingIsSaidWithoutIt) {
     EXPECT_THAT(answer.body(), testing::Not(testing::HasSubstr(kToken)));
   }
   const std::string origin = "http://127.0.0.1:" + std::to_string(server.port());
-  EXPECT_EQ(TestSocket(server.port(), origin).status(), 401u);
-  EXPECT_EQ(TestSocket(server.port(), origin, "kestrel=1").status(), 401u);
+  EXPECT_FALSE(TestSocket(server.port(), origin).is_open());
+  EXPECT_FALSE(TestSocket(server.port(), origin, "kestrel=1").is_open());
 
   TestBrowser browser(server.port());
   const auto answer = browser.Send(browser.Get("/?token=0123456789abcdef"));
@@ -158,7 +158,7 @@ TEST_F(WebServerTest, WithATokenNothingIsSaidWithoutIt) {
   auto request = browser.Get("/");
   request.set(http::field::cookie, cookie.substr(0, cookie.find(';')));
   EXPECT_EQ(browser.Send(request).result_int(), 200u);
-  EXPECT_EQ(TestSocket(server.port(), origin, cookie.substr(0, cookie.find(';'))).status(), 101u);
+  EXPECT_TRUE(TestSocket(server.port(), origin, cookie.substr(0, cookie.find(';'))).is_open());
 }
 
 TEST_F(WebServerTest, AnAddressThatOthersReachGetsAToken) {
@@ -193,7 +193,8 @@ TEST_F(WebServerTest, MalformedAndOversizeRequestsAreRefused) {
         start + "Content-Length: 5\r\n\r\nhello", start + "Content-Length: 99999999999\r\n\r\n",
         start + "Transfer-Encoding: chunked\r\n\r\n5\r\nhello\r\n0\r\n\r\n",
         start + "Content-Length: 1\r\nContent-Length: 2\r\n\r\n",
-        std::string("POST /live HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\n{\"ack\":1}")}) {
+        std::string(
+            "POST /live HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\n{\"ack\":1}")}) {
     TestBrowser browser(server.port());
     const unsigned status = browser.SendBytes(bytes).result_int();
     EXPECT_TRUE(status == 400 || status == 0) << bytes.substr(0, 80) << ": " << status;
@@ -221,8 +222,8 @@ TEST_F(WebServerTest, ThereAreOnlySoManyConnections) {
 
 TEST_F(WebServerTest, BadFramesEndTheConnection) {
   const WebServer server(AnyPort(), &feed_, kAssets);
-  for (const std::string& text : {std::string("{}"), std::string("garbage"), std::string(20000, ' '),
-                                  std::string("{\"command\":\"rm\"}")}) {
+  for (const std::string& text : {std::string("{}"), std::string("garbage"),
+                                  std::string(20000, ' '), std::string("{\"command\":\"rm\"}")}) {
     TestSocket socket(server.port());
     socket.Send(text);
     EXPECT_TRUE(socket.IsEnded()) << text.substr(0, 20);
@@ -281,7 +282,7 @@ TEST_F(WebServerTest, TheNextImageComesAfterTheLastIsDrawn) {
   give();
   EXPECT_EQ((*first.Next("image"))["sequence"], 1);
   EXPECT_EQ((*second.Next("image"))["sequence"], 1);
-  EXPECT_EQ(server.counters().encoded, 1u);
+  EXPECT_TRUE(Eventually([&] { return server.counters().encoded == 1; }));
   // None of them says that it is drawn: no more are made.
   for (int i = 0; i < 20; ++i, std::this_thread::sleep_for(5ms)) give();
   EXPECT_EQ(server.counters().encoded, 1u);
@@ -289,7 +290,7 @@ TEST_F(WebServerTest, TheNextImageComesAfterTheLastIsDrawn) {
   EXPECT_EQ((*first.Next("image"))["sequence"], 21);
   second.Send(R"({"ack": 1})");
   EXPECT_EQ((*second.Next("image"))["sequence"], 21);
-  EXPECT_EQ(server.counters().encoded, 2u);
+  EXPECT_TRUE(Eventually([&] { return server.counters().encoded == 2; }));
   EXPECT_GT((*first.Next("link"))["draw_ms"], 0);
 }
 

@@ -20,12 +20,16 @@ export function App() {
     <>
       <Header />
       <main>
-        <ImageView />
-        {hasTimeline && <ReplayBar />}
-        <MapPanel />
-        <Charts />
-        <HealthPanel />
-        <EventsPanel />
+        <div class="column">
+          <ImageView />
+          {hasTimeline && <ReplayBar />}
+          <Charts />
+        </div>
+        <div class="column">
+          <MapPanel />
+          <HealthPanel />
+          <EventsPanel />
+        </div>
       </main>
       <HelpDialog />
     </>

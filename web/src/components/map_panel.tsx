@@ -29,7 +29,7 @@ export function MapPanel() {
       <canvas ref={canvas} role="img" aria-label={mapInWords(map)} />
       <p class="legend">
         <span data-of="uav">UAV</span> <span data-of="target">target</span>{" "}
-        <span data-of="prediction">prediction</span> ellipses: 2 sigma
+        <span data-of="prediction">prediction</span> (ellipses: 2 sigma)
       </p>
     </section>
   );
@@ -57,7 +57,7 @@ function drawMap(
   const context = canvas.getContext("2d");
   if (!context) return;
   context.scale(ratio, ratio);
-  const view = fitView(map ? pointsOf(map, track) : track, width, height);
+  const view = fitView(map ? pointsOf(map, track, sigmas) : track, width, height);
   drawGrid(context, view);
   drawLine(context, view, track, themeColor("muted"));
   if (!map) return;

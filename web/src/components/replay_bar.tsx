@@ -30,19 +30,11 @@ export function ReplayBar() {
   return (
     <section class="replay" aria-label="Replay">
       <div class="replay-buttons">
-        <button onClick={() => seekTrouble(-1)} aria-label="to the lost or false frames before">
-          ⏮
-        </button>
-        <button onClick={() => step(-1)} aria-label="a frame back">
-          ◀
-        </button>
+        <button onClick={() => seekTrouble(-1)}>◀ trouble</button>
+        <button onClick={() => step(-1)}>−1 frame</button>
         <button onClick={togglePlaying}>{speed === 0 ? "Play" : "Hold"}</button>
-        <button onClick={() => step(1)} aria-label="a frame forward">
-          ▶
-        </button>
-        <button onClick={() => seekTrouble(1)} aria-label="to the next lost or false frames">
-          ⏭
-        </button>
+        <button onClick={() => step(1)}>+1 frame</button>
+        <button onClick={() => seekTrouble(1)}>trouble ▶</button>
         <label>
           Speed{" "}
           <select
