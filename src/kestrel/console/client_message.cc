@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -13,13 +12,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::array<std::pair<std::string_view, ConsoleCommandKind>, 5> kCommands{{
-    {"record", ConsoleCommandKind::kRecord},
-    {"snapshot", ConsoleCommandKind::kSnapshot},
-    {"play", ConsoleCommandKind::kPlay},
-    {"seek", ConsoleCommandKind::kSeek},
-    {"step", ConsoleCommandKind::kStep},
-}};
+constexpr std::array kCommands = {ConsoleCommandKind::kRecord, ConsoleCommandKind::kSnapshot,
+                                  ConsoleCommandKind::kPlay, ConsoleCommandKind::kSeek,
+                                  ConsoleCommandKind::kStep};
 // Nothing that is asked for is nested; deeper text would cost the stack of the parser.
 constexpr int kMaxDepth = 2;
 
@@ -33,8 +28,8 @@ std::optional<ClientMessage> ReadCommand(const Json& message) {
   }
   if (!std::isfinite(command.value)) return std::nullopt;
   if (message.size() != (message.contains("value") ? 2 : 1)) return std::nullopt;
-  for (const auto& [known, kind] : kCommands) {
-    if (name.get_ref<const std::string&>() != known) continue;
+  for (const ConsoleCommandKind kind : kCommands) {
+    if (name.get_ref<const std::string&>() != ToString(kind)) continue;
     command.kind = kind;
     return command;
   }
@@ -42,6 +37,22 @@ std::optional<ClientMessage> ReadCommand(const Json& message) {
 }
 
 }  // namespace
+
+const char* ToString(ConsoleCommandKind kind) {
+  switch (kind) {
+    case ConsoleCommandKind::kRecord:
+      return "record";
+    case ConsoleCommandKind::kSnapshot:
+      return "snapshot";
+    case ConsoleCommandKind::kPlay:
+      return "play";
+    case ConsoleCommandKind::kSeek:
+      return "seek";
+    case ConsoleCommandKind::kStep:
+      return "step";
+  }
+  return "";
+}
 
 std::optional<ClientMessage> ParseClientMessage(std::string_view text) {
   bool is_too_deep = false;

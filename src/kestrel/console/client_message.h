@@ -26,6 +26,7 @@ enum class ConsoleCommandKind {
   kSeek,      // to so many s after the beginning
   kStep,      // so many frames forward
 };
+const char* ToString(ConsoleCommandKind kind);  // "record", "snapshot", "play", "seek", "step"
 struct ConsoleCommand {
   ConsoleCommandKind kind = ConsoleCommandKind::kSnapshot;
   double value = 0;  // finite

@@ -6,8 +6,8 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kUpdates = 1024;
-constexpr std::size_t kCommands = 64;
+constexpr std::size_t kMaxUpdates = 1024;
+constexpr std::size_t kMaxCommands = 64;
 
 }  // namespace
 
@@ -26,7 +26,7 @@ const char* ToString(OverlayLayer layer) {
 }
 
 ConsoleFeed::ConsoleFeed(Description description)
-    : description_(std::move(description)), updates_(kUpdates), commands_(kCommands) {}
+    : description_(std::move(description)), updates_(kMaxUpdates), commands_(kMaxCommands) {}
 
 void ConsoleFeed::SetFrame(ConsoleFrame* frame) {
   frame->sequence = ++sequence_;

@@ -27,22 +27,6 @@ double Rounded(double px) { return std::round(px * 20) / 20; }
 
 Json Numbers(const Eigen::Vector2d& vector) { return {vector.x(), vector.y()}; }
 
-const char* NameOf(ConsoleCommandKind kind) {
-  switch (kind) {
-    case ConsoleCommandKind::kRecord:
-      return "record";
-    case ConsoleCommandKind::kSnapshot:
-      return "snapshot";
-    case ConsoleCommandKind::kPlay:
-      return "play";
-    case ConsoleCommandKind::kSeek:
-      return "seek";
-    case ConsoleCommandKind::kStep:
-      return "step";
-  }
-  return "";
-}
-
 Json Shape(const OverlayShape& shape) {
   Json outline = Json::array();
   for (const cv::Point2f& point : shape.outline) {
@@ -129,7 +113,7 @@ std::string ToJson(const ConsoleFeed::Description& description) {
   for (const SeriesDescription& one : description.series) {
     series.push_back({{"name", one.name}, {"unit", one.unit}, {"label", one.label}});
   }
-  for (const ConsoleCommandKind kind : description.offers) offers.push_back(NameOf(kind));
+  for (const ConsoleCommandKind kind : description.offers) offers.push_back(ToString(kind));
   return Text({{"kind", "hello"},
                {"title", description.title},
                {"live", description.is_live},
