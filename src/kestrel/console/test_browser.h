@@ -119,6 +119,14 @@ class TestSocket {
     return std::nullopt;
   }
 
+  // Ends the connection; Read in another thread then returns.
+  void Shutdown() {
+    test_browser::beast::error_code error;
+    test_browser::beast::get_lowest_layer(stream_).socket().shutdown(
+        test_browser::Tcp::socket::shutdown_both, error);
+  }
+
+  // Reads until the connection ends.
   bool IsEnded() {
     while (Read()) {
     }
