@@ -3,14 +3,13 @@
 // with nobody looking, with one browser, and with 20 of which one is stalled. The browsers are
 // threads of this program, less urgent than all else, as they would be on another computer. The
 // rounds of all three are taken in turn, so that noise hits all alike.
-#include <sys/resource.h>
-#include <time.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <memory>
+#include <sys/resource.h>
 #include <thread>
+#include <time.h>
 #include <vector>
 
 #include <fmt/format.h>

@@ -53,8 +53,8 @@ void AskGuard(std::string_view text, bool is_web_socket) {
                                              .origin = lines[1],
                                              .cookies = lines[2],
                                              .is_web_socket = is_web_socket});
-  const bool knows_token = lines[2].find(kToken) != lines[2].npos ||
-                           lines[3].find(kToken) != lines[3].npos;
+  const bool knows_token =
+      lines[2].find(kToken) != lines[2].npos || lines[3].find(kToken) != lines[3].npos;
   const bool is_let_in = admission == Admission::kServed || admission == Admission::kSignedIn;
   Require(!is_let_in || (knows_token && lines[1].ends_with(lines[0])));
 }
