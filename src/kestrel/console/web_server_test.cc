@@ -19,7 +19,7 @@ namespace {
 using namespace std::chrono_literals;
 namespace http = boost::beast::http;
 
-constexpr char kToken[] = "0123456789abcdef";
+constexpr char kSecret[] = "0123456789abcdef";
 constexpr std::array<WebAsset, 3> kAssets{{
     {"/index.html", "text/html; charset=utf-8", "<p>page", false},
     {"/assets/app.1234.js", "text/javascript; charset=utf-8", "zipped", true},
@@ -136,14 +136,14 @@ TEST_F(WebServerTest, WrongHostsAndOriginsAreRefused) {
 }
 
 TEST_F(WebServerTest, WithATokenNothingIsSaidWithoutIt) {
-  const WebServer server(AnyPort(kToken), &feed_, kAssets);
+  const WebServer server(AnyPort(kSecret), &feed_, kAssets);
   EXPECT_THAT(server.url(), testing::EndsWith("/?token=0123456789abcdef"));
   for (const char* target : {"/", "/index.html", "/nothing", "/?token=0123456789abcdee"}) {
     TestBrowser browser(server.port());
     const auto answer = browser.Send(browser.Get(target));
     EXPECT_EQ(answer.result_int(), 401u) << target;
     EXPECT_EQ(answer.count(http::field::set_cookie), 0u);
-    EXPECT_THAT(answer.body(), testing::Not(testing::HasSubstr(kToken)));
+    EXPECT_THAT(answer.body(), testing::Not(testing::HasSubstr(kSecret)));
   }
   const std::string origin = "http://127.0.0.1:" + std::to_string(server.port());
   EXPECT_FALSE(TestSocket(server.port(), origin).is_open());
@@ -201,6 +201,59 @@ TEST_F(WebServerTest, MalformedAndOversizeRequestsAreRefused) {
   }
   TestBrowser browser(server.port());
   EXPECT_EQ(browser.Send(browser.Get("/")).result_int(), 200u);
+}
+
+// Each is wrong in one way at least; the parts that are not are drawn at random.
+TEST_F(WebServerTest, AThousandHostileRequestsAreRefused) {
+  const WebServer server(AnyPort(kSecret), &feed_, kAssets);
+  std::mt19937 random(20);
+  const auto pick = [&random](const std::vector<std::string>& from) {
+    return from[random() % from.size()];
+  };
+  const std::string long_text(9000, 'A');
+  const std::vector<std::string> targets = {"/",
+                                            "/live",
+                                            "/../../etc/passwd",
+                                            "/..%2f..%2fetc/passwd",
+                                            "/assets/%00",
+                                            "/?token=",
+                                            "/?token=0123456789abcdeg",
+                                            "//evil.example/",
+                                            "/index.html",
+                                            "/" + long_text,
+                                            "*",
+                                            "\\x"};
+  const std::vector<std::string> hosts = {
+      "localhost",  "127.0.0.1", "evil.example", "localhost.evil.example",
+      "0x7f000001", "",          long_text,      "localhost\r\nHost: localhost"};
+  const std::vector<std::string> fields = {
+      "",
+      "Origin: http://evil.example\r\n",
+      "Origin: null\r\n",
+      "Cookie: kestrel=1\r\n",
+      "Cookie: " + long_text + "\r\n",
+      "Content-Length: 9\r\n",
+      "Transfer-Encoding: chunked\r\n",
+      "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+      "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n",
+      "Sec-Fetch-Site: cross-site\r\n",
+      ": \r\n",
+      "X\r\n",
+      "Content-Length: -1\r\n"};
+  const std::vector<std::string> bodies = {"", "{\"ack\":1}", "5\r\nhello\r\n0\r\n\r\n",
+                                           "\x81\x05hello"};
+  for (int i = 0; i < 1000; ++i) {
+    const std::string bytes = pick({"GET", "POST", "PUT", "OPTIONS", "get", "\xff"}) + " " +
+                              pick(targets) + " HTTP/1.1\r\nHost: " + pick(hosts) + "\r\n" +
+                              pick(fields) + pick(fields) + "\r\n" + pick(bodies);
+    TestBrowser browser(server.port());
+    const auto answer = browser.SendBytes(bytes);
+    const unsigned status = answer.result_int();
+    EXPECT_TRUE(status == 0 || (status >= 400 && status < 500)) << status << ": " << bytes;
+    EXPECT_THAT(answer.body(), testing::Not(testing::HasSubstr(kSecret)));
+  }
+  EXPECT_EQ(server.counters().clients, 0);
+  EXPECT_GE(server.counters().refused, 500u);
 }
 
 TEST_F(WebServerTest, ThereAreOnlySoManyConnections) {
