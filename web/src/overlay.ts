@@ -13,21 +13,26 @@ export function layerColor(layer: Layer): string {
   return styles[layer].color;
 }
 
-/** Draws the shapes of the layers that are on; 'scale': canvas pixels a pixel of the frame. */
+/**
+ * Draws the shapes of the layers that are on. 'scale': canvas pixels a pixel of the frame; 'unit':
+ * canvas pixels a pixel of the page, so that lines and words are as large as others there.
+ */
 export function drawOverlay(
   context: CanvasRenderingContext2D,
   shapes: Shape[],
   isOn: Record<Layer, boolean>,
   scale: number,
+  unit: number,
 ): void {
   for (const shape of shapes) {
     if (!isOn[shape.layer]) continue;
     const { color, dash } = styles[shape.layer];
-    const path = outlinePath(shape.outline, scale);
+    const path = outlinePath(shape.outline, scale, unit);
     // A dark line below, for bright images.
-    strokePath(context, path, "rgba(0, 0, 0, 0.65)", 4.5, []);
-    strokePath(context, path, color, 2, dash);
-    drawLabel(context, shape, color, scale);
+    strokePath(context, path, "rgba(0, 0, 0, 0.65)", 4 * unit, []);
+    const dashes = dash.map((length) => length * unit);
+    strokePath(context, path, color, 2 * unit, dashes);
+    drawLabel(context, shape, color, scale, unit);
   }
   context.setLineDash([]);
 }
@@ -50,14 +55,14 @@ function at(value: number | undefined, scale: number): number {
   return ((value ?? 0) + 0.5) * scale;
 }
 
-function outlinePath(outline: number[], scale: number): Path2D {
+function outlinePath(outline: number[], scale: number, unit: number): Path2D {
   const path = new Path2D();
   if (outline.length === 2) {
     const [x, y] = [at(outline[0], scale), at(outline[1], scale)];
-    path.moveTo(x - 7, y);
-    path.lineTo(x + 7, y);
-    path.moveTo(x, y - 7);
-    path.lineTo(x, y + 7);
+    path.moveTo(x - 7 * unit, y);
+    path.lineTo(x + 7 * unit, y);
+    path.moveTo(x, y - 7 * unit);
+    path.lineTo(x, y + 7 * unit);
     return path;
   }
   for (let i = 0; i + 1 < outline.length; i += 2) {
@@ -72,16 +77,17 @@ function drawLabel(
   shape: Shape,
   color: string,
   scale: number,
+  unit: number,
 ): void {
   if (shape.label === "") return;
   const xs = shape.outline.filter((_, i) => i % 2 === 0);
   const ys = shape.outline.filter((_, i) => i % 2 === 1);
-  context.font = "600 13px system-ui, sans-serif";
+  context.font = `600 ${14 * unit}px system-ui, sans-serif`;
   const width = context.measureText(shape.label).width;
   const x = Math.min(Math.max(at(Math.min(...xs), scale), 3), context.canvas.width - width - 3);
-  const y = Math.max(at(Math.min(...ys), scale) - 8, 14);
+  const y = Math.max(at(Math.min(...ys), scale) - 8 * unit, 15 * unit);
   context.setLineDash([]);
-  context.lineWidth = 4;
+  context.lineWidth = 4 * unit;
   context.strokeStyle = "rgba(0, 0, 0, 0.75)";
   context.strokeText(shape.label, x, y);
   context.fillStyle = color;

@@ -88,7 +88,8 @@ function drawPicture(canvas: HTMLCanvasElement, { header, bitmap }: Picture): vo
   if (!context) return;
   context.imageSmoothingEnabled = scale === 1;
   context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
-  drawOverlay(context, header.shapes, store.state.layers, scale);
+  const unit = canvas.width / Math.max(canvas.clientWidth, 1);
+  drawOverlay(context, header.shapes, store.state.layers, scale, unit);
 }
 
 function LayerSwitches() {
