@@ -100,8 +100,11 @@ void AddCalibrateColorsCommand(CLI::App* calibrate) {
                    "Folder for objects.yaml, colors.grid and the pictures")
       ->type_name("DIR")
       ->required();
-  command->add_option("--components", arguments->components, "Gaussians of a colour, at most; as many as the Bayesian information criterion asks "
-                   "for")
+  command
+      ->add_option(
+          "--components", arguments->components,
+          "Gaussians of a colour, at most; as many as the Bayesian information criterion asks "
+          "for")
       ->type_name("N")
       ->check(CLI::Range(1, 8));
   command->add_flag("--force", arguments->force, "Replace files that exist");

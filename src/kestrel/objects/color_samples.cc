@@ -91,9 +91,9 @@ std::vector<std::string> SampleWarnings(std::span<const Hsv> samples) {
   }
   const double bright = Share(samples, [](const Hsv& color) { return color.value > 0.99F; });
   if (bright > kManyClipped) {
-    warnings.push_back(fmt::format(
-        "{:.0f} % of the pixels are as bright as the camera can tell: expose shorter",
-        100 * bright));
+    warnings.push_back(
+        fmt::format("{:.0f} % of the pixels are as bright as the camera can tell: expose shorter",
+                    100 * bright));
   }
   const double dark = Share(samples, [](const Hsv& color) { return color.value < 0.06F; });
   if (dark > kManyClipped) {
