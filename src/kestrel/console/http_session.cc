@@ -72,6 +72,9 @@ void HttpSession::Read() {
   http::async_read(
       stream_, buffer_, *parser_,
       [self = shared_from_this()](beast::error_code error, std::size_t) {
+        if (!error && !self->parser_->is_done()) {
+          return self->Refuse(Status::bad_request, "a request has no body here");
+        }
         if (!error) return self->Answer(self->parser_->get());
         const bool is_malformed =
             error.category() == http::make_error_code(http::error::bad_method).category() &&

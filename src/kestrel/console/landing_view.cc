@@ -88,10 +88,10 @@ std::vector<OverlayShape> LandingShapes(const CameraModel& camera, const Landing
                                         const LandingObservation& observation) {
   std::vector<OverlayShape> shapes;
   if (observation.target && observation.world_from_camera) {
-    shapes.push_back({OverlayLayer::kPrediction,
-                      TrackOutline(camera, observation.world_from_camera->Inverse(),
-                                   observation.target->motion),
-                      ""});
+    shapes.push_back(
+        {OverlayLayer::kPrediction,
+         TrackOutline(camera, observation.world_from_camera->Inverse(), observation.target->motion),
+         ""});
   }
   if (!observation.report.detection) return shapes;
   const LandingDetection& found = *observation.report.detection;
@@ -100,10 +100,10 @@ std::vector<OverlayShape> LandingShapes(const CameraModel& camera, const Landing
                     fmt::format("{} {:.2f}", ToString(found.method), found.quality)});
   shapes.push_back({OverlayLayer::kDetection,
                     RingOutline(camera, found.camera_from_pattern, pattern.inner_radius_m()), ""});
-  shapes.push_back({OverlayLayer::kDetection,
-                    {{static_cast<float>(found.center_px.x()),
-                      static_cast<float>(found.center_px.y())}},
-                    ""});
+  shapes.push_back(
+      {OverlayLayer::kDetection,
+       {{static_cast<float>(found.center_px.x()), static_cast<float>(found.center_px.y())}},
+       ""});
   return shapes;
 }
 

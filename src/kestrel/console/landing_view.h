@@ -26,8 +26,8 @@ std::vector<OverlayShape> LandingShapes(const CameraModel& camera, const Landing
 // The state of the track, and why the pattern was not found.
 ConsoleStatus LandingStatus(const LandingObservation& observation);
 
-// The camera (its heading is that of the image's upper edge), the target, and where it will be in 1,
-// 2 and 3 s. 'noise': of the track's motion.
+// The camera (its heading is that of the image's upper edge), the target, and where it will be in
+// 1, 2 and 3 s. 'noise': of the track's motion.
 ConsoleMap LandingMap(const LandingObservation& observation, const TurnNoise& noise);
 
 }  // namespace kestrel

@@ -44,9 +44,11 @@ class TestBrowser {
     test_browser::http::write(stream_, request, error);
     return ReadResponse();
   }
+  // The same for bytes after which no more come.
   test_browser::Response SendBytes(const std::string& bytes) {
     test_browser::beast::error_code error;
     boost::asio::write(stream_, boost::asio::buffer(bytes), error);
+    stream_.socket().shutdown(test_browser::Tcp::socket::shutdown_send, error);
     return ReadResponse();
   }
   // The next answer, as above.
