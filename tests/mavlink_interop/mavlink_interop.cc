@@ -106,7 +106,8 @@ void ForEachMessage(const Visitor& visitor) {
             GpsGlobalOrigin, RcChannels, RequestDataStream, CommandLong, CommandAck,
             SetPositionTargetLocalNed, SimState, Timesync, HilStateQuaternion, DistanceSensor,
             FollowTarget, AutopilotVersion, LandingTarget, EkfStatusReport, EstimatorStatus,
-            HomePosition, MessageInterval, ExtendedSysState, Statustext, TargetRelative>(visitor);
+            HomePosition, MessageInterval, ExtendedSysState, Statustext, CurrentMode,
+            TargetRelative>(visitor);
 }
 
 void Print(std::uint32_t id, std::string_view name, const std::string& fields,

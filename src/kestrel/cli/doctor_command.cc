@@ -134,25 +134,19 @@ class DoctorVisit {
       link.open_error = error.what();
       return;
     }
-    AutopilotOptions options = options_.fly.autopilot;
-    options.wants_true_pose = options.wants_true_pose || source_.simulated != nullptr;
-    autopilot_.emplace(options, &*connection_,
-                       AutopilotListener{
-                           .pose = [this](const PoseSample& pose) { TakePose(pose); },
-                           .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
-                           .event = [this](const AutopilotEvent& e) { examination_->TakeEvent(e); },
-                           .text = {},
-                       });
+    autopilot_.emplace(
+        source_.Asking(options_.fly.autopilot), &*connection_,
+        AutopilotListener{
+            .pose = [this](const PoseSample& pose) { TakePose(pose); },
+            .true_pose = [this](const PoseSample& pose) { source_.TakeTruePose(pose); },
+            .event = [this](const AutopilotEvent& e) { examination_->TakeEvent(e); },
+            .text = {},
+        });
   }
 
   void TakePose(const PoseSample& pose) {
     if (!source_.has_poses) examination_->TakePose(pose);
-    if (source_.simulated != nullptr && !has_true_poses_) source_.simulated->AddPose(pose);
-  }
-
-  void TakeTruePose(const PoseSample& pose) {
-    has_true_poses_ = true;
-    if (source_.simulated != nullptr) source_.simulated->AddPose(pose);
+    source_.TakePose(pose);
   }
 
   bool IsWanted(const Finding& finding) const {
@@ -194,7 +188,6 @@ class DoctorVisit {
   std::optional<Connection> connection_;
   std::optional<Autopilot> autopilot_;
   std::optional<Examination> examination_;
-  bool has_true_poses_ = false;
 };
 
 void RunDoctor(const DoctorArguments& arguments) {

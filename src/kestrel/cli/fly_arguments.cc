@@ -21,12 +21,12 @@ void RequireFlyable(const SourceArguments& source) {
   if (source.altitude_m) throw InputError("--altitude: a flight has the autopilot's poses");
 }
 
-// Set-points end with the mode, which the heartbeat tells: once a second is too seldom. A simulated
+// Set-points end with the mode: to be told that once a second is too seldom. A simulated
 // pilot gives the mode when it would have landed, and has set its PX4 up for decks that drive.
 void PrepareGuidance(const std::string& autopilot, FlyOptions* options) {
-  constexpr double kHeartbeat_hz = 10;
-  double& heartbeat_hz = options->autopilot.heartbeat_rate_hz;
-  if (heartbeat_hz == 0) heartbeat_hz = kHeartbeat_hz;
+  constexpr double kMode_hz = 20;
+  double& mode_hz = options->autopilot.mode_rate_hz;
+  if (mode_hz == 0) mode_hz = kMode_hz;
   PilotOptions& pilot = options->sim_autopilot.model.pilot;
   if (pilot.guide_after_s < 0) pilot.guide_after_s = std::exchange(pilot.land_after_s, -1);
   std::string& parameters = options->sim_autopilot.model.parameters;

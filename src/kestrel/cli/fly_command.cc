@@ -139,10 +139,8 @@ class Flight {
       };
     }
     connection_.emplace(opened.url, all_options_.fly.link, tap);
-    AutopilotOptions options = all_options_.fly.autopilot;
-    options.wants_true_pose = options.wants_true_pose || source_.simulated != nullptr;
     autopilot_.emplace(
-        options, &*connection_,
+        source_.Asking(all_options_.fly.autopilot), &*connection_,
         AutopilotListener{
             .pose = [this](const PoseSample& pose) { TakePose(pose); },
             .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
@@ -173,12 +171,11 @@ class Flight {
 
   void TakePose(const PoseSample& pose) {
     program_->TakeAutopilotPose(pose);
-    if (source_.simulated != nullptr && !has_true_poses_) source_.simulated->AddPose(pose);
+    source_.TakePose(pose);
   }
 
   void TakeTruePose(const PoseSample& pose) {
-    has_true_poses_ = true;
-    if (source_.simulated != nullptr) source_.simulated->AddPose(pose);
+    source_.TakeTruePose(pose);
     if (recorder_) recorder_->AddTruePose(pose);
   }
 
@@ -203,7 +200,6 @@ class Flight {
   std::optional<Connection> connection_;
   std::optional<Autopilot> autopilot_;
   std::optional<FlightProgram> program_;
-  bool has_true_poses_ = false;
 };
 
 void RunFly(const FlyArguments& arguments) {

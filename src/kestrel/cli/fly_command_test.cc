@@ -56,6 +56,13 @@ TEST_F(FlyCommandTest, ASimulatedPx4LandsByBothProfiles) {
   }
 }
 
+TEST_F(FlyCommandTest, GuidesASimulatedPx4OntoACar) {
+  const Outcome outcome = Run(std::string("fly sim:figure8 --autopilot sim:px4 --guide") + kNear);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_LT(MissOf(outcome), 0.5) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("descend: "), HasSubstr("landed: contact")));
+}
+
 TEST_F(FlyCommandTest, PlaysARecordingInRealTime) {
   const std::string flight = folder_ / "flight";
   ASSERT_EQ(Run("simulate landing --scenario calm --seed 2 --output " + flight +
@@ -80,6 +87,8 @@ TEST_F(FlyCommandTest, FaultsAreNamed) {
   ExpectInputError("fly sim:standing --still", "--still");
   ExpectInputError("fly sim:standing --annotate --output " + folder_ / "out", "kestrel land");
   ExpectInputError("fly sim:standing --set fly.rate_hz=0", "rate_hz");
+  ExpectInputError("fly sim:standing --guide", "--autopilot URL");
+  ExpectInputError(source + "sim:px4 --guide --rate 10", "at least 20 set-points");
   const std::string key = folder_.Write("key", std::string(64, 'a'));
   fs::permissions(key, fs::perms::owner_read | fs::perms::others_read);
   ExpectInputError(source + "sim:ardupilot --signing-key " + key, key);

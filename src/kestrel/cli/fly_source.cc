@@ -120,6 +120,20 @@ FlySource OpenReplay(const SourceArguments& arguments, PixelFormat format, bool 
 
 }  // namespace
 
+AutopilotOptions FlySource::Asking(AutopilotOptions options) const {
+  options.wants_true_pose = options.wants_true_pose || simulated != nullptr;
+  return options;
+}
+
+void FlySource::TakePose(const PoseSample& pose) {
+  if (simulated != nullptr && !has_true_poses) simulated->AddPose(pose);
+}
+
+void FlySource::TakeTruePose(const PoseSample& pose) {
+  has_true_poses = true;
+  if (simulated != nullptr) simulated->AddPose(pose);
+}
+
 FlySource OpenFlySource(const SourceArguments& arguments, PixelFormat format,
                         const FlyOptions& options, bool is_looped) {
   const std::string& first = arguments.sources.front();

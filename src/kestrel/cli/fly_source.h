@@ -6,6 +6,8 @@
 #include "kestrel/camera/calibration.h"
 #include "kestrel/cli/fly_options.h"
 #include "kestrel/cli/source_arguments.h"
+#include "kestrel/link/autopilot.h"
+#include "kestrel/navigation/pose_history.h"
 #include "kestrel/onboard/exposure_drive.h"
 #include "kestrel/onboard/live_source.h"
 #include "kestrel/sitl/simulated_camera.h"
@@ -23,6 +25,13 @@ struct FlySource {
   // Of 'source', where it is such; else null.
   SimulatedCamera* simulated = nullptr;
   ExposureActuator* actuator = nullptr;
+  bool has_true_poses = false;  // the autopilot tells where a simulated camera truly is
+
+  // What this asks of the autopilot, beside 'options'.
+  AutopilotOptions Asking(AutopilotOptions options) const;
+  // Poses of the autopilot: a simulated camera is where the true ones say, else where these do.
+  void TakePose(const PoseSample& pose);
+  void TakeTruePose(const PoseSample& pose);
 };
 
 // Opens what the arguments name: "sim:SCENARIO" with further settings as

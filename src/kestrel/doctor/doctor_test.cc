@@ -287,6 +287,10 @@ std::vector<Fault> ParameterFaults() {
          all->parameters["WP_SPD"] = {3, "WPNAV_SPEED", 0.01};
        },
        "WPNAV_SPEED", Verdict::kWrong, "param set WPNAV_SPEED 800"},
+      {"too little acceleration for a curve", Setup::kGuidedArduPilot, Parameter("WP_ACC", 2.5),
+       "WP_ACC", Verdict::kDoubtful, "param set WP_ACC 6"},
+      {"too little jerk for a curve", Setup::kGuidedArduPilot, Parameter("PSC_JERK_NE", 5),
+       "PSC_JERK_NE", Verdict::kDoubtful, "param set PSC_JERK_NE 20"},
       {"height by range finder", Setup::kGuidedArduPilot, Parameter("EK3_SRC1_POSZ", 2),
        "EK3_SRC1_POSZ", Verdict::kWrong, "deck"},
       {"GUID_TIMEOUT", Setup::kGuidedArduPilot, Parameter("GUID_TIMEOUT", 3), "GUID_TIMEOUT",

@@ -9,6 +9,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "kestrel/onboard/repeated_image.h"
+
 namespace kestrel {
 namespace {
 
@@ -33,16 +35,6 @@ double Quantile(const Histogram& histogram, double share, double pixels) {
     if (below >= share * pixels) return gray;
   }
   return kGrays - 1;
-}
-
-// FNV-1a.
-std::uint64_t HashOf(const cv::Mat& gray) {
-  std::uint64_t hash = 14695981039346656037U;
-  for (int y = 0; y < gray.rows; ++y) {
-    const auto* row = gray.ptr<std::uint8_t>(y);
-    for (int x = 0; x < gray.cols; ++x) hash = (hash ^ row[x]) * 1099511628211U;
-  }
-  return hash;
 }
 
 // How far and how steeply the edges of a line of pixels rise, those that are no noise.
@@ -103,7 +95,7 @@ ImageQuality MeasureImageQuality(const cv::Mat& image) {
   quality.dark_gray = Quantile(histogram, kShare, pixels);
   quality.bright_gray = Quantile(histogram, 1 - kShare, pixels);
   quality.edge_px = SharpEdges(gray);
-  quality.hash = HashOf(gray);
+  quality.hash = HashOf(image);
   return quality;
 }
 

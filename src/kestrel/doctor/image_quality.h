@@ -17,7 +17,7 @@ struct ImageQuality {
   // Over how many pixels the sharpest edges rise: 1 where nothing blurs them, 2.5 standard
   // deviations of a blur. Nothing where there are too few edges.
   std::optional<double> edge_px;
-  std::uint64_t hash = 0;  // of all pixels
+  std::uint64_t hash = 0;  // see RepeatedImage
 };
 
 // 'image': CV_8UC1 or CV_8UC3.

@@ -17,11 +17,11 @@
 namespace kestrel {
 namespace {
 
-constexpr std::array<std::string_view, 18> kOfArduPilot = {
+constexpr std::array<std::string_view, 20> kOfArduPilot = {
     "PLND_ENABLED", "PLND_TYPE",     "PLND_EST_TYPE",  "PLND_OPTIONS",   "PLND_LAG",
     "PLND_STRICT",  "PLND_RET_MAX",  "PLND_ORIENT",    "PLND_YAW_ALIGN", "PLND_XY_DIST_MAX",
     "RNGFND1_TYPE", "EK3_SRC1_POSZ", "EK3_SRC1_VELXY", "WP_SPD",         "ATC_ANGLE_MAX",
-    "GUID_TIMEOUT", "MAV_GCS_SYSID", "MAV_OPTIONS"};
+    "GUID_TIMEOUT", "MAV_GCS_SYSID", "MAV_OPTIONS",    "WP_ACC",         "PSC_JERK_NE"};
 
 constexpr std::array<std::string_view, 18> kOfPx4 = {
     "VTE_EN",          "VTE_AID_MASK",     "LTEST_MODE",      "PLD_HACC_RAD",   "EKF2_HGT_REF",
@@ -182,6 +182,19 @@ void CheckGuidanceOfArduPilot(ParameterRules* rules) {
               [](double s) { return s >= kShortest_s && s <= kLongest_s; });
 }
 
+// How fast it turns into the curve of a vehicle that it is guided to.
+void CheckAgilityOfArduPilot(ParameterRules* rules) {
+  constexpr double kLeastAcceleration = 4;
+  constexpr double kAcceleration = 6;
+  constexpr double kLeastJerk = 12;
+  constexpr double kJerk = 20;
+  rules->WantAtLeast(
+      "WP_ACC", Verdict::kDoubtful, kLeastAcceleration,
+      {kAcceleration, "too little acceleration to come up with a vehicle in a curve"});
+  rules->WantAtLeast("PSC_JERK_NE", Verdict::kDoubtful, kLeastJerk,
+                     {kJerk, "changes its acceleration too slowly to follow a curve closely"});
+}
+
 void CheckArduPilot(ParameterRules* rules) {
   CheckPrecisionLandingOfArduPilot(rules);
   if (rules->moves()) CheckMovingTargetOfArduPilot(rules);
@@ -189,6 +202,7 @@ void CheckArduPilot(ParameterRules* rules) {
   CheckEstimatorOfArduPilot(rules);
   CheckTrustOfArduPilot(rules);
   if (rules->all().use.guides) CheckGuidanceOfArduPilot(rules);
+  if (rules->all().use.guides && rules->moves()) CheckAgilityOfArduPilot(rules);
 }
 
 // --- PX4 ---

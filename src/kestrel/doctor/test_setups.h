@@ -145,6 +145,8 @@ inline DoctorObservations GoodGuidedSetup(AutopilotKind kind) {
     set("LNDMC_XY_VEL_MAX", 6);
     set("MAN_OVERRIDE_SPD", 1);
   } else {
+    set("WP_ACC", 6);
+    set("PSC_JERK_NE", 20);
     set("PLND_OPTIONS", 1);
     set("PLND_STRICT", 0);
     set("PLND_RET_MAX", 0);

@@ -7,6 +7,7 @@
 
 #include "kestrel/base/violations.h"
 #include "kestrel/flight/multicopter_motion.h"
+#include "kestrel/navigation/gravity.h"
 
 namespace kestrel {
 namespace {

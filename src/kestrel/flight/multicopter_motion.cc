@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "kestrel/geometry/angles.h"
+#include "kestrel/navigation/gravity.h"
 
 namespace kestrel {
 namespace {

@@ -10,8 +10,6 @@
 
 namespace kestrel {
 
-inline constexpr double kGravity = 9.81;  // m/s^2
-
 // Attitude (world_from_body) of a multicopter whose thrust, as an acceleration in the world, is
 // along its z axis; 'yaw' is the heading of x, rad.
 Eigen::Quaterniond MulticopterAttitude(const Eigen::Vector3d& thrust, double yaw);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -23,6 +25,13 @@ struct RigidTransform {
     return {inverse, -(inverse * translation)};
   }
 };
+
+// Where the x axis of a frame that 'rotation' turns into the world points, about the world's z
+// axis: rad from x to y.
+inline double HeadingOf(const Eigen::Quaterniond& rotation) {
+  const Eigen::Vector3d forward = rotation * Eigen::Vector3d::UnitX();
+  return std::atan2(forward.y(), forward.x());
+}
 
 // The rotation by a rotation vector: about its direction by its length, rad.
 inline Eigen::Quaterniond RotationBy(const Eigen::Vector3d& turn) {

@@ -9,6 +9,7 @@
 #include "kestrel/base/options.h"
 #include "kestrel/base/violations.h"
 #include "kestrel/geometry/angles.h"
+#include "kestrel/navigation/gravity.h"
 
 namespace kestrel {
 namespace {
@@ -16,7 +17,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kFenceGravity = 9.81;  // m/s^2
 // How fast it goes to a boundary, or back from beyond it, per metre of distance: an autopilot with
 // half a second of lag does not overshoot.
 constexpr double kBoundaryGain = 0.7;
@@ -51,7 +51,7 @@ std::vector<std::string> FlightLimitsOptions::Validate() const {
 }
 
 double FlightLimitsOptions::max_acceleration() const {
-  return kFenceGravity * std::tan(Radians(max_tilt_deg));
+  return kGravity * std::tan(Radians(max_tilt_deg));
 }
 
 std::vector<std::string> ViolationsOf(const AutopilotLimits& autopilot,

@@ -20,7 +20,7 @@ SetPoint Moving(const Vector3d& velocity, const Vector3d& acceleration = Vector3
 TEST(FlightLimitsTest, LimitsSpeedAndAccelerationAlongTheirDirections) {
   const FlightLimits limits({}, {0, 0});
   const SetPoint limited = limits.Limited(Moving({30, 40, 9}, {-30, 0, 0}), {0, 0, 10}, true);
-  EXPECT_LT((limited.velocity - Vector3d(7.2, 9.6, 2.5)).norm(), 1e-9);
+  EXPECT_LT((limited.velocity - Vector3d(6, 8, 2.5)).norm(), 1e-9);
   EXPECT_NEAR(limited.acceleration.x(), -9.81 * std::tan(30 * EIGEN_PI / 180), 1e-9);
   EXPECT_NEAR(limits.Limited(Moving({0, 0, -9}), {0, 0, 10}, true).velocity.z(), -1.5, 1e-9);
   const SetPoint small = Moving({1, 2, -0.5}, {1, 0, 0});
@@ -32,9 +32,9 @@ TEST(FlightLimitsTest, BrakesBeforeTheFenceAndComesBackFromBeyond) {
   const auto outwards = [&](double x_m) {
     return limits.Limited(Moving({10, 3, 0}), {x_m, 0, 10}, true).velocity;
   };
-  EXPECT_EQ(outwards(170).x(), 10);
+  EXPECT_NEAR(outwards(150).x(), 9.578, 0.001) << "no faster than it may";
   EXPECT_LT(outwards(195).x(), 4);
-  EXPECT_EQ(outwards(195).y(), 3) << "along the fence it may fly";
+  EXPECT_GT(outwards(195).y(), 2.8) << "along the fence it may fly";
   EXPECT_LT(outwards(210).x(), -2);
   EXPECT_EQ(limits.Limited(Moving({-10, 0, 0}), {199, 0, 10}, true).velocity.x(), -10);
 }
@@ -71,7 +71,7 @@ TEST(FlightLimitsTest, LimitsBeyondTheAutopilotsOwnAreNamed) {
           {.max_speed_mps = 12, .max_climb_mps = 3, .max_sink_mps = 1.5, .max_tilt_deg = 45}, {}),
       IsEmpty());
   EXPECT_THAT(ViolationsOf({.max_speed_mps = 5, .max_tilt_deg = 20}, {}),
-              ElementsAre("limits.max_speed_mps is 12 m/s, the autopilot's own limit is 5 m/s",
+              ElementsAre("limits.max_speed_mps is 10 m/s, the autopilot's own limit is 5 m/s",
                           "limits.max_tilt_deg is 30 deg, the autopilot's own limit is 20 deg"));
 }
 

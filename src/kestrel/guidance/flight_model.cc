@@ -6,6 +6,7 @@
 
 #include "kestrel/base/options.h"
 #include "kestrel/base/violations.h"
+#include "kestrel/navigation/gravity.h"
 
 namespace kestrel {
 namespace {
@@ -24,19 +25,30 @@ constexpr double kGap_s = 0.25;  // after which what was before is of no use
 constexpr double kCorrelation_s = 0.5;
 constexpr double kWeight = kLearnEvery * kSample_s / kCorrelation_s;  // of one
 constexpr double kNoise_mps = 0.6;
-constexpr double kDelaySigma_s = 0.03;   // of what is assumed
-constexpr double kGravityOfLean = 9.81;  // m/s^2
+constexpr double kDelaySigma_s = 0.03;  // of what is assumed
 constexpr double kAirMemory_s = 20;
 constexpr double kAirNoise = 0.3;      // m/s^2
 constexpr double kMaxAirSigma = 0.06;  // of the drag, 1/s
 
-// What it is further from the command than this is a limit of the autopilot's, not its answer.
+// What it is further from the command than the first is a limit of the autopilot's, not its answer,
+// while it comes nearer by the last (m/s^2) or is further than the second.
 constexpr double kMaxSlack_mps = 1.5;
+constexpr double kMaxSteadySlack_mps = 4;
+constexpr double kSteadyAcceleration = 1;
 
 // Before anything is known: the autopilot knows its own velocity without delay, so that what is
 // commanded ahead by the delay is too much by the delay times the acceleration.
 Answer AssumedAnswer(double delay_s) { return {0.3, -delay_s, 0, 0, 0}; }
 Answer AnswerSigma() { return {0.3, 0.05, 0.1, 0.3, 0.3}; }
+
+// Whether a UAV that is by 'slack' slower than it was told is at a limit of its autopilot, which
+// says nothing of how it answers. One that is and does not come nearer has drag that nobody
+// compensates.
+bool IsAtLimit(const Eigen::Vector2d& slack, const Eigen::Vector2d& acceleration) {
+  const double size = slack.norm();
+  if (size <= kMaxSlack_mps) return false;
+  return size > kMaxSteadySlack_mps || acceleration.dot(slack) > kSteadyAcceleration * size;
+}
 
 }  // namespace
 
@@ -108,7 +120,7 @@ void FlightModel::Learn() {
         (sent_end.commanded_velocity - sent_begin.commanded_velocity) / kWindow;
     const Vector2d pushed =
         (sent_end.commanded_acceleration - sent_begin.commanded_acceleration) / kWindow;
-    if ((commanded - velocity).norm() > kMaxSlack_mps) continue;
+    if (IsAtLimit(commanded - velocity, acceleration.head<2>())) continue;
     by_delay_[i].Forget(std::exp(-kLearnEvery * kSample_s / options_.memory_s));
     for (int axis = 0; axis < 2; ++axis) {
       Answer row(acceleration(axis) - pushed(axis), pushed(axis), velocity(axis), 0, 0);
@@ -122,7 +134,7 @@ void FlightModel::Learn() {
 void FlightModel::LearnAir(const Sums& begin, const Sums& end, const Vector3d& acceleration) {
   const Vector2d velocity = (end.velocity - begin.velocity) / kWindow;
   const Vector2d lean = (end.lean - begin.lean) / kWindow;
-  const Vector2d by_air = acceleration.head<2>() - (kGravityOfLean + acceleration.z()) * lean;
+  const Vector2d by_air = acceleration.head<2>() - (kGravity + acceleration.z()) * lean;
   by_lean_.Forget(std::exp(-kLearnEvery * kSample_s / kAirMemory_s));
   for (int axis = 0; axis < 2; ++axis) {
     Air row(-velocity(axis), 0, 0);

@@ -16,6 +16,7 @@ std::vector<std::string> GuidanceOptions::Validate() const {
   RequireIn(glide, 0, 10, "glide", &violations);
   RequireIn(position_gain, 0.1, 5, "position_gain", &violations);
   RequireIn(braking, 0.1, 20, "braking", &violations);
+  RequireIn(autopilot_jerk, 0, 1000, "autopilot_jerk", &violations);
   RequireIn(integral_gain, 0, 5, "integral_gain", &violations);
   RequireIn(smoothing_s, 0.01, 10, "smoothing_s", &violations);
   RequireIn(sink_gain, 0.05, 5, "sink_gain", &violations);

@@ -26,6 +26,9 @@ struct GuidanceOptions {
   // the flight tells), further away as fast as it can still be braked.
   double position_gain = 2.5;
   double braking = 3;
+  // How fast the autopilot changes the acceleration (m/s^3; 0: at once). ArduCopter shapes what it
+  // is told by PSC_JERK_NE, which `fly` reads: what asks for more swings about the target.
+  double autopilot_jerk = 0;
   // Speed per metre and second that it stays off: what remains of the wind and the curve.
   double integral_gain = 0.2;
   // Over how long the target's velocity is smoothed: a vehicle sways on its springs, faster than a
@@ -83,6 +86,8 @@ struct GuidanceOptions {
     visitor("glide", self.glide, "m/m", "height in approach, per metre of distance");
     visitor("position_gain", self.position_gain, "1/s", "speed towards the target per metre");
     visitor("braking", self.braking, "m/s^2", "deceleration that it counts on when far away");
+    visitor("autopilot_jerk", self.autopilot_jerk, "m/s^3",
+            "with which the autopilot changes the acceleration; 0: at once");
     visitor("integral_gain", self.integral_gain, "1/s^2",
             "speed per metre and second that it stays off");
     visitor("smoothing_s", self.smoothing_s, "s",

@@ -13,6 +13,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kHeightGain = 1;      // climb rate per metre that it is too low
+constexpr double kResting_mps = 0.25;  // what is told to go down and sinks no faster rests
+constexpr double kToldDown_mps = 0.3;
 constexpr double kStanding_mps = 0.5;  // a deck that is slower stands
 constexpr double kMaxClosing_mps = 1;  // faster over the target it does not go down
 // Following ends where it is so many cones off, the last bit where it is so many off.
@@ -21,9 +23,11 @@ constexpr double kCommitCones = 3;
 // A mode that the autopilot has not told for so long is not known: it tells it once a second.
 constexpr double kMaxModeAge_s = 3.5;
 constexpr double kLongestStep_s = 0.2;
+constexpr double kCommitAcceleration = 0.2;  // m/s^2, downwards
 // Over so long a change of the velocity is judged, and at least so much (m/s^2) is obedience.
 constexpr double kTrend_s = 1;
 constexpr double kLeastObedience = 0.5;
+constexpr double kLeastAcceleration = 1;  // m/s^2; no autopilot is set up for less
 
 constexpr const char* kWaits = "waits for the pilot to give the mode";
 constexpr const char* kWasGuided = "the mode was on already: leave it and give it anew";
@@ -39,11 +43,6 @@ void Remember(bool is, Time now, std::optional<Time>* since) {
   } else if (!*since) {
     *since = now;
   }
-}
-
-double HeadingOf(const RigidTransform& world_from_body) {
-  const Vector3d forward = world_from_body.rotation * Vector3d::UnitX();
-  return std::atan2(forward.y(), forward.x());
 }
 
 bool IsFinite(const UavState& uav) {
@@ -187,7 +186,7 @@ void LandingGuidance::Start(const GuidanceInput& input) {
   }
   has_given_up_ = false;
   is_active_ = true;
-  yaw_ = HeadingOf(input.uav->world_from_body);
+  yaw_ = HeadingOf(input.uav->world_from_body.rotation);
   last_ = input.now;
   go_arounds_ = 0;
   poses_lost_.reset();
@@ -213,7 +212,7 @@ GuidanceOutput LandingGuidance::Idle(const GuidanceInput& input) const {
     return Output(std::nullopt, GuidanceRequest::kNone);
   }
   SetPoint hold;
-  hold.yaw = HeadingOf(input.uav->world_from_body);
+  hold.yaw = HeadingOf(input.uav->world_from_body.rotation);
   return Output(hold, GuidanceRequest::kNone);
 }
 
@@ -247,7 +246,7 @@ GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
   if (!is_active_) return Idle(input);
   SetPoint wanted;
   if (phase_ == GuidancePhase::kLanded) {
-    wanted = Rest(now);
+    wanted = Rest(input, now);
   } else {
     wanted = input.target ? Pursue(input, now) : Search(input, now);
   }
@@ -288,7 +287,8 @@ bool LandingGuidance::Obeys(const GuidanceInput& input) {
   const Vector3d error = sent_ ? Vector3d(sent_->velocity - velocity) : Vector3d::Zero();
   const double size = error.norm();
   const double nearer = (velocity - velocity_trend_).dot(error) / kTrend_s;
-  const bool disobeys = size > options_.disobey_mps && nearer < kLeastObedience * size;
+  const double least = std::min(kLeastObedience * size, kLeastAcceleration);
+  const bool disobeys = size > options_.disobey_mps && nearer < least;
   Remember(disobeys, input.now, &disobeys_since_);
   return !IsLongerThan(options_.disobey_s, disobeys_since_, input.now);
 }
@@ -361,7 +361,9 @@ void LandingGuidance::ChooseDescent(const GuidanceInput& input, const Situation&
     }
   }
   if (phase_ != GuidancePhase::kCommit) return;
-  if (!(input.target_age_s <= options_.commit_sight_s)) {
+  // One that does not sink any more stands on the deck, where the camera may see nothing.
+  const bool sinks = now.velocity.z() - input.target->motion.velocity().z() < -kResting_mps;
+  if (sinks && !(input.target_age_s <= options_.commit_sight_s)) {
     return GoAround("near the deck, and the target was not in sight for too long");
   }
   if (now.is_in_sight && now.off_m > kCommitCones * cone_m) GoAround("beside the deck");
@@ -370,8 +372,10 @@ void LandingGuidance::ChooseDescent(const GuidanceInput& input, const Situation&
 
 // Whether it stands on the deck, by its own rest against it or by what the autopilot says.
 bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& now) {
+  // What is not told to go down may hover there.
+  const bool is_told_down = sent_ && sent_->velocity.z() < -kToldDown_mps;
   std::optional<ContactDetector::Deck> deck;
-  if (input.target) {
+  if (input.target && is_told_down) {
     deck = ContactDetector::Deck{input.target->motion.position(), input.target->motion.velocity()};
   }
   const bool was_in_contact = phase_ == GuidancePhase::kLanded;
@@ -380,7 +384,10 @@ bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& n
   const bool touches = may_touch && contact_.Update(input.now, now.feet, now.velocity, deck);
   Remember(touches, input.now, &contact_since_);
   if (touches || (may_touch && input.is_landed)) {
-    if (!was_in_contact) Enter(GuidancePhase::kLanded, "contact with the deck");
+    if (!was_in_contact) {
+      ride_.Reset();
+      Enter(GuidancePhase::kLanded, "contact with the deck");
+    }
     return true;
   }
   if (was_in_contact) GoAround("has lost contact with the deck");
@@ -401,11 +408,13 @@ GuidanceRequest LandingGuidance::RequestInContact(const GuidanceInput& input) co
   return options_.land_in_contact && may_land ? GuidanceRequest::kLand : GuidanceRequest::kNone;
 }
 
-// On the deck: a descent that goes on, with the velocity that the deck has given the UAV. So the
-// autopilot finds that it has landed, and does not lean against the deck.
-SetPoint LandingGuidance::Rest(const Situation& now) const {
+// On the deck: a descent that goes on, and along with the deck. So the autopilot finds that it has
+// landed, and does not lean against what carries it.
+SetPoint LandingGuidance::Rest(const GuidanceInput& input, const Situation& now) {
+  ride_.Observe(input.now, now.velocity.head<2>());
   SetPoint command;
-  command.velocity << now.velocity.head<2>(), -options_.touchdown_sink_mps;
+  command.velocity << ride_.Velocity(model_.delay_s()), -options_.touchdown_sink_mps;
+  command.acceleration.head<2>() = ride_.acceleration();
   return command;
 }
 
@@ -422,8 +431,12 @@ SetPoint LandingGuidance::Pursue(const GuidanceInput& input, const Situation& no
   SetPoint command =
       pursuit_.Above(*input.target, {now.feet.head<2>(), now.velocity.head<2>()}, model_);
   command.velocity.z() = ClimbRate(input, now);
-  // Out of sight nothing goes down but the last bit.
-  if (!now.is_in_sight && phase_ != GuidancePhase::kCommit) {
+  // Out of sight nothing goes down but the last bit. Low it stops at once, for it takes a UAV a
+  // while to, and goes around when that has lasted.
+  const double patience_s =
+      now.height_m < options_.sight_height_m ? 0.5 * options_.sight_s : options_.sight_s;
+  const bool is_seen = now.is_in_sight && input.target_age_s <= patience_s;
+  if (!is_seen && phase_ != GuidancePhase::kCommit) {
     command.velocity.z() = std::max(command.velocity.z(), 0.0);
   }
   return command;
@@ -431,7 +444,10 @@ SetPoint LandingGuidance::Pursue(const GuidanceInput& input, const Situation& no
 
 double LandingGuidance::ClimbRate(const GuidanceInput& input, const Situation& now) const {
   const double sink = std::max(options_.sink_gain * now.height_m, options_.touchdown_sink_mps);
-  if (phase_ == GuidancePhase::kCommit) return -sink;
+  if (phase_ == GuidancePhase::kCommit) {
+    // Ever faster: an autopilot that is told so does not take the deck for its own braking.
+    return -sink - kCommitAcceleration * ToSeconds(input.now - entered_);
+  }
   if (phase_ == GuidancePhase::kDescend) return now.off_m < Cone(now.height_m) ? -sink : 0;
   const double top_m = options_.search_altitude_m - input.target->motion.position().z();
   const bool is_unknown = input.target->position_sigma_m() > 2 * options_.max_sigma_m;
@@ -443,6 +459,7 @@ double LandingGuidance::ClimbRate(const GuidanceInput& input, const Situation& n
 void LandingGuidance::Enter(GuidancePhase phase, const char* reason) {
   phase_ = phase;
   reason_ = reason;
+  entered_ = last_;
 }
 
 void LandingGuidance::GoAround(const char* reason) {

@@ -10,6 +10,7 @@
 #include "kestrel/base/time.h"
 #include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/guidance/contact_detector.h"
+#include "kestrel/guidance/deck_ride.h"
 #include "kestrel/guidance/flight_limits.h"
 #include "kestrel/guidance/flight_model.h"
 #include "kestrel/guidance/guidance_options.h"
@@ -129,7 +130,7 @@ class LandingGuidance {
   GuidanceOutput Fly(const GuidanceInput& input);
   SetPoint Search(const GuidanceInput& input, const Situation& now);
   SetPoint Pursue(const GuidanceInput& input, const Situation& now);
-  SetPoint Rest(const Situation& now) const;
+  SetPoint Rest(const GuidanceInput& input, const Situation& now);
   double ClimbRate(const GuidanceInput& input, const Situation& now) const;
   GuidanceRequest RequestInContact(const GuidanceInput& input) const;
   GuidanceOutput Output(const std::optional<SetPoint>& set_point, GuidanceRequest request) const;
@@ -153,10 +154,12 @@ class LandingGuidance {
   TargetPursuit pursuit_;
   SearchPath search_;
   ContactDetector contact_;
+  DeckRide ride_;
 
   GuidancePhase phase_ = GuidancePhase::kIdle;
   const char* reason_;
   int go_arounds_ = 0;
+  Time entered_;  // the phase
   bool is_active_ = false;
   bool has_given_up_ = false;  // and asks for hold while it has the mode
   bool may_stream_;

@@ -83,7 +83,7 @@ struct Autopilot {
   TestUavOptions uav;
 };
 
-// What the issue asks for, with autopilots that differ in all that guidance is not told.
+// Autopilots that differ in all that guidance is not told.
 TEST(LandingGuidanceTest, LandsWithWhateverAutopilot) {
   TestUavOptions stiff;
   stiff.compensates_drag = true;
@@ -484,6 +484,8 @@ TEST(LandingGuidanceTest, AsksForLandOrDisarmsOnlyByOptionAndInContact) {
       },
       30);
   flight.LandOnDeck();
+  EXPECT_EQ(flight.output.request, GuidanceRequest::kNone) << "LAND brakes where a deck drives";
+  flight.Step([](GuidanceInput& input) { input.is_landed = true; });
   EXPECT_EQ(flight.output.request, GuidanceRequest::kLand);
   flight.FlyUntil([] { return false; }, 2.1, kNoTarget);
   EXPECT_EQ(flight.output.request, GuidanceRequest::kDisarm);

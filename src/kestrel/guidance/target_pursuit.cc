@@ -16,7 +16,12 @@ using Eigen::Vector3d;
 constexpr double kMaxGainDelay = 0.35;
 // Of the acceleration that the limits allow: with so much it brakes before a place.
 constexpr double kBrakingShare = 0.6;
-constexpr double kIntegrateWithin_m = 1;
+// Closing in from so far away with a gain k changes the acceleration by k^3 times the distance per
+// second; a jerk that the autopilot does not have makes it swing. Braking sets in within so long.
+constexpr double kJerkReach_m = 2.5;
+constexpr double kBrakingOnset_s = 0.4;
+constexpr double kMaxLag_mps = 1;
+constexpr double kIntegrateWithin_m = 0.5;
 constexpr double kMaxIntegral_mps = 0.8;
 
 // A vector turned on by the target's curve for 'ahead_s', and how the velocity changes then.
@@ -41,13 +46,18 @@ Closing ClosingSpeed(double distance_m, double gain, double braking) {
 
 TargetPursuit::TargetPursuit(const GuidanceOptions& options)
     : options_(options),
-      braking_(std::min(options.braking, kBrakingShare * options.limits.max_acceleration())) {}
+      gain_(options.position_gain),
+      braking_(std::min(options.braking, kBrakingShare * options.limits.max_acceleration())) {
+  if (options.autopilot_jerk == 0) return;
+  gain_ = std::min(gain_, std::cbrt(options.autopilot_jerk / kJerkReach_m));
+  braking_ = std::min(braking_, kBrakingOnset_s * options.autopilot_jerk);
+}
 
 SetPoint TargetPursuit::To(const Vector2d& place, const Motion& uav, const FlightModel& model,
                            double max_speed_mps) const {
   SetPoint command;
   const Vector2d slip = -uav.velocity;
-  Close(place - uav.position + model.delay_s() * slip, slip, Gain(model), &command);
+  Close(place - uav.position + model.delay_s() * slip, slip, uav.velocity, Gain(model), &command);
   const double speed = command.velocity.norm();
   if (speed > max_speed_mps) command.velocity *= max_speed_mps / speed;
   command.velocity.head<2>() =
@@ -68,7 +78,7 @@ SetPoint TargetPursuit::Above(const TargetEstimate& target, const Motion& uav,
   command.velocity.z() = 0;
   command.velocity.head<2>() += integral_;
   command.acceleration = AccelerationAhead(motion, delay_s);
-  Close(offset + delay_s * slip, slip, Gain(model), &command);
+  Close(offset + delay_s * slip, slip, uav.velocity, Gain(model), &command);
   command.velocity.head<2>() =
       model.VelocityCommand(command.velocity.head<2>(), command.acceleration.head<2>());
   return command;
@@ -81,15 +91,21 @@ void TargetPursuit::Reset() {
 }
 
 double TargetPursuit::Gain(const FlightModel& model) const {
-  return std::min(options_.position_gain, kMaxGainDelay / std::max(model.delay_s(), 0.01));
+  return std::min(gain_, kMaxGainDelay / std::max(model.delay_s(), 0.01));
 }
 
-void TargetPursuit::Close(const Vector2d& offset, const Vector2d& slip, double gain,
-                          SetPoint* command) const {
+void TargetPursuit::Close(const Vector2d& offset, const Vector2d& slip, const Vector2d& velocity,
+                          double gain, SetPoint* command) const {
   const double distance_m = offset.norm();
   const Closing closing = ClosingSpeed(distance_m, gain, braking_);
   if (distance_m > 0) command->velocity.head<2>() += closing.speed / distance_m * offset;
-  command->acceleration.head<2>() += closing.rate * slip;
+  // A UAV that is yet to reach that velocity has nothing to brake.
+  const Vector2d behind = command->velocity.head<2>() - velocity;
+  Vector2d change = closing.rate * slip;
+  if (const double along = change.dot(behind); along < 0 && behind.norm() > kMaxLag_mps) {
+    change -= along / behind.squaredNorm() * behind;
+  }
+  command->acceleration.head<2>() += change;
 }
 
 // A low pass that turns with the target: it does not lag in curves.

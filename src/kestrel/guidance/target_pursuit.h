@@ -51,10 +51,11 @@ class TargetPursuit {
   double Gain(const FlightModel& model) const;
   Eigen::Vector3d Smoothed(const TargetEstimate& target);
   void Integrate(const TargetEstimate& target, const Eigen::Vector2d& offset);
-  void Close(const Eigen::Vector2d& offset, const Eigen::Vector2d& slip, double gain,
-             SetPoint* command) const;
+  void Close(const Eigen::Vector2d& offset, const Eigen::Vector2d& slip,
+             const Eigen::Vector2d& velocity, double gain, SetPoint* command) const;
 
   GuidanceOptions options_;
+  double gain_;                       // speed per metre, 1/s
   double braking_;                    // m/s^2
   std::optional<Velocity> smoothed_;  // of the target
   std::optional<Time> integrated_;    // until when

@@ -14,6 +14,7 @@
 #include "kestrel/flight/multicopter_motion.h"
 #include "kestrel/flight/wind.h"
 #include "kestrel/guidance/landing_guidance.h"
+#include "kestrel/navigation/gravity.h"
 #include "kestrel/world/vehicle_motion.h"
 
 namespace kestrel {

@@ -42,7 +42,7 @@ std::vector<std::string> AutopilotOptions::Validate() const {
   RequireIn(landed_rate_hz, 0, kMaxRate_hz, "landed_rate_hz", &violations);
   RequireIn(range_rate_hz, 0, kMaxRate_hz, "range_rate_hz", &violations);
   RequireIn(status_rate_hz, 0, kMaxRate_hz, "status_rate_hz", &violations);
-  RequireIn(heartbeat_rate_hz, 0, kMaxRate_hz, "heartbeat_rate_hz", &violations);
+  RequireIn(mode_rate_hz, 0, kMaxRate_hz, "mode_rate_hz", &violations);
   RequireIn(true_pose_rate_hz, 0, kMaxRate_hz, "true_pose_rate_hz", &violations);
   RequirePositive(away_after_s, "away_after_s", &violations);
   RequirePositive(position_age_s, "position_age_s", &violations);
@@ -129,7 +129,7 @@ void Autopilot::HandleHeartbeat(const mavlink::Packet& packet, const mavlink::He
     return;
   }
   const mavlink::Heartbeat before = std::exchange(heartbeat_, heartbeat);
-  heard_ = received;
+  heard_ = mode_told_ = received;
   if (is_here_) return TellChange(before);
   is_here_ = true;
   const bool is_first = kind_ == AutopilotKind::kUnknown;
@@ -173,7 +173,12 @@ void Autopilot::HandleFromAutopilot(const mavlink::Packet& packet, Time received
   received_ = received;
   CountLost(packet);
   streams_.Count(packet.id);
-  if (const auto timesync = packet.As<mavlink::Timesync>()) {
+  if (const auto mode = packet.As<mavlink::CurrentMode>()) {
+    const mavlink::Heartbeat before = heartbeat_;
+    heartbeat_.custom_mode = mode->custom_mode;
+    mode_told_ = received;
+    TellChange(before);
+  } else if (const auto timesync = packet.As<mavlink::Timesync>()) {
     HandleTimesync(*timesync, received);
   } else if (const auto ack = packet.As<mavlink::CommandAck>()) {
     HandleAck(*ack);
@@ -206,6 +211,7 @@ bool Autopilot::HandlePose(const mavlink::Packet& packet, Time received) {
 void Autopilot::TellPose(PoseFate fate, const char* what, const PoseSample& pose) {
   switch (fate) {
     case PoseFate::kUsed:
+      newest_pose_ = pose.time;
       if (listener_.pose) listener_.pose(pose);
       break;
     case PoseFate::kNone:
@@ -246,9 +252,18 @@ bool Autopilot::HandleTruePose(const mavlink::Packet& packet, Time received) {
   const PoseFate fate = sim_state
                             ? TruePoseOf(*sim_state, kind_, *origin, clock_.sync(), received, &pose)
                             : TruePoseOf(*hil_state, kind_, *origin, clock_.sync(), &pose);
+  if (sim_state) pose.time = BetweenAttitudes(pose.time);
   if (fate == PoseFate::kNotFinite) TellNotFinite("true pose");
   if (fate == PoseFate::kUsed) listener_.true_pose(pose);
   return true;
+}
+
+// The time of a message that has none of its own, by when it came, which a link that delays as it
+// likes makes wrong: it was sent between the attitude before it and the next one.
+Time Autopilot::BetweenAttitudes(Time guess) const {
+  if (!newest_pose_ || options_.attitude_rate_hz == 0) return guess;
+  const Duration period = DurationFromSeconds(1 / options_.attitude_rate_hz);
+  return std::clamp(guess, *newest_pose_, *newest_pose_ + period);
 }
 
 // Messages that come seldom.
@@ -302,6 +317,7 @@ void Autopilot::Restart() {
   streams_.AskAgain();
   parameters_.AskAgain();
   poses_.Reset();
+  newest_pose_.reset();
   status_.Reset();
   sequence_.reset();
   questions_ = 0;
@@ -350,10 +366,11 @@ void Autopilot::WantStreams() {
   streams_.Want(mavlink::AttitudeQuaternion::kId, options_.attitude_rate_hz);
   streams_.Want(mavlink::LocalPositionNed::kId, options_.position_rate_hz);
   streams_.Want(mavlink::ExtendedSysState::kId, options_.landed_rate_hz);
-  streams_.WantIfThere(mavlink::Heartbeat::kId, options_.heartbeat_rate_hz);
   // Not every vehicle has one.
   streams_.WantIfThere(mavlink::DistanceSensor::kId, options_.range_rate_hz);
   const bool is_px4 = kind_ == AutopilotKind::kPx4;
+  streams_.WantIfThere(is_px4 ? mavlink::CurrentMode::kId : mavlink::Heartbeat::kId,
+                       options_.mode_rate_hz);
   streams_.WantIfThere(is_px4 ? mavlink::EstimatorStatus::kId : mavlink::EkfStatusReport::kId,
                        options_.status_rate_hz);
   streams_.WantIfThere(mavlink::SysStatus::kId, options_.status_rate_hz);

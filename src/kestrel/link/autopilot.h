@@ -34,8 +34,9 @@ struct AutopilotOptions {
   double landed_rate_hz = 5;
   double range_rate_hz = 20;
   double status_rate_hz = 2;
-  // Its heartbeat tells the mode: where set-points depend on that, more often than once a second.
-  double heartbeat_rate_hz = 0;
+  // Where set-points depend on the mode it has to be told more often than the heartbeat does, once
+  // a second: by more heartbeats, and by CURRENT_MODE, which PX4 sends as soon as it changes.
+  double mode_rate_hz = 0;
   // Ask for the true pose, which only simulated vehicles know, and how often.
   bool wants_true_pose = false;
   double true_pose_rate_hz = 100;
@@ -56,8 +57,8 @@ struct AutopilotOptions {
     visitor("range_rate_hz", self.range_rate_hz, "Hz", "asked of distance sensors");
     visitor("status_rate_hz", self.status_rate_hz, "Hz",
             "asked of the battery and of the health of its estimate");
-    visitor("heartbeat_rate_hz", self.heartbeat_rate_hz, "Hz",
-            "asked of heartbeats; 0: as often as it sends them by itself");
+    visitor("mode_rate_hz", self.mode_rate_hz, "Hz",
+            "asked of the mode; 0: once a second, by heartbeats");
     visitor("wants_true_pose", self.wants_true_pose, "",
             "ask a simulated vehicle for its true pose");
     visitor("true_pose_rate_hz", self.true_pose_rate_hz, "Hz", "how often");
@@ -135,8 +136,8 @@ class Autopilot {
 
   // A heartbeat was heard lately.
   bool is_here() const { return is_here_; }
-  Time heard() const { return heard_; }        // its newest heartbeat
-  Time received() const { return received_; }  // the newest message
+  Time mode_told() const { return mode_told_; }  // by the newest heartbeat, or PX4's CURRENT_MODE
+  Time received() const { return received_; }    // the newest message
   AutopilotKind kind() const { return kind_; }
   std::uint8_t system() const { return system_; }
   std::uint8_t component() const { return component_; }
@@ -197,7 +198,7 @@ class Autopilot {
   bool HandlePose(const mavlink::Packet& packet, Time received);
   bool HandleTruePose(const mavlink::Packet& packet, Time received);
   void TellPose(PoseFate fate, const char* what, const PoseSample& pose);
-  void TellTruePose(PoseFate fate, const PoseSample& pose);
+  Time BetweenAttitudes(Time guess) const;
   void HandleStatus(const mavlink::Packet& packet, Time received);
   void HandleTimesync(const mavlink::Timesync& message, Time received);
   void HandleAck(const mavlink::CommandAck& message);
@@ -232,12 +233,14 @@ class Autopilot {
   mavlink::Heartbeat heartbeat_;
   Time heard_{};
   Time received_{};
+  Time mode_told_{};
   std::optional<std::uint8_t> sequence_;
 
   ClockExchange clock_;
   int jumps_ = 0;  // of the clock, that were seen
   AutopilotStatus status_;
   AutopilotPoses poses_;
+  std::optional<Time> newest_pose_;
   StreamRequests streams_;
   CommandRequests commands_;
   std::uint32_t requested_mode_ = 0;

@@ -36,8 +36,7 @@ bool IsGood(std::uint16_t flags, std::uint16_t bad) {
       mavlink::kEstimatorVelocityVertical | mavlink::kEstimatorPositionVertical;
   constexpr std::uint16_t kPlace =
       mavlink::kEstimatorPositionRelative | mavlink::kEstimatorPositionAbsolute;
-  return (flags & kNeeded) == kNeeded && (flags & kPlace) != 0 &&
-         (flags & (mavlink::kEstimatorConstantPosition | bad)) == 0;
+  return (flags & kNeeded) == kNeeded && (flags & kPlace) != 0 && (flags & bad) == 0;
 }
 
 }  // namespace
@@ -73,9 +72,11 @@ void AutopilotStatus::Handle(const mavlink::Packet& packet, const TimeSync& cloc
   } else if (const auto system = packet.As<mavlink::SysStatus>()) {
     HandleSystem(*system);
   } else if (const auto ekf = packet.As<mavlink::EkfStatusReport>()) {
-    constexpr std::uint16_t kBad = mavlink::kEkfUninitialized | mavlink::kEkfGpsGlitching;
+    constexpr std::uint16_t kBad = mavlink::kEstimatorConstantPosition |
+                                   mavlink::kEkfUninitialized | mavlink::kEkfGpsGlitching;
     estimator_ = {received, ekf->flags, IsGood(ekf->flags, kBad)};
   } else if (const auto status = packet.As<mavlink::EstimatorStatus>()) {
+    // PX4 is in the mode of constant position whenever it rests on the ground.
     estimator_ = {received, status->flags, IsGood(status->flags, mavlink::kEstimatorGpsGlitch)};
   } else if (const auto origin = packet.As<mavlink::GpsGlobalOrigin>()) {
     origin_ = {origin->latitude, origin->longitude, kMetres * origin->altitude};

@@ -622,6 +622,44 @@ TEST_F(AutopilotTest, TellsTheTruePoseOfASimulation) {
   EXPECT_NEAR(ToSeconds(now_ - true_poses_[0].time), 0.002, 0.001);
 }
 
+// It has no time of its own, and a link that delays as it likes says little of it.
+TEST_F(AutopilotTest, TheTruePoseOfASimulationIsOfTheAttitudesAroundIt) {
+  AutopilotOptions options;
+  options.wants_true_pose = true;
+  Start(options);
+  Pass(1);
+  Say(mavlink::GpsGlobalOrigin{-353632621, 1491652374, 584000});
+  SayPose();
+  ASSERT_EQ(poses_.size(), 1u);
+  now_ += milliseconds(500);  // on its way
+  mavlink::SimState state;
+  state.q1 = 1;
+  state.lat_int = -353632621;
+  state.lon_int = 1491652374;
+  Say(state);
+  ASSERT_EQ(true_poses_.size(), 1u);
+  EXPECT_GE(true_poses_[0].time, poses_[0].time);
+  EXPECT_LE(true_poses_[0].time, poses_[0].time + milliseconds(10));
+}
+
+// PX4's heartbeat comes once a second, whatever it is asked.
+TEST_F(AutopilotTest, KnowsTheModeOfPx4BeforeTheNextHeartbeat) {
+  kind_ = mavlink::kAutopilotPx4;
+  mode_ = Px4CustomMode(6, 0);
+  AutopilotOptions options;
+  options.mode_rate_hz = 20;
+  Start(options);
+  Pass(1.5);
+  EXPECT_TRUE(autopilot_->is_guided_mode());
+  EXPECT_EQ(intervals_us_[mavlink::CurrentMode::kId], 50000);
+  mavlink::CurrentMode changed;
+  changed.custom_mode = Px4CustomMode(3, 0);
+  Say(changed);
+  EXPECT_FALSE(autopilot_->is_guided_mode());
+  EXPECT_EQ(autopilot_->mode_told(), now_);
+  EXPECT_EQ(EventsOf(AutopilotEventKind::kModeChanged), 1);
+}
+
 TEST_F(AutopilotTest, AnnouncesLongTextsInPieces) {
   Start();
   autopilot_->Announce(mavlink::kSeverityInfo, "Kestrel: target found");

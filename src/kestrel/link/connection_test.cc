@@ -240,7 +240,9 @@ class SignedConnectionTest : public testing::Test {
     chmod(path.c_str(), S_IRUSR | S_IWUSR);
   }
 
-  std::string path_ = testing::TempDir() + "kestrel_signing_key";
+  // Of each test: tests that run at the same time would lock each other out.
+  std::string path_ = testing::TempDir() + "kestrel_signing_key_" +
+                      testing::UnitTest::GetInstance()->current_test_info()->name();
   ConnectionOptions options_;
 };
 

@@ -23,7 +23,7 @@ constexpr auto kTable =
               CommandAck, SetPositionTargetLocalNed, SimState, Timesync, HilStateQuaternion,
               DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget, EkfStatusReport,
               EstimatorStatus, HomePosition, MessageInterval, ExtendedSysState, Statustext,
-              TargetRelative>();
+              CurrentMode, TargetRelative>();
 
 constexpr bool IsSortedById() {
   return std::is_sorted(kTable.begin(), kTable.end(),
@@ -70,6 +70,7 @@ static_assert(Is<HomePosition>(104, 52, 60));
 static_assert(Is<MessageInterval>(95, 6, 6));
 static_assert(Is<ExtendedSysState>(130, 2, 2));
 static_assert(Is<Statustext>(83, 51, 54));
+static_assert(Is<CurrentMode>(193, 9, 9));
 static_assert(Is<TargetRelative>(28, 71, 71));
 
 }  // namespace

@@ -845,6 +845,21 @@ struct Statustext {
 };
 
 // Dialect development: of PX4's vision target estimator.
+struct CurrentMode {
+  static constexpr std::uint32_t kId = 436;
+  static constexpr std::string_view kName = "CURRENT_MODE";
+  std::uint8_t standard_mode = 0;
+  std::uint32_t custom_mode = 0;
+  std::uint32_t intended_custom_mode = 0;
+
+  template <class Self, class Visitor>
+  static constexpr void Visit(Self& self, Visitor&& visitor) {
+    visitor("standard_mode", self.standard_mode, "");
+    visitor("custom_mode", self.custom_mode, "");
+    visitor("intended_custom_mode", self.intended_custom_mode, "");
+  }
+};
+
 struct TargetRelative {
   static constexpr std::uint32_t kId = 511;
   static constexpr std::string_view kName = "TARGET_RELATIVE";

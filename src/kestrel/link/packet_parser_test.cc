@@ -150,7 +150,7 @@ TEST(PacketParserTest, ATornDatagramDoesNotHoldTheNextOneUp) {
 }
 
 TEST(MessageTableTest, KnowsItsMessages) {
-  EXPECT_EQ(KnownMessages().size(), 32u);
+  EXPECT_EQ(KnownMessages().size(), 33u);
   ASSERT_NE(FindMessage(511), nullptr);
   EXPECT_EQ(FindMessage(511)->name, "TARGET_RELATIVE");
   EXPECT_EQ(FindMessage(3), nullptr);

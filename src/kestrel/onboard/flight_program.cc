@@ -173,6 +173,7 @@ void FlightProgram::Communicate() {
 
 void FlightProgram::TellTarget(Time now) {
   const TrackSnapshot& track = track_.Get();
+  if (guided_) sender_->set_may_stand(!guided_->is_flying());
   if (sender_->Tell(now, track, poses_)) latency_.step(kMessage).Add(Now() - track.captured);
   phase_ = sender_->phase();
   height_m_ = sender_->height_m();

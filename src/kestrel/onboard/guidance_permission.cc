@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/onboard/guidance_permission.h"
 
-#include <array>
+#include <algorithm>
 #include <string_view>
 #include <vector>
 
@@ -19,6 +19,8 @@ struct LimitNames {
 constexpr LimitNames kArduPilotLimits{"WP_SPD", "WP_SPD_UP", "WP_SPD_DN", "ATC_ANGLE_MAX"};
 constexpr LimitNames kPx4Limits{"MPC_XY_VEL_MAX", "MPC_Z_VEL_MAX_UP", "MPC_Z_VEL_MAX_DN",
                                 "MPC_TILTMAX_AIR"};
+constexpr std::string_view kArduPilotJerk = "PSC_JERK_NE";  // m/s^3
+constexpr double kSlowestJerk = 1;                          // less is no flying
 // What PX4 does when set-points stop: without a transmitter, and with its pilot ignored.
 constexpr std::string_view kPx4LossAction = "COM_OBL_RC_ACT", kPx4RadioLossAction = "NAV_RCL_ACT";
 
@@ -33,7 +35,10 @@ void WantGuidanceParameters(Autopilot* autopilot) {
   for (const std::string_view name : {names.speed, names.climb, names.sink, names.tilt}) {
     autopilot->parameters().Want(name);
   }
-  if (autopilot->kind() != AutopilotKind::kPx4) return;
+  if (autopilot->kind() != AutopilotKind::kPx4) {
+    autopilot->parameters().Want(kArduPilotJerk);
+    return;
+  }
   autopilot->parameters().Want(kPx4LossAction);
   autopilot->parameters().Want(kPx4RadioLossAction);
 }
@@ -43,6 +48,18 @@ AutopilotLimits LimitsOf(const Autopilot& autopilot) {
   const ParameterReader& parameters = autopilot.parameters();
   return {parameters.Find(names.speed), parameters.Find(names.climb), parameters.Find(names.sink),
           parameters.Find(names.tilt)};
+}
+
+GuidanceOptions OptionsFor(const Autopilot& autopilot, GuidanceOptions options) {
+  const bool is_px4 = autopilot.kind() == AutopilotKind::kPx4;
+  options.stream_before_start = options.stream_before_start || is_px4;
+  // PX4's LAND would brake on a deck that drives on.
+  options.land_in_contact = options.land_in_contact || !is_px4;
+  if (const auto jerk = autopilot.parameters().Find(kArduPilotJerk);
+      jerk && options.autopilot_jerk == 0) {
+    options.autopilot_jerk = std::max(*jerk, kSlowestJerk);
+  }
+  return options;
 }
 
 std::optional<Eigen::Vector2d> HomeOf(const Autopilot& autopilot) {

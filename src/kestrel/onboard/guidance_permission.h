@@ -8,6 +8,7 @@
 
 #include "kestrel/base/time.h"
 #include "kestrel/guidance/flight_limits.h"
+#include "kestrel/guidance/guidance_options.h"
 #include "kestrel/link/autopilot.h"
 
 namespace kestrel {
@@ -17,6 +18,9 @@ void WantGuidanceParameters(Autopilot* autopilot);
 
 // The autopilot's own limits, as far as its parameters tell.
 AutopilotLimits LimitsOf(const Autopilot& autopilot);
+
+// The options of guidance for this autopilot, as far as its parameters tell.
+GuidanceOptions OptionsFor(const Autopilot& autopilot, GuidanceOptions options);
 
 // Its home position in the world, where it has told that.
 std::optional<Eigen::Vector2d> HomeOf(const Autopilot& autopilot);

@@ -31,13 +31,6 @@ const FlightOptions& CheckedRate(const FlightOptions& options) {
   return options;
 }
 
-GuidanceOptions OptionsFor(AutopilotKind kind, GuidanceOptions options) {
-  options.stream_before_start = options.stream_before_start || kind == AutopilotKind::kPx4;
-  // PX4's LAND would brake on a deck that drives on.
-  options.land_in_contact = options.land_in_contact || kind == AutopilotKind::kArduPilot;
-  return options;
-}
-
 }  // namespace
 
 GuidedFlight::GuidedFlight(const FlightOptions& options, const TargetTrackerOptions& tracker,
@@ -76,7 +69,6 @@ bool GuidedFlight::Fly(Time now, const TrackSnapshot& track, const PoseHistory& 
 void GuidedFlight::KnowAutopilot(Time now) {
   if (!autopilot_.is_here() || autopilot_.kind() == kind_) return;
   kind_ = autopilot_.kind();
-  guidance_.emplace(OptionsFor(kind_, options_.guidance));
   WantGuidanceParameters(&autopilot_);
   permission_due_ = now;
   was_mode_ = autopilot_.is_guided_mode();
@@ -98,7 +90,7 @@ void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
   if (!is_begun_ && now >= permission_due_) CheckPermission(input, now);
   const LandedState landed = autopilot_.landed_state();
   const bool is_flying =
-      input.is_armed && landed != LandedState::kOnGround && landed != LandedState::kTakingOff;
+      input.is_armed && (landed == LandedState::kInAir || landed == LandedState::kLanding);
   if (!is_given_ || is_begun_ || !is_flying) return;
   CheckPermission(input, now);
   is_begun_ = may_begin_;
@@ -113,8 +105,10 @@ void GuidedFlight::CheckPermission(const GuidanceInput& input, Time now) {
                                      input.uav->world_from_body.translation, now)
                        : "no position is told";
   may_begin_ = refusal_.empty();
-  if (is_warned_ || !autopilot_.parameters().is_done()) return;
-  is_warned_ = true;
+  if (knows_parameters_ || !autopilot_.parameters().is_done()) return;
+  knows_parameters_ = true;
+  guidance_.emplace(OptionsFor(autopilot_, options_.guidance));
+  guidance_->Update(input);  // which has not begun
   if (const std::string danger = DangerOfGuidance(autopilot_); !danger.empty()) {
     Tell(mavlink::kSeverityWarning, danger);
   }
@@ -136,7 +130,7 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
   input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;
   input.is_link_up = ToSeconds(now - autopilot_.received()) < kLinkAge_s;
   input.is_camera_up = ToSeconds(now - track.captured) < kMaxFrameAge_s;
-  input.mode_age_s = ToSeconds(now - autopilot_.heard());
+  input.mode_age_s = ToSeconds(now - autopilot_.mode_told());
   input.link_delay_s = ToSeconds(LinkDelay(options_, autopilot_));
   return input;
 }

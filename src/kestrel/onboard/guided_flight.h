@@ -31,6 +31,8 @@ class GuidedFlight {
   // Sends what is due at 'now'; true when it was the first set-point of a new frame.
   bool Fly(Time now, const TrackSnapshot& track, const PoseHistory& poses);
 
+  // It flies the UAV, which has not landed.
+  bool is_flying() const { return is_begun_ && phase() != GuidancePhase::kLanded; }
   GuidancePhase phase() const { return guidance_->phase(); }
   int set_points() const { return set_points_; }  // sent
 
@@ -49,7 +51,7 @@ class GuidedFlight {
   Autopilot& autopilot_;
   Connection* connection_;
   std::function<void(const std::string&)> say_;
-  std::optional<LandingGuidance> guidance_;  // of the autopilot's kind, once that is known
+  std::optional<LandingGuidance> guidance_;  // for this autopilot, once its parameters are known
   AutopilotKind kind_ = AutopilotKind::kUnknown;
   SendSchedule schedule_;
 
@@ -60,7 +62,7 @@ class GuidedFlight {
   Time permission_due_{};
   bool may_begin_ = false;  // nothing speaks against it
   std::string refusal_;     // what does
-  bool is_warned_ = false;
+  bool knows_parameters_ = false;
 
   Time told_frame_;  // the newest frame that a set-point was made from
   Time asked_{};     // the autopilot, for a mode or to disarm

@@ -7,7 +7,6 @@
 #include "kestrel/base/hash.h"
 
 namespace kestrel {
-namespace {
 
 std::uint64_t HashOf(const cv::Mat& image) {
   constexpr int kRowStep = 8;
@@ -19,8 +18,6 @@ std::uint64_t HashOf(const cv::Mat& image) {
   }
   return hash;
 }
-
-}  // namespace
 
 bool RepeatedImage::IsRepeated(const cv::Mat& image) {
   const std::uint64_t hash = HashOf(image);

@@ -8,12 +8,14 @@
 
 namespace kestrel {
 
+// Of the pixels in every eighth row: the noise of a sensor makes any two images differ there.
+std::uint64_t HashOf(const cv::Mat& image);
+
 // Notices images that are the one before once more: a camera or a driver that hangs repeats what it
 // has, with new times, and what stands still in the image seems to fly along.
 class RepeatedImage {
  public:
-  // Whether 'image' has the pixels of the one before, in every eighth of its rows: the noise of a
-  // sensor makes any two images differ there. Does not allocate.
+  // Whether 'image' has the HashOf of the one before. Does not allocate.
   bool IsRepeated(const cv::Mat& image);
 
   int in_a_row() const { return in_a_row_; }  // repetitions up to the newest image

@@ -52,7 +52,8 @@ std::optional<TargetReport> TargetReporter::Report(Time now, Duration until_use,
   }
   // A UAV that is held in the air so low is told the truth all the same: the deck is straight
   // below.
-  if (contact_.Update(now, report.world_from_body.translation, body_velocity, deck)) {
+  if (!may_stand_) contact_.Reset();
+  if (may_stand_ && contact_.Update(now, report.world_from_body.translation, body_velocity, deck)) {
     phase_ = TargetPhase::kContact;
     return Below(report, body_velocity);
   }

@@ -73,6 +73,9 @@ class TargetReporter {
   std::optional<TargetReport> Report(Time now, Duration until_use, const TrackSnapshot& track,
                                      const PoseHistory& poses);
 
+  // Whether it may stand on the deck: who flies it by set-points may know that it hovers there.
+  void set_may_stand(bool may_stand) { may_stand_ = may_stand; }
+
   TargetPhase phase() const { return phase_; }
   // Of the body above the target, by the newest report, m.
   double height_m() const { return height_m_; }
@@ -86,6 +89,7 @@ class TargetReporter {
   TargetPhase phase_ = TargetPhase::kSearching;
   double height_m_ = 0;
   ContactDetector contact_;
+  bool may_stand_ = true;
 };
 
 }  // namespace kestrel

@@ -116,6 +116,17 @@ TEST(TargetReporterTest, ThereIsNoContactInTheAirNorOnTheWayDown) {
   EXPECT_EQ(RideOn(0.5, drive - 0.2 * Vector3d::UnitZ(), drive).phase(), TargetPhase::kFound);
 }
 
+TEST(TargetReporterTest, WhatIsFlownLowHasNoContact) {
+  const Vector3d still = Vector3d::Zero();
+  TargetReporter reporter = RideOn(0.35, still, still);
+  reporter.set_may_stand(false);
+  const auto report = reporter.Report(At(2.1), kAtOnce, TrackAt(2.1, {0, 0, 1}, still),
+                                      Uav{{0, 0, 1.35}, still}.PosesUntil(2.1));
+  ASSERT_TRUE(report);
+  EXPECT_EQ(reporter.phase(), TargetPhase::kFound);
+  EXPECT_NEAR(report->position_in_body().z(), -0.35, 1e-9);
+}
+
 TEST(TargetReporterTest, ContactEndsWhenTheUavRises) {
   const Vector3d still = Vector3d::Zero();
   TargetReporter reporter = RideOn(0.35, still, still);

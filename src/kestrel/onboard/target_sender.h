@@ -34,6 +34,9 @@ class TargetSender {
   // Sends what is due at 'now'; true when it was the first of a new frame.
   bool Tell(Time now, const TrackSnapshot& track, const PoseHistory& poses);
 
+  // See TargetReporter.
+  void set_may_stand(bool may_stand) { reporter_.set_may_stand(may_stand); }
+
   TargetPhase phase() const { return reporter_.phase(); }
   double height_m() const { return reporter_.height_m(); }  // of the UAV above the target
   int messages() const { return messages_; }                // targets sent

@@ -19,8 +19,7 @@ std::optional<Eigen::Vector3d> LocateByAltitude(const Eigen::Vector3d& ray_in_ca
 
 double PatternYaw(const RigidTransform& world_from_pattern) {
   constexpr double kQuarterTurn = std::numbers::pi / 2;
-  const Eigen::Vector3d x_axis = world_from_pattern.rotation * Eigen::Vector3d::UnitX();
-  const double yaw = std::atan2(x_axis.y(), x_axis.x());
+  const double yaw = HeadingOf(world_from_pattern.rotation);
   return yaw - kQuarterTurn * std::ceil(yaw / kQuarterTurn - 0.5);
 }
 

@@ -72,7 +72,7 @@ class PatternPrintTest : public ::testing::Test {
  protected:
   void SetUp() override {
     for (const char* program : {"pdftoppm", "rsvg-convert"}) {
-      if (!CanRun(program)) GTEST_SKIP() << program << " is not there: scripts/install-deps";
+      ASSERT_TRUE(CanRun(program)) << program << " is not there: scripts/install-deps";
     }
   }
   // 'tolerance': m.

@@ -22,9 +22,9 @@ using AutopilotMessage =
     std::variant<mavlink::Heartbeat, mavlink::Attitude, mavlink::AttitudeQuaternion,
                  mavlink::LocalPositionNed, mavlink::GlobalPositionInt, mavlink::GpsGlobalOrigin,
                  mavlink::HomePosition, mavlink::SimState, mavlink::ExtendedSysState,
-                 mavlink::Timesync, mavlink::Statustext, mavlink::AutopilotVersion,
-                 mavlink::ParamValue, mavlink::CommandAck, mavlink::SysStatus,
-                 mavlink::EkfStatusReport, mavlink::EstimatorStatus>;
+                 mavlink::Timesync, mavlink::Statustext, mavlink::CurrentMode,
+                 mavlink::AutopilotVersion, mavlink::ParamValue, mavlink::CommandAck,
+                 mavlink::SysStatus, mavlink::EkfStatusReport, mavlink::EstimatorStatus>;
 
 // All that it listens to.
 using CompanionMessage =

@@ -55,6 +55,10 @@ bool AutopilotModel::SendMessage(std::uint32_t id, Time now) {
     case mavlink::Heartbeat::kId:
       send_(HeartbeatOf());
       return true;
+    case mavlink::CurrentMode::kId:
+      send_(mavlink::CurrentMode{
+          .standard_mode = 0, .custom_mode = custom_mode_, .intended_custom_mode = custom_mode_});
+      return true;
     case mavlink::ExtendedSysState::kId:
       send_(mavlink::ExtendedSysState{.vtol_state = 0, .landed_state = LandedState()});
       return true;

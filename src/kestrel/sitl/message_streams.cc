@@ -36,6 +36,8 @@ MessageStreams::MessageStreams(AutopilotFirmware firmware) : firmware_(firmware)
   if (is_px4) {
     constexpr std::int64_t kEstimator_us = 1'000'000;
     streams_.push_back({mavlink::EstimatorStatus::kId, kEstimator_us, kEstimator_us});
+    constexpr std::int64_t kMode_us = 500'000;
+    streams_.push_back({mavlink::CurrentMode::kId, kMode_us, kMode_us});
   } else {
     streams_.push_back({mavlink::EkfStatusReport::kId, 0, 0});
     // The truth is what only ArduPilot's simulator tells.
@@ -50,7 +52,8 @@ bool MessageStreams::Has(std::uint32_t id) const {
 std::uint8_t MessageStreams::SetInterval(std::uint32_t id, double interval_us) {
   const bool is_px4 = firmware_ == AutopilotFirmware::kPx4;
   const auto stream = std::ranges::find(streams_, id, &Stream::id);
-  if (stream == streams_.end() || !std::isfinite(interval_us)) {
+  const bool is_fixed = is_px4 && id == mavlink::Heartbeat::kId;
+  if (stream == streams_.end() || is_fixed || !std::isfinite(interval_us)) {
     return is_px4 ? mavlink::kResultFailed : mavlink::kResultDenied;
   }
   if (interval_us == 0) {

@@ -11,6 +11,7 @@
 #include "kestrel/flight/multicopter_motion.h"
 #include "kestrel/geometry/angles.h"
 #include "kestrel/link/mavlink_enums.h"
+#include "kestrel/navigation/gravity.h"
 #include "kestrel/sitl/set_point_reading.h"
 
 namespace kestrel {

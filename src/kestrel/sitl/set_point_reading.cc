@@ -21,8 +21,7 @@ bool IsOfBody(std::uint8_t frame) {
 }  // namespace
 
 double HeadingOf(const FlightState& state) {
-  const Eigen::Vector3d forward = state.pose.world_from_body.rotation * Eigen::Vector3d::UnitX();
-  return std::atan2(forward.y(), forward.x());
+  return HeadingOf(state.pose.world_from_body.rotation);
 }
 
 std::optional<VelocityOrder> VelocityOrderOf(const mavlink::SetPositionTargetLocalNed& message,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kestrel/flight/multicopter_motion.h"
+#include "kestrel/navigation/gravity.h"
 
 namespace kestrel {
 namespace {
@@ -18,11 +19,6 @@ constexpr double kBoardReach_m = 0.3;
 constexpr double kLiftOff_mps = 0.1;
 
 Quaterniond Level(double heading) { return Quaterniond(AngleAxisd(heading, Vector3d::UnitZ())); }
-
-double HeadingOf(const Quaterniond& rotation) {
-  const Vector3d forward = rotation * Vector3d::UnitX();
-  return std::atan2(forward.y(), forward.x());
-}
 
 }  // namespace
 
