@@ -19,8 +19,6 @@ const char* ToString(OverlayLayer layer) {
       return "prediction";
     case OverlayLayer::kRejected:
       return "rejected";
-    case OverlayLayer::kSegmentation:
-      return "segmentation";
   }
   return "";
 }

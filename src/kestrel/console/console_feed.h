@@ -20,8 +20,8 @@
 namespace kestrel {
 
 // What the page can show over the image, each kind switched by itself.
-enum class OverlayLayer { kDetection, kPrediction, kRejected, kSegmentation };
-const char* ToString(OverlayLayer layer);  // "detection", "prediction", "rejected", "segmentation"
+enum class OverlayLayer { kDetection, kPrediction, kRejected };
+const char* ToString(OverlayLayer layer);  // "detection", "prediction", "rejected"
 
 // A closed line over the image with a word about it: what was found and how, or why it was not.
 struct OverlayShape {
@@ -56,6 +56,8 @@ struct ConsoleStatus {
   std::string state;   // as "searching", "tracking", "landing"
   std::string reason;  // why not more than that; empty where there is nothing to say
   bool is_recording = false;
+
+  bool operator==(const ConsoleStatus&) const = default;
 };
 
 // A point on the map with what is known of it; world frame, m and rad.
@@ -117,6 +119,7 @@ class ConsoleFeed {
     std::string title;                       // of what is shown
     bool is_live = true;                     // times are those of Now()
     std::vector<SeriesDescription> series;   // what a ConsoleSample holds
+    std::vector<OverlayLayer> layers;        // of the shapes that there can be
     std::vector<ConsoleCommandKind> offers;  // the commands that the program obeys
   };
 
@@ -126,8 +129,8 @@ class ConsoleFeed {
 
   // Whether anybody looks: else frames and samples need not be made. By any thread.
   bool IsWatched() const { return watchers_.load(std::memory_order_relaxed) > 0; }
-  // By one thread, the vision's: the feed gives the sequence number. Does not lock; it allocates
-  // only until it has seen as many shapes as there are.
+  // By one thread: the feed gives the sequence number. Does not lock; it allocates only until it
+  // has seen as many shapes as there are.
   void SetFrame(ConsoleFrame* frame);
   // By any thread.
   void Add(ConsoleUpdate update) { updates_.Push(std::move(update)); }
@@ -147,7 +150,7 @@ class ConsoleFeed {
  private:
   Description description_;
   std::atomic<int> watchers_{0};
-  std::uint64_t sequence_ = 0;  // of the vision's thread
+  std::uint64_t sequence_ = 0;  // of the thread of SetFrame
   LatestValue<ConsoleFrame> frame_;
   BoundedQueue<ConsoleUpdate> updates_;
   BoundedQueue<ConsoleCommand> commands_;

@@ -109,15 +109,17 @@ Json Message(const ConsolePlayback& playback) {
 }  // namespace
 
 std::string ToJson(const ConsoleFeed::Description& description) {
-  Json series = Json::array(), offers = Json::array();
+  Json series = Json::array(), layers = Json::array(), offers = Json::array();
   for (const SeriesDescription& one : description.series) {
     series.push_back({{"name", one.name}, {"unit", one.unit}, {"label", one.label}});
   }
+  for (const OverlayLayer layer : description.layers) layers.push_back(ToString(layer));
   for (const ConsoleCommandKind kind : description.offers) offers.push_back(ToString(kind));
   return Text({{"kind", "hello"},
                {"title", description.title},
                {"live", description.is_live},
                {"series", std::move(series)},
+               {"layers", std::move(layers)},
                {"offers", std::move(offers)}});
 }
 

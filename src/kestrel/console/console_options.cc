@@ -2,16 +2,14 @@
 #include "kestrel/console/console_options.h"
 
 #include <algorithm>
-#include <array>
 #include <boost/asio/ip/address.hpp>
 #include <cctype>
-#include <cstdint>
 #include <sstream>
-#include <unistd.h>
 
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/base/parse_number.h"
 #include "kestrel/base/violations.h"
 
 namespace kestrel {
@@ -34,6 +32,12 @@ std::vector<std::string> ConsoleOptions::Validate() const {
   // What was given is not repeated: it is a secret.
   if (!token.empty() && !IsToken(token)) {
     violations.push_back("token is not 16 to 128 of A-Z a-z 0-9 - _");
+  }
+  if (token.empty() && !error && !IsLoopback()) {
+    violations.push_back(
+        fmt::format("token is empty, expected one, as others can reach {} (openssl rand -hex 16 "
+                    "makes one)",
+                    address));
   }
   RequireIn(port, 0, 65535, "port", &violations);
   RequireIn(max_connections, 1, 1000, "max_connections", &violations);
@@ -62,14 +66,25 @@ std::vector<std::string> ConsoleOptions::HostNames() const {
   return names;
 }
 
-std::string MakeToken() {
-  std::array<std::uint8_t, 16> bytes;
-  if (getentropy(bytes.data(), bytes.size()) != 0) {
-    throw InputError("no random numbers from the system for the console's token");
+ConsoleOptions WithAddress(ConsoleOptions options, const std::string& text,
+                           const std::string& argument) {
+  const std::size_t colon = text.rfind(':');
+  std::string address = text.substr(0, colon);
+  if (address.starts_with('[') && address.ends_with(']')) {
+    address = address.substr(1, address.size() - 2);
   }
-  std::string token;
-  for (const std::uint8_t byte : bytes) token += fmt::format("{:02x}", byte);
-  return token;
+  const auto port =
+      colon == text.npos ? std::nullopt : ParseNumber<int>(std::string_view(text).substr(colon + 1));
+  boost::system::error_code error;
+  const auto ip = boost::asio::ip::make_address(address, error);
+  const bool is_bracketed = text.starts_with('[');
+  if (error || !port || *port < 0 || *port > 65535 || ip.is_v6() != is_bracketed) {
+    throw InputError(fmt::format(
+        "{} '{}': expected ADDRESS:PORT, as 127.0.0.1:8080 or [::1]:8080", argument, text));
+  }
+  options.address = address;
+  options.port = *port;
+  return options;
 }
 
 }  // namespace kestrel

@@ -8,8 +8,7 @@ namespace kestrel {
 
 // Where the web page is served, to whom, and what it may cost.
 struct ConsoleOptions {
-  // IPv4 or IPv6 address. One that others can reach, any but 127.0.0.0/8 and ::1, needs a token:
-  // one is made where none is given.
+  // IPv4 or IPv6 address. One that others can reach, any but 127.0.0.0/8 and ::1, needs a token.
   std::string address = "127.0.0.1";
   int port = 8080;  // 0: any free one
   // 16 to 128 of A-Z, a-z, 0-9, - and _.
@@ -45,7 +44,9 @@ struct ConsoleOptions {
   std::vector<std::string> HostNames() const;
 };
 
-// 32 random characters for ConsoleOptions::token.
-std::string MakeToken();
+// The options with what the user said of them, as "127.0.0.1:8080" or "[::1]:0". Throws InputError
+// with 'argument' in it where that is malformed.
+ConsoleOptions WithAddress(ConsoleOptions options, const std::string& text,
+                           const std::string& argument);
 
 }  // namespace kestrel

@@ -11,6 +11,8 @@
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
+#include "kestrel/console/map_view.h"
+
 namespace kestrel {
 namespace {
 
@@ -62,6 +64,10 @@ ConsoleMapObject MapObject(const std::string& label, const TurnState& motion) {
 
 }  // namespace
 
+LandingScene SceneOf(const CameraCalibration& calibration, const LandingPipelineOptions& options) {
+  return {CameraModel(calibration.intrinsics), options.detector.pattern, options.tracker.Noise()};
+}
+
 std::vector<SeriesDescription> LandingSeries() {
   return {{"height", "m", "Height"},
           {"offset", "m", "Offset"},
@@ -84,24 +90,31 @@ ConsoleSample LandingSample(const LandingObservation& observation) {
   return sample;
 }
 
-std::vector<OverlayShape> LandingShapes(const CameraModel& camera, const LandingPattern& pattern,
+std::vector<OverlayLayer> LandingLayers() {
+  return {OverlayLayer::kDetection, OverlayLayer::kPrediction, OverlayLayer::kRejected};
+}
+
+std::vector<OverlayShape> LandingShapes(const LandingScene& scene,
                                         const LandingObservation& observation) {
   std::vector<OverlayShape> shapes;
   if (observation.target && observation.world_from_camera) {
     shapes.push_back(
         {OverlayLayer::kPrediction,
-         TrackOutline(camera, observation.world_from_camera->Inverse(), observation.target->motion),
+         TrackOutline(scene.camera, observation.world_from_camera->Inverse(), observation.target->motion),
          ""});
   }
   if (!observation.report.detection) return shapes;
   const LandingDetection& found = *observation.report.detection;
-  shapes.push_back({OverlayLayer::kDetection,
-                    RingOutline(camera, found.camera_from_pattern, pattern.outer_radius_m()),
-                    fmt::format("{} {:.2f}", ToString(found.method), found.quality)});
-  shapes.push_back({OverlayLayer::kDetection,
-                    RingOutline(camera, found.camera_from_pattern, pattern.inner_radius_m()), ""});
+  const bool is_rejected = observation.fate == MeasurementFate::kFarFromTrack;
+  const OverlayLayer layer = is_rejected ? OverlayLayer::kRejected : OverlayLayer::kDetection;
+  const std::string label = fmt::format("{} {:.2f}", ToString(found.method), found.quality);
+  shapes.push_back({layer,
+                    RingOutline(scene.camera, found.camera_from_pattern, scene.pattern.outer_radius_m()),
+                    is_rejected ? label + ", far from the track" : label});
+  shapes.push_back({layer,
+                    RingOutline(scene.camera, found.camera_from_pattern, scene.pattern.inner_radius_m()), ""});
   shapes.push_back(
-      {OverlayLayer::kDetection,
+      {layer,
        {{static_cast<float>(found.center_px.x()), static_cast<float>(found.center_px.y())}},
        ""});
   return shapes;
@@ -113,27 +126,24 @@ ConsoleStatus LandingStatus(const LandingObservation& observation) {
   status.state = ToString(observation.track_state);
   if (!report.detection) {
     status.reason = fmt::format("not found: {}: {}", ToString(report.reached), report.reason);
+  } else if (observation.fate == MeasurementFate::kFarFromTrack) {
+    status.reason = "found, but far from where the track has it";
   } else if (!observation.world_from_camera) {
     status.reason = "found, but where the UAV was is not known";
   }
   return status;
 }
 
-ConsoleMap LandingMap(const LandingObservation& observation, const TurnNoise& noise) {
+ConsoleMap LandingMap(const LandingScene& scene, const LandingObservation& observation) {
   ConsoleMap map;
-  if (observation.world_from_camera) {
-    map.uav = observation.world_from_camera->translation.head<2>();
-    const Eigen::Vector3d up =
-        observation.world_from_camera->rotation * Eigen::Vector3d(-Eigen::Vector3d::UnitY());
-    map.uav_heading = std::atan2(up.y(), up.x());
-  }
+  PlaceUav(observation.world_from_camera, &map);
   if (!observation.target) return map;
   const TurnState& motion = observation.target->motion;
   map.target = MapObject("target", motion);
   map.target_velocity = motion.velocity().head<2>();
   for (const int seconds : {1, 2, 3}) {
     map.prediction.push_back(
-        MapObject(fmt::format("+{} s", seconds), Propagate(motion, seconds, noise)));
+        MapObject(fmt::format("+{} s", seconds), Propagate(motion, seconds, scene.noise)));
   }
   return map;
 }

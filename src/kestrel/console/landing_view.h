@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "kestrel/camera/calibration.h"
 #include "kestrel/camera/camera_model.h"
 #include "kestrel/console/console_feed.h"
 #include "kestrel/landing/landing_pattern.h"
@@ -13,21 +14,31 @@ namespace kestrel {
 
 // What the page shows of a landing.
 
+// What is the same for all frames.
+struct LandingScene {
+  CameraModel camera;
+  LandingPattern pattern;
+  TurnNoise noise;  // of the track's motion
+};
+LandingScene SceneOf(const CameraCalibration& calibration, const LandingPipelineOptions& options);
+
 // Height of the camera above the target, horizontal offset from it, speed of the target, quality of
 // the detection, time of the detection: what LandingSample has the values of.
 std::vector<SeriesDescription> LandingSeries();
 ConsoleSample LandingSample(const LandingObservation& observation);
 
-// The outlines of the ring and the centre of the cross where they were found, and two standard
-// deviations of where the track says that the centre is. A line ends where the lens does.
-std::vector<OverlayShape> LandingShapes(const CameraModel& camera, const LandingPattern& pattern,
+// The outlines of the ring and the centre of the cross where they were found, rejected where the
+// track says that this cannot be, and two standard deviations of where the track has the centre. A
+// line ends where the lens does.
+std::vector<OverlayLayer> LandingLayers();
+std::vector<OverlayShape> LandingShapes(const LandingScene& scene,
                                         const LandingObservation& observation);
 
 // The state of the track, and why the pattern was not found.
 ConsoleStatus LandingStatus(const LandingObservation& observation);
 
 // The camera (its heading is that of the image's upper edge), the target, and where it will be in
-// 1, 2 and 3 s. 'noise': of the track's motion.
-ConsoleMap LandingMap(const LandingObservation& observation, const TurnNoise& noise);
+// 1, 2 and 3 s.
+ConsoleMap LandingMap(const LandingScene& scene, const LandingObservation& observation);
 
 }  // namespace kestrel

@@ -35,6 +35,10 @@ LandingObservation Seen() {
   return observation;
 }
 
+LandingScene Scene() {
+  return {CameraModel(PaperCamera()), {}, TargetTrackerOptions().Noise()};
+}
+
 cv::Point2f Middle(const OverlayShape& shape) {
   cv::Point2f sum(0, 0);
   for (const cv::Point2f& point : shape.outline) sum += point;
@@ -52,7 +56,7 @@ double Width(const OverlayShape& shape, bool is_vertical) {
 }
 
 TEST(LandingView, TheTracksEllipseLiesWhereTheRingIs) {
-  const auto shapes = LandingShapes(CameraModel(PaperCamera()), {}, Seen());
+  const auto shapes = LandingShapes(Scene(), Seen());
   ASSERT_EQ(shapes.size(), 4U);
   EXPECT_EQ(shapes[0].layer, OverlayLayer::kPrediction);
   EXPECT_EQ(shapes[1].layer, OverlayLayer::kDetection);
@@ -61,6 +65,15 @@ TEST(LandingView, TheTracksEllipseLiesWhereTheRingIs) {
   // Two deviations of 0.5 m to either side, and of 0.1 m; the ring is 1 m wide.
   EXPECT_NEAR(Width(shapes[0], false) / Width(shapes[1], false), 2, 0.1);
   EXPECT_NEAR(Width(shapes[0], true) / Width(shapes[1], true), 0.4, 0.05);
+}
+
+TEST(LandingView, WhatTheTrackDoesNotTakeIsRejected) {
+  LandingObservation observation = Seen();
+  observation.fate = MeasurementFate::kFarFromTrack;
+  const auto shapes = LandingShapes(Scene(), observation);
+  ASSERT_EQ(shapes.size(), 4U);
+  for (int i = 1; i < 4; ++i) EXPECT_EQ(shapes[i].layer, OverlayLayer::kRejected);
+  EXPECT_NE(LandingStatus(observation).reason, "");
 }
 
 TEST(LandingView, NumbersAreThoseOfTheTrack) {
@@ -74,12 +87,12 @@ TEST(LandingView, NumbersAreThoseOfTheTrack) {
 }
 
 TEST(LandingView, TheMapLooksAhead) {
-  const ConsoleMap map = LandingMap(Seen(), TargetTrackerOptions().Noise());
+  const ConsoleMap map = LandingMap(Scene(), Seen());
   EXPECT_NEAR(map.uav_heading, M_PI / 2, 1e-9);
   ASSERT_EQ(map.prediction.size(), 3U);
   EXPECT_NEAR(map.prediction[1].position.x(), 5, 0.1);
   EXPECT_GT(map.prediction[2].covariance(0, 0), map.target->covariance(0, 0));
-  EXPECT_FALSE(LandingMap({}, TargetTrackerOptions().Noise()).uav);
+  EXPECT_FALSE(LandingMap(Scene(), {}).uav);
 }
 
 TEST(LandingView, SaysWhyNot) {

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/base/error.h"
+
 namespace kestrel {
 namespace {
 
@@ -103,8 +105,22 @@ TEST(ConsoleOptionsTest, NamesWhatIsWrongButNeverTheToken) {
               testing::ElementsAre("address is 'nowhere', expected an IP address",
                                    "token is not 16 to 128 of A-Z a-z 0-9 - _",
                                    "port is 70000, expected 0 to 65535"));
-  EXPECT_THAT(OptionsAt("::1", MakeToken()).Validate(), testing::IsEmpty());
-  EXPECT_NE(MakeToken(), MakeToken());
+  EXPECT_THAT(OptionsAt("::1").Validate(), testing::IsEmpty());
+  EXPECT_THAT(OptionsAt("10.0.0.5", "0123456789abcdef").Validate(), testing::IsEmpty());
+  EXPECT_THAT(OptionsAt("10.0.0.5").Validate(),
+              testing::ElementsAre(testing::StartsWith("token is empty, expected one")));
+}
+
+TEST(ConsoleOptionsTest, AddressesAreAddressAndPort) {
+  const auto read = [](const std::string& text) { return WithAddress({}, text, "--console"); };
+  EXPECT_EQ(read("10.0.0.5:80").address, "10.0.0.5");
+  EXPECT_EQ(read("10.0.0.5:80").port, 80);
+  EXPECT_EQ(read("[::1]:0").address, "::1");
+  for (const char* text : {"", ":", "8080", ":8080", "127.0.0.1", "127.0.0.1:", "127.0.0.1:x",
+                           "127.0.0.1:-1", "127.0.0.1:65536", "localhost:8080", "::1:80", "::1",
+                           "[::1]", "[127.0.0.1]:80", "[::1:80"}) {
+    EXPECT_THROW(read(text), InputError) << text;
+  }
 }
 
 }  // namespace

@@ -28,12 +28,6 @@ constexpr std::chrono::milliseconds kWatchedInterval(4), kUnwatchedInterval(100)
 // What flies goes first.
 constexpr int kNiceness = 10;
 
-ConsoleOptions WithToken(ConsoleOptions options) {
-  RequireValid(options);
-  if (options.token.empty() && !options.IsLoopback()) options.token = MakeToken();
-  return options;
-}
-
 Tcp::acceptor Listen(asio::io_context& context, const ConsoleOptions& options) {
   const Tcp::endpoint endpoint(asio::ip::make_address(options.address),
                                static_cast<unsigned short>(options.port));
@@ -51,7 +45,7 @@ Tcp::acceptor Listen(asio::io_context& context, const ConsoleOptions& options) {
 class WebServer::Impl {
  public:
   Impl(const ConsoleOptions& options, ConsoleFeed* feed, std::span<const WebAsset> assets)
-      : options_(WithToken(options)),
+      : options_(Checked(options)),
         acceptor_(Listen(context_, options_)),
         timer_(context_),
         port_(acceptor_.local_endpoint().port()) {
