@@ -6,7 +6,6 @@ const styles: Record<Layer, { color: string; dash: number[] }> = {
   detection: { color: "#3dff6e", dash: [] },
   prediction: { color: "#5cc8ff", dash: [8, 5] },
   rejected: { color: "#ff7a5c", dash: [5, 4] },
-  segmentation: { color: "#ffd84d", dash: [12, 3, 2, 3] },
 };
 
 export function layerColor(layer: Layer): string {

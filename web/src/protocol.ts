@@ -2,7 +2,7 @@
 // What the server says, as src/kestrel/console/console_json.h writes it. Times are whole
 // nanoseconds as text: they are beyond what numbers hold here.
 
-export const layers = ["detection", "prediction", "rejected", "segmentation"] as const;
+export const layers = ["detection", "prediction", "rejected"] as const;
 export type Layer = (typeof layers)[number];
 
 /** A closed line over the image, x and y in turn, in pixels of the frame; one point is a mark. */
@@ -35,6 +35,8 @@ export interface Hello {
   title: string;
   live: boolean;
   series: Series[];
+  /** Of the shapes that there can be. */
+  layers: Layer[];
   offers: CommandName[];
 }
 

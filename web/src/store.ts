@@ -52,7 +52,7 @@ export function initialState(): State {
     link: null,
     series: new SeriesBuffer(0),
     track: [],
-    layers: { detection: true, prediction: true, rejected: false, segmentation: false },
+    layers: { detection: true, prediction: true, rejected: true },
     isFrozen: false,
     isHelpShown: false,
     theme: "auto",

@@ -9,6 +9,7 @@ const hello: Hello = {
   title: "test",
   live: true,
   series: [{ name: "height", unit: "m", label: "Height" }],
+  layers: [],
   offers: [],
 };
 

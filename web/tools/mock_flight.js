@@ -51,7 +51,6 @@ export function shapesAt(flight) {
     });
   const shapes = [
     { layer: "rejected", label: "ring: not round", outline: [300, 40, 340, 44, 336, 70, 298, 66] },
-    { layer: "segmentation", label: "", outline: [u - 0.75 * scale, v - 0.75 * scale, u + 0.75 * scale, v - 0.75 * scale, u + 0.75 * scale, v + 0.75 * scale, u - 0.75 * scale, v + 0.75 * scale] },
   ];
   if (flight.t > 3) shapes.push({ layer: "prediction", label: "", outline: circle(u + 4, v - 3, 0.65 * scale) });
   if (flight.isSeen) {

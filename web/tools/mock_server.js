@@ -82,7 +82,8 @@ class Client {
   greet() {
     const offers = this.isReplay ? ["play", "seek", "step"] : ["record", "snapshot"];
     const title = this.isReplay ? "Recording flight_07" : "Simulated flight";
-    this.send({ kind: "hello", title, live: !this.isReplay, series, offers });
+    const layers = ["detection", "prediction", "rejected"];
+    this.send({ kind: "hello", title, live: !this.isReplay, series, layers, offers });
     this.send({ kind: "health", checks });
     this.event("info", "camera opened: 376x240, 30 Hz");
     this.event("warning", "autopilot's clock is 12 ms ahead");

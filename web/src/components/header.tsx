@@ -10,7 +10,7 @@ const connectionInWords: Record<ConnectionState, string> = {
   refused: "The token is not known any more: open the link that the program prints",
 };
 
-/** State in words, the newest number of each series, and what can be done. */
+/** State in words (the last of them is what the vision says), the newest number of each series, and what can be done. */
 export function Header() {
   return (
     <header>
@@ -27,7 +27,7 @@ function State() {
   const status = useStore((state) => state.status);
   const isOpen = connection === "open";
   return (
-    <div class="state" data-state={isOpen ? status?.state : "lost"}>
+    <div class="state" data-state={isOpen ? status?.state.split(", ").at(-1) : "offline"}>
       <h1>{title ?? "Kestrel"}</h1>
       <p class="state-word" role="status">
         {isOpen ? (status?.state ?? "waiting") : connectionInWords[connection]}

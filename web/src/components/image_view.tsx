@@ -3,12 +3,14 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { toggleLayer, togglePlaying } from "../actions";
 import { connection, type Picture } from "../connection";
 import { drawOverlay, layerColor } from "../overlay";
-import { layers, type FrameHeader } from "../protocol";
+import type { FrameHeader, Layer } from "../protocol";
 import { store } from "../store";
 import { useClock, useStore } from "../use_store";
 
 /** Older than this, a live picture is not what the UAV sees now. */
 const staleMs = 500;
+
+const noLayers: Layer[] = [];
 
 interface Shown {
   header: FrameHeader;
@@ -94,11 +96,12 @@ function drawPicture(canvas: HTMLCanvasElement, { header, bitmap }: Picture): vo
 
 function LayerSwitches() {
   const isOn = useStore((state) => state.layers);
+  const layers = useStore((state) => state.hello?.layers ?? noLayers);
   const isFrozen = useStore((state) => state.isFrozen);
   const isLive = useStore((state) => state.hello?.live ?? true);
   return (
     <div class="switches" role="group" aria-label="Overlay">
-      {layers.map((layer) => (
+      {layers.map((layer: Layer) => (
         <button key={layer} aria-pressed={isOn[layer]} onClick={() => toggleLayer(layer)}>
           <span class="swatch" style={{ background: layerColor(layer) }} />
           {layer}
