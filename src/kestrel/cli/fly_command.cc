@@ -128,8 +128,8 @@ class Flight {
     }
     const OutputFolder* const output = output_ ? &*output_ : nullptr;
     if (arguments_.hunt) {
-      auto hunt = std::make_unique<HuntVision>(source_.calibration, ReadModel(), all_options_.hunt,
-                                               output);
+      auto hunt =
+          std::make_unique<HuntVision>(source_.calibration, ReadModel(), all_options_.hunt, output);
       hunt_ = hunt.get();
       vision_ = std::move(hunt);
       return;
@@ -165,17 +165,16 @@ class Flight {
       };
     }
     connection_.emplace(opened.url, all_options_.fly.link, tap);
-    autopilot_.emplace(
-        source_.Asking(all_options_.fly.autopilot), &*connection_,
-        AutopilotListener{
-            .pose = [this](const PoseSample& pose) { TakePose(pose); },
-            .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
-            .event = [this](const AutopilotEvent& e) { Say(e.text); },
-            .text =
-                [this](std::uint8_t severity, std::string_view text) {
-                  Say(fmt::format("autopilot: {}", text), LevelOf(severity));
-                },
-        });
+    autopilot_.emplace(source_.Asking(all_options_.fly.autopilot), &*connection_,
+                       AutopilotListener{
+                           .pose = [this](const PoseSample& pose) { TakePose(pose); },
+                           .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
+                           .event = [this](const AutopilotEvent& e) { Say(e.text); },
+                           .text =
+                               [this](std::uint8_t severity, std::string_view text) {
+                                 Say(fmt::format("autopilot: {}", text), LevelOf(severity));
+                               },
+                       });
   }
 
   FlightParts Parts() {

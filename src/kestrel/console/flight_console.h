@@ -36,7 +36,9 @@ class FlightConsole : public FlightObserver {
   std::string url() const { return server_.url(); }
 
   // Something that happened, in words. By any thread.
-  void Say(EventLevel level, const std::string& text) { feed_.Add(ConsoleEvent{Now(), level, text}); }
+  void Say(EventLevel level, const std::string& text) {
+    feed_.Add(ConsoleEvent{Now(), level, text});
+  }
 
   void See(const Frame& frame, const LandingObservation& observation) override;
   void See(const Frame& frame, const HuntObservation& observation) override;

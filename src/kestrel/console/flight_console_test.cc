@@ -25,9 +25,7 @@ ConsoleOptions AnyPort() {
   return options;
 }
 
-Frame GrayFrame() {
-  return {"", Now(), cv::Mat(240, 376, CV_8UC1, cv::Scalar(99))};
-}
+Frame GrayFrame() { return {"", Now(), cv::Mat(240, 376, CV_8UC1, cv::Scalar(99))}; }
 
 class FlightConsoleTest : public testing::Test {
  protected:

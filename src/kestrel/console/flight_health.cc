@@ -26,8 +26,7 @@ ConsoleCheck CameraCheck(const FlightState& now, const FlightState& last, double
   const auto frames = static_cast<double>(now.capture.captured - last.capture.captured);
   const bool is_missing = now.capture.missed > last.capture.missed;
   const bool is_repeating = now.repeated_frames > last.repeated_frames;
-  ConsoleCheck check{"camera",
-                     is_missing || is_repeating ? "doubtful" : "good",
+  ConsoleCheck check{"camera", is_missing || is_repeating ? "doubtful" : "good",
                      fmt::format("{:.1f} frames/s, {} missed, {} repeated", frames / interval_s,
                                  now.capture.missed, now.repeated_frames)};
   if (frames == 0) check.verdict = "wrong";
@@ -85,8 +84,7 @@ ConsoleHealth FlightHealth::Compare(const FlightState& state, double interval_s)
     const ConnectionCounters& link = state.autopilot->link;
     const ConnectionCounters& last = last_.autopilot->link;
     link_rate_hz_ = static_cast<double>(link.received - last.received) / interval_s;
-    const bool is_damaged =
-        link.bad_checksums > last.bad_checksums || link.unsent > last.unsent;
+    const bool is_damaged = link.bad_checksums > last.bad_checksums || link.unsent > last.unsent;
     health.checks.push_back(LinkCheck(*state.autopilot, *link_rate_hz_, is_damaged));
   }
   health.checks.push_back(ProcessorCheck(CpuTime_s() - last_cpu_s_, interval_s));
@@ -105,8 +103,8 @@ ConsoleStatus FlightStatus(const FlightState& state, const ConsoleStatus& vision
     status.reason = "";
   } else if (state.autopilot && !state.autopilot->is_here) {
     status.reason = "no heartbeat of the autopilot";
-  } else if (state.autopilot && state.autopilot->guidance.value_or(GuidancePhase::kIdle) !=
-                                    GuidancePhase::kIdle) {
+  } else if (state.autopilot &&
+             state.autopilot->guidance.value_or(GuidancePhase::kIdle) != GuidancePhase::kIdle) {
     status.state = fmt::format("{}, {}", ToString(*state.autopilot->guidance), vision.state);
   } else if (state.autopilot && state.autopilot->is_landing) {
     status.state = fmt::format("landing, {}", vision.state);

@@ -98,21 +98,22 @@ std::vector<OverlayShape> LandingShapes(const LandingScene& scene,
                                         const LandingObservation& observation) {
   std::vector<OverlayShape> shapes;
   if (observation.target && observation.world_from_camera) {
-    shapes.push_back(
-        {OverlayLayer::kPrediction,
-         TrackOutline(scene.camera, observation.world_from_camera->Inverse(), observation.target->motion),
-         ""});
+    shapes.push_back({OverlayLayer::kPrediction,
+                      TrackOutline(scene.camera, observation.world_from_camera->Inverse(),
+                                   observation.target->motion),
+                      ""});
   }
   if (!observation.report.detection) return shapes;
   const LandingDetection& found = *observation.report.detection;
   const bool is_rejected = observation.fate == MeasurementFate::kFarFromTrack;
   const OverlayLayer layer = is_rejected ? OverlayLayer::kRejected : OverlayLayer::kDetection;
   const std::string label = fmt::format("{} {:.2f}", ToString(found.method), found.quality);
-  shapes.push_back({layer,
-                    RingOutline(scene.camera, found.camera_from_pattern, scene.pattern.outer_radius_m()),
-                    is_rejected ? label + ", far from the track" : label});
-  shapes.push_back({layer,
-                    RingOutline(scene.camera, found.camera_from_pattern, scene.pattern.inner_radius_m()), ""});
+  shapes.push_back(
+      {layer, RingOutline(scene.camera, found.camera_from_pattern, scene.pattern.outer_radius_m()),
+       is_rejected ? label + ", far from the track" : label});
+  shapes.push_back(
+      {layer, RingOutline(scene.camera, found.camera_from_pattern, scene.pattern.inner_radius_m()),
+       ""});
   shapes.push_back(
       {layer,
        {{static_cast<float>(found.center_px.x()), static_cast<float>(found.center_px.y())}},

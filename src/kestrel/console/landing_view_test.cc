@@ -35,9 +35,7 @@ LandingObservation Seen() {
   return observation;
 }
 
-LandingScene Scene() {
-  return {CameraModel(PaperCamera()), {}, TargetTrackerOptions().Noise()};
-}
+LandingScene Scene() { return {CameraModel(PaperCamera()), {}, TargetTrackerOptions().Noise()}; }
 
 cv::Point2f Middle(const OverlayShape& shape) {
   cv::Point2f sum(0, 0);
