@@ -144,7 +144,7 @@ void RunConsole(const ConsoleArguments& arguments) {
   const std::string& name = arguments.source.sources.front();
   RequireImages(opened, name);
   const std::optional<Truth> truth = FindTruth(arguments.source.sources);
-  ReplayConsole console(arguments.Options(all_options), name, SceneOf(opened.calibration, options),
+  ReplayConsole console(arguments.Options(all_options), name, ViewOf(opened.calibration, options),
                         truth.has_value());
   fmt::print(stderr, "console: {}\n", console.url());
   ReplayRun run(opened, options, arguments.source.altitude_m, &console);

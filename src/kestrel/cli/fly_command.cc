@@ -110,15 +110,15 @@ class Flight {
     return arguments_.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments_.model);
   }
 
-  FlightScene Scene() const {
-    if (arguments_.hunt) return HuntScene{ReadModel()};
-    return SceneOf(source_.calibration, all_options_.landing);
+  FlightView View() const {
+    if (arguments_.hunt) return HuntView{ReadModel()};
+    return ViewOf(source_.calibration, all_options_.landing);
   }
 
   // First of all: a port that is taken is said before anything is written.
   void OpenConsole() {
     if (!arguments_.console) return;
-    console_.emplace(all_options_.console, arguments_.source.sources.front(), Scene());
+    console_.emplace(all_options_.console, arguments_.source.sources.front(), View());
     log_.Say("console: " + console_->url());
   }
 

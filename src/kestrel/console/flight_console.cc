@@ -13,8 +13,8 @@ namespace {
 constexpr std::size_t kSeenFrames = 2;
 constexpr Duration kPatience = std::chrono::milliseconds(200);
 
-ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightScene& scene) {
-  const bool is_hunt = std::holds_alternative<HuntScene>(scene);
+ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightView& view) {
+  const bool is_hunt = std::holds_alternative<HuntView>(view);
   ConsoleFeed::Description description{.title = title,
                                        .is_live = true,
                                        .series = is_hunt ? HuntSeries() : LandingSeries(),
@@ -28,9 +28,9 @@ ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightSce
 }  // namespace
 
 FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& title,
-                             FlightScene scene)
-    : scene_(std::move(scene)),
-      feed_(DescriptionOf(title, scene_)),
+                             FlightView view)
+    : view_(std::move(view)),
+      feed_(DescriptionOf(title, view_)),
       seen_(kSeenFrames),
       link_rate_hz_(std::numeric_limits<double>::quiet_NaN()),
       server_(options, &feed_),
@@ -52,11 +52,11 @@ void FlightConsole::See(const Frame& frame, const HuntObservation& observation) 
   seen_.Push({frame.image, frame.time, Now() - frame.time, observation});
 }
 
-void FlightConsole::See(const FlightState& state) {
-  if (const auto health = health_.Update(state, Now())) feed_.Add(*health);
+void FlightConsole::See(const FlightReport& report) {
+  if (const auto health = health_.Update(report, Now())) feed_.Add(*health);
   if (const auto rate_hz = health_.link_rate_hz()) link_rate_hz_ = *rate_hz;
   const std::lock_guard lock(mutex_);
-  const ConsoleStatus status = FlightStatus(state, vision_);
+  const ConsoleStatus status = FlightStatus(report, vision_);
   if (status == told_) return;
   told_ = status;
   feed_.Add(status);
@@ -77,18 +77,18 @@ void FlightConsole::Show(SeenFrame seen) {
 }
 
 void FlightConsole::Show(const LandingObservation& observation, Duration latency) {
-  const LandingScene& scene = std::get<LandingScene>(scene_);
-  frame_.shapes = LandingShapes(scene, observation);
+  const LandingView& view = std::get<LandingView>(view_);
+  frame_.shapes = LandingShapes(view, observation);
   AddSample(LandingSample(observation), latency);
-  feed_.Add(LandingMap(scene, observation));
+  feed_.Add(LandingMap(view, observation));
   SetVision(LandingStatus(observation));
 }
 
 void FlightConsole::Show(const HuntObservation& observation, Duration latency) {
-  const HuntScene& scene = std::get<HuntScene>(scene_);
-  frame_.shapes = HuntShapes(scene, observation);
+  const HuntView& view = std::get<HuntView>(view_);
+  frame_.shapes = HuntShapes(view, observation);
   AddSample(HuntSample(observation), latency);
-  feed_.Add(HuntMap(scene, observation));
+  feed_.Add(HuntMap(view, observation));
   SetVision(HuntStatus(observation));
 }
 

@@ -20,14 +20,14 @@
 namespace kestrel {
 
 // What a flight looks for.
-using FlightScene = std::variant<LandingScene, HuntScene>;
+using FlightView = std::variant<LandingView, HuntView>;
 
 // A flight on the page. What the vision sees is handed to a thread that makes of it what the page
 // shows, and only while somebody looks: else a frame costs the vision one look at a number.
 class FlightConsole : public FlightObserver {
  public:
   // Serves from now on. 'title': of the page. Throws InputError as WebServer does.
-  FlightConsole(const ConsoleOptions& options, const std::string& title, FlightScene scene);
+  FlightConsole(const ConsoleOptions& options, const std::string& title, FlightView view);
   ~FlightConsole() override;
   FlightConsole(const FlightConsole&) = delete;
   FlightConsole& operator=(const FlightConsole&) = delete;
@@ -42,7 +42,7 @@ class FlightConsole : public FlightObserver {
 
   void See(const Frame& frame, const LandingObservation& observation) override;
   void See(const Frame& frame, const HuntObservation& observation) override;
-  void See(const FlightState& state) override;
+  void See(const FlightReport& report) override;
 
  private:
   struct SeenFrame {
@@ -59,7 +59,7 @@ class FlightConsole : public FlightObserver {
   void AddSample(ConsoleSample sample, Duration latency);
   void SetVision(const ConsoleStatus& status);
 
-  FlightScene scene_;
+  FlightView view_;
   ConsoleFeed feed_;
   BoundedQueue<SeenFrame> seen_;
 

@@ -30,7 +30,7 @@ Frame GrayFrame() { return {"", Now(), cv::Mat(240, 376, CV_8UC1, cv::Scalar(99)
 class FlightConsoleTest : public testing::Test {
  protected:
   FlightConsole console_{AnyPort(), "a flight",
-                         LandingScene{CameraModel(PaperCamera()), {}, TurnNoise()}};
+                         LandingView{CameraModel(PaperCamera()), {}, TurnNoise()}};
 };
 
 TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
@@ -51,7 +51,7 @@ TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
   const auto image = socket.Next("image");
   ASSERT_TRUE(image);
   EXPECT_EQ((*image)["width"], 376);
-  console_.See(FlightState{});
+  console_.See(FlightReport{});
   const auto status = socket.Next("status");
   ASSERT_TRUE(status);
   EXPECT_THAT((*status)["reason"].get<std::string>(), testing::HasSubstr("no ring"));
@@ -66,7 +66,7 @@ TEST_F(FlightConsoleTest, KeepsNoImageWhenNobodyLooks) {
 
 TEST(FlightHealthTest, ComparesSeconds) {
   FlightHealth health;
-  FlightState state;
+  FlightReport state;
   state.autopilot.emplace().is_here = true;
   const Time start = Now();
   EXPECT_FALSE(health.Update(state, start));
@@ -94,7 +94,7 @@ TEST(FlightHealthTest, ComparesSeconds) {
 
 TEST(FlightStatusTest, SaysWhatMattersMost) {
   const ConsoleStatus vision{"tracking", "", false};
-  FlightState state;
+  FlightReport state;
   EXPECT_EQ(FlightStatus(state, vision), vision);
   state.autopilot.emplace().is_here = true;
   state.autopilot->is_landing = true;

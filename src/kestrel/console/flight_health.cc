@@ -22,7 +22,7 @@ double CpuTime_s() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-ConsoleCheck CameraCheck(const FlightState& now, const FlightState& last, double interval_s) {
+ConsoleCheck CameraCheck(const FlightReport& now, const FlightReport& last, double interval_s) {
   const auto frames = static_cast<double>(now.capture.captured - last.capture.captured);
   const bool is_missing = now.capture.missed > last.capture.missed;
   const bool is_repeating = now.repeated_frames > last.repeated_frames;
@@ -34,7 +34,7 @@ ConsoleCheck CameraCheck(const FlightState& now, const FlightState& last, double
   return check;
 }
 
-ConsoleCheck VisionCheck(const FlightState& now, const FlightState& last) {
+ConsoleCheck VisionCheck(const FlightReport& now, const FlightReport& last) {
   const bool is_late = now.events.dropped_frames > last.events.dropped_frames;
   const bool is_unposed = now.events.unposed_frames > last.events.unposed_frames;
   return {"vision", is_late || is_unposed ? "doubtful" : "good",
@@ -67,46 +67,46 @@ ConsoleCheck RecorderCheck(const FlightRecorder::Counters& now,
 
 }  // namespace
 
-std::optional<ConsoleHealth> FlightHealth::Update(const FlightState& state, Time now) {
+std::optional<ConsoleHealth> FlightHealth::Update(const FlightReport& report, Time now) {
   if (checked_ && now - *checked_ < kInterval) return std::nullopt;
   std::optional<ConsoleHealth> health;
-  if (checked_) health = Compare(state, ToSeconds(now - *checked_));
+  if (checked_) health = Compare(report, ToSeconds(now - *checked_));
   checked_ = now;
-  last_ = state;
+  last_ = report;
   last_cpu_s_ = CpuTime_s();
   return health;
 }
 
-ConsoleHealth FlightHealth::Compare(const FlightState& state, double interval_s) {
+ConsoleHealth FlightHealth::Compare(const FlightReport& report, double interval_s) {
   ConsoleHealth health;
-  health.checks = {CameraCheck(state, last_, interval_s), VisionCheck(state, last_)};
-  if (state.autopilot && last_.autopilot) {
-    const ConnectionCounters& link = state.autopilot->link;
+  health.checks = {CameraCheck(report, last_, interval_s), VisionCheck(report, last_)};
+  if (report.autopilot && last_.autopilot) {
+    const ConnectionCounters& link = report.autopilot->link;
     const ConnectionCounters& last = last_.autopilot->link;
     link_rate_hz_ = static_cast<double>(link.received - last.received) / interval_s;
     const bool is_damaged = link.bad_checksums > last.bad_checksums || link.unsent > last.unsent;
-    health.checks.push_back(LinkCheck(*state.autopilot, *link_rate_hz_, is_damaged));
+    health.checks.push_back(LinkCheck(*report.autopilot, *link_rate_hz_, is_damaged));
   }
   health.checks.push_back(ProcessorCheck(CpuTime_s() - last_cpu_s_, interval_s));
-  if (state.recorder) health.checks.push_back(RecorderCheck(*state.recorder, last_.recorder));
+  if (report.recorder) health.checks.push_back(RecorderCheck(*report.recorder, last_.recorder));
   return health;
 }
 
-ConsoleStatus FlightStatus(const FlightState& state, const ConsoleStatus& vision) {
+ConsoleStatus FlightStatus(const FlightReport& report, const ConsoleStatus& vision) {
   ConsoleStatus status = vision;
-  status.is_recording = state.recorder.has_value();
-  if (!state.trouble.empty()) {
+  status.is_recording = report.recorder.has_value();
+  if (!report.trouble.empty()) {
     status.state = "blind";
-    status.reason = state.trouble;
-  } else if (state.autopilot && state.autopilot->target == TargetPhase::kContact) {
+    status.reason = report.trouble;
+  } else if (report.autopilot && report.autopilot->target == TargetPhase::kContact) {
     status.state = "on the pattern";
     status.reason = "";
-  } else if (state.autopilot && !state.autopilot->is_here) {
+  } else if (report.autopilot && !report.autopilot->is_here) {
     status.reason = "no heartbeat of the autopilot";
-  } else if (state.autopilot &&
-             state.autopilot->guidance.value_or(GuidancePhase::kIdle) != GuidancePhase::kIdle) {
-    status.state = fmt::format("{}, {}", ToString(*state.autopilot->guidance), vision.state);
-  } else if (state.autopilot && state.autopilot->is_landing) {
+  } else if (report.autopilot &&
+             report.autopilot->guidance.value_or(GuidancePhase::kIdle) != GuidancePhase::kIdle) {
+    status.state = fmt::format("{}, {}", ToString(*report.autopilot->guidance), vision.state);
+  } else if (report.autopilot && report.autopilot->is_landing) {
     status.state = fmt::format("landing, {}", vision.state);
   }
   return status;

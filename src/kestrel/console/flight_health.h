@@ -14,22 +14,22 @@ namespace kestrel {
 class FlightHealth {
  public:
   // The checks once a second; nothing meanwhile.
-  std::optional<ConsoleHealth> Update(const FlightState& state, Time now);
+  std::optional<ConsoleHealth> Update(const FlightReport& report, Time now);
 
   // Of the autopilot's packets, 1/s, in the last second; nothing before the first and without one.
   std::optional<double> link_rate_hz() const { return link_rate_hz_; }
 
  private:
-  ConsoleHealth Compare(const FlightState& state, double interval_s);
+  ConsoleHealth Compare(const FlightReport& report, double interval_s);
 
   std::optional<Time> checked_;
-  FlightState last_;
+  FlightReport last_;
   double last_cpu_s_ = 0;
   std::optional<double> link_rate_hz_;
 };
 
 // The state of a flight, and what is in its way, in words for a pilot. 'vision': what the newest
 // frame says.
-ConsoleStatus FlightStatus(const FlightState& state, const ConsoleStatus& vision);
+ConsoleStatus FlightStatus(const FlightReport& report, const ConsoleStatus& vision);
 
 }  // namespace kestrel

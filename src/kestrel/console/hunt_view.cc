@@ -24,9 +24,9 @@ std::vector<cv::Point2f> Outline(const Ellipse& ellipse) {
   return outline;
 }
 
-OverlayShape Shape(const HuntScene& scene, const ObjectDetection& found, OverlayLayer layer) {
+OverlayShape Shape(const HuntView& view, const ObjectDetection& found, OverlayLayer layer) {
   return {layer, Outline(found.ellipse),
-          fmt::format("{} {:.2f}", scene.model.classes[found.class_index].name,
+          fmt::format("{} {:.2f}", view.model.classes[found.class_index].name,
                       found.class_probability)};
 }
 
@@ -46,13 +46,13 @@ std::vector<OverlayLayer> HuntLayers() {
   return {OverlayLayer::kDetection, OverlayLayer::kRejected};
 }
 
-std::vector<OverlayShape> HuntShapes(const HuntScene& scene, const HuntObservation& observation) {
+std::vector<OverlayShape> HuntShapes(const HuntView& view, const HuntObservation& observation) {
   std::vector<OverlayShape> shapes;
   for (const ObjectDetection& found : observation.report.detections) {
-    shapes.push_back(Shape(scene, found, OverlayLayer::kDetection));
+    shapes.push_back(Shape(view, found, OverlayLayer::kDetection));
   }
   for (const ObjectDetection& elsewhere : observation.report.elsewhere) {
-    shapes.push_back(Shape(scene, elsewhere, OverlayLayer::kRejected));
+    shapes.push_back(Shape(view, elsewhere, OverlayLayer::kRejected));
   }
   return shapes;
 }
@@ -65,14 +65,14 @@ ConsoleStatus HuntStatus(const HuntObservation& observation) {
   return status;
 }
 
-ConsoleMap HuntMap(const HuntScene& scene, const HuntObservation& observation) {
+ConsoleMap HuntMap(const HuntView& view, const HuntObservation& observation) {
   ConsoleMap map;
   PlaceUav(observation.world_from_camera, &map);
   for (std::size_t i = 0; i < observation.in_world.size(); ++i) {
     const auto& location = observation.in_world[i];
     if (!location) continue;
     const std::size_t class_index = observation.report.detections[i].class_index;
-    map.objects.push_back({.label = scene.model.classes[class_index].name,
+    map.objects.push_back({.label = view.model.classes[class_index].name,
                            .color = "",
                            .position = location->position.head<2>(),
                            .covariance = location->covariance.topLeftCorner<2, 2>()});

@@ -13,7 +13,7 @@ namespace kestrel {
 // What the page shows of a hunt for coloured objects.
 
 // What is the same for all frames.
-struct HuntScene {
+struct HuntView {
   ObjectModel model;
 };
 
@@ -23,12 +23,12 @@ ConsoleSample HuntSample(const HuntObservation& observation);
 
 // The ellipses of the objects; rejected are those whose size says that they are not on the ground.
 std::vector<OverlayLayer> HuntLayers();
-std::vector<OverlayShape> HuntShapes(const HuntScene& scene, const HuntObservation& observation);
+std::vector<OverlayShape> HuntShapes(const HuntView& view, const HuntObservation& observation);
 
 // How many objects there are, or that there is none.
 ConsoleStatus HuntStatus(const HuntObservation& observation);
 
 // The camera, as LandingMap, and the objects in view that have a place in the world.
-ConsoleMap HuntMap(const HuntScene& scene, const HuntObservation& observation);
+ConsoleMap HuntMap(const HuntView& view, const HuntObservation& observation);
 
 }  // namespace kestrel

@@ -64,7 +64,7 @@ ConsoleMapObject MapObject(const std::string& label, const TurnState& motion) {
 
 }  // namespace
 
-LandingScene SceneOf(const CameraCalibration& calibration, const LandingPipelineOptions& options) {
+LandingView ViewOf(const CameraCalibration& calibration, const LandingPipelineOptions& options) {
   return {CameraModel(calibration.intrinsics), options.detector.pattern, options.tracker.Noise()};
 }
 
@@ -94,12 +94,12 @@ std::vector<OverlayLayer> LandingLayers() {
   return {OverlayLayer::kDetection, OverlayLayer::kPrediction, OverlayLayer::kRejected};
 }
 
-std::vector<OverlayShape> LandingShapes(const LandingScene& scene,
+std::vector<OverlayShape> LandingShapes(const LandingView& view,
                                         const LandingObservation& observation) {
   std::vector<OverlayShape> shapes;
   if (observation.target && observation.world_from_camera) {
     shapes.push_back({OverlayLayer::kPrediction,
-                      TrackOutline(scene.camera, observation.world_from_camera->Inverse(),
+                      TrackOutline(view.camera, observation.world_from_camera->Inverse(),
                                    observation.target->motion),
                       ""});
   }
@@ -109,10 +109,10 @@ std::vector<OverlayShape> LandingShapes(const LandingScene& scene,
   const OverlayLayer layer = is_rejected ? OverlayLayer::kRejected : OverlayLayer::kDetection;
   const std::string label = fmt::format("{} {:.2f}", ToString(found.method), found.quality);
   shapes.push_back(
-      {layer, RingOutline(scene.camera, found.camera_from_pattern, scene.pattern.outer_radius_m()),
+      {layer, RingOutline(view.camera, found.camera_from_pattern, view.pattern.outer_radius_m()),
        is_rejected ? label + ", far from the track" : label});
   shapes.push_back(
-      {layer, RingOutline(scene.camera, found.camera_from_pattern, scene.pattern.inner_radius_m()),
+      {layer, RingOutline(view.camera, found.camera_from_pattern, view.pattern.inner_radius_m()),
        ""});
   shapes.push_back(
       {layer,
@@ -135,7 +135,7 @@ ConsoleStatus LandingStatus(const LandingObservation& observation) {
   return status;
 }
 
-ConsoleMap LandingMap(const LandingScene& scene, const LandingObservation& observation) {
+ConsoleMap LandingMap(const LandingView& view, const LandingObservation& observation) {
   ConsoleMap map;
   PlaceUav(observation.world_from_camera, &map);
   if (!observation.target) return map;
@@ -144,7 +144,7 @@ ConsoleMap LandingMap(const LandingScene& scene, const LandingObservation& obser
   map.target_velocity = motion.velocity().head<2>();
   for (const int seconds : {1, 2, 3}) {
     map.prediction.push_back(
-        MapObject(fmt::format("+{} s", seconds), Propagate(motion, seconds, scene.noise)));
+        MapObject(fmt::format("+{} s", seconds), Propagate(motion, seconds, view.noise)));
   }
   return map;
 }

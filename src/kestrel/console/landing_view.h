@@ -15,12 +15,12 @@ namespace kestrel {
 // What the page shows of a landing.
 
 // What is the same for all frames.
-struct LandingScene {
+struct LandingView {
   CameraModel camera;
   LandingPattern pattern;
   TurnNoise noise;  // of the track's motion
 };
-LandingScene SceneOf(const CameraCalibration& calibration, const LandingPipelineOptions& options);
+LandingView ViewOf(const CameraCalibration& calibration, const LandingPipelineOptions& options);
 
 // Height of the camera above the target, horizontal offset from it, speed of the target, quality of
 // the detection, time of the detection: what LandingSample has the values of.
@@ -31,7 +31,7 @@ ConsoleSample LandingSample(const LandingObservation& observation);
 // track says that this cannot be, and two standard deviations of where the track has the centre. A
 // line ends where the lens does.
 std::vector<OverlayLayer> LandingLayers();
-std::vector<OverlayShape> LandingShapes(const LandingScene& scene,
+std::vector<OverlayShape> LandingShapes(const LandingView& view,
                                         const LandingObservation& observation);
 
 // The state of the track, and why the pattern was not found.
@@ -39,6 +39,6 @@ ConsoleStatus LandingStatus(const LandingObservation& observation);
 
 // The camera (its heading is that of the image's upper edge), the target, and where it will be in
 // 1, 2 and 3 s.
-ConsoleMap LandingMap(const LandingScene& scene, const LandingObservation& observation);
+ConsoleMap LandingMap(const LandingView& view, const LandingObservation& observation);
 
 }  // namespace kestrel

@@ -35,7 +35,7 @@ LandingObservation Seen() {
   return observation;
 }
 
-LandingScene Scene() { return {CameraModel(PaperCamera()), {}, TargetTrackerOptions().Noise()}; }
+LandingView View() { return {CameraModel(PaperCamera()), {}, TargetTrackerOptions().Noise()}; }
 
 cv::Point2f Middle(const OverlayShape& shape) {
   cv::Point2f sum(0, 0);
@@ -53,8 +53,8 @@ double Width(const OverlayShape& shape, bool is_vertical) {
   return high - low;
 }
 
-TEST(LandingView, TheTracksEllipseLiesWhereTheRingIs) {
-  const auto shapes = LandingShapes(Scene(), Seen());
+TEST(LandingViewTest, TheTracksEllipseLiesWhereTheRingIs) {
+  const auto shapes = LandingShapes(View(), Seen());
   ASSERT_EQ(shapes.size(), 4U);
   EXPECT_EQ(shapes[0].layer, OverlayLayer::kPrediction);
   EXPECT_EQ(shapes[1].layer, OverlayLayer::kDetection);
@@ -65,16 +65,16 @@ TEST(LandingView, TheTracksEllipseLiesWhereTheRingIs) {
   EXPECT_NEAR(Width(shapes[0], true) / Width(shapes[1], true), 0.4, 0.05);
 }
 
-TEST(LandingView, WhatTheTrackDoesNotTakeIsRejected) {
+TEST(LandingViewTest, WhatTheTrackDoesNotTakeIsRejected) {
   LandingObservation observation = Seen();
   observation.fate = MeasurementFate::kFarFromTrack;
-  const auto shapes = LandingShapes(Scene(), observation);
+  const auto shapes = LandingShapes(View(), observation);
   ASSERT_EQ(shapes.size(), 4U);
   for (int i = 1; i < 4; ++i) EXPECT_EQ(shapes[i].layer, OverlayLayer::kRejected);
   EXPECT_NE(LandingStatus(observation).reason, "");
 }
 
-TEST(LandingView, NumbersAreThoseOfTheTrack) {
+TEST(LandingViewTest, NumbersAreThoseOfTheTrack) {
   const ConsoleSample sample = LandingSample(Seen());
   ASSERT_EQ(sample.values.size(), LandingSeries().size());
   EXPECT_NEAR(sample.values[0], 5, 1e-9);
@@ -84,16 +84,16 @@ TEST(LandingView, NumbersAreThoseOfTheTrack) {
   for (int i = 0; i < 4; ++i) EXPECT_TRUE(std::isnan(LandingSample({}).values[i]));
 }
 
-TEST(LandingView, TheMapLooksAhead) {
-  const ConsoleMap map = LandingMap(Scene(), Seen());
+TEST(LandingViewTest, TheMapLooksAhead) {
+  const ConsoleMap map = LandingMap(View(), Seen());
   EXPECT_NEAR(map.uav_heading, M_PI / 2, 1e-9);
   ASSERT_EQ(map.prediction.size(), 3U);
   EXPECT_NEAR(map.prediction[1].position.x(), 5, 0.1);
   EXPECT_GT(map.prediction[2].covariance(0, 0), map.target->covariance(0, 0));
-  EXPECT_FALSE(LandingMap(Scene(), {}).uav);
+  EXPECT_FALSE(LandingMap(View(), {}).uav);
 }
 
-TEST(LandingView, SaysWhyNot) {
+TEST(LandingViewTest, SaysWhyNot) {
   LandingObservation observation;
   observation.report.reason = "no ring";
   EXPECT_EQ(LandingStatus(observation).state, "searching");

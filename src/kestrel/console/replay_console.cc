@@ -39,8 +39,8 @@ void MarkByTrack(std::vector<ReplayFrame>* frames) {
 }
 
 ReplayConsole::ReplayConsole(const ConsoleOptions& options, const std::string& title,
-                             LandingScene scene, bool has_truth)
-    : scene_(std::move(scene)),
+                             LandingView view, bool has_truth)
+    : view_(std::move(view)),
       has_truth_(has_truth),
       feed_({.title = title,
              .is_live = false,
@@ -128,11 +128,11 @@ void ReplayConsole::ShowFrame() {
   ConsoleSample sample = LandingSample(frame.observation);
   if (has_truth_) sample.values.push_back(frame.error_px.value_or(kUnknown));
   feed_.Add(std::move(sample));
-  feed_.Add(LandingMap(scene_, frame.observation));
+  feed_.Add(LandingMap(view_, frame.observation));
   feed_.Add(LandingStatus(frame.observation));
   feed_.Add(ConsolePlayback{frame_, speed_});
   picture_.captured = frame.observation.time;
-  picture_.shapes = LandingShapes(scene_, frame.observation);
+  picture_.shapes = LandingShapes(view_, frame.observation);
   try {
     picture_.image = read_(frame_);
   } catch (const InputError& error) {  // its file is gone

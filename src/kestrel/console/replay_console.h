@@ -32,7 +32,7 @@ class ReplayConsole {
   using ReadFrame = std::function<cv::Mat(std::size_t frame)>;
 
   // Serves from now on. 'has_truth': errors are known. Throws InputError as WebServer does.
-  ReplayConsole(const ConsoleOptions& options, const std::string& title, LandingScene scene,
+  ReplayConsole(const ConsoleOptions& options, const std::string& title, LandingView view,
                 bool has_truth);
 
   std::string url() const { return server_.url(); }
@@ -54,7 +54,7 @@ class ReplayConsole {
   double SecondsOf(std::size_t frame) const;  // since the first
   std::size_t NearestFrame(double seconds) const;
 
-  LandingScene scene_;
+  LandingView view_;
   bool has_truth_;
   ConsoleFeed feed_;
   WebServer server_;

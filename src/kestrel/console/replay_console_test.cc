@@ -86,7 +86,7 @@ class ReplayConsoleTest : public testing::Test {
   std::atomic<bool> is_stopped_{false};
   std::atomic<std::size_t> read_{99};
   ReplayConsole console_{AnyPort(), "a recording",
-                         LandingScene{CameraModel(PaperCamera()), {}, TurnNoise()}, true};
+                         LandingView{CameraModel(PaperCamera()), {}, TurnNoise()}, true};
   std::thread thread_;
 };
 

@@ -25,8 +25,8 @@ struct AutopilotState {
   ConnectionCounters link;
 };
 
-// How a flight is, beside what its vision sees; all counts are since it began.
-struct FlightState {
+// How a flight is going, beside what its vision sees; all counts are since it began.
+struct FlightReport {
   std::string trouble;  // why there are no images; empty as long as they come
   CaptureCounters capture;
   LiveEvents::Counters events;
@@ -46,7 +46,7 @@ class FlightObserver {
   virtual void See(const Frame& frame, const HuntObservation& observation) = 0;
 
   // By the thread that the flight was begun in, ten times a second.
-  virtual void See(const FlightState& state) = 0;
+  virtual void See(const FlightReport& report) = 0;
 };
 
 }  // namespace kestrel

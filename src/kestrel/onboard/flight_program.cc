@@ -44,7 +44,7 @@ FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
   if (parts_.connection != nullptr) threads.emplace_back([this] { Communicate(); });
   while (!is_over_) {
     if (is_stopped()) End(FlightEnd::kStopped);
-    if (parts_.observer != nullptr) parts_.observer->See(StateNow());
+    if (parts_.observer != nullptr) parts_.observer->See(ReportNow());
     std::this_thread::sleep_for(kPatience);
   }
   events_.Close();
@@ -209,22 +209,22 @@ void FlightProgram::WatchFlight(Time now) {
 
 // --- How it is ---
 
-FlightState FlightProgram::StateNow() const {
-  FlightState state{.trouble = parts_.source->error(),
-                    .capture = parts_.source->counters(),
-                    .events = events_.counters(),
-                    .repeated_frames = repeated_frames_,
-                    .autopilot = {},
-                    .recorder = {}};
-  if (parts_.recorder != nullptr) state.recorder = parts_.recorder->counters();
-  if (parts_.connection == nullptr) return state;
-  AutopilotState& autopilot = state.autopilot.emplace();
+FlightReport FlightProgram::ReportNow() const {
+  FlightReport report{.trouble = parts_.source->error(),
+                      .capture = parts_.source->counters(),
+                      .events = events_.counters(),
+                      .repeated_frames = repeated_frames_,
+                      .autopilot = {},
+                      .recorder = {}};
+  if (parts_.recorder != nullptr) report.recorder = parts_.recorder->counters();
+  if (parts_.connection == nullptr) return report;
+  AutopilotState& autopilot = report.autopilot.emplace();
   autopilot.is_here = is_autopilot_here_;
   autopilot.is_landing = is_landing_;
   if (guided_) autopilot.guidance = guidance_phase_.load();
   autopilot.target = phase_;
   autopilot.link = parts_.connection->counters();
-  return state;
+  return report;
 }
 
 std::string FlightProgram::State() const {

@@ -91,7 +91,7 @@ class FlightProgram {
   void TellTarget(Time now);
   void WatchFlight(Time now);
   void End(FlightEnd end);
-  FlightState StateNow() const;
+  FlightReport ReportNow() const;
 
   FlightOptions options_;
   FlightParts parts_;
