@@ -73,17 +73,18 @@ ConsoleOptions WithAddress(ConsoleOptions options, const std::string& text,
   if (address.starts_with('[') && address.ends_with(']')) {
     address = address.substr(1, address.size() - 2);
   }
-  const auto port = colon == text.npos ? std::nullopt
-                                       : ParseNumber<int>(std::string_view(text).substr(colon + 1));
+  const int port = colon == text.npos
+                       ? -1
+                       : ParseNumber<int>(std::string_view(text).substr(colon + 1)).value_or(-1);
   boost::system::error_code error;
   const auto ip = boost::asio::ip::make_address(address, error);
   const bool is_bracketed = text.starts_with('[');
-  if (error || !port || *port < 0 || *port > 65535 || ip.is_v6() != is_bracketed) {
+  if (error || port < 0 || port > 65535 || ip.is_v6() != is_bracketed) {
     throw InputError(fmt::format("{} '{}': expected ADDRESS:PORT, as 127.0.0.1:8080 or [::1]:8080",
                                  argument, text));
   }
   options.address = address;
-  options.port = *port;
+  options.port = port;
   return options;
 }
 

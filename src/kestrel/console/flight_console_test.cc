@@ -19,7 +19,7 @@ int PortOf(const FlightConsole& console) {
   return std::stoi(url.substr(url.rfind(':') + 1));
 }
 
-ConsoleOptions AnyPort() {
+ConsoleOptions FreePort() {
   ConsoleOptions options;
   options.port = 0;
   return options;
@@ -29,7 +29,7 @@ Frame GrayFrame() { return {"", Now(), cv::Mat(240, 376, CV_8UC1, cv::Scalar(99)
 
 class FlightConsoleTest : public testing::Test {
  protected:
-  FlightConsole console_{AnyPort(), "a flight",
+  FlightConsole console_{FreePort(), "a flight",
                          LandingView{CameraModel(PaperCamera()), {}, TurnNoise()}};
 };
 

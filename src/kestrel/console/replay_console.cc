@@ -2,7 +2,7 @@
 #include "kestrel/console/replay_console.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <thread>
 #include <utility>
 
@@ -11,7 +11,6 @@
 namespace kestrel {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMaxSpeed = 100;
 // How often is looked for what users ask, and the fastest that pictures change.
 constexpr Duration kInterval = std::chrono::milliseconds(20);
@@ -126,7 +125,7 @@ void ReplayConsole::ShowFrame() {
   is_shown_ = true;
   const ReplayFrame& frame = frames_[frame_];
   ConsoleSample sample = LandingSample(frame.observation);
-  if (has_truth_) sample.values.push_back(frame.error_px.value_or(kUnknown));
+  if (has_truth_) sample.values.push_back(frame.error_px.value_or(std::nan("")));
   feed_.Add(std::move(sample));
   feed_.Add(LandingMap(view_, frame.observation));
   feed_.Add(LandingStatus(frame.observation));

@@ -49,7 +49,7 @@ TEST(MarkByTrackTest, LostIsBetweenFoundAndFalseWhatTheTrackDoesNotTake) {
 
 class ReplayConsoleTest : public testing::Test {
  protected:
-  static ConsoleOptions AnyPort() {
+  static ConsoleOptions FreePort() {
     ConsoleOptions options;
     options.port = 0;
     return options;
@@ -85,7 +85,7 @@ class ReplayConsoleTest : public testing::Test {
   static constexpr std::size_t kMissing = 7;
   std::atomic<bool> is_stopped_{false};
   std::atomic<std::size_t> read_{99};
-  ReplayConsole console_{AnyPort(), "a recording",
+  ReplayConsole console_{FreePort(), "a recording",
                          LandingView{CameraModel(PaperCamera()), {}, TurnNoise()}, true};
   std::thread thread_;
 };

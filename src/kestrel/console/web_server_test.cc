@@ -33,7 +33,7 @@ ConsoleOptions AnyPort(const std::string& token = "") {
   return options;
 }
 
-ConsoleFrame Frame(int width = 64) {
+ConsoleFrame SomeFrame(int width = 64) {
   ConsoleFrame frame;
   frame.captured = Now();
   frame.image = cv::Mat(width * 3 / 4, width, CV_8UC1, cv::Scalar(99));
@@ -330,7 +330,7 @@ TEST_F(WebServerTest, TheNextImageComesAfterTheLastIsDrawn) {
   for (TestSocket* socket : {&first, &second}) socket->Send(R"({"images": true})");
   ASSERT_TRUE(Eventually([&] { return server.counters().clients == 2; }));
   const auto give = [&] {
-    ConsoleFrame frame = Frame();
+    ConsoleFrame frame = SomeFrame();
     feed_.SetFrame(&frame);
     return frame.sequence;
   };
@@ -353,7 +353,7 @@ TEST_F(WebServerTest, NobodyLooksNothingIsEncoded) {
   const WebServer server(AnyPort(), &feed_, kAssets);
   TestSocket socket(server.port());
   ASSERT_TRUE(Eventually([&] { return server.counters().clients == 1; }));
-  ConsoleFrame frame = Frame();
+  ConsoleFrame frame = SomeFrame();
   feed_.SetFrame(&frame);
   std::this_thread::sleep_for(100ms);
   EXPECT_EQ(server.counters().encoded, 0u);
@@ -376,7 +376,7 @@ TEST_F(WebServerTest, AStalledBrowserCostsTheOthersNothing) {
   const cv::Mat noise = NoiseImage(4000, 3000);
   std::thread vision([&] {
     while (!is_over) {
-      ConsoleFrame frame = Frame();
+      ConsoleFrame frame = SomeFrame();
       frame.image = noise;
       feed_.SetFrame(&frame);
       for (int i = 0; i < 50; ++i) feed_.Add(ConsoleStatus{std::string(2000, 's'), "", false});
