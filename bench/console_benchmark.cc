@@ -124,7 +124,8 @@ void RunRound(Vision* vision, const WebServer& server, int browsers, Times* time
 }
 
 void Run() {
-  ConsoleFeed feed({.title = "benchmark", .is_live = true, .series = {}, .offers = {}});
+  ConsoleFeed feed(
+      {.title = "benchmark", .is_live = true, .series = {}, .layers = {}, .offers = {}});
   ConsoleOptions options;
   options.port = 0;
   const WebServer server(options, &feed, {});

@@ -17,6 +17,7 @@
 #include "kestrel/cli/fly_source.h"
 #include "kestrel/cli/interrupt.h"
 #include "kestrel/console/flight_console.h"
+#include "kestrel/link/mavlink_enums.h"
 #include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/hunt_vision.h"
 #include "kestrel/onboard/landing_vision.h"
