@@ -8,6 +8,7 @@
 
 #include "kestrel/cli/calibrate_command.h"
 #include "kestrel/cli/config_command.h"
+#include "kestrel/cli/console_command.h"
 #include "kestrel/cli/convert_command.h"
 #include "kestrel/cli/doctor_command.h"
 #include "kestrel/cli/evaluate_command.h"
@@ -41,6 +42,7 @@ int main(int argc, char** argv) {
   kestrel::AddHuntCommand(&app);
   kestrel::AddFlyCommand(&app);
   kestrel::AddDoctorCommand(&app);
+  kestrel::AddConsoleCommand(&app);
   kestrel::AddSimulateCommand(&app);
   kestrel::AddEvaluateCommand(&app);
   kestrel::AddCalibrateCommand(&app);

@@ -30,7 +30,7 @@ CLI::Option* AddAnnotateFlag(CLI::App* command, std::string* annotate) {
       ->check(CLI::IsMember({"video", "images"}));
 }
 
-void SourceArguments::AddTo(CLI::App* command) {
+void SourceArguments::AddReadingTo(CLI::App* command) {
   command
       ->add_option("SOURCE", sources,
                    "A recording folder (EuRoC), a ROS bag (.bag, .mcap, .db3 or its folder), a "
@@ -44,10 +44,6 @@ void SourceArguments::AddTo(CLI::App* command) {
                    "OpenCV YAML; overrides the source's")
       ->type_name("FILE");
   options.AddTo(command);
-  CLI::Option* folder =
-      command->add_option("--output", output, "Folder for the results (else stdout)")
-          ->type_name("DIR");
-  AddAnnotateFlag(command, &annotate)->needs(folder);
   command->add_flag("--still", still, "The frames have nothing to do with each other");
   command
       ->add_option("--altitude", altitude_m,
@@ -60,6 +56,14 @@ void SourceArguments::AddTo(CLI::App* command) {
                    "Seconds to add to an image's time to get the navigation's")
       ->type_name("S")
       ->check(InRange(-kMaxClockOffset, kMaxClockOffset, "seconds"));
+}
+
+void SourceArguments::AddTo(CLI::App* command) {
+  AddReadingTo(command);
+  CLI::Option* folder =
+      command->add_option("--output", output, "Folder for the results (else stdout)")
+          ->type_name("DIR");
+  AddAnnotateFlag(command, &annotate)->needs(folder);
   command->add_flag("--force", force, "Replace files that exist");
 }
 

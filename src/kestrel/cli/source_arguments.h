@@ -39,6 +39,8 @@ struct SourceArguments {
   std::optional<double> clock_offset;
 
   void AddTo(CLI::App* command);
+  // Without where results go.
+  void AddReadingTo(CLI::App* command);
 
   // The source with the calibration FILE or its own; a FILE without a mount takes the source's, and
   // its clock offset. Says on stderr when there are poses but no mount. Throws InputError when

@@ -36,6 +36,10 @@ class FrameSource {
   // end of a video that ends before it should.
   virtual bool Next(Frame* frame) = 0;
 
+  // Fills 'frame' with the image 'index', from 0, wherever Next is; false where a source cannot go
+  // to and fro, as a video, and where there is no such image. Throws InputError as Next does.
+  virtual bool Read(std::size_t /*index*/, Frame* /*frame*/) const { return false; }
+
   // How many frames there are, when that is known; of a video it is what the container says.
   virtual std::optional<std::size_t> frame_count() const = 0;
   virtual double rate_hz() const = 0;

@@ -71,7 +71,12 @@ ImageSequence::ImageSequence(std::vector<Item> items, std::string calibration_fi
 
 bool ImageSequence::Next(Frame* frame) {
   if (next_ == items_.size()) return false;
-  const Item& item = items_[next_++];
+  return Read(next_++, frame);
+}
+
+bool ImageSequence::Read(std::size_t index, Frame* frame) const {
+  if (index >= items_.size()) return false;
+  const Item& item = items_[index];
   frame->name = item.name;
   frame->time = item.time;
   frame->image = ReadImage(item.path, format());

@@ -22,6 +22,7 @@ class ImageSequence : public FrameSource {
                          std::vector<PoseSample> poses = {});
 
   bool Next(Frame* frame) override;
+  bool Read(std::size_t index, Frame* frame) const override;
   std::optional<std::size_t> frame_count() const override { return items_.size(); }
   double rate_hz() const override;
   std::optional<CameraCalibration> calibration() const override;
