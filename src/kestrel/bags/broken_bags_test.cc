@@ -173,7 +173,7 @@ const BrokenBag kBrokenBags[] = {
     {"damaged zstd",
      [](const TestFolder& f) { return Damaged(Flight(f, "flight.mcap", Compression::kZstd), 400); },
      "its compressed bytes are broken"},
-    {"a damaged .db3", [](const TestFolder& f) { return Damaged(Flight(f, "flight.db3"), 12300); },
+    {"a damaged .db3", [](const TestFolder& f) { return Damaged(Flight(f, "flight.db3"), 16384); },
      "malformed"},
     {"messages of connections that nothing describes",
      [](const TestFolder& f) { return Patched(Flight(f, "flight.bag"), "op=\x7", "op=\x9"); },
