@@ -75,7 +75,7 @@ async function watchFlight() {
 
 function simulateFlight() {
   const recording = join(scratch, "flight");
-  const args = ["simulate", "landing", "--scenario", "straight", "--seed", "3", "--output", recording];
+  const args = ["simulate", "landing", "--scenario", "figure8", "--seed", "3", "--output", recording];
   const settings = ["frames=120", "rate_hz=10", "ground.map_px=512", "shutter.rays_per_pixel=4"];
   const made = spawnSync(kestrel, [...args, ...settings.flatMap((setting) => ["--set", setting])]);
   if (made.status !== 0) throw new Error(made.stderr.toString());
