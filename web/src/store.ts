@@ -99,7 +99,11 @@ function withPoint(
   point: [number, number] | null,
 ): [number, number][] {
   const last = track.at(-1);
-  if (!point || (last && Math.hypot(last[0] - point[0], last[1] - point[1]) < 0.05)) return track;
+  if (!point) return track;
+  const distance = last ? Math.hypot(last[0] - point[0], last[1] - point[1]) : 0;
+  if (last && distance < 0.05) return track;
+  // So far from one frame to the next: a recording was wound.
+  if (distance > 3) return [point];
   return [...track, point].slice(-maxTrack);
 }
 

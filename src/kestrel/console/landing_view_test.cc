@@ -20,6 +20,8 @@ LandingObservation Seen() {
   world_from_camera.translation = {0, 0, 5};
   observation.world_from_camera = world_from_camera;
   LandingDetection detection{};
+  detection.center_px.setZero();
+  detection.covariance.setZero();
   detection.camera_from_pattern = world_from_camera.Inverse();
   detection.camera_from_pattern.translation =
       world_from_camera.Inverse() * Eigen::Vector3d(1, 0, 0);

@@ -28,7 +28,7 @@ std::vector<ReplayFrame> Frames() {
   return frames;
 }
 
-void Detect(ReplayFrame* frame) { frame->observation.report.detection = LandingDetection{}; }
+void Detect(ReplayFrame* frame) { frame->observation.report.detection.emplace(); }
 
 std::string Marks(const std::vector<ReplayFrame>& frames) {
   std::string marks;

@@ -13,6 +13,7 @@ const signs: Record<Check["verdict"], string> = {
 export function HealthPanel() {
   const health = useStore((state) => state.health);
   const link = useStore((state) => state.link);
+  const isLive = useStore((state) => state.hello?.live ?? false);
   return (
     <section class="health" aria-label="Health">
       <h2>Health</h2>
@@ -31,7 +32,7 @@ export function HealthPanel() {
             <span class="sign" aria-hidden="true">
               {signs[link.dropped > 0 ? "doubtful" : "good"]}
             </span>
-            <b>this page</b> {link.draw_ms === null ? "" : `${link.draw_ms.toFixed(0)} ms to draw, `}
+            <b>this page</b> {!isLive || link.draw_ms === null ? "" : `${link.draw_ms.toFixed(0)} ms to draw, `}
             {link.dropped} messages dropped, {link.clients} looking
           </li>
         )}
