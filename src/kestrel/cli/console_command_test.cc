@@ -63,7 +63,7 @@ class ConsoleCommandTest : public CommandTest {
   std::string Recording() const {
     const std::string flight = folder_ / "flight";
     EXPECT_EQ(Run("simulate landing --scenario calm --seed 2 --output " + flight +
-                  " --set frames=6 --set rate_hz=10 --set ground.map_px=256"
+                  " --set frames=10 --set rate_hz=10 --set ground.map_px=256"
                   " --set shutter.rays_per_pixel=4")
                   .status,
               0);
@@ -113,7 +113,7 @@ TEST_F(ConsoleCommandTest, ARecordingIsReplayed) {
   TestSocket socket(port);
   const auto timeline = socket.Next("timeline");
   ASSERT_TRUE(timeline);
-  EXPECT_EQ((*timeline)["marks"], "ffffff");
+  EXPECT_EQ((*timeline)["marks"], std::string(10, 'f'));
   socket.Send(R"({"command": "step", "value": 3})");
   for (;;) {
     const auto playback = socket.Next("playback");
