@@ -100,12 +100,19 @@ class TestSocket {
     stream_.write(boost::asio::buffer(text), error);
   }
 
-  // The next message; nothing when the connection has ended.
+  // The next message; nothing when the connection has ended, or nothing came for a long time.
   std::optional<std::string> Read() {
     test_browser::beast::flat_buffer buffer;
-    test_browser::beast::error_code error;
-    stream_.read(buffer, error);
-    if (error) return std::nullopt;
+    std::optional<test_browser::beast::error_code> error;
+    stream_.async_read(
+        buffer, [&](test_browser::beast::error_code result, std::size_t) { error = result; });
+    context_.restart();
+    context_.run_for(kPatience);
+    if (!error) {
+      Shutdown();
+      context_.run();
+    }
+    if (*error) return std::nullopt;
     is_text_ = stream_.got_text();
     return test_browser::beast::buffers_to_string(buffer.data());
   }
@@ -143,6 +150,8 @@ class TestSocket {
     }
     return nlohmann::json::parse(message.substr(4, size));
   }
+
+  static constexpr std::chrono::seconds kPatience{60};
 
   boost::asio::io_context context_;
   test_browser::beast::websocket::stream<test_browser::beast::tcp_stream> stream_;
