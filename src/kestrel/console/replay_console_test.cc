@@ -59,7 +59,7 @@ class ReplayConsoleTest : public testing::Test {
       console_.Play(
           Frames(),
           [this](std::size_t frame) {
-            if (frame == kMissing) throw InputError("frame7.png: no such file");
+            if (frame == missing_) throw InputError("frame7.png: no such file");
             read_ = frame;
             return cv::Mat(240, 376, CV_8UC1, cv::Scalar(static_cast<double>(frame)));
           },
@@ -82,7 +82,7 @@ class ReplayConsoleTest : public testing::Test {
     return false;
   }
 
-  static constexpr std::size_t kMissing = 7;
+  std::atomic<std::size_t> missing_{99};
   std::atomic<bool> is_stopped_{false};
   std::atomic<std::size_t> read_{99};
   ReplayConsole console_{FreePort(), "a recording",
@@ -114,6 +114,7 @@ TEST_F(ReplayConsoleTest, SeeksStepsAndPlays) {
 }
 
 TEST_F(ReplayConsoleTest, AFrameWhoseFileIsGoneIsSaid) {
+  missing_ = 7;
   TestSocket socket(port());
   socket.Send(R"({"command": "seek", "value": 0.7})");
   const auto event = socket.Next("event");
