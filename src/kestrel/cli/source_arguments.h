@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -12,6 +13,7 @@
 #include "kestrel/cli/bag_arguments.h"
 #include "kestrel/cli/option_arguments.h"
 #include "kestrel/cli/result_sink.h"
+#include "kestrel/foxglove/observation_file.h"
 #include "kestrel/recording/frame_source.h"
 
 namespace kestrel {
@@ -33,6 +35,7 @@ struct SourceArguments {
   OptionArguments options;
   std::string output;
   std::string annotate;  // "video", "images" or empty
+  std::string mcap;      // file, or empty
   bool still = false;
   bool force = false;
   std::optional<double> altitude_m;
@@ -48,6 +51,13 @@ struct SourceArguments {
   OpenedSource Open(PixelFormat format) const;
 
   OutputOptions Output(const OpenedSource& opened) const;
+
+  // The file of --mcap; null without. Throws InputError as ObservationFile does, and when it is
+  // the source.
+  std::unique_ptr<ObservationFile> OpenMcap(const CameraIntrinsics& intrinsics,
+                                            std::variant<LandingView, HuntView> view) const;
+  // Throws InputError when the file of --mcap is the source.
+  void RequireMcapIsNoSource() const;
 
  private:
   CameraCalibration FindCalibration(const FrameSource& source) const;
