@@ -55,11 +55,11 @@ ObservationFile::ObservationFile(const std::string& path, bool replace,
       encoder_(kJpegQuality) {}
 
 ObservationFile::~ObservationFile() {
-  if (!has_messages_) return RemoveFile(path_);
   try {
-    Close();
+    if (has_messages_) Close();
   } catch (const InputError&) {  // what is in the file can be read all the same
   }
+  if (!has_messages_) RemoveFile(path_);
 }
 
 void ObservationFile::Close() {
