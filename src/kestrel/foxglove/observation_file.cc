@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
-#include "kestrel/foxglove/foxglove_messages.h"
 #include "kestrel/foxglove/observation_messages.h"
 
 namespace kestrel {
@@ -29,7 +28,7 @@ foxglove::LogLevel LevelOf(EventLevel level) {
 }
 
 foxglove::PoseInFrame PoseInWorld(Time time, const RigidTransform& pose) {
-  return {time, kFoxgloveWorld, PoseMessage(pose)};
+  return {time, kFoxgloveWorld, FoxglovePose(pose)};
 }
 
 // Not where it is a device.
@@ -73,18 +72,18 @@ void ObservationFile::Write(const Frame& frame, const LandingObservation& observ
   const Time time = frame.time;
   WriteImage(frame);
   file_.Write("/camera/annotations", time,
-              AnnotationsMessage(time, LandingShapes(view, observation)));
+              FoxgloveAnnotations(time, LandingShapes(view, observation)));
   if (const auto& pose = observation.world_from_camera) WriteCameraPose(time, *pose);
   if (const auto& found = observation.report.detection) {
     file_.Write("/tf", time,
-                foxglove::FrameTransforms{{TransformMessage(time, kFoxgloveCamera, kFoxglovePattern,
-                                                            found->camera_from_pattern)}});
+                foxglove::FrameTransforms{{FoxgloveTransform(
+                    time, kFoxgloveCamera, kFoxglovePattern, found->camera_from_pattern)}});
   }
   if (observation.target) {
     file_.Write("/landing/target", time, PoseInWorld(time, PoseOf(*observation.target)));
   }
-  file_.Write("/scene", time, SceneMessage(view, observation));
-  WriteResult(frame, latency, ResultMessage(observation));
+  file_.Write("/scene", time, FoxgloveScene(view, observation));
+  WriteResult(frame, latency, FoxgloveResult(observation));
   const TrackState state = observation.track_state;
   if (std::exchange(track_state_, state) == state) return;
   WriteLog(time, state == TrackState::kLost ? EventLevel::kWarning : EventLevel::kInfo,
@@ -96,10 +95,11 @@ void ObservationFile::Write(const Frame& frame, const HuntObservation& observati
   const HuntView& view = std::get<HuntView>(view_);
   const Time time = frame.time;
   WriteImage(frame);
-  file_.Write("/camera/annotations", time, AnnotationsMessage(time, HuntShapes(view, observation)));
+  file_.Write("/camera/annotations", time,
+              FoxgloveAnnotations(time, HuntShapes(view, observation)));
   if (const auto& pose = observation.world_from_camera) WriteCameraPose(time, *pose);
-  file_.Write("/scene", time, SceneMessage(view, observation));
-  WriteResult(frame, latency, ResultMessage(view, observation));
+  file_.Write("/scene", time, FoxgloveScene(view, observation));
+  WriteResult(frame, latency, FoxgloveResult(view, observation));
 }
 
 void ObservationFile::WriteLog(Time time, EventLevel level, const std::string& text) {
@@ -114,14 +114,14 @@ void ObservationFile::WriteImage(const Frame& frame) {
     throw InputError(path_ + ": a frame is neither 8-bit gray nor BGR");
   }
   file_.Write("/camera/image", frame.time, message);
-  file_.Write("/camera/calibration", frame.time, CalibrationMessage(frame.time, camera_));
+  file_.Write("/camera/calibration", frame.time, FoxgloveCalibration(frame.time, camera_));
 }
 
 void ObservationFile::WriteCameraPose(Time time, const RigidTransform& world_from_camera) {
   file_.Write("/camera/pose", time, PoseInWorld(time, world_from_camera));
   file_.Write("/tf", time,
               foxglove::FrameTransforms{
-                  {TransformMessage(time, kFoxgloveWorld, kFoxgloveCamera, world_from_camera)}});
+                  {FoxgloveTransform(time, kFoxgloveWorld, kFoxgloveCamera, world_from_camera)}});
 }
 
 void ObservationFile::WriteResult(const Frame& frame, std::optional<Duration> latency,

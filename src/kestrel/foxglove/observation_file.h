@@ -12,6 +12,7 @@
 #include "kestrel/console/jpeg_encoder.h"
 #include "kestrel/console/landing_view.h"
 #include "kestrel/foxglove/foxglove_file.h"
+#include "kestrel/foxglove/foxglove_messages.h"
 #include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/pipeline/landing_pipeline.h"

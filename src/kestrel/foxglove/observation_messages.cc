@@ -115,7 +115,7 @@ foxglove::SpherePrimitive Ellipsoid(const Eigen::Vector3d& position,
   if (rotation.determinant() < 0) rotation.col(0) *= -1;
   const Eigen::Vector3d sigmas = axes.eigenvalues().cwiseMax(0).cwiseSqrt();
   foxglove::SpherePrimitive sphere;
-  sphere.pose = PoseMessage({Eigen::Quaterniond(rotation), position});
+  sphere.pose = FoxglovePose({Eigen::Quaterniond(rotation), position});
   sphere.size = VectorOf(2 * kSigmas * sigmas);
   sphere.color = color;
   sphere.color.a = kOpacity;
@@ -204,7 +204,7 @@ foxglove::Target TargetMessage(const TargetEstimate& target) {
 
 }  // namespace
 
-foxglove::CameraCalibration CalibrationMessage(Time time, const CameraIntrinsics& camera) {
+foxglove::CameraCalibration FoxgloveCalibration(Time time, const CameraIntrinsics& camera) {
   const CameraInfoMessage info = CameraInfoOf(camera);
   foxglove::CameraCalibration message;
   message.timestamp = time;
@@ -218,9 +218,9 @@ foxglove::CameraCalibration CalibrationMessage(Time time, const CameraIntrinsics
   return message;
 }
 
-foxglove::FrameTransform TransformMessage(Time time, const char* parent, const char* child,
-                                          const RigidTransform& parent_from_child) {
-  const foxglove::Pose pose = PoseMessage(parent_from_child);
+foxglove::FrameTransform FoxgloveTransform(Time time, const char* parent, const char* child,
+                                           const RigidTransform& parent_from_child) {
+  const foxglove::Pose pose = FoxglovePose(parent_from_child);
   foxglove::FrameTransform message;
   message.timestamp = time;
   message.parent_frame_id = parent;
@@ -230,12 +230,12 @@ foxglove::FrameTransform TransformMessage(Time time, const char* parent, const c
   return message;
 }
 
-foxglove::Pose PoseMessage(const RigidTransform& pose) {
+foxglove::Pose FoxglovePose(const RigidTransform& pose) {
   const Eigen::Quaterniond& q = pose.rotation;
   return {VectorOf(pose.translation), {q.x(), q.y(), q.z(), q.w()}};
 }
 
-foxglove::ImageAnnotations AnnotationsMessage(Time time, const std::vector<OverlayShape>& shapes) {
+foxglove::ImageAnnotations FoxgloveAnnotations(Time time, const std::vector<OverlayShape>& shapes) {
   foxglove::ImageAnnotations message;
   for (const OverlayShape& shape : shapes) {
     if (shape.outline.empty()) continue;
@@ -245,7 +245,8 @@ foxglove::ImageAnnotations AnnotationsMessage(Time time, const std::vector<Overl
   return message;
 }
 
-foxglove::SceneUpdate SceneMessage(const LandingView& view, const LandingObservation& observation) {
+foxglove::SceneUpdate FoxgloveScene(const LandingView& view,
+                                    const LandingObservation& observation) {
   foxglove::SceneUpdate scene;
   if (!observation.target) return scene;
   const TurnState& motion = observation.target->motion;
@@ -260,7 +261,7 @@ foxglove::SceneUpdate SceneMessage(const LandingView& view, const LandingObserva
   return scene;
 }
 
-foxglove::SceneUpdate SceneMessage(const HuntView& view, const HuntObservation& observation) {
+foxglove::SceneUpdate FoxgloveScene(const HuntView& view, const HuntObservation& observation) {
   foxglove::SceneUpdate scene;
   for (std::size_t i = 0; i < observation.in_world.size(); ++i) {
     const auto& location = observation.in_world[i];
@@ -274,7 +275,7 @@ foxglove::SceneUpdate SceneMessage(const HuntView& view, const HuntObservation& 
   return scene;
 }
 
-foxglove::FrameResult ResultMessage(const LandingObservation& observation) {
+foxglove::FrameResult FoxgloveResult(const LandingObservation& observation) {
   const ConsoleStatus status = LandingStatus(observation);
   foxglove::FrameResult result;
   result.timestamp = observation.time;
@@ -288,7 +289,7 @@ foxglove::FrameResult ResultMessage(const LandingObservation& observation) {
   return result;
 }
 
-foxglove::FrameResult ResultMessage(const HuntView& view, const HuntObservation& observation) {
+foxglove::FrameResult FoxgloveResult(const HuntView& view, const HuntObservation& observation) {
   const ConsoleStatus status = HuntStatus(observation);
   foxglove::FrameResult result;
   result.timestamp = observation.time;

@@ -20,24 +20,24 @@ inline constexpr const char* kFoxgloveWorld = "map";
 inline constexpr const char* kFoxgloveCamera = "camera_optical_frame";
 inline constexpr const char* kFoxglovePattern = "landing_pattern";
 
-foxglove::CameraCalibration CalibrationMessage(Time time, const CameraIntrinsics& camera);
+foxglove::CameraCalibration FoxgloveCalibration(Time time, const CameraIntrinsics& camera);
 
-foxglove::FrameTransform TransformMessage(Time time, const char* parent, const char* child,
-                                          const RigidTransform& parent_from_child);
+foxglove::FrameTransform FoxgloveTransform(Time time, const char* parent, const char* child,
+                                           const RigidTransform& parent_from_child);
 
-foxglove::Pose PoseMessage(const RigidTransform& pose);
+foxglove::Pose FoxglovePose(const RigidTransform& pose);
 
 // What the console draws over the image: what was found green, what was rejected red, what is
 // expected blue.
-foxglove::ImageAnnotations AnnotationsMessage(Time time, const std::vector<OverlayShape>& shapes);
+foxglove::ImageAnnotations FoxgloveAnnotations(Time time, const std::vector<OverlayShape>& shapes);
 
 // In the world: the target's ring, two standard deviations of its position and its path in the next
 // 3 s; of objects in view two standard deviations and what they are. Each for a second.
-foxglove::SceneUpdate SceneMessage(const LandingView& view, const LandingObservation& observation);
-foxglove::SceneUpdate SceneMessage(const HuntView& view, const HuntObservation& observation);
+foxglove::SceneUpdate FoxgloveScene(const LandingView& view, const LandingObservation& observation);
+foxglove::SceneUpdate FoxgloveScene(const HuntView& view, const HuntObservation& observation);
 
 // Without the frame's name and the latency.
-foxglove::FrameResult ResultMessage(const LandingObservation& observation);
-foxglove::FrameResult ResultMessage(const HuntView& view, const HuntObservation& observation);
+foxglove::FrameResult FoxgloveResult(const LandingObservation& observation);
+foxglove::FrameResult FoxgloveResult(const HuntView& view, const HuntObservation& observation);
 
 }  // namespace kestrel
