@@ -130,7 +130,7 @@ class Flight {
   void OpenMcap() {
     const SourceArguments& source = arguments_.source;
     if (source.mcap.empty()) return;
-    source.RequireMcapIsNoSource();
+    RequireNoSource(source.mcap, source.sources);
     mcap_ = std::make_unique<FlightMcap>(source.mcap, source.force, source_.calibration.intrinsics,
                                          View(), [this](const std::string& text) {
                                            log_.Say(text);

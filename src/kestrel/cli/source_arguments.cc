@@ -27,6 +27,15 @@ CLI::Validator InRange(double min, double max, const std::string& words) {
       "");
 }
 
+void RequireNoSource(const std::string& file, const std::vector<std::string>& sources) {
+  std::error_code ignored;
+  for (const std::string& source : sources) {
+    if (std::filesystem::equivalent(source, file, ignored)) {
+      throw InputError(file + ": is the source, expected another file");
+    }
+  }
+}
+
 CLI::Option* AddAnnotateFlag(CLI::App* command, std::string* annotate) {
   return command
       ->add_flag("--annotate{video}", *annotate,
@@ -86,19 +95,10 @@ OutputOptions SourceArguments::Output(const OpenedSource& opened) const {
       .folder = output, .force = force, .annotate = annotate, .rate_hz = opened.source->rate_hz()};
 }
 
-void SourceArguments::RequireMcapIsNoSource() const {
-  std::error_code ignored;
-  for (const std::string& source : sources) {
-    if (!mcap.empty() && std::filesystem::equivalent(source, mcap, ignored)) {
-      throw InputError(mcap + ": is the source, expected another file for --mcap");
-    }
-  }
-}
-
 std::unique_ptr<ObservationFile> SourceArguments::OpenMcap(
     const CameraIntrinsics& intrinsics, std::variant<LandingView, HuntView> view) const {
   if (mcap.empty()) return nullptr;
-  RequireMcapIsNoSource();
+  RequireNoSource(mcap, sources);
   return std::make_unique<ObservationFile>(mcap, force, intrinsics, std::move(view));
 }
 

@@ -56,12 +56,13 @@ struct SourceArguments {
   // the source.
   std::unique_ptr<ObservationFile> OpenMcap(const CameraIntrinsics& intrinsics,
                                             std::variant<LandingView, HuntView> view) const;
-  // Throws InputError when the file of --mcap is the source.
-  void RequireMcapIsNoSource() const;
 
  private:
   CameraCalibration FindCalibration(const FrameSource& source) const;
 };
+
+// Throws InputError when the file that is to be written is one of the sources.
+void RequireNoSource(const std::string& file, const std::vector<std::string>& sources);
 
 // The flag --annotate: "video" or "images".
 CLI::Option* AddAnnotateFlag(CLI::App* command, std::string* annotate);

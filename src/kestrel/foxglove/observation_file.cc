@@ -13,8 +13,6 @@
 namespace kestrel {
 namespace {
 
-constexpr int kJpegQuality = 85;
-
 foxglove::LogLevel LevelOf(EventLevel level) {
   switch (level) {
     case EventLevel::kInfo:
@@ -47,11 +45,7 @@ RigidTransform PoseOf(const TargetEstimate& target) {
 ObservationFile::ObservationFile(const std::string& path, bool replace,
                                  const CameraIntrinsics& camera,
                                  std::variant<LandingView, HuntView> view)
-    : path_(path),
-      file_(path, replace),
-      camera_(camera),
-      view_(std::move(view)),
-      encoder_(kJpegQuality) {}
+    : path_(path), file_(path, replace), images_(&file_, camera), view_(std::move(view)) {}
 
 ObservationFile::~ObservationFile() {
   try {
@@ -70,7 +64,8 @@ void ObservationFile::Write(const Frame& frame, const LandingObservation& observ
                             std::optional<Duration> latency) {
   const LandingView& view = std::get<LandingView>(view_);
   const Time time = frame.time;
-  WriteImage(frame);
+  has_messages_ = true;
+  images_.Write(frame);
   file_.Write("/camera/annotations", time,
               FoxgloveAnnotations(time, LandingShapes(view, observation)));
   if (const auto& pose = observation.world_from_camera) WriteCameraPose(time, *pose);
@@ -94,7 +89,8 @@ void ObservationFile::Write(const Frame& frame, const HuntObservation& observati
                             std::optional<Duration> latency) {
   const HuntView& view = std::get<HuntView>(view_);
   const Time time = frame.time;
-  WriteImage(frame);
+  has_messages_ = true;
+  images_.Write(frame);
   file_.Write("/camera/annotations", time,
               FoxgloveAnnotations(time, HuntShapes(view, observation)));
   if (const auto& pose = observation.world_from_camera) WriteCameraPose(time, *pose);
@@ -105,16 +101,6 @@ void ObservationFile::Write(const Frame& frame, const HuntObservation& observati
 void ObservationFile::WriteLog(Time time, EventLevel level, const std::string& text) {
   has_messages_ = true;
   file_.Write("/log", time, foxglove::Log{time, LevelOf(level), text, "kestrel"});
-}
-
-void ObservationFile::WriteImage(const Frame& frame) {
-  has_messages_ = true;
-  foxglove::CompressedImage message{frame.time, kFoxgloveCamera, {}, "jpeg"};
-  if (!encoder_.Append(frame.image, &message.data.bytes)) {
-    throw InputError(path_ + ": a frame is neither 8-bit gray nor BGR");
-  }
-  file_.Write("/camera/image", frame.time, message);
-  file_.Write("/camera/calibration", frame.time, FoxgloveCalibration(frame.time, camera_));
 }
 
 void ObservationFile::WriteCameraPose(Time time, const RigidTransform& world_from_camera) {

@@ -9,8 +9,8 @@
 #include "kestrel/camera/camera_model.h"
 #include "kestrel/console/console_feed.h"
 #include "kestrel/console/hunt_view.h"
-#include "kestrel/console/jpeg_encoder.h"
 #include "kestrel/console/landing_view.h"
+#include "kestrel/foxglove/camera_writer.h"
 #include "kestrel/foxglove/foxglove_file.h"
 #include "kestrel/foxglove/foxglove_messages.h"
 #include "kestrel/geometry/rigid_transform.h"
@@ -56,16 +56,14 @@ class ObservationFile {
   void Close();
 
  private:
-  void WriteImage(const Frame& frame);
   void WriteCameraPose(Time time, const RigidTransform& world_from_camera);
   void WriteResult(const Frame& frame, std::optional<Duration> latency,
                    foxglove::FrameResult result);
 
   std::string path_;
   FoxgloveFile file_;
-  CameraIntrinsics camera_;
+  CameraWriter images_;
   std::variant<LandingView, HuntView> view_;
-  JpegEncoder encoder_;
   bool has_messages_ = false;
   bool is_closed_ = false;
   TrackState track_state_ = TrackState::kSearching;
