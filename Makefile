@@ -26,7 +26,7 @@ console:  ## the web page: what it needs, built in, over a simulated flight
 test: tests
 	ctest --preset release -j $$(nproc)
 
-interop: tests  ## MAVLink against node-mavlink, which npm installs
+interop: tests  ## MAVLink against node-mavlink, MCAP against @mcap/core and @foxglove/schemas, which npm installs
 	scripts/install-deps --interop
 	cmake --preset release
 	ctest --preset release -R ^interop/ --no-tests=error

@@ -15,14 +15,16 @@ void RequireNew(const std::string& path, bool replace) {
   }
 }
 
-GrowingFile::GrowingFile(const std::string& path, bool replace) : path_(path) {
+GrowingFile::GrowingFile(const std::string& path, bool replace, UnfinishedName name)
+    : path_(path), name_(name) {
   RequireNew(path, replace);
-  file_.open(PartOf(path), std::ios::binary | std::ios::trunc);
+  file_.open(name == UnfinishedName::kPart ? PartOf(path) : path,
+             std::ios::binary | std::ios::trunc);
   if (!file_) Fail();
 }
 
 GrowingFile::~GrowingFile() {
-  if (is_finished_) return;
+  if (is_finished_ || name_ == UnfinishedName::kOwn) return;
   file_.close();
   std::error_code ignored;
   std::filesystem::remove(PartOf(path_), ignored);
@@ -35,6 +37,10 @@ void GrowingFile::Append(std::string_view bytes) {
   size_ += bytes.size();
 }
 
+void GrowingFile::Flush() {
+  if (!file_.flush()) Fail();
+}
+
 void GrowingFile::Overwrite(std::uint64_t offset, std::string_view bytes) {
   file_.seekp(static_cast<std::streamoff>(offset));
   if (!file_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()))) Fail();
@@ -45,7 +51,7 @@ void GrowingFile::Finish() {
   file_.close();
   if (!file_) Fail();
   std::error_code error;
-  std::filesystem::rename(PartOf(path_), path_, error);
+  if (name_ == UnfinishedName::kPart) std::filesystem::rename(PartOf(path_), path_, error);
   if (error) Fail();
   is_finished_ = true;
 }

@@ -16,6 +16,8 @@
 #include "kestrel/cli/bag_arguments.h"
 #include "kestrel/cli/interrupt.h"
 #include "kestrel/cli/progress_bar.h"
+#include "kestrel/cli/source_arguments.h"
+#include "kestrel/foxglove/foxglove_recording.h"
 #include "kestrel/recording/frame_source.h"
 
 namespace kestrel {
@@ -27,6 +29,7 @@ struct ConvertArguments {
   BagArguments bag;
   std::string camera;
   std::string compression = "none";
+  bool for_foxglove = false;
   bool force = false;
 };
 
@@ -50,9 +53,20 @@ void SayWhatIsLost(const ConvertArguments& arguments, const RecordingHead& head)
                "kestrel: a bag has no place for the clock offset: give --clock-offset {} with it\n",
                ToSeconds(*head.calibration->clock_offset));
   }
-  if (!is_bag && head.has_motion) {
-    fmt::print(stderr, "kestrel: a EuRoC folder has no place for velocities: they are left out\n");
+  if ((!is_bag || arguments.for_foxglove) && head.has_motion) {
+    fmt::print(stderr, "kestrel: {} no place for velocities: they are left out\n",
+               is_bag ? "Foxglove's poses have" : "a EuRoC folder has");
   }
+}
+
+std::unique_ptr<RecordingSink> OpenDestination(const ConvertArguments& arguments,
+                                               const RecordingHead& head) {
+  if (arguments.for_foxglove) {
+    RequireNoSource(arguments.destination, {arguments.source});
+    return std::make_unique<FoxgloveRecording>(arguments.destination, head, arguments.force);
+  }
+  return NewRecording(arguments.destination, head,
+                      CompressionOf(arguments.compression, "--compression"), arguments.force);
 }
 
 void RunConvert(const ConvertArguments& arguments) {
@@ -65,9 +79,7 @@ void RunConvert(const ConvertArguments& arguments) {
       .has_motion = std::any_of(poses.begin(), poses.end(),
                                 [](const PoseSample& pose) { return pose.motion.has_value(); })};
   SayWhatIsLost(arguments, head);
-  const auto recording =
-      NewRecording(arguments.destination, head,
-                   CompressionOf(arguments.compression, "--compression"), arguments.force);
+  const auto recording = OpenDestination(arguments, head);
   CatchInterrupts();
   ProgressBar progress(source->frame_count());
   std::size_t frames = 0;
@@ -98,10 +110,15 @@ void AddConvertCommand(CLI::App* app) {
   arguments->bag.AddTo(command);
   command->add_option("--camera", arguments->camera, "Calibration; overrides the source's")
       ->type_name("FILE");
+  CLI::Option* compression =
+      command
+          ->add_option("--compression", arguments->compression,
+                       "Of the bag: none; bz2, lz4 (.bag); lz4, zstd (.mcap)")
+          ->check(CLI::IsMember({"none", "bz2", "lz4", "zstd"}));
   command
-      ->add_option("--compression", arguments->compression,
-                   "Of the bag: none; bz2, lz4 (.bag); lz4, zstd (.mcap)")
-      ->check(CLI::IsMember({"none", "bz2", "lz4", "zstd"}));
+      ->add_flag("--foxglove", arguments->for_foxglove,
+                 "An .mcap with Foxglove's messages, images as JPEG, in place of ROS 2's")
+      ->excludes(compression);
   command->add_flag("--force", arguments->force, "Replace files that exist");
   command->callback([arguments] { RunConvert(*arguments); });
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "kestrel/cli/test_command.h"
+#include "kestrel/foxglove/test_protobuf.h"
 
 namespace kestrel {
 namespace {
@@ -92,6 +93,21 @@ TEST_F(ConvertCommandTest, HuntFindsInABagWhatItFindsInTheRecording) {
   const std::string bag = Convert(flight, "hunt.bag --compression bz2");
   EXPECT_EQ(Comparable(Result("hunt", bag, "object_detections.csv")), Comparable(detections));
   EXPECT_EQ(ReadFile(bag + ".hunt/object_map.csv"), ReadFile(flight + ".hunt/object_map.csv"));
+}
+
+TEST_F(ConvertCommandTest, WritesFoxglovesMessages) {
+  const std::string flight = Simulate("landing --scenario calm");
+  const auto messages = ReadMessages(Convert(flight, "flight.mcap --foxglove"));
+  ASSERT_EQ(messages.at("/camera/image").size(), 3u);
+  EXPECT_EQ(messages.at("/camera/calibration").size(), 3u);
+  EXPECT_GT(messages.at("/pose").size(), 3u);
+  EXPECT_EQ(messages.at("/tf").size(), messages.at("/pose").size() + 3);
+  const StoredMessage& image = messages.at("/camera/image")[2];
+  EXPECT_EQ(image.fields.time(1), image.time);
+  ExpectInputError("convert " + flight + " " + folder_ / "flight.mcap --foxglove",
+                   "flight.mcap: is there already");
+  ExpectInputError("convert " + flight + " " + folder_ / "flight.bag --foxglove",
+                   "flight.bag: expected a name that ends in .mcap");
 }
 
 TEST_F(ConvertCommandTest, FaultsAreNamed) {

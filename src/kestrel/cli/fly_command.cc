@@ -17,6 +17,7 @@
 #include "kestrel/cli/fly_source.h"
 #include "kestrel/cli/interrupt.h"
 #include "kestrel/console/flight_console.h"
+#include "kestrel/foxglove/flight_mcap.h"
 #include "kestrel/link/mavlink_enums.h"
 #include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/hunt_vision.h"
@@ -76,6 +77,7 @@ class Flight {
     const PixelFormat format = arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray;
     source_ = OpenFlySource(arguments.source, format, options, arguments.loop);
     OpenConsole();
+    OpenMcap();
     OpenRecorder();
     OpenVision();
     if (!arguments.autopilot.empty()) OpenAutopilot();
@@ -105,6 +107,7 @@ class Flight {
   void Say(const std::string& text, EventLevel level = EventLevel::kInfo) {
     log_.Say(text);
     if (console_) console_->Say(level, text);
+    if (mcap_) mcap_->Say(level, text);
   }
 
   ObjectModel ReadModel() const {
@@ -120,7 +123,20 @@ class Flight {
   void OpenConsole() {
     if (!arguments_.console) return;
     console_.emplace(all_options_.console, arguments_.source.sources.front(), View());
+    observers_.Add(&*console_);
     log_.Say("console: " + console_->url());
+  }
+
+  void OpenMcap() {
+    const SourceArguments& source = arguments_.source;
+    if (source.mcap.empty()) return;
+    RequireNoSource(source.mcap, source.sources);
+    mcap_ = std::make_unique<FlightMcap>(source.mcap, source.force, source_.calibration.intrinsics,
+                                         View(), [this](const std::string& text) {
+                                           log_.Say(text);
+                                           if (console_) console_->Say(EventLevel::kWarning, text);
+                                         });
+    observers_.Add(mcap_.get());
   }
 
   void OpenVision() {
@@ -185,7 +201,7 @@ class Flight {
     parts.connection = connection_ ? &*connection_ : nullptr;
     parts.autopilot = autopilot_ ? &*autopilot_ : nullptr;
     parts.recorder = recorder_.get();
-    parts.observer = console_ ? &*console_ : nullptr;
+    parts.observer = observers_.empty() ? nullptr : &observers_;
     parts.guides = arguments_.guide;
     parts.source_has_poses = source_.has_poses;
     parts.pattern_size_m = all_options_.landing.detector.pattern.outer_diameter_m;
@@ -210,6 +226,7 @@ class Flight {
 
   void Finish(FlightEnd end) {
     recorder_.reset();  // writes what is left
+    mcap_.reset();
     log_.Show();
     fmt::print(stderr, "{}", program_->Summary());
     if (simulated_autopilot_) fmt::print(stderr, "{}", InWords(simulated_autopilot_->result()));
@@ -221,6 +238,8 @@ class Flight {
   FlightLog log_;
   FlySource source_;
   std::optional<FlightConsole> console_;
+  std::unique_ptr<FlightMcap> mcap_;
+  FlightObservers observers_;
   std::optional<OutputFolder> output_;
   std::unique_ptr<FlightVision> vision_;
   HuntVision* hunt_ = nullptr;  // the vision, when it is one

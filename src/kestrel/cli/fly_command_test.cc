@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <filesystem>
 #include <regex>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "kestrel/cli/test_command.h"
+#include "kestrel/foxglove/test_protobuf.h"
 
 namespace kestrel {
 namespace {
@@ -22,6 +25,26 @@ class FlyCommandTest : public CommandTest {
       " --set fly.sim_autopilot.pilot.offset_east_m=0.5"
       " --set fly.sim_autopilot.pilot.offset_north_m=-0.5 --set fly.sim_camera.scale=0.4";
 
+  // Each row of the table has its image and its result, none more.
+  static void ExpectSameTimes(const std::string& mcap, const std::string& csv) {
+    std::vector<std::string> rows, results, images;
+    std::istringstream table(ReadFile(csv));
+    std::string row;
+    for (std::getline(table, row); std::getline(table, row);) {
+      const std::size_t begin = row.find(',') + 1;
+      rows.push_back(row.substr(begin, row.find(',', begin) - begin));
+    }
+    const auto messages = ReadMessages(mcap);
+    const auto time_of = [](const StoredMessage& message) {
+      EXPECT_EQ(message.time, message.fields.time(1));
+      return std::to_string(ToNanoseconds(message.time));
+    };
+    for (const auto& message : messages.at("/result")) results.push_back(time_of(message));
+    for (const auto& message : messages.at("/camera/image")) images.push_back(time_of(message));
+    EXPECT_THAT(results, ::testing::ElementsAreArray(rows));
+    EXPECT_EQ(images, results);
+  }
+
   // Metres from the pattern's centre at contact, by the simulated autopilot; 99 without.
   static double MissOf(const Outcome& outcome) {
     std::smatch match;
@@ -32,13 +55,15 @@ class FlyCommandTest : public CommandTest {
 
 TEST_F(FlyCommandTest, ASimulatedArduPilotLandsByWhatItIsTold) {
   const std::string flight = folder_ / "flight";
-  const Outcome outcome = Run("fly sim:standing --autopilot sim:ardupilot --record " + flight +
-                              " --output " + folder_ / "out" + kNear);
+  const Outcome outcome =
+      Run("fly sim:standing --autopilot sim:ardupilot --record " + flight + " --output " +
+          folder_ / "out" + " --mcap " + folder_ / "flight.mcap" + kNear);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("pattern found"), HasSubstr("landed")));
   EXPECT_LT(MissOf(outcome), 0.15) << outcome.err;
   EXPECT_TRUE(fs::exists(folder_ / "out/landing_track.csv"));
   EXPECT_GT(fs::file_size(flight + "/mavlink.tlog"), 10'000u);
+  ExpectSameTimes(folder_ / "flight.mcap", folder_ / "out/landing_detections.csv");
   // What it recorded is a recording with its truth.
   const Outcome again = Run("land " + flight + " --output " + folder_ / "again");
   EXPECT_EQ(again.status, 0) << again.err;

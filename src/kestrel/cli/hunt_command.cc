@@ -49,6 +49,7 @@ class HuntRun : public PipelineRun {
   HuntRun(const OpenedSource& opened, const ObjectModel& model, const ColorGrid& grid,
           const HuntPipelineOptions& options, const HuntArguments& arguments)
       : pipeline_(opened.calibration, model, grid, options),
+        mcap_(arguments.source.OpenMcap(opened.calibration.intrinsics, HuntView{model})),
         sink_(arguments.source.Output(opened), arguments.origin),
         has_map_(opened.has_world() && !options.still),
         altitude_m_(arguments.source.altitude_m) {
@@ -65,6 +66,7 @@ class HuntRun : public PipelineRun {
   Duration Process(const Frame& frame) override {
     const HuntObservation& observation = pipeline_.Process(frame.image, frame.time);
     sink_.Write(frame, observation, pipeline_);
+    if (mcap_) mcap_->Write(frame, observation);
     detections_ += observation.report.detections.size();
     for (std::size_t i = 0; i < kObjectStageCount; ++i) passed_[i] += observation.report.passed[i];
     has_world_ = observation.world_from_camera.has_value();
@@ -75,6 +77,7 @@ class HuntRun : public PipelineRun {
 
   void Finish() override {
     if (has_map_) sink_.WriteMap(pipeline_);
+    if (mcap_) mcap_->Close();
   }
 
   std::string Found() const override { return fmt::format("{} detections", detections_); }
@@ -91,6 +94,7 @@ class HuntRun : public PipelineRun {
 
  private:
   HuntPipeline pipeline_;
+  std::unique_ptr<ObservationFile> mcap_;
   HuntSink sink_;
   bool has_map_;
   std::optional<double> altitude_m_;

@@ -15,6 +15,7 @@
 
 #include "kestrel/base/read_file.h"
 #include "kestrel/cli/test_command.h"
+#include "kestrel/foxglove/test_protobuf.h"
 #include "kestrel/pipeline/test_pattern.h"
 #include "kestrel/recording/test_files.h"
 
@@ -166,6 +167,43 @@ TEST_F(KestrelCommandTest, ReplacesResultsOnlyWithForce) {
   EXPECT_EQ(Run(arguments).status, 0);
   ExpectInputError(arguments, "landing_detections.csv: exists already");
   EXPECT_EQ(Run(arguments + " --force").status, 0);
+}
+
+TEST_F(KestrelCommandTest, LandAndHuntWriteMcap) {
+  const std::string recording = WriteRecording();
+  const std::string mcap = folder_ / "flight.mcap";
+  for (const std::string command : {"land", "hunt"}) {
+    const Outcome outcome = Run(command + " --force " + recording + " --mcap " + mcap);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const auto messages = ReadMessages(mcap);
+    EXPECT_EQ(messages.at("/camera/image").size(), 2u);
+    ASSERT_EQ(messages.at("/result").size(), 2u);
+    const StoredMessage& second = messages.at("/result")[1];
+    EXPECT_EQ(ToNanoseconds(second.time), 200'000'000);
+    EXPECT_EQ(second.fields.time(1), second.time);
+    EXPECT_EQ(second.fields.bytes(2), "mav0/cam0/data/200000000.png");
+    EXPECT_EQ(messages.at("/result")[0].fields.count(7), command == "land" ? 1u : 0u);
+  }
+}
+
+TEST_F(KestrelCommandTest, NothingIsWrittenWhereAnMcapFileIsThere) {
+  const std::string recording = WriteRecording();
+  const std::string mcap = folder_.Write("mine.mcap", "mine");
+  ExpectInputError("land " + recording + " --mcap " + mcap + " --output " + (folder_ / "out"),
+                   "mine.mcap: is there already");
+  EXPECT_EQ(ReadFile(mcap), "mine");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  // The other way round: no file is left behind.
+  ASSERT_EQ(Run("land " + recording + " --output " + (folder_ / "out")).status, 0);
+  ExpectInputError(
+      "land " + recording + " --mcap " + (folder_ / "new.mcap") + " --output " + (folder_ / "out"),
+      "landing_detections.csv: exists already");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "new.mcap"));
+  const std::string bag = folder_ / "bag.mcap";
+  ASSERT_EQ(Run("convert " + recording + " " + bag).status, 0);
+  const std::string bytes = ReadFile(bag);
+  ExpectInputError("land --force " + bag + " --mcap " + bag, "bag.mcap: is the source");
+  EXPECT_EQ(ReadFile(bag), bytes);
 }
 
 TEST_F(KestrelCommandTest, CtrlCEndsCleanly) {

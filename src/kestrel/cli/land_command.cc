@@ -66,6 +66,8 @@ class LandRun : public PipelineRun {
   LandRun(const OpenedSource& opened, const LandingPipelineOptions& options,
           const LandArguments& arguments, bool has_track)
       : pipeline_(opened.calibration, options),
+        mcap_(arguments.source.OpenMcap(opened.calibration.intrinsics,
+                                        ViewOf(opened.calibration, options))),
         sink_(arguments.source.Output(opened), has_track, arguments.predict_s),
         altitude_m_(arguments.source.altitude_m),
         has_world_(opened.has_world()) {
@@ -77,12 +79,17 @@ class LandRun : public PipelineRun {
   Duration Process(const Frame& frame) override {
     const LandingObservation observation = pipeline_.Process(frame.image, frame.time);
     sink_.Write(frame, observation, pipeline_);
+    if (mcap_) mcap_->Write(frame, observation);
     ++poses_[observation.pose];
     found_ += observation.report.detection.has_value();
     return observation.detect_time;
   }
 
   std::string Warning() const override { return ToldWarning(pipeline_, altitude_m_, has_world_); }
+
+  void Finish() override {
+    if (mcap_) mcap_->Close();
+  }
 
   std::string Found() const override { return fmt::format("pattern found in {}", found_); }
 
@@ -102,6 +109,7 @@ class LandRun : public PipelineRun {
 
  private:
   LandingPipeline pipeline_;
+  std::unique_ptr<ObservationFile> mcap_;
   LandingSink sink_;
   std::optional<double> altitude_m_;
   bool has_world_;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/cli/source_arguments.h"
 
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
@@ -21,6 +25,15 @@ CLI::Validator InRange(double min, double max, const std::string& words) {
         return number && *number > min && *number < max ? "" : "expected " + words;
       },
       "");
+}
+
+void RequireNoSource(const std::string& file, const std::vector<std::string>& sources) {
+  std::error_code ignored;
+  for (const std::string& source : sources) {
+    if (std::filesystem::equivalent(source, file, ignored)) {
+      throw InputError(file + ": is the source, expected another file");
+    }
+  }
 }
 
 CLI::Option* AddAnnotateFlag(CLI::App* command, std::string* annotate) {
@@ -64,6 +77,10 @@ void SourceArguments::AddTo(CLI::App* command) {
       command->add_option("--output", output, "Folder for the results (else stdout)")
           ->type_name("DIR");
   AddAnnotateFlag(command, &annotate)->needs(folder);
+  command
+      ->add_option("--mcap", mcap,
+                   "Also write images and results as MCAP, for Foxglove, Lichtblick and Rerun")
+      ->type_name("FILE");
   command->add_flag("--force", force, "Replace files that exist");
 }
 
@@ -76,6 +93,13 @@ OpenedSource SourceArguments::Open(PixelFormat format) const {
 OutputOptions SourceArguments::Output(const OpenedSource& opened) const {
   return {
       .folder = output, .force = force, .annotate = annotate, .rate_hz = opened.source->rate_hz()};
+}
+
+std::unique_ptr<ObservationFile> SourceArguments::OpenMcap(
+    const CameraIntrinsics& intrinsics, std::variant<LandingView, HuntView> view) const {
+  if (mcap.empty()) return nullptr;
+  RequireNoSource(mcap, sources);
+  return std::make_unique<ObservationFile>(mcap, force, intrinsics, std::move(view));
 }
 
 CameraCalibration SourceArguments::FindCalibration(const FrameSource& source) const {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -12,6 +13,7 @@
 #include "kestrel/cli/bag_arguments.h"
 #include "kestrel/cli/option_arguments.h"
 #include "kestrel/cli/result_sink.h"
+#include "kestrel/foxglove/observation_file.h"
 #include "kestrel/recording/frame_source.h"
 
 namespace kestrel {
@@ -33,6 +35,7 @@ struct SourceArguments {
   OptionArguments options;
   std::string output;
   std::string annotate;  // "video", "images" or empty
+  std::string mcap;      // file, or empty
   bool still = false;
   bool force = false;
   std::optional<double> altitude_m;
@@ -49,9 +52,17 @@ struct SourceArguments {
 
   OutputOptions Output(const OpenedSource& opened) const;
 
+  // The file of --mcap; null without. Throws InputError as ObservationFile does, and when it is
+  // the source.
+  std::unique_ptr<ObservationFile> OpenMcap(const CameraIntrinsics& intrinsics,
+                                            std::variant<LandingView, HuntView> view) const;
+
  private:
   CameraCalibration FindCalibration(const FrameSource& source) const;
 };
+
+// Throws InputError when the file that is to be written is one of the sources.
+void RequireNoSource(const std::string& file, const std::vector<std::string>& sources);
 
 // The flag --annotate: "video" or "images".
 CLI::Option* AddAnnotateFlag(CLI::App* command, std::string* annotate);

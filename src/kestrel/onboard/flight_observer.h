@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "kestrel/guidance/landing_guidance.h"
 #include "kestrel/link/connection.h"
@@ -47,6 +48,27 @@ class FlightObserver {
 
   // By the thread that the flight was begun in, ten times a second.
   virtual void See(const FlightReport& report) = 0;
+};
+
+// Lets several look at a flight; they outlive this.
+class FlightObservers : public FlightObserver {
+ public:
+  // Before the flight begins.
+  void Add(FlightObserver* observer) { observers_.push_back(observer); }
+  bool empty() const { return observers_.empty(); }
+
+  void See(const Frame& frame, const LandingObservation& observation) override {
+    for (FlightObserver* const each : observers_) each->See(frame, observation);
+  }
+  void See(const Frame& frame, const HuntObservation& observation) override {
+    for (FlightObserver* const each : observers_) each->See(frame, observation);
+  }
+  void See(const FlightReport& report) override {
+    for (FlightObserver* const each : observers_) each->See(report);
+  }
+
+ private:
+  std::vector<FlightObserver*> observers_;
 };
 
 }  // namespace kestrel

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "kestrel/camera/camera_model.h"
+#include "kestrel/console/jpeg_encoder.h"
+#include "kestrel/foxglove/foxglove_file.h"
+#include "kestrel/recording/frame.h"
+
+namespace kestrel {
+
+// Writes frames as /camera/image (foxglove.CompressedImage, JPEG) and, with each, what the camera
+// is, where that is known, as /camera/calibration (foxglove.CameraCalibration).
+class CameraWriter {
+ public:
+  // 'file' outlives this.
+  CameraWriter(FoxgloveFile* file, const std::optional<CameraIntrinsics>& camera);
+
+  // Throws InputError when the file cannot be written, or the frame is neither 8-bit gray nor BGR.
+  void Write(const Frame& frame);
+
+ private:
+  FoxgloveFile* file_;
+  std::optional<CameraIntrinsics> camera_;
+  JpegEncoder encoder_;
+};
+
+}  // namespace kestrel

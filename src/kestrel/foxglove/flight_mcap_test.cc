@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/foxglove/flight_mcap.h"
+
+#include <chrono>
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/bags/mcap_reader.h"
+#include "kestrel/foxglove/test_observations.h"
+#include "kestrel/foxglove/test_protobuf.h"
+#include "kestrel/recording/test_files.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::IsEmpty;
+
+TEST(FlightMcapTest, WritesAllThatItWasGiven) {
+  const TestFolder folder;
+  const std::string path = folder / "flight.mcap";
+  std::vector<std::string> told;
+  {
+    FlightMcap mcap(path, false, ObservedCamera(), ObservedView(),
+                    [&](const std::string& text) { told.push_back(text); });
+    mcap.Say(EventLevel::kWarning, "the autopilot is gone");
+    for (int i = 0; i < 20; ++i) {
+      const Frame frame = ObservedFrame(i);
+      mcap.See(frame, ObservedLanding(frame.time));
+    }
+  }
+  EXPECT_THAT(told, IsEmpty());
+  const auto messages = ReadMessages(path);
+  EXPECT_EQ(messages.at("/result").size(), 20u);
+  ASSERT_EQ(messages.at("/log").size(), 2u);
+  EXPECT_EQ(messages.at("/log")[0].fields.bytes(3), "the autopilot is gone");
+  EXPECT_EQ(messages.at("/log")[0].fields.number<std::int64_t>(2), 3);
+}
+
+// What a crash would leave: the file is there and is read, though nothing follows.
+TEST(FlightMcapTest, ASecondAfterAFrameItIsInTheFile) {
+  const TestFolder folder;
+  const std::string path = folder / "flight.mcap";
+  FlightMcap mcap(path, false, ObservedCamera(), ObservedView(), [](const std::string&) {});
+  const Frame frame = ObservedFrame(0);
+  mcap.See(frame, ObservedLanding(frame.time));
+  for (int i = 0; i < 200 && std::filesystem::file_size(path) == 0; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // until all of it is there
+  EXPECT_EQ(McapReader(path).topics().size(), 9u);
+}
+
+TEST(FlightMcapTest, AFullDiskIsSaidAndTheFlightGoesOn) {
+  std::mutex mutex;
+  std::vector<std::string> told;
+  {
+    FlightMcap mcap("/dev/full", true, ObservedCamera(), ObservedView(),
+                    [&](const std::string& text) {
+                      const std::lock_guard lock(mutex);
+                      told.push_back(text);
+                    });
+    for (int i = 0; i < 40; ++i) {
+      const Frame frame = ObservedFrame(i);
+      mcap.See(frame, ObservedLanding(frame.time));
+    }
+  }
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0], "/dev/full: cannot be written: the flight goes on without it");
+}
+
+}  // namespace
+}  // namespace kestrel
