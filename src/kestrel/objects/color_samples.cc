@@ -25,8 +25,8 @@ double LogLikelihood(const ColorMixture& mixture, std::span<const Hsv> samples) 
 }
 
 double Criterion(const ColorMixture& mixture, std::span<const Hsv> samples) {
-  // Three means and three deviations each; the weights have a fixed sum.
-  const double parameters = 7.0 * mixture.components.size() - 1;
+  // Three means, three deviations and a correlation each; the weights have a fixed sum.
+  const double parameters = 8.0 * mixture.components.size() - 1;
   return parameters * std::log(samples.size()) - 2 * LogLikelihood(mixture, samples);
 }
 
