@@ -30,13 +30,6 @@ double Criterion(const ColorMixture& mixture, std::span<const Hsv> samples) {
   return parameters * std::log(samples.size()) - 2 * LogLikelihood(mixture, samples);
 }
 
-std::vector<Hsv> EvenlyTaken(std::span<const Hsv> samples, std::size_t count) {
-  if (samples.size() <= count) return {samples.begin(), samples.end()};
-  std::vector<Hsv> taken(count);
-  for (std::size_t i = 0; i < count; ++i) taken[i] = samples[i * samples.size() / count];
-  return taken;
-}
-
 template <class Condition>
 double Share(std::span<const Hsv> samples, const Condition& condition) {
   return static_cast<double>(std::count_if(samples.begin(), samples.end(), condition)) /
@@ -101,6 +94,13 @@ std::vector<std::string> SampleWarnings(std::span<const Hsv> samples) {
         fmt::format("{:.0f} % of the pixels are nearly black: expose longer", 100 * dark));
   }
   return warnings;
+}
+
+std::vector<Hsv> EvenlyTaken(std::span<const Hsv> samples, std::size_t count) {
+  if (samples.size() <= count) return {samples.begin(), samples.end()};
+  std::vector<Hsv> taken(count);
+  for (std::size_t i = 0; i < count; ++i) taken[i] = samples[i * samples.size() / count];
+  return taken;
 }
 
 MixtureChoice ChooseColorMixture(const std::string& name, std::span<const Hsv> samples,
