@@ -39,8 +39,8 @@ bool ColorEditor::Redo() {
 void ColorEditor::Replace(ColorDraft draft) {
   for (const ColorStroke& stroke : draft.strokes()) {
     if (stroke.frame >= frame_count_) {
-      throw InputError(fmt::format("frame {} is marked, expected 0 to {}", stroke.frame,
-                                   frame_count_ - 1));
+      throw InputError(
+          fmt::format("frame {} is marked, expected 0 to {}", stroke.frame, frame_count_ - 1));
     }
     if (!stroke.color.empty()) IndexOf(stroke.color);
   }

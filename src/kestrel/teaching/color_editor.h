@@ -33,8 +33,8 @@ class ColorEditor {
   void Restore(const ColorDraft& draft) { Replace(draft); }
   const ColorDraft& draft() const { return draft_; }
 
-  // Teaches the model the colour. Throws InputError for one that the model does not have, fewer than
-  // ten pixels that are marked so, and a colour that contradicts another one of the model.
+  // Teaches the model the colour. Throws InputError for one that the model does not have, fewer
+  // than ten pixels that are marked so, and a colour that contradicts another one of the model.
   void Teach(const std::string& color);
 
   // Of a colour of the model; throw InputError when it has none of that name.

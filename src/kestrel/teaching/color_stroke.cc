@@ -17,10 +17,10 @@ void RequireInside(const ColorStroke& stroke, const cv::Mat& image) {
   const cv::Rect whole({}, image.size());
   for (const cv::Point& point : stroke.points) {
     if (whole.contains(point)) continue;
-    throw InputError(fmt::format("frame {}: the point [{}, {}] of a {} lies outside of the image, "
-                                 "which has {} x {} px",
-                                 stroke.frame, point.x, point.y, ToString(stroke.tool), image.cols,
-                                 image.rows));
+    throw InputError(
+        fmt::format("frame {}: the point [{}, {}] of a {} lies outside of the image, "
+                    "which has {} x {} px",
+                    stroke.frame, point.x, point.y, ToString(stroke.tool), image.cols, image.rows));
   }
 }
 

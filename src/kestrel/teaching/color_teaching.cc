@@ -113,8 +113,7 @@ ColorMixture TeachColor(const std::string& color, std::span<const FrameMarks> ma
   constexpr int kMaxComponents = 4;
   constexpr std::size_t kMaxPixels = 4000;  // neighbours say much the same
   constexpr float kLightSigma = 0.15F;
-  const std::vector<Hsv> wanted =
-      EvenlyTaken(Colors(marks, &FrameMarks::wanted), kMaxPixels);
+  const std::vector<Hsv> wanted = EvenlyTaken(Colors(marks, &FrameMarks::wanted), kMaxPixels);
   ColorMixture mixture = ChooseColorMixture(color, wanted, kMaxComponents).mixture;
   for (ColorComponent& component : mixture.components) {
     component.sigma.value = std::max(component.sigma.value, kLightSigma);
