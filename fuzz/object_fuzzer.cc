@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever is in a model, a grid, a digit model or a map, the readers give what can be used or
-// refuse it.
+// Whatever is in a model, a grid, a digit model, a map or a draft, the readers give what can be
+// used or refuse it.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -11,6 +11,7 @@
 #include "kestrel/objects/color_grid.h"
 #include "kestrel/objects/digit_classifier.h"
 #include "kestrel/objects/object_model.h"
+#include "kestrel/teaching/color_draft.h"
 
 namespace {
 
@@ -41,11 +42,18 @@ void ReadMap(const std::string& text) {
   }
 }
 
+void ReadDraft(const std::string& text) {
+  const auto draft = kestrel::ParseColorDraft(text, "flight", "draft.yaml");
+  const std::string printed = kestrel::PrintColorDraft(draft, "flight");
+  const auto again = kestrel::ParseColorDraft(printed, "flight", "printed");
+  if (again.strokes().size() != draft.strokes().size()) std::abort();
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
-  for (const auto read : {ReadModel, ReadGrid, ReadDigits, ReadMap}) {
+  for (const auto read : {ReadModel, ReadGrid, ReadDigits, ReadMap, ReadDraft}) {
     try {
       read(text);
     } catch (const kestrel::InputError&) {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/objects/color_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <set>
 
+#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
@@ -14,6 +16,8 @@ namespace kestrel {
 namespace {
 
 double Square(double x) { return x * x; }
+
+constexpr double kMaxCorrelation = 0.99;
 
 bool IsPart(float x) { return x >= 0 && x <= 1; }
 
@@ -31,6 +35,8 @@ void ValidateComponent(const ColorComponent& component, const std::string& where
   require(is_sigma(component.sigma.hue_deg) && is_sigma(component.sigma.saturation) &&
               is_sigma(component.sigma.value),
           "the sigmas must be positive");
+  require(std::abs(component.correlation) <= kMaxCorrelation,
+          "the correlation must be in -0.99 to 0.99");
 }
 
 void ValidateMixture(const ColorMixture& mixture, std::vector<std::string>* violations) {
@@ -40,10 +46,25 @@ void ValidateMixture(const ColorMixture& mixture, std::vector<std::string>* viol
   }
 }
 
-// Mean and deviations of samples with weights; the hue's mean is that of its unit vectors.
-ColorComponent WeightedComponent(std::span<const Hsv> samples, std::span<const double> weights) {
+// Standard deviations that the camera's noise gives to one colour.
+constexpr Hsv kNoise{4, 0.04F, 0.05F};
+
+// From 'mean' to 'color' in standard deviations of the noise: hue, saturation, value.
+Eigen::Vector3d Offset(const Hsv& color, const Hsv& mean) {
+  return {HueDifference(color.hue_deg, mean.hue_deg) / kNoise.hue_deg,
+          (color.saturation - mean.saturation) / kNoise.saturation,
+          (color.value - mean.value) / kNoise.value};
+}
+
+// Of samples with weights; the hue's mean is that of its unit vectors.
+struct Moments {
+  double weight = 0;  // mean
+  Hsv mean;
+  Eigen::Matrix3d covariance;  // of Offset
+};
+
+Moments WeightedMoments(std::span<const Hsv> samples, std::span<const double> weights) {
   constexpr double kRadians = std::numbers::pi / 180;
-  constexpr Hsv kMinSigma{4, 0.04F, 0.05F};
   double sum = 0;
   double x = 0;
   double y = 0;
@@ -56,37 +77,51 @@ ColorComponent WeightedComponent(std::span<const Hsv> samples, std::span<const d
     saturation += weights[i] * samples[i].saturation;
     value += weights[i] * samples[i].value;
   }
-  ColorComponent component;
-  component.weight = sum / static_cast<double>(samples.size());
+  Moments moments{sum / static_cast<double>(samples.size()), {}, Eigen::Matrix3d::Zero()};
   const auto hue = static_cast<float>(std::atan2(y, x) / kRadians);
-  component.mean = {hue < 0 ? hue + 360 : hue, static_cast<float>(saturation / sum),
-                    static_cast<float>(value / sum)};
-  double hue_square = 0;
-  double saturation_square = 0;
-  double value_square = 0;
+  moments.mean = {hue < 0 ? std::fmod(hue + 360, 360.0F) : hue,
+                  static_cast<float>(saturation / sum), static_cast<float>(value / sum)};
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    hue_square += weights[i] * Square(HueDifference(samples[i].hue_deg, component.mean.hue_deg));
-    saturation_square += weights[i] * Square(samples[i].saturation - component.mean.saturation);
-    value_square += weights[i] * Square(samples[i].value - component.mean.value);
+    const Eigen::Vector3d offset = Offset(samples[i], moments.mean);
+    moments.covariance += weights[i] / sum * offset * offset.transpose();
   }
-  const auto sigma = [&](double square, float min) {
-    return std::max(min, static_cast<float>(std::sqrt(square / sum)));
-  };
-  component.sigma = {sigma(hue_square, kMinSigma.hue_deg),
-                     sigma(saturation_square, kMinSigma.saturation),
-                     sigma(value_square, kMinSigma.value)};
+  return moments;
+}
+
+// With at least the noise's deviation along every direction.
+ColorComponent ComponentOf(const Moments& moments) {
+  const Eigen::Matrix2d plane = moments.covariance.topLeftCorner<2, 2>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(plane);
+  const Eigen::Matrix2d c = axes.eigenvectors() * axes.eigenvalues().cwiseMax(1.0).asDiagonal() *
+                            axes.eigenvectors().transpose();
+  const Eigen::Vector2d sigma = c.diagonal().cwiseSqrt();
+  const double value_sigma = std::sqrt(std::max(1.0, moments.covariance(2, 2)));
+  ColorComponent component;
+  component.weight = moments.weight;
+  component.mean = moments.mean;
+  component.sigma = {kNoise.hue_deg * static_cast<float>(sigma(0)),
+                     kNoise.saturation * static_cast<float>(sigma(1)),
+                     kNoise.value * static_cast<float>(value_sigma)};
+  component.correlation =
+      std::clamp(c(0, 1) / (sigma(0) * sigma(1)), -kMaxCorrelation, kMaxCorrelation);
   return component;
 }
 
-// Splits the component along the saturation and value in which its samples spread most.
+// Components in a row along the direction in which the samples spread most.
 std::vector<ColorComponent> SplitStart(std::span<const Hsv> samples, int count) {
   const std::vector<double> ones(samples.size(), 1.0);
-  const ColorComponent whole = WeightedComponent(samples, ones);
-  std::vector<ColorComponent> start(count, whole);
+  const Moments whole = WeightedMoments(samples, ones);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(whole.covariance);
+  const Eigen::Vector3f reach =
+      (std::sqrt(std::max(0.0, axes.eigenvalues()(2))) * axes.eigenvectors().col(2)).cast<float>();
+  std::vector<ColorComponent> start(count, ComponentOf(whole));
   for (int i = 0; i < count; ++i) {
-    const float offset = count == 1 ? 0 : 2.0F * i / (count - 1) - 1;
-    start[i].mean.saturation += offset * whole.sigma.saturation;
-    start[i].mean.value -= offset * whole.sigma.value;
+    const float offset =
+        count == 1 ? 0 : 2 * static_cast<float>(i) / static_cast<float>(count - 1) - 1;
+    Hsv& mean = start[i].mean;
+    mean.hue_deg += offset * reach(0) * kNoise.hue_deg;
+    mean.saturation += offset * reach(1) * kNoise.saturation;
+    mean.value += offset * reach(2) * kNoise.value;
     start[i].weight = 1.0 / count;
   }
   return start;
@@ -95,13 +130,17 @@ std::vector<ColorComponent> SplitStart(std::span<const Hsv> samples, int count) 
 }  // namespace
 
 double ColorComponent::Mahalanobis(const Hsv& color) const {
-  return std::sqrt(Square(HueDifference(color.hue_deg, mean.hue_deg) / sigma.hue_deg) +
-                   Square((color.saturation - mean.saturation) / sigma.saturation) +
-                   Square((color.value - mean.value) / sigma.value));
+  const double hue = HueDifference(color.hue_deg, mean.hue_deg) / sigma.hue_deg;
+  const double saturation = (color.saturation - mean.saturation) / sigma.saturation;
+  const double value = (color.value - mean.value) / sigma.value;
+  return std::sqrt((Square(hue) - 2 * correlation * hue * saturation + Square(saturation)) /
+                       (1 - Square(correlation)) +
+                   Square(value));
 }
 
 double ColorComponent::LogDensity(const Hsv& color) const {
-  const double volume = static_cast<double>(sigma.hue_deg) * sigma.saturation * sigma.value;
+  const double volume = static_cast<double>(sigma.hue_deg) * sigma.saturation * sigma.value *
+                        std::sqrt(1 - Square(correlation));
   return std::log(weight / volume) - 0.5 * Square(Mahalanobis(color));
 }
 
@@ -183,9 +222,9 @@ ColorMixture FitColorMixture(const std::string& name, std::span<const Hsv> sampl
       for (std::size_t k = 0; k < components.size(); ++k) shares[k][i] /= sum;
     }
     for (std::size_t k = 0; k < components.size(); ++k) {
-      const ColorComponent updated = WeightedComponent(samples, shares[k]);
-      components[k].weight = updated.weight;
-      if (updated.weight >= kMinWeight) components[k] = updated;
+      const Moments moments = WeightedMoments(samples, shares[k]);
+      components[k].weight = moments.weight;
+      if (moments.weight >= kMinWeight) components[k] = ComponentOf(moments);
     }
   }
   std::erase_if(components, [](const ColorComponent& c) { return !(c.weight >= kMinWeight); });

@@ -11,11 +11,13 @@
 
 namespace kestrel {
 
-// One Gaussian of a colour: independent in hue (on the circle), saturation and value.
+// One Gaussian of a colour: of full covariance in hue (on the circle) and saturation, the value
+// independent of both.
 struct ColorComponent {
   double weight = 1;  // relative to the colour's other components, positive
   Hsv mean;
-  Hsv sigma;  // standard deviations, positive
+  Hsv sigma;               // standard deviations, positive
+  double correlation = 0;  // of hue and saturation, between -1 and 1
 
   // Distance of 'color' from the mean in standard deviations.
   double Mahalanobis(const Hsv& color) const;
@@ -51,8 +53,9 @@ struct ColorModel {
 };
 
 // The mixture of up to 'max_components' Gaussians that fits the samples (expectation maximisation
-// from a deterministic start). A component keeps at least the deviations that the camera's noise
-// gives (4 degrees, 0.04, 0.05). Throws InputError for fewer than ten samples.
+// from a start that is the same each time: no random numbers). A component keeps, in every
+// direction, at least the deviations that the camera's noise gives (4 degrees, 0.04, 0.05). Throws
+// InputError for fewer than ten samples.
 ColorMixture FitColorMixture(const std::string& name, std::span<const Hsv> samples,
                              int max_components);
 

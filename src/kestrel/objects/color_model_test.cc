@@ -79,6 +79,58 @@ TEST(FitColorMixture, SeparatesSunFromShade) {
   EXPECT_GT(mixture.Mahalanobis({100, 0.6F, 0.6F}), 3);
 }
 
+// Paint that fades in the sun turns its hue as it loses saturation.
+std::vector<Hsv> FadingRed(int count) {
+  Random random(5);
+  std::vector<Hsv> samples;
+  for (int i = 0; i < count; ++i) {
+    const auto fading = static_cast<float>(random.Normal());
+    const auto noise = static_cast<float>(random.Normal());
+    samples.push_back({std::fmod(360 + 16 * fading, 360.0F), 0.6F + 0.1F * fading + 0.01F * noise,
+                       0.6F + 0.1F * static_cast<float>(random.Normal())});
+  }
+  return samples;
+}
+
+TEST(FitColorMixture, HueAndSaturationAreOneGaussianAcrossTheEndsOfTheCircle) {
+  const ColorMixture mixture = FitColorMixture("red", FadingRed(3000), 1);
+  const ColorComponent& component = mixture.components.front();
+  EXPECT_NEAR(component.sigma.hue_deg, 16, 1.5);
+  EXPECT_NEAR(component.sigma.saturation, 0.1, 0.02);
+  EXPECT_GT(component.correlation, 0.8);
+  EXPECT_LT(mixture.Mahalanobis({16, 0.7F, 0.6F}), 2) << "along the fading";
+  EXPECT_LT(mixture.Mahalanobis({344, 0.5F, 0.6F}), 2) << "the other way, around the circle";
+  EXPECT_GT(mixture.Mahalanobis({16, 0.5F, 0.6F}), 3) << "across it";
+}
+
+TEST(FitColorMixture, NoDirectionIsNarrowerThanTheNoise) {
+  const std::vector<Hsv> samples(100, {120, 0.5F, 0.5F});
+  const ColorComponent component = FitColorMixture("green", samples, 1).components.front();
+  EXPECT_FLOAT_EQ(component.sigma.hue_deg, 4);
+  EXPECT_FLOAT_EQ(component.sigma.saturation, 0.04F);
+  EXPECT_FLOAT_EQ(component.sigma.value, 0.05F);
+  EXPECT_NEAR(component.correlation, 0, 1e-9);
+}
+
+TEST(FitColorMixture, SeparatesTwoHues) {
+  std::vector<Hsv> samples;
+  for (int i = 0; i < 400; ++i) samples.push_back({i % 2 == 0 ? 345.0F : 25.0F, 0.7F, 0.6F});
+  const ColorMixture mixture = FitColorMixture("two", samples, 2);
+  ASSERT_EQ(mixture.components.size(), 2U);
+  EXPECT_LT(mixture.Mahalanobis({345, 0.7F, 0.6F}), 1);
+  EXPECT_LT(mixture.Mahalanobis({25, 0.7F, 0.6F}), 1);
+  EXPECT_GT(mixture.Mahalanobis({5, 0.7F, 0.6F}), 3);
+}
+
+TEST(ColorComponent, CorrelationTiltsTheEllipseAndKeepsItsVolume) {
+  const ColorComponent straight{1, {0, 0.5F, 0.5F}, {10, 0.1F, 0.1F}, 0};
+  const ColorComponent tilted{1, {0, 0.5F, 0.5F}, {10, 0.1F, 0.1F}, 0.8};
+  EXPECT_NEAR(straight.Mahalanobis({10, 0.6F, 0.5F}), std::sqrt(2.0), 1e-4);
+  EXPECT_NEAR(tilted.Mahalanobis({10, 0.6F, 0.5F}), std::sqrt(0.4 / 0.36), 1e-4);
+  EXPECT_NEAR(tilted.LogDensity(tilted.mean) - straight.LogDensity(straight.mean),
+              -std::log(std::sqrt(1 - 0.64)), 1e-9);
+}
+
 TEST(FitColorMixture, TooFewPixelsAreRefused) {
   const std::vector<Hsv> samples(3);
   EXPECT_THROW(FitColorMixture("red", samples, 1), InputError);

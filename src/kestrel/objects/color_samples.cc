@@ -25,16 +25,9 @@ double LogLikelihood(const ColorMixture& mixture, std::span<const Hsv> samples) 
 }
 
 double Criterion(const ColorMixture& mixture, std::span<const Hsv> samples) {
-  // Three means and three deviations each; the weights have a fixed sum.
-  const double parameters = 7.0 * mixture.components.size() - 1;
+  // Three means, three deviations and a correlation each; the weights have a fixed sum.
+  const double parameters = 8.0 * mixture.components.size() - 1;
   return parameters * std::log(samples.size()) - 2 * LogLikelihood(mixture, samples);
-}
-
-std::vector<Hsv> EvenlyTaken(std::span<const Hsv> samples, std::size_t count) {
-  if (samples.size() <= count) return {samples.begin(), samples.end()};
-  std::vector<Hsv> taken(count);
-  for (std::size_t i = 0; i < count; ++i) taken[i] = samples[i * samples.size() / count];
-  return taken;
 }
 
 template <class Condition>
@@ -101,6 +94,13 @@ std::vector<std::string> SampleWarnings(std::span<const Hsv> samples) {
         fmt::format("{:.0f} % of the pixels are nearly black: expose longer", 100 * dark));
   }
   return warnings;
+}
+
+std::vector<Hsv> EvenlyTaken(std::span<const Hsv> samples, std::size_t count) {
+  if (samples.size() <= count) return {samples.begin(), samples.end()};
+  std::vector<Hsv> taken(count);
+  for (std::size_t i = 0; i < count; ++i) taken[i] = samples[i * samples.size() / count];
+  return taken;
 }
 
 MixtureChoice ChooseColorMixture(const std::string& name, std::span<const Hsv> samples,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -34,6 +35,9 @@ class HueSaturationHistogram {
 // What is wrong with samples that a colour is to be learnt from, a sentence each: few of them, hues
 // that are mostly noise for want of saturation, values at the camera's limit.
 std::vector<std::string> SampleWarnings(std::span<const Hsv> samples);
+
+// The samples, or 'count' of them, evenly taken, when they are more.
+std::vector<Hsv> EvenlyTaken(std::span<const Hsv> samples, std::size_t count);
 
 // A mixture and why it has so many components.
 struct MixtureChoice {

@@ -25,9 +25,9 @@ Hsv ParseHsv(const YamlReader& reader) {
 std::vector<ColorComponent> ParseComponents(const YamlReader& reader) {
   std::vector<ColorComponent> components;
   for (const YamlReader& item : reader.Items()) {
-    item.RequireKeys({"weight", "mean", "sigma"});
-    components.push_back(
-        {item["weight"].Number(), ParseHsv(item["mean"]), ParseHsv(item["sigma"])});
+    item.RequireKeys({"weight", "mean", "sigma", "correlation"});
+    components.push_back({item["weight"].Number(), ParseHsv(item["mean"]), ParseHsv(item["sigma"]),
+                          item.Has("correlation") ? item["correlation"].Number() : 0});
   }
   return components;
 }
@@ -91,8 +91,10 @@ std::string Print(const ColorComponent& component) {
   const auto hsv = [](const Hsv& x) {
     return fmt::format("[{}, {}, {}]", x.hue_deg, x.saturation, x.value);
   };
-  return fmt::format("{{weight: {}, mean: {}, sigma: {}}}\n", component.weight, hsv(component.mean),
-                     hsv(component.sigma));
+  const std::string correlation =
+      component.correlation == 0 ? "" : fmt::format(", correlation: {}", component.correlation);
+  return fmt::format("{{weight: {}, mean: {}, sigma: {}{}}}\n", component.weight,
+                     hsv(component.mean), hsv(component.sigma), correlation);
 }
 
 }  // namespace

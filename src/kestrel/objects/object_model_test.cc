@@ -42,6 +42,17 @@ TEST(ParseObjectModel, ReadsWhatPrintObjectModelWrites) {
             model.colors.colors[2].components[0].mean.hue_deg);
 }
 
+TEST(ParseObjectModel, CorrelationOfHueAndSaturationIsKept) {
+  const std::string yaml =
+      Replaced(kModel, "sigma: [8, 0.1, 0.2]", "sigma: [8, 0.1, 0.2], correlation: -0.625");
+  const ObjectModel model = ParseObjectModel(yaml, "model.yaml");
+  EXPECT_EQ(model.colors.colors[0].components[0].correlation, -0.625);
+  const ObjectModel again = ParseObjectModel(PrintObjectModel(model), "again");
+  EXPECT_EQ(again.colors.colors[0].components[0].correlation, -0.625);
+  EXPECT_EQ(ParseObjectModel(kModel, "old.yaml").colors.colors[0].components[0].correlation, 0);
+  EXPECT_THAT(ErrorOf(Replaced(yaml, "-0.625", "1")), HasSubstr("correlation must be in"));
+}
+
 TEST(ParseObjectModel, NamesFileLineAndKey) {
   EXPECT_EQ(ErrorOf(kModel), "");
   EXPECT_THAT(ErrorOf(Replaced(kModel, "shape: disc", "shape: star")),

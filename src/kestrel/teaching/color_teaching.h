@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kestrel/objects/color_grid.h"
+#include "kestrel/objects/color_model.h"
+#include "kestrel/teaching/marked_pixels.h"
+
+namespace kestrel {
+
+// The mixture of the marked pixels (ChooseColorMixture), made useful for other frames than those:
+// wider in value, as paint keeps its hue in other light but not its value, and in all narrower
+// where that leaves out more of the other pixels than of the wanted ones. Throws InputError for
+// fewer than ten wanted pixels.
+ColorMixture TeachColor(const std::string& color, std::span<const FrameMarks> marks,
+                        double max_distance);
+
+// How good a colour of a model is, by the marked pixels.
+struct ColorScores {
+  // A part of another colour's that is also this one's: which of them a pixel is depends on little.
+  struct Overlap {
+    std::string color;
+    double share = 0;  // of this colour's cells in the grid
+  };
+  // Of a frame's pixels, when the colour is taught by the other frames only.
+  struct LeftOut {
+    std::size_t frame = 0;
+    double recall = 0;
+  };
+
+  std::size_t wanted = 0;  // marked pixels of the colour
+  double recall = 0;       // the part of them that the grid says so of; 0 when there are none
+  std::size_t others = 0;  // marked pixels of another colour or of none
+  double false_share = 0;  // the part of them that the grid says this colour of
+  std::vector<Overlap> overlaps;   // of more than nothing, in the model's order
+  std::vector<LeftOut> left_outs;  // of frames with wanted pixels, when there are several
+};
+
+// Of the colour number 'color' of a valid 'model'; 'grid' is of that model.
+ColorScores ScoreColor(const ColorModel& model, const ColorGrid& grid, std::size_t color,
+                       std::span<const FrameMarks> marks);
+
+// What should be marked otherwise, a sentence each: SampleWarnings, too few frames or lightings,
+// nothing marked that the colour is not.
+std::vector<std::string> TeachingWarnings(std::span<const FrameMarks> marks);
+
+}  // namespace kestrel

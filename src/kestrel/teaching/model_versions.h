@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "kestrel/objects/object_model.h"
+
+namespace kestrel {
+
+// Writes the model as YAML for `--model` and reads it back. What the file held before, where that
+// was anything else, is kept beside it as 'path'.1, .2 and so on, the highest the newest; returns
+// that name, or nothing. Throws InputError when it cannot be written, or when there are 9999
+// versions; the file is then as it was.
+std::string SaveModelVersion(const std::string& path, const ObjectModel& model);
+
+}  // namespace kestrel

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/teaching/model_versions.h"
+
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "kestrel/base/error.h"
+#include "kestrel/base/read_file.h"
+#include "kestrel/base/write_file.h"
+
+namespace kestrel {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ModelVersionsTest : public ::testing::Test {
+ protected:
+  ModelVersionsTest() { fs::create_directories(folder_); }
+  ~ModelVersionsTest() override { fs::remove_all(folder_); }
+
+  const fs::path folder_ = fs::path(::testing::TempDir()) / "kestrel_model_versions_test";
+  const std::string path_ = (folder_ / "objects.yaml").string();
+};
+
+TEST_F(ModelVersionsTest, NothingIsOverwrittenWithoutACopy) {
+  ObjectModel model = DefaultObjectModel();
+  EXPECT_EQ(SaveModelVersion(path_, model), "");
+  const std::string first = ReadFile(path_);
+  EXPECT_EQ(SaveModelVersion(path_, model), "") << "the same again";
+  model.colors.colors[0].components[0].correlation = 0.25;
+  EXPECT_EQ(SaveModelVersion(path_, model), path_ + ".1");
+  EXPECT_EQ(ReadFile(path_ + ".1"), first);
+  EXPECT_EQ(ReadObjectModel(path_).colors.colors[0].components[0].correlation, 0.25);
+  model.colors.max_distance = 2.5;
+  EXPECT_EQ(SaveModelVersion(path_, model), path_ + ".2");
+  EXPECT_EQ(ReadFile(path_ + ".1"), first);
+}
+
+TEST_F(ModelVersionsTest, WhatIsNoModelIsKeptToo) {
+  WriteFile(path_, "notes\n");
+  EXPECT_EQ(SaveModelVersion(path_, DefaultObjectModel()), path_ + ".1");
+  EXPECT_EQ(ReadFile(path_ + ".1"), "notes\n");
+}
+
+TEST_F(ModelVersionsTest, AModelThatCannotBeReadIsNotWritten) {
+  ObjectModel model = DefaultObjectModel();
+  SaveModelVersion(path_, model);
+  const std::string before = ReadFile(path_);
+  model.colors.colors[0].components[0].sigma.value = 0;
+  EXPECT_THROW(SaveModelVersion(path_, model), InputError);
+  EXPECT_EQ(ReadFile(path_), before);
+  EXPECT_FALSE(fs::exists(path_ + ".1"));
+  EXPECT_THROW(SaveModelVersion((folder_ / "none" / "objects.yaml").string(), DefaultObjectModel()),
+               InputError);
+}
+
+}  // namespace
+}  // namespace kestrel
