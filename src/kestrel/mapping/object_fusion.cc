@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/mapping/team_map.h"
+#include "kestrel/mapping/object_fusion.h"
 
 #include <algorithm>
 
 #include <Eigen/Cholesky>
 
 #include "kestrel/mapping/assignment.h"
-#include "kestrel/mapping/map_file.h"
 
 namespace kestrel {
 namespace {
@@ -21,8 +20,11 @@ double SquaredDistance(const MappedObject& a, const MappedObject& b, double shar
   return difference.dot(covariance.llt().solve(difference));
 }
 
-void FuseInto(const std::vector<MappedObject>& objects, const ObjectMapOptions& options,
-              std::vector<MappedObject>* fused) {
+}  // namespace
+
+std::vector<std::size_t> FuseObjects(const std::vector<MappedObject>& objects,
+                                     const ObjectMapOptions& options,
+                                     std::vector<MappedObject>* fused) {
   const auto rows = static_cast<Eigen::Index>(objects.size());
   const auto known = static_cast<Eigen::Index>(fused->size());
   Eigen::MatrixXd costs = Eigen::MatrixXd::Constant(rows, known + rows, kImpossibleCost);
@@ -35,45 +37,17 @@ void FuseInto(const std::vector<MappedObject>& objects, const ObjectMapOptions& 
   }
   AssignmentSolver solver;
   const std::vector<int>& columns = solver.Solve(costs);
+  std::vector<std::size_t> indices;
   for (Eigen::Index i = 0; i < rows; ++i) {
-    if (columns[i] < known) {
+    const bool is_known = columns[i] < known;
+    indices.push_back(is_known ? columns[i] : fused->size());
+    if (is_known) {
       UnifyObjects(objects[i], &(*fused)[columns[i]]);
     } else {
       fused->push_back(objects[i]);
     }
   }
-}
-
-}  // namespace
-
-void TeamMap::Put(const std::string& uav, const UavMap& map) {
-  const auto [known, is_new] = maps_.try_emplace(uav, map);
-  if (is_new || map.version < known->second.version) return;
-  if (map.version > known->second.version ||
-      PrintObjects(map.objects) > PrintObjects(known->second.objects)) {
-    known->second = map;
-  }
-}
-
-void TeamMap::Merge(const TeamMap& other) {
-  for (const auto& [uav, map] : other.maps_) Put(uav, map);
-}
-
-std::vector<MappedObject> TeamMap::Fused(const ObjectMapOptions& options) const {
-  Time newest = Time::min();
-  for (const auto& [uav, map] : maps_) {
-    for (const MappedObject& object : map.objects) newest = std::max(newest, object.time);
-  }
-  std::vector<MappedObject> fused;
-  for (const auto& [uav, map] : maps_) {
-    std::vector<MappedObject> objects = map.objects;
-    for (MappedObject& object : objects) {
-      PredictObject(newest, options.motion(), &object);
-    }
-    FuseInto(objects, options, &fused);
-  }
-  for (std::size_t i = 0; i < fused.size(); ++i) fused[i].id = static_cast<std::int64_t>(i) + 1;
-  return fused;
+  return indices;
 }
 
 }  // namespace kestrel
