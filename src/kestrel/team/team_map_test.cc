@@ -57,11 +57,17 @@ TEST(TeamMap, OrderAndRepetitionOfMessagesMakeNoDifference) {
 TEST(TeamMap, WhatIsNotListedAnyMoreIsGoneAndStaysSo) {
   TeamMap map;
   const UavKey uav{"a", 1};
-  const MappedObject disc = TestDisc(1, {0, 0, 0}, Time());
-  const PartMessage with{uav, {}, {1, Time(), {{1, 1}}}, {disc}};
+  PartMessage with;
+  with.uav = uav;
+  with.contents.version = 1;
+  with.contents.objects[1] = 1;
+  with.objects = {TestDisc(1, {0, 0, 0}, Time())};
   map.Merge(with, Time());
   EXPECT_THAT(map.Find(uav)->objects, ElementsAre(Key(1)));
-  map.Merge({uav, {}, {2, Time(), {}}, {}}, Time());
+  PartMessage without;
+  without.uav = uav;
+  without.contents.version = 2;
+  map.Merge(without, Time());
   map.Merge(with, Time());
   EXPECT_THAT(map.Find(uav)->objects, IsEmpty());
 }
@@ -69,17 +75,21 @@ TEST(TeamMap, WhatIsNotListedAnyMoreIsGoneAndStaysSo) {
 TEST(TeamMap, KnowsWhatItLacks) {
   TeamMap map;
   const UavKey uav{"a", 1};
-  map.Merge({uav, {}, {4, Time(), {{1, 1}, {2, 4}, {3, 2}}}, {TestDisc(2, {0, 0, 0}, Time())}},
-            Time());
+  PartMessage part;
+  part.uav = uav;
+  part.contents.version = 4;
+  part.contents.objects = {{1, 1}, {2, 4}, {3, 2}};
+  part.objects = {TestDisc(2, {0, 0, 0}, Time())};
+  map.Merge(part, Time());
   EXPECT_THAT(map.Find(uav)->Missing(9), ElementsAre(1, 3));
   EXPECT_THAT(map.Find(uav)->Missing(1), ElementsAre(1));
 }
 
 TEST(TeamMap, IsBounded) {
   TeamMap map;
-  for (std::uint32_t boot = 0; boot < 1000; ++boot) {
-    map.Merge({{"a", boot}, {}, {1, Time(), {}}, {}}, Time());
-  }
+  PartMessage part;
+  part.uav.name = "a";
+  for (; part.uav.boot < 1000; ++part.uav.boot) map.Merge(part, Time());
   EXPECT_THAT(map.parts(), SizeIs(kMaxUavs));
 }
 

@@ -156,7 +156,9 @@ void TeamMember::Answer(const UavKey& sender, const DigestLine& line, Time local
   if (line.version >= part.contents.version && line.missing.empty()) return;
   if (line.uav == sender || RankAfter(line.uav, sender, local) > line.tries) return;
   const std::set<std::int64_t> missing(line.missing.begin(), line.missing.end());
-  const Duration resend = DurationFromSeconds(options_.resend_s);
+  // Who still lacks it after so many digests does not hear the one that told it.
+  constexpr int kPatience = 8;
+  const Duration resend = DurationFromSeconds(line.tries > kPatience ? 0 : options_.resend_s);
   bool is_on_air = false;
   for (const auto& [id, entry] : part.objects) {
     if (!part.Has(id) || (entry.version <= line.version && !missing.contains(id))) continue;

@@ -104,10 +104,10 @@ class TeamMember {
   std::optional<Time> last_digest_;
   std::optional<Time> last_tick_;
   bool has_new_claim_ = false;
-  double allowance_;               // bytes that may be sent now
-  std::set<ObjectRef> queue_;      // to be sent
-  ObjectRef cursor_;               // where in the queue the turn is
-  std::map<UavKey, Time> twins_;   // others of the same name: when they were heard first
+  double allowance_;              // bytes that may be sent now
+  std::set<ObjectRef> queue_;     // to be sent
+  ObjectRef cursor_;              // where in the queue the turn is
+  std::map<UavKey, Time> twins_;  // others of the same name: when they were heard first
   std::size_t refused_ = 0;
   std::set<std::string> warned_;
   std::vector<std::string> warnings_;

@@ -163,8 +163,19 @@ TEST(TeamMember, StrangersDoNoHarm) {
   }
   team.Broadcast({}, std::vector<std::uint8_t>(100'000));
   // Under the name of 'a': an empty map of a later version, and a beat from far ahead.
-  team.Broadcast({}, EncodeMessage({{"a", 1}, PartMessage{{"a", 1}, {}, {1000, Time(), {}}, {}}}));
-  team.Broadcast({}, EncodeMessage({{"x", 1}, Digest{{{"a", 1}, 2'000'000'000, 0, {}, {}, 0}}}));
+  PartMessage map;
+  map.uav = {"a", 1};
+  map.contents.version = 1000;
+  TeamMessage forged;
+  forged.sender = map.uav;
+  forged.body = map;
+  team.Broadcast({}, EncodeMessage(forged));
+  Digest digest(1);
+  digest[0].uav = map.uav;
+  digest[0].beat = 2'000'000'000;
+  forged.body = digest;
+  forged.sender = {"x", 1};
+  team.Broadcast({}, EncodeMessage(forged));
   Fly(&team, 2);
   team.Run(8);
   EXPECT_TRUE(team.AreEqual());
@@ -183,7 +194,8 @@ TEST(TeamMember, WithAKeyOnlyTheTeamIsHeard) {
   team.Add({"d", 1});
   Fly(&team, 3);
   UntilEqual(&team, 1);
-  EXPECT_THAT(team.uavs[0].member->map().parts(), ElementsAre(Key(UavKey{"a", 1}), Key(UavKey{"b", 1})));
+  EXPECT_THAT(team.uavs[0].member->map().parts(),
+              ElementsAre(Key(UavKey{"a", 1}), Key(UavKey{"b", 1})));
   EXPECT_THAT(team.uavs[2].member->map().parts(), SizeIs(1));
   EXPECT_THAT(team.uavs[3].member->map().parts(), SizeIs(1));
   EXPECT_THAT(team.uavs[0].warnings, ElementsAre(HasSubstr("not signed by the team's key")));

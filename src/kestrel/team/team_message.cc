@@ -61,7 +61,8 @@ void ReadSingles(std::size_t count, Array* array, ByteReader* in) {
 
 void Write(const MappedObject& object, Time now, ByteWriter* out) {
   const auto& digits = object.digit_log_likelihoods;
-  const bool has_digits = std::any_of(digits.begin(), digits.end(), [](double x) { return x != 0; });
+  const bool has_digits =
+      std::any_of(digits.begin(), digits.end(), [](double x) { return x != 0; });
   out->Whole(static_cast<std::uint64_t>(object.id));
   out->Byte(static_cast<std::uint8_t>(object.shape));
   out->Byte((object.may_move ? kMayMove : 0) | (has_digits ? kHasDigits : 0));
@@ -186,10 +187,10 @@ void Write(const Digest& digest, ByteWriter* out) {
     out->Byte(static_cast<std::uint8_t>(line.tries));
     out->Whole(line.missing.size());
     for (const std::int64_t id : line.missing) out->Whole(static_cast<std::uint64_t>(id));
-    const auto claimed = !line.claim ? digest.end()
-                                     : std::find_if(digest.begin(), digest.end(), [&](auto& other) {
-                                         return other.uav == line.claim->object.uav;
-                                       });
+    const auto claimed =
+        !line.claim ? digest.end() : std::find_if(digest.begin(), digest.end(), [&](auto& other) {
+          return other.uav == line.claim->object.uav;
+        });
     const bool has_claim = claimed != digest.end();
     out->Whole(has_claim ? 1 + static_cast<std::uint64_t>(claimed - digest.begin()) : 0);
     if (!has_claim) continue;

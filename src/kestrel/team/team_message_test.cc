@@ -55,9 +55,20 @@ TEST(TeamMessage, APartComesAsItWasSent) {
 }
 
 TEST(TeamMessage, ADigestComesAsItWasSent) {
-  const Digest digest{{{"a", 1}, 9, 8, Claim{{{"b", 2}, 5}, 0.5}, {}, 0},
-                      {{"b", 2}, 4'000'000'000, 1, {}, {3, 400}, 7}};
-  const auto message = ParseMessage(EncodeMessage({{"a", 1}, digest}));
+  const UavKey a{"a", 1};
+  const UavKey b{"b", 2};
+  Digest digest(2);
+  digest[0].uav = a;
+  digest[0].version = 8;
+  digest[0].claim = Claim{{b, 5}, 0.5};
+  digest[1].uav = b;
+  digest[1].beat = 4'000'000'000;
+  digest[1].missing = {3, 400};
+  digest[1].tries = 7;
+  TeamMessage sent;
+  sent.sender = a;
+  sent.body = digest;
+  const auto message = ParseMessage(EncodeMessage(sent));
   ASSERT_TRUE(message);
   const auto& lines = std::get<Digest>(message->body);
   ASSERT_THAT(lines, SizeIs(2));

@@ -43,8 +43,7 @@ class Fusion {
       std::vector<Part> left;
       for (Part& part : waiting_) {
         const std::optional<WorldAlignment> alignment =
-            is_first ? WorldAlignment{}
-                     : EstimateAlignment(part.objects, view_->objects, prior_);
+            is_first ? WorldAlignment{} : EstimateAlignment(part.objects, view_->objects, prior_);
         is_first = false;
         if (alignment) {
           view_->common_from_world[part.uav] = *alignment;
@@ -53,8 +52,9 @@ class Fusion {
           left.push_back(std::move(part));
         }
       }
-      if (left.size() == waiting_.size()) break;
+      const bool is_done = left.size() == waiting_.size();
       waiting_ = std::move(left);
+      if (is_done) break;
     }
     for (Part& part : waiting_) Fuse(UnknownAlignment(part.objects, prior_), &part);
   }
@@ -102,8 +102,7 @@ void FindHolders(const TeamMember& member, Time local, TeamView* view) {
 TeamView ViewTeam(const TeamMember& member, const ObjectMapOptions& options, Time local) {
   const TeamMap::Part* const own = member.map().Find(member.self());
   const Time now =
-      own == nullptr ? local
-                     : own->contents.now + std::max(local - own->told_at, Duration::zero());
+      own == nullptr ? local : own->contents.now + std::max(local - own->told_at, Duration::zero());
   TeamView view;
   Fusion fusion(member, options, &view);
   for (const auto& [uav, part] : member.map().parts()) {

@@ -21,8 +21,10 @@ struct FieldTeam {
     Random random(seed);
     field = TestField(60, &random);
     for (int i = 0; i < count; ++i) {
-      worlds.push_back({{50, 50, 0}, bias_m * Eigen::Vector3d(random.Normal(), random.Normal(), 0),
-                        bias_m * Radians(2) * random.Uniform(-1, 1), {}});
+      WorldAlignment& world = worlds.emplace_back();
+      world.pivot = {50, 50, 0};
+      world.translation = bias_m * Eigen::Vector3d(random.Normal(), random.Normal(), 0);
+      world.yaw = bias_m * Radians(2) * random.Uniform(-1, 1);
       team.Add({std::string(1, static_cast<char>('a' + i)), 1});
       std::vector<MappedObject> seen;
       for (int k = 0; k < 40; ++k) {

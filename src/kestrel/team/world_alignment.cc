@@ -17,8 +17,8 @@ namespace {
 using Objects = std::vector<const MappedObject*>;
 constexpr std::size_t kMaxObjects = 40;
 constexpr std::size_t kMaxMatches = 150;
-constexpr double kGate = 16.3;       // squared Mahalanobis distance, 3 degrees of freedom
-constexpr double kSlack_m = 0.1;     // of a position beside its covariance: bias of a pass
+constexpr double kGate = 16.3;        // squared Mahalanobis distance, 3 degrees of freedom
+constexpr double kSlack_m = 0.1;      // of a position beside its covariance: bias of a pass
 constexpr double kMinBaseline_m = 3;  // between two objects that tell the yaw
 
 // One object in both worlds, perhaps.
@@ -112,8 +112,8 @@ std::optional<WorldAlignment> AlignmentOf(const Match& a, const Match& b,
   const double sigma = std::sqrt((Noise(a).trace() + Noise(b).trace()) / 3);
   if ((std::abs(length - to.head<2>().norm())) > 3 * sigma) return std::nullopt;
   WorldAlignment alignment = unknown;
-  alignment.yaw = std::remainder(std::atan2(to.y(), to.x()) - std::atan2(from.y(), from.x()),
-                                 2 * kPi);
+  alignment.yaw =
+      std::remainder(std::atan2(to.y(), to.x()) - std::atan2(from.y(), from.x()), 2 * kPi);
   if (std::abs(alignment.yaw) > 3 * std::sqrt(unknown.covariance(3, 3)) + sigma / length) {
     return std::nullopt;
   }
@@ -173,8 +173,7 @@ WorldAlignment Refined(const std::vector<Match>& matches, const WorldPrior& prio
 
 bool AreFarApart(const WorldAlignment& a, const WorldAlignment& b) {
   constexpr double kApart_m = 0.5;
-  return (a.translation - b.translation).norm() > kApart_m ||
-         std::abs(a.yaw - b.yaw) > Radians(2);
+  return (a.translation - b.translation).norm() > kApart_m || std::abs(a.yaw - b.yaw) > Radians(2);
 }
 
 bool IsSure(const WorldAlignment& alignment) {

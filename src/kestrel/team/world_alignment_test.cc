@@ -36,8 +36,7 @@ TEST(EstimateAlignment, FindsABiasWithItsCovariance) {
     // Each sees two thirds of the field.
     const std::vector<MappedObject> first(field.begin(), field.begin() + 40);
     const auto second = SeenIn(bias, {field.begin() + 20, field.end()}, 0.05, &random);
-    const auto alignment =
-        EstimateAlignment(second, SeenIn({}, first, 0.05, &random), kPrior);
+    const auto alignment = EstimateAlignment(second, SeenIn({}, first, 0.05, &random), kPrior);
     ASSERT_TRUE(alignment) << seed;
     ++found;
     for (std::size_t i = 0; i < second.size(); ++i) {
@@ -46,8 +45,7 @@ TEST(EstimateAlignment, FindsABiasWithItsCovariance) {
     }
     const Eigen::Vector3d at_pivot =
         *alignment * alignment->pivot - bias.Inverse() * alignment->pivot;
-    squares += at_pivot.dot(
-        alignment->covariance.topLeftCorner<3, 3>().llt().solve(at_pivot));
+    squares += at_pivot.dot(alignment->covariance.topLeftCorner<3, 3>().llt().solve(at_pivot));
   }
   EXPECT_LT(squares / (3 * found), 1.5);  // 1 when the covariance says what the errors are
 }
@@ -72,7 +70,10 @@ TEST(EstimateAlignment, IsNotSureWhereTwoFit) {
 }
 
 TEST(WorldAlignment, InverseLeadsBack) {
-  const WorldAlignment there{{1, 2, 3}, {4, 5, 6}, 0.3, {}};
+  WorldAlignment there;
+  there.pivot = {1, 2, 3};
+  there.translation = {4, 5, 6};
+  there.yaw = 0.3;
   const Eigen::Vector3d point(7, 8, 9);
   EXPECT_LT((there.Inverse() * (there * point) - point).norm(), 1e-12);
   MappedObject object = TestDisc(1, point, Time());
