@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <dds/dds.h>
 #include <vector>
 
-#include <dds/dds.h>
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
@@ -50,10 +50,8 @@ struct TeamTopic::Entities {
                                   DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
       dds_qset_writer_data_lifecycle(qos.get(), false);
       dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
-      reader =
-          Require(dds_create_reader(participant, topic, qos.get(), nullptr), domain, "reader");
-      writer =
-          Require(dds_create_writer(participant, topic, qos.get(), nullptr), domain, "writer");
+      reader = Require(dds_create_reader(participant, topic, qos.get(), nullptr), domain, "reader");
+      writer = Require(dds_create_writer(participant, topic, qos.get(), nullptr), domain, "writer");
     } catch (...) {
       dds_delete(participant);
       throw;
@@ -97,8 +95,7 @@ void TeamTopic::Receive(const std::function<void(std::span<const std::uint8_t>)>
   for (;;) {
     std::array<void*, kAtOnce> samples{};
     std::array<dds_sample_info_t, kAtOnce> infos{};
-    const int count =
-        dds_take(entities_->reader, samples.data(), infos.data(), kAtOnce, kAtOnce);
+    const int count = dds_take(entities_->reader, samples.data(), infos.data(), kAtOnce, kAtOnce);
     if (count <= 0) return;
     for (int i = 0; i < count; ++i) {
       if (!infos[i].valid_data) continue;
