@@ -139,7 +139,8 @@ std::vector<Match> Agreeing(const std::vector<Match>& matches, const WorldAlignm
   std::stable_sort(near.begin(), near.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Match> agreeing;
-  for (const auto& [distance, match] : near) {
+  for (const auto& candidate : near) {
+    const Match& match = candidate.second;
     const bool is_taken = std::any_of(agreeing.begin(), agreeing.end(), [&](const Match& other) {
       return other.object == match.object || other.reference == match.reference;
     });
