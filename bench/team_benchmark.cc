@@ -29,7 +29,7 @@ PartMessage PartOf(int uav, std::uint64_t version) {
     object.detections = 10;
     object.state.head<3>() << 5 * (i % 10), 5 * (i / 10), 0.001 * uav;
     object.covariance.diagonal().head<3>().setConstant(0.01);
-    for (int k = 0; k < 5; ++k) object.color_log_likelihoods[k] = k == i * i % 5 ? -0.1 : -5;
+    object.color_log_likelihoods[i * 7 % 5] = 5;
     part.contents.objects[i] = version;
     part.objects.push_back(object);
   }

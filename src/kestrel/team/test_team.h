@@ -25,9 +25,7 @@ inline MappedObject TestDisc(std::int64_t id, const Eigen::Vector3d& position, T
   object.covariance.topLeftCorner<3, 3>() = sigma_m * sigma_m * Eigen::Matrix3d::Identity();
   object.detections = 10;
   object.log_odds = 3;
-  for (std::size_t i = 0; i < 5; ++i) {
-    object.color_log_likelihoods[i] = static_cast<std::size_t>(id) % 5 == i ? -0.1 : -5;
-  }
+  object.color_log_likelihoods[static_cast<std::size_t>(id) % 5] = 5;
   return object;
 }
 

@@ -19,6 +19,7 @@ constexpr std::size_t kMaxObjects = 40;
 constexpr std::size_t kMaxMatches = 150;
 constexpr double kGate = 16.3;        // squared Mahalanobis distance, 3 degrees of freedom
 constexpr double kSlack_m = 0.1;      // of a position beside its covariance: bias of a pass
+constexpr double kMaxShift_m = 0.3;   // by an error of the yaw
 constexpr double kMinBaseline_m = 3;  // between two objects that tell the yaw
 
 // One object in both worlds, perhaps.
@@ -129,10 +130,11 @@ std::vector<Match> Agreeing(const std::vector<Match>& matches, const WorldAlignm
   std::vector<std::pair<double, Match>> near;
   for (const Match& match : matches) {
     const Eigen::Vector3d residual = Residual(alignment, match);
-    // The yaw of two objects carries far; the least squares decide later.
+    // The yaw of two near objects says little far away; what is only loosely near does not count.
     const double lever = (match.object->position() - alignment.pivot).head<2>().norm();
+    const double shift_m = std::min(std::sqrt(alignment.covariance(3, 3)) * lever, kMaxShift_m);
     Eigen::Matrix3d noise = Noise(match) + alignment.covariance.topLeftCorner<3, 3>();
-    noise.topLeftCorner<2, 2>().diagonal().array() += alignment.covariance(3, 3) * lever * lever;
+    noise.topLeftCorner<2, 2>().diagonal().array() += shift_m * shift_m;
     const double distance = residual.dot(noise.llt().solve(residual));
     if (distance <= kGate) near.emplace_back(distance, match);
   }
@@ -172,9 +174,14 @@ WorldAlignment Refined(const std::vector<Match>& matches, const WorldPrior& prio
   return alignment;
 }
 
-bool AreFarApart(const WorldAlignment& a, const WorldAlignment& b) {
-  constexpr double kApart_m = 0.5;
-  return (a.translation - b.translation).norm() > kApart_m || std::abs(a.yaw - b.yaw) > Radians(2);
+// How many of the matches pair objects otherwise than the others do.
+std::size_t CountOther(const std::vector<Match>& matches, const std::vector<Match>& others) {
+  return static_cast<std::size_t>(
+      std::count_if(matches.begin(), matches.end(), [&](const Match& match) {
+        return std::none_of(others.begin(), others.end(), [&](const Match& other) {
+          return other.object == match.object && other.reference == match.reference;
+        });
+      }));
 }
 
 bool IsSure(const WorldAlignment& alignment) {
@@ -238,9 +245,7 @@ std::optional<WorldAlignment> EstimateAlignment(const std::vector<MappedObject>&
   const std::vector<Match> agreeing = Agreeing(matches, alignment);
   alignment = Refined(agreeing, prior, alignment);
   std::size_t rival = 0;
-  for (const Vote& vote : votes) {
-    if (AreFarApart(vote.alignment, alignment)) rival = std::max(rival, vote.matches.size());
-  }
+  for (const Vote& vote : votes) rival = std::max(rival, CountOther(vote.matches, agreeing));
   constexpr std::size_t kMinMatches = 3;
   const bool is_unrivalled = 2 * agreeing.size() >= 3 * rival;
   if (agreeing.size() < kMinMatches || !is_unrivalled || !IsSure(alignment)) return std::nullopt;
