@@ -12,10 +12,16 @@ empty :=
 space := $(empty) $(empty)
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 
-.PHONY: demo test interop bench accuracy format check asan fuzz install command tests build configure deps
+.PHONY: demo console test interop bench accuracy format check asan fuzz install command tests build configure deps
 
 demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
 	scripts/demo $(BIN) "$(DATA)" "$(CAMERA)"
+
+console:  ## the web page: what it needs, built in, over a simulated flight
+	scripts/install-deps --console
+	cmake --preset release
+	cmake --build --preset release --target kestrel
+	$(BIN)/src/kestrel/cli/kestrel fly sim:figure8 --autopilot sim:px4 --guide --console
 
 test: tests
 	ctest --preset release -j $$(nproc)

@@ -11,7 +11,6 @@
 #include "kestrel/base/error.h"
 #include "kestrel/base/parse_number.h"
 #include "kestrel/base/read_file.h"
-#include "kestrel/camera/calibration_reader.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/recording/event_source.h"
 #include "kestrel/recording/image_file.h"
@@ -119,7 +118,7 @@ HuntScore ScoreHunt(const std::string& folder) {
   const auto sightings = ParseTrueSightings(ReadFile(sightings_file), sightings_file, objects);
 
   const auto source = OpenSource({folder}, PixelFormat::kBgr);
-  CameraCalibration calibration = ReadCalibration(source->calibration_file());
+  CameraCalibration calibration = *source->calibration();
   calibration.clock_offset = DurationFromSeconds(truth.scene().clock_offset_s);
   calibration.body_from_camera->rotation =
       truth.scene().mount_error * calibration.body_from_camera->rotation;

@@ -19,6 +19,7 @@
 #include "kestrel/base/error.h"
 #include "kestrel/base/parse_number.h"
 #include "kestrel/base/read_file.h"
+#include "kestrel/base/shown.h"
 
 namespace kestrel {
 namespace {
@@ -28,15 +29,6 @@ constexpr double kMaxClockOffset_s = 4e9;    // fits into a Duration, and spans 
 constexpr double kRotationTolerance = 1e-3;  // of matrices typed with four digits
 
 using Names = std::initializer_list<const char*>;
-
-// Text of the file as a message can show it: on one line, and not longer than a line.
-std::string Shown(std::string text) {
-  constexpr std::size_t kMaxLength = 60;
-  if (text.size() > kMaxLength) text = text.substr(0, kMaxLength) + "...";
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c); }, '?');
-  return text;
-}
 
 // A value of the file with the key that leads to it, so that every message can name both.
 class Entry {

@@ -15,6 +15,7 @@
 #include "kestrel/base/read_file.h"
 #include "kestrel/base/write_file.h"
 #include "kestrel/objects/color_grid.h"
+#include "kestrel/objects/color_samples.h"
 #include "kestrel/objects/object_model.h"
 #include "kestrel/recording/color_marks.h"
 #include "kestrel/recording/color_pictures.h"
@@ -43,7 +44,12 @@ void ReplaceColors(const std::map<std::string, std::vector<Hsv>>& samples, int c
     if (found == colors.end()) {
       throw InputError(fmt::format("'{}' is none of the model's colors", name));
     }
-    *found = FitColorMixture(name, entry.second, components);
+    *found = ChooseColorMixture(name, entry.second, components).mixture;
+    fmt::print(stderr, "{}: {} Gaussians fitted to {} pixels\n", name, found->components.size(),
+               entry.second.size());
+    for (const std::string& warning : SampleWarnings(entry.second)) {
+      fmt::print(stderr, "{}: {}\n", name, warning);
+    }
   }
   const std::vector<std::string> violations = model->Validate();
   if (!violations.empty()) throw InputError(fmt::format("{}", fmt::join(violations, "; ")));
@@ -72,9 +78,6 @@ void RunColors(const ColorsArguments& arguments) {
     WritePicture(folder, fmt::format("labels_{:02}.png", ++count),
                  DrawLabels(ReadImage(image, PixelFormat::kBgr), grid));
   }
-  for (const auto& [name, pixels] : samples) {
-    fmt::print(stderr, "{}: fitted to {} pixels\n", name, pixels.size());
-  }
 }
 
 }  // namespace
@@ -97,7 +100,11 @@ void AddCalibrateColorsCommand(CLI::App* calibrate) {
                    "Folder for objects.yaml, colors.grid and the pictures")
       ->type_name("DIR")
       ->required();
-  command->add_option("--components", arguments->components, "Gaussians of a colour, at most")
+  command
+      ->add_option(
+          "--components", arguments->components,
+          "Gaussians of a colour, at most; as many as the Bayesian information criterion asks "
+          "for")
       ->type_name("N")
       ->check(CLI::Range(1, 8));
   command->add_flag("--force", arguments->force, "Replace files that exist");

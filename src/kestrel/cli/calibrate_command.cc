@@ -12,6 +12,7 @@
 #include "kestrel/base/error.h"
 #include "kestrel/calibration/flight_calibration.h"
 #include "kestrel/camera/calibration_reader.h"
+#include "kestrel/cli/bag_arguments.h"
 #include "kestrel/cli/calibrate_colors_command.h"
 #include "kestrel/cli/calibrate_lens_command.h"
 #include "kestrel/cli/calibration_output.h"
@@ -20,7 +21,6 @@
 #include "kestrel/geometry/angles.h"
 #include "kestrel/landing/landing_pattern_detector.h"
 #include "kestrel/pipeline/measurement_noise.h"
-#include "kestrel/recording/open_source.h"
 
 namespace kestrel {
 namespace {
@@ -29,6 +29,7 @@ constexpr double kKnotSpacing_s = 2;
 
 struct CalibrateArguments {
   std::string recording;
+  BagArguments bag;
   std::string camera;
   std::string output;
   OptionArguments options;
@@ -38,15 +39,16 @@ struct CalibrateArguments {
 };
 
 CameraCalibration ReadGiven(const CalibrateArguments& arguments, const FrameSource& source) {
-  const std::string file = arguments.camera.empty() ? source.calibration_file() : arguments.camera;
-  if (file.empty()) {
-    throw InputError(arguments.recording + ": has no calibration, give one by --camera FILE");
+  const std::string& file = arguments.camera.empty() ? arguments.recording : arguments.camera;
+  const std::optional<CameraCalibration> calibration =
+      arguments.camera.empty() ? source.calibration() : ReadCalibration(arguments.camera);
+  if (!calibration) throw InputError(file + ": has no calibration, give one by --camera FILE");
+  if (!calibration->body_from_camera) {
+    throw InputError(file +
+                     ": the calibration has no mount, expected T_BS, T_cam_imu or, in a bag, tf to "
+                     "start from");
   }
-  CameraCalibration calibration = ReadCalibration(file);
-  if (!calibration.body_from_camera) {
-    throw InputError(file + ": has no mount, expected T_BS or T_cam_imu to start from");
-  }
-  return calibration;
+  return *calibration;
 }
 
 // Finds the pattern in every frame for itself.
@@ -93,11 +95,12 @@ void RunCalibrate(const CalibrateArguments& arguments, FlightCalibrationOptions 
   const LandingPipelineOptions landing = arguments.options.Read().landing;
   if (arguments.both) options.estimate_mount = options.estimate_clock = true;
   if (arguments.moving) options.knot_spacing_s = kKnotSpacing_s;
-  const std::unique_ptr<FrameSource> source = OpenSource({arguments.recording});
+  const std::unique_ptr<FrameSource> source = arguments.bag.Open({arguments.recording});
   CameraCalibration calibration = ReadGiven(arguments, *source);
   const std::vector<PoseSample> poses = source->poses();
   if (poses.empty()) {
-    throw InputError(arguments.recording + ": has no poses of the UAV, expected nav0/data.csv");
+    throw InputError(arguments.recording +
+                     ": has no poses of the UAV, expected nav0/data.csv or a topic");
   }
   const auto sightings = FindSightings(source.get(), calibration, landing);
   const MountAndClock given{*calibration.body_from_camera,
@@ -115,8 +118,9 @@ void AddFlightCalibration(CLI::App* parent, const std::string& name, const std::
   const auto arguments = std::make_shared<CalibrateArguments>();
   command
       ->add_option("RECORDING", arguments->recording,
-                   "A recording folder with the poses of the UAV")
+                   "A recording folder or a bag with the poses of the UAV")
       ->required();
+  arguments->bag.AddTo(command);
   command
       ->add_option("--camera", arguments->camera,
                    "Calibration to start from, with a mount; overrides the recording's")

@@ -12,13 +12,13 @@
 
 #include "kestrel/calibration/lens_calibration.h"
 #include "kestrel/camera/calibration_reader.h"
+#include "kestrel/cli/bag_arguments.h"
 #include "kestrel/cli/calibration_output.h"
 #include "kestrel/cli/interrupt.h"
 #include "kestrel/cli/option_arguments.h"
 #include "kestrel/cli/progress_bar.h"
 #include "kestrel/evaluation/lens_plots.h"
 #include "kestrel/recording/euroc_text.h"
-#include "kestrel/recording/open_source.h"
 #include "kestrel/recording/output_folder.h"
 
 namespace kestrel {
@@ -36,6 +36,7 @@ std::map<std::string, DistortionModel> Models() {
 
 struct LensArguments {
   std::vector<std::string> sources;
+  BagArguments bag;
   std::string camera;
   std::string output;
   std::string plots;
@@ -67,16 +68,18 @@ class EvenSample {
 // What the sources hold, and what their files say beside the lens.
 struct LensSources {
   std::vector<LensImage> images;
-  std::string calibration_file;  // of the first that has one
-  double rate_hz = 0;            // of the first
+  CameraMount mount;   // of the first
+  double rate_hz = 0;  // of the first
 };
 
-LensSources ReadSources(const std::vector<std::string>& arguments) {
+LensSources ReadSources(const std::vector<std::string>& arguments, const BagArguments& bag) {
   LensSources sources;
   for (const std::string& argument : arguments) {
-    const std::unique_ptr<FrameSource> source = OpenSource({argument});
-    if (sources.rate_hz == 0) sources.rate_hz = source->rate_hz();
-    if (sources.calibration_file.empty()) sources.calibration_file = source->calibration_file();
+    const std::unique_ptr<FrameSource> source = bag.Open({argument});
+    if (sources.rate_hz == 0) {
+      sources.rate_hz = source->rate_hz();
+      sources.mount = source->mount();
+    }
     ProgressBar progress(source->frame_count());
     EvenSample sample;
     std::size_t frames = 0;
@@ -128,9 +131,10 @@ void RunLens(const LensArguments& arguments) {
     options.start = calibration.intrinsics;
   }
   CatchInterrupts();
-  const LensSources sources = ReadSources(arguments.sources);
-  if (arguments.camera.empty() && !sources.calibration_file.empty()) {
-    calibration = ReadCalibration(sources.calibration_file);  // its mount and clock stay
+  const LensSources sources = ReadSources(arguments.sources, arguments.bag);
+  if (arguments.camera.empty()) {
+    calibration.body_from_camera = sources.mount.body_from_camera;
+    calibration.clock_offset = sources.mount.clock_offset;
   }
   const LensCalibration lens = CalibrateLens(sources.images, options);
   PrintResult(lens, sources.images.size());
@@ -146,10 +150,12 @@ void AddCalibrateLensCommand(CLI::App* calibrate) {
       "lens", "Focal length, principal point and distortion from views of the landing pattern");
   const auto arguments = std::make_shared<LensArguments>();
   command
-      ->add_option("SOURCE", arguments->sources,
-                   "Recording folders (EuRoC), folders of images, image files or videos of one "
-                   "camera, that show the pattern near and far, tilted, and in all of the image")
+      ->add_option(
+          "SOURCE", arguments->sources,
+          "Recording folders (EuRoC), bags, folders of images, image files or videos of "
+          "one camera, that show the pattern near and far, tilted, and in all of the image")
       ->required();
+  arguments->bag.AddTo(command);
   command
       ->add_option("--camera", arguments->camera,
                    "Calibration to start from; without it several guesses are tried")

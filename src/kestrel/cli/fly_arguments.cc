@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/base/options.h"
 #include "kestrel/base/parse_number.h"
 
 namespace kestrel {
@@ -79,6 +80,12 @@ void FlyArguments::AddTo(CLI::App* command) {
       ->add_option("--record", record,
                    "Record the flight: a EuRoC folder with images and poses, and mavlink.tlog")
       ->type_name("DIR");
+  command
+      ->add_option_function<std::string>(
+          "--console", [this](const std::string& address) { console = address; },
+          "Serve the web page, at 127.0.0.1:8080 unless told otherwise")
+      ->type_name("[ADDRESS:PORT]")
+      ->expected(0, 1);
   CLI::Option* guide_flag = command->add_flag(
       "--guide", guide, "Fly the UAV by set-points when the pilot gives it GUIDED or OFFBOARD");
   CLI::Option* hunt_flag =
@@ -98,6 +105,10 @@ KestrelOptions FlyArguments::ReadOptions() const {
   if (link_delay != "auto") options.fly.flight.link_delay_s = ParseLinkDelay(link_delay);
   if (guide && autopilot.empty()) throw InputError("--guide: expected --autopilot URL");
   if (guide) PrepareGuidance(autopilot, &options.fly);
+  if (console && !console->empty()) {
+    options.console = WithAddress(options.console, *console, "--console");
+    RequireValid(options.console);
+  }
   PredictPoses(&options);
   return options;
 }

@@ -16,6 +16,8 @@
 #include "kestrel/cli/fly_autopilot.h"
 #include "kestrel/cli/fly_source.h"
 #include "kestrel/cli/interrupt.h"
+#include "kestrel/console/flight_console.h"
+#include "kestrel/link/mavlink_enums.h"
 #include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/hunt_vision.h"
 #include "kestrel/onboard/landing_vision.h"
@@ -43,6 +45,11 @@ class FlightLog {
   Time start_ = Now();
 };
 
+EventLevel LevelOf(std::uint8_t severity) {
+  if (severity <= mavlink::kSeverityError) return EventLevel::kError;
+  return severity <= mavlink::kSeverityWarning ? EventLevel::kWarning : EventLevel::kInfo;
+}
+
 // Records what a camera's exposure is from when on.
 class RecordedActuator : public ExposureActuator {
  public:
@@ -68,11 +75,12 @@ class Flight {
     const FlyOptions& options = all_options_.fly;
     const PixelFormat format = arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray;
     source_ = OpenFlySource(arguments.source, format, options, arguments.loop);
+    OpenConsole();
     OpenRecorder();
     OpenVision();
     if (!arguments.autopilot.empty()) OpenAutopilot();
     program_.emplace(options.flight, all_options_.landing.tracker, Parts(),
-                     [this](const std::string& text) { log_.Say(text); });
+                     [this](const std::string& text) { Say(text); });
   }
 
   FlightEnd Run() {
@@ -94,16 +102,35 @@ class Flight {
   }
 
  private:
+  void Say(const std::string& text, EventLevel level = EventLevel::kInfo) {
+    log_.Say(text);
+    if (console_) console_->Say(level, text);
+  }
+
+  ObjectModel ReadModel() const {
+    return arguments_.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments_.model);
+  }
+
+  FlightView View() const {
+    if (arguments_.hunt) return HuntView{ReadModel()};
+    return ViewOf(source_.calibration, all_options_.landing);
+  }
+
+  // First of all: a port that is taken is said before anything is written.
+  void OpenConsole() {
+    if (!arguments_.console) return;
+    console_.emplace(all_options_.console, arguments_.source.sources.front(), View());
+    log_.Say("console: " + console_->url());
+  }
+
   void OpenVision() {
     if (!arguments_.source.output.empty()) {
       output_.emplace(arguments_.source.output, arguments_.source.force);
     }
     const OutputFolder* const output = output_ ? &*output_ : nullptr;
     if (arguments_.hunt) {
-      auto hunt = std::make_unique<HuntVision>(
-          source_.calibration,
-          arguments_.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments_.model),
-          all_options_.hunt, output);
+      auto hunt =
+          std::make_unique<HuntVision>(source_.calibration, ReadModel(), all_options_.hunt, output);
       hunt_ = hunt.get();
       vision_ = std::move(hunt);
       return;
@@ -126,7 +153,7 @@ class Flight {
     if (arguments_.record.empty()) return;
     recorder_ = std::make_unique<FlightRecorder>(
         arguments_.record, arguments_.source.force, source_.calibration, source_.rate_hz,
-        all_options_.fly.recorder, [this](const std::string& text) { log_.Say(text); });
+        all_options_.fly.recorder, [this](const std::string& text) { Say(text); });
   }
 
   void OpenAutopilot() {
@@ -139,15 +166,16 @@ class Flight {
       };
     }
     connection_.emplace(opened.url, all_options_.fly.link, tap);
-    autopilot_.emplace(
-        source_.Asking(all_options_.fly.autopilot), &*connection_,
-        AutopilotListener{
-            .pose = [this](const PoseSample& pose) { TakePose(pose); },
-            .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
-            .event = [this](const AutopilotEvent& e) { log_.Say(e.text); },
-            .text = [this](std::uint8_t /*severity*/,
-                           std::string_view text) { log_.Say(fmt::format("autopilot: {}", text)); },
-        });
+    autopilot_.emplace(source_.Asking(all_options_.fly.autopilot), &*connection_,
+                       AutopilotListener{
+                           .pose = [this](const PoseSample& pose) { TakePose(pose); },
+                           .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
+                           .event = [this](const AutopilotEvent& e) { Say(e.text); },
+                           .text =
+                               [this](std::uint8_t severity, std::string_view text) {
+                                 Say(fmt::format("autopilot: {}", text), LevelOf(severity));
+                               },
+                       });
   }
 
   FlightParts Parts() {
@@ -157,6 +185,7 @@ class Flight {
     parts.connection = connection_ ? &*connection_ : nullptr;
     parts.autopilot = autopilot_ ? &*autopilot_ : nullptr;
     parts.recorder = recorder_.get();
+    parts.observer = console_ ? &*console_ : nullptr;
     parts.guides = arguments_.guide;
     parts.source_has_poses = source_.has_poses;
     parts.pattern_size_m = all_options_.landing.detector.pattern.outer_diameter_m;
@@ -191,6 +220,7 @@ class Flight {
   KestrelOptions all_options_;
   FlightLog log_;
   FlySource source_;
+  std::optional<FlightConsole> console_;
   std::optional<OutputFolder> output_;
   std::unique_ptr<FlightVision> vision_;
   HuntVision* hunt_ = nullptr;  // the vision, when it is one

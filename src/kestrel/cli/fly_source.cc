@@ -112,7 +112,9 @@ FlySource OpenReplay(const SourceArguments& arguments, PixelFormat format, bool 
   opened.calibration = recording.calibration;
   opened.rate_hz = recording.source->rate_hz();
   opened.has_poses = !recording.source->poses().empty();
-  const auto open = [sources = arguments.sources, format] { return OpenSource(sources, format); };
+  const auto open = [bag = arguments.bag, sources = arguments.sources, format] {
+    return bag.Open(sources, format);
+  };
   opened.source = std::make_unique<RealtimeReplay>(
       open, opened.calibration.clock_offset.value_or(Duration::zero()), is_looped);
   return opened;

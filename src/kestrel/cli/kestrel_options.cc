@@ -11,6 +11,7 @@ std::vector<std::string> KestrelOptions::Validate() const {
   AddViolations("landing", landing.Validate(), &violations);
   AddViolations("hunt", hunt.Validate(), &violations);
   AddViolations("fly", fly.Validate(), &violations);
+  AddViolations("console", console.Validate(), &violations);
   return violations;
 }
 

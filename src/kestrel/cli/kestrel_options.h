@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kestrel/cli/fly_options.h"
+#include "kestrel/console/console_options.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/pipeline/landing_pipeline.h"
 
@@ -15,12 +16,14 @@ struct KestrelOptions {
   LandingPipelineOptions landing;
   HuntPipelineOptions hunt;
   FlyOptions fly;
+  ConsoleOptions console;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor.Group("landing", self.landing);
     visitor.Group("hunt", self.hunt);
     visitor.Group("fly", self.fly);
+    visitor.Group("console", self.console);
   }
   std::vector<std::string> Validate() const;
 };

@@ -8,6 +8,8 @@
 
 #include "kestrel/cli/calibrate_command.h"
 #include "kestrel/cli/config_command.h"
+#include "kestrel/cli/console_command.h"
+#include "kestrel/cli/convert_command.h"
 #include "kestrel/cli/doctor_command.h"
 #include "kestrel/cli/evaluate_command.h"
 #include "kestrel/cli/fly_command.h"
@@ -40,10 +42,12 @@ int main(int argc, char** argv) {
   kestrel::AddHuntCommand(&app);
   kestrel::AddFlyCommand(&app);
   kestrel::AddDoctorCommand(&app);
+  kestrel::AddConsoleCommand(&app);
   kestrel::AddSimulateCommand(&app);
   kestrel::AddEvaluateCommand(&app);
   kestrel::AddCalibrateCommand(&app);
   kestrel::AddPrintCommand(&app);
+  kestrel::AddConvertCommand(&app);
   kestrel::AddConfigCommand(&app);
   kestrel::AddHelpCommand(&app);
   try {

@@ -6,7 +6,6 @@
 #include "kestrel/base/error.h"
 #include "kestrel/base/parse_number.h"
 #include "kestrel/camera/calibration_reader.h"
-#include "kestrel/recording/open_source.h"
 
 namespace kestrel {
 namespace {
@@ -31,22 +30,20 @@ CLI::Option* AddAnnotateFlag(CLI::App* command, std::string* annotate) {
       ->check(CLI::IsMember({"video", "images"}));
 }
 
-void SourceArguments::AddTo(CLI::App* command) {
+void SourceArguments::AddReadingTo(CLI::App* command) {
   command
       ->add_option("SOURCE", sources,
-                   "A recording folder (EuRoC), a folder of images, image files, a video file, a "
-                   "camera (/dev/video0) or a GStreamer pipeline")
+                   "A recording folder (EuRoC), a ROS bag (.bag, .mcap, .db3 or its folder), a "
+                   "folder of images, image files, a video file, a camera (/dev/video0) or a "
+                   "GStreamer pipeline")
       ->required();
+  bag.AddTo(command);
   command
       ->add_option("--camera", camera,
                    "Calibration: EuRoC sensor.yaml, Kalibr camchain.yaml, ROS camera_info YAML or "
                    "OpenCV YAML; overrides the source's")
       ->type_name("FILE");
   options.AddTo(command);
-  CLI::Option* folder =
-      command->add_option("--output", output, "Folder for the results (else stdout)")
-          ->type_name("DIR");
-  AddAnnotateFlag(command, &annotate)->needs(folder);
   command->add_flag("--still", still, "The frames have nothing to do with each other");
   command
       ->add_option("--altitude", altitude_m,
@@ -59,11 +56,19 @@ void SourceArguments::AddTo(CLI::App* command) {
                    "Seconds to add to an image's time to get the navigation's")
       ->type_name("S")
       ->check(InRange(-kMaxClockOffset, kMaxClockOffset, "seconds"));
+}
+
+void SourceArguments::AddTo(CLI::App* command) {
+  AddReadingTo(command);
+  CLI::Option* folder =
+      command->add_option("--output", output, "Folder for the results (else stdout)")
+          ->type_name("DIR");
+  AddAnnotateFlag(command, &annotate)->needs(folder);
   command->add_flag("--force", force, "Replace files that exist");
 }
 
 OpenedSource SourceArguments::Open(PixelFormat format) const {
-  OpenedSource opened{OpenSource(sources, format), {}};
+  OpenedSource opened{bag.Open(sources, format), {}};
   opened.calibration = FindCalibration(*opened.source);
   return opened;
 }
@@ -74,15 +79,20 @@ OutputOptions SourceArguments::Output(const OpenedSource& opened) const {
 }
 
 CameraCalibration SourceArguments::FindCalibration(const FrameSource& source) const {
-  const std::string own_file = source.calibration_file();
-  if (camera.empty() && own_file.empty()) {
-    throw InputError(
-        "no calibration: the source has none, give one by --camera FILE (EuRoC sensor.yaml, Kalibr "
-        "camchain.yaml, ROS camera_info YAML or OpenCV YAML)");
+  CameraCalibration calibration;
+  if (camera.empty()) {
+    const std::optional<CameraCalibration> own = source.calibration();
+    if (!own) {
+      throw InputError(
+          "no calibration: the source has none, give one by --camera FILE (EuRoC sensor.yaml, "
+          "Kalibr camchain.yaml, ROS camera_info YAML or OpenCV YAML)");
+    }
+    calibration = *own;
+  } else {
+    calibration = ReadCalibration(camera);
   }
-  CameraCalibration calibration = ReadCalibration(camera.empty() ? own_file : camera);
-  if (!calibration.body_from_camera && !own_file.empty()) {
-    const CameraCalibration own = ReadCalibration(own_file);
+  if (!calibration.body_from_camera) {
+    const CameraMount own = source.mount();
     calibration.body_from_camera = own.body_from_camera;
     if (!calibration.clock_offset) calibration.clock_offset = own.clock_offset;
   }

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "kestrel/camera/calibration.h"
+#include "kestrel/cli/bag_arguments.h"
 #include "kestrel/cli/option_arguments.h"
 #include "kestrel/cli/result_sink.h"
 #include "kestrel/recording/frame_source.h"
@@ -27,6 +28,7 @@ struct OpenedSource {
 // Must live until the command line is parsed.
 struct SourceArguments {
   std::vector<std::string> sources;
+  BagArguments bag;
   std::string camera;
   OptionArguments options;
   std::string output;
@@ -37,6 +39,8 @@ struct SourceArguments {
   std::optional<double> clock_offset;
 
   void AddTo(CLI::App* command);
+  // Without where results go.
+  void AddReadingTo(CLI::App* command);
 
   // The source with the calibration FILE or its own; a FILE without a mount takes the source's, and
   // its clock offset. Says on stderr when there are poses but no mount. Throws InputError when

@@ -86,6 +86,8 @@ class ParameterRules {
   }
   void Add(Finding finding) { findings_.push_back(std::move(finding)); }
 
+  // Where targets are ignored: set-points land without them, less surely.
+  Verdict without_targets() const { return all_.use.guides ? Verdict::kDoubtful : Verdict::kWrong; }
   bool moves() const { return all_.use.target_mps.has_value(); }
   // Wanted of the UAV's speed, m/s.
   double wanted_mps() const { return target_mps() + kSpeedMargin_mps; }
@@ -103,39 +105,40 @@ class ParameterRules {
 void CheckPrecisionLandingOfArduPilot(ParameterRules* rules) {
   if (rules->Find("PLND_ENABLED").value_or(0) == 0 && !rules->Find("PLND_TYPE")) {
     // ArduPilot hides the others until then.
-    rules->WantExactly("PLND_ENABLED", Verdict::kWrong,
+    rules->WantExactly("PLND_ENABLED", rules->without_targets(),
                        {1,
                         "precision landing is off, and its parameters hidden until it is on "
                         "and the autopilot restarted",
                         true});
     return;
   }
-  rules->WantExactly("PLND_ENABLED", Verdict::kWrong, {1, "targets are ignored", true});
-  rules->WantExactly("PLND_TYPE", Verdict::kWrong, {1, "targets by MAVLink are ignored", true});
+  rules->WantExactly("PLND_ENABLED", rules->without_targets(), {1, "targets are ignored", true});
+  rules->WantExactly("PLND_TYPE", rules->without_targets(),
+                     {1, "targets by MAVLink are ignored", true});
   constexpr double kDown = 25;
-  rules->WantExactly("PLND_ORIENT", Verdict::kWrong,
+  rules->WantExactly("PLND_ORIENT", rules->without_targets(),
                      {kDown, "targets are taken for ones in another direction", true});
-  rules->WantExactly("PLND_YAW_ALIGN", Verdict::kWrong,
+  rules->WantExactly("PLND_YAW_ALIGN", rules->without_targets(),
                      {0, "Kestrel's targets are turned by it: it lands beside or flies away"});
   constexpr int kSupportedDistance = 10;
   if (rules->all().use.sends_distance) {
-    rules->WantExactly("RNGFND1_TYPE", Verdict::kWrong,
+    rules->WantExactly("RNGFND1_TYPE", rules->without_targets(),
                        {kSupportedDistance, "distances by MAVLink are ignored", true});
   }
 }
 
 void CheckMovingTargetOfArduPilot(ParameterRules* rules) {
   constexpr double kFarEnough_m = 5;
-  rules->WantExactly("PLND_EST_TYPE", Verdict::kWrong,
+  rules->WantExactly("PLND_EST_TYPE", rules->without_targets(),
                      {1, "the raw estimate lags a target that moves and never lands on it"});
-  rules->WantBit("PLND_OPTIONS", Verdict::kWrong, 0,
+  rules->WantBit("PLND_OPTIONS", rules->without_targets(), 0,
                  "without bit 0 the target is thought to stand: it trails by metres");
-  rules->Want("PLND_XY_DIST_MAX", Verdict::kWrong,
+  rules->Want("PLND_XY_DIST_MAX", rules->without_targets(),
               {0, "it does not descend while it is further off than this"},
               [](double metres) { return metres == 0 || metres >= kFarEnough_m; });
   rules->WantExactly("PLND_STRICT", Verdict::kDoubtful,
                      {0, "when the target is lost it flies to where it was"});
-  rules->WantExactly("PLND_RET_MAX", Verdict::kWrong,
+  rules->WantExactly("PLND_RET_MAX", rules->without_targets(),
                      {0, "retries go back to a place where the target no longer is"});
 }
 

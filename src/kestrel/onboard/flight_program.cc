@@ -44,6 +44,7 @@ FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
   if (parts_.connection != nullptr) threads.emplace_back([this] { Communicate(); });
   while (!is_over_) {
     if (is_stopped()) End(FlightEnd::kStopped);
+    if (parts_.observer != nullptr) parts_.observer->See(ReportNow());
     std::this_thread::sleep_for(kPatience);
   }
   events_.Close();
@@ -121,7 +122,7 @@ void FlightProgram::See() {
     const auto& frame = std::get<Frame>(event);
     if (IsFrozen(frame)) continue;
     latency_.step(kVision).Add(Now() - frame.time);
-    const TrackSnapshot snapshot = parts_.vision->Process(frame);
+    const TrackSnapshot snapshot = parts_.vision->Process(frame, parts_.observer);
     latency_.step(kDetection).Add(snapshot.detect_time);
     frames_ = snapshot.frames;
     detections_ = snapshot.detections;
@@ -192,6 +193,8 @@ void FlightProgram::TakeAutopilotPose(const PoseSample& pose) {
 }
 
 void FlightProgram::WatchFlight(Time now) {
+  is_autopilot_here_ = parts_.autopilot->is_here();
+  is_landing_ = parts_.autopilot->is_armed() && parts_.autopilot->is_landing_mode();
   if (parts_.autopilot->is_here()) {
     heard_ = now;
     const double z = newest_pose_ ? newest_pose_->world_from_body.translation.z() : 0;
@@ -204,7 +207,25 @@ void FlightProgram::WatchFlight(Time now) {
   End(FlightEnd::kFailed);
 }
 
-// --- In words ---
+// --- How it is ---
+
+FlightReport FlightProgram::ReportNow() const {
+  FlightReport report{.trouble = parts_.source->error(),
+                      .capture = parts_.source->counters(),
+                      .events = events_.counters(),
+                      .repeated_frames = repeated_frames_,
+                      .autopilot = {},
+                      .recorder = {}};
+  if (parts_.recorder != nullptr) report.recorder = parts_.recorder->counters();
+  if (parts_.connection == nullptr) return report;
+  AutopilotState& autopilot = report.autopilot.emplace();
+  autopilot.is_here = is_autopilot_here_;
+  autopilot.is_landing = is_landing_;
+  if (guided_) autopilot.guidance = guidance_phase_.load();
+  autopilot.target = phase_;
+  autopilot.link = parts_.connection->counters();
+  return report;
+}
 
 std::string FlightProgram::State() const {
   const CaptureCounters capture = parts_.source->counters();

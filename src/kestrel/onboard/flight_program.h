@@ -13,6 +13,7 @@
 #include "kestrel/link/connection.h"
 #include "kestrel/link/target_profile.h"
 #include "kestrel/navigation/pose_history.h"
+#include "kestrel/onboard/flight_observer.h"
 #include "kestrel/onboard/flight_options.h"
 #include "kestrel/onboard/flight_recorder.h"
 #include "kestrel/onboard/flight_vision.h"
@@ -43,6 +44,7 @@ struct FlightParts {
   Connection* connection = nullptr;
   Autopilot* autopilot = nullptr;  // on the connection
   FlightRecorder* recorder = nullptr;
+  FlightObserver* observer = nullptr;
   bool guides = false;                 // flies by set-points when the pilot gives the mode
   bool source_has_poses = false;       // then those of the autopilot are not used
   std::optional<LinkProfile> profile;  // nothing: by the heartbeat
@@ -89,6 +91,7 @@ class FlightProgram {
   void TellTarget(Time now);
   void WatchFlight(Time now);
   void End(FlightEnd end);
+  FlightReport ReportNow() const;
 
   FlightOptions options_;
   FlightParts parts_;
@@ -115,6 +118,7 @@ class FlightProgram {
   std::atomic<TargetPhase> phase_{TargetPhase::kSearching};
   std::atomic<GuidancePhase> guidance_phase_{GuidancePhase::kIdle};
   std::atomic<int> set_points_{0};
+  std::atomic<bool> is_autopilot_here_{false}, is_landing_{false};
   std::atomic<double> height_m_{0};
 };
 

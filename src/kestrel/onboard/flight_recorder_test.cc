@@ -12,7 +12,6 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/base/read_file.h"
-#include "kestrel/camera/calibration_reader.h"
 #include "kestrel/evaluation/flight_truth.h"
 #include "kestrel/evaluation/landing_truth.h"
 #include "kestrel/recording/csv_table.h"
@@ -94,7 +93,7 @@ TEST_F(FlightRecorderTest, WhatItWritesIsARecording) {
       const double difference = cv::norm(frame.image, FrameAt(20 * i).image, cv::NORM_INF);
       EXPECT_LE(difference, compression == std::string("png") ? 0 : 60);
     }
-    const CameraCalibration calibration = ReadCalibration(source->calibration_file());
+    const CameraCalibration calibration = *source->calibration();
     EXPECT_EQ(calibration.intrinsics.width_px, 64);
     EXPECT_EQ(calibration.clock_offset, milliseconds(12));
     EXPECT_TRUE(calibration.body_from_camera);

@@ -3,6 +3,7 @@
 
 #include "kestrel/base/time.h"
 #include "kestrel/navigation/pose_history.h"
+#include "kestrel/onboard/flight_observer.h"
 #include "kestrel/onboard/target_reporter.h"
 #include "kestrel/recording/frame.h"
 
@@ -19,7 +20,8 @@ class FlightVision {
   // How much later than a frame's time, on the navigation's clock, the last pose is that it needs.
   virtual Duration pose_lead() const = 0;
 
-  virtual TrackSnapshot Process(const Frame& frame) = 0;
+  // 'observer': gets what the frame showed; null: there is none.
+  virtual TrackSnapshot Process(const Frame& frame, FlightObserver* observer) = 0;
 
   // Writes the rows of the frames that were processed meanwhile; false when the disk does not take
   // them any more (then they are lost, and said to be).

@@ -30,7 +30,7 @@ Duration HuntVision::pose_lead() const {
   return clock_offset_ + DurationFromSeconds(pipeline_.options().readout_s / 2);
 }
 
-TrackSnapshot HuntVision::Process(const Frame& frame) {
+TrackSnapshot HuntVision::Process(const Frame& frame, FlightObserver* observer) {
   const HuntObservation& observation = pipeline_.Process(frame.image, frame.time);
   snapshot_.captured = frame.time + clock_offset_;
   snapshot_.detect_time = observation.detect_time;
@@ -38,6 +38,7 @@ TrackSnapshot HuntVision::Process(const Frame& frame) {
   if (!observation.report.detections.empty()) ++snapshot_.detections;
   objects_ += observation.report.detections.size();
   if (file_) rows_.Push(ObjectCsvRows(frame.name, observation, pipeline_.detector().model()));
+  if (observer != nullptr) observer->See(frame, observation);
   return snapshot_;
 }
 

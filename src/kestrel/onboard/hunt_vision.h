@@ -24,7 +24,7 @@ class HuntVision : public FlightVision {
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
   Duration pose_lead() const override;
-  TrackSnapshot Process(const Frame& frame) override;
+  TrackSnapshot Process(const Frame& frame, FlightObserver* observer) override;
   bool WriteResults() override;
   std::string Found() const override;
 

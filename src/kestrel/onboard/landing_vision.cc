@@ -38,7 +38,7 @@ LandingVision::LandingVision(const CameraCalibration& calibration,
   WriteAtOnce(TrackCsvHeader(), kTrack, &*track_);
 }
 
-TrackSnapshot LandingVision::Process(const Frame& frame) {
+TrackSnapshot LandingVision::Process(const Frame& frame, FlightObserver* observer) {
   const LandingObservation observation = pipeline_.Process(frame.image, frame.time);
   snapshot_.captured = frame.time + clock_offset_;
   snapshot_.state = observation.track_state;
@@ -53,6 +53,7 @@ TrackSnapshot LandingVision::Process(const Frame& frame) {
   if (observation.report.detection) ++snapshot_.detections;
   if (exposure_) ControlExposure(frame.image, observation);
   if (detections_) results_.Push({frame.name, observation});
+  if (observer != nullptr) observer->See(frame, observation);
   return snapshot_;
 }
 

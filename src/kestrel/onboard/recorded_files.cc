@@ -46,7 +46,7 @@ RecordedFiles::~RecordedFiles() {
 }
 
 void RecordedFiles::Add(std::size_t index, std::string_view rows) {
-  constexpr std::size_t kMost = std::size_t{16} << 20;
+  constexpr std::size_t kMost = std::size_t{4} << 20;
   const std::lock_guard lock(mutex_);
   std::string& added = files_[index].added;
   if (added.size() + rows.size() <= kMost) added += rows;

@@ -28,7 +28,7 @@ class RecordedFiles {
   RecordedFiles(const RecordedFiles&) = delete;
   RecordedFiles& operator=(const RecordedFiles&) = delete;
 
-  // Whole rows for the file 'index'; more than 16 MB that wait are dropped. By any thread.
+  // Whole rows for the file 'index'; more than 4 MB that wait are dropped. By any thread.
   void Add(std::size_t index, std::string_view rows);
 
   // Writes all rows that were added, and waits for the disk. Returns an empty text or, in words,

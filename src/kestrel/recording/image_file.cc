@@ -54,7 +54,7 @@ bool IsComplete(std::string_view bytes) {
   return true;
 }
 
-cv::Mat Decode(const std::string& bytes) {
+cv::Mat Decode(std::string_view bytes) {
   if (bytes.empty() || bytes.size() > std::numeric_limits<int>::max()) return {};
   const cv::Mat view(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
   try {
@@ -81,11 +81,14 @@ std::optional<int> ConversionCode(int channels, PixelFormat format) {
 }  // namespace
 
 cv::Mat ReadImage(const std::string& path, PixelFormat format) {
-  const std::string bytes = ReadFile(path);
-  if (!IsComplete(bytes)) throw InputError(path + ": the image file is cut off");
+  return DecodeImageBytes(ReadFile(path), format, path);
+}
+
+cv::Mat DecodeImageBytes(std::string_view bytes, PixelFormat format, const std::string& name) {
+  if (!IsComplete(bytes)) throw InputError(name + ": the image file is cut off");
   const cv::Mat image = Decode(bytes);
-  if (image.empty()) throw InputError(path + ": cannot be decoded as an image");
-  return ToFormat(image, format, path);
+  if (image.empty()) throw InputError(name + ": cannot be decoded as an image");
+  return ToFormat(image, format, name);
 }
 
 cv::Mat ToFormat(const cv::Mat& image, PixelFormat format, const std::string& name) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include <opencv2/core.hpp>
 
@@ -17,6 +18,9 @@ cv::Mat ReadImage(const std::string& path, PixelFormat format);
 inline cv::Mat ReadGrayImage(const std::string& path) {
   return ReadImage(path, PixelFormat::kGray);
 }
+
+// The same from the bytes of such a file; 'name' is for the message.
+cv::Mat DecodeImageBytes(std::string_view bytes, PixelFormat format, const std::string& name);
 
 // 'image' in 'format', as above; 'name' is for the message.
 cv::Mat ToFormat(const cv::Mat& image, PixelFormat format, const std::string& name);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "kestrel/base/error.h"
+#include "kestrel/camera/calibration_reader.h"
 #include "kestrel/recording/file_kind.h"
 #include "kestrel/recording/image_file.h"
 
@@ -70,11 +71,21 @@ ImageSequence::ImageSequence(std::vector<Item> items, std::string calibration_fi
 
 bool ImageSequence::Next(Frame* frame) {
   if (next_ == items_.size()) return false;
-  const Item& item = items_[next_++];
+  return Read(next_++, frame);
+}
+
+bool ImageSequence::Read(std::size_t index, Frame* frame) const {
+  if (index >= items_.size()) return false;
+  const Item& item = items_[index];
   frame->name = item.name;
   frame->time = item.time;
   frame->image = ReadImage(item.path, format());
   return true;
+}
+
+std::optional<CameraCalibration> ImageSequence::calibration() const {
+  if (calibration_file_.empty()) return std::nullopt;
+  return ReadCalibration(calibration_file_);
 }
 
 double ImageSequence::rate_hz() const {

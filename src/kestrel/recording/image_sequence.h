@@ -22,9 +22,12 @@ class ImageSequence : public FrameSource {
                          std::vector<PoseSample> poses = {});
 
   bool Next(Frame* frame) override;
+  bool Read(std::size_t index, Frame* frame) const override;
   std::optional<std::size_t> frame_count() const override { return items_.size(); }
   double rate_hz() const override;
-  std::string calibration_file() const override { return calibration_file_; }
+  std::optional<CameraCalibration> calibration() const override;
+  // Empty if there is none.
+  const std::string& calibration_file() const { return calibration_file_; }
   std::vector<PoseSample> poses() const override { return poses_; }
 
  private:

@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "kestrel/geometry/angles.h"
 #include "kestrel/link/mavlink_enums.h"
+#include "kestrel/navigation/gravity.h"
 #include "kestrel/sitl/set_point_reading.h"
 
 namespace kestrel {
@@ -40,6 +42,7 @@ void ArduPilotGuided::Handle(const mavlink::SetPositionTargetLocalNed& message,
 
 void ArduPilotGuided::Start(const FlightState& state) {
   told_.reset();
+  limit_ = {};
   horizontal_.Start(state.position().head<2>(), state.velocity().head<2>());
   vertical_.Start(state.position().tail<1>(), state.velocity().tail<1>());
 }
@@ -59,6 +62,7 @@ FlightCommand ArduPilotGuided::Fly(const FlightState& state) {
   command.set_point.velocity << horizontal_.velocity() + parameters_["PSC_NE_POS_P"] * way,
       vertical_.velocity().x() + parameters_["PSC_D_POS_P"] * climb;
   command.set_point.acceleration << horizontal_.acceleration(), vertical_.acceleration().x();
+  limit_ = LimitOf(way, command.set_point.velocity.head<2>() - state.velocity().head<2>());
   if (wanted_.yaw) {
     command.set_point.yaw = wanted_.yaw;
   } else if (turn_rate_) {
@@ -70,9 +74,18 @@ FlightCommand ArduPilotGuided::Fly(const FlightState& state) {
   return command;
 }
 
+// Where its control of the velocity asks for more than it may lean.
+ShapedPath<2>::Limit ArduPilotGuided::LimitOf(const Vector2d& way,
+                                              const Vector2d& velocity_error) const {
+  const Vector2d wanted = horizontal_.acceleration() + parameters_["PSC_NE_VEL_P"] * velocity_error;
+  const bool is_limited =
+      wanted.norm() > kGravity * std::tan(Radians(parameters_["ATC_ANGLE_MAX"]));
+  return {is_limited ? wanted : Vector2d(0, 0), way, velocity_error};
+}
+
 void ArduPilotGuided::Follow(const FlightState& state) {
   horizontal_.Step(wanted_.velocity.head<2>(), wanted_.acceleration.head<2>(),
-                   parameters_["WP_ACC"], parameters_["PSC_JERK_NE"], state.step_s);
+                   parameters_["WP_ACC"], parameters_["PSC_JERK_NE"], state.step_s, limit_);
   vertical_.Step(Vector1d(wanted_.velocity.z()), Vector1d(wanted_.acceleration.z()),
                  parameters_["WP_ACC_Z"], parameters_["PSC_JERK_D"], state.step_s);
   if (!state.is_standing) return;

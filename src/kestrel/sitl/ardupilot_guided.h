@@ -28,6 +28,8 @@ class ArduPilotGuided : public GuidedRules {
   }
 
  private:
+  ShapedPath<2>::Limit LimitOf(const Eigen::Vector2d& way,
+                               const Eigen::Vector2d& velocity_error) const;
   void Follow(const FlightState& state);
 
   const AutopilotParameters& parameters_;
@@ -35,6 +37,7 @@ class ArduPilotGuided : public GuidedRules {
   std::optional<double> turn_rate_;  // ENU, rad/s
   std::optional<Time> told_;         // when; nothing: it is to stop
   ShapedPath<2> horizontal_;
+  ShapedPath<2>::Limit limit_;
   ShapedPath<1> vertical_;
 };
 

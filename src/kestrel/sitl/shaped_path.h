@@ -24,10 +24,17 @@ class ShapedPath {
   // Elsewhere, as fast as before.
   void MoveTo(const Vector& position) { position_ = position; }
 
+  // What the UAV that follows cannot do: it does not run away from it.
+  struct Limit {
+    Vector direction = Vector::Zero();       // in which it cannot accelerate more; zero: it can
+    Vector way = Vector::Zero();             // from the UAV to the path, m
+    Vector velocity_error = Vector::Zero();  // of the UAV, m/s
+  };
+
   // 'feed_forward': acceleration that is wanted with the velocity. 'max_acceleration' limits only
   // what corrects the velocity.
   void Step(const Vector& wanted_velocity, const Vector& feed_forward, double max_acceleration,
-            double max_jerk, double seconds) {
+            double max_jerk, double seconds, const Limit& limit = {}) {
     const Vector error = wanted_velocity - velocity_;
     const double distance = error.norm();
     Vector wanted = feed_forward;
@@ -38,8 +45,14 @@ class ShapedPath {
     const Vector change = wanted - acceleration_;
     const double max_change = max_jerk * seconds;
     acceleration_ += std::min(1.0, max_change / std::max(change.norm(), max_change)) * change;
-    position_ += seconds * (velocity_ + 0.5 * seconds * acceleration_);
-    velocity_ += seconds * acceleration_;
+    const auto is_beyond = [&limit](const Vector& step, const Vector& off) {
+      return step.dot(limit.direction) > 0 && off.dot(limit.direction) > 0;
+    };
+    const Vector step = seconds * (velocity_ + 0.5 * seconds * acceleration_);
+    if (!is_beyond(step, limit.way)) position_ += step;
+    const Vector gain = seconds * acceleration_;
+    const bool would_slow_down = velocity_.dot(limit.direction) < 0;
+    if (would_slow_down || !is_beyond(gain, limit.velocity_error)) velocity_ += gain;
   }
 
   const Vector& position() const { return position_; }

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whatever a browser's socket brings: the reader of its messages does not throw, and what it reads
+// are numbers that the program can use; the guard lets nobody in who has not the token.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+#include <variant>
+
+#include "kestrel/console/client_message.h"
+#include "kestrel/console/request_guard.h"
+
+namespace {
+
+using kestrel::Admission;
+using kestrel::RequestGuard;
+
+constexpr char kToken[] = "0123456789abcdef";
+
+const RequestGuard& Guard() {
+  static const RequestGuard guard = [] {
+    kestrel::ConsoleOptions options;
+    options.token = kToken;
+    return RequestGuard(options, 8080);
+  }();
+  return guard;
+}
+
+void Require(bool condition) {
+  if (!condition) std::abort();
+}
+
+void ReadMessage(std::string_view text) {
+  const auto message = kestrel::ParseClientMessage(text);
+  if (!message) return;
+  if (const auto* command = std::get_if<kestrel::ConsoleCommand>(&*message)) {
+    Require(std::isfinite(command->value));
+  }
+}
+
+// Host, origin, cookies and target, a line each.
+void AskGuard(std::string_view text, bool is_web_socket) {
+  std::string_view lines[4];
+  for (std::string_view& line : lines) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  const Admission admission = Guard().Admit({.target = lines[3],
+                                             .host = lines[0],
+                                             .origin = lines[1],
+                                             .cookies = lines[2],
+                                             .is_web_socket = is_web_socket});
+  const bool knows_token =
+      lines[2].find(kToken) != lines[2].npos || lines[3].find(kToken) != lines[3].npos;
+  const bool is_let_in = admission == Admission::kServed || admission == Admission::kSignedIn;
+  Require(!is_let_in || (knows_token && lines[1].ends_with(lines[0])));
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  ReadMessage(text);
+  AskGuard(text, /*is_web_socket=*/false);
+  AskGuard(text, /*is_web_socket=*/true);
+  return 0;
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whatever the bytes of a message are, each type is read from them or refused. The first byte
+// chooses the serialization.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "kestrel/bags/camera_info.h"
+#include "kestrel/bags/image_message.h"
+#include "kestrel/bags/messages.h"
+#include "kestrel/bags/serialization.h"
+#include "kestrel/base/error.h"
+
+namespace {
+
+const std::string kName = "message";
+
+template <class Message, class Use>
+void Read(std::string_view bytes, kestrel::WireFormat format, const Use& use) {
+  try {
+    use(kestrel::ParseMessage<Message>(bytes, format, kName));
+  } catch (const kestrel::InputError&) {
+  }
+}
+
+template <class Message>
+void ReadOnly(std::string_view bytes, kestrel::WireFormat format) {
+  Read<Message>(bytes, format, [](const Message&) {});
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const auto format = data[0] % 2 == 0 ? kestrel::WireFormat::kRos1 : kestrel::WireFormat::kCdr;
+  const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
+  const auto decode = [](const auto& image) {
+    if (kestrel::DecodeImage(image, kestrel::PixelFormat::kBgr, kName).empty()) std::abort();
+  };
+  Read<kestrel::ImageMessage>(bytes, format, decode);
+  Read<kestrel::CompressedImageMessage>(bytes, format, decode);
+  Read<kestrel::CameraInfoMessage>(bytes, format, [](const kestrel::CameraInfoMessage& info) {
+    const auto calibration = kestrel::CalibrationOf(info, /*is_rectified=*/false, kName);
+    if (!calibration.intrinsics.Validate().empty()) std::abort();
+  });
+  ReadOnly<kestrel::PoseStampedMessage>(bytes, format);
+  ReadOnly<kestrel::PoseWithCovarianceStampedMessage>(bytes, format);
+  ReadOnly<kestrel::TransformStampedMessage>(bytes, format);
+  ReadOnly<kestrel::OdometryMessage>(bytes, format);
+  ReadOnly<kestrel::TfMessage>(bytes, format);
+  return 0;
+}

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/bags/message_definitions.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "kestrel/base/error.h"
+
+namespace kestrel {
+namespace {
+
+struct Definition {
+  std::string_view type;
+  std::string_view checksum;  // of ROS 1; empty for types that are only parts
+  std::string_view fields;
+  std::vector<std::string_view> parts;  // types of its fields
+};
+
+// Field names of CameraInfo are small in ROS 2 and large in ROS 1, whose header has a number too:
+// these two have a second definition.
+const std::vector<Definition>& Definitions() {
+  static const std::vector<Definition> kDefinitions = {
+      {"sensor_msgs/Image",
+       "060021388200f6f0f447d0fcd9c64743",
+       "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\n"
+       "uint8 is_bigendian\nuint32 step\nuint8[] data\n",
+       {"std_msgs/Header"}},
+      {"sensor_msgs/CameraInfo",
+       "c9a58c1b0b154e0e6da7578cb991d214",
+       "std_msgs/Header header\nuint32 height\nuint32 width\nstring distortion_model\n"
+       "float64[] D\nfloat64[9] K\nfloat64[9] R\nfloat64[12] P\nuint32 binning_x\n"
+       "uint32 binning_y\nsensor_msgs/RegionOfInterest roi\n",
+       {"std_msgs/Header", "sensor_msgs/RegionOfInterest"}},
+      {"sensor_msgs/CompressedImage",
+       "8f7a12909da2c9d3332d540a0977563f",
+       "std_msgs/Header header\nstring format\nuint8[] data\n",
+       {"std_msgs/Header"}},
+      {"geometry_msgs/PoseWithCovarianceStamped",
+       "953b798c0f514ff060a53a3498ce6246",
+       "std_msgs/Header header\ngeometry_msgs/PoseWithCovariance pose\n",
+       {"std_msgs/Header", "geometry_msgs/PoseWithCovariance"}},
+      {"geometry_msgs/PoseStamped",
+       "d3812c3cbc69362b77dc0b19b345f8f5",
+       "std_msgs/Header header\ngeometry_msgs/Pose pose\n",
+       {"std_msgs/Header", "geometry_msgs/Pose"}},
+      {"nav_msgs/Odometry",
+       "cd5e73d190d741a2f92e81eda573aca7",
+       "std_msgs/Header header\nstring child_frame_id\n"
+       "geometry_msgs/PoseWithCovariance pose\ngeometry_msgs/TwistWithCovariance twist\n",
+       {"std_msgs/Header", "geometry_msgs/PoseWithCovariance",
+        "geometry_msgs/TwistWithCovariance"}},
+      {"tf2_msgs/TFMessage",
+       "94810edda583a504dfda3829e70d7eec",
+       "geometry_msgs/TransformStamped[] transforms\n",
+       {"geometry_msgs/TransformStamped"}},
+      {"geometry_msgs/TransformStamped",
+       "b5764a33bfeb3588febc2682852579b0",
+       "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n",
+       {"std_msgs/Header", "geometry_msgs/Transform"}},
+      {"std_msgs/Header", "", "uint32 seq\ntime stamp\nstring frame_id\n", {}},
+      {"sensor_msgs/RegionOfInterest",
+       "",
+       "uint32 x_offset\nuint32 y_offset\nuint32 height\nuint32 width\nbool do_rectify\n",
+       {}},
+      {"geometry_msgs/Pose",
+       "",
+       "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n",
+       {"geometry_msgs/Point", "geometry_msgs/Quaternion"}},
+      {"geometry_msgs/PoseWithCovariance",
+       "",
+       "geometry_msgs/Pose pose\nfloat64[36] covariance\n",
+       {"geometry_msgs/Pose"}},
+      {"geometry_msgs/Twist",
+       "",
+       "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n",
+       {"geometry_msgs/Vector3"}},
+      {"geometry_msgs/TwistWithCovariance",
+       "",
+       "geometry_msgs/Twist twist\nfloat64[36] covariance\n",
+       {"geometry_msgs/Twist"}},
+      {"geometry_msgs/Transform",
+       "",
+       "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n",
+       {"geometry_msgs/Vector3", "geometry_msgs/Quaternion"}},
+      {"geometry_msgs/Point", "", "float64 x\nfloat64 y\nfloat64 z\n", {}},
+      {"geometry_msgs/Vector3", "", "float64 x\nfloat64 y\nfloat64 z\n", {}},
+      {"geometry_msgs/Quaternion", "", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n", {}},
+  };
+  return kDefinitions;
+}
+
+// What ROS 2 says in other words.
+const std::vector<Definition>& Ros2Definitions() {
+  static const std::vector<Definition> kDefinitions = {
+      {"sensor_msgs/CameraInfo",
+       "",
+       "std_msgs/Header header\nuint32 height\nuint32 width\nstring distortion_model\n"
+       "float64[] d\nfloat64[9] k\nfloat64[9] r\nfloat64[12] p\nuint32 binning_x\n"
+       "uint32 binning_y\nsensor_msgs/RegionOfInterest roi\n",
+       {"std_msgs/Header", "sensor_msgs/RegionOfInterest"}},
+      {"std_msgs/Header",
+       "",
+       "builtin_interfaces/Time stamp\nstring frame_id\n",
+       {"builtin_interfaces/Time"}},
+      {"builtin_interfaces/Time", "", "int32 sec\nuint32 nanosec\n", {}},
+  };
+  return kDefinitions;
+}
+
+const Definition* FindDefinition(const std::vector<Definition>& definitions,
+                                 std::string_view type) {
+  const auto known =
+      std::find_if(definitions.begin(), definitions.end(),
+                   [&](const Definition& definition) { return definition.type == type; });
+  return known == definitions.end() ? nullptr : &*known;
+}
+
+const Definition& DefinitionOf(std::string_view type, WireFormat format) {
+  const Definition* found =
+      format == WireFormat::kCdr ? FindDefinition(Ros2Definitions(), type) : nullptr;
+  if (found == nullptr) found = FindDefinition(Definitions(), type);
+  if (found == nullptr) throw InputError(fmt::format("the type {} is not written", type));
+  return *found;
+}
+
+// The types in 'type', each once, in the order in which they are met.
+void AddParts(std::string_view type, WireFormat format, std::vector<std::string_view>* parts) {
+  for (const std::string_view part : DefinitionOf(type, format).parts) {
+    if (std::find(parts->begin(), parts->end(), part) != parts->end()) continue;
+    parts->push_back(part);
+    AddParts(part, format, parts);
+  }
+}
+
+}  // namespace
+
+std::string MessageDefinition(std::string_view type, WireFormat format) {
+  std::string text(DefinitionOf(type, format).fields);
+  std::vector<std::string_view> parts;
+  AddParts(type, format, &parts);
+  for (const std::string_view part : parts) {
+    text += fmt::format("{:=<80}\nMSG: {}\n{}", "", part, DefinitionOf(part, format).fields);
+  }
+  return text;
+}
+
+std::string_view MessageChecksum(std::string_view type) {
+  return DefinitionOf(type, WireFormat::kRos1).checksum;
+}
+
+std::string Ros2TypeName(std::string_view type) {
+  const std::size_t slash = type.find('/');
+  return fmt::format("{}/msg{}", type.substr(0, slash), type.substr(slash));
+}
+
+}  // namespace kestrel

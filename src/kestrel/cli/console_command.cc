@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/cli/console_command.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "kestrel/base/error.h"
+#include "kestrel/base/options.h"
+#include "kestrel/base/read_file.h"
+#include "kestrel/cli/interrupt.h"
+#include "kestrel/cli/pipeline_run.h"
+#include "kestrel/cli/source_arguments.h"
+#include "kestrel/console/replay_console.h"
+#include "kestrel/evaluation/landing_comparison.h"
+#include "kestrel/pipeline/landing_pipeline.h"
+#include "kestrel/recording/euroc_recording.h"
+#include "kestrel/recording/landing_csv.h"
+
+namespace kestrel {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ConsoleArguments {
+  SourceArguments source;
+  std::string address;
+
+  ConsoleOptions Options(const KestrelOptions& options) const {
+    if (address.empty()) return options.console;
+    return Checked(WithAddress(options.console, address, "--address"));
+  }
+};
+
+// The truth of a recording, where it has one.
+struct Truth {
+  std::string recording;
+  std::string pattern_file;
+};
+
+std::optional<Truth> FindTruth(const std::vector<std::string>& sources) {
+  if (sources.size() != 1) return std::nullopt;
+  const auto root = FindEurocRoot(sources.front());
+  if (!root) return std::nullopt;
+  const fs::path pattern = fs::path(*root) / "landing_pattern0" / "data.csv";
+  const fs::path poses = fs::path(*root) / "state_groundtruth_estimate0" / "data.csv";
+  if (!fs::exists(pattern) || !fs::exists(poses)) return std::nullopt;
+  return Truth{sources.front(), pattern.string()};
+}
+
+FrameMark MarkOf(const LandingComparison& comparison) {
+  switch (comparison.verdict) {
+    case LandingVerdict::kFound:
+      return FrameMark::kFound;
+    case LandingVerdict::kFalse:
+      return FrameMark::kFalse;
+    case LandingVerdict::kMissed:
+      return comparison.IsVisible() ? FrameMark::kLost : FrameMark::kNothing;
+    case LandingVerdict::kQuiet:
+      break;
+  }
+  return FrameMark::kNothing;
+}
+
+// The landing pipeline over a recording, whose results are kept for the page.
+class ReplayRun : public PipelineRun {
+ public:
+  ReplayRun(const OpenedSource& opened, const LandingPipelineOptions& options,
+            std::optional<double> altitude_m, ReplayConsole* console)
+      : pipeline_(opened.calibration, options),
+        frame_count_(opened.source->frame_count().value_or(0)),
+        console_(console),
+        table_(LandingCsvHeader()) {
+    pipeline_.SetAltitude(altitude_m);
+  }
+
+  void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
+
+  Duration Process(const Frame& frame) override {
+    ReplayFrame& replayed = frames_.emplace_back();
+    replayed.observation = pipeline_.Process(frame.image, frame.time);
+    found_ += replayed.observation.report.detection.has_value();
+    table_ += LandingCsvRow(frame.name, replayed.observation);
+    if (frames_.size() % kProgressFrames == 0) {
+      console_->SetProgress(fmt::format("{} of {} frames", frames_.size(), frame_count_));
+    }
+    return replayed.observation.detect_time;
+  }
+
+  std::string Found() const override { return fmt::format("pattern found in {}", found_); }
+  std::string Remarks() const override { return ""; }
+
+  // Once only: the frames with their marks.
+  std::vector<ReplayFrame> TakeFrames(const std::optional<Truth>& truth) {
+    if (truth) {
+      MarkByTruth(*truth);
+    } else {
+      MarkByTrack(&frames_);
+    }
+    return std::move(frames_);
+  }
+
+ private:
+  static constexpr std::size_t kProgressFrames = 20;
+
+  void MarkByTruth(const Truth& truth) {
+    const auto patterns = ParseTruePatterns(ReadFile(truth.pattern_file), truth.pattern_file);
+    const std::string name = "landing_detections.csv";
+    const auto comparisons = CompareLanding(FlightTruth(truth.recording), patterns,
+                                            ParseDetectionRows(table_, name), name);
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      frames_[i].mark = MarkOf(comparisons[i]);
+      if (comparisons[i].errors) frames_[i].error_px = comparisons[i].errors->center_px;
+    }
+  }
+
+  LandingPipeline pipeline_;
+  std::size_t frame_count_;
+  ReplayConsole* console_;
+  std::vector<ReplayFrame> frames_;
+  std::string table_;  // as `kestrel land` writes it
+  std::size_t found_ = 0;
+};
+
+void RequireImages(const OpenedSource& opened, const std::string& name) {
+  Frame first;
+  if (opened.source->Read(0, &first)) return;
+  throw InputError(name +
+                   ": the page goes to and fro, expected a recording or images, not a video or "
+                   "a camera");
+}
+
+void RunConsole(const ConsoleArguments& arguments) {
+  const KestrelOptions all_options = arguments.source.options.Read();
+  LandingPipelineOptions options = all_options.landing;
+  options.still = options.still || arguments.source.still;
+  const OpenedSource opened = arguments.source.Open(PixelFormat::kGray);
+  const std::string& name = arguments.source.sources.front();
+  RequireImages(opened, name);
+  const std::optional<Truth> truth = FindTruth(arguments.source.sources);
+  ReplayConsole console(arguments.Options(all_options), name, ViewOf(opened.calibration, options),
+                        truth.has_value());
+  fmt::print(stderr, "console: {}\n", console.url());
+  ReplayRun run(opened, options, arguments.source.altitude_m, &console);
+  RunPipeline(opened, &run);
+  if (WasInterrupted()) return;
+  const auto read = [&opened](std::size_t index) {
+    Frame frame;
+    opened.source->Read(index, &frame);
+    return frame.image;
+  };
+  console.Play(run.TakeFrames(truth), read, WasInterrupted);
+}
+
+}  // namespace
+
+void AddConsoleCommand(CLI::App* app) {
+  CLI::App* command = app->add_subcommand("console", "The web page on a recording: replay it");
+  const auto arguments = std::make_shared<ConsoleArguments>();
+  arguments->source.AddReadingTo(command);
+  command
+      ->add_option("--address", arguments->address,
+                   "Where the page is served (127.0.0.1:8080); port 0: any free one")
+      ->type_name("ADDRESS:PORT");
+  command->callback([arguments] { RunConsole(*arguments); });
+}
+
+}  // namespace kestrel

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <chrono>
+#include <csignal>
+#include <regex>
+#include <string>
+#include <sys/types.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+#include "kestrel/cli/test_command.h"
+#include "kestrel/console/test_browser.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::HasSubstr;
+
+// The command while it runs; ends with Ctrl-C.
+class RunningCommand {
+ public:
+  // 'log': the file of its stderr.
+  RunningCommand(const std::string& arguments, const std::string& log) : log_(log) {
+    const std::string line = fmt::format("exec {} {} 2>'{}'", KESTREL_COMMAND, arguments, log);
+    process_ = fork();
+    if (process_ != 0) return;
+    execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+    _exit(127);
+  }
+  ~RunningCommand() { End(); }
+
+  // Where it serves its page; 0 when it does not say so.
+  int Port() const {
+    const std::regex url("console: http://127\\.0\\.0\\.1:([0-9]+)/");
+    for (int i = 0; i < 1000; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      std::smatch match;
+      const std::string log = ReadFile(log_);
+      if (std::regex_search(log, match, url)) return std::stoi(match[1]);
+      if (waitpid(process_, nullptr, WNOHANG) != 0) return 0;
+    }
+    return 0;
+  }
+
+  // Its exit status; -1 when it had ended by itself.
+  int End() {
+    if (process_ <= 0) return -1;
+    kill(process_, SIGINT);
+    int status = 0;
+    const bool was_there = waitpid(process_, &status, 0) == process_;
+    process_ = 0;
+    return was_there && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  std::string log_;
+  pid_t process_ = 0;
+};
+
+class ConsoleCommandTest : public CommandTest {
+ protected:
+  // A short flight with truth.
+  std::string Recording() const {
+    const std::string flight = folder_ / "flight";
+    EXPECT_EQ(Run("simulate landing --scenario calm --seed 2 --output " + flight +
+                  " --set frames=10 --set rate_hz=10 --set ground.map_px=256"
+                  " --set shutter.rays_per_pixel=4")
+                  .status,
+              0);
+    return flight;
+  }
+  static void ExpectPage(int port) {
+    TestBrowser browser(port);
+    auto request = browser.Get("/");
+    request.set(boost::beast::http::field::accept_encoding, "gzip");
+    EXPECT_EQ(browser.Send(request).result_int(), 200u);
+  }
+};
+
+TEST_F(ConsoleCommandTest, AFlightIsSeen) {
+  RunningCommand fly(
+      "fly sim:standing --autopilot sim:px4 --console 127.0.0.1:0 --set fly.sim_camera.scale=0.4",
+      folder_.Write("log", ""));
+  const int port = fly.Port();
+  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
+  ExpectPage(port);
+  TestSocket socket(port);
+  socket.Send(R"({"images": true})");
+  const auto hello = socket.Next("hello");
+  ASSERT_TRUE(hello);
+  EXPECT_EQ((*hello)["title"], "sim:standing");
+  EXPECT_EQ((*hello)["live"], true);
+  const auto image = socket.Next("image");
+  ASSERT_TRUE(image);
+  EXPECT_GT((*image)["width"], 100);
+  EXPECT_LT((*image)["age_ms"], 5000);
+  const auto sample = socket.Next("sample");
+  ASSERT_TRUE(sample);
+  EXPECT_EQ((*sample)["values"].size(), (*hello)["series"].size());
+  EXPECT_TRUE(socket.Next("map"));
+  const auto health = socket.Next("health");
+  ASSERT_TRUE(health);
+  EXPECT_THAT(health->dump(), HasSubstr("autopilot"));
+  EXPECT_EQ(fly.End(), 0) << ReadFile(folder_ / "log");
+}
+
+TEST_F(ConsoleCommandTest, ARecordingIsReplayed) {
+  RunningCommand console("console " + Recording() + " --address 127.0.0.1:0",
+                         folder_.Write("log", ""));
+  const int port = console.Port();
+  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
+  ExpectPage(port);
+  TestSocket socket(port);
+  const auto timeline = socket.Next("timeline");
+  ASSERT_TRUE(timeline);
+  EXPECT_EQ((*timeline)["marks"], std::string(10, 'f'));
+  socket.Send(R"({"command": "step", "value": 3})");
+  for (;;) {
+    const auto playback = socket.Next("playback");
+    ASSERT_TRUE(playback);
+    if ((*playback)["frame"] == 3) break;
+  }
+  socket.Send(R"({"images": true})");
+  const auto image = socket.Next("image");
+  ASSERT_TRUE(image);
+  EXPECT_EQ((*image)["age_ms"], nullptr);
+  EXPECT_EQ((*image)["shapes"][0]["layer"], "prediction");
+  EXPECT_EQ(console.End(), 0) << ReadFile(folder_ / "log");
+}
+
+TEST_F(ConsoleCommandTest, FaultsAreNamed) {
+  const std::string fly = "fly sim:standing --console ";
+  ExpectInputError(fly + "8080", "--console '8080': expected ADDRESS:PORT");
+  ExpectInputError(fly + "0.0.0.0:8080", "token is empty, expected one");
+  ExpectInputError(fly + "192.0.2.1:8080 --set console.token=0123456789abcdef",
+                   "cannot listen at 192.0.2.1 port 8080");
+  ExpectInputError(fly + "--set console.token=short", "console.token is not 16 to 128");
+  const std::string flight = Recording();
+  ExpectInputError("console " + flight + " --address nowhere:1", "--address 'nowhere:1'");
+  ExpectInputError("console " + folder_ / "missing", "no such file or folder");
+  RunningCommand first("console " + flight + " --address 127.0.0.1:0", folder_.Write("log", ""));
+  const int port = first.Port();
+  ASSERT_GT(port, 0);
+  ExpectInputError(fmt::format("{}127.0.0.1:{}", fly, port), "expected a free port");
+}
+
+}  // namespace
+}  // namespace kestrel

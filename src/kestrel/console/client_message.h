@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <variant>
+
+namespace kestrel {
+
+// "The picture with this number is drawn, send the next": {"ack": 7}.
+struct ImageAck {
+  std::uint64_t sequence = 0;
+};
+
+// "Pictures, please", or none, as while the page is not in view: {"images": true}.
+struct ImageWish {
+  bool wanted = false;
+};
+
+// What the user asks for: {"command": "record", "value": 1}.
+enum class ConsoleCommandKind {
+  kRecord,    // 1: start, 0: stop recording
+  kSnapshot,  // keep the present frame; no value
+  kPlay,      // at so many times the speed, 0: hold, negative: backwards
+  kSeek,      // to so many s after the beginning
+  kStep,      // so many frames forward
+};
+const char* ToString(ConsoleCommandKind kind);  // "record", "snapshot", "play", "seek", "step"
+struct ConsoleCommand {
+  ConsoleCommandKind kind = ConsoleCommandKind::kSnapshot;
+  double value = 0;  // finite
+};
+
+using ClientMessage = std::variant<ImageAck, ImageWish, ConsoleCommand>;
+
+// What a browser has sent; nothing when it is not one of those above, to the letter. Does not
+// throw.
+std::optional<ClientMessage> ParseClientMessage(std::string_view text);
+
+}  // namespace kestrel

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/console/client_message.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace kestrel {
+namespace {
+
+TEST(ClientMessageTest, ReadsWhatThePageSends) {
+  EXPECT_EQ(std::get<ImageAck>(*ParseClientMessage(R"({"ack": 7})")).sequence, 7u);
+  EXPECT_TRUE(std::get<ImageWish>(*ParseClientMessage(R"({"images": true})")).wanted);
+  const auto seek =
+      std::get<ConsoleCommand>(*ParseClientMessage(R"({"command": "seek", "value": 2.5})"));
+  EXPECT_EQ(seek.kind, ConsoleCommandKind::kSeek);
+  EXPECT_EQ(seek.value, 2.5);
+  EXPECT_EQ(std::get<ConsoleCommand>(*ParseClientMessage(R"({"command":"snapshot"})")).kind,
+            ConsoleCommandKind::kSnapshot);
+}
+
+TEST(ClientMessageTest, RefusesAllElse) {
+  for (const char* text :
+       {"", "{", "[]", "{}", "7", "null", R"({"ack": -1})", R"({"ack": "7"})", R"({"ack": 1.5})",
+        R"({"ack": 1, "images": true})", R"({"images": 1})", R"({"command": 1})",
+        R"({"command": "format"})", R"({"command": "seek", "value": "2"})",
+        R"({"command": "seek", "value": 1e999})", R"({"command": "seek", "path": 1})",
+        R"({"command": "seek", "value": 1, "path": 1})", R"({"other": 1})", "\xff\xfe"}) {
+    EXPECT_FALSE(ParseClientMessage(text)) << text;
+  }
+}
+
+TEST(ClientMessageTest, DeepNestingCostsNoStack) {
+  EXPECT_FALSE(ParseClientMessage(std::string(1 << 20, '[')));
+  std::string text = "{\"ack\":";
+  text.append(10000, '[').append(10000, ']').append("}");
+  EXPECT_FALSE(ParseClientMessage(text));
+}
+
+}  // namespace
+}  // namespace kestrel

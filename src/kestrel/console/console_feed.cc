@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/console/console_feed.h"
+
+#include <utility>
+
+namespace kestrel {
+namespace {
+
+constexpr std::size_t kMaxUpdates = 1024;
+constexpr std::size_t kMaxCommands = 64;
+
+}  // namespace
+
+const char* ToString(OverlayLayer layer) {
+  switch (layer) {
+    case OverlayLayer::kDetection:
+      return "detection";
+    case OverlayLayer::kPrediction:
+      return "prediction";
+    case OverlayLayer::kRejected:
+      return "rejected";
+  }
+  return "";
+}
+
+ConsoleFeed::ConsoleFeed(Description description)
+    : description_(std::move(description)), updates_(kMaxUpdates), commands_(kMaxCommands) {}
+
+void ConsoleFeed::SetFrame(ConsoleFrame* frame) {
+  frame->sequence = ++sequence_;
+  frame_.Set(*frame);
+}
+
+}  // namespace kestrel

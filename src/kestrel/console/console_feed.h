@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "kestrel/base/time.h"
+#include "kestrel/console/client_message.h"
+#include "kestrel/onboard/bounded_queue.h"
+#include "kestrel/onboard/latest_value.h"
+
+namespace kestrel {
+
+// What the page can show over the image, each kind switched by itself.
+enum class OverlayLayer { kDetection, kPrediction, kRejected };
+const char* ToString(OverlayLayer layer);  // "detection", "prediction", "rejected"
+
+// A closed line over the image with a word about it: what was found and how, or why it was not.
+struct OverlayShape {
+  OverlayLayer layer = OverlayLayer::kDetection;
+  std::vector<cv::Point2f> outline;  // pixels; one point is a mark
+  std::string label;
+};
+
+// A frame and what was found in it.
+struct ConsoleFrame {
+  std::uint64_t sequence = 0;  // from 1, given by the feed; 0: none yet
+  Time captured;
+  cv::Mat image;  // 8-bit gray or BGR, which nobody changes any more
+  std::vector<OverlayShape> shapes;
+};
+
+// A quantity that the page draws over time.
+struct SeriesDescription {
+  std::string name;   // as "height"
+  std::string unit;   // as "m"; empty for a pure number
+  std::string label;  // for people
+};
+
+// One value for each series; NaN where it is not known.
+struct ConsoleSample {
+  Time time;
+  std::vector<double> values;
+};
+
+// How things are, in words for a pilot at a glance.
+struct ConsoleStatus {
+  std::string state;   // as "searching", "tracking", "landing"
+  std::string reason;  // why not more than that; empty where there is nothing to say
+  bool is_recording = false;
+
+  bool operator==(const ConsoleStatus&) const = default;
+};
+
+// A point on the map with what is known of it; world frame, m and rad.
+struct ConsoleMapObject {
+  std::string label;
+  std::string color;  // its class, as "red"; empty: none
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+};
+struct ConsoleMap {
+  std::optional<Eigen::Vector2d> uav;
+  double uav_heading = 0;  // from x (east) to y
+  std::optional<ConsoleMapObject> target;
+  Eigen::Vector2d target_velocity = Eigen::Vector2d::Zero();  // m/s
+  std::vector<ConsoleMapObject> prediction;                   // where the target will be, in order
+  std::vector<ConsoleMapObject> objects;
+};
+
+// One check of the program's health, as the doctor's.
+struct ConsoleCheck {
+  std::string name;
+  std::string verdict;   // "good", "doubtful", "wrong", "not checked"
+  std::string measured;  // and what to do, in words
+};
+struct ConsoleHealth {
+  std::vector<ConsoleCheck> checks;
+};
+
+enum class EventLevel { kInfo, kWarning, kError };
+struct ConsoleEvent {
+  Time time;
+  EventLevel level = EventLevel::kInfo;
+  std::string text;
+};
+
+// The frames of a recording, for the timeline.
+enum class FrameMark { kNothing, kFound, kLost, kFalse };
+struct ConsoleTimeline {
+  Time begin;
+  std::vector<Duration> times;   // of each frame, since begin, in order
+  std::vector<FrameMark> marks;  // as many
+};
+
+// Where a recording is: the frame that is shown, and how fast it plays, 0: held.
+struct ConsolePlayback {
+  std::uint64_t frame = 0;
+  double speed = 0;
+};
+
+using ConsoleUpdate = std::variant<ConsoleSample, ConsoleStatus, ConsoleMap, ConsoleHealth,
+                                   ConsoleEvent, ConsoleTimeline, ConsolePlayback>;
+
+// The hand-over between a program that flies, or plays a recording, and the console's thread. No
+// function of the program's side ever waits for the console: the newest frame replaces the one
+// before, and of too many updates the oldest is lost.
+class ConsoleFeed {
+ public:
+  struct Description {
+    std::string title;                       // of what is shown
+    bool is_live = true;                     // times are those of Now()
+    std::vector<SeriesDescription> series;   // what a ConsoleSample holds
+    std::vector<OverlayLayer> layers;        // of the shapes that there can be
+    std::vector<ConsoleCommandKind> offers;  // the commands that the program obeys
+  };
+
+  explicit ConsoleFeed(Description description);
+
+  // The program's side.
+
+  // Whether anybody looks: else frames and samples need not be made. By any thread.
+  bool IsWatched() const { return watchers_.load(std::memory_order_relaxed) > 0; }
+  // By one thread: the feed gives the sequence number. Does not lock; it allocates only until it
+  // has seen as many shapes as there are.
+  void SetFrame(ConsoleFrame* frame);
+  // By any thread.
+  void Add(ConsoleUpdate update) { updates_.Push(std::move(update)); }
+  // What the user has asked for since; nothing when there is nothing. By any thread.
+  std::optional<ConsoleCommand> TakeCommand() { return commands_.TryPop(); }
+
+  // The console's side, by its thread.
+
+  const Description& description() const { return description_; }
+  void SetWatchers(int count) { watchers_.store(count, std::memory_order_relaxed); }
+  // The newest frame, valid until the next call; its sequence is 0 before the first.
+  const ConsoleFrame& NewestFrame() { return frame_.Get(); }
+  std::optional<ConsoleUpdate> TakeUpdate() { return updates_.TryPop(); }
+  std::size_t dropped_updates() const { return updates_.dropped(); }
+  void Command(const ConsoleCommand& command) { commands_.Push(command); }
+
+ private:
+  Description description_;
+  std::atomic<int> watchers_{0};
+  std::uint64_t sequence_ = 0;  // of the thread of SetFrame
+  LatestValue<ConsoleFrame> frame_;
+  BoundedQueue<ConsoleUpdate> updates_;
+  BoundedQueue<ConsoleCommand> commands_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/console/console_json.h"
+
+#include <cmath>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace kestrel {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string Text(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+// Null where it is not known.
+Json Milliseconds(std::optional<Duration> time) {
+  return time ? Json(time->count() / 1e6) : Json();
+}
+
+std::string TimeText(Time time) { return std::to_string(ToNanoseconds(time)); }
+
+// Pixels to a twentieth: what is drawn is not finer, and the text half as long.
+double Rounded(double px) { return std::round(px * 20) / 20; }
+
+Json Numbers(const Eigen::Vector2d& vector) { return {vector.x(), vector.y()}; }
+
+Json Shape(const OverlayShape& shape) {
+  Json outline = Json::array();
+  for (const cv::Point2f& point : shape.outline) {
+    outline.push_back(Rounded(point.x));
+    outline.push_back(Rounded(point.y));
+  }
+  return {
+      {"layer", ToString(shape.layer)}, {"label", shape.label}, {"outline", std::move(outline)}};
+}
+
+Json Object(const ConsoleMapObject& object) {
+  const Eigen::Matrix2d& c = object.covariance;
+  return {{"label", object.label},
+          {"color", object.color},
+          {"position", Numbers(object.position)},
+          {"covariance", {c(0, 0), c(0, 1), c(1, 1)}}};
+}
+
+Json Objects(const std::vector<ConsoleMapObject>& objects) {
+  Json list = Json::array();
+  for (const ConsoleMapObject& object : objects) list.push_back(Object(object));
+  return list;
+}
+
+Json Message(const ConsoleSample& sample) {
+  return {{"kind", "sample"}, {"time", TimeText(sample.time)}, {"values", sample.values}};
+}
+
+Json Message(const ConsoleStatus& status) {
+  return {{"kind", "status"},
+          {"state", status.state},
+          {"reason", status.reason},
+          {"recording", status.is_recording}};
+}
+
+Json Message(const ConsoleMap& map) {
+  return {{"kind", "map"},
+          {"uav", map.uav ? Numbers(*map.uav) : Json()},
+          {"heading", map.uav_heading},
+          {"target", map.target ? Object(*map.target) : Json()},
+          {"velocity", Numbers(map.target_velocity)},
+          {"prediction", Objects(map.prediction)},
+          {"objects", Objects(map.objects)}};
+}
+
+Json Message(const ConsoleHealth& health) {
+  Json checks = Json::array();
+  for (const ConsoleCheck& check : health.checks) {
+    checks.push_back(
+        {{"name", check.name}, {"verdict", check.verdict}, {"measured", check.measured}});
+  }
+  return {{"kind", "health"}, {"checks", std::move(checks)}};
+}
+
+Json Message(const ConsoleEvent& event) {
+  static constexpr const char* kLevels[] = {"info", "warning", "error"};
+  return {{"kind", "event"},
+          {"time", TimeText(event.time)},
+          {"level", kLevels[static_cast<int>(event.level)]},
+          {"text", event.text}};
+}
+
+Json Message(const ConsoleTimeline& timeline) {
+  Json times = Json::array();
+  for (const Duration time : timeline.times) {
+    times.push_back(std::chrono::duration_cast<std::chrono::milliseconds>(time).count());
+  }
+  std::string marks;
+  for (const FrameMark mark : timeline.marks) marks += "-flx"[static_cast<int>(mark)];
+  return {{"kind", "timeline"},
+          {"begin", TimeText(timeline.begin)},
+          {"times_ms", std::move(times)},
+          {"marks", std::move(marks)}};
+}
+
+Json Message(const ConsolePlayback& playback) {
+  return {{"kind", "playback"}, {"frame", playback.frame}, {"speed", playback.speed}};
+}
+
+}  // namespace
+
+std::string ToJson(const ConsoleFeed::Description& description) {
+  Json series = Json::array(), layers = Json::array(), offers = Json::array();
+  for (const SeriesDescription& one : description.series) {
+    series.push_back({{"name", one.name}, {"unit", one.unit}, {"label", one.label}});
+  }
+  for (const OverlayLayer layer : description.layers) layers.push_back(ToString(layer));
+  for (const ConsoleCommandKind kind : description.offers) offers.push_back(ToString(kind));
+  return Text({{"kind", "hello"},
+               {"title", description.title},
+               {"live", description.is_live},
+               {"series", std::move(series)},
+               {"layers", std::move(layers)},
+               {"offers", std::move(offers)}});
+}
+
+std::string ToJson(const ConsoleUpdate& update) {
+  return Text(std::visit([](const auto& one) { return Message(one); }, update));
+}
+
+std::string FrameJson(const ConsoleFrame& frame, std::optional<Duration> age) {
+  Json shapes = Json::array();
+  for (const OverlayShape& shape : frame.shapes) shapes.push_back(Shape(shape));
+  return Text({{"sequence", frame.sequence},
+               {"time", TimeText(frame.captured)},
+               {"age_ms", Milliseconds(age)},
+               {"width", frame.image.cols},
+               {"height", frame.image.rows},
+               {"shapes", std::move(shapes)}});
+}
+
+std::string ToJson(const LinkReport& report) {
+  return Text({{"kind", "link"},
+               {"dropped", report.dropped_messages},
+               {"images", report.images},
+               {"draw_ms", Milliseconds(report.draw_time)},
+               {"clients", report.clients}});
+}
+
+}  // namespace kestrel

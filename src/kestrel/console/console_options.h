@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace kestrel {
+
+// Where the web page is served, to whom, and what it may cost.
+struct ConsoleOptions {
+  // IPv4 or IPv6 address. One that others can reach, any but 127.0.0.0/8 and ::1, needs a token.
+  std::string address = "127.0.0.1";
+  int port = 8080;  // 0: any free one
+  // 16 to 128 of A-Z, a-z, 0-9, - and _.
+  std::string token;
+  // Names, with commas between them, that the page may be asked by, as "kestrel.local". Addresses
+  // and localhost always may; any other name is a page that poses as this one (DNS rebinding).
+  std::string host_names;
+  int max_connections = 64;
+  double max_image_rate_hz = 20;
+  int jpeg_quality = 70;
+  // Messages that wait for a slow browser; beyond it the oldest goes, and is counted.
+  int message_queue = 256;
+  // After which a browser that says nothing, not even that it is there, is gone.
+  double idle_timeout_s = 20;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("address", self.address, "", "address that the page is served at");
+    visitor("port", self.port, "1", "port of it, 0 for any free one");
+    visitor("token", self.token, "", "what a browser must know, 16 to 128 of A-Z a-z 0-9 - _");
+    visitor("host_names", self.host_names, "", "names of this computer, with commas between them");
+    visitor("max_connections", self.max_connections, "1", "at a time; others are refused");
+    visitor("max_image_rate_hz", self.max_image_rate_hz, "Hz", "of the live image");
+    visitor("jpeg_quality", self.jpeg_quality, "1", "of the live image, 1 to 100");
+    visitor("message_queue", self.message_queue, "1", "messages that wait for a slow browser");
+    visitor("idle_timeout_s", self.idle_timeout_s, "s", "after which a silent browser is gone");
+  }
+  std::vector<std::string> Validate() const;
+
+  // Whether only programs on this computer can reach the address.
+  bool IsLoopback() const;
+  // The parts of host_names, in lower case.
+  std::vector<std::string> HostNames() const;
+};
+
+// The options with what the user said of them, as "127.0.0.1:8080" or "[::1]:0". Throws InputError
+// with 'argument' in it where that is malformed.
+ConsoleOptions WithAddress(ConsoleOptions options, const std::string& text,
+                           const std::string& argument);
+
+}  // namespace kestrel

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/console/flight_console.h"
+
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/camera/paper_camera.h"
+#include "kestrel/console/test_browser.h"
+
+namespace kestrel {
+namespace {
+
+using namespace std::chrono_literals;
+
+int PortOf(const FlightConsole& console) {
+  const std::string url = console.url();
+  return std::stoi(url.substr(url.rfind(':') + 1));
+}
+
+ConsoleOptions FreePort() {
+  ConsoleOptions options;
+  options.port = 0;
+  return options;
+}
+
+Frame GrayFrame() { return {"", Now(), cv::Mat(240, 376, CV_8UC1, cv::Scalar(99))}; }
+
+class FlightConsoleTest : public testing::Test {
+ protected:
+  FlightConsole console_{FreePort(), "a flight",
+                         LandingView{CameraModel(PaperCamera()), {}, TurnNoise()}};
+};
+
+TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
+  TestSocket socket(PortOf(console_));
+  const auto hello = socket.Next("hello");
+  ASSERT_TRUE(hello);
+  EXPECT_EQ((*hello)["title"], "a flight");
+  EXPECT_TRUE((*hello)["offers"].empty());
+  LandingObservation observation;
+  observation.report.reason = "no ring";
+  observation.detect_time = 3ms;
+  console_.See(GrayFrame(), observation);
+  const auto sample = socket.Next("sample");
+  ASSERT_TRUE(sample);
+  EXPECT_EQ((*sample)["values"].size(), (*hello)["series"].size());
+  EXPECT_EQ((*sample)["values"][4], 3.0);
+  socket.Send(R"({"images": true})");
+  const auto image = socket.Next("image");
+  ASSERT_TRUE(image);
+  EXPECT_EQ((*image)["width"], 376);
+  console_.See(FlightReport{});
+  const auto status = socket.Next("status");
+  ASSERT_TRUE(status);
+  EXPECT_THAT((*status)["reason"].get<std::string>(), testing::HasSubstr("no ring"));
+}
+
+TEST_F(FlightConsoleTest, KeepsNoImageWhenNobodyLooks) {
+  const Frame frame = GrayFrame();
+  console_.See(frame, LandingObservation());
+  std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(frame.image.u->refcount, 1);
+}
+
+TEST(FlightHealthTest, ComparesSeconds) {
+  FlightHealth health;
+  FlightReport state;
+  state.autopilot.emplace().is_here = true;
+  const Time start = Now();
+  EXPECT_FALSE(health.Update(state, start));
+  state.capture.captured = 30;
+  state.autopilot->link.received = 100;
+  EXPECT_FALSE(health.Update(state, start + 500ms));
+  const auto good = health.Update(state, start + 1s);
+  ASSERT_TRUE(good);
+  EXPECT_EQ(health.link_rate_hz(), 100);
+  for (const ConsoleCheck& check : good->checks) EXPECT_EQ(check.verdict, "good") << check.name;
+  state.autopilot->is_here = false;
+  state.events.dropped_frames = 1;
+  const auto bad = health.Update(state, start + 2s);
+  ASSERT_TRUE(bad);
+  const auto verdict = [&](const std::string& name) {
+    for (const ConsoleCheck& check : bad->checks) {
+      if (check.name == name) return check.verdict;
+    }
+    return std::string();
+  };
+  EXPECT_EQ(verdict("camera"), "wrong") << "no frame in a second";
+  EXPECT_EQ(verdict("vision"), "doubtful");
+  EXPECT_EQ(verdict("autopilot"), "wrong");
+}
+
+TEST(FlightStatusTest, SaysWhatMattersMost) {
+  const ConsoleStatus vision{"tracking", "", false};
+  FlightReport state;
+  EXPECT_EQ(FlightStatus(state, vision), vision);
+  state.autopilot.emplace().is_here = true;
+  state.autopilot->is_landing = true;
+  EXPECT_EQ(FlightStatus(state, vision).state, "landing, tracking");
+  state.autopilot->guidance = GuidancePhase::kDescend;
+  EXPECT_EQ(FlightStatus(state, vision).state, "descend, tracking");
+  state.autopilot->target = TargetPhase::kContact;
+  EXPECT_EQ(FlightStatus(state, vision).state, "on the pattern");
+  state.trouble = "the camera is gone";
+  state.recorder.emplace();
+  EXPECT_EQ(FlightStatus(state, vision), (ConsoleStatus{"blind", "the camera is gone", true}));
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/console/http_session.h"
+
+#include <boost/beast/websocket.hpp>
+#include <utility>
+
+#include "kestrel/console/socket_session.h"
+
+namespace kestrel {
+namespace {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+
+constexpr std::uint32_t kMaxHeaderBytes = 8 * 1024;
+// For a whole request, so that one byte now and then does not hold a connection, and for an answer.
+constexpr std::chrono::seconds kTimeout(10);
+constexpr std::string_view kSocketPath = "/live";
+
+constexpr std::string_view kContentPolicy =
+    "default-src 'self'; img-src 'self' blob:; base-uri 'none'; form-action 'self'; "
+    "frame-ancestors 'none'";
+
+constexpr std::string_view kSignInPage = R"(<!doctype html>
+<html lang="en"><meta charset="utf-8"><title>Kestrel: sign in</title>
+<meta name="viewport" content="width=device-width">
+<h1>Kestrel</h1>
+<p>This page is for who has its token: open the link that the program printed, or enter the token here.</p>
+<form action="/"><label>Token <input name="token" type="password" autofocus></label>
+<button>Open</button></form></html>
+)";
+
+std::string_view View(beast::string_view text) { return {text.data(), text.size()}; }
+
+template <class Request>
+std::optional<std::string_view> Field(const Request& request, beast::string_view name) {
+  const auto field = request.find(name);
+  if (field == request.end()) return std::nullopt;
+  return View(field->value());
+}
+
+template <class Request>
+RequestHead HeadOf(const Request& request) {
+  return {.target = View(request.target()),
+          .host = View(request[http::field::host]),
+          .origin = Field(request, "Origin"),
+          .fetch_site = Field(request, "Sec-Fetch-Site"),
+          .fetch_mode = Field(request, "Sec-Fetch-Mode"),
+          .cookies = View(request[http::field::cookie]),
+          .is_web_socket = beast::websocket::is_upgrade(request)};
+}
+
+// What says who asks must be there once only: else two readers may read it differently.
+template <class Request>
+bool IsAmbiguous(const Request& request) {
+  return request.count(http::field::host) != 1 || request.count("Origin") > 1 ||
+         request.count(http::field::cookie) > 1 || request.count("Sec-Fetch-Site") > 1 ||
+         request.count("Sec-Fetch-Mode") > 1;
+}
+
+}  // namespace
+
+HttpSession::HttpSession(boost::asio::ip::tcp::socket socket, ConsoleHub* hub,
+                         std::shared_ptr<void> slot)
+    : stream_(std::move(socket)), hub_(hub), slot_(std::move(slot)) {}
+
+void HttpSession::Read() {
+  parser_.emplace();
+  parser_->header_limit(kMaxHeaderBytes);
+  parser_->body_limit(0);
+  stream_.expires_after(kTimeout);
+  http::async_read(
+      stream_, buffer_, *parser_,
+      [self = shared_from_this()](beast::error_code error, std::size_t) {
+        if (!error && !self->parser_->is_done()) {
+          return self->Refuse(Status::bad_request, "a request has no body here");
+        }
+        if (!error) return self->Answer(self->parser_->get());
+        const bool is_malformed =
+            error.category() == http::make_error_code(http::error::bad_method).category() &&
+            error != http::error::end_of_stream && error != http::error::partial_message;
+        if (is_malformed) self->Refuse(Status::bad_request, error.message());
+      });
+}
+
+void HttpSession::Answer(const Request& request) {
+  if (IsAmbiguous(request)) return Refuse(Status::bad_request, "who asks is not said once");
+  switch (hub_->guard().Admit(HeadOf(request))) {
+    case Admission::kServed:
+      return AnswerAdmitted(request);
+    case Admission::kSignedIn:
+      return SignIn(request);
+    case Admission::kNoToken: {
+      hub_->CountRefusal();
+      Response response(Status::unauthorized, 11, std::string(kSignInPage));
+      response.set(http::field::content_type, "text/html; charset=utf-8");
+      return Send(std::move(response), request.method() == http::verb::head);
+    }
+    case Admission::kWrongHost:
+      return Refuse(Status::misdirected_request,
+                    "this name is not known here: use the address, or set console.host_names");
+    case Admission::kForeignOrigin:
+      return Refuse(Status::forbidden, "another site's page may not ask");
+  }
+}
+
+void HttpSession::AnswerAdmitted(const Request& request) {
+  if (beast::websocket::is_upgrade(request)) {
+    if (View(request.target()) != kSocketPath) return Refuse(Status::not_found, "no such socket");
+    const auto session =
+        std::make_shared<SocketSession>(std::move(stream_), hub_, std::move(slot_));
+    return session->Accept(request);
+  }
+  if (request.method() != http::verb::get && request.method() != http::verb::head) {
+    return Refuse(Status::method_not_allowed, "only GET and HEAD");
+  }
+  const std::string_view path = View(request.target());
+  // A token that is not needed any more, as when the link is opened again.
+  if (path.starts_with("/?token=")) return SignIn(request);
+  const WebAsset* asset = hub_->FindAsset(path == "/" ? "/index.html" : path);
+  if (asset == nullptr) return Refuse(Status::not_found, "no such page");
+  SendAsset(request, *asset);
+}
+
+void HttpSession::SendAsset(const Request& request, const WebAsset& asset) {
+  if (asset.is_gzipped &&
+      View(request[http::field::accept_encoding]).find("gzip") == std::string_view::npos) {
+    return Refuse(Status::not_acceptable, "the page goes out gzipped only");
+  }
+  Response response(Status::ok, 11, std::string(asset.content));
+  response.set(http::field::content_type, beast::string_view(asset.type.data(), asset.type.size()));
+  if (asset.is_gzipped) response.set(http::field::content_encoding, "gzip");
+  // The names below /assets/ have their content's hash in them.
+  if (asset.path.starts_with("/assets/")) {
+    response.set(http::field::cache_control, "private, max-age=31536000, immutable");
+  }
+  response.keep_alive(request.keep_alive());
+  Send(std::move(response), request.method() == http::verb::head);
+}
+
+void HttpSession::SignIn(const Request& request) {
+  Response response(Status::see_other, 11);
+  response.set(http::field::location, "/");
+  if (!hub_->options().token.empty()) {
+    response.set(http::field::set_cookie, hub_->guard().CookieHeader());
+  }
+  response.keep_alive(request.keep_alive());
+  Send(std::move(response), request.method() == http::verb::head);
+}
+
+void HttpSession::Refuse(Status status, const std::string& why) {
+  hub_->CountRefusal();
+  Response response(status, 11, why + "\n");
+  response.set(http::field::content_type, "text/plain; charset=utf-8");
+  response.keep_alive(false);
+  Send(std::move(response), /*is_head=*/false);
+}
+
+void HttpSession::Send(Response response, bool is_head) {
+  response.set("Content-Security-Policy",
+               beast::string_view(kContentPolicy.data(), kContentPolicy.size()));
+  response.set("X-Content-Type-Options", "nosniff");
+  response.set("Referrer-Policy", "no-referrer");
+  response.set("Cross-Origin-Opener-Policy", "same-origin");
+  response.set("Cross-Origin-Resource-Policy", "same-origin");
+  if (response.find(http::field::cache_control) == response.end()) {
+    response.set(http::field::cache_control, "no-store");
+  }
+  response.prepare_payload();
+  if (is_head) response.body().clear();  // the length stays that of GET
+  stream_.expires_after(kTimeout);
+  const auto shared = std::make_shared<Response>(std::move(response));
+  const auto serializer = std::make_shared<http::response_serializer<http::string_body>>(*shared);
+  const auto done = [self = shared_from_this(), shared, serializer](beast::error_code error,
+                                                                    std::size_t) {
+    if (error) return;
+    if (shared->keep_alive()) return self->Read();
+    beast::error_code ignored;
+    self->stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+  };
+  if (is_head) return http::async_write_header(stream_, *serializer, done);
+  http::async_write(stream_, *serializer, done);
+}
+
+}  // namespace kestrel

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/console/hunt_view.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "kestrel/console/map_view.h"
+
+namespace kestrel {
+namespace {
+
+std::vector<cv::Point2f> Outline(const Ellipse& ellipse) {
+  constexpr int kPieces = 32;
+  std::vector<cv::Point2f> outline;
+  for (int i = 0; i < kPieces; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kPieces;
+    const Eigen::Vector2d point = ellipse.center +
+                                  ellipse.semi_major * std::cos(angle) * ellipse.major_axis() +
+                                  ellipse.semi_minor * std::sin(angle) * ellipse.minor_axis();
+    outline.emplace_back(static_cast<float>(point.x()), static_cast<float>(point.y()));
+  }
+  return outline;
+}
+
+OverlayShape Shape(const HuntView& view, const ObjectDetection& found, OverlayLayer layer) {
+  return {layer, Outline(found.ellipse),
+          fmt::format("{} {:.2f}", view.model.classes[found.class_index].name,
+                      found.class_probability)};
+}
+
+}  // namespace
+
+std::vector<SeriesDescription> HuntSeries() {
+  return {{"objects", "", "Objects in view"}, {"detect", "ms", "Detection"}};
+}
+
+ConsoleSample HuntSample(const HuntObservation& observation) {
+  return {observation.time,
+          {static_cast<double>(observation.report.detections.size()),
+           1e3 * ToSeconds(observation.detect_time)}};
+}
+
+std::vector<OverlayLayer> HuntLayers() {
+  return {OverlayLayer::kDetection, OverlayLayer::kRejected};
+}
+
+std::vector<OverlayShape> HuntShapes(const HuntView& view, const HuntObservation& observation) {
+  std::vector<OverlayShape> shapes;
+  for (const ObjectDetection& found : observation.report.detections) {
+    shapes.push_back(Shape(view, found, OverlayLayer::kDetection));
+  }
+  for (const ObjectDetection& elsewhere : observation.report.elsewhere) {
+    shapes.push_back(Shape(view, elsewhere, OverlayLayer::kRejected));
+  }
+  return shapes;
+}
+
+ConsoleStatus HuntStatus(const HuntObservation& observation) {
+  const std::size_t objects = observation.report.detections.size();
+  ConsoleStatus status;
+  status.state = objects == 0 ? "searching" : fmt::format("{} in view", objects);
+  if (!observation.world_from_camera) status.reason = "where the UAV was is not known";
+  return status;
+}
+
+ConsoleMap HuntMap(const HuntView& view, const HuntObservation& observation) {
+  ConsoleMap map;
+  PlaceUav(observation.world_from_camera, &map);
+  for (std::size_t i = 0; i < observation.in_world.size(); ++i) {
+    const auto& location = observation.in_world[i];
+    if (!location) continue;
+    const std::size_t class_index = observation.report.detections[i].class_index;
+    map.objects.push_back({.label = view.model.classes[class_index].name,
+                           .color = "",
+                           .position = location->position.head<2>(),
+                           .covariance = location->covariance.topLeftCorner<2, 2>()});
+  }
+  return map;
+}
+
+}  // namespace kestrel

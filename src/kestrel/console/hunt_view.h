@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kestrel/console/console_feed.h"
+#include "kestrel/objects/object_model.h"
+#include "kestrel/pipeline/hunt_pipeline.h"
+
+namespace kestrel {
+
+// What the page shows of a hunt for coloured objects.
+
+// What is the same for all frames.
+struct HuntView {
+  ObjectModel model;
+};
+
+// How many objects are in view, time of the detection: what HuntSample has the values of.
+std::vector<SeriesDescription> HuntSeries();
+ConsoleSample HuntSample(const HuntObservation& observation);
+
+// The ellipses of the objects; rejected are those whose size says that they are not on the ground.
+std::vector<OverlayLayer> HuntLayers();
+std::vector<OverlayShape> HuntShapes(const HuntView& view, const HuntObservation& observation);
+
+// How many objects there are, or that there is none.
+ConsoleStatus HuntStatus(const HuntObservation& observation);
+
+// The camera, as LandingMap, and the objects in view that have a place in the world.
+ConsoleMap HuntMap(const HuntView& view, const HuntObservation& observation);
+
+}  // namespace kestrel

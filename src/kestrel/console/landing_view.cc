@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/console/landing_view.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include <Eigen/Eigenvalues>
+#include <fmt/format.h>
+
+#include "kestrel/console/map_view.h"
+
+namespace kestrel {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr int kPiecesPerCircle = 64;
+constexpr double kSigmas = 2;
+
+// The image of a closed curve, given by its points in the camera frame for angles 0 to 2 pi.
+std::vector<cv::Point2f> Outline(const CameraModel& camera,
+                                 const std::function<Eigen::Vector3d(double)>& curve) {
+  std::vector<cv::Point2f> outline;
+  for (int i = 0; i < kPiecesPerCircle; ++i) {
+    Eigen::Vector2d pixel;
+    const Eigen::Vector3d point = curve(2 * std::numbers::pi * i / kPiecesPerCircle);
+    if (camera.Project(point, &pixel) == ProjectionStatus::kOutsideModel) continue;
+    if (pixel.allFinite()) outline.emplace_back(pixel.x(), pixel.y());
+  }
+  return outline;
+}
+
+std::vector<cv::Point2f> RingOutline(const CameraModel& camera,
+                                     const RigidTransform& camera_from_pattern, double radius_m) {
+  return Outline(camera, [&](double angle) {
+    return Eigen::Vector3d(camera_from_pattern * Eigen::Vector3d(radius_m * std::cos(angle),
+                                                                 radius_m * std::sin(angle), 0));
+  });
+}
+
+std::vector<cv::Point2f> TrackOutline(const CameraModel& camera,
+                                      const RigidTransform& camera_from_world,
+                                      const TurnState& motion) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(
+      motion.covariance.topLeftCorner<2, 2>());
+  const Eigen::Matrix2d root =
+      axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+  return Outline(camera, [&](double angle) {
+    Eigen::Vector3d point = motion.position();
+    point.head<2>() += kSigmas * root * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    return Eigen::Vector3d(camera_from_world * point);
+  });
+}
+
+ConsoleMapObject MapObject(const std::string& label, const TurnState& motion) {
+  return {.label = label,
+          .color = "",
+          .position = motion.position().head<2>(),
+          .covariance = motion.covariance.topLeftCorner<2, 2>()};
+}
+
+}  // namespace
+
+LandingView ViewOf(const CameraCalibration& calibration, const LandingPipelineOptions& options) {
+  return {CameraModel(calibration.intrinsics), options.detector.pattern, options.tracker.Noise()};
+}
+
+std::vector<SeriesDescription> LandingSeries() {
+  return {{"height", "m", "Height"},
+          {"offset", "m", "Offset"},
+          {"speed", "m/s", "Target's speed"},
+          {"quality", "", "Quality"},
+          {"detect", "ms", "Detection"}};
+}
+
+ConsoleSample LandingSample(const LandingObservation& observation) {
+  ConsoleSample sample{observation.time, std::vector<double>(LandingSeries().size(), kUnknown)};
+  if (observation.target && observation.world_from_camera) {
+    const Eigen::Vector3d offset =
+        observation.world_from_camera->translation - observation.target->motion.position();
+    sample.values[0] = offset.z();
+    sample.values[1] = offset.head<2>().norm();
+  }
+  if (observation.target) sample.values[2] = observation.target->speed();
+  if (observation.report.detection) sample.values[3] = observation.report.detection->quality;
+  sample.values[4] = 1e3 * ToSeconds(observation.detect_time);
+  return sample;
+}
+
+std::vector<OverlayLayer> LandingLayers() {
+  return {OverlayLayer::kDetection, OverlayLayer::kPrediction, OverlayLayer::kRejected};
+}
+
+std::vector<OverlayShape> LandingShapes(const LandingView& view,
+                                        const LandingObservation& observation) {
+  std::vector<OverlayShape> shapes;
+  if (observation.target && observation.world_from_camera) {
+    shapes.push_back({OverlayLayer::kPrediction,
+                      TrackOutline(view.camera, observation.world_from_camera->Inverse(),
+                                   observation.target->motion),
+                      ""});
+  }
+  if (!observation.report.detection) return shapes;
+  const LandingDetection& found = *observation.report.detection;
+  const bool is_rejected = observation.fate == MeasurementFate::kFarFromTrack;
+  const OverlayLayer layer = is_rejected ? OverlayLayer::kRejected : OverlayLayer::kDetection;
+  const std::string label = fmt::format("{} {:.2f}", ToString(found.method), found.quality);
+  shapes.push_back(
+      {layer, RingOutline(view.camera, found.camera_from_pattern, view.pattern.outer_radius_m()),
+       is_rejected ? label + ", far from the track" : label});
+  shapes.push_back(
+      {layer, RingOutline(view.camera, found.camera_from_pattern, view.pattern.inner_radius_m()),
+       ""});
+  shapes.push_back(
+      {layer,
+       {{static_cast<float>(found.center_px.x()), static_cast<float>(found.center_px.y())}},
+       ""});
+  return shapes;
+}
+
+ConsoleStatus LandingStatus(const LandingObservation& observation) {
+  const LandingReport& report = observation.report;
+  ConsoleStatus status;
+  status.state = ToString(observation.track_state);
+  if (!report.detection) {
+    status.reason = fmt::format("not found: {}: {}", ToString(report.reached), report.reason);
+  } else if (observation.fate == MeasurementFate::kFarFromTrack) {
+    status.reason = "found, but far from where the track has it";
+  } else if (!observation.world_from_camera) {
+    status.reason = "found, but where the UAV was is not known";
+  }
+  return status;
+}
+
+ConsoleMap LandingMap(const LandingView& view, const LandingObservation& observation) {
+  ConsoleMap map;
+  PlaceUav(observation.world_from_camera, &map);
+  if (!observation.target) return map;
+  const TurnState& motion = observation.target->motion;
+  map.target = MapObject("target", motion);
+  map.target_velocity = motion.velocity().head<2>();
+  for (const int seconds : {1, 2, 3}) {
+    map.prediction.push_back(
+        MapObject(fmt::format("+{} s", seconds), Propagate(motion, seconds, view.noise)));
+  }
+  return map;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "kestrel/camera/calibration.h"
+#include "kestrel/camera/camera_model.h"
+#include "kestrel/console/console_feed.h"
+#include "kestrel/landing/landing_pattern.h"
+#include "kestrel/pipeline/landing_pipeline.h"
+#include "kestrel/tracking/turn_motion.h"
+
+namespace kestrel {
+
+// What the page shows of a landing.
+
+// What is the same for all frames.
+struct LandingView {
+  CameraModel camera;
+  LandingPattern pattern;
+  TurnNoise noise;  // of the track's motion
+};
+LandingView ViewOf(const CameraCalibration& calibration, const LandingPipelineOptions& options);
+
+// Height of the camera above the target, horizontal offset from it, speed of the target, quality of
+// the detection, time of the detection: what LandingSample has the values of.
+std::vector<SeriesDescription> LandingSeries();
+ConsoleSample LandingSample(const LandingObservation& observation);
+
+// The outlines of the ring and the centre of the cross where they were found, rejected where the
+// track says that this cannot be, and two standard deviations of where the track has the centre. A
+// line ends where the lens does.
+std::vector<OverlayLayer> LandingLayers();
+std::vector<OverlayShape> LandingShapes(const LandingView& view,
+                                        const LandingObservation& observation);
+
+// The state of the track, and why the pattern was not found.
+ConsoleStatus LandingStatus(const LandingObservation& observation);
+
+// The camera (its heading is that of the image's upper edge), the target, and where it will be in
+// 1, 2 and 3 s.
+ConsoleMap LandingMap(const LandingView& view, const LandingObservation& observation);
+
+}  // namespace kestrel

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/console/replay_console.h"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include "kestrel/base/error.h"
+
+namespace kestrel {
+namespace {
+
+constexpr double kMaxSpeed = 100;
+// How often is looked for what users ask, and the fastest that pictures change.
+constexpr Duration kInterval = std::chrono::milliseconds(20);
+
+std::vector<SeriesDescription> ReplaySeries(bool has_truth) {
+  std::vector<SeriesDescription> series = LandingSeries();
+  if (has_truth) series.push_back({"error", "px", "Error"});
+  return series;
+}
+
+}  // namespace
+
+void MarkByTrack(std::vector<ReplayFrame>* frames) {
+  const auto is_found = [](const ReplayFrame& frame) {
+    return frame.observation.report.detection.has_value();
+  };
+  const auto first = std::find_if(frames->begin(), frames->end(), is_found);
+  const auto last = std::find_if(frames->rbegin(), frames->rend(), is_found).base();
+  for (auto frame = first; frame < last; ++frame) {
+    const bool is_false = frame->observation.fate == MeasurementFate::kFarFromTrack;
+    frame->mark = !is_found(*frame) ? FrameMark::kLost
+                  : is_false        ? FrameMark::kFalse
+                                    : FrameMark::kFound;
+  }
+}
+
+ReplayConsole::ReplayConsole(const ConsoleOptions& options, const std::string& title,
+                             LandingView view, bool has_truth)
+    : view_(std::move(view)),
+      has_truth_(has_truth),
+      feed_({.title = title,
+             .is_live = false,
+             .series = ReplaySeries(has_truth),
+             .layers = LandingLayers(),
+             .offers = {ConsoleCommandKind::kPlay, ConsoleCommandKind::kSeek,
+                        ConsoleCommandKind::kStep}}),
+      server_(options, &feed_) {}
+
+void ReplayConsole::Play(std::vector<ReplayFrame> frames, ReadFrame read,
+                         const std::function<bool()>& is_stopped) {
+  frames_ = std::move(frames);
+  read_ = std::move(read);
+  SendTimeline();
+  Time last = Now();
+  while (!is_stopped()) {
+    while (const auto command = feed_.TakeCommand()) Obey(*command);
+    const Time now = Now();
+    // With nobody there to see it the recording waits.
+    if (feed_.IsWatched()) Advance(now - last);
+    last = now;
+    if (!is_shown_) ShowFrame();
+    std::this_thread::sleep_for(kInterval);
+  }
+}
+
+void ReplayConsole::Obey(const ConsoleCommand& command) {
+  switch (command.kind) {
+    case ConsoleCommandKind::kPlay:
+      speed_ = std::clamp(command.value, -kMaxSpeed, kMaxSpeed);
+      if (speed_ > 0 && frame_ + 1 == frames_.size()) GoTo(0);
+      is_shown_ = false;  // the speed is told with the frame
+      return;
+    case ConsoleCommandKind::kSeek:
+      return GoTo(NearestFrame(command.value));
+    case ConsoleCommandKind::kStep: {
+      const auto last = static_cast<double>(frames_.size() - 1);
+      speed_ = 0;
+      return GoTo(static_cast<std::size_t>(
+          std::clamp(static_cast<double>(frame_) + command.value, 0.0, last)));
+    }
+    case ConsoleCommandKind::kRecord:
+    case ConsoleCommandKind::kSnapshot:
+      return;  // not offered
+  }
+}
+
+// At the ends it holds.
+void ReplayConsole::Advance(Duration elapsed) {
+  if (speed_ == 0) return;
+  const double end_s = SecondsOf(frames_.size() - 1);
+  position_s_ = std::clamp(position_s_ + speed_ * ToSeconds(elapsed), 0.0, end_s);
+  const std::size_t frame = NearestFrame(position_s_);
+  if (frame != frame_) is_shown_ = false;
+  frame_ = frame;
+  if (position_s_ > 0 && position_s_ < end_s) return;
+  speed_ = 0;
+  is_shown_ = false;
+}
+
+void ReplayConsole::GoTo(std::size_t frame) {
+  frame_ = frame;
+  position_s_ = SecondsOf(frame);
+  is_shown_ = false;
+}
+
+double ReplayConsole::SecondsOf(std::size_t frame) const {
+  return ToSeconds(frames_[frame].observation.time - frames_.front().observation.time);
+}
+
+std::size_t ReplayConsole::NearestFrame(double seconds) const {
+  const auto is_before = [&](const ReplayFrame& frame, double time_s) {
+    return ToSeconds(frame.observation.time - frames_.front().observation.time) < time_s;
+  };
+  const auto later = std::lower_bound(frames_.begin(), frames_.end(), seconds, is_before);
+  const auto index = static_cast<std::size_t>(later - frames_.begin());
+  if (index == 0) return 0;
+  if (index == frames_.size()) return index - 1;
+  return SecondsOf(index) - seconds < seconds - SecondsOf(index - 1) ? index : index - 1;
+}
+
+void ReplayConsole::ShowFrame() {
+  is_shown_ = true;
+  const ReplayFrame& frame = frames_[frame_];
+  ConsoleSample sample = LandingSample(frame.observation);
+  if (has_truth_) sample.values.push_back(frame.error_px.value_or(std::nan("")));
+  feed_.Add(std::move(sample));
+  feed_.Add(LandingMap(view_, frame.observation));
+  feed_.Add(LandingStatus(frame.observation));
+  feed_.Add(ConsolePlayback{frame_, speed_});
+  picture_.captured = frame.observation.time;
+  picture_.shapes = LandingShapes(view_, frame.observation);
+  try {
+    picture_.image = read_(frame_);
+  } catch (const InputError& error) {  // its file is gone
+    speed_ = 0;
+    feed_.Add(ConsoleEvent{frame.observation.time, EventLevel::kError, error.what()});
+    return;
+  }
+  feed_.SetFrame(&picture_);
+}
+
+void ReplayConsole::SendTimeline() {
+  ConsoleTimeline timeline;
+  timeline.begin = frames_.front().observation.time;
+  for (const ReplayFrame& frame : frames_) {
+    timeline.times.push_back(frame.observation.time - timeline.begin);
+    timeline.marks.push_back(frame.mark);
+  }
+  feed_.Add(std::move(timeline));
+}
+
+}  // namespace kestrel

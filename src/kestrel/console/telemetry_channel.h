@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <string>
+
+namespace kestrel {
+
+// A message as it goes out, shared by all clients that it goes to.
+using SharedMessage = std::shared_ptr<const std::string>;
+
+// The messages that wait for one client: when there are too many the oldest goes. By one thread.
+class TelemetryChannel {
+ public:
+  // 'capacity': at least 1.
+  explicit TelemetryChannel(std::size_t capacity) : capacity_(capacity) {}
+
+  void Push(SharedMessage message) {
+    if (waiting_.size() == capacity_) {
+      waiting_.pop_front();
+      ++dropped_;
+    }
+    waiting_.push_back(std::move(message));
+  }
+
+  // The oldest one; null when there is none.
+  SharedMessage Pop() {
+    if (waiting_.empty()) return nullptr;
+    SharedMessage message = std::move(waiting_.front());
+    waiting_.pop_front();
+    return message;
+  }
+
+  // How many made room for others.
+  std::uint64_t dropped() const { return dropped_; }
+
+ private:
+  std::size_t capacity_;
+  std::deque<SharedMessage> waiting_;
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a user can do, by button or key.
+import { connection } from "./connection";
+import type { CommandName, Layer } from "./protocol";
+import { store } from "./store";
+import { applyTheme, themeAfter } from "./theme";
+import { nextTrouble } from "./timeline";
+
+export function isOffered(name: CommandName): boolean {
+  return store.state.hello?.offers.includes(name) ?? false;
+}
+
+function command(name: CommandName, value?: number): void {
+  if (isOffered(name)) connection.command(name, value);
+}
+
+export function toggleLayer(layer: Layer): void {
+  const { layers } = store.state;
+  store.set({ layers: { ...layers, [layer]: !layers[layer] } });
+}
+
+export function toggleRecording(): void {
+  command("record", store.state.status?.recording ? 0 : 1);
+}
+
+export function takeSnapshot(): void {
+  command("snapshot");
+}
+
+/** A live image is frozen here, a recording is held by the server. */
+export function togglePlaying(): void {
+  if (!isOffered("play")) store.set({ isFrozen: !store.state.isFrozen });
+  else command("play", store.state.playback?.speed === 0 ? 1 : 0);
+}
+
+export function setSpeed(speed: number): void {
+  command("play", speed);
+}
+
+export function step(frames: number): void {
+  command("step", frames);
+}
+
+export function seekFrame(frame: number): void {
+  const time = store.state.timeline?.times_ms[frame];
+  if (time !== undefined) command("seek", time / 1000);
+}
+
+export function seekTrouble(direction: 1 | -1): void {
+  const { timeline, playback } = store.state;
+  if (!timeline || !playback) return;
+  const frame = nextTrouble(timeline, playback.frame, direction);
+  if (frame !== null) seekFrame(frame);
+}
+
+export function nextTheme(): void {
+  const theme = themeAfter(store.state.theme);
+  applyTheme(theme);
+  store.set({ theme });
+}
+
+export function toggleHelp(): void {
+  store.set({ isHelpShown: !store.state.isHelpShown });
+}

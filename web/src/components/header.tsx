@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import { nextTheme, takeSnapshot, toggleHelp, toggleRecording } from "../actions";
+import type { ConnectionState } from "../store";
+import { useClock, useStore } from "../use_store";
+
+const connectionInWords: Record<ConnectionState, string> = {
+  connecting: "Connecting",
+  open: "Connected",
+  lost: "Connection lost, trying again",
+  refused: "The token is not known any more: open the link that the program prints",
+};
+
+/** State in words (the last of them is what the vision says), the newest number of each series, and what can be done. */
+export function Header() {
+  return (
+    <header>
+      <State />
+      <Numbers />
+      <Actions />
+    </header>
+  );
+}
+
+function State() {
+  const connection = useStore((state) => state.connection);
+  const title = useStore((state) => state.hello?.title);
+  const status = useStore((state) => state.status);
+  const isOpen = connection === "open";
+  return (
+    <div class="state" data-state={isOpen ? status?.state.split(", ").at(-1) : "offline"}>
+      <h1>{title ?? "Kestrel"}</h1>
+      <p class="state-word" role="status">
+        {isOpen ? (status?.state ?? "waiting") : connectionInWords[connection]}
+      </p>
+      <p class="state-reason">{isOpen ? status?.reason : ""}</p>
+    </div>
+  );
+}
+
+function Numbers() {
+  useClock(5);
+  const hello = useStore((state) => state.hello);
+  const series = useStore((state) => state.series);
+  return (
+    <dl class="numbers">
+      {hello?.series.map((one, i) => (
+        <div key={one.name}>
+          <dt>{one.label}</dt>
+          <dd>
+            {numberText(series.newest(i))} <small>{one.unit}</small>
+          </dd>
+        </div>
+      ))}
+    </dl>
+  );
+}
+
+export function numberText(value: number | null): string {
+  if (value === null) return "–";
+  return value.toFixed(Math.abs(value) < 10 ? 2 : Math.abs(value) < 100 ? 1 : 0);
+}
+
+function Actions() {
+  const offers = useStore((state) => state.hello?.offers);
+  const isRecording = useStore((state) => state.status?.recording ?? false);
+  const theme = useStore((state) => state.theme);
+  return (
+    <div class="actions">
+      {offers?.includes("record") && (
+        <button class="record" aria-pressed={isRecording} onClick={toggleRecording}>
+          {isRecording ? "■ Stop recording" : "● Record"}
+        </button>
+      )}
+      {offers?.includes("snapshot") && <button onClick={takeSnapshot}>Snapshot</button>}
+      <button onClick={nextTheme}>Theme: {theme}</button>
+      <button onClick={toggleHelp}>Keys</button>
+    </div>
+  );
+}

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import { useEffect, useRef } from "preact/hooks";
+import {
+  covarianceEllipse,
+  fitView,
+  pointsOf,
+  scaleLength,
+  toCanvas,
+  type MapView,
+} from "../map_geometry";
+import type { MapMessage, MapObject } from "../protocol";
+import { themeColor } from "../theme";
+import { useStore } from "../use_store";
+
+const sigmas = 2;
+
+/** Seen from above, north up: UAV and its way, target, prediction, objects, each with 2 sigma. */
+export function MapPanel() {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const map = useStore((state) => state.map);
+  const track = useStore((state) => state.track);
+  const theme = useStore((state) => state.theme);
+  useEffect(() => {
+    if (canvas.current) drawMap(canvas.current, map, track);
+  }, [map, track, theme]);
+  return (
+    <section class="map" aria-label="Map">
+      <h2>Map</h2>
+      <canvas ref={canvas} role="img" aria-label={mapInWords(map)} />
+      <p class="legend">
+        <span data-of="uav">UAV</span> <span data-of="target">target</span>{" "}
+        <span data-of="prediction">prediction</span> (ellipses: 2 sigma)
+      </p>
+    </section>
+  );
+}
+
+function mapInWords(map: MapMessage | null): string {
+  if (!map?.uav) return "map, nothing known yet";
+  if (!map.target) return "map with the UAV, no target";
+  const distance = Math.hypot(
+    map.target.position[0] - map.uav[0],
+    map.target.position[1] - map.uav[1],
+  );
+  return `map, target ${distance.toFixed(1)} m from the UAV`;
+}
+
+function drawMap(
+  canvas: HTMLCanvasElement,
+  map: MapMessage | null,
+  track: [number, number][],
+): void {
+  const ratio = window.devicePixelRatio || 1;
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  canvas.width = width * ratio;
+  canvas.height = height * ratio;
+  const context = canvas.getContext("2d");
+  if (!context) return;
+  context.scale(ratio, ratio);
+  const view = fitView(map ? pointsOf(map, track, sigmas) : track, width, height);
+  drawGrid(context, view);
+  drawLine(context, view, track, themeColor("muted"));
+  if (!map) return;
+  for (const object of map.objects) drawObject(context, view, object, object.color || "gray");
+  const color = themeColor("prediction");
+  const ahead = map.prediction.map((object) => object.position);
+  drawLine(context, view, map.target ? [map.target.position, ...ahead] : ahead, color);
+  for (const object of map.prediction) drawObject(context, view, object, color);
+  if (map.target) drawObject(context, view, map.target, themeColor("target"));
+  if (map.uav) drawUav(context, view, map.uav, map.heading);
+}
+
+function drawGrid(context: CanvasRenderingContext2D, view: MapView): void {
+  const meters = scaleLength(view.pixelsPerMeter, view.width / 4);
+  const step = meters * view.pixelsPerMeter;
+  const [x0, y0] = toCanvas(view, [0, 0]);
+  context.strokeStyle = themeColor("grid");
+  context.lineWidth = 1;
+  context.beginPath();
+  for (let x = x0 - Math.floor(x0 / step) * step; x < view.width; x += step) {
+    context.moveTo(x, 0);
+    context.lineTo(x, view.height);
+  }
+  for (let y = y0 - Math.floor(y0 / step) * step; y < view.height; y += step) {
+    context.moveTo(0, y);
+    context.lineTo(view.width, y);
+  }
+  context.stroke();
+  context.fillStyle = themeColor("text");
+  context.font = "12px system-ui, sans-serif";
+  context.fillText(`grid ${meters} m, north up`, 8, view.height - 8);
+}
+
+function drawLine(
+  context: CanvasRenderingContext2D,
+  view: MapView,
+  points: [number, number][],
+  color: string,
+): void {
+  context.strokeStyle = color;
+  context.lineWidth = 2;
+  context.beginPath();
+  for (const point of points) context.lineTo(...toCanvas(view, point));
+  context.stroke();
+}
+
+function drawObject(
+  context: CanvasRenderingContext2D,
+  view: MapView,
+  object: MapObject,
+  color: string,
+): void {
+  const [x, y] = toCanvas(view, object.position);
+  const ellipse = covarianceEllipse(object.covariance, sigmas);
+  context.strokeStyle = color;
+  context.fillStyle = color;
+  context.lineWidth = 2;
+  context.beginPath();
+  context.ellipse(
+    x,
+    y,
+    Math.max(ellipse.major * view.pixelsPerMeter, 2),
+    Math.max(ellipse.minor * view.pixelsPerMeter, 2),
+    -ellipse.angle,
+    0,
+    2 * Math.PI,
+  );
+  context.globalAlpha = 0.2;
+  context.fill();
+  context.globalAlpha = 1;
+  context.stroke();
+  context.fillRect(x - 2, y - 2, 4, 4);
+  context.fillStyle = themeColor("text");
+  context.font = "12px system-ui, sans-serif";
+  context.fillText(object.label, x + 8, y - 6);
+}
+
+function drawUav(
+  context: CanvasRenderingContext2D,
+  view: MapView,
+  position: [number, number],
+  heading: number,
+): void {
+  context.save();
+  context.translate(...toCanvas(view, position));
+  context.rotate(-heading);
+  context.fillStyle = themeColor("uav");
+  context.beginPath();
+  context.moveTo(11, 0);
+  context.lineTo(-8, 7);
+  context.lineTo(-4, 0);
+  context.lineTo(-8, -7);
+  context.fill();
+  context.restore();
+}

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import { render } from "preact";
+import { App } from "./components/app";
+import { connection } from "./connection";
+import { handleKey } from "./keys";
+import { store } from "./store";
+import "./style.css";
+import { applyTheme, savedTheme } from "./theme";
+
+const theme = savedTheme();
+applyTheme(theme);
+store.set({ theme });
+document.addEventListener("keydown", handleKey);
+render(<App />, document.getElementById("app")!);
+connection.open();

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the server says, as src/kestrel/console/console_json.h writes it. Times are whole
+// nanoseconds as text: they are beyond what numbers hold here.
+
+export const layers = ["detection", "prediction", "rejected"] as const;
+export type Layer = (typeof layers)[number];
+
+/** A closed line over the image, x and y in turn, in pixels of the frame; one point is a mark. */
+export interface Shape {
+  layer: Layer;
+  label: string;
+  outline: number[];
+}
+
+export interface FrameHeader {
+  sequence: number;
+  time: string;
+  /** Since the light was collected, when it was sent; null for recordings. */
+  age_ms: number | null;
+  width: number;
+  height: number;
+  shapes: Shape[];
+}
+
+export interface Series {
+  name: string;
+  unit: string;
+  label: string;
+}
+
+export type CommandName = "record" | "snapshot" | "play" | "seek" | "step";
+
+export interface Hello {
+  kind: "hello";
+  title: string;
+  live: boolean;
+  series: Series[];
+  /** Of the shapes that there can be. */
+  layers: Layer[];
+  offers: CommandName[];
+}
+
+/** One value for each series of hello; null where it is not known. */
+export interface Sample {
+  kind: "sample";
+  time: string;
+  values: (number | null)[];
+}
+
+export interface Status {
+  kind: "status";
+  state: string;
+  reason: string;
+  recording: boolean;
+}
+
+/** World frame: x east, y north, m; the covariance is xx, xy, yy. */
+export interface MapObject {
+  label: string;
+  color: string;
+  position: [number, number];
+  covariance: [number, number, number];
+}
+
+export interface MapMessage {
+  kind: "map";
+  uav: [number, number] | null;
+  heading: number;
+  target: MapObject | null;
+  velocity: [number, number];
+  prediction: MapObject[];
+  objects: MapObject[];
+}
+
+export interface Check {
+  name: string;
+  verdict: "good" | "doubtful" | "wrong" | "not checked";
+  measured: string;
+}
+
+export interface Health {
+  kind: "health";
+  checks: Check[];
+}
+
+export interface EventMessage {
+  kind: "event";
+  time: string;
+  level: "info" | "warning" | "error";
+  text: string;
+}
+
+/** One character of marks for each frame: - nothing, f found, l lost, x false. */
+export interface Timeline {
+  kind: "timeline";
+  begin: string;
+  times_ms: number[];
+  marks: string;
+}
+
+export interface Playback {
+  kind: "playback";
+  frame: number;
+  speed: number;
+}
+
+export interface LinkReport {
+  kind: "link";
+  dropped: number;
+  images: number;
+  draw_ms: number | null;
+  clients: number;
+}
+
+export type ServerMessage =
+  | Hello
+  | Sample
+  | Status
+  | MapMessage
+  | Health
+  | EventMessage
+  | Timeline
+  | Playback
+  | LinkReport;
+
+export interface ImageMessage {
+  header: FrameHeader;
+  jpeg: Blob;
+}
+
+/** The length of the header (32 bits, lowest byte first), the header, the JPEG. */
+export function unpackImage(message: ArrayBuffer): ImageMessage {
+  const size = new DataView(message).getUint32(0, true);
+  const text = new TextDecoder().decode(new Uint8Array(message, 4, size));
+  return {
+    header: JSON.parse(text) as FrameHeader,
+    jpeg: new Blob([new Uint8Array(message, 4 + size)], { type: "image/jpeg" }),
+  };
+}
+
+/** Seconds from one time to another; exact to the microsecond however long ago the epoch is. */
+export function secondsBetween(from: string, to: string): number {
+  return Number((BigInt(to) - BigInt(from)) / 1000n) / 1e6;
+}

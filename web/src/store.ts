@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import type {
+  EventMessage,
+  Health,
+  Hello,
+  Layer,
+  LinkReport,
+  MapMessage,
+  Playback,
+  ServerMessage,
+  Status,
+  Timeline,
+} from "./protocol";
+import { SeriesBuffer } from "./series_buffer";
+
+export type ConnectionState = "connecting" | "open" | "lost" | "refused";
+export const themes = ["auto", "light", "dark", "sun"] as const;
+export type Theme = (typeof themes)[number];
+
+export interface State {
+  connection: ConnectionState;
+  hello: Hello | null;
+  status: Status | null;
+  map: MapMessage | null;
+  health: Health | null;
+  events: EventMessage[];
+  timeline: Timeline | null;
+  playback: Playback | null;
+  link: LinkReport | null;
+  series: SeriesBuffer;
+  /** UAV's way on the map, oldest first. */
+  track: [number, number][];
+  layers: Record<Layer, boolean>;
+  isFrozen: boolean;
+  isHelpShown: boolean;
+  theme: Theme;
+}
+
+const maxEvents = 200;
+const maxTrack = 600;
+
+export function initialState(): State {
+  return {
+    connection: "connecting",
+    hello: null,
+    status: null,
+    map: null,
+    health: null,
+    events: [],
+    timeline: null,
+    playback: null,
+    link: null,
+    series: new SeriesBuffer(0),
+    track: [],
+    layers: { detection: true, prediction: true, rejected: true },
+    isFrozen: false,
+    isHelpShown: false,
+    theme: "auto",
+  };
+}
+
+/** The state after a message. The series are changed in place: they are drawn by a clock. */
+export function withMessage(state: State, message: ServerMessage): State {
+  switch (message.kind) {
+    case "hello":
+      // A new server, or the same one again: what it knows comes after this.
+      return {
+        ...state,
+        hello: message,
+        events: [],
+        track: [],
+        map: null,
+        timeline: null,
+        playback: null,
+        series: new SeriesBuffer(message.series.length),
+      };
+    case "sample":
+      state.series.add(message);
+      return state;
+    case "status":
+      return { ...state, status: message };
+    case "map":
+      return { ...state, map: message, track: withPoint(state.track, message.uav) };
+    case "health":
+      return { ...state, health: message };
+    case "event":
+      return { ...state, events: [...state.events, message].slice(-maxEvents) };
+    case "timeline":
+      return { ...state, timeline: message };
+    case "playback":
+      return { ...state, playback: message };
+    case "link":
+      return { ...state, link: message };
+  }
+}
+
+function withPoint(
+  track: [number, number][],
+  point: [number, number] | null,
+): [number, number][] {
+  const last = track.at(-1);
+  if (!point) return track;
+  const distance = last ? Math.hypot(last[0] - point[0], last[1] - point[1]) : 0;
+  if (last && distance < 0.05) return track;
+  // So far from one frame to the next: a recording was wound.
+  if (distance > 3) return [point];
+  return [...track, point].slice(-maxTrack);
+}
+
+/** The one store: components look at it by useStore, everybody changes it by set. */
+export class Store {
+  private current = initialState();
+  private readonly listeners = new Set<() => void>();
+
+  get state(): State {
+    return this.current;
+  }
+
+  set(change: Partial<State>): void {
+    this.replace({ ...this.current, ...change });
+  }
+
+  receive(message: ServerMessage): void {
+    this.replace(withMessage(this.current, message));
+  }
+
+  subscribe(listener: () => void): () => void {
+    this.listeners.add(listener);
+    return () => this.listeners.delete(listener);
+  }
+
+  private replace(state: State): void {
+    if (state === this.current) return;
+    this.current = state;
+    for (const listener of this.listeners) listener();
+  }
+}
+
+export const store = new Store();

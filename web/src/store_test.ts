@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import { describe, expect, test } from "vitest";
+import { secondsBetween, unpackImage, type Hello, type MapMessage } from "./protocol";
+import { SeriesBuffer } from "./series_buffer";
+import { initialState, Store, withMessage } from "./store";
+
+const hello: Hello = {
+  kind: "hello",
+  title: "test",
+  live: true,
+  series: [{ name: "height", unit: "m", label: "Height" }],
+  layers: [],
+  offers: [],
+};
+
+function mapAt(x: number): MapMessage {
+  return {
+    kind: "map",
+    uav: [x, 0],
+    heading: 0,
+    target: null,
+    velocity: [0, 0],
+    prediction: [],
+    objects: [],
+  };
+}
+
+describe("store", () => {
+  test("a server that comes back begins anew", () => {
+    let state = withMessage(initialState(), hello);
+    state = withMessage(state, { kind: "event", time: "1", level: "info", text: "old" });
+    state = withMessage(state, { kind: "sample", time: "1", values: [3] });
+    state = withMessage(state, hello);
+    expect(state.events).toEqual([]);
+    expect(state.series.newest(0)).toBeNull();
+  });
+
+  test("the way on the map is bounded, and only of moves", () => {
+    let state = initialState();
+    for (let i = 0; i < 1000; i++) state = withMessage(state, mapAt(i));
+    expect(state.track.length).toBe(600);
+    expect(withMessage(state, mapAt(999.01)).track).toBe(state.track);
+  });
+
+  test("tells its listeners of changes until they leave", () => {
+    const store = new Store();
+    let calls = 0;
+    const leave = store.subscribe(() => calls++);
+    store.set({ isFrozen: true });
+    leave();
+    store.set({ isFrozen: false });
+    expect(calls).toBe(1);
+  });
+});
+
+describe("series", () => {
+  test("keep the last while, with gaps", () => {
+    const buffer = new SeriesBuffer(1, 10);
+    for (let i = 0; i <= 100; i++) {
+      buffer.add({ kind: "sample", time: `${1_700_000_000 + i}000000000`, values: [i % 2 ? i : null] });
+    }
+    expect(buffer.newest(0)).toBeNull();
+    expect(buffer.newestTime()).toBe(100);
+    expect(buffer.columns[0]!.length).toBeLessThanOrEqual(12);
+    expect(buffer.columns[1]!.length).toBe(buffer.columns[0]!.length);
+  });
+
+  test("begin anew when time goes back", () => {
+    const buffer = new SeriesBuffer(1);
+    buffer.add({ kind: "sample", time: "9000000000", values: [1] });
+    buffer.add({ kind: "sample", time: "2000000000", values: [2] });
+    expect(buffer.columns[1]).toEqual([2]);
+  });
+});
+
+describe("protocol", () => {
+  test("times lose nothing", () => {
+    expect(secondsBetween("1700000000123456789", "1700000001123457789")).toBe(1.000001);
+  });
+
+  test("an image is unpacked", async () => {
+    const header = new TextEncoder().encode('{"sequence":7,"shapes":[]}');
+    const message = new Uint8Array(4 + header.length + 3);
+    new DataView(message.buffer).setUint32(0, header.length, true);
+    message.set(header, 4);
+    message.set([1, 2, 3], 4 + header.length);
+    const image = unpackImage(message.buffer);
+    expect(image.header.sequence).toBe(7);
+    expect([...new Uint8Array(await image.jpeg.arrayBuffer())]).toEqual([1, 2, 3]);
+  });
+});

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Serves dist/ and a simulated flight, for work on the page without the program:
+//
+//   node tools/mock_server.js [PORT] [--replay]
+import { existsSync, readFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { join } from "node:path";
+import { WebSocketServer } from "ws";
+import {
+  flightAt,
+  flightSeconds,
+  framesPerSecond,
+  height,
+  markAt,
+  pictureAt,
+  shapesAt,
+  stateAt,
+  width,
+} from "./mock_flight.js";
+
+const dist = new URL("../dist", import.meta.url).pathname;
+const types = { html: "text/html; charset=utf-8", js: "text/javascript", css: "text/css", svg: "image/svg+xml" };
+const frameCount = flightSeconds * framesPerSecond;
+
+const series = [
+  { name: "height", unit: "m", label: "Height" },
+  { name: "offset", unit: "m", label: "Offset" },
+  { name: "speed", unit: "m/s", label: "Speed" },
+  { name: "quality", unit: "", label: "Quality" },
+  { name: "detect", unit: "ms", label: "Detection" },
+  { name: "latency", unit: "ms", label: "Latency" },
+];
+
+const checks = [
+  { name: "frame rate", verdict: "good", measured: "30.0 Hz, none missed" },
+  { name: "clock", verdict: "good", measured: "autopilot's known to 0.2 ms" },
+  { name: "link", verdict: "doubtful", measured: "3 % of heartbeats lost: shorten the cable" },
+  { name: "processor", verdict: "good", measured: "38 %, 61 °C" },
+  { name: "disk", verdict: "wrong", measured: "0.4 GB free: 3 minutes of recording" },
+  { name: "lens", verdict: "not checked", measured: "no views of the pattern yet" },
+];
+
+/** Starts the server; resolves to it. 'isReplay': as `kestrel console` of a recording. */
+export function startMockServer(port, isReplay = false) {
+  const server = createServer(sendFile);
+  const sockets = new WebSocketServer({ server, path: "/live" });
+  sockets.on("connection", (socket) => new Client(socket, isReplay));
+  return new Promise((resolve) => server.listen(port, "127.0.0.1", () => resolve(server)));
+}
+
+function sendFile(request, response) {
+  const name = request.url === "/" ? "/index.html" : request.url;
+  const path = join(dist, name);
+  if (!path.startsWith(dist) || !existsSync(path)) return response.writeHead(404).end();
+  response.writeHead(200, {
+    "Content-Type": types[path.split(".").at(-1)] ?? "application/octet-stream",
+    "Content-Security-Policy":
+      "default-src 'self'; img-src 'self' blob:; base-uri 'none'; form-action 'self'; frame-ancestors 'none'",
+  });
+  return response.end(readFileSync(path));
+}
+
+class Client {
+  constructor(socket, isReplay) {
+    this.socket = socket;
+    this.isReplay = isReplay;
+    this.frame = 0;
+    this.speed = 1;
+    this.isRecording = false;
+    this.wantsImages = false;
+    this.inFlight = null;
+    socket.on("message", (text) => this.receive(JSON.parse(text)));
+    const timer = setInterval(() => this.tick(), 1000 / framesPerSecond);
+    socket.on("close", () => clearInterval(timer));
+    this.greet();
+  }
+
+  send(message) {
+    this.socket.send(JSON.stringify(message));
+  }
+
+  greet() {
+    const offers = this.isReplay ? ["play", "seek", "step"] : ["record", "snapshot"];
+    const title = this.isReplay ? "Recording flight_07" : "Simulated flight";
+    const layers = ["detection", "prediction", "rejected"];
+    this.send({ kind: "hello", title, live: !this.isReplay, series, layers, offers });
+    this.send({ kind: "health", checks });
+    this.event("info", "camera opened: 376x240, 30 Hz");
+    this.event("warning", "autopilot's clock is 12 ms ahead");
+    if (this.isReplay) this.sendTimeline();
+  }
+
+  sendTimeline() {
+    const frames = Array.from({ length: frameCount }, (_, i) => i);
+    this.send({
+      kind: "timeline",
+      begin: "1700000000000000000",
+      times_ms: frames.map((i) => (1000 * i) / framesPerSecond),
+      marks: frames.map((i) => markAt(flightAt(i / framesPerSecond))).join(""),
+    });
+  }
+
+  event(level, text) {
+    this.send({ kind: "event", time: this.time(), level, text });
+  }
+
+  time() {
+    return `${1_700_000_000_000 + Math.round((1000 * this.frame) / framesPerSecond)}000000`;
+  }
+
+  receive(message) {
+    if ("images" in message) this.wantsImages = message.images;
+    if (message.ack === this.inFlight) this.inFlight = null;
+    if (message.command === "record") {
+      this.isRecording = message.value === 1;
+      this.event("info", this.isRecording ? "recording to flight_08" : "recording ended");
+    }
+    if (message.command === "snapshot") this.event("info", "snapshot kept");
+    if (message.command === "play") this.speed = message.value;
+    if (message.command === "step") this.show(this.frame + message.value, 0);
+    if (message.command === "seek") this.show(Math.round(message.value * framesPerSecond), this.speed);
+  }
+
+  show(frame, speed) {
+    this.frame = Math.min(Math.max(frame, 0), frameCount - 1);
+    this.speed = speed;
+    this.tellAll();
+  }
+
+  tick() {
+    if (!this.isReplay) this.frame += 1;
+    else if (this.speed !== 0) this.frame = Math.round(this.frame + Math.max(this.speed, 1)) % frameCount;
+    this.tellAll();
+  }
+
+  tellAll() {
+    const flight = flightAt(this.frame / framesPerSecond);
+    const [state, reason] = stateAt(flight);
+    const offset = Math.hypot(...flight.offset);
+    this.send({ kind: "status", state, reason, recording: this.isRecording });
+    const quality = flight.isSeen ? 0.93 + 0.03 * Math.sin(3 * flight.t) : null;
+    const detect = 1.6 + 0.4 * Math.sin(7 * flight.t);
+    const values = [flight.altitude, offset, 0.8, quality, detect, 31 + 4 * Math.sin(flight.t)];
+    this.send({ kind: "sample", time: this.time(), values });
+    this.send(mapOf(flight));
+    if (this.isReplay) this.send({ kind: "playback", frame: this.frame, speed: this.speed });
+    if (this.frame % 10 === 0) this.send({ kind: "link", dropped: 0, images: this.frame, draw_ms: 24, clients: 1 });
+    this.sendImage(flight);
+  }
+
+  sendImage(flight) {
+    if (!this.wantsImages || this.inFlight !== null) return;
+    this.sequence = (this.sequence ?? 0) + 1;
+    this.inFlight = this.sequence;
+    const header = Buffer.from(
+      JSON.stringify({
+        sequence: this.sequence,
+        time: this.time(),
+        age_ms: this.isReplay ? null : 18,
+        width,
+        height,
+        shapes: shapesAt(flight),
+      }),
+    );
+    const size = Buffer.alloc(4);
+    size.writeUInt32LE(header.length);
+    this.socket.send(Buffer.concat([size, header, pictureAt(flight)]));
+  }
+}
+
+function mapOf(flight) {
+  const at = (label, position, sigma) => ({
+    label,
+    color: "",
+    position,
+    covariance: [sigma * sigma, 0.3 * sigma * sigma, 0.6 * sigma * sigma],
+  });
+  const ahead = [1, 2, 3].map((seconds) => {
+    const later = flightAt(flight.t + seconds);
+    return at(`+${seconds} s`, later.target, 0.15 + 0.25 * seconds);
+  });
+  const isKnown = flight.t > 3;
+  return {
+    kind: "map",
+    uav: flight.uav,
+    heading: 0.1 * flight.t,
+    target: isKnown ? at("pad", flight.target, flight.isSeen ? 0.12 : 0.4) : null,
+    velocity: [0.8, 0],
+    prediction: isKnown ? ahead : [],
+    objects: [],
+  };
+}
+
+if (process.argv[1] === new URL(import.meta.url).pathname) {
+  const port = Number(process.argv[2] ?? 8090);
+  await startMockServer(port, process.argv.includes("--replay"));
+  console.log(`http://127.0.0.1:${port}/`);
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Opens the page in Debian's Chromium over the mock server, writes pictures of it to a folder, and
+// ends with status 1 when axe finds something:
+//
+//   node tools/pictures.js FOLDER
+import { join } from "node:path";
+import { chromium } from "playwright-core";
+import { findingsOf } from "./axe.js";
+import { startMockServer } from "./mock_server.js";
+
+const folder = process.argv[2];
+if (!folder) throw new Error("expected a folder for the pictures");
+const views = [
+  { name: "live-light", theme: "light", width: 1440, height: 1000 },
+  { name: "live-dark", theme: "dark", width: 1440, height: 1000 },
+  { name: "live-sun", theme: "sun", width: 1440, height: 1000 },
+  { name: "live-tablet", theme: "light", width: 820, height: 1180 },
+  { name: "replay", theme: "light", width: 1440, height: 1000, isReplay: true },
+];
+
+let findings = 0;
+const servers = [await startMockServer(8091), await startMockServer(8092, true)];
+const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox"] });
+for (const view of views) {
+  const page = await browser.newPage({ viewport: { width: view.width, height: view.height }, bypassCSP: false });
+  page.on("pageerror", (error) => report(`${view.name}: ${error}`));
+  page.on("console", (message) => {
+    if (message.type() === "error") report(`${view.name}: ${message.text()}`);
+  });
+  await page.addInitScript((theme) => localStorage.setItem("kestrel-theme", theme), view.theme);
+  await page.goto(`http://127.0.0.1:${view.isReplay ? 8092 : 8091}/`);
+  await page.waitForFunction(() => !document.querySelector(".screen .empty"));
+  await page.keyboard.press("3");
+  await page.waitForTimeout(7000);
+  await page.screenshot({ path: join(folder, `${view.name}.png`) });
+  for (const finding of await findingsOf(page)) report(`${view.name}: ${finding}`);
+  await page.close();
+}
+await browser.close();
+for (const server of servers) server.close();
+process.exit(findings > 0 ? 1 : 0);
+
+function report(text) {
+  console.error(text);
+  findings += 1;
+}
