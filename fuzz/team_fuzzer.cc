@@ -25,7 +25,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (!kestrel::ParseMessage(sent)) std::abort();
     });
   }
-  for (const auto& object : kestrel::ViewTeam(member, {}, now).objects) {
+  kestrel::TeamFusion fusion({}, {});
+  for (const auto& object : kestrel::ViewTeam(member, now, &fusion).objects) {
     if (!object.state.allFinite()) std::abort();
   }
   return 0;

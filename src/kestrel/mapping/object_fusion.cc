@@ -10,14 +10,24 @@
 namespace kestrel {
 namespace {
 
-double SquaredDistance(const MappedObject& a, const MappedObject& b, double shared_sigma_m) {
-  if (a.shape != b.shape || a.color_index() != b.color_index()) return kImpossibleCost;
+// Squared Mahalanobis distance; kImpossibleCost for one that is beyond the gate.
+double SquaredDistance(const MappedObject& a, const MappedObject& b,
+                       const ObjectMapOptions& options) {
   Eigen::Matrix3d covariance =
       a.covariance.topLeftCorner<3, 3>() + b.covariance.topLeftCorner<3, 3>();
   // The navigation of each UAV has its own bias.
-  covariance.diagonal().array() += 2 * shared_sigma_m * shared_sigma_m;
+  covariance.diagonal().array() += 2 * options.shared_sigma_m * options.shared_sigma_m;
   const Eigen::Vector3d difference = a.position() - b.position();
-  return difference.dot(covariance.llt().solve(difference));
+  // No variance along any direction is above the trace: most pairs need no solver.
+  if (difference.squaredNorm() > options.gate * covariance.trace()) return kImpossibleCost;
+  const double distance = difference.dot(covariance.llt().solve(difference));
+  return distance <= options.gate ? distance : kImpossibleCost;
+}
+
+std::vector<std::size_t> ColorsOf(const std::vector<MappedObject>& objects) {
+  std::vector<std::size_t> colors;
+  for (const MappedObject& object : objects) colors.push_back(object.color_index());
+  return colors;
 }
 
 }  // namespace
@@ -27,11 +37,13 @@ std::vector<std::size_t> FuseObjects(const std::vector<MappedObject>& objects,
                                      std::vector<MappedObject>* fused) {
   const auto rows = static_cast<Eigen::Index>(objects.size());
   const auto known = static_cast<Eigen::Index>(fused->size());
+  const std::vector<std::size_t> colors = ColorsOf(objects);
+  const std::vector<std::size_t> known_colors = ColorsOf(*fused);
   Eigen::MatrixXd costs = Eigen::MatrixXd::Constant(rows, known + rows, kImpossibleCost);
   for (Eigen::Index i = 0; i < rows; ++i) {
     for (Eigen::Index k = 0; k < known; ++k) {
-      const double distance = SquaredDistance(objects[i], (*fused)[k], options.shared_sigma_m);
-      if (distance <= options.gate) costs(i, k) = distance;
+      if (objects[i].shape != (*fused)[k].shape || colors[i] != known_colors[k]) continue;
+      costs(i, k) = SquaredDistance(objects[i], (*fused)[k], options);
     }
     costs(i, known + i) = options.gate;
   }

@@ -29,6 +29,7 @@ void TeamMap::Merge(const PartMessage& message, Time local) {
   if (is_new || message.contents.version > part.contents.version) {
     part.contents = message.contents;
     part.told_at = told_at;
+    ++part.revision;
     std::erase_if(part.objects,
                   [&](const auto& held) { return !part.contents.objects.contains(held.first); });
   } else if (message.contents.version == part.contents.version) {
@@ -40,7 +41,10 @@ void TeamMap::Merge(const PartMessage& message, Time local) {
         listed->second != message.contents.objects.at(object.id)) {
       continue;
     }
-    if (!part.Has(object.id)) part.objects[object.id] = {listed->second, object, local};
+    if (!part.Has(object.id)) {
+      part.objects[object.id] = {listed->second, object, local};
+      ++part.revision;
+    }
     part.objects[object.id].on_air = local;
   }
 }

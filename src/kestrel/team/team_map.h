@@ -27,6 +27,7 @@ class TeamMap {
     Time told_at;  // when the contents were told, on this computer's clock: the earliest guess
     // What has come of it. An object that the contents list with a newer version is kept as it was.
     std::map<std::int64_t, Entry> objects;
+    std::uint64_t revision = 0;  // grows whenever contents or objects change here
 
     bool Has(std::int64_t id) const;  // in the version that is listed
     // Of the objects that are listed and not here, the first 'max'.

@@ -70,7 +70,12 @@ void TeamMember::Tell(std::vector<MappedObject> objects, Time now) {
 
 void TeamMember::SetClaim(const std::optional<Claim>& claim) {
   peers_[self_].claim = claim;
-  has_new_claim_ = true;
+  has_news_ = true;
+}
+
+void TeamMember::SetDone() {
+  peers_[self_].is_done = true;
+  has_news_ = true;
 }
 
 void TeamMember::Hear(std::span<const std::uint8_t> bytes, Time local) {
@@ -132,7 +137,7 @@ void TeamMember::HearDigest(const UavKey& sender, const Digest& digest, Time loc
   }
   for (const auto& [uav, part] : map_.parts()) {
     const auto line = lines.find(uav);
-    Answer(sender, line == lines.end() ? DigestLine{uav, 0, 0, {}, {}, 0} : *line->second, local);
+    Answer(sender, line == lines.end() ? DigestLine{uav, {}, {}, {}, {}, {}, {}} : *line->second, local);
   }
 }
 
@@ -148,6 +153,7 @@ void TeamMember::HearLine(const DigestLine& line, Time local) {
   peer->beat = line.beat;
   peer->beat_at = local;
   peer->claim = line.claim;
+  peer->is_done = line.is_done;
 }
 
 // Queues what the sender of the line lacks, if it is this UAV's turn.
@@ -212,6 +218,12 @@ std::vector<UavKey> TeamMember::Known() const {
   return known;
 }
 
+bool TeamMember::AreAllDone(Time local) const {
+  return std::all_of(peers_.begin(), peers_.end(), [&](const auto& peer) {
+    return peer.second.is_done || !IsAlive(peer.first, local);
+  });
+}
+
 std::optional<Claim> TeamMember::ClaimOf(const UavKey& uav, Time local) const {
   return IsAlive(uav, local) ? peers_.at(uav).claim : std::nullopt;
 }
@@ -226,7 +238,7 @@ void TeamMember::Tick(Time local, const Send& send) {
     return !last || local - *last >= DurationFromSeconds(period_s);
   };
   if (untold_ && is_due(told_, options_.tell_period_s)) TellOwn(local);
-  if (allowance_ > 0 && (has_new_claim_ || is_due(last_digest_, options_.digest_period_s))) {
+  if (allowance_ > 0 && (has_news_ || is_due(last_digest_, options_.digest_period_s))) {
     SendDigest(local, send);
   }
   while (allowance_ > 0 && !queue_.empty()) SendQueued(local, send);
@@ -265,7 +277,11 @@ void TeamMember::SendDigest(Time local, const Send& send) {
   peers_[self_].beat += 1;
   for (auto& [uav, peer] : peers_) {
     const TeamMap::Part* const part = map_.Find(uav);
-    DigestLine line{uav, peer.beat, part != nullptr ? part->contents.version : 0, {}, {}, 0};
+    DigestLine line;
+    line.uav = uav;
+    line.beat = peer.beat;
+    if (part != nullptr) line.version = part->contents.version;
+    line.is_done = peer.is_done;
     line.claim = ClaimOf(uav, local);
     if (part != nullptr) line.missing = part->Missing(room);
     room -= line.missing.size();
@@ -275,7 +291,7 @@ void TeamMember::SendDigest(Time local, const Send& send) {
   }
   SendMessage({self_, std::move(digest)}, send);
   last_digest_ = local;
-  has_new_claim_ = false;
+  has_news_ = false;
 }
 
 // One message with the contents of the UAV whose turn it is and the objects next in turn.

@@ -39,6 +39,9 @@ class TeamMember {
   // What this UAV goes for; told with the next Tick.
   void SetClaim(const std::optional<Claim>& claim);
 
+  // The map told last is this UAV's last; told with the next Tick.
+  void SetDone();
+
   // A message from anyone. What is malformed changes nothing.
   void Hear(std::span<const std::uint8_t> bytes, Time local);
 
@@ -56,6 +59,8 @@ class TeamMember {
   bool IsAlive(const UavKey& uav, Time local) const;
   // All that were ever heard of, and the UAV itself.
   std::vector<UavKey> Known() const;
+  // Whether every UAV that is alive, and this one, has said that its map is its last.
+  bool AreAllDone(Time local) const;
   // What a UAV that is alive goes for.
   std::optional<Claim> ClaimOf(const UavKey& uav, Time local) const;
 
@@ -69,6 +74,7 @@ class TeamMember {
     std::uint32_t beat = 0;
     std::optional<Time> beat_at;  // when it rose last
     std::optional<Claim> claim;
+    bool is_done = false;
     std::uint64_t newest = 0;  // version that anyone has heard of
     int tries = 0;
   };
@@ -103,7 +109,7 @@ class TeamMember {
   std::optional<Time> told_;
   std::optional<Time> last_digest_;
   std::optional<Time> last_tick_;
-  bool has_new_claim_ = false;
+  bool has_news_ = false;  // for the digest
   double allowance_;              // bytes that may be sent now
   std::set<ObjectRef> queue_;     // to be sent
   ObjectRef cursor_;              // where in the queue the turn is

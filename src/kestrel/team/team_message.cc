@@ -13,7 +13,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::uint32_t kMagic = 0x0154'4b00;  // the last byte is the format's number
+constexpr std::uint32_t kMagic = 0x0154'4b01;  // the last byte is the format's number
 constexpr std::size_t kMaxNameSize = 32;
 constexpr std::int64_t kMaxId = std::int64_t{1} << 48;
 constexpr std::uint64_t kMaxAge_ns = 1'000'000'000'000'000;  // eleven days
@@ -22,7 +22,7 @@ constexpr double kMaxNumber = 1e9;
 constexpr int kMaxDetections = 1 << 30;
 constexpr int kStanding = 3;  // numbers of the state of what does not move
 enum Kind : std::uint8_t { kDigest, kPart };
-enum Flag : std::uint8_t { kMayMove = 1, kHasDigits = 2 };
+enum Flag : std::uint8_t { kMayMove = 1, kHasDigits = 2, kDone = 1 };
 
 void Write(const UavKey& key, ByteWriter* out) {
   out->Text(key.name);
@@ -185,6 +185,7 @@ void Write(const Digest& digest, ByteWriter* out) {
     out->Fixed(line.beat);
     out->Whole(line.version);
     out->Byte(static_cast<std::uint8_t>(line.tries));
+    out->Byte(line.is_done ? kDone : 0);
     out->Whole(line.missing.size());
     for (const std::int64_t id : line.missing) out->Whole(static_cast<std::uint64_t>(id));
     const auto claimed =
@@ -207,6 +208,9 @@ Digest ReadDigest(ByteReader* in) {
     line.beat = in->Fixed<std::uint32_t>();
     line.version = in->Whole(kMaxVersion);
     line.tries = in->Byte();
+    const std::uint8_t flags = in->Byte();
+    in->Require(flags <= kDone);
+    line.is_done = flags == kDone;
     const std::size_t missing = in->Whole(kMaxMissing);
     for (std::size_t i = 0; i < missing && !in->has_failed(); ++i) {
       line.missing.push_back(ReadId(in));

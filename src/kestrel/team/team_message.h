@@ -63,6 +63,7 @@ struct DigestLine {
   UavKey uav;
   std::uint32_t beat = 0;     // digests that the UAV had sent, modulo 2^32: who lives counts on
   std::uint64_t version = 0;  // of its contents
+  bool is_done = false;       // the UAV's map is its last: it has seen all that it will see
   std::optional<Claim> claim;
   std::vector<std::int64_t> missing;  // objects that the contents list and the sender lacks
   int tries = 0;                      // digests since the sender knows that it lacks something

@@ -65,6 +65,7 @@ TEST(TeamMessage, ADigestComesAsItWasSent) {
   digest[1].beat = 4'000'000'000;
   digest[1].missing = {3, 400};
   digest[1].tries = 7;
+  digest[1].is_done = true;
   TeamMessage sent;
   sent.sender = a;
   sent.body = digest;
@@ -77,6 +78,8 @@ TEST(TeamMessage, ADigestComesAsItWasSent) {
   EXPECT_EQ(lines[1].beat, 4'000'000'000);
   EXPECT_THAT(lines[1].missing, ElementsAre(3, 400));
   EXPECT_EQ(lines[1].tries, 7);
+  EXPECT_TRUE(lines[1].is_done);
+  EXPECT_FALSE(lines[0].is_done);
   EXPECT_FALSE(lines[1].claim);
 }
 

@@ -2,84 +2,49 @@
 #include "kestrel/team/team_view.h"
 
 #include <algorithm>
-#include <utility>
 
-#include "kestrel/geometry/angles.h"
 #include "kestrel/mapping/object_fusion.h"
 
 namespace kestrel {
 namespace {
 
-// The objects of a part at 'local', on a clock that says 'now' then.
-std::vector<MappedObject> ObjectsAt(const TeamMap::Part& part, const ObjectMapOptions& options,
-                                    Time local, Time now) {
+// What has to be added to times of the UAV's clock to get those of the clock that says 'now' at
+// 'local'.
+Duration ShiftOf(const TeamMap::Part& part, Time local, Time now) {
   const Duration since_told = std::max(local - part.told_at, Duration::zero());
-  const Duration shift = now - since_told - part.contents.now;
-  std::vector<MappedObject> objects;
-  for (const auto& [id, entry] : part.objects) {
-    MappedObject object = entry.object;
-    for (Time* time : {&object.time, &object.first_seen, &object.last_seen}) *time += shift;
-    PredictObject(now, options.motion(), &object);
-    objects.push_back(object);
-  }
-  return objects;
+  return now - since_told - part.contents.now;
 }
 
-// Fuses the parts one after the other, those first whose world is known by what is there already.
-class Fusion {
- public:
-  Fusion(const TeamMember& member, const ObjectMapOptions& options, TeamView* view)
-      : options_(options),
-        prior_{member.options().world_sigma_m, Radians(member.options().world_yaw_sigma_deg)},
-        view_(view) {}
-
-  void Add(const UavKey& uav, const TeamMap::Part& part, std::vector<MappedObject> objects) {
-    waiting_.push_back({uav, &part, std::move(objects)});
+// What may move in a UAV's map, at 'now' and in the common world.
+std::vector<MappedObject> MovingObjects(const TeamMap::Part& part, Duration shift, Time now,
+                                        const ObjectMotion& motion,
+                                        const WorldAlignment& common_from_world) {
+  std::vector<MappedObject> moving;
+  for (const auto& [id, entry] : part.objects) {
+    if (!entry.object.may_move) continue;
+    MappedObject& object = moving.emplace_back(entry.object);
+    for (Time* time : {&object.time, &object.first_seen, &object.last_seen}) *time += shift;
+    PredictObject(now, motion, &object);
+    MoveToWorld(common_from_world, &object);
   }
+  return moving;
+}
 
-  void Run() {
-    bool is_first = true;
-    while (!waiting_.empty()) {
-      std::vector<Part> left;
-      for (Part& part : waiting_) {
-        const std::optional<WorldAlignment> alignment =
-            is_first ? WorldAlignment{} : EstimateAlignment(part.objects, view_->objects, prior_);
-        is_first = false;
-        if (alignment) {
-          view_->common_from_world[part.uav] = *alignment;
-          Fuse(*alignment, &part);
-        } else {
-          left.push_back(std::move(part));
-        }
-      }
-      const bool is_done = left.size() == waiting_.size();
-      waiting_ = std::move(left);
-      if (is_done) break;
-    }
-    for (Part& part : waiting_) Fuse(UnknownAlignment(part.objects, prior_), &part);
+// Which objects of the view those of the UAV's map are; what stands is seen when they were.
+void Index(const UavKey& uav, const TeamMap::Part& part, Duration shift,
+           const std::vector<std::size_t>& standing, const std::vector<std::size_t>& moving,
+           TeamView* view) {
+  auto next_standing = standing.begin();
+  auto next_moving = moving.begin();
+  for (const auto& [id, entry] : part.objects) {
+    const std::size_t index = entry.object.may_move ? *next_moving++ : *next_standing++;
+    view->index.emplace_hint(view->index.end(), ObjectRef{uav, id}, index);
+    if (entry.object.may_move) continue;
+    MappedObject& object = view->objects[index];
+    object.first_seen = std::min(object.first_seen, entry.object.first_seen + shift);
+    object.last_seen = std::max(object.last_seen, entry.object.last_seen + shift);
   }
-
- private:
-  struct Part {
-    UavKey uav;
-    const TeamMap::Part* told;
-    std::vector<MappedObject> objects;  // in the order of their ids
-  };
-
-  void Fuse(const WorldAlignment& alignment, Part* part) {
-    for (MappedObject& object : part->objects) MoveToWorld(alignment, &object);
-    const auto indices = FuseObjects(part->objects, options_, &view_->objects);
-    std::size_t i = 0;
-    for (const auto& [id, entry] : part->told->objects) {
-      view_->index[{part->uav, id}] = indices[i++];
-    }
-  }
-
-  ObjectMapOptions options_;
-  WorldPrior prior_;
-  TeamView* view_;
-  std::vector<Part> waiting_;
-};
+}
 
 // To each claimed object the one who has it.
 void FindHolders(const TeamMember& member, Time local, TeamView* view) {
@@ -99,16 +64,31 @@ void FindHolders(const TeamMember& member, Time local, TeamView* view) {
 
 }  // namespace
 
-TeamView ViewTeam(const TeamMember& member, const ObjectMapOptions& options, Time local) {
-  const TeamMap::Part* const own = member.map().Find(member.self());
+TeamView ViewTeam(const TeamMember& member, Time local, TeamFusion* fusion) {
+  const TeamMap& map = member.map();
+  const TeamMap::Part* const own = map.Find(member.self());
   const Time now =
       own == nullptr ? local : own->contents.now + std::max(local - own->told_at, Duration::zero());
+  fusion->Update(map);
   TeamView view;
-  Fusion fusion(member, options, &view);
-  for (const auto& [uav, part] : member.map().parts()) {
-    if (!part.objects.empty()) fusion.Add(uav, part, ObjectsAt(part, options, local, now));
+  view.objects = fusion->standing();
+  for (MappedObject& object : view.objects) {
+    object.first_seen = Time::max();
+    object.last_seen = Time::min();
   }
-  fusion.Run();
+  std::vector<MappedObject> moving;
+  for (const auto& [uav, part] : map.parts()) {
+    if (part.objects.empty()) continue;
+    const WorldAlignment& alignment = fusion->CommonFromWorld(uav);
+    if (fusion->IsPlaced(uav)) view.common_from_world.emplace(uav, alignment);
+    const ObjectMapOptions& options = fusion->options();
+    const Duration shift = ShiftOf(part, local, now);
+    std::vector<std::size_t> indices = FuseObjects(
+        MovingObjects(part, shift, now, options.motion(), alignment), options, &moving);
+    for (std::size_t& index : indices) index += fusion->standing().size();
+    Index(uav, part, shift, fusion->IndicesOf(uav), indices, &view);
+  }
+  view.objects.insert(view.objects.end(), moving.begin(), moving.end());
   const auto common_from_own = view.common_from_world.find(member.self());
   if (common_from_own != view.common_from_world.end()) {
     WorldAlignment own_from_common = common_from_own->second.Inverse();
@@ -117,9 +97,32 @@ TeamView ViewTeam(const TeamMember& member, const ObjectMapOptions& options, Tim
   }
   for (std::size_t i = 0; i < view.objects.size(); ++i) {
     view.objects[i].id = static_cast<std::int64_t>(i) + 1;
+    view.objects[i].time = now;
   }
   FindHolders(member, local, &view);
   return view;
+}
+
+std::vector<TeamObject> CommonMap(const TeamMember& member, const TeamView& view,
+                                  const TeamFusion& fusion) {
+  std::vector<TeamObject> objects(view.objects.size());
+  const std::vector<MappedObject>& standing = fusion.standing();
+  for (const auto& [ref, i] : view.index) {
+    TeamObject& common = objects[i];
+    const MappedObject& told = member.map().Find(ref.uav)->objects.at(ref.id).object;
+    if (i < standing.size()) {
+      common.object = standing[i];
+    } else if (common.uavs.empty() || told.sigma_m() < common.object.sigma_m()) {
+      common.object = told;
+      MoveToWorld(fusion.CommonFromWorld(ref.uav), &common.object);
+    }
+    common.object.id = static_cast<std::int64_t>(i) + 1;
+    // Two starts of one UAV have one name.
+    if (common.uavs.empty() || common.uavs.back() != ref.uav.name) {
+      common.uavs.push_back(ref.uav.name);
+    }
+  }
+  return objects;
 }
 
 std::optional<std::size_t> ChooseObject(const TeamView& view, const Eigen::Vector3d& position,

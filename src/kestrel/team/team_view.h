@@ -3,11 +3,13 @@
 
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "kestrel/base/time.h"
 #include "kestrel/mapping/object_map.h"
 #include "kestrel/objects/object_model.h"
+#include "kestrel/team/team_fusion.h"
 #include "kestrel/team/team_member.h"
 #include "kestrel/team/world_alignment.h"
 
@@ -15,21 +17,30 @@ namespace kestrel {
 
 // The team's map as one UAV sees it.
 struct TeamView {
-  // In the UAV's own world, on its own clock and at the time for which the view was made; ids count
-  // from 1.
+  // In the UAV's own world, on its own clock and, if they move, at the time for which the view was
+  // made; ids count from 1.
   std::vector<MappedObject> objects;
   std::map<ObjectRef, std::size_t> index;  // of the UAVs' objects in 'objects'
   // Who goes for each of them: of those alive that claim it the highest bid, of equal ones the
   // first by key.
   std::vector<std::optional<UavKey>> holders;
-  // From the worlds of the UAVs to the common one, which is that of the first by key; not of those
-  // of which it is not known yet.
+  // From the worlds of the UAVs to the common one; not of those of which it is not known yet.
   std::map<UavKey, WorldAlignment> common_from_world;
 };
 
-// All UAVs' maps as one. Those of worlds that are not aligned are taken for the same world, less
-// surely. All that hold the same TeamMap see the same objects.
-TeamView ViewTeam(const TeamMember& member, const ObjectMapOptions& options, Time local);
+// All UAVs' maps as one. 'fusion' is this member's own, which remembers what does not change.
+TeamView ViewTeam(const TeamMember& member, Time local, TeamFusion* fusion);
+
+// An object as all of the team see it.
+struct TeamObject {
+  MappedObject object;            // in the common world; its times mean nothing
+  std::vector<std::string> uavs;  // that have it in their maps, by name
+};
+
+// The objects of the view, which 'fusion' made, in the common world. All that hold the same have
+// the same to the last bit: what moves is where that UAV saw it that knows it best.
+std::vector<TeamObject> CommonMap(const TeamMember& member, const TeamView& view,
+                                  const TeamFusion& fusion);
 
 // Chooses what the UAV at 'position' (in its own world) goes for, and claims it: the object with
 // the most value for its distance that nobody else holds. It keeps what it has until that is gone

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/geometry/angles.h"
+#include "kestrel/mapping/map_file.h"
 #include "kestrel/team/test_team.h"
 
 namespace kestrel {
@@ -20,6 +21,7 @@ struct FieldTeam {
   FieldTeam(int count, double bias_m, std::uint64_t seed) : team(seed) {
     Random random(seed);
     field = TestField(60, &random);
+    fusions.resize(count, TeamFusion({}, {}));
     for (int i = 0; i < count; ++i) {
       WorldAlignment& world = worlds.emplace_back();
       world.pivot = {50, 50, 0};
@@ -38,18 +40,37 @@ struct FieldTeam {
     team.Run(3);
   }
 
-  TeamView View(std::size_t i) const {
-    return ViewTeam(*team.uavs[i].member, {}, team.LocalTime(i));
+  TeamView View(std::size_t i) {
+    return ViewTeam(*team.uavs[i].member, team.LocalTime(i), &fusions[i]);
   }
 
   SimulatedTeam team;
   std::vector<MappedObject> field;
   std::vector<WorldAlignment> worlds;
+  std::vector<TeamFusion> fusions;
 };
+
+TEST(TeamView, TheCommonMapIsTheSameToTheLastBitForAll) {
+  FieldTeam flown(3, 1, 4);
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const TeamView view = flown.View(i);
+    std::string& text = texts.emplace_back();
+    for (const TeamObject& common :
+         CommonMap(*flown.team.uavs[i].member, view, flown.fusions[i])) {
+      std::vector<MappedObject> object{common.object};
+      object[0].time = object[0].first_seen = object[0].last_seen = Time();
+      text += PrintObjects(object);
+      for (const std::string& uav : common.uavs) text += uav + '\n';
+    }
+    EXPECT_GT(text.size(), 10'000u);
+    EXPECT_EQ(text, texts[0]);
+  }
+}
 
 TEST(TeamView, AllSeeTheFieldOnceEachInItsOwnWorld) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const FieldTeam flown(5, 1, seed);
+    FieldTeam flown(5, 1, seed);
     for (std::size_t i = 0; i < 5; ++i) {
       const TeamView view = flown.View(i);
       EXPECT_THAT(view.common_from_world, SizeIs(5)) << seed;
@@ -79,7 +100,8 @@ TEST(TeamView, ObjectsAreAtTheTimeOfTheView) {
   moving.state[3] = 2;
   team.uavs[0].member->Tell({moving}, Time());
   team.Run(2);
-  const TeamView view = ViewTeam(*team.uavs[1].member, {}, team.LocalTime(1));
+  TeamFusion fusion({}, {});
+  const TeamView view = ViewTeam(*team.uavs[1].member, team.LocalTime(1), &fusion);
   ASSERT_THAT(view.objects, SizeIs(1));
   EXPECT_GT(view.objects[0].position().x(), 2);
   EXPECT_LT(view.objects[0].position().x(), 4);

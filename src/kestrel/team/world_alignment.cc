@@ -14,7 +14,11 @@
 namespace kestrel {
 namespace {
 
-using Objects = std::vector<const MappedObject*>;
+struct Landmark {
+  const MappedObject* object;
+  std::size_t color;
+};
+using Landmarks = std::vector<Landmark>;
 constexpr std::size_t kMaxObjects = 40;
 constexpr std::size_t kMaxMatches = 150;
 constexpr double kGate = 16.3;        // squared Mahalanobis distance, 3 degrees of freedom
@@ -29,22 +33,27 @@ struct Match {
 };
 
 // The best known of those that stand.
-Objects Landmarks(const std::vector<MappedObject>& objects) {
-  Objects landmarks;
+Landmarks FindLandmarks(const std::vector<MappedObject>& objects) {
+  std::vector<std::pair<double, const MappedObject*>> standing;
   for (const MappedObject& object : objects) {
-    if (!object.may_move) landmarks.push_back(&object);
+    if (!object.may_move) standing.emplace_back(object.sigma_m(), &object);
   }
-  std::stable_sort(landmarks.begin(), landmarks.end(),
-                   [](auto* a, auto* b) { return a->sigma_m() < b->sigma_m(); });
-  landmarks.resize(std::min(landmarks.size(), kMaxObjects));
+  std::stable_sort(standing.begin(), standing.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  standing.resize(std::min(standing.size(), kMaxObjects));
+  Landmarks landmarks;
+  for (const auto& [sigma_m, object] : standing) {
+    landmarks.push_back({object, object->color_index()});
+  }
   return landmarks;
 }
 
-template <class Range>
-Eigen::Vector3d Middle(const Range& objects) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const MappedObject* object : objects) sum += object->position();
-  return objects.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(objects.size()));
+WorldAlignment UnknownAlignmentOf(const Landmarks& landmarks, const Eigen::Matrix4d& covariance) {
+  WorldAlignment unknown;
+  for (const Landmark& landmark : landmarks) unknown.pivot += landmark.object->position();
+  if (!landmarks.empty()) unknown.pivot /= static_cast<double>(landmarks.size());
+  unknown.covariance = covariance;
+  return unknown;
 }
 
 Eigen::Matrix3d Turn(double yaw) {
@@ -75,23 +84,30 @@ Eigen::Matrix3d Noise(const Match& match) {
   return noise;
 }
 
+// Squared Mahalanobis distance, if it is within the gate.
+std::optional<double> GatedDistance(const Eigen::Vector3d& residual, const Eigen::Matrix3d& noise) {
+  // No variance along any direction is above the trace: most need no solver.
+  if (residual.squaredNorm() > kGate * noise.trace()) return std::nullopt;
+  const double distance = residual.dot(noise.llt().solve(residual));
+  return distance <= kGate ? std::optional(distance) : std::nullopt;
+}
+
 Eigen::Vector3d Residual(const WorldAlignment& alignment, const Match& match) {
   return match.reference->position() - alignment * match.object->position();
 }
 
 // Those that may be the same by the prior, the nearest first.
-std::vector<Match> PossibleMatches(const Objects& objects, const Objects& reference,
+std::vector<Match> PossibleMatches(const Landmarks& objects, const Landmarks& reference,
                                    const WorldAlignment& unknown) {
   std::vector<std::pair<double, Match>> found;
-  for (const MappedObject* a : objects) {
+  for (const auto& [a, color] : objects) {
     const auto jacobian = JacobianAt(unknown, a->position());
     const Eigen::Matrix3d shift = jacobian * unknown.covariance * jacobian.transpose();
-    for (const MappedObject* b : reference) {
-      if (a->shape != b->shape || a->color_index() != b->color_index()) continue;
+    for (const auto& [b, other_color] : reference) {
+      if (color != other_color || a->shape != b->shape) continue;
       const Match match{a, b};
-      const Eigen::Vector3d residual = Residual(unknown, match);
-      const double distance = residual.dot((shift + Noise(match)).llt().solve(residual));
-      if (distance <= kGate) found.emplace_back(distance, match);
+      const auto distance = GatedDistance(Residual(unknown, match), shift + Noise(match));
+      if (distance) found.emplace_back(*distance, match);
     }
   }
   std::stable_sort(found.begin(), found.end(),
@@ -135,8 +151,7 @@ std::vector<Match> Agreeing(const std::vector<Match>& matches, const WorldAlignm
     const double shift_m = std::min(std::sqrt(alignment.covariance(3, 3)) * lever, kMaxShift_m);
     Eigen::Matrix3d noise = Noise(match) + alignment.covariance.topLeftCorner<3, 3>();
     noise.topLeftCorner<2, 2>().diagonal().array() += shift_m * shift_m;
-    const double distance = residual.dot(noise.llt().solve(residual));
-    if (distance <= kGate) near.emplace_back(distance, match);
+    if (const auto distance = GatedDistance(residual, noise)) near.emplace_back(*distance, match);
   }
   std::stable_sort(near.begin(), near.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -174,14 +189,64 @@ WorldAlignment Refined(const std::vector<Match>& matches, const WorldPrior& prio
   return alignment;
 }
 
-// How many of the matches pair objects otherwise than the others do.
-std::size_t CountOther(const std::vector<Match>& matches, const std::vector<Match>& others) {
-  return static_cast<std::size_t>(
-      std::count_if(matches.begin(), matches.end(), [&](const Match& match) {
-        return std::none_of(others.begin(), others.end(), [&](const Match& other) {
-          return other.object == match.object && other.reference == match.reference;
-        });
-      }));
+bool Contains(const std::vector<Match>& matches, const Match& match) {
+  return std::any_of(matches.begin(), matches.end(), [&](const Match& other) {
+    return other.object == match.object && other.reference == match.reference;
+  });
+}
+
+// An alignment and the matches that agree with it.
+struct Consensus {
+  WorldAlignment alignment;
+  std::vector<Match> matches;
+};
+
+// From the alignment of a pair to the least squares of all that agree, which may become more.
+Consensus Grow(const std::vector<Match>& matches, const WorldPrior& prior, Consensus from) {
+  constexpr int kMaxRounds = 4;
+  for (int i = 0; i < kMaxRounds; ++i) {
+    const std::size_t before = from.matches.size();
+    from.alignment = Refined(from.matches, prior, from.alignment);
+    from.matches = Agreeing(matches, from.alignment);
+    if (from.matches.size() <= before) break;
+  }
+  from.alignment = Refined(from.matches, prior, from.alignment);
+  return from;
+}
+
+// The alignment that most of the matches agree on; nothing where nearly as many, which pair
+// objects otherwise, agree on another.
+std::optional<Consensus> FindConsensus(const std::vector<Match>& matches,
+                                       const WorldAlignment& unknown, const WorldPrior& prior) {
+  Consensus best;
+  std::vector<char> is_in_best(matches.size());
+  std::vector<std::vector<Match>> votes;
+  const auto is_rivalled_by = [&](std::size_t count) { return 2 * best.matches.size() < 3 * count; };
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    for (std::size_t k = i + 1; k < matches.size(); ++k) {
+      // A pair of the best says what the best says.
+      if (is_in_best[i] && is_in_best[k]) continue;
+      const auto alignment = AlignmentOf(matches[i], matches[k], unknown);
+      if (!alignment) continue;
+      votes.push_back(Agreeing(matches, *alignment));
+      if (votes.back().size() <= best.matches.size()) continue;
+      Consensus grown = Grow(matches, prior, {*alignment, votes.back()});
+      if (grown.matches.size() <= best.matches.size()) continue;
+      best = std::move(grown);
+      for (std::size_t m = 0; m < matches.size(); ++m) {
+        is_in_best[m] = Contains(best.matches, matches[m]);
+      }
+      // All others together are too few for a rival.
+      if (!is_rivalled_by(matches.size() - best.matches.size())) return best;
+    }
+  }
+  for (const std::vector<Match>& vote : votes) {
+    const auto others = std::count_if(vote.begin(), vote.end(), [&](const Match& match) {
+      return !Contains(best.matches, match);
+    });
+    if (is_rivalled_by(static_cast<std::size_t>(others))) return std::nullopt;
+  }
+  return best;
 }
 
 bool IsSure(const WorldAlignment& alignment) {
@@ -200,56 +265,59 @@ WorldAlignment WorldAlignment::Inverse() const {
   return {pivot + translation, -translation, -yaw, covariance};
 }
 
+WorldAlignment WorldAlignment::operator*(const WorldAlignment& first) const {
+  const Eigen::Vector3d on_the_way = first * first.pivot;
+  WorldAlignment both;
+  both.pivot = first.pivot;
+  both.translation = *this * on_the_way - first.pivot;
+  both.yaw = yaw + first.yaw;
+  Eigen::Matrix4d by_own = Eigen::Matrix4d::Identity();
+  by_own.topRows<3>() = JacobianAt(*this, on_the_way);
+  Eigen::Matrix4d by_first = Eigen::Matrix4d::Identity();
+  by_first.topLeftCorner<3, 3>() = Turn(yaw);
+  both.covariance = by_own * covariance * by_own.transpose() +
+                    by_first * first.covariance * by_first.transpose();
+  return both;
+}
+
+bool WorldAlignment::operator==(const WorldAlignment& other) const {
+  return pivot == other.pivot && translation == other.translation && yaw == other.yaw &&
+         covariance == other.covariance;
+}
+
 void MoveToWorld(const WorldAlignment& alignment, MappedObject* object) {
   const auto jacobian = JacobianAt(alignment, object->position());
   const Eigen::Matrix3d turn = Turn(alignment.yaw);
   const Eigen::Vector3d position = alignment * Eigen::Vector3d(object->position());
-  Eigen::Matrix<double, 9, 9> turns = Eigen::Matrix<double, 9, 9>::Zero();
-  for (int i = 0; i < 9; i += 3) turns.block<3, 3>(i, i) = turn;
-  object->state = (turns * object->state).eval();
+  const int size = object->may_move ? MappedObject::kStateSize : 3;  // of what is not zero
+  for (int i = 0; i < size; i += 3) {
+    object->state.segment<3>(i) = (turn * object->state.segment<3>(i)).eval();
+    for (int k = 0; k < size; k += 3) {
+      auto block = object->covariance.block<3, 3>(i, k);
+      block = (turn * block * turn.transpose()).eval();
+    }
+  }
   object->state.head<3>() = position;
-  object->covariance = (turns * object->covariance * turns.transpose()).eval();
   object->covariance.topLeftCorner<3, 3>() +=
       jacobian * alignment.covariance * jacobian.transpose();
 }
 
 WorldAlignment UnknownAlignment(const std::vector<MappedObject>& objects, const WorldPrior& prior) {
-  WorldAlignment unknown;
-  unknown.pivot = Middle(Landmarks(objects));
-  unknown.covariance = PriorCovariance(prior);
-  return unknown;
+  return UnknownAlignmentOf(FindLandmarks(objects), PriorCovariance(prior));
 }
 
 std::optional<WorldAlignment> EstimateAlignment(const std::vector<MappedObject>& objects,
                                                 const std::vector<MappedObject>& reference,
                                                 const WorldPrior& prior) {
-  const WorldAlignment unknown = UnknownAlignment(objects, prior);
-  const std::vector<Match> matches =
-      PossibleMatches(Landmarks(objects), Landmarks(reference), unknown);
-  struct Vote {
-    std::vector<Match> matches;
-    WorldAlignment alignment;
-  };
-  std::vector<Vote> votes;
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    for (std::size_t k = i + 1; k < matches.size(); ++k) {
-      const auto alignment = AlignmentOf(matches[i], matches[k], unknown);
-      if (alignment) votes.push_back({Agreeing(matches, *alignment), *alignment});
-    }
-  }
-  if (votes.empty()) return std::nullopt;
-  const auto best = std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) {
-    return a.matches.size() < b.matches.size();
-  });
-  WorldAlignment alignment = Refined(best->matches, prior, best->alignment);
-  const std::vector<Match> agreeing = Agreeing(matches, alignment);
-  alignment = Refined(agreeing, prior, alignment);
-  std::size_t rival = 0;
-  for (const Vote& vote : votes) rival = std::max(rival, CountOther(vote.matches, agreeing));
+  const Landmarks landmarks = FindLandmarks(objects);
+  const WorldAlignment unknown = UnknownAlignmentOf(landmarks, PriorCovariance(prior));
+  const auto consensus =
+      FindConsensus(PossibleMatches(landmarks, FindLandmarks(reference), unknown), unknown, prior);
   constexpr std::size_t kMinMatches = 3;
-  const bool is_unrivalled = 2 * agreeing.size() >= 3 * rival;
-  if (agreeing.size() < kMinMatches || !is_unrivalled || !IsSure(alignment)) return std::nullopt;
-  return alignment;
+  if (!consensus || consensus->matches.size() < kMinMatches || !IsSure(consensus->alignment)) {
+    return std::nullopt;
+  }
+  return consensus->alignment;
 }
 
 }  // namespace kestrel

@@ -69,13 +69,18 @@ TEST(EstimateAlignment, IsNotSureWhereTwoFit) {
   EXPECT_FALSE(EstimateAlignment(first, {row.begin() + 1, row.end()}, {3, Radians(2)}));
 }
 
-TEST(WorldAlignment, InverseLeadsBack) {
+TEST(WorldAlignment, InverseLeadsBackAndAProductOn) {
   WorldAlignment there;
   there.pivot = {1, 2, 3};
   there.translation = {4, 5, 6};
   there.yaw = 0.3;
   const Eigen::Vector3d point(7, 8, 9);
   EXPECT_LT((there.Inverse() * (there * point) - point).norm(), 1e-12);
+  WorldAlignment on;
+  on.pivot = {-3, 1, 0};
+  on.translation = {1, 0, -2};
+  on.yaw = -0.7;
+  EXPECT_LT(((on * there) * point - on * (there * point)).norm(), 1e-12);
   MappedObject object = TestDisc(1, point, Time());
   MoveToWorld(there, &object);
   EXPECT_LT((object.position() - there * point).norm(), 1e-12);
