@@ -2,7 +2,6 @@
 #include "kestrel/dds/team_topic.h"
 
 #include <chrono>
-#include <cstdlib>
 #include <string>
 #include <sys/wait.h>
 #include <thread>
@@ -13,20 +12,11 @@
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/time.h"
+#include "kestrel/dds/test_dds.h"
 #include "kestrel/team/team_member.h"
 
 namespace kestrel {
 namespace {
-
-// A domain of this run's own, on this computer alone.
-int TestDomain() {
-  setenv("CYCLONEDDS_URI",
-         "<General><AllowMulticast>false</AllowMulticast><Interfaces><NetworkInterface "
-         "name=\"lo\"/></Interfaces></General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
-         "<Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery>",
-         1);
-  return getpid() % 100;
-}
 
 // Takes part until 'count' UAVs are known and nothing is lacking; false after ten seconds. Those
 // that are done stay for the others.

@@ -27,11 +27,12 @@ std::string Row(const MappedObject& object, const ObjectModel& model, const std:
   const auto p = object.position();
   const auto v = object.velocity();
   const auto digit = object.digit();
-  return fmt::format(
-      "{},{},{:g},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{},{},{},{},{}", object.id,
-      index ? CsvCell(model.classes[*index].name) : "", ScoreOf(object, model), p.x(), p.y(), p.z(),
-      v.x(), v.y(), v.z(), object.sigma_m(), object.detections, seen, IsMoving(object) ? 1 : 0, ToString(object.shape),
-      digit ? fmt::format("{},{:.4f}", digit->digit, digit->probability) : ",");
+  return fmt::format("{},{},{:g},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{},{},{},{},{}",
+                     object.id, index ? CsvCell(model.classes[*index].name) : "",
+                     ScoreOf(object, model), p.x(), p.y(), p.z(), v.x(), v.y(), v.z(),
+                     object.sigma_m(), object.detections, seen, IsMoving(object) ? 1 : 0,
+                     ToString(object.shape),
+                     digit ? fmt::format("{},{:.4f}", digit->digit, digit->probability) : ",");
 }
 
 }  // namespace
@@ -39,8 +40,8 @@ std::string Row(const MappedObject& object, const ObjectModel& model, const std:
 std::string ObjectMapCsv(const std::vector<MappedObject>& objects, const ObjectModel& model) {
   std::string text = fmt::format("{}\n", kHeader);
   for (const MappedObject& object : objects) {
-    const std::string seen = fmt::format("{},{}", ToNanoseconds(object.first_seen),
-                                         ToNanoseconds(object.last_seen));
+    const std::string seen =
+        fmt::format("{},{}", ToNanoseconds(object.first_seen), ToNanoseconds(object.last_seen));
     text += Row(object, model, seen) + '\n';
   }
   return text;

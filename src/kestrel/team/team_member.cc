@@ -137,7 +137,8 @@ void TeamMember::HearDigest(const UavKey& sender, const Digest& digest, Time loc
   }
   for (const auto& [uav, part] : map_.parts()) {
     const auto line = lines.find(uav);
-    Answer(sender, line == lines.end() ? DigestLine{uav, {}, {}, {}, {}, {}, {}} : *line->second, local);
+    Answer(sender, line == lines.end() ? DigestLine{uav, {}, {}, {}, {}, {}, {}} : *line->second,
+           local);
   }
 }
 

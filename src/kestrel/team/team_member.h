@@ -109,7 +109,7 @@ class TeamMember {
   std::optional<Time> told_;
   std::optional<Time> last_digest_;
   std::optional<Time> last_tick_;
-  bool has_news_ = false;  // for the digest
+  bool has_news_ = false;         // for the digest
   double allowance_;              // bytes that may be sent now
   std::set<ObjectRef> queue_;     // to be sent
   ObjectRef cursor_;              // where in the queue the turn is

@@ -83,8 +83,8 @@ TeamView ViewTeam(const TeamMember& member, Time local, TeamFusion* fusion) {
     if (fusion->IsPlaced(uav)) view.common_from_world.emplace(uav, alignment);
     const ObjectMapOptions& options = fusion->options();
     const Duration shift = ShiftOf(part, local, now);
-    std::vector<std::size_t> indices = FuseObjects(
-        MovingObjects(part, shift, now, options.motion(), alignment), options, &moving);
+    std::vector<std::size_t> indices =
+        FuseObjects(MovingObjects(part, shift, now, options.motion(), alignment), options, &moving);
     for (std::size_t& index : indices) index += fusion->standing().size();
     Index(uav, part, shift, fusion->IndicesOf(uav), indices, &view);
   }

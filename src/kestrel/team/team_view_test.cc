@@ -56,8 +56,7 @@ TEST(TeamView, TheCommonMapIsTheSameToTheLastBitForAll) {
   for (std::size_t i = 0; i < 3; ++i) {
     const TeamView view = flown.View(i);
     std::string& text = texts.emplace_back();
-    for (const TeamObject& common :
-         CommonMap(*flown.team.uavs[i].member, view, flown.fusions[i])) {
+    for (const TeamObject& common : CommonMap(*flown.team.uavs[i].member, view, flown.fusions[i])) {
       std::vector<MappedObject> object{common.object};
       object[0].time = object[0].first_seen = object[0].last_seen = Time();
       text += PrintObjects(object);

@@ -221,7 +221,9 @@ std::optional<Consensus> FindConsensus(const std::vector<Match>& matches,
   Consensus best;
   std::vector<char> is_in_best(matches.size());
   std::vector<std::vector<Match>> votes;
-  const auto is_rivalled_by = [&](std::size_t count) { return 2 * best.matches.size() < 3 * count; };
+  const auto is_rivalled_by = [&](std::size_t count) {
+    return 2 * best.matches.size() < 3 * count;
+  };
   for (std::size_t i = 0; i < matches.size(); ++i) {
     for (std::size_t k = i + 1; k < matches.size(); ++k) {
       // A pair of the best says what the best says.
@@ -275,8 +277,8 @@ WorldAlignment WorldAlignment::operator*(const WorldAlignment& first) const {
   by_own.topRows<3>() = JacobianAt(*this, on_the_way);
   Eigen::Matrix4d by_first = Eigen::Matrix4d::Identity();
   by_first.topLeftCorner<3, 3>() = Turn(yaw);
-  both.covariance = by_own * covariance * by_own.transpose() +
-                    by_first * first.covariance * by_first.transpose();
+  both.covariance =
+      by_own * covariance * by_own.transpose() + by_first * first.covariance * by_first.transpose();
   return both;
 }
 

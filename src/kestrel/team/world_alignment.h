@@ -40,8 +40,8 @@ WorldAlignment UnknownAlignment(const std::vector<MappedObject>& objects, const 
 
 // From the world of 'objects' to that of 'reference', by the standing objects that are in both: the
 // pairs of one shape and colour that agree on one alignment, and the least squares of all of them.
-// Nothing where that is not sure: fewer than three agree, nearly as many agree on another alignment,
-// or it is not better than 0.3 m and 1 degree. A pure function of its arguments.
+// Nothing where that is not sure: fewer than three agree, nearly as many agree on another
+// alignment, or it is not better than 0.3 m and 1 degree. A pure function of its arguments.
 std::optional<WorldAlignment> EstimateAlignment(const std::vector<MappedObject>& objects,
                                                 const std::vector<MappedObject>& reference,
                                                 const WorldPrior& prior);
