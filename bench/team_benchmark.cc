@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a team's messages cost a UAV: a map of 100 objects that it hears, a digest, and all maps
-// made one (for the first time, after one UAV's map has changed, after that of the common world has,
-// and when none has), by the number of UAVs.
+// made one (for the first time, after one UAV's map has changed, after that of the common world
+// has, and when none has), by the number of UAVs.
 #include <cmath>
 #include <cstdint>
 #include <string>
