@@ -33,8 +33,8 @@ class TeamCommandTest : public CommandTest {
   std::string WriteFlight(const std::string& name, const Eigen::Vector2d& bias) const {
     ObjectScene scene(4, /*tilt=*/0);
     const std::vector<std::pair<Eigen::Vector2d, cv::Scalar>> discs = {
-        {{60, 60}, kRedPaint},    {{580, 80}, kGreenPaint},  {{80, 420}, kBluePaint},
-        {{560, 400}, kRedPaint},  {{320, 250}, kGreenPaint}, {{300, 100}, kBluePaint},
+        {{60, 60}, kRedPaint},   {{580, 80}, kGreenPaint},  {{80, 420}, kBluePaint},
+        {{560, 400}, kRedPaint}, {{320, 250}, kGreenPaint}, {{300, 100}, kBluePaint},
     };
     for (const auto& [pixel, paint] : discs) {
       scene.DrawDisc(scene.PointUnder(pixel, 0.012), 0.1, paint);
@@ -80,8 +80,8 @@ TEST_F(TeamCommandTest, TwoHuntsEndWithOneMap) {
   };
   const int status = std::system(
       fmt::format("({}) & ({}); b=$?; wait $! && exit $b", hunt("a"), hunt("b")).c_str());
-  ASSERT_EQ(WEXITSTATUS(status), 0) << ReadFile(folder_ / "a_out.said")
-                                    << ReadFile(folder_ / "b_out.said");
+  ASSERT_EQ(WEXITSTATUS(status), 0)
+      << ReadFile(folder_ / "a_out.said") << ReadFile(folder_ / "b_out.said");
   for (const std::string uav : {"a", "b"}) {
     EXPECT_EQ(Lines(ReadFile(folder_ / (uav + "_out/object_map.csv"))), 13);
     EXPECT_THAT(ReadFile(folder_ / (uav + "_out.said")), HasSubstr("team: 2 UAVs, 12 objects"));

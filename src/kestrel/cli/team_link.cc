@@ -135,15 +135,16 @@ void TeamLink::Finish(const ObjectMap& map) {
   Tell(map);
   member_.SetDone();
   bool was_said = false;
-  for (Time since = Now(); !WasInterrupted();) {
+  Time awaited = Now();  // the last time that somebody was not done
+  Time lacking = Now();  // or something was not here
+  for (;;) {
     Transfer();
     const Time now = Now();
-    if (!member_.AreAllDone(now)) {
-      since = now;
-      if (!std::exchange(was_said, true)) SayWhoIsAwaited();
-    }
-    const bool has_all = member_.IsWhole() && member_.Known().size() > 1;
-    if (now - since >= (has_all ? kStay : silence)) break;
+    const bool are_done = member_.AreAllDone(now);
+    if (!are_done) awaited = now;
+    if (!are_done && !std::exchange(was_said, true)) SayWhoIsAwaited();
+    if (!are_done || !member_.IsWhole() || member_.Known().size() == 1) lacking = now;
+    if (WasInterrupted() || now - lacking >= kStay || now - awaited >= silence) break;
     std::this_thread::sleep_for(kPause);
   }
   if (!member_.IsWhole()) {

@@ -28,9 +28,10 @@ struct TeamLinkOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("uav", self.uav, "", "name of this UAV in its team, empty for the computer's");
-    visitor("key", self.key, "",
-            "file with the team's key (32 bytes or 64 hexadecimal digits): sign, and refuse what is "
-            "not signed; empty for none");
+    visitor(
+        "key", self.key, "",
+        "file with the team's key (32 bytes or 64 hexadecimal digits): sign, and refuse what is "
+        "not signed; empty for none");
     TeamOptions::Visit(self.team, visitor);
   }
   std::vector<std::string> Validate() const;

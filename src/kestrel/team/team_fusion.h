@@ -45,8 +45,8 @@ class TeamFusion {
 
  private:
   struct Part {
-    std::uint64_t revision = 0;           // of the told map that this is
-    std::vector<MappedObject> objects;    // that stand, by id, in the UAV's own world
+    std::uint64_t revision = 0;         // of the told map that this is
+    std::vector<MappedObject> objects;  // that stand, by id, in the UAV's own world
     bool is_placed = false;
     WorldAlignment common_from_world;
     bool is_changed = true;  // since it was fused

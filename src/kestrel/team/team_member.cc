@@ -282,7 +282,7 @@ void TeamMember::SendDigest(Time local, const Send& send) {
     line.uav = uav;
     line.beat = peer.beat;
     if (part != nullptr) line.version = part->contents.version;
-    line.is_done = peer.is_done;
+    line.is_done = peer.is_done && !(uav == self_ && untold_);
     line.claim = ClaimOf(uav, local);
     if (part != nullptr) line.missing = part->Missing(room);
     room -= line.missing.size();

@@ -206,5 +206,44 @@ TEST(TeamMember, NamesAndOptionsAreChecked) {
   EXPECT_THROW(TeamMember({"a", 1}, {.tell_period_s = -1}), InputError);
 }
 
+TEST(TeamMember, IsDoneWhenAllThatLiveAre) {
+  SimulatedTeam team(9);
+  for (const char* name : {"a", "b", "c"}) team.Add({name, 1});
+  const auto are_done = [&](std::size_t i) {
+    return team.uavs[i].member->AreAllDone(team.LocalTime(i));
+  };
+  team.Run(1);
+  team.uavs[0].member->SetDone();
+  team.uavs[1].member->SetDone();
+  team.Run(2);
+  EXPECT_FALSE(are_done(0));
+  EXPECT_FALSE(are_done(1));
+  team.uavs[2].member.reset();  // falls silent
+  team.Run(4);
+  EXPECT_FALSE(are_done(0));
+  team.Run(3);
+  EXPECT_TRUE(are_done(0));
+  EXPECT_TRUE(are_done(1));
+}
+
+// Who says so has told its last map before.
+TEST(TeamMember, WhatIsToldLastComesBeforeTheWordThatItIs) {
+  SimulatedTeam team(10);
+  team.Add({"a", 1});
+  team.Add({"b", 1});
+  TeamMember& first = *team.uavs[0].member;
+  first.Tell({TestDisc(1, {0, 0, 0}, team.now)}, team.now);
+  team.Run(0.6);
+  team.uavs[1].member->SetDone();
+  first.Tell({TestDisc(1, {0, 0, 0}, team.now), TestDisc(2, {1, 0, 0}, team.now)}, team.now);
+  team.Run(0.05);
+  first.Tell({TestDisc(3, {5, 0, 0}, team.now)}, team.now);
+  first.SetDone();
+  team.RunUntil([&] { return team.uavs[1].member->AreAllDone(team.LocalTime(1)); }, 5);
+  const TeamMap::Part* const part = team.uavs[1].member->map().Find({"a", 1});
+  ASSERT_NE(part, nullptr);
+  EXPECT_TRUE(part->contents.objects.contains(3));
+}
+
 }  // namespace
 }  // namespace kestrel
