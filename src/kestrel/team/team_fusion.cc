@@ -9,6 +9,11 @@
 #include "kestrel/mapping/object_fusion.h"
 
 namespace kestrel {
+namespace {
+
+constexpr std::size_t kCommonObjects = 3;  // that the others can be aligned with
+
+}  // namespace
 
 TeamFusion::TeamFusion(const TeamOptions& team, const ObjectMapOptions& options)
     : options_(options), prior_{team.world_sigma_m, Radians(team.world_yaw_sigma_deg)}, nodes_(2) {}
@@ -43,9 +48,8 @@ void TeamFusion::Take(const TeamMap::Part& told, Part* part) const {
 }
 
 UavKey TeamFusion::ChooseCommon() const {
-  constexpr std::size_t kEnough = 3;
   const auto common = std::find_if(parts_.begin(), parts_.end(), [](const auto& part) {
-    return part.second.objects.size() >= kEnough;
+    return part.second.objects.size() >= kCommonObjects;
   });
   return common == parts_.end() ? parts_.begin()->first : common->first;
 }
