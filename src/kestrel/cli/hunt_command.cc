@@ -10,15 +10,18 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/base/error.h"
 #include "kestrel/cli/hunt_sink.h"
 #include "kestrel/cli/pipeline_run.h"
 #include "kestrel/cli/source_arguments.h"
+#include "kestrel/cli/team_link.h"
 
 namespace kestrel {
 namespace {
 
 struct HuntArguments {
   SourceArguments source;
+  TeamArguments team;
   std::string model;
   std::string grid;
   std::vector<double> origin;  // latitude, longitude, degrees; or empty
@@ -47,11 +50,12 @@ std::string GroundWarning(const HuntPipeline& pipeline, std::optional<double> al
 class HuntRun : public PipelineRun {
  public:
   HuntRun(const OpenedSource& opened, const ObjectModel& model, const ColorGrid& grid,
-          const HuntPipelineOptions& options, const HuntArguments& arguments)
+          const HuntPipelineOptions& options, const HuntArguments& arguments, TeamLink* team)
       : pipeline_(opened.calibration, model, grid, options),
         mcap_(arguments.source.OpenMcap(opened.calibration.intrinsics, HuntView{model})),
         sink_(arguments.source.Output(opened), arguments.origin),
         has_map_(opened.has_world() && !options.still),
+        team_(team),
         altitude_m_(arguments.source.altitude_m) {
     pipeline_.SetAltitude(altitude_m_);
   }
@@ -70,6 +74,7 @@ class HuntRun : public PipelineRun {
     detections_ += observation.report.detections.size();
     for (std::size_t i = 0; i < kObjectStageCount; ++i) passed_[i] += observation.report.passed[i];
     has_world_ = observation.world_from_camera.has_value();
+    if (team_ != nullptr) team_->Exchange(pipeline_.map());
     return observation.detect_time;
   }
 
@@ -78,6 +83,9 @@ class HuntRun : public PipelineRun {
   void Finish() override {
     if (has_map_) sink_.WriteMap(pipeline_);
     if (mcap_) mcap_->Close();
+    if (team_ == nullptr) return;
+    team_->Finish(pipeline_.map());
+    sink_.WriteTeamMap(pipeline_, team_);
   }
 
   std::string Found() const override { return fmt::format("{} detections", detections_); }
@@ -89,6 +97,7 @@ class HuntRun : public PipelineRun {
       remarks += fmt::format("{} {} {}", i == 0 ? "" : ",", passed_[i],
                              ToString(static_cast<ObjectStage>(i)));
     }
+    if (team_ != nullptr) remarks += "\n" + team_->Found();
     return remarks + "\n";
   }
 
@@ -97,14 +106,24 @@ class HuntRun : public PipelineRun {
   std::unique_ptr<ObservationFile> mcap_;
   HuntSink sink_;
   bool has_map_;
+  TeamLink* team_;  // null: none
   std::optional<double> altitude_m_;
   bool has_world_ = false;  // of the last frame
   std::size_t detections_ = 0;
   std::array<std::size_t, kObjectStageCount> passed_{};
 };
 
+// A team shares maps.
+void RequireMap(const OpenedSource& opened, const HuntPipelineOptions& options) {
+  if (options.still) throw InputError("--team: expected a source that is no --still");
+  if (!opened.has_world()) {
+    throw InputError("--team: expected a source with poses, and the camera's mount");
+  }
+}
+
 void RunHunt(const HuntArguments& arguments) {
-  HuntPipelineOptions options = arguments.source.options.Read().hunt;
+  const KestrelOptions all_options = arguments.source.options.Read();
+  HuntPipelineOptions options = all_options.hunt;
   if (arguments.source.still) options.still = true;
   const ObjectModel model =
       arguments.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments.model);
@@ -112,7 +131,12 @@ void RunHunt(const HuntArguments& arguments) {
                              ? ColorGrid(model.colors)
                              : ColorGrid::Load(arguments.grid, model.colors.colors.size());
   const OpenedSource opened = arguments.source.Open(PixelFormat::kBgr);
-  HuntRun run(opened, model, grid, options, arguments);
+  std::optional<TeamLink> team;
+  if (!arguments.team.team.empty()) {
+    RequireMap(opened, options);
+    team.emplace(arguments.team, all_options.team, options.map);
+  }
+  HuntRun run(opened, model, grid, options, arguments, team ? &*team : nullptr);
   RunPipeline(opened, &run);
 }
 
@@ -122,6 +146,7 @@ void AddHuntCommand(CLI::App* app) {
   CLI::App* command = app->add_subcommand("hunt", "Run the coloured-object pipeline over a source");
   const auto arguments = std::make_shared<HuntArguments>();
   arguments->source.AddTo(command);
+  arguments->team.AddTo(command);
   command
       ->add_option("--model", arguments->model,
                    "Objects and their colours (YAML) in place of the built-in ones")

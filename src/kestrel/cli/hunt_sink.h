@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "kestrel/cli/result_sink.h"
+#include "kestrel/cli/team_link.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/recording/frame.h"
 
@@ -18,8 +19,9 @@ class HuntSink {
 
   void Write(const Frame& frame, const HuntObservation& observation, const HuntPipeline& pipeline);
 
-  // The map goes to files only.
+  // The maps go to files only.
   void WriteMap(const HuntPipeline& pipeline) const;
+  void WriteTeamMap(const HuntPipeline& pipeline, TeamLink* team) const;
 
  private:
   ResultSink results_;

@@ -12,6 +12,7 @@ std::vector<std::string> KestrelOptions::Validate() const {
   AddViolations("hunt", hunt.Validate(), &violations);
   AddViolations("fly", fly.Validate(), &violations);
   AddViolations("console", console.Validate(), &violations);
+  AddViolations("team", team.Validate(), &violations);
   return violations;
 }
 

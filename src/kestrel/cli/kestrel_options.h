@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kestrel/cli/fly_options.h"
+#include "kestrel/cli/team_link.h"
 #include "kestrel/console/console_options.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/pipeline/landing_pipeline.h"
@@ -17,6 +18,7 @@ struct KestrelOptions {
   HuntPipelineOptions hunt;
   FlyOptions fly;
   ConsoleOptions console;
+  TeamLinkOptions team;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -24,6 +26,7 @@ struct KestrelOptions {
     visitor.Group("hunt", self.hunt);
     visitor.Group("fly", self.fly);
     visitor.Group("console", self.console);
+    visitor.Group("team", self.team);
   }
   std::vector<std::string> Validate() const;
 };

@@ -39,6 +39,20 @@ AxisMotion PredictAxis(double dt, const ObjectMotion& motion) {
   return axis;
 }
 
+// The first 'kSize' numbers of two states, weighted by the inverse of their covariances.
+template <int kSize>
+void UnifyStates(const MappedObject& other, MappedObject* kept) {
+  using Covariance = Eigen::Matrix<double, kSize, kSize>;
+  const Covariance own = kept->covariance.topLeftCorner<kSize, kSize>();
+  const Covariance sum = own + other.covariance.topLeftCorner<kSize, kSize>();
+  const Covariance gain = sum.fullPivLu().solve(own).transpose();
+  const Eigen::Matrix<double, kSize, 1> difference =
+      other.state.head<kSize>() - kept->state.head<kSize>();
+  kept->state.head<kSize>() += gain * difference;
+  const Covariance left = own - gain * own;
+  kept->covariance.topLeftCorner<kSize, kSize>() = 0.5 * (left + left.transpose());
+}
+
 }  // namespace
 
 double MappedObject::sigma_m() const {
@@ -87,11 +101,11 @@ void PredictObject(Time time, const ObjectMotion& motion, MappedObject* object) 
 
 void UnifyObjects(const MappedObject& other, MappedObject* kept) {
   // A standing object's velocity has no covariance, hence a solver for what is singular.
-  const MappedObject::Covariance sum = kept->covariance + other.covariance;
-  const MappedObject::Covariance gain = sum.fullPivLu().solve(kept->covariance).transpose();
-  kept->state = (kept->state + gain * (other.state - kept->state)).eval();
-  kept->covariance = (kept->covariance - gain * kept->covariance).eval();
-  kept->covariance = (0.5 * (kept->covariance + kept->covariance.transpose())).eval();
+  if (kept->may_move || other.may_move) {
+    UnifyStates<MappedObject::kStateSize>(other, kept);
+  } else {
+    UnifyStates<3>(other, kept);
+  }
   kept->first_seen = std::min(kept->first_seen, other.first_seen);
   kept->last_seen = std::max(kept->last_seen, other.last_seen);
   kept->detections += other.detections;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kestrel/mapping/mapped_object.h"
+#include "kestrel/team/team_view.h"
 
 namespace kestrel {
 
@@ -12,5 +13,9 @@ namespace kestrel {
 // the class's; 'moving': 1 for what moves by more than three standard deviations of its velocity;
 // 'digit': the likeliest by all its detections, empty where none was read.
 std::string ObjectMapCsv(const std::vector<MappedObject>& objects, const ObjectModel& model);
+
+// team_map.csv: the same and 'uavs', the names of those that have the object in their maps, with
+// spaces between them. 'first_seen_ns' and 'last_seen_ns' are empty: each has a clock of its own.
+std::string TeamMapCsv(const std::vector<TeamObject>& objects, const ObjectModel& model);
 
 }  // namespace kestrel

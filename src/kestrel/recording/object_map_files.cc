@@ -18,4 +18,13 @@ void WriteObjectMap(const HuntPipeline& pipeline, const std::vector<double>& ori
             PrintGeoJson(objects, model, {origin[0], origin[1]}));
 }
 
+void WriteTeamMap(const std::vector<TeamObject>& common, const std::vector<MappedObject>& own,
+                  const ObjectModel& model, const std::vector<double>& origin,
+                  const OutputFolder& folder) {
+  WriteFile(folder.NewFile("team_map.csv").string(), TeamMapCsv(common, model));
+  if (origin.empty()) return;
+  WriteFile(folder.NewFile("team_map.geojson").string(),
+            PrintGeoJson(own, model, {origin[0], origin[1]}));
+}
+
 }  // namespace kestrel

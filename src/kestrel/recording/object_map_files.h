@@ -5,6 +5,7 @@
 
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/recording/output_folder.h"
+#include "kestrel/team/team_view.h"
 
 namespace kestrel {
 
@@ -13,5 +14,12 @@ namespace kestrel {
 // world's origin, or empty. Throws InputError when they cannot be written.
 void WriteObjectMap(const HuntPipeline& pipeline, const std::vector<double>& origin,
                     const OutputFolder& folder);
+
+// Writes the team's map: team_map.csv, in the world that is common to the team, and, where 'origin'
+// is known, team_map.geojson: 'own' are the same objects in the world whose origin that is. Throws
+// InputError when they cannot be written.
+void WriteTeamMap(const std::vector<TeamObject>& common, const std::vector<MappedObject>& own,
+                  const ObjectModel& model, const std::vector<double>& origin,
+                  const OutputFolder& folder);
 
 }  // namespace kestrel

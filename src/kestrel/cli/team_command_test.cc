@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kestrel/cli/test_command.h"
+#include "kestrel/dds/test_dds.h"
+#include "kestrel/objects/test_objects.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr char kSensor[] = R"(sensor_type: camera
+T_BS:
+  cols: 4
+  rows: 4
+  data: [1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1]
+rate_hz: 10
+resolution: [640, 480]
+camera_model: pinhole
+intrinsics: [500, 500, 319.5, 239.5]
+distortion_model: none
+distortion_coefficients: []
+)";
+
+class TeamCommandTest : public CommandTest {
+ protected:
+  // Six discs below a UAV that stands 4 m high, and, later, six 8 m further; its navigation is off
+  // by 'bias'. The folder.
+  std::string WriteFlight(const std::string& name, const Eigen::Vector2d& bias) const {
+    ObjectScene scene(4, /*tilt=*/0);
+    const std::vector<std::pair<Eigen::Vector2d, cv::Scalar>> discs = {
+        {{60, 60}, kRedPaint},   {{580, 80}, kGreenPaint},  {{80, 420}, kBluePaint},
+        {{560, 400}, kRedPaint}, {{320, 250}, kGreenPaint}, {{300, 100}, kBluePaint},
+    };
+    for (const auto& [pixel, paint] : discs) {
+      scene.DrawDisc(scene.PointUnder(pixel, 0.012), 0.1, paint);
+    }
+    folder_.WriteImage(name + "/mav0/cam0/data/image.png", scene.Image());
+    std::string images = "#timestamp [ns],filename\n";
+    std::string poses =
+        "#timestamp [ns],p_WB_W_x [m],p_WB_W_y [m],p_WB_W_z [m],q_WB_w [],q_WB_x [],q_WB_y [],"
+        "q_WB_z []\n";
+    for (const int station : {0, 1}) {
+      for (int i = 0; i < 10; ++i) {
+        const std::int64_t time = 1'000'000'000 + station * 2'000'000'000LL + i * 100'000'000LL;
+        poses += fmt::format("{},{},{},4,1,0,0,0\n", time, bias.x() + 8 * station, bias.y());
+        if (i >= 3 && i < 8) images += fmt::format("{},image.png\n", time);
+      }
+    }
+    folder_.Write(name + "/mav0/cam0/data.csv", images);
+    folder_.Write(name + "/mav0/cam0/sensor.yaml", kSensor);
+    folder_.Write(name + "/mav0/nav0/data.csv", poses);
+    return folder_ / name;
+  }
+
+  bool HasDds(const std::string& flight) const {
+    const Outcome outcome = Run("hunt " + flight + " --team test --set team.silence_s=0.3");
+    if (outcome.status == 0) return true;
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(Lines(outcome.err), 1) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("built without DDS: run scripts/install-deps --dds"));
+    return false;
+  }
+};
+
+TEST_F(TeamCommandTest, TwoHuntsEndWithOneMap) {
+  const int domain = TestDomain();
+  const std::string first = WriteFlight("a", {0, 0});
+  const std::string second = WriteFlight("b", {0.7, -0.5});
+  if (!HasDds(first)) GTEST_SKIP() << "no DDS";
+  const auto hunt = [&](const std::string& uav) {
+    return fmt::format(
+        "{0} hunt '{1}' --output '{2}' --origin 50,14 --team test --dds {3} --set team.uav={4} "
+        "--set team.silence_s=30 2>'{2}.said'",
+        KESTREL_COMMAND, folder_ / uav, folder_ / (uav + "_out"), domain, uav);
+  };
+  const int status = std::system(
+      fmt::format("({}) & ({}); b=$?; wait $! && exit $b", hunt("a"), hunt("b")).c_str());
+  ASSERT_EQ(WEXITSTATUS(status), 0)
+      << ReadFile(folder_ / "a_out.said") << ReadFile(folder_ / "b_out.said");
+  for (const std::string uav : {"a", "b"}) {
+    EXPECT_EQ(Lines(ReadFile(folder_ / (uav + "_out/object_map.csv"))), 13);
+    EXPECT_THAT(ReadFile(folder_ / (uav + "_out.said")), HasSubstr("team: 2 UAVs, 12 objects"));
+    EXPECT_EQ(Lines(ReadFile(folder_ / (uav + "_out/team_map.geojson"))), 14);
+  }
+  const std::string map = ReadFile(folder_ / "a_out/team_map.csv");
+  EXPECT_EQ(map, ReadFile(folder_ / "b_out/team_map.csv"));
+  EXPECT_EQ(Lines(map), 13) << map;
+  std::size_t shared = 0;  // rows of objects that both have
+  for (std::size_t at = 0; (at = map.find(",a b\n", at)) != std::string::npos; ++at) ++shared;
+  EXPECT_EQ(shared, 12u) << map;
+}
+
+TEST_F(TeamCommandTest, FaultsAreNamed) {
+  TestDomain();
+  const std::string flight = WriteFlight("a", {0, 0});
+  ExpectInputError("hunt " + flight + " --team 'two words'", "expected 1 to 32 letters");
+  ExpectInputError("hunt " + flight + " --team t --still", "--still");
+  ExpectInputError("hunt " + flight + "/mav0/cam0/data/image.png --team t --camera " + flight +
+                       "/mav0/cam0/sensor.yaml",
+                   "expected a source with poses");
+  ExpectInputError("hunt " + flight + " --team t --set team.uav=a/b", "team.uav");
+  ExpectInputError("hunt " + flight + " --team t --set team.key=none.key", "none.key");
+  EXPECT_EQ(Run("hunt " + flight + " --dds 3").status, 2);
+  if (HasDds(flight)) ExpectInputError("hunt " + flight + " --team t --dds 300", "0 to 232");
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/cli/team_link.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <chrono>
+#include <cstdint>
+#include <cstdlib>
+#include <random>
+#include <span>
+#include <thread>
+#include <unistd.h>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "kestrel/base/error.h"
+#include "kestrel/base/parse_number.h"
+#include "kestrel/base/violations.h"
+#include "kestrel/cli/interrupt.h"
+#include "kestrel/link/signing.h"
+#include "kestrel/recording/object_map_files.h"
+#include "kestrel/team/team_view.h"
+
+namespace kestrel {
+namespace {
+
+constexpr std::size_t kMaxName = 32;
+constexpr char kUavNames[] = "expected 1 to 32 letters, digits, '_', '-' and '.'";
+
+bool IsTeamName(const std::string& name) {
+  return !name.empty() && name.size() <= kMaxName &&
+         std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+}
+
+// The computer's name as that of a UAV.
+std::string ComputerName() {
+  std::array<char, kMaxName + 1> name{};
+  // A name that is longer is cut off: an error that is none.
+  static_cast<void>(gethostname(name.data(), kMaxName));
+  std::string text = name.data();
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return !IsUavName(std::string(1, c)); }, '_');
+  return text.empty() ? "uav" : text;
+}
+
+UavKey OwnKey(const TeamLinkOptions& options) {
+  std::random_device random;
+  return {options.uav.empty() ? ComputerName() : options.uav, random()};
+}
+
+std::optional<TeamKey> ReadKey(const TeamLinkOptions& options) {
+  if (options.key.empty()) return std::nullopt;
+  return mavlink::ReadSigningKey(options.key);
+}
+
+std::string CheckedTeam(const std::string& team) {
+  if (IsTeamName(team)) return team;
+  throw InputError(fmt::format("--team '{}': expected 1 to 32 letters, digits and '_'", team));
+}
+
+// As told, or as ROS is told.
+int DomainOf(const TeamArguments& arguments) {
+  if (arguments.domain) return *arguments.domain;
+  const char* const ros = std::getenv("ROS_DOMAIN_ID");
+  if (ros == nullptr || *ros == '\0') return 0;
+  const auto domain = ParseNumber<int>(ros);
+  if (!domain) throw InputError(fmt::format("ROS_DOMAIN_ID '{}': expected a number", ros));
+  return *domain;
+}
+
+}  // namespace
+
+std::vector<std::string> TeamLinkOptions::Validate() const {
+  std::vector<std::string> violations = team.Validate();
+  if (!uav.empty() && !IsUavName(uav)) {
+    violations.push_back(fmt::format("uav is '{}', {}", uav, kUavNames));
+  }
+  return violations;
+}
+
+void TeamArguments::AddTo(CLI::App* command) {
+  CLI::Option* const name =
+      command
+          ->add_option("--team", team,
+                       "Share the map with the UAVs of this team and write what all know together: "
+                       "team_map.csv")
+          ->type_name("NAME");
+  command
+      ->add_option("--dds", domain,
+                   "DDS domain that the team talks in (else ROS_DOMAIN_ID, else 0)")
+      ->type_name("DOMAIN")
+      ->needs(name);
+}
+
+TeamLink::TeamLink(const TeamArguments& arguments, const TeamLinkOptions& options,
+                   const ObjectMapOptions& map)
+    : options_(options),
+      member_(OwnKey(options), options.team, ReadKey(options)),
+      topic_(DomainOf(arguments), CheckedTeam(arguments.team),
+             fmt::format("{}/{:08x}", member_.self().name, member_.self().boot)),
+      fusion_(options.team, map) {}
+
+void TeamLink::Exchange(const ObjectMap& map) {
+  const Time now = Now();
+  if (!told_ || now - *told_ >= DurationFromSeconds(options_.team.tell_period_s)) Tell(map);
+  Transfer();
+}
+
+void TeamLink::Tell(const ObjectMap& map) {
+  std::vector<MappedObject> objects = map.Confirmed();
+  if (map_time_ == Time::min() && objects.empty()) return;  // it has no time yet
+  for (const MappedObject& object : objects) {
+    map_time_ = std::max({map_time_, object.time, object.last_seen});
+  }
+  member_.Tell(std::move(objects), map_time_);
+  told_ = Now();
+}
+
+void TeamLink::Transfer() {
+  topic_.Receive([this](std::span<const std::uint8_t> bytes) { member_.Hear(bytes, Now()); });
+  member_.Tick(Now(), [this](std::span<const std::uint8_t> bytes) { topic_.Send(bytes); });
+  for (const std::string& warning : member_.TakeWarnings()) {
+    fmt::print(stderr, "kestrel: team: {}\n", warning);
+  }
+}
+
+void TeamLink::Finish(const ObjectMap& map) {
+  constexpr Duration kStay = std::chrono::seconds(1);  // the others want to hear it too
+  constexpr Duration kPause = std::chrono::milliseconds(10);
+  const Duration silence = DurationFromSeconds(options_.team.silence_s);
+  Tell(map);
+  member_.SetDone();
+  bool was_said = false;
+  Time awaited = Now();  // the last time that somebody was not done
+  Time lacking = Now();  // or something was not here
+  for (;;) {
+    Transfer();
+    const Time now = Now();
+    const bool are_done = member_.AreAllDone(now);
+    if (!are_done) awaited = now;
+    if (!are_done && !std::exchange(was_said, true)) SayWhoIsAwaited();
+    if (!are_done || !member_.IsWhole() || member_.Known().size() == 1) lacking = now;
+    if (WasInterrupted() || now - lacking >= kStay || now - awaited >= silence) break;
+    std::this_thread::sleep_for(kPause);
+  }
+  if (!member_.IsWhole()) {
+    fmt::print(stderr, "kestrel: team: of what the team has seen not all was heard\n");
+  }
+}
+
+void TeamLink::SayWhoIsAwaited() const {
+  std::vector<std::string> names;
+  for (const UavKey& uav : member_.Known()) {
+    if (uav != member_.self() && member_.IsAlive(uav, Now())) names.push_back(uav.name);
+  }
+  fmt::print(stderr, "kestrel: team: waits for {} (Ctrl-C: no longer)\n", fmt::join(names, ", "));
+}
+
+void TeamLink::WriteMap(const ObjectModel& model, const std::vector<double>& origin,
+                        const OutputFolder& folder) {
+  const TeamView view = ViewTeam(member_, Now(), &fusion_);
+  WriteTeamMap(CommonMap(member_, view, fusion_), view.objects, model, origin, folder);
+}
+
+std::string TeamLink::Found() {
+  const TeamView view = ViewTeam(member_, Now(), &fusion_);
+  return fmt::format("team: {} UAVs, {} objects", member_.Known().size(), view.objects.size());
+}
+
+}  // namespace kestrel

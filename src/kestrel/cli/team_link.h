@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "kestrel/base/time.h"
+#include "kestrel/dds/team_topic.h"
+#include "kestrel/mapping/object_map.h"
+#include "kestrel/objects/object_model.h"
+#include "kestrel/recording/output_folder.h"
+#include "kestrel/team/team_fusion.h"
+#include "kestrel/team/team_member.h"
+#include "kestrel/team/team_options.h"
+
+namespace kestrel {
+
+// The options of a UAV in its team.
+struct TeamLinkOptions {
+  std::string uav;  // its name; empty: that of the computer
+  std::string key;  // file with the key that the team shares; empty: messages are not signed
+  TeamOptions team;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("uav", self.uav, "", "name of this UAV in its team, empty for the computer's");
+    visitor(
+        "key", self.key, "",
+        "file with the team's key (32 bytes or 64 hexadecimal digits): sign, and refuse what is "
+        "not signed; empty for none");
+    TeamOptions::Visit(self.team, visitor);
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// --team and --dds. Must live until the command line is parsed.
+struct TeamArguments {
+  std::string team;           // empty: none
+  std::optional<int> domain;  // of DDS
+
+  void AddTo(CLI::App* command);
+};
+
+// A UAV's part in its team, by DDS: tells the map that it makes, hears those of the others, writes
+// what all know together. One thread at a time.
+class TeamLink {
+ public:
+  // Throws InputError when arguments or options are at fault, the key cannot be read, there is no
+  // network, or DDS is not part of this build. 'map': how the UAVs' maps are fused.
+  TeamLink(const TeamArguments& arguments, const TeamLinkOptions& options,
+           const ObjectMapOptions& map);
+
+  // Tells the map when it is time to, and hears; call it often.
+  void Exchange(const ObjectMap& map);
+
+  // Tells the map, which is this UAV's last, and waits until those that are heard have told their
+  // last and all have all, or until Ctrl-C. Who hears nobody waits for silence_s.
+  void Finish(const ObjectMap& map);
+
+  // Writes team_map.csv and, with the 'origin' of this UAV's world (latitude and longitude,
+  // degrees; or empty), team_map.geojson. Throws InputError when that is not possible.
+  void WriteMap(const ObjectModel& model, const std::vector<double>& origin,
+                const OutputFolder& folder);
+
+  // For the line at the end: "team: 3 UAVs, 27 objects".
+  std::string Found();
+
+ private:
+  void Tell(const ObjectMap& map);
+  void Transfer();
+  void SayWhoIsAwaited() const;
+
+  TeamLinkOptions options_;
+  TeamMember member_;
+  TeamTopic topic_;
+  TeamFusion fusion_;
+  Time map_time_ = Time::min();  // of the map told last, on its own clock
+  std::optional<Time> told_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace kestrel {
+
+struct TeamOptions {
+  // How often the own map is told, when it has changed, and how often a UAV tells what it has
+  // heard, which makes the others send it what it lacks. Less often where the rate is used up.
+  double tell_period_s = 0.5;
+  double digest_period_s = 0.25;
+  // What was told or heard so short a time ago is not told again; the link's delay to and fro.
+  double resend_s = 0.5;
+  // A UAV that was not heard of for so long is gone: what it claimed is free.
+  double silence_s = 5;
+  // Bytes that one UAV sends, at most, without the transport's own.
+  double rate_bytes_per_s = 9000;
+  // How far another UAV's world may be off before it was compared: error of its navigation,
+  // standard deviations per axis and of the heading.
+  double world_sigma_m = 1.5;
+  double world_yaw_sigma_deg = 2;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("tell_period_s", self.tell_period_s, "s", "between two tellings of the own map");
+    visitor("digest_period_s", self.digest_period_s, "s", "between two tellings of what was heard");
+    visitor("resend_s", self.resend_s, "s", "before the same is told again");
+    visitor("silence_s", self.silence_s, "s", "after which a UAV's claims are free");
+    visitor("rate_bytes_per_s", self.rate_bytes_per_s, "B/s", "that a UAV sends, at most");
+    visitor("world_sigma_m", self.world_sigma_m, "m",
+            "error of a UAV's navigation, standard deviation per axis");
+    visitor("world_yaw_sigma_deg", self.world_yaw_sigma_deg, "deg",
+            "error of its heading, standard deviation");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+}  // namespace kestrel
