@@ -76,10 +76,18 @@ export interface Check {
   name: string;
   verdict: "good" | "doubtful" | "wrong" | "not checked";
   measured: string;
+  /** What to do; empty where all is well. */
+  advice: string;
 }
 
 export interface Health {
   kind: "health";
+  checks: Check[];
+}
+
+/** The checks of `kestrel doctor` that can be made in flight. */
+export interface Doctor {
+  kind: "doctor";
   checks: Check[];
 }
 
@@ -118,6 +126,7 @@ export type ServerMessage =
   | Status
   | MapMessage
   | Health
+  | Doctor
   | EventMessage
   | Timeline
   | Playback

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import type {
+  Doctor,
   EventMessage,
   Health,
   Hello,
@@ -23,6 +24,7 @@ export interface State {
   status: Status | null;
   map: MapMessage | null;
   health: Health | null;
+  doctor: Doctor | null;
   events: EventMessage[];
   timeline: Timeline | null;
   playback: Playback | null;
@@ -46,6 +48,7 @@ export function initialState(): State {
     status: null,
     map: null,
     health: null,
+    doctor: null,
     events: [],
     timeline: null,
     playback: null,
@@ -70,6 +73,8 @@ export function withMessage(state: State, message: ServerMessage): State {
         events: [],
         track: [],
         map: null,
+        health: null,
+        doctor: null,
         timeline: null,
         playback: null,
         series: new SeriesBuffer(message.series.length),
@@ -83,6 +88,8 @@ export function withMessage(state: State, message: ServerMessage): State {
       return { ...state, map: message, track: withPoint(state.track, message.uav) };
     case "health":
       return { ...state, health: message };
+    case "doctor":
+      return { ...state, doctor: message };
     case "event":
       return { ...state, events: [...state.events, message].slice(-maxEvents) };
     case "timeline":

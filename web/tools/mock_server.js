@@ -32,12 +32,16 @@ const series = [
 ];
 
 const checks = [
-  { name: "frame rate", verdict: "good", measured: "30.0 Hz, none missed" },
-  { name: "clock", verdict: "good", measured: "autopilot's known to 0.2 ms" },
-  { name: "link", verdict: "doubtful", measured: "3 % of heartbeats lost: shorten the cable" },
-  { name: "processor", verdict: "good", measured: "38 %, 61 °C" },
-  { name: "disk", verdict: "wrong", measured: "0.4 GB free: 3 minutes of recording" },
-  { name: "lens", verdict: "not checked", measured: "no views of the pattern yet" },
+  { name: "camera", verdict: "good", measured: "30.0 frames/s, 0 missed, 0 repeated", advice: "" },
+  { name: "autopilot", verdict: "doubtful", measured: "104 packets/s, 3 damaged, 0 not sent", advice: "" },
+  { name: "processor", verdict: "good", measured: "38 % of one, there are 4", advice: "" },
+];
+
+const doctorChecks = [
+  { name: "frame rate", verdict: "good", measured: "30.0 images/s", advice: "" },
+  { name: "focus", verdict: "doubtful", measured: "edges rise over 4.1 px", advice: "turn the lens until they are sharp" },
+  { name: "disk", verdict: "wrong", measured: "400 MB free", advice: "remove old recordings" },
+  { name: "calibration by the pattern", verdict: "not checked", measured: "pattern in view in 2 of 30 images", advice: "" },
 ];
 
 /** Starts the server; resolves to it. 'isReplay': as `kestrel console` of a recording. */
@@ -85,6 +89,7 @@ class Client {
     const layers = ["detection", "prediction", "rejected"];
     this.send({ kind: "hello", title, live: !this.isReplay, series, layers, offers });
     this.send({ kind: "health", checks });
+    if (!this.isReplay) this.send({ kind: "doctor", checks: doctorChecks });
     this.event("info", "camera opened: 376x240, 30 Hz");
     this.event("warning", "autopilot's clock is 12 ms ahead");
     if (this.isReplay) this.sendTimeline();

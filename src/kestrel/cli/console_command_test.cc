@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <regex>
 #include <string>
 #include <sys/types.h>
@@ -102,6 +103,40 @@ TEST_F(ConsoleCommandTest, AFlightIsSeen) {
   ASSERT_TRUE(health);
   EXPECT_THAT(health->dump(), HasSubstr("autopilot"));
   EXPECT_EQ(fly.End(), 0) << ReadFile(folder_ / "log");
+}
+
+TEST_F(ConsoleCommandTest, AFlightIsRecordedWhenThePageAsks) {
+  const std::string kept = folder_ / "kept";
+  RunningCommand fly(
+      "fly sim:standing --console 127.0.0.1:0 --set fly.sim_camera.scale=0.4"
+      " --set fly.keep_folder=" +
+          kept,
+      folder_.Write("log", ""));
+  const int port = fly.Port();
+  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
+  TestSocket socket(port);
+  const auto is_recording = [&](bool wanted) {
+    while (const auto status = socket.Next("status")) {
+      if ((*status)["recording"] == wanted) return true;
+    }
+    return false;
+  };
+  // Until there is an image, for the snapshot.
+  socket.Send(R"({"images": true})");
+  ASSERT_TRUE(socket.Next("image"));
+  socket.Send(R"({"command": "snapshot"})");
+  socket.Send(R"({"command": "record", "value": 1})");
+  ASSERT_TRUE(is_recording(true));
+  socket.Send(R"({"command": "record", "value": 0})");
+  ASSERT_TRUE(is_recording(false));
+  EXPECT_EQ(fly.End(), 0) << ReadFile(folder_ / "log");
+  int recordings = 0, snapshots = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kept)) {
+    recordings += std::filesystem::exists(entry.path() / "mav0/cam0/data.csv");
+    snapshots += entry.path().extension() == ".png";
+  }
+  EXPECT_EQ(recordings, 1);
+  EXPECT_EQ(snapshots, 1);
 }
 
 TEST_F(ConsoleCommandTest, ARecordingIsReplayed) {

@@ -79,10 +79,15 @@ struct ConsoleMap {
 // One check of the program's health, as the doctor's.
 struct ConsoleCheck {
   std::string name;
-  std::string verdict;   // "good", "doubtful", "wrong", "not checked"
-  std::string measured;  // and what to do, in words
+  std::string verdict;      // "good", "doubtful", "wrong", "not checked"
+  std::string measured;     // in words
+  std::string advice = {};  // what to do; empty where all is well
 };
 struct ConsoleHealth {
+  std::vector<ConsoleCheck> checks;
+};
+// The checks of `kestrel doctor` that can be made in flight.
+struct ConsoleDoctor {
   std::vector<ConsoleCheck> checks;
 };
 
@@ -108,7 +113,7 @@ struct ConsolePlayback {
 };
 
 using ConsoleUpdate = std::variant<ConsoleSample, ConsoleStatus, ConsoleMap, ConsoleHealth,
-                                   ConsoleEvent, ConsoleTimeline, ConsolePlayback>;
+                                   ConsoleEvent, ConsoleTimeline, ConsolePlayback, ConsoleDoctor>;
 
 // The hand-over between a program that flies, or plays a recording, and the console's thread. No
 // function of the program's side ever waits for the console: the newest frame replaces the one

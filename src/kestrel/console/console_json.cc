@@ -72,13 +72,23 @@ Json Message(const ConsoleMap& map) {
           {"objects", Objects(map.objects)}};
 }
 
-Json Message(const ConsoleHealth& health) {
-  Json checks = Json::array();
-  for (const ConsoleCheck& check : health.checks) {
-    checks.push_back(
-        {{"name", check.name}, {"verdict", check.verdict}, {"measured", check.measured}});
+Json Checks(const std::vector<ConsoleCheck>& checks) {
+  Json list = Json::array();
+  for (const ConsoleCheck& check : checks) {
+    list.push_back({{"name", check.name},
+                    {"verdict", check.verdict},
+                    {"measured", check.measured},
+                    {"advice", check.advice}});
   }
-  return {{"kind", "health"}, {"checks", std::move(checks)}};
+  return list;
+}
+
+Json Message(const ConsoleHealth& health) {
+  return {{"kind", "health"}, {"checks", Checks(health.checks)}};
+}
+
+Json Message(const ConsoleDoctor& doctor) {
+  return {{"kind", "doctor"}, {"checks", Checks(doctor.checks)}};
 }
 
 Json Message(const ConsoleEvent& event) {
