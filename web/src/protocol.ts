@@ -2,7 +2,7 @@
 // What the server says, as src/kestrel/console/console_json.h writes it. Times are whole
 // nanoseconds as text: they are beyond what numbers hold here.
 
-export const layers = ["detection", "prediction", "rejected"] as const;
+export const layers = ["detection", "prediction", "rejected", "second"] as const;
 export type Layer = (typeof layers)[number];
 
 /** A closed line over the image, x and y in turn, in pixels of the frame; one point is a mark. */
@@ -28,7 +28,7 @@ export interface Series {
   label: string;
 }
 
-export type CommandName = "record" | "snapshot" | "play" | "seek" | "step";
+export type CommandName = "record" | "snapshot" | "play" | "seek" | "step" | "detect" | "cancel";
 
 export interface Hello {
   kind: "hello";
@@ -112,6 +112,29 @@ export interface Playback {
   speed: number;
 }
 
+/** What the page can change for a second run, by its name in `kestrel config`. */
+export interface Option {
+  name: string;
+  value: string;
+  unit: string;
+  meaning: string;
+}
+
+export interface OptionList {
+  kind: "options";
+  options: Option[];
+}
+
+/** The recording once more with other options; marks as of Timeline, once it is done. */
+export interface SecondRun {
+  kind: "second";
+  state: "none" | "running" | "done" | "cancelled" | "failed";
+  settings: string[];
+  done: number;
+  error: string;
+  marks: string;
+}
+
 export interface LinkReport {
   kind: "link";
   dropped: number;
@@ -130,6 +153,8 @@ export type ServerMessage =
   | EventMessage
   | Timeline
   | Playback
+  | OptionList
+  | SecondRun
   | LinkReport;
 
 export interface ImageMessage {

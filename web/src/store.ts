@@ -7,7 +7,9 @@ import type {
   Layer,
   LinkReport,
   MapMessage,
+  Option,
   Playback,
+  SecondRun,
   ServerMessage,
   Status,
   Timeline,
@@ -28,6 +30,8 @@ export interface State {
   events: EventMessage[];
   timeline: Timeline | null;
   playback: Playback | null;
+  options: Option[];
+  second: SecondRun | null;
   link: LinkReport | null;
   series: SeriesBuffer;
   /** UAV's way on the map, oldest first. */
@@ -52,10 +56,12 @@ export function initialState(): State {
     events: [],
     timeline: null,
     playback: null,
+    options: [],
+    second: null,
     link: null,
     series: new SeriesBuffer(0),
     track: [],
-    layers: { detection: true, prediction: true, rejected: true },
+    layers: { detection: true, prediction: true, rejected: true, second: true },
     isFrozen: false,
     isHelpShown: false,
     theme: "auto",
@@ -77,6 +83,8 @@ export function withMessage(state: State, message: ServerMessage): State {
         doctor: null,
         timeline: null,
         playback: null,
+        options: [],
+        second: null,
         series: new SeriesBuffer(message.series.length),
       };
     case "sample":
@@ -96,6 +104,10 @@ export function withMessage(state: State, message: ServerMessage): State {
       return { ...state, timeline: message };
     case "playback":
       return { ...state, playback: message };
+    case "options":
+      return { ...state, options: message.options };
+    case "second":
+      return { ...state, second: message };
     case "link":
       return { ...state, link: message };
   }

@@ -160,6 +160,17 @@ TEST_F(ConsoleCommandTest, ARecordingIsReplayed) {
   ASSERT_TRUE(image);
   EXPECT_EQ((*image)["age_ms"], nullptr);
   EXPECT_EQ((*image)["shapes"][0]["layer"], "prediction");
+  // No ring is as large as this: a second run finds none.
+  socket.Send(R"({"command": "detect", "settings": ["landing.detector.min_ring_px=1000",
+                  "landing.detector.max_partial_altitude_m=0"]})");
+  nlohmann::json second;
+  do {
+    const auto message = socket.Next("second");
+    ASSERT_TRUE(message);
+    second = *message;
+  } while (second["state"] == "running");
+  EXPECT_EQ(second["state"], "done") << second;
+  EXPECT_EQ(second["marks"], std::string(10, 'l'));
   EXPECT_EQ(console.End(), 0) << ReadFile(folder_ / "log");
 }
 

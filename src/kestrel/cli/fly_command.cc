@@ -70,6 +70,18 @@ class RecordedActuator : public ExposureActuator {
   const RecordingSwitch* recording_;
 };
 
+// Ends what is recorded.
+class RecordingEnd {
+ public:
+  explicit RecordingEnd(RecordingSwitch* recording) : recording_(recording) {}
+  ~RecordingEnd() { recording_->Close(); }
+  RecordingEnd(const RecordingEnd&) = delete;
+  RecordingEnd& operator=(const RecordingEnd&) = delete;
+
+ private:
+  RecordingSwitch* recording_;
+};
+
 // One flight: its parts, in the order in which they need each other.
 class Flight {
  public:
@@ -164,7 +176,7 @@ class Flight {
   }
 
   FlightRequests Requests() {
-    const auto logged = [this](std::string said) {
+    const auto logged = [this](const std::string& said) {
       log_.Say(said);
       return said;
     };
@@ -244,6 +256,7 @@ class Flight {
   }};
   FlightKeeper keeper_{all_options_.fly.keep_folder, &recording_};
   std::optional<FlightConsole> console_;
+  RecordingEnd recording_end_{&recording_};  // while the console can still be told of it
   std::optional<OutputFolder> output_;
   std::unique_ptr<FlightVision> vision_;
   HuntVision* hunt_ = nullptr;  // the vision, when it is one

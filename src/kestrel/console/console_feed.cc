@@ -19,6 +19,8 @@ const char* ToString(OverlayLayer layer) {
       return "prediction";
     case OverlayLayer::kRejected:
       return "rejected";
+    case OverlayLayer::kSecond:
+      return "second";
   }
   return "";
 }

@@ -20,8 +20,8 @@
 namespace kestrel {
 
 // What the page can show over the image, each kind switched by itself.
-enum class OverlayLayer { kDetection, kPrediction, kRejected };
-const char* ToString(OverlayLayer layer);  // "detection", "prediction", "rejected"
+enum class OverlayLayer { kDetection, kPrediction, kRejected, kSecond };
+const char* ToString(OverlayLayer layer);  // "detection", "prediction", "rejected", "second"
 
 // A closed line over the image with a word about it: what was found and how, or why it was not.
 struct OverlayShape {
@@ -112,8 +112,30 @@ struct ConsolePlayback {
   double speed = 0;
 };
 
+// An option that the page can change for a second run, by its name in `kestrel config`.
+struct ConsoleOption {
+  std::string name;
+  std::string value;  // that it has
+  std::string unit;
+  std::string meaning;
+};
+struct ConsoleOptionList {
+  std::vector<ConsoleOption> options;
+};
+
+// The recording once more, with other options, to be compared with the first run.
+enum class SecondRunState { kNone, kRunning, kDone, kCancelled, kFailed };
+struct ConsoleSecondRun {
+  SecondRunState state = SecondRunState::kNone;
+  std::vector<std::string> settings;  // what is other, as "landing.still=true"
+  std::size_t done = 0;               // frames
+  std::string error;                  // why it failed
+  std::vector<FrameMark> marks;       // of each frame, once it is done
+};
+
 using ConsoleUpdate = std::variant<ConsoleSample, ConsoleStatus, ConsoleMap, ConsoleHealth,
-                                   ConsoleEvent, ConsoleTimeline, ConsolePlayback, ConsoleDoctor>;
+                                   ConsoleEvent, ConsoleTimeline, ConsolePlayback, ConsoleDoctor,
+                                   ConsoleOptionList, ConsoleSecondRun>;
 
 // The hand-over between a program that flies, or plays a recording, and the console's thread. No
 // function of the program's side ever waits for the console: the newest frame replaces the one

@@ -63,12 +63,41 @@ class ReplayConsoleTest : public testing::Test {
             read_ = frame;
             return cv::Mat(240, 376, CV_8UC1, cv::Scalar(static_cast<double>(frame)));
           },
+          [this](const LandingPipelineOptions& options, const SecondRun::GoOn& go_on) {
+            return DetectAgain(options, go_on);
+          },
           [this] { return is_stopped_.load(); });
     });
   }
   ~ReplayConsoleTest() override {
     is_stopped_ = true;
     thread_.join();
+  }
+  // A run that finds the pattern in the first half, unless it is told to wait or fail.
+  std::optional<ReplayResult> DetectAgain(const LandingPipelineOptions& options,
+                                          const SecondRun::GoOn& go_on) {
+    if (options.hint_age_s == 7) throw InputError("frame3.png: no such file");
+    while (options.hint_age_s == 8) {
+      if (!go_on(5)) return std::nullopt;
+      std::this_thread::sleep_for(1ms);
+    }
+    ReplayResult result{PaperView(), Frames()};
+    for (std::size_t i = 0; i < kFrames / 2; ++i) {
+      result.frames[i].mark = FrameMark::kFound;
+      Detect(&result.frames[i]);
+      LandingDetection& detection = *result.frames[i].observation.report.detection;
+      detection.center_px = {188, 120};
+      detection.camera_from_pattern.translation = {0, 0, 3};
+    }
+    return result;
+  }
+  static LandingView PaperView() { return {CameraModel(PaperCamera()), {}, TurnNoise()}; }
+  // The next report of the second run that is in this state; null: there is none.
+  static nlohmann::json NextSecond(TestSocket* socket, const std::string& state) {
+    while (const auto second = socket->Next("second")) {
+      if ((*second)["state"] == state) return *second;
+    }
+    return {};
   }
   int port() const {
     const std::string url = console_.url();
@@ -85,8 +114,7 @@ class ReplayConsoleTest : public testing::Test {
   std::atomic<std::size_t> missing_{99};
   std::atomic<bool> is_stopped_{false};
   std::atomic<std::size_t> read_{99};
-  ReplayConsole console_{FreePort(), "a recording",
-                         LandingView{CameraModel(PaperCamera()), {}, TurnNoise()}, true};
+  ReplayConsole console_{FreePort(), "a recording", PaperView(), LandingPipelineOptions(), true};
   std::thread thread_;
 };
 
@@ -111,6 +139,57 @@ TEST_F(ReplayConsoleTest, SeeksStepsAndPlays) {
   EXPECT_TRUE(IsTold(&socket, kFrames - 1, 0));
   socket.Send(R"({"command": "play", "value": -20})");
   EXPECT_TRUE(IsTold(&socket, 0, 0));
+}
+
+TEST_F(ReplayConsoleTest, DetectsAgainWithOtherOptions) {
+  TestSocket socket(port());
+  const auto options = socket.Next("options");
+  ASSERT_TRUE(options);
+  EXPECT_EQ((*options)["options"][0]["name"], "landing.detector.pattern.outer_diameter_m");
+  socket.Send(R"({"command": "detect", "settings": ["landing.hint_age_s=1"]})");
+  const nlohmann::json second = NextSecond(&socket, "done");
+  ASSERT_TRUE(second.is_object());
+  EXPECT_EQ(second["marks"], "ffffffffff----------");
+  EXPECT_EQ(second["settings"][0], "landing.hint_age_s=1");
+  // What was found is drawn beside what the first run found, which is nothing here. The picture
+  // before the second run's may still be on its way.
+  for (bool is_drawn = false; !is_drawn;) {
+    socket.Send(R"({"images": true})");
+    const auto image = socket.Next("image");
+    ASSERT_TRUE(image);
+    for (const auto& shape : (*image)["shapes"]) is_drawn = is_drawn || shape["layer"] == "second";
+    if (is_drawn) EXPECT_EQ((*image)["shapes"][0]["label"], "second: quadrants 0.00");
+    socket.Send(fmt::format(R"({{"ack": {}}})", (*image)["sequence"].get<int>()));
+    if (!is_drawn) socket.Send(R"({"command": "step", "value": 0})");
+  }
+}
+
+TEST_F(ReplayConsoleTest, ASecondRunIsCancelledWhileThePagePlaysOn) {
+  TestSocket socket(port());
+  socket.Send(R"({"command": "detect", "settings": ["landing.hint_age_s=8"]})");
+  for (;;) {
+    const nlohmann::json running = NextSecond(&socket, "running");
+    ASSERT_TRUE(running.is_object());
+    if (running["done"] == 5) break;
+  }
+  socket.Send(R"({"command": "step", "value": 3})");
+  EXPECT_TRUE(IsTold(&socket, 3, 0));
+  socket.Send(R"({"command": "cancel"})");
+  EXPECT_TRUE(NextSecond(&socket, "cancelled").is_object());
+  // One that is under way makes room for the next.
+  socket.Send(R"({"command": "detect", "settings": ["landing.hint_age_s=8"]})");
+  EXPECT_TRUE(NextSecond(&socket, "running").is_object());
+  socket.Send(R"({"command": "detect", "settings": []})");
+  EXPECT_TRUE(NextSecond(&socket, "done").is_object());
+}
+
+TEST_F(ReplayConsoleTest, WhyASecondRunFailsIsSaid) {
+  TestSocket socket(port());
+  socket.Send(R"({"command": "detect", "settings": ["landing.hint_age_s=7"]})");
+  EXPECT_EQ(NextSecond(&socket, "failed")["error"], "frame3.png: no such file");
+  socket.Send(R"({"command": "detect", "settings": ["fly.keep_folder=/"]})");
+  EXPECT_EQ(NextSecond(&socket, "failed")["error"],
+            "fly.keep_folder: no option that the page may change");
 }
 
 TEST_F(ReplayConsoleTest, AFrameWhoseFileIsGoneIsSaid) {

@@ -39,9 +39,7 @@ FlightExamination::FlightExamination(const CameraCalibration& calibration,
   use_.record = record;
 }
 
-void FlightExamination::AddFrame(const FrameSample& frame) {
-  AddNewest(frame, kSamples, &frames_);
-}
+void FlightExamination::AddFrame(const FrameSample& frame) { AddNewest(frame, kSamples, &frames_); }
 
 void FlightExamination::Look(const cv::Mat& image, Time now) {
   width_px_ = image.cols;

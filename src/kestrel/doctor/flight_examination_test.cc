@@ -65,9 +65,9 @@ class FlightExaminationTest : public ::testing::Test {
 
 TEST_F(FlightExaminationTest, TellsWhatIsGood) {
   const FlightExamination examination = Fly(*calibration_.body_from_camera);
-  for (const char* check : {"images", "image size", "frame rate", "steadiness", "missed images",
-                            "capture clock", "calibration by the pattern",
-                            "mount against gravity", "detection time"}) {
+  for (const char* check :
+       {"images", "image size", "frame rate", "steadiness", "missed images", "capture clock",
+        "calibration by the pattern", "mount against gravity", "detection time"}) {
     EXPECT_EQ(VerdictOf(check, examination), Verdict::kGood) << check;
   }
 }

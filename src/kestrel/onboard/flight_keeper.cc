@@ -38,7 +38,8 @@ std::string FlightKeeper::StartRecording() {
   MakeFolder();
   const auto now =
       std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
-  const fs::path path = FreeName(folder_, fmt::format("{:%Y-%m-%d_%H-%M-%S}", fmt::gmtime(now)), "");
+  const fs::path path =
+      FreeName(folder_, fmt::format("{:%Y-%m-%d_%H-%M-%S}", fmt::gmtime(now)), "");
   if (!recording_->Start(path, /*replace=*/false)) return "the flight ends: no recording begins";
   return "recording into " + path.string();
 }

@@ -6,15 +6,6 @@
 #include <utility>
 
 namespace kestrel {
-namespace {
-
-// The recorder's end waits for the disk: it comes here, not in a thread that just gave it
-// something.
-void Finish(std::shared_ptr<FlightRecorder> recorder) {
-  while (recorder.use_count() > 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-}
-
-}  // namespace
 
 std::shared_ptr<FlightRecorder> RecordingSwitch::Get() const {
   const std::lock_guard lock(mutex_);
@@ -38,7 +29,8 @@ bool RecordingSwitch::Stop() {
     recorder = std::exchange(recorder_, nullptr);
   }
   if (!recorder) return false;
-  Finish(std::move(recorder));
+  // Its end waits for the disk: that comes here, not in a thread that just gave it something.
+  while (recorder.use_count() > 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return true;
 }
 
