@@ -38,6 +38,8 @@ export interface Hello {
   /** Of the shapes that there can be. */
   layers: Layer[];
   offers: CommandName[];
+  /** Whether frames and tables can be had at /export/. */
+  exports: boolean;
 }
 
 /** One value for each series of hello; null where it is not known. */

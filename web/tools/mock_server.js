@@ -92,7 +92,7 @@ class Client {
     const offers = this.isReplay ? ["play", "seek", "step", "detect", "cancel"] : ["record", "snapshot"];
     const title = this.isReplay ? "Recording flight_07" : "Simulated flight";
     const layers = ["detection", "prediction", "rejected", ...(this.isReplay ? ["second"] : [])];
-    this.send({ kind: "hello", title, live: !this.isReplay, series, layers, offers });
+    this.send({ kind: "hello", title, live: !this.isReplay, series, layers, offers, exports: this.isReplay });
     this.send({ kind: "health", checks });
     if (!this.isReplay) this.send({ kind: "doctor", checks: doctorChecks });
     this.event("info", "camera opened: 376x240, 30 Hz");

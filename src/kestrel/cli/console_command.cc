@@ -77,6 +77,7 @@ class ReplayRun : public PipelineRun {
   ReplayRun(const OpenedSource& opened, const LandingPipelineOptions& options,
             std::optional<double> altitude_m, ReplayConsole* console)
       : pipeline_(opened.calibration, options),
+        view_(ViewOf(opened.calibration, options)),
         frame_count_(opened.source->frame_count().value_or(0)),
         console_(console),
         table_(LandingCsvHeader()) {
@@ -101,14 +102,14 @@ class ReplayRun : public PipelineRun {
 
   std::size_t done() const { return frames_.size(); }
 
-  // Once only: the frames with their marks.
-  std::vector<ReplayFrame> TakeFrames(const std::optional<Truth>& truth) {
+  // Once only: all frames with their marks.
+  ReplayResult TakeResult(const std::optional<Truth>& truth) {
     if (truth) {
       MarkByTruth(*truth);
     } else {
       MarkByTrack(&frames_);
     }
-    return std::move(frames_);
+    return {view_, std::move(frames_), std::move(table_)};
   }
 
  private:
@@ -126,6 +127,7 @@ class ReplayRun : public PipelineRun {
   }
 
   LandingPipeline pipeline_;
+  LandingView view_;
   std::size_t frame_count_;
   ReplayConsole* console_;
   std::vector<ReplayFrame> frames_;
@@ -145,7 +147,7 @@ std::optional<ReplayResult> DetectAgain(const ConsoleArguments& arguments,
   while (go_on(run.done())) {
     const Event event = events.Next();
     if (std::holds_alternative<EndOfStream>(event)) {
-      return ReplayResult{ViewOf(opened.calibration, options), run.TakeFrames(truth)};
+      return run.TakeResult(truth);
     }
     if (const auto* pose = std::get_if<PoseSample>(&event)) run.AddPose(*pose);
     if (const auto* frame = std::get_if<Frame>(&event)) run.Process(*frame);
@@ -169,8 +171,7 @@ void RunConsole(const ConsoleArguments& arguments) {
   const std::string& name = arguments.source.sources.front();
   RequireImages(opened, name);
   const std::optional<Truth> truth = FindTruth(arguments.source.sources);
-  ReplayConsole console(arguments.Options(all_options), name, ViewOf(opened.calibration, options),
-                        options, truth.has_value());
+  ReplayConsole console(arguments.Options(all_options), name, options, truth.has_value());
   fmt::print(stderr, "console: {}\n", console.url());
   ReplayRun run(opened, options, arguments.source.altitude_m, &console);
   RunPipeline(opened, &run);
@@ -183,7 +184,7 @@ void RunConsole(const ConsoleArguments& arguments) {
   const auto detect = [&](const LandingPipelineOptions& other, const SecondRun::GoOn& go_on) {
     return DetectAgain(arguments, other, truth, go_on);
   };
-  console.Play(run.TakeFrames(truth), read, detect, WasInterrupted);
+  console.Play(run.TakeResult(truth), read, detect, WasInterrupted);
 }
 
 }  // namespace

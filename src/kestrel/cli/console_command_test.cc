@@ -160,6 +160,10 @@ TEST_F(ConsoleCommandTest, ARecordingIsReplayed) {
   ASSERT_TRUE(image);
   EXPECT_EQ((*image)["age_ms"], nullptr);
   EXPECT_EQ((*image)["shapes"][0]["layer"], "prediction");
+  TestBrowser browser(port);
+  EXPECT_THAT(browser.Send(browser.Get("/export/detections-1.csv")).body(),
+              ::testing::StartsWith("frame,timestamp_ns,detected,"));
+  EXPECT_THAT(browser.Send(browser.Get("/export/overlays-3.png")).body(), HasSubstr("PNG"));
   // No ring is as large as this: a second run finds none.
   socket.Send(R"({"command": "detect", "settings": ["landing.detector.min_ring_px=1000",
                   "landing.detector.max_partial_altitude_m=0"]})");

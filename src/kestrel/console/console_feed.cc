@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::size_t kMaxUpdates = 1024;
 constexpr std::size_t kMaxCommands = 64;
+constexpr std::size_t kMaxExports = 8;
 
 }  // namespace
 
@@ -26,7 +27,10 @@ const char* ToString(OverlayLayer layer) {
 }
 
 ConsoleFeed::ConsoleFeed(Description description)
-    : description_(std::move(description)), updates_(kMaxUpdates), commands_(kMaxCommands) {}
+    : description_(std::move(description)),
+      updates_(kMaxUpdates),
+      commands_(kMaxCommands),
+      exports_(kMaxExports) {}
 
 void ConsoleFeed::SetFrame(ConsoleFrame* frame) {
   frame->sequence = ++sequence_;

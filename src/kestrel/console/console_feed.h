@@ -14,6 +14,7 @@
 
 #include "kestrel/base/time.h"
 #include "kestrel/console/client_message.h"
+#include "kestrel/console/export_request.h"
 #include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/latest_value.h"
 
@@ -148,6 +149,7 @@ class ConsoleFeed {
     std::vector<SeriesDescription> series;   // what a ConsoleSample holds
     std::vector<OverlayLayer> layers;        // of the shapes that there can be
     std::vector<ConsoleCommandKind> offers;  // the commands that the program obeys
+    bool has_exports = false;                // the program answers TakeExport
   };
 
   explicit ConsoleFeed(Description description);
@@ -164,6 +166,9 @@ class ConsoleFeed {
   // What the user has asked for since; nothing when there is nothing. By any thread.
   std::optional<ConsoleCommand> TakeCommand() { return commands_.TryPop(); }
 
+  // What is to be answered next; nothing when there is nothing. By any thread.
+  std::optional<PendingExport> TakeExport() { return exports_.TryPop(); }
+
   // The console's side, by its thread.
 
   const Description& description() const { return description_; }
@@ -173,6 +178,8 @@ class ConsoleFeed {
   std::optional<ConsoleUpdate> TakeUpdate() { return updates_.TryPop(); }
   std::size_t dropped_updates() const { return updates_.dropped(); }
   void Command(const ConsoleCommand& command) { commands_.Push(command); }
+  // Of too many the oldest is never answered.
+  void Export(PendingExport pending) { exports_.Push(std::move(pending)); }
 
  private:
   Description description_;
@@ -181,6 +188,7 @@ class ConsoleFeed {
   LatestValue<ConsoleFrame> frame_;
   BoundedQueue<ConsoleUpdate> updates_;
   BoundedQueue<ConsoleCommand> commands_;
+  BoundedQueue<PendingExport> exports_;
 };
 
 }  // namespace kestrel

@@ -153,7 +153,8 @@ std::string ToJson(const ConsoleFeed::Description& description) {
                {"live", description.is_live},
                {"series", std::move(series)},
                {"layers", std::move(layers)},
-               {"offers", std::move(offers)}});
+               {"offers", std::move(offers)},
+               {"exports", description.has_exports}});
 }
 
 std::string ToJson(const ConsoleUpdate& update) {

@@ -6,7 +6,10 @@
 #include <thread>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "kestrel/base/error.h"
+#include "kestrel/console/frame_picture.h"
 #include "kestrel/console/replay_options.h"
 
 namespace kestrel {
@@ -58,9 +61,8 @@ void MarkByTrack(std::vector<ReplayFrame>* frames) {
 }
 
 ReplayConsole::ReplayConsole(const ConsoleOptions& options, const std::string& title,
-                             LandingView view, const LandingPipelineOptions& used, bool has_truth)
-    : view_(std::move(view)),
-      used_(used),
+                             const LandingPipelineOptions& used, bool has_truth)
+    : used_(used),
       has_truth_(has_truth),
       feed_({.title = title,
              .is_live = false,
@@ -68,12 +70,15 @@ ReplayConsole::ReplayConsole(const ConsoleOptions& options, const std::string& t
              .layers = ReplayLayers(),
              .offers = {ConsoleCommandKind::kPlay, ConsoleCommandKind::kSeek,
                         ConsoleCommandKind::kStep, ConsoleCommandKind::kDetect,
-                        ConsoleCommandKind::kCancel}}),
+                        ConsoleCommandKind::kCancel},
+             .has_exports = true}),
       server_(options, &feed_) {}
 
-void ReplayConsole::Play(std::vector<ReplayFrame> frames, ReadFrame read, Detect detect,
+void ReplayConsole::Play(ReplayResult first, ReadFrame read, Detect detect,
                          const std::function<bool()>& is_stopped) {
-  frames_ = std::move(frames);
+  view_ = std::move(first.view);
+  frames_ = std::move(first.frames);
+  table_ = std::move(first.table);
   read_ = std::move(read);
   detect_ = std::move(detect);
   SendTimeline();
@@ -82,6 +87,7 @@ void ReplayConsole::Play(std::vector<ReplayFrame> frames, ReadFrame read, Detect
   while (!is_stopped()) {
     while (const auto command = feed_.TakeCommand()) Obey(*command);
     FollowSecondRun();
+    if (const auto pending = feed_.TakeExport()) pending->answer(MakeExport(pending->request));
     const Time now = Now();
     // With nobody there to see it the recording waits.
     if (feed_.IsWatched()) Advance(now - last);
@@ -199,14 +205,11 @@ void ReplayConsole::ShowFrame() {
   ConsoleSample sample = LandingSample(frame.observation);
   if (has_truth_) sample.values.push_back(frame.error_px.value_or(std::nan("")));
   feed_.Add(std::move(sample));
-  feed_.Add(LandingMap(view_, frame.observation));
+  feed_.Add(LandingMap(*view_, frame.observation));
   feed_.Add(LandingStatus(frame.observation));
   feed_.Add(ConsolePlayback{frame_, speed_});
   picture_.captured = frame.observation.time;
-  picture_.shapes = LandingShapes(view_, frame.observation);
-  if (second_) {
-    AddSecondShapes(second_->view, second_->frames[frame_].observation, &picture_.shapes);
-  }
+  picture_.shapes = ShapesOf(frame_);
   try {
     picture_.image = read_(frame_);
   } catch (const InputError& error) {  // its file is gone
@@ -215,6 +218,31 @@ void ReplayConsole::ShowFrame() {
     return;
   }
   feed_.SetFrame(&picture_);
+}
+
+std::vector<OverlayShape> ReplayConsole::ShapesOf(std::size_t frame) const {
+  std::vector<OverlayShape> shapes = LandingShapes(*view_, frames_[frame].observation);
+  if (second_) AddSecondShapes(second_->view, second_->frames[frame].observation, &shapes);
+  return shapes;
+}
+
+// Without content where there is none.
+ExportAnswer ReplayConsole::MakeExport(const ExportRequest& request) const {
+  if (request.kind == ExportRequest::Kind::kDetections) {
+    const std::string table = request.number == 1 ? table_ : second_ ? second_->table : "";
+    return {table, "text/csv; charset=utf-8", fmt::format("detections-{}.csv", request.number)};
+  }
+  if (request.number >= frames_.size()) return {};
+  const bool has_shapes = request.kind == ExportRequest::Kind::kOverlays;
+  const std::string name = fmt::format("{}-{}.png", has_shapes ? "overlays" : "frame",
+                                       ToNanoseconds(frames_[request.number].observation.time));
+  try {
+    const cv::Mat image = read_(request.number);
+    return {PngOf(has_shapes ? WithShapes(image, ShapesOf(request.number)) : image), "image/png",
+            name};
+  } catch (const InputError&) {  // its file is gone
+    return {};
+  }
 }
 
 void ReplayConsole::SendTimeline() {

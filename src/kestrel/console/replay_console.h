@@ -27,7 +27,7 @@ class ReplayConsole {
 
   // Serves from now on. 'has_truth': errors are known. Throws InputError as WebServer does.
   // 'used': the options of the first run.
-  ReplayConsole(const ConsoleOptions& options, const std::string& title, LandingView view,
+  ReplayConsole(const ConsoleOptions& options, const std::string& title,
                 const LandingPipelineOptions& used, bool has_truth);
 
   std::string url() const { return server_.url(); }
@@ -35,9 +35,9 @@ class ReplayConsole {
   // What is done before there is something to play, in words.
   void SetProgress(const std::string& text) { feed_.Add(ConsoleStatus{"detecting", text, false}); }
 
-  // Plays 'frames', in order of time and at least one, as the users ask, until 'is_stopped', which
-  // is asked often. Once only.
-  void Play(std::vector<ReplayFrame> frames, ReadFrame read, Detect detect,
+  // Plays what the first run came to, at least one frame, as the users ask, until 'is_stopped',
+  // which is asked often. Once only.
+  void Play(ReplayResult first, ReadFrame read, Detect detect,
             const std::function<bool()>& is_stopped);
 
  private:
@@ -49,16 +49,19 @@ class ReplayConsole {
   void Advance(Duration elapsed);
   void GoTo(std::size_t frame);
   void ShowFrame();
+  std::vector<OverlayShape> ShapesOf(std::size_t frame) const;
+  ExportAnswer MakeExport(const ExportRequest& request) const;
   void SendTimeline();
   double SecondsOf(std::size_t frame) const;  // since the first
   std::size_t NearestFrame(double seconds) const;
 
-  LandingView view_;
   LandingPipelineOptions used_;
   bool has_truth_;
   ConsoleFeed feed_;
   WebServer server_;
+  std::optional<LandingView> view_;
   std::vector<ReplayFrame> frames_;
+  std::string table_;
   ReadFrame read_;
   Detect detect_;
   std::vector<std::string> settings_;   // of the second run

@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/base/error.h"
 #include "kestrel/camera/paper_camera.h"
@@ -57,7 +58,7 @@ class ReplayConsoleTest : public testing::Test {
   ReplayConsoleTest() {
     thread_ = std::thread([this] {
       console_.Play(
-          Frames(),
+          {PaperView(), Frames(), "frame,timestamp_ns\n"},
           [this](std::size_t frame) {
             if (frame == missing_) throw InputError("frame7.png: no such file");
             read_ = frame;
@@ -81,7 +82,7 @@ class ReplayConsoleTest : public testing::Test {
       if (!go_on(5)) return std::nullopt;
       std::this_thread::sleep_for(1ms);
     }
-    ReplayResult result{PaperView(), Frames()};
+    ReplayResult result{PaperView(), Frames(), "second\n"};
     for (std::size_t i = 0; i < kFrames / 2; ++i) {
       result.frames[i].mark = FrameMark::kFound;
       Detect(&result.frames[i]);
@@ -114,7 +115,7 @@ class ReplayConsoleTest : public testing::Test {
   std::atomic<std::size_t> missing_{99};
   std::atomic<bool> is_stopped_{false};
   std::atomic<std::size_t> read_{99};
-  ReplayConsole console_{FreePort(), "a recording", PaperView(), LandingPipelineOptions(), true};
+  ReplayConsole console_{FreePort(), "a recording", LandingPipelineOptions(), true};
   std::thread thread_;
 };
 
@@ -162,6 +163,48 @@ TEST_F(ReplayConsoleTest, DetectsAgainWithOtherOptions) {
     socket.Send(fmt::format(R"({{"ack": {}}})", (*image)["sequence"].get<int>()));
     if (!is_drawn) socket.Send(R"({"command": "step", "value": 0})");
   }
+}
+
+TEST_F(ReplayConsoleTest, GivesFramesAndTablesAway) {
+  TestSocket socket(port());
+  socket.Send(R"({"command": "detect", "settings": []})");
+  ASSERT_TRUE(NextSecond(&socket, "done").is_object());
+  TestBrowser browser(port());
+  const auto get = [&](const std::string& path) { return browser.Send(browser.Get(path)); };
+  const auto picture = [&](const std::string& path) {
+    const std::string png = get(path).body();
+    const std::vector<unsigned char> bytes(png.begin(), png.end());
+    return bytes.empty() ? cv::Mat() : cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+  };
+  const cv::Mat plain(240, 376, CV_8UC1, cv::Scalar(7));
+  EXPECT_EQ(cv::norm(picture("/export/frame-7.png"), plain, cv::NORM_INF), 0);
+  const cv::Mat drawn = picture("/export/overlays-7.png");
+  ASSERT_EQ(drawn.type(), CV_8UC3);
+  EXPECT_EQ(drawn.at<cv::Vec3b>(120, 188), cv::Vec3b(74, 216, 255)) << "the second run's centre";
+  EXPECT_EQ(get("/export/detections-1.csv").body(), "frame,timestamp_ns\n");
+  const auto second = get("/export/detections-2.csv");
+  EXPECT_EQ(second.body(), "second\n");
+  EXPECT_EQ(second["Content-Disposition"], "attachment; filename=\"detections-2.csv\"");
+  EXPECT_EQ(get("/export/frame-20.png").result_int(), 404u) << "the last is 19";
+}
+
+TEST_F(ReplayConsoleTest, ExportsAreForThisPageOnly) {
+  TestSocket socket(port());
+  ASSERT_TRUE(socket.Next("timeline"));
+  for (const char* path : {"/export/../frame-1.png", "/export/frame-x.png", "/export/"}) {
+    TestBrowser browser(port());
+    EXPECT_EQ(browser.Send(browser.Get(path)).result_int(), 404u) << path;
+  }
+  // A link on another site is let in to the page, not to this.
+  TestBrowser stranger(port());
+  auto request = stranger.Get("/export/frame-1.png");
+  request.set("Sec-Fetch-Site", "cross-site");
+  request.set("Sec-Fetch-Mode", "navigate");
+  EXPECT_EQ(stranger.Send(request).result_int(), 403u);
+  TestBrowser rebound(port());
+  auto foreign = rebound.Get("/export/frame-1.png");
+  foreign.set(boost::beast::http::field::host, "evil.example");
+  EXPECT_EQ(rebound.Send(foreign).result_int(), 421u);
 }
 
 TEST_F(ReplayConsoleTest, ASecondRunIsCancelledWhileThePagePlaysOn) {

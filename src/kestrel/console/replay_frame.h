@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "kestrel/console/console_feed.h"
@@ -21,6 +22,7 @@ struct ReplayFrame {
 struct ReplayResult {
   LandingView view;
   std::vector<ReplayFrame> frames;
+  std::string table;  // as `kestrel land` writes landing_detections.csv
 };
 
 // The marks of frames whose truth is not known: lost are those without the pattern between two with

@@ -55,8 +55,23 @@ export function ReplayBar() {
           {second?.state === "done" && `, second run: ${markInWords(markAt(second, frame))}`}
         </span>
       </div>
+      <ExportLinks frame={frame} hasSecond={second?.state === "done"} />
       <Scrubber timeline={timeline} second={second?.state === "done" ? second.marks : null} frame={frame} />
     </section>
+  );
+}
+
+/** What can be taken away: the frame that is shown, and the tables of what was found. */
+function ExportLinks({ frame, hasSecond }: { frame: number; hasSecond: boolean }) {
+  const isOffered = useStore((state) => state.hello?.exports ?? false);
+  if (!isOffered) return null;
+  return (
+    <p class="exports">
+      Save: <a href={`/export/frame-${frame}.png`} download>frame</a>
+      <a href={`/export/overlays-${frame}.png`} download>frame with overlays</a>
+      <a href="/export/detections-1.csv" download>detections (CSV)</a>
+      {hasSecond && <a href="/export/detections-2.csv" download>second run's detections (CSV)</a>}
+    </p>
   );
 }
 
