@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMaxSpeed = 100;
 // How often is looked for what users ask, and the fastest that pictures change.
-constexpr Duration kInterval = std::chrono::milliseconds(20);
+constexpr Duration kLookInterval = std::chrono::milliseconds(20);
 // How often the page is told how far a second run is.
 constexpr Duration kTellInterval = std::chrono::milliseconds(250);
 
@@ -93,7 +93,7 @@ void ReplayConsole::Play(ReplayResult first, ReadFrame read, Detect detect,
     if (feed_.IsWatched()) Advance(now - last);
     last = now;
     if (!is_shown_) ShowFrame();
-    std::this_thread::sleep_for(kInterval);
+    std::this_thread::sleep_for(kLookInterval);
   }
 }
 

@@ -8,11 +8,6 @@
 #include "kestrel/onboard/thread_setup.h"
 
 namespace kestrel {
-namespace {
-
-constexpr int kNiceness = 10;  // the page goes first
-
-}  // namespace
 
 void SecondRun::Start(Job job) {
   Cancel();
@@ -38,8 +33,9 @@ std::optional<SecondRun::Outcome> SecondRun::TakeOutcome() {
 
 void SecondRun::Run(const Job& job) {
   SetUpThisThread("second run", {});
+  constexpr int kLast = 10;  // the page goes first
   // Of this thread alone, on Linux.
-  setpriority(PRIO_PROCESS, 0, kNiceness);
+  setpriority(PRIO_PROCESS, 0, kLast);
   try {
     outcome_.result = job([this](std::size_t done) {
       done_ = done;
