@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whatever a browser's socket brings: the reader of its messages does not throw, and what it reads
-// are numbers that the program can use; the guard lets nobody in who has not the token.
+// are numbers that the program can use, a path gives numbers only; the guard lets nobody in who has
+// not the token.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -10,6 +11,7 @@
 #include <variant>
 
 #include "kestrel/console/client_message.h"
+#include "kestrel/console/export_request.h"
 #include "kestrel/console/request_guard.h"
 
 namespace {
@@ -37,7 +39,15 @@ void ReadMessage(std::string_view text) {
   if (!message) return;
   if (const auto* command = std::get_if<kestrel::ConsoleCommand>(&*message)) {
     Require(std::isfinite(command->value));
+    Require(command->settings.size() <= 32);
   }
+}
+
+void ReadExportPath(std::string_view text) {
+  const auto wanted = kestrel::ParseExportPath(text);
+  if (!wanted) return;
+  Require(wanted->number < 1'000'000'000);
+  Require(text.starts_with("/export/") && text.find('.') == text.rfind('.'));
 }
 
 // Host, origin, cookies and target, a line each.
@@ -64,6 +74,7 @@ void AskGuard(std::string_view text, bool is_web_socket) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   ReadMessage(text);
+  ReadExportPath(text);
   AskGuard(text, /*is_web_socket=*/false);
   AskGuard(text, /*is_web_socket=*/true);
   return 0;

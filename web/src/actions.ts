@@ -4,7 +4,7 @@ import { connection } from "./connection";
 import type { CommandName, Layer } from "./protocol";
 import { store } from "./store";
 import { applyTheme, themeAfter } from "./theme";
-import { nextTrouble } from "./timeline";
+import { nextDifference, nextTrouble } from "./timeline";
 
 export function isOffered(name: CommandName): boolean {
   return store.state.hello?.offers.includes(name) ?? false;
@@ -50,6 +50,23 @@ export function seekTrouble(direction: 1 | -1): void {
   const { timeline, playback } = store.state;
   if (!timeline || !playback) return;
   const frame = nextTrouble(timeline, playback.frame, direction);
+  if (frame !== null) seekFrame(frame);
+}
+
+/** Runs the detector again, with settings as "landing.still=true". */
+export function detectAgain(settings: string[]): void {
+  if (isOffered("detect")) connection.detect(settings);
+}
+
+export function cancelDetection(): void {
+  command("cancel");
+}
+
+/** To the next frame that the two runs tell differently. */
+export function seekDifference(direction: 1 | -1): void {
+  const { timeline, playback, second } = store.state;
+  if (!timeline || !playback || second?.state !== "done") return;
+  const frame = nextDifference(timeline.marks, second.marks, playback.frame, direction);
   if (frame !== null) seekFrame(frame);
 }
 

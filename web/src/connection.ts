@@ -47,6 +47,10 @@ export class Connection {
     this.send(value === undefined ? { command: name } : { command: name, value });
   }
 
+  detect(settings: string[]): void {
+    this.send({ command: "detect", settings });
+  }
+
   private send(message: object): void {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }

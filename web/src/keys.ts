@@ -2,6 +2,7 @@
 import {
   isOffered,
   nextTheme,
+  seekDifference,
   seekTrouble,
   step,
   takeSnapshot,
@@ -35,6 +36,8 @@ export const keys: Key[] = [
   { keys: [","], meaning: "a frame back", isOffered: has("step"), act: () => step(-1) },
   { keys: ["n"], meaning: "to the next lost or false frames", isOffered: has("seek"), act: () => seekTrouble(1) },
   { keys: ["p"], meaning: "to those before", isOffered: has("seek"), act: () => seekTrouble(-1) },
+  { keys: ["d"], meaning: "to the next frame where two runs differ", isOffered: has("detect"), act: () => seekDifference(1) },
+  { keys: ["D"], meaning: "to the one before", isOffered: has("detect"), act: () => seekDifference(-1) },
   { keys: ["r"], meaning: "start or stop recording", isOffered: has("record"), act: toggleRecording },
   { keys: ["s"], meaning: "keep a snapshot", isOffered: has("snapshot"), act: takeSnapshot },
   { keys: ["t"], meaning: "next theme: auto, light, dark, sun", act: nextTheme },
@@ -42,6 +45,8 @@ export const keys: Key[] = [
 ];
 
 export function handleKey(event: KeyboardEvent): void {
+  // What is typed into a form is no key of these.
+  if (event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement) return;
   if (event.ctrlKey || event.altKey || event.metaKey) return;
   if (event.key === "Escape" && store.state.isHelpShown) return toggleHelp();
   const key = keys.find((one) => one.keys.includes(event.key) && (one.isOffered?.() ?? true));

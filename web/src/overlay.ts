@@ -6,6 +6,7 @@ const styles: Record<Layer, { color: string; dash: number[] }> = {
   detection: { color: "#3dff6e", dash: [] },
   prediction: { color: "#5cc8ff", dash: [8, 5] },
   rejected: { color: "#ff7a5c", dash: [5, 4] },
+  second: { color: "#ffd84a", dash: [2, 4] },
 };
 
 export function layerColor(layer: Layer): string {

@@ -2,7 +2,7 @@
 // What the server says, as src/kestrel/console/console_json.h writes it. Times are whole
 // nanoseconds as text: they are beyond what numbers hold here.
 
-export const layers = ["detection", "prediction", "rejected"] as const;
+export const layers = ["detection", "prediction", "rejected", "second"] as const;
 export type Layer = (typeof layers)[number];
 
 /** A closed line over the image, x and y in turn, in pixels of the frame; one point is a mark. */
@@ -28,7 +28,7 @@ export interface Series {
   label: string;
 }
 
-export type CommandName = "record" | "snapshot" | "play" | "seek" | "step";
+export type CommandName = "record" | "snapshot" | "play" | "seek" | "step" | "detect" | "cancel";
 
 export interface Hello {
   kind: "hello";
@@ -38,6 +38,8 @@ export interface Hello {
   /** Of the shapes that there can be. */
   layers: Layer[];
   offers: CommandName[];
+  /** Whether frames and tables can be had at /export/. */
+  exports: boolean;
 }
 
 /** One value for each series of hello; null where it is not known. */
@@ -76,10 +78,18 @@ export interface Check {
   name: string;
   verdict: "good" | "doubtful" | "wrong" | "not checked";
   measured: string;
+  /** What to do; empty where all is well. */
+  advice: string;
 }
 
 export interface Health {
   kind: "health";
+  checks: Check[];
+}
+
+/** The checks of `kestrel doctor` that can be made in flight. */
+export interface Doctor {
+  kind: "doctor";
   checks: Check[];
 }
 
@@ -104,6 +114,29 @@ export interface Playback {
   speed: number;
 }
 
+/** What the page can change for a second run, by its name in `kestrel config`. */
+export interface Option {
+  name: string;
+  value: string;
+  unit: string;
+  meaning: string;
+}
+
+export interface OptionList {
+  kind: "options";
+  options: Option[];
+}
+
+/** The recording once more with other options; marks as of Timeline, once it is done. */
+export interface SecondRun {
+  kind: "second";
+  state: "none" | "running" | "done" | "cancelled" | "failed";
+  settings: string[];
+  done: number;
+  error: string;
+  marks: string;
+}
+
 export interface LinkReport {
   kind: "link";
   dropped: number;
@@ -118,9 +151,12 @@ export type ServerMessage =
   | Status
   | MapMessage
   | Health
+  | Doctor
   | EventMessage
   | Timeline
   | Playback
+  | OptionList
+  | SecondRun
   | LinkReport;
 
 export interface ImageMessage {

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import type {
+  Doctor,
   EventMessage,
   Health,
   Hello,
   Layer,
   LinkReport,
   MapMessage,
+  Option,
   Playback,
+  SecondRun,
   ServerMessage,
   Status,
   Timeline,
@@ -23,9 +26,12 @@ export interface State {
   status: Status | null;
   map: MapMessage | null;
   health: Health | null;
+  doctor: Doctor | null;
   events: EventMessage[];
   timeline: Timeline | null;
   playback: Playback | null;
+  options: Option[];
+  second: SecondRun | null;
   link: LinkReport | null;
   series: SeriesBuffer;
   /** UAV's way on the map, oldest first. */
@@ -46,13 +52,16 @@ export function initialState(): State {
     status: null,
     map: null,
     health: null,
+    doctor: null,
     events: [],
     timeline: null,
     playback: null,
+    options: [],
+    second: null,
     link: null,
     series: new SeriesBuffer(0),
     track: [],
-    layers: { detection: true, prediction: true, rejected: true },
+    layers: { detection: true, prediction: true, rejected: true, second: true },
     isFrozen: false,
     isHelpShown: false,
     theme: "auto",
@@ -70,8 +79,12 @@ export function withMessage(state: State, message: ServerMessage): State {
         events: [],
         track: [],
         map: null,
+        health: null,
+        doctor: null,
         timeline: null,
         playback: null,
+        options: [],
+        second: null,
         series: new SeriesBuffer(message.series.length),
       };
     case "sample":
@@ -83,12 +96,18 @@ export function withMessage(state: State, message: ServerMessage): State {
       return { ...state, map: message, track: withPoint(state.track, message.uav) };
     case "health":
       return { ...state, health: message };
+    case "doctor":
+      return { ...state, doctor: message };
     case "event":
       return { ...state, events: [...state.events, message].slice(-maxEvents) };
     case "timeline":
       return { ...state, timeline: message };
     case "playback":
       return { ...state, playback: message };
+    case "options":
+      return { ...state, options: message.options };
+    case "second":
+      return { ...state, second: message };
     case "link":
       return { ...state, link: message };
   }

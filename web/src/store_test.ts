@@ -11,6 +11,7 @@ const hello: Hello = {
   series: [{ name: "height", unit: "m", label: "Height" }],
   layers: [],
   offers: [],
+  exports: false,
 };
 
 function mapAt(x: number): MapMessage {

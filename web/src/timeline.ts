@@ -11,7 +11,7 @@ const words: Record<Mark, string> = {
   x: "false",
 };
 
-export function markAt(timeline: Timeline, frame: number): Mark {
+export function markAt(timeline: Pick<Timeline, "marks">, frame: number): Mark {
   const mark = timeline.marks[frame];
   return mark === "f" || mark === "l" || mark === "x" ? mark : "-";
 }
@@ -64,6 +64,21 @@ export function nextTrouble(timeline: Timeline, frame: number, direction: 1 | -1
     if (isTrouble(i) && !isTrouble(i - 1)) return i;
   }
   return null;
+}
+
+/** The next frame, in a direction, whose marks differ; null: none. */
+export function nextDifference(first: string, second: string, frame: number, direction: 1 | -1): number | null {
+  const count = Math.min(first.length, second.length);
+  for (let i = frame + direction; i >= 0 && i < count; i += direction) {
+    if (first[i] !== second[i]) return i;
+  }
+  return null;
+}
+
+/** As "12 found, 3 lost, 0 false". */
+export function marksInWords(marks: string): string {
+  const count = (mark: Mark) => [...marks].filter((one) => one === mark).length;
+  return `${count("f")} found, ${count("l")} lost, ${count("x")} false`;
 }
 
 /** As "1:02.50". */

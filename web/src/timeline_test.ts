@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+import { marksInWords, nextDifference } from "./timeline";
 import { describe, expect, test } from "vitest";
 import type { Timeline } from "./protocol";
 import { clockText, columnMarks, frameAt, frameAtFraction, nextTrouble } from "./timeline";
@@ -42,4 +43,12 @@ describe("timeline", () => {
     expect(clockText(62500)).toBe("1:02.50");
     expect(clockText(0)).toBe("0:00.00");
   });
+});
+
+test("two runs are compared", () => {
+  expect(nextDifference("ffl-", "flf-", 0, 1)).toBe(1);
+  expect(nextDifference("ffl-", "flf-", 1, 1)).toBe(2);
+  expect(nextDifference("ffl-", "flf-", 2, 1)).toBeNull();
+  expect(nextDifference("ffl-", "flf-", 2, -1)).toBe(1);
+  expect(marksInWords("ffl-x")).toBe("2 found, 1 lost, 1 false");
 });

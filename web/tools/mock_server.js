@@ -32,12 +32,21 @@ const series = [
 ];
 
 const checks = [
-  { name: "frame rate", verdict: "good", measured: "30.0 Hz, none missed" },
-  { name: "clock", verdict: "good", measured: "autopilot's known to 0.2 ms" },
-  { name: "link", verdict: "doubtful", measured: "3 % of heartbeats lost: shorten the cable" },
-  { name: "processor", verdict: "good", measured: "38 %, 61 °C" },
-  { name: "disk", verdict: "wrong", measured: "0.4 GB free: 3 minutes of recording" },
-  { name: "lens", verdict: "not checked", measured: "no views of the pattern yet" },
+  { name: "camera", verdict: "good", measured: "30.0 frames/s, 0 missed, 0 repeated", advice: "" },
+  { name: "autopilot", verdict: "doubtful", measured: "104 packets/s, 3 damaged, 0 not sent", advice: "" },
+  { name: "processor", verdict: "good", measured: "38 % of one, there are 4", advice: "" },
+];
+
+const doctorChecks = [
+  { name: "frame rate", verdict: "good", measured: "30.0 images/s", advice: "" },
+  { name: "focus", verdict: "doubtful", measured: "edges rise over 4.1 px", advice: "turn the lens until they are sharp" },
+  { name: "disk", verdict: "wrong", measured: "400 MB free", advice: "remove old recordings" },
+  { name: "calibration by the pattern", verdict: "not checked", measured: "pattern in view in 2 of 30 images", advice: "" },
+];
+
+const options = [
+  { name: "landing.detector.min_quality", value: "0.6", unit: "1", meaning: "smallest probability that is accepted" },
+  { name: "landing.still", value: "false", unit: "", meaning: "frames have nothing to do with each other" },
 ];
 
 /** Starts the server; resolves to it. 'isReplay': as `kestrel console` of a recording. */
@@ -80,14 +89,27 @@ class Client {
   }
 
   greet() {
-    const offers = this.isReplay ? ["play", "seek", "step"] : ["record", "snapshot"];
+    const offers = this.isReplay ? ["play", "seek", "step", "detect", "cancel"] : ["record", "snapshot"];
     const title = this.isReplay ? "Recording flight_07" : "Simulated flight";
-    const layers = ["detection", "prediction", "rejected"];
-    this.send({ kind: "hello", title, live: !this.isReplay, series, layers, offers });
+    const layers = ["detection", "prediction", "rejected", ...(this.isReplay ? ["second"] : [])];
+    this.send({ kind: "hello", title, live: !this.isReplay, series, layers, offers, exports: this.isReplay });
     this.send({ kind: "health", checks });
+    if (!this.isReplay) this.send({ kind: "doctor", checks: doctorChecks });
     this.event("info", "camera opened: 376x240, 30 Hz");
     this.event("warning", "autopilot's clock is 12 ms ahead");
     if (this.isReplay) this.sendTimeline();
+    if (this.isReplay) this.send({ kind: "options", options });
+  }
+
+  /** A second run that loses the pattern more often. */
+  detect(settings) {
+    const second = { kind: "second", settings, done: 120, error: "", marks: "" };
+    this.send({ ...second, state: "running" });
+    const marks = Array.from({ length: frameCount }, (_, i) => {
+      const mark = markAt(flightAt(i / framesPerSecond));
+      return mark === "f" && i % 60 < 12 ? "l" : mark;
+    });
+    setTimeout(() => this.send({ ...second, state: "done", done: frameCount, marks: marks.join("") }), 500);
   }
 
   sendTimeline() {
@@ -115,6 +137,7 @@ class Client {
       this.isRecording = message.value === 1;
       this.event("info", this.isRecording ? "recording to flight_08" : "recording ended");
     }
+    if (message.command === "detect") this.detect(message.settings);
     if (message.command === "snapshot") this.event("info", "snapshot kept");
     if (message.command === "play") this.speed = message.value;
     if (message.command === "step") this.show(this.frame + message.value, 0);

@@ -68,6 +68,13 @@ async function watchFlight() {
   const age = await page.locator(".age").textContent();
   expect(/Frame \d+, \d+ ms old/.test(age), `age of the picture: ${age}`);
   for (const finding of await findingsOf(page)) expect(false, `live: ${finding}`);
+  await page.getByRole("button", { name: "Snapshot" }).click();
+  await page.getByText(/snapshot kept as kept/).waitFor();
+  await page.getByRole("button", { name: "Record" }).click();
+  await page.getByText("Stop recording").waitFor();
+  await page.keyboard.press("r");
+  await page.getByText("the recording is written").waitFor();
+  await page.getByRole("heading", { name: "Doctor" }).waitFor();
   program.kill("SIGINT");
   await page.waitForFunction(() => /lost/.test(document.querySelector(".state-word").textContent));
   await page.close();
@@ -103,6 +110,10 @@ async function scrubRecording() {
   await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
   await time.filter({ hasText: /frame (2|3)\d of/ }).waitFor();
   await page.getByRole("button", { name: "+1 frame" }).click();
+  await page.getByLabel("Change").selectOption("landing.detector.min_ring_px");
+  await page.getByLabel(/smallest minor axis/).fill("60");
+  await page.getByRole("button", { name: "Run" }).click();
+  await page.getByText("Second run (below)").waitFor();
   await page.waitForTimeout(500);
   await page.screenshot({ path: join(folder, "console_replay.png") });
   for (const finding of await findingsOf(page)) expect(false, `replay: ${finding}`);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -21,6 +22,7 @@
 #include "kestrel/evaluation/landing_comparison.h"
 #include "kestrel/pipeline/landing_pipeline.h"
 #include "kestrel/recording/euroc_recording.h"
+#include "kestrel/recording/event_source.h"
 #include "kestrel/recording/landing_csv.h"
 
 namespace kestrel {
@@ -71,9 +73,11 @@ FrameMark MarkOf(const LandingComparison& comparison) {
 // The landing pipeline over a recording, whose results are kept for the page.
 class ReplayRun : public PipelineRun {
  public:
+  // 'console': is told how far the run is; null: nobody is.
   ReplayRun(const OpenedSource& opened, const LandingPipelineOptions& options,
             std::optional<double> altitude_m, ReplayConsole* console)
       : pipeline_(opened.calibration, options),
+        view_(ViewOf(opened.calibration, options)),
         frame_count_(opened.source->frame_count().value_or(0)),
         console_(console),
         table_(LandingCsvHeader()) {
@@ -87,7 +91,7 @@ class ReplayRun : public PipelineRun {
     replayed.observation = pipeline_.Process(frame.image, frame.time);
     found_ += replayed.observation.report.detection.has_value();
     table_ += LandingCsvRow(frame.name, replayed.observation);
-    if (frames_.size() % kProgressFrames == 0) {
+    if (console_ != nullptr && frames_.size() % kProgressFrames == 0) {
       console_->SetProgress(fmt::format("{} of {} frames", frames_.size(), frame_count_));
     }
     return replayed.observation.detect_time;
@@ -96,14 +100,16 @@ class ReplayRun : public PipelineRun {
   std::string Found() const override { return fmt::format("pattern found in {}", found_); }
   std::string Remarks() const override { return ""; }
 
-  // Once only: the frames with their marks.
-  std::vector<ReplayFrame> TakeFrames(const std::optional<Truth>& truth) {
+  std::size_t done() const { return frames_.size(); }
+
+  // Once only: all frames with their marks.
+  ReplayResult TakeResult(const std::optional<Truth>& truth) {
     if (truth) {
       MarkByTruth(*truth);
     } else {
       MarkByTrack(&frames_);
     }
-    return std::move(frames_);
+    return {view_, std::move(frames_), std::move(table_)};
   }
 
  private:
@@ -121,12 +127,33 @@ class ReplayRun : public PipelineRun {
   }
 
   LandingPipeline pipeline_;
+  LandingView view_;
   std::size_t frame_count_;
   ReplayConsole* console_;
   std::vector<ReplayFrame> frames_;
   std::string table_;  // as `kestrel land` writes it
   std::size_t found_ = 0;
 };
+
+// The recording once more with other options; nothing when it is to end before.
+std::optional<ReplayResult> DetectAgain(const ConsoleArguments& arguments,
+                                        const LandingPipelineOptions& options,
+                                        const std::optional<Truth>& truth,
+                                        const SecondRun::GoOn& go_on) {
+  const OpenedSource opened = arguments.source.Open(PixelFormat::kGray);
+  ReplayRun run(opened, options, arguments.source.altitude_m, /*console=*/nullptr);
+  RecordingEvents events(opened.source.get(), opened.source->poses(),
+                         opened.calibration.clock_offset.value_or(Duration::zero()));
+  while (go_on(run.done())) {
+    const Event event = events.Next();
+    if (std::holds_alternative<EndOfStream>(event)) {
+      return run.TakeResult(truth);
+    }
+    if (const auto* pose = std::get_if<PoseSample>(&event)) run.AddPose(*pose);
+    if (const auto* frame = std::get_if<Frame>(&event)) run.Process(*frame);
+  }
+  return std::nullopt;
+}
 
 void RequireImages(const OpenedSource& opened, const std::string& name) {
   Frame first;
@@ -144,8 +171,7 @@ void RunConsole(const ConsoleArguments& arguments) {
   const std::string& name = arguments.source.sources.front();
   RequireImages(opened, name);
   const std::optional<Truth> truth = FindTruth(arguments.source.sources);
-  ReplayConsole console(arguments.Options(all_options), name, ViewOf(opened.calibration, options),
-                        truth.has_value());
+  ReplayConsole console(arguments.Options(all_options), name, options, truth.has_value());
   fmt::print(stderr, "console: {}\n", console.url());
   ReplayRun run(opened, options, arguments.source.altitude_m, &console);
   RunPipeline(opened, &run);
@@ -155,7 +181,10 @@ void RunConsole(const ConsoleArguments& arguments) {
     opened.source->Read(index, &frame);
     return frame.image;
   };
-  console.Play(run.TakeFrames(truth), read, WasInterrupted);
+  const auto detect = [&](const LandingPipelineOptions& other, const SecondRun::GoOn& go_on) {
+    return DetectAgain(arguments, other, truth, go_on);
+  };
+  console.Play(run.TakeResult(truth), read, detect, WasInterrupted);
 }
 
 }  // namespace

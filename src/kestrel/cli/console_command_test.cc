@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <regex>
 #include <string>
 #include <sys/types.h>
@@ -104,6 +105,40 @@ TEST_F(ConsoleCommandTest, AFlightIsSeen) {
   EXPECT_EQ(fly.End(), 0) << ReadFile(folder_ / "log");
 }
 
+TEST_F(ConsoleCommandTest, AFlightIsRecordedWhenThePageAsks) {
+  const std::string kept = folder_ / "kept";
+  RunningCommand fly(
+      "fly sim:standing --console 127.0.0.1:0 --set fly.sim_camera.scale=0.4"
+      " --set fly.keep_folder=" +
+          kept,
+      folder_.Write("log", ""));
+  const int port = fly.Port();
+  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
+  TestSocket socket(port);
+  const auto is_recording = [&](bool wanted) {
+    while (const auto status = socket.Next("status")) {
+      if ((*status)["recording"] == wanted) return true;
+    }
+    return false;
+  };
+  // Until there is an image, for the snapshot.
+  socket.Send(R"({"images": true})");
+  ASSERT_TRUE(socket.Next("image"));
+  socket.Send(R"({"command": "snapshot"})");
+  socket.Send(R"({"command": "record", "value": 1})");
+  ASSERT_TRUE(is_recording(true));
+  socket.Send(R"({"command": "record", "value": 0})");
+  ASSERT_TRUE(is_recording(false));
+  EXPECT_EQ(fly.End(), 0) << ReadFile(folder_ / "log");
+  int recordings = 0, snapshots = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kept)) {
+    recordings += std::filesystem::exists(entry.path() / "mav0/cam0/data.csv");
+    snapshots += entry.path().extension() == ".png";
+  }
+  EXPECT_EQ(recordings, 1);
+  EXPECT_EQ(snapshots, 1);
+}
+
 TEST_F(ConsoleCommandTest, ARecordingIsReplayed) {
   RunningCommand console("console " + Recording() + " --address 127.0.0.1:0",
                          folder_.Write("log", ""));
@@ -125,6 +160,21 @@ TEST_F(ConsoleCommandTest, ARecordingIsReplayed) {
   ASSERT_TRUE(image);
   EXPECT_EQ((*image)["age_ms"], nullptr);
   EXPECT_EQ((*image)["shapes"][0]["layer"], "prediction");
+  TestBrowser browser(port);
+  EXPECT_THAT(browser.Send(browser.Get("/export/detections-1.csv")).body(),
+              ::testing::StartsWith("frame,timestamp_ns,detected,"));
+  EXPECT_THAT(browser.Send(browser.Get("/export/overlays-3.png")).body(), HasSubstr("PNG"));
+  // No ring is as large as this: a second run finds none.
+  socket.Send(R"({"command": "detect", "settings": ["landing.detector.min_ring_px=1000",
+                  "landing.detector.max_partial_altitude_m=0"]})");
+  nlohmann::json second;
+  do {
+    const auto message = socket.Next("second");
+    ASSERT_TRUE(message);
+    second = *message;
+  } while (second["state"] == "running");
+  EXPECT_EQ(second["state"], "done") << second;
+  EXPECT_EQ(second["marks"], std::string(10, 'l'));
   EXPECT_EQ(console.End(), 0) << ReadFile(folder_ / "log");
 }
 

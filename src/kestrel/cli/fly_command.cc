@@ -2,6 +2,7 @@
 #include "kestrel/cli/fly_command.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -20,8 +21,10 @@
 #include "kestrel/foxglove/flight_mcap.h"
 #include "kestrel/link/mavlink_enums.h"
 #include "kestrel/onboard/bounded_queue.h"
+#include "kestrel/onboard/flight_keeper.h"
 #include "kestrel/onboard/hunt_vision.h"
 #include "kestrel/onboard/landing_vision.h"
+#include "kestrel/onboard/recording_switch.h"
 #include "kestrel/recording/output_folder.h"
 
 namespace kestrel {
@@ -54,18 +57,30 @@ EventLevel LevelOf(std::uint8_t severity) {
 // Records what a camera's exposure is from when on.
 class RecordedActuator : public ExposureActuator {
  public:
-  RecordedActuator(ExposureActuator* camera, FlightRecorder* recorder)
-      : camera_(camera), recorder_(recorder) {}
+  RecordedActuator(ExposureActuator* camera, const RecordingSwitch* recording)
+      : camera_(camera), recording_(recording) {}
 
   bool SetExposure(double exposure_s) override {
     if (!camera_->SetExposure(exposure_s)) return false;
-    if (recorder_ != nullptr) recorder_->AddExposure(Now(), exposure_s);
+    if (const auto recorder = recording_->Get()) recorder->AddExposure(Now(), exposure_s);
     return true;
   }
 
  private:
   ExposureActuator* camera_;
-  FlightRecorder* recorder_;
+  const RecordingSwitch* recording_;
+};
+
+// Ends what is recorded.
+class RecordingEnd {
+ public:
+  explicit RecordingEnd(RecordingSwitch* recording) : recording_(recording) {}
+  ~RecordingEnd() { recording_->Close(); }
+  RecordingEnd(const RecordingEnd&) = delete;
+  RecordingEnd& operator=(const RecordingEnd&) = delete;
+
+ private:
+  RecordingSwitch* recording_;
 };
 
 // One flight: its parts, in the order in which they need each other.
@@ -78,7 +93,7 @@ class Flight {
     source_ = OpenFlySource(arguments.source, format, options, arguments.loop);
     OpenConsole();
     OpenMcap();
-    OpenRecorder();
+    if (!arguments.record.empty()) recording_.Start(arguments.record, arguments.source.force);
     OpenVision();
     if (!arguments.autopilot.empty()) OpenAutopilot();
     program_.emplace(options.flight, all_options_.landing.tracker, Parts(),
@@ -87,6 +102,7 @@ class Flight {
 
   FlightEnd Run() {
     CatchInterrupts();
+    if (console_) console_->Obey(Requests());
     if (simulated_autopilot_) simulated_autopilot_->Start();
     Time next_state = Now();
     const FlightEnd end = program_->Run([&] {
@@ -122,7 +138,11 @@ class Flight {
   // First of all: a port that is taken is said before anything is written.
   void OpenConsole() {
     if (!arguments_.console) return;
-    console_.emplace(all_options_.console, arguments_.source.sources.front(), View());
+    console_.emplace(all_options_.console, arguments_.source.sources.front(), View(),
+                     FlightExamination(source_.calibration,
+                                       arguments_.record.empty() ? all_options_.fly.keep_folder
+                                                                 : arguments_.record,
+                                       all_options_.fly.recorder.free_space_mb));
     observers_.Add(&*console_);
     log_.Say("console: " + console_->url());
   }
@@ -161,26 +181,37 @@ class Flight {
     if (source_.actuator == nullptr) {
       throw InputError("fly.control_exposure: the source is no camera whose exposure can be set");
     }
-    actuator_.emplace(source_.actuator, recorder_.get());
+    actuator_.emplace(source_.actuator, &recording_);
     return ExposureDrive(options.exposure, options.exposure.max_exposure_s, &*actuator_);
   }
 
-  void OpenRecorder() {
-    if (arguments_.record.empty()) return;
-    recorder_ = std::make_unique<FlightRecorder>(
-        arguments_.record, arguments_.source.force, source_.calibration, source_.rate_hz,
-        all_options_.fly.recorder, [this](const std::string& text) { Say(text); });
+  std::unique_ptr<FlightRecorder> OpenRecorder(const std::filesystem::path& folder, bool replace) {
+    return std::make_unique<FlightRecorder>(folder, replace, source_.calibration, source_.rate_hz,
+                                            all_options_.fly.recorder,
+                                            [this](const std::string& text) { Say(text); });
+  }
+
+  FlightRequests Requests() {
+    const auto logged = [this](const std::string& said) {
+      log_.Say(said);
+      return said;
+    };
+    return {.record =
+                [this, logged](bool is_on) {
+                  return logged(is_on ? keeper_.StartRecording() : keeper_.StopRecording());
+                },
+            .keep_snapshot =
+                [this, logged](const cv::Mat& image, Time captured) {
+                  return logged(keeper_.KeepSnapshot(image, captured));
+                }};
   }
 
   void OpenAutopilot() {
     FlyAutopilot opened = MakeFlyAutopilot(arguments_.autopilot, all_options_.fly, &source_);
     simulated_autopilot_ = std::move(opened.simulated);
-    Connection::Tap tap;
-    if (recorder_) {
-      tap = [this](std::span<const std::uint8_t> frame, Time time) {
-        recorder_->AddPacket(time, frame);
-      };
-    }
+    const Connection::Tap tap = [this](std::span<const std::uint8_t> frame, Time time) {
+      if (const auto recorder = recording_.Get()) recorder->AddPacket(time, frame);
+    };
     connection_.emplace(opened.url, all_options_.fly.link, tap);
     autopilot_.emplace(source_.Asking(all_options_.fly.autopilot), &*connection_,
                        AutopilotListener{
@@ -200,7 +231,7 @@ class Flight {
     parts.vision = vision_.get();
     parts.connection = connection_ ? &*connection_ : nullptr;
     parts.autopilot = autopilot_ ? &*autopilot_ : nullptr;
-    parts.recorder = recorder_.get();
+    parts.recording = &recording_;
     parts.observer = observers_.empty() ? nullptr : &observers_;
     parts.guides = arguments_.guide;
     parts.source_has_poses = source_.has_poses;
@@ -221,11 +252,11 @@ class Flight {
 
   void TakeTruePose(const PoseSample& pose) {
     source_.TakeTruePose(pose);
-    if (recorder_) recorder_->AddTruePose(pose);
+    if (const auto recorder = recording_.Get()) recorder->AddTruePose(pose);
   }
 
   void Finish(FlightEnd end) {
-    recorder_.reset();  // writes what is left
+    recording_.Close();  // writes what is left
     mcap_.reset();
     log_.Show();
     fmt::print(stderr, "{}", program_->Summary());
@@ -237,14 +268,18 @@ class Flight {
   KestrelOptions all_options_;
   FlightLog log_;
   FlySource source_;
+  RecordingSwitch recording_{[this](const std::filesystem::path& folder, bool replace) {
+    return OpenRecorder(folder, replace);
+  }};
+  FlightKeeper keeper_{all_options_.fly.keep_folder, &recording_};
   std::optional<FlightConsole> console_;
   std::unique_ptr<FlightMcap> mcap_;
   FlightObservers observers_;
+  RecordingEnd recording_end_{&recording_};  // while the console can still be told of it
   std::optional<OutputFolder> output_;
   std::unique_ptr<FlightVision> vision_;
   HuntVision* hunt_ = nullptr;  // the vision, when it is one
   std::optional<RecordedActuator> actuator_;
-  std::unique_ptr<FlightRecorder> recorder_;
   std::unique_ptr<SimulatedAutopilot> simulated_autopilot_;
   std::optional<Connection> connection_;
   std::optional<Autopilot> autopilot_;

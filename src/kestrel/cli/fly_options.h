@@ -28,6 +28,7 @@ struct FlyOptions {
   SimulatedCameraOptions sim_camera;
   SimulatedAutopilotOptions sim_autopilot;
   int sim_seed = 1;
+  std::string keep_folder = "kept";  // where recordings and snapshots that the page asks for go
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -42,6 +43,8 @@ struct FlyOptions {
     visitor.Group("sim_camera", self.sim_camera);
     visitor.Group("sim_autopilot", self.sim_autopilot);
     visitor("sim_seed", self.sim_seed, "", "of what a simulated world and autopilot draw");
+    visitor("keep_folder", self.keep_folder, "",
+            "where recordings and snapshots that the console's page asks for go");
   }
   std::vector<std::string> Validate() const;
 };

@@ -13,10 +13,22 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::array kCommands = {ConsoleCommandKind::kRecord, ConsoleCommandKind::kSnapshot,
-                                  ConsoleCommandKind::kPlay, ConsoleCommandKind::kSeek,
-                                  ConsoleCommandKind::kStep};
-// Nothing that is asked for is nested; deeper text would cost the stack of the parser.
+                                  ConsoleCommandKind::kPlay,   ConsoleCommandKind::kSeek,
+                                  ConsoleCommandKind::kStep,   ConsoleCommandKind::kDetect,
+                                  ConsoleCommandKind::kCancel};
+// A list in an object; deeper text would cost the stack of the parser.
 constexpr int kMaxDepth = 2;
+constexpr std::size_t kMaxSettings = 32, kMaxSettingBytes = 128;
+
+bool ReadSettings(const Json& list, std::vector<std::string>* settings) {
+  if (!list.is_array() || list.size() > kMaxSettings) return false;
+  for (const Json& setting : list) {
+    if (!setting.is_string()) return false;
+    settings->push_back(setting.get<std::string>());
+    if (settings->back().size() > kMaxSettingBytes) return false;
+  }
+  return true;
+}
 
 std::optional<ClientMessage> ReadCommand(const Json& message) {
   const Json& name = message["command"];
@@ -27,10 +39,15 @@ std::optional<ClientMessage> ReadCommand(const Json& message) {
     command.value = message["value"].get<double>();
   }
   if (!std::isfinite(command.value)) return std::nullopt;
-  if (message.size() != (message.contains("value") ? 2 : 1)) return std::nullopt;
+  const bool has_settings = message.contains("settings");
+  if (has_settings && !ReadSettings(message["settings"], &command.settings)) return std::nullopt;
+  if (message.size() != 1 + message.count("value") + message.count("settings")) {
+    return std::nullopt;
+  }
   for (const ConsoleCommandKind kind : kCommands) {
     if (name.get_ref<const std::string&>() != ToString(kind)) continue;
     command.kind = kind;
+    if (has_settings != (kind == ConsoleCommandKind::kDetect)) return std::nullopt;
     return command;
   }
   return std::nullopt;
@@ -50,6 +67,10 @@ const char* ToString(ConsoleCommandKind kind) {
       return "seek";
     case ConsoleCommandKind::kStep:
       return "step";
+    case ConsoleCommandKind::kDetect:
+      return "detect";
+    case ConsoleCommandKind::kCancel:
+      return "cancel";
   }
   return "";
 }

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 namespace kestrel {
 
@@ -25,11 +27,16 @@ enum class ConsoleCommandKind {
   kPlay,      // at so many times the speed, 0: hold, negative: backwards
   kSeek,      // to so many s after the beginning
   kStep,      // so many frames forward
+  kDetect,    // again with these settings
+  kCancel,    // that
 };
-const char* ToString(ConsoleCommandKind kind);  // "record", "snapshot", "play", "seek", "step"
+// "record", "snapshot", "play", "seek", "step", "detect", "cancel"
+const char* ToString(ConsoleCommandKind kind);
 struct ConsoleCommand {
   ConsoleCommandKind kind = ConsoleCommandKind::kSnapshot;
   double value = 0;  // finite
+  // As {"command": "detect", "settings": ["landing.still=true"]}: at most 32 of 128 bytes each.
+  std::vector<std::string> settings = {};
 };
 
 using ClientMessage = std::variant<ImageAck, ImageWish, ConsoleCommand>;

@@ -17,15 +17,50 @@ TEST(ClientMessageTest, ReadsWhatThePageSends) {
   EXPECT_EQ(seek.value, 2.5);
   EXPECT_EQ(std::get<ConsoleCommand>(*ParseClientMessage(R"({"command":"snapshot"})")).kind,
             ConsoleCommandKind::kSnapshot);
+  const auto detect = std::get<ConsoleCommand>(
+      *ParseClientMessage(R"({"command": "detect", "settings": ["a=1", "b=2"]})"));
+  EXPECT_EQ(detect.kind, ConsoleCommandKind::kDetect);
+  EXPECT_EQ(detect.settings, (std::vector<std::string>{"a=1", "b=2"}));
+}
+
+TEST(ClientMessageTest, SettingsAreBounded) {
+  const auto detect = [](int count, int size) {
+    std::string list;
+    for (int i = 0; i < count; ++i) list += ",\"" + std::string(size, 'x') + "\"";
+    return ParseClientMessage(R"({"command": "detect", "settings": [)" +
+                              list.substr(std::min<std::size_t>(1, list.size())) + "]}");
+  };
+  EXPECT_TRUE(detect(0, 1));
+  EXPECT_TRUE(detect(32, 128));
+  EXPECT_FALSE(detect(33, 1));
+  EXPECT_FALSE(detect(1, 129));
 }
 
 TEST(ClientMessageTest, RefusesAllElse) {
-  for (const char* text :
-       {"", "{", "[]", "{}", "7", "null", R"({"ack": -1})", R"({"ack": "7"})", R"({"ack": 1.5})",
-        R"({"ack": 1, "images": true})", R"({"images": 1})", R"({"command": 1})",
-        R"({"command": "format"})", R"({"command": "seek", "value": "2"})",
-        R"({"command": "seek", "value": 1e999})", R"({"command": "seek", "path": 1})",
-        R"({"command": "seek", "value": 1, "path": 1})", R"({"other": 1})", "\xff\xfe"}) {
+  for (const char* text : {"",
+                           "{",
+                           "[]",
+                           "{}",
+                           "7",
+                           "null",
+                           R"({"ack": -1})",
+                           R"({"ack": "7"})",
+                           R"({"ack": 1.5})",
+                           R"({"ack": 1, "images": true})",
+                           R"({"images": 1})",
+                           R"({"command": 1})",
+                           R"({"command": "format"})",
+                           R"({"command": "seek", "value": "2"})",
+                           R"({"command": "seek", "value": 1e999})",
+                           R"({"command": "seek", "path": 1})",
+                           R"({"command": "seek", "value": 1, "path": 1})",
+                           R"({"other": 1})",
+                           R"({"command": "detect"})",
+                           R"({"command": "detect", "settings": "a=1"})",
+                           R"({"command": "detect", "settings": [1]})",
+                           R"({"command": "detect", "settings": [["a"]]})",
+                           R"({"command": "step", "settings": []})",
+                           "\xff\xfe"}) {
     EXPECT_FALSE(ParseClientMessage(text)) << text;
   }
 }

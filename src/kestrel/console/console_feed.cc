@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::size_t kMaxUpdates = 1024;
 constexpr std::size_t kMaxCommands = 64;
+constexpr std::size_t kMaxExports = 8;
 
 }  // namespace
 
@@ -19,12 +20,17 @@ const char* ToString(OverlayLayer layer) {
       return "prediction";
     case OverlayLayer::kRejected:
       return "rejected";
+    case OverlayLayer::kSecond:
+      return "second";
   }
   return "";
 }
 
 ConsoleFeed::ConsoleFeed(Description description)
-    : description_(std::move(description)), updates_(kMaxUpdates), commands_(kMaxCommands) {}
+    : description_(std::move(description)),
+      updates_(kMaxUpdates),
+      commands_(kMaxCommands),
+      exports_(kMaxExports) {}
 
 void ConsoleFeed::SetFrame(ConsoleFrame* frame) {
   frame->sequence = ++sequence_;

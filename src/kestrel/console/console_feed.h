@@ -14,14 +14,15 @@
 
 #include "kestrel/base/time.h"
 #include "kestrel/console/client_message.h"
+#include "kestrel/console/export_request.h"
 #include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/latest_value.h"
 
 namespace kestrel {
 
 // What the page can show over the image, each kind switched by itself.
-enum class OverlayLayer { kDetection, kPrediction, kRejected };
-const char* ToString(OverlayLayer layer);  // "detection", "prediction", "rejected"
+enum class OverlayLayer { kDetection, kPrediction, kRejected, kSecond };
+const char* ToString(OverlayLayer layer);  // "detection", "prediction", "rejected", "second"
 
 // A closed line over the image with a word about it: what was found and how, or why it was not.
 struct OverlayShape {
@@ -79,10 +80,15 @@ struct ConsoleMap {
 // One check of the program's health, as the doctor's.
 struct ConsoleCheck {
   std::string name;
-  std::string verdict;   // "good", "doubtful", "wrong", "not checked"
-  std::string measured;  // and what to do, in words
+  std::string verdict;      // "good", "doubtful", "wrong", "not checked"
+  std::string measured;     // in words
+  std::string advice = {};  // what to do; empty where all is well
 };
 struct ConsoleHealth {
+  std::vector<ConsoleCheck> checks;
+};
+// The checks of `kestrel doctor` that can be made in flight.
+struct ConsoleDoctor {
   std::vector<ConsoleCheck> checks;
 };
 
@@ -107,8 +113,30 @@ struct ConsolePlayback {
   double speed = 0;
 };
 
+// An option that the page can change for a second run, by its name in `kestrel config`.
+struct ConsoleOption {
+  std::string name;
+  std::string value;  // that it has
+  std::string unit;
+  std::string meaning;
+};
+struct ConsoleOptionList {
+  std::vector<ConsoleOption> options;
+};
+
+// The recording once more, with other options, to be compared with the first run.
+enum class SecondRunState { kNone, kRunning, kDone, kCancelled, kFailed };
+struct ConsoleSecondRun {
+  SecondRunState state = SecondRunState::kNone;
+  std::vector<std::string> settings;  // what is other, as "landing.still=true"
+  std::size_t done = 0;               // frames
+  std::string error;                  // why it failed
+  std::vector<FrameMark> marks;       // of each frame, once it is done
+};
+
 using ConsoleUpdate = std::variant<ConsoleSample, ConsoleStatus, ConsoleMap, ConsoleHealth,
-                                   ConsoleEvent, ConsoleTimeline, ConsolePlayback>;
+                                   ConsoleEvent, ConsoleTimeline, ConsolePlayback, ConsoleDoctor,
+                                   ConsoleOptionList, ConsoleSecondRun>;
 
 // The hand-over between a program that flies, or plays a recording, and the console's thread. No
 // function of the program's side ever waits for the console: the newest frame replaces the one
@@ -121,6 +149,7 @@ class ConsoleFeed {
     std::vector<SeriesDescription> series;   // what a ConsoleSample holds
     std::vector<OverlayLayer> layers;        // of the shapes that there can be
     std::vector<ConsoleCommandKind> offers;  // the commands that the program obeys
+    bool has_exports = false;                // the program answers TakeExport
   };
 
   explicit ConsoleFeed(Description description);
@@ -137,6 +166,9 @@ class ConsoleFeed {
   // What the user has asked for since; nothing when there is nothing. By any thread.
   std::optional<ConsoleCommand> TakeCommand() { return commands_.TryPop(); }
 
+  // What is to be answered next; nothing when there is nothing. By any thread.
+  std::optional<PendingExport> TakeExport() { return exports_.TryPop(); }
+
   // The console's side, by its thread.
 
   const Description& description() const { return description_; }
@@ -146,6 +178,8 @@ class ConsoleFeed {
   std::optional<ConsoleUpdate> TakeUpdate() { return updates_.TryPop(); }
   std::size_t dropped_updates() const { return updates_.dropped(); }
   void Command(const ConsoleCommand& command) { commands_.Push(command); }
+  // Of too many the oldest is never answered.
+  void Export(PendingExport pending) { exports_.Push(std::move(pending)); }
 
  private:
   Description description_;
@@ -154,6 +188,7 @@ class ConsoleFeed {
   LatestValue<ConsoleFrame> frame_;
   BoundedQueue<ConsoleUpdate> updates_;
   BoundedQueue<ConsoleCommand> commands_;
+  BoundedQueue<PendingExport> exports_;
 };
 
 }  // namespace kestrel

@@ -55,6 +55,8 @@ class ConsoleHub {
   // Hands out what is new.
   void Tick(Time now);
   void Command(const ConsoleCommand& command) { feed_->Command(command); }
+  bool has_exports() const { return feed_->description().has_exports; }
+  void Export(PendingExport pending) { feed_->Export(std::move(pending)); }
 
   int clients() const { return client_count_; }
   std::uint64_t connections() const { return connections_; }

@@ -72,13 +72,23 @@ Json Message(const ConsoleMap& map) {
           {"objects", Objects(map.objects)}};
 }
 
-Json Message(const ConsoleHealth& health) {
-  Json checks = Json::array();
-  for (const ConsoleCheck& check : health.checks) {
-    checks.push_back(
-        {{"name", check.name}, {"verdict", check.verdict}, {"measured", check.measured}});
+Json Checks(const std::vector<ConsoleCheck>& checks) {
+  Json list = Json::array();
+  for (const ConsoleCheck& check : checks) {
+    list.push_back({{"name", check.name},
+                    {"verdict", check.verdict},
+                    {"measured", check.measured},
+                    {"advice", check.advice}});
   }
-  return {{"kind", "health"}, {"checks", std::move(checks)}};
+  return list;
+}
+
+Json Message(const ConsoleHealth& health) {
+  return {{"kind", "health"}, {"checks", Checks(health.checks)}};
+}
+
+Json Message(const ConsoleDoctor& doctor) {
+  return {{"kind", "doctor"}, {"checks", Checks(doctor.checks)}};
 }
 
 Json Message(const ConsoleEvent& event) {
@@ -89,21 +99,44 @@ Json Message(const ConsoleEvent& event) {
           {"text", event.text}};
 }
 
+// One character for each frame.
+std::string Marks(const std::vector<FrameMark>& marks) {
+  std::string text;
+  for (const FrameMark mark : marks) text += "-flx"[static_cast<int>(mark)];
+  return text;
+}
+
 Json Message(const ConsoleTimeline& timeline) {
   Json times = Json::array();
   for (const Duration time : timeline.times) {
     times.push_back(std::chrono::duration_cast<std::chrono::milliseconds>(time).count());
   }
-  std::string marks;
-  for (const FrameMark mark : timeline.marks) marks += "-flx"[static_cast<int>(mark)];
   return {{"kind", "timeline"},
           {"begin", TimeText(timeline.begin)},
           {"times_ms", std::move(times)},
-          {"marks", std::move(marks)}};
+          {"marks", Marks(timeline.marks)}};
 }
 
 Json Message(const ConsolePlayback& playback) {
   return {{"kind", "playback"}, {"frame", playback.frame}, {"speed", playback.speed}};
+}
+
+Json Message(const ConsoleOptionList& list) {
+  Json options = Json::array();
+  for (const ConsoleOption& option : list.options) {
+    options.push_back({{"name", option.name},
+                       {"value", option.value},
+                       {"unit", option.unit},
+                       {"meaning", option.meaning}});
+  }
+  return {{"kind", "options"}, {"options", std::move(options)}};
+}
+
+Json Message(const ConsoleSecondRun& run) {
+  static constexpr const char* kStates[] = {"none", "running", "done", "cancelled", "failed"};
+  return {{"kind", "second"},         {"state", kStates[static_cast<int>(run.state)]},
+          {"settings", run.settings}, {"done", run.done},
+          {"error", run.error},       {"marks", Marks(run.marks)}};
 }
 
 }  // namespace
@@ -120,7 +153,8 @@ std::string ToJson(const ConsoleFeed::Description& description) {
                {"live", description.is_live},
                {"series", std::move(series)},
                {"layers", std::move(layers)},
-               {"offers", std::move(offers)}});
+               {"offers", std::move(offers)},
+               {"exports", description.has_exports}});
 }
 
 std::string ToJson(const ConsoleUpdate& update) {

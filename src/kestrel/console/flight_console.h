@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "kestrel/console/hunt_view.h"
 #include "kestrel/console/landing_view.h"
 #include "kestrel/console/web_server.h"
+#include "kestrel/doctor/flight_examination.h"
 #include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/flight_observer.h"
 
@@ -22,18 +24,30 @@ namespace kestrel {
 // What a flight looks for.
 using FlightView = std::variant<LandingView, HuntView>;
 
+// What the page may ask of a flight; each says what became of it, and throws InputError when it
+// cannot be done. They may wait.
+struct FlightRequests {
+  std::function<std::string(bool is_on)> record;  // on or off
+  std::function<std::string(const cv::Mat& image, Time captured)> keep_snapshot;
+};
+
 // A flight on the page. What the vision sees is handed to a thread that makes of it what the page
 // shows, and only while somebody looks: else a frame costs the vision one look at a number.
 class FlightConsole : public FlightObserver {
  public:
   // Serves from now on. 'title': of the page. Throws InputError as WebServer does.
-  FlightConsole(const ConsoleOptions& options, const std::string& title, FlightView view);
+  FlightConsole(const ConsoleOptions& options, const std::string& title, FlightView view,
+                FlightExamination examination);
   ~FlightConsole() override;
   FlightConsole(const FlightConsole&) = delete;
   FlightConsole& operator=(const FlightConsole&) = delete;
 
   // What to open in a browser on this computer.
   std::string url() const { return server_.url(); }
+
+  // Obeys from now on, by a thread of its own: until then what the users ask waits. Once only; what
+  // is asked of outlives the console.
+  void Obey(FlightRequests requests);
 
   // Something that happened, in words. By any thread.
   void Say(EventLevel level, const std::string& text) {
@@ -52,8 +66,13 @@ class FlightConsole : public FlightObserver {
     std::variant<LandingObservation, HuntObservation> observation;
   };
 
+  void See(SeenFrame seen, Duration detect_time);
+  void Obey(const FlightRequests& requests, const ConsoleCommand& command);
+  void KeepSnapshot(const FlightRequests& requests);
+
   void Show();
   void Show(SeenFrame seen);
+  void ShowChecks();
   void Show(const LandingObservation& observation, Duration latency);
   void Show(const HuntObservation& observation, Duration latency);
   void AddSample(ConsoleSample sample, Duration latency);
@@ -62,9 +81,12 @@ class FlightConsole : public FlightObserver {
   FlightView view_;
   ConsoleFeed feed_;
   BoundedQueue<SeenFrame> seen_;
+  BoundedQueue<FrameSample> arrivals_;
 
   // Of the thread that shows.
   ConsoleFrame frame_;
+  FlightExamination examination_;
+  Time examined_{};
 
   // Of the flight's own thread.
   FlightHealth health_;
@@ -73,10 +95,13 @@ class FlightConsole : public FlightObserver {
   std::mutex mutex_;                  // of what is below
   ConsoleStatus vision_;              // what the newest frame says
   ConsoleStatus told_;                // the page, the last time
+  FlightReport report_;               // the newest
+  cv::Mat shown_;                     // the newest frame, of
+  Time shown_time_{};                 // this capture
 
   WebServer server_;
   std::atomic<bool> is_over_{false};
-  std::thread thread_;
+  std::thread thread_, obeying_thread_;
 };
 
 }  // namespace kestrel

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/base/error.h"
 #include "kestrel/camera/paper_camera.h"
 #include "kestrel/console/test_browser.h"
 
@@ -25,12 +26,19 @@ ConsoleOptions FreePort() {
   return options;
 }
 
+CameraCalibration PaperCalibration() {
+  CameraCalibration calibration;
+  calibration.intrinsics = PaperCamera();
+  return calibration;
+}
+
 Frame GrayFrame() { return {"", Now(), cv::Mat(240, 376, CV_8UC1, cv::Scalar(99))}; }
 
 class FlightConsoleTest : public testing::Test {
  protected:
   FlightConsole console_{FreePort(), "a flight",
-                         LandingView{CameraModel(PaperCamera()), {}, TurnNoise()}};
+                         LandingView{CameraModel(PaperCamera()), {}, TurnNoise()},
+                         FlightExamination(PaperCalibration(), ".", 0)};
 };
 
 TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
@@ -38,7 +46,7 @@ TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
   const auto hello = socket.Next("hello");
   ASSERT_TRUE(hello);
   EXPECT_EQ((*hello)["title"], "a flight");
-  EXPECT_TRUE((*hello)["offers"].empty());
+  EXPECT_EQ((*hello)["offers"], (nlohmann::json{"record", "snapshot"}));
   LandingObservation observation;
   observation.report.reason = "no ring";
   observation.detect_time = 3ms;
@@ -55,6 +63,50 @@ TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
   const auto status = socket.Next("status");
   ASSERT_TRUE(status);
   EXPECT_THAT((*status)["reason"].get<std::string>(), testing::HasSubstr("no ring"));
+}
+
+TEST_F(FlightConsoleTest, ShowsTheDoctorsChecks) {
+  TestSocket socket(PortOf(console_));
+  ASSERT_TRUE(socket.Next("hello"));
+  const auto doctor = socket.Next("doctor");
+  ASSERT_TRUE(doctor);
+  EXPECT_EQ((*doctor)["checks"][0]["name"], "image size");
+  EXPECT_EQ((*doctor)["checks"][0]["verdict"], "not checked");
+}
+
+TEST_F(FlightConsoleTest, ObeysWhatThePageAsks) {
+  TestSocket socket(PortOf(console_));
+  ASSERT_TRUE(socket.Next("hello"));
+  // What is asked before anybody obeys waits.
+  socket.Send(R"({"command": "record", "value": 1})");
+  console_.Obey({.record = [](bool is_on) -> std::string {
+                   if (!is_on) throw InputError("the disk is full");
+                   return "recording";
+                 },
+                 .keep_snapshot =
+                     [](const cv::Mat& image, Time captured) {
+                       return fmt::format("kept {} px of {}", image.cols, ToNanoseconds(captured));
+                     }});
+  const auto begun = socket.Next("event");
+  ASSERT_TRUE(begun);
+  EXPECT_EQ((*begun)["text"], "recording");
+  socket.Send(R"({"command": "record", "value": 0})");
+  const auto ended = socket.Next("event");
+  ASSERT_TRUE(ended);
+  EXPECT_EQ((*ended)["text"], "the disk is full");
+  EXPECT_EQ((*ended)["level"], "error");
+  socket.Send(R"({"command": "snapshot"})");
+  const auto none = socket.Next("event");
+  ASSERT_TRUE(none);
+  EXPECT_THAT((*none)["text"].get<std::string>(), testing::HasSubstr("no image yet"));
+  const Frame frame = GrayFrame();
+  console_.See(frame, LandingObservation());
+  socket.Send(R"({"images": true})");
+  ASSERT_TRUE(socket.Next("image"));
+  socket.Send(R"({"command": "snapshot"})");
+  const auto kept = socket.Next("event");
+  ASSERT_TRUE(kept);
+  EXPECT_EQ((*kept)["text"], fmt::format("kept 376 px of {}", ToNanoseconds(frame.time)));
 }
 
 TEST_F(FlightConsoleTest, KeepsNoImageWhenNobodyLooks) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/console/http_session.h"
 
+#include <boost/asio/post.hpp>
 #include <boost/beast/websocket.hpp>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "kestrel/console/socket_session.h"
 
@@ -62,7 +65,10 @@ bool IsAmbiguous(const Request& request) {
 
 HttpSession::HttpSession(boost::asio::ip::tcp::socket socket, ConsoleHub* hub,
                          std::shared_ptr<void> slot)
-    : stream_(std::move(socket)), hub_(hub), slot_(std::move(slot)) {}
+    : stream_(std::move(socket)),
+      hub_(hub),
+      slot_(std::move(slot)),
+      patience_(stream_.get_executor()) {}
 
 void HttpSession::Read() {
   parser_.emplace();
@@ -117,6 +123,9 @@ void HttpSession::AnswerAdmitted(const Request& request) {
   const std::string_view path = View(request.target());
   // A token that is not needed any more, as when the link is opened again.
   if (path.starts_with("/?token=")) return SignIn(request);
+  if (const auto wanted = ParseExportPath(path); wanted && hub_->has_exports()) {
+    return SendExport(request, *wanted);
+  }
   const WebAsset* asset = hub_->FindAsset(path == "/" ? "/index.html" : path);
   if (asset == nullptr) return Refuse(Status::not_found, "no such page");
   SendAsset(request, *asset);
@@ -136,6 +145,39 @@ void HttpSession::SendAsset(const Request& request, const WebAsset& asset) {
   }
   response.keep_alive(request.keep_alive());
   Send(std::move(response), request.method() == http::verb::head);
+}
+
+// Another thread makes it; until then nothing is read or sent here.
+void HttpSession::SendExport(const Request& request, const ExportRequest& wanted) {
+  // A link on another site leads to pages, not to work.
+  const auto site = Field(request, "Sec-Fetch-Site");
+  if (site && *site != "same-origin" && *site != "none") {
+    return Refuse(Status::forbidden, "another site's page may not ask");
+  }
+  stream_.expires_never();
+  const bool is_head = request.method() == http::verb::head;
+  const bool keep_alive = request.keep_alive();
+  patience_.expires_after(kTimeout);
+  patience_.async_wait([self = shared_from_this()](beast::error_code error) {
+    if (error) return;  // it was answered
+    self->Refuse(Status::service_unavailable, "not ready, or too much is asked for at once");
+  });
+  const auto send = [is_head, keep_alive](HttpSession* self, ExportAnswer answer) {
+    if (self->patience_.cancel() == 0) return;  // too late
+    if (answer.content.empty()) return self->Refuse(Status::not_found, "there is none");
+    Response response(Status::ok, 11, std::move(answer.content));
+    response.set(http::field::content_type, answer.type);
+    response.set(http::field::content_disposition,
+                 fmt::format("attachment; filename=\"{}\"", answer.name));
+    response.keep_alive(keep_alive);
+    self->Send(std::move(response), is_head);
+  };
+  hub_->Export({wanted, [weak = weak_from_this(), send](const ExportAnswer& answer) {
+                  const auto self = weak.lock();
+                  if (!self) return;
+                  boost::asio::post(self->stream_.get_executor(),
+                                    [self, send, answer] { send(self.get(), answer); });
+                }});
 }
 
 void HttpSession::SignIn(const Request& request) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <memory>
@@ -31,6 +32,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void Answer(const Request& request);
   void AnswerAdmitted(const Request& request);
   void SendAsset(const Request& request, const WebAsset& asset);
+  void SendExport(const Request& request, const ExportRequest& wanted);
   void SignIn(const Request& request);
   // Says what is wrong, and ends the connection.
   void Refuse(Status status, const std::string& why);
@@ -41,6 +43,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   std::shared_ptr<void> slot_;
   boost::beast::flat_buffer buffer_;
   std::optional<boost::beast::http::request_parser<Body>> parser_;
+  // Keeps the session while it waits for an answer, and not for ever.
+  boost::asio::steady_timer patience_;
 };
 
 }  // namespace kestrel

@@ -6,19 +6,42 @@
 #include <thread>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "kestrel/base/error.h"
+#include "kestrel/console/frame_picture.h"
+#include "kestrel/console/replay_options.h"
 
 namespace kestrel {
 namespace {
 
 constexpr double kMaxSpeed = 100;
 // How often is looked for what users ask, and the fastest that pictures change.
-constexpr Duration kInterval = std::chrono::milliseconds(20);
+constexpr Duration kLookInterval = std::chrono::milliseconds(20);
+// How often the page is told how far a second run is.
+constexpr Duration kTellInterval = std::chrono::milliseconds(250);
 
 std::vector<SeriesDescription> ReplaySeries(bool has_truth) {
   std::vector<SeriesDescription> series = LandingSeries();
   if (has_truth) series.push_back({"error", "px", "Error"});
   return series;
+}
+
+std::vector<OverlayLayer> ReplayLayers() {
+  std::vector<OverlayLayer> layers = LandingLayers();
+  layers.push_back(OverlayLayer::kSecond);
+  return layers;
+}
+
+// What the second run found, told apart from the first by its layer.
+void AddSecondShapes(const LandingView& view, const LandingObservation& observation,
+                     std::vector<OverlayShape>* shapes) {
+  for (OverlayShape& shape : LandingShapes(view, observation)) {
+    if (shape.layer == OverlayLayer::kPrediction) continue;
+    shape.layer = OverlayLayer::kSecond;
+    if (!shape.label.empty()) shape.label = "second: " + shape.label;
+    shapes->push_back(std::move(shape));
+  }
 }
 
 }  // namespace
@@ -38,31 +61,39 @@ void MarkByTrack(std::vector<ReplayFrame>* frames) {
 }
 
 ReplayConsole::ReplayConsole(const ConsoleOptions& options, const std::string& title,
-                             LandingView view, bool has_truth)
-    : view_(std::move(view)),
+                             const LandingPipelineOptions& used, bool has_truth)
+    : used_(used),
       has_truth_(has_truth),
       feed_({.title = title,
              .is_live = false,
              .series = ReplaySeries(has_truth),
-             .layers = LandingLayers(),
+             .layers = ReplayLayers(),
              .offers = {ConsoleCommandKind::kPlay, ConsoleCommandKind::kSeek,
-                        ConsoleCommandKind::kStep}}),
+                        ConsoleCommandKind::kStep, ConsoleCommandKind::kDetect,
+                        ConsoleCommandKind::kCancel},
+             .has_exports = true}),
       server_(options, &feed_) {}
 
-void ReplayConsole::Play(std::vector<ReplayFrame> frames, ReadFrame read,
+void ReplayConsole::Play(ReplayResult first, ReadFrame read, Detect detect,
                          const std::function<bool()>& is_stopped) {
-  frames_ = std::move(frames);
+  view_ = std::move(first.view);
+  frames_ = std::move(first.frames);
+  table_ = std::move(first.table);
   read_ = std::move(read);
+  detect_ = std::move(detect);
   SendTimeline();
+  feed_.Add(ReplayOptions(used_));
   Time last = Now();
   while (!is_stopped()) {
     while (const auto command = feed_.TakeCommand()) Obey(*command);
+    FollowSecondRun();
+    if (const auto pending = feed_.TakeExport()) pending->answer(MakeExport(pending->request));
     const Time now = Now();
     // With nobody there to see it the recording waits.
     if (feed_.IsWatched()) Advance(now - last);
     last = now;
     if (!is_shown_) ShowFrame();
-    std::this_thread::sleep_for(kInterval);
+    std::this_thread::sleep_for(kLookInterval);
   }
 }
 
@@ -81,10 +112,57 @@ void ReplayConsole::Obey(const ConsoleCommand& command) {
       return GoTo(static_cast<std::size_t>(
           std::clamp(static_cast<double>(frame_) + command.value, 0.0, last)));
     }
+    case ConsoleCommandKind::kDetect:
+      return StartSecondRun(command.settings);
+    case ConsoleCommandKind::kCancel:
+      if (second_run_.Cancel()) TellSecondRun(SecondRunState::kCancelled);
+      return;
     case ConsoleCommandKind::kRecord:
     case ConsoleCommandKind::kSnapshot:
       return;  // not offered
   }
+}
+
+void ReplayConsole::StartSecondRun(const std::vector<std::string>& settings) {
+  second_run_.Cancel();
+  second_.reset();
+  is_shown_ = false;
+  settings_ = settings;
+  LandingPipelineOptions options;
+  try {
+    options = WithSettings(used_, settings);
+  } catch (const InputError& error) {
+    return TellSecondRun(SecondRunState::kFailed, error.what());
+  }
+  second_run_.Start(
+      [this, options](const SecondRun::GoOn& go_on) { return detect_(options, go_on); });
+  TellSecondRun(SecondRunState::kRunning);
+}
+
+void ReplayConsole::FollowSecondRun() {
+  if (auto outcome = second_run_.TakeOutcome()) return EndSecondRun(*std::move(outcome));
+  if (second_run_.is_running() && Now() - told_ > kTellInterval) {
+    TellSecondRun(SecondRunState::kRunning);
+  }
+}
+
+void ReplayConsole::EndSecondRun(SecondRun::Outcome outcome) {
+  if (!outcome.result) return TellSecondRun(SecondRunState::kFailed, outcome.error);
+  if (outcome.result->frames.size() != frames_.size()) {
+    return TellSecondRun(SecondRunState::kFailed, "the recording has changed meanwhile");
+  }
+  second_ = std::move(outcome.result);
+  is_shown_ = false;
+  TellSecondRun(SecondRunState::kDone);
+}
+
+void ReplayConsole::TellSecondRun(SecondRunState state, const std::string& error) {
+  told_ = Now();
+  ConsoleSecondRun run{state, settings_, second_run_.done(), error, {}};
+  if (second_) {
+    for (const ReplayFrame& frame : second_->frames) run.marks.push_back(frame.mark);
+  }
+  feed_.Add(std::move(run));
 }
 
 // At the ends it holds.
@@ -127,11 +205,11 @@ void ReplayConsole::ShowFrame() {
   ConsoleSample sample = LandingSample(frame.observation);
   if (has_truth_) sample.values.push_back(frame.error_px.value_or(std::nan("")));
   feed_.Add(std::move(sample));
-  feed_.Add(LandingMap(view_, frame.observation));
+  feed_.Add(LandingMap(*view_, frame.observation));
   feed_.Add(LandingStatus(frame.observation));
   feed_.Add(ConsolePlayback{frame_, speed_});
   picture_.captured = frame.observation.time;
-  picture_.shapes = LandingShapes(view_, frame.observation);
+  picture_.shapes = ShapesOf(frame_);
   try {
     picture_.image = read_(frame_);
   } catch (const InputError& error) {  // its file is gone
@@ -140,6 +218,31 @@ void ReplayConsole::ShowFrame() {
     return;
   }
   feed_.SetFrame(&picture_);
+}
+
+std::vector<OverlayShape> ReplayConsole::ShapesOf(std::size_t frame) const {
+  std::vector<OverlayShape> shapes = LandingShapes(*view_, frames_[frame].observation);
+  if (second_) AddSecondShapes(second_->view, second_->frames[frame].observation, &shapes);
+  return shapes;
+}
+
+// Without content where there is none.
+ExportAnswer ReplayConsole::MakeExport(const ExportRequest& request) const {
+  if (request.kind == ExportRequest::Kind::kDetections) {
+    const std::string table = request.number == 1 ? table_ : second_ ? second_->table : "";
+    return {table, "text/csv; charset=utf-8", fmt::format("detections-{}.csv", request.number)};
+  }
+  if (request.number >= frames_.size()) return {};
+  const bool has_shapes = request.kind == ExportRequest::Kind::kOverlays;
+  const std::string name = fmt::format("{}-{}.png", has_shapes ? "overlays" : "frame",
+                                       ToNanoseconds(frames_[request.number].observation.time));
+  try {
+    const cv::Mat image = read_(request.number);
+    return {PngOf(has_shapes ? WithShapes(image, ShapesOf(request.number)) : image), "image/png",
+            name};
+  } catch (const InputError&) {  // its file is gone
+    return {};
+  }
 }
 
 void ReplayConsole::SendTimeline() {

@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/base/error.h"
 #include "kestrel/camera/paper_camera.h"
@@ -57,11 +58,14 @@ class ReplayConsoleTest : public testing::Test {
   ReplayConsoleTest() {
     thread_ = std::thread([this] {
       console_.Play(
-          Frames(),
+          {PaperView(), Frames(), "frame,timestamp_ns\n"},
           [this](std::size_t frame) {
             if (frame == missing_) throw InputError("frame7.png: no such file");
             read_ = frame;
             return cv::Mat(240, 376, CV_8UC1, cv::Scalar(static_cast<double>(frame)));
+          },
+          [this](const LandingPipelineOptions& options, const SecondRun::GoOn& go_on) {
+            return DetectAgain(options, go_on);
           },
           [this] { return is_stopped_.load(); });
     });
@@ -69,6 +73,32 @@ class ReplayConsoleTest : public testing::Test {
   ~ReplayConsoleTest() override {
     is_stopped_ = true;
     thread_.join();
+  }
+  // A run that finds the pattern in the first half, unless it is told to wait or fail.
+  std::optional<ReplayResult> DetectAgain(const LandingPipelineOptions& options,
+                                          const SecondRun::GoOn& go_on) {
+    if (options.hint_age_s == 7) throw InputError("frame3.png: no such file");
+    while (options.hint_age_s == 8) {
+      if (!go_on(5)) return std::nullopt;
+      std::this_thread::sleep_for(1ms);
+    }
+    ReplayResult result{PaperView(), Frames(), "second\n"};
+    for (std::size_t i = 0; i < kFrames / 2; ++i) {
+      result.frames[i].mark = FrameMark::kFound;
+      Detect(&result.frames[i]);
+      LandingDetection& detection = *result.frames[i].observation.report.detection;
+      detection.center_px = {188, 120};
+      detection.camera_from_pattern.translation = {0, 0, 3};
+    }
+    return result;
+  }
+  static LandingView PaperView() { return {CameraModel(PaperCamera()), {}, TurnNoise()}; }
+  // The next report of the second run that is in this state; null: there is none.
+  static nlohmann::json NextSecond(TestSocket* socket, const std::string& state) {
+    while (const auto second = socket->Next("second")) {
+      if ((*second)["state"] == state) return *second;
+    }
+    return {};
   }
   int port() const {
     const std::string url = console_.url();
@@ -85,8 +115,7 @@ class ReplayConsoleTest : public testing::Test {
   std::atomic<std::size_t> missing_{99};
   std::atomic<bool> is_stopped_{false};
   std::atomic<std::size_t> read_{99};
-  ReplayConsole console_{FreePort(), "a recording",
-                         LandingView{CameraModel(PaperCamera()), {}, TurnNoise()}, true};
+  ReplayConsole console_{FreePort(), "a recording", LandingPipelineOptions(), true};
   std::thread thread_;
 };
 
@@ -111,6 +140,99 @@ TEST_F(ReplayConsoleTest, SeeksStepsAndPlays) {
   EXPECT_TRUE(IsTold(&socket, kFrames - 1, 0));
   socket.Send(R"({"command": "play", "value": -20})");
   EXPECT_TRUE(IsTold(&socket, 0, 0));
+}
+
+TEST_F(ReplayConsoleTest, DetectsAgainWithOtherOptions) {
+  TestSocket socket(port());
+  const auto options = socket.Next("options");
+  ASSERT_TRUE(options);
+  EXPECT_EQ((*options)["options"][0]["name"], "landing.detector.pattern.outer_diameter_m");
+  socket.Send(R"({"command": "detect", "settings": ["landing.hint_age_s=1"]})");
+  const nlohmann::json second = NextSecond(&socket, "done");
+  ASSERT_TRUE(second.is_object());
+  EXPECT_EQ(second["marks"], "ffffffffff----------");
+  EXPECT_EQ(second["settings"][0], "landing.hint_age_s=1");
+  // What was found is drawn beside what the first run found, which is nothing here. The picture
+  // before the second run's may still be on its way.
+  for (bool is_drawn = false; !is_drawn;) {
+    socket.Send(R"({"images": true})");
+    const auto image = socket.Next("image");
+    ASSERT_TRUE(image);
+    for (const auto& shape : (*image)["shapes"]) is_drawn = is_drawn || shape["layer"] == "second";
+    if (is_drawn) EXPECT_EQ((*image)["shapes"][0]["label"], "second: quadrants 0.00");
+    socket.Send(fmt::format(R"({{"ack": {}}})", (*image)["sequence"].get<int>()));
+    if (!is_drawn) socket.Send(R"({"command": "step", "value": 0})");
+  }
+}
+
+TEST_F(ReplayConsoleTest, GivesFramesAndTablesAway) {
+  TestSocket socket(port());
+  socket.Send(R"({"command": "detect", "settings": []})");
+  ASSERT_TRUE(NextSecond(&socket, "done").is_object());
+  TestBrowser browser(port());
+  const auto get = [&](const std::string& path) { return browser.Send(browser.Get(path)); };
+  const auto picture = [&](const std::string& path) {
+    const std::string png = get(path).body();
+    const std::vector<unsigned char> bytes(png.begin(), png.end());
+    return bytes.empty() ? cv::Mat() : cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+  };
+  const cv::Mat plain(240, 376, CV_8UC1, cv::Scalar(7));
+  EXPECT_EQ(cv::norm(picture("/export/frame-7.png"), plain, cv::NORM_INF), 0);
+  const cv::Mat drawn = picture("/export/overlays-7.png");
+  ASSERT_EQ(drawn.type(), CV_8UC3);
+  EXPECT_EQ(drawn.at<cv::Vec3b>(120, 188), cv::Vec3b(74, 216, 255)) << "the second run's centre";
+  EXPECT_EQ(get("/export/detections-1.csv").body(), "frame,timestamp_ns\n");
+  const auto second = get("/export/detections-2.csv");
+  EXPECT_EQ(second.body(), "second\n");
+  EXPECT_EQ(second["Content-Disposition"], "attachment; filename=\"detections-2.csv\"");
+  EXPECT_EQ(get("/export/frame-20.png").result_int(), 404u) << "the last is 19";
+}
+
+TEST_F(ReplayConsoleTest, ExportsAreForThisPageOnly) {
+  TestSocket socket(port());
+  ASSERT_TRUE(socket.Next("timeline"));
+  for (const char* path : {"/export/../frame-1.png", "/export/frame-x.png", "/export/"}) {
+    TestBrowser browser(port());
+    EXPECT_EQ(browser.Send(browser.Get(path)).result_int(), 404u) << path;
+  }
+  // A link on another site is let in to the page, not to this.
+  TestBrowser stranger(port());
+  auto request = stranger.Get("/export/frame-1.png");
+  request.set("Sec-Fetch-Site", "cross-site");
+  request.set("Sec-Fetch-Mode", "navigate");
+  EXPECT_EQ(stranger.Send(request).result_int(), 403u);
+  TestBrowser rebound(port());
+  auto foreign = rebound.Get("/export/frame-1.png");
+  foreign.set(boost::beast::http::field::host, "evil.example");
+  EXPECT_EQ(rebound.Send(foreign).result_int(), 421u);
+}
+
+TEST_F(ReplayConsoleTest, ASecondRunIsCancelledWhileThePagePlaysOn) {
+  TestSocket socket(port());
+  socket.Send(R"({"command": "detect", "settings": ["landing.hint_age_s=8"]})");
+  for (;;) {
+    const nlohmann::json running = NextSecond(&socket, "running");
+    ASSERT_TRUE(running.is_object());
+    if (running["done"] == 5) break;
+  }
+  socket.Send(R"({"command": "step", "value": 3})");
+  EXPECT_TRUE(IsTold(&socket, 3, 0));
+  socket.Send(R"({"command": "cancel"})");
+  EXPECT_TRUE(NextSecond(&socket, "cancelled").is_object());
+  // One that is under way makes room for the next.
+  socket.Send(R"({"command": "detect", "settings": ["landing.hint_age_s=8"]})");
+  EXPECT_TRUE(NextSecond(&socket, "running").is_object());
+  socket.Send(R"({"command": "detect", "settings": []})");
+  EXPECT_TRUE(NextSecond(&socket, "done").is_object());
+}
+
+TEST_F(ReplayConsoleTest, WhyASecondRunFailsIsSaid) {
+  TestSocket socket(port());
+  socket.Send(R"({"command": "detect", "settings": ["landing.hint_age_s=7"]})");
+  EXPECT_EQ(NextSecond(&socket, "failed")["error"], "frame3.png: no such file");
+  socket.Send(R"({"command": "detect", "settings": ["fly.keep_folder=/"]})");
+  EXPECT_EQ(NextSecond(&socket, "failed")["error"],
+            "fly.keep_folder: no option that the page may change");
 }
 
 TEST_F(ReplayConsoleTest, AFrameWhoseFileIsGoneIsSaid) {

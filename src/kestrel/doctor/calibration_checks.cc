@@ -44,7 +44,7 @@ BorderReach ReachOf(const CameraModel& model) {
 
 // Between the rays through the middles of the left and the right border, rad; nothing where one of
 // them is outside of the model.
-std::optional<double> FieldOfView(const CameraModel& model) {
+std::optional<double> AngleOfView(const CameraModel& model) {
   Eigen::Vector3d left;
   Eigen::Vector3d right;
   const double y = 0.5 * (model.height_px() - 1);
@@ -88,7 +88,7 @@ Finding CheckLensModel(const CameraIntrinsics& intrinsics) {
   }
   const CameraModel model(intrinsics);
   const BorderReach reach = ReachOf(model);
-  const std::optional<double> view = FieldOfView(model);
+  const std::optional<double> view = AngleOfView(model);
   const std::string measured =
       fmt::format("valid to {:.0f} deg from the axis, {:.0f} % of the image's border{}",
                   Degrees(model.max_angle()), 100.0 * reach.reached / reach.pixels,

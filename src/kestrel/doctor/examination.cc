@@ -108,13 +108,8 @@ void Examination::Look(const Frame& frame) {
   qualities_.push_back(MeasureImageQuality(frame.image));
   const auto& detection = seen.report.detection;
   if (!detection) return;
-  PatternSample sample;
+  PatternSample sample = PatternSampleOf(*detection);
   sample.time = taken;
-  sample.camera_from_pattern = detection->camera_from_pattern;
-  sample.mirror_camera_from_pattern = detection->mirror_camera_from_pattern;
-  sample.ring_px = 2 * detection->ring_semi_minor_px;
-  sample.misfit_px = detection->misfit_px;
-  sample.contradicts = detection->calibration.contradicts;
   if (const auto pose = poses_.Predict(taken, kFurthestPose, {})) {
     sample.world_from_body = pose->world_from_body;
   }
@@ -249,6 +244,16 @@ void Examination::SummarizeParameters(ParameterValues* values) const {
     if (!value || !entry) continue;
     values->insert_or_assign(std::string(name), ToldParameter{*value, entry->name, entry->scale});
   }
+}
+
+PatternSample PatternSampleOf(const LandingDetection& detection) {
+  PatternSample sample;
+  sample.camera_from_pattern = detection.camera_from_pattern;
+  sample.mirror_camera_from_pattern = detection.mirror_camera_from_pattern;
+  sample.ring_px = 2 * detection.ring_semi_minor_px;
+  sample.misfit_px = detection.misfit_px;
+  sample.contradicts = detection.calibration.contradicts;
+  return sample;
 }
 
 std::vector<Finding> Check(const DoctorObservations& observations) {

@@ -88,6 +88,9 @@ class Examination {
   std::vector<std::string> told_;
 };
 
+// What a detection tells the checks; its time and the UAV's pose are left to the caller.
+PatternSample PatternSampleOf(const LandingDetection& detection);
+
 // All checks, in the order in which a set-up is put right.
 std::vector<Finding> Check(const DoctorObservations& observations);
 

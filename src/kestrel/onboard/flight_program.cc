@@ -94,15 +94,15 @@ void FlightProgram::Take(Event event) {
   }
   auto& frame = std::get<Frame>(event);
   latency_.step(kArrival).Add(Now() - frame.time);
-  if (parts_.recorder != nullptr) {
-    parts_.recorder->AddFrame(frame, parts_.truth ? parts_.truth(frame) : std::nullopt);
+  if (const auto recorder = Recorder()) {
+    recorder->AddFrame(frame, parts_.truth ? parts_.truth(frame) : std::nullopt);
   }
   events_.Push(std::move(frame));
 }
 
 void FlightProgram::TakePose(const PoseSample& pose) {
   events_.Push(pose);
-  if (parts_.recorder != nullptr) parts_.recorder->AddPose(pose);
+  if (const auto recorder = Recorder()) recorder->AddPose(pose);
 }
 
 // --- The vision thread ---
@@ -209,6 +209,10 @@ void FlightProgram::WatchFlight(Time now) {
 
 // --- How it is ---
 
+std::shared_ptr<FlightRecorder> FlightProgram::Recorder() const {
+  return parts_.recording != nullptr ? parts_.recording->Get() : nullptr;
+}
+
 FlightReport FlightProgram::ReportNow() const {
   FlightReport report{.trouble = parts_.source->error(),
                       .capture = parts_.source->counters(),
@@ -216,7 +220,7 @@ FlightReport FlightProgram::ReportNow() const {
                       .repeated_frames = repeated_frames_,
                       .autopilot = {},
                       .recorder = {}};
-  if (parts_.recorder != nullptr) report.recorder = parts_.recorder->counters();
+  if (const auto recorder = Recorder()) report.recorder = recorder->counters();
   if (parts_.connection == nullptr) return report;
   AutopilotState& autopilot = report.autopilot.emplace();
   autopilot.is_here = is_autopilot_here_;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -15,7 +16,6 @@
 #include "kestrel/navigation/pose_history.h"
 #include "kestrel/onboard/flight_observer.h"
 #include "kestrel/onboard/flight_options.h"
-#include "kestrel/onboard/flight_recorder.h"
 #include "kestrel/onboard/flight_vision.h"
 #include "kestrel/onboard/guided_flight.h"
 #include "kestrel/onboard/landing_watch.h"
@@ -23,6 +23,7 @@
 #include "kestrel/onboard/latest_value.h"
 #include "kestrel/onboard/live_events.h"
 #include "kestrel/onboard/live_source.h"
+#include "kestrel/onboard/recording_switch.h"
 #include "kestrel/onboard/repeated_image.h"
 #include "kestrel/onboard/target_sender.h"
 #include "kestrel/simulation/truth_text.h"
@@ -43,7 +44,7 @@ struct FlightParts {
   FlightVision* vision = nullptr;
   Connection* connection = nullptr;
   Autopilot* autopilot = nullptr;  // on the connection
-  FlightRecorder* recorder = nullptr;
+  RecordingSwitch* recording = nullptr;
   FlightObserver* observer = nullptr;
   bool guides = false;                 // flies by set-points when the pilot gives the mode
   bool source_has_poses = false;       // then those of the autopilot are not used
@@ -92,6 +93,7 @@ class FlightProgram {
   void WatchFlight(Time now);
   void End(FlightEnd end);
   FlightReport ReportNow() const;
+  std::shared_ptr<FlightRecorder> Recorder() const;  // null: nothing is recorded
 
   FlightOptions options_;
   FlightParts parts_;

@@ -9,10 +9,12 @@ import { HelpDialog } from "./help_dialog";
 import { ImageView } from "./image_view";
 import { MapPanel } from "./map_panel";
 import { ReplayBar } from "./replay_bar";
+import { SecondRunPanel } from "./second_run_panel";
 
 export function App() {
   const title = useStore((state) => state.hello?.title);
   const hasTimeline = useStore((state) => state.timeline !== null);
+  const hasOptions = useStore((state) => state.options.length > 0);
   useEffect(() => {
     document.title = title ? `${title}: Kestrel` : "Kestrel";
   }, [title]);
@@ -27,6 +29,7 @@ export function App() {
         </div>
         <div class="column">
           <MapPanel />
+          {hasOptions && <SecondRunPanel />}
           <HealthPanel />
           <EventsPanel />
         </div>

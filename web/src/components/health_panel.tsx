@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+import { countText, sortedChecks } from "../checks";
 import type { Check } from "../protocol";
 import { useStore } from "../use_store";
 
@@ -9,24 +10,17 @@ const signs: Record<Check["verdict"], string> = {
   "not checked": "–",
 };
 
-/** The doctor's checks, and this browser's connection. */
+/** How the flight's parts do now, the doctor's checks, and this browser's connection. */
 export function HealthPanel() {
   const health = useStore((state) => state.health);
+  const doctor = useStore((state) => state.doctor);
   const link = useStore((state) => state.link);
   const isLive = useStore((state) => state.hello?.live ?? false);
   return (
     <section class="health" aria-label="Health">
       <h2>Health</h2>
       <ul>
-        {health?.checks.map((check) => (
-          <li key={check.name} data-verdict={check.verdict}>
-            <span class="sign" aria-hidden="true">
-              {signs[check.verdict]}
-            </span>
-            <b>{check.name}</b> {check.measured}
-            <span class="unseen"> ({check.verdict})</span>
-          </li>
-        ))}
+        {health?.checks.map((check) => <CheckItem key={check.name} check={check} />)}
         {link && (
           <li data-verdict={link.dropped > 0 ? "doubtful" : "good"}>
             <span class="sign" aria-hidden="true">
@@ -37,6 +31,43 @@ export function HealthPanel() {
           </li>
         )}
       </ul>
+      {doctor && <DoctorChecks checks={doctor.checks} />}
     </section>
+  );
+}
+
+/** What is in doubt first; the rest is there to be opened. */
+function DoctorChecks({ checks }: { checks: Check[] }) {
+  const { inDoubt, others } = sortedChecks(checks);
+  return (
+    <>
+      <h3>Doctor</h3>
+      <ul>
+        {inDoubt.map((check) => (
+          <CheckItem key={check.name} check={check} />
+        ))}
+      </ul>
+      <details>
+        <summary>{countText(others)}</summary>
+        <ul>
+          {others.map((check) => (
+            <CheckItem key={check.name} check={check} />
+          ))}
+        </ul>
+      </details>
+    </>
+  );
+}
+
+function CheckItem({ check }: { check: Check }) {
+  return (
+    <li data-verdict={check.verdict}>
+      <span class="sign" aria-hidden="true">
+        {signs[check.verdict]}
+      </span>
+      <b>{check.name}</b> {check.measured}
+      <span class="unseen"> ({check.verdict})</span>
+      {check.advice !== "" && <p class="advice">{check.advice}</p>}
+    </li>
   );
 }

@@ -24,6 +24,7 @@ const markColors: Record<Mark, string> = { "-": "muted", f: "good", l: "doubtful
 export function ReplayBar() {
   const timeline = useStore((state) => state.timeline);
   const playback = useStore((state) => state.playback);
+  const second = useStore((state) => state.second);
   if (!timeline) return null;
   const frame = playback?.frame ?? 0;
   const speed = playback?.speed ?? 0;
@@ -51,19 +52,42 @@ export function ReplayBar() {
         <span class="replay-time">
           {clockText(timeline.times_ms[frame] ?? 0)} / {clockText(timeline.times_ms.at(-1) ?? 0)},
           frame {frame + 1} of {timeline.times_ms.length}, {markInWords(markAt(timeline, frame))}
+          {second?.state === "done" && `, second run: ${markInWords(markAt(second, frame))}`}
         </span>
       </div>
-      <Scrubber timeline={timeline} frame={frame} />
+      <ExportLinks frame={frame} hasSecond={second?.state === "done"} />
+      <Scrubber timeline={timeline} second={second?.state === "done" ? second.marks : null} frame={frame} />
     </section>
   );
 }
 
-function Scrubber({ timeline, frame }: { timeline: Timeline; frame: number }) {
+/** What can be taken away: the frame that is shown, and the tables of what was found. */
+function ExportLinks({ frame, hasSecond }: { frame: number; hasSecond: boolean }) {
+  const isOffered = useStore((state) => state.hello?.exports ?? false);
+  if (!isOffered) return null;
+  return (
+    <p class="exports">
+      Save: <a href={`/export/frame-${frame}.png`} download>frame</a>
+      <a href={`/export/overlays-${frame}.png`} download>frame with overlays</a>
+      <a href="/export/detections-1.csv" download>detections (CSV)</a>
+      {hasSecond && <a href="/export/detections-2.csv" download>second run's detections (CSV)</a>}
+    </p>
+  );
+}
+
+interface ScrubberProps {
+  timeline: Timeline;
+  /** Marks of the second run; null: there is none. */
+  second: string | null;
+  frame: number;
+}
+
+function Scrubber({ timeline, second, frame }: ScrubberProps) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const theme = useStore((state) => state.theme);
   useEffect(() => {
-    if (canvas.current) drawTimeline(canvas.current, timeline, frame);
-  }, [timeline, frame, theme]);
+    if (canvas.current) drawTimeline(canvas.current, timeline, second, frame);
+  }, [timeline, second, frame, theme]);
   const seekTo = (event: PointerEvent) => {
     if (!canvas.current || event.buttons === 0) return;
     const box = canvas.current.getBoundingClientRect();
@@ -72,7 +96,7 @@ function Scrubber({ timeline, frame }: { timeline: Timeline; frame: number }) {
   return (
     <canvas
       ref={canvas}
-      class="scrubber"
+      class={second === null ? "scrubber" : "scrubber two-tracks"}
       role="slider"
       tabIndex={0}
       aria-label="Timeline"
@@ -116,19 +140,32 @@ function frameForKey(key: string, timeline: Timeline, frame: number): number | n
   }
 }
 
-function drawTimeline(canvas: HTMLCanvasElement, timeline: Timeline, frame: number): void {
+/** The first run's marks; of two runs the first's above the second's. */
+function drawTimeline(canvas: HTMLCanvasElement, timeline: Timeline, second: string | null, frame: number): void {
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   canvas.width = width;
   canvas.height = height;
   const context = canvas.getContext("2d");
   if (!context) return;
+  if (second === null) {
+    drawTrack(context, timeline, height, height);
+  } else {
+    const track = Math.floor(height / 2) - 1;
+    drawTrack(context, timeline, track, track);
+    drawTrack(context, { ...timeline, marks: second }, height, track);
+    context.fillStyle = themeColor("muted");
+    context.fillRect(0, track, width, 1);
+  }
+  context.fillStyle = themeColor("text");
+  context.fillRect(fractionOf(timeline, frame) * (width - 2) - 1, 0, 3, height);
+}
+
+function drawTrack(context: CanvasRenderingContext2D, timeline: Timeline, bottom: number, height: number): void {
   let last: Mark | null = null;
-  columnMarks(timeline, width).forEach((mark, x) => {
+  columnMarks(timeline, context.canvas.width).forEach((mark, x) => {
     last = mark ?? last;
     if (last === null) return;
     context.fillStyle = themeColor(markColors[last]);
-    context.fillRect(x, height, 1, -height * markHeights[last]);
+    context.fillRect(x, bottom, 1, -height * markHeights[last]);
   });
-  context.fillStyle = themeColor("text");
-  context.fillRect(fractionOf(timeline, frame) * (width - 2) - 1, 0, 3, height);
 }

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace kestrel {
+
+// What the page takes away from a recording, by numbers and never by a path.
+struct ExportRequest {
+  enum class Kind {
+    kFrame,      // /export/frame-12.png: the image as it is
+    kOverlays,   // /export/overlays-12.png: with what was found drawn on it
+    kDetections  // /export/detections-1.csv: all that the first or the second run found
+  };
+  Kind kind = Kind::kFrame;
+  std::size_t number = 0;  // of the frame from 0, or of the run: 1 or 2
+};
+
+// Nothing when it is none of those above, to the letter. Numbers have at most nine digits.
+std::optional<ExportRequest> ParseExportPath(std::string_view path);
+
+struct ExportAnswer {
+  std::string content;  // empty: there is none
+  std::string type;     // as "image/png"
+  std::string name;     // that it is saved by
+};
+
+// A request that waits for the thread that knows the recording.
+struct PendingExport {
+  ExportRequest request;
+  // By any thread, once.
+  std::function<void(const ExportAnswer&)> answer;
+};
+
+}  // namespace kestrel

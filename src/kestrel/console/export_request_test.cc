@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/console/export_request.h"
+
+#include <gtest/gtest.h>
+
+namespace kestrel {
+namespace {
+
+TEST(ExportRequestTest, ReadsNumbersOfFramesAndRuns) {
+  const auto frame = ParseExportPath("/export/frame-0.png");
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->kind, ExportRequest::Kind::kFrame);
+  EXPECT_EQ(frame->number, 0u);
+  EXPECT_EQ(ParseExportPath("/export/overlays-123456789.png")->number, 123456789u);
+  EXPECT_EQ(ParseExportPath("/export/detections-2.csv")->kind, ExportRequest::Kind::kDetections);
+}
+
+TEST(ExportRequestTest, RefusesAllElse) {
+  for (const char* path :
+       {"", "/", "/export/", "/export/frame-.png", "/export/frame-1", "/export/frame--1.png",
+        "/export/frame-1.png?", "/export/frame-1.png/", "/export/frame-1234567890.png",
+        "/export/frame-1%2e.png", "/export/../frame-1.png", "/export/frame-../../etc/passwd.png",
+        "/export/detections-0.csv", "/export/detections-3.csv", "/export/frame-1.csv",
+        "export/frame-1.png", "/Export/frame-1.png", "/export/frame- 1.png"}) {
+    EXPECT_FALSE(ParseExportPath(path)) << path;
+  }
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/console/console_feed.h"
+
+namespace kestrel {
+
+// The image (8-bit gray or BGR) with the shapes drawn on it as on the page, in colour.
+cv::Mat WithShapes(const cv::Mat& image, const std::vector<OverlayShape>& shapes);
+
+// A PNG file's bytes. Throws InputError when the image cannot be encoded.
+std::string PngOf(const cv::Mat& image);
+
+}  // namespace kestrel

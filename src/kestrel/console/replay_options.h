@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kestrel/console/console_feed.h"
+#include "kestrel/pipeline/landing_pipeline.h"
+
+namespace kestrel {
+
+// The options that the page of a recording may change: none of them costs memory, or more time than
+// the others leave. With their values, by the names of `kestrel config`.
+ConsoleOptionList ReplayOptions(const LandingPipelineOptions& options);
+
+// The options changed by settings, as "landing.still=true". Throws InputError for one that is none
+// of those above or is malformed, and when the result is not valid.
+LandingPipelineOptions WithSettings(LandingPipelineOptions options,
+                                    const std::vector<std::string>& settings);
+
+}  // namespace kestrel

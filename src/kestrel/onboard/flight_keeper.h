@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/base/time.h"
+#include "kestrel/onboard/recording_switch.h"
+
+namespace kestrel {
+
+// What a user asks to be kept while the UAV flies, in a folder of its own: nothing that is there
+// is replaced. By one thread, which waits for the disk.
+class FlightKeeper {
+ public:
+  // 'folder' is made when something is to be kept. 'recording' outlives the keeper.
+  FlightKeeper(std::filesystem::path folder, RecordingSwitch* recording)
+      : folder_(std::move(folder)), recording_(recording) {}
+
+  // Each says what became of it, in a line for the user; throws InputError when that cannot be
+  // done. A new recording has the time of day (UTC) as its name.
+  std::string StartRecording();
+  std::string StopRecording();
+  // The image as it is, with the time of its capture in its name.
+  std::string KeepSnapshot(const cv::Mat& image, Time captured);
+
+ private:
+  void MakeFolder() const;
+
+  std::filesystem::path folder_;
+  RecordingSwitch* recording_;
+};
+
+}  // namespace kestrel
