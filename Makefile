@@ -12,7 +12,7 @@ empty :=
 space := $(empty) $(empty)
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 
-.PHONY: demo console test interop bench accuracy format check asan fuzz install command tests build configure deps
+.PHONY: demo console test interop ros bench accuracy format check asan fuzz install command tests build configure deps
 
 demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
 	scripts/demo $(BIN) "$(DATA)" "$(CAMERA)"
@@ -30,6 +30,12 @@ interop: tests  ## MAVLink against node-mavlink, MCAP against @mcap/core and @fo
 	scripts/install-deps --interop
 	cmake --preset release
 	ctest --preset release -R ^interop/ --no-tests=error
+
+ros: deps  ## the node of ROS 1 and its tests
+	scripts/install-deps --ros
+	cmake --preset release
+	cmake --build --preset release --target kestrel kestrel_node kestrel_ros_test
+	ctest --preset release -R ^ros/ --no-tests=error
 
 bench: build  ## speed
 	@for program in $(BIN)/bench/*_benchmark; do echo "== $$program"; $$program || exit; done

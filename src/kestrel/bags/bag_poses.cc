@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/bags/messages.h"
+#include "kestrel/bags/pose_message.h"
 #include "kestrel/bags/serialization.h"
 #include "kestrel/base/error.h"
 #include "kestrel/base/shown.h"
@@ -15,45 +16,6 @@ namespace kestrel {
 namespace {
 
 constexpr const char* kDefaultBody = "base_link";
-
-Eigen::Vector3d VectorOf(const Vector3Message& message) {
-  return {message.x, message.y, message.z};
-}
-
-// One pose as a message of any of the types tells it.
-struct StampedPose {
-  Time stamp;
-  std::string body;  // empty where the type does not say
-  PoseMessage pose;
-  std::optional<TwistMessage> twist;  // in the body's frame
-};
-
-StampedPose ParsePose(const BagTopic& topic, std::string_view data, const std::string& name) {
-  if (topic.type == PoseStampedMessage::kType) {
-    const auto message = ParseMessage<PoseStampedMessage>(data, topic.wire_format, name);
-    return {message.header.stamp, "", message.pose, std::nullopt};
-  }
-  if (topic.type == PoseWithCovarianceStampedMessage::kType) {
-    const auto message =
-        ParseMessage<PoseWithCovarianceStampedMessage>(data, topic.wire_format, name);
-    return {message.header.stamp, "", message.pose, std::nullopt};
-  }
-  if (topic.type == TransformStampedMessage::kType) {
-    const auto message = ParseMessage<TransformStampedMessage>(data, topic.wire_format, name);
-    return {message.header.stamp, message.child_frame_id, message.transform, std::nullopt};
-  }
-  const auto message = ParseMessage<OdometryMessage>(data, topic.wire_format, name);
-  return {message.header.stamp, message.child_frame_id, message.pose, message.twist};
-}
-
-// Nothing where the twist was not filled in: then it is zero.
-std::optional<BodyMotion> MotionOf(const TwistMessage& twist, const RigidTransform& pose) {
-  const Eigen::Vector3d velocity = VectorOf(twist.linear);
-  const Eigen::Vector3d rate = VectorOf(twist.angular);
-  if (!velocity.allFinite() || !rate.allFinite()) return std::nullopt;
-  if (velocity.isZero(0) && rate.isZero(0)) return std::nullopt;
-  return BodyMotion{pose.rotation * velocity, rate};
-}
 
 // Poses as they come, out of order and wrong as they may be.
 class PoseList {
@@ -184,7 +146,7 @@ BagPoses ReadPoses(BagReader* bag, const BagTopics& topics, const std::string& c
   for (BagMessage message; bag->Next(&message);) {
     const BagTopic& topic = bag->topics()[message.topic];
     if (message.topic == topics.pose) {
-      const StampedPose pose = ParsePose(topic, message.data, pose_name);
+      const StampedPose pose = ParsePose(topic.type, message.data, topic.wire_format, pose_name);
       if (told_body.empty()) told_body = FrameName(pose.body);
       poses.Add(pose.stamp, message.arrival, TransformOf(pose.pose), pose.twist);
     } else {

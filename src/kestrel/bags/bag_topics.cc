@@ -2,13 +2,13 @@
 #include "kestrel/bags/bag_topics.h"
 
 #include <algorithm>
-#include <array>
 #include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "kestrel/bags/messages.h"
+#include "kestrel/bags/pose_message.h"
 #include "kestrel/base/error.h"
 
 namespace kestrel {
@@ -28,12 +28,7 @@ TopicUse UseOf(const BagTopic& topic) {
   }
   if (topic.type == CameraInfoMessage::kType) return TopicUse::kCameraInfo;
   if (topic.type == TfMessage::kType || topic.type == "tf/tfMessage") return TopicUse::kTransforms;
-  constexpr std::array kPoseTypes = {PoseStampedMessage::kType,
-                                     PoseWithCovarianceStampedMessage::kType,
-                                     TransformStampedMessage::kType, OdometryMessage::kType};
-  const bool is_pose =
-      std::find(kPoseTypes.begin(), kPoseTypes.end(), topic.type) != kPoseTypes.end();
-  return is_pose ? TopicUse::kPose : TopicUse::kNone;
+  return IsPoseType(topic.type) ? TopicUse::kPose : TopicUse::kNone;
 }
 
 // The choice among the topics of a bag.

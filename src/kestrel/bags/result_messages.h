@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kestrel/bags/messages.h"
+
+namespace kestrel {
+
+// The messages of ROS that only results need, by the rules of messages.h.
+
+struct PathMessage {
+  static constexpr std::string_view kType = "nav_msgs/Path";
+  HeaderMessage header;
+  std::vector<PoseStampedMessage> poses;
+
+  template <class Self, class Wire>
+  static void Fields(Self& self, Wire& wire) {
+    wire(self.header);
+    wire.List(self.poses);
+  }
+};
+
+struct ColorMessage {  // std_msgs/ColorRGBA, 0 to 1
+  float r = 0;
+  float g = 0;
+  float b = 0;
+  float a = 1;
+
+  template <class Self, class Wire>
+  static void Fields(Self& self, Wire& wire) {
+    wire(self.r);
+    wire(self.g);
+    wire(self.b);
+    wire(self.a);
+  }
+};
+
+struct DurationMessage {
+  std::int32_t seconds = 0;
+  std::int32_t nanoseconds = 0;
+
+  template <class Self, class Wire>
+  static void Fields(Self& self, Wire& wire) {
+    wire(self.seconds);
+    wire(self.nanoseconds);
+  }
+};
+
+// visualization_msgs/Marker of ROS 1.
+struct MarkerMessage {
+  enum Shape : std::int32_t { kArrow = 0, kSphere = 2, kCylinder = 3 };
+  enum Action : std::int32_t { kAdd = 0, kDelete = 2 };
+
+  HeaderMessage header;
+  std::string name_space;
+  std::int32_t id = 0;
+  std::int32_t type = kArrow;
+  std::int32_t action = kAdd;
+  PoseMessage pose;
+  Vector3Message scale;  // m
+  ColorMessage color;
+  DurationMessage lifetime;  // 0: for ever
+  std::uint8_t frame_locked = 0;
+  std::vector<Vector3Message> points;  // of an arrow: its ends
+  std::vector<ColorMessage> colors;
+  std::string text;
+  std::string mesh_resource;
+  std::uint8_t mesh_use_embedded_materials = 0;
+
+  template <class Self, class Wire>
+  static void Fields(Self& self, Wire& wire) {
+    wire(self.header);
+    wire(self.name_space);
+    wire(self.id);
+    wire(self.type);
+    wire(self.action);
+    wire(self.pose);
+    wire(self.scale);
+    wire(self.color);
+    wire(self.lifetime);
+    wire(self.frame_locked);
+    wire.List(self.points);
+    wire.List(self.colors);
+    wire(self.text);
+    wire(self.mesh_resource);
+    wire(self.mesh_use_embedded_materials);
+  }
+};
+
+struct MarkerArrayMessage {
+  static constexpr std::string_view kType = "visualization_msgs/MarkerArray";
+  std::vector<MarkerMessage> markers;
+
+  template <class Self, class Wire>
+  static void Fields(Self& self, Wire& wire) {
+    wire.List(self.markers);
+  }
+};
+
+struct KeyValueMessage {
+  std::string key;
+  std::string value;
+
+  template <class Self, class Wire>
+  static void Fields(Self& self, Wire& wire) {
+    wire(self.key);
+    wire(self.value);
+  }
+};
+
+struct DiagnosticStatusMessage {
+  enum Level : std::uint8_t { kOk = 0, kWarn = 1, kError = 2, kStale = 3 };
+
+  std::uint8_t level = kOk;
+  std::string name;
+  std::string message;
+  std::string hardware_id;
+  std::vector<KeyValueMessage> values;
+
+  template <class Self, class Wire>
+  static void Fields(Self& self, Wire& wire) {
+    wire(self.level);
+    wire(self.name);
+    wire(self.message);
+    wire(self.hardware_id);
+    wire.List(self.values);
+  }
+};
+
+struct DiagnosticArrayMessage {
+  static constexpr std::string_view kType = "diagnostic_msgs/DiagnosticArray";
+  HeaderMessage header;
+  std::vector<DiagnosticStatusMessage> status;
+
+  template <class Self, class Wire>
+  static void Fields(Self& self, Wire& wire) {
+    wire(self.header);
+    wire.List(self.status);
+  }
+};
+
+// vision_msgs/ObjectHypothesisWithPose of ROS 1 (Noetic).
+struct ObjectHypothesisMessage {
+  std::int64_t id = 0;  // of the class
+  double score = 0;     // 0 to 1
+  PoseMessage pose;
+  std::array<double, 36> covariance{};
+
+  template <class Self, class Wire>
+  static void Fields(Self& self, Wire& wire) {
+    wire(self.id);
+    wire(self.score);
+    wire(self.pose);
+    for (auto& number : self.covariance) wire(number);
+  }
+};
+
+// sensor_msgs/PointCloud2 without a point.
+struct EmptyCloudMessage {
+  HeaderMessage header;
+  std::uint32_t height = 0;
+  std::uint32_t width = 0;
+  std::uint32_t field_count = 0;
+  std::uint8_t is_bigendian = 0;
+  std::uint32_t point_step = 0;
+  std::uint32_t row_step = 0;
+  std::uint32_t byte_count = 0;
+  std::uint8_t is_dense = 1;
+
+  template <class Self, class Wire>
+  static void Fields(Self& self, Wire& wire) {
+    wire(self.header);
+    wire(self.height);
+    wire(self.width);
+    wire(self.field_count);
+    wire(self.is_bigendian);
+    wire(self.point_step);
+    wire(self.row_step);
+    wire(self.byte_count);
+    wire(self.is_dense);
+  }
+};
+
+// vision_msgs/Detection3D of ROS 1 (Noetic).
+struct Detection3DMessage {
+  HeaderMessage header;
+  std::vector<ObjectHypothesisMessage> results;
+  PoseMessage box_center;
+  Vector3Message box_size;  // m
+  EmptyCloudMessage source_cloud;
+
+  template <class Self, class Wire>
+  static void Fields(Self& self, Wire& wire) {
+    wire(self.header);
+    wire.List(self.results);
+    wire(self.box_center);
+    wire(self.box_size);
+    wire(self.source_cloud);
+  }
+};
+
+struct Detection3DArrayMessage {
+  static constexpr std::string_view kType = "vision_msgs/Detection3DArray";
+  HeaderMessage header;
+  std::vector<Detection3DMessage> detections;
+
+  template <class Self, class Wire>
+  static void Fields(Self& self, Wire& wire) {
+    wire(self.header);
+    wire.List(self.detections);
+  }
+};
+
+}  // namespace kestrel
