@@ -42,11 +42,10 @@ accuracy: build  ## errors against truth; simulated flights (landings: SCENARIOS
 format:
 	scripts/check-format --fix
 
-check: deps  ## format, layers, clang-tidy on every source but the tests
+check: deps  ## format, layers, clang-tidy on every source but the tests, of all ROOMS or of some
 	scripts/check-format
 	scripts/check-layers
-	cmake --preset tidy
-	cmake --build --preset tidy -- -k 0
+	scripts/check-tidy $(ROOMS)
 
 asan: deps  ## the unit tests, of all ROOMS or of some, with the address and undefined-behaviour sanitizers
 	cmake --preset asan
