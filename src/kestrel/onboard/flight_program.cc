@@ -49,6 +49,7 @@ FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
   }
   events_.Close();
   for (std::thread& thread : threads) thread.join();
+  parts_.vision->WriteResults();  // of the last frames
   return end_;
 }
 
@@ -152,7 +153,6 @@ void FlightProgram::WriteResults() {
     is_written = false;
     say_("the results cannot be written any more: is the disk full? The flight goes on");
   }
-  parts_.vision->WriteResults();
 }
 
 // --- The link thread ---
