@@ -107,7 +107,7 @@ RealFrameScore ScoreRealFrame(const std::string& folder) {
   return score;
 }
 
-HuntScore ScoreHunt(const std::string& folder) {
+HuntScore ScoreHunt(const std::string& folder, const ObjectModel& model) {
   const FlightTruth truth(folder);
   const fs::path root = truth.root();
   const std::string objects_file = (root / "objects0" / "objects.csv").string();
@@ -124,7 +124,7 @@ HuntScore ScoreHunt(const std::string& folder) {
       truth.scene().mount_error * calibration.body_from_camera->rotation;
   HuntPipelineOptions options;
   options.readout_s = kReadout_s;
-  HuntPipeline pipeline(calibration, DefaultObjectModel(), options);
+  HuntPipeline pipeline(calibration, model, options);
   // As in flight: poses up to the one after the last row.
   const Duration lead = *calibration.clock_offset + DurationFromSeconds(kReadout_s / 2);
   RecordingEvents events(source.get(), source->poses(), lead);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kestrel/evaluation/object_comparison.h"
+#include "kestrel/objects/object_model.h"
 
 namespace kestrel {
 
@@ -43,6 +44,6 @@ struct HuntScore {
 
 // A recording with its truth through HuntPipeline: clock offset and mount are given as scene.yaml
 // has them, as a calibration would, and the rolling shutter's readout of 25 ms.
-HuntScore ScoreHunt(const std::string& folder);
+HuntScore ScoreHunt(const std::string& folder, const ObjectModel& model = DefaultObjectModel());
 
 }  // namespace kestrel

@@ -2,14 +2,20 @@
 // What the object detector must reach on the data sets where they are there; bench/hunt_accuracy.cc
 // prints it in full.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "hunt_score.h"
+#include "kestrel/base/read_file.h"
+#include "kestrel/evaluation/object_truth.h"
 #include "kestrel/evaluation/statistics.h"
+#include "kestrel/recording/open_source.h"
+#include "kestrel/teaching/color_editor.h"
 
 namespace kestrel {
 namespace {
@@ -57,6 +63,58 @@ TEST_P(HuntHardTest, DigitsAreRight) {
   if (!IsThere(Name())) GTEST_SKIP() << "no folder " << DataFolder(Name());
   const DigitScore digits = ScoreHunt(DataFolder(Name())).digits;
   EXPECT_GE(digits.right, 0.9 * digits.count);
+}
+
+// A click on the middle of an object.
+ColorStroke ClickOn(const TrueSighting& sighting, const std::string& color,
+                    const std::vector<Time>& times) {
+  const auto frame = std::find(times.begin(), times.end(), sighting.time) - times.begin();
+  const cv::Point middle(static_cast<int>(std::lround(sighting.center_px.x())),
+                         static_cast<int>(std::lround(sighting.center_px.y())));
+  return {static_cast<std::size_t>(frame), color, StrokeTool::kGrow, 30, {middle}};
+}
+
+// The built-in model whose colours are taught anew by a click on the first and on the last object
+// of each that is wholly in view.
+ObjectModel TaughtModel(const std::string& folder) {
+  const auto source = OpenSource({folder}, PixelFormat::kBgr);
+  std::vector<Time> times;
+  for (Frame frame; source->Next(&frame);) times.push_back(frame.time);
+  const std::string truth = folder + "/mav0/objects0/";
+  const TrueObjects objects = ParseTrueObjects(ReadFile(truth + "objects.csv"), "objects.csv");
+  std::map<std::string, std::vector<ColorStroke>> strokes;
+  for (const TrueSighting& sighting :
+       ParseTrueSightings(ReadFile(truth + "data.csv"), "data.csv", objects)) {
+    if (sighting.visible_fraction < 1) continue;
+    const std::string& color = objects.at(sighting.id).class_name;
+    strokes[color].push_back(ClickOn(sighting, color, times));
+  }
+  ColorEditor editor(DefaultObjectModel(), times.size(), [&](std::size_t index) {
+    Frame frame;
+    source->Read(index, &frame);
+    return frame.image;
+  });
+  for (const auto& [color, of_color] : strokes) {
+    editor.Mark(of_color.front());
+    editor.Mark(of_color.back());
+    editor.Teach(color);
+  }
+  EXPECT_LE(editor.draft().strokes().size(), 10U);
+  return editor.model();
+}
+
+TEST(TaughtModelTest, TenStrokesFindWhatTheBuiltInModelFindsAndNothingElse) {
+  const std::string name = "hunt_hard/discs";
+  if (!IsThere(name)) GTEST_SKIP() << "no folder " << DataFolder(name);
+  const auto found = [&](const ObjectModel& model) {
+    int count = 0;
+    for (const ObjectComparison& c : ScoreHunt(DataFolder(name), model).comparisons) {
+      EXPECT_TRUE(c.IsObject()) << "false " << c.detected_class;
+      count += c.IsObject() && c.detected_class == c.true_class;
+    }
+    return count;
+  };
+  EXPECT_GE(found(TaughtModel(DataFolder(name))), 0.99 * found(DefaultObjectModel()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Sets, HuntHardTest, testing::Values("discs", "cuboids"));

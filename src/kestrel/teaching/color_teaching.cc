@@ -112,11 +112,13 @@ ColorMixture TeachColor(const std::string& color, std::span<const FrameMarks> ma
                         double max_distance) {
   constexpr int kMaxComponents = 4;
   constexpr std::size_t kMaxPixels = 4000;  // neighbours say much the same
-  constexpr float kLightSigma = 0.15F;
+  constexpr float kSaturationSigma = 0.08F;
+  constexpr float kValueSigma = 0.15F;
   const std::vector<Hsv> wanted = EvenlyTaken(Colors(marks, &FrameMarks::wanted), kMaxPixels);
   ColorMixture mixture = ChooseColorMixture(color, wanted, kMaxComponents).mixture;
   for (ColorComponent& component : mixture.components) {
-    component.sigma.value = std::max(component.sigma.value, kLightSigma);
+    component.sigma.saturation = std::max(component.sigma.saturation, kSaturationSigma);
+    component.sigma.value = std::max(component.sigma.value, kValueSigma);
   }
   const std::vector<Hsv> others = Colors(marks, &FrameMarks::others);
   const float scale = BestScale(mixture, wanted, others, max_distance);
