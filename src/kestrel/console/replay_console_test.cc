@@ -159,7 +159,9 @@ TEST_F(ReplayConsoleTest, DetectsAgainWithOtherOptions) {
     const auto image = socket.Next("image");
     ASSERT_TRUE(image);
     for (const auto& shape : (*image)["shapes"]) is_drawn = is_drawn || shape["layer"] == "second";
-    if (is_drawn) EXPECT_EQ((*image)["shapes"][0]["label"], "second: quadrants 0.00");
+    if (is_drawn) {
+      EXPECT_EQ((*image)["shapes"][0]["label"], "second: quadrants 0.00");
+    }
     socket.Send(fmt::format(R"({{"ack": {}}})", (*image)["sequence"].get<int>()));
     if (!is_drawn) socket.Send(R"({"command": "step", "value": 0})");
   }

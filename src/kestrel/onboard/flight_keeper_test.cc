@@ -38,7 +38,7 @@ CameraCalibration SmallCamera() {
   return calibration;
 }
 
-Frame FrameAt(int ms) {
+Frame NoiseFrame(int ms) {
   return {"", Time(seconds(1000) + milliseconds(ms)), NoiseImage(64, 48, CV_8UC1, ms + 1)};
 }
 
@@ -67,7 +67,7 @@ TEST_F(FlightKeeperTest, ARecordingIsSwitchedOnAndOff) {
   for (int round = 0; round < 2; ++round) {  // each in a folder of its own, in one second too
     EXPECT_THAT(keeper_.StartRecording(), StartsWith("recording into "));
     EXPECT_EQ(keeper_.StartRecording(), "a recording is on already");
-    for (int i = 0; i < 5; ++i) recording_.Get()->AddFrame(FrameAt(20 * i));
+    for (int i = 0; i < 5; ++i) recording_.Get()->AddFrame(NoiseFrame(20 * i));
     EXPECT_EQ(keeper_.StopRecording(), "the recording is written");
     EXPECT_EQ(recording_.Get(), nullptr);
   }
@@ -81,7 +81,7 @@ TEST_F(FlightKeeperTest, WhatIsGivenWhileItIsSwitchedIsWrittenOrNot) {
   std::atomic<bool> is_over{false};
   std::thread camera([&] {
     for (int ms = 0; !is_over; ++ms) {
-      if (const auto recorder = recording_.Get()) recorder->AddFrame(FrameAt(ms));
+      if (const auto recorder = recording_.Get()) recorder->AddFrame(NoiseFrame(ms));
       std::this_thread::yield();
     }
   });
@@ -98,7 +98,7 @@ TEST_F(FlightKeeperTest, WhatIsGivenWhileItIsSwitchedIsWrittenOrNot) {
 }
 
 TEST_F(FlightKeeperTest, SnapshotsReplaceNothing) {
-  const Frame frame = FrameAt(7);
+  const Frame frame = NoiseFrame(7);
   const std::string said = keeper_.KeepSnapshot(frame.image, frame.time);
   EXPECT_THAT(said, HasSubstr("snapshot_1000007000000.png"));
   EXPECT_THAT(keeper_.KeepSnapshot(frame.image, frame.time), HasSubstr("-2.png"));
@@ -111,7 +111,7 @@ TEST_F(FlightKeeperTest, SnapshotsReplaceNothing) {
 TEST_F(FlightKeeperTest, AFolderThatCannotBeMadeIsNamed) {
   FlightKeeper keeper(folder_.Write("file", "") + "/below", &recording_);
   EXPECT_THROW(keeper.StartRecording(), InputError);
-  EXPECT_THROW(keeper.KeepSnapshot(FrameAt(0).image, FrameAt(0).time), InputError);
+  EXPECT_THROW(keeper.KeepSnapshot(NoiseFrame(0).image, NoiseFrame(0).time), InputError);
   EXPECT_EQ(recording_.Get(), nullptr);
 }
 
