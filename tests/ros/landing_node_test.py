@@ -26,7 +26,7 @@ from std_srvs.srv import Trigger
 
 TIMEOUT_S = 60
 TOLERANCE = 2e-6  # the tables have 1e-6
-SIMULATION = ["--set", "frames=40", "--set", "rate_hz=20"]
+SIMULATION = ["--scenario", "calm", "--set", "frames=50", "--set", "rate_hz=10"]
 
 
 def free_port():
