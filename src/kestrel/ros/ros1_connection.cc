@@ -109,9 +109,8 @@ void AddParameters(const std::string& name, const XmlRpc::XmlRpcValue& value,
     parameters->emplace_back(name, TextOf(value));
     return;
   }
-  for (const auto& [key, part] : value) {
-    AddParameters(name.empty() ? key : name + "." + key, part, parameters);
-  }
+  const std::string prefix = name.empty() ? "" : name + ".";
+  for (const auto& [key, part] : value) AddParameters(prefix + key, part, parameters);
 }
 
 }  // namespace
