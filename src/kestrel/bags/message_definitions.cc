@@ -78,6 +78,10 @@ const std::vector<Definition>& Definitions() {
        {"std_msgs/Header", "vision_msgs/Detection3D"}},
       {"visualization_msgs/Marker",
        "",
+       "uint8 ARROW=0\nuint8 CUBE=1\nuint8 SPHERE=2\nuint8 CYLINDER=3\nuint8 LINE_STRIP=4\n"
+       "uint8 LINE_LIST=5\nuint8 CUBE_LIST=6\nuint8 SPHERE_LIST=7\nuint8 POINTS=8\n"
+       "uint8 TEXT_VIEW_FACING=9\nuint8 MESH_RESOURCE=10\nuint8 TRIANGLE_LIST=11\n"
+       "uint8 ADD=0\nuint8 MODIFY=0\nuint8 DELETE=2\nuint8 DELETEALL=3\n"
        "std_msgs/Header header\nstring ns\nint32 id\nint32 type\nint32 action\n"
        "geometry_msgs/Pose pose\ngeometry_msgs/Vector3 scale\nstd_msgs/ColorRGBA color\n"
        "duration lifetime\nbool frame_locked\ngeometry_msgs/Point[] points\n"
@@ -87,6 +91,7 @@ const std::vector<Definition>& Definitions() {
         "geometry_msgs/Point"}},
       {"diagnostic_msgs/DiagnosticStatus",
        "",
+       "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\n"
        "byte level\nstring name\nstring message\nstring hardware_id\n"
        "diagnostic_msgs/KeyValue[] values\n",
        {"diagnostic_msgs/KeyValue"}},
@@ -112,6 +117,8 @@ const std::vector<Definition>& Definitions() {
        {"std_msgs/Header", "sensor_msgs/PointField"}},
       {"sensor_msgs/PointField",
        "",
+       "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\n"
+       "uint8 UINT32=6\nuint8 FLOAT32=7\nuint8 FLOAT64=8\n"
        "string name\nuint32 offset\nuint8 datatype\nuint32 count\n",
        {}},
       {"std_msgs/ColorRGBA", "", "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n", {}},

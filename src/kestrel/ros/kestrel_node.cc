@@ -113,7 +113,8 @@ void OfferServices(Ros1Connection* ros, LandingNode* node) {
 int RunNode(int argc, char** argv) {
   Ros1Connection ros(&argc, argv, "kestrel");
   if (argc > 1) {
-    fmt::print(stderr, "kestrel_node: unknown argument '{}'; parameters are given as _name:=value\n",
+    fmt::print(stderr,
+               "kestrel_node: unknown argument '{}'; parameters are given as _name:=value\n",
                argv[1]);
     return 2;
   }

@@ -79,8 +79,8 @@ void LandingFlight::PublishDetection(const LandingObservation& observation) {
   if (!detection) return;
   Publish(NodeTopic::kTargetPose, TargetPoseOf(*detection, observation.time, frames_.camera));
   if (!options_.publish_tf) return;
-  Publish(NodeTopic::kTransforms, PatternTransformOf(*detection, observation.time, frames_.camera,
-                                                     options_.pattern_frame));
+  Publish(NodeTopic::kTransforms,
+          PatternTransformOf(*detection, observation.time, frames_.camera, options_.pattern_frame));
 }
 
 void LandingFlight::CountLatency(const LandingObservation& observation) {
@@ -106,14 +106,12 @@ void LandingFlight::PublishTrack(const LandingObservation& observation) {
 
 void LandingFlight::PublishPictures(const Frame& frame, const LandingObservation& observation) {
   if (connection_->HasSubscribers(NodeTopic::kMarkers)) {
-    Publish(NodeTopic::kMarkers,
-            MarkersOf(observation, pattern(), frames_.camera, frames_.world));
+    Publish(NodeTopic::kMarkers, MarkersOf(observation, pattern(), frames_.camera, frames_.world));
   }
   if (!connection_->HasSubscribers(NodeTopic::kAnnotatedImage)) return;
   const cv::Mat annotated =
       DrawLandingOverlay(frame.image, pipeline_.detector().camera(), pattern(), observation);
-  Publish(NodeTopic::kAnnotatedImage,
-          ImageMessageOf(annotated, observation.time, frames_.camera));
+  Publish(NodeTopic::kAnnotatedImage, ImageMessageOf(annotated, observation.time, frames_.camera));
 }
 
 }  // namespace kestrel

@@ -42,7 +42,7 @@ class LandingFlight {
   struct Counters {
     LiveEvents::Counters events;
     std::uint64_t detections = 0;
-    LatencySummary latency;  // from an image's arrival until its detection was published
+    LatencySummary latency;        // from an image's arrival until its detection was published
     LatencySummary beyond_detect;  // the same without the time of Detect
     LatencySummary detect;
   };

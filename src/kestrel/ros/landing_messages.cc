@@ -91,12 +91,12 @@ MarkerMessage UncertaintyMarker(const LandingObservation& observation, const std
     return marker;
   }
   const TurnState& motion = observation.target->motion;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(motion.covariance.topLeftCorner<3, 3>());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(
+      motion.covariance.topLeftCorner<3, 3>());
   Eigen::Matrix3d rotation = axes.eigenvectors();
   if (rotation.determinant() < 0) rotation.col(0) *= -1;
   marker.pose = PoseMessageOf({Eigen::Quaterniond(rotation), motion.position()});
-  marker.scale =
-      MessageOf(2 * kShownSigmas * axes.eigenvalues().cwiseMax(1e-12).cwiseSqrt());
+  marker.scale = MessageOf(2 * kShownSigmas * axes.eigenvalues().cwiseMax(1e-12).cwiseSqrt());
   marker.color = {1, 0.6F, 0, 0.3F};
   return marker;
 }
@@ -130,8 +130,10 @@ PoseWithCovarianceStampedMessage TargetPoseOf(const LandingDetection& detection,
 
 TfMessage PatternTransformOf(const LandingDetection& detection, Time stamp,
                              const std::string& camera_frame, const std::string& pattern_frame) {
-  return {{{HeaderOf(stamp, camera_frame), pattern_frame,
-            PoseMessageOf(detection.camera_from_pattern)}}};
+  TfMessage message;
+  message.transforms.push_back(
+      {HeaderOf(stamp, camera_frame), pattern_frame, PoseMessageOf(detection.camera_from_pattern)});
+  return message;
 }
 
 OdometryMessage TrackOf(const TargetEstimate& target, const std::string& world_frame,

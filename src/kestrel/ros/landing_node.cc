@@ -143,9 +143,10 @@ std::optional<CameraCalibration> LandingNode::CalibrationFor(const std::string& 
     calibration.body_from_camera = transforms_.Fixed(options_.body_frame, camera_frame);
   }
   if (calibration.body_from_camera) return calibration;
-  Warn(fmt::format("no mount: expected a static transform from {} to {}, or a calibration file "
-                   "with T_BS (_camera:=FILE); poses:=none goes without",
-                   body, camera_frame));
+  Warn(
+      fmt::format("no mount: expected a static transform from {} to {}, or a calibration file "
+                  "with T_BS (_camera:=FILE); poses:=none goes without",
+                  body, camera_frame));
   return std::nullopt;
 }
 
@@ -161,8 +162,9 @@ void LandingNode::TakePose(std::string_view type, std::string_view bytes,
     const StampedPose pose = ParsePose(type, bytes, WireFormat::kRos1, topic);
     const auto world_from_body = TransformOf(pose.pose);
     if (!world_from_body || ToNanoseconds(pose.stamp) <= 0) {
-      throw InputError(topic + ": a pose is left out that has no stamp, is not finite, or is turned "
-                               "by no unit quaternion");
+      throw InputError(topic +
+                       ": a pose is left out that has no stamp, is not finite, or is turned "
+                       "by no unit quaternion");
     }
     body_ = FrameName(pose.body);
     AddPose({pose.stamp, *world_from_body,
@@ -171,8 +173,7 @@ void LandingNode::TakePose(std::string_view type, std::string_view bytes,
   });
 }
 
-void LandingNode::TakeTransforms(std::string_view bytes, bool is_static,
-                                 const std::string& topic) {
+void LandingNode::TakeTransforms(std::string_view bytes, bool is_static, const std::string& topic) {
   WarnOfErrors([&] {
     const auto message = ParseMessage<TfMessage>(bytes, WireFormat::kRos1, topic);
     for (const TransformStampedMessage& transform : message.transforms) {
@@ -221,14 +222,17 @@ void LandingNode::Reset(const NodeOptions& options) {
 
 void LandingNode::PublishDiagnostics() {
   const Time now = Now();
-  const double rate_hz = static_cast<double>(received_ - diagnosed_images_) / ToSeconds(now - diagnosed_);
+  const double rate_hz =
+      static_cast<double>(received_ - diagnosed_images_) / ToSeconds(now - diagnosed_);
   diagnosed_ = now;
   diagnosed_images_ = received_;
-  const LandingFlight::Counters counters = flight_ ? flight_->counters() : LandingFlight::Counters();
+  const LandingFlight::Counters counters =
+      flight_ ? flight_->counters() : LandingFlight::Counters();
 
   DiagnosticStatusMessage status;
   status.name = "kestrel: landing pattern";
-  status.level = is_stopped_ || rate_hz > 0 ? DiagnosticStatusMessage::kOk : DiagnosticStatusMessage::kWarn;
+  status.level =
+      is_stopped_ || rate_hz > 0 ? DiagnosticStatusMessage::kOk : DiagnosticStatusMessage::kWarn;
   status.message = is_stopped_ ? "stopped" : rate_hz > 0 ? "running" : "no images";
   if (!is_stopped_ && rate_hz > 0 && !flight_) {
     status.level = DiagnosticStatusMessage::kWarn;

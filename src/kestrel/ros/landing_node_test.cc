@@ -70,13 +70,14 @@ class FakeConnection : public NodeConnection {
 
 class LandingNodeTest : public ::testing::Test {
  protected:
-  static NodeOptions Options(const std::string& poses) { return ReadNodeOptions({{"poses", poses}}); }
+  static NodeOptions Options(const std::string& poses) {
+    return ReadNodeOptions({{"poses", poses}});
+  }
   void TakeCameraInfo(LandingNode* node) const {
     node->TakeCameraInfo(SerializeMessage(CameraInfoOf(camera_), WireFormat::kRos1), "camera_info");
   }
   void TakeImage(LandingNode* node, Time stamp, const std::string& frame = "camera") const {
-    const cv::Mat image =
-        DrawPattern(CameraModel(camera_), LandingPattern(), camera_from_pattern_);
+    const cv::Mat image = DrawPattern(CameraModel(camera_), LandingPattern(), camera_from_pattern_);
     ImageMessage message;
     message.header = {0, stamp, frame};
     message.width = static_cast<std::uint32_t>(image.cols);
@@ -91,8 +92,13 @@ class LandingNodeTest : public ::testing::Test {
     node->TakePose(PoseStampedMessage::kType, SerializeMessage(pose, WireFormat::kRos1), "poses");
   }
   static void TakeMount(LandingNode* node) {
-    const TfMessage mount{{{{0, kStamp, "base_link"}, "camera", {{0, 0, 0}, {1, 0, 0, 0}}}}};
-    node->TakeTransforms(SerializeMessage(mount, WireFormat::kRos1), /*is_static=*/true, "/tf_static");
+    TfMessage mount;
+    TransformStampedMessage& transform = mount.transforms.emplace_back();
+    transform.header.frame_id = "base_link";
+    transform.child_frame_id = "camera";
+    transform.transform.orientation = {1, 0, 0, 0};
+    node->TakeTransforms(SerializeMessage(mount, WireFormat::kRos1), /*is_static=*/true,
+                         "/tf_static");
   }
 
   static constexpr Time kStamp = TimeFromNanoseconds(5'000'000'000);
@@ -132,7 +138,8 @@ TEST_F(LandingNodeTest, WithPosesAndTheMountThereIsATrackInTheWorld) {
     TakePose(&node, stamp);
     TakePose(&node, stamp + std::chrono::milliseconds(50));
     TakeImage(&node, stamp);
-    while (connection_.Newest<Detection3DArrayMessage>(NodeTopic::kDetections).header.stamp != stamp) {
+    while (connection_.Newest<Detection3DArrayMessage>(NodeTopic::kDetections).header.stamp !=
+           stamp) {
     }
   }
   const auto track = connection_.Newest<OdometryMessage>(NodeTopic::kTrack);
@@ -179,7 +186,8 @@ TEST_F(LandingNodeTest, AStoppedNodeTakesNoImages) {
   EXPECT_FALSE(connection_.HasPublished(NodeTopic::kDetections));
   node.Start();
   TakeImage(&node, kStamp);
-  EXPECT_EQ(connection_.Newest<Detection3DArrayMessage>(NodeTopic::kDetections).detections.size(), 1);
+  EXPECT_EQ(connection_.Newest<Detection3DArrayMessage>(NodeTopic::kDetections).detections.size(),
+            1);
 }
 
 // A bag that is played again.
@@ -189,7 +197,8 @@ TEST_F(LandingNodeTest, StampsThatJumpBackStartAnew) {
   TakeImage(&node, kStamp + std::chrono::seconds(3));
   TakeImage(&node, kStamp);
   EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("jump back")));
-  while (connection_.Newest<Detection3DArrayMessage>(NodeTopic::kDetections).header.stamp != kStamp) {
+  while (connection_.Newest<Detection3DArrayMessage>(NodeTopic::kDetections).header.stamp !=
+         kStamp) {
   }
 }
 
@@ -199,12 +208,14 @@ TEST_F(LandingNodeTest, ResetTakesNewOptionsAndRefusesWhatCannotChange) {
   TakeCameraInfo(&node);
   node.Reset(ReadNodeOptions({{"landing.detector.min_quality", "1"}}));
   TakeImage(&node, kStamp);
-  EXPECT_TRUE(connection_.Newest<Detection3DArrayMessage>(NodeTopic::kDetections).detections.empty());
+  EXPECT_TRUE(
+      connection_.Newest<Detection3DArrayMessage>(NodeTopic::kDetections).detections.empty());
 }
 
 TEST(NodeOptions, AreThoseOfTheConfigurationByTheSameNames) {
-  const NodeOptions options = ReadNodeOptions(
-      {{"landing.detector.min_quality", "0.7"}, {"fly.events.pose_wait_s", "0.1"}, {"altitude_m", "5"}});
+  const NodeOptions options = ReadNodeOptions({{"landing.detector.min_quality", "0.7"},
+                                               {"fly.events.pose_wait_s", "0.1"},
+                                               {"altitude_m", "5"}});
   EXPECT_EQ(options.kestrel.landing.detector.min_quality, 0.7);
   EXPECT_EQ(options.kestrel.fly.flight.events.pose_wait_s, 0.1);
   EXPECT_EQ(options.altitude_m, 5);

@@ -46,8 +46,8 @@ std::optional<LiveTransforms::WorldPose> LiveTransforms::PoseBy(
   if (moving != FrameName(transform.child_frame_id)) return std::nullopt;
   const std::vector<Ancestor> ancestors = AncestorsOf(body, /*only_static=*/false);
   for (const Ancestor& ancestor : ancestors) {
-    const bool is_asked_for = world.empty() ? &ancestor == &ancestors.back()
-                                            : ancestor.name == FrameName(world);
+    const bool is_asked_for =
+        world.empty() ? &ancestor == &ancestors.back() : ancestor.name == FrameName(world);
     if (is_asked_for && ancestor.name != body) {
       return WorldPose{ancestor.name, {transform.header.stamp, ancestor.ancestor_from_frame}};
     }

@@ -6,10 +6,10 @@
 namespace kestrel {
 namespace {
 
-const Time kStamp = TimeFromNanoseconds(7'000'000'000);
+const Time kTransformTime = TimeFromNanoseconds(7'000'000'000);
 
 TransformStampedMessage Shift(const std::string& parent, const std::string& child, double x) {
-  return {{0, kStamp, parent}, child, {{x, 0, 0}, {}}};
+  return {{0, kTransformTime, parent}, child, {{x, 0, 0}, {}}};
 }
 
 TEST(LiveTransforms, TellTheMountOverFramesThatStandStill) {
@@ -33,7 +33,7 @@ TEST(LiveTransforms, TellThePoseWithTheFrameThatMoves) {
   const auto in_root = transforms.PoseBy(odometry, "base_link", "");
   ASSERT_TRUE(in_root);
   EXPECT_EQ(in_root->world, "map");
-  EXPECT_EQ(in_root->sample.time, kStamp);
+  EXPECT_EQ(in_root->sample.time, kTransformTime);
   EXPECT_EQ(in_root->sample.world_from_body.translation.x(), 16);
   const auto in_odometry = transforms.PoseBy(odometry, "base_link", "odom");
   ASSERT_TRUE(in_odometry);

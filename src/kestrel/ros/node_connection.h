@@ -29,7 +29,8 @@ struct NodeTopicInfo {
   std::string_view type;
 };
 
-inline constexpr std::array kNodeTopics = {  // in the order of NodeTopic
+inline constexpr std::array kNodeTopics = {
+    // in the order of NodeTopic
     NodeTopicInfo{"detections", Detection3DArrayMessage::kType},
     NodeTopicInfo{"target_pose", PoseWithCovarianceStampedMessage::kType},
     NodeTopicInfo{"track", OdometryMessage::kType},

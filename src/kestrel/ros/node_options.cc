@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/ros/node_options.h"
 
+#include <fmt/format.h>
+
 #include "kestrel/base/options.h"
 #include "kestrel/base/violations.h"
 
@@ -28,7 +30,7 @@ NodeOptions ReadNodeOptions(const std::vector<std::pair<std::string, std::string
   for (const auto& [key, value] : parameters) {
     if (key == "config" && !value.empty()) ReadOptions(value, &options.kestrel);
   }
-  for (const auto& [key, value] : parameters) SetOption(key + "=" + value, &options);
+  for (const auto& [key, value] : parameters) SetOption(fmt::format("{}={}", key, value), &options);
   RequireValid(options);
   return options;
 }

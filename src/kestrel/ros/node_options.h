@@ -17,8 +17,8 @@ struct NodeOptions {
   // Where the UAV's poses come from: "topic" (`poses`, of any of the types of bags), "tf", or
   // "none": then there are detections, and no track.
   std::string poses = "none";
-  std::string world_frame;                // for tf; empty: the root of the body's frames
-  std::string body_frame = "base_link";   // whose poses tf tells, and where the camera is fixed to
+  std::string world_frame;               // for tf; empty: the root of the body's frames
+  std::string body_frame = "base_link";  // whose poses tf tells, and where the camera is fixed to
   std::string pattern_frame = "landing_pattern";  // of tf, for the pattern as it was detected
   std::string target_frame = "landing_target";    // that the track's velocity is in
   bool publish_tf = true;

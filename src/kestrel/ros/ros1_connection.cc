@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/ros/ros1_connection.h"
 
+#include <boost/make_shared.hpp>
 #include <cstring>
 #include <deque>
-#include <sstream>
-#include <typeinfo>
-
-#include <boost/make_shared.hpp>
 #include <ros/master.h>
 #include <ros/ros.h>
 #include <ros/subscription_callback_helper.h>
+#include <sstream>
 #include <std_srvs/Trigger.h>
+#include <typeinfo>
 #include <xmlrpcpp/XmlRpcValue.h>
 
 namespace kestrel {
@@ -42,8 +41,8 @@ template <>
 struct Serializer<kestrel::Bytes> {
   template <class Stream>
   static void write(Stream& stream, const kestrel::Bytes& bytes) {
-    std::memcpy(stream.advance(static_cast<std::uint32_t>(bytes.text->size())),
-                bytes.text->data(), bytes.text->size());
+    std::memcpy(stream.advance(static_cast<std::uint32_t>(bytes.text->size())), bytes.text->data(),
+                bytes.text->size());
   }
   static std::uint32_t serializedLength(const kestrel::Bytes& bytes) {
     return static_cast<std::uint32_t>(bytes.text->size());
@@ -110,9 +109,8 @@ void AddParameters(const std::string& name, const XmlRpc::XmlRpcValue& value,
     parameters->emplace_back(name, TextOf(value));
     return;
   }
-  for (const auto& [key, part] : value) {
-    AddParameters(name.empty() ? key : name + "." + key, part, parameters);
-  }
+  const std::string prefix = name.empty() ? "" : name + ".";
+  for (const auto& [key, part] : value) AddParameters(prefix + key, part, parameters);
 }
 
 }  // namespace
