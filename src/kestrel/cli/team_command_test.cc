@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cstdint>
 #include <cstdlib>
 #include <string>
 #include <utility>
@@ -13,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr char kSensor[] = R"(sensor_type: camera
+constexpr char kDownwardCamera[] = R"(sensor_type: camera
 T_BS:
   cols: 4
   rows: 4
@@ -52,7 +53,7 @@ class TeamCommandTest : public CommandTest {
       }
     }
     folder_.Write(name + "/mav0/cam0/data.csv", images);
-    folder_.Write(name + "/mav0/cam0/sensor.yaml", kSensor);
+    folder_.Write(name + "/mav0/cam0/sensor.yaml", kDownwardCamera);
     folder_.Write(name + "/mav0/nav0/data.csv", poses);
     return folder_ / name;
   }
