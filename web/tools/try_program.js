@@ -71,7 +71,7 @@ async function watchFlight() {
   await page.getByRole("button", { name: "Snapshot" }).click();
   await page.getByText(/snapshot kept as kept/).waitFor();
   await page.getByRole("button", { name: "Record" }).click();
-  await page.getByText("Stop recording").waitFor();
+  await page.getByRole("button", { name: "Stop recording" }).waitFor();
   await page.keyboard.press("r");
   await page.getByText("the recording is written").waitFor();
   await page.getByRole("heading", { name: "Doctor" }).waitFor();
@@ -110,8 +110,8 @@ async function scrubRecording() {
   await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
   await time.filter({ hasText: /frame (2|3)\d of/ }).waitFor();
   await page.getByRole("button", { name: "+1 frame" }).click();
-  await page.getByLabel("Change").selectOption("landing.detector.min_ring_px");
-  await page.getByLabel(/smallest minor axis/).fill("60");
+  await page.getByLabel("Change").selectOption("landing.detector.min_quality");
+  await page.getByLabel(/smallest probability/).fill("0.9");
   await page.getByRole("button", { name: "Run" }).click();
   await page.getByText("Second run (below)").waitFor();
   await page.waitForTimeout(500);

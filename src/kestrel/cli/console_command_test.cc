@@ -108,7 +108,8 @@ TEST_F(ConsoleCommandTest, AFlightIsSeen) {
 TEST_F(ConsoleCommandTest, AFlightIsRecordedWhenThePageAsks) {
   const std::string kept = folder_ / "kept";
   RunningCommand fly(
-      "fly sim:standing --console 127.0.0.1:0 --set fly.sim_camera.scale=0.4"
+      "fly sim:standing --autopilot sim:px4 --console 127.0.0.1:0"
+      " --set fly.sim_camera.scale=0.4"
       " --set fly.keep_folder=" +
           kept,
       folder_.Write("log", ""));
@@ -164,9 +165,8 @@ TEST_F(ConsoleCommandTest, ARecordingIsReplayed) {
   EXPECT_THAT(browser.Send(browser.Get("/export/detections-1.csv")).body(),
               ::testing::StartsWith("frame,timestamp_ns,detected,"));
   EXPECT_THAT(browser.Send(browser.Get("/export/overlays-3.png")).body(), HasSubstr("PNG"));
-  // No ring is as large as this: a second run finds none.
-  socket.Send(R"({"command": "detect", "settings": ["landing.detector.min_ring_px=1000",
-                  "landing.detector.max_partial_altitude_m=0"]})");
+  // Nothing is as sure as this: a second run finds none.
+  socket.Send(R"({"command": "detect", "settings": ["landing.detector.min_quality=1"]})");
   nlohmann::json second;
   do {
     const auto message = socket.Next("second");
