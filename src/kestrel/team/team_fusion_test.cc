@@ -27,7 +27,7 @@ PartMessage PartOf(int uav, std::uint64_t version, const std::vector<MappedObjec
   for (std::size_t i = first; i < last; ++i) {
     MappedObject object = field[i];
     object.state.head<3>() =
-        world * object.position() + 0.03 * Eigen::Vector3d(random.Normal(), random.Normal(), 0);
+        world * object.position() + 0.03 * Eigen::Vector3d{random.Normal(), random.Normal(), 0};
     part.contents.objects[object.id] = version;
     part.objects.push_back(object);
   }

@@ -33,7 +33,8 @@ inline MappedObject TestDisc(std::int64_t id, const Eigen::Vector3d& position, T
 inline std::vector<MappedObject> TestField(int count, Random* random, Time time = Time()) {
   std::vector<MappedObject> objects;
   while (static_cast<int>(objects.size()) < count) {
-    const Eigen::Vector3d position(random->Uniform(0, 100), random->Uniform(0, 100), 0);
+    // Braces: drawn in this order by every compiler.
+    const Eigen::Vector3d position{random->Uniform(0, 100), random->Uniform(0, 100), 0};
     const bool is_free = std::all_of(objects.begin(), objects.end(), [&](const auto& other) {
       return (other.position() - position).norm() > 3;
     });

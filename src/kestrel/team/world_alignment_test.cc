@@ -17,7 +17,7 @@ const WorldPrior kPrior{1.5, Radians(2)};
 std::vector<MappedObject> SeenIn(const WorldAlignment& world, std::vector<MappedObject> objects,
                                  double sigma_m, Random* random) {
   for (MappedObject& object : objects) {
-    const Eigen::Vector3d noise(random->Normal(), random->Normal(), random->Normal());
+    const Eigen::Vector3d noise{random->Normal(), random->Normal(), random->Normal()};
     object.state.head<3>() = world * object.position() + sigma_m * noise;
   }
   return objects;
