@@ -71,7 +71,7 @@ std::vector<PredictionErrors> ComparePredictions(const std::vector<TruePattern>&
 }
 
 ReportTable TrackTable(std::span<const TrackErrors> errors) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr double kFar = std::numeric_limits<double>::infinity();
   ReportTable table{"track",
                     "Errors of the track",
                     "In the world. NEES against the one standard deviation of all three axes that "
@@ -83,7 +83,7 @@ ReportTable TrackTable(std::span<const TrackErrors> errors) {
     std::vector<std::string> cells = TrackCells(errors, bin);
     if (cells[1] != "0") table.rows.push_back(std::move(cells));
   }
-  table.rows.push_back(TrackCells(errors, {-kInfinity, kInfinity}));
+  table.rows.push_back(TrackCells(errors, {-kFar, kFar}));
   table.rows.back().front() = "all";
   return table;
 }

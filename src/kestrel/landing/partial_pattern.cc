@@ -12,9 +12,9 @@ namespace kestrel {
 namespace {
 
 // In the plane at unit distance, where 1 is the height of the camera.
-constexpr double kTolerance = 0.02;   // of a point from its line
-constexpr double kMinLength = 0.12;   // of a line
-constexpr double kMaxPlaneReach = 4;  // of the plane that is looked at
+constexpr double kLineTolerance = 0.02;  // of a point from its line
+constexpr double kMinLineLength = 0.12;  // of a line
+constexpr double kMaxPlaneReach = 4;     // of the plane that is looked at
 constexpr std::size_t kMaxSegments = 60;
 constexpr std::size_t kMaxBars = 16;
 constexpr std::size_t kMaxPoses = 4;
@@ -102,7 +102,7 @@ class Finder {
   static constexpr double kBlackSide = -1;
 
   void Cut(bool closed) {
-    SplitAndMerge(workspace_.plane, closed, kTolerance, kMinLength, &workspace_.breaks,
+    SplitAndMerge(workspace_.plane, closed, kLineTolerance, kMinLineLength, &workspace_.breaks,
                   &workspace_.segments);
     workspace_.plane.clear();
   }

@@ -13,7 +13,7 @@ namespace kestrel {
 namespace {
 
 constexpr int kMaxReach = 12;          // px
-constexpr float kLeastStep = 2;        // of an edge, gray values per pixel
+constexpr float kLeastEdgeStep = 2;    // of an edge, gray values per pixel
 constexpr float kStepInShadow = 0.3f;  // the same against the gray value on its bright side
 constexpr float kLeastShare = 0.12f;   // of the steepest rise, that its neighbours have
 
@@ -68,7 +68,7 @@ std::optional<double> FindEdge(const cv::Mat& image, const Eigen::Vector2d& at,
   SampleLine(image, at - (reach + 1.5) * normal, normal, count, gray.data());
   // Rise between neighbours; the one at index i lies at offset i - reach - 1.
   int best = -1;
-  float best_rise = kLeastStep;
+  float best_rise = kLeastEdgeStep;
   for (int i = 1; i + 2 < count; ++i) {
     const float rise = gray[i + 1] - gray[i];
     if (rise > best_rise) {

@@ -34,10 +34,10 @@ constexpr double kSure = 0.02;
 constexpr double kUnsure = 0.1;
 constexpr double kOfBoard = 0.06;
 constexpr double kOfArcs = 0.025;
-constexpr double kLeastReachPx = 2;
+constexpr double kLeastRingReachPx = 2;
 
 double ReachPx(const Eigen::Vector2d& diameters_px, const ImageRegion& region, double unsure) {
-  return std::max(kLeastReachPx, 0.8 * region.scale() + unsure * diameters_px.x());
+  return std::max(kLeastRingReachPx, 0.8 * region.scale() + unsure * diameters_px.x());
 }
 
 }  // namespace
@@ -165,7 +165,7 @@ void RingFinder::AddOutline(const Outline& outline, const BorderTracer& tracer,
     for (const double scale : kBoardScales) {
       RingFit scaled = *ring;
       for (CirclePose& pose : scaled.poses) pose.center /= scale;
-      Add(scaled, diameters_px, small, std::max(kLeastReachPx, kOfBoard * diameters_px.x()),
+      Add(scaled, diameters_px, small, std::max(kLeastRingReachPx, kOfBoard * diameters_px.x()),
           kOneScale);
     }
   } else {
@@ -268,7 +268,7 @@ std::span<const RingCandidate> RingFinder::FindInArcs(SearchedImage* image, std:
     const bool small = IsSmallRing(diameters_px);
     if (small && !StandsOut(*image, ring.poses[0])) continue;
     Add(ring, diameters_px, small,
-        std::max(kLeastReachPx, region.scale() + kOfArcs * diameters_px.x()), kOneScale);
+        std::max(kLeastRingReachPx, region.scale() + kOfArcs * diameters_px.x()), kOneScale);
   }
   return buffers_.candidates;
 }

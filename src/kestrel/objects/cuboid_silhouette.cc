@@ -11,18 +11,18 @@
 namespace kestrel {
 namespace {
 
-constexpr int kDirections = 32;
-constexpr int kResiduals = kDirections + 3;  // and the digit's place and the size
+constexpr int kExtents = 32;
+constexpr int kResiduals = kExtents + 3;  // and the digit's place and the size
 using Residuals = Eigen::Matrix<double, kResiduals, 1>;
 using Parameters = Eigen::Vector4d;  // centre, yaw, logarithm of half a side
 using Corners = std::array<Eigen::Vector2d, 4>;
 using SideFaces = std::array<bool, 4>;  // of the edge from each corner to the next
 
-const std::array<Eigen::Vector2d, kDirections>& Directions() {
-  static const std::array<Eigen::Vector2d, kDirections> directions = [] {
-    std::array<Eigen::Vector2d, kDirections> all;
-    for (int i = 0; i < kDirections; ++i) {
-      const double angle = 2 * std::numbers::pi * i / kDirections;
+const std::array<Eigen::Vector2d, kExtents>& Directions() {
+  static const std::array<Eigen::Vector2d, kExtents> directions = [] {
+    std::array<Eigen::Vector2d, kExtents> all;
+    for (int i = 0; i < kExtents; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kExtents;
       all[i] = {std::cos(angle), std::sin(angle)};
     }
     return all;
@@ -59,7 +59,7 @@ double Extent(std::span<const Eigen::Vector2d> points, const Eigen::Vector2d& di
 class SilhouetteFit {
  public:
   explicit SilhouetteFit(const CuboidSilhouette& silhouette) : silhouette_(silhouette) {
-    for (int i = 0; i < kDirections; ++i) {
+    for (int i = 0; i < kExtents; ++i) {
       extents_[i] = Extent(silhouette.outline, Directions()[i]);
       is_seen_[i] = extents_[i] > Extent(silhouette.cut, Directions()[i]);
     }
@@ -70,7 +70,7 @@ class SilhouetteFit {
   // How far the silhouette reaches from the digit, on the average of the directions.
   double MeanReach() const {
     double sum = 0;
-    for (int i = 0; i < kDirections; ++i) {
+    for (int i = 0; i < kExtents; ++i) {
       if (is_seen_[i]) sum += extents_[i] - Directions()[i].dot(silhouette_.digit);
     }
     return sum / SeenDirections();
@@ -85,7 +85,7 @@ class SilhouetteFit {
     const Corners corners = CornersOf(p);
     const double shrinking = 1 / (1 + 2 * half * silhouette_.height_by_side);
     Residuals residuals;
-    for (int i = 0; i < kDirections; ++i) {
+    for (int i = 0; i < kExtents; ++i) {
       double extent = -std::numeric_limits<double>::infinity();
       for (int k = 0; k < 4; ++k) {
         const double upper = Directions()[i].dot(corners[k]);
@@ -94,7 +94,7 @@ class SilhouetteFit {
       }
       residuals[i] = is_seen_[i] ? (extents_[i] - extent) / half : 0;
     }
-    residuals.segment<2>(kDirections) = kDigitWeight / half * (p.head<2>() - silhouette_.digit);
+    residuals.segment<2>(kExtents) = kDigitWeight / half * (p.head<2>() - silhouette_.digit);
     residuals[kResiduals - 1] =
         silhouette_.half_side ? kSizeWeight * (p[3] - std::log(*silhouette_.half_side)) : 0;
     return residuals;
@@ -124,8 +124,8 @@ class SilhouetteFit {
 
  private:
   const CuboidSilhouette& silhouette_;
-  std::array<double, kDirections> extents_;
-  std::array<bool, kDirections> is_seen_;
+  std::array<double, kExtents> extents_;
+  std::array<bool, kExtents> is_seen_;
 };
 
 }  // namespace
@@ -134,7 +134,7 @@ std::optional<CuboidFit> FitCuboid(const CuboidSilhouette& silhouette) {
   constexpr int kYaws = 18;
   const SilhouetteFit fit(silhouette);
   const int seen = fit.SeenDirections();
-  if (seen < kDirections / 2) return std::nullopt;
+  if (seen < kExtents / 2) return std::nullopt;
   const double half = silhouette.half_side.value_or(0.7 * fit.MeanReach());
   if (!(half > 0)) return std::nullopt;
   // Of every choice of the side faces that can be seen the best direction is refined.

@@ -84,10 +84,10 @@ std::optional<Ellipse> CutWithPlane(const Eigen::Matrix3d& conic) {
 
 // What became of a direction in which the edge was looked for.
 enum class Direction { kHidden, kOutside, kFits };
-using Directions = std::array<Direction, kEdgeDirections>;
+using EdgeDirections = std::array<Direction, kEdgeDirections>;
 
 // The longest row of hidden directions around the circle.
-int LargestGap(const Directions& directions) {
+int LargestGap(const EdgeDirections& directions) {
   int largest = 0;
   int run = 0;
   for (int i = 0; i < 2 * kEdgeDirections && largest < kEdgeDirections; ++i) {
@@ -106,7 +106,7 @@ std::optional<DiscOutline> FitOnce(const cv::Mat& image, const RayTable& rays, d
   workspace->rays.clear();
   workspace->points.clear();
   workspace->directions.clear();
-  Directions directions{};
+  EdgeDirections directions{};
   for (int i = 0; i < kEdgeDirections; ++i) {
     const double t = 2 * std::numbers::pi * i / kEdgeDirections;
     const Eigen::Vector2d outward = (start.semi_minor * std::cos(t) * start.major_axis() +

@@ -16,8 +16,6 @@ bool IsWithin(double value, double expected, double factor) {
   return value <= expected * factor && expected <= value * factor;
 }
 
-double Square(double x) { return x * x; }
-
 }  // namespace
 
 ObjectExaminer::Outcome ObjectExaminer::TestCuboid(const Segment& segment,
@@ -73,7 +71,7 @@ ObjectExaminer::Outcome ObjectExaminer::TestSilhouette(const Segment& segment,
     const Eigen::Vector3d ray = plane.RayTo(fit->corners[i]);
     if (detector_.camera_.Project(ray, &corners[i]) != ProjectionStatus::kOk) return Outcome::kNone;
   }
-  detection->misfit = Square(fit->residual / kMaxResidual);
+  detection->misfit = std::pow(fit->residual / kMaxResidual, 2);
   return TestFace(corners, object, detection, reached);
 }
 
@@ -231,8 +229,10 @@ ObjectExaminer::Outcome ObjectExaminer::LocateFace(const std::array<Eigen::Vecto
   const bool is_on_ground = IsOnGround(position, object, options.ground_tolerance).value_or(true);
   const Outcome outcome = is_on_ground ? Outcome::kObject : Outcome::kElsewhere;
   detection->misfit +=
-      is_bar ? Square((side_ratio * object.width_m / object.size_m - 1) / options.ground_tolerance)
-             : Square(face->skew / kMaxSkew) + Square((side_ratio - 1) / (kMaxSideRatio - 1));
+      is_bar ? std::pow(
+                   (side_ratio * object.width_m / object.size_m - 1) / options.ground_tolerance, 2)
+             : std::pow(face->skew / kMaxSkew, 2) +
+                   std::pow((side_ratio - 1) / (kMaxSideRatio - 1), 2);
   const double radius_px = 0.5 * detector_.focal_px_ * object.size_m / position.norm();
   SetLocation(position, object, options.center_sigma_px, options.radius_sigma_px / radius_px,
               outcome, detection);

@@ -64,7 +64,7 @@ Discs FindCenters(std::span<const Eigen::Vector2d> inside,
 
 // Moves the centres and changes the radius such that the border fits (a step of Gauss and Newton).
 void Refine(std::span<const Eigen::Vector2d> border, Discs* discs) {
-  constexpr double kReach = 0.25;  // border points further from a circle are not its own
+  constexpr double kBorderReach = 0.25;  // border points further from a circle are not its own
   std::array<Eigen::Matrix2d, kMaxDiscs> normal;
   std::array<Eigen::Vector2d, kMaxDiscs> right;
   normal.fill(1e-9 * Eigen::Matrix2d::Identity());
@@ -76,7 +76,7 @@ void Refine(std::span<const Eigen::Vector2d> border, Discs* discs) {
     const Eigen::Vector2d offset = point - discs->centers[i];
     const double distance = offset.norm();
     const double residual = distance - discs->radius;
-    if (std::abs(residual) > kReach * discs->radius) continue;
+    if (std::abs(residual) > kBorderReach * discs->radius) continue;
     const Eigen::Vector2d outward = offset / distance;
     normal[i] += outward * outward.transpose();
     right[i] += residual * outward;

@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kPoses = 256;  // seconds of any autopilot
+constexpr std::size_t kWaitingPoses = 256;  // seconds of any autopilot
 
 Duration PoseWaitOf(const LiveEventsOptions& options) {
   RequireValid(options);
@@ -25,7 +25,7 @@ std::vector<std::string> LiveEventsOptions::Validate() const {
 }
 
 LiveEvents::LiveEvents(const LiveEventsOptions& options, Duration lead)
-    : pose_wait_(PoseWaitOf(options)), lead_(lead), poses_(kPoses) {}
+    : pose_wait_(PoseWaitOf(options)), lead_(lead), poses_(kWaitingPoses) {}
 
 void LiveEvents::Push(Frame frame) {
   std::optional<WaitingFrame> arrived(WaitingFrame{std::move(frame), Now() + pose_wait_});

@@ -79,8 +79,8 @@ std::optional<Vector3d> Px4Target::InWorld(const mavlink::TargetRelative& target
 
 void Px4Target::Fuse(const Vector3d& in_world, const Vector3d& sigma, const FlightState& state) {
   constexpr double kLeastVariance = 1e-4;
-  constexpr double kMaxRatio = 3.84;  // 95 % of one axis
-  constexpr int kMaxOutliers = 3;     // in a row; what goes on is no outlier
+  constexpr double kMaxRatio = 3.84;     // 95 % of one axis
+  constexpr int kMaxOutliersInARow = 3;  // in a row; what goes on is no outlier
   constexpr std::int64_t kTimeout_us = 2'000'000;
   if (!is_filtering_ || state.boot_us - fused_us_ > kTimeout_us) {
     for (int i = 0; i < 3; ++i) filters_[i].Start(in_world[i], 1, 0, 1);
@@ -92,7 +92,7 @@ void Px4Target::Fuse(const Vector3d& in_world, const Vector3d& sigma, const Flig
   for (int i = 0; i < 3; ++i) {
     ratio = std::max(ratio, filters_[i].InnovationRatio(in_world[i], variance[i]));
   }
-  if (ratio > kMaxRatio && outliers_ < kMaxOutliers) {
+  if (ratio > kMaxRatio && outliers_ < kMaxOutliersInARow) {
     ++outliers_;
     return;
   }
