@@ -51,10 +51,8 @@ ViewerMessage DataMessage(std::uint32_t id, const ChannelMessage& message) {
 }  // namespace
 
 std::string ServerInfoJson(const std::string& name, const std::string& session) {
-  return Json{{"op", "serverInfo"},
-              {"name", name},
-              {"capabilities", Json::array()},
-              {"sessionId", session}}
+  return Json{
+      {"op", "serverInfo"}, {"name", name}, {"capabilities", Json::array()}, {"sessionId", session}}
       .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -97,8 +95,8 @@ void ViewerFlow::Subscribe(const ViewerSubscription& subscription) {
 }
 
 void ViewerFlow::Unsubscribe(std::uint32_t id) {
-  const auto found = std::find_if(ids_.begin(), ids_.end(),
-                                  [id](const auto& each) { return each.second == id; });
+  const auto found =
+      std::find_if(ids_.begin(), ids_.end(), [id](const auto& each) { return each.second == id; });
   if (found == ids_.end()) return Warn(fmt::format("there is no subscription {}", id));
   images_.erase(found->first);
   ids_.erase(found);

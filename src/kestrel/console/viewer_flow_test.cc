@@ -94,9 +94,8 @@ TEST_F(ViewerFlowTest, SaysWhatCannotBeDone) {
   Subscribe(3, 2);
   flow_.Take(UnsubscribeRequest{{9}});
   flow_.Take(OtherRequest{"setParameters"});
-  EXPECT_THAT(PopAll(),
-              testing::ElementsAre("there is no channel 2", "there is no subscription 9",
-                                   HasSubstr("'setParameters' is not done here")));
+  EXPECT_THAT(PopAll(), testing::ElementsAre("there is no channel 2", "there is no subscription 9",
+                                             HasSubstr("'setParameters' is not done here")));
   EXPECT_EQ(flow_.wanted(), 2u);
 }
 

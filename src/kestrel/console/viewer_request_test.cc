@@ -33,22 +33,25 @@ TEST(ViewerRequestTest, KnowsWhatElseViewersAskFor) {
 TEST(ViewerRequestTest, RefusesAllElse) {
   const std::string many = [] {
     std::string ids = "0";
-    for (int i = 1; i < 300; ++i) ids += "," + std::to_string(i);
+    for (int i = 1; i < 300; ++i) ids.append(",").append(std::to_string(i));
     return R"({"op": "unsubscribe", "subscriptionIds": [)" + ids + "]}";
   }();
   for (const std::string& text :
        {std::string(), std::string("{"), std::string("[]"), std::string("{}"),
         std::string(R"({"op": 1})"), std::string(R"({"op": ""})"),
-        std::string(R"({"op": "sub scribe"})"), std::string(R"({"op": ")") + std::string(65, 'a') + "\"}",
-        std::string(R"({"op": "subscribe"})"), std::string(R"({"op": "subscribe", "subscriptions": {}})"),
+        std::string(R"({"op": "sub scribe"})"),
+        std::string(R"({"op": ")") + std::string(65, 'a') + "\"}",
+        std::string(R"({"op": "subscribe"})"),
+        std::string(R"({"op": "subscribe", "subscriptions": {}})"),
         std::string(R"({"op": "subscribe", "subscriptions": [1]})"),
         std::string(R"({"op": "subscribe", "subscriptions": [{"id": -1, "channelId": 3}]})"),
         std::string(R"({"op": "subscribe", "subscriptions": [{"id": 1.5, "channelId": 3}]})"),
-        std::string(R"({"op": "subscribe", "subscriptions": [{"id": 4294967296, "channelId": 3}]})"),
+        std::string(
+            R"({"op": "subscribe", "subscriptions": [{"id": 4294967296, "channelId": 3}]})"),
         std::string(R"({"op": "subscribe", "subscriptions": [{"id": 1}]})"),
         std::string(R"({"op": "unsubscribe", "subscriptionIds": ["1"]})"), many,
-        R"({"op": "setParameters", "parameters": )" + std::string(20, '[') + std::string(20, ']') +
-            "}"}) {
+        std::string(R"({"op": "setParameters", "parameters": )") + std::string(20, '[') +
+            std::string(20, ']') + "}"}) {
     EXPECT_FALSE(ParseViewerText(text)) << text.substr(0, 80);
   }
   for (const std::string& bytes :

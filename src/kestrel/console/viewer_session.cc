@@ -41,8 +41,7 @@ void ViewerSession::SendNext() {
 }
 
 std::optional<std::string> ChooseSubprotocol(std::string_view offered) {
-  for (const auto& name :
-       boost::beast::http::token_list({offered.data(), offered.size()})) {
+  for (const auto& name : boost::beast::http::token_list({offered.data(), offered.size()})) {
     if (name == "foxglove.sdk.v1" || name == "foxglove.websocket.v1") {
       return std::string(name.data(), name.size());
     }

@@ -34,12 +34,11 @@ class ViewerSessionTest : public testing::Test {
     return Connect(origin, target).is_open();
   }
   void Add(std::size_t channel, int time_ns, std::size_t bytes = 3) {
-    channels_.Add({channel, TimeFromNanoseconds(time_ns),
-                   std::make_shared<const std::string>(bytes, 'x')});
+    channels_.Add(
+        {channel, TimeFromNanoseconds(time_ns), std::make_shared<const std::string>(bytes, 'x')});
   }
 
-  ConsoleFeed feed_{
-      {.title = "test", .is_live = true, .series = {}, .layers = {}, .offers = {}}};
+  ConsoleFeed feed_{{.title = "test", .is_live = true, .series = {}, .layers = {}, .offers = {}}};
   ChannelFeed channels_{{{"/image", "protobuf", "Image", "protobuf", "a", true},
                          {"/result", "protobuf", "Result", "protobuf", "ab", false}}};
   std::optional<WebServer> server_;
@@ -157,7 +156,8 @@ TEST_F(ViewerSessionTest, AStalledViewerCostsTheOthersNothing) {
   TestSocket good = Connect(), stalled = Connect();
   good.Send(kSubscribeAll);
   stalled.Send(kSubscribeAll);
-  ASSERT_TRUE(Eventually([&] { return server_->counters().viewers == 2 && channels_.IsWanted(0); }));
+  ASSERT_TRUE(
+      Eventually([&] { return server_->counters().viewers == 2 && channels_.IsWanted(0); }));
   good.Read();
   good.Read();
   constexpr std::size_t kLarge = 4 << 20;  // more than the system's buffers take

@@ -49,9 +49,8 @@ TEST(FlightLiveTest, GivesTheMessagesOfTheFile) {
   for (int i = 0; i < 3; ++i) {
     SeeFrame(&flight, i);
     const auto messages = TakeFrames(&flight, 1);
-    for (const char* topic :
-         {"/camera/image", "/camera/calibration", "/camera/annotations", "/camera/pose", "/tf",
-          "/landing/target", "/scene", "/result"}) {
+    for (const char* topic : {"/camera/image", "/camera/calibration", "/camera/annotations",
+                              "/camera/pose", "/tf", "/landing/target", "/scene", "/result"}) {
       ASSERT_EQ(messages.count(topic), 1u) << topic;
       EXPECT_EQ(messages.at(topic)[0].time, ObservedFrame(i).time) << topic;
     }
