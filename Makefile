@@ -12,7 +12,7 @@ empty :=
 space := $(empty) $(empty)
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 
-.PHONY: demo console test interop ros bench accuracy format check asan fuzz install command tests build configure deps
+.PHONY: demo console test interop browser ros bench accuracy format check asan fuzz install command tests build configure deps
 
 demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
 	scripts/demo $(BIN) "$(DATA)" "$(CAMERA)"
@@ -26,10 +26,16 @@ console:  ## the web page: what it needs, built in, over a simulated flight
 test: tests
 	ctest --preset release -j $$(nproc)
 
-interop: tests  ## MAVLink against node-mavlink, MCAP against @mcap/core and @foxglove/schemas, which npm installs
+interop: tests  ## MAVLink against node-mavlink, MCAP and live flights against @mcap/core, @foxglove/schemas, @foxglove/ws-protocol, which npm installs
 	scripts/install-deps --interop
 	cmake --preset release
 	ctest --preset release -R ^interop/ --no-tests=error
+
+browser: deps  ## the console's page: its unit tests, and used in Chromium as a person would; pictures to out/browser
+	scripts/install-deps --browser
+	cmake --preset release
+	cmake --build --preset release --target kestrel
+	cd web && npm test && npm run try -- ../$(BIN)/src/kestrel/cli/kestrel ../out/browser
 
 ros: deps  ## the node of ROS 1 and its tests
 	scripts/install-deps --ros

@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whatever a browser's socket brings: the reader of its messages does not throw, and what it reads
-// are numbers that the program can use, a path gives numbers only; the guard lets nobody in who has
-// not the token.
+// are numbers that the program can use, a path gives numbers only; what a viewer sends gets it no
+// more than it may have; the guard lets nobody in who has not the token.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <memory>
+#include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "kestrel/console/client_message.h"
 #include "kestrel/console/export_request.h"
 #include "kestrel/console/request_guard.h"
+#include "kestrel/console/viewer_flow.h"
+#include "kestrel/console/viewer_request.h"
 
 namespace {
 
@@ -50,6 +55,26 @@ void ReadExportPath(std::string_view text) {
   Require(text.starts_with("/export/") && text.find('.') == text.rfind('.'));
 }
 
+const std::vector<kestrel::LiveChannel>& Channels() {
+  static const std::vector<kestrel::LiveChannel> channels = {{.topic = "/image", .is_image = true},
+                                                             {.topic = "/result"}};
+  return channels;
+}
+
+void Subscribe(std::string_view text) {
+  constexpr std::size_t kCapacity = 4;
+  kestrel::ViewerFlow flow(&Channels(), kCapacity);
+  for (const auto& request : {kestrel::ParseViewerText(text), kestrel::ParseViewerBytes(text)}) {
+    if (request) flow.Take(*request);
+  }
+  Require(flow.wanted() < 4);
+  const auto content = std::make_shared<const std::string>("x");
+  for (std::size_t channel = 0; channel < 2; ++channel) flow.Offer({channel, {}, content});
+  std::size_t sent = 0;
+  while (flow.Pop()) ++sent;
+  Require(sent <= kCapacity + 1);
+}
+
 // Host, origin, cookies and target, a line each.
 void AskGuard(std::string_view text, bool is_web_socket) {
   std::string_view lines[4];
@@ -75,6 +100,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   ReadMessage(text);
   ReadExportPath(text);
+  Subscribe(text);
   AskGuard(text, /*is_web_socket=*/false);
   AskGuard(text, /*is_web_socket=*/true);
   return 0;

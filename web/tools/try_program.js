@@ -1,73 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Uses the page of the program as a person would, in Debian's Chromium: watches a simulated flight
-// until it tracks, scrubs and plays a recording, comes with a wrong token. Writes pictures to a
-// folder, and ends with status 1 when something is not as it should be:
+// Watches a simulated flight until it tracks, loses the connection and gets it back, sees the program
+// start anew, scrubs and plays a recording, does it all by the keyboard, comes with a wrong token:
 //
 //   node tools/try_program.js KESTREL FOLDER
-import { spawn, spawnSync } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join, resolve as resolvePath } from "node:path";
-import { chromium } from "playwright-core";
-import { findingsOf } from "./axe.js";
+import { tryAll } from "./browser.js";
 
-const [kestrel, folder] = process.argv.slice(2);
-if (!kestrel || !folder) throw new Error("expected the program and a folder for the pictures");
+const flight = "fly sim:figure8 --autopilot sim:px4 --guide --set fly.sim_camera.scale=0.5 --console".split(" ");
+const frames = 60;
 
-let faults = 0;
-const scratch = mkdtempSync(join(tmpdir(), "kestrel-page-"));
-const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox"] });
-try {
-  await watchFlight();
-  await scrubRecording();
-  await tryTokens();
-} finally {
-  await browser.close();
-  rmSync(scratch, { recursive: true });
-}
-process.exit(faults > 0 ? 1 : 0);
+await tryAll(watchFlight, loseConnection, restartProgram, useKeyboard, scrubRecording, comeWithTokens);
 
-function expect(condition, text) {
-  if (condition) return;
-  console.error(text);
-  faults += 1;
-}
-
-/** Starts the program; resolves to it and the link that it prints. */
-function start(args) {
-  const program = spawn(resolvePath(kestrel), args, { cwd: scratch });
-  return new Promise((resolve, reject) => {
-    let said = "";
-    program.stderr.on("data", (text) => {
-      said += text;
-      const link = said.match(/console: (http:\S+)/);
-      if (link) resolve({ program, link: link[1] });
-    });
-    program.on("exit", () => reject(new Error(said)));
-  });
-}
-
-async function openPage(link) {
-  const page = await browser.newPage({ viewport: { width: 1440, height: 1000 } });
-  page.on("pageerror", (error) => expect(false, `${link}: ${error}`));
-  await page.addInitScript(() => localStorage.setItem("kestrel-theme", "light"));
-  await page.goto(link);
-  return page;
-}
-
-async function watchFlight() {
-  const { program, link } = await start(
-    "fly sim:figure8 --autopilot sim:px4 --guide --console 127.0.0.1:0 --set fly.sim_camera.scale=0.5".split(" "),
-  );
-  const page = await openPage(link);
-  await page.waitForFunction(() => !document.querySelector(".screen .empty"));
-  const descends = () => /descend, tracking/.test(document.querySelector(".state-word").textContent);
-  await page.waitForFunction(descends, null, { timeout: 90_000 });
+async function watchFlight(t) {
+  const { program, link } = await t.start([...flight, "127.0.0.1:0"]);
+  const page = await t.openPage(link);
+  await t.waitForImage(page);
+  await t.waitForState(page, /descend, tracking/, 90_000);
   await page.waitForTimeout(2000);
-  await page.screenshot({ path: join(folder, "console_live.png") });
+  await t.takePicture(page, "console_live");
   const age = await page.locator(".age").textContent();
-  expect(/Frame \d+, \d+ ms old/.test(age), `age of the picture: ${age}`);
-  for (const finding of await findingsOf(page)) expect(false, `live: ${finding}`);
+  t.expect(/Frame \d+, \d+ ms old/.test(age), `age of the picture: ${age}`);
+  await t.expectAccessible(page, "live");
   await page.getByRole("button", { name: "Snapshot" }).click();
   await page.getByText(/snapshot kept as kept/).waitFor();
   await page.getByRole("button", { name: "Record" }).click();
@@ -75,35 +27,107 @@ async function watchFlight() {
   await page.keyboard.press("r");
   await page.getByText("the recording is written").waitFor();
   await page.getByRole("heading", { name: "Doctor" }).waitFor();
-  program.kill("SIGINT");
-  await page.waitForFunction(() => /lost/.test(document.querySelector(".state-word").textContent));
-  await page.close();
+  await t.stop(program);
+  await t.waitForState(page, /lost/);
 }
 
-function simulateFlight() {
-  const recording = "flight";
-  const args = ["simulate", "landing", "--scenario", "figure8", "--seed", "3", "--output", recording];
-  const settings = ["frames=60", "rate_hz=10", "ground.map_px=512", "shutter.rays_per_pixel=4"];
-  const made = spawnSync(resolvePath(kestrel), [...args, ...settings.flatMap((setting) => ["--set", setting])], {
-    cwd: scratch,
-  });
-  if (made.status !== 0) throw new Error(made.stderr.toString());
-  return recording;
+/** Resolves when a picture has come after those that were shown before. */
+async function waitForNextPicture(page, t) {
+  const shown = () => document.querySelector(".age")?.textContent.match(/Frame (\d+)/)?.[1] ?? "";
+  const before = await page.evaluate(shown);
+  const isNext = (last) => {
+    const now = document.querySelector(".age")?.textContent.match(/Frame (\d+)/)?.[1] ?? "";
+    return now !== "" && now !== last;
+  };
+  await page.waitForFunction(isNext, before);
+  await t.waitForState(page, /^(?!Connect)/);
 }
 
-async function scrubRecording() {
-  const { program, link } = await start(["console", simulateFlight(), "--address", "127.0.0.1:0"]);
-  const page = await openPage(link);
+async function loseConnection(t) {
+  const { link } = await t.start([...flight, "127.0.0.1:0"]);
+  const { relay, link: relayed } = await t.relay(link);
+  const page = await t.openPage(relayed);
+  await waitForNextPicture(page, t);
+  relay.cut();
+  await t.waitForState(page, /Connection lost/);
+  await t.takePicture(page, "console_lost");
+  await t.expectAccessible(page, "lost");
+  await relay.open();
+  await waitForNextPicture(page, t);
+}
+
+async function restartProgram(t) {
+  const first = await t.start([...flight, "127.0.0.1:0"]);
+  const page = await t.openPage(first.link);
+  await waitForNextPicture(page, t);
+  await t.stop(first.program);
+  await t.waitForState(page, /Connection lost/);
+  const { port } = new URL(first.link);
+  const second = await t.start([...flight, `127.0.0.1:${port}`]);
+  await waitForNextPicture(page, t);
+  await t.stop(second.program);
+  await t.waitForState(page, /Connection lost/);
+  // With a token now, which this browser does not know.
+  const secret = ["--set", "console.token=0123456789abcdef"];
+  await t.start([...flight, `127.0.0.1:${port}`, ...secret]);
+  await t.waitForState(page, /token is not known/);
+}
+
+/** Goes by Tab to what has this role and name; false when it is not met. */
+async function tabTo(page, role, name) {
+  const wanted = page.getByRole(role, { name });
+  for (let i = 0; i < 60; i += 1) {
+    await page.keyboard.press("Tab");
+    if (await wanted.evaluate((element) => element === document.activeElement)) return true;
+  }
+  return false;
+}
+
+async function useKeyboard(t) {
+  const { link } = await t.start([...flight, "127.0.0.1:0"]);
+  const page = await t.openPage(link);
+  await waitForNextPicture(page, t);
+  const isPressed = (name) => page.getByRole("button", { name }).getAttribute("aria-pressed");
+  t.expect(await tabTo(page, "button", "Snapshot"), "Tab does not lead to Snapshot");
+  await page.keyboard.press("Enter");
+  await page.getByText(/snapshot kept as kept/).waitFor();
+  t.expect(await tabTo(page, "button", "freeze"), "Tab does not lead to freeze");
+  await page.keyboard.press("Space");
+  t.expect((await isPressed("freeze")) === "true", "the image is not frozen by Space");
+  await page.keyboard.press("k");
+  t.expect((await isPressed("freeze")) === "false", "the image is still frozen after k");
+  const before = await isPressed("detection");
+  await page.keyboard.press("1");
+  t.expect((await isPressed("detection")) !== before, "1 does not switch the detection");
+  await page.keyboard.press("t");
+  await page.getByRole("button", { name: "Theme: dark" }).waitFor();
+  await t.expectAccessible(page, "dark");
+  await page.keyboard.press("?");
+  await page.getByRole("dialog", { name: "Keys" }).waitFor();
+  await page.keyboard.press("Escape");
+  await page.getByRole("dialog", { name: "Keys" }).waitFor({ state: "hidden" });
+}
+
+function simulateFlight(t) {
+  const args = ["simulate", "landing", "--scenario", "figure8", "--seed", "3", "--output", "flight"];
+  const settings = [`frames=${frames}`, "rate_hz=10", "ground.map_px=512", "shutter.rays_per_pixel=4"];
+  t.run([...args, ...settings.flatMap((setting) => ["--set", setting])]);
+  return "flight";
+}
+
+async function scrubRecording(t) {
+  const { link } = await t.start(["console", simulateFlight(t), "--address", "127.0.0.1:0"]);
+  const page = await t.openPage(link);
   const time = page.locator(".replay-time");
   await time.waitFor();
-  await page.waitForFunction(() => !document.querySelector(".screen .empty"));
-  const isAt = (frame) => time.filter({ hasText: `frame ${frame} of 60` }).waitFor();
+  await t.waitForImage(page);
+  const isAt = (frame) => time.filter({ hasText: `frame ${frame} of ${frames}` }).waitFor();
   await page.keyboard.press("k");
   await time.filter({ hasText: /frame [2-6]\d of/ }).waitFor();
   await page.keyboard.press("k");
   await page.getByRole("slider").focus();
   await page.keyboard.press("End");
-  await isAt(60);
+  await isAt(frames);
   await page.keyboard.press("Home");
   await isAt(1);
   const box = await page.getByRole("slider").boundingBox();
@@ -115,22 +139,18 @@ async function scrubRecording() {
   await page.getByRole("button", { name: "Run" }).click();
   await page.getByText("Second run (below)").waitFor();
   await page.waitForTimeout(500);
-  await page.screenshot({ path: join(folder, "console_replay.png") });
-  for (const finding of await findingsOf(page)) expect(false, `replay: ${finding}`);
-  await page.close();
-  program.kill("SIGINT");
+  await t.takePicture(page, "console_replay");
+  await t.expectAccessible(page, "replay");
 }
 
-async function tryTokens() {
-  const { program, link } = await start(
+async function comeWithTokens(t) {
+  const { link } = await t.start(
     "fly sim:standing --console 127.0.0.1:0 --set console.token=0123456789abcdef".split(" "),
   );
-  const page = await openPage(link.replace("abcdef", "abcdee"));
+  const page = await t.openPage(link.replace("abcdef", "abcdee"));
   await page.getByText("who has its token").waitFor();
   await page.getByLabel("Token").fill("0123456789abcdef");
   await page.getByRole("button", { name: "Open" }).click();
   await page.waitForFunction(() => document.querySelector(".state-word")?.textContent !== "Connecting");
-  expect(!page.url().includes("token"), "the token stays in the address");
-  await page.close();
-  program.kill("SIGINT");
+  t.expect(!page.url().includes("token"), "the token stays in the address");
 }

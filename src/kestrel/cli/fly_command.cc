@@ -18,6 +18,7 @@
 #include "kestrel/cli/fly_source.h"
 #include "kestrel/cli/interrupt.h"
 #include "kestrel/console/flight_console.h"
+#include "kestrel/foxglove/flight_live.h"
 #include "kestrel/foxglove/flight_mcap.h"
 #include "kestrel/link/mavlink_enums.h"
 #include "kestrel/onboard/bounded_queue.h"
@@ -123,6 +124,7 @@ class Flight {
   void Say(const std::string& text, EventLevel level = EventLevel::kInfo) {
     log_.Say(text);
     if (console_) console_->Say(level, text);
+    if (live_) live_->Say(level, text);
     if (mcap_) mcap_->Say(level, text);
   }
 
@@ -138,13 +140,18 @@ class Flight {
   // First of all: a port that is taken is said before anything is written.
   void OpenConsole() {
     if (!arguments_.console) return;
+    live_ = std::make_unique<FlightLive>(source_.calibration.intrinsics, View(),
+                                         all_options_.console.max_image_rate_hz);
     console_.emplace(all_options_.console, arguments_.source.sources.front(), View(),
                      FlightExamination(source_.calibration,
                                        arguments_.record.empty() ? all_options_.fly.keep_folder
                                                                  : arguments_.record,
-                                       all_options_.fly.recorder.free_space_mb));
+                                       all_options_.fly.recorder.free_space_mb),
+                     live_->channels());
     observers_.Add(&*console_);
+    observers_.Add(live_.get());
     log_.Say("console: " + console_->url());
+    log_.Say("for Foxglove: " + console_->viewer_url());
   }
 
   void OpenMcap() {
@@ -272,6 +279,7 @@ class Flight {
     return OpenRecorder(folder, replace);
   }};
   FlightKeeper keeper_{all_options_.fly.keep_folder, &recording_};
+  std::unique_ptr<FlightLive> live_;
   std::optional<FlightConsole> console_;
   std::unique_ptr<FlightMcap> mcap_;
   FlightObservers observers_;

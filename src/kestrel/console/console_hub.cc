@@ -15,13 +15,15 @@ constexpr Duration kReportInterval = std::chrono::seconds(1);
 }  // namespace
 
 ConsoleHub::ConsoleHub(const ConsoleOptions& options, ConsoleFeed* feed,
-                       std::span<const WebAsset> assets, int port)
+                       std::span<const WebAsset> assets, int port, ChannelFeed* channels)
     : options_(options),
       feed_(feed),
       assets_(assets),
       guard_(options, port),
       images_(feed, options.jpeg_quality, options.max_image_rate_hz),
-      hello_(std::make_shared<const std::string>(ToJson(feed->description()))) {}
+      hello_(std::make_shared<const std::string>(ToJson(feed->description()))) {
+  if (channels != nullptr) viewers_.emplace(channels, feed->description().title);
+}
 
 const WebAsset* ConsoleHub::FindAsset(std::string_view path) const {
   const auto asset = std::find_if(assets_.begin(), assets_.end(),
@@ -67,6 +69,7 @@ void ConsoleHub::Tick(Time now) {
     reported_ = now;
   }
   for (ConsoleClient* client : clients_) client->SendNext();
+  if (viewers_) viewers_->Tick(now);
   encoded_ = images_.encoded();
 }
 

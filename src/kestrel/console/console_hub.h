@@ -15,6 +15,7 @@
 #include "kestrel/console/image_channel.h"
 #include "kestrel/console/request_guard.h"
 #include "kestrel/console/telemetry_channel.h"
+#include "kestrel/console/viewer_hub.h"
 #include "kestrel/console/web_assets.h"
 
 namespace kestrel {
@@ -33,9 +34,10 @@ class ConsoleClient {
 // What the connections of the console share. By the console's thread, counters by any.
 class ConsoleHub {
  public:
-  // 'options' are valid; 'feed' and 'assets' outlive the hub.
+  // 'options' are valid; 'feed', 'assets' and 'channels' outlive the hub. 'channels': what viewers
+  // can subscribe to; null: nothing.
   ConsoleHub(const ConsoleOptions& options, ConsoleFeed* feed, std::span<const WebAsset> assets,
-             int port);
+             int port, ChannelFeed* channels);
 
   const ConsoleOptions& options() const { return options_; }
   const RequestGuard& guard() const { return guard_; }
@@ -50,7 +52,9 @@ class ConsoleHub {
   // A browser comes: it gets what is known so far. It leaves before it is destroyed.
   void Join(ConsoleClient* client);
   void Leave(ConsoleClient* client);
-  bool has_clients() const { return !clients_.empty(); }
+  bool has_clients() const { return !clients_.empty() || (viewers_ && !viewers_->empty()); }
+  // Null where there is nothing to subscribe to.
+  ViewerHub* viewer_hub() { return viewers_ ? &*viewers_ : nullptr; }
 
   // Hands out what is new.
   void Tick(Time now);
@@ -59,6 +63,7 @@ class ConsoleHub {
   void Export(PendingExport pending) { feed_->Export(std::move(pending)); }
 
   int clients() const { return client_count_; }
+  int viewers() const { return viewers_ ? viewers_->viewers() : 0; }
   std::uint64_t connections() const { return connections_; }
   std::uint64_t refused() const { return refused_; }
   std::uint64_t encoded() const { return encoded_; }
@@ -72,6 +77,7 @@ class ConsoleHub {
   std::span<const WebAsset> assets_;
   RequestGuard guard_;
   ImageChannel images_;
+  std::optional<ViewerHub> viewers_;
   SharedMessage hello_;
   // The newest of each kind, for those who come later; of samples none.
   std::array<SharedMessage, std::variant_size_v<ConsoleUpdate>> newest_;

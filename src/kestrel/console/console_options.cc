@@ -22,6 +22,27 @@ bool IsToken(const std::string& token) {
          std::all_of(token.begin(), token.end(), IsTokenCharacter);
 }
 
+// The parts between commas, in lower case, without blanks.
+std::vector<std::string> PartsOf(const std::string& list) {
+  std::vector<std::string> parts;
+  std::istringstream stream(list);
+  for (std::string part; std::getline(stream, part, ',');) {
+    std::erase_if(part, [](unsigned char c) { return std::isspace(c); });
+    std::transform(part.begin(), part.end(), part.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    if (!part.empty()) parts.push_back(part);
+  }
+  return parts;
+}
+
+// As "https://app.foxglove.dev", without a path. "null" is what any page can come as.
+bool IsOrigin(const std::string& text) {
+  const std::size_t colon = text.find("://");
+  if (colon == text.npos || colon == 0) return false;
+  return text == "file://" ||
+         (text.size() > colon + 3 && text.find_first_of("/*?#", colon + 3) == text.npos);
+}
+
 }  // namespace
 
 std::vector<std::string> ConsoleOptions::Validate() const {
@@ -39,6 +60,15 @@ std::vector<std::string> ConsoleOptions::Validate() const {
                     "makes one)",
                     address));
   }
+  for (const std::string& origin : ViewerOrigins()) {
+    if (origin == "file://" && token.empty()) {
+      violations.push_back("viewer_origins has 'file://', any HTML file, expected a token with it");
+    }
+    if (IsOrigin(origin)) continue;
+    violations.push_back(fmt::format(
+        "viewer_origins has '{}', expected origins as https://app.foxglove.dev, without a path",
+        origin));
+  }
   RequireIn(port, 0, 65535, "port", &violations);
   RequireIn(max_connections, 1, 1000, "max_connections", &violations);
   RequireIn(max_image_rate_hz, 0.1, 200, "max_image_rate_hz", &violations);
@@ -54,17 +84,9 @@ bool ConsoleOptions::IsLoopback() const {
   return !error && ip.is_loopback();
 }
 
-std::vector<std::string> ConsoleOptions::HostNames() const {
-  std::vector<std::string> names;
-  std::istringstream list(host_names);
-  for (std::string name; std::getline(list, name, ',');) {
-    std::erase_if(name, [](unsigned char c) { return std::isspace(c); });
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return std::tolower(c); });
-    if (!name.empty()) names.push_back(name);
-  }
-  return names;
-}
+std::vector<std::string> ConsoleOptions::HostNames() const { return PartsOf(host_names); }
+
+std::vector<std::string> ConsoleOptions::ViewerOrigins() const { return PartsOf(viewer_origins); }
 
 ConsoleOptions WithAddress(ConsoleOptions options, const std::string& text,
                            const std::string& argument) {

@@ -16,6 +16,10 @@ struct ConsoleOptions {
   // Names, with commas between them, that the page may be asked by, as "kestrel.local". Addresses
   // and localhost always may; any other name is a page that poses as this one (DNS rebinding).
   std::string host_names;
+  // Pages of others, with commas between them, that may subscribe to a flight's messages at
+  // /foxglove, as "https://app.foxglove.dev". They see all that the flight shows, and can do
+  // nothing. Programs that are no page need not be here.
+  std::string viewer_origins;
   int max_connections = 64;
   double max_image_rate_hz = 20;
   int jpeg_quality = 70;
@@ -30,6 +34,8 @@ struct ConsoleOptions {
     visitor("port", self.port, "1", "port of it, 0 for any free one");
     visitor("token", self.token, "", "what a browser must know, 16 to 128 of A-Z a-z 0-9 - _");
     visitor("host_names", self.host_names, "", "names of this computer, with commas between them");
+    visitor("viewer_origins", self.viewer_origins, "",
+            "pages that may look on by /foxglove, with commas between them");
     visitor("max_connections", self.max_connections, "1", "at a time; others are refused");
     visitor("max_image_rate_hz", self.max_image_rate_hz, "Hz", "of the live image");
     visitor("jpeg_quality", self.jpeg_quality, "1", "of the live image, 1 to 100");
@@ -42,6 +48,8 @@ struct ConsoleOptions {
   bool IsLoopback() const;
   // The parts of host_names, in lower case.
   std::vector<std::string> HostNames() const;
+  // The parts of viewer_origins, in lower case.
+  std::vector<std::string> ViewerOrigins() const;
 };
 
 // The options with what the user said of them, as "127.0.0.1:8080" or "[::1]:0". Throws InputError

@@ -34,14 +34,14 @@ ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightVie
 }  // namespace
 
 FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& title,
-                             FlightView view, FlightExamination examination)
+                             FlightView view, FlightExamination examination, ChannelFeed* channels)
     : view_(std::move(view)),
       feed_(DescriptionOf(title, view_)),
       seen_(kSeenFrames),
       arrivals_(kArrivals),
       examination_(std::move(examination)),
       link_rate_hz_(std::numeric_limits<double>::quiet_NaN()),
-      server_(options, &feed_),
+      server_(options, &feed_, WebAssets(), channels),
       thread_([this] { Show(); }) {}
 
 FlightConsole::~FlightConsole() {

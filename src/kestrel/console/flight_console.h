@@ -35,15 +35,18 @@ struct FlightRequests {
 // shows, and only while somebody looks: else a frame costs the vision one look at a number.
 class FlightConsole : public FlightObserver {
  public:
-  // Serves from now on. 'title': of the page. Throws InputError as WebServer does.
+  // Serves from now on. 'title': of the page. 'channels' as for WebServer. Throws InputError as
+  // that does.
   FlightConsole(const ConsoleOptions& options, const std::string& title, FlightView view,
-                FlightExamination examination);
+                FlightExamination examination, ChannelFeed* channels = nullptr);
   ~FlightConsole() override;
   FlightConsole(const FlightConsole&) = delete;
   FlightConsole& operator=(const FlightConsole&) = delete;
 
   // What to open in a browser on this computer.
   std::string url() const { return server_.url(); }
+  // The same for a viewer that speaks Foxglove's protocol.
+  std::string viewer_url() const { return server_.viewer_url(); }
 
   // Obeys from now on, by a thread of its own: until then what the users ask waits. Once only; what
   // is asked of outlives the console.

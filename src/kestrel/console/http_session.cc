@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/console/socket_session.h"
+#include "kestrel/console/viewer_session.h"
 
 namespace kestrel {
 namespace {
@@ -111,12 +112,7 @@ void HttpSession::Answer(const Request& request) {
 }
 
 void HttpSession::AnswerAdmitted(const Request& request) {
-  if (beast::websocket::is_upgrade(request)) {
-    if (View(request.target()) != kSocketPath) return Refuse(Status::not_found, "no such socket");
-    const auto session =
-        std::make_shared<SocketSession>(std::move(stream_), hub_, std::move(slot_));
-    return session->Accept(request);
-  }
+  if (beast::websocket::is_upgrade(request)) return Upgrade(request);
   if (request.method() != http::verb::get && request.method() != http::verb::head) {
     return Refuse(Status::method_not_allowed, "only GET and HEAD");
   }
@@ -129,6 +125,25 @@ void HttpSession::AnswerAdmitted(const Request& request) {
   const WebAsset* asset = hub_->FindAsset(path == "/" ? "/index.html" : path);
   if (asset == nullptr) return Refuse(Status::not_found, "no such page");
   SendAsset(request, *asset);
+}
+
+void HttpSession::Upgrade(const Request& request) {
+  const std::string_view target = View(request.target());
+  if (target == kSocketPath) {
+    return std::make_shared<SocketSession>(std::move(stream_), hub_, std::move(slot_))
+        ->Accept(request);
+  }
+  ViewerHub* const viewers = hub_->viewer_hub();
+  if (viewers == nullptr || target.substr(0, target.find('?')) != kViewerPath) {
+    return Refuse(Status::not_found, "no such socket");
+  }
+  const auto protocol = ChooseSubprotocol(View(request[http::field::sec_websocket_protocol]));
+  if (!protocol) {
+    return Refuse(Status::bad_request,
+                  "expected the subprotocol foxglove.sdk.v1 or foxglove.websocket.v1");
+  }
+  std::make_shared<ViewerSession>(std::move(stream_), hub_, viewers, std::move(slot_))
+      ->Accept(request, *protocol);
 }
 
 void HttpSession::SendAsset(const Request& request, const WebAsset& asset) {

@@ -31,6 +31,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   void Answer(const Request& request);
   void AnswerAdmitted(const Request& request);
+  void Upgrade(const Request& request);
   void SendAsset(const Request& request, const WebAsset& asset);
   void SendExport(const Request& request, const ExportRequest& wanted);
   void SignIn(const Request& request);

@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::string_view kTokenQuery = "/?token=";
+constexpr std::string_view kTokenQuery = "?token=";
 
 // In a time that does not tell how much of it is right.
 bool IsSame(std::string_view given, std::string_view secret) {
@@ -34,6 +34,8 @@ std::string NameOf(std::string_view host) {
   return name;
 }
 
+std::string_view PathOf(std::string_view target) { return target.substr(0, target.find('?')); }
+
 std::string_view WithoutSpaces(std::string_view text) {
   while (text.starts_with(' ')) text.remove_prefix(1);
   while (text.ends_with(' ')) text.remove_suffix(1);
@@ -46,15 +48,31 @@ RequestGuard::RequestGuard(const ConsoleOptions& options, int port)
     : is_loopback_(options.IsLoopback()),
       token_(options.token),
       cookie_name_(fmt::format("kestrel_{}", port)),
-      host_names_(options.HostNames()) {}
+      host_names_(options.HostNames()),
+      viewer_origins_(options.ViewerOrigins()) {}
 
 Admission RequestGuard::Admit(const RequestHead& head) const {
   if (!IsOwnHost(head.host)) return Admission::kWrongHost;
+  if (head.is_web_socket && PathOf(head.target) == kViewerPath) return AdmitViewer(head);
   if (IsForeign(head)) return Admission::kForeignOrigin;
   if (token_.empty() || HasCookie(head.cookies)) return Admission::kServed;
-  const bool has_token = !head.is_web_socket && head.target.starts_with(kTokenQuery) &&
-                         IsSame(head.target.substr(kTokenQuery.size()), token_);
+  const bool has_token = !head.is_web_socket && PathOf(head.target) == "/" && HasToken(head.target);
   return has_token ? Admission::kSignedIn : Admission::kNoToken;
+}
+
+// A viewer only looks. One without an origin is no page: a browser says it with every web socket.
+// The cookie does not come with what another site's page asks: the token is in the address.
+Admission RequestGuard::AdmitViewer(const RequestHead& head) const {
+  const bool is_listed = !head.origin || std::find(viewer_origins_.begin(), viewer_origins_.end(),
+                                                   *head.origin) != viewer_origins_.end();
+  if (!is_listed && IsForeign(head)) return Admission::kForeignOrigin;
+  const bool knows_token = token_.empty() || HasToken(head.target) || HasCookie(head.cookies);
+  return knows_token ? Admission::kServed : Admission::kNoToken;
+}
+
+bool RequestGuard::HasToken(std::string_view target) const {
+  const std::string_view query = target.substr(PathOf(target).size());
+  return query.starts_with(kTokenQuery) && IsSame(query.substr(kTokenQuery.size()), token_);
 }
 
 // The port is not compared: through a tunnel it is another. An address cannot be rebound, a name

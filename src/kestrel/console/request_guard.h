@@ -10,6 +10,9 @@
 
 namespace kestrel {
 
+// Where viewers that speak Foxglove's protocol connect.
+inline constexpr std::string_view kViewerPath = "/foxglove";
+
 // The part of an HTTP request that says whose it is.
 struct RequestHead {
   std::string_view target = {};                 // path and query
@@ -45,12 +48,14 @@ class RequestGuard {
  private:
   bool IsOwnHost(std::string_view host) const;
   bool IsForeign(const RequestHead& head) const;
+  Admission AdmitViewer(const RequestHead& head) const;
+  bool HasToken(std::string_view target) const;
   bool HasCookie(std::string_view cookies) const;
 
   bool is_loopback_;
   std::string token_;
   std::string cookie_name_;
-  std::vector<std::string> host_names_;
+  std::vector<std::string> host_names_, viewer_origins_;
 };
 
 }  // namespace kestrel

@@ -111,6 +111,19 @@ TEST(ConsoleOptionsTest, NamesWhatIsWrongButNeverTheToken) {
               testing::ElementsAre(testing::StartsWith("token is empty, expected one")));
 }
 
+TEST(ConsoleOptionsTest, OriginsOfViewersAreNeitherPathsNorAnything) {
+  ConsoleOptions options = OptionsAt("127.0.0.1", kToken);
+  options.viewer_origins = "https://app.foxglove.dev, http://localhost:8081, file://";
+  EXPECT_THAT(options.Validate(), testing::IsEmpty());
+  EXPECT_EQ(options.ViewerOrigins()[1], "http://localhost:8081");
+  options.token.clear();
+  for (const char* origin : {"file://", "null", "*", "https://*", "app.foxglove.dev", "https://",
+                             "https://app.foxglove.dev/", "://x"}) {
+    options.viewer_origins = origin;
+    EXPECT_EQ(options.Validate().size(), 1u) << origin;
+  }
+}
+
 TEST(ConsoleOptionsTest, AddressesAreAddressAndPort) {
   const auto read = [](const std::string& text) { return WithAddress({}, text, "--console"); };
   EXPECT_EQ(read("10.0.0.5:80").address, "10.0.0.5");

@@ -9,9 +9,12 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "kestrel/console/console_options.h"
 
 namespace kestrel {
 
@@ -22,6 +25,25 @@ using Tcp = boost::asio::ip::tcp;
 using Request = http::request<http::string_body>;
 using Response = http::response<http::string_body>;
 }  // namespace test_browser
+
+inline constexpr char kSecret[] = "0123456789abcdef";
+
+inline ConsoleOptions AnyPort(const std::string& token = "") {
+  ConsoleOptions options;
+  options.port = 0;
+  options.token = token;
+  return options;
+}
+
+// Whether the condition holds before long.
+template <class Condition>
+bool Eventually(Condition condition) {
+  for (int i = 0; i < 1000; ++i) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
 
 // Asks a server on this computer, as a browser or as somebody who is none.
 class TestBrowser {
@@ -73,8 +95,9 @@ class TestBrowser {
 // The page's WebSocket.
 class TestSocket {
  public:
-  // 'origin', 'cookie': empty: none.
-  TestSocket(int port, const std::string& origin, const std::string& cookie = "")
+  // 'origin', 'cookie', 'subprotocol': empty: none.
+  TestSocket(int port, const std::string& origin, const std::string& cookie = "",
+             const std::string& target = "/live", const std::string& subprotocol = "")
       : stream_(context_) {
     namespace beast = test_browser::beast;
     namespace websocket = beast::websocket;
@@ -83,16 +106,23 @@ class TestSocket {
     stream_.set_option(websocket::stream_base::decorator([=](websocket::request_type& request) {
       if (!origin.empty()) request.set("Origin", origin);
       if (!cookie.empty()) request.set("Cookie", cookie);
+      if (!subprotocol.empty()) request.set("Sec-WebSocket-Protocol", subprotocol);
     }));
     stream_.read_message_max(64 << 20);
     beast::error_code error;
-    stream_.handshake(fmt::format("127.0.0.1:{}", port), "/live", error);
+    beast::websocket::response_type response;
+    stream_.handshake(response, fmt::format("127.0.0.1:{}", port), target, error);
     is_open_ = !error;
+    subprotocol_ = std::string(response["Sec-WebSocket-Protocol"]);
   }
   explicit TestSocket(int port) : TestSocket(port, fmt::format("http://127.0.0.1:{}", port)) {}
 
   // Whether the server has let it in.
   bool is_open() const { return is_open_; }
+  // That the server has chosen.
+  const std::string& subprotocol() const { return subprotocol_; }
+  // Whether the last message that was read is text.
+  bool is_text() const { return is_text_; }
 
   void Send(const std::string& text, bool is_text = true) {
     test_browser::beast::error_code error;
@@ -156,6 +186,7 @@ class TestSocket {
   boost::asio::io_context context_;
   test_browser::beast::websocket::stream<test_browser::beast::tcp_stream> stream_;
   bool is_open_ = false;
+  std::string subprotocol_;
   bool is_text_ = false;
 };
 

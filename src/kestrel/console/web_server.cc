@@ -44,12 +44,13 @@ Tcp::acceptor Listen(asio::io_context& context, const ConsoleOptions& options) {
 
 class WebServer::Impl {
  public:
-  Impl(const ConsoleOptions& options, ConsoleFeed* feed, std::span<const WebAsset> assets)
+  Impl(const ConsoleOptions& options, ConsoleFeed* feed, std::span<const WebAsset> assets,
+       ChannelFeed* channels)
       : options_(Checked(options)),
         acceptor_(Listen(context_, options_)),
         timer_(context_),
         port_(acceptor_.local_endpoint().port()) {
-    hub_ = std::make_unique<ConsoleHub>(options_, feed, assets, port_);
+    hub_ = std::make_unique<ConsoleHub>(options_, feed, assets, port_, channels);
     Accept();
     Tick();
     thread_ = std::thread([this] { Serve(); });
@@ -63,12 +64,12 @@ class WebServer::Impl {
   int port() const { return port_; }
   const ConsoleHub& hub() const { return *hub_; }
 
-  std::string Url() const {
+  std::string Url(std::string_view scheme, std::string_view path) const {
     const auto address = acceptor_.local_endpoint().address();
     std::string host = address.is_unspecified() ? "localhost" : address.to_string();
     if (address.is_v6() && !address.is_unspecified()) host = "[" + host + "]";
     const std::string query = options_.token.empty() ? "" : "?token=" + options_.token;
-    return fmt::format("http://{}:{}/{}", host, port_, query);
+    return fmt::format("{}://{}:{}{}{}", scheme, host, port_, path, query);
   }
 
  private:
@@ -115,18 +116,20 @@ class WebServer::Impl {
 };
 
 WebServer::WebServer(const ConsoleOptions& options, ConsoleFeed* feed,
-                     std::span<const WebAsset> assets)
-    : impl_(std::make_unique<Impl>(options, feed, assets)) {}
+                     std::span<const WebAsset> assets, ChannelFeed* channels)
+    : impl_(std::make_unique<Impl>(options, feed, assets, channels)) {}
 
 WebServer::~WebServer() = default;
 
 int WebServer::port() const { return impl_->port(); }
 
-std::string WebServer::url() const { return impl_->Url(); }
+std::string WebServer::url() const { return impl_->Url("http", "/"); }
+
+std::string WebServer::viewer_url() const { return impl_->Url("ws", kViewerPath); }
 
 WebServer::Counters WebServer::counters() const {
   const ConsoleHub& hub = impl_->hub();
-  return {hub.connections(), hub.refused(), hub.encoded(), hub.clients()};
+  return {hub.connections(), hub.refused(), hub.encoded(), hub.clients(), hub.viewers()};
 }
 
 }  // namespace kestrel

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "kestrel/console/channel_feed.h"
 #include "kestrel/console/console_feed.h"
 #include "kestrel/console/console_options.h"
 #include "kestrel/console/web_assets.h"
@@ -14,20 +15,24 @@ namespace kestrel {
 
 // The console: the page's files by HTTP, and everything that is live by one WebSocket at /live, on
 // a thread of its own. HTTP only reads: all that a user asks for comes by the WebSocket, whose
-// origin is checked. Nothing names a file of this computer: what is served is in the program.
+// origin is checked. Viewers that speak Foxglove's protocol (foxglove.sdk.v1,
+// foxglove.websocket.v1) connect to /foxglove, and only look. Nothing names a file of this
+// computer: what is served is in the program.
 class WebServer {
  public:
   struct Counters {
     std::uint64_t connections = 0;  // taken so far
     std::uint64_t refused = 0;      // connections and requests
     std::uint64_t encoded = 0;      // images made into JPEG
-    int clients = 0;                // WebSockets open now
+    int clients = 0;                // pages that look now
+    int viewers = 0;                // that have subscribed, or may
   };
 
-  // Serves from now on. 'feed' and 'assets' outlive the server. Throws InputError when the options
-  // are not valid, or the address cannot be listened at.
+  // Serves from now on. 'feed', 'assets' and 'channels' outlive the server. 'channels': what
+  // viewers can subscribe to; null: nothing. Throws InputError when the options are not valid, or
+  // the address cannot be listened at.
   WebServer(const ConsoleOptions& options, ConsoleFeed* feed,
-            std::span<const WebAsset> assets = WebAssets());
+            std::span<const WebAsset> assets = WebAssets(), ChannelFeed* channels = nullptr);
   // Ends all connections.
   ~WebServer();
   WebServer(const WebServer&) = delete;
@@ -36,6 +41,8 @@ class WebServer {
   int port() const;
   // What to open in a browser on this computer, with the token where there is one.
   std::string url() const;
+  // The same for a viewer.
+  std::string viewer_url() const;
   Counters counters() const;
 
  private:

@@ -19,19 +19,11 @@ namespace {
 using namespace std::chrono_literals;
 namespace http = boost::beast::http;
 
-constexpr char kSecret[] = "0123456789abcdef";
 constexpr std::array<WebAsset, 3> kAssets{{
     {"/index.html", "text/html; charset=utf-8", "<p>page", false},
     {"/assets/app.1234.js", "text/javascript; charset=utf-8", "zipped", true},
     {"/icon.svg", "image/svg+xml", "<svg/>", false},
 }};
-
-ConsoleOptions AnyPort(const std::string& token = "") {
-  ConsoleOptions options;
-  options.port = 0;
-  options.token = token;
-  return options;
-}
 
 ConsoleFrame SomeFrame(int width = 64) {
   ConsoleFrame frame;
@@ -48,15 +40,6 @@ cv::Mat NoiseImage(int width, int height) {
     for (int x = 0; x < width; ++x) image.at<uchar>(y, x) = static_cast<uchar>(random());
   }
   return image;
-}
-
-template <class Condition>
-bool Eventually(Condition condition) {
-  for (int i = 0; i < 1000; ++i) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(10ms);
-  }
-  return false;
 }
 
 class WebServerTest : public testing::Test {
@@ -220,6 +203,8 @@ TEST_F(WebServerTest, AThousandHostileRequestsAreRefused) {
                                             "/assets/%00",
                                             "/?token=",
                                             "/?token=0123456789abcdeg",
+                                            "/foxglove",
+                                            "/foxglove?token=0123456789abcdeg",
                                             "//evil.example/",
                                             "/index.html",
                                             "/" + long_text,

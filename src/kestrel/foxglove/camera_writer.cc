@@ -2,7 +2,7 @@
 #include "kestrel/foxglove/camera_writer.h"
 
 #include "kestrel/base/error.h"
-#include "kestrel/foxglove/foxglove_messages.h"
+#include "kestrel/foxglove/foxglove_topics.h"
 #include "kestrel/foxglove/observation_messages.h"
 
 namespace kestrel {
@@ -12,17 +12,19 @@ constexpr int kJpegQuality = 85;
 
 }  // namespace
 
-CameraWriter::CameraWriter(FoxgloveFile* file, const std::optional<CameraIntrinsics>& camera)
-    : file_(file), camera_(camera), encoder_(kJpegQuality) {}
+CameraWriter::CameraWriter(FoxgloveSink* sink, const std::optional<CameraIntrinsics>& camera)
+    : sink_(sink), camera_(camera), encoder_(kJpegQuality) {}
 
 void CameraWriter::Write(const Frame& frame) {
-  foxglove::CompressedImage message{frame.time, kFoxgloveCamera, {}, "jpeg"};
-  if (!encoder_.Append(frame.image, &message.data.bytes)) {
-    throw InputError(frame.name + ": is neither 8-bit gray nor BGR");
-  }
-  file_->Write("/camera/image", frame.time, message);
+  sink_->Offer(kImageTopic, frame.time, [&] {
+    foxglove::CompressedImage message{frame.time, kFoxgloveCamera, {}, "jpeg"};
+    if (!encoder_.Append(frame.image, &message.data.bytes)) {
+      throw InputError(frame.name + ": is neither 8-bit gray nor BGR");
+    }
+    return message;
+  });
   if (!camera_) return;
-  file_->Write("/camera/calibration", frame.time, FoxgloveCalibration(frame.time, *camera_));
+  sink_->Write(kCalibrationTopic, frame.time, FoxgloveCalibration(frame.time, *camera_));
 }
 
 }  // namespace kestrel

@@ -5,7 +5,7 @@
 
 #include "kestrel/camera/camera_model.h"
 #include "kestrel/console/jpeg_encoder.h"
-#include "kestrel/foxglove/foxglove_file.h"
+#include "kestrel/foxglove/foxglove_sink.h"
 #include "kestrel/recording/frame.h"
 
 namespace kestrel {
@@ -14,14 +14,14 @@ namespace kestrel {
 // is, where that is known, as /camera/calibration (foxglove.CameraCalibration).
 class CameraWriter {
  public:
-  // 'file' outlives this.
-  CameraWriter(FoxgloveFile* file, const std::optional<CameraIntrinsics>& camera);
+  // 'sink' outlives this.
+  CameraWriter(FoxgloveSink* sink, const std::optional<CameraIntrinsics>& camera);
 
-  // Throws InputError when the file cannot be written, or the frame is neither 8-bit gray nor BGR.
+  // Throws InputError when the sink cannot be written, or the frame is neither 8-bit gray nor BGR.
   void Write(const Frame& frame);
 
  private:
-  FoxgloveFile* file_;
+  FoxgloveSink* sink_;
   std::optional<CameraIntrinsics> camera_;
   JpegEncoder encoder_;
 };

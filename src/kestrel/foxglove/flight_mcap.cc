@@ -14,31 +14,21 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kSeenFrames = 32;  // that wait for the disk
-constexpr std::size_t kSaid = 256;
 constexpr Duration kPatience = std::chrono::seconds(1);
 
 }  // namespace
 
 FlightMcap::FlightMcap(const std::string& path, bool replace, const CameraIntrinsics& camera,
                        std::variant<LandingView, HuntView> view, Tell tell)
-    : file_(path, replace, camera, std::move(view)),
+    : FlightWriter(kSeenFrames),
+      file_(path, replace, camera, std::move(view)),
       tell_(std::move(tell)),
-      seen_(kSeenFrames),
-      said_(kSaid),
       thread_([this] { Run(); }) {}
 
 FlightMcap::~FlightMcap() {
   is_over_ = true;
-  seen_.Close();
+  EndFrames();
   thread_.join();
-}
-
-void FlightMcap::See(const Frame& frame, const LandingObservation& observation) {
-  seen_.Push({frame, Now() - frame.time, observation});
-}
-
-void FlightMcap::See(const Frame& frame, const HuntObservation& observation) {
-  seen_.Push({frame, Now() - frame.time, observation});
 }
 
 void FlightMcap::Run() {
@@ -47,28 +37,20 @@ void FlightMcap::Run() {
     WriteAll();
   } catch (const InputError& error) {
     tell_(fmt::format("{}: the flight goes on without it", error.what()));
-    seen_.Close();  // the frames in it go with it
+    EndFrames();  // the frames that wait go with it
     return;
   }
-  if (seen_.dropped() > 0) {
-    tell_(fmt::format("--mcap: {} frames are left out: the disk is too slow", seen_.dropped()));
+  if (dropped_frames() > 0) {
+    tell_(fmt::format("--mcap: {} frames are left out: the disk is too slow", dropped_frames()));
   }
 }
 
 void FlightMcap::WriteAll() {
   for (;;) {
     const bool was_over = is_over_;
-    const auto seen = seen_.Pop(kPatience);
-    while (const auto said = said_.TryPop()) file_.WriteLog(said->time, said->level, said->text);
-    if (seen) {
-      std::visit(
-          [&](const auto& observation) { file_.Write(seen->frame, observation, seen->latency); },
-          seen->observation);
-    } else if (was_over) {
-      return file_.Close();
-    } else {
-      file_.Flush();
-    }
+    if (WriteNext(&file_.writer(), kPatience)) continue;
+    if (was_over) return file_.Close();
+    file_.Flush();
   }
 }
 

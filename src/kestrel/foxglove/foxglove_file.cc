@@ -3,16 +3,19 @@
 
 namespace kestrel {
 
-std::size_t FoxgloveFile::ChannelOf(std::string_view topic, std::string_view type,
-                                    std::string (*schema)()) {
-  const auto known = channels_.find(topic);
+void FoxgloveFile::Put(const FoxgloveTopicInfo& topic, Time time, std::string message) {
+  file_.Write(ChannelOf(topic), time, message);
+}
+
+std::size_t FoxgloveFile::ChannelOf(const FoxgloveTopicInfo& topic) {
+  const auto known = channels_.find(topic.name);
   if (known != channels_.end()) return known->second;
-  const std::size_t channel = file_.AddChannel({.topic = std::string(topic),
+  const std::size_t channel = file_.AddChannel({.topic = std::string(topic.name),
                                                 .message_encoding = "protobuf",
-                                                .schema_name = std::string(type),
+                                                .schema_name = std::string(topic.type),
                                                 .schema_encoding = "protobuf",
-                                                .schema = schema()});
-  channels_.emplace(topic, channel);
+                                                .schema = topic.schema()});
+  channels_.emplace(topic.name, channel);
   return channel;
 }
 

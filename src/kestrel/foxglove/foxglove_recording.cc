@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "kestrel/base/error.h"
-#include "kestrel/foxglove/foxglove_messages.h"
+#include "kestrel/foxglove/foxglove_topics.h"
 #include "kestrel/foxglove/observation_messages.h"
 
 namespace kestrel {
@@ -31,9 +31,9 @@ FoxgloveRecording::FoxgloveRecording(const std::string& path, const RecordingHea
 }
 
 void FoxgloveRecording::AddPose(const PoseSample& pose) {
-  file_.Write("/pose", pose.time,
+  file_.Write(kBodyPoseTopic, pose.time,
               foxglove::PoseInFrame{pose.time, kFoxgloveWorld, FoxglovePose(pose.world_from_body)});
-  file_.Write("/tf", pose.time,
+  file_.Write(kTransformsTopic, pose.time,
               foxglove::FrameTransforms{
                   {FoxgloveTransform(pose.time, kFoxgloveWorld, kBody, pose.world_from_body)}});
 }
@@ -41,7 +41,7 @@ void FoxgloveRecording::AddPose(const PoseSample& pose) {
 void FoxgloveRecording::AddFrame(const Frame& frame) {
   camera_.Write(frame);
   if (!body_from_camera_) return;
-  file_.Write("/tf", frame.time,
+  file_.Write(kTransformsTopic, frame.time,
               foxglove::FrameTransforms{
                   {FoxgloveTransform(frame.time, kBody, kFoxgloveCamera, *body_from_camera_)}});
 }
