@@ -59,9 +59,11 @@ std::size_t ColorEditor::IndexOf(const std::string& color) const {
 void ColorEditor::Teach(const std::string& color) {
   ObjectModel taught = model_;
   ColorModel& colors = taught.colors;
-  colors.colors[IndexOf(color)] = TeachColor(color, pixels_.Of(color), colors.max_distance);
+  const std::size_t index = IndexOf(color);
+  colors.colors[index] = TeachColor(color, pixels_.Of(color), colors.max_distance);
   const std::vector<std::string> violations = taught.Validate();
   if (!violations.empty()) throw InputError(fmt::format("{}", fmt::join(violations, "; ")));
+  RequireDistinct(colors, index);
   grid_ = ColorGrid(colors);
   model_ = std::move(taught);
 }

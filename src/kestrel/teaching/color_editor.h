@@ -34,7 +34,8 @@ class ColorEditor {
   const ColorDraft& draft() const { return draft_; }
 
   // Teaches the model the colour. Throws InputError for one that the model does not have, fewer
-  // than ten pixels that are marked so, and a colour that contradicts another one of the model.
+  // than ten pixels that are marked so, and a colour that contradicts another one of the model or
+  // cannot be told from it.
   void Teach(const std::string& color);
 
   // Of a colour of the model; throw InputError when it has none of that name.

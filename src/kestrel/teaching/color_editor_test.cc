@@ -91,7 +91,12 @@ TEST_F(ColorEditorTest, ContradictionsAreRefusedAndTheModelStaysAsItWas) {
   stroke.color = "blue";
   editor_.Mark(stroke);
   const std::string before = PrintObjectModel(editor_.model());
-  EXPECT_THROW(editor_.Teach("blue"), InputError) << "the red disc";
+  try {
+    editor_.Teach("blue");
+    ADD_FAILURE() << "the red disc";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("blue cannot be told from red"));
+  }
   EXPECT_EQ(PrintObjectModel(editor_.model()), before);
 }
 
@@ -130,6 +135,13 @@ TEST_F(ColorEditorTest, LabelsAreThoseOfTheTaughtModel) {
   editor.Mark({0, "green", StrokeTool::kGrow, 5, {{20, 20}}});
   editor.Teach("green");
   EXPECT_EQ(editor.Labels(purple).at<uchar>(30, 10), 4) << "green is the fourth";
+}
+
+TEST(RequireDistinctTest, TheBuiltInColoursAre) {
+  const ColorModel model = DefaultObjectModel().colors;
+  for (std::size_t i = 0; i < model.colors.size(); ++i) {
+    EXPECT_NO_THROW(RequireDistinct(model, i)) << model.colors[i].name;
+  }
 }
 
 TEST(ScoreColorTest, OverlapIsOfTheColoursCells) {

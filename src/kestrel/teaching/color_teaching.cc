@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/base/error.h"
 #include "kestrel/objects/color_samples.h"
 
 namespace kestrel {
@@ -65,24 +66,6 @@ GridShare LabelledShare(const ColorGrid& grid, ColorLabel label, std::span<const
   return {count, count == 0 ? 0 : static_cast<double>(labelled) / static_cast<double>(count)};
 }
 
-std::vector<ColorScores::Overlap> Overlaps(const ColorModel& model, std::size_t color) {
-  std::vector<std::size_t> counts(model.colors.size());
-  for (std::size_t cell = 0; cell < ColorGrid::kCells; ++cell) {
-    const Hsv hsv = ColorGrid::CellColor(cell);
-    if (model.colors[color].Mahalanobis(hsv) > model.max_distance) continue;
-    for (std::size_t i = 0; i < counts.size(); ++i) {
-      counts[i] += i == color || model.colors[i].Mahalanobis(hsv) <= model.max_distance;
-    }
-  }
-  std::vector<ColorScores::Overlap> overlaps;
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (i == color || counts[i] == 0) continue;
-    overlaps.push_back({model.colors[i].name,
-                        static_cast<double>(counts[i]) / static_cast<double>(counts[color])});
-  }
-  return overlaps;
-}
-
 // Nothing where the other frames do not have enough pixels.
 std::optional<double> LeftOutRecall(ColorModel model, std::size_t color,
                                     std::span<const FrameMarks> marks, std::size_t left_out) {
@@ -129,6 +112,35 @@ ColorMixture TeachColor(const std::string& color, std::span<const FrameMarks> ma
   return mixture;
 }
 
+std::vector<ColorOverlap> ColorOverlaps(const ColorModel& model, std::size_t color) {
+  std::vector<std::size_t> counts(model.colors.size());
+  for (std::size_t cell = 0; cell < ColorGrid::kCells; ++cell) {
+    const Hsv hsv = ColorGrid::CellColor(cell);
+    if (model.colors[color].Mahalanobis(hsv) > model.max_distance) continue;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      counts[i] += i == color || model.colors[i].Mahalanobis(hsv) <= model.max_distance;
+    }
+  }
+  std::vector<ColorOverlap> overlaps;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (i == color || counts[i] == 0) continue;
+    overlaps.push_back({model.colors[i].name,
+                        static_cast<double>(counts[i]) / static_cast<double>(counts[color])});
+  }
+  return overlaps;
+}
+
+void RequireDistinct(const ColorModel& model, std::size_t color) {
+  constexpr double kMost = 0.5;
+  for (const ColorOverlap& overlap : ColorOverlaps(model, color)) {
+    if (overlap.share <= kMost) continue;
+    throw InputError(
+        fmt::format("{0} cannot be told from {1}: {2:.0f} % of what is {0} is {1} too, expected at "
+                    "most {3:.0f} %; mark other pixels, or teach {1} first",
+                    model.colors[color].name, overlap.color, 100 * overlap.share, 100 * kMost));
+  }
+}
+
 ColorScores ScoreColor(const ColorModel& model, const ColorGrid& grid, std::size_t color,
                        std::span<const FrameMarks> marks) {
   const auto label = static_cast<ColorLabel>(color + 1);
@@ -139,7 +151,7 @@ ColorScores ScoreColor(const ColorModel& model, const ColorGrid& grid, std::size
   scores.recall = wanted.share;
   scores.others = others.pixels;
   scores.false_share = others.share;
-  scores.overlaps = Overlaps(model, color);
+  scores.overlaps = ColorOverlaps(model, color);
   for (std::size_t i = 0; i < marks.size(); ++i) {
     if (marks[i].wanted.empty()) continue;
     if (const auto recall = LeftOutRecall(model, color, marks, i)) {

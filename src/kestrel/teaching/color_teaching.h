@@ -19,13 +19,22 @@ namespace kestrel {
 ColorMixture TeachColor(const std::string& color, std::span<const FrameMarks> marks,
                         double max_distance);
 
+// What two colours of a model have in common: which of them a pixel is depends on little there.
+struct ColorOverlap {
+  std::string color;  // the other one
+  double share = 0;   // of this colour's cells in the grid
+};
+
+// Of the colour number 'color' of a valid 'model' with the others, of more than nothing, in the
+// model's order.
+std::vector<ColorOverlap> ColorOverlaps(const ColorModel& model, std::size_t color);
+
+// Throws InputError when most of the cells of colour number 'color' of a valid 'model' are another
+// one's too: the grid cannot tell the two apart, and gives the pixels of one to the other.
+void RequireDistinct(const ColorModel& model, std::size_t color);
+
 // How good a colour of a model is, by the marked pixels.
 struct ColorScores {
-  // A part of another colour's that is also this one's: which of them a pixel is depends on little.
-  struct Overlap {
-    std::string color;
-    double share = 0;  // of this colour's cells in the grid
-  };
   // Of a frame's pixels, when the colour is taught by the other frames only.
   struct LeftOut {
     std::size_t frame = 0;
@@ -36,7 +45,7 @@ struct ColorScores {
   double recall = 0;       // the part of them that the grid says so of; 0 when there are none
   std::size_t others = 0;  // marked pixels of another colour or of none
   double false_share = 0;  // the part of them that the grid says this colour of
-  std::vector<Overlap> overlaps;   // of more than nothing, in the model's order
+  std::vector<ColorOverlap> overlaps;
   std::vector<LeftOut> left_outs;  // of frames with wanted pixels, when there are several
 };
 
