@@ -64,6 +64,8 @@ void SocketSession::Take(std::string_view text, Time now) {
     SendNext();
   } else if (const auto* wish = std::get_if<ImageWish>(&*message)) {
     images_.SetWanted(wish->wanted);
+  } else if (const auto* request = std::get_if<ColorRequest>(&*message)) {
+    hub_->Ask(*request);
   } else {
     hub_->Command(std::get<ConsoleCommand>(*message));
   }
