@@ -21,7 +21,7 @@ let faults = 0;
 const scratch = mkdtempSync(join(tmpdir(), "kestrel-colors-"));
 const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox"] });
 try {
-  run(["simulate", "hunt", "--seed", "4", "--output", flight, "--set", "frames=12"]);
+  simulate();
   const known = redsFoundWith([]);
   writeBlindModel();
   const unknown = redsFoundWith(["--model", blindModel]);
@@ -48,15 +48,19 @@ function run(args) {
   return done.stdout.toString();
 }
 
+function simulate() {
+  const settings = ["frames=12", "ground.map_px=1024", "shutter.rays_per_pixel=3"];
+  run(["simulate", "hunt", "--seed", "4", "--output", flight, ...settings.flatMap((one) => ["--set", one])]);
+}
+
 /** The red discs that a hunt finds: how many, and where by frame. */
 function redsFoundWith(args) {
   const [head, ...rows] = run(["hunt", flight, ...args]).trim().split("\n").map((row) => row.split(","));
   const at = (row, name) => row[head.indexOf(name)];
-  const frames = [...new Set(rows.map((row) => at(row, "frame")))];
   const reds = rows
     .filter((row) => at(row, "class") === "red")
     .map((row) => ({ frame: at(row, "frame"), u: Number(at(row, "u_px")), v: Number(at(row, "v_px")) }));
-  return { count: reds.length, reds, frames };
+  return { count: reds.length, reds };
 }
 
 /** The built-in model with a red that nothing has: purple. */
@@ -103,15 +107,13 @@ const marksSay = (page, text) => page.locator(".replay-time").filter({ hasText: 
 async function onScreen(page, u, v) {
   const canvas = page.locator("canvas[data-revision]");
   const box = await canvas.boundingBox();
-  const [width, height] = await canvas.evaluate((one) => {
-    const scale = Math.max(1, Math.round(1280 / one.width));
-    return [one.width / scale, one.height / scale];
-  });
-  return { position: { x: ((u + 0.5) / width) * box.width, y: ((v + 0.5) / height) * box.height }, box, width };
+  const scale = box.width / Number(await canvas.getAttribute("data-width"));
+  return { x: (u + 0.5) * scale, y: (v + 0.5) * scale };
 }
 
 async function teachRed(known) {
   const { program, link } = await start(["--model", blindModel]);
+  const images = imageNames();
   const page = await openColors(link);
   const canvas = page.locator("canvas[data-revision]");
   await page.keyboard.press("1");
@@ -120,18 +122,18 @@ async function teachRed(known) {
   const frames = [...new Set(known.reds.map(({ frame }) => frame))];
   const chosen = [frames[0], frames[Math.floor(frames.length / 2)], frames.at(-1)];
   for (const [i, frame] of chosen.entries()) {
-    const number = known.frames.indexOf(frame);
+    const number = images.findIndex((image) => frame.endsWith(image));
     await page.getByLabel("Frame", { exact: true }).fill(String(number + 1));
     await page.locator(`canvas[data-frame="${number}"]`).waitFor();
     const red = known.reds.find((one) => one.frame === frame);
-    await canvas.click({ position: (await onScreen(page, red.u, red.v)).position });
-    await marksSay(page, `${i + 1} marks`);
+    await canvas.click({ position: await onScreen(page, red.u, red.v) });
+    await marksSay(page, `marks: ${i + 1},`);
   }
   await markGroundByKeys(page, 4);
   await page.keyboard.press("z");
-  await marksSay(page, "3 marks");
+  await marksSay(page, "marks: 3,");
   await page.keyboard.press("Z");
-  await marksSay(page, "4 marks");
+  await marksSay(page, "marks: 4,");
   await page.keyboard.press("1");
   await page.keyboard.press("e");
   await page.getByText("taught red").waitFor();
@@ -149,6 +151,12 @@ async function teachRed(known) {
   await findDraftAgain();
 }
 
+/** In the order of the frames. */
+function imageNames() {
+  const rows = readFileSync(join(scratch, flight, "mav0/cam0/data.csv"), "utf8").trim().split("\n");
+  return rows.filter((row) => !row.startsWith("#")).map((row) => row.split(",")[1].trim());
+}
+
 async function markGroundByKeys(page, count) {
   await page.keyboard.press("0");
   await page.keyboard.press("x");
@@ -158,16 +166,16 @@ async function markGroundByKeys(page, count) {
   for (let i = 0; i < 8; i++) await page.keyboard.press("Shift+ArrowRight");
   for (let i = 0; i < 3; i++) await page.keyboard.press("Shift+ArrowDown");
   await page.keyboard.press("Space");
-  await marksSay(page, `${count} marks`);
+  await marksSay(page, `marks: ${count},`);
 }
 
 async function measurePreview(page) {
   const times = [];
   for (let i = 0; i < 10; i++) {
     await page.keyboard.press("z");
-    await marksSay(page, "3 marks");
+    await marksSay(page, "marks: 3,");
     await page.keyboard.press("Z");
-    await marksSay(page, "4 marks");
+    await marksSay(page, "marks: 4,");
     await page.waitForTimeout(300);
     times.push(parseFloat((await page.locator(".preview-time").textContent()).replace("Preview in ", "")));
   }
@@ -181,7 +189,7 @@ async function findDraftAgain() {
   expect(existsSync(join(scratch, "taught/draft.yaml")), "no draft is kept");
   const { program, link } = await start([]);
   const page = await openColors(link);
-  await marksSay(page, "4 marks on");
+  await marksSay(page, "marks: 4,");
   await page.getByText("goes on with the draft").waitFor();
   await stop(program);
   await page.close();

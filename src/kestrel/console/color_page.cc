@@ -59,9 +59,8 @@ void ColorPage::Score() {
   while (!is_stopped_) {
     const auto exam = exams_.Pop(kPatience);
     if (!exam) continue;
-    feed_->Add(ConsoleColorScores{
-        exam->revision, exam->model.colors[exam->color].name,
-        ScoreColor(exam->model, exam->grid, exam->color, exam->marks)});
+    feed_->Add(ConsoleColorScores{exam->revision, exam->model.colors[exam->color].name,
+                                  ScoreColor(exam->model, exam->grid, exam->color, exam->marks)});
   }
 }
 

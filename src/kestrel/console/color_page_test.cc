@@ -71,9 +71,8 @@ class ColorPageTest : public testing::Test {
   }
 
   // Its own for each test: they may run at the same time.
-  const std::string folder_ =
-      testing::TempDir() + "kestrel_color_page_" +
-      testing::UnitTest::GetInstance()->current_test_info()->name();
+  const std::string folder_ = testing::TempDir() + "kestrel_color_page_" +
+                              testing::UnitTest::GetInstance()->current_test_info()->name();
   std::atomic<std::size_t> missing_{99};
   ConsoleFeed feed_{Description()};
   WebServer server_{FreePort(), &feed_};

@@ -13,8 +13,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::array kActions = {ColorAction::kChoose, ColorAction::kMark,   ColorAction::kUndo,
-                                 ColorAction::kRedo,   ColorAction::kTeach,  ColorAction::kRevert,
+constexpr std::array kActions = {ColorAction::kChoose, ColorAction::kMark,  ColorAction::kUndo,
+                                 ColorAction::kRedo,   ColorAction::kTeach, ColorAction::kRevert,
                                  ColorAction::kSave};
 constexpr std::array kTools = {StrokeTool::kBrush, StrokeTool::kRectangle, StrokeTool::kGrow};
 

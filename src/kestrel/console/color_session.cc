@@ -47,7 +47,8 @@ ColorSession::ColorSession(ColorSource source)
     : source_(std::move(source)),
       draft_file_(DraftFile(source_.folder, source_.recording)),
       model_file_((fs::path(source_.folder) / "objects.yaml").string()),
-      editor_(source_.model, source_.frame_count, [this](std::size_t frame) { return Image(frame); }),
+      editor_(source_.model, source_.frame_count,
+              [this](std::size_t frame) { return Image(frame); }),
       encoder_(kJpegQuality) {
   state_.frames = source_.frame_count;
   state_.file = model_file_;
@@ -108,9 +109,9 @@ void ColorSession::Save() {
   const std::string version = SaveModelVersion(model_file_, editor_.model());
   source_.model = editor_.model();
   LookAtFile();
-  state_.answer = version.empty() ? fmt::format("saved as {}", model_file_)
-                                  : fmt::format("saved as {}, the one before is {}", model_file_,
-                                                version);
+  state_.answer = version.empty()
+                      ? fmt::format("saved as {}", model_file_)
+                      : fmt::format("saved as {}, the one before is {}", model_file_, version);
 }
 
 void ColorSession::LookAtFile() {
@@ -160,9 +161,9 @@ ExportAnswer ColorSession::Answer(const ExportRequest& request) {
     cv::Mat marks = editor_.Marks(request.number);
     if (marks.empty()) marks = cv::Mat::zeros(image.size(), CV_8UC1);
     cv::Mat labels;
-    cv::merge(std::vector<cv::Mat>{cv::Mat::zeros(image.size(), CV_8UC1), marks,
-                                   editor_.Labels(image)},
-              labels);
+    cv::merge(
+        std::vector<cv::Mat>{cv::Mat::zeros(image.size(), CV_8UC1), marks, editor_.Labels(image)},
+        labels);
     return {PngOf(labels), "image/png", fmt::format("labels-{}.png", request.number)};
   } catch (const InputError&) {  // its file is gone
     return {};

@@ -22,8 +22,9 @@ struct ColorSource {
   std::size_t frame_count;  // at least 1
   // Gives the frame's image as it was taken, CV_8UC3. Throws InputError when it cannot.
   MarkedPixels::ReadFrame read;
-  ObjectModel model;   // to begin with
-  std::string folder;  // for the model, its versions and the draft; made when something is to be kept
+  ObjectModel model;  // to begin with
+  std::string
+      folder;  // for the model, its versions and the draft; made when something is to be kept
 };
 
 // Teaching the colours of a model, as users ask for it: a ColorEditor whose draft is kept in a file

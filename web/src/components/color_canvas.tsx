@@ -71,6 +71,7 @@ export function ColorCanvas({ colors }: { colors: Colors }) {
           role="application"
           aria-label={`Frame ${view.frame + 1}: arrows move, Space marks`}
           data-frame={shown?.frame}
+          data-width={size[0]}
           data-revision={shown?.revision}
           onPointerDown={(event) => {
             if (event.button !== 0) return;

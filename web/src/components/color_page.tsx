@@ -107,7 +107,7 @@ function FrameChoice({ colors }: { colors: Colors }) {
       <button onClick={() => stepFrame(1)}>+1 frame</button>
       <button onClick={() => showMarked(1)}>marked ▶</button>
       <span class="replay-time">
-        frame {frame + 1} of {colors.frames}; {colors.strokes} marks on {colors.marked.length} frames
+        frame {frame + 1} of {colors.frames}; marks: {colors.strokes}, marked frames: {colors.marked.length}
       </span>
     </div>
   );

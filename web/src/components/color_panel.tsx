@@ -9,6 +9,7 @@ export function ColorPanel({ colors }: { colors: Colors }) {
   const hasChanged = colors.difference.length > 0;
   return (
     <section class="color-panel" aria-label="Teach">
+      <h2>Teach</h2>
       <div class="replay-buttons">
         <button class="teach" onClick={teach}>
           Teach {colors.color}
