@@ -101,7 +101,9 @@ async function openColors(link) {
   return page;
 }
 
-const marksSay = (page, text) => page.locator(".replay-time").filter({ hasText: text }).waitFor();
+function marksSay(page, text) {
+  return page.locator(".replay-time").filter({ hasText: text }).waitFor();
+}
 
 /** Where a pixel of the frame is on the screen. */
 async function onScreen(page, u, v) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { mark } from "../color_actions";
 import { overlayPixels, shownAs } from "../color_overlay";
 import type { Colors } from "../color_protocol";
@@ -14,8 +14,8 @@ interface Shown {
   picture: ImageBitmap;
   /** RGBA as of overlayPixels. */
   labels: ImageData;
-  /** From asking until it could be drawn. */
-  took_ms: number;
+  /** When it was asked for. */
+  began: number;
 }
 
 /** A frame of the recording with what the detector takes its pixels for, to be marked. */
@@ -26,10 +26,18 @@ export function ColorCanvas({ colors }: { colors: Colors }) {
   const view = useStore((state) => state.colorView);
   const [shown, error] = useFrame(view.frame, colors.revision);
   const size: Point = [shown?.picture.width ?? 0, shown?.picture.height ?? 0];
+  const [took_ms, setTook] = useState(0);
+  const layer = useMemo(
+    () => shown && overlayOf(shown.labels, colors, view),
+    [shown, colors, view.showsLabels, view.showsMarks],
+  );
   const draw = () => {
-    if (canvas.current && shown) drawFrame(canvas.current, shown, colors, view, way.current, cursor);
+    if (canvas.current && shown && layer) drawFrame(canvas.current, shown.picture, layer, view, way.current, cursor);
   };
-  useEffect(draw, [shown, colors, view, cursor]);
+  useEffect(draw, [shown, layer, view, cursor]);
+  useEffect(() => {
+    if (shown) setTook(performance.now() - shown.began);
+  }, [shown]);
   const finish = () => {
     if (shown && way.current.length > 0) mark(way.current, ...size);
     way.current = [];
@@ -91,7 +99,7 @@ export function ColorCanvas({ colors }: { colors: Colors }) {
         />
         {!shown && <p class="empty">{error ?? "No image yet"}</p>}
       </div>
-      <p class="preview-time">{shown && !error ? `Preview in ${shown.took_ms.toFixed(0)} ms` : error}</p>
+      <p class="preview-time">{shown && !error ? `Preview in ${took_ms.toFixed(0)} ms` : error}</p>
     </>
   );
 }
@@ -113,7 +121,7 @@ function useFrame(frame: number, revision: number): [Shown | null, string | null
       if (stop.signal.aborted) return;
       last.current = { frame, picture };
       setError(null);
-      setShown({ frame, revision, picture, labels: pixelsOf(labels), took_ms: performance.now() - began });
+      setShown({ frame, revision, picture, labels: pixelsOf(labels), began });
     };
     load().catch(() => {
       if (!stop.signal.aborted) setError(`Frame ${frame + 1} cannot be shown`);
@@ -153,15 +161,27 @@ function cursorAfter(event: KeyboardEvent, [u, v]: Point, [width, height]: Point
   ];
 }
 
+function overlayOf({ data, width, height }: ImageData, colors: Colors, view: ColorView): OffscreenCanvas {
+  const pixels = overlayPixels(data, width, height, {
+    showsLabels: view.showsLabels,
+    showsMarks: view.showsMarks,
+    chosen: colors.names.indexOf(colors.color) + 1,
+    colors: colors.names.map(shownAs),
+  });
+  const layer = new OffscreenCanvas(width, height);
+  layer.getContext("2d")?.putImageData(new ImageData(pixels, width, height), 0, 0);
+  return layer;
+}
+
 function drawFrame(
   canvas: HTMLCanvasElement,
-  { picture, labels }: Shown,
-  colors: Colors,
+  picture: ImageBitmap,
+  layer: OffscreenCanvas,
   view: ColorView,
   way: Point[],
   cursor: Point | null,
 ): void {
-  const { width, height } = labels;
+  const { width, height } = layer;
   const scale = Math.max(1, Math.round(1280 / width));
   canvas.width = width * scale;
   canvas.height = height * scale;
@@ -169,14 +189,6 @@ function drawFrame(
   if (!context) return;
   context.imageSmoothingEnabled = false;
   context.drawImage(picture, 0, 0, canvas.width, canvas.height);
-  const overlay = overlayPixels(labels.data, width, height, {
-    showsLabels: view.showsLabels,
-    showsMarks: view.showsMarks,
-    chosen: colors.names.indexOf(colors.color) + 1,
-    colors: colors.names.map(shownAs),
-  });
-  const layer = new OffscreenCanvas(width, height);
-  layer.getContext("2d")?.putImageData(new ImageData(overlay, width, height), 0, 0);
   context.drawImage(layer, 0, 0, canvas.width, canvas.height);
   context.save();
   context.scale(scale, scale);
