@@ -21,7 +21,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr std::size_t kFrames = 3;
+constexpr std::size_t kPictures = 3;
 const cv::Vec3b kPurple(200, 60, 190);
 const cv::Vec3b kGround(90, 100, 95);
 
@@ -39,7 +39,7 @@ class ColorPageTest : public testing::Test {
   ~ColorPageTest() override { std::filesystem::remove_all(folder_); }
 
   ColorSource Source() {
-    return {"flight", kFrames,
+    return {"flight", kPictures,
             [this](std::size_t frame) {
               if (frame == missing_) throw InputError("frame2.png: no such file");
               return Picture(frame);
