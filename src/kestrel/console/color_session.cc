@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/console/color_session.h"
 
+#include <exception>
 #include <filesystem>
 #include <set>
 #include <system_error>
@@ -67,7 +68,7 @@ void ColorSession::Obey(const ColorRequest& request) {
   state_.is_refused = false;
   try {
     Do(request);
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {  // also what the file system says of a folder
     state_.answer = error.what();
     state_.is_refused = true;
   }
