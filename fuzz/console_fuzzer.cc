@@ -46,6 +46,11 @@ void ReadMessage(std::string_view text) {
     Require(std::isfinite(command->value));
     Require(command->settings.size() <= 32);
   }
+  if (const auto* request = std::get_if<kestrel::ColorRequest>(&*message)) {
+    Require(request->color.size() <= 64 && request->stroke.color.size() <= 64);
+    const bool is_mark = request->action == kestrel::ColorAction::kMark;
+    Require(!is_mark || request->stroke.Validate().empty());
+  }
 }
 
 void ReadExportPath(std::string_view text) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+import type { ColorRequest } from "./color_protocol";
 import { unpackImage, type CommandName, type FrameHeader, type ServerMessage } from "./protocol";
 import { store } from "./store";
 
@@ -49,6 +50,10 @@ export class Connection {
 
   detect(settings: string[]): void {
     this.send({ command: "detect", settings });
+  }
+
+  colors(request: ColorRequest): void {
+    this.send(request);
   }
 
   private send(message: object): void {

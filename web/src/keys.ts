@@ -11,6 +11,8 @@ import {
   togglePlaying,
   toggleRecording,
 } from "./actions";
+import { togglePage } from "./color_actions";
+import { colorKeys } from "./color_keys";
 import { layers, type CommandName } from "./protocol";
 import { store } from "./store";
 
@@ -24,7 +26,7 @@ export interface Key {
 
 const has = (name: CommandName) => () => isOffered(name);
 
-export const keys: Key[] = [
+const mainKeys: Key[] = [
   ...layers.map((layer, i) => ({
     keys: [String(i + 1)],
     meaning: `show ${layer}`,
@@ -40,16 +42,35 @@ export const keys: Key[] = [
   { keys: ["D"], meaning: "to the one before", isOffered: has("detect"), act: () => seekDifference(-1) },
   { keys: ["r"], meaning: "start or stop recording", isOffered: has("record"), act: toggleRecording },
   { keys: ["s"], meaning: "keep a snapshot", isOffered: has("snapshot"), act: takeSnapshot },
+];
+
+const commonKeys: Key[] = [
+  {
+    keys: ["c"],
+    meaning: "to the page of colours and back",
+    isOffered: () => store.state.hello?.colors ?? false,
+    act: togglePage,
+  },
   { keys: ["t"], meaning: "next theme: auto, light, dark, sun", act: nextTheme },
   { keys: ["?", "h"], meaning: "show or hide these keys", act: toggleHelp },
 ];
 
+/** Those of the page that is shown. */
+export function keys(): Key[] {
+  const ofPage = store.state.page === "colors" ? colorKeys() : mainKeys;
+  return [...ofPage, ...commonKeys].filter((key) => key.isOffered?.() ?? true);
+}
+
+// What is typed into a form is no key of these.
+function isTyping(target: EventTarget | null): boolean {
+  return (target instanceof HTMLInputElement && target.type !== "range") || target instanceof HTMLSelectElement;
+}
+
 export function handleKey(event: KeyboardEvent): void {
-  // What is typed into a form is no key of these.
-  if (event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement) return;
+  if (isTyping(event.target)) return;
   if (event.ctrlKey || event.altKey || event.metaKey) return;
   if (event.key === "Escape" && store.state.isHelpShown) return toggleHelp();
-  const key = keys.find((one) => one.keys.includes(event.key) && (one.isOffered?.() ?? true));
+  const key = keys().find((one) => one.keys.includes(event.key));
   if (!key) return;
   event.preventDefault();
   key.act();

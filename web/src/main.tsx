@@ -9,7 +9,7 @@ import { applyTheme, savedTheme } from "./theme";
 
 const theme = savedTheme();
 applyTheme(theme);
-store.set({ theme });
+store.set({ theme, page: location.hash === "#colors" ? "colors" : "main" });
 document.addEventListener("keydown", handleKey);
 render(<App />, document.getElementById("app")!);
 connection.open();

@@ -2,6 +2,8 @@
 // What the server says, as src/kestrel/console/console_json.h writes it. Times are whole
 // nanoseconds as text: they are beyond what numbers hold here.
 
+import type { Colors, ColorScores } from "./color_protocol";
+
 export const layers = ["detection", "prediction", "rejected", "second"] as const;
 export type Layer = (typeof layers)[number];
 
@@ -40,6 +42,8 @@ export interface Hello {
   offers: CommandName[];
   /** Whether frames and tables can be had at /export/. */
   exports: boolean;
+  /** Whether colours can be taught. */
+  colors: boolean;
 }
 
 /** One value for each series of hello; null where it is not known. */
@@ -157,6 +161,8 @@ export type ServerMessage =
   | Playback
   | OptionList
   | SecondRun
+  | Colors
+  | ColorScores
   | LinkReport;
 
 export interface ImageMessage {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+import type { Colors, ColorScores } from "./color_protocol";
+import { firstColorView, viewAfter, type ColorView } from "./color_view";
 import type {
   Doctor,
   EventMessage,
@@ -20,7 +22,10 @@ export type ConnectionState = "connecting" | "open" | "lost" | "refused";
 export const themes = ["auto", "light", "dark", "sun"] as const;
 export type Theme = (typeof themes)[number];
 
+export type Page = "main" | "colors";
+
 export interface State {
+  page: Page;
   connection: ConnectionState;
   hello: Hello | null;
   status: Status | null;
@@ -32,6 +37,9 @@ export interface State {
   playback: Playback | null;
   options: Option[];
   second: SecondRun | null;
+  colors: Colors | null;
+  colorScores: ColorScores | null;
+  colorView: ColorView;
   link: LinkReport | null;
   series: SeriesBuffer;
   /** UAV's way on the map, oldest first. */
@@ -47,6 +55,7 @@ const maxTrack = 600;
 
 export function initialState(): State {
   return {
+    page: "main",
     connection: "connecting",
     hello: null,
     status: null,
@@ -58,6 +67,9 @@ export function initialState(): State {
     playback: null,
     options: [],
     second: null,
+    colors: null,
+    colorScores: null,
+    colorView: firstColorView,
     link: null,
     series: new SeriesBuffer(0),
     track: [],
@@ -85,6 +97,8 @@ export function withMessage(state: State, message: ServerMessage): State {
         playback: null,
         options: [],
         second: null,
+        colors: null,
+        colorScores: null,
         series: new SeriesBuffer(message.series.length),
       };
     case "sample":
@@ -108,6 +122,10 @@ export function withMessage(state: State, message: ServerMessage): State {
       return { ...state, options: message.options };
     case "second":
       return { ...state, second: message };
+    case "colors":
+      return { ...state, colors: message, colorView: viewAfter(state.colorView, message) };
+    case "color-scores":
+      return { ...state, colorScores: message };
     case "link":
       return { ...state, link: message };
   }

@@ -12,6 +12,7 @@ const hello: Hello = {
   layers: [],
   offers: [],
   exports: false,
+  colors: false,
 };
 
 function mapAt(x: number): MapMessage {

@@ -91,7 +91,8 @@ function png(rows) {
   return Buffer.concat([signature, chunk("IHDR", header), chunk("IDAT", data), chunk("IEND", Buffer.alloc(0))]);
 }
 
-function chunk(type, data) {
+/** A part of a PNG file. */
+export function chunk(type, data) {
   const body = Buffer.concat([Buffer.from(type), data]);
   const bytes = Buffer.alloc(body.length + 8);
   bytes.writeUInt32BE(data.length, 0);

@@ -6,6 +6,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { join } from "node:path";
 import { WebSocketServer } from "ws";
+import { colorPicture, MockColors } from "./mock_colors.js";
 import {
   flightAt,
   flightSeconds,
@@ -58,6 +59,8 @@ export function startMockServer(port, isReplay = false) {
 }
 
 function sendFile(request, response) {
+  const picture = colorPicture(request.url);
+  if (picture) return response.writeHead(200, { "Content-Type": "image/png" }).end(picture);
   const name = request.url === "/" ? "/index.html" : request.url;
   const path = join(dist, name);
   if (!path.startsWith(dist) || !existsSync(path)) return response.writeHead(404).end();
@@ -78,6 +81,7 @@ class Client {
     this.isRecording = false;
     this.wantsImages = false;
     this.inFlight = null;
+    this.colors = new MockColors();
     socket.on("message", (text) => this.receive(JSON.parse(text)));
     const timer = setInterval(() => this.tick(), 1000 / framesPerSecond);
     socket.on("close", () => clearInterval(timer));
@@ -92,13 +96,14 @@ class Client {
     const offers = this.isReplay ? ["play", "seek", "step", "detect", "cancel"] : ["record", "snapshot"];
     const title = this.isReplay ? "Recording flight_07" : "Simulated flight";
     const layers = ["detection", "prediction", "rejected", ...(this.isReplay ? ["second"] : [])];
-    this.send({ kind: "hello", title, live: !this.isReplay, series, layers, offers, exports: this.isReplay });
+    this.send({ kind: "hello", title, live: !this.isReplay, series, layers, offers, exports: this.isReplay, colors: this.isReplay });
     this.send({ kind: "health", checks });
     if (!this.isReplay) this.send({ kind: "doctor", checks: doctorChecks });
     this.event("info", "camera opened: 376x240, 30 Hz");
     this.event("warning", "autopilot's clock is 12 ms ahead");
     if (this.isReplay) this.sendTimeline();
     if (this.isReplay) this.send({ kind: "options", options });
+    if (this.isReplay) this.colors.messages().forEach((message) => this.send(message));
   }
 
   /** A second run that loses the pattern more often. */
@@ -131,6 +136,7 @@ class Client {
   }
 
   receive(message) {
+    if ("colors" in message) this.colors.receive(message).forEach((answer) => this.send(answer));
     if ("images" in message) this.wantsImages = message.images;
     if (message.ack === this.inFlight) this.inFlight = null;
     if (message.command === "record") {

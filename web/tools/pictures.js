@@ -16,6 +16,9 @@ const views = [
   { name: "live-sun", theme: "sun", width: 1440, height: 1000 },
   { name: "live-tablet", theme: "light", width: 820, height: 1180 },
   { name: "replay", theme: "light", width: 1440, height: 1000, isReplay: true },
+  { name: "colors", theme: "light", width: 1440, height: 1000, isReplay: true, isColors: true },
+  { name: "colors-dark", theme: "dark", width: 1440, height: 1000, isReplay: true, isColors: true },
+  { name: "colors-tablet", theme: "sun", width: 820, height: 1180, isReplay: true, isColors: true },
 ];
 
 let findings = 0;
@@ -28,11 +31,12 @@ for (const view of views) {
     if (message.type() === "error") report(`${view.name}: ${message.text()}`);
   });
   await page.addInitScript((theme) => localStorage.setItem("kestrel-theme", theme), view.theme);
-  await page.goto(`http://127.0.0.1:${view.isReplay ? 8092 : 8091}/`);
+  await page.goto(`http://127.0.0.1:${view.isReplay ? 8092 : 8091}/${view.isColors ? "#colors" : ""}`);
   await page.waitForFunction(() => !document.querySelector(".screen .empty"));
-  await page.keyboard.press("3");
-  if (view.isReplay) await detectAgain(page);
-  await page.waitForTimeout(7000);
+  if (view.isColors) await teachColor(page);
+  else await page.keyboard.press("3");
+  if (view.isReplay && !view.isColors) await detectAgain(page);
+  await page.waitForTimeout(view.isColors ? 1000 : 7000);
   await page.screenshot({ path: join(folder, `${view.name}.png`) });
   for (const finding of await findingsOf(page)) report(`${view.name}: ${finding}`);
   await page.close();
@@ -46,6 +50,14 @@ async function detectAgain(page) {
   await page.getByLabel(/smallest probability/).fill("0.9");
   await page.getByRole("button", { name: "Run" }).click();
   await page.getByText("Second run (below)").waitFor();
+}
+
+async function teachColor(page) {
+  await page.getByRole("application").focus();
+  await page.keyboard.press("Shift+ArrowLeft");
+  await page.keyboard.press(" ");
+  await page.keyboard.press("e");
+  await page.getByText("taught red").waitFor();
 }
 
 function report(text) {

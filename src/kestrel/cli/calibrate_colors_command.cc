@@ -2,6 +2,7 @@
 #include "kestrel/cli/calibrate_colors_command.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <set>
@@ -21,6 +22,7 @@
 #include "kestrel/recording/color_pictures.h"
 #include "kestrel/recording/image_file.h"
 #include "kestrel/recording/output_folder.h"
+#include "kestrel/teaching/color_teaching.h"
 
 namespace kestrel {
 namespace {
@@ -53,6 +55,9 @@ void ReplaceColors(const std::map<std::string, std::vector<Hsv>>& samples, int c
   }
   const std::vector<std::string> violations = model->Validate();
   if (!violations.empty()) throw InputError(fmt::format("{}", fmt::join(violations, "; ")));
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    if (samples.contains(colors[i].name)) RequireDistinct(model->colors, i);
+  }
 }
 
 void WritePicture(const OutputFolder& folder, const std::string& name, const cv::Mat& picture) {

@@ -20,6 +20,7 @@
 #include "kestrel/cli/source_arguments.h"
 #include "kestrel/console/replay_console.h"
 #include "kestrel/evaluation/landing_comparison.h"
+#include "kestrel/objects/object_model.h"
 #include "kestrel/pipeline/landing_pipeline.h"
 #include "kestrel/recording/euroc_recording.h"
 #include "kestrel/recording/event_source.h"
@@ -33,6 +34,8 @@ namespace fs = std::filesystem;
 struct ConsoleArguments {
   SourceArguments source;
   std::string address;
+  std::string model;
+  std::string output = "taught";
 
   ConsoleOptions Options(const KestrelOptions& options) const {
     if (address.empty()) return options.console;
@@ -155,6 +158,44 @@ std::optional<ReplayResult> DetectAgain(const ConsoleArguments& arguments,
   return std::nullopt;
 }
 
+// A gray camera's images have three equal channels, if any.
+bool HasColor(const cv::Mat& bgr) {
+  constexpr double kMinDifference = 16;
+  std::vector<cv::Mat> channels;
+  cv::split(bgr, channels);
+  return cv::norm(channels[0], channels[1], cv::NORM_INF) > kMinDifference ||
+         cv::norm(channels[0], channels[2], cv::NORM_INF) > kMinDifference;
+}
+
+// The one that is given, or saved the last time.
+ObjectModel FirstModel(const ConsoleArguments& arguments) {
+  if (!arguments.model.empty()) return ReadObjectModel(arguments.model);
+  const std::string saved = (fs::path(arguments.output) / "objects.yaml").string();
+  return fs::exists(saved) ? ReadObjectModel(saved) : DefaultObjectModel();
+}
+
+// What the page teaches colours by; nothing when the recording is gray.
+std::optional<ColorSource> FindColors(const ConsoleArguments& arguments) {
+  const std::vector<std::string>& sources = arguments.source.sources;
+  const std::shared_ptr<FrameSource> source = arguments.source.bag.Open(sources, PixelFormat::kBgr);
+  Frame first;
+  if (!source->Read(0, &first) || !HasColor(first.image)) {
+    if (arguments.model.empty()) return std::nullopt;
+    throw InputError("--model: " + sources.front() + " has no images in color to teach it by");
+  }
+  const auto read = [source](std::size_t index) {
+    Frame frame;
+    source->Read(index, &frame);
+    return frame.image;
+  };
+  std::vector<std::string> names;
+  for (const std::string& name : sources) {
+    names.push_back(fs::absolute(name).lexically_normal().string());
+  }
+  return ColorSource{fmt::format("{}", fmt::join(names, " ")), source->frame_count().value_or(1),
+                     read, FirstModel(arguments), arguments.output};
+}
+
 void RequireImages(const OpenedSource& opened, const std::string& name) {
   Frame first;
   if (opened.source->Read(0, &first)) return;
@@ -171,8 +212,12 @@ void RunConsole(const ConsoleArguments& arguments) {
   const std::string& name = arguments.source.sources.front();
   RequireImages(opened, name);
   const std::optional<Truth> truth = FindTruth(arguments.source.sources);
-  ReplayConsole console(arguments.Options(all_options), name, options, truth.has_value());
+  std::optional<ColorSource> colors = FindColors(arguments);
+  const bool has_colors = colors.has_value();
+  ReplayConsole console(arguments.Options(all_options), name, options, truth.has_value(),
+                        std::move(colors));
   fmt::print(stderr, "console: {}\n", console.url());
+  if (has_colors) fmt::print(stderr, "colors that are taught: {}\n", arguments.output);
   ReplayRun run(opened, options, arguments.source.altitude_m, &console);
   RunPipeline(opened, &run);
   if (WasInterrupted()) return;
@@ -190,13 +235,25 @@ void RunConsole(const ConsoleArguments& arguments) {
 }  // namespace
 
 void AddConsoleCommand(CLI::App* app) {
-  CLI::App* command = app->add_subcommand("console", "The web page on a recording: replay it");
+  CLI::App* command =
+      app->add_subcommand("console", "The web page on a recording: replay it, teach its colors");
   const auto arguments = std::make_shared<ConsoleArguments>();
   arguments->source.AddReadingTo(command);
   command
       ->add_option("--address", arguments->address,
                    "Where the page is served (127.0.0.1:8080); port 0: any free one")
       ->type_name("ADDRESS:PORT");
+  command
+      ->add_option("--model", arguments->model,
+                   "Objects (YAML) whose colours the page teaches, in place of those saved before "
+                   "or the built-in ones")
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--output", arguments->output,
+          "Folder for the model that the page teaches (objects.yaml), its versions and the "
+          "draft (taught)")
+      ->type_name("DIR");
   command->callback([arguments] { RunConsole(*arguments); });
 }
 

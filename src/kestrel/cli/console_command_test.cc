@@ -178,6 +178,38 @@ TEST_F(ConsoleCommandTest, ARecordingIsReplayed) {
   EXPECT_EQ(console.End(), 0) << ReadFile(folder_ / "log");
 }
 
+TEST_F(ConsoleCommandTest, ColoursAreTaughtAndSaved) {
+  const std::string hunt = folder_ / "hunt";
+  const std::string taught = folder_ / "taught";
+  ASSERT_EQ(Run("simulate hunt --seed 4 --output " + hunt +
+                " --set frames=2 --set ground.map_px=256 --set shutter.rays_per_pixel=1")
+                .status,
+            0);
+  RunningCommand console("console " + hunt + " --address 127.0.0.1:0 --output " + taught,
+                         folder_.Write("log", ""));
+  const int port = console.Port();
+  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
+  TestSocket socket(port);
+  const auto hello = socket.Next("hello");
+  ASSERT_TRUE(hello);
+  EXPECT_EQ((*hello)["colors"], true);
+  const auto ask = [&](const std::string& message) {
+    socket.Send(message);
+    return socket.Next("colors").value_or(nlohmann::json());
+  };
+  const auto state = socket.Next("colors");
+  ASSERT_TRUE(state);
+  EXPECT_EQ((*state)["frames"], 2);
+  // The ground, as green: the model does not matter here.
+  ask(R"({"colors": "mark", "frame": 1, "color": "green", "tool": "rectangle", "size": 0,)"
+      R"( "points": [600, 300, 700, 400]})");
+  EXPECT_EQ(ask(R"({"colors": "teach", "color": "green"})")["answer"], "taught green");
+  EXPECT_EQ(ask(R"({"colors": "save"})")["refused"], false);
+  EXPECT_EQ(console.End(), 0) << ReadFile(folder_ / "log");
+  EXPECT_TRUE(std::filesystem::exists(taught + "/draft.yaml"));
+  EXPECT_EQ(Run("hunt " + hunt + " --model " + taught + "/objects.yaml").status, 0);
+}
+
 TEST_F(ConsoleCommandTest, FaultsAreNamed) {
   const std::string fly = "fly sim:standing --console ";
   ExpectInputError(fly + "8080", "--console '8080': expected ADDRESS:PORT");
@@ -187,6 +219,7 @@ TEST_F(ConsoleCommandTest, FaultsAreNamed) {
   ExpectInputError(fly + "--set console.token=short", "console.token is not 16 to 128");
   const std::string flight = Recording();
   ExpectInputError("console " + flight + " --address nowhere:1", "--address 'nowhere:1'");
+  ExpectInputError("console " + flight + " --model any.yaml", "has no images in color");
   ExpectInputError("console " + folder_ / "missing", "no such file or folder");
   RunningCommand first("console " + flight + " --address 127.0.0.1:0", folder_.Write("log", ""));
   const int port = first.Port();

@@ -84,6 +84,7 @@ std::optional<ClientMessage> ParseClientMessage(std::string_view text) {
   const Json message = Json::parse(text, limit_depth, /*allow_exceptions=*/false);
   if (is_too_deep || !message.is_object()) return std::nullopt;
   if (message.contains("command")) return ReadCommand(message);
+  if (message.contains("colors")) return ReadColorRequest(message);
   if (message.size() != 1) return std::nullopt;
   const auto field = message.begin();
   if (field.key() == "ack" && field->is_number_unsigned()) {

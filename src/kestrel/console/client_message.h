@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "kestrel/console/color_request.h"
+
 namespace kestrel {
 
 // "The picture with this number is drawn, send the next": {"ack": 7}.
@@ -39,7 +41,7 @@ struct ConsoleCommand {
   std::vector<std::string> settings = {};
 };
 
-using ClientMessage = std::variant<ImageAck, ImageWish, ConsoleCommand>;
+using ClientMessage = std::variant<ImageAck, ImageWish, ConsoleCommand, ColorRequest>;
 
 // What a browser has sent; nothing when it is not one of those above, to the letter. Does not
 // throw.

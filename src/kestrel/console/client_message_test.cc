@@ -36,6 +36,47 @@ TEST(ClientMessageTest, SettingsAreBounded) {
   EXPECT_FALSE(detect(1, 129));
 }
 
+std::string Mark(const std::string& frame, const std::string& tool, const std::string& size,
+                 const std::string& points) {
+  return R"({"colors": "mark", "color": "red", "frame": )" + frame + R"(, "tool": ")" + tool +
+         R"(", "size": )" + size + R"(, "points": )" + points + "}";
+}
+
+TEST(ClientMessageTest, ReadsWhatThePageOfColoursSends) {
+  const auto mark =
+      std::get<ColorRequest>(*ParseClientMessage(Mark("3", "brush", "4.5", "[1, 2, 3, 4]")));
+  EXPECT_EQ(mark.action, ColorAction::kMark);
+  EXPECT_EQ(mark.stroke, (ColorStroke{3, "red", StrokeTool::kBrush, 4.5, {{1, 2}, {3, 4}}}));
+  const auto teach =
+      std::get<ColorRequest>(*ParseClientMessage(R"({"colors": "teach", "color": "red"})"));
+  EXPECT_EQ(teach.action, ColorAction::kTeach);
+  EXPECT_EQ(teach.color, "red");
+  EXPECT_EQ(std::get<ColorRequest>(*ParseClientMessage(R"({"colors": "undo"})")).action,
+            ColorAction::kUndo);
+}
+
+TEST(ClientMessageTest, StrokesAreBounded) {
+  const auto points = [](int count) {
+    std::string list = "[1";
+    for (int i = 1; i < count; ++i) list += ",1";
+    return list + "]";
+  };
+  EXPECT_TRUE(ParseClientMessage(Mark("0", "brush", "4", points(2000))));
+  for (const std::string& text :
+       {Mark("0", "brush", "4", points(2002)), Mark("0", "brush", "4", points(3)),
+        Mark("0", "brush", "4", "[]"), Mark("0", "brush", "4", "[-1, 2]"),
+        Mark("0", "brush", "4", "[1.5, 2]"), Mark("0", "brush", "4", "[1, 100001]"),
+        Mark("0", "brush", "4", "7"), Mark("0", "brush", "1e9", "[1, 2]"),
+        Mark("0", "brush", "null", "[1, 2]"), Mark("-1", "brush", "4", "[1, 2]"),
+        Mark("1e3", "brush", "4", "[1, 2]"), Mark("9999999999", "brush", "4", "[1, 2]"),
+        Mark("0", "spray", "4", "[1, 2]"), Mark("0", "rectangle", "0", "[1, 2]"),
+        std::string(R"({"colors": "teach"})"), std::string(R"({"colors": "format"})"),
+        std::string(R"({"colors": 1})"), std::string(R"({"colors": "save", "path": "x"})"),
+        R"({"colors": "teach", "color": ")" + std::string(65, 'x') + R"("})"}) {
+    EXPECT_FALSE(ParseClientMessage(text)) << text;
+  }
+}
+
 TEST(ClientMessageTest, RefusesAllElse) {
   for (const char* text : {"",
                            "{",

@@ -14,6 +14,7 @@
 
 #include "kestrel/base/time.h"
 #include "kestrel/console/client_message.h"
+#include "kestrel/console/color_state.h"
 #include "kestrel/console/export_request.h"
 #include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/latest_value.h"
@@ -134,9 +135,13 @@ struct ConsoleSecondRun {
   std::vector<FrameMark> marks;       // of each frame, once it is done
 };
 
-using ConsoleUpdate = std::variant<ConsoleSample, ConsoleStatus, ConsoleMap, ConsoleHealth,
-                                   ConsoleEvent, ConsoleTimeline, ConsolePlayback, ConsoleDoctor,
-                                   ConsoleOptionList, ConsoleSecondRun>;
+using ConsoleUpdate =
+    std::variant<ConsoleSample, ConsoleStatus, ConsoleMap, ConsoleHealth, ConsoleEvent,
+                 ConsoleTimeline, ConsolePlayback, ConsoleDoctor, ConsoleOptionList,
+                 ConsoleSecondRun, ConsoleColors, ConsoleColorScores>;
+
+// What is to be done by the page of colours.
+using ColorJob = std::variant<ColorRequest, PendingExport>;
 
 // The hand-over between a program that flies, or plays a recording, and the console's thread. No
 // function of the program's side ever waits for the console: the newest frame replaces the one
@@ -150,6 +155,7 @@ class ConsoleFeed {
     std::vector<OverlayLayer> layers;        // of the shapes that there can be
     std::vector<ConsoleCommandKind> offers;  // the commands that the program obeys
     bool has_exports = false;                // the program answers TakeExport
+    bool has_colors = false;                 // the program does what TakeColorJob gives
   };
 
   explicit ConsoleFeed(Description description);
@@ -169,6 +175,10 @@ class ConsoleFeed {
   // What is to be answered next; nothing when there is nothing. By any thread.
   std::optional<PendingExport> TakeExport() { return exports_.TryPop(); }
 
+  // What the page of colours is to do next; nothing when there is nothing within 'timeout'. By any
+  // thread.
+  std::optional<ColorJob> TakeColorJob(Duration timeout) { return color_jobs_.Pop(timeout); }
+
   // The console's side, by its thread.
 
   const Description& description() const { return description_; }
@@ -179,7 +189,8 @@ class ConsoleFeed {
   std::size_t dropped_updates() const { return updates_.dropped(); }
   void Command(const ConsoleCommand& command) { commands_.Push(command); }
   // Of too many the oldest is never answered.
-  void Export(PendingExport pending) { exports_.Push(std::move(pending)); }
+  void Export(PendingExport pending);
+  void Ask(const ColorRequest& request);
 
  private:
   Description description_;
@@ -189,6 +200,7 @@ class ConsoleFeed {
   BoundedQueue<ConsoleUpdate> updates_;
   BoundedQueue<ConsoleCommand> commands_;
   BoundedQueue<PendingExport> exports_;
+  BoundedQueue<ColorJob> color_jobs_;
 };
 
 }  // namespace kestrel

@@ -59,6 +59,7 @@ class ConsoleHub {
   // Hands out what is new.
   void Tick(Time now);
   void Command(const ConsoleCommand& command) { feed_->Command(command); }
+  void Ask(const ColorRequest& request) { feed_->Ask(request); }
   bool has_exports() const { return feed_->description().has_exports; }
   void Export(PendingExport pending) { feed_->Export(std::move(pending)); }
 

@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kestrel/console/color_json.h"
+
 namespace kestrel {
 namespace {
 
@@ -154,7 +156,8 @@ std::string ToJson(const ConsoleFeed::Description& description) {
                {"series", std::move(series)},
                {"layers", std::move(layers)},
                {"offers", std::move(offers)},
-               {"exports", description.has_exports}});
+               {"exports", description.has_exports},
+               {"colors", description.has_colors}});
 }
 
 std::string ToJson(const ConsoleUpdate& update) {

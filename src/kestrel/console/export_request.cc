@@ -24,12 +24,23 @@ std::optional<std::size_t> NumberBetween(std::string_view begin, std::string_vie
 
 }  // namespace
 
+bool IsOfColors(const ExportRequest& request) {
+  return request.kind == ExportRequest::Kind::kPicture ||
+         request.kind == ExportRequest::Kind::kLabels;
+}
+
 std::optional<ExportRequest> ParseExportPath(std::string_view path) {
   if (const auto frame = NumberBetween("/export/frame-", path, ".png")) {
     return ExportRequest{ExportRequest::Kind::kFrame, *frame};
   }
   if (const auto frame = NumberBetween("/export/overlays-", path, ".png")) {
     return ExportRequest{ExportRequest::Kind::kOverlays, *frame};
+  }
+  if (const auto frame = NumberBetween("/export/picture-", path, ".jpg")) {
+    return ExportRequest{ExportRequest::Kind::kPicture, *frame};
+  }
+  if (const auto frame = NumberBetween("/export/labels-", path, ".png")) {
+    return ExportRequest{ExportRequest::Kind::kLabels, *frame};
   }
   const auto run = NumberBetween("/export/detections-", path, ".csv");
   if (run && (*run == 1 || *run == 2)) {

@@ -12,13 +12,18 @@ namespace kestrel {
 // What the page takes away from a recording, by numbers and never by a path.
 struct ExportRequest {
   enum class Kind {
-    kFrame,      // /export/frame-12.png: the image as it is
-    kOverlays,   // /export/overlays-12.png: with what was found drawn on it
-    kDetections  // /export/detections-1.csv: all that the first or the second run found
+    kFrame,       // /export/frame-12.png: the image as it is
+    kOverlays,    // /export/overlays-12.png: with what was found drawn on it
+    kDetections,  // /export/detections-1.csv: all that the first or the second run found
+    kPicture,     // /export/picture-12.jpg: the image in colour, as the page of colours shows it
+    kLabels       // /export/labels-12.png: what its pixels are taken for and marked as
   };
   Kind kind = Kind::kFrame;
   std::size_t number = 0;  // of the frame from 0, or of the run: 1 or 2
 };
+
+// Whether the page of colours answers it.
+bool IsOfColors(const ExportRequest& request);
 
 // Nothing when it is none of those above, to the letter. Numbers have at most nine digits.
 std::optional<ExportRequest> ParseExportPath(std::string_view path);

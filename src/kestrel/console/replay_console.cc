@@ -61,7 +61,8 @@ void MarkByTrack(std::vector<ReplayFrame>* frames) {
 }
 
 ReplayConsole::ReplayConsole(const ConsoleOptions& options, const std::string& title,
-                             const LandingPipelineOptions& used, bool has_truth)
+                             const LandingPipelineOptions& used, bool has_truth,
+                             std::optional<ColorSource> colors)
     : used_(used),
       has_truth_(has_truth),
       feed_({.title = title,
@@ -71,8 +72,11 @@ ReplayConsole::ReplayConsole(const ConsoleOptions& options, const std::string& t
              .offers = {ConsoleCommandKind::kPlay, ConsoleCommandKind::kSeek,
                         ConsoleCommandKind::kStep, ConsoleCommandKind::kDetect,
                         ConsoleCommandKind::kCancel},
-             .has_exports = true}),
-      server_(options, &feed_) {}
+             .has_exports = true,
+             .has_colors = colors.has_value()}),
+      server_(options, &feed_) {
+  if (colors) colors_.emplace(*std::move(colors), &feed_);
+}
 
 void ReplayConsole::Play(ReplayResult first, ReadFrame read, Detect detect,
                          const std::function<bool()>& is_stopped) {
@@ -228,6 +232,7 @@ std::vector<OverlayShape> ReplayConsole::ShapesOf(std::size_t frame) const {
 
 // Without content where there is none.
 ExportAnswer ReplayConsole::MakeExport(const ExportRequest& request) const {
+  if (IsOfColors(request)) return {};  // there are none: else that page would answer
   if (request.kind == ExportRequest::Kind::kDetections) {
     const std::string table = request.number == 1 ? table_ : second_ ? second_->table : "";
     return {table, "text/csv; charset=utf-8", fmt::format("detections-{}.csv", request.number)};

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/console/color_page.h"
 #include "kestrel/console/console_feed.h"
 #include "kestrel/console/console_options.h"
 #include "kestrel/console/replay_frame.h"
@@ -26,9 +27,11 @@ class ReplayConsole {
                                                            const SecondRun::GoOn& go_on)>;
 
   // Serves from now on. 'has_truth': errors are known. Throws InputError as WebServer does.
-  // 'used': the options of the first run.
+  // 'used': the options of the first run. 'colors': what colours are taught by, when the recording
+  // has any.
   ReplayConsole(const ConsoleOptions& options, const std::string& title,
-                const LandingPipelineOptions& used, bool has_truth);
+                const LandingPipelineOptions& used, bool has_truth,
+                std::optional<ColorSource> colors = std::nullopt);
 
   std::string url() const { return server_.url(); }
 
@@ -59,6 +62,7 @@ class ReplayConsole {
   bool has_truth_;
   ConsoleFeed feed_;
   WebServer server_;
+  std::optional<ColorPage> colors_;
   std::optional<LandingView> view_;
   std::vector<ReplayFrame> frames_;
   std::string table_;

@@ -2,6 +2,7 @@
 #include "kestrel/teaching/color_editor.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include <fmt/format.h>
@@ -86,6 +87,27 @@ HueSaturationHistogram ColorEditor::Histogram(const std::string& color) const {
     }
   }
   return histogram;
+}
+
+cv::Mat ColorEditor::Marks(std::size_t frame) const {
+  const cv::Mat strokes = pixels_.StrokesOn(frame);
+  std::vector<ColorLabel> labels = {kBackgroundLabel};
+  for (const ColorStroke& stroke : draft_.strokes()) {
+    labels.push_back(stroke.color.empty() ? kAmbiguousLabel
+                                          : static_cast<ColorLabel>(IndexOf(stroke.color) + 1));
+  }
+  cv::Mat marks(strokes.size(), CV_8UC1);
+  for (int v = 0; v < strokes.rows; ++v) {
+    const auto* stroke = strokes.ptr<std::uint16_t>(v);
+    auto* mark = marks.ptr<ColorLabel>(v);
+    for (int u = 0; u < strokes.cols; ++u) mark[u] = labels[stroke[u]];
+  }
+  return marks;
+}
+
+void ColorEditor::SetModel(ObjectModel model) {
+  grid_ = ColorGrid(model.colors);
+  model_ = std::move(model);
 }
 
 cv::Mat ColorEditor::Labels(const cv::Mat& image) const {

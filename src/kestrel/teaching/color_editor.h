@@ -43,6 +43,18 @@ class ColorEditor {
   std::vector<std::string> Warnings(const std::string& color) const;
   HueSaturationHistogram Histogram(const std::string& color) const;  // of what is marked so
 
+  // What ScoreColor needs beside model and grid, for who does that in a thread of its own.
+  std::vector<FrameMarks> MarksFor(const std::string& color) const { return pixels_.Of(color); }
+  std::size_t IndexOf(const std::string& color) const;
+
+  // What the pixels of a frame are marked as: labels as of the grid, background where nothing is
+  // marked, ambiguous where it is none of the colours. CV_8UC1; empty when nothing of the frame is
+  // marked.
+  cv::Mat Marks(std::size_t frame) const;
+
+  // A valid model of the same colours, in the place of what was taught.
+  void SetModel(ObjectModel model);
+
   // What the detector takes each pixel for: ColorLabel, CV_8UC1. 'image' is CV_8UC3.
   cv::Mat Labels(const cv::Mat& image) const;
 
@@ -50,7 +62,6 @@ class ColorEditor {
   const ColorGrid& grid() const { return grid_; }
 
  private:
-  std::size_t IndexOf(const std::string& color) const;
   void Replace(ColorDraft draft);
 
   ObjectModel model_;

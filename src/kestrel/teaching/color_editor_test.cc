@@ -100,6 +100,17 @@ TEST_F(ColorEditorTest, ContradictionsAreRefusedAndTheModelStaysAsItWas) {
   EXPECT_EQ(PrintObjectModel(editor_.model()), before);
 }
 
+TEST_F(ColorEditorTest, MarksAreLabelled) {
+  EXPECT_TRUE(editor_.Marks(0).empty());
+  editor_.Mark({0, "green", StrokeTool::kRectangle, 0, {{0, 0}, {9, 9}}});
+  editor_.Mark({0, "", StrokeTool::kRectangle, 0, {{0, 0}, {9, 4}}});
+  const cv::Mat marks = editor_.Marks(0);
+  EXPECT_EQ(marks.at<uchar>(2, 2), kAmbiguousLabel);
+  EXPECT_EQ(marks.at<uchar>(7, 2), 4) << "green is the fourth";
+  EXPECT_EQ(marks.at<uchar>(20, 2), kBackgroundLabel);
+  EXPECT_TRUE(editor_.Marks(1).empty());
+}
+
 TEST_F(ColorEditorTest, RestoresADraft) {
   editor_.Mark(On(0, 3));
   editor_.Mark(OnGround(0));

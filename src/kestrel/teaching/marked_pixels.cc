@@ -48,6 +48,11 @@ void MarkedPixels::Set(std::span<const ColorStroke> strokes) {
   colors_ = std::move(colors);
 }
 
+cv::Mat MarkedPixels::StrokesOn(std::size_t frame) const {
+  const auto found = frames_.find(frame);
+  return found == frames_.end() ? cv::Mat() : found->second.stroke;
+}
+
 std::vector<FrameMarks> MarkedPixels::Of(const std::string& color) const {
   std::vector<FrameMarks> marks;
   for (const auto& [number, frame] : frames_) {

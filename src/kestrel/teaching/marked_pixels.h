@@ -37,6 +37,10 @@ class MarkedPixels {
   // on too many frames; what was marked is then as it was.
   void Set(std::span<const ColorStroke> strokes);
 
+  // Of the frame's pixels the number of their stroke, from 1, or 0: CV_16UC1; empty when nothing of
+  // the frame is marked.
+  cv::Mat StrokesOn(std::size_t frame) const;
+
   // By frame, in order; of a frame at most 10,000 pixels of each kind, evenly taken.
   std::vector<FrameMarks> Of(const std::string& color) const;
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "kestrel/objects/object_model.h"
 
@@ -12,5 +13,12 @@ namespace kestrel {
 // that name, or nothing. Throws InputError when it cannot be written, or when there are 9999
 // versions; the file is then as it was.
 std::string SaveModelVersion(const std::string& path, const ObjectModel& model);
+
+// File names of the versions of 'path' that are kept beside it, the newest last.
+std::vector<std::string> ModelVersions(const std::string& path);
+
+// The lines that two texts differ in, as diff has them: "- " before one that only 'before' has, "+
+// " before one of 'after'; ahead of them, with two spaces, the last line above that names a colour.
+std::vector<std::string> LineDifference(const std::string& before, const std::string& after);
 
 }  // namespace kestrel

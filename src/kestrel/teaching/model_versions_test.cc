@@ -55,5 +55,14 @@ TEST_F(ModelVersionsTest, AModelThatCannotBeReadIsNotWritten) {
                InputError);
 }
 
+TEST(LineDifference, NamesTheColourOfWhatDiffers) {
+  const std::string before = "colors:\n - name: red\n  a\n  b\n - name: blue\n  c\n";
+  const std::string after = "colors:\n - name: red\n  a\n  b\n - name: blue\n  d\n  e\n";
+  EXPECT_EQ(LineDifference(before, after),
+            (std::vector<std::string>{"   - name: blue", "-   c", "+   d", "+   e"}));
+  EXPECT_TRUE(LineDifference(before, before).empty());
+  EXPECT_EQ(LineDifference("", "a\n"), std::vector<std::string>{"+ a"});
+}
+
 }  // namespace
 }  // namespace kestrel

@@ -16,7 +16,7 @@ export function HelpDialog() {
       <h2>Keys</h2>
       <table>
         <tbody>
-          {keys.filter((key) => key.isOffered?.() ?? true).map((key) => (
+          {keys().map((key) => (
             <tr key={key.keys[0]}>
               <th scope="row">
                 <kbd>{key.keys.join(" or ")}</kbd>

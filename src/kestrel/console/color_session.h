@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/console/color_request.h"
+#include "kestrel/console/color_state.h"
+#include "kestrel/console/export_request.h"
+#include "kestrel/console/jpeg_encoder.h"
+#include "kestrel/teaching/color_editor.h"
+
+namespace kestrel {
+
+// What colours are taught by.
+struct ColorSource {
+  std::string recording;    // that tells it from others
+  std::size_t frame_count;  // at least 1
+  // Gives the frame's image as it was taken, CV_8UC3. Throws InputError when it cannot.
+  MarkedPixels::ReadFrame read;
+  ObjectModel model;  // to begin with
+  std::string
+      folder;  // for the model, its versions and the draft; made when something is to be kept
+};
+
+// Teaching the colours of a model, as users ask for it: a ColorEditor whose draft is kept in a file
+// after every change. By one thread.
+class ColorSession {
+ public:
+  // Goes on with the draft of the recording, where the folder has one. Throws InputError when that
+  // is not a draft any more.
+  explicit ColorSession(ColorSource source);
+
+  // What is refused changes nothing; state() says why.
+  void Obey(const ColorRequest& request);
+  const ConsoleColors& state() const { return state_; }
+
+  // The picture of a frame, or what its pixels are taken for and marked as: PNG, red the grid's
+  // label, green the mark's (ColorEditor::Marks). Without content where there is none.
+  ExportAnswer Answer(const ExportRequest& request);
+
+  const ColorEditor& editor() const { return editor_; }
+
+ private:
+  void Do(const ColorRequest& request);
+  void Save();
+  void LookAtFile();
+  void KeepDraft() const;
+  void Tell();
+  const cv::Mat& Image(std::size_t frame);
+
+  ColorSource source_;
+  std::string draft_file_;
+  std::string model_file_;
+  std::string saved_;  // what the model's file holds, or would
+  ColorEditor editor_;
+  ConsoleColors state_;
+  JpegEncoder encoder_;
+  std::size_t frame_ = 0;  // of the image, when there is one
+  cv::Mat image_;          // that was read last
+};
+
+}  // namespace kestrel

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+
+type Rgb = readonly [number, number, number];
+
+/** Of a mark that is none of the model's colours, and of a label that is several of them. */
+const noColor = 255;
+const black: Rgb = [0, 0, 0];
+const white: Rgb = [255, 255, 255];
+const palette: Rgb[] = [
+  [255, 64, 64], [255, 150, 40], [250, 230, 60], [70, 220, 90], [70, 140, 255],
+  [200, 110, 255], [60, 220, 220], [255, 120, 190],
+];
+const knownColors: Record<string, Rgb | undefined> = {
+  red: palette[0], orange: palette[1], yellow: palette[2], green: palette[3], blue: palette[4],
+  purple: palette[5], cyan: palette[6], pink: palette[7], white, black: [40, 40, 40],
+};
+
+/** What a colour is shown as, by its name or else its place in the model. */
+export function shownAs(name: string, index: number): Rgb {
+  return knownColors[name.toLowerCase()] ?? palette[index % palette.length] ?? [255, 255, 255];
+}
+
+export interface OverlayWish {
+  showsLabels: boolean;
+  showsMarks: boolean;
+  /** Label of the colour that is looked at. */
+  chosen: number;
+  /** As the colours are shown, in the order of the labels from 1. */
+  colors: Rgb[];
+}
+
+/**
+ * What is drawn over a frame, RGBA, from what the server says of its pixels: red what the grid takes
+ * them for, green what they are marked as. The colour that is looked at is hatched and all else
+ * darker; marks have edges, white those of a colour and black those of none.
+ */
+export function overlayPixels(
+  labels: Uint8ClampedArray,
+  width: number,
+  height: number,
+  wish: OverlayWish,
+): Uint8ClampedArray<ArrayBuffer> {
+  const pixels = new Uint8ClampedArray(4 * width * height);
+  for (let v = 0; v < height; v++) {
+    for (let u = 0; u < width; u++) {
+      const i = 4 * (v * width + u);
+      const mark = labels[i + 1] ?? 0;
+      if (wish.showsLabels) paintLabel(pixels, i, labels[i] ?? 0, (u + v) % 6 < 2, wish);
+      if (mark !== 0 && wish.showsMarks && isEdge(labels, mark, u, v, width, height)) {
+        paint(pixels, i, mark === noColor ? black : white, 255);
+      }
+    }
+  }
+  return pixels;
+}
+
+function paintLabel(
+  pixels: Uint8ClampedArray,
+  at: number,
+  label: number,
+  isHatch: boolean,
+  { chosen, colors }: OverlayWish,
+): void {
+  const color = colors[label - 1];
+  if (!color) return paint(pixels, at, black, 120);
+  if (label === chosen) return paint(pixels, at, color, isHatch ? 255 : 90);
+  return paint(pixels, at, color, isHatch ? 110 : 60);
+}
+
+function paint(pixels: Uint8ClampedArray, at: number, color: Rgb, alpha: number): void {
+  pixels[at] = color[0];
+  pixels[at + 1] = color[1];
+  pixels[at + 2] = color[2];
+  pixels[at + 3] = alpha;
+}
+
+// A marked pixel beside one that is marked otherwise.
+function isEdge(
+  labels: Uint8ClampedArray,
+  mark: number,
+  u: number,
+  v: number,
+  width: number,
+  height: number,
+): boolean {
+  const markAt = (x: number, y: number) =>
+    x < 0 || y < 0 || x >= width || y >= height ? 0 : (labels[4 * (y * width + x) + 1] ?? 0);
+  return [markAt(u - 1, v), markAt(u + 1, v), markAt(u, v - 1), markAt(u, v + 1)].some((one) => one !== mark);
+}

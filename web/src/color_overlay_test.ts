@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import { expect, test } from "vitest";
+import { overlayPixels, shownAs } from "./color_overlay";
+
+const wish = { showsLabels: true, showsMarks: true, chosen: 2, colors: [shownAs("red", 0), shownAs("mauve", 1)] };
+
+/** One row of pixels, each with a label and a mark. */
+function row(...pixels: [number, number][]): Uint8ClampedArray {
+  return new Uint8ClampedArray(pixels.flatMap(([label, mark]) => [label, mark, 0, 255]));
+}
+
+test("background is darker, the chosen colour stronger than others", () => {
+  const pixels = overlayPixels(row([0, 0], [1, 0], [2, 0], [255, 0]), 4, 1, wish);
+  expect([...pixels.slice(0, 4)]).toEqual([0, 0, 0, 120]);
+  expect([...pixels.slice(4, 7)]).toEqual([...shownAs("red", 0)]);
+  expect([...pixels.slice(8, 11)]).toEqual([...shownAs("mauve", 1)]);
+  expect(pixels[11]).toBeGreaterThan(60);
+  expect([...pixels.slice(12)]).toEqual([0, 0, 0, 120]);
+});
+
+test("marks have edges: white, or black where they are none of the colours", () => {
+  const labels = row([0, 2], [0, 2], [0, 255], [0, 0]);
+  const pixels = overlayPixels(labels, 4, 1, { ...wish, showsLabels: false });
+  expect([...pixels.slice(0, 4)]).toEqual([255, 255, 255, 255]);
+  expect([...pixels.slice(8, 12)]).toEqual([0, 0, 0, 255]);
+  expect(pixels[15]).toBe(0);
+  const hidden = overlayPixels(labels, 4, 1, { ...wish, showsLabels: false, showsMarks: false });
+  expect(Math.max(...hidden)).toBe(0);
+});

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the server says of colours and is asked for, as src/kestrel/console/color_json.h and
+// color_request.h have it.
+
+/** A Gaussian of a colour's mixture; hue in degrees, saturation 0 to 1. */
+export interface ColorComponent {
+  weight: number;
+  hue: number;
+  saturation: number;
+  sigma_hue: number;
+  sigma_saturation: number;
+  correlation: number;
+}
+
+export interface Colors {
+  kind: "colors";
+  /** Another one when the marks or the model have changed, and with them the pictures. */
+  revision: number;
+  frames: number;
+  /** In the order of the labels, from 1. */
+  names: string[];
+  /** That is looked at. */
+  color: string;
+  marked: number[];
+  strokes: number;
+  can_redo: boolean;
+  /** Rows of 72 hues, from the lowest of 25 saturations. */
+  histogram: number[];
+  /** Where a strip of hues begins, degrees, so that it does not cut the colour. */
+  cut_hue: number;
+  components: ColorComponent[];
+  /** At which a component ends, standard deviations. */
+  max_distance: number;
+  warnings: string[];
+  /** Of the model to the file's, in lines. */
+  difference: string[];
+  file: string;
+  versions: string[];
+  /** To the last request, in words. */
+  answer: string;
+  refused: boolean;
+}
+
+export interface ColorScores {
+  kind: "color-scores";
+  revision: number;
+  color: string;
+  wanted: number;
+  recall: number;
+  others: number;
+  false_share: number;
+  overlaps: { color: string; share: number }[];
+  left_outs: { frame: number; recall: number }[];
+}
+
+export const tools = ["brush", "rectangle", "grow"] as const;
+export type Tool = (typeof tools)[number];
+
+/** Points are u and v in turn, whole pixels of the frame; color "": none of the model's. */
+export interface Stroke {
+  frame: number;
+  color: string;
+  tool: Tool;
+  size: number;
+  points: number[];
+}
+
+export type ColorRequest =
+  | { colors: "undo" | "redo" | "revert" | "save" }
+  | { colors: "choose" | "teach"; color: string }
+  | ({ colors: "mark" } & Stroke);
