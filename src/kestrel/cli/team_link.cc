@@ -6,7 +6,6 @@
 #include <cctype>
 #include <chrono>
 #include <cstdint>
-#include <cstdlib>
 #include <random>
 #include <span>
 #include <thread>
@@ -17,9 +16,9 @@
 #include <fmt/ranges.h>
 
 #include "kestrel/base/error.h"
-#include "kestrel/base/parse_number.h"
 #include "kestrel/base/violations.h"
 #include "kestrel/cli/interrupt.h"
+#include "kestrel/dds/dds_domain.h"
 #include "kestrel/link/signing.h"
 #include "kestrel/recording/object_map_files.h"
 #include "kestrel/team/team_view.h"
@@ -62,16 +61,6 @@ std::string CheckedTeam(const std::string& team) {
   throw InputError(fmt::format("--team '{}': expected 1 to 32 letters, digits and '_'", team));
 }
 
-// As told, or as ROS is told.
-int DomainOf(const TeamArguments& arguments) {
-  if (arguments.domain) return *arguments.domain;
-  const char* const ros = std::getenv("ROS_DOMAIN_ID");
-  if (ros == nullptr || *ros == '\0') return 0;
-  const auto domain = ParseNumber<int>(ros);
-  if (!domain) throw InputError(fmt::format("ROS_DOMAIN_ID '{}': expected a number", ros));
-  return *domain;
-}
-
 }  // namespace
 
 std::vector<std::string> TeamLinkOptions::Validate() const {
@@ -100,7 +89,7 @@ TeamLink::TeamLink(const TeamArguments& arguments, const TeamLinkOptions& option
                    const ObjectMapOptions& map)
     : options_(options),
       member_(OwnKey(options), options.team, ReadKey(options)),
-      topic_(DomainOf(arguments), CheckedTeam(arguments.team),
+      topic_(DdsDomain(arguments.domain), CheckedTeam(arguments.team),
              fmt::format("{}/{:08x}", member_.self().name, member_.self().boot)),
       fusion_(options.team, map) {}
 

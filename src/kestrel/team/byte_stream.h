@@ -72,7 +72,7 @@ class ByteReader {
   std::string Text(std::size_t max) {
     const std::size_t size = Whole(max);
     if (!Require(size <= bytes_.size())) return "";
-    const std::string text(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(size));
+    std::string text(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(size));
     bytes_ = bytes_.subspan(size);
     return text;
   }

@@ -22,6 +22,7 @@ struct UavKey {
   std::string name;        // see IsUavName
   std::uint32_t boot = 0;  // random
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): it takes the generated comparison with 0 for one
   friend auto operator<=>(const UavKey&, const UavKey&) = default;
 };
 
@@ -33,6 +34,7 @@ struct ObjectRef {
   UavKey uav;
   std::int64_t id = 0;
 
+  // NOLINTNEXTLINE(modernize-use-nullptr)
   friend auto operator<=>(const ObjectRef&, const ObjectRef&) = default;
 };
 
