@@ -40,7 +40,7 @@ struct ColorMessage {  // std_msgs/ColorRGBA, 0 to 1
   }
 };
 
-struct DurationMessage {
+struct RosDurationMessage {
   std::int32_t seconds = 0;
   std::int32_t nanoseconds = 0;
 
@@ -79,7 +79,7 @@ struct EmptyMeshMessage {  // visualization_msgs/MeshFile
 // visualization_msgs/Marker.
 struct MarkerMessage {
   enum Shape : std::int32_t { kArrow = 0, kSphere = 2, kCylinder = 3 };
-  enum Action : std::int32_t { kAdd = 0, kDelete = 2 };
+  enum Action : std::int32_t { kAdd = 0, kDelete = 2, kDeleteAll = 3 };
 
   HeaderMessage header;
   std::string name_space;
@@ -89,7 +89,7 @@ struct MarkerMessage {
   PoseMessage pose;
   Vector3Message scale;  // m
   ColorMessage color;
-  DurationMessage lifetime;  // 0: for ever
+  RosDurationMessage lifetime;  // 0: for ever
   std::uint8_t frame_locked = 0;
   std::vector<Vector3Message> points;  // of an arrow: its ends
   std::vector<ColorMessage> colors;

@@ -18,7 +18,6 @@
 #include "kestrel/base/error.h"
 #include "kestrel/base/violations.h"
 #include "kestrel/cli/interrupt.h"
-#include "kestrel/dds/dds_domain.h"
 #include "kestrel/link/signing.h"
 #include "kestrel/recording/object_map_files.h"
 #include "kestrel/team/team_view.h"
@@ -72,24 +71,18 @@ std::vector<std::string> TeamLinkOptions::Validate() const {
 }
 
 void TeamArguments::AddTo(CLI::App* command) {
-  CLI::Option* const name =
-      command
-          ->add_option("--team", team,
-                       "Share the map with the UAVs of this team and write what all know together: "
-                       "team_map.csv")
-          ->type_name("NAME");
   command
-      ->add_option("--dds", domain,
-                   "DDS domain that the team talks in (else ROS_DOMAIN_ID, else 0)")
-      ->type_name("DOMAIN")
-      ->needs(name);
+      ->add_option("--team", team,
+                   "Share the map with the UAVs of this team and write what all know together: "
+                   "team_map.csv; in the DDS domain of --dds (else ROS_DOMAIN_ID, else 0)")
+      ->type_name("NAME");
 }
 
-TeamLink::TeamLink(const TeamArguments& arguments, const TeamLinkOptions& options,
+TeamLink::TeamLink(const TeamArguments& arguments, int domain, const TeamLinkOptions& options,
                    const ObjectMapOptions& map)
     : options_(options),
       member_(OwnKey(options), options.team, ReadKey(options)),
-      topic_(DdsDomain(arguments.domain), CheckedTeam(arguments.team),
+      topic_(domain, CheckedTeam(arguments.team),
              fmt::format("{}/{:08x}", member_.self().name, member_.self().boot)),
       fusion_(options.team, map) {}
 
