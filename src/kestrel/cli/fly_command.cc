@@ -20,6 +20,7 @@
 #include "kestrel/console/flight_console.h"
 #include "kestrel/foxglove/flight_mcap.h"
 #include "kestrel/link/mavlink_enums.h"
+#include "kestrel/middleware/flight_dds.h"
 #include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/flight_keeper.h"
 #include "kestrel/onboard/hunt_vision.h"
@@ -90,9 +91,10 @@ class Flight {
       : arguments_(arguments), all_options_(arguments.ReadOptions()) {
     const FlyOptions& options = all_options_.fly;
     const PixelFormat format = arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray;
-    source_ = OpenFlySource(arguments.source, format, options, arguments.loop);
+    source_ = OpenFlySource(arguments.source, format, all_options_, arguments.loop);
     OpenConsole();
     OpenMcap();
+    OpenDds();
     if (!arguments.record.empty()) recording_.Start(arguments.record, arguments.source.force);
     OpenVision();
     if (!arguments.autopilot.empty()) OpenAutopilot();
@@ -145,6 +147,27 @@ class Flight {
                                        all_options_.fly.recorder.free_space_mb));
     observers_.Add(&*console_);
     log_.Say("console: " + console_->url());
+  }
+
+  // What a topic's frames are called, or the options call them; stamps are ROS' time.
+  DdsFrames Frames() const {
+    if (source_.frames) return *source_.frames;
+    const bool has_world = source_.calibration.body_from_camera &&
+                           (source_.has_poses || !arguments_.autopilot.empty());
+    DdsFrames frames = OwnFrames(all_options_.dds, has_world);
+    frames.to_stamps = RosTimeAhead();
+    return frames;
+  }
+
+  void OpenDds() {
+    if (!arguments_.source.dds.is_given()) return;
+    const DdsOptions& options = all_options_.dds;
+    if (!source_.node) source_.node = arguments_.source.dds.OpenNode(options);
+    dds_ = std::make_unique<FlightDds>(
+        std::make_unique<DdsResults>(source_.node, options, Frames(), source_.calibration,
+                                     all_options_.landing, ReadModel()),
+        [this](const std::string& text) { log_.Say(text); });
+    observers_.Add(dds_.get());
   }
 
   void OpenMcap() {
@@ -258,6 +281,7 @@ class Flight {
   void Finish(FlightEnd end) {
     recording_.Close();  // writes what is left
     mcap_.reset();
+    dds_.reset();
     log_.Show();
     fmt::print(stderr, "{}", program_->Summary());
     if (simulated_autopilot_) fmt::print(stderr, "{}", InWords(simulated_autopilot_->result()));
@@ -274,6 +298,7 @@ class Flight {
   FlightKeeper keeper_{all_options_.fly.keep_folder, &recording_};
   std::optional<FlightConsole> console_;
   std::unique_ptr<FlightMcap> mcap_;
+  std::unique_ptr<FlightDds> dds_;
   FlightObservers observers_;
   RecordingEnd recording_end_{&recording_};  // while the console can still be told of it
   std::optional<OutputFolder> output_;

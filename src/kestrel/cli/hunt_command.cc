@@ -50,12 +50,14 @@ std::string GroundWarning(const HuntPipeline& pipeline, std::optional<double> al
 class HuntRun : public PipelineRun {
  public:
   HuntRun(const OpenedSource& opened, const ObjectModel& model, const ColorGrid& grid,
-          const HuntPipelineOptions& options, const HuntArguments& arguments, TeamLink* team)
+          const HuntPipelineOptions& options, const HuntArguments& arguments, TeamLink* team,
+          DdsResults* dds)
       : pipeline_(opened.calibration, model, grid, options),
         mcap_(arguments.source.OpenMcap(opened.calibration.intrinsics, HuntView{model})),
         sink_(arguments.source.Output(opened), arguments.origin),
         has_map_(opened.has_world() && !options.still),
         team_(team),
+        dds_(dds),
         altitude_m_(arguments.source.altitude_m) {
     pipeline_.SetAltitude(altitude_m_);
   }
@@ -71,6 +73,7 @@ class HuntRun : public PipelineRun {
     const HuntObservation& observation = pipeline_.Process(frame.image, frame.time);
     sink_.Write(frame, observation, pipeline_);
     if (mcap_) mcap_->Write(frame, observation);
+    if (dds_ != nullptr) dds_->Publish(frame, observation);
     detections_ += observation.report.detections.size();
     for (std::size_t i = 0; i < kObjectStageCount; ++i) passed_[i] += observation.report.passed[i];
     has_world_ = observation.world_from_camera.has_value();
@@ -83,6 +86,7 @@ class HuntRun : public PipelineRun {
   void Finish() override {
     if (has_map_) sink_.WriteMap(pipeline_);
     if (mcap_) mcap_->Close();
+    if (dds_ != nullptr) dds_->Flush();
     if (team_ == nullptr) return;
     team_->Finish(pipeline_.map());
     sink_.WriteTeamMap(pipeline_, team_);
@@ -106,7 +110,8 @@ class HuntRun : public PipelineRun {
   std::unique_ptr<ObservationFile> mcap_;
   HuntSink sink_;
   bool has_map_;
-  TeamLink* team_;  // null: none
+  TeamLink* team_;   // null: none
+  DdsResults* dds_;  // as well
   std::optional<double> altitude_m_;
   bool has_world_ = false;  // of the last frame
   std::size_t detections_ = 0;
@@ -134,9 +139,11 @@ void RunHunt(const HuntArguments& arguments) {
   std::optional<TeamLink> team;
   if (!arguments.team.team.empty()) {
     RequireMap(opened, options);
-    team.emplace(arguments.team, all_options.team, options.map);
+    team.emplace(arguments.team, arguments.source.dds.Domain(), all_options.team, options.map);
   }
-  HuntRun run(opened, model, grid, options, arguments, team ? &*team : nullptr);
+  const std::unique_ptr<DdsResults> dds = OpenDdsResults(arguments.source, opened, all_options,
+                                                         /*is_still=*/options.still, model);
+  HuntRun run(opened, model, grid, options, arguments, team ? &*team : nullptr, dds.get());
   RunPipeline(opened, &run);
 }
 

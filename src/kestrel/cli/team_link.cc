@@ -6,7 +6,6 @@
 #include <cctype>
 #include <chrono>
 #include <cstdint>
-#include <cstdlib>
 #include <random>
 #include <span>
 #include <thread>
@@ -17,7 +16,6 @@
 #include <fmt/ranges.h>
 
 #include "kestrel/base/error.h"
-#include "kestrel/base/parse_number.h"
 #include "kestrel/base/violations.h"
 #include "kestrel/cli/interrupt.h"
 #include "kestrel/link/signing.h"
@@ -62,16 +60,6 @@ std::string CheckedTeam(const std::string& team) {
   throw InputError(fmt::format("--team '{}': expected 1 to 32 letters, digits and '_'", team));
 }
 
-// As told, or as ROS is told.
-int DomainOf(const TeamArguments& arguments) {
-  if (arguments.domain) return *arguments.domain;
-  const char* const ros = std::getenv("ROS_DOMAIN_ID");
-  if (ros == nullptr || *ros == '\0') return 0;
-  const auto domain = ParseNumber<int>(ros);
-  if (!domain) throw InputError(fmt::format("ROS_DOMAIN_ID '{}': expected a number", ros));
-  return *domain;
-}
-
 }  // namespace
 
 std::vector<std::string> TeamLinkOptions::Validate() const {
@@ -83,24 +71,18 @@ std::vector<std::string> TeamLinkOptions::Validate() const {
 }
 
 void TeamArguments::AddTo(CLI::App* command) {
-  CLI::Option* const name =
-      command
-          ->add_option("--team", team,
-                       "Share the map with the UAVs of this team and write what all know together: "
-                       "team_map.csv")
-          ->type_name("NAME");
   command
-      ->add_option("--dds", domain,
-                   "DDS domain that the team talks in (else ROS_DOMAIN_ID, else 0)")
-      ->type_name("DOMAIN")
-      ->needs(name);
+      ->add_option("--team", team,
+                   "Share the map with the UAVs of this team and write what all know together: "
+                   "team_map.csv; in the DDS domain of --dds (else ROS_DOMAIN_ID, else 0)")
+      ->type_name("NAME");
 }
 
-TeamLink::TeamLink(const TeamArguments& arguments, const TeamLinkOptions& options,
+TeamLink::TeamLink(const TeamArguments& arguments, int domain, const TeamLinkOptions& options,
                    const ObjectMapOptions& map)
     : options_(options),
       member_(OwnKey(options), options.team, ReadKey(options)),
-      topic_(DomainOf(arguments), CheckedTeam(arguments.team),
+      topic_(domain, CheckedTeam(arguments.team),
              fmt::format("{}/{:08x}", member_.self().name, member_.self().boot)),
       fusion_(options.team, map) {}
 

@@ -37,10 +37,9 @@ struct TeamLinkOptions {
   std::vector<std::string> Validate() const;
 };
 
-// --team and --dds. Must live until the command line is parsed.
+// --team. Must live until the command line is parsed.
 struct TeamArguments {
-  std::string team;           // empty: none
-  std::optional<int> domain;  // of DDS
+  std::string team;  // empty: none
 
   void AddTo(CLI::App* command);
 };
@@ -50,8 +49,9 @@ struct TeamArguments {
 class TeamLink {
  public:
   // Throws InputError when arguments or options are at fault, the key cannot be read, there is no
-  // network, or DDS is not part of this build. 'map': how the UAVs' maps are fused.
-  TeamLink(const TeamArguments& arguments, const TeamLinkOptions& options,
+  // network, or DDS is not part of this build. 'domain': of DDS. 'map': how the UAVs' maps are
+  // fused.
+  TeamLink(const TeamArguments& arguments, int domain, const TeamLinkOptions& options,
            const ObjectMapOptions& map);
 
   // Tells the map when it is time to, and hears; call it often.
