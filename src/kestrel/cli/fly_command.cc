@@ -17,6 +17,7 @@
 #include "kestrel/cli/fly_autopilot.h"
 #include "kestrel/cli/fly_source.h"
 #include "kestrel/cli/interrupt.h"
+#include "kestrel/cli/team_link.h"
 #include "kestrel/console/flight_console.h"
 #include "kestrel/foxglove/flight_mcap.h"
 #include "kestrel/link/mavlink_enums.h"
@@ -93,6 +94,7 @@ class Flight {
     const PixelFormat format = arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray;
     source_ = OpenFlySource(arguments.source, format, all_options_, arguments.loop);
     OpenConsole();
+    OpenTeam();
     OpenMcap();
     OpenDds();
     if (!arguments.record.empty()) recording_.Start(arguments.record, arguments.source.force);
@@ -109,6 +111,7 @@ class Flight {
     Time next_state = Now();
     const FlightEnd end = program_->Run([&] {
       log_.Show();
+      if (team_) ShareMap();
       if (Now() >= next_state) {
         log_.Say(program_->State());
         next_state += DurationFromSeconds(kStatePeriod_s);
@@ -118,6 +121,7 @@ class Flight {
     if (simulated_autopilot_) simulated_autopilot_->Stop();
     Finish(end);
     if (hunt_ != nullptr && output_) hunt_->WriteMap(*output_);
+    if (team_) LeaveTeam();
     return end;
   }
 
@@ -149,12 +153,15 @@ class Flight {
     log_.Say("console: " + console_->url());
   }
 
+  bool HasWorld() const {
+    return source_.calibration.body_from_camera &&
+           (source_.has_poses || !arguments_.autopilot.empty());
+  }
+
   // What a topic's frames are called, or the options call them; stamps are ROS' time.
   DdsFrames Frames() const {
     if (source_.frames) return *source_.frames;
-    const bool has_world = source_.calibration.body_from_camera &&
-                           (source_.has_poses || !arguments_.autopilot.empty());
-    DdsFrames frames = OwnFrames(all_options_.dds, has_world);
+    DdsFrames frames = OwnFrames(all_options_.dds, HasWorld());
     frames.to_stamps = RosTimeAhead();
     return frames;
   }
@@ -182,6 +189,17 @@ class Flight {
     observers_.Add(mcap_.get());
   }
 
+  // Before anything is written.
+  void OpenTeam() {
+    if (arguments_.team.team.empty()) return;
+    if (!HasWorld()) {
+      throw InputError(
+          "--team: expected --autopilot or a source with poses, and the camera's mount");
+    }
+    team_.emplace(arguments_.team, arguments_.source.dds.Domain(), all_options_.team,
+                  all_options_.hunt.map, [this](const std::string& text) { Say(text); });
+  }
+
   void OpenVision() {
     if (!arguments_.source.output.empty()) {
       output_.emplace(arguments_.source.output, arguments_.source.force);
@@ -191,6 +209,7 @@ class Flight {
       auto hunt =
           std::make_unique<HuntVision>(source_.calibration, ReadModel(), all_options_.hunt, output);
       hunt_ = hunt.get();
+      if (team_) hunt_->ShareMap(DurationFromSeconds(all_options_.team.team.tell_period_s));
       vision_ = std::move(hunt);
       return;
     }
@@ -268,6 +287,18 @@ class Flight {
     return parts;
   }
 
+  void ShareMap() {
+    if (auto objects = hunt_->TakeMap()) team_->Tell(std::move(*objects));
+    team_->Exchange();
+  }
+
+  void LeaveTeam() {
+    team_->Finish(hunt_->Objects());
+    if (output_) team_->WriteMap(ReadModel(), /*origin=*/{}, *output_);
+    log_.Show();
+    fmt::print(stderr, "{}\n", team_->Found());
+  }
+
   void TakePose(const PoseSample& pose) {
     program_->TakeAutopilotPose(pose);
     source_.TakePose(pose);
@@ -304,6 +335,7 @@ class Flight {
   std::optional<OutputFolder> output_;
   std::unique_ptr<FlightVision> vision_;
   HuntVision* hunt_ = nullptr;  // the vision, when it is one
+  std::optional<TeamLink> team_;
   std::optional<RecordedActuator> actuator_;
   std::unique_ptr<SimulatedAutopilot> simulated_autopilot_;
   std::optional<Connection> connection_;

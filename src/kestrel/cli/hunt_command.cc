@@ -77,7 +77,7 @@ class HuntRun : public PipelineRun {
     detections_ += observation.report.detections.size();
     for (std::size_t i = 0; i < kObjectStageCount; ++i) passed_[i] += observation.report.passed[i];
     has_world_ = observation.world_from_camera.has_value();
-    if (team_ != nullptr) team_->Exchange(pipeline_.map());
+    ShareMap();
     return observation.detect_time;
   }
 
@@ -88,7 +88,7 @@ class HuntRun : public PipelineRun {
     if (mcap_) mcap_->Close();
     if (dds_ != nullptr) dds_->Flush();
     if (team_ == nullptr) return;
-    team_->Finish(pipeline_.map());
+    team_->Finish(pipeline_.map().Confirmed());
     sink_.WriteTeamMap(pipeline_, team_);
   }
 
@@ -106,6 +106,12 @@ class HuntRun : public PipelineRun {
   }
 
  private:
+  void ShareMap() {
+    if (team_ == nullptr) return;
+    if (team_->IsTimeToTell()) team_->Tell(pipeline_.map().Confirmed());
+    team_->Exchange();
+  }
+
   HuntPipeline pipeline_;
   std::unique_ptr<ObservationFile> mcap_;
   HuntSink sink_;
@@ -139,7 +145,8 @@ void RunHunt(const HuntArguments& arguments) {
   std::optional<TeamLink> team;
   if (!arguments.team.team.empty()) {
     RequireMap(opened, options);
-    team.emplace(arguments.team, arguments.source.dds.Domain(), all_options.team, options.map);
+    team.emplace(arguments.team, arguments.source.dds.Domain(), all_options.team, options.map,
+                 [](const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); });
   }
   const std::unique_ptr<DdsResults> dds = OpenDdsResults(arguments.source, opened, all_options,
                                                          /*is_still=*/options.still, model);
@@ -168,9 +175,14 @@ void AddHuntCommand(CLI::App* app) {
                    "write the map as GeoJSON")
       ->type_name("LAT,LON")
       ->delimiter(',')
-      ->expected(2)
+      ->allow_extra_args(false)
       ->check(InRange(-180.0001, 180.0001, "degrees"));
-  command->callback([arguments] { RunHunt(*arguments); });
+  command->callback([arguments] {
+    if (!arguments->origin.empty() && arguments->origin.size() != 2) {
+      throw CLI::ValidationError("--origin", "expected latitude and longitude, as 50.1,14.4");
+    }
+    RunHunt(*arguments);
+  });
 }
 
 }  // namespace kestrel

@@ -149,6 +149,7 @@ void AddLandCommand(CLI::App* app) {
                    "Also write where the target will be after these times (s), as 0.5,1.0")
       ->type_name("S,...")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->needs("--output")
       ->check(InRange(0, 60, "seconds, above 0 and below 60"));
   command->callback([arguments] { RunLand(*arguments); });
