@@ -19,8 +19,7 @@ struct Definition {
   std::vector<std::string_view> parts;  // types of its fields
 };
 
-// Field names of CameraInfo are small in ROS 2 and large in ROS 1, whose header has a number too:
-// these two have a second definition.
+// As ROS 1 has them; Ros2Definitions has what is other there.
 const std::vector<Definition>& Definitions() {
   static const std::vector<Definition> kDefinitions = {
       {"sensor_msgs/Image",
@@ -168,6 +167,46 @@ const std::vector<Definition>& Ros2Definitions() {
        "builtin_interfaces/Time stamp\nstring frame_id\n",
        {"builtin_interfaces/Time"}},
       {"builtin_interfaces/Time", "", "int32 sec\nuint32 nanosec\n", {}},
+      {"builtin_interfaces/Duration", "", "int32 sec\nuint32 nanosec\n", {}},
+      {"visualization_msgs/Marker",
+       "",
+       "int32 ARROW=0\nint32 CUBE=1\nint32 SPHERE=2\nint32 CYLINDER=3\nint32 LINE_STRIP=4\n"
+       "int32 LINE_LIST=5\nint32 CUBE_LIST=6\nint32 SPHERE_LIST=7\nint32 POINTS=8\n"
+       "int32 TEXT_VIEW_FACING=9\nint32 MESH_RESOURCE=10\nint32 TRIANGLE_LIST=11\n"
+       "int32 ADD=0\nint32 MODIFY=0\nint32 DELETE=2\nint32 DELETEALL=3\n"
+       "std_msgs/Header header\nstring ns\nint32 id\nint32 type\nint32 action\n"
+       "geometry_msgs/Pose pose\ngeometry_msgs/Vector3 scale\nstd_msgs/ColorRGBA color\n"
+       "builtin_interfaces/Duration lifetime\nbool frame_locked\ngeometry_msgs/Point[] points\n"
+       "std_msgs/ColorRGBA[] colors\nstring texture_resource\n"
+       "sensor_msgs/CompressedImage texture\nvisualization_msgs/UVCoordinate[] uv_coordinates\n"
+       "string text\nstring mesh_resource\nvisualization_msgs/MeshFile mesh_file\n"
+       "bool mesh_use_embedded_materials\n",
+       {"std_msgs/Header", "geometry_msgs/Pose", "geometry_msgs/Vector3", "std_msgs/ColorRGBA",
+        "builtin_interfaces/Duration", "geometry_msgs/Point", "sensor_msgs/CompressedImage",
+        "visualization_msgs/UVCoordinate", "visualization_msgs/MeshFile"}},
+      {"visualization_msgs/UVCoordinate", "", "float32 u\nfloat32 v\n", {}},
+      {"visualization_msgs/MeshFile", "", "string filename\nuint8[] data\n", {}},
+      {"vision_msgs/Detection3D",
+       "",
+       "std_msgs/Header header\nvision_msgs/ObjectHypothesisWithPose[] results\n"
+       "vision_msgs/BoundingBox3D bbox\nstring id\n",
+       {"std_msgs/Header", "vision_msgs/ObjectHypothesisWithPose", "vision_msgs/BoundingBox3D"}},
+      {"vision_msgs/ObjectHypothesisWithPose",
+       "",
+       "vision_msgs/ObjectHypothesis hypothesis\ngeometry_msgs/PoseWithCovariance pose\n",
+       {"vision_msgs/ObjectHypothesis", "geometry_msgs/PoseWithCovariance"}},
+      {"vision_msgs/ObjectHypothesis", "", "string class_id\nfloat64 score\n", {}},
+      // What makes nodes visible to `ros2 node list`, since Iron.
+      {"rmw_dds_common/ParticipantEntitiesInfo",
+       "",
+       "rmw_dds_common/Gid gid\nrmw_dds_common/NodeEntitiesInfo[] node_entities_info_seq\n",
+       {"rmw_dds_common/Gid", "rmw_dds_common/NodeEntitiesInfo"}},
+      {"rmw_dds_common/NodeEntitiesInfo",
+       "",
+       "string<=256 node_namespace\nstring<=256 node_name\n"
+       "rmw_dds_common/Gid[] reader_gid_seq\nrmw_dds_common/Gid[] writer_gid_seq\n",
+       {"rmw_dds_common/Gid"}},
+      {"rmw_dds_common/Gid", "", "char[16] data\n", {}},
   };
   return kDefinitions;
 }

@@ -8,8 +8,8 @@
 
 namespace kestrel {
 
-// The definition of a type of messages.h, or in ROS 1's words of result_messages.h, with those of
-// the types in it, as bags have it: in ROS 1's or in ROS 2's words ('format': kRos1, kCdr).
+// The definition of a type of messages.h or result_messages.h, with those of the types in it, as
+// bags have it: in ROS 1's or in ROS 2's words ('format': kRos1, kCdr).
 std::string MessageDefinition(std::string_view type, WireFormat format);
 
 // The checksum by which ROS 1 knows the definition.

@@ -40,7 +40,7 @@ struct ColorMessage {  // std_msgs/ColorRGBA, 0 to 1
   }
 };
 
-struct DurationMessage {
+struct RosDurationMessage {
   std::int32_t seconds = 0;
   std::int32_t nanoseconds = 0;
 
@@ -51,10 +51,35 @@ struct DurationMessage {
   }
 };
 
-// visualization_msgs/Marker of ROS 1.
+// What ROS 2 has for surfaces of markers, without any.
+struct EmptyTextureMessage {
+  std::string resource;
+  CompressedImageMessage texture;
+  std::uint32_t coordinate_count = 0;
+
+  template <class Self, class Wire>
+  static void Fields(Self& self, Wire& wire) {
+    wire(self.resource);
+    wire(self.texture);
+    wire(self.coordinate_count);
+  }
+};
+
+struct EmptyMeshMessage {  // visualization_msgs/MeshFile
+  std::string file_name;
+  std::uint32_t byte_count = 0;
+
+  template <class Self, class Wire>
+  static void Fields(Self& self, Wire& wire) {
+    wire(self.file_name);
+    wire(self.byte_count);
+  }
+};
+
+// visualization_msgs/Marker.
 struct MarkerMessage {
   enum Shape : std::int32_t { kArrow = 0, kSphere = 2, kCylinder = 3 };
-  enum Action : std::int32_t { kAdd = 0, kDelete = 2 };
+  enum Action : std::int32_t { kAdd = 0, kDelete = 2, kDeleteAll = 3 };
 
   HeaderMessage header;
   std::string name_space;
@@ -64,12 +89,14 @@ struct MarkerMessage {
   PoseMessage pose;
   Vector3Message scale;  // m
   ColorMessage color;
-  DurationMessage lifetime;  // 0: for ever
+  RosDurationMessage lifetime;  // 0: for ever
   std::uint8_t frame_locked = 0;
   std::vector<Vector3Message> points;  // of an arrow: its ends
   std::vector<ColorMessage> colors;
+  EmptyTextureMessage texture;  // ROS 2 only
   std::string text;
   std::string mesh_resource;
+  EmptyMeshMessage mesh_file;  // ROS 2 only
   std::uint8_t mesh_use_embedded_materials = 0;
 
   template <class Self, class Wire>
@@ -86,8 +113,10 @@ struct MarkerMessage {
     wire(self.frame_locked);
     wire.List(self.points);
     wire.List(self.colors);
+    wire.OfRos2(self.texture);
     wire(self.text);
     wire(self.mesh_resource);
+    wire.OfRos2(self.mesh_file);
     wire(self.mesh_use_embedded_materials);
   }
 };
@@ -144,16 +173,18 @@ struct DiagnosticArrayMessage {
   }
 };
 
-// vision_msgs/ObjectHypothesisWithPose of ROS 1 (Noetic).
+// vision_msgs/ObjectHypothesisWithPose.
 struct ObjectHypothesisMessage {
-  std::int64_t id = 0;  // of the class
-  double score = 0;     // 0 to 1
+  std::int64_t id = 0;   // of the class; ROS 1 (Noetic) only
+  std::string class_id;  // its name; ROS 2 (since Humble) only
+  double score = 0;      // 0 to 1
   PoseMessage pose;
   std::array<double, 36> covariance{};
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire(self.id);
+    wire.OfRos1(self.id);
+    wire.OfRos2(self.class_id);
     wire(self.score);
     wire(self.pose);
     for (auto& number : self.covariance) wire(number);
@@ -186,13 +217,14 @@ struct EmptyCloudMessage {
   }
 };
 
-// vision_msgs/Detection3D of ROS 1 (Noetic).
+// vision_msgs/Detection3D.
 struct Detection3DMessage {
   HeaderMessage header;
   std::vector<ObjectHypothesisMessage> results;
   PoseMessage box_center;
-  Vector3Message box_size;  // m
-  EmptyCloudMessage source_cloud;
+  Vector3Message box_size;         // m
+  EmptyCloudMessage source_cloud;  // ROS 1 (Noetic) only
+  std::string id;                  // from frame to frame; ROS 2 (since Humble) only
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
@@ -200,7 +232,8 @@ struct Detection3DMessage {
     wire.List(self.results);
     wire(self.box_center);
     wire(self.box_size);
-    wire(self.source_cloud);
+    wire.OfRos1(self.source_cloud);
+    wire.OfRos2(self.id);
   }
 };
 

@@ -44,8 +44,14 @@ class WireReader {
   requires std::is_class_v<Message>
   void operator()(Message& message) { Message::Fields(message, *this); }
 
-  void OfRos1(std::uint32_t& number) {
-    if (format_ == WireFormat::kRos1) (*this)(number);
+  // A field that the type has in one of the two only.
+  template <class Field>
+  void OfRos1(Field& field) {
+    if (format_ == WireFormat::kRos1) (*this)(field);
+  }
+  template <class Field>
+  void OfRos2(Field& field) {
+    if (format_ == WireFormat::kCdr) (*this)(field);
   }
   void ByteList(std::string_view& bytes) { bytes = Take(Count()); }
   // Grows with what is there, whatever length is claimed.
@@ -85,8 +91,13 @@ class WireWriter {
   requires std::is_class_v<Message>
   void operator()(const Message& message) { Message::Fields(message, *this); }
 
-  void OfRos1(const std::uint32_t& number) {
-    if (format_ == WireFormat::kRos1) (*this)(number);
+  template <class Field>
+  void OfRos1(const Field& field) {
+    if (format_ == WireFormat::kRos1) (*this)(field);
+  }
+  template <class Field>
+  void OfRos2(const Field& field) {
+    if (format_ == WireFormat::kCdr) (*this)(field);
   }
   void ByteList(const std::string_view& bytes) {
     (*this)(static_cast<std::uint32_t>(bytes.size()));

@@ -107,7 +107,7 @@ class DoctorVisit {
   void OpenSource() {
     CameraObservations& camera = observations_.camera;
     try {
-      source_ = OpenFlySource(arguments_.flight.source, PixelFormat::kGray, options_.fly,
+      source_ = OpenFlySource(arguments_.flight.source, PixelFormat::kGray, options_,
                               arguments_.flight.loop);
     } catch (const ImageSizeError& error) {
       camera.open_error = error.what();

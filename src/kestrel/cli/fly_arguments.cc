@@ -94,6 +94,7 @@ void FlyArguments::AddTo(CLI::App* command) {
       ->type_name("FILE")
       ->needs(hunt_flag);
   guide_flag->excludes(hunt_flag);
+  team.AddTo(command)->needs(hunt_flag);
   command->add_flag("--loop", loop, "Play a recording again and again");
 }
 

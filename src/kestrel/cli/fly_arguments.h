@@ -8,6 +8,7 @@
 
 #include "kestrel/cli/kestrel_options.h"
 #include "kestrel/cli/source_arguments.h"
+#include "kestrel/cli/team_link.h"
 
 namespace kestrel {
 
@@ -24,6 +25,7 @@ struct FlyArguments {
   bool guide = false;
   bool hunt = false;
   std::string model;  // of the objects
+  TeamArguments team;
   bool loop = false;
 
   void AddTo(CLI::App* command);

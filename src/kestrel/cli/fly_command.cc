@@ -17,10 +17,12 @@
 #include "kestrel/cli/fly_autopilot.h"
 #include "kestrel/cli/fly_source.h"
 #include "kestrel/cli/interrupt.h"
+#include "kestrel/cli/team_link.h"
 #include "kestrel/console/flight_console.h"
 #include "kestrel/foxglove/flight_live.h"
 #include "kestrel/foxglove/flight_mcap.h"
 #include "kestrel/link/mavlink_enums.h"
+#include "kestrel/middleware/flight_dds.h"
 #include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/flight_keeper.h"
 #include "kestrel/onboard/hunt_vision.h"
@@ -91,9 +93,11 @@ class Flight {
       : arguments_(arguments), all_options_(arguments.ReadOptions()) {
     const FlyOptions& options = all_options_.fly;
     const PixelFormat format = arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray;
-    source_ = OpenFlySource(arguments.source, format, options, arguments.loop);
+    source_ = OpenFlySource(arguments.source, format, all_options_, arguments.loop);
     OpenConsole();
+    OpenTeam();
     OpenMcap();
+    OpenDds();
     if (!arguments.record.empty()) recording_.Start(arguments.record, arguments.source.force);
     OpenVision();
     if (!arguments.autopilot.empty()) OpenAutopilot();
@@ -108,6 +112,7 @@ class Flight {
     Time next_state = Now();
     const FlightEnd end = program_->Run([&] {
       log_.Show();
+      if (team_) ShareMap();
       if (Now() >= next_state) {
         log_.Say(program_->State());
         next_state += DurationFromSeconds(kStatePeriod_s);
@@ -117,6 +122,7 @@ class Flight {
     if (simulated_autopilot_) simulated_autopilot_->Stop();
     Finish(end);
     if (hunt_ != nullptr && output_) hunt_->WriteMap(*output_);
+    if (team_) LeaveTeam();
     return end;
   }
 
@@ -154,6 +160,30 @@ class Flight {
     log_.Say("for Foxglove: " + console_->viewer_url());
   }
 
+  bool HasWorld() const {
+    return source_.calibration.body_from_camera &&
+           (source_.has_poses || !arguments_.autopilot.empty());
+  }
+
+  // What a topic's frames are called, or the options call them; stamps are ROS' time.
+  DdsFrames Frames() const {
+    if (source_.frames) return *source_.frames;
+    DdsFrames frames = OwnFrames(all_options_.dds, HasWorld());
+    frames.to_stamps = RosTimeAhead();
+    return frames;
+  }
+
+  void OpenDds() {
+    if (!arguments_.source.dds.is_given()) return;
+    const DdsOptions& options = all_options_.dds;
+    if (!source_.node) source_.node = arguments_.source.dds.OpenNode(options);
+    dds_ = std::make_unique<FlightDds>(
+        std::make_unique<DdsResults>(source_.node, options, Frames(), source_.calibration,
+                                     all_options_.landing, ReadModel()),
+        [this](const std::string& text) { log_.Say(text); });
+    observers_.Add(dds_.get());
+  }
+
   void OpenMcap() {
     const SourceArguments& source = arguments_.source;
     if (source.mcap.empty()) return;
@@ -166,6 +196,17 @@ class Flight {
     observers_.Add(mcap_.get());
   }
 
+  // Before anything is written.
+  void OpenTeam() {
+    if (arguments_.team.team.empty()) return;
+    if (!HasWorld()) {
+      throw InputError(
+          "--team: expected --autopilot or a source with poses, and the camera's mount");
+    }
+    team_.emplace(arguments_.team, arguments_.source.dds.Domain(), all_options_.team,
+                  all_options_.hunt.map, [this](const std::string& text) { Say(text); });
+  }
+
   void OpenVision() {
     if (!arguments_.source.output.empty()) {
       output_.emplace(arguments_.source.output, arguments_.source.force);
@@ -175,6 +216,7 @@ class Flight {
       auto hunt =
           std::make_unique<HuntVision>(source_.calibration, ReadModel(), all_options_.hunt, output);
       hunt_ = hunt.get();
+      if (team_) hunt_->ShareMap(DurationFromSeconds(all_options_.team.team.tell_period_s));
       vision_ = std::move(hunt);
       return;
     }
@@ -252,6 +294,18 @@ class Flight {
     return parts;
   }
 
+  void ShareMap() {
+    if (auto objects = hunt_->TakeMap()) team_->Tell(std::move(*objects));
+    team_->Exchange();
+  }
+
+  void LeaveTeam() {
+    team_->Finish(hunt_->Objects());
+    if (output_) team_->WriteMap(ReadModel(), /*origin=*/{}, *output_);
+    log_.Show();
+    fmt::print(stderr, "{}\n", team_->Found());
+  }
+
   void TakePose(const PoseSample& pose) {
     program_->TakeAutopilotPose(pose);
     source_.TakePose(pose);
@@ -265,6 +319,7 @@ class Flight {
   void Finish(FlightEnd end) {
     recording_.Close();  // writes what is left
     mcap_.reset();
+    dds_.reset();
     log_.Show();
     fmt::print(stderr, "{}", program_->Summary());
     if (simulated_autopilot_) fmt::print(stderr, "{}", InWords(simulated_autopilot_->result()));
@@ -282,11 +337,13 @@ class Flight {
   std::unique_ptr<FlightLive> live_;
   std::optional<FlightConsole> console_;
   std::unique_ptr<FlightMcap> mcap_;
+  std::unique_ptr<FlightDds> dds_;
   FlightObservers observers_;
   RecordingEnd recording_end_{&recording_};  // while the console can still be told of it
   std::optional<OutputFolder> output_;
   std::unique_ptr<FlightVision> vision_;
   HuntVision* hunt_ = nullptr;  // the vision, when it is one
+  std::optional<TeamLink> team_;
   std::optional<RecordedActuator> actuator_;
   std::unique_ptr<SimulatedAutopilot> simulated_autopilot_;
   std::optional<Connection> connection_;

@@ -8,8 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "kestrel/base/error.h"
 #include "kestrel/camera/calibration_reader.h"
+#include "kestrel/middleware/dds_camera.h"
 #include "kestrel/onboard/gstreamer_camera.h"
 #include "kestrel/onboard/realtime_replay.h"
 #include "kestrel/recording/open_source.h"
@@ -18,6 +21,7 @@ namespace kestrel {
 namespace {
 
 constexpr std::string_view kSimulated = "sim:";
+constexpr std::string_view kTopic = "dds:";
 
 // The rendered camera as a live source.
 class SimulatedSource : public LiveSource {
@@ -106,6 +110,44 @@ FlySource OpenCamera(const SourceArguments& arguments, PixelFormat format,
   return opened;
 }
 
+// Calibration and mount of the topics that go with the images, unless --camera has them.
+FlySource OpenTopic(const SourceArguments& arguments, PixelFormat format,
+                    const DdsOptions& options) {
+  std::optional<CameraCalibration> told;
+  if (!arguments.camera.empty()) told = ReadCalibration(arguments.camera);
+  DdsCameraOptions camera_options;
+  camera_options.image = arguments.sources.front().substr(kTopic.size());
+  camera_options.topics = arguments.bag.topics;
+  camera_options.format = format;
+  camera_options.body_frame = options.body_frame;
+  if (told) camera_options.camera = told->intrinsics;
+  camera_options.wait_s = options.wait_s;
+  FlySource opened;
+  opened.node = arguments.dds.OpenNode(options);
+  auto camera = std::make_unique<DdsCamera>(
+      opened.node, camera_options,
+      [](const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); });
+  opened.calibration = told ? *told : *camera->calibration();
+  if (!opened.calibration.body_from_camera) opened.calibration.body_from_camera = camera->mount();
+  if (arguments.clock_offset) {
+    opened.calibration.clock_offset = DurationFromSeconds(*arguments.clock_offset);
+  }
+  opened.has_poses = camera->has_poses();
+  if (opened.has_poses && !opened.calibration.body_from_camera) {
+    fmt::print(stderr,
+               "kestrel: no mount: no positions in the world; expected a static transform from {} "
+               "to {}, or --camera FILE with T_BS\n",
+               options.body_frame, camera->camera_frame());
+  }
+  opened.rate_hz = kNominalRateHz;
+  opened.frames.emplace();
+  opened.frames->camera = camera->camera_frame();
+  if (opened.has_poses) opened.frames->world = camera->world_frame();
+  opened.frames->to_stamps = camera->to_stamps();
+  opened.source = std::move(camera);
+  return opened;
+}
+
 FlySource OpenReplay(const SourceArguments& arguments, PixelFormat format, bool is_looped) {
   OpenedSource recording = arguments.Open(format);
   FlySource opened;
@@ -137,10 +179,11 @@ void FlySource::TakeTruePose(const PoseSample& pose) {
 }
 
 FlySource OpenFlySource(const SourceArguments& arguments, PixelFormat format,
-                        const FlyOptions& options, bool is_looped) {
+                        const KestrelOptions& options, bool is_looped) {
   const std::string& first = arguments.sources.front();
-  if (first.starts_with(kSimulated)) return OpenSimulated(arguments, options);
-  if (IsCamera(first)) return OpenCamera(arguments, format, options);
+  if (first.starts_with(kTopic)) return OpenTopic(arguments, format, options.dds);
+  if (first.starts_with(kSimulated)) return OpenSimulated(arguments, options.fly);
+  if (IsCamera(first)) return OpenCamera(arguments, format, options.fly);
   return OpenReplay(arguments, format, is_looped);
 }
 

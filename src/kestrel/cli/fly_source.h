@@ -2,11 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "kestrel/camera/calibration.h"
-#include "kestrel/cli/fly_options.h"
+#include "kestrel/cli/kestrel_options.h"
 #include "kestrel/cli/source_arguments.h"
+#include "kestrel/dds/ros2_node.h"
 #include "kestrel/link/autopilot.h"
+#include "kestrel/middleware/dds_results.h"
 #include "kestrel/navigation/pose_history.h"
 #include "kestrel/onboard/exposure_drive.h"
 #include "kestrel/onboard/live_source.h"
@@ -25,7 +28,9 @@ struct FlySource {
   // Of 'source', where it is such; else null.
   SimulatedCamera* simulated = nullptr;
   ExposureActuator* actuator = nullptr;
-  bool has_true_poses = false;  // the autopilot tells where a simulated camera truly is
+  std::shared_ptr<Ros2Node> node;   // "dds:TOPIC": where it is heard,
+  std::optional<DdsFrames> frames;  // and what its frames are called
+  bool has_true_poses = false;      // the autopilot tells where a simulated camera truly is
 
   // What this asks of the autopilot, beside 'options'.
   AutopilotOptions Asking(AutopilotOptions options) const;
@@ -34,11 +39,11 @@ struct FlySource {
   void TakeTruePose(const PoseSample& pose);
 };
 
-// Opens what the arguments name: "sim:SCENARIO" with further settings as
-// "sim:straight,vehicle.speed_mps=4", a camera (/dev/video0, rtsp://..., a GStreamer pipeline), or
-// a recording, played in real time, again and again when 'is_looped'. Throws InputError with what
-// is wrong with it.
+// Opens what the arguments name: a topic of ROS 2 ("dds:/camera/image_raw"), "sim:SCENARIO" with
+// further settings as "sim:straight,vehicle.speed_mps=4", a camera (/dev/video0, rtsp://..., a
+// GStreamer pipeline), or a recording, played in real time, again and again when 'is_looped'.
+// Throws InputError with what is wrong with it.
 FlySource OpenFlySource(const SourceArguments& arguments, PixelFormat format,
-                        const FlyOptions& options, bool is_looped);
+                        const KestrelOptions& options, bool is_looped);
 
 }  // namespace kestrel

@@ -50,12 +50,14 @@ std::string GroundWarning(const HuntPipeline& pipeline, std::optional<double> al
 class HuntRun : public PipelineRun {
  public:
   HuntRun(const OpenedSource& opened, const ObjectModel& model, const ColorGrid& grid,
-          const HuntPipelineOptions& options, const HuntArguments& arguments, TeamLink* team)
+          const HuntPipelineOptions& options, const HuntArguments& arguments, TeamLink* team,
+          DdsResults* dds)
       : pipeline_(opened.calibration, model, grid, options),
         mcap_(arguments.source.OpenMcap(opened.calibration.intrinsics, HuntView{model})),
         sink_(arguments.source.Output(opened), arguments.origin),
         has_map_(opened.has_world() && !options.still),
         team_(team),
+        dds_(dds),
         altitude_m_(arguments.source.altitude_m) {
     pipeline_.SetAltitude(altitude_m_);
   }
@@ -71,10 +73,11 @@ class HuntRun : public PipelineRun {
     const HuntObservation& observation = pipeline_.Process(frame.image, frame.time);
     sink_.Write(frame, observation, pipeline_);
     if (mcap_) mcap_->Write(frame, observation);
+    if (dds_ != nullptr) dds_->Publish(frame, observation);
     detections_ += observation.report.detections.size();
     for (std::size_t i = 0; i < kObjectStageCount; ++i) passed_[i] += observation.report.passed[i];
     has_world_ = observation.world_from_camera.has_value();
-    if (team_ != nullptr) team_->Exchange(pipeline_.map());
+    ShareMap();
     return observation.detect_time;
   }
 
@@ -83,8 +86,9 @@ class HuntRun : public PipelineRun {
   void Finish() override {
     if (has_map_) sink_.WriteMap(pipeline_);
     if (mcap_) mcap_->Close();
+    if (dds_ != nullptr) dds_->Flush();
     if (team_ == nullptr) return;
-    team_->Finish(pipeline_.map());
+    team_->Finish(pipeline_.map().Confirmed());
     sink_.WriteTeamMap(pipeline_, team_);
   }
 
@@ -102,11 +106,18 @@ class HuntRun : public PipelineRun {
   }
 
  private:
+  void ShareMap() {
+    if (team_ == nullptr) return;
+    if (team_->IsTimeToTell()) team_->Tell(pipeline_.map().Confirmed());
+    team_->Exchange();
+  }
+
   HuntPipeline pipeline_;
   std::unique_ptr<ObservationFile> mcap_;
   HuntSink sink_;
   bool has_map_;
-  TeamLink* team_;  // null: none
+  TeamLink* team_;   // null: none
+  DdsResults* dds_;  // as well
   std::optional<double> altitude_m_;
   bool has_world_ = false;  // of the last frame
   std::size_t detections_ = 0;
@@ -134,9 +145,12 @@ void RunHunt(const HuntArguments& arguments) {
   std::optional<TeamLink> team;
   if (!arguments.team.team.empty()) {
     RequireMap(opened, options);
-    team.emplace(arguments.team, all_options.team, options.map);
+    team.emplace(arguments.team, arguments.source.dds.Domain(), all_options.team, options.map,
+                 [](const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); });
   }
-  HuntRun run(opened, model, grid, options, arguments, team ? &*team : nullptr);
+  const std::unique_ptr<DdsResults> dds = OpenDdsResults(arguments.source, opened, all_options,
+                                                         /*is_still=*/options.still, model);
+  HuntRun run(opened, model, grid, options, arguments, team ? &*team : nullptr, dds.get());
   RunPipeline(opened, &run);
 }
 
@@ -161,9 +175,14 @@ void AddHuntCommand(CLI::App* app) {
                    "write the map as GeoJSON")
       ->type_name("LAT,LON")
       ->delimiter(',')
-      ->expected(2)
+      ->allow_extra_args(false)
       ->check(InRange(-180.0001, 180.0001, "degrees"));
-  command->callback([arguments] { RunHunt(*arguments); });
+  command->callback([arguments] {
+    if (!arguments->origin.empty() && arguments->origin.size() != 2) {
+      throw CLI::ValidationError("--origin", "expected latitude and longitude, as 50.1,14.4");
+    }
+    RunHunt(*arguments);
+  });
 }
 
 }  // namespace kestrel

@@ -98,7 +98,8 @@ TEST_F(KestrelCommandTest, WrongUsageIsStatusTwo) {
        {"", "swim", "help swim", "land", "land a.png --altitude nan", "land a.png --altitude -1",
         "land a.png --clock-offset inf", "land a.png --annotate", "land a.png --colour",
         "land a.png --output o --annotate=gif", "land a.png --predict 1", "calibrate",
-        "land a.png --output o --predict 0.5,-1"}) {
+        "land a.png --output o --predict 0.5,-1", "hunt a.png --origin 50",
+        "hunt a.png --origin 50,14,3"}) {
     const Outcome outcome = Run(arguments);
     EXPECT_EQ(outcome.status, 2) << arguments;
     EXPECT_THAT(outcome.err, Not(IsEmpty())) << arguments;

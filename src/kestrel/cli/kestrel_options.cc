@@ -13,6 +13,7 @@ std::vector<std::string> KestrelOptions::Validate() const {
   AddViolations("fly", fly.Validate(), &violations);
   AddViolations("console", console.Validate(), &violations);
   AddViolations("team", team.Validate(), &violations);
+  AddViolations("dds", dds.Validate(), &violations);
   return violations;
 }
 

@@ -7,6 +7,7 @@
 #include "kestrel/cli/fly_options.h"
 #include "kestrel/cli/team_link.h"
 #include "kestrel/console/console_options.h"
+#include "kestrel/middleware/dds_options.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/pipeline/landing_pipeline.h"
 
@@ -19,6 +20,7 @@ struct KestrelOptions {
   FlyOptions fly;
   ConsoleOptions console;
   TeamLinkOptions team;
+  DdsOptions dds;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -27,6 +29,7 @@ struct KestrelOptions {
     visitor.Group("fly", self.fly);
     visitor.Group("console", self.console);
     visitor.Group("team", self.team);
+    visitor.Group("dds", self.dds);
   }
   std::vector<std::string> Validate() const;
 };

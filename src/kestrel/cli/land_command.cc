@@ -64,11 +64,12 @@ std::string FocalRemark(const CalibrationMonitor& monitor, double focal_px) {
 class LandRun : public PipelineRun {
  public:
   LandRun(const OpenedSource& opened, const LandingPipelineOptions& options,
-          const LandArguments& arguments, bool has_track)
+          const LandArguments& arguments, bool has_track, DdsResults* dds)
       : pipeline_(opened.calibration, options),
         mcap_(arguments.source.OpenMcap(opened.calibration.intrinsics,
                                         ViewOf(opened.calibration, options))),
         sink_(arguments.source.Output(opened), has_track, arguments.predict_s),
+        dds_(dds),
         altitude_m_(arguments.source.altitude_m),
         has_world_(opened.has_world()) {
     pipeline_.SetAltitude(altitude_m_);
@@ -80,6 +81,7 @@ class LandRun : public PipelineRun {
     const LandingObservation observation = pipeline_.Process(frame.image, frame.time);
     sink_.Write(frame, observation, pipeline_);
     if (mcap_) mcap_->Write(frame, observation);
+    if (dds_ != nullptr) dds_->Publish(frame, observation);
     ++poses_[observation.pose];
     found_ += observation.report.detection.has_value();
     return observation.detect_time;
@@ -89,6 +91,7 @@ class LandRun : public PipelineRun {
 
   void Finish() override {
     if (mcap_) mcap_->Close();
+    if (dds_ != nullptr) dds_->Flush();
   }
 
   std::string Found() const override { return fmt::format("pattern found in {}", found_); }
@@ -111,6 +114,7 @@ class LandRun : public PipelineRun {
   LandingPipeline pipeline_;
   std::unique_ptr<ObservationFile> mcap_;
   LandingSink sink_;
+  DdsResults* dds_;  // null: none
   std::optional<double> altitude_m_;
   bool has_world_;
   std::map<PoseLookup, std::size_t> poses_;
@@ -118,7 +122,8 @@ class LandRun : public PipelineRun {
 };
 
 void RunLand(const LandArguments& arguments) {
-  LandingPipelineOptions options = arguments.source.options.Read().landing;
+  const KestrelOptions all_options = arguments.source.options.Read();
+  LandingPipelineOptions options = all_options.landing;
   if (arguments.source.still) options.still = true;
   const OpenedSource opened = arguments.source.Open(PixelFormat::kGray);
   const bool has_track = opened.has_world() && !options.still;
@@ -127,7 +132,9 @@ void RunLand(const LandArguments& arguments) {
                "no prediction: it needs a source with poses, a camera with its mount (T_BS) and no "
                "--still\n");
   }
-  LandRun run(opened, options, arguments, has_track);
+  const std::unique_ptr<DdsResults> dds =
+      OpenDdsResults(arguments.source, opened, all_options, options.still, /*model=*/{});
+  LandRun run(opened, options, arguments, has_track, dds.get());
   RunPipeline(opened, &run);
 }
 
@@ -142,6 +149,7 @@ void AddLandCommand(CLI::App* app) {
                    "Also write where the target will be after these times (s), as 0.5,1.0")
       ->type_name("S,...")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->needs("--output")
       ->check(InRange(0, 60, "seconds, above 0 and below 60"));
   command->callback([arguments] { RunLand(*arguments); });

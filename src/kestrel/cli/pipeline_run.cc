@@ -2,6 +2,7 @@
 #include "kestrel/cli/pipeline_run.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -31,6 +32,19 @@ void PrintSummary(const std::vector<double>& detect_ms, const PipelineRun& run) 
 }
 
 }  // namespace
+
+std::unique_ptr<DdsResults> OpenDdsResults(const SourceArguments& arguments,
+                                           const OpenedSource& opened,
+                                           const KestrelOptions& options, bool is_still,
+                                           const ObjectModel& model) {
+  if (!arguments.dds.is_given()) return nullptr;
+  auto results =
+      std::make_unique<DdsResults>(arguments.dds.OpenNode(options.dds), options.dds,
+                                   OwnFrames(options.dds, opened.has_world() && !is_still),
+                                   opened.calibration, options.landing, model);
+  results->WaitForSubscribers(std::chrono::seconds(1));
+  return results;
+}
 
 void RunPipeline(const OpenedSource& opened, PipelineRun* run) {
   const Duration lead =

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "kestrel/base/time.h"
+#include "kestrel/cli/kestrel_options.h"
 #include "kestrel/cli/source_arguments.h"
+#include "kestrel/middleware/dds_results.h"
 #include "kestrel/navigation/pose_history.h"
+#include "kestrel/objects/object_model.h"
 #include "kestrel/recording/frame.h"
 
 namespace kestrel {
@@ -33,6 +37,13 @@ class PipelineRun {
   virtual std::string Found() const = 0;
   virtual std::string Remarks() const = 0;
 };
+
+// What --dds asks for; null without. Waits a second for those who hear: the frames of a recording
+// do not wait. Throws InputError when DDS is at fault.
+std::unique_ptr<DdsResults> OpenDdsResults(const SourceArguments& arguments,
+                                           const OpenedSource& opened,
+                                           const KestrelOptions& options, bool is_still,
+                                           const ObjectModel& model);
 
 // Gives the run all poses and frames of the source, in the order of time, and says on stderr what
 // was found, and its first warning as soon as there is one. When the source ends with an

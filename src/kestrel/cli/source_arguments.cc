@@ -81,6 +81,7 @@ void SourceArguments::AddTo(CLI::App* command) {
       ->add_option("--mcap", mcap,
                    "Also write images and results as MCAP, for Foxglove, Lichtblick and Rerun")
       ->type_name("FILE");
+  dds.AddTo(command);
   command->add_flag("--force", force, "Replace files that exist");
 }
 

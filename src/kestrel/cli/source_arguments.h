@@ -11,6 +11,7 @@
 
 #include "kestrel/camera/calibration.h"
 #include "kestrel/cli/bag_arguments.h"
+#include "kestrel/cli/dds_arguments.h"
 #include "kestrel/cli/option_arguments.h"
 #include "kestrel/cli/result_sink.h"
 #include "kestrel/foxglove/observation_file.h"
@@ -36,6 +37,7 @@ struct SourceArguments {
   std::string output;
   std::string annotate;  // "video", "images" or empty
   std::string mcap;      // file, or empty
+  DdsArguments dds;
   bool still = false;
   bool force = false;
   std::optional<double> altitude_m;

@@ -66,34 +66,56 @@ class TeamCommandTest : public CommandTest {
     EXPECT_THAT(outcome.err, HasSubstr("built without DDS: run scripts/install-deps --dds"));
     return false;
   }
+
+  // The outcome of the commands that 'first' and 'second' begin, run as UAVs "a" and "b" of one
+  // team.
+  int RunTeam(const std::string& first, const std::string& second) const {
+    const auto command = [&, domain = TestDomain()](const std::string& begin,
+                                                    const std::string& uav) {
+      return fmt::format(
+          "{0} {1} '{2}' --output '{3}' --team test --dds {4} --set team.uav={5} "
+          "--set team.silence_s=30 2>'{3}.said'",
+          KESTREL_COMMAND, begin, folder_ / uav, folder_ / (uav + "_out"), domain, uav);
+    };
+    const int status = std::system(fmt::format("({}) & ({}); b=$?; wait $! && exit $b",
+                                               command(first, "a"), command(second, "b"))
+                                       .c_str());
+    return WEXITSTATUS(status);
+  }
+
+  std::string Said(const std::string& uav) const { return ReadFile(folder_ / (uav + "_out.said")); }
+
+  std::string TeamMapOf(const std::string& uav) const {
+    return ReadFile(folder_ / (uav + "_out/team_map.csv"));
+  }
 };
 
 TEST_F(TeamCommandTest, TwoHuntsEndWithOneMap) {
-  const int domain = TestDomain();
   const std::string first = WriteFlight("a", {0, 0});
-  const std::string second = WriteFlight("b", {0.7, -0.5});
+  WriteFlight("b", {0.7, -0.5});
   if (!HasDds(first)) GTEST_SKIP() << "no DDS";
-  const auto hunt = [&](const std::string& uav) {
-    return fmt::format(
-        "{0} hunt '{1}' --output '{2}' --origin 50,14 --team test --dds {3} --set team.uav={4} "
-        "--set team.silence_s=30 2>'{2}.said'",
-        KESTREL_COMMAND, folder_ / uav, folder_ / (uav + "_out"), domain, uav);
-  };
-  const int status = std::system(
-      fmt::format("({}) & ({}); b=$?; wait $! && exit $b", hunt("a"), hunt("b")).c_str());
-  ASSERT_EQ(WEXITSTATUS(status), 0)
-      << ReadFile(folder_ / "a_out.said") << ReadFile(folder_ / "b_out.said");
+  ASSERT_EQ(RunTeam("hunt --origin 50,14", "hunt --origin 50,14"), 0) << Said("a") << Said("b");
   for (const std::string uav : {"a", "b"}) {
     EXPECT_EQ(Lines(ReadFile(folder_ / (uav + "_out/object_map.csv"))), 13);
-    EXPECT_THAT(ReadFile(folder_ / (uav + "_out.said")), HasSubstr("team: 2 UAVs, 12 objects"));
+    EXPECT_THAT(Said(uav), HasSubstr("team: 2 UAVs, 12 objects"));
     EXPECT_EQ(Lines(ReadFile(folder_ / (uav + "_out/team_map.geojson"))), 14);
   }
-  const std::string map = ReadFile(folder_ / "a_out/team_map.csv");
-  EXPECT_EQ(map, ReadFile(folder_ / "b_out/team_map.csv"));
+  const std::string map = TeamMapOf("a");
+  EXPECT_EQ(map, TeamMapOf("b"));
   EXPECT_EQ(Lines(map), 13) << map;
   std::size_t shared = 0;  // rows of objects that both have
   for (std::size_t at = 0; (at = map.find(",a b\n", at)) != std::string::npos; ++at) ++shared;
   EXPECT_EQ(shared, 12u) << map;
+}
+
+TEST_F(TeamCommandTest, AFlightSharesItsMapWithAHunt) {
+  const std::string first = WriteFlight("a", {0, 0});
+  WriteFlight("b", {0.7, -0.5});
+  if (!HasDds(first)) GTEST_SKIP() << "no DDS";
+  ASSERT_EQ(RunTeam("hunt", "fly --hunt"), 0) << Said("a") << Said("b");
+  EXPECT_THAT(Said("b"), HasSubstr("team: 2 UAVs, 12 objects"));
+  EXPECT_EQ(TeamMapOf("a"), TeamMapOf("b"));
+  EXPECT_EQ(Lines(TeamMapOf("b")), 13) << TeamMapOf("b");
 }
 
 TEST_F(TeamCommandTest, FaultsAreNamed) {
@@ -104,9 +126,11 @@ TEST_F(TeamCommandTest, FaultsAreNamed) {
   ExpectInputError("hunt " + flight + "/mav0/cam0/data/image.png --team t --camera " + flight +
                        "/mav0/cam0/sensor.yaml",
                    "expected a source with poses");
+  ExpectInputError("fly " + flight + "/mav0/cam0/data/image.png --hunt --team t --force --camera " +
+                       flight + "/mav0/cam0/sensor.yaml",
+                   "expected --autopilot or a source with poses");
   ExpectInputError("hunt " + flight + " --team t --set team.uav=a/b", "team.uav");
   ExpectInputError("hunt " + flight + " --team t --set team.key=none.key", "none.key");
-  EXPECT_EQ(Run("hunt " + flight + " --dds 3").status, 2);
   if (HasDds(flight)) ExpectInputError("hunt " + flight + " --team t --dds 300", "0 to 232");
 }
 

@@ -6,7 +6,6 @@
 #include <cctype>
 #include <chrono>
 #include <cstdint>
-#include <cstdlib>
 #include <random>
 #include <span>
 #include <thread>
@@ -17,7 +16,6 @@
 #include <fmt/ranges.h>
 
 #include "kestrel/base/error.h"
-#include "kestrel/base/parse_number.h"
 #include "kestrel/base/violations.h"
 #include "kestrel/cli/interrupt.h"
 #include "kestrel/link/signing.h"
@@ -62,16 +60,6 @@ std::string CheckedTeam(const std::string& team) {
   throw InputError(fmt::format("--team '{}': expected 1 to 32 letters, digits and '_'", team));
 }
 
-// As told, or as ROS is told.
-int DomainOf(const TeamArguments& arguments) {
-  if (arguments.domain) return *arguments.domain;
-  const char* const ros = std::getenv("ROS_DOMAIN_ID");
-  if (ros == nullptr || *ros == '\0') return 0;
-  const auto domain = ParseNumber<int>(ros);
-  if (!domain) throw InputError(fmt::format("ROS_DOMAIN_ID '{}': expected a number", ros));
-  return *domain;
-}
-
 }  // namespace
 
 std::vector<std::string> TeamLinkOptions::Validate() const {
@@ -82,36 +70,28 @@ std::vector<std::string> TeamLinkOptions::Validate() const {
   return violations;
 }
 
-void TeamArguments::AddTo(CLI::App* command) {
-  CLI::Option* const name =
-      command
-          ->add_option("--team", team,
-                       "Share the map with the UAVs of this team and write what all know together: "
-                       "team_map.csv")
-          ->type_name("NAME");
-  command
-      ->add_option("--dds", domain,
-                   "DDS domain that the team talks in (else ROS_DOMAIN_ID, else 0)")
-      ->type_name("DOMAIN")
-      ->needs(name);
+CLI::Option* TeamArguments::AddTo(CLI::App* command) {
+  return command
+      ->add_option("--team", team,
+                   "Share the map with the UAVs of this team and write what all know together: "
+                   "team_map.csv; in the DDS domain of --dds (else ROS_DOMAIN_ID, else 0)")
+      ->type_name("NAME");
 }
 
-TeamLink::TeamLink(const TeamArguments& arguments, const TeamLinkOptions& options,
-                   const ObjectMapOptions& map)
+TeamLink::TeamLink(const TeamArguments& arguments, int domain, const TeamLinkOptions& options,
+                   const ObjectMapOptions& map, Say say)
     : options_(options),
       member_(OwnKey(options), options.team, ReadKey(options)),
-      topic_(DomainOf(arguments), CheckedTeam(arguments.team),
+      topic_(domain, CheckedTeam(arguments.team),
              fmt::format("{}/{:08x}", member_.self().name, member_.self().boot)),
-      fusion_(options.team, map) {}
+      fusion_(options.team, map),
+      say_(std::move(say)) {}
 
-void TeamLink::Exchange(const ObjectMap& map) {
-  const Time now = Now();
-  if (!told_ || now - *told_ >= DurationFromSeconds(options_.team.tell_period_s)) Tell(map);
-  Transfer();
+bool TeamLink::IsTimeToTell() const {
+  return !told_ || Now() - *told_ >= DurationFromSeconds(options_.team.tell_period_s);
 }
 
-void TeamLink::Tell(const ObjectMap& map) {
-  std::vector<MappedObject> objects = map.Confirmed();
+void TeamLink::Tell(std::vector<MappedObject> objects) {
   if (map_time_ == Time::min() && objects.empty()) return;  // it has no time yet
   for (const MappedObject& object : objects) {
     map_time_ = std::max({map_time_, object.time, object.last_seen});
@@ -120,25 +100,25 @@ void TeamLink::Tell(const ObjectMap& map) {
   told_ = Now();
 }
 
-void TeamLink::Transfer() {
+void TeamLink::Exchange() {
   topic_.Receive([this](std::span<const std::uint8_t> bytes) { member_.Hear(bytes, Now()); });
   member_.Tick(Now(), [this](std::span<const std::uint8_t> bytes) { topic_.Send(bytes); });
   for (const std::string& warning : member_.TakeWarnings()) {
-    fmt::print(stderr, "kestrel: team: {}\n", warning);
+    say_("team: " + warning);
   }
 }
 
-void TeamLink::Finish(const ObjectMap& map) {
+void TeamLink::Finish(std::vector<MappedObject> objects) {
   constexpr Duration kStay = std::chrono::seconds(1);  // the others want to hear it too
   constexpr Duration kPause = std::chrono::milliseconds(10);
   const Duration silence = DurationFromSeconds(options_.team.silence_s);
-  Tell(map);
+  Tell(std::move(objects));
   member_.SetDone();
   bool was_said = false;
   Time awaited = Now();  // the last time that somebody was not done
   Time lacking = Now();  // or something was not here
   for (;;) {
-    Transfer();
+    Exchange();
     const Time now = Now();
     const bool are_done = member_.AreAllDone(now);
     if (!are_done) awaited = now;
@@ -147,9 +127,7 @@ void TeamLink::Finish(const ObjectMap& map) {
     if (WasInterrupted() || now - lacking >= kStay || now - awaited >= silence) break;
     std::this_thread::sleep_for(kPause);
   }
-  if (!member_.IsWhole()) {
-    fmt::print(stderr, "kestrel: team: of what the team has seen not all was heard\n");
-  }
+  if (!member_.IsWhole()) say_("team: of what the team has seen not all was heard");
 }
 
 void TeamLink::SayWhoIsAwaited() const {
@@ -157,7 +135,7 @@ void TeamLink::SayWhoIsAwaited() const {
   for (const UavKey& uav : member_.Known()) {
     if (uav != member_.self() && member_.IsAlive(uav, Now())) names.push_back(uav.name);
   }
-  fmt::print(stderr, "kestrel: team: waits for {} (Ctrl-C: no longer)\n", fmt::join(names, ", "));
+  say_(fmt::format("team: waits for {} (Ctrl-C: no longer)", fmt::join(names, ", ")));
 }
 
 void TeamLink::WriteMap(const ObjectModel& model, const std::vector<double>& origin,

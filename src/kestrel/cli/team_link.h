@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,29 +38,38 @@ struct TeamLinkOptions {
   std::vector<std::string> Validate() const;
 };
 
-// --team and --dds. Must live until the command line is parsed.
+// --team. Must live until the command line is parsed.
 struct TeamArguments {
-  std::string team;           // empty: none
-  std::optional<int> domain;  // of DDS
+  std::string team;  // empty: none
 
-  void AddTo(CLI::App* command);
+  // The option.
+  CLI::Option* AddTo(CLI::App* command);
 };
 
 // A UAV's part in its team, by DDS: tells the map that it makes, hears those of the others, writes
 // what all know together. One thread at a time.
 class TeamLink {
  public:
+  using Say = std::function<void(const std::string&)>;
+
   // Throws InputError when arguments or options are at fault, the key cannot be read, there is no
-  // network, or DDS is not part of this build. 'map': how the UAVs' maps are fused.
-  TeamLink(const TeamArguments& arguments, const TeamLinkOptions& options,
-           const ObjectMapOptions& map);
+  // network, or DDS is not part of this build. 'domain': of DDS. 'map': how the UAVs' maps are
+  // fused. 'say': gets what a person should know, a line each.
+  TeamLink(const TeamArguments& arguments, int domain, const TeamLinkOptions& options,
+           const ObjectMapOptions& map, Say say);
 
-  // Tells the map when it is time to, and hears; call it often.
-  void Exchange(const ObjectMap& map);
+  // Whether the map should be told again.
+  bool IsTimeToTell() const;
 
-  // Tells the map, which is this UAV's last, and waits until those that are heard have told their
-  // last and all have all, or until Ctrl-C. Who hears nobody waits for silence_s.
-  void Finish(const ObjectMap& map);
+  // Tells the objects of this UAV's map.
+  void Tell(std::vector<MappedObject> objects);
+
+  // Sends what there is to be sent, and hears; call it often.
+  void Exchange();
+
+  // Tells the objects, which are this UAV's last, and waits until those that are heard have told
+  // their last and all have all, or until Ctrl-C. Who hears nobody waits for silence_s.
+  void Finish(std::vector<MappedObject> objects);
 
   // Writes team_map.csv and, with the 'origin' of this UAV's world (latitude and longitude,
   // degrees; or empty), team_map.geojson. Throws InputError when that is not possible.
@@ -70,14 +80,13 @@ class TeamLink {
   std::string Found();
 
  private:
-  void Tell(const ObjectMap& map);
-  void Transfer();
   void SayWhoIsAwaited() const;
 
   TeamLinkOptions options_;
   TeamMember member_;
   TeamTopic topic_;
   TeamFusion fusion_;
+  Say say_;
   Time map_time_ = Time::min();  // of the map told last, on its own clock
   std::optional<Time> told_;
 };

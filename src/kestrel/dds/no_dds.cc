@@ -1,15 +1,58 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// In the place of team_topic.cc where Cyclone DDS is not installed.
+// In the place of the other sources where Cyclone DDS is not installed.
 #include "kestrel/base/error.h"
+#include "kestrel/dds/dds_domain.h"
+#include "kestrel/dds/ros2_node.h"
 #include "kestrel/dds/team_topic.h"
 
 namespace kestrel {
+namespace {
+
+[[noreturn]] void SayHowToGetIt() {
+  throw InputError(
+      "this kestrel was built without DDS: run scripts/install-deps --dds and build it again");
+}
+
+}  // namespace
+
+int DdsDomain(const std::optional<int>& /*told*/) { SayHowToGetIt(); }
+
+std::string DiscoverySettings() { SayHowToGetIt(); }
+
+std::shared_ptr<const void> OpenDdsDomain(int /*domain*/) { SayHowToGetIt(); }
+
+struct Ros2Node::Entities {};
+
+Ros2Node::Ros2Node(int /*domain*/, const Ros2NodeOptions& /*options*/) { SayHowToGetIt(); }
+
+Ros2Node::~Ros2Node() = default;
+
+bool Ros2Node::Knows(std::string_view /*type*/) { return false; }
+
+std::size_t Ros2Node::Advertise(const std::string& /*topic*/, std::string_view /*type*/,
+                                const Ros2Qos& /*qos*/) {
+  return 0;
+}
+
+bool Ros2Node::HasSubscribers(std::size_t /*publisher*/) const { return false; }
+
+bool Ros2Node::Publish(std::size_t /*publisher*/, std::string_view /*bytes*/) { return false; }
+
+void Ros2Node::Flush(Duration /*timeout*/) const {}
+
+std::size_t Ros2Node::Subscribe(const std::string& /*topic*/, std::string_view /*type*/,
+                                const Ros2Qos& /*qos*/) {
+  return 0;
+}
+
+void Ros2Node::Take(Duration /*timeout*/, const TakeMessage& /*take*/) {}
+
+std::vector<BagTopic> Ros2Node::Topics() const { return {}; }
 
 struct TeamTopic::Entities {};
 
 TeamTopic::TeamTopic(int /*domain*/, const std::string& /*team*/, const std::string& /*sender*/) {
-  throw InputError(
-      "this kestrel was built without DDS: run scripts/install-deps --dds and build it again");
+  SayHowToGetIt();
 }
 
 TeamTopic::~TeamTopic() = default;

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/dds/dds_domain.h"
 #include "team_sample.h"
 
 namespace kestrel {
@@ -24,16 +25,12 @@ dds_entity_t Require(dds_entity_t entity, int domain, const char* what) {
   throw InputError(fmt::format("DDS domain {}: no {}: {}", domain, what, dds_strretcode(-entity)));
 }
 
-// What Cyclone has to say of peers that cannot be reached, period after period, is not for a user.
-void Silence() {
-  dds_set_log_sink([](void* /*unused*/, const dds_log_data_t* /*data*/) {}, nullptr);
-}
-
 }  // namespace
 
 struct TeamTopic::Entities {
   Entities(int domain, const std::string& team)
-      : participant(Require(dds_create_participant(domain, nullptr, nullptr), domain,
+      : opened(OpenDdsDomain(domain)),
+        participant(Require(dds_create_participant(domain, nullptr, nullptr), domain,
                             "participant (is there a network?)")) {
     try {
       const std::string name = "kestrel/team/" + team;
@@ -61,6 +58,7 @@ struct TeamTopic::Entities {
   Entities(const Entities&) = delete;
   Entities& operator=(const Entities&) = delete;
 
+  std::shared_ptr<const void> opened;
   dds_entity_t participant;
   dds_entity_t reader = 0;
   dds_entity_t writer = 0;
@@ -68,12 +66,7 @@ struct TeamTopic::Entities {
 };
 
 TeamTopic::TeamTopic(int domain, const std::string& team, const std::string& sender) {
-  constexpr int kLastDomain = 232;
-  if (domain < 0 || domain > kLastDomain) {
-    throw InputError(fmt::format("{} is no DDS domain: expected 0 to {}", domain, kLastDomain));
-  }
-  Silence();
-  entities_ = std::make_unique<Entities>(domain, team);
+  entities_ = std::make_unique<Entities>(DdsDomain(domain), team);
   entities_->sender = sender;
 }
 

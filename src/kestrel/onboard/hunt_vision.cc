@@ -39,7 +39,17 @@ TrackSnapshot HuntVision::Process(const Frame& frame, FlightObserver* observer) 
   objects_ += observation.report.detections.size();
   if (file_) rows_.Push(ObjectCsvRows(frame.name, observation, pipeline_.detector().model()));
   if (observer != nullptr) observer->See(frame, observation);
+  PublishMap();
   return snapshot_;
+}
+
+// A copy, once in a while: the map goes on with the next frame.
+void HuntVision::PublishMap() {
+  if (!share_period_) return;
+  const Time now = Now();
+  if (now < next_share_) return;
+  next_share_ = now + *share_period_;
+  shared_.Push(Objects());
 }
 
 bool HuntVision::WriteResults() {

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "kestrel/camera/calibration.h"
 #include "kestrel/objects/object_model.h"
@@ -28,17 +29,28 @@ class HuntVision : public FlightVision {
   bool WriteResults() override;
   std::string Found() const override;
 
-  // The map of all that was seen; after the last frame. Throws InputError when it cannot be
-  // written.
+  // From now on the map is there for another thread, anew every 'period'. Before the first frame.
+  void ShareMap(Duration period) { share_period_ = period; }
+  // The shared map's objects, when there is a map that was not taken; any thread's.
+  std::optional<std::vector<MappedObject>> TakeMap() { return shared_.TryPop(); }
+
+  // The map of all that was seen, and its objects; after the last frame. Throws InputError when it
+  // cannot be written.
   void WriteMap(const OutputFolder& output) const;
+  std::vector<MappedObject> Objects() const { return pipeline_.map().Confirmed(); }
 
  private:
+  void PublishMap();
+
   HuntPipeline pipeline_;
   Duration clock_offset_;
   TrackSnapshot snapshot_;
   std::size_t objects_ = 0;
   BoundedQueue<std::string> rows_;
   std::optional<std::ofstream> file_;
+  BoundedQueue<std::vector<MappedObject>> shared_{1};
+  std::optional<Duration> share_period_;  // nothing: with nobody
+  Time next_share_ = Time::min();
 };
 
 }  // namespace kestrel

@@ -28,22 +28,22 @@ Ros1Connection::MessageType TypeOf(std::string_view type) {
 class Ros1NodeConnection : public NodeConnection {
  public:
   explicit Ros1NodeConnection(Ros1Connection* ros) : ros_(ros) {
-    for (const NodeTopicInfo& topic : kNodeTopics) {
+    for (const ResultTopicInfo& topic : kResultTopics) {
       topics_.push_back(ros_->Advertise(std::string(topic.name), TypeOf(topic.type)));
     }
   }
 
-  bool HasSubscribers(NodeTopic topic) const override {
+  bool HasSubscribers(ResultTopic topic) const override {
     return ros_->HasSubscribers(IndexOf(topic));
   }
-  void Publish(NodeTopic topic, const std::string& bytes) override {
+  void Publish(ResultTopic topic, const std::string& bytes) override {
     ros_->Publish(IndexOf(topic), bytes);
   }
   void Warn(const std::string& text) override { ros_->Warn(text); }
   Time StampNow() const override { return TimeFromNanoseconds(ros_->NowNanoseconds()); }
 
  private:
-  std::size_t IndexOf(NodeTopic topic) const { return topics_[static_cast<std::size_t>(topic)]; }
+  std::size_t IndexOf(ResultTopic topic) const { return topics_[static_cast<std::size_t>(topic)]; }
 
   Ros1Connection* ros_;
   std::vector<std::size_t> topics_;

@@ -5,8 +5,6 @@
 #include <variant>
 
 #include "kestrel/onboard/thread_setup.h"
-#include "kestrel/recording/landing_overlay.h"
-#include "kestrel/ros/landing_messages.h"
 
 namespace kestrel {
 namespace {
@@ -24,15 +22,28 @@ LiveEventsOptions EventsOf(const NodeOptions& options) {
   return events;
 }
 
+LandingResultsOptions ResultsOf(const NodeOptions& options, const LandingFlight::Frames& frames) {
+  return {.format = WireFormat::kRos1,
+          .camera_frame = frames.camera,
+          .world_frame = frames.world,
+          .pattern_frame = options.pattern_frame,
+          .target_frame = options.target_frame,
+          .publish_tf = options.publish_tf,
+          .horizon = DurationFromSeconds(options.prediction_s),
+          .step = DurationFromSeconds(options.prediction_step_s),
+          .pattern = options.kestrel.landing.detector.pattern,
+          .noise = options.kestrel.landing.tracker.Noise()};
+}
+
 }  // namespace
 
 LandingFlight::LandingFlight(const CameraCalibration& calibration, const NodeOptions& options,
                              const Frames& frames, NodeConnection* connection)
     : options_(options),
-      frames_(frames),
       connection_(connection),
       pipeline_(calibration, options.kestrel.landing),
       events_(EventsOf(options), LeadOf(calibration)),
+      results_(ResultsOf(options, frames), connection),
       arrivals_(kWaitingArrivals) {
   if (options.altitude_m > 0) pipeline_.SetAltitude(options.altitude_m);
   thread_ = std::thread([this] { Run(); });
@@ -67,20 +78,10 @@ void LandingFlight::Run() {
 void LandingFlight::Process(const Frame& frame) {
   const LandingObservation observation = pipeline_.Process(frame.image, frame.time);
   detections_ += observation.report.detection.has_value();
-  PublishDetection(observation);
+  results_.PublishDetection(observation);
   CountLatency(observation);
-  PublishTrack(observation);
-  PublishPictures(frame, observation);
-}
-
-void LandingFlight::PublishDetection(const LandingObservation& observation) {
-  Publish(NodeTopic::kDetections, DetectionsOf(observation, frames_.camera, pattern()));
-  const auto& detection = observation.report.detection;
-  if (!detection) return;
-  Publish(NodeTopic::kTargetPose, TargetPoseOf(*detection, observation.time, frames_.camera));
-  if (!options_.publish_tf) return;
-  Publish(NodeTopic::kTransforms,
-          PatternTransformOf(*detection, observation.time, frames_.camera, options_.pattern_frame));
+  results_.PublishTrack(observation);
+  results_.PublishImage(frame.image, pipeline_.detector().camera(), observation);
 }
 
 void LandingFlight::CountLatency(const LandingObservation& observation) {
@@ -92,26 +93,6 @@ void LandingFlight::CountLatency(const LandingObservation& observation) {
     detect_.Add(observation.detect_time);
     return;
   }
-}
-
-void LandingFlight::PublishTrack(const LandingObservation& observation) {
-  if (!frames_.world || !observation.target) return;
-  Publish(NodeTopic::kTrack, TrackOf(*observation.target, *frames_.world, options_.target_frame));
-  if (!connection_->HasSubscribers(NodeTopic::kPrediction)) return;
-  Publish(NodeTopic::kPrediction,
-          PredictionOf(pipeline_.tracker(), observation.time,
-                       DurationFromSeconds(options_.prediction_s),
-                       DurationFromSeconds(options_.prediction_step_s), *frames_.world));
-}
-
-void LandingFlight::PublishPictures(const Frame& frame, const LandingObservation& observation) {
-  if (connection_->HasSubscribers(NodeTopic::kMarkers)) {
-    Publish(NodeTopic::kMarkers, MarkersOf(observation, pattern(), frames_.camera, frames_.world));
-  }
-  if (!connection_->HasSubscribers(NodeTopic::kAnnotatedImage)) return;
-  const cv::Mat annotated =
-      DrawLandingOverlay(frame.image, pipeline_.detector().camera(), pattern(), observation);
-  Publish(NodeTopic::kAnnotatedImage, ImageMessageOf(annotated, observation.time, frames_.camera));
 }
 
 }  // namespace kestrel

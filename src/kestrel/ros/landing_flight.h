@@ -7,9 +7,9 @@
 #include <string>
 #include <thread>
 
-#include "kestrel/bags/serialization.h"
 #include "kestrel/base/time.h"
 #include "kestrel/camera/calibration.h"
+#include "kestrel/middleware/landing_results.h"
 #include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/latency_statistics.h"
 #include "kestrel/onboard/live_events.h"
@@ -56,21 +56,12 @@ class LandingFlight {
 
   void Run();
   void Process(const Frame& frame);
-  void PublishDetection(const LandingObservation& observation);
-  void PublishTrack(const LandingObservation& observation);
-  void PublishPictures(const Frame& frame, const LandingObservation& observation);
   void CountLatency(const LandingObservation& observation);
-  template <class Message>
-  void Publish(NodeTopic topic, const Message& message) {
-    connection_->Publish(topic, SerializeMessage(message, WireFormat::kRos1));
-  }
-  const LandingPattern& pattern() const { return pipeline_.detector().options().pattern; }
-
   NodeOptions options_;
-  Frames frames_;
   NodeConnection* connection_;
   LandingPipeline pipeline_;
   LiveEvents events_;
+  LandingResults results_;
   BoundedQueue<Arrival> arrivals_;
   std::atomic<std::uint64_t> detections_ = 0;
   LatencyHistogram latency_, beyond_detect_, detect_;

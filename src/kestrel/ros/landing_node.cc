@@ -252,7 +252,7 @@ void LandingNode::PublishDiagnostics() {
   DiagnosticArrayMessage message;
   message.header.stamp = connection_->StampNow();
   message.status.push_back(std::move(status));
-  connection_->Publish(NodeTopic::kDiagnostics, SerializeMessage(message, WireFormat::kRos1));
+  connection_->Publish(ResultTopic::kDiagnostics, SerializeMessage(message, WireFormat::kRos1));
 }
 
 }  // namespace kestrel

@@ -11,9 +11,9 @@
 #include "kestrel/bags/messages.h"
 #include "kestrel/base/time.h"
 #include "kestrel/camera/calibration.h"
+#include "kestrel/middleware/live_transforms.h"
 #include "kestrel/navigation/pose_history.h"
 #include "kestrel/ros/landing_flight.h"
-#include "kestrel/ros/live_transforms.h"
 #include "kestrel/ros/node_connection.h"
 #include "kestrel/ros/node_options.h"
 

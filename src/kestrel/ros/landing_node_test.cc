@@ -25,8 +25,8 @@ using ::testing::HasSubstr;
 // Keeps what the node says.
 class FakeConnection : public NodeConnection {
  public:
-  bool HasSubscribers(NodeTopic) const override { return true; }
-  void Publish(NodeTopic topic, const std::string& bytes) override {
+  bool HasSubscribers(ResultTopic) const override { return true; }
+  void Publish(ResultTopic topic, const std::string& bytes) override {
     const std::lock_guard lock(mutex_);
     published_.emplace_back(topic, bytes);
     changed_.notify_all();
@@ -39,7 +39,7 @@ class FakeConnection : public NodeConnection {
 
   // The newest message of a topic, for which it waits.
   template <class Message>
-  Message Newest(NodeTopic topic) {
+  Message Newest(ResultTopic topic) {
     std::unique_lock lock(mutex_);
     std::string bytes;
     const auto has_one = [&] {
@@ -55,7 +55,7 @@ class FakeConnection : public NodeConnection {
     const std::lock_guard lock(mutex_);
     return warnings_;
   }
-  bool HasPublished(NodeTopic topic) const {
+  bool HasPublished(ResultTopic topic) const {
     const std::lock_guard lock(mutex_);
     return std::any_of(published_.begin(), published_.end(),
                        [&](const auto& message) { return message.first == topic; });
@@ -64,7 +64,7 @@ class FakeConnection : public NodeConnection {
  private:
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<std::pair<NodeTopic, std::string>> published_;
+  std::vector<std::pair<ResultTopic, std::string>> published_;
   std::vector<std::string> warnings_;
 };
 
@@ -112,18 +112,19 @@ TEST_F(LandingNodeTest, AnImageAndItsCameraInfoAreADetection) {
   LandingNode node(Options("none"), &connection_);
   TakeCameraInfo(&node);
   TakeImage(&node, kStamp);
-  const auto message = connection_.Newest<PoseWithCovarianceStampedMessage>(NodeTopic::kTargetPose);
+  const auto message =
+      connection_.Newest<PoseWithCovarianceStampedMessage>(ResultTopic::kTargetPose);
   EXPECT_EQ(message.header.stamp, kStamp);
   EXPECT_EQ(message.header.frame_id, "camera");
   EXPECT_NEAR(message.pose.position.x, 0.2, 0.02);
   EXPECT_NEAR(message.pose.position.z, 3, 0.05);
   EXPECT_GT(message.covariance[0], 0);
-  const auto tf = connection_.Newest<TfMessage>(NodeTopic::kTransforms);
+  const auto tf = connection_.Newest<TfMessage>(ResultTopic::kTransforms);
   ASSERT_EQ(tf.transforms.size(), 1);
   EXPECT_EQ(tf.transforms[0].child_frame_id, "landing_pattern");
-  EXPECT_EQ(connection_.Newest<ImageMessage>(NodeTopic::kAnnotatedImage).encoding, "bgr8");
+  EXPECT_EQ(connection_.Newest<ImageMessage>(ResultTopic::kAnnotatedImage).encoding, "bgr8");
   node.PublishDiagnostics();
-  const auto status = connection_.Newest<DiagnosticArrayMessage>(NodeTopic::kDiagnostics).status;
+  const auto status = connection_.Newest<DiagnosticArrayMessage>(ResultTopic::kDiagnostics).status;
   ASSERT_EQ(status.size(), 1);
   EXPECT_EQ(status[0].level, DiagnosticStatusMessage::kOk);
   EXPECT_TRUE(connection_.warnings().empty());
@@ -138,11 +139,11 @@ TEST_F(LandingNodeTest, WithPosesAndTheMountThereIsATrackInTheWorld) {
     TakePose(&node, stamp);
     TakePose(&node, stamp + std::chrono::milliseconds(50));
     TakeImage(&node, stamp);
-    while (connection_.Newest<Detection3DArrayMessage>(NodeTopic::kDetections).header.stamp !=
+    while (connection_.Newest<Detection3DArrayMessage>(ResultTopic::kDetections).header.stamp !=
            stamp) {
     }
   }
-  const auto track = connection_.Newest<OdometryMessage>(NodeTopic::kTrack);
+  const auto track = connection_.Newest<OdometryMessage>(ResultTopic::kTrack);
   EXPECT_EQ(track.header.frame_id, "map");
   // The camera's x is the world's, its y and z point the other way.
   EXPECT_NEAR(track.pose.position.x, 10.2, 0.05);
@@ -160,7 +161,7 @@ TEST_F(LandingNodeTest, WhatIsMissingIsSaid) {
   TakeMount(&node);
   TakeImage(&node, kStamp + std::chrono::seconds(2));
   EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("no poses yet")));
-  EXPECT_FALSE(connection_.HasPublished(NodeTopic::kDetections));
+  EXPECT_FALSE(connection_.HasPublished(ResultTopic::kDetections));
 }
 
 TEST_F(LandingNodeTest, BrokenMessagesAreLeftOutAndSaid) {
@@ -181,12 +182,12 @@ TEST_F(LandingNodeTest, AStoppedNodeTakesNoImages) {
   node.Stop();
   TakeImage(&node, kStamp);
   node.PublishDiagnostics();
-  const auto status = connection_.Newest<DiagnosticArrayMessage>(NodeTopic::kDiagnostics).status;
+  const auto status = connection_.Newest<DiagnosticArrayMessage>(ResultTopic::kDiagnostics).status;
   EXPECT_EQ(status[0].message, "stopped");
-  EXPECT_FALSE(connection_.HasPublished(NodeTopic::kDetections));
+  EXPECT_FALSE(connection_.HasPublished(ResultTopic::kDetections));
   node.Start();
   TakeImage(&node, kStamp);
-  EXPECT_EQ(connection_.Newest<Detection3DArrayMessage>(NodeTopic::kDetections).detections.size(),
+  EXPECT_EQ(connection_.Newest<Detection3DArrayMessage>(ResultTopic::kDetections).detections.size(),
             1);
 }
 
@@ -197,7 +198,7 @@ TEST_F(LandingNodeTest, StampsThatJumpBackStartAnew) {
   TakeImage(&node, kStamp + std::chrono::seconds(3));
   TakeImage(&node, kStamp);
   EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("jump back")));
-  while (connection_.Newest<Detection3DArrayMessage>(NodeTopic::kDetections).header.stamp !=
+  while (connection_.Newest<Detection3DArrayMessage>(ResultTopic::kDetections).header.stamp !=
          kStamp) {
   }
 }
@@ -209,7 +210,7 @@ TEST_F(LandingNodeTest, ResetTakesNewOptionsAndRefusesWhatCannotChange) {
   node.Reset(ReadNodeOptions({{"landing.detector.min_quality", "1"}}));
   TakeImage(&node, kStamp);
   EXPECT_TRUE(
-      connection_.Newest<Detection3DArrayMessage>(NodeTopic::kDetections).detections.empty());
+      connection_.Newest<Detection3DArrayMessage>(ResultTopic::kDetections).detections.empty());
 }
 
 TEST(NodeOptions, AreThoseOfTheConfigurationByTheSameNames) {

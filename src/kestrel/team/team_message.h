@@ -22,7 +22,7 @@ struct UavKey {
   std::string name;        // see IsUavName
   std::uint32_t boot = 0;  // random
 
-  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 finds a 0 in the comparison it generates.
+  // NOLINTNEXTLINE(modernize-use-nullptr): it takes the generated comparison with 0 for one
   friend auto operator<=>(const UavKey&, const UavKey&) = default;
 };
 

@@ -1,31 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/ros/landing_messages.h"
+#include "kestrel/middleware/landing_messages.h"
 
 #include <algorithm>
-#include <array>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "kestrel/bags/frame_tree.h"
-#include "kestrel/geometry/angles.h"
+#include "kestrel/middleware/message_covariance.h"
 
 namespace kestrel {
 namespace {
 
-using Covariance = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-
-constexpr double kUnknownVariance = kPi * kPi / 3;
 constexpr double kBoardThickness_m = 0.01;
 constexpr double kShaft_m = 0.1;
 constexpr double kHead_m = 0.2;
 constexpr double kShownSigmas = 3;
-
-std::array<double, 36> NumbersOf(const Covariance& covariance) {
-  std::array<double, 36> numbers;
-  Eigen::Map<Covariance>(numbers.data()) = covariance;
-  return numbers;
-}
 
 Vector3Message MessageOf(const Eigen::Vector3d& vector) {
   return {vector.x(), vector.y(), vector.z()};
@@ -41,10 +31,10 @@ RigidTransform PoseOf(const TargetEstimate& target) {
 double HeadingVariance(const TurnState& motion) {
   const Eigen::Vector2d velocity = motion.velocity().head<2>();
   const double squared_speed = velocity.squaredNorm();
-  if (!(squared_speed > 0)) return kUnknownVariance;
+  if (!(squared_speed > 0)) return kUnknownAngleVariance;
   const Eigen::Vector2d across(-velocity.y(), velocity.x());
   const double variance = across.dot(motion.covariance.block<2, 2>(3, 3) * across);
-  return std::min(variance / (squared_speed * squared_speed), kUnknownVariance);
+  return std::min(variance / (squared_speed * squared_speed), kUnknownAngleVariance);
 }
 
 MarkerMessage Marker(const std::string& name, Time stamp, const std::string& frame,
@@ -116,6 +106,7 @@ Detection3DArrayMessage DetectionsOf(const LandingObservation& observation,
   found.box_center = PoseMessageOf(detection->camera_from_pattern);
   found.box_size = {pattern.board_size_m, pattern.board_size_m, kBoardThickness_m};
   ObjectHypothesisMessage& result = found.results.emplace_back();
+  result.class_id = "landing_pattern";
   result.score = detection->quality;
   result.pose = found.box_center;
   result.covariance = NumbersOf(detection->covariance);
@@ -142,15 +133,17 @@ OdometryMessage TrackOf(const TargetEstimate& target, const std::string& world_f
   const RigidTransform world_from_target = PoseOf(target);
   const Eigen::Matrix3d target_from_world = world_from_target.rotation.conjugate().matrix();
 
-  Covariance pose = Covariance::Zero();
+  MessageCovariance pose = MessageCovariance::Zero();
   pose.topLeftCorner<3, 3>() = motion.covariance.topLeftCorner<3, 3>();
-  pose.diagonal().tail<3>() << kUnknownVariance, kUnknownVariance, HeadingVariance(motion);
+  pose.diagonal().tail<3>() << kUnknownAngleVariance, kUnknownAngleVariance,
+      HeadingVariance(motion);
 
   const Eigen::Vector3d with_turn = target_from_world * motion.covariance.block<3, 1>(3, 6);
-  Covariance twist = Covariance::Zero();
+  MessageCovariance twist = MessageCovariance::Zero();
   twist.topLeftCorner<3, 3>() =
       target_from_world * motion.covariance.block<3, 3>(3, 3) * target_from_world.transpose();
-  twist.diagonal().tail<3>() << kUnknownVariance, kUnknownVariance, motion.covariance(6, 6);
+  twist.diagonal().tail<3>() << kUnknownAngleVariance, kUnknownAngleVariance,
+      motion.covariance(6, 6);
   twist.topRightCorner<3, 1>() = with_turn;
   twist.bottomLeftCorner<1, 3>() = with_turn.transpose();
 
@@ -165,14 +158,14 @@ OdometryMessage TrackOf(const TargetEstimate& target, const std::string& world_f
   return message;
 }
 
-PathMessage PredictionOf(const TargetTracker& tracker, Time time, Duration horizon, Duration step,
-                         const std::string& world_frame) {
+PathMessage PredictionOf(const TargetEstimate& target, const TurnNoise& noise, Duration horizon,
+                         Duration step, const std::string& world_frame) {
   PathMessage message;
-  message.header = HeaderOf(time, world_frame);
+  message.header = HeaderOf(target.time, world_frame);
   for (Duration ahead = Duration::zero(); ahead <= horizon; ahead += step) {
-    const auto target = tracker.Predict(time + ahead);
-    if (!target) break;
-    message.poses.push_back({HeaderOf(time + ahead, world_frame), PoseMessageOf(PoseOf(*target))});
+    const TargetEstimate then{target.time + ahead,
+                              Propagate(target.motion, ToSeconds(ahead), noise)};
+    message.poses.push_back({HeaderOf(then.time, world_frame), PoseMessageOf(PoseOf(then))});
   }
   return message;
 }

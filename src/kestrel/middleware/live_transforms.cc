@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/ros/live_transforms.h"
+#include "kestrel/middleware/live_transforms.h"
 
 #include <cstddef>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/ros/landing_messages.h"
+#include "kestrel/middleware/landing_messages.h"
 
 #include <cmath>
 

@@ -12,6 +12,7 @@
 #include "kestrel/landing/landing_pattern_detector.h"
 #include "kestrel/pipeline/landing_pipeline.h"
 #include "kestrel/tracking/target_tracker.h"
+#include "kestrel/tracking/turn_motion.h"
 
 namespace kestrel {
 
@@ -37,9 +38,10 @@ TfMessage PatternTransformOf(const LandingDetection& detection, Time stamp,
 OdometryMessage TrackOf(const TargetEstimate& target, const std::string& world_frame,
                         const std::string& target_frame);
 
-// Where the target will be, from 'time' on, 'horizon' ahead in steps of 'step' (above 0).
-PathMessage PredictionOf(const TargetTracker& tracker, Time time, Duration horizon, Duration step,
-                         const std::string& world_frame);
+// Where the target will be, from its own time on, 'horizon' ahead in steps of 'step' (above 0),
+// when nothing but 'noise' disturbs its motion.
+PathMessage PredictionOf(const TargetEstimate& target, const TurnNoise& noise, Duration horizon,
+                         Duration step, const std::string& world_frame);
 
 // For RViz: the pattern's ring in the camera's frame; in the world's, where that is known, where
 // the target drives within a second, and the ellipsoid of three standard deviations around it.

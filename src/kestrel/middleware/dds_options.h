@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace kestrel {
+
+// How Kestrel takes part in a system of ROS 2: see docs/ros2.md.
+struct DdsOptions {
+  std::string node = "kestrel";  // its name; topics are below it
+  // Of ROS: since Iron nodes list each other in words that Humble does not know.
+  std::string distribution = "jazzy";
+  std::string camera_frame = "camera_optical_frame";  // dds: sources have their own
+  std::string world_frame = "map";                    // as well
+  std::string body_frame = "base_link";
+  std::string pattern_frame = "landing_pattern";  // of tf, for the pattern as it was detected
+  std::string target_frame = "landing_target";    // that the track's velocity is in
+  bool publish_tf = true;
+  double prediction_s = 2;
+  double prediction_step_s = 0.1;
+  double wait_s = 10;  // for the images, camera_info and mount of a dds: source
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("node", self.node, "", "name of the node; its topics are below it");
+    visitor("distribution", self.distribution, "",
+            "of ROS 2 that is to list the node: humble or a later one");
+    visitor("camera_frame", self.camera_frame, "", "of the camera, where it is no dds: source");
+    visitor("world_frame", self.world_frame, "", "of the world, where it is no dds: source");
+    visitor("body_frame", self.body_frame, "", "of the UAV, which the camera is fixed to");
+    visitor("pattern_frame", self.pattern_frame, "", "name of the detected pattern in tf");
+    visitor("target_frame", self.target_frame, "", "name of the frame that moves with the target");
+    visitor("publish_tf", self.publish_tf, "", "whether tf is told of pattern, UAV and mount");
+    visitor("prediction_s", self.prediction_s, "s", "how far ahead the prediction goes");
+    visitor("prediction_step_s", self.prediction_step_s, "s", "between its poses");
+    visitor("wait_s", self.wait_s, "s", "for the images, camera_info and mount of a dds: source");
+  }
+  std::vector<std::string> Validate() const;
+
+  bool is_humble() const { return distribution == "humble"; }
+};
+
+}  // namespace kestrel

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "kestrel/bags/messages.h"
+#include "kestrel/bags/result_messages.h"
+
+namespace kestrel {
+
+// What a node publishes. A name without a slash is below the node's own.
+enum class ResultTopic : std::size_t {
+  kDetections,
+  kTargetPose,
+  kTrack,
+  kPrediction,
+  kMarkers,
+  kAnnotatedImage,
+  kTransforms,
+  kDiagnostics,
+};
+
+struct ResultTopicInfo {
+  std::string_view name;
+  std::string_view type;
+};
+
+inline constexpr std::array kResultTopics = {
+    // in the order of ResultTopic
+    ResultTopicInfo{"detections", Detection3DArrayMessage::kType},
+    ResultTopicInfo{"target_pose", PoseWithCovarianceStampedMessage::kType},
+    ResultTopicInfo{"track", OdometryMessage::kType},
+    ResultTopicInfo{"prediction", PathMessage::kType},
+    ResultTopicInfo{"markers", MarkerArrayMessage::kType},
+    ResultTopicInfo{"image_annotated", ImageMessage::kType},
+    ResultTopicInfo{"/tf", TfMessage::kType},
+    ResultTopicInfo{"/diagnostics", DiagnosticArrayMessage::kType},
+};
+
+// The way of results to others. All calls from any thread.
+class ResultConnection {
+ public:
+  virtual ~ResultConnection() = default;
+
+  virtual bool HasSubscribers(ResultTopic topic) const = 0;
+  virtual void Publish(ResultTopic topic, const std::string& bytes) = 0;
+};
+
+}  // namespace kestrel
