@@ -11,6 +11,7 @@ import {
   togglePlaying,
   toggleRecording,
 } from "./actions";
+import { toggleCalibrationPage } from "./calibration_actions";
 import { layers, type CommandName } from "./protocol";
 import { store } from "./store";
 
@@ -38,6 +39,7 @@ export const keys: Key[] = [
   { keys: ["p"], meaning: "to those before", isOffered: has("seek"), act: () => seekTrouble(-1) },
   { keys: ["d"], meaning: "to the next frame where two runs differ", isOffered: has("detect"), act: () => seekDifference(1) },
   { keys: ["D"], meaning: "to the one before", isOffered: has("detect"), act: () => seekDifference(-1) },
+  { keys: ["c"], meaning: "calibration, or back to the replay", isOffered: has("calibrate"), act: toggleCalibrationPage },
   { keys: ["r"], meaning: "start or stop recording", isOffered: has("record"), act: toggleRecording },
   { keys: ["s"], meaning: "keep a snapshot", isOffered: has("snapshot"), act: takeSnapshot },
   { keys: ["t"], meaning: "next theme: auto, light, dark, sun", act: nextTheme },

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the server says, as src/kestrel/console/console_json.h writes it. Times are whole
 // nanoseconds as text: they are beyond what numbers hold here.
+import type { Calibration } from "./calibration";
 
 export const layers = ["detection", "prediction", "rejected", "second"] as const;
 export type Layer = (typeof layers)[number];
@@ -28,7 +29,17 @@ export interface Series {
   label: string;
 }
 
-export type CommandName = "record" | "snapshot" | "play" | "seek" | "step" | "detect" | "cancel";
+export type CommandName =
+  | "record"
+  | "snapshot"
+  | "play"
+  | "seek"
+  | "step"
+  | "detect"
+  | "cancel"
+  | "calibrate"
+  | "calibrate-cancel"
+  | "calibrate-save";
 
 export interface Hello {
   kind: "hello";
@@ -157,6 +168,7 @@ export type ServerMessage =
   | Playback
   | OptionList
   | SecondRun
+  | Calibration
   | LinkReport;
 
 export interface ImageMessage {

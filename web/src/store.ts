@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+import type { Calibration } from "./calibration";
 import type {
   Doctor,
   EventMessage,
@@ -20,6 +21,9 @@ export type ConnectionState = "connecting" | "open" | "lost" | "refused";
 export const themes = ["auto", "light", "dark", "sun"] as const;
 export type Theme = (typeof themes)[number];
 
+/** What the window shows: a flight or a recording, or the calibration from it. */
+export type Page = "watch" | "calibration";
+
 export interface State {
   connection: ConnectionState;
   hello: Hello | null;
@@ -32,6 +36,8 @@ export interface State {
   playback: Playback | null;
   options: Option[];
   second: SecondRun | null;
+  calibration: Calibration | null;
+  page: Page;
   link: LinkReport | null;
   series: SeriesBuffer;
   /** UAV's way on the map, oldest first. */
@@ -58,6 +64,8 @@ export function initialState(): State {
     playback: null,
     options: [],
     second: null,
+    calibration: null,
+    page: "watch",
     link: null,
     series: new SeriesBuffer(0),
     track: [],
@@ -85,6 +93,7 @@ export function withMessage(state: State, message: ServerMessage): State {
         playback: null,
         options: [],
         second: null,
+        calibration: null,
         series: new SeriesBuffer(message.series.length),
       };
     case "sample":
@@ -108,6 +117,8 @@ export function withMessage(state: State, message: ServerMessage): State {
       return { ...state, options: message.options };
     case "second":
       return { ...state, second: message };
+    case "calibration":
+      return { ...state, calibration: message };
     case "link":
       return { ...state, link: message };
   }

@@ -6,6 +6,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { join } from "node:path";
 import { WebSocketServer } from "ws";
+import { MockCalibration } from "./mock_calibration.js";
 import {
   flightAt,
   flightSeconds,
@@ -89,7 +90,7 @@ class Client {
   }
 
   greet() {
-    const offers = this.isReplay ? ["play", "seek", "step", "detect", "cancel"] : ["record", "snapshot"];
+    const offers = this.isReplay ? ["play", "seek", "step", "detect", "cancel", "calibrate"] : ["record", "snapshot"];
     const title = this.isReplay ? "Recording flight_07" : "Simulated flight";
     const layers = ["detection", "prediction", "rejected", ...(this.isReplay ? ["second"] : [])];
     this.send({ kind: "hello", title, live: !this.isReplay, series, layers, offers, exports: this.isReplay });
@@ -99,6 +100,7 @@ class Client {
     this.event("warning", "autopilot's clock is 12 ms ahead");
     if (this.isReplay) this.sendTimeline();
     if (this.isReplay) this.send({ kind: "options", options });
+    if (this.isReplay) this.calibration = new MockCalibration((message) => this.send(message));
   }
 
   /** A second run that loses the pattern more often. */
@@ -137,6 +139,7 @@ class Client {
       this.isRecording = message.value === 1;
       this.event("info", this.isRecording ? "recording to flight_08" : "recording ended");
     }
+    this.calibration?.receive(message);
     if (message.command === "detect") this.detect(message.settings);
     if (message.command === "snapshot") this.event("info", "snapshot kept");
     if (message.command === "play") this.speed = message.value;

@@ -16,6 +16,9 @@ const views = [
   { name: "live-sun", theme: "sun", width: 1440, height: 1000 },
   { name: "live-tablet", theme: "light", width: 820, height: 1180 },
   { name: "replay", theme: "light", width: 1440, height: 1000, isReplay: true },
+  { name: "calibration-light", theme: "light", width: 1440, height: 1000, isReplay: true, calibrates: true },
+  { name: "calibration-dark", theme: "dark", width: 1440, height: 1000, isReplay: true, calibrates: true },
+  { name: "calibration-tablet", theme: "sun", width: 820, height: 1180, isReplay: true, calibrates: true },
 ];
 
 let findings = 0;
@@ -31,8 +34,9 @@ for (const view of views) {
   await page.goto(`http://127.0.0.1:${view.isReplay ? 8092 : 8091}/`);
   await page.waitForFunction(() => !document.querySelector(".screen .empty"));
   await page.keyboard.press("3");
-  if (view.isReplay) await detectAgain(page);
-  await page.waitForTimeout(7000);
+  if (view.calibrates) await calibrate(page);
+  else if (view.isReplay) await detectAgain(page);
+  await page.waitForTimeout(view.calibrates ? 500 : 7000);
   await page.screenshot({ path: join(folder, `${view.name}.png`) });
   for (const finding of await findingsOf(page)) report(`${view.name}: ${finding}`);
   await page.close();
@@ -46,6 +50,12 @@ async function detectAgain(page) {
   await page.getByLabel(/smallest probability/).fill("0.9");
   await page.getByRole("button", { name: "Run" }).click();
   await page.getByText("Second run (below)").waitFor();
+}
+
+async function calibrate(page) {
+  await page.keyboard.press("c");
+  await page.getByRole("button", { name: "Calibrate" }).click();
+  await page.getByRole("heading", { name: "Result" }).waitFor();
 }
 
 function report(text) {

@@ -13,6 +13,7 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/base/time.h"
+#include "kestrel/console/calibration_report.h"
 #include "kestrel/console/client_message.h"
 #include "kestrel/console/export_request.h"
 #include "kestrel/onboard/bounded_queue.h"
@@ -136,7 +137,7 @@ struct ConsoleSecondRun {
 
 using ConsoleUpdate = std::variant<ConsoleSample, ConsoleStatus, ConsoleMap, ConsoleHealth,
                                    ConsoleEvent, ConsoleTimeline, ConsolePlayback, ConsoleDoctor,
-                                   ConsoleOptionList, ConsoleSecondRun>;
+                                   ConsoleOptionList, ConsoleSecondRun, ConsoleCalibration>;
 
 // The hand-over between a program that flies, or plays a recording, and the console's thread. No
 // function of the program's side ever waits for the console: the newest frame replaces the one

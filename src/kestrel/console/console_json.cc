@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kestrel/console/calibration_json.h"
+
 namespace kestrel {
 namespace {
 
@@ -138,6 +140,9 @@ Json Message(const ConsoleSecondRun& run) {
           {"settings", run.settings}, {"done", run.done},
           {"error", run.error},       {"marks", Marks(run.marks)}};
 }
+
+// NaN is null, as in all of the messages.
+Json Message(const ConsoleCalibration& calibration) { return CalibrationJson(calibration); }
 
 }  // namespace
 

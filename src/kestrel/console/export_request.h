@@ -12,12 +12,13 @@ namespace kestrel {
 // What the page takes away from a recording, by numbers and never by a path.
 struct ExportRequest {
   enum class Kind {
-    kFrame,      // /export/frame-12.png: the image as it is
-    kOverlays,   // /export/overlays-12.png: with what was found drawn on it
-    kDetections  // /export/detections-1.csv: all that the first or the second run found
+    kFrame,       // /export/frame-12.png: the image as it is
+    kOverlays,    // /export/overlays-12.png: with what was found drawn on it
+    kDetections,  // /export/detections-1.csv: all that the first or the second run found
+    kCalibration  // /export/calibration-3.yaml: what the third calibration came to
   };
   Kind kind = Kind::kFrame;
-  std::size_t number = 0;  // of the frame from 0, or of the run: 1 or 2
+  std::size_t number = 0;  // of the frame from 0, of the run: 1 or 2, of the calibration from 1
 };
 
 // Nothing when it is none of those above, to the letter. Numbers have at most nine digits.

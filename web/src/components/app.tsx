@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { useEffect } from "preact/hooks";
 import { useStore } from "../use_store";
+import { CalibrationPage } from "./calibration_page";
 import { Charts } from "./charts";
 import { EventsPanel } from "./events_panel";
 import { Header } from "./header";
@@ -8,33 +9,43 @@ import { HealthPanel } from "./health_panel";
 import { HelpDialog } from "./help_dialog";
 import { ImageView } from "./image_view";
 import { MapPanel } from "./map_panel";
+import { PageSwitch } from "./page_switch";
 import { ReplayBar } from "./replay_bar";
 import { SecondRunPanel } from "./second_run_panel";
 
 export function App() {
   const title = useStore((state) => state.hello?.title);
-  const hasTimeline = useStore((state) => state.timeline !== null);
-  const hasOptions = useStore((state) => state.options.length > 0);
+  const page = useStore((state) => state.page);
   useEffect(() => {
     document.title = title ? `${title}: Kestrel` : "Kestrel";
   }, [title]);
   return (
     <>
       <Header />
-      <main>
-        <div class="column">
-          <ImageView />
-          {hasTimeline && <ReplayBar />}
-          <Charts />
-        </div>
-        <div class="column">
-          <MapPanel />
-          {hasOptions && <SecondRunPanel />}
-          <HealthPanel />
-          <EventsPanel />
-        </div>
-      </main>
+      <PageSwitch />
+      {page === "calibration" ? <CalibrationPage /> : <WatchPage />}
       <HelpDialog />
     </>
+  );
+}
+
+/** The image with what was found, the map, the series; of a recording its timeline. */
+function WatchPage() {
+  const hasTimeline = useStore((state) => state.timeline !== null);
+  const hasOptions = useStore((state) => state.options.length > 0);
+  return (
+    <main>
+      <div class="column">
+        <ImageView />
+        {hasTimeline && <ReplayBar />}
+        <Charts />
+      </div>
+      <div class="column">
+        <MapPanel />
+        {hasOptions && <SecondRunPanel />}
+        <HealthPanel />
+        <EventsPanel />
+      </div>
+    </main>
   );
 }
