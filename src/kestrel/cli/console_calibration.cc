@@ -97,9 +97,8 @@ CalibrationPage::Tools CalibrationTools(const SourceArguments& source,
                                         const LandingPipelineOptions& options,
                                         const std::string& folder) {
   CalibrationPage::Tools tools;
-  tools.calibrate = [&source, options](
-                        const CalibrationRequest& request,
-                        const GoOn& go_on) -> std::optional<CalibrationResult> {
+  tools.calibrate = [&source, options](const CalibrationRequest& request,
+                                       const GoOn& go_on) -> std::optional<CalibrationResult> {
     try {
       if (request.lens) return LensOf(source, options, go_on);
       return MountAndClockOf(source, options, request, go_on);

@@ -115,9 +115,10 @@ LandResult::LandResult(const std::string& table) : file_(table), text_(ReadFile(
 LandingObservation LandResult::Next(Time time,
                                     const std::optional<RigidTransform>& world_from_camera) {
   if (next_ == rows_.size() || rows_[next_].detection.time != time) {
-    throw InputError(fmt::format(
-        "{}: row {} is not of the recording's frame at {} ns, expected the result of this recording",
-        file_, next_ + 1, ToNanoseconds(time)));
+    throw InputError(
+        fmt::format("{}: row {} is not of the recording's frame at {} ns, expected the result of "
+                    "this recording",
+                    file_, next_ + 1, ToNanoseconds(time)));
   }
   const Row& row = rows_[next_++];
   LandingObservation observation;
@@ -152,8 +153,8 @@ void LandResult::AddTrack(LandingObservation* observation) {
 
 void LandResult::RequireEnd() const {
   if (next_ == rows_.size()) return;
-  throw InputError(fmt::format("{}: has {} rows, but the recording {} frames", file_, rows_.size(),
-                               next_));
+  throw InputError(
+      fmt::format("{}: has {} rows, but the recording {} frames", file_, rows_.size(), next_));
 }
 
 }  // namespace kestrel

@@ -27,19 +27,14 @@ class CalibrationPageTest : public testing::Test {
     options.port = 0;
     console_.emplace(options, "a recording", LandingPipelineOptions(), false);
     console_->OfferCalibration(
-        {[this](const CalibrationRequest& request, const CalibrationPage::Run::GoOn& go_on) {
-           return Calibrate(request, go_on);
-         },
-         [this](const std::string& name, const CalibrationResult&) {
+        {Calibrate, [this](const std::string& name, const CalibrationResult&) {
            if (++saved_ > 1) throw InputError("calibrated: cannot be written");
            return "calibrated/" + name + ".yaml";
          }});
     thread_ = std::thread([this] {
-      ReplayResult first{{CameraModel(PaperCamera()), {}, TurnNoise()}, {}, ""};
-      first.frames.resize(9);
-      for (std::size_t i = 0; i < 9; ++i) first.frames[i].observation.time = Time(i * 100ms);
       console_->Play(
-          std::move(first), [](std::size_t) { return cv::Mat(8, 8, CV_8UC1, cv::Scalar(0)); },
+          {{CameraModel(PaperCamera()), {}, TurnNoise()}, Frames(), ""},
+          [](std::size_t) { return cv::Mat(8, 8, CV_8UC1, cv::Scalar(0)); },
           [](const LandingPipelineOptions&, const SecondRun::GoOn&) { return std::nullopt; },
           [this] { return is_stopped_.load(); });
     });
@@ -47,6 +42,12 @@ class CalibrationPageTest : public testing::Test {
   ~CalibrationPageTest() override {
     is_stopped_ = true;
     thread_.join();
+  }
+
+  static std::vector<ReplayFrame> Frames() {
+    std::vector<ReplayFrame> frames(9);
+    for (std::size_t i = 0; i < frames.size(); ++i) frames[i].observation.time = Time(i * 100ms);
+    return frames;
   }
 
   static std::optional<CalibrationResult> Calibrate(const CalibrationRequest& request,
@@ -114,8 +115,7 @@ TEST_F(CalibrationPageTest, CalibratesShowsAndSaves) {
 TEST_F(CalibrationPageTest, WhyItIsRefusedIsSaid) {
   TestSocket socket(port());
   socket.Send(R"({"command": "calibrate", "settings": ["lens"]})");
-  EXPECT_EQ(Next(&socket, "refused")["error"],
-            "the views cannot tell the lens: tilt the camera");
+  EXPECT_EQ(Next(&socket, "refused")["error"], "the views cannot tell the lens: tilt the camera");
   // What there is of coverage is shown all the same.
   socket.Send(R"({"command": "calibrate", "settings": ["mount"]})");
   const nlohmann::json refused = Next(&socket, "refused");

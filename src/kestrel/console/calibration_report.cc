@@ -69,10 +69,9 @@ CalibrationResiduals LensResiduals(const LensCalibration& lens, const CameraIntr
   const CameraModel camera(lens.intrinsics);
   for (std::size_t i = 0; i < lens.views.size(); ++i) {
     for (std::size_t k = 0; k < lens.views[i].edges.size(); ++k) {
-      residuals.points.push_back(
-          {AngleDeg(camera, lens.views[i].edges[k].pixel),
-           before ? std::abs(before->residuals_px[i][k]) : kNotKnown,
-           std::abs(lens.fit.residuals_px[i][k])});
+      residuals.points.push_back({AngleDeg(camera, lens.views[i].edges[k].pixel),
+                                  before ? std::abs(before->residuals_px[i][k]) : kNotKnown,
+                                  std::abs(lens.fit.residuals_px[i][k])});
     }
   }
   Thin(&residuals.points);
@@ -141,10 +140,11 @@ ConsoleCalibration FlightCoverage(const std::vector<PatternPlace>& places, std::
   if (!places.empty()) {
     const auto [low, high] =
         std::minmax_element(report.distances_m.begin(), report.distances_m.end());
-    report.coverage += fmt::format(", its centre in {} of {} fields of the image, from {:.1f} to "
-                                   "{:.1f} m above it",
-                                   CoveredFields(report.places, image),
-                                   LensCoverage::kColumns * LensCoverage::kRows, *low, *high);
+    report.coverage += fmt::format(
+        ", its centre in {} of {} fields of the image, from {:.1f} to "
+        "{:.1f} m above it",
+        CoveredFields(report.places, image), LensCoverage::kColumns * LensCoverage::kRows, *low,
+        *high);
   }
   Thin(&report.places);
   Thin(&report.distances_m);
@@ -157,16 +157,15 @@ void AddFlight(const FlightCalibration& result, const FlightCalibrationOptions& 
     constexpr std::array<const char*, 3> kNames = {"mount turned by roll", "mount turned by pitch",
                                                    "mount turned by yaw"};
     for (int i = 0; i < 3; ++i) {
-      report->numbers.push_back({kNames[i], "degrees", 0, Degrees(result.angles(i)),
-                                 Degrees(result.angle_sigmas(i))});
+      report->numbers.push_back(
+          {kNames[i], "degrees", 0, Degrees(result.angles(i)), Degrees(result.angle_sigmas(i))});
     }
   }
   if (options.estimate_clock) {
     report->numbers.push_back({"clock offset", "s", given.clock_offset_s,
                                result.estimate.clock_offset_s, result.clock_sigma_s});
   }
-  report->coverage +=
-      fmt::format("; {} used, {} left out", result.sightings, result.outliers);
+  report->coverage += fmt::format("; {} used, {} left out", result.sightings, result.outliers);
   report->residuals = {.of = "positions in the world",
                        .unit = "m",
                        .over = "time, s",
@@ -174,9 +173,8 @@ void AddFlight(const FlightCalibration& result, const FlightCalibrationOptions& 
                        .rms_after = result.rms_after_m,
                        .points = {}};
   for (const SightingResidual& residual : result.residuals) {
-    report->residuals.points.push_back(
-        {ToSeconds(residual.time - result.residuals.front().time), residual.before_m,
-         residual.after_m});
+    report->residuals.points.push_back({ToSeconds(residual.time - result.residuals.front().time),
+                                        residual.before_m, residual.after_m});
   }
   Thin(&report->residuals.points);
   report->warnings = result.warnings;
@@ -197,9 +195,9 @@ ConsoleCalibration LensReport(const LensCalibration& lens, const CameraIntrinsic
   }
   Thin(&report.places);
   Thin(&report.distances_m);
-  report.coverage = fmt::format("pattern found in {} of {} images, {} views used ({} left out); {}",
-                                lens.found, images, lens.views.size(), lens.outliers,
-                                lens.coverage.InWords());
+  report.coverage =
+      fmt::format("pattern found in {} of {} images, {} views used ({} left out); {}", lens.found,
+                  images, lens.views.size(), lens.outliers, lens.coverage.InWords());
   report.numbers = LensNumbers(lens, given);
   report.residuals = LensResiduals(lens, given);
   report.warnings = lens.warnings;

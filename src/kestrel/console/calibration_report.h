@@ -58,8 +58,8 @@ struct ConsoleCalibration {
   std::size_t done = 0;  // images, of all
   std::size_t of = 0;
   bool is_ending = false;  // it was cancelled while something went on that takes a while
-  std::string error;  // why it was refused
-  cv::Size image;     // px
+  std::string error;       // why it was refused
+  cv::Size image;          // px
   // Where in the image the pattern, or its edges, were; and how far the camera was from it (m).
   std::vector<cv::Point2f> places;
   std::string distance_name;

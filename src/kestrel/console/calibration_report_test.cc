@@ -47,8 +47,7 @@ TEST(CalibrationReportTest, SaysWhatAFlightCovers) {
             "the pattern was found in 3 of 40 images, its centre in 2 of 48 fields of the image, "
             "from 1.2 to 9.0 m above it");
   EXPECT_EQ(report.places.size(), 3u);
-  EXPECT_EQ(FlightCoverage({}, 40, {800, 600}).coverage,
-            "the pattern was found in 0 of 40 images");
+  EXPECT_EQ(FlightCoverage({}, 40, {800, 600}).coverage, "the pattern was found in 0 of 40 images");
   // A long flight stays a message that a slow browser gets.
   EXPECT_LE(FlightCoverage(std::vector<PatternPlace>(9001), 9001, {8, 6}).places.size(), 2000u);
 }
