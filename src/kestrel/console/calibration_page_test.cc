@@ -33,7 +33,7 @@ class CalibrationPageTest : public testing::Test {
          }});
     thread_ = std::thread([this] {
       console_->Play(
-          {{CameraModel(PaperCamera()), {}, TurnNoise()}, Frames(), ""},
+          {PaperView(), Frames(), ""},
           [](std::size_t) { return cv::Mat(8, 8, CV_8UC1, cv::Scalar(0)); },
           [](const LandingPipelineOptions&, const SecondRun::GoOn&) { return std::nullopt; },
           [this] { return is_stopped_.load(); });
@@ -44,6 +44,7 @@ class CalibrationPageTest : public testing::Test {
     thread_.join();
   }
 
+  static LandingView PaperView() { return {CameraModel(PaperCamera()), {}, TurnNoise()}; }
   static std::vector<ReplayFrame> Frames() {
     std::vector<ReplayFrame> frames(9);
     for (std::size_t i = 0; i < frames.size(); ++i) frames[i].observation.time = Time(i * 100ms);
