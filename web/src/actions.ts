@@ -55,7 +55,7 @@ export function seekTrouble(direction: 1 | -1): void {
 
 /** Runs the detector again, with settings as "landing.still=true". */
 export function detectAgain(settings: string[]): void {
-  if (isOffered("detect")) connection.detect(settings);
+  if (isOffered("detect")) connection.commandWith("detect", settings);
 }
 
 export function cancelDetection(): void {

@@ -3,16 +3,7 @@
 import type { ColorRequest, Tool } from "./color_protocol";
 import { frameInside, nextMarked, resized, strokeOf, type ColorView } from "./color_view";
 import { connection } from "./connection";
-import { store, type Page } from "./store";
-
-export function showPage(page: Page): void {
-  store.set({ page });
-  history.replaceState(null, "", page === "colors" ? "#colors" : location.pathname);
-}
-
-export function togglePage(): void {
-  showPage(store.state.page === "colors" ? "main" : "colors");
-}
+import { store } from "./store";
 
 export function setView(change: Partial<ColorView>): void {
   store.set({ colorView: { ...store.state.colorView, ...change } });

@@ -48,8 +48,8 @@ export class Connection {
     this.send(value === undefined ? { command: name } : { command: name, value });
   }
 
-  detect(settings: string[]): void {
-    this.send({ command: "detect", settings });
+  commandWith(name: CommandName, settings: string[]): void {
+    this.send({ command: name, settings });
   }
 
   colors(request: ColorRequest): void {

@@ -11,8 +11,8 @@ import {
   togglePlaying,
   toggleRecording,
 } from "./actions";
-import { togglePage } from "./color_actions";
 import { colorKeys } from "./color_keys";
+import { offeredPages, togglePage } from "./pages";
 import { layers, type CommandName } from "./protocol";
 import { store } from "./store";
 
@@ -48,8 +48,14 @@ const commonKeys: Key[] = [
   {
     keys: ["c"],
     meaning: "to the page of colours and back",
-    isOffered: () => store.state.hello?.colors ?? false,
-    act: togglePage,
+    isOffered: () => offeredPages().includes("colors"),
+    act: () => togglePage("colors"),
+  },
+  {
+    keys: ["l"],
+    meaning: "to the page of calibrations and back",
+    isOffered: () => offeredPages().includes("calibration"),
+    act: () => togglePage("calibration"),
   },
   { keys: ["t"], meaning: "next theme: auto, light, dark, sun", act: nextTheme },
   { keys: ["?", "h"], meaning: "show or hide these keys", act: toggleHelp },

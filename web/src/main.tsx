@@ -3,13 +3,14 @@ import { render } from "preact";
 import { App } from "./components/app";
 import { connection } from "./connection";
 import { handleKey } from "./keys";
+import { firstPage } from "./pages";
 import { store } from "./store";
 import "./style.css";
 import { applyTheme, savedTheme } from "./theme";
 
 const theme = savedTheme();
 applyTheme(theme);
-store.set({ theme, page: location.hash === "#colors" ? "colors" : "main" });
+store.set({ theme, page: firstPage() });
 document.addEventListener("keydown", handleKey);
 render(<App />, document.getElementById("app")!);
 connection.open();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the server says, as src/kestrel/console/console_json.h writes it. Times are whole
 // nanoseconds as text: they are beyond what numbers hold here.
+import type { Calibration } from "./calibration";
 
 import type { Colors, ColorScores } from "./color_protocol";
 
@@ -30,7 +31,17 @@ export interface Series {
   label: string;
 }
 
-export type CommandName = "record" | "snapshot" | "play" | "seek" | "step" | "detect" | "cancel";
+export type CommandName =
+  | "record"
+  | "snapshot"
+  | "play"
+  | "seek"
+  | "step"
+  | "detect"
+  | "cancel"
+  | "calibrate"
+  | "calibrate-cancel"
+  | "calibrate-save";
 
 export interface Hello {
   kind: "hello";
@@ -163,6 +174,7 @@ export type ServerMessage =
   | SecondRun
   | Colors
   | ColorScores
+  | Calibration
   | LinkReport;
 
 export interface ImageMessage {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import type { Colors, ColorScores } from "./color_protocol";
 import { firstColorView, viewAfter, type ColorView } from "./color_view";
+import type { Calibration } from "./calibration";
 import type {
   Doctor,
   EventMessage,
@@ -22,7 +23,8 @@ export type ConnectionState = "connecting" | "open" | "lost" | "refused";
 export const themes = ["auto", "light", "dark", "sun"] as const;
 export type Theme = (typeof themes)[number];
 
-export type Page = "main" | "colors";
+/** What the window shows: a flight or a recording, its colours, or the calibration from it. */
+export type Page = "watch" | "colors" | "calibration";
 
 export interface State {
   page: Page;
@@ -40,6 +42,7 @@ export interface State {
   colors: Colors | null;
   colorScores: ColorScores | null;
   colorView: ColorView;
+  calibration: Calibration | null;
   link: LinkReport | null;
   series: SeriesBuffer;
   /** UAV's way on the map, oldest first. */
@@ -55,7 +58,7 @@ const maxTrack = 600;
 
 export function initialState(): State {
   return {
-    page: "main",
+    page: "watch",
     connection: "connecting",
     hello: null,
     status: null,
@@ -70,6 +73,7 @@ export function initialState(): State {
     colors: null,
     colorScores: null,
     colorView: firstColorView,
+    calibration: null,
     link: null,
     series: new SeriesBuffer(0),
     track: [],
@@ -99,6 +103,7 @@ export function withMessage(state: State, message: ServerMessage): State {
         second: null,
         colors: null,
         colorScores: null,
+        calibration: null,
         series: new SeriesBuffer(message.series.length),
       };
     case "sample":
@@ -126,6 +131,8 @@ export function withMessage(state: State, message: ServerMessage): State {
       return { ...state, colors: message, colorView: viewAfter(state.colorView, message) };
     case "color-scores":
       return { ...state, colorScores: message };
+    case "calibration":
+      return { ...state, calibration: message };
     case "link":
       return { ...state, link: message };
   }

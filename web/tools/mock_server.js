@@ -7,6 +7,7 @@ import { createServer } from "node:http";
 import { join } from "node:path";
 import { WebSocketServer } from "ws";
 import { colorPicture, MockColors } from "./mock_colors.js";
+import { MockCalibration } from "./mock_calibration.js";
 import {
   flightAt,
   flightSeconds,
@@ -93,7 +94,7 @@ class Client {
   }
 
   greet() {
-    const offers = this.isReplay ? ["play", "seek", "step", "detect", "cancel"] : ["record", "snapshot"];
+    const offers = this.isReplay ? ["play", "seek", "step", "detect", "cancel", "calibrate"] : ["record", "snapshot"];
     const title = this.isReplay ? "Recording flight_07" : "Simulated flight";
     const layers = ["detection", "prediction", "rejected", ...(this.isReplay ? ["second"] : [])];
     this.send({ kind: "hello", title, live: !this.isReplay, series, layers, offers, exports: this.isReplay, colors: this.isReplay });
@@ -104,6 +105,7 @@ class Client {
     if (this.isReplay) this.sendTimeline();
     if (this.isReplay) this.send({ kind: "options", options });
     if (this.isReplay) this.colors.messages().forEach((message) => this.send(message));
+    if (this.isReplay) this.calibration = new MockCalibration((message) => this.send(message));
   }
 
   /** A second run that loses the pattern more often. */
@@ -143,6 +145,7 @@ class Client {
       this.isRecording = message.value === 1;
       this.event("info", this.isRecording ? "recording to flight_08" : "recording ended");
     }
+    this.calibration?.receive(message);
     if (message.command === "detect") this.detect(message.settings);
     if (message.command === "snapshot") this.event("info", "snapshot kept");
     if (message.command === "play") this.speed = message.value;

@@ -19,6 +19,9 @@ const views = [
   { name: "colors", theme: "light", width: 1440, height: 1000, isReplay: true, isColors: true },
   { name: "colors-dark", theme: "dark", width: 1440, height: 1000, isReplay: true, isColors: true },
   { name: "colors-tablet", theme: "sun", width: 820, height: 1180, isReplay: true, isColors: true },
+  { name: "calibration-light", theme: "light", width: 1440, height: 1000, isReplay: true, calibrates: true },
+  { name: "calibration-dark", theme: "dark", width: 1440, height: 1000, isReplay: true, calibrates: true },
+  { name: "calibration-tablet", theme: "sun", width: 820, height: 1180, isReplay: true, calibrates: true },
 ];
 
 let findings = 0;
@@ -35,8 +38,9 @@ for (const view of views) {
   await page.waitForFunction(() => !document.querySelector(".screen .empty"));
   if (view.isColors) await teachColor(page);
   else await page.keyboard.press("3");
-  if (view.isReplay && !view.isColors) await detectAgain(page);
-  await page.waitForTimeout(view.isColors ? 1000 : 7000);
+  if (view.calibrates) await calibrate(page);
+  if (view.isReplay && !view.isColors && !view.calibrates) await detectAgain(page);
+  await page.waitForTimeout(view.isColors || view.calibrates ? 1000 : 7000);
   await page.screenshot({ path: join(folder, `${view.name}.png`) });
   for (const finding of await findingsOf(page)) report(`${view.name}: ${finding}`);
   await page.close();
@@ -58,6 +62,12 @@ async function teachColor(page) {
   await page.keyboard.press(" ");
   await page.keyboard.press("e");
   await page.getByText("taught red").waitFor();
+}
+
+async function calibrate(page) {
+  await page.keyboard.press("l");
+  await page.getByRole("button", { name: "Calibrate" }).click();
+  await page.getByRole("heading", { name: "Result" }).waitFor();
 }
 
 function report(text) {

@@ -86,11 +86,11 @@ class FlightFit {
     return errors;
   }
 
-  // Distances in metres.
-  double RootMeanSquare(const Parameters& parameters) const {
-    const Eigen::MatrixX3d residuals =
-        WeightsOf(sightings_).cwiseInverse().asDiagonal() * Residuals(parameters);
-    return std::sqrt(residuals.squaredNorm() / static_cast<double>(residuals.rows()));
+  // From the path, in metres, of each sighting.
+  Eigen::VectorXd Distances(const Parameters& parameters) const {
+    return (WeightsOf(sightings_).cwiseInverse().asDiagonal() * Residuals(parameters))
+        .rowwise()
+        .norm();
   }
 
  private:
@@ -282,6 +282,10 @@ std::vector<std::string> Warnings(const Parameters& sigmas) {
   return warnings;
 }
 
+double RootMeanSquare(const Eigen::VectorXd& values) {
+  return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
+}
+
 // Sightings that have a pose whatever the offset within the bounds.
 std::vector<TargetSighting> WithPoses(const std::vector<TargetSighting>& sightings,
                                       const PoseHistory& poses, const MountAndClock& given,
@@ -340,8 +344,12 @@ FlightCalibration CalibrateFlight(const std::vector<TargetSighting>& sightings,
   calibration.angles = fine.head<kAngles>();
   calibration.angle_sigmas = sigmas.head<kAngles>();
   calibration.clock_sigma_s = sigmas(kClock);
-  calibration.rms_before_m = fit.RootMeanSquare(start);
-  calibration.rms_after_m = fit.RootMeanSquare(fine);
+  const Eigen::VectorXd before = fit.Distances(start), after = fit.Distances(fine);
+  for (Eigen::Index i = 0; i < before.size(); ++i) {
+    calibration.residuals.push_back({fit.sightings()[i].time, before(i), after(i)});
+  }
+  calibration.rms_before_m = RootMeanSquare(before);
+  calibration.rms_after_m = RootMeanSquare(after);
   calibration.sightings = static_cast<int>(fit.sightings().size());
   calibration.outliers = static_cast<int>(usable.size() - fit.sightings().size());
   calibration.warnings = Warnings(sigmas);

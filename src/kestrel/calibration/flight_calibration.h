@@ -38,6 +38,13 @@ struct FlightCalibrationOptions {
   double offset_step_s = 0.02;
 };
 
+// How far the position of a sighting in the world is from the path.
+struct SightingResidual {
+  Time time;            // of the sighting
+  double before_m = 0;  // by the given values
+  double after_m = 0;   // by the estimate
+};
+
 struct FlightCalibration {
   MountAndClock estimate;
   // Roll, pitch, yaw (rad) by which the mount differs from the given one: Rz Ry Rx, in the body.
@@ -48,8 +55,9 @@ struct FlightCalibration {
   double clock_sigma_s = 0;
   double rms_before_m = 0;  // of the positions in the world from the path, by the given values
   double rms_after_m = 0;
-  int sightings = 0;  // used
-  int outliers = 0;   // left out
+  std::vector<SightingResidual> residuals;  // of the sightings that were used
+  int sightings = 0;                        // used
+  int outliers = 0;                         // left out
   // What the flight cannot tell, in words.
   std::vector<std::string> warnings;
 };

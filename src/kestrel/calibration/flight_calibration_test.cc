@@ -84,6 +84,12 @@ TEST(CalibrateFlight, FindsMountAndClockTogether) {
       0.1 * kDegree);
   EXPECT_LT(calibration.rms_after_m, 0.012);
   EXPECT_GT(calibration.rms_before_m, 0.1);
+  ASSERT_EQ(calibration.residuals.size(), static_cast<std::size_t>(calibration.sightings));
+  double squares = 0;
+  for (const SightingResidual& residual : calibration.residuals) {
+    squares += residual.after_m * residual.after_m;
+  }
+  EXPECT_NEAR(std::sqrt(squares / calibration.sightings), calibration.rms_after_m, 1e-9);
   EXPECT_THAT(calibration.warnings, IsEmpty());
 }
 

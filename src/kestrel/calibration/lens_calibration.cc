@@ -123,10 +123,11 @@ std::vector<CameraIntrinsics> Guesses(const cv::Size& size) {
 
 std::vector<LensView> FindViews(std::span<const LensImage> images, std::size_t stride,
                                 const CameraIntrinsics& camera,
-                                const LandingPatternDetectorOptions& options) {
-  LensViewFinder finder(camera, options);
+                                const LensCalibrationOptions& options) {
+  LensViewFinder finder(camera, options.detector);
   std::vector<LensView> views;
   for (std::size_t i = 0; i < images.size(); i += stride) {
+    if (options.before_image) options.before_image();
     std::optional<LensView> view = finder.Find(images[i].name, images[i].image);
     if (view) views.push_back(std::move(*view));
   }
@@ -135,7 +136,7 @@ std::vector<LensView> FindViews(std::span<const LensImage> images, std::size_t s
 
 // The guess with which the pattern is found most often in a sample.
 CameraIntrinsics BestGuess(std::span<const LensImage> images,
-                           const LandingPatternDetectorOptions& options) {
+                           const LensCalibrationOptions& options) {
   constexpr std::size_t kSample = 40;
   const std::size_t stride = std::max<std::size_t>(1, images.size() / kSample);
   CameraIntrinsics best;
@@ -204,13 +205,13 @@ LensCalibration CalibrateLens(std::span<const LensImage> images,
     const LensImage& first = images.front();
     CheckImageSize(*options.start, first.image.cols, first.image.rows, first.name);
   }
-  CameraIntrinsics camera = options.start ? *options.start : BestGuess(images, options.detector);
-  std::vector<LensView> views = FindViews(images, 1, camera, options.detector);
+  CameraIntrinsics camera = options.start ? *options.start : BestGuess(images, options);
+  std::vector<LensView> views = FindViews(images, 1, camera, options);
   // The better the lens, the more views are found, at the border of the image most of all.
   constexpr int kSearches = 3;
   for (int round = 0; round < kSearches && views.size() >= kMinViews; ++round) {
     camera = Estimate(views, camera, options.model, kFewViews).intrinsics;
-    std::vector<LensView> more = FindViews(images, 1, camera, options.detector);
+    std::vector<LensView> more = FindViews(images, 1, camera, options);
     if (more.size() <= views.size()) break;
     views = std::move(more);
   }

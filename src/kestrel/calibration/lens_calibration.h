@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -45,6 +46,9 @@ struct LensCalibrationOptions {
   std::optional<DistortionModel> model;   // as of EstimateLens
   std::optional<CameraIntrinsics> start;  // a guess of the lens; without it several are tried
   LandingPatternDetectorOptions detector;
+  // Called before the pattern is looked for in an image; what it throws ends the calibration. May
+  // be empty.
+  std::function<void()> before_image = {};
 };
 
 // The lens of a camera from images of one size, in any order: the pattern is detected with guesses

@@ -261,6 +261,18 @@ TEST(CalibrateLensTest, NeedsNothingButImages) {
   EXPECT_LT(lens.fit.RootMeanSquare(), 0.15);
 }
 
+TEST(CalibrateLensTest, EndsWhenItIsToldTo) {
+  struct Cancelled {};
+  const std::vector<LensImage> images(10, LensImage{"gray", cv::Mat(240, 320, CV_8UC1, 90)});
+  int looked_at = 0;
+  LensCalibrationOptions options;
+  options.before_image = [&] {
+    if (++looked_at == 5) throw Cancelled();
+  };
+  EXPECT_THROW(CalibrateLens(images, options), Cancelled);
+  EXPECT_EQ(looked_at, 5);
+}
+
 TEST(CalibrateLensTest, SaysWhatIsWrongWithImages) {
   EXPECT_THROW(CalibrateLens({}, {}), InputError);
   const std::vector<LensImage> empty(10, LensImage{"gray", cv::Mat(240, 320, CV_8UC1, 90)});

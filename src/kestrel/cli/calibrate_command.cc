@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/cli/calibrate_command.h"
 
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,16 +15,13 @@
 #include "kestrel/cli/calibrate_colors_command.h"
 #include "kestrel/cli/calibrate_lens_command.h"
 #include "kestrel/cli/calibration_output.h"
+#include "kestrel/cli/flight_sightings.h"
 #include "kestrel/cli/frame_loop.h"
 #include "kestrel/cli/option_arguments.h"
 #include "kestrel/geometry/angles.h"
-#include "kestrel/landing/landing_pattern_detector.h"
-#include "kestrel/pipeline/measurement_noise.h"
 
 namespace kestrel {
 namespace {
-
-constexpr double kKnotSpacing_s = 2;
 
 struct CalibrateArguments {
   std::string recording;
@@ -43,30 +39,7 @@ CameraCalibration ReadGiven(const CalibrateArguments& arguments, const FrameSour
   const std::optional<CameraCalibration> calibration =
       arguments.camera.empty() ? source.calibration() : ReadCalibration(arguments.camera);
   if (!calibration) throw InputError(file + ": has no calibration, give one by --camera FILE");
-  if (!calibration->body_from_camera) {
-    throw InputError(file +
-                     ": the calibration has no mount, expected T_BS, T_cam_imu or, in a bag, tf to "
-                     "start from");
-  }
   return *calibration;
-}
-
-// Finds the pattern in every frame for itself.
-std::vector<TargetSighting> FindSightings(FrameSource* source, const CameraCalibration& calibration,
-                                          const LandingPipelineOptions& options) {
-  const LandingPatternDetector detector(CameraModel(calibration.intrinsics), options.detector);
-  LandingWorkspace workspace;
-  std::vector<TargetSighting> sightings;
-  ForEachFrame(source, calibration.intrinsics, [&](const Frame& frame, const ProgressBar&) {
-    const LandingReport report = detector.Detect(frame.image, {}, workspace);
-    if (!report.detection) return;
-    const Eigen::Vector3d& center = report.detection->camera_from_pattern.translation;
-    const Eigen::Matrix3d covariance =
-        CovarianceInWorld(report.detection->covariance.topLeftCorner<3, 3>(), center,
-                          Eigen::Quaterniond::Identity(), options.noise);
-    sightings.push_back({frame.time, center, std::sqrt(covariance.trace() / 3)});
-  });
-  return sightings;
 }
 
 void PrintResult(const FlightCalibration& result, const FlightCalibrationOptions& options) {
@@ -94,21 +67,18 @@ void PrintResult(const FlightCalibration& result, const FlightCalibrationOptions
 void RunCalibrate(const CalibrateArguments& arguments, FlightCalibrationOptions options) {
   const LandingPipelineOptions landing = arguments.options.Read().landing;
   if (arguments.both) options.estimate_mount = options.estimate_clock = true;
-  if (arguments.moving) options.knot_spacing_s = kKnotSpacing_s;
+  if (arguments.moving) options.knot_spacing_s = kMovingKnotSpacing_s;
   const std::unique_ptr<FrameSource> source = arguments.bag.Open({arguments.recording});
   CameraCalibration calibration = ReadGiven(arguments, *source);
-  const std::vector<PoseSample> poses = source->poses();
-  if (poses.empty()) {
-    throw InputError(arguments.recording +
-                     ": has no poses of the UAV, expected nav0/data.csv or a topic");
-  }
-  const auto sightings = FindSightings(source.get(), calibration, landing);
-  const MountAndClock given{*calibration.body_from_camera,
-                            ToSeconds(calibration.clock_offset.value_or(Duration::zero()))};
-  const FlightCalibration result = CalibrateFlight(sightings, poses, given, options);
+  const MountAndClock given = GivenMountAndClock(
+      calibration, arguments.camera.empty() ? arguments.recording : arguments.camera);
+  const std::vector<PoseSample> poses = FlightPoses(*source, arguments.recording);
+  FlightSightings flight(calibration.intrinsics, landing);
+  ForEachFrame(source.get(), calibration.intrinsics,
+               [&](const Frame& frame, const ProgressBar&) { flight.Add(frame); });
+  const FlightCalibration result = CalibrateFlight(flight.sightings(), poses, given, options);
   PrintResult(result, options);
-  calibration.body_from_camera = result.estimate.body_from_camera;
-  calibration.clock_offset = DurationFromSeconds(result.estimate.clock_offset_s);
+  SetMountAndClock(result.estimate, &calibration);
   WriteCalibration(calibration, source->rate_hz(), arguments.output, arguments.force);
 }
 

@@ -14,6 +14,7 @@
 #include "kestrel/camera/calibration_reader.h"
 #include "kestrel/cli/bag_arguments.h"
 #include "kestrel/cli/calibration_output.h"
+#include "kestrel/cli/even_sample.h"
 #include "kestrel/cli/interrupt.h"
 #include "kestrel/cli/option_arguments.h"
 #include "kestrel/cli/progress_bar.h"
@@ -43,26 +44,6 @@ struct LensArguments {
   std::string model;
   OptionArguments options;
   bool force = false;
-};
-
-// Evenly spread images of a stream, however long it is.
-class EvenSample {
- public:
-  void Add(const Frame& frame) {
-    if (count_++ % stride_ != 0) return;
-    images_.push_back({frame.name, frame.image.clone()});
-    constexpr std::size_t kMaxImages = 400;
-    if (images_.size() <= kMaxImages) return;
-    stride_ *= 2;
-    for (std::size_t i = 1; 2 * i < images_.size(); ++i) images_[i] = std::move(images_[2 * i]);
-    images_.resize((images_.size() + 1) / 2);
-  }
-  std::vector<LensImage> Take() { return std::move(images_); }
-
- private:
-  std::vector<LensImage> images_;
-  std::size_t count_ = 0;
-  std::size_t stride_ = 1;
 };
 
 // What the sources hold, and what their files say beside the lens.

@@ -15,16 +15,21 @@
 #include "kestrel/base/error.h"
 #include "kestrel/base/options.h"
 #include "kestrel/base/read_file.h"
+#include "kestrel/cli/console_calibration.h"
+#include "kestrel/cli/frame_winder.h"
 #include "kestrel/cli/interrupt.h"
+#include "kestrel/cli/land_result.h"
 #include "kestrel/cli/pipeline_run.h"
 #include "kestrel/cli/source_arguments.h"
 #include "kestrel/console/replay_console.h"
 #include "kestrel/evaluation/landing_comparison.h"
 #include "kestrel/objects/object_model.h"
+#include "kestrel/pipeline/camera_poses.h"
 #include "kestrel/pipeline/landing_pipeline.h"
 #include "kestrel/recording/euroc_recording.h"
 #include "kestrel/recording/event_source.h"
 #include "kestrel/recording/landing_csv.h"
+#include "kestrel/recording/open_source.h"
 
 namespace kestrel {
 namespace {
@@ -35,7 +40,9 @@ struct ConsoleArguments {
   SourceArguments source;
   std::string address;
   std::string model;
-  std::string output = "taught";
+  std::string output = "taught";  // for what the page saves
+  // Of `kestrel land`, which is shown instead of being found again; none where it is empty.
+  std::string result;
 
   ConsoleOptions Options(const KestrelOptions& options) const {
     if (address.empty()) return options.console;
@@ -73,25 +80,37 @@ FrameMark MarkOf(const LandingComparison& comparison) {
   return FrameMark::kNothing;
 }
 
-// The landing pipeline over a recording, whose results are kept for the page.
+// The landing pipeline over a recording, or what it found before, kept for the page.
 class ReplayRun : public PipelineRun {
  public:
-  // 'console': is told how far the run is; null: nobody is.
+  // 'console': is told how far the run is; null: nobody is. 'result': the table of what was found
+  // before; empty: it is found now.
   ReplayRun(const OpenedSource& opened, const LandingPipelineOptions& options,
-            std::optional<double> altitude_m, ReplayConsole* console)
+            std::optional<double> altitude_m, ReplayConsole* console,
+            const std::string& result = "")
       : pipeline_(opened.calibration, options),
         view_(ViewOf(opened.calibration, options)),
         frame_count_(opened.source->frame_count().value_or(0)),
         console_(console),
+        poses_(opened.calibration, static_cast<std::size_t>(options.pose_capacity),
+               DurationFromSeconds(options.pose_gap_s), Duration::zero(), {}),
         table_(LandingCsvHeader()) {
     pipeline_.SetAltitude(altitude_m);
+    if (!result.empty()) result_.emplace(result);
   }
 
-  void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
+  void AddPose(const PoseSample& pose) override {
+    if (result_) {
+      poses_.Add(pose);
+    } else {
+      pipeline_.AddPose(pose);
+    }
+  }
 
   Duration Process(const Frame& frame) override {
     ReplayFrame& replayed = frames_.emplace_back();
-    replayed.observation = pipeline_.Process(frame.image, frame.time);
+    replayed.observation =
+        result_ ? FromResult(frame.time) : pipeline_.Process(frame.image, frame.time);
     found_ += replayed.observation.report.detection.has_value();
     table_ += LandingCsvRow(frame.name, replayed.observation);
     if (console_ != nullptr && frames_.size() % kProgressFrames == 0) {
@@ -107,6 +126,10 @@ class ReplayRun : public PipelineRun {
 
   // Once only: all frames with their marks.
   ReplayResult TakeResult(const std::optional<Truth>& truth) {
+    if (result_) {
+      result_->RequireEnd();
+      table_ = result_->text();
+    }
     if (truth) {
       MarkByTruth(*truth);
     } else {
@@ -117,6 +140,11 @@ class ReplayRun : public PipelineRun {
 
  private:
   static constexpr std::size_t kProgressFrames = 20;
+
+  LandingObservation FromResult(Time time) {
+    const auto camera = poses_.At(time);
+    return result_->Next(time, camera ? std::optional(camera->world_from_camera) : std::nullopt);
+  }
 
   void MarkByTruth(const Truth& truth) {
     const auto patterns = ParseTruePatterns(ReadFile(truth.pattern_file), truth.pattern_file);
@@ -133,6 +161,8 @@ class ReplayRun : public PipelineRun {
   LandingView view_;
   std::size_t frame_count_;
   ReplayConsole* console_;
+  std::optional<LandResult> result_;
+  CameraPoses poses_;  // for the result
   std::vector<ReplayFrame> frames_;
   std::string table_;  // as `kestrel land` writes it
   std::size_t found_ = 0;
@@ -196,21 +226,22 @@ std::optional<ColorSource> FindColors(const ConsoleArguments& arguments) {
                      read, FirstModel(arguments), arguments.output};
 }
 
-void RequireImages(const OpenedSource& opened, const std::string& name) {
-  Frame first;
-  if (opened.source->Read(0, &first)) return;
-  throw InputError(name +
-                   ": the page goes to and fro, expected a recording or images, not a video or "
-                   "a camera");
+void RequireEnd(const std::vector<std::string>& sources) {
+  for (const std::string& source : sources) {
+    if (!IsCamera(source)) continue;
+    throw InputError(source +
+                     ": the page goes to and fro, expected a recording, a bag, images or a video; "
+                     "`kestrel fly --console` shows a camera");
+  }
 }
 
 void RunConsole(const ConsoleArguments& arguments) {
   const KestrelOptions all_options = arguments.source.options.Read();
   LandingPipelineOptions options = all_options.landing;
   options.still = options.still || arguments.source.still;
+  RequireEnd(arguments.source.sources);
   const OpenedSource opened = arguments.source.Open(PixelFormat::kGray);
   const std::string& name = arguments.source.sources.front();
-  RequireImages(opened, name);
   const std::optional<Truth> truth = FindTruth(arguments.source.sources);
   std::optional<ColorSource> colors = FindColors(arguments);
   const bool has_colors = colors.has_value();
@@ -218,17 +249,16 @@ void RunConsole(const ConsoleArguments& arguments) {
                         std::move(colors));
   fmt::print(stderr, "console: {}\n", console.url());
   if (has_colors) fmt::print(stderr, "colors that are taught: {}\n", arguments.output);
-  ReplayRun run(opened, options, arguments.source.altitude_m, &console);
+  ReplayRun run(opened, options, arguments.source.altitude_m, &console, arguments.result);
   RunPipeline(opened, &run);
   if (WasInterrupted()) return;
-  const auto read = [&opened](std::size_t index) {
-    Frame frame;
-    opened.source->Read(index, &frame);
-    return frame.image;
-  };
+  if (run.done() == 0) throw InputError(name + ": has no images to show");
+  FrameWinder winder([&] { return arguments.source.bag.Open(arguments.source.sources); });
+  const auto read = [&winder](std::size_t index) { return winder.Read(index); };
   const auto detect = [&](const LandingPipelineOptions& other, const SecondRun::GoOn& go_on) {
     return DetectAgain(arguments, other, truth, go_on);
   };
+  console.OfferCalibration(CalibrationTools(arguments.source, options, arguments.output));
   console.Play(run.TakeResult(truth), read, detect, WasInterrupted);
 }
 
@@ -249,12 +279,14 @@ void AddConsoleCommand(CLI::App* app) {
                    "or the built-in ones")
       ->type_name("FILE");
   command
-      ->add_option(
-          "--output", arguments->output,
-          "Folder for the model that the page teaches (objects.yaml), its versions and the "
-          "draft (taught)")
+      ->add_option("--output", arguments->output,
+                   "Folder for what the page saves: calibrations, and the model that it teaches "
+                   "(objects.yaml), its versions and the draft (taught)")
       ->type_name("DIR");
-  command->callback([arguments] { RunConsole(*arguments); });
+  command->callback([arguments] {
+    arguments->result = TakeLandResult(&arguments->source.sources).value_or("");
+    RunConsole(*arguments);
+  });
 }
 
 }  // namespace kestrel

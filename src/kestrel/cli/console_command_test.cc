@@ -210,6 +210,101 @@ TEST_F(ConsoleCommandTest, ColoursAreTaughtAndSaved) {
   EXPECT_EQ(Run("hunt " + hunt + " --model " + taught + "/objects.yaml").status, 0);
 }
 
+TEST_F(ConsoleCommandTest, APageCalibratesAsTheCommandAndReplacesNothing) {
+  const std::string flight = folder_ / "flight";
+  ASSERT_EQ(Run("simulate landing --scenario aggressive --seed 11 --output " + flight +
+                " --set frames=60 --set rate_hz=15 --set ground.map_px=256"
+                " --set shutter.rays_per_pixel=4")
+                .status,
+            0);
+  const std::string saved = folder_ / "saved";
+  RunningCommand console("console " + flight + " --address 127.0.0.1:0 --output " + saved,
+                         folder_.Write("log", ""));
+  const int port = console.Port();
+  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
+  TestSocket socket(port);
+  const auto next = [&socket](const std::string& state) {
+    while (const auto message = socket.Next("calibration")) {
+      if ((*message)["state"] != "running") {
+        EXPECT_EQ((*message)["state"], state) << *message;
+        return *message;
+      }
+    }
+    return nlohmann::json();
+  };
+  ASSERT_TRUE(next("none").is_object());
+  socket.Send(R"({"command": "calibrate", "settings": ["mount", "clock", "moving"]})");
+  const nlohmann::json done = next("done");
+  EXPECT_EQ(done["numbers"].size(), 4u);
+  EXPECT_LT(done["residuals"]["rms_after"], done["residuals"]["rms_before"]);
+  socket.Send(R"({"command": "calibrate-save"})");
+  EXPECT_EQ(next("done")["saved"], saved + "/mount_clock.yaml");
+  socket.Send(R"({"command": "calibrate-save"})");
+  EXPECT_EQ(next("done")["saved"], saved + "/mount_clock_2.yaml");
+  const std::string by_command = folder_ / "command.yaml";
+  ASSERT_EQ(Run("calibrate clock --both --moving " + flight + " --output " + by_command).status, 0);
+  EXPECT_EQ(ReadFile(saved + "/mount_clock.yaml"), ReadFile(by_command));
+  EXPECT_EQ(ReadFile(saved + "/mount_clock_2.yaml"), ReadFile(by_command));
+  TestBrowser browser(port);
+  EXPECT_EQ(browser.Send(browser.Get("/export/calibration-1.yaml")).body(), ReadFile(by_command));
+}
+
+TEST_F(ConsoleCommandTest, ABagIsPlayedAndRefusedInTheWordsOfTheCommand) {
+  const std::string bag = folder_ / "flight.mcap";
+  ASSERT_EQ(Run("convert " + Recording() + " " + bag).status, 0);
+  RunningCommand console("console " + bag + " --address 127.0.0.1:0", folder_.Write("log", ""));
+  const int port = console.Port();
+  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
+  TestSocket socket(port);
+  const auto timeline = socket.Next("timeline");
+  ASSERT_TRUE(timeline);
+  EXPECT_EQ((*timeline)["times_ms"].size(), 10u);
+  TestBrowser browser(port);
+  const auto frame = [&browser](int number) {
+    return browser.Send(browser.Get(fmt::format("/export/frame-{}.png", number))).body();
+  };
+  const std::string last = frame(9);
+  EXPECT_THAT(last, HasSubstr("PNG"));
+  EXPECT_NE(frame(2), last) << "a bag is wound back";
+  const std::string too_few = "images with poses around them, expected at least 20";
+  socket.Send(R"({"command": "calibrate", "settings": ["mount"]})");
+  nlohmann::json refused;
+  do {
+    const auto message = socket.Next("calibration");
+    ASSERT_TRUE(message);
+    refused = *message;
+  } while (refused["state"] != "refused");
+  EXPECT_THAT(refused["error"].dump(), HasSubstr(too_few));
+  EXPECT_THAT(refused["coverage"].dump(), HasSubstr("of 10 images"));
+  EXPECT_EQ(refused["can_save"], false);
+  ExpectInputError("calibrate mount " + bag, too_few);
+}
+
+TEST_F(ConsoleCommandTest, AResultIsShownOverItsRecording) {
+  const std::string flight = Recording();
+  const std::string result = folder_ / "result";
+  ASSERT_EQ(Run("land " + flight + " --output " + result).status, 0);
+  // With these options nothing would be found: what is shown is the result.
+  RunningCommand console("console " + flight + " " + result +
+                             " --address 127.0.0.1:0 --set landing.detector.min_quality=1",
+                         folder_.Write("log", ""));
+  const int port = console.Port();
+  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
+  TestSocket socket(port);
+  const auto timeline = socket.Next("timeline");
+  ASSERT_TRUE(timeline);
+  EXPECT_EQ((*timeline)["marks"], std::string(10, 'f'));
+  TestBrowser browser(port);
+  const std::string table = ReadFile(result + "/landing_detections.csv");
+  EXPECT_EQ(browser.Send(browser.Get("/export/detections-1.csv")).body(), table);
+  EXPECT_EQ(console.End(), 0) << ReadFile(folder_ / "log");
+  const std::string row = table.substr(0, table.find('\n', table.find('\n') + 1) + 1);
+  ExpectInputError("console --address 127.0.0.1:0 " + flight + " " + folder_.Write("one.csv", row),
+                   "row 2 is not of the recording's frame at");
+  ExpectInputError("console " + result, "expected the recording that it is of beside it");
+  ExpectInputError("console " + flight + " " + result + " " + result, "is a second result");
+}
+
 TEST_F(ConsoleCommandTest, FaultsAreNamed) {
   const std::string fly = "fly sim:standing --console ";
   ExpectInputError(fly + "8080", "--console '8080': expected ADDRESS:PORT");
@@ -220,6 +315,7 @@ TEST_F(ConsoleCommandTest, FaultsAreNamed) {
   const std::string flight = Recording();
   ExpectInputError("console " + flight + " --address nowhere:1", "--address 'nowhere:1'");
   ExpectInputError("console " + flight + " --model any.yaml", "has no images in color");
+  ExpectInputError("console /dev/video0", "`kestrel fly --console` shows a camera");
   ExpectInputError("console " + folder_ / "missing", "no such file or folder");
   RunningCommand first("console " + flight + " --address 127.0.0.1:0", folder_.Write("log", ""));
   const int port = first.Port();

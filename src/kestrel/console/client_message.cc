@@ -12,12 +12,22 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::array kCommands = {ConsoleCommandKind::kRecord, ConsoleCommandKind::kSnapshot,
-                                  ConsoleCommandKind::kPlay,   ConsoleCommandKind::kSeek,
-                                  ConsoleCommandKind::kStep,   ConsoleCommandKind::kDetect,
-                                  ConsoleCommandKind::kCancel};
+constexpr std::array kCommands = {ConsoleCommandKind::kRecord,
+                                  ConsoleCommandKind::kSnapshot,
+                                  ConsoleCommandKind::kPlay,
+                                  ConsoleCommandKind::kSeek,
+                                  ConsoleCommandKind::kStep,
+                                  ConsoleCommandKind::kDetect,
+                                  ConsoleCommandKind::kCancel,
+                                  ConsoleCommandKind::kCalibrate,
+                                  ConsoleCommandKind::kCalibrateCancel,
+                                  ConsoleCommandKind::kCalibrateSave};
 // A list in an object; deeper text would cost the stack of the parser.
 constexpr int kMaxDepth = 2;
+// Those that say what by a list.
+bool HasSettings(ConsoleCommandKind kind) {
+  return kind == ConsoleCommandKind::kDetect || kind == ConsoleCommandKind::kCalibrate;
+}
 constexpr std::size_t kMaxSettings = 32, kMaxSettingBytes = 128;
 
 bool ReadSettings(const Json& list, std::vector<std::string>* settings) {
@@ -47,7 +57,7 @@ std::optional<ClientMessage> ReadCommand(const Json& message) {
   for (const ConsoleCommandKind kind : kCommands) {
     if (name.get_ref<const std::string&>() != ToString(kind)) continue;
     command.kind = kind;
-    if (has_settings != (kind == ConsoleCommandKind::kDetect)) return std::nullopt;
+    if (has_settings != HasSettings(kind)) return std::nullopt;
     return command;
   }
   return std::nullopt;
@@ -71,6 +81,12 @@ const char* ToString(ConsoleCommandKind kind) {
       return "detect";
     case ConsoleCommandKind::kCancel:
       return "cancel";
+    case ConsoleCommandKind::kCalibrate:
+      return "calibrate";
+    case ConsoleCommandKind::kCalibrateCancel:
+      return "calibrate-cancel";
+    case ConsoleCommandKind::kCalibrateSave:
+      return "calibrate-save";
   }
   return "";
 }

@@ -24,20 +24,25 @@ struct ImageWish {
 
 // What the user asks for: {"command": "record", "value": 1}.
 enum class ConsoleCommandKind {
-  kRecord,    // 1: start, 0: stop recording
-  kSnapshot,  // keep the present frame; no value
-  kPlay,      // at so many times the speed, 0: hold, negative: backwards
-  kSeek,      // to so many s after the beginning
-  kStep,      // so many frames forward
-  kDetect,    // again with these settings
-  kCancel,    // that
+  kRecord,           // 1: start, 0: stop recording
+  kSnapshot,         // keep the present frame; no value
+  kPlay,             // at so many times the speed, 0: hold, negative: backwards
+  kSeek,             // to so many s after the beginning
+  kStep,             // so many frames forward
+  kDetect,           // again with these settings
+  kCancel,           // that
+  kCalibrate,        // from the recording what the settings say
+  kCalibrateCancel,  // that
+  kCalibrateSave,    // what it came to
 };
-// "record", "snapshot", "play", "seek", "step", "detect", "cancel"
+// "record", "snapshot", "play", "seek", "step", "detect", "cancel", "calibrate",
+// "calibrate-cancel", "calibrate-save"
 const char* ToString(ConsoleCommandKind kind);
 struct ConsoleCommand {
   ConsoleCommandKind kind = ConsoleCommandKind::kSnapshot;
   double value = 0;  // finite
-  // As {"command": "detect", "settings": ["landing.still=true"]}: at most 32 of 128 bytes each.
+  // As {"command": "detect", "settings": ["landing.still=true"]} or {"command": "calibrate",
+  // "settings": ["mount", "clock"]}: at most 32 of 128 bytes each.
   std::vector<std::string> settings = {};
 };
 

@@ -21,6 +21,12 @@ TEST(ClientMessageTest, ReadsWhatThePageSends) {
       *ParseClientMessage(R"({"command": "detect", "settings": ["a=1", "b=2"]})"));
   EXPECT_EQ(detect.kind, ConsoleCommandKind::kDetect);
   EXPECT_EQ(detect.settings, (std::vector<std::string>{"a=1", "b=2"}));
+  const auto calibrate = std::get<ConsoleCommand>(
+      *ParseClientMessage(R"({"command": "calibrate", "settings": ["lens"]})"));
+  EXPECT_EQ(calibrate.kind, ConsoleCommandKind::kCalibrate);
+  EXPECT_EQ(calibrate.settings, std::vector<std::string>{"lens"});
+  EXPECT_EQ(std::get<ConsoleCommand>(*ParseClientMessage(R"({"command":"calibrate-save"})")).kind,
+            ConsoleCommandKind::kCalibrateSave);
 }
 
 TEST(ClientMessageTest, SettingsAreBounded) {
@@ -101,6 +107,8 @@ TEST(ClientMessageTest, RefusesAllElse) {
                            R"({"command": "detect", "settings": [1]})",
                            R"({"command": "detect", "settings": [["a"]]})",
                            R"({"command": "step", "settings": []})",
+                           R"({"command": "calibrate"})",
+                           R"({"command": "calibrate-save", "settings": ["/tmp"]})",
                            "\xff\xfe"}) {
     EXPECT_FALSE(ParseClientMessage(text)) << text;
   }

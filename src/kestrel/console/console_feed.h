@@ -13,6 +13,7 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/base/time.h"
+#include "kestrel/console/calibration_report.h"
 #include "kestrel/console/client_message.h"
 #include "kestrel/console/color_state.h"
 #include "kestrel/console/export_request.h"
@@ -138,7 +139,7 @@ struct ConsoleSecondRun {
 using ConsoleUpdate =
     std::variant<ConsoleSample, ConsoleStatus, ConsoleMap, ConsoleHealth, ConsoleEvent,
                  ConsoleTimeline, ConsolePlayback, ConsoleDoctor, ConsoleOptionList,
-                 ConsoleSecondRun, ConsoleColors, ConsoleColorScores>;
+                 ConsoleSecondRun, ConsoleColors, ConsoleColorScores, ConsoleCalibration>;
 
 // What is to be done by the page of colours.
 using ColorJob = std::variant<ColorRequest, PendingExport>;

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kestrel/console/calibration_json.h"
 #include "kestrel/console/color_json.h"
 
 namespace kestrel {
@@ -140,6 +141,9 @@ Json Message(const ConsoleSecondRun& run) {
           {"settings", run.settings}, {"done", run.done},
           {"error", run.error},       {"marks", Marks(run.marks)}};
 }
+
+// NaN is null, as in all of the messages.
+Json Message(const ConsoleCalibration& calibration) { return CalibrationJson(calibration); }
 
 }  // namespace
 

@@ -42,6 +42,9 @@ std::optional<ExportRequest> ParseExportPath(std::string_view path) {
   if (const auto frame = NumberBetween("/export/labels-", path, ".png")) {
     return ExportRequest{ExportRequest::Kind::kLabels, *frame};
   }
+  if (const auto calibration = NumberBetween("/export/calibration-", path, ".yaml")) {
+    return ExportRequest{ExportRequest::Kind::kCalibration, *calibration};
+  }
   const auto run = NumberBetween("/export/detections-", path, ".csv");
   if (run && (*run == 1 || *run == 2)) {
     return ExportRequest{ExportRequest::Kind::kDetections, *run};

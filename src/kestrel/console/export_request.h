@@ -16,10 +16,11 @@ struct ExportRequest {
     kOverlays,    // /export/overlays-12.png: with what was found drawn on it
     kDetections,  // /export/detections-1.csv: all that the first or the second run found
     kPicture,     // /export/picture-12.jpg: the image in colour, as the page of colours shows it
-    kLabels       // /export/labels-12.png: what its pixels are taken for and marked as
+    kLabels,      // /export/labels-12.png: what its pixels are taken for and marked as
+    kCalibration  // /export/calibration-3.yaml: what the third calibration came to
   };
   Kind kind = Kind::kFrame;
-  std::size_t number = 0;  // of the frame from 0, or of the run: 1 or 2
+  std::size_t number = 0;  // of the frame from 0, of the run: 1 or 2, of the calibration from 1
 };
 
 // Whether the page of colours answers it.

@@ -13,6 +13,10 @@ TEST(ExportRequestTest, ReadsNumbersOfFramesAndRuns) {
   EXPECT_EQ(frame->number, 0u);
   EXPECT_EQ(ParseExportPath("/export/overlays-123456789.png")->number, 123456789u);
   EXPECT_EQ(ParseExportPath("/export/detections-2.csv")->kind, ExportRequest::Kind::kDetections);
+  const auto calibration = ParseExportPath("/export/calibration-3.yaml");
+  ASSERT_TRUE(calibration);
+  EXPECT_EQ(calibration->kind, ExportRequest::Kind::kCalibration);
+  EXPECT_EQ(calibration->number, 3u);
 }
 
 TEST(ExportRequestTest, RefusesAllElse) {

@@ -71,7 +71,8 @@ ReplayConsole::ReplayConsole(const ConsoleOptions& options, const std::string& t
              .layers = ReplayLayers(),
              .offers = {ConsoleCommandKind::kPlay, ConsoleCommandKind::kSeek,
                         ConsoleCommandKind::kStep, ConsoleCommandKind::kDetect,
-                        ConsoleCommandKind::kCancel},
+                        ConsoleCommandKind::kCancel, ConsoleCommandKind::kCalibrate,
+                        ConsoleCommandKind::kCalibrateCancel, ConsoleCommandKind::kCalibrateSave},
              .has_exports = true,
              .has_colors = colors.has_value()}),
       server_(options, &feed_) {
@@ -87,10 +88,12 @@ void ReplayConsole::Play(ReplayResult first, ReadFrame read, Detect detect,
   detect_ = std::move(detect);
   SendTimeline();
   feed_.Add(ReplayOptions(used_));
+  if (tools_.calibrate) calibration_.emplace(tools_, frames_.size(), &feed_);
   Time last = Now();
   while (!is_stopped()) {
     while (const auto command = feed_.TakeCommand()) Obey(*command);
     FollowSecondRun();
+    if (calibration_) calibration_->Follow();
     if (const auto pending = feed_.TakeExport()) pending->answer(MakeExport(pending->request));
     const Time now = Now();
     // With nobody there to see it the recording waits.
@@ -121,6 +124,11 @@ void ReplayConsole::Obey(const ConsoleCommand& command) {
     case ConsoleCommandKind::kCancel:
       if (second_run_.Cancel()) TellSecondRun(SecondRunState::kCancelled);
       return;
+    case ConsoleCommandKind::kCalibrate:
+    case ConsoleCommandKind::kCalibrateCancel:
+    case ConsoleCommandKind::kCalibrateSave:
+      if (calibration_) calibration_->Obey(command);
+      return;
     case ConsoleCommandKind::kRecord:
     case ConsoleCommandKind::kSnapshot:
       return;  // not offered
@@ -138,8 +146,9 @@ void ReplayConsole::StartSecondRun(const std::vector<std::string>& settings) {
   } catch (const InputError& error) {
     return TellSecondRun(SecondRunState::kFailed, error.what());
   }
-  second_run_.Start(
-      [this, options](const SecondRun::GoOn& go_on) { return detect_(options, go_on); });
+  second_run_.Start("second run", [this, options](const SecondRun::GoOn& go_on) {
+    return detect_(options, go_on);
+  });
   TellSecondRun(SecondRunState::kRunning);
 }
 
@@ -236,6 +245,9 @@ ExportAnswer ReplayConsole::MakeExport(const ExportRequest& request) const {
   if (request.kind == ExportRequest::Kind::kDetections) {
     const std::string table = request.number == 1 ? table_ : second_ ? second_->table : "";
     return {table, "text/csv; charset=utf-8", fmt::format("detections-{}.csv", request.number)};
+  }
+  if (request.kind == ExportRequest::Kind::kCalibration) {
+    return calibration_ ? calibration_->File(request.number) : ExportAnswer();
   }
   if (request.number >= frames_.size()) return {};
   const bool has_shapes = request.kind == ExportRequest::Kind::kOverlays;

@@ -5,8 +5,10 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "kestrel/console/calibration_page.h"
 #include "kestrel/console/color_page.h"
 #include "kestrel/console/console_feed.h"
 #include "kestrel/console/console_options.h"
@@ -37,6 +39,9 @@ class ReplayConsole {
 
   // What is done before there is something to play, in words.
   void SetProgress(const std::string& text) { feed_.Add(ConsoleStatus{"detecting", text, false}); }
+
+  // The page calibrates by these. Before Play.
+  void OfferCalibration(CalibrationPage::Tools tools) { tools_ = std::move(tools); }
 
   // Plays what the first run came to, at least one frame, as the users ask, until 'is_stopped',
   // which is asked often. Once only.
@@ -77,6 +82,8 @@ class ReplayConsole {
   double speed_ = 0;
   bool is_shown_ = false;
   SecondRun second_run_;
+  CalibrationPage::Tools tools_;
+  std::optional<CalibrationPage> calibration_;
 };
 
 }  // namespace kestrel

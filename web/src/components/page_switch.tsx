@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import { offeredPages, pageNames, showPage } from "../pages";
+import { useStore } from "../use_store";
+
+/** The pages, where there is more than one. */
+export function PageSwitch() {
+  const page = useStore((state) => state.page);
+  useStore((state) => state.hello);
+  const pages = offeredPages();
+  if (pages.length < 2) return null;
+  return (
+    <nav class="pages" aria-label="Pages">
+      {pages.map((one) => (
+        <button
+          key={one}
+          aria-current={one === page ? "page" : undefined}
+          onClick={() => showPage(one)}
+        >
+          {pageNames[one]}
+        </button>
+      ))}
+    </nav>
+  );
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The pages of a recording; a flight has the first only.
+import { isOffered } from "./actions";
+import { store, type Page } from "./store";
+
+export const pageNames: Record<Page, string> = {
+  watch: "Replay",
+  colors: "Colours",
+  calibration: "Calibration",
+};
+
+/** Those that this server has something for. */
+export function offeredPages(): Page[] {
+  const pages: Page[] = ["watch"];
+  if (store.state.hello?.colors) pages.push("colors");
+  if (isOffered("calibrate")) pages.push("calibration");
+  return pages;
+}
+
+/** The page that the address asks for. */
+export function firstPage(): Page {
+  const asked = location.hash.slice(1);
+  return asked === "colors" || asked === "calibration" ? asked : "watch";
+}
+
+export function showPage(page: Page): void {
+  store.set({ page });
+  history.replaceState(null, "", page === "watch" ? location.pathname : `#${page}`);
+}
+
+/** To a page, or from it back to the recording. */
+export function togglePage(page: Page): void {
+  showPage(store.state.page === page ? "watch" : page);
+}
