@@ -22,13 +22,13 @@ const scratch = mkdtempSync(join(tmpdir(), "kestrel-calibration-"));
 const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox"] });
 let program;
 try {
-  const flight = await openPage(await start([simulateFlight("flight", 120), "--output", "calibrated"]));
+  const flight = await openPage(await start([simulateFlight("flight", 120, 15), "--output", "calibrated"]));
   await calibrateByKeys(flight);
   await saveTwice(flight);
   await cancel(flight);
   await calibrateLens(flight);
   program.kill("SIGINT");
-  await beRefused(await openPage(await start([simulateFlight("short", 12)])));
+  await beRefused(await openPage(await start([simulateFlight("short", 12, 4)])));
 } finally {
   program?.kill("SIGINT");
   await browser.close();
@@ -42,9 +42,9 @@ function expect(condition, text) {
   faults += 1;
 }
 
-function simulateFlight(name, frames) {
+function simulateFlight(name, frames, rate) {
   const args = ["simulate", "landing", "--scenario", "aggressive", "--seed", "11", "--output", name];
-  const settings = [`frames=${frames}`, "rate_hz=15", "ground.map_px=512", "shutter.rays_per_pixel=4"];
+  const settings = [`frames=${frames}`, `rate_hz=${rate}`, "ground.map_px=512", "shutter.rays_per_pixel=4"];
   const made = spawnSync(resolvePath(kestrel), [...args, ...settings.flatMap((setting) => ["--set", setting])], {
     cwd: scratch,
   });
