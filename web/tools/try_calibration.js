@@ -22,12 +22,13 @@ const scratch = mkdtempSync(join(tmpdir(), "kestrel-calibration-"));
 const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox"] });
 let program;
 try {
-  const { link } = await start(["console", simulateFlight(), "--address", "127.0.0.1:0", "--output", "calibrated"]);
-  const page = await openPage(link);
-  await calibrateByKeys(page);
-  await saveTwice(page);
-  await cancel(page);
-  await beRefused(page);
+  const flight = await openPage(await start([simulateFlight("flight", 120, 15), "--output", "calibrated"]));
+  await calibrateByKeys(flight);
+  await saveTwice(flight);
+  await cancel(flight);
+  await calibrateLens(flight);
+  program.kill("SIGINT");
+  await beRefused(await openPage(await start([simulateFlight("short", 12, 4)])));
 } finally {
   program?.kill("SIGINT");
   await browser.close();
@@ -41,25 +42,25 @@ function expect(condition, text) {
   faults += 1;
 }
 
-function simulateFlight() {
-  const args = "simulate landing --scenario aggressive --seed 11 --output flight".split(" ");
-  const settings = ["frames=120", "rate_hz=15", "ground.map_px=512", "shutter.rays_per_pixel=4"];
+function simulateFlight(name, frames, rate) {
+  const args = ["simulate", "landing", "--scenario", "aggressive", "--seed", "11", "--output", name];
+  const settings = [`frames=${frames}`, `rate_hz=${rate}`, "ground.map_px=512", "shutter.rays_per_pixel=4"];
   const made = spawnSync(resolvePath(kestrel), [...args, ...settings.flatMap((setting) => ["--set", setting])], {
     cwd: scratch,
   });
   if (made.status !== 0) throw new Error(made.stderr.toString());
-  return "flight";
+  return name;
 }
 
 /** Starts the program; resolves to the link that it prints. */
 function start(args) {
-  program = spawn(resolvePath(kestrel), args, { cwd: scratch });
+  program = spawn(resolvePath(kestrel), ["console", ...args, "--address", "127.0.0.1:0"], { cwd: scratch });
   return new Promise((resolve, reject) => {
     let said = "";
     program.stderr.on("data", (text) => {
       said += text;
       const link = said.match(/console: (http:\S+)/);
-      if (link) resolve({ link: link[1] });
+      if (link) resolve(link[1]);
     });
     program.on("exit", () => reject(new Error(said)));
   });
@@ -96,7 +97,7 @@ async function calibrateByKeys(page) {
   await page.getByRole("heading", { name: "Result: mount and clock" }).waitFor();
   const clock = page.getByRole("row", { name: /clock offset/ });
   expect(/± 0\.0\d+/.test(await clock.textContent()), `clock: ${await clock.textContent()}`);
-  await page.screenshot({ path: join(folder, "console_calibration.png") });
+  await page.screenshot({ path: join(folder, "console_calibration.png"), fullPage: true });
   for (const finding of await findingsOf(page)) expect(false, `calibration: ${finding}`);
 }
 
@@ -125,14 +126,22 @@ async function cancel(page) {
   await page.locator(".replay-time").filter({ hasText: "frame 120 of 120" }).waitFor();
 }
 
-async function beRefused(page) {
+async function calibrateLens(page) {
   await page.getByRole("button", { name: "Calibration" }).click();
   await page.getByLabel("lens", { exact: true }).check();
   await page.getByRole("button", { name: "Calibrate" }).click();
-  const refusal = page.getByRole("alert");
-  const result = page.getByRole("heading", { name: "Result: lens" });
-  await refusal.or(result).first().waitFor();
-  await page.screenshot({ path: join(folder, "console_calibration_lens.png") });
+  await page.getByRole("heading", { name: "Result: lens" }).waitFor();
+  await page.screenshot({ path: join(folder, "console_calibration_lens.png"), fullPage: true });
   for (const finding of await findingsOf(page)) expect(false, `lens: ${finding}`);
-  if (await refusal.isVisible()) console.log(`lens: ${await refusal.textContent()}`);
+}
+
+async function beRefused(page) {
+  await page.keyboard.press("c");
+  await page.getByRole("button", { name: "Calibrate" }).click();
+  const refusal = page.getByRole("alert");
+  await refusal.waitFor();
+  const text = await refusal.textContent();
+  expect(/images with poses around them, expected at least 20/.test(text), `refusal: ${text}`);
+  await page.screenshot({ path: join(folder, "console_calibration_refused.png"), fullPage: true });
+  for (const finding of await findingsOf(page)) expect(false, `refusal: ${finding}`);
 }
