@@ -7,7 +7,7 @@
 namespace kestrel {
 
 // A browser that shows the page, by its WebSocket.
-class SocketSession : public ConsoleClient, public WebSocket {
+class SocketSession final : public ConsoleClient, public WebSocket {
  public:
   SocketSession(boost::beast::tcp_stream stream, ConsoleHub* hub, std::shared_ptr<void> slot);
   ~SocketSession() override;

@@ -10,7 +10,7 @@
 namespace kestrel {
 
 // A viewer that speaks Foxglove's WebSocket protocol.
-class ViewerSession : public ViewerClient, public WebSocket {
+class ViewerSession final : public ViewerClient, public WebSocket {
  public:
   // 'viewers' outlive the session.
   ViewerSession(boost::beast::tcp_stream stream, ConsoleHub* hub, ViewerHub* viewers,
