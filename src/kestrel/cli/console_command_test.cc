@@ -299,8 +299,10 @@ TEST_F(ConsoleCommandTest, AResultIsShownOverItsRecording) {
   EXPECT_EQ(browser.Send(browser.Get("/export/detections-1.csv")).body(), table);
   EXPECT_EQ(console.End(), 0) << ReadFile(folder_ / "log");
   const std::string row = table.substr(0, table.find('\n', table.find('\n') + 1) + 1);
-  ExpectInputError("console --address 127.0.0.1:0 " + flight + " " + folder_.Write("one.csv", row),
-                   "row 2 is not of the recording's frame at");
+  const auto one_row =
+      Run("console --address 127.0.0.1:0 " + flight + " " + folder_.Write("one.csv", row));
+  EXPECT_EQ(one_row.status, 1);
+  EXPECT_THAT(one_row.err, HasSubstr("row 2 is not of the recording's frame at"));
   ExpectInputError("console " + result, "expected the recording that it is of beside it");
   ExpectInputError("console " + flight + " " + result + " " + result, "is a second result");
 }
