@@ -24,7 +24,7 @@ bool SocketSession::Take(std::string_view text, bool is_text, Time now) {
   } else if (const auto* wish = std::get_if<ImageWish>(&*message)) {
     images_.SetWanted(wish->wanted);
   } else if (const auto* request = std::get_if<ColorRequest>(&*message)) {
-    hub_->Ask(*request);
+    hub().Ask(*request);
   } else {
     hub().Command(std::get<ConsoleCommand>(*message));
   }
