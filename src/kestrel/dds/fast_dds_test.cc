@@ -35,8 +35,8 @@ namespace {
 namespace fast = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 
-constexpr Duration kLong = std::chrono::seconds(10);
-constexpr Duration kTick = std::chrono::milliseconds(10);
+constexpr Duration kPatience = std::chrono::seconds(10);
+constexpr Duration kPause = std::chrono::milliseconds(10);
 
 // Messages as they are on the wire, as std::string.
 class RawType : public fast::TopicDataType {
@@ -157,8 +157,8 @@ TEST(FastDds, IsHeardByANode) {
   FastParticipant peer(domain);
   peer.Write("rt/odom", "nav_msgs::msg::dds_::Odometry_")->write(&bytes);
   std::optional<std::string> heard;
-  for (const Time end = Now() + kLong; !heard && Now() < end;) {
-    node.Take(kTick, [&](std::size_t, std::string_view message) { heard = std::string(message); });
+  for (const Time end = Now() + kPatience; !heard && Now() < end;) {
+    node.Take(kPause, [&](std::size_t, std::string_view message) { heard = std::string(message); });
   }
   EXPECT_EQ(heard, bytes);
 }

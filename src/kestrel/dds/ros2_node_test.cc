@@ -195,7 +195,7 @@ TEST_F(Ros2NodeTest, TopicsOfOthersAreListed) {
 
 TEST_F(Ros2NodeTest, DomainsDoNotHearEachOther) {
   Ros2Node sender(domain_, {});
-  Ros2Node receiver(domain_ + 1, {});
+  Ros2Node receiver(domain_ + 100, {});
   const std::size_t publisher = sender.Advertise("/tf", TfMessage::kType, kDefaultQos);
   receiver.Subscribe("/tf", TfMessage::kType, kDefaultQos);
   EXPECT_FALSE(FindsSubscriber(sender, publisher, kShort));
