@@ -11,7 +11,7 @@ namespace kestrel {
 namespace {
 
 // How long an end may be waited for.
-constexpr Duration kPatience = std::chrono::milliseconds(100);
+constexpr Duration kJobPatience = std::chrono::milliseconds(100);
 
 }  // namespace
 
@@ -32,7 +32,7 @@ void ColorPage::Serve() {
   SetUpThisThread("colors", {});
   Tell();
   while (!is_stopped_) {
-    const auto job = feed_->TakeColorJob(kPatience);
+    const auto job = feed_->TakeColorJob(kJobPatience);
     if (!job) continue;
     if (const auto* pending = std::get_if<PendingExport>(&*job)) {
       pending->answer(session_.Answer(pending->request));
@@ -57,7 +57,7 @@ void ColorPage::Score() {
   // Of this thread alone, on Linux.
   setpriority(PRIO_PROCESS, 0, kLast);
   while (!is_stopped_) {
-    const auto exam = exams_.Pop(kPatience);
+    const auto exam = exams_.Pop(kJobPatience);
     if (!exam) continue;
     feed_->Add(ConsoleColorScores{exam->revision, exam->model.colors[exam->color].name,
                                   ScoreColor(exam->model, exam->grid, exam->color, exam->marks)});

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
@@ -17,8 +18,11 @@
 #include <fastrtps/utils/IPLocator.h>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -26,6 +30,7 @@
 
 #include "kestrel/bags/result_messages.h"
 #include "kestrel/bags/serialization.h"
+#include "kestrel/bags/type_hash.h"
 #include "kestrel/dds/ros2_node.h"
 #include "kestrel/dds/test_dds.h"
 
@@ -69,6 +74,36 @@ class RawType : public fast::TopicDataType {
   bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
 };
 
+// What others say of themselves beside their names.
+class UserDataListener : public fast::DomainParticipantListener {
+ public:
+  void on_participant_discovery(fast::DomainParticipant*,
+                                rtps::ParticipantDiscoveryInfo&& info) override {
+    Add(info.info.m_userData);
+  }
+  void on_publisher_discovery(fast::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override {
+    Add(info.info.m_qos.m_userData);
+  }
+  void on_subscriber_discovery(fast::DomainParticipant*,
+                               rtps::ReaderDiscoveryInfo&& info) override {
+    Add(info.info.m_qos.m_userData);
+  }
+  std::set<std::string> heard() const {
+    const std::lock_guard lock(mutex_);
+    return heard_;
+  }
+
+ private:
+  template <class UserData>
+  void Add(const UserData& data) {
+    const std::lock_guard lock(mutex_);
+    heard_.emplace(data.begin(), data.end());
+  }
+
+  mutable std::mutex mutex_;
+  std::set<std::string> heard_;
+};
+
 // A participant of Fast DDS that is found on this computer alone.
 class FastParticipant {
  public:
@@ -86,7 +121,7 @@ class FastParticipant {
       qos.wire_protocol().builtin.initialPeersList.push_back(peer);
     }
     participant_ = fast::DomainParticipantFactory::get_instance()->create_participant(
-        static_cast<std::uint32_t>(domain), qos);
+        static_cast<std::uint32_t>(domain), qos, &listener_, fast::StatusMask::none());
   }
   ~FastParticipant() {
     participant_->delete_contained_entities();
@@ -94,6 +129,8 @@ class FastParticipant {
   }
   FastParticipant(const FastParticipant&) = delete;
   FastParticipant& operator=(const FastParticipant&) = delete;
+
+  const UserDataListener& others() const { return listener_; }
 
   fast::DataReader* Read(const std::string& topic, const std::string& type, bool is_kept) {
     fast::DataReaderQos qos;
@@ -116,6 +153,7 @@ class FastParticipant {
     return participant_->create_topic(topic, type, fast::TOPIC_QOS_DEFAULT);
   }
 
+  UserDataListener listener_;
   fast::DomainParticipant* participant_;
 };
 
@@ -161,6 +199,22 @@ TEST(FastDds, IsHeardByANode) {
     node.Take(kPause, [&](std::size_t, std::string_view message) { heard = std::string(message); });
   }
   EXPECT_EQ(heard, bytes);
+}
+
+TEST(FastDds, IsToldTheHashesOfTypes) {
+  const int domain = TestDomain();
+  Ros2Node node(domain, {"kestrel"});
+  node.Advertise("/image", ImageMessage::kType, kSensorDataQos);
+  node.Subscribe("/tf", TfMessage::kType, kTransformsQos);
+  const FastParticipant peer(domain);
+  const std::vector<std::string> expected{
+      "enclave=/;", "typehash=" + TypeHash("sensor_msgs/Image") + ";",
+      "typehash=" + TypeHash("tf2_msgs/TFMessage") + ";",
+      "typehash=" + TypeHash("rmw_dds_common/ParticipantEntitiesInfo") + ";"};
+  for (const Time end = Now() + kPatience; peer.others().heard().size() < 4 && Now() < end;) {
+    std::this_thread::sleep_for(kPause);
+  }
+  EXPECT_THAT(peer.others().heard(), ::testing::IsSupersetOf(expected));
 }
 
 // ParticipantEntitiesInfo, field by field, as Iron and later ones and as Humble have it.

@@ -121,7 +121,7 @@ void DdsCamera::RequireAll() const {
 std::optional<RigidTransform> DdsCamera::mount() const {
   for (const std::string& body : {body_frame_, options_.body_frame}) {
     if (body.empty()) continue;
-    if (const auto fixed = transforms_.Fixed(body, camera_frame_)) return fixed;
+    if (auto fixed = transforms_.Fixed(body, camera_frame_)) return fixed;
   }
   return std::nullopt;
 }
@@ -183,7 +183,7 @@ void DdsCamera::TakeImage(const BagTopic& topic, std::string_view bytes) {
                      "where the clock went back, start again");
   }
   Frame frame;
-  frame.name = topic.name.substr(1);
+  frame.name = fmt::format("{}/{}", topic.name.substr(1), ToNanoseconds(message.header.stamp));
   frame.image = DecodeImage(message, options_.format, topic.name);
   if (options_.camera) {
     CheckImageSize(*options_.camera, frame.image.cols, frame.image.rows, topic.name);

@@ -58,9 +58,9 @@ DdsResults::Connection::Connection(std::shared_ptr<Ros2Node> of, const std::stri
     : node(std::move(of)) {
   for (std::size_t i = 0; i < kResultTopics.size(); ++i) {
     const std::string topic(kResultTopics[i].name);
-    publishers.push_back(node->Advertise(topic.starts_with('/') ? topic : "/" + name + "/" + topic,
-                                         kResultTopics[i].type,
-                                         QosOf(static_cast<ResultTopic>(i))));
+    const std::string own = topic.starts_with('/') ? topic : fmt::format("/{}/{}", name, topic);
+    publishers.push_back(
+        node->Advertise(own, kResultTopics[i].type, QosOf(static_cast<ResultTopic>(i))));
   }
 }
 
