@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Watches a simulated flight until it tracks, loses the connection and gets it back, sees the program
-// start anew, scrubs and plays a recording, does it all by the keyboard, comes with a wrong token:
+// Watches a simulated flight until it tracks, measures how old pictures are when they are drawn, loses the
+// connection and gets it back, sees the program start anew, scrubs and plays a recording, does it all by
+// the keyboard, comes with a wrong token:
 //
 //   node tools/try_program.js KESTREL FOLDER
 import { tryAll } from "./browser.js";
@@ -8,7 +9,7 @@ import { tryAll } from "./browser.js";
 const flight = "fly sim:figure8 --autopilot sim:px4 --guide --set fly.sim_camera.scale=0.5 --console".split(" ");
 const frames = 60;
 
-await tryAll(watchFlight, loseConnection, restartProgram, useKeyboard, scrubRecording, comeWithTokens);
+await tryAll(watchFlight, measureLatency, loseConnection, restartProgram, useKeyboard, scrubRecording, comeWithTokens);
 
 async function watchFlight(t) {
   const { program, link } = await t.start([...flight, "127.0.0.1:0"]);
@@ -29,6 +30,35 @@ async function watchFlight(t) {
   await page.getByRole("heading", { name: "Doctor" }).waitFor();
   await t.stop(program);
   await t.waitForState(page, /lost/);
+}
+
+/** From capture until the program knows that the picture is drawn, once a second, at 20 pictures/s. */
+async function measureLatency(t) {
+  const readings = 20;
+  const { link } = await t.start(["fly", simulateFlight(t, 20), "--loop", "--console", "127.0.0.1:0"]);
+  const page = await t.openPage(link);
+  const times_ms = [];
+  let pictures = 0;
+  page.on("websocket", (socket) =>
+    socket.on("framereceived", ({ payload }) => {
+      if (typeof payload !== "string") return;
+      const message = JSON.parse(payload);
+      if (message.kind !== "link" || message.draw_ms === null) return;
+      times_ms.push(message.draw_ms);
+      pictures = message.images;
+    }),
+  );
+  const began = Date.now();
+  await page.reload();
+  while (times_ms.length < readings) await page.waitForTimeout(200);
+  const rate_hz = (1000 * pictures) / (Date.now() - began);
+  const sorted = [...times_ms].sort((a, b) => a - b);
+  const median = sorted[readings / 2];
+  console.log(
+    `capture to drawn: median ${median.toFixed(0)} ms, ` +
+      `slowest ${sorted[readings - 1].toFixed(0)} ms, ${rate_hz.toFixed(1)} pictures/s`,
+  );
+  t.expect(median <= 100, `capture to drawn: ${median} ms`);
 }
 
 /** Resolves when a picture has come after those that were shown before. */
@@ -108,15 +138,15 @@ async function useKeyboard(t) {
   await page.getByRole("dialog", { name: "Keys" }).waitFor({ state: "hidden" });
 }
 
-function simulateFlight(t) {
+function simulateFlight(t, rate_hz) {
   const args = ["simulate", "landing", "--scenario", "figure8", "--seed", "3", "--output", "flight"];
-  const settings = [`frames=${frames}`, "rate_hz=10", "ground.map_px=512", "shutter.rays_per_pixel=4"];
+  const settings = [`frames=${frames}`, `rate_hz=${rate_hz}`, "ground.map_px=512", "shutter.rays_per_pixel=4"];
   t.run([...args, ...settings.flatMap((setting) => ["--set", setting])]);
   return "flight";
 }
 
 async function scrubRecording(t) {
-  const { link } = await t.start(["console", simulateFlight(t), "--address", "127.0.0.1:0"]);
+  const { link } = await t.start(["console", simulateFlight(t, 10), "--address", "127.0.0.1:0"]);
   const page = await t.openPage(link);
   const time = page.locator(".replay-time");
   await time.waitFor();
