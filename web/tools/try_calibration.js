@@ -136,7 +136,7 @@ async function calibrateLens(page) {
 }
 
 async function beRefused(page) {
-  await page.keyboard.press("c");
+  await page.keyboard.press("l");
   await page.getByRole("button", { name: "Calibrate" }).click();
   const refusal = page.getByRole("alert");
   await refusal.waitFor();
