@@ -10,9 +10,11 @@ FUZZ_SECONDS ?= 60
 ROOMS ?=
 empty :=
 space := $(empty) $(empty)
+DDS_ROOMS := dds middleware team cli
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
+export CCACHE_BASEDIR ?= $(CURDIR)
 
-.PHONY: demo console test interop browser ros bench accuracy format check asan fuzz install command tests build configure deps
+.PHONY: demo console test dds ros interop browser bench accuracy format check asan fuzz install command tests build configure deps
 
 demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
 	scripts/demo $(BIN) "$(DATA)" "$(CAMERA)"
@@ -26,6 +28,18 @@ console:  ## the web page: what it needs, built in, over a simulated flight
 test: tests
 	ctest --preset release -j $$(nproc)
 
+dds: deps  ## ROS 2 and the team's map over DDS, and their tests
+	scripts/install-deps --dds
+	cmake --preset release
+	cmake --build --preset release --target kestrel $(DDS_ROOMS:%=kestrel_%_test)
+	ctest --preset release -j $$(nproc) -R '^(dds|middleware|team)/|DdsCommand|TeamCommand' --no-tests=error
+
+ros: deps  ## the node of ROS 1 and its tests
+	scripts/install-deps --ros
+	cmake --preset release
+	cmake --build --preset release --target kestrel kestrel_node kestrel_ros_test
+	ctest --preset release -R ^ros/ --no-tests=error
+
 interop: tests  ## MAVLink against node-mavlink, MCAP and live flights against @mcap/core, @foxglove/schemas, @foxglove/ws-protocol, which npm installs
 	scripts/install-deps --interop
 	cmake --preset release
@@ -36,12 +50,6 @@ browser: deps  ## the console's page: its unit tests, and used in Chromium as a 
 	cmake --preset release
 	cmake --build --preset release --target kestrel
 	cd web && npm test && npm run try -- ../$(BIN)/src/kestrel/cli/kestrel ../out/browser
-
-ros: deps  ## the node of ROS 1 and its tests
-	scripts/install-deps --ros
-	cmake --preset release
-	cmake --build --preset release --target kestrel kestrel_node kestrel_ros_test
-	ctest --preset release -R ^ros/ --no-tests=error
 
 bench: build  ## speed
 	@for program in $(BIN)/bench/*_benchmark; do echo "== $$program"; $$program || exit; done

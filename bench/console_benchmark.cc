@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the console costs the vision thread: the time of a frame, detection and hand-over, at 30 Hz
-// with nobody looking, with one browser, and with 20 of which one is stalled. The browsers are
-// threads of this program, less urgent than all else, as they would be on another computer. The
-// rounds of all three are taken in turn, so that noise hits all alike.
+// What the console costs the vision thread: the time of a frame, landing pipeline and hand-over to
+// the flight's console, at 30 Hz with nobody looking, with one browser, and with 20 of which one is
+// stalled. The browsers are threads of this program, less urgent than all else, as they would be on
+// another computer. The rounds of all three are taken in turn, so that noise hits all alike.
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <memory>
 #include <sys/resource.h>
 #include <thread>
@@ -15,9 +14,9 @@
 #include <fmt/format.h>
 
 #include "kestrel/camera/paper_camera.h"
+#include "kestrel/console/flight_console.h"
 #include "kestrel/console/test_browser.h"
-#include "kestrel/console/web_server.h"
-#include "kestrel/landing/landing_pattern_detector.h"
+#include "kestrel/pipeline/landing_pipeline.h"
 #include "kestrel/stills/landing_stills.h"
 
 namespace kestrel {
@@ -61,48 +60,38 @@ double ThreadTime_ms() {
   return 1e3 * time.tv_sec + 1e-6 * time.tv_nsec;
 }
 
-// What the vision does with a frame where there is a console.
+// What the vision of a flight does with a frame where there is a console.
 class Vision {
  public:
-  explicit Vision(ConsoleFeed* feed)
-      : feed_(feed), detector_(CameraModel(PaperCamera()), {}), image_(Image()) {}
+  explicit Vision(FlightConsole* console)
+      : console_(console), pipeline_(Calibration(), StillOptions()), image_(Image()) {}
 
   void SeeFrame(Times* times) {
-    const Time begin = Now();
+    const Frame frame{"", Now(), image_.clone()};  // each has pixels of its own, as of a camera
     const double cpu_begin = ThreadTime_ms();
-    const LandingReport report = detector_.Detect(image_, {}, workspace_);
-    if (feed_->IsWatched()) Tell(report);
+    const Time start = Now();
+    console_->See(frame, pipeline_.Process(frame.image, frame.time));
     times->cpu_ms.push_back(ThreadTime_ms() - cpu_begin);
-    times->wall_ms.push_back(1e3 * ToSeconds(Now() - begin));
+    times->wall_ms.push_back(1e3 * ToSeconds(Now() - start));
+  }
+
+  static CameraCalibration Calibration() {
+    CameraCalibration calibration;
+    calibration.intrinsics = PaperCamera();
+    return calibration;
+  }
+  static LandingPipelineOptions StillOptions() {
+    LandingPipelineOptions options;
+    options.still = true;
+    return options;
   }
 
  private:
   static cv::Mat Image() { return LandingStillMaker({}).MakePattern(1).image; }
 
-  void Tell(const LandingReport& report) {
-    frame_.captured = Now();
-    frame_.image = image_;
-    frame_.shapes.clear();
-    if (report.detection) frame_.shapes.push_back({OverlayLayer::kDetection, Circle(), "found"});
-    feed_->SetFrame(&frame_);
-    feed_->Add(ConsoleSample{frame_.captured, {1, 2, 3, 4, 5, 6}});
-    feed_->Add(ConsoleStatus{"tracking", "", false});
-    feed_->Add(ConsoleMap{});
-  }
-
-  static std::vector<cv::Point2f> Circle() {
-    std::vector<cv::Point2f> circle;
-    for (int i = 0; i < 64; ++i) {
-      circle.emplace_back(300 + 90 * std::cos(0.1 * i), 200 + 90 * std::sin(0.1 * i));
-    }
-    return circle;
-  }
-
-  ConsoleFeed* feed_;
-  LandingPatternDetector detector_;
-  LandingWorkspace workspace_;
+  FlightConsole* console_;
+  LandingPipeline pipeline_;
   cv::Mat image_;
-  ConsoleFrame frame_;
 };
 
 double Quantile(std::vector<double> values, double part) {
@@ -111,10 +100,10 @@ double Quantile(std::vector<double> values, double part) {
   return *at;
 }
 
-void RunRound(Vision* vision, const WebServer& server, int browsers, Times* times) {
+void RunRound(Vision* vision, int port, int browsers, Times* times) {
   std::vector<std::unique_ptr<Browser>> all;
   for (int i = 0; i < browsers; ++i) {
-    all.push_back(std::make_unique<Browser>(server.port(), browsers > 1 && i == 0));
+    all.push_back(std::make_unique<Browser>(port, browsers > 1 && i == 0));
   }
   for (int i = 0; i < kFramesInRound; ++i) {
     const auto next = std::chrono::steady_clock::now() + kFrameInterval;
@@ -124,18 +113,19 @@ void RunRound(Vision* vision, const WebServer& server, int browsers, Times* time
 }
 
 void Run() {
-  ConsoleFeed feed(
-      {.title = "benchmark", .is_live = true, .series = {}, .layers = {}, .offers = {}});
   ConsoleOptions options;
   options.port = 0;
-  const WebServer server(options, &feed, {});
-  Vision vision(&feed);
+  const CameraCalibration calibration = Vision::Calibration();
+  FlightConsole console(options, "benchmark", ViewOf(calibration, Vision::StillOptions()),
+                        FlightExamination(calibration, ".", 0));
+  const int port = std::stoi(console.url().substr(console.url().rfind(':') + 1));
+  Vision vision(&console);
   Times warm_up;
-  RunRound(&vision, server, 0, &warm_up);
+  RunRound(&vision, port, 0, &warm_up);
   const int counts[] = {0, 1, 20};
   Times times[3];
   for (int round = 0; round < kRounds; ++round) {
-    for (int i = 0; i < 3; ++i) RunRound(&vision, server, counts[i], &times[i]);
+    for (int i = 0; i < 3; ++i) RunRound(&vision, port, counts[i], &times[i]);
   }
   fmt::print("{:>9} {:>12} {:>12} {:>12} {:>12}\n", "browsers", "wall p50 ms", "wall p99 ms",
              "cpu p50 ms", "cpu p99 ms");
