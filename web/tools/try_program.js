@@ -7,7 +7,7 @@
 import { tryAll } from "./browser.js";
 
 const flight = "fly sim:figure8 --autopilot sim:px4 --guide --set fly.sim_camera.scale=0.5 --console".split(" ");
-const frames = 60;
+const frames = 60; // of a recording at 10 Hz
 
 await tryAll(watchFlight, measureLatency, loseConnection, restartProgram, useKeyboard, scrubRecording, comeWithTokens);
 
@@ -138,9 +138,10 @@ async function useKeyboard(t) {
   await page.getByRole("dialog", { name: "Keys" }).waitFor({ state: "hidden" });
 }
 
+/** Renders a flight of six seconds; the folder. */
 function simulateFlight(t, rate_hz) {
   const args = ["simulate", "landing", "--scenario", "figure8", "--seed", "3", "--output", "flight"];
-  const settings = [`frames=${frames}`, `rate_hz=${rate_hz}`, "ground.map_px=512", "shutter.rays_per_pixel=4"];
+  const settings = [`frames=${6 * rate_hz}`, `rate_hz=${rate_hz}`, "ground.map_px=512", "shutter.rays_per_pixel=4"];
   t.run([...args, ...settings.flatMap((setting) => ["--set", setting])]);
   return "flight";
 }
