@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Watches a simulated flight until it tracks, measures how old pictures are when they are drawn, loses the
+// Watches a simulated flight until it has landed, measures how old pictures are when they are drawn, loses the
 // connection and gets it back, sees the program start anew, scrubs and plays a recording, does it all by
 // the keyboard, comes with a wrong token:
 //
@@ -15,11 +15,6 @@ async function watchFlight(t) {
   const { program, link } = await t.start([...flight, "127.0.0.1:0"]);
   const page = await t.openPage(link);
   await t.waitForImage(page);
-  await t.waitForState(page, /descend, tracking/, 90_000);
-  await page.waitForTimeout(2000);
-  await t.takePicture(page, "console_live");
-  const age = await page.locator(".age").textContent();
-  t.expect(/Frame \d+, \d+ ms old/.test(age), `age of the picture: ${age}`);
   await t.expectAccessible(page, "live");
   await page.getByRole("button", { name: "Snapshot" }).click();
   await page.getByText(/snapshot kept as kept/).waitFor();
@@ -28,8 +23,16 @@ async function watchFlight(t) {
   await page.keyboard.press("r");
   await page.getByText("the recording is written").waitFor();
   await page.getByRole("heading", { name: "Doctor" }).waitFor();
-  await t.stop(program);
+  await t.waitForState(page, /(descend|commit), tracking/, 90_000);
+  const age = await page.locator(".age").textContent();
+  t.expect(/Frame \d+, \d+ ms old/.test(age), `age of the picture: ${age}`);
+  await page.waitForTimeout(1000);
+  await t.takePicture(page, "console_live");
+  await page.getByText("landed and disarmed").first().waitFor({ timeout: 90_000 });
+  // The program ends with the flight.
   await t.waitForState(page, /lost/);
+  await t.stop(program);
+  t.expect(program.exitCode === 0, `the flight ended with status ${program.exitCode}`);
 }
 
 /** From capture until the program knows that the picture is drawn, once a second, at 20 pictures/s. */
