@@ -124,8 +124,12 @@ void RunRound(Vision* vision, const WebServer& server, int browsers, Times* time
 }
 
 void Run() {
-  ConsoleFeed feed(
-      {.title = "benchmark", .is_live = true, .series = {}, .layers = {}, .offers = {}});
+  ConsoleFeed feed({.title = "benchmark",
+                    .is_live = true,
+                    .series = {},
+                    .layers = {},
+                    .views = {},
+                    .offers = {}});
   ConsoleOptions options;
   options.port = 0;
   const WebServer server(options, &feed, {});
