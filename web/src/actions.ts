@@ -19,6 +19,18 @@ export function toggleLayer(layer: Layer): void {
   store.set({ layers: { ...layers, [layer]: !layers[layer] } });
 }
 
+/** Looks at the camera's image ("") or a view of it. */
+export function showView(view: string): void {
+  store.set({ view });
+}
+
+/** The next one, or the one before. */
+export function turnView(direction: 1 | -1): void {
+  const { hello, view } = store.state;
+  const views = ["", ...(hello?.views ?? [])];
+  showView(views.at((views.indexOf(view) + direction) % views.length) ?? "");
+}
+
 export function toggleRecording(): void {
   command("record", store.state.status?.recording ? 0 : 1);
 }

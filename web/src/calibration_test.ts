@@ -53,7 +53,7 @@ describe("calibration", () => {
     expect(progressInWords({ ...running, ending: true })).toMatch(/^Ending/);
     const state = withMessage(initialState(), running);
     expect(state.calibration?.done).toBe(3);
-    const hello = { kind: "hello", title: "", live: false, series: [], layers: [], offers: [], exports: true, colors: false } as const;
-    expect(withMessage(state, { ...hello, series: [], layers: [], offers: [] }).calibration).toBeNull();
+    const hello = { kind: "hello", title: "", live: false, series: [], layers: [], views: [], offers: [], exports: true, colors: false } as const;
+    expect(withMessage(state, { ...hello, series: [], layers: [], views: [], offers: [] }).calibration).toBeNull();
   });
 });

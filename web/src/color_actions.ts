@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a user can do on the page of colours, by button or key.
 import type { ColorRequest, Tool } from "./color_protocol";
-import { frameInside, nextMarked, resized, strokeOf, type ColorView } from "./color_view";
+import { canKeep, frameInside, nextMarked, resized, strokeOf, type ColorView } from "./color_view";
 import { connection } from "./connection";
 import { store } from "./store";
 
@@ -65,6 +65,13 @@ export function revert(): void {
 
 export function save(): void {
   ask({ colors: "save" });
+}
+
+/** Keeps the camera's newest image as a frame, and shows it. */
+export function keepFrame(): void {
+  if (!canKeep(store.state.colors)) return;
+  ask({ colors: "keep" });
+  setView({ isKeeping: true });
 }
 
 function ask(request: ColorRequest): void {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import {
   chooseColor,
+  keepFrame,
   redo,
   resize,
   revert,
@@ -12,6 +13,7 @@ import {
   teach,
   undo,
 } from "./color_actions";
+import { canKeep } from "./color_view";
 import type { Key } from "./keys";
 import { store } from "./store";
 
@@ -38,6 +40,12 @@ export function colorKeys(): Key[] {
     { keys: ["e"], meaning: "teach the colour", act: teach },
     { keys: ["s"], meaning: "save the model", act: save },
     { keys: ["v"], meaning: "revert to the saved model", act: revert },
+    {
+      keys: ["k"],
+      meaning: "keep a frame of the camera",
+      isOffered: () => canKeep(store.state.colors),
+      act: keepFrame,
+    },
     { keys: ["."], meaning: "a frame forward", act: () => stepFrame(1) },
     { keys: [","], meaning: "a frame back", act: () => stepFrame(-1) },
     { keys: [">"], meaning: "ten frames forward", act: () => stepFrame(10) },

@@ -16,7 +16,10 @@ export interface Colors {
   kind: "colors";
   /** Another one when the marks or the model have changed, and with them the pictures. */
   revision: number;
+  /** Of the recording, or that are kept of a flight. */
   frames: number;
+  /** Of a flight's frames; 0: of a recording. */
+  most_kept: number;
   /** In the order of the labels, from 1. */
   names: string[];
   /** That is looked at. */
@@ -66,6 +69,6 @@ export interface Stroke {
 }
 
 export type ColorRequest =
-  | { colors: "undo" | "redo" | "revert" | "save" }
+  | { colors: "undo" | "redo" | "revert" | "save" | "keep" }
   | { colors: "choose" | "teach"; color: string }
   | ({ colors: "mark" } & Stroke);

@@ -15,6 +15,8 @@ export interface ColorView {
   showsMarks: boolean;
   /** Something that takes longer was asked for. */
   isBusy: boolean;
+  /** This browser has asked for a frame to be kept, which it will show. */
+  isKeeping: boolean;
 }
 
 export const firstColorView: ColorView = {
@@ -26,11 +28,13 @@ export const firstColorView: ColorView = {
   showsLabels: true,
   showsMarks: true,
   isBusy: false,
+  isKeeping: false,
 };
 
 /** When the server has answered; of another recording it may have fewer frames. */
 export function viewAfter(view: ColorView, colors: Colors): ColorView {
-  return { ...view, frame: frameInside(view.frame, colors), isBusy: false };
+  const frame = view.isKeeping && !colors.refused ? colors.frames - 1 : view.frame;
+  return { ...view, frame: frameInside(frame, colors), isBusy: false, isKeeping: false };
 }
 
 /** As the server takes them. */
@@ -54,8 +58,13 @@ export function resized(view: ColorView, direction: 1 | -1): ColorView {
   return view.tool === "grow" ? { ...view, reach: next } : view;
 }
 
+/** Whether frames of a camera can be kept to be marked. */
+export function canKeep(colors: Colors | null): boolean {
+  return colors !== null && colors.most_kept > 0;
+}
+
 export function frameInside(frame: number, colors: Colors): number {
-  return Math.min(Math.max(frame, 0), colors.frames - 1);
+  return Math.max(Math.min(frame, colors.frames - 1), 0);
 }
 
 /** The next frame with marks in a direction; null: there is none. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { expect, test } from "vitest";
 import type { Colors } from "./color_protocol";
-import { firstColorView, nextMarked, resized, strokeOf } from "./color_view";
+import { canKeep, firstColorView, frameInside, nextMarked, resized, strokeOf, viewAfter } from "./color_view";
 
 const view = { ...firstColorView, frame: 3 };
 
@@ -41,4 +41,20 @@ test("the next frame with marks, and none at the end", () => {
   expect(nextMarked(colors, 5, 1)).toBe(9);
   expect(nextMarked(colors, 5, -1)).toBe(2);
   expect(nextMarked(colors, 9, 1)).toBeNull();
+});
+
+test("who keeps a frame is shown it, unless it is refused; others stay where they are", () => {
+  const colors = { frames: 5, most_kept: 32, refused: false } as unknown as Colors;
+  const keeping = { ...view, frame: 1, isBusy: true, isKeeping: true };
+  expect(viewAfter(keeping, colors)).toMatchObject({ frame: 4, isBusy: false, isKeeping: false });
+  expect(viewAfter(keeping, { ...colors, refused: true }).frame).toBe(1);
+  expect(viewAfter({ ...keeping, isKeeping: false }, colors).frame).toBe(1);
+});
+
+test("frames are kept of a flight only, which begins without any", () => {
+  const colors = { frames: 0, most_kept: 32 } as unknown as Colors;
+  expect(canKeep(colors)).toBe(true);
+  expect(canKeep({ ...colors, most_kept: 0 })).toBe(false);
+  expect(canKeep(null)).toBe(false);
+  expect(frameInside(3, colors)).toBe(0);
 });

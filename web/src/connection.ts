@@ -10,6 +10,12 @@ export interface Picture {
   receivedAt: number;
 }
 
+/** Images in a view of hello, "": the camera's; held: of no other frame than the last. */
+export interface ImageWish {
+  view: string;
+  isHeld: boolean;
+}
+
 const firstRetryMs = 500;
 const lastRetryMs = 5000;
 
@@ -19,7 +25,8 @@ export class Connection {
   onPicture: ((picture: Picture) => void) | null = null;
   private socket: WebSocket | null = null;
   private retryMs = firstRetryMs;
-  private wantsImages = false;
+  /** What the server was asked for; null: no images. */
+  private imageWish: ImageWish | null = null;
 
   open(): void {
     const scheme = location.protocol === "https:" ? "wss" : "ws";
@@ -29,15 +36,16 @@ export class Connection {
     socket.onopen = () => {
       this.retryMs = firstRetryMs;
       store.set({ connection: "open" });
-      if (this.wantsImages) this.send({ images: true });
     };
     socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => void this.receive(event.data);
     socket.onclose = () => void this.lose();
   }
 
-  wantImages(wanted: boolean): void {
-    this.wantsImages = wanted;
-    this.send({ images: wanted });
+  /** Null: none. */
+  wantImages(wish: ImageWish | null): void {
+    this.imageWish = wish;
+    if (wish === null) this.send({ images: false });
+    else this.send({ images: wish.view === "" ? true : wish.view, hold: wish.isHeld });
   }
 
   drawn(header: FrameHeader): void {
@@ -62,12 +70,25 @@ export class Connection {
 
   private async receive(data: string | ArrayBuffer): Promise<void> {
     if (typeof data === "string") {
-      store.receive(JSON.parse(data) as ServerMessage);
+      const message = JSON.parse(data) as ServerMessage;
+      store.receive(message);
+      if (message.kind === "hello") this.greet();
       return;
     }
     const receivedAt = performance.now();
     const { header, jpeg } = unpackImage(data);
-    this.onPicture?.({ header, bitmap: await createImageBitmap(jpeg), receivedAt });
+    const bitmap = await createImageBitmap(jpeg);
+    if (this.onPicture) this.onPicture({ header, bitmap, receivedAt });
+    else this.drawn(header); // nobody looks any more
+  }
+
+  // Only now is it known which views there are. A picture that is held stays: the server, which may
+  // be another one, does not have its frame.
+  private greet(): void {
+    const wish = this.imageWish;
+    if (wish === null || wish.isHeld) return;
+    const isKnown = store.state.hello?.views.includes(wish.view) ?? false;
+    this.wantImages(isKnown ? wish : { view: "", isHeld: false });
   }
 
   private async lose(): Promise<void> {

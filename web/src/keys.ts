@@ -10,6 +10,7 @@ import {
   toggleLayer,
   togglePlaying,
   toggleRecording,
+  turnView,
 } from "./actions";
 import { colorKeys } from "./color_keys";
 import { offeredPages, togglePage } from "./pages";
@@ -26,6 +27,8 @@ export interface Key {
 
 const has = (name: CommandName) => () => isOffered(name);
 
+const hasViews = () => (store.state.hello?.views.length ?? 0) > 0;
+
 const mainKeys: Key[] = [
   ...layers.map((layer, i) => ({
     keys: [String(i + 1)],
@@ -33,6 +36,8 @@ const mainKeys: Key[] = [
     isOffered: () => store.state.hello?.layers.includes(layer) ?? false,
     act: () => toggleLayer(layer),
   })),
+  { keys: ["v"], meaning: "next view of the image", isOffered: hasViews, act: () => turnView(1) },
+  { keys: ["V"], meaning: "the view before", isOffered: hasViews, act: () => turnView(-1) },
   { keys: ["k"], meaning: "freeze the image; play or hold a recording", act: togglePlaying },
   { keys: ["."], meaning: "a frame forward", isOffered: has("step"), act: () => step(1) },
   { keys: [","], meaning: "a frame back", isOffered: has("step"), act: () => step(-1) },

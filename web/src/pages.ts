@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pages of a recording; a flight has the first only.
+// The pages of a recording; a flight has no calibration.
 import { isOffered } from "./actions";
 import { store, type Page } from "./store";
 
-export const pageNames: Record<Page, string> = {
-  watch: "Replay",
-  colors: "Colours",
-  calibration: "Calibration",
-};
+export function pageName(page: Page): string {
+  if (page === "watch") return store.state.hello?.live ? "Flight" : "Replay";
+  return page === "colors" ? "Colours" : "Calibration";
+}
 
 /** Those that this server has something for. */
 export function offeredPages(): Page[] {

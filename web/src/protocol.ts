@@ -20,6 +20,8 @@ export interface FrameHeader {
   time: string;
   /** Since the light was collected, when it was sent; null for recordings. */
   age_ms: number | null;
+  /** What is seen of it, of the views of hello; "": the camera's image. */
+  view: string;
   width: number;
   height: number;
   shapes: Shape[];
@@ -50,6 +52,8 @@ export interface Hello {
   series: Series[];
   /** Of the shapes that there can be. */
   layers: Layer[];
+  /** What can be looked at in the place of the camera's image, as "threshold 1/8". */
+  views: string[];
   offers: CommandName[];
   /** Whether frames and tables can be had at /export/. */
   exports: boolean;

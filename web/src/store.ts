@@ -48,6 +48,8 @@ export interface State {
   /** UAV's way on the map, oldest first. */
   track: [number, number][];
   layers: Record<Layer, boolean>;
+  /** What is looked at, of the views of hello; "": the camera's image. */
+  view: string;
   isFrozen: boolean;
   isHelpShown: boolean;
   theme: Theme;
@@ -78,6 +80,7 @@ export function initialState(): State {
     series: new SeriesBuffer(0),
     track: [],
     layers: { detection: true, prediction: true, rejected: true, second: true },
+    view: "",
     isFrozen: false,
     isHelpShown: false,
     theme: "auto",
@@ -92,6 +95,7 @@ export function withMessage(state: State, message: ServerMessage): State {
       return {
         ...state,
         hello: message,
+        view: message.views.includes(state.view) ? state.view : "",
         events: [],
         track: [],
         map: null,

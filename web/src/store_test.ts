@@ -2,7 +2,8 @@
 import { describe, expect, test } from "vitest";
 import { secondsBetween, unpackImage, type Hello, type MapMessage } from "./protocol";
 import { SeriesBuffer } from "./series_buffer";
-import { initialState, Store, withMessage } from "./store";
+import { initialState, Store, store, withMessage } from "./store";
+import { turnView } from "./actions";
 
 const hello: Hello = {
   kind: "hello",
@@ -10,6 +11,7 @@ const hello: Hello = {
   live: true,
   series: [{ name: "height", unit: "m", label: "Height" }],
   layers: [],
+  views: [],
   offers: [],
   exports: false,
   colors: false,
@@ -35,6 +37,22 @@ describe("store", () => {
     state = withMessage(state, hello);
     expect(state.events).toEqual([]);
     expect(state.series.newest(0)).toBeNull();
+  });
+
+  test("a view that the new server does not have is given up", () => {
+    const views = ["threshold 1/8", "threshold 1/4"];
+    const state = { ...withMessage(initialState(), { ...hello, views }), view: "threshold 1/4" };
+    expect(withMessage(state, { ...hello, views }).view).toBe("threshold 1/4");
+    expect(withMessage(state, { ...hello, views: ["segmentation"] }).view).toBe("");
+  });
+
+  test("views follow each other round and round", () => {
+    store.receive({ ...hello, views: ["segmentation", "threshold"] });
+    const seen = [1, 1, 1, -1, -1].map((direction) => {
+      turnView(direction as 1 | -1);
+      return store.state.view;
+    });
+    expect(seen).toEqual(["segmentation", "threshold", "", "threshold", "segmentation"]);
   });
 
   test("the way on the map is bounded, and only of moves", () => {

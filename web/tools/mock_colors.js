@@ -38,6 +38,7 @@ export class MockColors {
       kind: "colors",
       revision: this.revision,
       frames,
+      most_kept: 0,
       names,
       color: this.color,
       marked: [...new Set(this.strokes.map(({ frame }) => frame))].sort((a, b) => a - b),

@@ -46,6 +46,8 @@ const doctorChecks = [
   { name: "calibration by the pattern", verdict: "not checked", measured: "pattern in view in 2 of 30 images", advice: "" },
 ];
 
+const views = ["threshold 1/8", "threshold 1/4"];
+
 const options = [
   { name: "landing.detector.min_quality", value: "0.6", unit: "1", meaning: "smallest probability that is accepted" },
   { name: "landing.still", value: "false", unit: "", meaning: "frames have nothing to do with each other" },
@@ -97,7 +99,7 @@ class Client {
     const offers = this.isReplay ? ["play", "seek", "step", "detect", "cancel", "calibrate"] : ["record", "snapshot"];
     const title = this.isReplay ? "Recording flight_07" : "Simulated flight";
     const layers = ["detection", "prediction", "rejected", ...(this.isReplay ? ["second"] : [])];
-    this.send({ kind: "hello", title, live: !this.isReplay, series, layers, offers, exports: this.isReplay, colors: this.isReplay });
+    this.send({ kind: "hello", title, live: !this.isReplay, series, layers, views, offers, exports: this.isReplay, colors: this.isReplay });
     this.send({ kind: "health", checks });
     if (!this.isReplay) this.send({ kind: "doctor", checks: doctorChecks });
     this.event("info", "camera opened: 376x240, 30 Hz");
@@ -139,7 +141,7 @@ class Client {
 
   receive(message) {
     if ("colors" in message) this.colors.receive(message).forEach((answer) => this.send(answer));
-    if ("images" in message) this.wantsImages = message.images;
+    if ("images" in message) this.want(message);
     if (message.ack === this.inFlight) this.inFlight = null;
     if (message.command === "record") {
       this.isRecording = message.value === 1;
@@ -151,6 +153,14 @@ class Client {
     if (message.command === "play") this.speed = message.value;
     if (message.command === "step") this.show(this.frame + message.value, 0);
     if (message.command === "seek") this.show(Math.round(message.value * framesPerSecond), this.speed);
+  }
+
+  /** A held picture is sent again for another view only. */
+  want({ images, hold }) {
+    const view = images === true ? "" : images;
+    this.wantsImages = images !== false && !(hold && this.view === view);
+    this.isHeld = hold;
+    this.view = view;
   }
 
   show(frame, speed) {
@@ -184,11 +194,13 @@ class Client {
     if (!this.wantsImages || this.inFlight !== null) return;
     this.sequence = (this.sequence ?? 0) + 1;
     this.inFlight = this.sequence;
+    if (this.isHeld) this.wantsImages = false;
     const header = Buffer.from(
       JSON.stringify({
         sequence: this.sequence,
         time: this.time(),
         age_ms: this.isReplay ? null : 18,
+        view: this.view,
         width,
         height,
         shapes: shapesAt(flight),

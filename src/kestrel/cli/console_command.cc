@@ -220,7 +220,8 @@ std::optional<ColorSource> FindColors(const ConsoleArguments& arguments) {
   };
   std::vector<std::string> names;
   for (const std::string& name : sources) {
-    names.push_back(fs::absolute(name).lexically_normal().string());
+    // As a folder with a slash behind its name.
+    names.push_back((fs::absolute(name) / "").lexically_normal().parent_path().string());
   }
   return ColorSource{fmt::format("{}", fmt::join(names, " ")), source->frame_count().value_or(1),
                      read, FirstModel(arguments), arguments.output};

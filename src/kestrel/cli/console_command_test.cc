@@ -210,6 +210,53 @@ TEST_F(ConsoleCommandTest, ColoursAreTaughtAndSaved) {
   EXPECT_EQ(Run("hunt " + hunt + " --model " + taught + "/objects.yaml").status, 0);
 }
 
+TEST_F(ConsoleCommandTest, ColoursAreTaughtInFlightAndAfterIt) {
+  const std::string hunt = folder_ / "hunt";
+  const std::string kept = folder_ / "kept";
+  ASSERT_EQ(Run("simulate hunt --seed 4 --output " + hunt +
+                " --set frames=2 --set ground.map_px=256 --set shutter.rays_per_pixel=1")
+                .status,
+            0);
+  RunningCommand fly(
+      "fly " + hunt + " --hunt --loop --console 127.0.0.1:0" + " --set fly.keep_folder=" + kept,
+      folder_.Write("log", ""));
+  const int port = fly.Port();
+  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
+  const auto ask = [](TestSocket* socket, const std::string& message) {
+    socket->Send(message);
+    return socket->Next("colors").value_or(nlohmann::json());
+  };
+  {
+    TestSocket socket(port);
+    ASSERT_TRUE(socket.Next("colors"));
+    socket.Send(R"({"images": true})");
+    ASSERT_TRUE(socket.Next("image"));
+    EXPECT_EQ(ask(&socket, R"({"colors": "keep"})")["frames"], 1);
+    const auto state =
+        ask(&socket, R"({"colors": "mark", "frame": 0, "color": "green", "tool": "rectangle",)"
+                     R"( "size": 0, "points": [600, 300, 700, 400]})");
+    EXPECT_EQ(state["strokes"], 1) << state["answer"];
+  }
+  EXPECT_EQ(fly.End(), 0) << ReadFile(folder_ / "log");
+  std::string frames;
+  for (const auto& entry : std::filesystem::directory_iterator(kept)) {
+    if (entry.path().filename().string().starts_with("colors_")) frames = entry.path().string();
+  }
+  ASSERT_NE(frames, "");
+  RunningCommand console("console " + frames + "/ --camera " + hunt +
+                             "/mav0/cam0/sensor.yaml --address 127.0.0.1:0 --output " + kept +
+                             "/taught",
+                         folder_.Write("log2", ""));
+  const int console_port = console.Port();
+  ASSERT_GT(console_port, 0) << ReadFile(folder_ / "log2");
+  TestSocket socket(console_port);
+  const auto state = socket.Next("colors");
+  ASSERT_TRUE(state);
+  EXPECT_EQ((*state)["frames"], 1);
+  EXPECT_EQ((*state)["strokes"], 1) << "goes on with the marks of the flight";
+  EXPECT_EQ(console.End(), 0) << ReadFile(folder_ / "log2");
+}
+
 TEST_F(ConsoleCommandTest, APageCalibratesAsTheCommandAndReplacesNothing) {
   const std::string flight = folder_ / "flight";
   ASSERT_EQ(Run("simulate landing --scenario aggressive --seed 11 --output " + flight +

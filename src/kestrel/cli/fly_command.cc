@@ -24,6 +24,7 @@
 #include "kestrel/link/mavlink_enums.h"
 #include "kestrel/middleware/flight_dds.h"
 #include "kestrel/onboard/bounded_queue.h"
+#include "kestrel/onboard/camera_automatics.h"
 #include "kestrel/onboard/flight_keeper.h"
 #include "kestrel/onboard/hunt_vision.h"
 #include "kestrel/onboard/landing_vision.h"
@@ -139,7 +140,7 @@ class Flight {
   }
 
   FlightView View() const {
-    if (arguments_.hunt) return HuntView{ReadModel()};
+    if (arguments_.hunt) return HuntView{ReadModel(), all_options_.hunt.detector};
     return ViewOf(source_.calibration, all_options_.landing);
   }
 
@@ -153,11 +154,21 @@ class Flight {
                                        arguments_.record.empty() ? all_options_.fly.keep_folder
                                                                  : arguments_.record,
                                        all_options_.fly.recorder.free_space_mb),
-                     live_->channels());
+                     live_->channels(), Colors());
     observers_.Add(&*console_);
     observers_.Add(live_.get());
     log_.Say("console: " + console_->url());
     log_.Say("for Foxglove: " + console_->viewer_url());
+  }
+
+  // What a hunt's page teaches them by.
+  std::optional<FlightColors> Colors() const {
+    if (!arguments_.hunt) return std::nullopt;
+    const std::filesystem::path folder = all_options_.fly.keep_folder;
+    return FlightColors{PathOfNow(folder, "colors_"), (folder / "taught").string(),
+                        [camera = arguments_.source.sources.front()] {
+                          return ColorWarnings(ReadCameraAutomatics(camera));
+                        }};
   }
 
   bool HasWorld() const {

@@ -40,6 +40,27 @@ bool ReadSettings(const Json& list, std::vector<std::string>* settings) {
   return true;
 }
 
+std::optional<ClientMessage> ReadImageWish(const Json& message) {
+  constexpr std::size_t kMaxViewBytes = 64;
+  ImageWish wish;
+  const Json& images = message["images"];
+  if (images.is_boolean()) {
+    wish.is_wanted = images.get<bool>();
+  } else if (images.is_string()) {
+    wish.is_wanted = true;
+    wish.view = images.get<std::string>();
+    if (wish.view.size() > kMaxViewBytes) return std::nullopt;
+  } else {
+    return std::nullopt;
+  }
+  const auto hold = message.find("hold");
+  if (message.size() != (hold == message.end() ? 1U : 2U)) return std::nullopt;
+  if (hold == message.end()) return wish;
+  if (!hold->is_boolean()) return std::nullopt;
+  wish.is_held = hold->get<bool>();
+  return wish;
+}
+
 std::optional<ClientMessage> ReadCommand(const Json& message) {
   const Json& name = message["command"];
   if (!name.is_string()) return std::nullopt;
@@ -101,12 +122,12 @@ std::optional<ClientMessage> ParseClientMessage(std::string_view text) {
   if (is_too_deep || !message.is_object()) return std::nullopt;
   if (message.contains("command")) return ReadCommand(message);
   if (message.contains("colors")) return ReadColorRequest(message);
+  if (message.contains("images")) return ReadImageWish(message);
   if (message.size() != 1) return std::nullopt;
   const auto field = message.begin();
   if (field.key() == "ack" && field->is_number_unsigned()) {
     return ImageAck{field->get<std::uint64_t>()};
   }
-  if (field.key() == "images" && field->is_boolean()) return ImageWish{field->get<bool>()};
   return std::nullopt;
 }
 

@@ -17,9 +17,13 @@ struct ImageAck {
   std::uint64_t sequence = 0;
 };
 
-// "Pictures, please", or none, as while the page is not in view: {"images": true}.
+// "Pictures, please", or none, as while the page is not in view: {"images": true}; of a view by its
+// name: {"images": "threshold 1/8"}; of no other frame than the last: {"images": true, "hold":
+// true}.
 struct ImageWish {
-  bool wanted = false;
+  bool is_wanted = false;
+  std::string view = {};  // empty: the camera's image; at most 64 bytes
+  bool is_held = false;
 };
 
 // What the user asks for: {"command": "record", "value": 1}.

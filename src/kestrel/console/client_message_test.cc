@@ -10,7 +10,12 @@ namespace {
 
 TEST(ClientMessageTest, ReadsWhatThePageSends) {
   EXPECT_EQ(std::get<ImageAck>(*ParseClientMessage(R"({"ack": 7})")).sequence, 7u);
-  EXPECT_TRUE(std::get<ImageWish>(*ParseClientMessage(R"({"images": true})")).wanted);
+  EXPECT_TRUE(std::get<ImageWish>(*ParseClientMessage(R"({"images": true})")).is_wanted);
+  EXPECT_FALSE(std::get<ImageWish>(*ParseClientMessage(R"({"images": false})")).is_wanted);
+  const auto view =
+      std::get<ImageWish>(*ParseClientMessage(R"({"images": "threshold 1/8", "hold": true})"));
+  EXPECT_TRUE(view.is_wanted && view.is_held);
+  EXPECT_EQ(view.view, "threshold 1/8");
   const auto seek =
       std::get<ConsoleCommand>(*ParseClientMessage(R"({"command": "seek", "value": 2.5})"));
   EXPECT_EQ(seek.kind, ConsoleCommandKind::kSeek);
@@ -57,6 +62,8 @@ TEST(ClientMessageTest, ReadsWhatThePageOfColoursSends) {
       std::get<ColorRequest>(*ParseClientMessage(R"({"colors": "teach", "color": "red"})"));
   EXPECT_EQ(teach.action, ColorAction::kTeach);
   EXPECT_EQ(teach.color, "red");
+  EXPECT_EQ(std::get<ColorRequest>(*ParseClientMessage(R"({"colors": "keep"})")).action,
+            ColorAction::kKeep);
   EXPECT_EQ(std::get<ColorRequest>(*ParseClientMessage(R"({"colors": "undo"})")).action,
             ColorAction::kUndo);
 }
@@ -95,6 +102,8 @@ TEST(ClientMessageTest, RefusesAllElse) {
                            R"({"ack": 1.5})",
                            R"({"ack": 1, "images": true})",
                            R"({"images": 1})",
+                           R"({"images": true, "hold": 1})",
+                           R"({"images": true, "held": true})",
                            R"({"command": 1})",
                            R"({"command": "format"})",
                            R"({"command": "seek", "value": "2"})",

@@ -29,6 +29,7 @@ Json Message(const ConsoleColors& colors) {
   return {{"kind", "colors"},
           {"revision", colors.revision},
           {"frames", colors.frames},
+          {"most_kept", colors.most_kept},
           {"names", colors.names},
           {"color", colors.color},
           {"marked", colors.marked},

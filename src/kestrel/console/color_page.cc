@@ -12,6 +12,11 @@ namespace {
 
 // How long an end may be waited for.
 constexpr Duration kJobPatience = std::chrono::milliseconds(100);
+// What flies goes before the page, and the page before the scores.
+constexpr int kFlightsPageNiceness = 10, kScoresNiceness = 15;
+
+// Of this thread alone, on Linux.
+void BeNice(int niceness) { setpriority(PRIO_PROCESS, 0, niceness); }
 
 }  // namespace
 
@@ -30,6 +35,7 @@ ColorPage::~ColorPage() {
 
 void ColorPage::Serve() {
   SetUpThisThread("colors", {});
+  if (session_.is_live()) BeNice(kFlightsPageNiceness);
   Tell();
   while (!is_stopped_) {
     const auto job = feed_->TakeColorJob(kJobPatience);
@@ -53,9 +59,7 @@ void ColorPage::Tell() {
 
 void ColorPage::Score() {
   SetUpThisThread("color scores", {});
-  constexpr int kLast = 10;  // the page goes first
-  // Of this thread alone, on Linux.
-  setpriority(PRIO_PROCESS, 0, kLast);
+  BeNice(kScoresNiceness);
   while (!is_stopped_) {
     const auto exam = exams_.Pop(kJobPatience);
     if (!exam) continue;

@@ -185,5 +185,44 @@ TEST_F(ColorPageTest, PicturesAreOfTheFrameInColour) {
   EXPECT_EQ(another.Send(another.Get("/export/labels-3.png")).result_int(), 404u);
 }
 
+TEST_F(ColorPageTest, OfARecordingNoFrameIsKept) {
+  TestSocket socket(server_.port());
+  EXPECT_EQ((*socket.Next("colors"))["most_kept"], 0);
+  const nlohmann::json state = Ask(&socket, R"({"colors": "keep"})");
+  EXPECT_TRUE(state["refused"]);
+  EXPECT_EQ(state["frames"], kPictures);
+}
+
+TEST_F(ColorPageTest, OfACameraFramesAreKeptAndMarked) {
+  page_.reset();
+  ColorSource camera = Source();
+  camera.frame_count = 0;
+  std::size_t kept = 0;  // of the page's thread
+  camera.keep = [&kept] {
+    if (kept == 2) throw InputError("there is no room for more");
+    return fmt::format("frame {} is kept", ++kept);
+  };
+  camera.warn = [] { return std::vector<std::string>{"the white balance is automatic"}; };
+  TestSocket socket(server_.port());
+  ASSERT_TRUE(socket.Next("colors"));  // of the page before
+  page_ = std::make_unique<ColorPage>(camera, &feed_);
+  nlohmann::json state = socket.Next("colors").value_or(nlohmann::json());
+  EXPECT_EQ(state["frames"], 0);
+  EXPECT_EQ(state["most_kept"], 32);
+  EXPECT_THAT(state["warnings"].dump(), HasSubstr("the white balance is automatic"));
+  EXPECT_EQ(Ask(&socket, kMarkPurple)["answer"], "there is no frame to be marked");
+  state = Ask(&socket, R"({"colors": "keep"})");
+  EXPECT_EQ(state["frames"], 1);
+  EXPECT_EQ(state["answer"], "frame 1 is kept");
+  EXPECT_EQ(Ask(&socket, R"({"colors": "keep"})")["frames"], 2);
+  state = Ask(&socket, R"({"colors": "keep"})");
+  EXPECT_TRUE(state["refused"]);
+  EXPECT_EQ(state["frames"], 2);
+  EXPECT_EQ(Ask(&socket, kMarkPurple)["strokes"], 1);
+  EXPECT_FALSE(Ask(&socket, R"({"colors": "teach", "color": "green"})")["refused"]);
+  EXPECT_EQ(Labels(1).at<cv::Vec3b>(30, 50)[2], 4) << "seen in a frame that was not marked";
+  page_.reset();  // before what it asks for the frames goes
+}
+
 }  // namespace
 }  // namespace kestrel

@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 
 constexpr std::array kActions = {ColorAction::kChoose, ColorAction::kMark,  ColorAction::kUndo,
                                  ColorAction::kRedo,   ColorAction::kTeach, ColorAction::kRevert,
-                                 ColorAction::kSave};
+                                 ColorAction::kSave,   ColorAction::kKeep};
 constexpr std::array kTools = {StrokeTool::kBrush, StrokeTool::kRectangle, StrokeTool::kGrow};
 
 // One of the values by its name.
@@ -94,6 +94,8 @@ const char* ToString(ColorAction action) {
       return "revert";
     case ColorAction::kSave:
       return "save";
+    case ColorAction::kKeep:
+      return "keep";
   }
   return "";
 }

@@ -18,8 +18,9 @@ enum class ColorAction {
   kTeach,   // a colour by what is marked
   kRevert,  // to the model of the file
   kSave,    // the model
+  kKeep,    // the camera's newest image, as a frame to be marked
 };
-// "choose", "mark", "undo", "redo", "teach", "revert", "save"
+// "choose", "mark", "undo", "redo", "teach", "revert", "save", "keep"
 const char* ToString(ColorAction action);
 
 // What the page of colours asks for, as {"colors": "undo"}, {"colors": "teach", "color": "red"} or

@@ -51,7 +51,7 @@ ColorSession::ColorSession(ColorSource source)
       editor_(source_.model, source_.frame_count,
               [this](std::size_t frame) { return Image(frame); }),
       encoder_(kJpegQuality) {
-  state_.frames = source_.frame_count;
+  if (is_live()) state_.most_kept = MarkedPixels::kMaxFrames;
   state_.file = model_file_;
   LookAtFile();
   for (const ColorMixture& color : source_.model.colors.colors) state_.names.push_back(color.name);
@@ -102,7 +102,16 @@ void ColorSession::Do(const ColorRequest& request) {
       return;
     case ColorAction::kSave:
       return Save();
+    case ColorAction::kKeep:
+      return Keep();
   }
+}
+
+void ColorSession::Keep() {
+  if (!is_live()) throw InputError("a recording has all its frames, none is to be kept");
+  state_.answer = source_.keep();
+  ++source_.frame_count;
+  editor_.AddFrame();
 }
 
 void ColorSession::Save() {
@@ -127,6 +136,7 @@ void ColorSession::KeepDraft() const {
 
 // All that the page shows, after a request.
 void ColorSession::Tell() {
+  state_.frames = source_.frame_count;
   std::set<std::size_t> marked;
   for (const ColorStroke& stroke : editor_.draft().strokes()) marked.insert(stroke.frame);
   state_.marked.assign(marked.begin(), marked.end());
@@ -139,6 +149,9 @@ void ColorSession::Tell() {
   state_.components = colors.colors[editor_.IndexOf(state_.color)].components;
   state_.max_distance = colors.max_distance;
   state_.warnings = editor_.Warnings(state_.color);
+  if (source_.warn) {
+    for (std::string& warning : source_.warn()) state_.warnings.push_back(std::move(warning));
+  }
   state_.difference = LineDifference(saved_, PrintObjectModel(editor_.model()));
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,12 +20,17 @@ namespace kestrel {
 // What colours are taught by.
 struct ColorSource {
   std::string recording;    // that tells it from others
-  std::size_t frame_count;  // at least 1
+  std::size_t frame_count;  // at least 1; of a live camera 0
   // Gives the frame's image as it was taken, CV_8UC3. Throws InputError when it cannot.
   MarkedPixels::ReadFrame read;
   ObjectModel model;  // to begin with
-  std::string
-      folder;  // for the model, its versions and the draft; made when something is to be kept
+  // For the model, its versions and the draft; made when something is to be kept.
+  std::string folder;
+  // Of a live camera, else empty: keeps its newest image as one frame more, which 'read' then
+  // gives, and says so in words; throws InputError when it cannot.
+  std::function<std::string()> keep = {};
+  // Of a live camera, else empty: what it changes by itself, a sentence each.
+  std::function<std::vector<std::string>()> warn = {};
 };
 
 // Teaching the colours of a model, as users ask for it: a ColorEditor whose draft is kept in a file
@@ -38,6 +44,7 @@ class ColorSession {
   // What is refused changes nothing; state() says why.
   void Obey(const ColorRequest& request);
   const ConsoleColors& state() const { return state_; }
+  bool is_live() const { return source_.keep != nullptr; }
 
   // The picture of a frame, or what its pixels are taken for and marked as: PNG, red the grid's
   // label, green the mark's (ColorEditor::Marks). Without content where there is none.
@@ -47,6 +54,7 @@ class ColorSession {
 
  private:
   void Do(const ColorRequest& request);
+  void Keep();
   void Save();
   void LookAtFile();
   void KeepDraft() const;

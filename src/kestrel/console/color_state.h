@@ -15,7 +15,8 @@ namespace kestrel {
 struct ConsoleColors {
   // Another one when the marks or the model have changed, and with them the pictures.
   std::uint64_t revision = 0;
-  std::size_t frames = 0;           // of the recording
+  std::size_t frames = 0;           // of the recording, or that are kept
+  std::size_t most_kept = 0;        // of a live camera's frames; 0: of a recording
   std::vector<std::string> names;   // of the colours, in the order of their labels, from 1
   std::string color;                // that is looked at
   std::vector<std::size_t> marked;  // frames, in order

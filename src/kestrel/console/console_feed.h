@@ -41,6 +41,14 @@ struct ConsoleFrame {
   std::vector<OverlayShape> shapes;
 };
 
+// What a browser can look at in the place of the camera's image, under the same shapes.
+struct ImageView {
+  std::string name;  // for people, as "threshold 1/8"
+  // Of an image of a ConsoleFrame one of the same size, 8-bit gray or BGR; empty: there is none. By
+  // the console's thread, and only while a browser wants it.
+  std::function<cv::Mat(const cv::Mat& image)> draw;
+};
+
 // A quantity that the page draws over time.
 struct SeriesDescription {
   std::string name;   // as "height"
@@ -154,6 +162,7 @@ class ConsoleFeed {
     bool is_live = true;                     // times are those of Now()
     std::vector<SeriesDescription> series;   // what a ConsoleSample holds
     std::vector<OverlayLayer> layers;        // of the shapes that there can be
+    std::vector<ImageView> views;            // beside the camera's image
     std::vector<ConsoleCommandKind> offers;  // the commands that the program obeys
     bool has_exports = false;                // the program answers TakeExport
     bool has_colors = false;                 // the program does what TakeColorJob gives

@@ -60,7 +60,10 @@ class ConsoleHub {
   void Tick(Time now);
   void Command(const ConsoleCommand& command) { feed_->Command(command); }
   void Ask(const ColorRequest& request) { feed_->Ask(request); }
-  bool has_exports() const { return feed_->description().has_exports; }
+  bool CanExport(const ExportRequest& request) const {
+    const ConsoleFeed::Description& description = feed_->description();
+    return description.has_exports || (description.has_colors && IsOfColors(request));
+  }
   void Export(PendingExport pending) { feed_->Export(std::move(pending)); }
 
   int clients() const { return client_count_; }

@@ -149,16 +149,19 @@ Json Message(const ConsoleCalibration& calibration) { return CalibrationJson(cal
 
 std::string ToJson(const ConsoleFeed::Description& description) {
   Json series = Json::array(), layers = Json::array(), offers = Json::array();
+  Json views = Json::array();
   for (const SeriesDescription& one : description.series) {
     series.push_back({{"name", one.name}, {"unit", one.unit}, {"label", one.label}});
   }
   for (const OverlayLayer layer : description.layers) layers.push_back(ToString(layer));
+  for (const ImageView& view : description.views) views.push_back(view.name);
   for (const ConsoleCommandKind kind : description.offers) offers.push_back(ToString(kind));
   return Text({{"kind", "hello"},
                {"title", description.title},
                {"live", description.is_live},
                {"series", std::move(series)},
                {"layers", std::move(layers)},
+               {"views", std::move(views)},
                {"offers", std::move(offers)},
                {"exports", description.has_exports},
                {"colors", description.has_colors}});
@@ -168,12 +171,14 @@ std::string ToJson(const ConsoleUpdate& update) {
   return Text(std::visit([](const auto& one) { return Message(one); }, update));
 }
 
-std::string FrameJson(const ConsoleFrame& frame, std::optional<Duration> age) {
+std::string FrameJson(const ConsoleFrame& frame, const std::string& view,
+                      std::optional<Duration> age) {
   Json shapes = Json::array();
   for (const OverlayShape& shape : frame.shapes) shapes.push_back(Shape(shape));
   return Text({{"sequence", frame.sequence},
                {"time", TimeText(frame.captured)},
                {"age_ms", Milliseconds(age)},
+               {"view", view},
                {"width", frame.image.cols},
                {"height", frame.image.rows},
                {"shapes", std::move(shapes)}});

@@ -14,8 +14,10 @@ namespace kestrel {
 std::string ToJson(const ConsoleFeed::Description& description);
 std::string ToJson(const ConsoleUpdate& update);
 
-// Of a frame without its pixels. 'age': since its light was collected, where that is known.
-std::string FrameJson(const ConsoleFrame& frame, std::optional<Duration> age);
+// Of a frame without its pixels. 'view': the name of what is seen of it, empty: the camera's image.
+// 'age': since its light was collected, where that is known.
+std::string FrameJson(const ConsoleFrame& frame, const std::string& view,
+                      std::optional<Duration> age);
 
 // How one browser's connection is.
 struct LinkReport {

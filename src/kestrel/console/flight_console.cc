@@ -18,14 +18,17 @@ constexpr std::size_t kArrivals = 256;
 constexpr Duration kCheckInterval = std::chrono::seconds(2);
 constexpr Duration kObeyInterval = std::chrono::milliseconds(50);
 
-ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightView& view) {
+ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightView& view,
+                                       bool has_colors) {
   const bool is_hunt = std::holds_alternative<HuntView>(view);
   ConsoleFeed::Description description{
       .title = title,
       .is_live = true,
       .series = is_hunt ? HuntSeries() : LandingSeries(),
       .layers = is_hunt ? HuntLayers() : LandingLayers(),
-      .offers = {ConsoleCommandKind::kRecord, ConsoleCommandKind::kSnapshot}};
+      .views = is_hunt ? HuntImageViews(std::get<HuntView>(view)) : LandingImageViews(),
+      .offers = {ConsoleCommandKind::kRecord, ConsoleCommandKind::kSnapshot},
+      .has_colors = has_colors};
   description.series.push_back({"latency", "ms", "Capture to result"});
   description.series.push_back({"link", "1/s", "Packets"});
   return description;
@@ -34,15 +37,36 @@ ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightVie
 }  // namespace
 
 FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& title,
-                             FlightView view, FlightExamination examination, ChannelFeed* channels)
+                             FlightView view, FlightExamination examination, ChannelFeed* channels,
+                             std::optional<FlightColors> colors)
     : view_(std::move(view)),
-      feed_(DescriptionOf(title, view_)),
+      feed_(DescriptionOf(title, view_, colors.has_value())),
       seen_(kSeenFrames),
       arrivals_(kArrivals),
       examination_(std::move(examination)),
       link_rate_hz_(std::numeric_limits<double>::quiet_NaN()),
-      server_(options, &feed_, WebAssets(), channels),
-      thread_([this] { Show(); }) {}
+      server_(options, &feed_, WebAssets(), channels) {
+  if (colors) TeachColors(*colors);
+  thread_ = std::thread([this] { Show(); });
+}
+
+// They begin with the model that the flight uses.
+void FlightConsole::TeachColors(const FlightColors& colors) {
+  kept_.emplace(colors.frames);
+  const auto keep = [this] {
+    const Image newest = Newest();
+    return kept_->Keep(newest.image, newest.captured);
+  };
+  colors_.emplace(
+      ColorSource{.recording = std::filesystem::absolute(colors.frames).lexically_normal().string(),
+                  .frame_count = 0,
+                  .read = [this](std::size_t frame) { return kept_->Read(frame); },
+                  .model = std::get<HuntView>(view_).model,
+                  .folder = colors.folder,
+                  .keep = keep,
+                  .warn = colors.warn},
+      &feed_);
+}
 
 FlightConsole::~FlightConsole() {
   is_over_ = true;
@@ -93,8 +117,7 @@ void FlightConsole::Show(SeenFrame seen) {
   examination_.Look(frame_.image, Now());
   {
     const std::lock_guard lock(mutex_);
-    shown_ = frame_.image;
-    shown_time_ = frame_.captured;
+    shown_ = {frame_.image, frame_.captured};
   }
   feed_.SetFrame(&frame_);
 }
@@ -162,15 +185,16 @@ void FlightConsole::Obey(const FlightRequests& requests, const ConsoleCommand& c
 }
 
 void FlightConsole::KeepSnapshot(const FlightRequests& requests) {
-  cv::Mat image;
-  Time captured;
-  {
-    const std::lock_guard lock(mutex_);
-    image = shown_;
-    captured = shown_time_;
+  const Image newest = Newest();
+  if (newest.image.empty()) {
+    return Say(EventLevel::kWarning, "no snapshot: there is no image yet");
   }
-  if (image.empty()) return Say(EventLevel::kWarning, "no snapshot: there is no image yet");
-  Say(EventLevel::kInfo, requests.keep_snapshot(image, captured));
+  Say(EventLevel::kInfo, requests.keep_snapshot(newest.image, newest.captured));
+}
+
+FlightConsole::Image FlightConsole::Newest() {
+  const std::lock_guard lock(mutex_);
+  return shown_;
 }
 
 void FlightConsole::SetVision(const ConsoleStatus& status) {

@@ -2,17 +2,21 @@
 #pragma once
 
 #include <atomic>
+#include <filesystem>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 #include <variant>
+#include <vector>
 
+#include "kestrel/console/color_page.h"
 #include "kestrel/console/console_feed.h"
 #include "kestrel/console/console_options.h"
 #include "kestrel/console/flight_health.h"
 #include "kestrel/console/hunt_view.h"
+#include "kestrel/console/kept_frames.h"
 #include "kestrel/console/landing_view.h"
 #include "kestrel/console/web_server.h"
 #include "kestrel/doctor/flight_examination.h"
@@ -31,14 +35,22 @@ struct FlightRequests {
   std::function<std::string(const cv::Mat& image, Time captured)> keep_snapshot;
 };
 
+// Where what the page of colours keeps of a flight goes.
+struct FlightColors {
+  std::filesystem::path frames;  // a folder that does not exist: for the frames that are kept
+  std::string folder;            // for the model, its versions and the draft
+  std::function<std::vector<std::string>()> warn;  // as ColorSource's
+};
+
 // A flight on the page. What the vision sees is handed to a thread that makes of it what the page
 // shows, and only while somebody looks: else a frame costs the vision one look at a number.
 class FlightConsole : public FlightObserver {
  public:
-  // Serves from now on. 'title': of the page. 'channels' as for WebServer. Throws InputError as
-  // that does.
+  // Serves from now on. 'title': of the page. 'channels' as for WebServer. 'colors': of a hunt,
+  // whose model's colours can be taught then. Throws InputError as WebServer and ColorPage do.
   FlightConsole(const ConsoleOptions& options, const std::string& title, FlightView view,
-                FlightExamination examination, ChannelFeed* channels = nullptr);
+                FlightExamination examination, ChannelFeed* channels = nullptr,
+                std::optional<FlightColors> colors = std::nullopt);
   ~FlightConsole() override;
   FlightConsole(const FlightConsole&) = delete;
   FlightConsole& operator=(const FlightConsole&) = delete;
@@ -69,7 +81,14 @@ class FlightConsole : public FlightObserver {
     std::variant<LandingObservation, HuntObservation> observation;
   };
 
+  struct Image {
+    cv::Mat image;  // empty: none yet
+    Time captured;
+  };
+
   void See(SeenFrame seen, Duration detect_time);
+  void TeachColors(const FlightColors& colors);
+  Image Newest();
   void Obey(const FlightRequests& requests, const ConsoleCommand& command);
   void KeepSnapshot(const FlightRequests& requests);
 
@@ -99,10 +118,11 @@ class FlightConsole : public FlightObserver {
   ConsoleStatus vision_;              // what the newest frame says
   ConsoleStatus told_;                // the page, the last time
   FlightReport report_;               // the newest
-  cv::Mat shown_;                     // the newest frame, of
-  Time shown_time_{};                 // this capture
+  Image shown_;                       // the newest
 
   WebServer server_;
+  std::optional<KeptFrames> kept_;  // of the page of colours
+  std::optional<ColorPage> colors_;
   std::atomic<bool> is_over_{false};
   std::thread thread_, obeying_thread_;
 };

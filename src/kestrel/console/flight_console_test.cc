@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/console/flight_console.h"
 
+#include <filesystem>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -9,6 +10,7 @@
 #include "kestrel/base/error.h"
 #include "kestrel/camera/paper_camera.h"
 #include "kestrel/console/test_browser.h"
+#include "kestrel/recording/image_file.h"
 
 namespace kestrel {
 namespace {
@@ -47,6 +49,8 @@ TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
   ASSERT_TRUE(hello);
   EXPECT_EQ((*hello)["title"], "a flight");
   EXPECT_EQ((*hello)["offers"], (nlohmann::json{"record", "snapshot"}));
+  EXPECT_EQ((*hello)["colors"], false);
+  EXPECT_EQ((*hello)["views"].size(), 4u);
   LandingObservation observation;
   observation.report.reason = "no ring";
   observation.detect_time = 3ms;
@@ -59,6 +63,13 @@ TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
   const auto image = socket.Next("image");
   ASSERT_TRUE(image);
   EXPECT_EQ((*image)["width"], 376);
+  socket.Send(fmt::format(R"({{"ack": {}}})", (*image)["sequence"].get<int>()));
+  // The same frame, as there is no newer one.
+  socket.Send(R"({"images": "threshold 1/2"})");
+  const auto threshold = socket.Next("image");
+  ASSERT_TRUE(threshold);
+  EXPECT_EQ((*threshold)["view"], "threshold 1/2");
+  EXPECT_EQ((*threshold)["sequence"], (*image)["sequence"]);
   console_.See(FlightReport{});
   const auto status = socket.Next("status");
   ASSERT_TRUE(status);
@@ -114,6 +125,60 @@ TEST_F(FlightConsoleTest, KeepsNoImageWhenNobodyLooks) {
   console_.See(frame, LandingObservation());
   std::this_thread::sleep_for(20ms);
   EXPECT_EQ(frame.image.u->refcount, 1);
+}
+
+// A green square on gray ground.
+Frame ColorFrame() {
+  cv::Mat image(240, 376, CV_8UC3, cv::Scalar(90, 100, 95));
+  image(cv::Rect(100, 100, 60, 60)).setTo(cv::Scalar(40, 160, 40));
+  return {"", Now(), image};
+}
+
+TEST(HuntConsoleTest, FramesOfTheCameraAreKeptAndTaught) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(testing::TempDir()) / "kestrel_hunt_console";
+  fs::remove_all(folder);
+  {
+    FlightConsole console(FreePort(), "a hunt", HuntView{DefaultObjectModel()},
+                          FlightExamination(PaperCalibration(), ".", 0), nullptr,
+                          FlightColors{folder / "colors", (folder / "taught").string(), {}});
+    TestSocket socket(PortOf(console));
+    const auto hello = socket.Next("hello");
+    ASSERT_TRUE(hello);
+    EXPECT_EQ((*hello)["colors"], true);
+    EXPECT_EQ((*hello)["exports"], false);
+    EXPECT_EQ((*hello)["views"], nlohmann::json{"segmentation"});
+    const auto ask = [&](const std::string& message) {
+      socket.Send(message);
+      return socket.Next("colors").value_or(nlohmann::json());
+    };
+    ASSERT_TRUE(socket.Next("colors"));
+    EXPECT_THAT(ask(R"({"colors": "keep"})")["answer"].get<std::string>(),
+                testing::HasSubstr("there is no image yet"));
+    const Frame frame = ColorFrame();
+    console.See(frame, HuntObservation());
+    socket.Send(R"({"images": "segmentation"})");
+    const auto image = socket.Next("image");
+    ASSERT_TRUE(image);
+    EXPECT_EQ((*image)["view"], "segmentation");
+    EXPECT_EQ(ask(R"({"colors": "keep"})")["frames"], 1);
+    const auto state = ask(
+        R"({"colors": "mark", "frame": 0, "color": "green", "tool": "grow", "size": 8, "points": [120, 120]})");
+    EXPECT_EQ(state["strokes"], 1) << state["answer"];
+    EXPECT_EQ(ask(R"({"colors": "teach", "color": "green"})")["answer"], "taught green");
+    TestBrowser browser(PortOf(console));
+    EXPECT_EQ(browser.Send(browser.Get("/export/labels-0.png")).result_int(), 200u);
+    TestBrowser other(PortOf(console));
+    EXPECT_EQ(other.Send(other.Get("/export/frame-0.png")).result_int(), 404u)
+        << "a flight has no other exports";
+    EXPECT_FALSE(ask(R"({"colors": "save"})")["refused"]);
+    const std::string file =
+        (folder / "colors" / fmt::format("01_{}.png", ToNanoseconds(frame.time))).string();
+    EXPECT_EQ(cv::norm(ReadImage(file, PixelFormat::kBgr), frame.image, cv::NORM_INF), 0);
+  }
+  EXPECT_TRUE(fs::exists(folder / "taught" / "draft.yaml"));
+  EXPECT_TRUE(fs::exists(folder / "taught" / "objects.yaml"));
+  fs::remove_all(folder);
 }
 
 TEST(FlightHealthTest, ComparesSeconds) {

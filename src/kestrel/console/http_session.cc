@@ -119,7 +119,7 @@ void HttpSession::AnswerAdmitted(const Request& request) {
   const std::string_view path = View(request.target());
   // A token that is not needed any more, as when the link is opened again.
   if (path.starts_with("/?token=")) return SignIn(request);
-  if (const auto wanted = ParseExportPath(path); wanted && hub_->has_exports()) {
+  if (const auto wanted = ParseExportPath(path); wanted && hub_->CanExport(*wanted)) {
     return SendExport(request, *wanted);
   }
   const WebAsset* asset = hub_->FindAsset(path == "/" ? "/index.html" : path);

@@ -2,11 +2,13 @@
 #include "kestrel/console/hunt_view.h"
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include <fmt/format.h>
 
 #include "kestrel/console/map_view.h"
+#include "kestrel/console/segmentation_view.h"
 
 namespace kestrel {
 namespace {
@@ -28,6 +30,18 @@ OverlayShape Shape(const HuntView& view, const ObjectDetection& found, OverlayLa
   return {layer, Outline(found.ellipse),
           fmt::format("{} {:.2f}", view.model.classes[found.class_index].name,
                       found.class_probability)};
+}
+
+// At which tests the segments fell, as "rejected: 9 by size, 1 by shape"; empty: none did.
+std::string Rejections(const ObjectReport& report) {
+  std::string text;
+  for (std::size_t stage = 1; stage < kObjectStageCount; ++stage) {
+    const int fallen = report.passed[stage - 1] - report.passed[stage];
+    if (fallen <= 0) continue;
+    text += fmt::format("{} {} by {}", text.empty() ? "rejected:" : ",", fallen,
+                        ToString(static_cast<ObjectStage>(stage)));
+  }
+  return text;
 }
 
 }  // namespace
@@ -52,15 +66,23 @@ std::vector<OverlayShape> HuntShapes(const HuntView& view, const HuntObservation
     shapes.push_back(Shape(view, found, OverlayLayer::kDetection));
   }
   for (const ObjectDetection& elsewhere : observation.report.elsewhere) {
-    shapes.push_back(Shape(view, elsewhere, OverlayLayer::kRejected));
+    OverlayShape& shape = shapes.emplace_back(Shape(view, elsewhere, OverlayLayer::kRejected));
+    shape.label += ", by its size not on the ground";
   }
   return shapes;
+}
+
+std::vector<ImageView> HuntImageViews(const HuntView& view) {
+  const auto segmentation = std::make_shared<SegmentationView>(view.model, view.detector);
+  return {
+      {"segmentation", [segmentation](const cv::Mat& image) { return segmentation->Draw(image); }}};
 }
 
 ConsoleStatus HuntStatus(const HuntObservation& observation) {
   const std::size_t objects = observation.report.detections.size();
   ConsoleStatus status;
   status.state = objects == 0 ? "searching" : fmt::format("{} in view", objects);
+  if (objects == 0) status.reason = Rejections(observation.report);
   if (!observation.world_from_camera) status.reason = "where the UAV was is not known";
   return status;
 }

@@ -15,6 +15,7 @@ namespace kestrel {
 // What is the same for all frames.
 struct HuntView {
   ObjectModel model;
+  ObjectDetectorOptions detector = {};
 };
 
 // How many objects are in view, time of the detection: what HuntSample has the values of.
@@ -25,7 +26,10 @@ ConsoleSample HuntSample(const HuntObservation& observation);
 std::vector<OverlayLayer> HuntLayers();
 std::vector<OverlayShape> HuntShapes(const HuntView& view, const HuntObservation& observation);
 
-// How many objects there are, or that there is none.
+// "segmentation": SegmentationView.
+std::vector<ImageView> HuntImageViews(const HuntView& view);
+
+// How many objects there are, or that there is none and at which tests the segments fell.
 ConsoleStatus HuntStatus(const HuntObservation& observation);
 
 // The camera, as LandingMap, and the objects in view that have a place in the world.

@@ -4,14 +4,17 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
 
 #include "kestrel/console/map_view.h"
+#include "kestrel/landing/threshold_view.h"
 
 namespace kestrel {
 namespace {
@@ -119,6 +122,20 @@ std::vector<OverlayShape> LandingShapes(const LandingView& view,
        {{static_cast<float>(found.center_px.x()), static_cast<float>(found.center_px.y())}},
        ""});
   return shapes;
+}
+
+std::vector<ImageView> LandingImageViews() {
+  const auto view = std::make_shared<ThresholdView>();
+  std::vector<ImageView> views;
+  for (const int level : {3, 2, 1, 0}) {
+    views.push_back(
+        {fmt::format("threshold 1/{}", 1 << level), [view, level](const cv::Mat& image) {
+           cv::Mat gray = image;
+           if (image.channels() == 3) cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
+           return view->Draw(gray, level);
+         }});
+  }
+  return views;
 }
 
 ConsoleStatus LandingStatus(const LandingObservation& observation) {

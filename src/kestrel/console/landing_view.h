@@ -34,6 +34,10 @@ std::vector<OverlayLayer> LandingLayers();
 std::vector<OverlayShape> LandingShapes(const LandingView& view,
                                         const LandingObservation& observation);
 
+// "threshold 1/8", "1/4", "1/2", "1/1": ThresholdView at these resolutions, the nearest patterns
+// first.
+std::vector<ImageView> LandingImageViews();
+
 // The state of the track, and why the pattern was not found.
 ConsoleStatus LandingStatus(const LandingObservation& observation);
 

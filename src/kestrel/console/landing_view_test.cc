@@ -104,5 +104,22 @@ TEST(LandingViewTest, SaysWhyNot) {
   EXPECT_EQ(LandingStatus(Seen()).state, "tracking");
 }
 
+TEST(LandingViewTest, TheThresholdIsSeenAtFourResolutionsOfGrayAndColour) {
+  cv::Mat board(96, 128, CV_8UC1, cv::Scalar(230));
+  board(cv::Rect(40, 24, 32, 32)).setTo(20);
+  cv::Mat color;
+  cv::merge(std::vector<cv::Mat>(3, board), color);
+  const std::vector<ImageView> views = LandingImageViews();
+  ASSERT_EQ(views.size(), 4U);
+  EXPECT_EQ(views.front().name, "threshold 1/8");
+  EXPECT_EQ(views.back().name, "threshold 1/1");
+  for (const ImageView& view : views) {
+    const cv::Mat drawn = view.draw(board);
+    ASSERT_EQ(drawn.size(), board.size()) << view.name;
+    EXPECT_EQ(drawn.at<uchar>(26, 42), 0) << view.name;
+    EXPECT_EQ(cv::norm(drawn, view.draw(color), cv::NORM_INF), 0) << view.name;
+  }
+}
+
 }  // namespace
 }  // namespace kestrel

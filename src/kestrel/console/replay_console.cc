@@ -69,6 +69,7 @@ ReplayConsole::ReplayConsole(const ConsoleOptions& options, const std::string& t
              .is_live = false,
              .series = ReplaySeries(has_truth),
              .layers = ReplayLayers(),
+             .views = LandingImageViews(),
              .offers = {ConsoleCommandKind::kPlay, ConsoleCommandKind::kSeek,
                         ConsoleCommandKind::kStep, ConsoleCommandKind::kDetect,
                         ConsoleCommandKind::kCancel, ConsoleCommandKind::kCalibrate,

@@ -22,7 +22,9 @@ bool SocketSession::Take(std::string_view text, bool is_text, Time now) {
     images_.Acknowledged(ack->sequence, now);
     SendNext();
   } else if (const auto* wish = std::get_if<ImageWish>(&*message)) {
-    images_.SetWanted(wish->wanted);
+    const std::optional<std::size_t> view = hub().images().FindView(wish->view);
+    if (!view) return false;
+    images_.SetWish(wish->is_wanted, *view, wish->is_held);
   } else if (const auto* request = std::get_if<ColorRequest>(&*message)) {
     hub().Ask(*request);
   } else {
@@ -35,8 +37,7 @@ void SocketSession::SendNext() {
   if (!is_free()) return;
   // In turn, so that neither keeps the other back where the link is slow.
   const auto send_image = [this] {
-    if (!images_.wants_next()) return false;
-    const auto image = hub().images().NewestAfter(images_.seen(), Now());
+    const auto image = hub().images().NextFor(images_, Now());
     if (!image) return false;
     images_.Sent(*image);
     was_image_ = true;

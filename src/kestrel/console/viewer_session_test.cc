@@ -38,7 +38,8 @@ class ViewerSessionTest : public testing::Test {
         {channel, TimeFromNanoseconds(time_ns), std::make_shared<const std::string>(bytes, 'x')});
   }
 
-  ConsoleFeed feed_{{.title = "test", .is_live = true, .series = {}, .layers = {}, .offers = {}}};
+  ConsoleFeed feed_{
+      {.title = "test", .is_live = true, .series = {}, .layers = {}, .views = {}, .offers = {}}};
   ChannelFeed channels_{{{"/image", "protobuf", "Image", "protobuf", "a", true},
                          {"/result", "protobuf", "Result", "protobuf", "ab", false}}};
   std::optional<WebServer> server_;

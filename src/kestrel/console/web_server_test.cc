@@ -48,6 +48,7 @@ class WebServerTest : public testing::Test {
                      .is_live = true,
                      .series = {{"height", "m", "Height"}},
                      .layers = {OverlayLayer::kDetection},
+                     .views = {},
                      .offers = {ConsoleCommandKind::kRecord}}};
 };
 
@@ -332,6 +333,13 @@ TEST_F(WebServerTest, TheNextImageComesAfterTheLastIsDrawn) {
   EXPECT_EQ((*second.Next("image"))["sequence"], 21);
   EXPECT_TRUE(Eventually([&] { return server.counters().encoded == 2; }));
   EXPECT_GT((*first.Next("link"))["draw_ms"], 0);
+}
+
+TEST_F(WebServerTest, AViewThatThereIsNoneOfEndsTheConnection) {
+  const WebServer server(AnyPort(), &feed_, kAssets);
+  TestSocket socket(server.port());
+  socket.Send(R"({"images": "x-ray"})");
+  EXPECT_TRUE(socket.IsEnded());
 }
 
 TEST_F(WebServerTest, NobodyLooksNothingIsEncoded) {

@@ -12,6 +12,18 @@ namespace {
 constexpr std::size_t kMinBorders = 24;
 constexpr std::size_t kPixelsPerBorder = 8192;
 
+BorderLimits LimitsOf(const SearchPass& pass) {
+  const double scale = 1 << pass.image_level;
+  BorderLimits limits;
+  limits.min_extent = std::max(4, static_cast<int>(0.7 * pass.min_ring_px / scale));
+  limits.min_count = 4 * static_cast<std::size_t>(limits.min_extent);
+  limits.max_extent = static_cast<int>(std::min(16000.0, 1.2 * pass.max_ring_px / scale));
+  limits.narrow = pass.narrow;
+  return limits;
+}
+
+}  // namespace
+
 void Binarize(const SearchPass& pass, SearchedImageBuffers* buffers) {
   const cv::Mat image = buffers->pyramid.ImageAt(pass.image_level);
   buffers->threshold.Measure(buffers->pyramid, pass.image_level, pass.tile_level);
@@ -26,18 +38,6 @@ void Binarize(const SearchPass& pass, SearchedImageBuffers* buffers) {
   if (pass.not_bright) InvertBits(buffers->binary.bright, &buffers->binary.dark);
   if (pass.closing) CloseBits(&buffers->binary.dark, &buffers->scratch);
 }
-
-BorderLimits LimitsOf(const SearchPass& pass) {
-  const double scale = 1 << pass.image_level;
-  BorderLimits limits;
-  limits.min_extent = std::max(4, static_cast<int>(0.7 * pass.min_ring_px / scale));
-  limits.min_count = 4 * static_cast<std::size_t>(limits.min_extent);
-  limits.max_extent = static_cast<int>(std::min(16000.0, 1.2 * pass.max_ring_px / scale));
-  limits.narrow = pass.narrow;
-  return limits;
-}
-
-}  // namespace
 
 bool SearchedImageBuffers::Reserve(const cv::Mat& image) {
   if (width_px == image.cols && height_px == image.rows) return false;

@@ -32,6 +32,10 @@ struct SearchedImageBuffers {
   std::size_t most_points() const;  // of the borders of a pass that are cut into arcs
 };
 
+// Decides in 'buffers.binary' what a pass takes for dark and for bright, in the image of which
+// 'buffers.pyramid' is made up to the pass's 'tile_level' + 2.
+void Binarize(const SearchPass& pass, SearchedImageBuffers* buffers);
+
 // The part of an image that is searched: at all resolutions, and the borders of dark areas in it.
 class SearchedImage {
  public:

@@ -27,6 +27,12 @@ fs::path FreeName(const fs::path& folder, const std::string& name, const std::st
 
 }  // namespace
 
+fs::path PathOfNow(const fs::path& folder, const std::string& prefix) {
+  const auto now =
+      std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
+  return FreeName(folder, fmt::format("{}{:%Y-%m-%d_%H-%M-%S}", prefix, fmt::gmtime(now)), "");
+}
+
 void FlightKeeper::MakeFolder() const {
   std::error_code error;
   fs::create_directories(folder_, error);
@@ -36,10 +42,7 @@ void FlightKeeper::MakeFolder() const {
 std::string FlightKeeper::StartRecording() {
   if (recording_->Get()) return "a recording is on already";
   MakeFolder();
-  const auto now =
-      std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
-  const fs::path path =
-      FreeName(folder_, fmt::format("{:%Y-%m-%d_%H-%M-%S}", fmt::gmtime(now)), "");
+  const fs::path path = PathOfNow(folder_);
   if (!recording_->Start(path, /*replace=*/false)) return "the flight ends: no recording begins";
   return "recording into " + path.string();
 }

@@ -13,6 +13,10 @@
 
 namespace kestrel {
 
+// A path in 'folder' of which there is nothing yet: 'prefix', and the time of day (UTC).
+std::filesystem::path PathOfNow(const std::filesystem::path& folder,
+                                const std::string& prefix = "");
+
 // What a user asks to be kept while the UAV flies, in a folder of its own: nothing that is there
 // is replaced. By one thread, which waits for the disk.
 class FlightKeeper {

@@ -39,6 +39,7 @@ bool ColorEditor::Redo() {
 
 void ColorEditor::Replace(ColorDraft draft) {
   for (const ColorStroke& stroke : draft.strokes()) {
+    if (frame_count_ == 0) throw InputError("there is no frame to be marked");
     if (stroke.frame >= frame_count_) {
       throw InputError(
           fmt::format("frame {} is marked, expected 0 to {}", stroke.frame, frame_count_ - 1));

@@ -23,6 +23,9 @@ class ColorEditor {
   // 'model' is valid. Frames are numbered from 0 to frame_count - 1.
   ColorEditor(ObjectModel model, std::size_t frame_count, MarkedPixels::ReadFrame read);
 
+  // There is one frame more.
+  void AddFrame() { ++frame_count_; }
+
   // Throws InputError for a stroke that is not valid, of a frame that is not there, outside of the
   // image or of a colour that the model does not have, and for one too many.
   void Mark(const ColorStroke& stroke);

@@ -12,13 +12,14 @@ import {
 } from "../color_actions";
 import { shownAs } from "../color_overlay";
 import { tools, type Colors } from "../color_protocol";
-import { sizeOf } from "../color_view";
+import { canKeep, sizeOf } from "../color_view";
 import { useStore } from "../use_store";
+import { ColorCamera } from "./color_camera";
 import { ColorCanvas } from "./color_canvas";
 import { ColorPanel } from "./color_panel";
 import { ColorPlane } from "./color_plane";
 
-/** Teaches the colours of a model by marking pixels in frames of the recording. */
+/** Teaches the colours of a model by marking pixels in frames of a recording, or kept of a flight. */
 export function ColorPage() {
   const colors = useStore((state) => state.colors);
   if (!colors) return <p class="empty-page">The colours are not known yet</p>;
@@ -28,15 +29,24 @@ export function ColorPage() {
         <section aria-label="Mark">
           <ColorChoice colors={colors} />
           <ToolChoice colors={colors} />
-          <ColorCanvas colors={colors} />
-          <FrameChoice colors={colors} />
+          {colors.frames > 0 ? <ColorCanvas colors={colors} /> : <NoFrame />}
+          {colors.frames > 0 && <FrameChoice colors={colors} />}
         </section>
       </div>
       <div class="column">
+        {canKeep(colors) && <ColorCamera colors={colors} />}
         <ColorPanel colors={colors} />
         <ColorPlane colors={colors} />
       </div>
     </main>
+  );
+}
+
+function NoFrame() {
+  return (
+    <div class="screen">
+      <p class="empty">No frame is kept yet: keep one of the camera to mark its colours (k)</p>
+    </div>
   );
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { useEffect, useRef, useState } from "preact/hooks";
-import { toggleLayer, togglePlaying } from "../actions";
+import { showView, toggleLayer, togglePlaying } from "../actions";
 import { connection, type Picture } from "../connection";
 import { drawOverlay, layerColor } from "../overlay";
 import type { FrameHeader, Layer } from "../protocol";
@@ -11,6 +11,7 @@ import { useClock, useStore } from "../use_store";
 const staleMs = 500;
 
 const noLayers: Layer[] = [];
+const noViews: string[] = [];
 
 interface Shown {
   header: FrameHeader;
@@ -28,6 +29,7 @@ export function ImageView() {
         <canvas ref={canvas} role="img" aria-label={pictureInWords(shown)} />
         {shown === null && <p class="empty">No image yet</p>}
       </div>
+      <ViewChoice />
       <div class="image-bar">
         <LayerSwitches />
         <PictureAge shown={shown} />
@@ -38,9 +40,10 @@ export function ImageView() {
 
 function pictureInWords(shown: Shown | null): string {
   if (shown === null) return "no image yet";
-  const found = shown.header.shapes.filter((shape) => shape.layer === "detection");
-  if (found.length === 0) return "camera image, nothing found";
-  return `camera image, found: ${found.map((shape) => shape.label).join(", ")}`;
+  const picture = shown.header.view === "" ? "camera image" : shown.header.view;
+  const found = shown.header.shapes.filter(({ layer, label }) => layer === "detection" && label !== "");
+  if (found.length === 0) return `${picture}, nothing found`;
+  return `${picture}, found: ${found.map((shape) => shape.label).join(", ")}`;
 }
 
 // The next picture is asked for when this one is on the screen, so that none waits anywhere.
@@ -55,26 +58,28 @@ function usePictures(
     };
     connection.onPicture = (next) => {
       requestAnimationFrame(() => {
-        if (!store.state.isFrozen) {
-          picture?.bitmap.close();
-          picture = next;
-          draw();
-          setShown({ header: next.header, receivedAt: next.receivedAt });
-        } else {
-          next.bitmap.close();
-        }
+        picture?.bitmap.close();
+        picture = next;
+        draw();
+        setShown({ header: next.header, receivedAt: next.receivedAt });
         connection.drawn(next.header);
       });
     };
-    let { layers: drawnLayers } = store.state;
+    let { layers: drawnLayers, view, isFrozen } = store.state;
+    const want = () => connection.wantImages({ view, isHeld: isFrozen });
     const unsubscribe = store.subscribe(() => {
-      if (store.state.layers === drawnLayers) return;
-      drawnLayers = store.state.layers;
-      draw();
+      const { state } = store;
+      if (state.layers !== drawnLayers) {
+        drawnLayers = state.layers;
+        draw();
+      }
+      if (state.view === view && state.isFrozen === isFrozen) return;
+      ({ view, isFrozen } = state);
+      want();
     });
-    connection.wantImages(true);
+    want();
     return () => {
-      connection.wantImages(false);
+      connection.wantImages(null);
       connection.onPicture = null;
       unsubscribe();
     };
@@ -92,6 +97,22 @@ function drawPicture(canvas: HTMLCanvasElement, { header, bitmap }: Picture): vo
   context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
   const unit = canvas.width / Math.max(canvas.clientWidth, 1);
   drawOverlay(context, header.shapes, store.state.layers, scale, unit);
+}
+
+/** The camera's image, or what the detector makes of it. */
+function ViewChoice() {
+  const chosen = useStore((state) => state.view);
+  const views = useStore((state) => state.hello?.views ?? noViews);
+  if (views.length === 0) return null;
+  return (
+    <div class="switches views" role="group" aria-label="View">
+      {["", ...views].map((view) => (
+        <button key={view} aria-pressed={view === chosen} onClick={() => showView(view)}>
+          {view === "" ? "camera" : view}
+        </button>
+      ))}
+    </div>
+  );
 }
 
 function LayerSwitches() {

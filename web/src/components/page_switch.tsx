@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import { offeredPages, pageNames, showPage } from "../pages";
+import { offeredPages, pageName, showPage } from "../pages";
 import { useStore } from "../use_store";
 
 /** The pages, where there is more than one. */
@@ -16,7 +16,7 @@ export function PageSwitch() {
           aria-current={one === page ? "page" : undefined}
           onClick={() => showPage(one)}
         >
-          {pageNames[one]}
+          {pageName(one)}
         </button>
       ))}
     </nav>
