@@ -26,7 +26,7 @@ console:  ## the web page: what it needs, built in, over a simulated flight
 test: tests
 	ctest --preset release -j $$(nproc)
 
-interop: tests  ## MAVLink against node-mavlink, MCAP and live flights against @mcap/core, @foxglove/schemas, @foxglove/ws-protocol, which npm installs
+interop: tests  ## MAVLink, MCAP, live flights, bags and ROS 2 against implementations of others, which npm installs
 	scripts/install-deps --interop
 	cmake --preset release
 	ctest --preset release -R ^interop/ --no-tests=error
@@ -37,7 +37,7 @@ browser: deps  ## the console's page: its unit tests, and used in Chromium as a 
 	cmake --build --preset release --target kestrel
 	cd web && npm test && npm run try -- ../$(BIN)/src/kestrel/cli/kestrel ../out/browser
 
-ros: deps  ## the node of ROS 1 and its tests
+ros: deps  ## the node of ROS 1 and its tests, and bags of ROS 1 against its rosbag
 	scripts/install-deps --ros
 	cmake --preset release
 	cmake --build --preset release --target kestrel kestrel_node kestrel_ros_test

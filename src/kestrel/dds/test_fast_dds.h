@@ -67,7 +67,7 @@ struct FastEntity {
   bool is_writer = false;
 };
 
-// Keeps what was discovered, in its order.
+// Keeps what was discovered of others, in its order.
 class FastListener : public fast::DomainParticipantListener {
  public:
   void on_participant_discovery(fast::DomainParticipant*,
@@ -76,14 +76,15 @@ class FastListener : public fast::DomainParticipantListener {
     const auto& data = info.info.m_userData;
     Add({GidOf(info.info.m_guid), {data.begin(), data.end()}, "", "", false});
   }
-  void on_publisher_discovery(fast::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override {
+  void on_publisher_discovery(fast::DomainParticipant* self,
+                              rtps::WriterDiscoveryInfo&& info) override {
     if (info.status != rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) return;
-    AddEndpoint(info.info, true);
+    AddEndpoint(*self, info.info, true);
   }
-  void on_subscriber_discovery(fast::DomainParticipant*,
+  void on_subscriber_discovery(fast::DomainParticipant* self,
                                rtps::ReaderDiscoveryInfo&& info) override {
     if (info.status != rtps::ReaderDiscoveryInfo::DISCOVERED_READER) return;
-    AddEndpoint(info.info, false);
+    AddEndpoint(*self, info.info, false);
   }
   std::vector<FastEntity> heard() const {
     const std::lock_guard lock(mutex_);
@@ -96,7 +97,8 @@ class FastListener : public fast::DomainParticipantListener {
     return gid.append(reinterpret_cast<const char*>(guid.entityId.value), rtps::EntityId_t::size);
   }
   template <class Endpoint>
-  void AddEndpoint(const Endpoint& info, bool is_writer) {
+  void AddEndpoint(const fast::DomainParticipant& self, const Endpoint& info, bool is_writer) {
+    if (info.guid().guidPrefix == self.guid().guidPrefix) return;
     const auto& data = info.m_qos.m_userData;
     Add({GidOf(info.guid()),
          {data.begin(), data.end()},
