@@ -10,13 +10,11 @@ import { tmpdir } from 'node:os'
 import { join } from 'node:path'
 import { setTimeout as pause } from 'node:timers/promises'
 import { Peer, ddsType } from './dds_peer.js'
-import { expect, finish } from './expect.js'
+import { expect, finish, FLIGHT } from './checks.js'
 import { cameraInfoOf, decode, encode, mountOf, readGrayPng, readTable, simulate, stampOf,
   timeOf } from './ros2.js'
 
 const [kestrel, peerProgram] = process.argv.slice(2)
-const FLIGHT = ['fly', 'sim:standing', '--autopilot', 'sim:px4', '--set',
-  'fly.sim_autopilot.pilot.start_altitude_m=4', '--set', 'fly.sim_camera.scale=0.4']
 const PATIENCE_MS = 60000
 const RESULTS = [
   ['rt/kestrel/detections', 'vision_msgs/Detection3DArray', 'reliable'],
@@ -66,8 +64,8 @@ function decoded(peer, [topic, type]) {
 
 const isNear = (a, b) => Math.abs(a - b) < 2e-6 // the table has 1e-6
 
-// The rows of the table that a message is of, by its stamp; stamps are ahead of the table by the
-// same time in all messages.
+// Compares them with the rows of the table; returns by how much, the same in all of them, the stamps
+// are ahead of it, ns.
 function checkDetections(messages, rows) {
   expect(messages.length >= 0.9 * rows.length, `${messages.length} messages of ${rows.length} frames`)
   const last = messages.at(-1)
@@ -85,7 +83,7 @@ function checkDetections(messages, rows) {
     expect(isNear(x, row.p_CP_C_x_m) && isNear(y, row.p_CP_C_y_m) && isNear(z, row.p_CP_C_z_m),
       'detections: another position than in the table')
   }
-  return byTime
+  return ahead
 }
 
 function checkTrack(messages, rows, ahead) {
@@ -135,8 +133,7 @@ async function checkHeard(folder) {
   for (const [topic] of RESULTS) expect(messages.get(topic).length > 0, `${topic}: nothing was heard`)
   const rows = readTable(join(output, 'landing_detections.csv'))
   const heard = messages.get('rt/kestrel/detections')
-  checkDetections(heard, rows)
-  const ahead = timeOf(heard.at(-1).header.stamp) - BigInt(rows.at(-1).timestamp_ns)
+  const ahead = checkDetections(heard, rows)
   checkTrack(messages.get('rt/kestrel/track'), readTable(join(output, 'landing_track.csv')), ahead)
   checkDiscovery(peer)
   const count = [...messages.values()].reduce((sum, each) => sum + each.length, 0)

@@ -3,7 +3,7 @@
 import { createRequire } from 'node:module'
 import protobuf from 'protobufjs'
 import 'protobufjs/ext/descriptor/index.js'
-import { expect } from './expect.js'
+import { expect } from './checks.js'
 
 const require = createRequire(import.meta.url)
 const { foxgloveEnumSchemas, foxgloveMessageSchemas, generateProto } =
@@ -66,10 +66,6 @@ export function timeIn(decoded) {
     decoded.points?.[0]?.timestamp ?? decoded.entities?.[0]?.timestamp
   return stamp && nanoseconds(stamp)
 }
-
-// A simulated landing from a low altitude, in small images.
-export const FLIGHT = ['fly', 'sim:standing', '--autopilot', 'sim:px4', '--set',
-  'fly.sim_autopilot.pilot.start_altitude_m=4', '--set', 'fly.sim_camera.scale=0.4']
 
 // The times of all frames, ns.
 export function timesOf(table) {

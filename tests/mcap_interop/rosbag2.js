@@ -9,7 +9,7 @@ import { createRequire } from 'node:module'
 import { tmpdir } from 'node:os'
 import { join } from 'node:path'
 import { McapIndexedReader, McapWriter } from '@mcap/core'
-import { expect, finish } from './expect.js'
+import { expect, finish } from './checks.js'
 import { cameraInfoOf, decode, encode, isOfficial, longName, mountOf, readGrayPng, readTable,
   shortName, simulate, stampOf, timeOf } from './ros2.js'
 

@@ -310,6 +310,12 @@ const BrokenBag kBrokenBags[] = {
            f, "rosbag2_bagfile_information:\n  relative_file_paths: [flight_1.mcap]\n");
      },
      "flight_1.mcap is not there"},
+    {"metadata.yaml with a name that is too long",
+     [](const TestFolder& f) {
+       return WithMetadata(f, "rosbag2_bagfile_information:\n  relative_file_paths: [" +
+                                  std::string(5000, 'a') + "]\n");
+     },
+     "is not there"},
     {"files compressed as a whole",
      [](const TestFolder& f) {
        return WithMetadata(f,
