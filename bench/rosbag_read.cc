@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Usage: rosbag_read BAG. What bag_read does with messages, by rosbag's library and as `rosbag play`
-// does it: every message, as its bytes in memory of the caller. Prints the same.
+// Usage: rosbag_read BAG. What bag_read does with messages, by rosbag's library and as `rosbag
+// play` does it: every message, as its bytes in memory of the caller. Prints the same.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <ctime>
-#include <vector>
-
 #include <ros/serialization.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
+#include <vector>
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
