@@ -34,13 +34,13 @@ dds: deps  ## ROS 2 and the team's map over DDS, and their tests
 	cmake --build --preset release --target kestrel $(DDS_ROOMS:%=kestrel_%_test)
 	ctest --preset release -j $$(nproc) -R '^(dds|middleware|team)/|DdsCommand|TeamCommand' --no-tests=error
 
-ros: deps  ## the node of ROS 1 and its tests
+ros: deps  ## the node of ROS 1 and its tests, and bags of ROS 1 against its rosbag
 	scripts/install-deps --ros
 	cmake --preset release
 	cmake --build --preset release --target kestrel kestrel_node kestrel_ros_test
 	ctest --preset release -R ^ros/ --no-tests=error
 
-interop: tests  ## MAVLink against node-mavlink, MCAP and live flights against @mcap/core, @foxglove/schemas, @foxglove/ws-protocol, which npm installs
+interop: tests  ## MAVLink, MCAP, live flights, bags and ROS 2 against implementations of others, which npm installs
 	scripts/install-deps --interop
 	cmake --preset release
 	ctest --preset release -R ^interop/ --no-tests=error

@@ -3,6 +3,7 @@
 import { createRequire } from 'node:module'
 import protobuf from 'protobufjs'
 import 'protobufjs/ext/descriptor/index.js'
+import { expect } from './checks.js'
 
 const require = createRequire(import.meta.url)
 const { foxgloveEnumSchemas, foxgloveMessageSchemas, generateProto } =
@@ -11,14 +12,6 @@ const { FileDescriptorSet } = require('protobufjs/ext/descriptor')
 
 export const EXPECTED = ['CameraCalibration', 'CompressedImage', 'FrameTransforms', 'ImageAnnotations',
   'Log', 'PoseInFrame', 'SceneUpdate'].map((name) => `foxglove.${name}`).concat('kestrel.FrameResult')
-const failures = []
-export const expect = (holds, what) => { if (!holds) failures.push(what) }
-
-// Prints what is not as it should be, and ends with status 1 if anything is.
-export function finish() {
-  for (const failure of new Set(failures)) console.error(failure)
-  process.exit(failures.length === 0 ? 0 : 1)
-}
 
 const nanoseconds = ({ seconds, nanos }) => BigInt(seconds.toString()) * 1000000000n + BigInt(nanos)
 
@@ -73,10 +66,6 @@ export function timeIn(decoded) {
     decoded.points?.[0]?.timestamp ?? decoded.entities?.[0]?.timestamp
   return stamp && nanoseconds(stamp)
 }
-
-// A simulated landing from a low altitude, in small images.
-export const FLIGHT = ['fly', 'sim:standing', '--autopilot', 'sim:px4', '--set',
-  'fly.sim_autopilot.pilot.start_altitude_m=4', '--set', 'fly.sim_camera.scale=0.4']
 
 // The times of all frames, ns.
 export function timesOf(table) {

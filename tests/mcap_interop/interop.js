@@ -8,7 +8,8 @@ import { mkdtempSync, readFileSync, rmSync } from 'node:fs'
 import { tmpdir } from 'node:os'
 import { join } from 'node:path'
 import { McapIndexedReader, McapStreamReader } from '@mcap/core'
-import { EXPECTED, expect, finish, FLIGHT, timeIn, timesOf, typeOf } from './foxglove.js'
+import { expect, finish, FLIGHT } from './checks.js'
+import { EXPECTED, timeIn, timesOf, typeOf } from './foxglove.js'
 
 function stream(bytes) {
   const reader = new McapStreamReader()

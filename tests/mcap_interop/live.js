@@ -8,7 +8,8 @@ import { createRequire } from 'node:module'
 import { tmpdir } from 'node:os'
 import { join } from 'node:path'
 import WebSocket from 'ws'
-import { EXPECTED, expect, finish, FLIGHT, timeIn, timesOf, typeOf } from './foxglove.js'
+import { expect, finish, FLIGHT } from './checks.js'
+import { EXPECTED, timeIn, timesOf, typeOf } from './foxglove.js'
 
 const { FoxgloveClient } = createRequire(import.meta.url)('@foxglove/ws-protocol')
 // Those of each frame, and those of each frame that a slow viewer may lose.

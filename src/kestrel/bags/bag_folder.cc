@@ -79,8 +79,9 @@ BagFolder ParseMetadata(const std::string& text, const fs::path& folder) {
     const fs::path path = folder / (node.IsScalar() ? node.Scalar() : "");
     // Early bags have the path from where they were recorded.
     const fs::path beside = folder / path.filename();
-    const fs::path& found = fs::exists(path) ? path : beside;
-    if (!fs::is_regular_file(found)) {
+    std::error_code ignored;  // a name may be too long for any file
+    const fs::path& found = fs::exists(path, ignored) ? path : beside;
+    if (!fs::is_regular_file(found, ignored)) {
       throw InputError(fmt::format("{}: the file {} is not there, expected it", file,
                                    Shown(path.string(), /*max_length=*/1000)));
     }

@@ -51,6 +51,9 @@ class BagReader {
 
   // What the user should know of the bag, on one line: that it was cut off and where; else empty.
   virtual std::string remark() const { return ""; }
+
+  // What was left out so far because it is damaged, on one line; else empty.
+  virtual std::string damage() const { return ""; }
 };
 
 // The type by the one name that it has here: "sensor_msgs/msg/Image" is "sensor_msgs/Image".

@@ -115,17 +115,20 @@ bool BagSource::ReadFrame(Frame* frame) {
   return true;
 }
 
+void BagSource::TellWhatIsMissing() const {
+  if (!bag_->damage().empty()) Tell(bag_->damage());
+  if (left_out_ == 0) return;
+  Tell(fmt::format(
+      "{}: {} images with the stamp of another, or late by more than {} images, are left out",
+      NameOf(topics_.image), left_out_, kMaxWaiting));
+}
+
 bool BagSource::Next(Frame* frame) {
   while (!has_ended_ && waiting_.size() < kMaxWaiting) {
     Frame read;
     if (!ReadFrame(&read)) {
       has_ended_ = true;
-      if (left_out_ > 0) {
-        Tell(
-            fmt::format("{}: {} images with the stamp of another, or late by more than {} images, "
-                        "are left out",
-                        NameOf(topics_.image), left_out_, kMaxWaiting));
-      }
+      TellWhatIsMissing();
       break;
     }
     const auto place =

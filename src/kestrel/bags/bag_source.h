@@ -34,7 +34,8 @@ class BagSource : public FrameSource {
   BagSource(const std::string& path, BagChoice choice);
 
   // Frames are put in order where they are by up to 8 images out of it; what is later than that,
-  // and what has the stamp of another, is left out, and that is told at the end.
+  // and what has the stamp of another, is left out, and that is told at the end,
+  // as is what was damaged.
   bool Next(Frame* frame) override;
   std::optional<std::size_t> frame_count() const override;
   double rate_hz() const override { return rate_hz_; }
@@ -46,6 +47,7 @@ class BagSource : public FrameSource {
  private:
   std::string NameOf(std::size_t topic) const;
   void Tell(const std::string& text) const;
+  void TellWhatIsMissing() const;
   void ReadCameraInfo();
   std::string ReadFirstImages();
   bool ReadFrame(Frame* frame);

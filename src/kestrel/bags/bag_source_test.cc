@@ -14,6 +14,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/bags/test_bags.h"
+#include "kestrel/base/read_file.h"
 #include "kestrel/recording/test_files.h"
 
 namespace kestrel {
@@ -128,6 +129,38 @@ TEST(BagSource, ReadsABagOfWhichTheEndWasFilledWithZeros) {
   std::filesystem::resize_file(path, size);
   BagSource source(path, {});
   EXPECT_GT(ImagesOf(&source).size(), 120u);
+}
+
+// In bags of several chunks, all of which have poses and images.
+TEST(BagSource, LeavesOutChunksThatAreDamaged) {
+  const TestFolder folder;
+  constexpr int kImages = 600;
+  const BagKind kinds[] = {{"bz2.bag", Compression::kBz2},
+                           {"lz4.mcap", Compression::kLz4},
+                           {"none.mcap", Compression::kNone},
+                           {"zstd.mcap", Compression::kZstd}};
+  for (const auto& [name, compression] : kinds) {
+    const std::string path = folder / name;
+    TestBag bag(path, compression);
+    for (int i = 0; i < kImages; ++i) {
+      const cv::Mat pixels = NoiseImage(64, 64, CV_8UC1, i + 1);
+      bag.AddPose(i);
+      bag.Add("/camera/image_raw", BagImageMessage(pixels, BagTime(i)));
+    }
+    bag.Close();
+    std::string bytes = ReadFile(path);
+    bytes.replace(bytes.size() / 3, 100, 100, '\x5a');
+    folder.Write(name, bytes);
+    std::vector<std::string> told;
+    BagSource source(path, {.tell = [&](const std::string& text) { told.push_back(text); }});
+    int images = 0;
+    Time last;
+    for (Frame frame; source.Next(&frame); ++images) last = frame.time;
+    EXPECT_LT(images, kImages) << name;
+    EXPECT_GT(images, kImages / 3) << name;
+    EXPECT_EQ(last, BagTime(kImages - 1)) << name;
+    EXPECT_THAT(told, ElementsAre(HasSubstr("; left out: 1 of "))) << name;
+  }
 }
 
 TEST(BagSource, PutsImagesInTheOrderOfTheirStamps) {

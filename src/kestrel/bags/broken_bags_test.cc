@@ -173,6 +173,9 @@ const BrokenBag kBrokenBags[] = {
     {"damaged zstd",
      [](const TestFolder& f) { return Damaged(Flight(f, "flight.mcap", Compression::kZstd), 400); },
      "its compressed bytes are broken"},
+    {"wrong checksums",
+     [](const TestFolder& f) { return Patched(Flight(f, "flight.mcap"), "mono8", "m0no8"); },
+     "a chunk is damaged: its checksum is wrong"},
     {"a damaged .db3", [](const TestFolder& f) { return Damaged(Flight(f, "flight.db3"), 16384); },
      "malformed"},
     {"messages of connections that nothing describes",
@@ -307,6 +310,12 @@ const BrokenBag kBrokenBags[] = {
            f, "rosbag2_bagfile_information:\n  relative_file_paths: [flight_1.mcap]\n");
      },
      "flight_1.mcap is not there"},
+    {"metadata.yaml with a name that is too long",
+     [](const TestFolder& f) {
+       return WithMetadata(f, "rosbag2_bagfile_information:\n  relative_file_paths: [" +
+                                  std::string(5000, 'a') + "]\n");
+     },
+     "is not there"},
     {"files compressed as a whole",
      [](const TestFolder& f) {
        return WithMetadata(f,

@@ -47,10 +47,9 @@ FileBytes::~FileBytes() { close(descriptor_); }
 
 std::string_view FileBytes::View(std::uint64_t offset, std::uint64_t size) {
   size = BytesThere(offset, size, size_);
-  const bool is_buffered =
-      offset >= buffer_offset_ && offset + size <= buffer_offset_ + buffer_.size();
+  const bool is_buffered = offset >= buffer_offset_ && offset + size <= buffer_offset_ + buffered_;
   if (!is_buffered) Fill(offset, std::max(size, BytesThere(offset, kReadAhead, size_)));
-  return std::string_view(buffer_).substr(offset - buffer_offset_, size);
+  return {buffer_.get() + (offset - buffer_offset_), size};
 }
 
 void FileBytes::Fill(std::uint64_t offset, std::uint64_t size) {
@@ -58,20 +57,24 @@ void FileBytes::Fill(std::uint64_t offset, std::uint64_t size) {
     throw InputError(fmt::format("{}: byte {}: a record claims {} bytes, expected at most {}",
                                  path_, offset, size, kMaxPiece));
   }
-  buffer_.resize(size);
+  if (size > capacity_) {
+    capacity_ = size;
+    buffer_ = std::make_unique_for_overwrite<char[]>(size);
+  }
   buffer_offset_ = offset;
+  buffered_ = 0;
   std::uint64_t filled = 0;
   while (filled < size) {
-    const ssize_t count = pread(descriptor_, buffer_.data() + filled, size - filled,
+    const ssize_t count = pread(descriptor_, buffer_.get() + filled, size - filled,
                                 static_cast<off_t>(offset + filled));
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) {
       const std::string reason = count < 0 ? std::strerror(errno) : "it became shorter";
-      buffer_.clear();
       throw InputError(path_ + ": cannot be read: " + reason);
     }
     filled += static_cast<std::uint64_t>(count);
   }
+  buffered_ = size;
 }
 
 BytesPart::BytesPart(ByteSource* source, std::uint64_t offset, std::uint64_t size)

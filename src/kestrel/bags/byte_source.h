@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -50,8 +51,11 @@ class FileBytes : public ByteSource {
   std::string path_;
   int descriptor_;
   std::uint64_t size_ = 0;
-  std::string buffer_;  // a part of the file
+  // A part of the file; not a string, which would be filled with zeros before it is read.
+  std::unique_ptr<char[]> buffer_;
+  std::uint64_t capacity_ = 0;
   std::uint64_t buffer_offset_ = 0;
+  std::uint64_t buffered_ = 0;
 };
 
 // A part of another source, which must outlive this; no longer than what the source has.

@@ -53,10 +53,7 @@ class Bz2Stream {
 
 class Lz4Stream {
  public:
-  Lz4Stream() { LZ4F_createDecompressionContext(&context_, LZ4F_VERSION); }
-  ~Lz4Stream() { LZ4F_freeDecompressionContext(context_); }
-  Lz4Stream(const Lz4Stream&) = delete;
-  Lz4Stream& operator=(const Lz4Stream&) = delete;
+  Lz4Stream() : context_(Context()) { LZ4F_resetDecompressionContext(context_); }
 
   Progress Step(std::string_view input, char* output, std::size_t room) {
     std::size_t read = input.size();
@@ -67,7 +64,18 @@ class Lz4Stream {
   }
 
  private:
-  LZ4F_dctx* context_ = nullptr;
+  // One for a thread: it has megabytes, which would be new pages for every chunk.
+  static LZ4F_dctx* Context() {
+    struct Owner {
+      Owner() { LZ4F_createDecompressionContext(&context, LZ4F_VERSION); }
+      ~Owner() { LZ4F_freeDecompressionContext(context); }
+      LZ4F_dctx* context = nullptr;
+    };
+    thread_local const Owner owner;
+    return owner.context;
+  }
+
+  LZ4F_dctx* context_;
 };
 
 class ZstdStream {
@@ -83,13 +91,14 @@ class ZstdStream {
   std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context_{ZSTD_createDCtx(), ZSTD_freeDCtx};
 };
 
-// Steps until the end of the input or of the stream. The output grows with what is there, whatever
-// size is claimed.
+// Steps until the end of the input or of the stream. The output has room for a usual compression at
+// once, and grows with what is there, whatever size is claimed.
 template <class Stream>
 void RunStream(std::string_view input, std::optional<std::uint64_t> expected,
                const std::string& name, std::string* output) {
   const std::uint64_t size = expected.value_or(kMaxDecompressed);
-  constexpr std::size_t kFirstRoom = 1 << 16;
+  constexpr std::size_t kUsualRatio = 32;
+  const std::size_t first_room = kUsualRatio * input.size();
   Stream stream;
   std::size_t written = 0;
   bool is_done = false;
@@ -97,7 +106,7 @@ void RunStream(std::string_view input, std::optional<std::uint64_t> expected,
     if (output->size() == written) {
       if (written > size) break;
       // One byte more than is expected shows a stream that is too long.
-      output->resize(std::min<std::size_t>(size + 1, std::max(kFirstRoom, 2 * written)));
+      output->resize(std::min<std::size_t>(size + 1, std::max(first_room, 2 * written)));
     }
     const Progress step = stream.Step(input, output->data() + written, output->size() - written);
     if (step.is_broken) throw InputError(name + ": its compressed bytes are broken");

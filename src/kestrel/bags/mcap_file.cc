@@ -2,9 +2,9 @@
 #include "kestrel/bags/mcap_file.h"
 
 #include <algorithm>
-#include <zlib.h>
 
 #include "kestrel/bags/byte_cursor.h"
+#include "kestrel/bags/checksum.h"
 #include "kestrel/bags/compression.h"
 #include "kestrel/bags/mcap_opcodes.h"
 #include "kestrel/bags/mcap_reader.h"
@@ -26,12 +26,6 @@ std::string McapRecord(std::uint8_t opcode, std::string_view content) {
 // What the records and the indexes of chunks call it.
 std::string_view NameOf(Compression compression) {
   return compression == Compression::kNone ? "" : ToString(compression);
-}
-
-// CRC-32 of some bytes, or of those that have 'before' and these.
-std::uint32_t Checksum(std::string_view bytes, std::uint32_t before = 0) {
-  return static_cast<std::uint32_t>(
-      crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 }  // namespace

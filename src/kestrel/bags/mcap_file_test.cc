@@ -21,8 +21,11 @@
 namespace kestrel {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAreArray;
+using ::testing::EndsWith;
 using ::testing::IsEmpty;
+using ::testing::StartsWith;
 
 const McapChannel kChannel{.topic = "/numbers",
                            .message_encoding = "protobuf",
@@ -153,6 +156,81 @@ TEST(McapFileTest, ChecksumsAreRight) {
   }
   EXPECT_EQ(chunks, 2);
   EXPECT_GT(data_end, 0u);
+}
+
+// What is in the file is found and changed, as a bad disk does it.
+std::string Changed(std::string bytes, std::string_view from, std::string_view to) {
+  const std::size_t at = bytes.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return bytes.replace(at, from.size(), to);
+}
+
+// The places of all checksums of chunks.
+std::vector<std::size_t> ChunkChecksums(std::string_view bytes) {
+  std::vector<std::size_t> places;
+  const std::string name = "file";
+  for (std::size_t at = kMcapMagic.size(); at + kMcapMagic.size() < bytes.size();) {
+    ByteCursor cursor(bytes.substr(at), name);
+    if (cursor.Take<std::uint8_t>() == kMcapChunk) places.push_back(at + 9 + 8 + 8 + 8);
+    at += 9 + cursor.Take<std::uint64_t>();
+  }
+  return places;
+}
+
+std::string WithoutChecksums(std::string bytes) {
+  for (const std::size_t place : ChunkChecksums(bytes)) bytes.replace(place, 4, 4, '\0');
+  return bytes;
+}
+
+// With a footer that knows of no summary.
+std::string WithoutSummary(std::string bytes) {
+  constexpr std::size_t kFooterAndMagic = 20 + 8;
+  return bytes.replace(bytes.size() - kFooterAndMagic, 8, 8, '\0');
+}
+
+// The second chunk has the messages 5 to 9.
+TEST(McapFileTest, AChunkWithAWrongChecksumIsLeftOut) {
+  const TestFolder folder;
+  WriteNumbers(folder / "whole.mcap", 14, true);
+  std::vector<std::string> others;
+  for (const int i : {0, 1, 2, 3, 4, 10, 11, 12, 13}) others.push_back(TextOf(i));
+  const std::string damaged = Changed(ReadFile(folder / "whole.mcap"), "message 7", "massage 7");
+  for (const std::string& bytes : {damaged, WithoutSummary(damaged)}) {
+    const std::string path = folder.Write("damaged.mcap", bytes);
+    EXPECT_THAT(ReadMessages(path), ElementsAreArray(others));
+    McapReader reader(path);
+    reader.Select({0});
+    EXPECT_THAT(reader.remark() + reader.damage(), IsEmpty());
+    for (BagMessage message; reader.Next(&message);) continue;
+    EXPECT_THAT(reader.damage(), StartsWith(path + ": byte "));
+    EXPECT_THAT(reader.damage(), EndsWith("its checksum is wrong; left out: 1 of 3 chunks"));
+  }
+  const std::string unchecked = folder.Write("unchecked.mcap", WithoutChecksums(damaged));
+  EXPECT_THAT(ReadMessages(unchecked), Contains("massage 7"));
+}
+
+TEST(McapFileTest, ASummaryWithAWrongChecksumIsNotUsed) {
+  const TestFolder folder;
+  WriteNumbers(folder / "whole.mcap", 14, true);
+  std::string bytes = ReadFile(folder / "whole.mcap");
+  const std::size_t summary = bytes.rfind("/numbers");
+  bytes.replace(summary, 8, "/letters");
+  const std::string path = folder.Write("damaged.mcap", bytes);
+  const McapReader reader(path);
+  ASSERT_EQ(reader.topics().size(), 1u);
+  EXPECT_EQ(reader.topics()[0].name, "/numbers");
+  EXPECT_THAT(reader.remark(), IsEmpty());
+  EXPECT_THAT(ReadMessages(path), ElementsAreArray(Numbers(14)));
+}
+
+// For the chunks that have none of their own.
+TEST(McapFileTest, TheChecksumOfAllIsCheckedWhereTheFileIsReadThrough) {
+  const TestFolder folder;
+  WriteNumbers(folder / "whole.mcap", 14, true);
+  const std::string unchecked = WithoutSummary(WithoutChecksums(ReadFile(folder / "whole.mcap")));
+  const std::string path = folder.Write("damaged.mcap", unchecked);
+  EXPECT_THAT(McapReader(path).remark(), EndsWith("the checksum of all is wrong"));
+  EXPECT_THAT(ReadMessages(path), ElementsAreArray(Numbers(14)));
 }
 
 TEST(McapFileTest, AFileThatIsThereIsKept) {

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/bags/byte_cursor.h"
+#include "kestrel/bags/checksum.h"
 #include "kestrel/bags/mcap_opcodes.h"
 #include "kestrel/base/error.h"
 
@@ -72,6 +73,12 @@ bool McapReader::HasEndMagic() {
   return file().View(file().size() - kMcapMagic.size(), kMcapMagic.size()) == kMcapMagic;
 }
 
+// Whether the bytes have the checksum; 0 is none.
+bool McapReader::IsIntact(std::uint64_t offset, std::uint64_t size, std::uint32_t checksum) {
+  BytesPart part(&file(), offset, size);
+  return checksum == 0 || ChecksumOf(&part, size) == checksum;
+}
+
 // False when there is no summary, or none that is enough to find all messages.
 bool McapReader::ReadSummary() {
   constexpr std::uint64_t kEnd = kRecordHead + kFooterSize + kMcapMagic.size();
@@ -85,7 +92,10 @@ bool McapReader::ReadSummary() {
   ByteCursor cursor(footer.Content(&file()), footer.name);
   const auto summary = cursor.Take<std::uint64_t>();
   if (summary == 0 || summary > footer.offset) return false;
+  cursor.Bytes(8);  // where the offsets within the summary are
+  const std::uint64_t checked_size = footer.end() - sizeof(std::uint32_t) - summary;
   try {
+    if (!IsIntact(summary, checked_size, cursor.Take<std::uint32_t>())) return false;
     return ReadSummaryRecords(summary, footer.offset);
   } catch (const InputError&) {
     return false;
@@ -174,7 +184,10 @@ void McapReader::ReadThrough() {
       has_end = record.opcode == kMcapDataEnd;
     }
     finish_loose();
-    if (has_end && HasEndMagic()) return;
+    if (has_end && HasEndMagic()) {
+      CheckData(record);
+      return;
+    }
     // The last chunk may be there in part: what is whole of it counts.
     if (record.content_offset > offset && record.opcode == kMcapChunk) {
       const Chunk chunk = ReadChunkHead(record, /*is_cut=*/true);
@@ -185,6 +198,17 @@ void McapReader::ReadThrough() {
     if (chunks().empty()) throw;
   }
   SetCutRemark(offset);
+}
+
+// Messages that are in no chunk, or in one without a checksum, have only that of all.
+void McapReader::CheckData(const Record& data_end) {
+  const bool are_checked = std::all_of(chunks().begin(), chunks().end(),
+                                       [](const Chunk& chunk) { return chunk.checksum != 0; });
+  if (are_checked) return;
+  const std::string content(data_end.Content(&file()));
+  const auto checksum = ByteCursor(content, data_end.name).Take<std::uint32_t>();
+  if (IsIntact(0, data_end.offset, checksum)) return;
+  SetRemark(path() + ": something in it is damaged: the checksum of all is wrong");
 }
 
 // Adds the chunk. Where a record makes no sense the one before it may be half written, too.
@@ -211,6 +235,7 @@ void McapReader::ReadRecordsThrough(ByteSource* records, Chunk chunk) {
     }
   } catch (const InputError&) {
     chunk.records_end = last_offset;
+    chunk.checksum = 0;
     add();
     throw;
   }
@@ -225,7 +250,8 @@ ChunkedBag::Chunk McapReader::ReadChunkHead(const Record& record, bool is_cut) {
   cursor.Bytes(8 + 8);  // first and last time
   Chunk chunk;
   chunk.size = cursor.Take<std::uint64_t>();
-  cursor.Bytes(4);  // checksum
+  const auto checksum = cursor.Take<std::uint32_t>();
+  if (!is_cut) chunk.checksum = checksum;
   chunk.compression = CompressionOf(cursor.Text(), record.name);
   chunk.stored_size = cursor.Take<std::uint64_t>();
   chunk.offset = record.content_offset + (bytes.size() - cursor.left());

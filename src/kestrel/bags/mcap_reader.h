@@ -33,6 +33,8 @@ class McapReader : public ChunkedBag {
   bool ReadRecord(ByteSource* records, std::uint64_t offset, Record* record) const;
 
   bool HasEndMagic();
+  bool IsIntact(std::uint64_t offset, std::uint64_t size, std::uint32_t checksum);
+  void CheckData(const Record& data_end);
   bool ReadSummary();
   bool ReadSummaryRecords(std::uint64_t offset, std::uint64_t end);
   void ReadThrough();

@@ -83,6 +83,7 @@ class SplitBag : public BagReader {
 
   const std::vector<BagTopic>& topics() const override { return topics_; }
   std::string remark() const override { return remark_; }
+  std::string damage() const override { return damage_; }
 
   void Select(const std::vector<std::size_t>& topics) override {
     selected_ = topics;
@@ -97,6 +98,7 @@ class SplitBag : public BagReader {
         message->topic = IndexOf(part_->topics()[message->topic]);
         return true;
       }
+      if (part_ && damage_.empty()) damage_ = part_->damage();
       part_.reset();
       if (next_part_ == folder_.files.size()) return false;
       OpenPart(folder_.files[next_part_++]);
@@ -138,6 +140,7 @@ class SplitBag : public BagReader {
   BagFolder folder_;
   std::vector<BagTopic> topics_;
   std::string remark_;
+  std::string damage_;  // the first that was met
   std::vector<std::size_t> selected_;
   bool is_selected_ = false;
   std::size_t next_part_ = 0;

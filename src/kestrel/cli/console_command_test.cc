@@ -299,7 +299,8 @@ TEST_F(ConsoleCommandTest, APageCalibratesAsTheCommandAndReplacesNothing) {
 TEST_F(ConsoleCommandTest, ABagIsPlayedAndRefusedInTheWordsOfTheCommand) {
   const std::string bag = folder_ / "flight.mcap";
   ASSERT_EQ(Run("convert " + Recording() + " " + bag).status, 0);
-  RunningCommand console("console " + bag + " --address 127.0.0.1:0", folder_.Write("log", ""));
+  RunningCommand console("console " + bag + " --topic /camera/image_raw --address 127.0.0.1:0",
+                         folder_.Write("log", ""));
   const int port = console.Port();
   ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
   TestSocket socket(port);
@@ -324,6 +325,7 @@ TEST_F(ConsoleCommandTest, ABagIsPlayedAndRefusedInTheWordsOfTheCommand) {
   EXPECT_THAT(refused["error"].dump(), HasSubstr(too_few));
   EXPECT_THAT(refused["coverage"].dump(), HasSubstr("of 10 images"));
   ExpectInputError("calibrate mount " + bag, too_few);
+  ExpectInputError("console " + bag + " --topic /up", "flight.mcap: has no topic /up");
 }
 
 TEST_F(ConsoleCommandTest, AResultIsShownOverItsRecording) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "kestrel/camera/calibration_reader.h"
 #include "kestrel/cli/test_command.h"
 #include "kestrel/foxglove/test_protobuf.h"
 
@@ -93,6 +94,36 @@ TEST_F(ConvertCommandTest, HuntFindsInABagWhatItFindsInTheRecording) {
   const std::string bag = Convert(flight, "hunt.bag --compression bz2");
   EXPECT_EQ(Comparable(Result("hunt", bag, "object_detections.csv")), Comparable(detections));
   EXPECT_EQ(ReadFile(bag + ".hunt/object_map.csv"), ReadFile(flight + ".hunt/object_map.csv"));
+}
+
+TEST_F(ConvertCommandTest, CalibrateFindsInABagWhatItFindsInTheRecording) {
+  const std::string flight = folder_ / "flight";
+  ASSERT_EQ(Run("simulate landing --scenario aggressive --seed 11 --output " + flight +
+                " --set frames=60 --set rate_hz=15 --set ground.map_px=256"
+                " --set shutter.rays_per_pixel=4")
+                .status,
+            0);
+  const std::string bag = folder_ / "flight.mcap";
+  ASSERT_EQ(Run("convert " + flight + " " + bag).status, 0);
+  // A bag has no place for the clock offset to start from.
+  const std::string calibrate =
+      "calibrate clock --both --moving --camera " + flight + "/mav0/cam0/sensor.yaml ";
+  const auto result = [&](const std::string& source) {
+    const std::string file = folder_ / "camera.yaml";
+    const Outcome outcome = Run(calibrate + source + " --force --output " + file);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return ReadCalibration(file);
+  };
+  const CameraCalibration of_flight = result(flight);
+  const CameraCalibration of_bag = result(bag + " --topic /camera/image_raw");
+  EXPECT_TRUE(
+      of_bag.body_from_camera->rotation.isApprox(of_flight.body_from_camera->rotation, 1e-6));
+  EXPECT_NEAR(ToSeconds(*of_bag.clock_offset), ToSeconds(*of_flight.clock_offset), 1e-6);
+  EXPECT_GT(ToSeconds(*of_flight.clock_offset), 0.1);
+  ExpectInputError(calibrate + bag + " --topic /up", "flight.mcap: has no topic /up");
+  EXPECT_THAT(Run("calibrate lens " + bag + " --topic /camera/image_raw").err,
+              HasSubstr("60 images"));
+  ExpectInputError("calibrate lens " + bag + " --topic /up", "flight.mcap: has no topic /up");
 }
 
 TEST_F(ConvertCommandTest, WritesFoxglovesMessages) {

@@ -1,24 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Against another implementation of DDS, which ROS 2 has by default: Fast DDS of Debian, that knows
 // nothing of the types but their names.
+#include <algorithm>
 #include <chrono>
-#include <cstdint>
-#include <cstring>
-#include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
-#include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/publisher/Publisher.hpp>
-#include <fastdds/dds/subscriber/DataReader.hpp>
-#include <fastdds/dds/subscriber/SampleInfo.hpp>
-#include <fastdds/dds/subscriber/Subscriber.hpp>
-#include <fastdds/dds/topic/TopicDataType.hpp>
-#include <fastdds/dds/topic/TypeSupport.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-#include <functional>
-#include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
@@ -33,138 +17,28 @@
 #include "kestrel/bags/type_hash.h"
 #include "kestrel/dds/ros2_node.h"
 #include "kestrel/dds/test_dds.h"
+#include "kestrel/dds/test_fast_dds.h"
 
 namespace kestrel {
 namespace {
 
-namespace fast = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
-
 constexpr Duration kPatience = std::chrono::seconds(10);
 constexpr Duration kPause = std::chrono::milliseconds(10);
+constexpr FastQos kKept{.is_kept = true};
 
-// Messages as they are on the wire, as std::string.
-class RawType : public fast::TopicDataType {
- public:
-  explicit RawType(const std::string& name) {
-    constexpr std::uint32_t kMaxSize = 1 << 16;
-    setName(name.c_str());
-    m_typeSize = kMaxSize;
-    m_isGetKeyDefined = false;
-    auto_fill_type_information(false);
-    auto_fill_type_object(false);
+template <class Condition>
+bool WaitUntil(const Condition& holds) {
+  for (const Time end = Now() + kPatience; Now() < end;) {
+    if (holds()) return true;
+    std::this_thread::sleep_for(kPause);
   }
-  bool serialize(void* data, rtps::SerializedPayload_t* payload) override {
-    const auto& bytes = *static_cast<std::string*>(data);
-    payload->encapsulation = CDR_LE;
-    payload->length = static_cast<std::uint32_t>(bytes.size());
-    std::memcpy(payload->data, bytes.data(), bytes.size());
-    return true;
-  }
-  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
-    static_cast<std::string*>(data)->assign(reinterpret_cast<char*>(payload->data),
-                                            payload->length);
-    return true;
-  }
-  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    return [data] { return static_cast<std::uint32_t>(static_cast<std::string*>(data)->size()); };
-  }
-  void* createData() override { return new std::string; }
-  void deleteData(void* data) override { delete static_cast<std::string*>(data); }
-  bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
-};
+  return false;
+}
 
-// What others say of themselves beside their names.
-class UserDataListener : public fast::DomainParticipantListener {
- public:
-  void on_participant_discovery(fast::DomainParticipant*,
-                                rtps::ParticipantDiscoveryInfo&& info) override {
-    Add(info.info.m_userData);
-  }
-  void on_publisher_discovery(fast::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override {
-    Add(info.info.m_qos.m_userData);
-  }
-  void on_subscriber_discovery(fast::DomainParticipant*,
-                               rtps::ReaderDiscoveryInfo&& info) override {
-    Add(info.info.m_qos.m_userData);
-  }
-  std::set<std::string> heard() const {
-    const std::lock_guard lock(mutex_);
-    return heard_;
-  }
-
- private:
-  template <class UserData>
-  void Add(const UserData& data) {
-    const std::lock_guard lock(mutex_);
-    heard_.emplace(data.begin(), data.end());
-  }
-
-  mutable std::mutex mutex_;
-  std::set<std::string> heard_;
-};
-
-// A participant of Fast DDS that is found on this computer alone.
-class FastParticipant {
- public:
-  explicit FastParticipant(int domain) {
-    constexpr std::uint32_t kFirstPort = 7410, kPerDomain = 250, kParticipants = 10;
-    fast::DomainParticipantQos qos;
-    const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-    udp->interfaceWhiteList.emplace_back("127.0.0.1");
-    qos.transport().use_builtin_transports = false;
-    qos.transport().user_transports.push_back(udp);
-    for (std::uint32_t i = 0; i < kParticipants; ++i) {
-      rtps::Locator_t peer;
-      rtps::IPLocator::setIPv4(peer, "127.0.0.1");
-      peer.port = kFirstPort + kPerDomain * static_cast<std::uint32_t>(domain) + 2 * i;
-      qos.wire_protocol().builtin.initialPeersList.push_back(peer);
-    }
-    participant_ = fast::DomainParticipantFactory::get_instance()->create_participant(
-        static_cast<std::uint32_t>(domain), qos, &listener_, fast::StatusMask::none());
-  }
-  ~FastParticipant() {
-    participant_->delete_contained_entities();
-    fast::DomainParticipantFactory::get_instance()->delete_participant(participant_);
-  }
-  FastParticipant(const FastParticipant&) = delete;
-  FastParticipant& operator=(const FastParticipant&) = delete;
-
-  const UserDataListener& others() const { return listener_; }
-
-  fast::DataReader* Read(const std::string& topic, const std::string& type, bool is_kept) {
-    fast::DataReaderQos qos;
-    qos.reliability().kind = fast::RELIABLE_RELIABILITY_QOS;
-    if (is_kept) qos.durability().kind = fast::TRANSIENT_LOCAL_DURABILITY_QOS;
-    return participant_->create_subscriber(fast::SUBSCRIBER_QOS_DEFAULT)
-        ->create_datareader(Topic(topic, type), qos);
-  }
-  fast::DataWriter* Write(const std::string& topic, const std::string& type) {
-    fast::DataWriterQos qos;
-    qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
-    qos.durability().kind = fast::TRANSIENT_LOCAL_DURABILITY_QOS;
-    return participant_->create_publisher(fast::PUBLISHER_QOS_DEFAULT)
-        ->create_datawriter(Topic(topic, type), qos);
-  }
-
- private:
-  fast::Topic* Topic(const std::string& topic, const std::string& type) {
-    fast::TypeSupport(new RawType(type)).register_type(participant_);
-    return participant_->create_topic(topic, type, fast::TOPIC_QOS_DEFAULT);
-  }
-
-  UserDataListener listener_;
-  fast::DomainParticipant* participant_;
-};
-
-// The first message that comes, without what fills it up to four bytes.
+// The first message that comes; empty when none does.
 std::string Hear(fast::DataReader* reader) {
   std::string bytes;
-  fast::SampleInfo info;
-  if (!reader->wait_for_unread_message({10, 0})) return "";
-  reader->take_next_sample(&bytes, &info);
-  bytes.resize(bytes.size() - static_cast<std::size_t>(bytes.at(3) & 3));
-  bytes[3] = 0;
+  WaitUntil([&] { return TakeRaw(reader, &bytes); });
   return bytes;
 }
 
@@ -184,7 +58,7 @@ TEST(FastDds, HearsWhatANodePublishes) {
   const std::size_t track = node.Advertise("/kestrel/track", OdometryMessage::kType, kLatchedQos);
   ASSERT_TRUE(node.Publish(track, bytes));
   FastParticipant peer(domain);
-  EXPECT_EQ(Hear(peer.Read("rt/kestrel/track", "nav_msgs::msg::dds_::Odometry_", true)), bytes);
+  EXPECT_EQ(Hear(peer.Read("rt/kestrel/track", "nav_msgs::msg::dds_::Odometry_", kKept)), bytes);
 }
 
 TEST(FastDds, IsHeardByANode) {
@@ -193,7 +67,7 @@ TEST(FastDds, IsHeardByANode) {
   Ros2Node node(domain, {"kestrel"});
   node.Subscribe("/odom", OdometryMessage::kType, kLatchedQos);
   FastParticipant peer(domain);
-  peer.Write("rt/odom", "nav_msgs::msg::dds_::Odometry_")->write(&bytes);
+  peer.Write("rt/odom", "nav_msgs::msg::dds_::Odometry_", kKept)->write(&bytes);
   std::optional<std::string> heard;
   for (const Time end = Now() + kPatience; !heard && Now() < end;) {
     node.Take(kPause, [&](std::size_t, std::string_view message) { heard = std::string(message); });
@@ -207,17 +81,33 @@ TEST(FastDds, IsToldTheHashesOfTypes) {
   node.Advertise("/image", ImageMessage::kType, kSensorDataQos);
   node.Subscribe("/tf", TfMessage::kType, kTransformsQos);
   const FastParticipant peer(domain);
-  const std::vector<std::string> expected{
+  const std::set<std::string> expected{
       "enclave=/;", "typehash=" + TypeHash("sensor_msgs/Image") + ";",
       "typehash=" + TypeHash("tf2_msgs/TFMessage") + ";",
       "typehash=" + TypeHash("rmw_dds_common/ParticipantEntitiesInfo") + ";"};
-  for (const Time end = Now() + kPatience; peer.others().heard().size() < 4 && Now() < end;) {
-    std::this_thread::sleep_for(kPause);
-  }
-  EXPECT_THAT(peer.others().heard(), ::testing::IsSupersetOf(expected));
+  std::set<std::string> heard;
+  WaitUntil([&] {
+    for (const FastEntity& entity : peer.others().heard()) heard.insert(entity.user_data);
+    return heard.size() >= expected.size();
+  });
+  EXPECT_EQ(heard, expected);
 }
 
-// ParticipantEntitiesInfo, field by field, as Iron and later ones and as Humble have it.
+// The 16 bytes by which 'peer' knows the endpoint of a topic, or with "" the participant; empty
+// when it does not come to know it.
+std::string GidHeard(const FastParticipant& peer, const std::string& topic) {
+  std::string gid;
+  WaitUntil([&] {
+    for (const FastEntity& entity : peer.others().heard()) {
+      if (entity.topic == topic) gid = entity.gid;
+    }
+    return !gid.empty();
+  });
+  return gid;
+}
+
+// ParticipantEntitiesInfo, field by field, as Iron and later ones and as Humble have it; all Gids
+// are those by which the other side knows the endpoints, up to 24 bytes with zeros for Humble.
 TEST(FastDds, ListsTheNode) {
   for (const bool is_humble : {false, true}) {
     const int domain = TestDomain();
@@ -226,39 +116,118 @@ TEST(FastDds, ListsTheNode) {
     node.Subscribe("/b", TfMessage::kType, kDefaultQos);
     node.Subscribe("/c", TfMessage::kType, kDefaultQos);
     FastParticipant peer(domain);
-    const std::string bytes =
-        Hear(peer.Read("ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_",
-                       /*is_kept=*/true));
+    const std::string bytes = Hear(peer.Read(
+        "ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_", kKept));
     const std::string name = "info";
     WireReader wire(bytes, WireFormat::kCdr, name);
-    const auto gid = [&] {
-      std::string read(is_humble ? 24 : 16, '\0');
+    const auto expect_gid = [&](const std::string& topic) {
+      const std::string heard = GidHeard(peer, topic);
+      EXPECT_EQ(heard.size(), 16u) << topic;
+      std::string read(is_humble ? 24 : 16, '\xff');
       for (char& byte : read) wire(byte);
-      return read;
+      EXPECT_EQ(read, heard + std::string(read.size() - heard.size(), '\0')) << topic;
     };
-    const auto count = [&] {
+    const auto expect_count = [&](std::uint32_t expected) {
       std::uint32_t number = 0;
       wire(number);
-      return number;
+      EXPECT_EQ(number, expected);
     };
-    const std::string participant = gid();
-    ASSERT_EQ(count(), 1u);
+    expect_gid("");
+    expect_count(1);
     std::string name_space, node_name;
     wire(name_space);
     wire(node_name);
     EXPECT_EQ(name_space, "/");
     EXPECT_EQ(node_name, "eyes");
-    ASSERT_EQ(count(), 2u);
-    const std::vector<std::string> readers{gid(), gid()};
-    ASSERT_EQ(count(), 1u);
-    const std::string writer = gid();
-    // The first twelve bytes are the participant's in all, the rest tells them apart.
-    constexpr std::size_t kPrefix = 12;
-    for (const std::string& endpoint : {readers[0], readers[1], writer}) {
-      EXPECT_EQ(endpoint.substr(0, kPrefix), participant.substr(0, kPrefix));
-      EXPECT_NE(endpoint, participant);
-    }
-    EXPECT_NE(readers[0], readers[1]);
+    expect_count(2);
+    expect_gid("rt/b");
+    expect_gid("rt/c");
+    expect_count(1);
+    expect_gid("rt/a");
+  }
+}
+
+// As docs.ros.org has it: a subscriber hears a publisher that offers as much as it asks for.
+// Kestrel offers no deadline and no lease, and asks for none.
+struct QosPair {
+  const char* what;
+  Ros2Qos own;
+  FastQos other;
+  // Where the other subscribes and where it publishes: the policy that does not match, 0 where all
+  // do.
+  fast::QosPolicyId_t subscribing, publishing;
+};
+
+constexpr fast::QosPolicyId_t kMatch{};
+constexpr Ros2Qos kBestEffort{false, false, 5};
+constexpr Ros2Qos kBestEffortKept{false, true, 5};
+
+const QosPair kQosPairs[] = {
+    {"alike", kDefaultQos, {}, kMatch, kMatch},
+    {"the other best effort",
+     kDefaultQos,
+     {.is_reliable = false},
+     kMatch,
+     fast::RELIABILITY_QOS_POLICY_ID},
+    {"the other reliable", kBestEffort, {}, fast::RELIABILITY_QOS_POLICY_ID, kMatch},
+    {"both best effort", kBestEffort, {.is_reliable = false}, kMatch, kMatch},
+    {"the other kept", kDefaultQos, kKept, fast::DURABILITY_QOS_POLICY_ID, kMatch},
+    {"the other volatile", kLatchedQos, {}, kMatch, fast::DURABILITY_QOS_POLICY_ID},
+    {"both kept", kLatchedQos, kKept, kMatch, kMatch},
+    {"both kept, best effort",
+     kBestEffortKept,
+     {.is_reliable = false, .is_kept = true},
+     kMatch,
+     kMatch},
+    {"a deadline", kDefaultQos, {.deadline_s = 1}, fast::DEADLINE_QOS_POLICY_ID, kMatch},
+    {"alive by the topic",
+     kDefaultQos,
+     {.liveliness = fast::MANUAL_BY_TOPIC_LIVELINESS_QOS},
+     fast::LIVELINESS_QOS_POLICY_ID,
+     kMatch},
+    {"alive by the participant",
+     kDefaultQos,
+     {.liveliness = fast::MANUAL_BY_PARTICIPANT_LIVELINESS_QOS},
+     fast::LIVELINESS_QOS_POLICY_ID,
+     kMatch},
+    {"a lease", kDefaultQos, {.lease_s = 5}, fast::LIVELINESS_QOS_POLICY_ID, kMatch},
+};
+
+// What the other says of a pair: whether they match, and which policy does not.
+bool IsAsExpected(int matches, const fast::IncompatibleQosStatus& refused,
+                  fast::QosPolicyId_t expected) {
+  if (expected == kMatch) return matches == 1 && refused.total_count == 0;
+  return matches == 0 && refused.total_count > 0 && refused.last_policy_id == expected;
+}
+
+TEST(FastDds, QosMatchesAsInRos) {
+  const int domain = TestDomain();
+  const std::string type = "tf2_msgs::msg::dds_::TFMessage_";
+  Ros2Node node(domain, {});
+  FastParticipant peer(domain);
+  for (const QosPair& pair : kQosPairs) {
+    const std::string name = pair.what;
+    const std::string topic = "q" + std::to_string(&pair - kQosPairs);
+    node.Advertise("/to_" + topic, TfMessage::kType, pair.own);
+    node.Subscribe("/from_" + topic, TfMessage::kType, pair.own);
+    fast::DataReader* const reader = peer.Read("rt/to_" + topic, type, pair.other);
+    fast::DataWriter* const writer = peer.Write("rt/from_" + topic, type, pair.other);
+    EXPECT_TRUE(WaitUntil([&] {
+      fast::SubscriptionMatchedStatus matched;
+      fast::IncompatibleQosStatus refused;
+      reader->get_subscription_matched_status(matched);
+      reader->get_requested_incompatible_qos_status(refused);
+      return IsAsExpected(matched.current_count, refused, pair.subscribing);
+    })) << name
+        << ", the other subscribes";
+    EXPECT_TRUE(WaitUntil([&] {
+      fast::PublicationMatchedStatus matched;
+      fast::IncompatibleQosStatus refused;
+      writer->get_publication_matched_status(matched);
+      writer->get_offered_incompatible_qos_status(refused);
+      return IsAsExpected(matched.current_count, refused, pair.publishing);
+    })) << name
+        << ", the other publishes";
   }
 }
 

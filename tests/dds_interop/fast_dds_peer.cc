@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Usage: fast_dds_peer. What Fast DDS hears and says in a domain that is free, as bytes that it
+// does not understand; ends when stdin does. Commands on stdin, a line each:
+//
+//   read TOPIC TYPE QOS         listens; QOS: best_effort, reliable or kept
+//   write TOPIC TYPE QOS SIZE   publishes the SIZE bytes that follow the line
+//
+// On stdout, a line each, with SIZE bytes after it:
+//
+//   domain NUMBER SIZE                 and the CYCLONEDDS_URI by which others get there
+//   participant GID - - SIZE           who was found, and its user data; GID: hexadecimal
+//   reader|writer GID TOPIC TYPE SIZE  the same of an endpoint
+//   message TOPIC SIZE                 what was heard
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <poll.h>
+#include <sstream>
+#include <string>
+#include <unistd.h>
+
+#include "kestrel/dds/test_dds.h"
+#include "kestrel/dds/test_fast_dds.h"
+
+namespace kestrel {
+namespace {
+
+void Say(const std::string& words, const std::string& bytes) {
+  std::printf("%s %zu\n", words.c_str(), bytes.size());
+  std::fwrite(bytes.data(), 1, bytes.size(), stdout);
+  std::fflush(stdout);
+}
+
+std::string Hexadecimal(const std::string& bytes) {
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string text;
+  for (const unsigned char byte : bytes) text += {kDigits[byte >> 4], kDigits[byte & 15]};
+  return text;
+}
+
+FastQos QosOf(const std::string& name) {
+  return {.is_reliable = name != "best_effort", .is_kept = name == "kept"};
+}
+
+class Peer {
+ public:
+  explicit Peer(int domain) : participant_(domain) {}
+
+  // Carries out what is whole of the commands; the rest is left in 'input'.
+  void Obey(std::string* input) {
+    for (std::size_t end; (end = input->find('\n')) != std::string::npos;) {
+      std::istringstream line(input->substr(0, end));
+      std::string verb, topic, type, qos;
+      std::size_t size = 0;
+      line >> verb >> topic >> type >> qos >> size;
+      if (input->size() < end + 1 + size) return;
+      std::string bytes = input->substr(end + 1, size);
+      input->erase(0, end + 1 + size);
+      if (verb == "read") {
+        readers_[topic] = participant_.Read(topic, type, QosOf(qos));
+      } else {
+        fast::DataWriter*& writer = writers_[topic];
+        if (writer == nullptr) writer = participant_.Write(topic, type, QosOf(qos));
+        writer->write(&bytes);
+      }
+    }
+  }
+
+  void Report() {
+    const std::vector<FastEntity> others = participant_.others().heard();
+    for (; told_ < others.size(); ++told_) {
+      const FastEntity& other = others[told_];
+      const std::string gid = Hexadecimal(other.gid);
+      if (other.topic.empty()) {
+        Say("participant " + gid + " - -", other.user_data);
+      } else {
+        const std::string kind = other.is_writer ? "writer " : "reader ";
+        Say(kind + gid + " " + other.topic + " " + other.type, other.user_data);
+      }
+    }
+    std::string bytes;
+    for (const auto& [topic, reader] : readers_) {
+      while (TakeRaw(reader, &bytes)) Say("message " + topic, bytes);
+    }
+  }
+
+ private:
+  FastParticipant participant_;
+  std::map<std::string, fast::DataReader*> readers_;
+  std::map<std::string, fast::DataWriter*> writers_;
+  std::size_t told_ = 0;
+};
+
+int Run() {
+  const int domain = TestDomain();
+  Peer peer(domain);
+  Say("domain " + std::to_string(domain), std::getenv("CYCLONEDDS_URI"));
+  constexpr int kPause_ms = 2;
+  std::string input;
+  for (;;) {
+    pollfd wait{STDIN_FILENO, POLLIN, 0};
+    if (poll(&wait, 1, kPause_ms) > 0) {
+      char bytes[1 << 16];
+      const ssize_t count = read(STDIN_FILENO, bytes, sizeof(bytes));
+      if (count <= 0) return 0;
+      input.append(bytes, static_cast<std::size_t>(count));
+      peer.Obey(&input);
+    }
+    peer.Report();
+  }
+}
+
+}  // namespace
+}  // namespace kestrel
+
+int main() { return kestrel::Run(); }
