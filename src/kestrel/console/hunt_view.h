@@ -28,6 +28,9 @@ std::vector<OverlayShape> HuntShapes(const HuntView& view, const HuntObservation
 // How many objects there are, or that there is none.
 ConsoleStatus HuntStatus(const HuntObservation& observation);
 
+// How many objects there are, and which.
+std::vector<ConsoleFact> HuntFacts(const HuntView& view, const HuntObservation& observation);
+
 // The camera, as LandingMap, and the objects in view that have a place in the world.
 ConsoleMap HuntMap(const HuntView& view, const HuntObservation& observation);
 
