@@ -176,7 +176,7 @@ async function useKeysAlone(t) {
   await page.keyboard.press("ArrowDown");
   await t.tabTo(page, "textbox", /outer_diameter/);
   await page.keyboard.press("Control+a");
-  await page.keyboard.type("5");
+  await page.keyboard.type("0.9");
   await page.keyboard.press("Enter");
   await page.getByText("Second run (below)").waitFor();
   await t.tabTo(page, "button", "Beside each other");
