@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a user can do, by button or key.
+import { wholeOr, withFirst, withLast, type FrameRange } from "./clip";
 import { connection } from "./connection";
 import type { CommandName, Layer } from "./protocol";
 import { store } from "./store";
@@ -80,6 +81,29 @@ export function seekDifference(direction: 1 | -1): void {
   if (!timeline || !playback || second?.state !== "done") return;
   const frame = nextDifference(timeline.marks, second.marks, playback.frame, direction);
   if (frame !== null) seekFrame(frame);
+}
+
+/** Both runs over one picture, or each with a picture of its own. */
+export function toggleBeside(): void {
+  store.set({ isBeside: !store.state.isBeside });
+}
+
+function chooseClip(change: (range: FrameRange, frame: number) => FrameRange): void {
+  const { timeline, playback, clipRange } = store.state;
+  if (!timeline || !playback) return;
+  store.set({ clipRange: change(wholeOr(clipRange, timeline.times_ms.length), playback.frame) });
+}
+
+export function beginClipHere(): void {
+  chooseClip(withFirst);
+}
+
+export function endClipHere(): void {
+  chooseClip(withLast);
+}
+
+export function clipAll(): void {
+  store.set({ clipRange: null });
 }
 
 export function nextTheme(): void {

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import {
+  beginClipHere,
+  clipAll,
+  endClipHere,
   isOffered,
   nextTheme,
   seekDifference,
   seekTrouble,
   step,
   takeSnapshot,
+  toggleBeside,
   toggleHelp,
   toggleLayer,
   togglePlaying,
@@ -25,6 +29,7 @@ export interface Key {
   act: () => void;
 }
 
+const hasExports = () => store.state.hello?.exports ?? false;
 const has = (name: CommandName) => () => isOffered(name);
 
 const hasViews = () => (store.state.hello?.views.length ?? 0) > 0;
@@ -45,6 +50,15 @@ const mainKeys: Key[] = [
   { keys: ["p"], meaning: "to those before", isOffered: has("seek"), act: () => seekTrouble(-1) },
   { keys: ["d"], meaning: "to the next frame where two runs differ", isOffered: has("detect"), act: () => seekDifference(1) },
   { keys: ["D"], meaning: "to the one before", isOffered: has("detect"), act: () => seekDifference(-1) },
+  {
+    keys: ["b"],
+    meaning: "two runs beside each other, or both over one picture",
+    isOffered: has("detect"),
+    act: toggleBeside,
+  },
+  { keys: ["i"], meaning: "a clip begins with this frame", isOffered: hasExports, act: beginClipHere },
+  { keys: ["o"], meaning: "it ends with this one", isOffered: hasExports, act: endClipHere },
+  { keys: ["a"], meaning: "a clip of the whole recording", isOffered: hasExports, act: clipAll },
   { keys: ["r"], meaning: "start or stop recording", isOffered: has("record"), act: toggleRecording },
   { keys: ["s"], meaning: "keep a snapshot", isOffered: has("snapshot"), act: takeSnapshot },
 ];

@@ -47,7 +47,7 @@ export function pointsOf(
   track: [number, number][],
   sigmas: number,
 ): [number, number][] {
-  const objects = [...map.objects, ...map.prediction, ...(map.target ? [map.target] : [])];
+  const objects = [...map.objects, ...map.mapped, ...map.prediction, ...(map.target ? [map.target] : [])];
   const corners = objects.flatMap(({ position: [x, y], covariance: [xx, , yy] }) => {
     const [dx, dy] = [sigmas * Math.sqrt(xx), sigmas * Math.sqrt(yy)];
     return [

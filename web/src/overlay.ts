@@ -6,11 +6,27 @@ const styles: Record<Layer, { color: string; dash: number[] }> = {
   detection: { color: "#3dff6e", dash: [] },
   prediction: { color: "#5cc8ff", dash: [8, 5] },
   rejected: { color: "#ff7a5c", dash: [5, 4] },
+  truth: { color: "#ffffff", dash: [1, 3] },
   second: { color: "#ffd84a", dash: [2, 4] },
 };
 
 export function layerColor(layer: Layer): string {
   return styles[layer].color;
+}
+
+/** For a picture of both runs: what the second found is a layer of its own. */
+export function together(shapes: Shape[]): Shape[] {
+  const isOver = ({ run, layer }: Shape) => run === 1 || layer === "detection" || layer === "rejected";
+  return shapes.filter(isOver).map((shape) => (shape.run === 1 ? shape : asSecond(shape)));
+}
+
+function asSecond(shape: Shape): Shape {
+  return { ...shape, layer: "second", label: shape.label === "" ? "" : `second: ${shape.label}` };
+}
+
+/** For a picture of one run: all its layers. */
+export function ofRun(shapes: Shape[], run: 1 | 2): Shape[] {
+  return shapes.filter((shape) => shape.run === run);
 }
 
 /**

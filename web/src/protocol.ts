@@ -5,7 +5,7 @@ import type { Calibration } from "./calibration";
 
 import type { Colors, ColorScores } from "./color_protocol";
 
-export const layers = ["detection", "prediction", "rejected", "second"] as const;
+export const layers = ["detection", "prediction", "rejected", "truth", "second"] as const;
 export type Layer = (typeof layers)[number];
 
 /** A closed line over the image, x and y in turn, in pixels of the frame; one point is a mark. */
@@ -13,6 +13,8 @@ export interface Shape {
   layer: Layer;
   label: string;
   outline: number[];
+  /** Of the detector over a recording; a flight has the first only. */
+  run: 1 | 2;
 }
 
 export interface FrameHeader {
@@ -90,7 +92,10 @@ export interface MapMessage {
   target: MapObject | null;
   velocity: [number, number];
   prediction: MapObject[];
+  /** In view. */
   objects: MapObject[];
+  /** What a hunt's map has by now. */
+  mapped: MapObject[];
 }
 
 export interface Check {
@@ -156,6 +161,26 @@ export interface SecondRun {
   marks: string;
 }
 
+/** Something about a frame in words. */
+export interface Fact {
+  name: string;
+  value: string;
+}
+
+/** What the first run found in the frame that is shown and, once it is done, the second. */
+export interface Findings {
+  kind: "findings";
+  frame: number;
+  runs: Fact[][];
+}
+
+/** How many frames of a clip are made; of none, when no clip is. */
+export interface ClipProgress {
+  kind: "clip";
+  done: number;
+  frames: number;
+}
+
 export interface LinkReport {
   kind: "link";
   dropped: number;
@@ -176,6 +201,8 @@ export type ServerMessage =
   | Playback
   | OptionList
   | SecondRun
+  | Findings
+  | ClipProgress
   | Colors
   | ColorScores
   | Calibration

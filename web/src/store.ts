@@ -2,9 +2,12 @@
 import type { Colors, ColorScores } from "./color_protocol";
 import { firstColorView, viewAfter, type ColorView } from "./color_view";
 import type { Calibration } from "./calibration";
+import type { FrameRange } from "./clip";
 import type {
+  ClipProgress,
   Doctor,
   EventMessage,
+  Findings,
   Health,
   Hello,
   Layer,
@@ -39,6 +42,12 @@ export interface State {
   playback: Playback | null;
   options: Option[];
   second: SecondRun | null;
+  findings: Findings | null;
+  /** Two pictures, one for each run. */
+  isBeside: boolean;
+  /** What a clip is made of; null: the whole recording. */
+  clipRange: FrameRange | null;
+  clip: ClipProgress | null;
   colors: Colors | null;
   colorScores: ColorScores | null;
   colorView: ColorView;
@@ -72,6 +81,10 @@ export function initialState(): State {
     playback: null,
     options: [],
     second: null,
+    findings: null,
+    isBeside: false,
+    clipRange: null,
+    clip: null,
     colors: null,
     colorScores: null,
     colorView: firstColorView,
@@ -79,7 +92,7 @@ export function initialState(): State {
     link: null,
     series: new SeriesBuffer(0),
     track: [],
-    layers: { detection: true, prediction: true, rejected: true, second: true },
+    layers: { detection: true, prediction: true, rejected: true, truth: true, second: true },
     view: "",
     isFrozen: false,
     isHelpShown: false,
@@ -105,6 +118,9 @@ export function withMessage(state: State, message: ServerMessage): State {
         playback: null,
         options: [],
         second: null,
+        findings: null,
+        clipRange: null,
+        clip: null,
         colors: null,
         colorScores: null,
         calibration: null,
@@ -131,6 +147,10 @@ export function withMessage(state: State, message: ServerMessage): State {
       return { ...state, options: message.options };
     case "second":
       return { ...state, second: message };
+    case "findings":
+      return { ...state, findings: message };
+    case "clip":
+      return { ...state, clip: message };
     case "colors":
       return { ...state, colors: message, colorView: viewAfter(state.colorView, message) };
     case "color-scores":

@@ -26,6 +26,7 @@ function mapAt(x: number): MapMessage {
     velocity: [0, 0],
     prediction: [],
     objects: [],
+    mapped: [],
   };
 }
 
@@ -60,6 +61,16 @@ describe("store", () => {
     for (let i = 0; i < 1000; i++) state = withMessage(state, mapAt(i));
     expect(state.track.length).toBe(600);
     expect(withMessage(state, mapAt(999.01)).track).toBe(state.track);
+  });
+
+  test("of a recording that is opened anew no clip is chosen", () => {
+    const before = withMessage(
+      { ...initialState(), clipRange: { first: 3, last: 9 } },
+      { kind: "findings", frame: 3, runs: [[{ name: "found", value: "yes" }]] },
+    );
+    expect(before.findings?.runs).toHaveLength(1);
+    const anew = withMessage(before, hello);
+    expect([anew.clipRange, anew.findings]).toEqual([null, null]);
   });
 
   test("tells its listeners of changes until they leave", () => {

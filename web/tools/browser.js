@@ -9,6 +9,9 @@ import { join, resolve as resolvePath } from "node:path";
 import { chromium } from "playwright-core";
 import { findingsOf } from "./axe.js";
 
+/** How long anything may take on a computer that others use, ms. */
+const patience = 240_000;
+
 /**
  * Runs one part after the other, each with a Try. The arguments are the program and a folder for
  * pictures. Ends with status 1 when something is not as it should be; the other parts are run all
@@ -80,15 +83,23 @@ class Try {
     await ended;
   }
 
-  /** Runs the program until it is done; throws when it fails. */
+  /** Runs the program until it is done; throws when it fails. Returns what it prints. */
   run(args) {
-    const done = spawnSync(this.#kestrel, args, { cwd: this.scratch });
+    const done = spawnSync(this.#kestrel, args, { cwd: this.scratch, maxBuffer: 1 << 28 });
     if (done.status !== 0) throw new Error(done.stderr.toString());
     return done.stdout.toString();
   }
 
+  /** Makes a recording; settings are as "frames=60". Returns its folder. */
+  simulate(what, folder, args, settings) {
+    const changes = settings.flatMap((setting) => ["--set", setting]);
+    this.run(["simulate", what, ...args, "--output", folder, ...changes]);
+    return folder;
+  }
+
   async openPage(link) {
     const page = await this.#browser.newPage({ viewport: { width: 1440, height: 1000 } });
+    page.setDefaultTimeout(patience);
     page.on("pageerror", (error) => this.expect(false, `${link}: ${error}`));
     await page.addInitScript(() => localStorage.setItem("kestrel-theme", "light"));
     await page.goto(link);
@@ -100,13 +111,24 @@ class Try {
   }
 
   /** Waits until the state in words is so. */
-  async waitForState(page, pattern, timeout = 30_000) {
+  async waitForState(page, pattern) {
     const isSo = ({ source }) => new RegExp(source).test(document.querySelector(".state-word")?.textContent ?? "");
-    await page.waitForFunction(isSo, { source: pattern.source }, { timeout });
+    await page.waitForFunction(isSo, { source: pattern.source });
   }
 
-  async takePicture(page, name) {
-    await page.screenshot({ path: join(this.#folder, `${name}.png`) });
+  /** Goes by Tab to what has this role and name. */
+  async tabTo(page, role, name) {
+    const wanted = page.getByRole(role, { name });
+    for (let i = 0; i < 90; i += 1) {
+      await page.keyboard.press("Tab");
+      if (await wanted.evaluate((element) => element === document.activeElement)) return;
+    }
+    this.expect(false, `Tab does not lead to ${name}`);
+  }
+
+  /** 'options': Playwright's, as fullPage. */
+  async takePicture(page, name, options = {}) {
+    await page.screenshot({ path: join(this.#folder, `${name}.png`), ...options });
   }
 
   async expectAccessible(page, name) {

@@ -42,7 +42,8 @@ function projection(flight) {
   };
 }
 
-export function shapesAt(flight) {
+/** 'hasSecond': of a second run, too, which finds the pattern elsewhere. */
+export function shapesAt(flight, hasSecond) {
   const { scale, u, v } = projection(flight);
   const circle = (x, y, radius) =>
     Array.from({ length: 64 }, (_, i) => {
@@ -57,7 +58,10 @@ export function shapesAt(flight) {
     shapes.push({ layer: "detection", label: "quadrants 0.93", outline: circle(u, v, 0.5 * scale) });
     shapes.push({ layer: "detection", label: "", outline: [u, v] });
   }
-  return shapes;
+  const first = shapes.map((shape) => ({ ...shape, run: 1 }));
+  if (!hasSecond || !flight.isSeen) return first;
+  const second = { layer: "detection", label: "lines 0.91", outline: circle(u + 3, v + 2, 0.47 * scale), run: 2 };
+  return [...first, second];
 }
 
 /** A gray picture of the pad, as PNG: browsers take it for what it is. */

@@ -82,6 +82,7 @@ class Client {
     this.frame = 0;
     this.speed = 1;
     this.isRecording = false;
+    this.hasSecond = false;
     this.wantsImages = false;
     this.inFlight = null;
     this.colors = new MockColors();
@@ -118,7 +119,20 @@ class Client {
       const mark = markAt(flightAt(i / framesPerSecond));
       return mark === "f" && i % 60 < 12 ? "l" : mark;
     });
-    setTimeout(() => this.send({ ...second, state: "done", done: frameCount, marks: marks.join("") }), 500);
+    setTimeout(() => {
+      this.hasSecond = true;
+      this.send({ ...second, state: "done", done: frameCount, marks: marks.join("") });
+    }, 500);
+  }
+
+  findings(flight) {
+    const facts = (isSeen, quality) => [
+      { name: "found", value: isSeen ? "yes" : "no, ring: not round" },
+      { name: "method", value: isSeen ? "quadrants" : "" },
+      { name: "quality", value: isSeen ? quality : "" },
+    ];
+    const runs = [facts(flight.isSeen, "0.93"), facts(flight.isSeen && this.frame % 60 >= 12, "0.91")];
+    return { kind: "findings", frame: this.frame, runs: this.hasSecond ? runs : runs.slice(0, 1) };
   }
 
   sendTimeline() {
@@ -185,6 +199,7 @@ class Client {
     const values = [flight.altitude, offset, 0.8, quality, detect, 31 + 4 * Math.sin(flight.t)];
     this.send({ kind: "sample", time: this.time(), values });
     this.send(mapOf(flight));
+    if (this.isReplay) this.send(this.findings(flight));
     if (this.isReplay) this.send({ kind: "playback", frame: this.frame, speed: this.speed });
     if (this.frame % 10 === 0) this.send({ kind: "link", dropped: 0, images: this.frame, draw_ms: 24, clients: 1 });
     this.sendImage(flight);
@@ -203,7 +218,7 @@ class Client {
         view: this.view,
         width,
         height,
-        shapes: shapesAt(flight),
+        shapes: shapesAt(flight, this.hasSecond),
       }),
     );
     const size = Buffer.alloc(4);
@@ -232,6 +247,7 @@ function mapOf(flight) {
     velocity: [0.8, 0],
     prediction: isKnown ? ahead : [],
     objects: [],
+    mapped: [],
   };
 }
 

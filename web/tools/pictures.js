@@ -16,6 +16,7 @@ const views = [
   { name: "live-sun", theme: "sun", width: 1440, height: 1000 },
   { name: "live-tablet", theme: "light", width: 820, height: 1180 },
   { name: "replay", theme: "light", width: 1440, height: 1000, isReplay: true },
+  { name: "beside-tablet", theme: "sun", width: 1024, height: 768, isReplay: true, isBeside: true },
   { name: "colors", theme: "light", width: 1440, height: 1000, isReplay: true, isColors: true },
   { name: "colors-dark", theme: "dark", width: 1440, height: 1000, isReplay: true, isColors: true },
   { name: "colors-tablet", theme: "sun", width: 820, height: 1180, isReplay: true, isColors: true },
@@ -40,6 +41,7 @@ for (const view of views) {
   else await page.keyboard.press("3");
   if (view.calibrates) await calibrate(page);
   if (view.isReplay && !view.isColors && !view.calibrates) await detectAgain(page);
+  if (view.isBeside) await page.keyboard.press("b");
   await page.waitForTimeout(view.isColors || view.calibrates ? 1000 : 7000);
   await page.screenshot({ path: join(folder, `${view.name}.png`) });
   for (const finding of await findingsOf(page)) report(`${view.name}: ${finding}`);

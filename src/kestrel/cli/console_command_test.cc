@@ -1,62 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <chrono>
-#include <csignal>
 #include <filesystem>
-#include <regex>
 #include <string>
-#include <sys/types.h>
-#include <sys/wait.h>
-#include <thread>
-#include <unistd.h>
 
-#include "kestrel/cli/test_command.h"
+#include "kestrel/cli/test_running_command.h"
 #include "kestrel/console/test_browser.h"
 
 namespace kestrel {
 namespace {
 
 using ::testing::HasSubstr;
-
-// The command while it runs; ends with Ctrl-C.
-class RunningCommand {
- public:
-  // 'log': the file of its stderr.
-  RunningCommand(const std::string& arguments, const std::string& log) : log_(log) {
-    const std::string line = fmt::format("exec {} {} 2>'{}'", KESTREL_COMMAND, arguments, log);
-    process_ = fork();
-    if (process_ != 0) return;
-    execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
-    _exit(127);
-  }
-  ~RunningCommand() { End(); }
-
-  // Where it serves its page; 0 when it does not say so.
-  int Port() const {
-    const std::regex url("console: http://127\\.0\\.0\\.1:([0-9]+)/");
-    for (int i = 0; i < 1000; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      std::smatch match;
-      const std::string log = ReadFile(log_);
-      if (std::regex_search(log, match, url)) return std::stoi(match[1]);
-      if (waitpid(process_, nullptr, WNOHANG) != 0) return 0;
-    }
-    return 0;
-  }
-
-  // Its exit status; -1 when it had ended by itself.
-  int End() {
-    if (process_ <= 0) return -1;
-    kill(process_, SIGINT);
-    int status = 0;
-    const bool was_there = waitpid(process_, &status, 0) == process_;
-    process_ = 0;
-    return was_there && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-
- private:
-  std::string log_;
-  pid_t process_ = 0;
-};
 
 class ConsoleCommandTest : public CommandTest {
  protected:

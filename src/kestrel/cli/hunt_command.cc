@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/cli/ground_warning.h"
 #include "kestrel/cli/hunt_sink.h"
 #include "kestrel/cli/pipeline_run.h"
 #include "kestrel/cli/source_arguments.h"
@@ -26,26 +27,6 @@ struct HuntArguments {
   std::string grid;
   std::vector<double> origin;  // latitude, longitude, degrees; or empty
 };
-
-// What the objects say of the ground, where that contradicts what is told.
-std::string GroundWarning(const HuntPipeline& pipeline, std::optional<double> altitude_m,
-                          bool has_world) {
-  const std::optional<GroundHeight> higher = pipeline.ground_contradiction();
-  if (!higher) return "";
-  if (!has_world) {
-    return fmt::format(
-        "by the size of the objects the camera is {0:.2f} m above the ground (standard deviation "
-        "{1:.2f} m), --altitude says {2:g} m: set --altitude {0:.2f}",
-        *altitude_m - higher->height_m, higher->sigma_m, *altitude_m);
-  }
-  const double ground_m = pipeline.options().ground_height_m;
-  return fmt::format(
-      "by the size of the objects the ground is at z = {0:.2f} m of the navigation's world "
-      "(standard deviation {1:.2f} m), hunt.ground_height_m says {2:g} m: set "
-      "hunt.ground_height_m={0:.2f}, or correct the navigation's z, its clock or the camera's "
-      "mount",
-      ground_m + higher->height_m, higher->sigma_m, ground_m);
-}
 
 class HuntRun : public PipelineRun {
  public:

@@ -20,13 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::optional<std::string> ResultTable(const std::string& source) {
-  if (fs::path(source).extension() == ".csv") return source;
-  const fs::path table = fs::path(source) / "landing_detections.csv";
-  std::error_code ignored;
-  return fs::exists(table, ignored) ? std::optional(table.string()) : std::nullopt;
-}
-
 // The one of these whose name is in the cell.
 template <class Kind>
 Kind KindIn(const CsvTable& table, std::size_t row, std::size_t column,
@@ -66,26 +59,6 @@ TargetEstimate TargetOf(const TrackRow& row) {
 }
 
 }  // namespace
-
-std::optional<std::string> TakeLandResult(std::vector<std::string>* sources) {
-  std::optional<std::string> result;
-  std::vector<std::string> others;
-  for (const std::string& source : *sources) {
-    const auto table = ResultTable(source);
-    if (!table) {
-      others.push_back(source);
-    } else if (result) {
-      throw InputError(source + ": is a second result, expected one beside its recording");
-    } else {
-      result = table;
-    }
-  }
-  if (result && others.empty()) {
-    throw InputError(*result + ": is a result, expected the recording that it is of beside it");
-  }
-  *sources = others;
-  return result;
-}
 
 LandResult::LandResult(const std::string& table) : file_(table), text_(ReadFile(table)) {
   const CsvTable cells(text_, file_);

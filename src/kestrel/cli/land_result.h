@@ -12,11 +12,6 @@
 
 namespace kestrel {
 
-// Takes what `kestrel land` wrote, a folder with landing_detections.csv or such a file itself, out
-// of the sources. Returns the path of the table; nothing when there is none. Throws InputError when
-// there are several, or nothing else.
-std::optional<std::string> TakeLandResult(std::vector<std::string>* sources);
-
 // What `kestrel land` wrote of a recording, frame by frame, with the track beside it where there is
 // one. What a table does not hold (why the pattern was not found, what became of a detection in the
 // track, how the target turned) is not known.

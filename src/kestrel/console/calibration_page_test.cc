@@ -25,18 +25,17 @@ class CalibrationPageTest : public testing::Test {
   CalibrationPageTest() {
     ConsoleOptions options;
     options.port = 0;
-    console_.emplace(options, "a recording", LandingPipelineOptions(), false);
+    console_.emplace(options, "a recording", ReplaySubject());
     console_->OfferCalibration(
         {Calibrate, [this](const std::string& name, const CalibrationResult&) {
            if (++saved_ > 1) throw InputError("calibrated: cannot be written");
            return "calibrated/" + name + ".yaml";
          }});
     thread_ = std::thread([this] {
-      console_->Play(
-          {PaperView(), Frames(), ""},
-          [](std::size_t) { return cv::Mat(8, 8, CV_8UC1, cv::Scalar(0)); },
-          [](const LandingPipelineOptions&, const SecondRun::GoOn&) { return std::nullopt; },
-          [this] { return is_stopped_.load(); });
+      const auto open = [] {
+        return [](std::size_t) { return cv::Mat(8, 8, CV_8UC1, cv::Scalar(0)); };
+      };
+      console_->Play({Frames(), "", {}}, {open, {}}, [this] { return is_stopped_.load(); });
     });
   }
   ~CalibrationPageTest() override {
@@ -44,10 +43,9 @@ class CalibrationPageTest : public testing::Test {
     thread_.join();
   }
 
-  static LandingView PaperView() { return {CameraModel(PaperCamera()), {}, TurnNoise()}; }
   static std::vector<ReplayFrame> Frames() {
     std::vector<ReplayFrame> frames(9);
-    for (std::size_t i = 0; i < frames.size(); ++i) frames[i].observation.time = Time(i * 100ms);
+    for (std::size_t i = 0; i < frames.size(); ++i) frames[i].time = Time(i * 100ms);
     return frames;
   }
 

@@ -21,6 +21,8 @@ const char* ToString(OverlayLayer layer) {
       return "prediction";
     case OverlayLayer::kRejected:
       return "rejected";
+    case OverlayLayer::kTruth:
+      return "truth";
     case OverlayLayer::kSecond:
       return "second";
   }

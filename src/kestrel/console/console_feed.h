@@ -22,15 +22,18 @@
 
 namespace kestrel {
 
-// What the page can show over the image, each kind switched by itself.
-enum class OverlayLayer { kDetection, kPrediction, kRejected, kSecond };
-const char* ToString(OverlayLayer layer);  // "detection", "prediction", "rejected", "second"
+// What the page can show over the image, each kind switched by itself; kTruth: what there is to be
+// found, where that is known, kSecond: all that a second run found.
+enum class OverlayLayer { kDetection, kPrediction, kRejected, kTruth, kSecond };
+// "detection", "prediction", "rejected", "truth", "second"
+const char* ToString(OverlayLayer layer);
 
 // A closed line over the image with a word about it: what was found and how, or why it was not.
 struct OverlayShape {
   OverlayLayer layer = OverlayLayer::kDetection;
   std::vector<cv::Point2f> outline;  // pixels; one point is a mark
   std::string label;
+  int run = 1;  // of the detector over a recording: the first or the second
 };
 
 // A frame and what was found in it.
@@ -84,7 +87,8 @@ struct ConsoleMap {
   std::optional<ConsoleMapObject> target;
   Eigen::Vector2d target_velocity = Eigen::Vector2d::Zero();  // m/s
   std::vector<ConsoleMapObject> prediction;                   // where the target will be, in order
-  std::vector<ConsoleMapObject> objects;
+  std::vector<ConsoleMapObject> objects;                      // in view
+  std::vector<ConsoleMapObject> mapped;                       // what a hunt's map has by now
 };
 
 // One check of the program's health, as the doctor's.
@@ -123,6 +127,18 @@ struct ConsolePlayback {
   double speed = 0;
 };
 
+// Something about a frame in words, as "method": "quadrants".
+struct ConsoleFact {
+  std::string name;
+  std::string value;
+};
+// What the first run found in the frame that is shown and, once it is done, the second; the same
+// names in the same order.
+struct ConsoleFindings {
+  std::uint64_t frame = 0;
+  std::vector<std::vector<ConsoleFact>> runs;
+};
+
 // An option that the page can change for a second run, by its name in `kestrel config`.
 struct ConsoleOption {
   std::string name;
@@ -144,10 +160,17 @@ struct ConsoleSecondRun {
   std::vector<FrameMark> marks;       // of each frame, once it is done
 };
 
+// A clip that is made: how many of its frames are. None are when no clip is.
+struct ConsoleClip {
+  std::size_t done = 0;
+  std::size_t frames = 0;
+};
+
 using ConsoleUpdate =
     std::variant<ConsoleSample, ConsoleStatus, ConsoleMap, ConsoleHealth, ConsoleEvent,
                  ConsoleTimeline, ConsolePlayback, ConsoleDoctor, ConsoleOptionList,
-                 ConsoleSecondRun, ConsoleColors, ConsoleColorScores, ConsoleCalibration>;
+                 ConsoleSecondRun, ConsoleFindings, ConsoleClip, ConsoleColors, ConsoleColorScores,
+                 ConsoleCalibration>;
 
 // What is to be done by the page of colours.
 using ColorJob = std::variant<ColorRequest, PendingExport>;

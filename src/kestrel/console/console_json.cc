@@ -36,8 +36,10 @@ Json Shape(const OverlayShape& shape) {
     outline.push_back(Rounded(point.x));
     outline.push_back(Rounded(point.y));
   }
-  return {
-      {"layer", ToString(shape.layer)}, {"label", shape.label}, {"outline", std::move(outline)}};
+  return {{"layer", ToString(shape.layer)},
+          {"label", shape.label},
+          {"outline", std::move(outline)},
+          {"run", shape.run}};
 }
 
 Json Object(const ConsoleMapObject& object) {
@@ -72,7 +74,8 @@ Json Message(const ConsoleMap& map) {
           {"target", map.target ? Object(*map.target) : Json()},
           {"velocity", Numbers(map.target_velocity)},
           {"prediction", Objects(map.prediction)},
-          {"objects", Objects(map.objects)}};
+          {"objects", Objects(map.objects)},
+          {"mapped", Objects(map.mapped)}};
 }
 
 Json Checks(const std::vector<ConsoleCheck>& checks) {
@@ -140,6 +143,21 @@ Json Message(const ConsoleSecondRun& run) {
   return {{"kind", "second"},         {"state", kStates[static_cast<int>(run.state)]},
           {"settings", run.settings}, {"done", run.done},
           {"error", run.error},       {"marks", Marks(run.marks)}};
+}
+
+Json Message(const ConsoleFindings& findings) {
+  Json runs = Json::array();
+  for (const std::vector<ConsoleFact>& facts : findings.runs) {
+    Json& run = runs.emplace_back(Json::array());
+    for (const ConsoleFact& fact : facts) {
+      run.push_back({{"name", fact.name}, {"value", fact.value}});
+    }
+  }
+  return {{"kind", "findings"}, {"frame", findings.frame}, {"runs", std::move(runs)}};
+}
+
+Json Message(const ConsoleClip& clip) {
+  return {{"kind", "clip"}, {"done", clip.done}, {"frames", clip.frames}};
 }
 
 // NaN is null, as in all of the messages.

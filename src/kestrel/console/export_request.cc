@@ -6,20 +6,41 @@
 namespace kestrel {
 namespace {
 
-// The number between a beginning and an end of the text; nothing when it is another text.
-std::optional<std::size_t> NumberBetween(std::string_view begin, std::string_view text,
-                                         std::string_view end) {
+std::optional<std::size_t> NumberIn(std::string_view digits) {
   constexpr std::size_t kMaxDigits = 9;
-  if (!text.starts_with(begin) || !text.ends_with(end)) return std::nullopt;
-  if (text.size() <= begin.size() + end.size()) return std::nullopt;
-  const std::string_view digits =
-      text.substr(begin.size(), text.size() - begin.size() - end.size());
   const bool is_number =
       std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });
-  if (!is_number || digits.size() > kMaxDigits) return std::nullopt;
+  if (!is_number || digits.empty() || digits.size() > kMaxDigits) return std::nullopt;
   std::size_t number = 0;
   for (const char digit : digits) number = 10 * number + static_cast<std::size_t>(digit - '0');
   return number;
+}
+
+// What is between a beginning and an end of the text; nothing when it is another text.
+std::optional<std::string_view> Between(std::string_view begin, std::string_view text,
+                                        std::string_view end) {
+  if (!text.starts_with(begin) || !text.ends_with(end)) return std::nullopt;
+  if (text.size() < begin.size() + end.size()) return std::nullopt;
+  return text.substr(begin.size(), text.size() - begin.size() - end.size());
+}
+
+std::optional<std::size_t> NumberBetween(std::string_view begin, std::string_view text,
+                                         std::string_view end) {
+  const auto digits = Between(begin, text, end);
+  return digits ? NumberIn(*digits) : std::nullopt;
+}
+
+// A clip's two numbers, as "12-80".
+std::optional<ExportRequest> ClipBetween(std::string_view begin, std::string_view text,
+                                         ExportRequest::Kind kind) {
+  const auto numbers = Between(begin, text, ".mp4");
+  if (!numbers) return std::nullopt;
+  const std::size_t dash = numbers->find('-');
+  if (dash == std::string_view::npos) return std::nullopt;
+  const auto first = NumberIn(numbers->substr(0, dash));
+  const auto last = NumberIn(numbers->substr(dash + 1));
+  if (!first || !last || *last < *first) return std::nullopt;
+  return ExportRequest{kind, *first, *last};
 }
 
 }  // namespace
@@ -29,7 +50,19 @@ bool IsOfColors(const ExportRequest& request) {
          request.kind == ExportRequest::Kind::kLabels;
 }
 
+bool IsClip(const ExportRequest& request) {
+  return request.kind == ExportRequest::Kind::kClip ||
+         request.kind == ExportRequest::Kind::kOverlaysClip;
+}
+
 std::optional<ExportRequest> ParseExportPath(std::string_view path) {
+  if (const auto clip = ClipBetween("/export/clip-", path, ExportRequest::Kind::kClip)) {
+    return clip;
+  }
+  if (const auto clip =
+          ClipBetween("/export/overlays-", path, ExportRequest::Kind::kOverlaysClip)) {
+    return clip;
+  }
   if (const auto frame = NumberBetween("/export/frame-", path, ".png")) {
     return ExportRequest{ExportRequest::Kind::kFrame, *frame};
   }

@@ -26,10 +26,17 @@ cv::Scalar ColorOf(OverlayLayer layer) {
       return {255, 200, 92};
     case OverlayLayer::kRejected:
       return {92, 122, 255};
+    case OverlayLayer::kTruth:
+      return {255, 255, 255};
     case OverlayLayer::kSecond:
       return {74, 216, 255};
   }
   return {};
+}
+
+// Of a second run only this is drawn over what the first one found.
+bool IsFound(OverlayLayer layer) {
+  return layer == OverlayLayer::kDetection || layer == OverlayLayer::kRejected;
 }
 
 // What is far outside of the image is left where lines to it still point the right way.
@@ -41,27 +48,26 @@ cv::Point FixedPoint(const cv::Point2f& point) {
   return {fixed(point.x), fixed(point.y)};
 }
 
-void Draw(const OverlayShape& shape, cv::Mat* picture) {
-  if (shape.outline.empty()) return;
+void Draw(const std::vector<cv::Point2f>& points, const std::string& label, const cv::Scalar& color,
+          cv::Mat* picture) {
+  if (points.empty()) return;
   std::vector<cv::Point> outline;
-  for (const cv::Point2f& point : shape.outline) outline.push_back(FixedPoint(point));
-  const cv::Scalar color = ColorOf(shape.layer);
+  for (const cv::Point2f& point : points) outline.push_back(FixedPoint(point));
   if (outline.size() == 1) {
     const cv::Point center(outline[0].x >> kFractionBits, outline[0].y >> kFractionBits);
     cv::drawMarker(*picture, center, color, cv::MARKER_CROSS, 2 * kMark_px, 1);
   } else {
     cv::polylines(*picture, outline, /*isClosed=*/true, color, 1, cv::LINE_AA, kFractionBits);
   }
-  if (shape.label.empty()) return;
+  if (label.empty()) return;
   const cv::Point corner = cv::boundingRect(outline).tl();
   constexpr int kLineHeight_px = 14;
   const cv::Point at(std::max(corner.x >> kFractionBits, 2),
                      std::max((corner.y >> kFractionBits) - kMark_px, kLineHeight_px));
   constexpr double kFontScale = 0.45;
-  cv::putText(*picture, shape.label, at, cv::FONT_HERSHEY_SIMPLEX, kFontScale, cv::Scalar(0, 0, 0),
-              3, cv::LINE_AA);
-  cv::putText(*picture, shape.label, at, cv::FONT_HERSHEY_SIMPLEX, kFontScale, color, 1,
+  cv::putText(*picture, label, at, cv::FONT_HERSHEY_SIMPLEX, kFontScale, cv::Scalar(0, 0, 0), 3,
               cv::LINE_AA);
+  cv::putText(*picture, label, at, cv::FONT_HERSHEY_SIMPLEX, kFontScale, color, 1, cv::LINE_AA);
 }
 
 }  // namespace
@@ -73,7 +79,12 @@ cv::Mat WithShapes(const cv::Mat& image, const std::vector<OverlayShape>& shapes
   } else {
     picture = image.clone();
   }
-  for (const OverlayShape& shape : shapes) Draw(shape, &picture);
+  for (const OverlayShape& shape : shapes) {
+    if (shape.run == 1) Draw(shape.outline, shape.label, ColorOf(shape.layer), &picture);
+    if (shape.run == 1 || !IsFound(shape.layer)) continue;
+    const std::string label = shape.label.empty() ? "" : "second: " + shape.label;
+    Draw(shape.outline, label, ColorOf(OverlayLayer::kSecond), &picture);
+  }
   return picture;
 }
 

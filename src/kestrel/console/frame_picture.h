@@ -10,7 +10,8 @@
 
 namespace kestrel {
 
-// The image (8-bit gray or BGR) with the shapes drawn on it as on the page, in colour.
+// The image (8-bit gray or BGR) in colour, with the shapes drawn on it as on the page: what a
+// second run found over the first run's shapes.
 cv::Mat WithShapes(const cv::Mat& image, const std::vector<OverlayShape>& shapes);
 
 // A PNG file's bytes. Throws InputError when the image cannot be encoded.

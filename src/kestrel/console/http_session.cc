@@ -19,6 +19,8 @@ namespace http = beast::http;
 constexpr std::uint32_t kMaxHeaderBytes = 8 * 1024;
 // For a whole request, so that one byte now and then does not hold a connection, and for an answer.
 constexpr std::chrono::seconds kTimeout(10);
+// For a clip to be made.
+constexpr std::chrono::minutes kClipTimeout(20);
 constexpr std::string_view kSocketPath = "/live";
 
 constexpr std::string_view kContentPolicy =
@@ -60,6 +62,24 @@ bool IsAmbiguous(const Request& request) {
   return request.count(http::field::host) != 1 || request.count("Origin") > 1 ||
          request.count(http::field::cookie) > 1 || request.count("Sec-Fetch-Site") > 1 ||
          request.count("Sec-Fetch-Mode") > 1;
+}
+
+void SetPolicy(http::fields* fields) {
+  fields->set("Content-Security-Policy",
+              beast::string_view(kContentPolicy.data(), kContentPolicy.size()));
+  fields->set("X-Content-Type-Options", "nosniff");
+  fields->set("Referrer-Policy", "no-referrer");
+  fields->set("Cross-Origin-Opener-Policy", "same-origin");
+  fields->set("Cross-Origin-Resource-Policy", "same-origin");
+  if (fields->find(http::field::cache_control) == fields->end()) {
+    fields->set(http::field::cache_control, "no-store");
+  }
+}
+
+void SetAttachment(const ExportAnswer& answer, http::fields* fields) {
+  fields->set(http::field::content_type, answer.type);
+  fields->set(http::field::content_disposition,
+              fmt::format("attachment; filename=\"{}\"", answer.name));
 }
 
 }  // namespace
@@ -172,27 +192,45 @@ void HttpSession::SendExport(const Request& request, const ExportRequest& wanted
   stream_.expires_never();
   const bool is_head = request.method() == http::verb::head;
   const bool keep_alive = request.keep_alive();
-  patience_.expires_after(kTimeout);
+  patience_.expires_after(IsClip(wanted) ? std::chrono::seconds(kClipTimeout) : kTimeout);
   patience_.async_wait([self = shared_from_this()](beast::error_code error) {
-    if (error) return;  // it was answered
+    if (error) return;       // it was answered, or nobody waits any more
+    self->stream_.cancel();  // the wait for the browser's end
     self->Refuse(Status::service_unavailable, "not ready, or too much is asked for at once");
   });
-  const auto send = [is_head, keep_alive](HttpSession* self, ExportAnswer answer) {
-    if (self->patience_.cancel() == 0) return;  // too late
-    if (answer.content.empty()) return self->Refuse(Status::not_found, "there is none");
-    Response response(Status::ok, 11, std::move(answer.content));
-    response.set(http::field::content_type, answer.type);
-    response.set(http::field::content_disposition,
-                 fmt::format("attachment; filename=\"{}\"", answer.name));
-    response.keep_alive(keep_alive);
-    self->Send(std::move(response), is_head);
+  EndWaitWithBrowser();
+  const std::weak_ptr<HttpSession> weak = weak_from_this();
+  const auto answer = [weak, keep_alive, is_head](const ExportAnswer& made) {
+    const auto self = weak.lock();
+    if (!self) return;
+    boost::asio::post(self->stream_.get_executor(), [self, made, keep_alive, is_head] {
+      self->SendAnswer(made, keep_alive, is_head);
+    });
   };
-  hub_->Export({wanted, [weak = weak_from_this(), send](const ExportAnswer& answer) {
-                  const auto self = weak.lock();
-                  if (!self) return;
-                  boost::asio::post(self->stream_.get_executor(),
-                                    [self, send, answer] { send(self.get(), answer); });
-                }});
+  hub_->Export({wanted, answer, [weak] { return !weak.expired(); }});
+}
+
+// A browser that goes away does not wait: then nothing holds the session any more.
+void HttpSession::EndWaitWithBrowser() {
+  stream_.socket().async_wait(boost::asio::ip::tcp::socket::wait_read,
+                              [self = shared_from_this()](beast::error_code error) {
+                                if (error) return;
+                                const bool has_sent_more =
+                                    self->stream_.socket().available(error) > 0;
+                                if (!has_sent_more) self->patience_.cancel();
+                              });
+}
+
+void HttpSession::SendAnswer(const ExportAnswer& answer, bool keep_alive, bool is_head) {
+  if (patience_.cancel() == 0) return;  // too late
+  stream_.cancel();                     // the wait for the browser's end
+  if (!answer.refusal.empty()) return Refuse(Status::conflict, answer.refusal);
+  if (answer.file) return SendFile(answer, keep_alive, is_head);
+  if (answer.content.empty()) return Refuse(Status::not_found, "there is none");
+  Response response(Status::ok, 11, answer.content);
+  SetAttachment(answer, &response);
+  response.keep_alive(keep_alive);
+  Send(std::move(response), is_head);
 }
 
 void HttpSession::SignIn(const Request& request) {
@@ -214,15 +252,7 @@ void HttpSession::Refuse(Status status, const std::string& why) {
 }
 
 void HttpSession::Send(Response response, bool is_head) {
-  response.set("Content-Security-Policy",
-               beast::string_view(kContentPolicy.data(), kContentPolicy.size()));
-  response.set("X-Content-Type-Options", "nosniff");
-  response.set("Referrer-Policy", "no-referrer");
-  response.set("Cross-Origin-Opener-Policy", "same-origin");
-  response.set("Cross-Origin-Resource-Policy", "same-origin");
-  if (response.find(http::field::cache_control) == response.end()) {
-    response.set(http::field::cache_control, "no-store");
-  }
+  SetPolicy(&response);
   response.prepare_payload();
   if (is_head) response.body().clear();  // the length stays that of GET
   stream_.expires_after(kTimeout);
@@ -230,13 +260,58 @@ void HttpSession::Send(Response response, bool is_head) {
   const auto serializer = std::make_shared<http::response_serializer<http::string_body>>(*shared);
   const auto done = [self = shared_from_this(), shared, serializer](beast::error_code error,
                                                                     std::size_t) {
-    if (error) return;
-    if (shared->keep_alive()) return self->Read();
-    beast::error_code ignored;
-    self->stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+    if (!error) self->GoOn(shared->keep_alive());
   };
   if (is_head) return http::async_write_header(stream_, *serializer, done);
   http::async_write(stream_, *serializer, done);
+}
+
+void HttpSession::GoOn(bool keep_alive) {
+  if (keep_alive) return Read();
+  beast::error_code ignored;
+  stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+}
+
+// A file on its way. What is in memory of it is one piece.
+struct HttpSession::Download {
+  Download(std::shared_ptr<const ExportFile> of, http::response<http::file_body> with)
+      : file(std::move(of)), response(std::move(with)), serializer(response) {}
+
+  std::shared_ptr<const ExportFile> file;  // is there as long as this
+  http::response<http::file_body> response;
+  http::response_serializer<http::file_body> serializer;
+};
+
+void HttpSession::SendFile(const ExportAnswer& answer, bool keep_alive, bool is_head) {
+  http::file_body::value_type body;
+  beast::error_code error;
+  body.open(answer.file->path.c_str(), beast::file_mode::scan, error);
+  if (error) return Refuse(Status::not_found, "the file is gone");
+  http::response<http::file_body> response(Status::ok, 11, std::move(body));
+  SetAttachment(answer, &response);
+  SetPolicy(&response);
+  response.keep_alive(keep_alive);
+  response.prepare_payload();
+  const auto download = std::make_shared<Download>(answer.file, std::move(response));
+  if (!is_head) return SendPiece(download);
+  stream_.expires_after(kTimeout);
+  http::async_write_header(
+      stream_, download->serializer,
+      [self = shared_from_this(), download](beast::error_code failed, std::size_t) {
+        if (!failed) self->GoOn(download->response.keep_alive());
+      });
+}
+
+// Each piece has the time of an answer: how long the whole takes depends on the network.
+void HttpSession::SendPiece(const std::shared_ptr<Download>& download) {
+  stream_.expires_after(kTimeout);
+  http::async_write_some(
+      stream_, download->serializer,
+      [self = shared_from_this(), download](beast::error_code error, std::size_t) {
+        if (error) return;
+        if (!download->serializer.is_done()) return self->SendPiece(download);
+        self->GoOn(download->response.keep_alive());
+      });
 }
 
 }  // namespace kestrel

@@ -34,10 +34,17 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void Upgrade(const Request& request);
   void SendAsset(const Request& request, const WebAsset& asset);
   void SendExport(const Request& request, const ExportRequest& wanted);
+  void SendAnswer(const ExportAnswer& answer, bool keep_alive, bool is_head);
+  void EndWaitWithBrowser();
   void SignIn(const Request& request);
   // Says what is wrong, and ends the connection.
   void Refuse(Status status, const std::string& why);
   void Send(Response response, bool is_head);
+  struct Download;
+  void SendFile(const ExportAnswer& answer, bool keep_alive, bool is_head);
+  void SendPiece(const std::shared_ptr<Download>& download);
+  // Reads the next request, or ends the connection.
+  void GoOn(bool keep_alive);
 
   boost::beast::tcp_stream stream_;
   ConsoleHub* hub_;

@@ -26,10 +26,14 @@ std::vector<cv::Point2f> Outline(const Ellipse& ellipse) {
   return outline;
 }
 
+// As "red 0.98".
+std::string Label(const HuntView& view, const ObjectDetection& found) {
+  return fmt::format("{} {:.2f}", view.model.classes[found.class_index].name,
+                     found.class_probability);
+}
+
 OverlayShape Shape(const HuntView& view, const ObjectDetection& found, OverlayLayer layer) {
-  return {layer, Outline(found.ellipse),
-          fmt::format("{} {:.2f}", view.model.classes[found.class_index].name,
-                      found.class_probability)};
+  return {layer, Outline(found.ellipse), Label(view, found)};
 }
 
 // At which tests the segments fell, as "rejected: 9 by size, 1 by shape"; empty: none did.
@@ -85,6 +89,15 @@ ConsoleStatus HuntStatus(const HuntObservation& observation) {
   if (objects == 0) status.reason = Rejections(observation.report);
   if (!observation.world_from_camera) status.reason = "where the UAV was is not known";
   return status;
+}
+
+std::vector<ConsoleFact> HuntFacts(const HuntView& view, const HuntObservation& observation) {
+  std::vector<std::string> labels;
+  for (const ObjectDetection& found : observation.report.detections) {
+    labels.push_back(Label(view, found));
+  }
+  return {{"objects", std::to_string(labels.size())},
+          {"classes", fmt::format("{}", fmt::join(labels, ", "))}};
 }
 
 ConsoleMap HuntMap(const HuntView& view, const HuntObservation& observation) {

@@ -32,6 +32,9 @@ std::vector<ImageView> HuntImageViews(const HuntView& view);
 // How many objects there are, or that there is none and at which tests the segments fell.
 ConsoleStatus HuntStatus(const HuntObservation& observation);
 
+// How many objects there are, and which.
+std::vector<ConsoleFact> HuntFacts(const HuntView& view, const HuntObservation& observation);
+
 // The camera, as LandingMap, and the objects in view that have a place in the world.
 ConsoleMap HuntMap(const HuntView& view, const HuntObservation& observation);
 

@@ -58,6 +58,10 @@ std::vector<cv::Point2f> TrackOutline(const CameraModel& camera,
   });
 }
 
+std::string WhyNot(const LandingReport& report) {
+  return fmt::format("{}: {}", ToString(report.reached), report.reason);
+}
+
 ConsoleMapObject MapObject(const std::string& label, const TurnState& motion) {
   return {.label = label,
           .color = "",
@@ -143,13 +147,23 @@ ConsoleStatus LandingStatus(const LandingObservation& observation) {
   ConsoleStatus status;
   status.state = ToString(observation.track_state);
   if (!report.detection) {
-    status.reason = fmt::format("not found: {}: {}", ToString(report.reached), report.reason);
+    status.reason = "not found: " + WhyNot(report);
   } else if (observation.fate == MeasurementFate::kFarFromTrack) {
     status.reason = "found, but far from where the track has it";
   } else if (!observation.world_from_camera) {
     status.reason = "found, but where the UAV was is not known";
   }
   return status;
+}
+
+std::vector<ConsoleFact> LandingFacts(const LandingObservation& observation) {
+  const auto& detection = observation.report.detection;
+  if (!detection)
+    return {{"found", "no, " + WhyNot(observation.report)}, {"method", ""}, {"quality", ""}};
+  const bool is_far = observation.fate == MeasurementFate::kFarFromTrack;
+  return {{"found", is_far ? "yes, but far from the track" : "yes"},
+          {"method", ToString(detection->method)},
+          {"quality", fmt::format("{:.2f}", detection->quality)}};
 }
 
 ConsoleMap LandingMap(const LandingView& view, const LandingObservation& observation) {

@@ -41,6 +41,9 @@ std::vector<ImageView> LandingImageViews();
 // The state of the track, and why the pattern was not found.
 ConsoleStatus LandingStatus(const LandingObservation& observation);
 
+// Whether the pattern was found, or why not; by which method and with which quality.
+std::vector<ConsoleFact> LandingFacts(const LandingObservation& observation);
+
 // The camera (its heading is that of the image's upper edge), the target, and where it will be in
 // 1, 2 and 3 s.
 ConsoleMap LandingMap(const LandingView& view, const LandingObservation& observation);

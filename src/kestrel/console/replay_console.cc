@@ -1,104 +1,81 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/console/replay_console.h"
 
-#include <algorithm>
 #include <cmath>
 #include <thread>
-#include <utility>
 
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
 #include "kestrel/console/frame_picture.h"
-#include "kestrel/console/replay_options.h"
 
 namespace kestrel {
 namespace {
 
-constexpr double kMaxSpeed = 100;
 // How often is looked for what users ask, and the fastest that pictures change.
 constexpr Duration kLookInterval = std::chrono::milliseconds(20);
 // How often the page is told how far a second run is.
 constexpr Duration kTellInterval = std::chrono::milliseconds(250);
 
-std::vector<SeriesDescription> ReplaySeries(bool has_truth) {
-  std::vector<SeriesDescription> series = LandingSeries();
-  if (has_truth) series.push_back({"error", "px", "Error"});
+std::vector<SeriesDescription> ReplaySeries(const ReplaySubject& subject) {
+  std::vector<SeriesDescription> series = subject.series;
+  if (subject.has_truth) series.push_back({"error", "px", "Error"});
   return series;
 }
 
-std::vector<OverlayLayer> ReplayLayers() {
-  std::vector<OverlayLayer> layers = LandingLayers();
+std::vector<OverlayLayer> ReplayLayers(const ReplaySubject& subject) {
+  std::vector<OverlayLayer> layers = subject.layers;
+  if (subject.has_truth) layers.push_back(OverlayLayer::kTruth);
   layers.push_back(OverlayLayer::kSecond);
   return layers;
 }
 
-// What the second run found, told apart from the first by its layer.
-void AddSecondShapes(const LandingView& view, const LandingObservation& observation,
-                     std::vector<OverlayShape>* shapes) {
-  for (OverlayShape& shape : LandingShapes(view, observation)) {
-    if (shape.layer == OverlayLayer::kPrediction) continue;
-    shape.layer = OverlayLayer::kSecond;
-    if (!shape.label.empty()) shape.label = "second: " + shape.label;
-    shapes->push_back(std::move(shape));
-  }
+// Frames per second from one frame to another.
+double RateOf(const ReplayResult& run, std::size_t first, std::size_t last) {
+  const Duration time = run.frames[last].time - run.frames[first].time;
+  return time > Duration::zero() ? static_cast<double>(last - first) / ToSeconds(time) : 1;
 }
 
 }  // namespace
 
-void MarkByTrack(std::vector<ReplayFrame>* frames) {
-  const auto is_found = [](const ReplayFrame& frame) {
-    return frame.observation.report.detection.has_value();
-  };
-  const auto first = std::find_if(frames->begin(), frames->end(), is_found);
-  const auto last = std::find_if(frames->rbegin(), frames->rend(), is_found).base();
-  for (auto frame = first; frame < last; ++frame) {
-    const bool is_false = frame->observation.fate == MeasurementFate::kFarFromTrack;
-    frame->mark = !is_found(*frame) ? FrameMark::kLost
-                  : is_false        ? FrameMark::kFalse
-                                    : FrameMark::kFound;
-  }
-}
-
 ReplayConsole::ReplayConsole(const ConsoleOptions& options, const std::string& title,
-                             const LandingPipelineOptions& used, bool has_truth,
-                             std::optional<ColorSource> colors)
-    : used_(used),
-      has_truth_(has_truth),
+                             ReplaySubject subject, std::optional<ColorSource> colors)
+    : subject_(std::move(subject)),
       feed_({.title = title,
              .is_live = false,
-             .series = ReplaySeries(has_truth),
-             .layers = ReplayLayers(),
-             .views = LandingImageViews(),
+             .series = ReplaySeries(subject_),
+             .layers = ReplayLayers(subject_),
+             .views = subject_.views,
              .offers = {ConsoleCommandKind::kPlay, ConsoleCommandKind::kSeek,
                         ConsoleCommandKind::kStep, ConsoleCommandKind::kDetect,
                         ConsoleCommandKind::kCancel, ConsoleCommandKind::kCalibrate,
                         ConsoleCommandKind::kCalibrateCancel, ConsoleCommandKind::kCalibrateSave},
              .has_exports = true,
              .has_colors = colors.has_value()}),
-      server_(options, &feed_) {
+      server_(options, &feed_),
+      clips_(&feed_) {
   if (colors) colors_.emplace(*std::move(colors), &feed_);
 }
 
-void ReplayConsole::Play(ReplayResult first, ReadFrame read, Detect detect,
+void ReplayConsole::Play(ReplayResult first, Recording recording,
                          const std::function<bool()>& is_stopped) {
-  view_ = std::move(first.view);
-  frames_ = std::move(first.frames);
-  table_ = std::move(first.table);
-  read_ = std::move(read);
-  detect_ = std::move(detect);
+  first_ = std::make_shared<const ReplayResult>(std::move(first));
+  recording_ = std::move(recording);
+  read_ = recording_.open();
+  playhead_.emplace(FrameTimes());
   SendTimeline();
-  feed_.Add(ReplayOptions(used_));
-  if (tools_.calibrate) calibration_.emplace(tools_, frames_.size(), &feed_);
+  feed_.Add(subject_.options);
+  if (tools_.calibrate) calibration_.emplace(tools_, first_->frames.size(), &feed_);
   Time last = Now();
   while (!is_stopped()) {
     while (const auto command = feed_.TakeCommand()) Obey(*command);
     FollowSecondRun();
+    clips_.Follow();
     if (calibration_) calibration_->Follow();
-    if (const auto pending = feed_.TakeExport()) pending->answer(MakeExport(pending->request));
+    if (const auto pending = feed_.TakeExport()) AnswerExport(*pending);
     const Time now = Now();
     // With nobody there to see it the recording waits.
-    if (feed_.IsWatched()) Advance(now - last);
+    if (feed_.IsWatched() && playhead_->Advance(now - last)) is_shown_ = false;
     last = now;
     if (!is_shown_) ShowFrame();
     std::this_thread::sleep_for(kLookInterval);
@@ -108,18 +85,14 @@ void ReplayConsole::Play(ReplayResult first, ReadFrame read, Detect detect,
 void ReplayConsole::Obey(const ConsoleCommand& command) {
   switch (command.kind) {
     case ConsoleCommandKind::kPlay:
-      speed_ = std::clamp(command.value, -kMaxSpeed, kMaxSpeed);
-      if (speed_ > 0 && frame_ + 1 == frames_.size()) GoTo(0);
       is_shown_ = false;  // the speed is told with the frame
-      return;
+      return playhead_->Play(command.value);
     case ConsoleCommandKind::kSeek:
-      return GoTo(NearestFrame(command.value));
-    case ConsoleCommandKind::kStep: {
-      const auto last = static_cast<double>(frames_.size() - 1);
-      speed_ = 0;
-      return GoTo(static_cast<std::size_t>(
-          std::clamp(static_cast<double>(frame_) + command.value, 0.0, last)));
-    }
+      is_shown_ = false;
+      return playhead_->Seek(command.value);
+    case ConsoleCommandKind::kStep:
+      is_shown_ = false;
+      return playhead_->Step(command.value);
     case ConsoleCommandKind::kDetect:
       return StartSecondRun(command.settings);
     case ConsoleCommandKind::kCancel:
@@ -141,15 +114,11 @@ void ReplayConsole::StartSecondRun(const std::vector<std::string>& settings) {
   second_.reset();
   is_shown_ = false;
   settings_ = settings;
-  LandingPipelineOptions options;
   try {
-    options = WithSettings(used_, settings);
+    second_run_.Start("second run", recording_.detect(settings));
   } catch (const InputError& error) {
     return TellSecondRun(SecondRunState::kFailed, error.what());
   }
-  second_run_.Start("second run", [this, options](const SecondRun::GoOn& go_on) {
-    return detect_(options, go_on);
-  });
   TellSecondRun(SecondRunState::kRunning);
 }
 
@@ -162,10 +131,10 @@ void ReplayConsole::FollowSecondRun() {
 
 void ReplayConsole::EndSecondRun(SecondRun::Outcome outcome) {
   if (!outcome.result) return TellSecondRun(SecondRunState::kFailed, outcome.error);
-  if (outcome.result->frames.size() != frames_.size()) {
+  if (outcome.result->frames.size() != first_->frames.size()) {
     return TellSecondRun(SecondRunState::kFailed, "the recording has changed meanwhile");
   }
-  second_ = std::move(outcome.result);
+  second_ = std::make_shared<const ReplayResult>(*std::move(outcome.result));
   is_shown_ = false;
   TellSecondRun(SecondRunState::kDone);
 }
@@ -179,97 +148,100 @@ void ReplayConsole::TellSecondRun(SecondRunState state, const std::string& error
   feed_.Add(std::move(run));
 }
 
-// At the ends it holds.
-void ReplayConsole::Advance(Duration elapsed) {
-  if (speed_ == 0) return;
-  const double end_s = SecondsOf(frames_.size() - 1);
-  position_s_ = std::clamp(position_s_ + speed_ * ToSeconds(elapsed), 0.0, end_s);
-  const std::size_t frame = NearestFrame(position_s_);
-  if (frame != frame_) is_shown_ = false;
-  frame_ = frame;
-  if (position_s_ > 0 && position_s_ < end_s) return;
-  speed_ = 0;
-  is_shown_ = false;
-}
-
-void ReplayConsole::GoTo(std::size_t frame) {
-  frame_ = frame;
-  position_s_ = SecondsOf(frame);
-  is_shown_ = false;
-}
-
-double ReplayConsole::SecondsOf(std::size_t frame) const {
-  return ToSeconds(frames_[frame].observation.time - frames_.front().observation.time);
-}
-
-std::size_t ReplayConsole::NearestFrame(double seconds) const {
-  const auto is_before = [&](const ReplayFrame& frame, double time_s) {
-    return ToSeconds(frame.observation.time - frames_.front().observation.time) < time_s;
-  };
-  const auto later = std::lower_bound(frames_.begin(), frames_.end(), seconds, is_before);
-  const auto index = static_cast<std::size_t>(later - frames_.begin());
-  if (index == 0) return 0;
-  if (index == frames_.size()) return index - 1;
-  return SecondsOf(index) - seconds < seconds - SecondsOf(index - 1) ? index : index - 1;
-}
-
 void ReplayConsole::ShowFrame() {
   is_shown_ = true;
-  const ReplayFrame& frame = frames_[frame_];
-  ConsoleSample sample = LandingSample(frame.observation);
-  if (has_truth_) sample.values.push_back(frame.error_px.value_or(std::nan("")));
-  feed_.Add(std::move(sample));
-  feed_.Add(LandingMap(*view_, frame.observation));
-  feed_.Add(LandingStatus(frame.observation));
-  feed_.Add(ConsolePlayback{frame_, speed_});
-  picture_.captured = frame.observation.time;
-  picture_.shapes = ShapesOf(frame_);
+  TellFrame();
+  const std::size_t index = playhead_->frame();
+  picture_.captured = first_->frames[index].time;
+  picture_.shapes = ShapesOf(*first_, second_.get(), index);
   try {
-    picture_.image = read_(frame_);
+    picture_.image = read_(index);
   } catch (const InputError& error) {  // its file is gone
-    speed_ = 0;
-    feed_.Add(ConsoleEvent{frame.observation.time, EventLevel::kError, error.what()});
+    playhead_->Hold();
+    feed_.Add(ConsoleEvent{picture_.captured, EventLevel::kError, error.what()});
     return;
   }
   feed_.SetFrame(&picture_);
 }
 
-std::vector<OverlayShape> ReplayConsole::ShapesOf(std::size_t frame) const {
-  std::vector<OverlayShape> shapes = LandingShapes(*view_, frames_[frame].observation);
-  if (second_) AddSecondShapes(second_->view, second_->frames[frame].observation, &shapes);
-  return shapes;
+// All that goes with the picture.
+void ReplayConsole::TellFrame() {
+  const std::size_t index = playhead_->frame();
+  const ReplayFrame& frame = first_->frames[index];
+  ConsoleSample sample = frame.sample;
+  if (subject_.has_truth) sample.values.push_back(frame.error_px.value_or(std::nan("")));
+  feed_.Add(std::move(sample));
+  ConsoleMap map = frame.map;
+  for (const MapEntry& entry : first_->map) {
+    if (entry.since <= frame.time) map.mapped.push_back(entry.object);
+  }
+  feed_.Add(std::move(map));
+  feed_.Add(frame.status);
+  ConsoleFindings findings{index, {frame.facts}};
+  if (second_) findings.runs.push_back(second_->frames[index].facts);
+  feed_.Add(std::move(findings));
+  feed_.Add(ConsolePlayback{index, playhead_->speed()});
+}
+
+void ReplayConsole::AnswerExport(const PendingExport& pending) {
+  const ExportRequest& request = pending.request;
+  if (IsClip(request) && request.last < first_->frames.size()) {
+    return clips_.Make(pending, ClipOf(request));
+  }
+  pending.answer(MakeExport(request));
 }
 
 // Without content where there is none.
 ExportAnswer ReplayConsole::MakeExport(const ExportRequest& request) const {
   if (IsOfColors(request)) return {};  // there are none: else that page would answer
   if (request.kind == ExportRequest::Kind::kDetections) {
-    const std::string table = request.number == 1 ? table_ : second_ ? second_->table : "";
+    const std::string table = request.number == 1 ? first_->table : second_ ? second_->table : "";
     return {table, "text/csv; charset=utf-8", fmt::format("detections-{}.csv", request.number)};
   }
   if (request.kind == ExportRequest::Kind::kCalibration) {
     return calibration_ ? calibration_->File(request.number) : ExportAnswer();
   }
-  if (request.number >= frames_.size()) return {};
+  if (IsClip(request) || request.number >= first_->frames.size()) return {};
   const bool has_shapes = request.kind == ExportRequest::Kind::kOverlays;
   const std::string name = fmt::format("{}-{}.png", has_shapes ? "overlays" : "frame",
-                                       ToNanoseconds(frames_[request.number].observation.time));
+                                       ToNanoseconds(first_->frames[request.number].time));
   try {
     const cv::Mat image = read_(request.number);
-    return {PngOf(has_shapes ? WithShapes(image, ShapesOf(request.number)) : image), "image/png",
+    if (!has_shapes) return {PngOf(image), "image/png", name};
+    return {PngOf(WithShapes(image, ShapesOf(*first_, second_.get(), request.number))), "image/png",
             name};
   } catch (const InputError&) {  // its file is gone
     return {};
   }
 }
 
-void ReplayConsole::SendTimeline() {
-  ConsoleTimeline timeline;
-  timeline.begin = frames_.front().observation.time;
-  for (const ReplayFrame& frame : frames_) {
-    timeline.times.push_back(frame.observation.time - timeline.begin);
-    timeline.marks.push_back(frame.mark);
+// Of what both runs have found by now.
+Clip ReplayConsole::ClipOf(const ExportRequest& request) const {
+  const bool has_shapes = request.kind == ExportRequest::Kind::kOverlaysClip;
+  const auto start = [open = recording_.open, first = first_, second = second_, has_shapes,
+                      begin = request.number] {
+    return [read = open(), first, second, has_shapes, begin](std::size_t index) {
+      const std::size_t frame = begin + index;
+      std::vector<OverlayShape> shapes;
+      if (has_shapes) shapes = ShapesOf(*first, second.get(), frame);
+      return WithShapes(read(frame), shapes);
+    };
+  };
+  return {start, request.last - request.number + 1, RateOf(*first_, request.number, request.last),
+          fmt::format("{}-{}-{}", has_shapes ? "overlays" : "clip", request.number, request.last)};
+}
+
+std::vector<Duration> ReplayConsole::FrameTimes() const {
+  std::vector<Duration> times;
+  for (const ReplayFrame& frame : first_->frames) {
+    times.push_back(frame.time - first_->frames.front().time);
   }
+  return times;
+}
+
+void ReplayConsole::SendTimeline() {
+  ConsoleTimeline timeline{first_->frames.front().time, FrameTimes(), {}};
+  for (const ReplayFrame& frame : first_->frames) timeline.marks.push_back(frame.mark);
   feed_.Add(std::move(timeline));
 }
 

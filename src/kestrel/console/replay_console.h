@@ -3,20 +3,32 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "kestrel/console/calibration_page.h"
+#include "kestrel/console/clip_maker.h"
 #include "kestrel/console/color_page.h"
 #include "kestrel/console/console_feed.h"
 #include "kestrel/console/console_options.h"
+#include "kestrel/console/playhead.h"
 #include "kestrel/console/replay_frame.h"
 #include "kestrel/console/second_run.h"
 #include "kestrel/console/web_server.h"
 
 namespace kestrel {
+
+// What a recording is searched for, as far as the page is concerned.
+struct ReplaySubject {
+  std::vector<SeriesDescription> series;  // what the frames' samples hold
+  std::vector<OverlayLayer> layers;       // of the shapes that there can be
+  std::vector<ImageView> views;           // of the image
+  ConsoleOptionList options;              // that the page may change, as of the first run
+  bool has_truth = false;                 // errors are known
+};
 
 // A recording on the page: a timeline, and any frame of it with what was found, by one run of the
 // detector or by two with different options.
@@ -24,15 +36,18 @@ class ReplayConsole {
  public:
   // Gives the image of a frame by its number. Throws InputError when it cannot.
   using ReadFrame = std::function<cv::Mat(std::size_t frame)>;
-  // Runs the detector over the recording once more, by a thread of its own.
-  using Detect = std::function<std::optional<ReplayResult>(const LandingPipelineOptions& options,
-                                                           const SecondRun::GoOn& go_on)>;
+  // What the page takes from the recording.
+  struct Recording {
+    // Opens it; by any thread.
+    std::function<ReadFrame()> open;
+    // Gives what runs the detector over it once more with these settings. Throws InputError for
+    // settings that are not valid.
+    std::function<SecondRun::Job(const std::vector<std::string>& settings)> detect;
+  };
 
-  // Serves from now on. 'has_truth': errors are known. Throws InputError as WebServer does.
-  // 'used': the options of the first run. 'colors': what colours are taught by, when the recording
-  // has any.
-  ReplayConsole(const ConsoleOptions& options, const std::string& title,
-                const LandingPipelineOptions& used, bool has_truth,
+  // Serves from now on. Throws InputError as WebServer does. 'colors': what colours are taught by,
+  // when the recording has any.
+  ReplayConsole(const ConsoleOptions& options, const std::string& title, ReplaySubject subject,
                 std::optional<ColorSource> colors = std::nullopt);
 
   std::string url() const { return server_.url(); }
@@ -45,8 +60,7 @@ class ReplayConsole {
 
   // Plays what the first run came to, at least one frame, as the users ask, until 'is_stopped',
   // which is asked often. Once only.
-  void Play(ReplayResult first, ReadFrame read, Detect detect,
-            const std::function<bool()>& is_stopped);
+  void Play(ReplayResult first, Recording recording, const std::function<bool()>& is_stopped);
 
  private:
   void Obey(const ConsoleCommand& command);
@@ -54,34 +68,30 @@ class ReplayConsole {
   void FollowSecondRun();
   void EndSecondRun(SecondRun::Outcome outcome);
   void TellSecondRun(SecondRunState state, const std::string& error = "");
-  void Advance(Duration elapsed);
-  void GoTo(std::size_t frame);
   void ShowFrame();
-  std::vector<OverlayShape> ShapesOf(std::size_t frame) const;
+  void TellFrame();
+  void AnswerExport(const PendingExport& pending);
   ExportAnswer MakeExport(const ExportRequest& request) const;
+  Clip ClipOf(const ExportRequest& request) const;
   void SendTimeline();
-  double SecondsOf(std::size_t frame) const;  // since the first
-  std::size_t NearestFrame(double seconds) const;
+  // Since the first.
+  std::vector<Duration> FrameTimes() const;
 
-  LandingPipelineOptions used_;
-  bool has_truth_;
+  ReplaySubject subject_;
   ConsoleFeed feed_;
   WebServer server_;
   std::optional<ColorPage> colors_;
-  std::optional<LandingView> view_;
-  std::vector<ReplayFrame> frames_;
-  std::string table_;
+  Recording recording_;
   ReadFrame read_;
-  Detect detect_;
-  std::vector<std::string> settings_;   // of the second run
-  std::optional<ReplayResult> second_;  // when it is done
-  Time told_{};                         // how far it is
+  // The second when it is done. A clip that is made keeps what it shows.
+  std::shared_ptr<const ReplayResult> first_, second_;
+  std::vector<std::string> settings_;  // of the second run
+  Time told_{};                        // how far it is
   ConsoleFrame picture_;
-  std::size_t frame_ = 0;  // that is shown
-  double position_s_ = 0;  // since the first frame
-  double speed_ = 0;
+  std::optional<Playhead> playhead_;
   bool is_shown_ = false;
   SecondRun second_run_;
+  ClipMaker clips_;
   CalibrationPage::Tools tools_;
   std::optional<CalibrationPage> calibration_;
 };

@@ -7,10 +7,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
 
 #include "kestrel/base/error.h"
-#include "kestrel/camera/paper_camera.h"
+#include "kestrel/console/replay_options.h"
 #include "kestrel/console/test_browser.h"
+#include "kestrel/recording/test_files.h"
 
 namespace kestrel {
 namespace {
@@ -23,29 +25,16 @@ constexpr std::size_t kFrames = 20;
 std::vector<ReplayFrame> Frames() {
   std::vector<ReplayFrame> frames(kFrames);
   for (std::size_t i = 0; i < kFrames; ++i) {
-    frames[i].observation.time = Time(1000s + i * 100ms);
+    frames[i].time = Time(1000s + i * 100ms);
     frames[i].error_px = static_cast<double>(i);
+    frames[i].facts = {{"found", "no"}};
   }
   return frames;
 }
 
-void Detect(ReplayFrame* frame) { frame->observation.report.detection.emplace(); }
-
-std::string Marks(const std::vector<ReplayFrame>& frames) {
-  std::string marks;
-  for (const ReplayFrame& frame : frames) marks += "-flx"[static_cast<int>(frame.mark)];
-  return marks;
-}
-
-TEST(MarkByTrackTest, LostIsBetweenFoundAndFalseWhatTheTrackDoesNotTake) {
-  std::vector<ReplayFrame> frames = Frames();
-  for (const int i : {3, 4, 6, 9}) Detect(&frames[i]);
-  frames[6].observation.fate = MeasurementFate::kFarFromTrack;
-  MarkByTrack(&frames);
-  EXPECT_EQ(Marks(frames), "---fflxllf----------");
-  std::vector<ReplayFrame> nothing = Frames();
-  MarkByTrack(&nothing);
-  EXPECT_EQ(Marks(nothing), std::string(kFrames, '-'));
+ReplaySubject Subject() {
+  return {LandingSeries(), LandingLayers(), ReplayOptions(LandingPipelineOptions()),
+          /*has_truth=*/true};
 }
 
 class ReplayConsoleTest : public testing::Test {
@@ -57,17 +46,16 @@ class ReplayConsoleTest : public testing::Test {
   }
   ReplayConsoleTest() {
     thread_ = std::thread([this] {
-      console_.Play(
-          {PaperView(), Frames(), "frame,timestamp_ns\n"},
-          [this](std::size_t frame) {
-            if (frame == missing_) throw InputError("frame7.png: no such file");
-            read_ = frame;
-            return cv::Mat(240, 376, CV_8UC1, cv::Scalar(static_cast<double>(frame)));
-          },
-          [this](const LandingPipelineOptions& options, const SecondRun::GoOn& go_on) {
-            return DetectAgain(options, go_on);
-          },
-          [this] { return is_stopped_.load(); });
+      const auto open = [this] { return [this](std::size_t frame) { return Image(frame); }; };
+      const auto detect = [this](const std::vector<std::string>& settings) {
+        return [this, options = WithSettings(LandingPipelineOptions(), settings)](
+                   const SecondRun::GoOn& go_on) { return DetectAgain(options, go_on); };
+      };
+      ReplayResult first{Frames(), "frame,timestamp_ns\n", {}};
+      MapEntry& entry = first.map.emplace_back();
+      entry.since = Time(1000s + 500ms);
+      entry.object.label = "red";
+      console_.Play(std::move(first), {open, detect}, [this] { return is_stopped_.load(); });
     });
   }
   ~ReplayConsoleTest() override {
@@ -82,17 +70,21 @@ class ReplayConsoleTest : public testing::Test {
       if (!go_on(5)) return std::nullopt;
       std::this_thread::sleep_for(1ms);
     }
-    ReplayResult result{PaperView(), Frames(), "second\n"};
+    ReplayResult result{Frames(), "second\n", {}};
     for (std::size_t i = 0; i < kFrames / 2; ++i) {
-      result.frames[i].mark = FrameMark::kFound;
-      Detect(&result.frames[i]);
-      LandingDetection& detection = *result.frames[i].observation.report.detection;
-      detection.center_px = {188, 120};
-      detection.camera_from_pattern.translation = {0, 0, 3};
+      ReplayFrame& frame = result.frames[i];
+      frame.mark = FrameMark::kFound;
+      frame.shapes = {{OverlayLayer::kDetection, {{188, 120}}, "quadrants 0.93"},
+                      {OverlayLayer::kPrediction, {{100, 50}}, ""}};
+      frame.facts = {{"found", "yes"}};
     }
     return result;
   }
-  static LandingView PaperView() { return {CameraModel(PaperCamera()), {}, TurnNoise()}; }
+  cv::Mat Image(std::size_t frame) {
+    if (frame == missing_) throw InputError("frame7.png: no such file");
+    read_ = frame;
+    return cv::Mat(240, 376, CV_8UC1, cv::Scalar(static_cast<double>(frame)));
+  }
   // The next report of the second run that is in this state; null: there is none.
   static nlohmann::json NextSecond(TestSocket* socket, const std::string& state) {
     while (const auto second = socket->Next("second")) {
@@ -115,7 +107,7 @@ class ReplayConsoleTest : public testing::Test {
   std::atomic<std::size_t> missing_{99};
   std::atomic<bool> is_stopped_{false};
   std::atomic<std::size_t> read_{99};
-  ReplayConsole console_{FreePort(), "a recording", LandingPipelineOptions(), true};
+  ReplayConsole console_{FreePort(), "a recording", Subject()};
   std::thread thread_;
 };
 
@@ -154,17 +146,78 @@ TEST_F(ReplayConsoleTest, DetectsAgainWithOtherOptions) {
   EXPECT_EQ(second["settings"][0], "landing.hint_age_s=1");
   // What was found is drawn beside what the first run found, which is nothing here. The picture
   // before the second run's may still be on its way.
-  for (bool is_drawn = false; !is_drawn;) {
+  nlohmann::json shapes;
+  while (shapes.empty()) {
     socket.Send(R"({"images": true})");
     const auto image = socket.Next("image");
     ASSERT_TRUE(image);
-    for (const auto& shape : (*image)["shapes"]) is_drawn = is_drawn || shape["layer"] == "second";
-    if (is_drawn) {
-      EXPECT_EQ((*image)["shapes"][0]["label"], "second: quadrants 0.00");
-    }
+    shapes = (*image)["shapes"];
     socket.Send(fmt::format(R"({{"ack": {}}})", (*image)["sequence"].get<int>()));
-    if (!is_drawn) socket.Send(R"({"command": "step", "value": 0})");
+    if (shapes.empty()) socket.Send(R"({"command": "step", "value": 0})");
   }
+  EXPECT_EQ(shapes[0]["layer"], "detection");
+  EXPECT_EQ(shapes[0]["run"], 2);
+  EXPECT_EQ(shapes[0]["label"], "quadrants 0.93");
+}
+
+TEST_F(ReplayConsoleTest, SaysWhatEachRunFoundInTheFrame) {
+  TestSocket socket(port());
+  const auto next = [&socket](std::size_t runs) {
+    while (const auto findings = socket.Next("findings")) {
+      if ((*findings)["runs"].size() == runs) return *findings;
+    }
+    return nlohmann::json();
+  };
+  EXPECT_EQ(next(1)["runs"][0][0], (nlohmann::json{{"name", "found"}, {"value", "no"}}));
+  socket.Send(R"({"command": "detect", "settings": []})");
+  const nlohmann::json both = next(2);
+  ASSERT_TRUE(both.is_object());
+  EXPECT_EQ(both["frame"], 0);
+  EXPECT_EQ(both["runs"][1][0]["value"], "yes");
+}
+
+TEST_F(ReplayConsoleTest, TheMapHasWhatWasSeenByThen) {
+  TestSocket socket(port());
+  const auto mapped = [&socket](int frames) {
+    socket.Send(fmt::format(R"({{"command": "step", "value": {}}})", frames));
+    return socket.Next("map").value_or(nlohmann::json());
+  };
+  ASSERT_TRUE(socket.Next("map"));
+  EXPECT_EQ(mapped(4)["mapped"].size(), 0u);
+  const nlohmann::json map = mapped(1);
+  ASSERT_EQ(map["mapped"].size(), 1u);
+  EXPECT_EQ(map["mapped"][0]["label"], "red");
+}
+
+TEST_F(ReplayConsoleTest, GivesAClipAway) {
+  TestSocket socket(port());
+  ASSERT_TRUE(socket.Next("timeline"));
+  TestBrowser browser(port());
+  const auto clip = browser.Send(browser.Get("/export/overlays-3-8.mp4"));
+  ASSERT_EQ(clip.result_int(), 200u) << clip.body();
+  const std::string disposition(clip["Content-Disposition"]);
+  EXPECT_TRUE(disposition.starts_with("attachment; filename=\"overlays-3-8.")) << disposition;
+  EXPECT_EQ(clip["X-Content-Type-Options"], "nosniff");
+  const TestFolder folder;
+  cv::VideoCapture video(
+      folder.Write(clip["Content-Type"] == "video/mp4" ? "a.mp4" : "a.avi", clip.body()));
+  int frames = 0;
+  for (cv::Mat image; video.read(image); ++frames) EXPECT_EQ(image.size(), cv::Size(376, 240));
+  EXPECT_EQ(frames, 6);
+  EXPECT_NEAR(video.get(cv::CAP_PROP_FPS), 10, 0.1);
+  // The connection goes on; of a clip that ends after the recording there is none.
+  EXPECT_EQ(browser.Send(browser.Get("/export/frame-1.png")).result_int(), 200u);
+  EXPECT_EQ(browser.Send(browser.Get("/export/clip-3-20.mp4")).result_int(), 404u);
+}
+
+TEST_F(ReplayConsoleTest, AClipWhoseFrameIsGoneIsRefused) {
+  missing_ = 7;
+  TestSocket socket(port());
+  ASSERT_TRUE(socket.Next("timeline"));
+  TestBrowser browser(port());
+  const auto refused = browser.Send(browser.Get("/export/clip-0-19.mp4"));
+  EXPECT_EQ(refused.result_int(), 409u);
+  EXPECT_EQ(refused.body(), "frame7.png: no such file\n");
 }
 
 TEST_F(ReplayConsoleTest, GivesFramesAndTablesAway) {

@@ -24,6 +24,22 @@ TEST(ReplayOptionsTest, EveryOptionThatIsOfferedCanBeSet) {
   EXPECT_EQ(same.tracker.gate, options.tracker.gate);
 }
 
+TEST(ReplayOptionsTest, AHuntHasOptionsOfItsOwn) {
+  HuntPipelineOptions options;
+  options.detector.min_pixels = 40;
+  const ConsoleOptionList list = ReplayOptions(options);
+  EXPECT_EQ(list.options.size(), 30u);
+  std::vector<std::string> settings;
+  for (const ConsoleOption& option : list.options) {
+    settings.push_back(option.name + "=" + option.value);
+  }
+  EXPECT_EQ(WithSettings(HuntPipelineOptions(), settings).detector.min_pixels, 40);
+  for (const char* setting :
+       {"landing.still=true", "hunt.map.capacity=1000000000", "hunt.pose_capacity=1000000000"}) {
+    EXPECT_THROW(WithSettings(HuntPipelineOptions(), {setting}), InputError) << setting;
+  }
+}
+
 TEST(ReplayOptionsTest, AllElseIsRefused) {
   for (const char* setting :
        {"", "=", "landing.", "landing.pose_capacity=1000000000", "still=true", "landing.still",

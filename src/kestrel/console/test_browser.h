@@ -60,10 +60,14 @@ class TestBrowser {
     return request;
   }
 
-  // The answer; status 0 when the connection ends without one.
-  test_browser::Response Send(const test_browser::Request& request) {
+  // Without waiting for the answer.
+  void Ask(const test_browser::Request& request) {
     test_browser::beast::error_code error;
     test_browser::http::write(stream_, request, error);
+  }
+  // The answer; status 0 when the connection ends without one.
+  test_browser::Response Send(const test_browser::Request& request) {
+    Ask(request);
     return ReadResponse();
   }
   // The same for bytes after which no more come.

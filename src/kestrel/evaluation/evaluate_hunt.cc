@@ -48,13 +48,7 @@ Plot MapPlot(const std::vector<TrueSighting>& sightings, const ObjectRows& rows,
 
 Report EvaluateHunt(const std::string& recording, const std::string& output) {
   const FlightTruth flight(recording);
-  const fs::path truth = fs::path(flight.root()) / "objects0";
-  const std::string objects_file = (truth / "objects.csv").string();
-  const std::string sightings_file = (truth / "data.csv").string();
-  TrueObjects objects = ParseTrueObjects(ReadFile(objects_file), objects_file);
-  const std::string digits_file = (truth / "digits.csv").string();
-  if (fs::exists(digits_file)) ParseTrueDigits(ReadFile(digits_file), digits_file, &objects);
-  const auto sightings = ParseTrueSightings(ReadFile(sightings_file), sightings_file, objects);
+  const auto [objects, sightings] = ReadObjectTruth(flight.root());
   const std::string rows_file = (fs::path(output) / "object_detections.csv").string();
   const ObjectRows rows = ParseObjectRows(ReadFile(rows_file), rows_file);
   if (rows.frames.empty()) throw InputError(rows_file + ": no rows, expected some for every image");

@@ -2,9 +2,11 @@
 #include "kestrel/evaluation/object_truth.h"
 
 #include <chrono>
+#include <filesystem>
 
 #include <fmt/format.h>
 
+#include "kestrel/base/read_file.h"
 #include "kestrel/recording/csv_columns.h"
 
 namespace kestrel {
@@ -65,6 +67,19 @@ std::vector<TrueSighting> ParseTrueSightings(std::string_view text, const std::s
     }
   }
   return sightings;
+}
+
+ObjectTruth ReadObjectTruth(const std::string& root) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(root) / "objects0";
+  const std::string objects = (folder / "objects.csv").string();
+  const std::string sightings = (folder / "data.csv").string();
+  const std::string digits = (folder / "digits.csv").string();
+  ObjectTruth truth;
+  truth.objects = ParseTrueObjects(ReadFile(objects), objects);
+  if (fs::exists(digits)) ParseTrueDigits(ReadFile(digits), digits, &truth.objects);
+  truth.sightings = ParseTrueSightings(ReadFile(sightings), sightings, truth.objects);
+  return truth;
 }
 
 const TrueSighting* NearestSighting(const std::vector<TrueSighting>& sightings, int id, Time time) {

@@ -39,6 +39,15 @@ void ParseTrueDigits(std::string_view text, const std::string& file, TrueObjects
 std::vector<TrueSighting> ParseTrueSightings(std::string_view text, const std::string& file,
                                              const TrueObjects& objects);
 
+// All of objects0 of a recording.
+struct ObjectTruth {
+  TrueObjects objects;
+  std::vector<TrueSighting> sightings;
+};
+// 'root': the folder in which objects0 lies. Throws InputError as above, and for a missing file
+// other than digits.csv.
+ObjectTruth ReadObjectTruth(const std::string& root);
+
 // The sighting of the object that is nearest to 'time'; null when it was never in view.
 const TrueSighting* NearestSighting(const std::vector<TrueSighting>& sightings, int id, Time time);
 

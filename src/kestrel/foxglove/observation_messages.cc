@@ -53,6 +53,7 @@ const foxglove::Color& ColorOf(OverlayLayer layer) {
     case OverlayLayer::kDetection:
       return kGreen;
     case OverlayLayer::kPrediction:
+    case OverlayLayer::kTruth:
     case OverlayLayer::kSecond:
       return kBlue;
     case OverlayLayer::kRejected:

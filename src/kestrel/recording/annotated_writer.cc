@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/recording/annotated_writer.h"
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/videoio.hpp>
 
 #include "kestrel/base/error.h"
+#include "kestrel/recording/video_file.h"
 
 namespace kestrel {
 namespace {
@@ -29,30 +27,18 @@ class ImageWriter : public AnnotatedWriter {
 
 class VideoWriter : public AnnotatedWriter {
  public:
-  // Players and containers want a rate of this range, in 1/100 Hz.
+  // Neither may be there yet: which of the two it becomes is known with the first frame.
   VideoWriter(const OutputFolder& folder, double rate_hz)
-      : mp4_(folder.NewFile("annotated.mp4").string()),
-        avi_(folder.NewFile("annotated.avi").string()),
-        rate_hz_(std::round(std::clamp(rate_hz, 1.0, 240.0) * 100) / 100) {}
+      : video_(folder.NewFile("annotated.mp4").replace_extension().string(), rate_hz) {
+    folder.NewFile("annotated.avi");
+  }
 
   void Write(const std::string& /*frame_name*/, const cv::Mat& image) override {
-    if (!writer_.isOpened()) Open(image.size());
-    writer_.write(image);
+    video_.Write(image);
   }
 
  private:
-  void Open(const cv::Size& size) {
-    if (writer_.open(mp4_, cv::VideoWriter::fourcc('m', 'p', '4', 'v'), rate_hz_, size)) return;
-    std::error_code ignored;
-    std::filesystem::remove(mp4_, ignored);
-    if (writer_.open(avi_, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), rate_hz_, size)) return;
-    throw InputError(avi_ + ": cannot be written; --annotate=images needs no encoder");
-  }
-
-  std::string mp4_;
-  std::string avi_;
-  double rate_hz_;
-  cv::VideoWriter writer_;
+  VideoFile video_;
 };
 
 }  // namespace

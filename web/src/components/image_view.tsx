@@ -2,10 +2,11 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import { showView, toggleLayer, togglePlaying } from "../actions";
 import { connection, type Picture } from "../connection";
-import { drawOverlay, layerColor } from "../overlay";
-import type { FrameHeader, Layer } from "../protocol";
-import { store } from "../store";
+import { drawOverlay, layerColor, ofRun, together } from "../overlay";
+import type { FrameHeader, Layer, Shape } from "../protocol";
+import { store, type State } from "../store";
 import { useClock, useStore } from "../use_store";
+import { RunFacts } from "./run_facts";
 
 /** Older than this, a live picture is not what the UAV sees now. */
 const staleMs = 500;
@@ -18,16 +19,33 @@ interface Shown {
   receivedAt: number;
 }
 
-/** The newest frame with what was found in it. */
+/** The newest frame with what was found in it; of two runs beside each other twice. */
 export function ImageView() {
   const canvas = useRef<HTMLCanvasElement>(null);
+  const secondCanvas = useRef<HTMLCanvasElement>(null);
   const [shown, setShown] = useState<Shown | null>(null);
-  usePictures(canvas, setShown);
+  const isBeside = useStore(hasTwoPictures);
+  usePictures(canvas, secondCanvas, setShown);
   return (
     <section class="image" aria-label="Image">
-      <div class="screen">
-        <canvas ref={canvas} role="img" aria-label={pictureInWords(shown)} />
-        {shown === null && <p class="empty">No image yet</p>}
+      <div class={isBeside ? "screens beside" : "screens"}>
+        <div>
+          {isBeside && <h2>First run</h2>}
+          <div class="screen">
+            <canvas ref={canvas} role="img" aria-label={pictureInWords(shown, 1)} />
+            {shown === null && <p class="empty">No image yet</p>}
+          </div>
+          <RunFacts run={1} />
+        </div>
+        {isBeside && (
+          <div>
+            <h2>Second run</h2>
+            <div class="screen">
+              <canvas ref={secondCanvas} role="img" aria-label={pictureInWords(shown, 2)} />
+            </div>
+            <RunFacts run={2} />
+          </div>
+        )}
       </div>
       <ViewChoice />
       <div class="image-bar">
@@ -38,10 +56,16 @@ export function ImageView() {
   );
 }
 
-function pictureInWords(shown: Shown | null): string {
+/** Beside each other are two runs, once there are two. */
+export function hasTwoPictures(state: State): boolean {
+  return state.isBeside && state.second?.state === "done";
+}
+
+function pictureInWords(shown: Shown | null, run: 1 | 2): string {
   if (shown === null) return "no image yet";
-  const picture = shown.header.view === "" ? "camera image" : shown.header.view;
-  const found = shown.header.shapes.filter(({ layer, label }) => layer === "detection" && label !== "");
+  const image = shown.header.view === "" ? "camera image" : shown.header.view;
+  const picture = run === 1 ? image : `${image}, second run`;
+  const found = ofRun(shown.header.shapes, run).filter(({ layer, label }) => layer === "detection" && label !== "");
   if (found.length === 0) return `${picture}, nothing found`;
   return `${picture}, found: ${found.map((shape) => shape.label).join(", ")}`;
 }
@@ -49,45 +73,43 @@ function pictureInWords(shown: Shown | null): string {
 // The next picture is asked for when this one is on the screen, so that none waits anywhere.
 function usePictures(
   canvas: { current: HTMLCanvasElement | null },
+  secondCanvas: { current: HTMLCanvasElement | null },
   setShown: (shown: Shown) => void,
 ): void {
+  const picture = useRef<Picture | null>(null);
+  const isBeside = useStore(hasTwoPictures);
+  const layers = useStore((state) => state.layers);
+  const draw = () => {
+    if (!picture.current) return;
+    const { shapes } = picture.current.header;
+    if (!secondCanvas.current) return drawPicture(canvas.current, picture.current, together(shapes));
+    drawPicture(canvas.current, picture.current, ofRun(shapes, 1));
+    drawPicture(secondCanvas.current, picture.current, ofRun(shapes, 2));
+  };
+  useEffect(draw, [isBeside, layers]);
   useEffect(() => {
-    let picture: Picture | null = null;
-    const draw = () => {
-      if (picture && canvas.current) drawPicture(canvas.current, picture);
-    };
     connection.onPicture = (next) => {
       requestAnimationFrame(() => {
-        picture?.bitmap.close();
-        picture = next;
+        picture.current?.bitmap.close();
+        picture.current = next;
         draw();
         setShown({ header: next.header, receivedAt: next.receivedAt });
         connection.drawn(next.header);
       });
     };
-    let { layers: drawnLayers, view, isFrozen } = store.state;
-    const want = () => connection.wantImages({ view, isHeld: isFrozen });
-    const unsubscribe = store.subscribe(() => {
-      const { state } = store;
-      if (state.layers !== drawnLayers) {
-        drawnLayers = state.layers;
-        draw();
-      }
-      if (state.view === view && state.isFrozen === isFrozen) return;
-      ({ view, isFrozen } = state);
-      want();
-    });
-    want();
     return () => {
       connection.wantImages(null);
       connection.onPicture = null;
-      unsubscribe();
     };
   }, []);
+  const view = useStore((state) => state.view);
+  const isFrozen = useStore((state) => state.isFrozen);
+  useEffect(() => connection.wantImages({ view, isHeld: isFrozen }), [view, isFrozen]);
 }
 
 // The canvas is at least so wide that lines and words over a small frame are fine.
-function drawPicture(canvas: HTMLCanvasElement, { header, bitmap }: Picture): void {
+function drawPicture(canvas: HTMLCanvasElement | null, { header, bitmap }: Picture, shapes: Shape[]): void {
+  if (!canvas) return;
   const scale = Math.max(1, Math.round(1280 / header.width));
   canvas.width = header.width * scale;
   canvas.height = header.height * scale;
@@ -96,7 +118,7 @@ function drawPicture(canvas: HTMLCanvasElement, { header, bitmap }: Picture): vo
   context.imageSmoothingEnabled = scale === 1;
   context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
   const unit = canvas.width / Math.max(canvas.clientWidth, 1);
-  drawOverlay(context, header.shapes, store.state.layers, scale, unit);
+  drawOverlay(context, shapes, store.state.layers, scale, unit);
 }
 
 /** The camera's image, or what the detector makes of it. */
@@ -120,9 +142,11 @@ function LayerSwitches() {
   const layers = useStore((state) => state.hello?.layers ?? noLayers);
   const isFrozen = useStore((state) => state.isFrozen);
   const isLive = useStore((state) => state.hello?.live ?? true);
+  const isBeside = useStore(hasTwoPictures);
+  const ofPicture = layers.filter((layer) => layer !== "second" || !isBeside);
   return (
     <div class="switches" role="group" aria-label="Overlay">
-      {layers.map((layer: Layer) => (
+      {ofPicture.map((layer: Layer) => (
         <button key={layer} aria-pressed={isOn[layer]} onClick={() => toggleLayer(layer)}>
           <span class="swatch" style={{ background: layerColor(layer) }} />
           {layer}

@@ -29,7 +29,7 @@ export function MapPanel() {
       <canvas ref={canvas} role="img" aria-label={mapInWords(map)} />
       <p class="legend">
         <span data-of="uav">UAV</span> <span data-of="target">target</span>{" "}
-        <span data-of="prediction">prediction</span> (ellipses: 2 sigma)
+        <span data-of="prediction">prediction</span> (ellipses: 2 sigma; squares: in the hunt's map)
       </p>
     </section>
   );
@@ -37,7 +37,9 @@ export function MapPanel() {
 
 function mapInWords(map: MapMessage | null): string {
   if (!map?.uav) return "map, nothing known yet";
-  if (!map.target) return "map with the UAV, no target";
+  const inMap = map.mapped.length > 0 ? `, ${map.mapped.length} objects in the map` : "";
+  if (map.objects.length > 0) return `map with the UAV, ${map.objects.length} objects in view${inMap}`;
+  if (!map.target) return `map with the UAV, no target${inMap}`;
   const distance = Math.hypot(
     map.target.position[0] - map.uav[0],
     map.target.position[1] - map.uav[1],
@@ -61,6 +63,7 @@ function drawMap(
   drawGrid(context, view);
   drawLine(context, view, track, themeColor("muted"));
   if (!map) return;
+  for (const object of map.mapped) drawMapped(context, view, object);
   for (const object of map.objects) drawObject(context, view, object, object.color || "gray");
   const color = themeColor("prediction");
   const ahead = map.prediction.map((object) => object.position);
@@ -133,6 +136,17 @@ function drawObject(
   context.fillStyle = themeColor("text");
   context.font = "12px system-ui, sans-serif";
   context.fillText(object.label, x + 8, y - 6);
+}
+
+// A hollow square, and its name below: that of the same object in view is above.
+function drawMapped(context: CanvasRenderingContext2D, view: MapView, object: MapObject): void {
+  const [x, y] = toCanvas(view, object.position);
+  context.strokeStyle = themeColor("text");
+  context.lineWidth = 1.5;
+  context.strokeRect(x - 5, y - 5, 10, 10);
+  context.fillStyle = themeColor("text");
+  context.font = "12px system-ui, sans-serif";
+  context.fillText(object.label, x + 8, y + 14);
 }
 
 function drawUav(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { useState } from "preact/hooks";
-import { cancelDetection, detectAgain, seekDifference } from "../actions";
+import { cancelDetection, detectAgain, seekDifference, toggleBeside } from "../actions";
 import type { Option, SecondRun } from "../protocol";
 import { marksInWords } from "../timeline";
 import { useStore } from "../use_store";
@@ -105,6 +105,7 @@ function OptionInput({ option, value, onChange, onRemove }: OptionInputProps) {
 
 function Outcome({ second }: { second: SecondRun }) {
   const timeline = useStore((state) => state.timeline);
+  const isBeside = useStore((state) => state.isBeside);
   if (!timeline) return null;
   const settings = second.settings.join(", ");
   switch (second.state) {
@@ -132,6 +133,9 @@ function Outcome({ second }: { second: SecondRun }) {
           <div class="replay-buttons">
             <button onClick={() => seekDifference(-1)}>◀ difference</button>
             <button onClick={() => seekDifference(1)}>difference ▶</button>
+            <button aria-pressed={isBeside} onClick={toggleBeside}>
+              Beside each other
+            </button>
           </div>
         </>
       );
