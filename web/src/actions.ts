@@ -19,6 +19,10 @@ export function toggleLayer(layer: Layer): void {
   store.set({ layers: { ...layers, [layer]: !layers[layer] } });
 }
 
+export function toggleTeam(): void {
+  store.set({ isTeamShown: !store.state.isTeamShown });
+}
+
 export function toggleRecording(): void {
   command("record", store.state.status?.recording ? 0 : 1);
 }

@@ -10,6 +10,7 @@ import {
   toggleLayer,
   togglePlaying,
   toggleRecording,
+  toggleTeam,
 } from "./actions";
 import { colorKeys } from "./color_keys";
 import { offeredPages, togglePage } from "./pages";
@@ -33,6 +34,12 @@ const mainKeys: Key[] = [
     isOffered: () => store.state.hello?.layers.includes(layer) ?? false,
     act: () => toggleLayer(layer),
   })),
+  {
+    keys: ["m"],
+    meaning: "show the team's objects on the map",
+    isOffered: () => store.state.team !== null,
+    act: toggleTeam,
+  },
   { keys: ["k"], meaning: "freeze the image; play or hold a recording", act: togglePlaying },
   { keys: ["."], meaning: "a frame forward", isOffered: has("step"), act: () => step(1) },
   { keys: [","], meaning: "a frame back", isOffered: has("step"), act: () => step(-1) },

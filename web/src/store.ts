@@ -15,6 +15,7 @@ import type {
   SecondRun,
   ServerMessage,
   Status,
+  TeamMessage,
   Timeline,
 } from "./protocol";
 import { SeriesBuffer } from "./series_buffer";
@@ -32,6 +33,7 @@ export interface State {
   hello: Hello | null;
   status: Status | null;
   map: MapMessage | null;
+  team: TeamMessage | null;
   health: Health | null;
   doctor: Doctor | null;
   events: EventMessage[];
@@ -48,6 +50,8 @@ export interface State {
   /** UAV's way on the map, oldest first. */
   track: [number, number][];
   layers: Record<Layer, boolean>;
+  /** Whether the map shows what the team knows. */
+  isTeamShown: boolean;
   isFrozen: boolean;
   isHelpShown: boolean;
   theme: Theme;
@@ -63,6 +67,7 @@ export function initialState(): State {
     hello: null,
     status: null,
     map: null,
+    team: null,
     health: null,
     doctor: null,
     events: [],
@@ -78,6 +83,7 @@ export function initialState(): State {
     series: new SeriesBuffer(0),
     track: [],
     layers: { detection: true, prediction: true, rejected: true, second: true },
+    isTeamShown: true,
     isFrozen: false,
     isHelpShown: false,
     theme: "auto",
@@ -95,6 +101,7 @@ export function withMessage(state: State, message: ServerMessage): State {
         events: [],
         track: [],
         map: null,
+        team: null,
         health: null,
         doctor: null,
         timeline: null,
@@ -113,6 +120,8 @@ export function withMessage(state: State, message: ServerMessage): State {
       return { ...state, status: message };
     case "map":
       return { ...state, map: message, track: withPoint(state.track, message.uav) };
+    case "team":
+      return { ...state, team: message };
     case "health":
       return { ...state, health: message };
     case "doctor":
