@@ -32,6 +32,10 @@ export function turnView(direction: 1 | -1): void {
   showView(views.at((views.indexOf(view) + direction) % views.length) ?? "");
 }
 
+export function toggleTeam(): void {
+  store.set({ isTeamShown: !store.state.isTeamShown });
+}
+
 export function toggleRecording(): void {
   command("record", store.state.status?.recording ? 0 : 1);
 }

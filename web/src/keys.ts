@@ -14,6 +14,7 @@ import {
   toggleLayer,
   togglePlaying,
   toggleRecording,
+  toggleTeam,
   turnView,
 } from "./actions";
 import { colorKeys } from "./color_keys";
@@ -43,6 +44,12 @@ const mainKeys: Key[] = [
   })),
   { keys: ["v"], meaning: "next view of the image", isOffered: hasViews, act: () => turnView(1) },
   { keys: ["V"], meaning: "the view before", isOffered: hasViews, act: () => turnView(-1) },
+  {
+    keys: ["m"],
+    meaning: "show the team's objects on the map",
+    isOffered: () => store.state.team !== null,
+    act: toggleTeam,
+  },
   { keys: ["k"], meaning: "freeze the image; play or hold a recording", act: togglePlaying },
   { keys: ["."], meaning: "a frame forward", isOffered: has("step"), act: () => step(1) },
   { keys: [","], meaning: "a frame back", isOffered: has("step"), act: () => step(-1) },

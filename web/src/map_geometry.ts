@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import type { MapMessage } from "./protocol";
+import type { MapMessage, MapObject, TeamObject } from "./protocol";
 
 /** World (m, north up) to canvas (px). */
 export interface MapView {
@@ -43,19 +43,31 @@ export function fitView(points: [number, number][], width: number, height: numbe
 
 /** What the view has to show: positions, and the boxes around the ellipses of k sigma. */
 export function pointsOf(
-  map: MapMessage,
+  map: MapMessage | null,
+  team: TeamObject[],
   track: [number, number][],
   sigmas: number,
 ): [number, number][] {
-  const objects = [...map.objects, ...map.mapped, ...map.prediction, ...(map.target ? [map.target] : [])];
-  const corners = objects.flatMap(({ position: [x, y], covariance: [xx, , yy] }) => {
-    const [dx, dy] = [sigmas * Math.sqrt(xx), sigmas * Math.sqrt(yy)];
-    return [
-      [x - dx, y - dy],
-      [x + dx, y + dy],
-    ] as [number, number][];
-  });
-  return [...track, ...(map.uav ? [map.uav] : []), ...corners];
+  const target = map?.target ? [map.target] : [];
+  const ofMap = map ? [...map.objects, ...map.mapped, ...map.prediction, ...target] : [];
+  const corners = [...ofMap, ...team].flatMap((object) => cornersOf(object, sigmas));
+  return [...track, ...(map?.uav ? [map.uav] : []), ...corners];
+}
+
+function cornersOf(
+  { position: [x, y], covariance: [xx, , yy] }: MapObject,
+  sigmas: number,
+): [number, number][] {
+  const [dx, dy] = [sigmas * Math.sqrt(xx), sigmas * Math.sqrt(yy)];
+  return [
+    [x - dx, y - dy],
+    [x + dx, y + dy],
+  ];
+}
+
+/** What the map says beside an object of the team: "red: one two, for two". */
+export function teamLabel({ label, uavs, holder }: TeamObject): string {
+  return `${label}: ${uavs.join(" ")}${holder ? `, for ${holder}` : ""}`;
 }
 
 /** Half axes (m) and direction of the longer one (rad from east) of the ellipse of k sigma. */

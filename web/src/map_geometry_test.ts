@@ -1,6 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { describe, expect, test } from "vitest";
-import { covarianceEllipse, fitView, scaleLength, toCanvas } from "./map_geometry";
+import { covarianceEllipse, fitView, pointsOf, scaleLength, teamLabel, toCanvas } from "./map_geometry";
+import type { TeamObject } from "./protocol";
+
+const ofTeam: TeamObject = {
+  label: "red",
+  color: "",
+  position: [10, 20],
+  covariance: [4, 0, 1],
+  uavs: ["one", "two"],
+  holder: "",
+};
 
 describe("map", () => {
   test("north is up, east is right, all points are in view", () => {
@@ -24,6 +34,20 @@ describe("map", () => {
   test("one point, or none, is shown all the same", () => {
     expect(toCanvas(fitView([[7, 8]], 100, 100), [7, 8])).toEqual([50, 50]);
     expect(fitView([], 100, 100).pixelsPerMeter).toBeGreaterThan(0);
+  });
+
+  test("what the team knows is in view, before the own map is there as well", () => {
+    expect(pointsOf(null, [ofTeam], [[1, 2]], 2)).toEqual([
+      [1, 2],
+      [6, 18],
+      [14, 22],
+    ]);
+    expect(pointsOf(null, [], [], 2)).toEqual([]);
+  });
+
+  test("an object of the team says who has it and who goes for it", () => {
+    expect(teamLabel(ofTeam)).toBe("red: one two");
+    expect(teamLabel({ ...ofTeam, holder: "two" })).toBe("red: one two, for two");
   });
 
   test("the ellipse is that of the covariance", () => {

@@ -98,6 +98,19 @@ export interface MapMessage {
   mapped: MapObject[];
 }
 
+/** Of the team's map, in this UAV's world. */
+export interface TeamObject extends MapObject {
+  /** Names of those that have it in their maps. */
+  uavs: string[];
+  /** The one that goes for it; empty: none. */
+  holder: string;
+}
+
+export interface TeamMessage {
+  kind: "team";
+  objects: TeamObject[];
+}
+
 export interface Check {
   name: string;
   verdict: "good" | "doubtful" | "wrong" | "not checked";
@@ -194,6 +207,7 @@ export type ServerMessage =
   | Sample
   | Status
   | MapMessage
+  | TeamMessage
   | Health
   | Doctor
   | EventMessage

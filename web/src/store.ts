@@ -18,6 +18,7 @@ import type {
   SecondRun,
   ServerMessage,
   Status,
+  TeamMessage,
   Timeline,
 } from "./protocol";
 import { SeriesBuffer } from "./series_buffer";
@@ -35,6 +36,7 @@ export interface State {
   hello: Hello | null;
   status: Status | null;
   map: MapMessage | null;
+  team: TeamMessage | null;
   health: Health | null;
   doctor: Doctor | null;
   events: EventMessage[];
@@ -59,6 +61,8 @@ export interface State {
   layers: Record<Layer, boolean>;
   /** What is looked at, of the views of hello; "": the camera's image. */
   view: string;
+  /** Whether the map shows what the team knows. */
+  isTeamShown: boolean;
   isFrozen: boolean;
   isHelpShown: boolean;
   theme: Theme;
@@ -74,6 +78,7 @@ export function initialState(): State {
     hello: null,
     status: null,
     map: null,
+    team: null,
     health: null,
     doctor: null,
     events: [],
@@ -94,6 +99,7 @@ export function initialState(): State {
     track: [],
     layers: { detection: true, prediction: true, rejected: true, truth: true, second: true },
     view: "",
+    isTeamShown: true,
     isFrozen: false,
     isHelpShown: false,
     theme: "auto",
@@ -112,6 +118,7 @@ export function withMessage(state: State, message: ServerMessage): State {
         events: [],
         track: [],
         map: null,
+        team: null,
         health: null,
         doctor: null,
         timeline: null,
@@ -133,6 +140,8 @@ export function withMessage(state: State, message: ServerMessage): State {
       return { ...state, status: message };
     case "map":
       return { ...state, map: message, track: withPoint(state.track, message.uav) };
+    case "team":
+      return { ...state, team: message };
     case "health":
       return { ...state, health: message };
     case "doctor":

@@ -73,6 +73,13 @@ describe("store", () => {
     expect([anew.clipRange, anew.findings]).toEqual([null, null]);
   });
 
+  test("the team's map is kept until the server begins anew", () => {
+    let state = withMessage(initialState(), { kind: "team", objects: [] });
+    state = withMessage(state, mapAt(1));
+    expect(state.team).toEqual({ kind: "team", objects: [] });
+    expect(withMessage(state, hello).team).toBeNull();
+  });
+
   test("tells its listeners of changes until they leave", () => {
     const store = new Store();
     let calls = 0;

@@ -103,6 +103,7 @@ class Client {
     this.send({ kind: "hello", title, live: !this.isReplay, series, layers, views, offers, exports: this.isReplay, colors: this.isReplay });
     this.send({ kind: "health", checks });
     if (!this.isReplay) this.send({ kind: "doctor", checks: doctorChecks });
+    if (!this.isReplay) this.send(team());
     this.event("info", "camera opened: 376x240, 30 Hz");
     this.event("warning", "autopilot's clock is 12 ms ahead");
     if (this.isReplay) this.sendTimeline();
@@ -248,6 +249,26 @@ function mapOf(flight) {
     prediction: isKnown ? ahead : [],
     objects: [],
     mapped: [],
+  };
+}
+
+// What a UAV of a team that hunts for objects would hear; the landing has it on its map as well.
+function team() {
+  const known = (label, position, uavs, holder) => ({
+    label,
+    color: "",
+    position,
+    covariance: [0.04, 0, 0.04],
+    uavs,
+    holder,
+  });
+  return {
+    kind: "team",
+    objects: [
+      known("red", [4, 3], ["one", "two"], "two"),
+      known("green", [11, -3], ["one"], ""),
+      known("blue", [20, 5], ["three", "two"], "one"),
+    ],
   };
 }
 

@@ -124,6 +124,8 @@ class Flight {
     Finish(end);
     if (hunt_ != nullptr && output_) hunt_->WriteMap(*output_);
     if (team_) LeaveTeam();
+    dds_.reset();
+    log_.Show();
     return end;
   }
 
@@ -188,10 +190,11 @@ class Flight {
     if (!arguments_.source.dds.is_given()) return;
     const DdsOptions& options = all_options_.dds;
     if (!source_.node) source_.node = arguments_.source.dds.OpenNode(options);
-    dds_ = std::make_unique<FlightDds>(
-        std::make_unique<DdsResults>(source_.node, options, Frames(), source_.calibration,
-                                     all_options_.landing, ReadModel()),
-        [this](const std::string& text) { log_.Say(text); });
+    auto results = std::make_unique<DdsResults>(
+        source_.node, options, Frames(), source_.calibration, all_options_.landing, ReadModel());
+    if (team_) results->AdvertiseTeam();
+    dds_ = std::make_unique<FlightDds>(std::move(results),
+                                       [this](const std::string& text) { log_.Say(text); });
     observers_.Add(dds_.get());
   }
 
@@ -215,7 +218,8 @@ class Flight {
           "--team: expected --autopilot or a source with poses, and the camera's mount");
     }
     team_.emplace(arguments_.team, arguments_.source.dds.Domain(), all_options_.team,
-                  all_options_.hunt.map, [this](const std::string& text) { Say(text); });
+                  all_options_.hunt.map, ReadModel(),
+                  [this](const std::string& text) { Say(text); });
   }
 
   void OpenVision() {
@@ -306,13 +310,21 @@ class Flight {
   }
 
   void ShareMap() {
-    if (auto objects = hunt_->TakeMap()) team_->Tell(std::move(*objects));
+    if (auto map = hunt_->TakeMap()) {
+      if (map->position) team_->SetPosition(*map->position);
+      team_->Tell(std::move(map->objects));
+      if (!observers_.empty()) observers_.SeeTeam({map->captured, team_->Map()});
+      seen_ = map->captured;
+    }
     team_->Exchange();
   }
 
   void LeaveTeam() {
     team_->Finish(hunt_->Objects());
-    if (output_) team_->WriteMap(ReadModel(), /*origin=*/{}, *output_);
+    const TeamReport report{seen_, team_->Map()};
+    if (dds_) dds_->SeeTeam(report);
+    if (console_) console_->SeeTeam(report);
+    if (output_) team_->WriteMap(/*origin=*/{}, *output_);
     log_.Show();
     fmt::print(stderr, "{}\n", team_->Found());
   }
@@ -330,7 +342,6 @@ class Flight {
   void Finish(FlightEnd end) {
     recording_.Close();  // writes what is left
     mcap_.reset();
-    dds_.reset();
     log_.Show();
     fmt::print(stderr, "{}", program_->Summary());
     if (simulated_autopilot_) fmt::print(stderr, "{}", InWords(simulated_autopilot_->result()));
@@ -355,6 +366,7 @@ class Flight {
   std::unique_ptr<FlightVision> vision_;
   HuntVision* hunt_ = nullptr;  // the vision, when it is one
   std::optional<TeamLink> team_;
+  Time seen_{};  // the newest frame that the team was told of
   std::optional<RecordedActuator> actuator_;
   std::unique_ptr<SimulatedAutopilot> simulated_autopilot_;
   std::optional<Connection> connection_;

@@ -58,7 +58,7 @@ class HuntRun : public PipelineRun {
     detections_ += observation.report.detections.size();
     for (std::size_t i = 0; i < kObjectStageCount; ++i) passed_[i] += observation.report.passed[i];
     has_world_ = observation.world_from_camera.has_value();
-    ShareMap();
+    if (team_ != nullptr) ShareMap(observation);
     return observation.detect_time;
   }
 
@@ -67,10 +67,8 @@ class HuntRun : public PipelineRun {
   void Finish() override {
     if (has_map_) sink_.WriteMap(pipeline_);
     if (mcap_) mcap_->Close();
+    if (team_ != nullptr) LeaveTeam();
     if (dds_ != nullptr) dds_->Flush();
-    if (team_ == nullptr) return;
-    team_->Finish(pipeline_.map().Confirmed());
-    sink_.WriteTeamMap(pipeline_, team_);
   }
 
   std::string Found() const override { return fmt::format("{} detections", detections_); }
@@ -87,10 +85,26 @@ class HuntRun : public PipelineRun {
   }
 
  private:
-  void ShareMap() {
-    if (team_ == nullptr) return;
-    if (team_->IsTimeToTell()) team_->Tell(pipeline_.map().Confirmed());
+  void ShareMap(const HuntObservation& observation) {
+    if (observation.world_from_camera) {
+      team_->SetPosition(observation.world_from_camera->translation);
+    }
+    seen_ = observation.time;
+    if (team_->IsTimeToTell()) {
+      team_->Tell(pipeline_.map().Confirmed());
+      PublishTeam();
+    }
     team_->Exchange();
+  }
+
+  void LeaveTeam() {
+    team_->Finish(pipeline_.map().Confirmed());
+    PublishTeam();
+    sink_.WriteTeamMap(team_);
+  }
+
+  void PublishTeam() {
+    if (dds_ != nullptr) dds_->Publish(TeamReport{seen_, team_->Map()});
   }
 
   HuntPipeline pipeline_;
@@ -101,6 +115,7 @@ class HuntRun : public PipelineRun {
   DdsResults* dds_;  // as well
   std::optional<double> altitude_m_;
   bool has_world_ = false;  // of the last frame
+  Time seen_{};             // that frame
   std::size_t detections_ = 0;
   std::array<std::size_t, kObjectStageCount> passed_{};
 };
@@ -127,10 +142,11 @@ void RunHunt(const HuntArguments& arguments) {
   if (!arguments.team.team.empty()) {
     RequireMap(opened, options);
     team.emplace(arguments.team, arguments.source.dds.Domain(), all_options.team, options.map,
-                 [](const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); });
+                 model, [](const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); });
   }
   const std::unique_ptr<DdsResults> dds = OpenDdsResults(arguments.source, opened, all_options,
                                                          /*is_still=*/options.still, model);
+  if (team && dds) dds->AdvertiseTeam();
   HuntRun run(opened, model, grid, options, arguments, team ? &*team : nullptr, dds.get());
   RunPipeline(opened, &run);
 }

@@ -28,10 +28,8 @@ void HuntSink::WriteMap(const HuntPipeline& pipeline) const {
     WriteObjectMap(pipeline, origin_, *folder);
 }
 
-void HuntSink::WriteTeamMap(const HuntPipeline& pipeline, TeamLink* team) const {
-  if (const OutputFolder* const folder = results_.folder()) {
-    team->WriteMap(pipeline.detector().model(), origin_, *folder);
-  }
+void HuntSink::WriteTeamMap(TeamLink* team) const {
+  if (const OutputFolder* const folder = results_.folder()) team->WriteMap(origin_, *folder);
 }
 
 }  // namespace kestrel

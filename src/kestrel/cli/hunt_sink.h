@@ -21,7 +21,7 @@ class HuntSink {
 
   // The maps go to files only.
   void WriteMap(const HuntPipeline& pipeline) const;
-  void WriteTeamMap(const HuntPipeline& pipeline, TeamLink* team) const;
+  void WriteTeamMap(TeamLink* team) const;
 
  private:
   ResultSink results_;

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
+#include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "kestrel/bags/result_messages.h"
+#include "kestrel/bags/serialization.h"
 #include "kestrel/cli/test_command.h"
+#include "kestrel/dds/ros2_node.h"
 #include "kestrel/dds/test_dds.h"
 #include "kestrel/objects/test_objects.h"
 
@@ -13,6 +21,7 @@ namespace kestrel {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr char kDownwardCamera[] = R"(sensor_type: camera
 T_BS:
@@ -67,15 +76,15 @@ class TeamCommandTest : public CommandTest {
     return false;
   }
 
-  // The outcome of the commands that 'first' and 'second' begin, run as UAVs "a" and "b" of one
-  // team.
-  int RunTeam(const std::string& first, const std::string& second) const {
+  // The outcome of the commands that 'first' and 'second' begin, run as UAVs and nodes "a" and "b"
+  // of one team.
+  int RunTeam(const std::string& first, const std::string& second, int silence_s = 30) const {
     const auto command = [&, domain = TestDomain()](const std::string& begin,
                                                     const std::string& uav) {
       return fmt::format(
           "{0} {1} '{2}' --output '{3}' --team test --dds {4} --set team.uav={5} "
-          "--set team.silence_s=30 2>'{3}.said'",
-          KESTREL_COMMAND, begin, folder_ / uav, folder_ / (uav + "_out"), domain, uav);
+          "--set dds.node={5} --set team.silence_s={6} 2>'{3}.said'",
+          KESTREL_COMMAND, begin, folder_ / uav, folder_ / (uav + "_out"), domain, uav, silence_s);
     };
     const int status = std::system(fmt::format("({}) & ({}); b=$?; wait $! && exit $b",
                                                command(first, "a"), command(second, "b"))
@@ -90,6 +99,12 @@ class TeamCommandTest : public CommandTest {
   }
 };
 
+int RowsThatEnd(const std::string& map, const std::string& end) {
+  int rows = 0;
+  for (std::size_t at = 0; (at = map.find(end, at)) != std::string::npos; ++at) ++rows;
+  return rows;
+}
+
 TEST_F(TeamCommandTest, TwoHuntsEndWithOneMap) {
   const std::string first = WriteFlight("a", {0, 0});
   WriteFlight("b", {0.7, -0.5});
@@ -103,9 +118,63 @@ TEST_F(TeamCommandTest, TwoHuntsEndWithOneMap) {
   const std::string map = TeamMapOf("a");
   EXPECT_EQ(map, TeamMapOf("b"));
   EXPECT_EQ(Lines(map), 13) << map;
-  std::size_t shared = 0;  // rows of objects that both have
-  for (std::size_t at = 0; (at = map.find(",a b\n", at)) != std::string::npos; ++at) ++shared;
-  EXPECT_EQ(shared, 12u) << map;
+  EXPECT_EQ(RowsThatEnd(map, ",a b,\n"), 12) << map;  // both have it, nobody goes for it
+}
+
+TEST_F(TeamCommandTest, EachGoesForAnotherObject) {
+  const std::string first = WriteFlight("a", {0, 0});
+  WriteFlight("b", {0.7, -0.5});
+  if (!HasDds(first)) GTEST_SKIP() << "no DDS";
+  const std::string hunt = "hunt --set team.claim=true";
+  ASSERT_EQ(RunTeam(hunt, hunt), 0) << Said("a") << Said("b");
+  const std::string map = TeamMapOf("a");
+  EXPECT_EQ(map, TeamMapOf("b"));
+  EXPECT_EQ(RowsThatEnd(map, ",a\n"), 1) << map;
+  EXPECT_EQ(RowsThatEnd(map, ",b\n"), 1) << map;
+  EXPECT_THAT(Said("a"), HasSubstr("team: goes for "));
+}
+
+TEST_F(TeamCommandTest, TheTeamsMapIsToldToRos2) {
+  const std::string first = WriteFlight("a", {0, 0});
+  WriteFlight("b", {0.7, -0.5});
+  if (!HasDds(first)) GTEST_SKIP() << "no DDS";
+  Ros2Node node(TestDomain(), {"listener"});
+  node.Subscribe("/a/team_map", Detection3DArrayMessage::kType, kLatchedQos);
+  node.Subscribe("/b/team_markers", MarkerArrayMessage::kType, kLatchedQos);
+  ASSERT_EQ(RunTeam("hunt", "fly --hunt"), 0) << Said("a") << Said("b");
+  std::map<std::size_t, std::string> heard;
+  node.Take(std::chrono::seconds(1),
+            [&](std::size_t i, std::string_view bytes) { heard[i] = std::string(bytes); });
+  ASSERT_EQ(heard.size(), 2u);
+  const auto map = ParseMessage<Detection3DArrayMessage>(heard[0], WireFormat::kCdr, "heard");
+  EXPECT_EQ(map.header.frame_id, "map");
+  ASSERT_EQ(map.detections.size(), 12u);
+  EXPECT_EQ(std::count_if(map.detections.begin(), map.detections.end(),
+                          [](const auto& one) { return one.results.at(0).class_id == "red"; }),
+            4);
+  const auto markers = ParseMessage<MarkerArrayMessage>(heard[1], WireFormat::kCdr, "heard");
+  EXPECT_EQ(markers.markers.size(), 25u);  // two for each object; and those before go
+}
+
+TEST_F(TeamCommandTest, OnlyThoseWithTheKeyAreHeard) {
+  const std::string first = WriteFlight("a", {0, 0});
+  WriteFlight("b", {0.7, -0.5});
+  if (!HasDds(first)) GTEST_SKIP() << "no DDS";
+  const auto with_key = [&](const std::string& name, char digit) {
+    folder_.Write(name, std::string(64, digit) + "\n");
+    std::filesystem::permissions(folder_ / name, std::filesystem::perms::owner_read);
+    return "hunt --set 'team.key=" + (folder_ / name) + "'";
+  };
+  const std::string right = with_key("right.key", '1');
+  const std::string wrong = with_key("wrong.key", '2');
+  ASSERT_EQ(RunTeam(right, right), 0) << Said("a") << Said("b");
+  EXPECT_THAT(Said("a"), HasSubstr("team: 2 UAVs, 12 objects"));
+  EXPECT_THAT(Said("a"), Not(HasSubstr("refused")));
+  ASSERT_EQ(RunTeam(right + " --force", wrong + " --force", /*silence_s=*/6), 0);
+  for (const std::string uav : {"a", "b"}) {
+    EXPECT_THAT(Said(uav), HasSubstr("team: 1 UAVs, 12 objects"));
+    EXPECT_THAT(Said(uav), HasSubstr("not signed by the team's key"));
+  }
 }
 
 TEST_F(TeamCommandTest, AFlightSharesItsMapWithAHunt) {

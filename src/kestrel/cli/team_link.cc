@@ -20,7 +20,6 @@
 #include "kestrel/cli/interrupt.h"
 #include "kestrel/link/signing.h"
 #include "kestrel/recording/object_map_files.h"
-#include "kestrel/team/team_view.h"
 
 namespace kestrel {
 namespace {
@@ -79,12 +78,13 @@ CLI::Option* TeamArguments::AddTo(CLI::App* command) {
 }
 
 TeamLink::TeamLink(const TeamArguments& arguments, int domain, const TeamLinkOptions& options,
-                   const ObjectMapOptions& map, Say say)
+                   const ObjectMapOptions& map, const ObjectModel& model, Say say)
     : options_(options),
       member_(OwnKey(options), options.team, ReadKey(options)),
       topic_(domain, CheckedTeam(arguments.team),
              fmt::format("{}/{:08x}", member_.self().name, member_.self().boot)),
       fusion_(options.team, map),
+      model_(model),
       say_(std::move(say)) {}
 
 bool TeamLink::IsTimeToTell() const {
@@ -102,10 +102,33 @@ void TeamLink::Tell(std::vector<MappedObject> objects) {
 
 void TeamLink::Exchange() {
   topic_.Receive([this](std::span<const std::uint8_t> bytes) { member_.Hear(bytes, Now()); });
+  if (options_.claim && position_ && Now() >= next_claim_) ChooseAgain();
   member_.Tick(Now(), [this](std::span<const std::uint8_t> bytes) { topic_.Send(bytes); });
   for (const std::string& warning : member_.TakeWarnings()) {
     say_("team: " + warning);
   }
+}
+
+// As often as others are told of it.
+void TeamLink::ChooseAgain() {
+  next_claim_ = Now() + DurationFromSeconds(options_.team.digest_period_s);
+  const TeamView view = View();
+  const auto chosen = ChooseObject(view, *position_, model_, Now(), &member_);
+  std::optional<ObjectRef> claimed;
+  if (const auto claim = member_.ClaimOf(member_.self(), Now())) claimed = claim->object;
+  if (std::exchange(claimed_, claimed) == claimed) return;
+  if (!chosen) return say_("team: there is nothing left to go for");
+  const MappedObject& object = view.objects[*chosen];
+  const auto class_index = ClassOf(object, model_);
+  say_(fmt::format("team: goes for {} at ({:.1f}, {:.1f}) m",
+                   class_index ? model_.classes[*class_index].name : ToString(object.shape),
+                   object.position().x(), object.position().y()));
+}
+
+std::vector<std::optional<Claim>> TeamLink::Claims() const {
+  std::vector<std::optional<Claim>> claims;
+  for (const UavKey& uav : member_.Known()) claims.push_back(member_.ClaimOf(uav, Now()));
+  return claims;
 }
 
 void TeamLink::Finish(std::vector<MappedObject> objects) {
@@ -116,10 +139,15 @@ void TeamLink::Finish(std::vector<MappedObject> objects) {
   member_.SetDone();
   bool was_said = false;
   Time awaited = Now();  // the last time that somebody was not done
-  Time lacking = Now();  // or something was not here
+  Time lacking = Now();  // or something was not here, or was new
+  std::vector<std::optional<Claim>> claims;
   for (;;) {
     Exchange();
     const Time now = Now();
+    if (auto newest = Claims(); newest != claims) {
+      claims = std::move(newest);
+      lacking = now;
+    }
     const bool are_done = member_.AreAllDone(now);
     if (!are_done) awaited = now;
     if (!are_done && !std::exchange(was_said, true)) SayWhoIsAwaited();
@@ -138,15 +166,13 @@ void TeamLink::SayWhoIsAwaited() const {
   say_(fmt::format("team: waits for {} (Ctrl-C: no longer)", fmt::join(names, ", ")));
 }
 
-void TeamLink::WriteMap(const ObjectModel& model, const std::vector<double>& origin,
-                        const OutputFolder& folder) {
-  const TeamView view = ViewTeam(member_, Now(), &fusion_);
-  WriteTeamMap(CommonMap(member_, view, fusion_), view.objects, model, origin, folder);
+void TeamLink::WriteMap(const std::vector<double>& origin, const OutputFolder& folder) {
+  const TeamView view = View();
+  WriteTeamMap(CommonMap(member_, view, fusion_), view.objects, model_, origin, folder);
 }
 
 std::string TeamLink::Found() {
-  const TeamView view = ViewTeam(member_, Now(), &fusion_);
-  return fmt::format("team: {} UAVs, {} objects", member_.Known().size(), view.objects.size());
+  return fmt::format("team: {} UAVs, {} objects", member_.Known().size(), View().objects.size());
 }
 
 }  // namespace kestrel

@@ -91,6 +91,16 @@ struct ConsoleMap {
   std::vector<ConsoleMapObject> mapped;                       // what a hunt's map has by now
 };
 
+// What the UAV's team knows of, in this UAV's world.
+struct ConsoleTeamObject {
+  ConsoleMapObject object;
+  std::vector<std::string> uavs;  // that have it in their maps, by name
+  std::string holder;             // the one that goes for it; empty: none
+};
+struct ConsoleTeam {
+  std::vector<ConsoleTeamObject> objects;
+};
+
 // One check of the program's health, as the doctor's.
 struct ConsoleCheck {
   std::string name;
@@ -170,7 +180,7 @@ using ConsoleUpdate =
     std::variant<ConsoleSample, ConsoleStatus, ConsoleMap, ConsoleHealth, ConsoleEvent,
                  ConsoleTimeline, ConsolePlayback, ConsoleDoctor, ConsoleOptionList,
                  ConsoleSecondRun, ConsoleFindings, ConsoleClip, ConsoleColors, ConsoleColorScores,
-                 ConsoleCalibration>;
+                 ConsoleCalibration, ConsoleTeam>;
 
 // What is to be done by the page of colours.
 using ColorJob = std::variant<ColorRequest, PendingExport>;

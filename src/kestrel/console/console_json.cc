@@ -78,6 +78,17 @@ Json Message(const ConsoleMap& map) {
           {"mapped", Objects(map.mapped)}};
 }
 
+Json Message(const ConsoleTeam& team) {
+  Json objects = Json::array();
+  for (const ConsoleTeamObject& known : team.objects) {
+    Json object = Object(known.object);
+    object["uavs"] = known.uavs;
+    object["holder"] = known.holder;
+    objects.push_back(std::move(object));
+  }
+  return {{"kind", "team"}, {"objects", std::move(objects)}};
+}
+
 Json Checks(const std::vector<ConsoleCheck>& checks) {
   Json list = Json::array();
   for (const ConsoleCheck& check : checks) {

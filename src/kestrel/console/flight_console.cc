@@ -101,6 +101,10 @@ void FlightConsole::See(const FlightReport& report) {
   feed_.Add(status);
 }
 
+void FlightConsole::SeeTeam(const TeamReport& report) {
+  if (const auto* const view = std::get_if<HuntView>(&view_)) feed_.Add(HuntTeam(*view, report));
+}
+
 void FlightConsole::Show() {
   SetUpThisThread("console frames", {});
   while (!is_over_) {

@@ -72,6 +72,7 @@ class FlightConsole : public FlightObserver {
   void See(const Frame& frame, const LandingObservation& observation) override;
   void See(const Frame& frame, const HuntObservation& observation) override;
   void See(const FlightReport& report) override;
+  void SeeTeam(const TeamReport& report) override;
 
  private:
   struct SeenFrame {

@@ -76,6 +76,29 @@ TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
   EXPECT_THAT((*status)["reason"].get<std::string>(), testing::HasSubstr("no ring"));
 }
 
+// Who opens the page later sees it as well.
+TEST(FlightConsoleOfAHunt, ShowsWhatTheTeamKnows) {
+  FlightConsole console(FreePort(), "a hunt", HuntView{DefaultObjectModel()},
+                        FlightExamination(PaperCalibration(), ".", 0));
+  TeamObject known;
+  known.object.state.head<2>() << 3, -4;
+  known.object.covariance(0, 1) = 0.25;
+  known.object.color_log_likelihoods[0] = 5;
+  known.uavs = {"one", "two"};
+  known.holder = "two";
+  console.SeeTeam({Now(), {known}});
+  TestSocket socket(PortOf(console));
+  const auto team = socket.Next("team");
+  ASSERT_TRUE(team);
+  ASSERT_EQ((*team)["objects"].size(), 1u);
+  const nlohmann::json object = (*team)["objects"][0];
+  EXPECT_EQ(object["label"], "red");
+  EXPECT_EQ(object["position"], (nlohmann::json{3.0, -4.0}));
+  EXPECT_EQ(object["covariance"], (nlohmann::json{0.0, 0.25, 0.0}));
+  EXPECT_EQ(object["uavs"], (nlohmann::json{"one", "two"}));
+  EXPECT_EQ(object["holder"], "two");
+}
+
 TEST_F(FlightConsoleTest, ShowsTheDoctorsChecks) {
   TestSocket socket(PortOf(console_));
   ASSERT_TRUE(socket.Next("hello"));

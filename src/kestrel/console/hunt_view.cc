@@ -115,4 +115,19 @@ ConsoleMap HuntMap(const HuntView& view, const HuntObservation& observation) {
   return map;
 }
 
+ConsoleTeam HuntTeam(const HuntView& view, const TeamReport& report) {
+  ConsoleTeam team;
+  for (const auto& [object, uavs, holder] : report.objects) {
+    const auto class_index = ClassOf(object, view.model);
+    team.objects.push_back({.object = {.label = class_index ? view.model.classes[*class_index].name
+                                                            : ToString(object.shape),
+                                       .color = "",
+                                       .position = object.position().head<2>(),
+                                       .covariance = object.covariance.topLeftCorner<2, 2>()},
+                            .uavs = uavs,
+                            .holder = holder});
+  }
+  return team;
+}
+
 }  // namespace kestrel

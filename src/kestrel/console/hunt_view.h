@@ -6,6 +6,7 @@
 
 #include "kestrel/console/console_feed.h"
 #include "kestrel/objects/object_model.h"
+#include "kestrel/onboard/flight_observer.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 
 namespace kestrel {
@@ -37,5 +38,8 @@ std::vector<ConsoleFact> HuntFacts(const HuntView& view, const HuntObservation& 
 
 // The camera, as LandingMap, and the objects in view that have a place in the world.
 ConsoleMap HuntMap(const HuntView& view, const HuntObservation& observation);
+
+// What the team knows of, by class or, where the model has none, shape.
+ConsoleTeam HuntTeam(const HuntView& view, const TeamReport& report);
 
 }  // namespace kestrel

@@ -27,6 +27,9 @@ Vector3d NormalVector(double sigma, Random* random) {
 std::vector<std::string> NavigationOptions::Validate() const {
   std::vector<std::string> violations;
   RequireIn(rate_hz, 1, 1000, "rate_hz", &violations);
+  RequireIn(origin_x_m, -1000, 1000, "origin_x_m", &violations);
+  RequireIn(origin_y_m, -1000, 1000, "origin_y_m", &violations);
+  RequireIn(world_yaw_deg, -180, 180, "world_yaw_deg", &violations);
   RequireIn(position_noise_m, 0, 10, "position_noise_m", &violations);
   RequireIn(position_drift_m, 0, 10, "position_drift_m", &violations);
   RequireIn(position_bias_m, 0, 10, "position_bias_m", &violations);
@@ -58,7 +61,12 @@ RigidTransform NavigationErrors::TrueMount(const RigidTransform& nominal) const 
 
 NavigationSensor::NavigationSensor(const NavigationOptions& options, const NavigationErrors& errors,
                                    Random random)
-    : options_(options), errors_(errors), random_(random) {
+    : options_(options),
+      errors_(errors),
+      random_(random),
+      navigation_from_world_{
+          Quaterniond(AngleAxisd(Radians(options.world_yaw_deg), Vector3d::UnitZ())),
+          {options.origin_x_m, options.origin_y_m, 0}} {
   constexpr double kDriftPeriod_s = 40;
   bias_ = NormalVector(options.position_bias_m, &random_);
   turn_ = RotationBy(NormalVector(Radians(options.attitude_bias_deg), &random_));
@@ -66,6 +74,7 @@ NavigationSensor::NavigationSensor(const NavigationOptions& options, const Navig
 }
 
 PoseSample NavigationSensor::Report(double time_s, RigidTransform world_from_body) {
+  world_from_body = navigation_from_world_ * world_from_body;
   const Vector3d drift(drift_[0](time_s), drift_[1](time_s), drift_[2](time_s));
   world_from_body.translation += bias_ + drift + NormalVector(options_.position_noise_m, &random_);
   const Vector3d noise = NormalVector(Radians(options_.attitude_noise_deg), &random_);

@@ -19,6 +19,11 @@ namespace kestrel {
 // The errors of what the UAV believes: where it is, when, and how its camera is mounted.
 struct NavigationOptions {
   double rate_hz = 100;
+  // Where the world's origin lies in the navigation's own world and where its x axis points there,
+  // from x to y: no two navigations begin with quite the same world.
+  double origin_x_m = 0;
+  double origin_y_m = 0;
+  double world_yaw_deg = 0;
   double position_noise_m = 0.01;    // standard deviation per axis, of every pose anew
   double position_drift_m = 0.02;    // the same, changes over minutes
   double position_bias_m = 0.02;     // the same, constant
@@ -33,6 +38,10 @@ struct NavigationOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("rate_hz", self.rate_hz, "Hz", "poses per second");
+    visitor("origin_x_m", self.origin_x_m, "m", "the world's origin in the navigation's world");
+    visitor("origin_y_m", self.origin_y_m, "m", "the same, y");
+    visitor("world_yaw_deg", self.world_yaw_deg, "deg",
+            "where the world's x axis points in the navigation's world, from x to y");
     visitor("position_noise_m", self.position_noise_m, "m", "noise of the position, per axis");
     visitor("position_drift_m", self.position_drift_m, "m", "slow error of the position, per axis");
     visitor("position_bias_m", self.position_bias_m, "m",
@@ -77,6 +86,7 @@ class NavigationSensor {
   NavigationOptions options_;
   NavigationErrors errors_;
   Random random_;
+  RigidTransform navigation_from_world_;
   Eigen::Vector3d bias_;
   Eigen::Quaterniond turn_;  // constant error of the attitude
   std::array<std::function<double(double time_s)>, 3> drift_;

@@ -40,6 +40,18 @@ TEST(NavigationModelTest, OffsetLeadsFromImageTimeToNavigationTime) {
   EXPECT_LT(found->rotation.angularDistance(MovingAt(0.777).rotation), 1e-6);
 }
 
+TEST(NavigationModelTest, ItsWorldMayLieElsewhereAndBeTurned) {
+  NavigationOptions options = Perfect();
+  options.origin_x_m = 3;
+  options.origin_y_m = -1;
+  options.world_yaw_deg = 90;
+  const RigidTransform truth{Quaterniond::Identity(), {2, 1, 5}};
+  const RigidTransform told =
+      NavigationSensor(options, {}, Random(1)).Report(0, truth).world_from_body;
+  EXPECT_LT((told.translation - Vector3d(3 - 1, -1 + 2, 5)).norm(), 1e-9);
+  EXPECT_NEAR(HeadingOf(told.rotation), std::numbers::pi / 2, 1e-9);
+}
+
 TEST(NavigationModelTest, NoiseHasTheSpreadAskedFor) {
   NavigationOptions options = Perfect();
   options.position_noise_m = 0.05;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -95,6 +96,15 @@ void DdsResults::PublishMount() const {
       mount, TransformBytes(Time(), *frames_.body, frames_.camera, *body_from_camera_)));
 }
 
+void DdsResults::AdvertiseTeam() {
+  const auto advertise = [this](const char* topic, std::string_view type) {
+    return connection_.node->Advertise(fmt::format("/{}/{}", options_.node, topic), type,
+                                       kLatchedQos);
+  };
+  team_ = {advertise("team_map", Detection3DArrayMessage::kType),
+           advertise("team_markers", MarkerArrayMessage::kType)};
+}
+
 void DdsResults::PublishBody(const std::optional<RigidTransform>& world_from_camera, Time stamp) {
   if (!options_.publish_tf || !frames_.body || !frames_.world) return;
   if (!world_from_camera || !body_from_camera_) return;
@@ -137,6 +147,18 @@ void DdsResults::Publish(const Frame& /*frame*/, const HuntObservation& observat
   connection_.Publish(
       ResultTopic::kMarkers,
       SerializeMessage(MarkersOf(stamped, model_, *frames_.world), WireFormat::kCdr));
+}
+
+void DdsResults::Publish(const TeamReport& team) {
+  if (!team_ || !frames_.world) return;
+  TeamReport stamped = team;
+  stamped.time += frames_.to_stamps;
+  const auto publish = [this](std::size_t topic, const auto& message) {
+    static_cast<void>(
+        connection_.node->Publish(topic, SerializeMessage(message, WireFormat::kCdr)));
+  };
+  publish(team_->map, TeamDetectionsOf(stamped, model_, *frames_.world));
+  publish(team_->markers, TeamMarkersOf(stamped, model_, *frames_.world));
 }
 
 void DdsResults::Publish(const FlightReport& report) {

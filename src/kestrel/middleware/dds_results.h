@@ -43,11 +43,17 @@ class DdsResults {
   DdsResults(const DdsResults&) = delete;
   DdsResults& operator=(const DdsResults&) = delete;
 
+  // There is a team: its map gets topics of its own, kept for those that come late. Before anything
+  // is published.
+  void AdvertiseTeam();
+
   // Until somebody hears, but not longer: who is there is found after a moment only.
   void WaitForSubscribers(Duration timeout) const;
 
   void Publish(const Frame& frame, const LandingObservation& observation);
   void Publish(const Frame& frame, const HuntObservation& observation);
+  // The team's map, where AdvertiseTeam was called and the frames have a world.
+  void Publish(const TeamReport& team);
   // Rates since the last call.
   void Publish(const FlightReport& report);
 
@@ -64,6 +70,12 @@ class DdsResults {
     std::vector<std::size_t> publishers;  // by ResultTopic
   };
 
+  // Publishers of the node.
+  struct TeamTopics {
+    std::size_t map;
+    std::size_t markers;
+  };
+
   void PublishMount() const;
   void PublishBody(const std::optional<RigidTransform>& world_from_camera, Time stamp);
 
@@ -73,6 +85,7 @@ class DdsResults {
   CameraModel camera_;
   ObjectModel model_;
   Connection connection_;
+  std::optional<TeamTopics> team_;
   LandingResults landing_;
   Time reported_;
   std::uint64_t reported_frames_ = 0;

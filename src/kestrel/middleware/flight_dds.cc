@@ -25,6 +25,7 @@ FlightDds::FlightDds(std::unique_ptr<DdsResults> results,
       tell_(std::move(tell)),
       seen_(kSeenFrames),
       reports_(kReports),
+      team_reports_(1),
       next_report_(Now()),
       thread_([this] { Run(); }) {}
 
@@ -49,12 +50,15 @@ void FlightDds::See(const FlightReport& report) {
   reports_.Push(report);
 }
 
+void FlightDds::SeeTeam(const TeamReport& report) { team_reports_.Push(report); }
+
 void FlightDds::Run() {
   SetUpThisThread("dds", {});
   for (;;) {
     const bool was_over = is_over_;
     const auto seen = seen_.Pop(kPatience);
     while (const auto report = reports_.TryPop()) results_->Publish(*report);
+    while (const auto report = team_reports_.TryPop()) results_->Publish(*report);
     if (seen) {
       std::visit([&](const auto& observation) { results_->Publish(seen->frame, observation); },
                  seen->observation);

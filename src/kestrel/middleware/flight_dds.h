@@ -27,6 +27,7 @@ class FlightDds : public FlightObserver {
   void See(const Frame& frame, const LandingObservation& observation) override;
   void See(const Frame& frame, const HuntObservation& observation) override;
   void See(const FlightReport& report) override;
+  void SeeTeam(const TeamReport& report) override;
 
  private:
   struct SeenFrame {
@@ -40,6 +41,7 @@ class FlightDds : public FlightObserver {
   std::function<void(const std::string&)> tell_;
   BoundedQueue<SeenFrame> seen_;
   BoundedQueue<FlightReport> reports_;
+  BoundedQueue<TeamReport> team_reports_;
   Time next_report_;
   std::atomic<bool> is_over_{false};
   std::thread thread_;

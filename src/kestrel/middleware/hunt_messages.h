@@ -5,6 +5,7 @@
 
 #include "kestrel/bags/result_messages.h"
 #include "kestrel/objects/object_model.h"
+#include "kestrel/onboard/flight_observer.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 
 namespace kestrel {
@@ -20,5 +21,15 @@ Detection3DArrayMessage DetectionsOf(const HuntObservation& observation, const O
 // For RViz: where they are in the world, in their colours; those of the frame before go.
 MarkerArrayMessage MarkersOf(const HuntObservation& observation, const ObjectModel& model,
                              const std::string& world_frame);
+
+// The team's map, of the objects that the model has a class for: their class by name, how sure it
+// is that they are there as the score, the position with its covariance.
+Detection3DArrayMessage TeamDetectionsOf(const TeamReport& team, const ObjectModel& model,
+                                         const std::string& world_frame);
+
+// The same for RViz, with the names of those that have each object in their maps and of the one
+// that goes for it: "red: one two, for two".
+MarkerArrayMessage TeamMarkersOf(const TeamReport& team, const ObjectModel& model,
+                                 const std::string& world_frame);
 
 }  // namespace kestrel

@@ -14,6 +14,7 @@
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/pipeline/landing_pipeline.h"
 #include "kestrel/recording/frame.h"
+#include "kestrel/team/team_view.h"
 
 namespace kestrel {
 
@@ -36,6 +37,12 @@ struct FlightReport {
   std::optional<FlightRecorder::Counters> recorder;
 };
 
+// What the UAV's team knows, in this UAV's world.
+struct TeamReport {
+  Time time;  // of the newest frame that is in it
+  std::vector<TeamObject> objects;
+};
+
 // Looks at a flight while it happens.
 class FlightObserver {
  public:
@@ -48,6 +55,9 @@ class FlightObserver {
 
   // By the thread that the flight was begun in, ten times a second.
   virtual void See(const FlightReport& report) = 0;
+
+  // With a team, by the same thread, twice a second or so.
+  virtual void SeeTeam(const TeamReport& /*report*/) {}
 };
 
 // Lets several look at a flight; they outlive this.
@@ -65,6 +75,9 @@ class FlightObservers : public FlightObserver {
   }
   void See(const FlightReport& report) override {
     for (FlightObserver* const each : observers_) each->See(report);
+  }
+  void SeeTeam(const TeamReport& report) override {
+    for (FlightObserver* const each : observers_) each->SeeTeam(report);
   }
 
  private:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/onboard/hunt_vision.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
@@ -39,17 +41,19 @@ TrackSnapshot HuntVision::Process(const Frame& frame, FlightObserver* observer) 
   objects_ += observation.report.detections.size();
   if (file_) rows_.Push(ObjectCsvRows(frame.name, observation, pipeline_.detector().model()));
   if (observer != nullptr) observer->See(frame, observation);
-  PublishMap();
+  PublishMap(frame, observation);
   return snapshot_;
 }
 
 // A copy, once in a while: the map goes on with the next frame.
-void HuntVision::PublishMap() {
+void HuntVision::PublishMap(const Frame& frame, const HuntObservation& observation) {
   if (!share_period_) return;
   const Time now = Now();
   if (now < next_share_) return;
   next_share_ = now + *share_period_;
-  shared_.Push(Objects());
+  SharedMap map{Objects(), frame.time, {}};
+  if (observation.world_from_camera) map.position = observation.world_from_camera->translation;
+  shared_.Push(std::move(map));
 }
 
 bool HuntVision::WriteResults() {

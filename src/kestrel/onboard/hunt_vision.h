@@ -15,6 +15,13 @@
 
 namespace kestrel {
 
+// The map of a hunt while it goes on.
+struct SharedMap {
+  std::vector<MappedObject> objects;
+  Time captured;                            // the newest frame
+  std::optional<Eigen::Vector3d> position;  // of the camera then, in the world, where it is known
+};
+
 // The pipeline of coloured objects in flight; writes object_detections.csv, and at the end the
 // map. It has no landing target.
 class HuntVision : public FlightVision {
@@ -31,8 +38,8 @@ class HuntVision : public FlightVision {
 
   // From now on the map is there for another thread, anew every 'period'. Before the first frame.
   void ShareMap(Duration period) { share_period_ = period; }
-  // The shared map's objects, when there is a map that was not taken; any thread's.
-  std::optional<std::vector<MappedObject>> TakeMap() { return shared_.TryPop(); }
+  // The newest, when it was not taken yet; any thread's.
+  std::optional<SharedMap> TakeMap() { return shared_.TryPop(); }
 
   // The map of all that was seen, and its objects; after the last frame. Throws InputError when it
   // cannot be written.
@@ -40,7 +47,7 @@ class HuntVision : public FlightVision {
   std::vector<MappedObject> Objects() const { return pipeline_.map().Confirmed(); }
 
  private:
-  void PublishMap();
+  void PublishMap(const Frame& frame, const HuntObservation& observation);
 
   HuntPipeline pipeline_;
   Duration clock_offset_;
@@ -48,7 +55,7 @@ class HuntVision : public FlightVision {
   std::size_t objects_ = 0;
   BoundedQueue<std::string> rows_;
   std::optional<std::ofstream> file_;
-  BoundedQueue<std::vector<MappedObject>> shared_{1};
+  BoundedQueue<SharedMap> shared_{1};
   std::optional<Duration> share_period_;  // nothing: with nobody
   Time next_share_ = Time::min();
 };

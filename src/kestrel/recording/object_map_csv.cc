@@ -48,9 +48,9 @@ std::string ObjectMapCsv(const std::vector<MappedObject>& objects, const ObjectM
 }
 
 std::string TeamMapCsv(const std::vector<TeamObject>& objects, const ObjectModel& model) {
-  std::string text = fmt::format("{},uavs\n", kHeader);
-  for (const auto& [object, uavs] : objects) {
-    text += fmt::format("{},{}\n", Row(object, model, ","), fmt::join(uavs, " "));
+  std::string text = fmt::format("{},uavs,holder\n", kHeader);
+  for (const auto& [object, uavs, holder] : objects) {
+    text += fmt::format("{},{},{}\n", Row(object, model, ","), fmt::join(uavs, " "), holder);
   }
   return text;
 }

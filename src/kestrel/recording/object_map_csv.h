@@ -15,7 +15,8 @@ namespace kestrel {
 std::string ObjectMapCsv(const std::vector<MappedObject>& objects, const ObjectModel& model);
 
 // team_map.csv: the same and 'uavs', the names of those that have the object in their maps, with
-// spaces between them. 'first_seen_ns' and 'last_seen_ns' are empty: each has a clock of its own.
+// spaces between them, and 'holder', the name of the one that goes for it. 'first_seen_ns' and
+// 'last_seen_ns' are empty: each has a clock of its own.
 std::string TeamMapCsv(const std::vector<TeamObject>& objects, const ObjectModel& model);
 
 }  // namespace kestrel

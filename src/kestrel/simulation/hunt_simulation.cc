@@ -39,7 +39,7 @@ Path SweepPath(const HuntFlightOptions& options, Random* random) {
   const double whole = std::asin(kStraightness);
   const double rate = 2 * options.speed_mps * whole / (options.length_m * kStraightness);
   const double half_length = 0.5 * options.length_m;
-  const double start_y = -0.5 * options.width_m + 0.5 * options.lane_m;
+  const double start_y = -0.5 * options.width_m + (0.5 + options.first_lane) * options.lane_m;
   const auto wave = Wander(0.15, 7, random);
   return [=, lane = options.lane_m, altitude = options.altitude_m](double time_s) {
     const double phase = rate * time_s - 0.4 * kPi;
@@ -111,18 +111,19 @@ HuntScene MakeHuntScene(const HuntSimulationOptions& options, std::uint64_t seed
   HuntScene scene;
   World& world = scene.world;
   world.channels = 3;
-  Random objects_random = RandomOf(seed, HuntPart::kObjects);
+  const std::uint64_t field_seed = options.field_seed > 0 ? options.field_seed : seed;
+  Random objects_random = RandomOf(field_seed, HuntPart::kObjects);
   const Vector2d half_area(0.46 * options.flight.length_m, 0.46 * options.flight.width_m);
   scene.objects = AddHuntObjects(options.objects, half_area, &objects_random, &world);
   Random flight_random = RandomOf(seed, HuntPart::kFlight);
   scene.world_from_uav =
       UavMotion(options.flight, scene.objects, options.recording.duration_s(), &flight_random);
-  Random ground_random = RandomOf(seed, HuntPart::kGround);
+  Random ground_random = RandomOf(field_seed, HuntPart::kGround);
   world.ground = MakeGround(options.ground, {}, world.channels, &ground_random);
-  Random light_random = RandomOf(seed, HuntPart::kLight);
+  Random light_random = RandomOf(field_seed, HuntPart::kLight);
   world.light = MakeLighting(options.light, &light_random);
   world.skyline = MakeSkyline(&light_random);
-  Random surroundings_random = RandomOf(seed, HuntPart::kSurroundings);
+  Random surroundings_random = RandomOf(field_seed, HuntPart::kSurroundings);
   AddSurroundings(options, &surroundings_random, &world);
   if (options.uav_shadow) {
     world.bodies.push_back(scene.world_from_uav);
@@ -144,6 +145,7 @@ std::vector<std::string> HuntFlightOptions::Validate() const {
   RequireIn(length_m, 5, 200, "length_m", &violations);
   RequireIn(width_m, 2, 200, "width_m", &violations);
   RequireIn(lane_m, 1, 50, "lane_m", &violations);
+  RequireIn(first_lane, 0, 100, "first_lane", &violations);
   RequireIn(attitude_noise_deg, 0, 10, "attitude_noise_deg", &violations);
   return violations;
 }
@@ -154,6 +156,7 @@ std::vector<std::string> HuntSimulationOptions::Validate() const {
   AddViolations("objects", objects.Validate(), &violations);
   AddViolations("ground", ground.Validate(), &violations);
   AddViolations("light", light.Validate(), &violations);
+  RequireIn(field_seed, 0, 1'000'000'000, "field_seed", &violations);
   RequireIn(banners, 0, 100, "banners", &violations);
   RequireIn(vehicles, 0, 100, "vehicles", &violations);
   const int count = objects.red + objects.green + objects.blue + objects.yellow + objects.orange +

@@ -22,7 +22,8 @@ struct HuntFlightOptions {
   double speed_mps = 3.5;       // of the sweep
   double length_m = 30;         // of the area, along the lanes
   double width_m = 20;
-  double lane_m = 6.5;  // from one lane to the next
+  double lane_m = 6.5;    // from one lane to the next
+  double first_lane = 0;  // with which the sweep begins: UAVs of a team begin with several
   double attitude_noise_deg = 0.4;
 
   template <class Self, class Visitor>
@@ -34,6 +35,7 @@ struct HuntFlightOptions {
     visitor("length_m", self.length_m, "m", "of the area, along the lanes");
     visitor("width_m", self.width_m, "m", "of the area, across the lanes");
     visitor("lane_m", self.lane_m, "m", "from one lane to the next");
+    visitor("first_lane", self.first_lane, "1", "lane with which the sweep begins");
     visitor("attitude_noise_deg", self.attitude_noise_deg, "deg", "errors of the attitude control");
   }
   std::vector<std::string> Validate() const;
@@ -46,6 +48,7 @@ struct HuntSimulationOptions {
   HuntObjectsOptions objects;
   GroundOptions ground = Arena();
   LightOptions light;
+  int field_seed = 0;  // of all that is not the flight's; 0: the recording's seed
   int banners = 4;
   int vehicles = 1;
   bool uav_shadow = true;
@@ -62,6 +65,8 @@ struct HuntSimulationOptions {
     visitor.Group("objects", self.objects);
     visitor.Group("ground", self.ground);
     visitor.Group("light", self.light);
+    visitor("field_seed", self.field_seed, "",
+            "what lies around is drawn by it, for several flights over one field; 0: by --seed");
     visitor("banners", self.banners, "1", "banners around");
     visitor("vehicles", self.vehicles, "1", "parked vehicles");
     visitor("uav_shadow", self.uav_shadow, "", "the UAV's shadow");

@@ -2,7 +2,9 @@
 #include "kestrel/simulation/hunt_simulation.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -122,6 +124,39 @@ TEST(HuntSimulationTest, DescentEndsOverTheFirstObject) {
            (rows.Integer(row, 0) == ToNanoseconds(plan.times.back()) && rows.Integer(row, 1) == 1);
   }
   EXPECT_TRUE(seen);
+}
+
+// What the rows say of an object: its position.
+std::map<std::int64_t, std::string> Positions(const RecordingPlan& plan) {
+  const std::string text = TextOf(plan, "objects0/data.csv");
+  const CsvTable rows(text, "objects");
+  std::map<std::int64_t, std::string> positions;
+  for (std::size_t row = 0; row < rows.row_count(); ++row) {
+    positions[rows.Integer(row, 1)] = std::string(rows.Text(row, 2)) + ' ' +
+                                      std::string(rows.Text(row, 3)) + ' ' +
+                                      std::string(rows.Text(row, 4));
+  }
+  return positions;
+}
+
+TEST(HuntSimulationTest, UavsOfATeamFlyOverOneField) {
+  const auto plan = [](std::uint64_t seed, const char* first_lane) {
+    return PlanHunt(Small("sweep", {"frames=60", "field_seed=7", "objects.yellow=0", first_lane}),
+                    SmallHuntCamera(), seed);
+  };
+  const RecordingPlan first = plan(1, "flight.first_lane=0");
+  const RecordingPlan second = plan(2, "flight.first_lane=1");
+  EXPECT_EQ(TextOf(first, "objects0/objects.csv"), TextOf(second, "objects0/objects.csv"));
+  EXPECT_NE(TextOf(first, "objects0/data.csv"), TextOf(second, "objects0/data.csv"));
+  const auto seen_by_first = Positions(first);
+  int seen_by_both = 0;
+  for (const auto& [id, position] : Positions(second)) {
+    const auto found = seen_by_first.find(id);
+    if (found == seen_by_first.end()) continue;
+    EXPECT_EQ(found->second, position) << id;
+    ++seen_by_both;
+  }
+  EXPECT_GT(seen_by_both, 2);
 }
 
 TEST(HuntSimulationTest, RefusesWhatCannotBeFlown) {

@@ -69,7 +69,10 @@ void TeamMember::Tell(std::vector<MappedObject> objects, Time now) {
 }
 
 void TeamMember::SetClaim(const std::optional<Claim>& claim) {
-  peers_[self_].claim = claim;
+  std::optional<Claim> told = claim;
+  if (told) told->bid = static_cast<float>(told->bid);
+  if (told == peers_[self_].claim) return;
+  peers_[self_].claim = told;
   has_news_ = true;
 }
 

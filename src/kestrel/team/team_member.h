@@ -36,7 +36,8 @@ class TeamMember {
   // most. It is told with the next Tick.
   void Tell(std::vector<MappedObject> objects, Time now);
 
-  // What this UAV goes for; told with the next Tick.
+  // What this UAV goes for, with the bid as others will hear it; told with the next Tick where that
+  // is news.
   void SetClaim(const std::optional<Claim>& claim);
 
   // The map told last is this UAV's last; told with the next Tick.

@@ -42,6 +42,8 @@ struct ObjectRef {
 struct Claim {
   ObjectRef object;
   double bid = 0;  // finite; rounded to a float on its way
+
+  bool operator==(const Claim&) const = default;
 };
 
 // What a UAV's map consists of: an object that is not listed is not in it any more.

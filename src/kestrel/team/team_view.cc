@@ -103,24 +103,36 @@ TeamView ViewTeam(const TeamMember& member, Time local, TeamFusion* fusion) {
   return view;
 }
 
+std::vector<TeamObject> OwnMap(const TeamView& view) {
+  std::vector<TeamObject> objects(view.objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    objects[i].object = view.objects[i];
+    if (view.holders[i]) objects[i].holder = view.holders[i]->name;
+  }
+  for (const auto& [ref, i] : view.index) {
+    // Two starts of one UAV have one name.
+    std::vector<std::string>& uavs = objects[i].uavs;
+    if (uavs.empty() || uavs.back() != ref.uav.name) uavs.push_back(ref.uav.name);
+  }
+  return objects;
+}
+
 std::vector<TeamObject> CommonMap(const TeamMember& member, const TeamView& view,
                                   const TeamFusion& fusion) {
-  std::vector<TeamObject> objects(view.objects.size());
+  std::vector<TeamObject> objects = OwnMap(view);
   const std::vector<MappedObject>& standing = fusion.standing();
+  for (std::size_t i = 0; i < standing.size(); ++i) objects[i].object = standing[i];
+  std::vector<bool> is_found(objects.size());  // where it moves
   for (const auto& [ref, i] : view.index) {
-    TeamObject& common = objects[i];
+    if (i < standing.size()) continue;
     const MappedObject& told = member.map().Find(ref.uav)->objects.at(ref.id).object;
-    if (i < standing.size()) {
-      common.object = standing[i];
-    } else if (common.uavs.empty() || told.sigma_m() < common.object.sigma_m()) {
-      common.object = told;
-      MoveToWorld(fusion.CommonFromWorld(ref.uav), &common.object);
-    }
-    common.object.id = static_cast<std::int64_t>(i) + 1;
-    // Two starts of one UAV have one name.
-    if (common.uavs.empty() || common.uavs.back() != ref.uav.name) {
-      common.uavs.push_back(ref.uav.name);
-    }
+    if (is_found[i] && told.sigma_m() >= objects[i].object.sigma_m()) continue;
+    is_found[i] = true;
+    objects[i].object = told;
+    MoveToWorld(fusion.CommonFromWorld(ref.uav), &objects[i].object);
+  }
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    objects[i].object.id = static_cast<std::int64_t>(i) + 1;
   }
   return objects;
 }

@@ -31,14 +31,19 @@ struct TeamView {
 // All UAVs' maps as one. 'fusion' is this member's own, which remembers what does not change.
 TeamView ViewTeam(const TeamMember& member, Time local, TeamFusion* fusion);
 
-// An object as all of the team see it.
+// An object of the team's map.
 struct TeamObject {
-  MappedObject object;            // in the common world; its times mean nothing
+  MappedObject object;
   std::vector<std::string> uavs;  // that have it in their maps, by name
+  std::string holder;             // the one that goes for it; empty: none
 };
 
-// The objects of the view, which 'fusion' made, in the common world. All that hold the same have
-// the same to the last bit: what moves is where that UAV saw it that knows it best.
+// The objects of the view: in the UAV's own world and on its own clock.
+std::vector<TeamObject> OwnMap(const TeamView& view);
+
+// The objects of the view, which 'fusion' made, in the common world; their times mean nothing. All
+// that hold the same have the same to the last bit: what moves is where that UAV saw it that knows
+// it best.
 std::vector<TeamObject> CommonMap(const TeamMember& member, const TeamView& view,
                                   const TeamFusion& fusion);
 

@@ -14,6 +14,7 @@ namespace {
 using ::testing::Each;
 using ::testing::Ne;
 using ::testing::SizeIs;
+using ::testing::UnorderedElementsAre;
 
 // A team over one field of 60, each with 40 of its objects and, unless 'bias_m' is 0, with a
 // navigation of its own that is off.
@@ -61,6 +62,7 @@ TEST(TeamView, TheCommonMapIsTheSameToTheLastBitForAll) {
       object[0].time = object[0].first_seen = object[0].last_seen = Time();
       text += PrintObjects(object);
       for (const std::string& uav : common.uavs) text += uav + '\n';
+      text += common.holder;
     }
     EXPECT_GT(text.size(), 10'000u);
     EXPECT_EQ(text, texts[0]);
@@ -148,6 +150,18 @@ TEST(ChooseObject, EachGoesForAnotherObject) {
   const auto before = hunters.holds;
   hunters.Hunt(1);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_LT((*before[i] - *hunters.holds[i]).norm(), 0.1);
+}
+
+TEST(ChooseObject, AllSeeWhoGoesForWhich) {
+  Hunters hunters(1);
+  hunters.Hunt(2);
+  for (std::size_t i = 0; i < 5; ++i) {
+    std::vector<std::string> holders;
+    for (const TeamObject& known : OwnMap(hunters.View(i))) {
+      if (!known.holder.empty()) holders.push_back(known.holder);
+    }
+    EXPECT_THAT(holders, UnorderedElementsAre("a", "b", "c", "d", "e"));
+  }
 }
 
 TEST(ChooseObject, RivalsOfAPartitionAgreeAfterIt) {

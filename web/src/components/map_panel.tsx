@@ -1,45 +1,67 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { useEffect, useRef } from "preact/hooks";
+import { toggleTeam } from "../actions";
 import {
   covarianceEllipse,
   fitView,
   pointsOf,
   scaleLength,
+  teamLabel,
   toCanvas,
   type MapView,
 } from "../map_geometry";
-import type { MapMessage, MapObject } from "../protocol";
+import type { MapMessage, MapObject, TeamObject } from "../protocol";
 import { themeColor } from "../theme";
 import { useStore } from "../use_store";
 
 const sigmas = 2;
+const noObjects: TeamObject[] = [];
 
-/** Seen from above, north up: UAV and its way, target, prediction, objects, each with 2 sigma. */
+/**
+ * Seen from above, north up: UAV and its way, target, prediction, objects, each with 2 sigma; dashed
+ * squares are what the team knows of.
+ */
 export function MapPanel() {
   const canvas = useRef<HTMLCanvasElement>(null);
   const map = useStore((state) => state.map);
   const track = useStore((state) => state.track);
+  const hasTeam = useStore((state) => state.team !== null);
+  const team = useStore((state) => (state.isTeamShown && state.team?.objects) || noObjects);
   const theme = useStore((state) => state.theme);
   useEffect(() => {
-    if (canvas.current) drawMap(canvas.current, map, track);
-  }, [map, track, theme]);
+    if (canvas.current) drawMap(canvas.current, map, team, track);
+  }, [map, team, track, theme]);
   return (
     <section class="map" aria-label="Map">
       <h2>Map</h2>
-      <canvas ref={canvas} role="img" aria-label={mapInWords(map)} />
+      <canvas ref={canvas} role="img" aria-label={mapInWords(map, team)} />
       <p class="legend">
         <span data-of="uav">UAV</span> <span data-of="target">target</span>{" "}
         <span data-of="prediction">prediction</span> (ellipses: 2 sigma; squares: in the hunt's map)
       </p>
+      {hasTeam && <TeamSwitch />}
     </section>
   );
 }
 
-function mapInWords(map: MapMessage | null): string {
-  if (!map?.uav) return "map, nothing known yet";
-  const inMap = map.mapped.length > 0 ? `, ${map.mapped.length} objects in the map` : "";
-  if (map.objects.length > 0) return `map with the UAV, ${map.objects.length} objects in view${inMap}`;
-  if (!map.target) return `map with the UAV, no target${inMap}`;
+function TeamSwitch() {
+  const isShown = useStore((state) => state.isTeamShown);
+  return (
+    <div class="switches" role="group" aria-label="Map">
+      <button aria-pressed={isShown} onClick={toggleTeam}>
+        <span class="swatch" data-of="team" />
+        team
+      </button>
+    </div>
+  );
+}
+
+function mapInWords(map: MapMessage | null, team: TeamObject[]): string {
+  const ofTeam = team.length > 0 ? `, ${team.length} objects of the team` : "";
+  if (!map?.uav) return ofTeam ? `map${ofTeam}` : "map, nothing known yet";
+  const known = (map.mapped.length > 0 ? `, ${map.mapped.length} objects in the map` : "") + ofTeam;
+  if (map.objects.length > 0) return `map with the UAV, ${map.objects.length} objects in view${known}`;
+  if (!map.target) return `map with the UAV, no target${known}`;
   const distance = Math.hypot(
     map.target.position[0] - map.uav[0],
     map.target.position[1] - map.uav[1],
@@ -50,6 +72,7 @@ function mapInWords(map: MapMessage | null): string {
 function drawMap(
   canvas: HTMLCanvasElement,
   map: MapMessage | null,
+  team: TeamObject[],
   track: [number, number][],
 ): void {
   const ratio = window.devicePixelRatio || 1;
@@ -59,9 +82,10 @@ function drawMap(
   const context = canvas.getContext("2d");
   if (!context) return;
   context.scale(ratio, ratio);
-  const view = fitView(map ? pointsOf(map, track, sigmas) : track, width, height);
+  const view = fitView(pointsOf(map, team, track, sigmas), width, height);
   drawGrid(context, view);
   drawLine(context, view, track, themeColor("muted"));
+  for (const object of team) drawTeamObject(context, view, object);
   if (!map) return;
   for (const object of map.mapped) drawMapped(context, view, object);
   for (const object of map.objects) drawObject(context, view, object, object.color || "gray");
@@ -147,6 +171,29 @@ function drawMapped(context: CanvasRenderingContext2D, view: MapView, object: Ma
   context.fillStyle = themeColor("text");
   context.font = "12px system-ui, sans-serif";
   context.fillText(object.label, x + 8, y + 14);
+}
+
+// A dashed square; filled where somebody goes for it.
+function drawTeamObject(
+  context: CanvasRenderingContext2D,
+  view: MapView,
+  object: TeamObject,
+): void {
+  const half = 6;
+  const [x, y] = toCanvas(view, object.position);
+  context.strokeStyle = context.fillStyle = themeColor("team");
+  context.lineWidth = 2;
+  context.setLineDash([3, 2]);
+  context.strokeRect(x - half, y - half, 2 * half, 2 * half);
+  context.setLineDash([]);
+  if (object.holder) context.fillRect(x - half / 2, y - half / 2, half, half);
+  context.fillStyle = themeColor("text");
+  context.font = "12px system-ui, sans-serif";
+  // Towards the middle: the names of a team are long.
+  const isRight = x > view.width / 2;
+  context.textAlign = isRight ? "right" : "left";
+  context.fillText(teamLabel(object), x + (isRight ? -1 : 1) * (half + 3), y + half + 6);
+  context.textAlign = "left";
 }
 
 function drawUav(
