@@ -41,7 +41,7 @@ ros: deps  ## the node of ROS 1 and its tests
 	scripts/install-deps --ros
 	cmake --preset release
 	cmake --build --preset release --target kestrel kestrel_node kestrel_ros_test
-	ctest --preset release -R ^ros/ --no-tests=error
+	ctest --preset release -R ^ros/ --no-tests=error --verbose
 
 bench: build  ## speed
 	@for program in $(BIN)/bench/*_benchmark; do echo "== $$program"; $$program || exit; done

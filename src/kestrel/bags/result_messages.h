@@ -78,7 +78,7 @@ struct EmptyMeshMessage {  // visualization_msgs/MeshFile
 
 // visualization_msgs/Marker.
 struct MarkerMessage {
-  enum Shape : std::int32_t { kArrow = 0, kSphere = 2, kCylinder = 3 };
+  enum Shape : std::int32_t { kArrow = 0, kCube = 1, kSphere = 2, kCylinder = 3, kText = 9 };
   enum Action : std::int32_t { kAdd = 0, kDelete = 2, kDeleteAll = 3 };
 
   HeaderMessage header;

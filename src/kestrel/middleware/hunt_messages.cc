@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "kestrel/bags/frame_tree.h"
 #include "kestrel/middleware/message_covariance.h"
 
@@ -14,6 +16,9 @@ namespace kestrel {
 namespace {
 
 constexpr double kFlat_m = 0.01;
+constexpr double kLabelHeight_m = 0.25;
+constexpr double kMotionShaft_m = 0.05;
+constexpr double kMotionHead_m = 0.1;
 
 PoseMessage PoseAt(const Eigen::Vector3d& position) { return PoseMessageOf({{}, position}); }
 
@@ -36,6 +41,68 @@ ColorMessage PaintOf(const Hsv& color) {
     return 1 - std::clamp(std::min(part, 4 - part), 0.0F, 1.0F);
   };
   return {channel(5), channel(3), channel(1), 0.9F};
+}
+
+// An object of the map, whose origin is the middle of its upper face.
+struct Body {
+  std::optional<std::size_t> class_index;
+  Vector3Message size;
+  PoseMessage center;
+};
+
+Body BodyOf(const MappedObject& object, const ObjectModel& model) {
+  Body body;
+  body.class_index = ClassOf(object, model);
+  body.size = SizeOf(body.class_index ? model.classes[*body.class_index] : ObjectClass());
+  body.center = PoseAt(object.position() - 0.5 * body.size.z * Eigen::Vector3d::UnitZ());
+  return body;
+}
+
+std::string LabelOf(const MappedObject& object, const Body& body, const ObjectModel& model) {
+  const std::string name =
+      body.class_index ? model.classes[*body.class_index].name : ToString(object.shape);
+  const auto digit = object.digit();
+  return digit ? fmt::format("{} {}", name, digit->digit) : name;
+}
+
+MarkerMessage MapMarker(const MappedObject& object, const HeaderMessage& header,
+                        const char* name_space, MarkerMessage::Shape shape) {
+  MarkerMessage marker;
+  marker.header = header;
+  marker.name_space = name_space;
+  marker.id = static_cast<std::int32_t>(object.id);
+  marker.type = shape;
+  marker.color = PaintOf(object.color);
+  return marker;
+}
+
+MarkerMessage BodyMarker(const MappedObject& object, const Body& body,
+                         const HeaderMessage& header) {
+  MarkerMessage marker = MapMarker(
+      object, header, "map",
+      object.shape == ObjectShape::kDisc ? MarkerMessage::kCylinder : MarkerMessage::kCube);
+  marker.pose = body.center;
+  marker.scale = body.size;
+  return marker;
+}
+
+MarkerMessage LabelMarker(const MappedObject& object, const std::string& label,
+                          const HeaderMessage& header) {
+  MarkerMessage marker = MapMarker(object, header, "labels", MarkerMessage::kText);
+  marker.pose = PoseAt(object.position() + kLabelHeight_m * Eigen::Vector3d::UnitZ());
+  marker.scale.z = kLabelHeight_m;
+  marker.color = {1, 1, 1, 1};
+  marker.text = label;
+  return marker;
+}
+
+MarkerMessage VelocityMarker(const MappedObject& object, const HeaderMessage& header) {
+  MarkerMessage marker = MapMarker(object, header, "velocity", MarkerMessage::kArrow);
+  const Eigen::Vector3d from = object.position();
+  const Eigen::Vector3d to = from + object.velocity();
+  marker.points = {{from.x(), from.y(), from.z()}, {to.x(), to.y(), to.z()}};
+  marker.scale = {kMotionShaft_m, kMotionHead_m, 0};
+  return marker;
 }
 
 }  // namespace
@@ -81,6 +148,45 @@ MarkerArrayMessage MarkersOf(const HuntObservation& observation, const ObjectMod
     marker.scale = SizeOf(model.classes[detection.class_index]);
     marker.color = PaintOf(detection.mean_color);
     marker.lifetime = {1, 0};
+  }
+  return message;
+}
+
+Detection3DArrayMessage MapOf(const std::vector<MappedObject>& objects, Time stamp,
+                              const ObjectModel& model, const std::string& world_frame) {
+  Detection3DArrayMessage message;
+  message.header = {0, stamp, world_frame};
+  for (const MappedObject& object : objects) {
+    const Body body = BodyOf(object, model);
+    Detection3DMessage& mapped = message.detections.emplace_back();
+    mapped.header = {0, object.time, world_frame};
+    mapped.source_cloud.header = mapped.header;
+    mapped.box_center = body.center;
+    mapped.box_size = body.size;
+    mapped.id = fmt::to_string(object.id);
+    if (!body.class_index) continue;
+    ObjectHypothesisMessage& result = mapped.results.emplace_back();
+    result.id = static_cast<std::int64_t>(*body.class_index);
+    result.class_id = model.classes[*body.class_index].name;
+    result.score = 1 / (1 + std::exp(-object.log_odds));
+    result.pose = PoseAt(object.position());
+    result.covariance = CovarianceOf(object.covariance.topLeftCorner<3, 3>());
+  }
+  return message;
+}
+
+MarkerArrayMessage MapMarkersOf(const std::vector<MappedObject>& objects, Time stamp,
+                                const ObjectModel& model, const std::string& world_frame) {
+  MarkerArrayMessage message;
+  MarkerMessage& none = message.markers.emplace_back();
+  none.header = {0, stamp, world_frame};
+  none.action = MarkerMessage::kDeleteAll;
+  const HeaderMessage header = none.header;
+  for (const MappedObject& object : objects) {
+    const Body body = BodyOf(object, model);
+    message.markers.push_back(BodyMarker(object, body, header));
+    message.markers.push_back(LabelMarker(object, LabelOf(object, body, model), header));
+    if (object.may_move) message.markers.push_back(VelocityMarker(object, header));
   }
   return message;
 }

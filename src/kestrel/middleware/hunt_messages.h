@@ -2,8 +2,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "kestrel/bags/result_messages.h"
+#include "kestrel/base/time.h"
+#include "kestrel/mapping/mapped_object.h"
 #include "kestrel/objects/object_model.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 
@@ -20,5 +23,16 @@ Detection3DArrayMessage DetectionsOf(const HuntObservation& observation, const O
 // For RViz: where they are in the world, in their colours; those of the frame before go.
 MarkerArrayMessage MarkersOf(const HuntObservation& observation, const ObjectModel& model,
                              const std::string& world_frame);
+
+// The map as it was at 'stamp': where each object was when it was last seen, the stamp of its own
+// header; the score is the probability that it is there. An object that no class has (its colour is
+// still open) has a box and no class.
+Detection3DArrayMessage MapOf(const std::vector<MappedObject>& objects, Time stamp,
+                              const ObjectModel& model, const std::string& world_frame);
+
+// The same for RViz: bodies in their colours, what they are in words, and where those that move
+// drive within a second. They stay until the next map.
+MarkerArrayMessage MapMarkersOf(const std::vector<MappedObject>& objects, Time stamp,
+                                const ObjectModel& model, const std::string& world_frame);
 
 }  // namespace kestrel
