@@ -16,6 +16,7 @@ import time
 import genpy.dynamic
 import rosbag
 import rosgraph
+import roslib.message
 import rospy
 from std_srvs.srv import Trigger
 
@@ -65,7 +66,9 @@ class Messages:
         if header["type"] not in self._types:
             self._types.update(types_of(header["type"], header["message_definition"]))
             assert self._types[header["type"]]._md5sum == header["md5sum"], header["type"]
-        typed = self._types[header["type"]]()
+        # genpy 0.7.0 makes no working code of some lists in lists: where Python has the type, that.
+        installed = roslib.message.get_message_class(header["type"])
+        typed = (installed or self._types[header["type"]])()
         typed.deserialize(message._buff)
         self.newest = typed
         if hasattr(typed, "header"):
