@@ -144,10 +144,11 @@ TEST_F(VisionNodeTest, AnUpdateTakesWhatNeedsNoResetAndKeepsTheTrack) {
   EXPECT_EQ(track.child_frame_id, "car");
 }
 
-TEST_F(VisionNodeTest, AfterAStopTheTrackIsStillThere) {
+TEST_F(VisionNodeTest, AStopForgetsNothing) {
   VisionNode node(Options("none"), &connection_);
   TakeCameraInfo(&node);
   TakeImage(&node, kStamp);
+  connection_.At<Detection3DArrayMessage>(ResultTopic::kDetections, kStamp);
   node.Stop();
   TakeImage(&node, kStamp + std::chrono::seconds(1));
   node.Start();
