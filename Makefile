@@ -38,7 +38,7 @@ ros: deps  ## the node of ROS 1 and its tests, and bags of ROS 1 against its ros
 	scripts/install-deps --ros
 	cmake --preset release
 	cmake --build --preset release --target kestrel kestrel_node kestrel_ros_test
-	ctest --preset release -R ^ros/ --no-tests=error
+	ctest --preset release -R ^ros/ --no-tests=error --verbose
 
 interop: tests  ## MAVLink, MCAP, live flights, bags and ROS 2 against implementations of others, which npm installs
 	scripts/install-deps --interop

@@ -10,138 +10,28 @@ as a camera would. The messages are read by the definitions that the node sends 
 checks these, too.
 """
 
-import contextlib
-import csv
-import inspect
 import os
-import re
-import socket
-import struct
 import subprocess
 import sys
-import tempfile
-import time
 
-import genpy.dynamic
-import rosbag
-import rosgraph
 import rospy
-from std_srvs.srv import Trigger
+from node_testing import (Bag, Echo, Messages, call, call_in_vain, compare, diagnosis, master, rows, run,
+                          running, wait_until)
 
-TIMEOUT_S = 30
-TOLERANCE = 2e-6  # the tables have 1e-6
-SIMULATION = ["--scenario", "calm", "--set", "frames=50", "--set", "rate_hz=10"]
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
+SIMULATION = ["--scenario", "calm", "--set", "frames=30", "--set", "rate_hz=10"]
 
 
-def wait_until(is_done, what):
-    end = time.monotonic() + TIMEOUT_S
-    while not is_done():
-        if time.monotonic() > end:
-            raise AssertionError(f"timeout: {what}")
-        time.sleep(0.002)
-
-
-def types_of(name, definition):
-    """The classes that a definition says; genpy 0.7.0 forgets formats of lists in lists."""
-    types = genpy.dynamic.generate_dynamic(name, definition)
-    module = sys.modules[types[name].__module__]
-    for numbers in re.findall(r"_get_struct_(\w+)\(\)", inspect.getsource(module)):
-        if not hasattr(module, f"_get_struct_{numbers}"):
-            format = struct.Struct(f"<{numbers}")
-            setattr(module, f"_get_struct_{numbers}", lambda format=format: format)
-    return types
-
-
-class Messages:
-    """All messages of a topic by their stamps, of whatever type."""
-
-    def __init__(self, topic):
-        self.by_stamp = {}
-        self.frames = set()
-        self._types = {}
-        self._subscriber = rospy.Subscriber(topic, rospy.AnyMsg, self._take)
-
-    def _take(self, message):
-        header = message._connection_header
-        if header["type"] not in self._types:
-            self._types.update(types_of(header["type"], header["message_definition"]))
-            assert self._types[header["type"]]._md5sum == header["md5sum"], header["type"]
-        typed = self._types[header["type"]]()
-        typed.deserialize(message._buff)
-        if hasattr(typed, "header"):
-            self.frames.add(typed.header.frame_id)
-            self.by_stamp[typed.header.stamp.to_nsec()] = typed
-
-    def close(self):
-        self._subscriber.unregister()
-
-    def is_connected(self):
-        return self._subscriber.get_num_connections() > 0
-
-
-def rows(path):
-    with open(path, newline="") as file:
-        return {int(row["timestamp_ns"]): row for row in csv.DictReader(file)}
+def by_stamp(table):
+    return {int(row["timestamp_ns"]): row for row in table}
 
 
 def make_recordings(kestrel, folder):
     bag = f"{folder}/flight.bag"
-    run = lambda *arguments: subprocess.run([kestrel, *arguments], check=True, stderr=subprocess.DEVNULL)
-    run("simulate", "landing", "--output", f"{folder}/flight", *SIMULATION)
-    run("convert", f"{folder}/flight", bag)
-    run("land", bag, "--output", f"{folder}/out")
-    return bag, rows(f"{folder}/out/landing_detections.csv"), rows(f"{folder}/out/landing_track.csv")
-
-
-def play_in_step(bag_path, detections):
-    """Sends the bag's messages, each image after the poses that it needs and the last answer."""
-    with rosbag.Bag(bag_path) as bag:
-        messages = [(topic, message) for topic, message, _ in bag.read_messages()]
-    latched = {"/tf_static", "/camera/camera_info"}
-    publishers = {}
-    for topic, message in messages:
-        if topic not in publishers:
-            publishers[topic] = rospy.Publisher(
-                topic, type(message), queue_size=1000, latch=topic in latched
-            )
-    for topic, publisher in publishers.items():
-        wait_until(lambda: publisher.get_num_connections() > 0, f"the node takes {topic}")
-    images, poses = [], []
-    for topic, message in messages:
-        if topic == "/camera/image_raw":
-            images.append(message)
-        elif topic in latched:
-            publishers[topic].publish(message)
-        else:
-            poses.append((message.header.stamp, topic, message))
-    poses.sort(key=lambda pose: pose[0])
-    images.sort(key=lambda image: image.header.stamp)
-    time.sleep(0.5)  # calibration, mount and the first poses come over connections of their own
-    sent = 0
-    for image in images:
-        first = sent
-        while sent < len(poses) and (sent == 0 or poses[sent - 1][0] < image.header.stamp):
-            publishers[poses[sent][1]].publish(poses[sent][2])
-            sent += 1
-        if first == 0:
-            time.sleep(0.5)
-        publishers["/camera/image_raw"].publish(image)
-        stamp = image.header.stamp.to_nsec()
-        wait_until(lambda: stamp in detections.by_stamp, f"an answer to the image at {stamp}")
-    for publisher in publishers.values():
-        publisher.unregister()
-    return len(images)
-
-
-def compare(expected, actual, what):
-    for name, value in actual.items():
-        assert abs(float(expected[name]) - value) <= TOLERANCE, (what, name, expected[name], value)
+    run(kestrel, "simulate", "landing", "--output", f"{folder}/flight", *SIMULATION)
+    run(kestrel, "convert", f"{folder}/flight", bag)
+    run(kestrel, "land", bag, "--output", f"{folder}/out")
+    detections, track = (rows(f"{folder}/out/landing_{name}.csv") for name in ("detections", "track"))
+    return Bag(bag), by_stamp(detections), by_stamp(track)
 
 
 def compare_detections(expected, answers):
@@ -186,35 +76,12 @@ def compare_track(expected, answers):
     return compared
 
 
-def call(service):
-    answer = rospy.ServiceProxy(f"/kestrel/{service}", Trigger)()
-    assert answer.success, (service, answer.message)
-
-
-@contextlib.contextmanager
-def running(node, folder, *arguments):
-    """The node, from when it has been started until it is ended; what it said, when that fails."""
-    with open(f"{folder}/node.log", "w") as log:
-        process = subprocess.Popen([node, "image:=/camera/image_raw", *arguments], stdout=log, stderr=log)
-    try:
-        yield
-    except BaseException:
-        print(open(f"{folder}/node.log").read(), file=sys.stderr)
-        raise
-    finally:
-        process.terminate()
-        process.wait(timeout=10)
-
-
 def test_in_step(bag, expected, expected_track):
-    topics = {
-        name: Messages(f"/kestrel/{name}")
-        for name in ("detections", "target_pose", "track", "prediction", "markers", "image_annotated")
-    }
+    names = ("detections", "target_pose", "track", "prediction", "markers", "image_annotated")
+    topics = {name: Messages(f"/kestrel/{name}") for name in names}
     topics["diagnostics"] = Messages("/diagnostics")
-    for name, messages in topics.items():
-        wait_until(messages.is_connected, f"the topic {name}")
-    images = play_in_step(bag, topics["detections"])
+    echo = Echo("/kestrel/target_pose")
+    bag.play_in_step(topics["detections"])
     newest = max(expected)
     wait_until(lambda: newest in topics["track"].by_stamp, "the newest track")
     found = compare_detections(expected, topics["detections"].by_stamp)
@@ -225,8 +92,10 @@ def test_in_step(bag, expected, expected_track):
     wait_until(lambda: newest in topics["prediction"].by_stamp, "a prediction")
     assert len(topics["prediction"].by_stamp[newest].poses) == 21
     wait_until(lambda: newest in topics["image_annotated"].by_stamp, "an annotated image")
-    wait_until(lambda: topics["diagnostics"].by_stamp, "diagnostics")
-    print(f"{images} images, {found} detections and {tracked} states of the track agree")
+    wait_until(lambda: topics["diagnostics"].newest, "diagnostics")
+    text = echo.text()
+    assert "frame_id: \"camera_optical_frame\"" in text and "covariance:" in text, text
+    print(f"{len(bag.images)} images, {found} detections and {tracked} states of the track agree")
     for messages in topics.values():
         messages.close()
 
@@ -234,28 +103,33 @@ def test_in_step(bag, expected, expected_track):
 def test_services():
     call("stop")
     call("start")
+    assert "no map" in call_in_vain("save_map")
     rospy.set_param("/kestrel/landing/detector/min_quality", 7)
-    refused = rospy.ServiceProxy("/kestrel/reset", Trigger)()
-    assert not refused.success and "min_quality" in refused.message, refused
-    rospy.delete_param("/kestrel/landing/detector/min_quality")
+    assert "min_quality" in call_in_vain("reset")
+    assert "min_quality" in call_in_vain("update")
+    rospy.set_param("/kestrel/landing/detector/min_quality", 0.9)
+    rospy.set_param("/kestrel/landing/tracker/gate", 20)
+    answer = call("update")
+    assert answer.startswith("taken: landing.detector.min_quality; "), answer
+    assert answer.endswith("reset: landing.tracker.gate"), answer
     call("reset")
+    assert call("update") == "nothing has changed"
 
 
 def test_rosbag_play(bag, expected):
     """As from a camera: the images come when they were taken, and nobody waits for the node."""
     detections, diagnostics = Messages("/kestrel/detections"), Messages("/diagnostics")
-    wait_until(detections.is_connected, "the topic detections")
-    subprocess.run(["rosbag", "play", "--quiet", "--delay=1", bag], check=True,
+    subprocess.run(["rosbag", "play", "--quiet", "--delay=1", bag.path], check=True,
                    stdout=subprocess.DEVNULL)
     wait_until(lambda: detections.by_stamp, "an answer to rosbag play")
     assert set(detections.by_stamp) <= set(expected)
     print(f"rosbag play: {len(detections.by_stamp)} of {len(expected)} images answered")
-    print_diagnostics(diagnostics)
+    print(diagnosis(diagnostics))
 
 
 def test(kestrel, node, folder):
     bag, expected, expected_track = make_recordings(kestrel, folder)
-    with running(node, folder, f"poses:={pose_topic(bag)}", "_poses:=topic",
+    with running(node, folder, f"poses:={bag.pose_topic()}", "_poses:=topic",
                  "_fly/events/pose_wait_s:=1.0"):
         test_in_step(bag, expected, expected_track)
         test_services()
@@ -263,33 +137,10 @@ def test(kestrel, node, folder):
         test_rosbag_play(bag, expected)
 
 
-def pose_topic(bag_path):
-    with rosbag.Bag(bag_path) as bag:
-        return next(name for name in bag.get_type_and_topic_info().topics if name in ("/pose", "/odom"))
-
-
-def print_diagnostics(messages):
-    time.sleep(1.1)
-    newest = messages.by_stamp[max(messages.by_stamp)].status[0]
-    print("; ".join(f"{value.key}: {value.value}" for value in newest.values))
-
-
 def main():
     kestrel, node = (os.path.abspath(path) for path in sys.argv[1:3])
-    port = free_port()
-    os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{port}"
-    os.environ["ROS_IP"] = "127.0.0.1"
-    with tempfile.TemporaryDirectory() as folder:
-        os.environ["ROS_HOME"] = folder
-        master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], stdout=subprocess.DEVNULL)
-        try:
-            wait_until(rosgraph.is_master_online, "the master")
-            rospy.init_node("kestrel_test", anonymous=True)
-            test(kestrel, node, folder)
-        finally:
-            rospy.signal_shutdown("done")
-            master.terminate()
-            master.wait(timeout=10)
+    with master() as folder:
+        test(kestrel, node, folder)
 
 
 main()

@@ -83,6 +83,8 @@ LandingPatternDetector::LandingPatternDetector(const CameraModel& camera,
 }
 LandingPatternDetector::~LandingPatternDetector() = default;
 LandingPatternDetector::LandingPatternDetector(LandingPatternDetector&&) noexcept = default;
+LandingPatternDetector& LandingPatternDetector::operator=(LandingPatternDetector&&) noexcept =
+    default;
 const CameraModel& LandingPatternDetector::camera() const { return impl_->camera; }
 const LandingPatternDetectorOptions& LandingPatternDetector::options() const {
   return impl_->options;

@@ -135,6 +135,7 @@ class LandingPatternDetector {
   LandingPatternDetector(const CameraModel& camera, const LandingPatternDetectorOptions& options);
   ~LandingPatternDetector();
   LandingPatternDetector(LandingPatternDetector&&) noexcept;
+  LandingPatternDetector& operator=(LandingPatternDetector&&) noexcept;
 
   // 'image': CV_8UC1 of the camera's size (anything else is a programming error: the report says
   // kBinarize and why). Thread-safe as long as each thread has its own workspace; does not throw,

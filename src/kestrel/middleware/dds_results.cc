@@ -11,7 +11,6 @@
 
 #include "kestrel/bags/frame_tree.h"
 #include "kestrel/bags/serialization.h"
-#include "kestrel/middleware/hunt_messages.h"
 
 namespace kestrel {
 namespace {
@@ -57,7 +56,7 @@ Duration RosTimeAhead() {
 
 DdsResults::Connection::Connection(std::shared_ptr<Ros2Node> of, const std::string& name)
     : node(std::move(of)) {
-  for (std::size_t i = 0; i < kResultTopics.size(); ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(ResultTopic::kMap); ++i) {
     const std::string topic(kResultTopics[i].name);
     const std::string own = topic.starts_with('/') ? topic : fmt::format("/{}/{}", name, topic);
     publishers.push_back(
@@ -81,9 +80,9 @@ DdsResults::DdsResults(std::shared_ptr<Ros2Node> node, const DdsOptions& options
       frames_(frames),
       body_from_camera_(calibration.body_from_camera),
       camera_(calibration.intrinsics),
-      model_(std::move(model)),
       connection_(std::move(node), options.node),
       landing_(ResultsOf(options, frames, landing), &connection_),
+      hunt_({WireFormat::kCdr, frames.camera, frames.world, std::move(model)}, &connection_),
       reported_(Now()) {
   if (frames_.body && options_.publish_tf) PublishMount();
 }
@@ -116,7 +115,7 @@ void DdsResults::PublishBody(const std::optional<RigidTransform>& world_from_cam
 void DdsResults::WaitForSubscribers(Duration timeout) const {
   constexpr Duration kPause = std::chrono::milliseconds(20);
   const auto is_heard = [this] {
-    for (std::size_t i = 0; i < kResultTopics.size(); ++i) {
+    for (std::size_t i = 0; i < connection_.publishers.size(); ++i) {
       if (connection_.HasSubscribers(static_cast<ResultTopic>(i))) return true;
     }
     return false;
@@ -136,17 +135,13 @@ void DdsResults::Publish(const Frame& frame, const LandingObservation& observati
   landing_.PublishImage(frame.image, camera_, stamped);
 }
 
-void DdsResults::Publish(const Frame& /*frame*/, const HuntObservation& observation) {
+void DdsResults::Publish(const Frame& frame, const HuntObservation& observation) {
   HuntObservation stamped = observation;
   stamped.time += frames_.to_stamps;
   PublishBody(stamped.world_from_camera, stamped.time);
-  connection_.Publish(
-      ResultTopic::kDetections,
-      SerializeMessage(DetectionsOf(stamped, model_, frames_.camera), WireFormat::kCdr));
-  if (!frames_.world || !connection_.HasSubscribers(ResultTopic::kMarkers)) return;
-  connection_.Publish(
-      ResultTopic::kMarkers,
-      SerializeMessage(MarkersOf(stamped, model_, *frames_.world), WireFormat::kCdr));
+  hunt_.PublishDetections(stamped);
+  hunt_.PublishMarkers(stamped);
+  hunt_.PublishImage(frame.image, stamped, /*map=*/nullptr);
 }
 
 void DdsResults::Publish(const TeamReport& team) {

@@ -11,6 +11,7 @@
 #include "kestrel/camera/calibration.h"
 #include "kestrel/dds/ros2_node.h"
 #include "kestrel/middleware/dds_options.h"
+#include "kestrel/middleware/hunt_results.h"
 #include "kestrel/middleware/landing_results.h"
 #include "kestrel/middleware/result_connection.h"
 #include "kestrel/objects/object_model.h"
@@ -83,10 +84,10 @@ class DdsResults {
   DdsFrames frames_;
   std::optional<RigidTransform> body_from_camera_;
   CameraModel camera_;
-  ObjectModel model_;
   Connection connection_;
   std::optional<TeamTopics> team_;
   LandingResults landing_;
+  HuntResults hunt_;
   Time reported_;
   std::uint64_t reported_frames_ = 0;
 };

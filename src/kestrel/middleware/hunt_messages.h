@@ -2,8 +2,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "kestrel/bags/result_messages.h"
+#include "kestrel/base/time.h"
+#include "kestrel/mapping/mapped_object.h"
 #include "kestrel/objects/object_model.h"
 #include "kestrel/onboard/flight_observer.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
@@ -22,13 +25,21 @@ Detection3DArrayMessage DetectionsOf(const HuntObservation& observation, const O
 MarkerArrayMessage MarkersOf(const HuntObservation& observation, const ObjectModel& model,
                              const std::string& world_frame);
 
-// The team's map, of the objects that the model has a class for: their class by name, how sure it
-// is that they are there as the score, the position with its covariance.
+// The map as it was at 'stamp': where each object was when it was last seen, the stamp of its own
+// header; the score is the probability that it is there. An object that no class has (its colour is
+// still open) has a box and no class.
+Detection3DArrayMessage MapOf(const std::vector<MappedObject>& objects, Time stamp,
+                              const ObjectModel& model, const std::string& world_frame);
+
+// The same for RViz: bodies in their colours, what they are in words, and where those that move
+// drive within a second. They stay until the next map.
+MarkerArrayMessage MapMarkersOf(const std::vector<MappedObject>& objects, Time stamp,
+                                const ObjectModel& model, const std::string& world_frame);
+
+// The team's map as MapOf and MapMarkersOf; the words also say who has an object in its map and who
+// goes for it: "red: one two, for two".
 Detection3DArrayMessage TeamDetectionsOf(const TeamReport& team, const ObjectModel& model,
                                          const std::string& world_frame);
-
-// The same for RViz, with the names of those that have each object in their maps and of the one
-// that goes for it: "red: one two, for two".
 MarkerArrayMessage TeamMarkersOf(const TeamReport& team, const ObjectModel& model,
                                  const std::string& world_frame);
 

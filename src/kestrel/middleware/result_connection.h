@@ -21,11 +21,14 @@ enum class ResultTopic : std::size_t {
   kAnnotatedImage,
   kTransforms,
   kDiagnostics,
+  kMap,  // this and the next are of the node of ROS 1 only
+  kMapMarkers,
 };
 
 struct ResultTopicInfo {
   std::string_view name;
   std::string_view type;
+  bool is_latched = false;  // who comes later gets the newest, too
 };
 
 inline constexpr std::array kResultTopics = {
@@ -38,6 +41,8 @@ inline constexpr std::array kResultTopics = {
     ResultTopicInfo{"image_annotated", ImageMessage::kType},
     ResultTopicInfo{"/tf", TfMessage::kType},
     ResultTopicInfo{"/diagnostics", DiagnosticArrayMessage::kType},
+    ResultTopicInfo{"map", Detection3DArrayMessage::kType, true},
+    ResultTopicInfo{"map_markers", MarkerArrayMessage::kType, true},
 };
 
 // The way of results to others. All calls from any thread.

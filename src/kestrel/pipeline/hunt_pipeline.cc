@@ -68,6 +68,13 @@ HuntPipeline::HuntPipeline(const CameraCalibration& calibration, const ObjectMod
              {DurationFromSeconds(options.pose_extrapolation_s), options.unmodelled}),
       map_(model, options.map) {}
 
+void HuntPipeline::ChangeOptions(const HuntPipelineOptions& options) {
+  RequireValid(options);
+  detector_ =
+      ObjectDetector(detector_.camera(), detector_.model(), detector_.grid(), options.detector);
+  options_ = options;
+}
+
 const HuntObservation& HuntPipeline::Process(const cv::Mat& image, Time time) {
   observation_.time = time;
   observation_.world_from_camera.reset();

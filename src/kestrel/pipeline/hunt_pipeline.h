@@ -107,6 +107,11 @@ class HuntPipeline {
   // camera is then taken to look straight down.
   void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
 
+  // Goes on with other options, and keeps the map and the poses: what 'map', 'unmodelled' and the
+  // options of the poses say stays as it was. Throws InputError, and changes nothing, when they are
+  // not valid.
+  void ChangeOptions(const HuntPipelineOptions& options);
+
   // 'image': CV_8UC3 of the camera's size; 'time' on the clock of the images. The result is valid
   // until the next call. Does not throw, and does not allocate once it has warmed up.
   const HuntObservation& Process(const cv::Mat& image, Time time);

@@ -162,6 +162,22 @@ TEST(HuntPipeline, IndependentFramesHaveNoMap) {
   EXPECT_THAT(pipeline.map().objects(), IsEmpty());
 }
 
+TEST(HuntPipeline, OtherOptionsKeepTheMap) {
+  HuntPipeline pipeline(Calibration(), DefaultObjectModel(), {});
+  const cv::Mat image = DrawDiscs({{420, 140}});
+  for (int i = 0; i < 4; ++i) {
+    pipeline.AddPose({At(i), Over(10, 20)});
+    pipeline.Process(image, At(i));
+  }
+  HuntPipelineOptions options;
+  options.detector.min_pixels = 100000;
+  pipeline.ChangeOptions(options);
+  EXPECT_THAT(pipeline.Process(image, At(3.1)).report.detections, IsEmpty());
+  EXPECT_THAT(pipeline.map().Confirmed(), SizeIs(1));
+  options.detector.min_pixels = 0;
+  EXPECT_THROW(pipeline.ChangeOptions(options), InputError);
+}
+
 TEST(HuntPipeline, BadOptionsAreRefused) {
   HuntPipelineOptions options;
   options.readout_s = -1;

@@ -8,7 +8,6 @@
 #include "kestrel/pipeline/world_location.h"
 
 namespace kestrel {
-namespace {}  // namespace
 
 std::vector<std::string> LandingPipelineOptions::Validate() const {
   std::vector<std::string> violations;
@@ -47,6 +46,13 @@ LandingPipeline::LandingPipeline(const CameraCalibration& calibration,
              Duration::zero(),
              {DurationFromSeconds(options.pose_extrapolation_s), options.unmodelled}),
       tracker_(options.tracker) {}
+
+void LandingPipeline::ChangeOptions(const LandingPipelineOptions& options) {
+  RequireValid(options);
+  detector_ = LandingPatternDetector(detector_.camera(), options.detector);
+  workspace_ = LandingWorkspace();
+  options_ = options;
+}
 
 LandingObservation LandingPipeline::Process(const cv::Mat& image, Time time) {
   LandingObservation observation;

@@ -122,6 +122,11 @@ class LandingPipeline {
   // Height (m) of the camera above the pattern, for frames without a pose; nothing: not known.
   void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
 
+  // Goes on with other options, and keeps the track and the poses: what 'tracker', 'unmodelled' and
+  // the options of the poses say stays as it was. Throws InputError, and changes nothing, when they
+  // are not valid.
+  void ChangeOptions(const LandingPipelineOptions& options);
+
   // 'image': CV_8UC1 of the camera's size; 'time' on the clock of the images. Does not throw, and
   // does not allocate once it has warmed up.
   LandingObservation Process(const cv::Mat& image, Time time);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/pipeline/landing_pipeline.h"
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -343,6 +344,26 @@ TEST_F(LandingPipelineTest, OptionsReadBackAsTheyArePrinted) {
   ReadOptionFields(PrintOptions(options_), "printed", FieldsOf(again));
   EXPECT_EQ(PrintOptions(again), PrintOptions(options_));
   EXPECT_EQ(again.detector.pattern.outer_diameter_m, 0.6);
+}
+
+TEST_F(LandingPipelineTest, OtherOptionsKeepTheTrack) {
+  LandingPipeline pipeline(calibration_, options_);
+  Time time = kTime;
+  for (int i = 0; i < 8; ++i) {
+    time += std::chrono::milliseconds(100);
+    pipeline.AddPose({time + Duration(5), world_from_body_});
+    EXPECT_TRUE(pipeline.Process(Draw(), time).report.detection);
+  }
+  options_.detector.min_quality = 1;
+  pipeline.ChangeOptions(options_);
+  time += std::chrono::milliseconds(100);
+  pipeline.AddPose({time + Duration(5), world_from_body_});
+  const LandingObservation observation = pipeline.Process(Draw(), time);
+  EXPECT_FALSE(observation.report.detection);
+  ASSERT_TRUE(observation.target);
+  EXPECT_LT((observation.target->motion.position() - world_from_pattern_.translation).norm(), 0.1);
+  options_.detector.min_quality = 2;
+  EXPECT_THROW(pipeline.ChangeOptions(options_), InputError);
 }
 
 }  // namespace

@@ -27,8 +27,8 @@ fs::path KeptBelow(const fs::path& name) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path folder, bool replace_files)
-    : folder_(std::move(folder)), replace_files_(replace_files) {
+OutputFolder::OutputFolder(fs::path folder, bool replace_files, std::string allowance)
+    : folder_(std::move(folder)), replace_files_(replace_files), allowance_(std::move(allowance)) {
   MakeFolder(folder_);
 }
 
@@ -36,7 +36,7 @@ fs::path OutputFolder::NewFile(const fs::path& name) const {
   fs::path path = folder_ / KeptBelow(name);
   MakeFolder(path.parent_path());
   if (!replace_files_ && fs::exists(path)) {
-    throw InputError(path.string() + ": exists already; --force replaces it");
+    throw InputError(path.string() + ": exists already; " + allowance_ + " replaces it");
   }
   return path;
 }

@@ -10,8 +10,9 @@ namespace kestrel {
 // The folder that the files of a run go to. Nothing that is there is overwritten unless asked for.
 class OutputFolder {
  public:
-  // Makes the folder if it is not there. Throws InputError when it cannot be made.
-  OutputFolder(std::filesystem::path folder, bool replace_files);
+  // Makes the folder if it is not there. 'allowance': how the user has files replaced, for
+  // messages. Throws InputError when it cannot be made.
+  OutputFolder(std::filesystem::path folder, bool replace_files, std::string allowance = "--force");
 
   // Path of the new file 'name' (with its folders made); 'name' stays below the folder whatever it
   // is ("/a/../b.png" gives "a/b.png"). Throws InputError when there is such a file and
@@ -24,6 +25,7 @@ class OutputFolder {
  private:
   std::filesystem::path folder_;
   bool replace_files_;
+  std::string allowance_;
 };
 
 // Writes and flushes 'text', for whoever reads along. Throws InputError, with the file's 'name',

@@ -1,23 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <functional>
+#include <map>
+#include <span>
 #include <string>
-#include <vector>
 
 #include <fmt/format.h>
 
 #include "kestrel/bags/message_definitions.h"
 #include "kestrel/base/error.h"
-#include "kestrel/ros/landing_node.h"
 #include "kestrel/ros/node_connection.h"
 #include "kestrel/ros/node_options.h"
 #include "kestrel/ros/ros1_connection.h"
+#include "kestrel/ros/vision_node.h"
 
 namespace kestrel {
 namespace {
 
 constexpr std::uint32_t kPoseQueue = 200;
+
+constexpr std::array kLandingTopics = {ResultTopic::kDetections, ResultTopic::kTargetPose,
+                                       ResultTopic::kTrack,      ResultTopic::kPrediction,
+                                       ResultTopic::kMarkers,    ResultTopic::kAnnotatedImage,
+                                       ResultTopic::kTransforms, ResultTopic::kDiagnostics};
+constexpr std::array kHuntTopics = {
+    ResultTopic::kDetections,  ResultTopic::kMarkers, ResultTopic::kAnnotatedImage,
+    ResultTopic::kDiagnostics, ResultTopic::kMap,     ResultTopic::kMapMarkers};
 
 Ros1Connection::MessageType TypeOf(std::string_view type) {
   return {std::string(type), std::string(MessageChecksum(type)),
@@ -27,26 +38,25 @@ Ros1Connection::MessageType TypeOf(std::string_view type) {
 // The node's topics, in ROS 1.
 class Ros1NodeConnection : public NodeConnection {
  public:
-  explicit Ros1NodeConnection(Ros1Connection* ros) : ros_(ros) {
-    for (const ResultTopicInfo& topic : kResultTopics) {
-      topics_.push_back(ros_->Advertise(std::string(topic.name), TypeOf(topic.type)));
+  Ros1NodeConnection(Ros1Connection* ros, std::span<const ResultTopic> topics) : ros_(ros) {
+    for (const ResultTopic topic : topics) {
+      const ResultTopicInfo& info = kResultTopics[static_cast<std::size_t>(topic)];
+      topics_[topic] = ros_->Advertise(std::string(info.name), TypeOf(info.type), info.is_latched);
     }
   }
 
   bool HasSubscribers(ResultTopic topic) const override {
-    return ros_->HasSubscribers(IndexOf(topic));
+    return ros_->HasSubscribers(topics_.at(topic));
   }
   void Publish(ResultTopic topic, const std::string& bytes) override {
-    ros_->Publish(IndexOf(topic), bytes);
+    ros_->Publish(topics_.at(topic), bytes);
   }
   void Warn(const std::string& text) override { ros_->Warn(text); }
   Time StampNow() const override { return TimeFromNanoseconds(ros_->NowNanoseconds()); }
 
  private:
-  std::size_t IndexOf(ResultTopic topic) const { return topics_[static_cast<std::size_t>(topic)]; }
-
   Ros1Connection* ros_;
-  std::vector<std::size_t> topics_;
+  std::map<ResultTopic, std::size_t> topics_;  // as ROS numbers them
 };
 
 // camera_info lies beside the image, as image_transport has it.
@@ -54,7 +64,7 @@ std::string BesideOf(const std::string& topic, const std::string& name) {
   return topic.substr(0, topic.rfind('/') + 1) + name;
 }
 
-void SubscribeCamera(const NodeOptions& options, Ros1Connection* ros, LandingNode* node) {
+void SubscribeCamera(const NodeOptions& options, Ros1Connection* ros, VisionNode* node) {
   const std::string image = ros->ResolvedName("image");
   if (options.image_transport == "compressed") {
     ros->Subscribe(image + "/compressed", TypeOf(CompressedImageMessage::kType), /*queue=*/1,
@@ -74,7 +84,7 @@ void SubscribeCamera(const NodeOptions& options, Ros1Connection* ros, LandingNod
                  });
 }
 
-void SubscribePoses(const NodeOptions& options, Ros1Connection* ros, LandingNode* node) {
+void SubscribePoses(const NodeOptions& options, Ros1Connection* ros, VisionNode* node) {
   if (options.poses == "none") return;
   for (const bool is_static : {true, false}) {
     const std::string topic = is_static ? "/tf_static" : "/tf";
@@ -91,23 +101,33 @@ void SubscribePoses(const NodeOptions& options, Ros1Connection* ros, LandingNode
                  });
 }
 
-void OfferServices(Ros1Connection* ros, LandingNode* node) {
-  ros->Offer("start", [node] {
+// What 'action' says, or what is wrong.
+Ros1Connection::Answer AnswerBy(const std::function<std::string()>& action) {
+  try {
+    return {true, action()};
+  } catch (const InputError& error) {
+    return {false, error.what()};
+  }
+}
+
+void OfferServices(Ros1Connection* ros, VisionNode* node) {
+  const auto offer = [ros](const char* name, const std::function<std::string()>& action) {
+    ros->Offer(name, [action] { return AnswerBy(action); });
+  };
+  offer("start", [node] {
     node->Start();
-    return std::string();
+    return "";
   });
-  ros->Offer("stop", [node] {
+  offer("stop", [node] {
     node->Stop();
-    return std::string();
+    return "";
   });
-  ros->Offer("reset", [ros, node] {
-    try {
-      node->Reset(ReadNodeOptions(ros->Parameters()));
-      return std::string();
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
+  offer("reset", [ros, node] {
+    node->Reset(ReadNodeOptions(ros->Parameters()));
+    return "";
   });
+  offer("update", [ros, node] { return node->Update(ReadNodeOptions(ros->Parameters())); });
+  offer("save_map", [node] { return node->SaveMap(); });
 }
 
 int RunNode(int argc, char** argv) {
@@ -124,12 +144,13 @@ int RunNode(int argc, char** argv) {
     return 1;
   }
   const NodeOptions options = ReadNodeOptions(ros.Parameters());
-  Ros1NodeConnection connection(&ros);
-  LandingNode node(options, &connection);
+  Ros1NodeConnection connection(
+      &ros, options.is_hunt() ? std::span<const ResultTopic>(kHuntTopics) : kLandingTopics);
+  VisionNode node(options, &connection);
   SubscribeCamera(options, &ros, &node);
   SubscribePoses(options, &ros, &node);
   OfferServices(&ros, &node);
-  ros.Spin([&node] { node.PublishDiagnostics(); });
+  ros.Spin([&node] { node.Tick(); });
   return 0;
 }
 

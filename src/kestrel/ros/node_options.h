@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@ namespace kestrel {
 
 // The parameters of the node, and among them the options of `kestrel config` by the same names.
 struct NodeOptions {
+  std::string task = "landing";         // or "hunt": coloured objects
   std::string camera;                   // calibration file; empty: camera_info
   std::string config;                   // file of options, as --config
   std::string image_transport = "raw";  // or "compressed": of the images that are subscribed
@@ -25,10 +27,18 @@ struct NodeOptions {
   double altitude_m = 0;  // of the camera above the pattern where there are no poses; 0: not known
   double prediction_s = 2;
   double prediction_step_s = 0.1;
+  // Of the hunt, as the options of `kestrel hunt`: objects and their colours, the color grid; where
+  // the map is saved, whether it replaces an older one, and where the world's origin is.
+  std::string model;
+  std::string grid;
+  std::string output;
+  bool force = false;
+  std::string origin;  // "50.1,14.4": latitude and longitude, degrees; empty: no GeoJSON
   KestrelOptions kestrel;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
+    visitor("task", self.task, "", "what is looked for: landing or hunt");
     visitor("camera", self.camera, "", "calibration file; empty: camera_info");
     visitor("config", self.config, "", "file of options, as kestrel config prints it");
     visitor("image_transport", self.image_transport, "", "raw or compressed");
@@ -42,13 +52,32 @@ struct NodeOptions {
             "of the camera above the pattern where there are no poses; 0: not known");
     visitor("prediction_s", self.prediction_s, "s", "how far ahead the prediction goes");
     visitor("prediction_step_s", self.prediction_step_s, "s", "between its poses");
+    visitor("model", self.model, "", "hunt: file of objects and their colours");
+    visitor("grid", self.grid, "", "hunt: file of the color grid");
+    visitor("output", self.output, "", "hunt: folder that the map is saved in");
+    visitor("force", self.force, "", "hunt: replace a map that is there");
+    visitor("origin", self.origin, "", "hunt: latitude and longitude of the world's origin");
     KestrelOptions::Visit(self.kestrel, visitor);
   }
   std::vector<std::string> Validate() const;
+
+  bool is_hunt() const { return task == "hunt"; }
+  std::optional<double> altitude() const;      // m
+  std::vector<double> origin_degrees() const;  // latitude and longitude, or empty
 };
 
 // Defaults, changed by the file that `config` names and then by the parameters, key ("landing.
 // detector.min_quality") and value. Throws InputError when one of them is at fault.
 NodeOptions ReadNodeOptions(const std::vector<std::pair<std::string, std::string>>& parameters);
+
+// What became of options that changed, by their names.
+struct OptionUpdate {
+  std::vector<std::string> taken;
+  std::vector<std::string> left;  // these need a reset
+};
+
+// Takes over from 'told' what a node that runs can change without forgetting track or map: the
+// thresholds of the detectors, the noise, the names of frames, and what is published and saved.
+OptionUpdate UpdateOptions(NodeOptions told, NodeOptions* options);
 
 }  // namespace kestrel

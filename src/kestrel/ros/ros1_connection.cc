@@ -151,9 +151,11 @@ void Ros1Connection::Subscribe(const std::string& topic, const MessageType& type
   state_->subscribers.push_back(state_->handle.subscribe(options));
 }
 
-std::size_t Ros1Connection::Advertise(const std::string& topic, const MessageType& type) {
+std::size_t Ros1Connection::Advertise(const std::string& topic, const MessageType& type,
+                                      bool is_latched) {
   constexpr std::uint32_t kQueue = 10;
   ros::AdvertiseOptions options(topic, kQueue, type.checksum, type.name, type.definition);
+  options.latch = is_latched;
   state_->publishers.push_back(state_->private_handle.advertise(options));
   return state_->publishers.size() - 1;
 }
@@ -170,8 +172,9 @@ void Ros1Connection::Offer(const std::string& name, const Service& service) {
   using Request = std_srvs::Trigger::Request;
   using Response = std_srvs::Trigger::Response;
   const boost::function<bool(Request&, Response&)> call = [service](Request&, Response& response) {
-    response.message = service();
-    response.success = response.message.empty();
+    const Answer answer = service();
+    response.success = answer.success;
+    response.message = answer.message;
     return true;
   };
   state_->services.push_back(state_->private_handle.advertiseService(name, call));

@@ -22,8 +22,11 @@ class Ros1Connection {
     std::string checksum;
     std::string definition;
   };
-  // What is wrong, or empty.
-  using Service = std::function<std::string()>;
+  struct Answer {
+    bool success = true;
+    std::string message;
+  };
+  using Service = std::function<Answer()>;
   using TakeMessage = std::function<void(const std::string& type, const std::string& bytes)>;
 
   // Takes the arguments of ROS (remappings, parameters) out of the command line. False from
@@ -42,8 +45,9 @@ class Ros1Connection {
   void Subscribe(const std::string& topic, const MessageType& type, std::uint32_t queue,
                  const TakeMessage& take);
 
-  // A topic below the node's own name, unless it begins with a slash. Returns its index.
-  std::size_t Advertise(const std::string& topic, const MessageType& type);
+  // A topic below the node's own name, unless it begins with a slash; of a latched one the newest
+  // message is kept for those who come later. Returns its index.
+  std::size_t Advertise(const std::string& topic, const MessageType& type, bool is_latched);
   bool HasSubscribers(std::size_t topic) const;
   void Publish(std::size_t topic, const std::string& bytes);
 

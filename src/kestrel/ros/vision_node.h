@@ -13,19 +13,20 @@
 #include "kestrel/camera/calibration.h"
 #include "kestrel/middleware/live_transforms.h"
 #include "kestrel/navigation/pose_history.h"
-#include "kestrel/ros/landing_flight.h"
 #include "kestrel/ros/node_connection.h"
+#include "kestrel/ros/node_files.h"
+#include "kestrel/ros/node_flight.h"
 #include "kestrel/ros/node_options.h"
 
 namespace kestrel {
 
-// The landing pipeline as a node of ROS 1, without ROS itself: it is given serialized messages and
-// gives such to a connection. What is wrong with a message is a warning; the message is left out.
+// A pipeline as a node of ROS 1, without ROS itself: it is given serialized messages and gives such
+// to a connection. What is wrong with a message is a warning; the message is left out.
 // All calls by one thread.
-class LandingNode {
+class VisionNode {
  public:
-  // 'connection' must outlive this. Throws InputError when the calibration file is at fault.
-  LandingNode(const NodeOptions& options, NodeConnection* connection);
+  // 'connection' must outlive this. Throws InputError when a file of the options is at fault.
+  VisionNode(const NodeOptions& options, NodeConnection* connection);
 
   // 'topic': the name that messages and warnings have for it; images of one called image_rect are
   // described by P of the camera_info.
@@ -38,12 +39,18 @@ class LandingNode {
   // Images are processed from the start on until Stop, after which they are left out.
   void Start() { is_stopped_ = false; }
   void Stop();
-  // Forgets the track and all that was counted, and goes on with these options; poses,
-  // calibration and mount stay. Throws InputError, and changes nothing, as the constructor does.
+  // Forgets track, map and all that was counted, and goes on with these options; poses, calibration
+  // and mount stay. Throws InputError, and changes nothing, as the constructor does.
   void Reset(const NodeOptions& options);
+  // Takes of these options what needs no reset, forgets nothing, and says in words what it took and
+  // what it did not. Throws as Reset.
+  std::string Update(const NodeOptions& options);
+  // Says in words what it wrote. Throws InputError when there is no map or it cannot be written.
+  std::string SaveMap();
 
-  // Rate since the last call, latency and drops since the start or reset.
-  void PublishDiagnostics();
+  // Once a second: the map, and diagnostics: the rate since the last call, latency and drops since
+  // the start or reset.
+  void Tick();
 
  private:
   template <class Message>
@@ -56,21 +63,23 @@ class LandingNode {
   std::optional<CameraCalibration> CalibrationFor(const std::string& camera_frame,
                                                   const std::string& topic);
   void AddPose(const PoseSample& pose, const std::string& world);
+  void RequireChangeable(const NodeOptions& options) const;
   void Forget();
+  void PublishDiagnostics();
 
   NodeOptions options_;
   NodeConnection* connection_;
-  std::optional<CameraCalibration> file_calibration_;
+  NodeFiles files_;
   std::optional<CameraInfoMessage> camera_info_;
   std::string camera_info_topic_;
   LiveTransforms transforms_;
   std::deque<PoseSample> poses_;  // the newest, for a flight that is still to begin
   std::string world_;
   std::string body_;  // where the poses' topic tells it
-  std::unique_ptr<LandingFlight> flight_;
+  std::unique_ptr<NodeFlight> flight_;
   bool is_stopped_ = false;
 
-  std::optional<Time> newest_;  // stamp of an image
+  std::optional<Time> newest_;  // stamp of an image that was taken
   std::optional<std::uint32_t> sequence_;
   std::uint64_t received_ = 0;
   std::uint64_t missed_ = 0;   // by the numbers of the headers

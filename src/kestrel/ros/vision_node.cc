@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/ros/landing_node.h"
+#include "kestrel/ros/vision_node.h"
 
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -11,7 +12,7 @@
 #include "kestrel/bags/image_message.h"
 #include "kestrel/bags/pose_message.h"
 #include "kestrel/base/error.h"
-#include "kestrel/camera/calibration_reader.h"
+#include "kestrel/base/options.h"
 
 namespace kestrel {
 namespace {
@@ -20,9 +21,15 @@ constexpr std::size_t kKeptPoses = 200;  // fewer than LiveEvents takes at once
 constexpr Duration kJumpBack = std::chrono::seconds(1);
 constexpr Duration kWarnAgainAfter = std::chrono::seconds(5);
 
-std::optional<CameraCalibration> ReadCalibrationFile(const NodeOptions& options) {
-  if (options.camera.empty()) return std::nullopt;
-  return ReadCalibration(options.camera);
+// A pipeline of colours sees nothing in a gray image.
+void RequireColors(const ImageMessage& message, const std::string& topic) {
+  if (message.encoding != "mono8" && message.encoding != "8UC1") return;
+  throw InputError(fmt::format("{}: the images are gray ({}), task:=hunt needs colours", topic,
+                               message.encoding));
+}
+
+std::string Joined(const char* what, const std::vector<std::string>& names) {
+  return names.empty() ? "" : fmt::format("{}: {}", what, fmt::join(names, ", "));
 }
 
 KeyValueMessage Value(const char* key, std::uint64_t value) { return {key, fmt::to_string(value)}; }
@@ -34,13 +41,13 @@ KeyValueMessage Latency(const char* key, const LatencySummary& latency) {
 
 }  // namespace
 
-LandingNode::LandingNode(const NodeOptions& options, NodeConnection* connection)
+VisionNode::VisionNode(const NodeOptions& options, NodeConnection* connection)
     : options_(options),
       connection_(connection),
-      file_calibration_(ReadCalibrationFile(options)),
+      files_(ReadNodeFiles(options)),
       diagnosed_(Now()) {}
 
-void LandingNode::Warn(const std::string& text) {
+void VisionNode::Warn(const std::string& text) {
   const Time now = Now();
   if (text == last_warning_ && now - last_warning_time_ < kWarnAgainAfter) return;
   last_warning_ = text;
@@ -49,7 +56,7 @@ void LandingNode::Warn(const std::string& text) {
 }
 
 template <class Action>
-void LandingNode::WarnOfErrors(const Action& action) {
+void VisionNode::WarnOfErrors(const Action& action) {
   try {
     action();
   } catch (const InputError& error) {
@@ -57,40 +64,46 @@ void LandingNode::WarnOfErrors(const Action& action) {
   }
 }
 
-void LandingNode::TakeCameraInfo(std::string_view bytes, const std::string& topic) {
+void VisionNode::TakeCameraInfo(std::string_view bytes, const std::string& topic) {
   WarnOfErrors([&] {
     camera_info_ = ParseMessage<CameraInfoMessage>(bytes, WireFormat::kRos1, topic);
     camera_info_topic_ = topic;
   });
 }
 
-void LandingNode::TakeImage(std::string_view bytes, const std::string& topic) {
+void VisionNode::TakeImage(std::string_view bytes, const std::string& topic) {
   TakeAnyImage<ImageMessage>(bytes, topic);
 }
 
-void LandingNode::TakeCompressedImage(std::string_view bytes, const std::string& topic) {
+void VisionNode::TakeCompressedImage(std::string_view bytes, const std::string& topic) {
   TakeAnyImage<CompressedImageMessage>(bytes, topic);
 }
 
 template <class Message>
-void LandingNode::TakeAnyImage(std::string_view bytes, const std::string& topic) {
+void VisionNode::TakeAnyImage(std::string_view bytes, const std::string& topic) {
   if (is_stopped_) return;
   const Time arrival = Now();
   ++received_;
   ++refused_;  // until it is taken
   WarnOfErrors([&] {
     const auto message = ParseMessage<Message>(bytes, WireFormat::kRos1, topic);
-    if (!CheckOrder(message.header, topic) || !StartFlight(message.header, topic)) return;
-    const cv::Mat image = DecodeImage(message, PixelFormat::kGray, topic);
+    if (!CheckOrder(message.header, topic)) return;
+    if constexpr (std::is_same_v<Message, ImageMessage>) {
+      if (options_.is_hunt()) RequireColors(message, topic);
+    }
+    const cv::Mat image =
+        DecodeImage(message, options_.is_hunt() ? PixelFormat::kBgr : PixelFormat::kGray, topic);
+    if (!StartFlight(message.header, topic)) return;
     CheckImageSize(flight_->intrinsics(), image.cols, image.rows, topic);
     --refused_;
+    newest_ = message.header.stamp;
     flight_->Push({topic, message.header.stamp, image}, arrival);
   });
 }
 
 // Counts the images that never came, and begins anew where the clock went back: a bag that is
 // played again.
-bool LandingNode::CheckOrder(const HeaderMessage& header, const std::string& topic) {
+bool VisionNode::CheckOrder(const HeaderMessage& header, const std::string& topic) {
   if (ToNanoseconds(header.stamp) <= 0) {
     throw InputError(topic + ": the images have no stamps (zero), expected when they were taken");
   }
@@ -103,18 +116,17 @@ bool LandingNode::CheckOrder(const HeaderMessage& header, const std::string& top
     poses_.clear();
   }
   if (newest_ && header.stamp <= *newest_) return false;
-  newest_ = header.stamp;
   if (sequence_ && header.sequence > *sequence_) missed_ += header.sequence - *sequence_ - 1;
   sequence_ = header.sequence;
   return true;
 }
 
-bool LandingNode::StartFlight(const HeaderMessage& header, const std::string& topic) {
+bool VisionNode::StartFlight(const HeaderMessage& header, const std::string& topic) {
   if (flight_) return true;
   const std::string camera_frame = FrameName(header.frame_id);
   const auto calibration = CalibrationFor(camera_frame, topic);
   if (!calibration) return false;
-  LandingFlight::Frames frames{camera_frame, std::nullopt};
+  NodeFrames frames{camera_frame, std::nullopt};
   if (options_.poses != "none") {
     if (poses_.empty()) {
       Warn(fmt::format("no poses yet by {}; poses:=none goes without", options_.poses));
@@ -122,20 +134,21 @@ bool LandingNode::StartFlight(const HeaderMessage& header, const std::string& to
     }
     frames.world = world_;
   }
-  flight_ = std::make_unique<LandingFlight>(*calibration, options_, frames, connection_);
+  flight_ =
+      std::make_unique<NodeFlight>(*calibration, files_.objects, options_, frames, connection_);
   for (const PoseSample& pose : poses_) flight_->Push(pose);
   return true;
 }
 
-std::optional<CameraCalibration> LandingNode::CalibrationFor(const std::string& camera_frame,
-                                                             const std::string& topic) {
-  if (!file_calibration_ && !camera_info_) {
+std::optional<CameraCalibration> VisionNode::CalibrationFor(const std::string& camera_frame,
+                                                            const std::string& topic) {
+  if (!files_.calibration && !camera_info_) {
     Warn("no camera_info yet; _camera:=FILE tells the calibration instead");
     return std::nullopt;
   }
   CameraCalibration calibration =
-      file_calibration_ ? *file_calibration_
-                        : CalibrationOf(*camera_info_, IsRectified(topic), camera_info_topic_);
+      files_.calibration ? *files_.calibration
+                         : CalibrationOf(*camera_info_, IsRectified(topic), camera_info_topic_);
   if (options_.poses == "none" || calibration.body_from_camera) return calibration;
   const std::string& body = body_.empty() ? options_.body_frame : body_;
   calibration.body_from_camera = transforms_.Fixed(body, camera_frame);
@@ -150,8 +163,7 @@ std::optional<CameraCalibration> LandingNode::CalibrationFor(const std::string& 
   return std::nullopt;
 }
 
-void LandingNode::TakePose(std::string_view type, std::string_view bytes,
-                           const std::string& topic) {
+void VisionNode::TakePose(std::string_view type, std::string_view bytes, const std::string& topic) {
   WarnOfErrors([&] {
     if (!IsPoseType(type)) {
       throw InputError(fmt::format(
@@ -173,7 +185,7 @@ void LandingNode::TakePose(std::string_view type, std::string_view bytes,
   });
 }
 
-void LandingNode::TakeTransforms(std::string_view bytes, bool is_static, const std::string& topic) {
+void VisionNode::TakeTransforms(std::string_view bytes, bool is_static, const std::string& topic) {
   WarnOfErrors([&] {
     const auto message = ParseMessage<TfMessage>(bytes, WireFormat::kRos1, topic);
     for (const TransformStampedMessage& transform : message.transforms) {
@@ -185,7 +197,7 @@ void LandingNode::TakeTransforms(std::string_view bytes, bool is_static, const s
   });
 }
 
-void LandingNode::AddPose(const PoseSample& pose, const std::string& world) {
+void VisionNode::AddPose(const PoseSample& pose, const std::string& world) {
   world_ = world;
   if (!poses_.empty() && pose.time < poses_.back().time - kJumpBack) {
     Warn("the poses' stamps jump back: starting anew");
@@ -198,39 +210,75 @@ void LandingNode::AddPose(const PoseSample& pose, const std::string& world) {
   if (flight_) flight_->Push(pose);
 }
 
-void LandingNode::Stop() {
+// The images left out meanwhile are not missed.
+void VisionNode::Stop() {
   is_stopped_ = true;
-  Forget();
+  sequence_.reset();
 }
 
-void LandingNode::Forget() {
+void VisionNode::Forget() {
   flight_.reset();
   newest_.reset();
   sequence_.reset();
 }
 
-void LandingNode::Reset(const NodeOptions& options) {
-  if (options.poses != options_.poses || options.image_transport != options_.image_transport) {
-    throw InputError("poses and image_transport cannot change while the node runs: start it anew");
+// What decides on topics.
+void VisionNode::RequireChangeable(const NodeOptions& options) const {
+  if (options.task == options_.task && options.poses == options_.poses &&
+      options.image_transport == options_.image_transport) {
+    return;
   }
-  auto file_calibration = ReadCalibrationFile(options);
+  throw InputError(
+      "task, poses and image_transport cannot change while the node runs: start it anew");
+}
+
+std::string VisionNode::Update(const NodeOptions& options) {
+  RequireChangeable(options);
+  NodeOptions updated = options_;
+  const OptionUpdate update = UpdateOptions(options, &updated);
+  RequireValid(updated);
+  if (flight_ && !update.taken.empty()) {
+    flight_->WithTask([&](NodeTask* task) { task->Update(updated); });
+  }
+  options_ = updated;
+  if (update.taken.empty() && update.left.empty()) return "nothing has changed";
+  const bool are_both = !update.taken.empty() && !update.left.empty();
+  return Joined("taken", update.taken) + (are_both ? "; " : "") +
+         Joined("not taken without a reset", update.left);
+}
+
+std::string VisionNode::SaveMap() {
+  if (!flight_) throw InputError("there is no map: no image was processed yet");
+  return flight_->WithTask([](NodeTask* task) { return task->SaveMap(); });
+}
+
+void VisionNode::Reset(const NodeOptions& options) {
+  RequireChangeable(options);
+  NodeFiles files = ReadNodeFiles(options);
   Forget();
+  const bool is_other_world =
+      options.world_frame != options_.world_frame || options.body_frame != options_.body_frame;
+  if (is_other_world) poses_.clear();
   options_ = options;
-  file_calibration_ = std::move(file_calibration);
+  files_ = std::move(files);
   received_ = missed_ = refused_ = diagnosed_images_ = 0;
 }
 
-void LandingNode::PublishDiagnostics() {
+void VisionNode::Tick() {
+  if (flight_) flight_->WithTask([](NodeTask* task) { task->PublishMap(); });
+  PublishDiagnostics();
+}
+
+void VisionNode::PublishDiagnostics() {
   const Time now = Now();
   const double rate_hz =
       static_cast<double>(received_ - diagnosed_images_) / ToSeconds(now - diagnosed_);
   diagnosed_ = now;
   diagnosed_images_ = received_;
-  const LandingFlight::Counters counters =
-      flight_ ? flight_->counters() : LandingFlight::Counters();
+  const NodeFlight::Counters counters = flight_ ? flight_->counters() : NodeFlight::Counters();
 
   DiagnosticStatusMessage status;
-  status.name = "kestrel: landing pattern";
+  status.name = options_.is_hunt() ? "kestrel: coloured objects" : "kestrel: landing pattern";
   status.level =
       is_stopped_ || rate_hz > 0 ? DiagnosticStatusMessage::kOk : DiagnosticStatusMessage::kWarn;
   status.message = is_stopped_ ? "stopped" : rate_hz > 0 ? "running" : "no images";
@@ -238,17 +286,18 @@ void LandingNode::PublishDiagnostics() {
     status.level = DiagnosticStatusMessage::kWarn;
     status.message = "waiting: " + last_warning_;
   }
-  status.values = {{"image rate", fmt::format("{:.1f} Hz", rate_hz)},
-                   Value("images received", received_),
-                   Value("images processed", counters.events.frames),
-                   Value("images with the pattern", counters.detections),
-                   Value("images dropped for newer ones", counters.events.dropped_frames),
-                   Value("images missed before the node", missed_),
-                   Value("images left out", refused_),
-                   Value("images without the pose after them", counters.events.unposed_frames),
-                   Latency("image to detection", counters.latency),
-                   Latency("of that beyond Detect", counters.beyond_detect),
-                   Latency("Detect", counters.detect)};
+  status.values = {
+      {"image rate", fmt::format("{:.1f} Hz", rate_hz)},
+      Value("images received", received_),
+      Value("images processed", counters.events.frames),
+      Value(options_.is_hunt() ? "images with objects" : "images with the pattern", counters.found),
+      Value("images dropped for newer ones", counters.events.dropped_frames),
+      Value("images missed before the node", missed_),
+      Value("images left out", refused_),
+      Value("images without the pose after them", counters.events.unposed_frames),
+      Latency("image to detection", counters.latency),
+      Latency("of that beyond Detect", counters.beyond_detect),
+      Latency("Detect", counters.detect)};
   DiagnosticArrayMessage message;
   message.header.stamp = connection_->StampNow();
   message.status.push_back(std::move(status));
