@@ -356,7 +356,7 @@ TEST_F(WebServerTest, AStalledBrowserCostsTheOthersNothing) {
   ConsoleOptions options = AnyPort();
   options.max_image_rate_hz = 200;
   options.message_queue = 8;
-  options.idle_timeout_s = 1;
+  options.idle_timeout_s = 4;
   const WebServer server(options, &feed_, kAssets);
   TestSocket good(server.port());
   good.Send(R"({"images": true})");
