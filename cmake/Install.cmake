@@ -1,9 +1,9 @@
 # `cmake --install` puts the command, the rooms as static libraries and their headers in place, and
-# the package that `find_package(kestrel)` finds. The rooms cli and ros belong to their programs alone.
+# the package that `find_package(kestrel)` finds. The rooms cli, ros and ros1 belong to their programs alone.
 include(CMakePackageConfigHelpers)
 
 get_property(rooms GLOBAL PROPERTY KESTREL_ROOMS)
-list(REMOVE_ITEM rooms kestrel_cli kestrel_ros)
+list(REMOVE_ITEM rooms kestrel_cli kestrel_ros kestrel_ros1)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/kestrel)
 
 install(TARGETS ${rooms} EXPORT kestrel)
@@ -15,7 +15,8 @@ install(
   PATTERN "*.h"
   PATTERN "test_*.h" EXCLUDE
   PATTERN "cli" EXCLUDE
-  PATTERN "ros" EXCLUDE)
+  PATTERN "ros" EXCLUDE
+  PATTERN "ros1" EXCLUDE)
 
 # Configurations of boards and cameras, and the unit that flies from power-on.
 install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kestrel)

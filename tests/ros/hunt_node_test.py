@@ -87,7 +87,7 @@ def test_saved_map(folder):
 
 def test(kestrel, node, folder):
     bag, expected = make_recordings(kestrel, folder)
-    with running(node, folder, f"poses:={bag.pose_topic()}", "_task:=hunt", "_poses:=topic",
+    with running(node, folder, "image:=/camera/image_raw", f"poses:={bag.pose_topic()}", "_task:=hunt", "_poses:=topic",
                  "_fly/events/pose_wait_s:=1.0"):
         names = ("detections", "map", "markers", "map_markers", "image_annotated")
         topics = {name: Messages(f"/kestrel/{name}") for name in names}

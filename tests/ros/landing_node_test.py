@@ -129,11 +129,11 @@ def test_rosbag_play(bag, expected):
 
 def test(kestrel, node, folder):
     bag, expected, expected_track = make_recordings(kestrel, folder)
-    with running(node, folder, f"poses:={bag.pose_topic()}", "_poses:=topic",
+    with running(node, folder, "image:=/camera/image_raw", f"poses:={bag.pose_topic()}", "_poses:=topic",
                  "_fly/events/pose_wait_s:=1.0"):
         test_in_step(bag, expected, expected_track)
         test_services()
-    with running(node, folder, "_poses:=none"):
+    with running(node, folder, "image:=/camera/image_raw", "_poses:=none"):
         test_rosbag_play(bag, expected)
 
 

@@ -196,10 +196,10 @@ class Echo:
 
 
 @contextlib.contextmanager
-def running(node, folder, *arguments):
-    """The node, from when it has been started until it is ended; what it said, when that fails."""
+def running(program, folder, *arguments):
+    """A program, from when it has been started until it is ended; what it said, when that fails."""
     with open(f"{folder}/node.log", "w") as log:
-        process = subprocess.Popen([node, "image:=/camera/image_raw", *arguments], stdout=log, stderr=log)
+        process = subprocess.Popen([program, *arguments], stdout=log, stderr=log)
     try:
         yield process
     except BaseException:

@@ -30,8 +30,8 @@ std::shared_ptr<Ros2Node> DdsArguments::OpenNode(const DdsOptions& options) cons
   return std::make_shared<Ros2Node>(Domain(), Ros2NodeOptions{options.node, options.is_humble()});
 }
 
-DdsFrames OwnFrames(const DdsOptions& options, bool has_world) {
-  DdsFrames frames;
+RosFrames OwnFrames(const DdsOptions& options, bool has_world) {
+  RosFrames frames;
   frames.camera = options.camera_frame;
   if (has_world) frames.world = options.world_frame;
   frames.body = options.body_frame;

@@ -10,7 +10,7 @@
 #include "kestrel/camera/calibration.h"
 #include "kestrel/dds/ros2_node.h"
 #include "kestrel/middleware/dds_options.h"
-#include "kestrel/middleware/dds_results.h"
+#include "kestrel/middleware/ros_results.h"
 
 namespace kestrel {
 
@@ -30,6 +30,6 @@ struct DdsArguments {
 };
 
 // The frames of results, as the options have them.
-DdsFrames OwnFrames(const DdsOptions& options, bool has_world);
+RosFrames OwnFrames(const DdsOptions& options, bool has_world);
 
 }  // namespace kestrel

@@ -21,6 +21,7 @@ struct FlyArguments {
   std::string link_delay = "auto";
   std::string signing_key;
   std::string record;
+  bool ros = false;
   std::optional<std::string> console;  // ADDRESS:PORT; empty: as the options say
   bool guide = false;
   bool hunt = false;

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -22,7 +23,8 @@
 #include "kestrel/foxglove/flight_live.h"
 #include "kestrel/foxglove/flight_mcap.h"
 #include "kestrel/link/mavlink_enums.h"
-#include "kestrel/middleware/flight_dds.h"
+#include "kestrel/middleware/flight_ros.h"
+#include "kestrel/middleware/ros2_result_connection.h"
 #include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/camera_automatics.h"
 #include "kestrel/onboard/flight_keeper.h"
@@ -30,6 +32,7 @@
 #include "kestrel/onboard/landing_vision.h"
 #include "kestrel/onboard/recording_switch.h"
 #include "kestrel/recording/output_folder.h"
+#include "kestrel/ros1/ros1_result_connection.h"
 
 namespace kestrel {
 namespace {
@@ -99,6 +102,7 @@ class Flight {
     OpenTeam();
     OpenMcap();
     OpenDds();
+    OpenRos1();
     if (!arguments.record.empty()) recording_.Start(arguments.record, arguments.source.force);
     OpenVision();
     if (!arguments.autopilot.empty()) OpenAutopilot();
@@ -124,7 +128,7 @@ class Flight {
     Finish(end);
     if (hunt_ != nullptr && output_) hunt_->WriteMap(*output_);
     if (team_) LeaveTeam();
-    dds_.reset();
+    ros_.clear();
     log_.Show();
     return end;
   }
@@ -179,9 +183,9 @@ class Flight {
   }
 
   // What a topic's frames are called, or the options call them; stamps are ROS' time.
-  DdsFrames Frames() const {
+  RosFrames Frames() const {
     if (source_.frames) return *source_.frames;
-    DdsFrames frames = OwnFrames(all_options_.dds, HasWorld());
+    RosFrames frames = OwnFrames(all_options_.dds, HasWorld());
     frames.to_stamps = RosTimeAhead();
     return frames;
   }
@@ -190,12 +194,27 @@ class Flight {
     if (!arguments_.source.dds.is_given()) return;
     const DdsOptions& options = all_options_.dds;
     if (!source_.node) source_.node = arguments_.source.dds.OpenNode(options);
-    auto results = std::make_unique<DdsResults>(
-        source_.node, options, Frames(), source_.calibration, all_options_.landing, ReadModel());
-    if (team_) results->AdvertiseTeam();
-    dds_ = std::make_unique<FlightDds>(std::move(results),
-                                       [this](const std::string& text) { log_.Say(text); });
-    observers_.Add(dds_.get());
+    OpenRos(std::make_unique<Ros2ResultConnection>(source_.node, options.node, Topics()),
+            WireFormat::kCdr);
+  }
+
+  void OpenRos1() {
+    if (!arguments_.ros) return;
+    OpenRos(std::make_unique<Ros1ResultConnection>(
+                kestrel::OpenRos1(all_options_.dds.node, "--ros"), Topics()),
+            WireFormat::kRos1);
+  }
+
+  ResultTopics Topics() const {
+    return arguments_.hunt ? ResultTopics(kHuntTopics) : kLandingTopics;
+  }
+
+  void OpenRos(std::unique_ptr<ResultConnection> connection, WireFormat format) {
+    ros_.push_back(std::make_unique<FlightRos>(
+        std::make_unique<RosResults>(std::move(connection), format, all_options_.dds, Frames(),
+                                     source_.calibration, all_options_.landing, ReadModel()),
+        [this](const std::string& text) { log_.Say(text); }));
+    observers_.Add(ros_.back().get());
   }
 
   void OpenMcap() {
@@ -322,7 +341,7 @@ class Flight {
   void LeaveTeam() {
     team_->Finish(hunt_->Objects());
     const TeamReport report{seen_, team_->Map()};
-    if (dds_) dds_->SeeTeam(report);
+    for (const auto& each : ros_) each->SeeTeam(report);
     if (console_) console_->SeeTeam(report);
     if (output_) team_->WriteMap(/*origin=*/{}, *output_);
     log_.Show();
@@ -359,7 +378,7 @@ class Flight {
   std::unique_ptr<FlightLive> live_;
   std::optional<FlightConsole> console_;
   std::unique_ptr<FlightMcap> mcap_;
-  std::unique_ptr<FlightDds> dds_;
+  std::vector<std::unique_ptr<FlightRos>> ros_;
   FlightObservers observers_;
   RecordingEnd recording_end_{&recording_};  // while the console can still be told of it
   std::optional<OutputFolder> output_;

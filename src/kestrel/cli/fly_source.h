@@ -9,7 +9,7 @@
 #include "kestrel/cli/source_arguments.h"
 #include "kestrel/dds/ros2_node.h"
 #include "kestrel/link/autopilot.h"
-#include "kestrel/middleware/dds_results.h"
+#include "kestrel/middleware/ros_results.h"
 #include "kestrel/navigation/pose_history.h"
 #include "kestrel/onboard/exposure_drive.h"
 #include "kestrel/onboard/live_source.h"
@@ -29,7 +29,7 @@ struct FlySource {
   SimulatedCamera* simulated = nullptr;
   ExposureActuator* actuator = nullptr;
   std::shared_ptr<Ros2Node> node;   // "dds:TOPIC": where it is heard,
-  std::optional<DdsFrames> frames;  // and what its frames are called
+  std::optional<RosFrames> frames;  // and what its frames are called
   bool has_true_poses = false;      // the autopilot tells where a simulated camera truly is
 
   // What this asks of the autopilot, beside 'options'.

@@ -32,7 +32,7 @@ class HuntRun : public PipelineRun {
  public:
   HuntRun(const OpenedSource& opened, const ObjectModel& model, const ColorGrid& grid,
           const HuntPipelineOptions& options, const HuntArguments& arguments, TeamLink* team,
-          DdsResults* dds)
+          RosResults* dds)
       : pipeline_(opened.calibration, model, grid, options),
         mcap_(arguments.source.OpenMcap(opened.calibration.intrinsics, HuntView{model})),
         sink_(arguments.source.Output(opened), arguments.origin),
@@ -112,7 +112,7 @@ class HuntRun : public PipelineRun {
   HuntSink sink_;
   bool has_map_;
   TeamLink* team_;   // null: none
-  DdsResults* dds_;  // as well
+  RosResults* dds_;  // as well
   std::optional<double> altitude_m_;
   bool has_world_ = false;  // of the last frame
   Time seen_{};             // that frame
@@ -144,9 +144,8 @@ void RunHunt(const HuntArguments& arguments) {
     team.emplace(arguments.team, arguments.source.dds.Domain(), all_options.team, options.map,
                  model, [](const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); });
   }
-  const std::unique_ptr<DdsResults> dds = OpenDdsResults(arguments.source, opened, all_options,
+  const std::unique_ptr<RosResults> dds = OpenRosResults(arguments.source, opened, all_options,
                                                          /*is_still=*/options.still, model);
-  if (team && dds) dds->AdvertiseTeam();
   HuntRun run(opened, model, grid, options, arguments, team ? &*team : nullptr, dds.get());
   RunPipeline(opened, &run);
 }

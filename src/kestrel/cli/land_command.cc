@@ -64,7 +64,7 @@ std::string FocalRemark(const CalibrationMonitor& monitor, double focal_px) {
 class LandRun : public PipelineRun {
  public:
   LandRun(const OpenedSource& opened, const LandingPipelineOptions& options,
-          const LandArguments& arguments, bool has_track, DdsResults* dds)
+          const LandArguments& arguments, bool has_track, RosResults* dds)
       : pipeline_(opened.calibration, options),
         mcap_(arguments.source.OpenMcap(opened.calibration.intrinsics,
                                         ViewOf(opened.calibration, options))),
@@ -114,7 +114,7 @@ class LandRun : public PipelineRun {
   LandingPipeline pipeline_;
   std::unique_ptr<ObservationFile> mcap_;
   LandingSink sink_;
-  DdsResults* dds_;  // null: none
+  RosResults* dds_;  // null: none
   std::optional<double> altitude_m_;
   bool has_world_;
   std::map<PoseLookup, std::size_t> poses_;
@@ -132,8 +132,8 @@ void RunLand(const LandArguments& arguments) {
                "no prediction: it needs a source with poses, a camera with its mount (T_BS) and no "
                "--still\n");
   }
-  const std::unique_ptr<DdsResults> dds =
-      OpenDdsResults(arguments.source, opened, all_options, options.still, /*model=*/{});
+  const std::unique_ptr<RosResults> dds =
+      OpenRosResults(arguments.source, opened, all_options, options.still, /*model=*/{});
   LandRun run(opened, options, arguments, has_track, dds.get());
   RunPipeline(opened, &run);
 }

@@ -11,6 +11,7 @@
 
 #include "kestrel/base/error.h"
 #include "kestrel/cli/frame_loop.h"
+#include "kestrel/middleware/ros2_result_connection.h"
 #include "kestrel/recording/event_source.h"
 
 namespace kestrel {
@@ -33,15 +34,17 @@ void PrintSummary(const std::vector<double>& detect_ms, const PipelineRun& run) 
 
 }  // namespace
 
-std::unique_ptr<DdsResults> OpenDdsResults(const SourceArguments& arguments,
+std::unique_ptr<RosResults> OpenRosResults(const SourceArguments& arguments,
                                            const OpenedSource& opened,
                                            const KestrelOptions& options, bool is_still,
                                            const ObjectModel& model) {
   if (!arguments.dds.is_given()) return nullptr;
-  auto results =
-      std::make_unique<DdsResults>(arguments.dds.OpenNode(options.dds), options.dds,
-                                   OwnFrames(options.dds, opened.has_world() && !is_still),
-                                   opened.calibration, options.landing, model);
+  auto results = std::make_unique<RosResults>(
+      std::make_unique<Ros2ResultConnection>(
+          arguments.dds.OpenNode(options.dds), options.dds.node,
+          model.classes.empty() ? ResultTopics(kLandingTopics) : kHuntTopics),
+      WireFormat::kCdr, options.dds, OwnFrames(options.dds, opened.has_world() && !is_still),
+      opened.calibration, options.landing, model);
   results->WaitForSubscribers(std::chrono::seconds(1));
   return results;
 }

@@ -7,7 +7,7 @@
 #include "kestrel/base/time.h"
 #include "kestrel/cli/kestrel_options.h"
 #include "kestrel/cli/source_arguments.h"
-#include "kestrel/middleware/dds_results.h"
+#include "kestrel/middleware/ros_results.h"
 #include "kestrel/navigation/pose_history.h"
 #include "kestrel/objects/object_model.h"
 #include "kestrel/recording/frame.h"
@@ -40,7 +40,7 @@ class PipelineRun {
 
 // What --dds asks for; null without. Waits a second for those who hear: the frames of a recording
 // do not wait. Throws InputError when DDS is at fault.
-std::unique_ptr<DdsResults> OpenDdsResults(const SourceArguments& arguments,
+std::unique_ptr<RosResults> OpenRosResults(const SourceArguments& arguments,
                                            const OpenedSource& opened,
                                            const KestrelOptions& options, bool is_still,
                                            const ObjectModel& model);

@@ -24,6 +24,9 @@ constexpr char kByIndex[] =
     "<ParticipantIndex>auto</ParticipantIndex>"
     "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>";
 
+// After a break of the radio others are found again within a second, not only after eight.
+constexpr char kOften[] = "<Discovery><SPDPInterval>1 s</SPDPInterval></Discovery>";
+
 std::string Variable(const char* name) {
   const char* const value = std::getenv(name);
   return value == nullptr ? "" : value;
@@ -61,9 +64,11 @@ class Domain {
  public:
   explicit Domain(int domain) {
     dds_set_log_sink([](void* /*unused*/, const dds_log_data_t* /*data*/) {}, nullptr);
-    const std::string own = DiscoverySettings();
     const std::string told = Variable("CYCLONEDDS_URI");
-    const std::string settings = own + (own.empty() || told.empty() ? "" : ",") + told;
+    std::string settings = kOften;
+    for (const std::string& more : {DiscoverySettings(), told}) {
+      if (!more.empty()) settings += "," + more;
+    }
     entity_ = dds_create_domain(static_cast<dds_domainid_t>(domain), settings.c_str());
     if (entity_ >= 0) return;
     throw InputError(fmt::format("DDS domain {}: {} (CYCLONEDDS_URI '{}'; is there a network?)",

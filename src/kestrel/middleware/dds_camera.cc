@@ -17,7 +17,7 @@
 #include "kestrel/bags/pose_message.h"
 #include "kestrel/bags/serialization.h"
 #include "kestrel/base/error.h"
-#include "kestrel/middleware/dds_results.h"
+#include "kestrel/middleware/ros_results.h"
 
 namespace kestrel {
 namespace {

@@ -42,4 +42,10 @@ void HuntResults::PublishMap(const std::vector<MappedObject>& map, Time stamp) {
           MapMarkersOf(map, stamp, options_.model, *options_.world_frame));
 }
 
+void HuntResults::PublishTeam(const TeamReport& team) {
+  if (!options_.world_frame) return;
+  Publish(ResultTopic::kTeamMap, TeamDetectionsOf(team, options_.model, *options_.world_frame));
+  Publish(ResultTopic::kTeamMarkers, TeamMarkersOf(team, options_.model, *options_.world_frame));
+}
+
 }  // namespace kestrel

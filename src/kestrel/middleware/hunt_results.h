@@ -13,6 +13,7 @@
 #include "kestrel/mapping/object_map.h"
 #include "kestrel/middleware/result_connection.h"
 #include "kestrel/objects/object_model.h"
+#include "kestrel/onboard/flight_observer.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 
 namespace kestrel {
@@ -38,6 +39,8 @@ class HuntResults {
   void PublishImage(const cv::Mat& image, const HuntObservation& observation, const ObjectMap* map);
   // The map as it was at 'stamp', and its markers. Nothing where there are no poses.
   void PublishMap(const std::vector<MappedObject>& map, Time stamp);
+  // The team's, likewise.
+  void PublishTeam(const TeamReport& team);
 
  private:
   template <class Message>

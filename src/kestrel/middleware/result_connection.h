@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -21,8 +22,11 @@ enum class ResultTopic : std::size_t {
   kAnnotatedImage,
   kTransforms,
   kDiagnostics,
-  kMap,  // this and the next are of the node of ROS 1 only
+  kMap,
   kMapMarkers,
+  kTeamMap,
+  kTeamMarkers,
+  kStaticTransforms,
 };
 
 struct ResultTopicInfo {
@@ -43,7 +47,24 @@ inline constexpr std::array kResultTopics = {
     ResultTopicInfo{"/diagnostics", DiagnosticArrayMessage::kType},
     ResultTopicInfo{"map", Detection3DArrayMessage::kType, true},
     ResultTopicInfo{"map_markers", MarkerArrayMessage::kType, true},
+    ResultTopicInfo{"team_map", Detection3DArrayMessage::kType, true},
+    ResultTopicInfo{"team_markers", MarkerArrayMessage::kType, true},
+    ResultTopicInfo{"/tf_static", TfMessage::kType, true},
 };
+
+constexpr const ResultTopicInfo& InfoOf(ResultTopic topic) {
+  return kResultTopics[static_cast<std::size_t>(topic)];
+}
+
+// Those that others are told of at once. What is latched they are told of when there is some.
+using ResultTopics = std::span<const ResultTopic>;
+inline constexpr std::array kLandingTopics = {
+    ResultTopic::kDetections, ResultTopic::kTargetPose, ResultTopic::kTrack,
+    ResultTopic::kPrediction, ResultTopic::kMarkers,    ResultTopic::kAnnotatedImage,
+    ResultTopic::kTransforms, ResultTopic::kDiagnostics};
+inline constexpr std::array kHuntTopics = {ResultTopic::kDetections, ResultTopic::kMarkers,
+                                           ResultTopic::kAnnotatedImage, ResultTopic::kTransforms,
+                                           ResultTopic::kDiagnostics};
 
 // The way of results to others. All calls from any thread.
 class ResultConnection {
@@ -52,6 +73,8 @@ class ResultConnection {
 
   virtual bool HasSubscribers(ResultTopic topic) const = 0;
   virtual void Publish(ResultTopic topic, const std::string& bytes) = 0;
+  // Waits until all that hear have all, as far as that is known, and not for long.
+  virtual void Flush() {}
 };
 
 }  // namespace kestrel

@@ -1,62 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <functional>
-#include <map>
-#include <span>
+#include <memory>
 #include <string>
 
 #include <fmt/format.h>
 
-#include "kestrel/bags/message_definitions.h"
 #include "kestrel/base/error.h"
 #include "kestrel/ros/node_connection.h"
 #include "kestrel/ros/node_options.h"
-#include "kestrel/ros/ros1_connection.h"
 #include "kestrel/ros/vision_node.h"
+#include "kestrel/ros1/ros1_result_connection.h"
 
 namespace kestrel {
 namespace {
 
 constexpr std::uint32_t kPoseQueue = 200;
 
-constexpr std::array kLandingTopics = {ResultTopic::kDetections, ResultTopic::kTargetPose,
-                                       ResultTopic::kTrack,      ResultTopic::kPrediction,
-                                       ResultTopic::kMarkers,    ResultTopic::kAnnotatedImage,
-                                       ResultTopic::kTransforms, ResultTopic::kDiagnostics};
-constexpr std::array kHuntTopics = {
-    ResultTopic::kDetections,  ResultTopic::kMarkers, ResultTopic::kAnnotatedImage,
-    ResultTopic::kDiagnostics, ResultTopic::kMap,     ResultTopic::kMapMarkers};
-
-Ros1Connection::MessageType TypeOf(std::string_view type) {
-  return {std::string(type), std::string(MessageChecksum(type)),
-          MessageDefinition(type, WireFormat::kRos1)};
-}
-
 // The node's topics, in ROS 1.
 class Ros1NodeConnection : public NodeConnection {
  public:
-  Ros1NodeConnection(Ros1Connection* ros, std::span<const ResultTopic> topics) : ros_(ros) {
-    for (const ResultTopic topic : topics) {
-      const ResultTopicInfo& info = kResultTopics[static_cast<std::size_t>(topic)];
-      topics_[topic] = ros_->Advertise(std::string(info.name), TypeOf(info.type), info.is_latched);
-    }
-  }
+  Ros1NodeConnection(const std::shared_ptr<Ros1Connection>& ros, ResultTopics topics)
+      : ros_(ros), results_(ros, topics) {}
 
-  bool HasSubscribers(ResultTopic topic) const override {
-    return ros_->HasSubscribers(topics_.at(topic));
-  }
+  bool HasSubscribers(ResultTopic topic) const override { return results_.HasSubscribers(topic); }
   void Publish(ResultTopic topic, const std::string& bytes) override {
-    ros_->Publish(topics_.at(topic), bytes);
+    results_.Publish(topic, bytes);
   }
   void Warn(const std::string& text) override { ros_->Warn(text); }
   Time StampNow() const override { return TimeFromNanoseconds(ros_->NowNanoseconds()); }
 
  private:
-  Ros1Connection* ros_;
-  std::map<ResultTopic, std::size_t> topics_;  // as ROS numbers them
+  std::shared_ptr<Ros1Connection> ros_;
+  Ros1ResultConnection results_;
 };
 
 // camera_info lies beside the image, as image_transport has it.
@@ -67,18 +45,18 @@ std::string BesideOf(const std::string& topic, const std::string& name) {
 void SubscribeCamera(const NodeOptions& options, Ros1Connection* ros, VisionNode* node) {
   const std::string image = ros->ResolvedName("image");
   if (options.image_transport == "compressed") {
-    ros->Subscribe(image + "/compressed", TypeOf(CompressedImageMessage::kType), /*queue=*/1,
+    ros->Subscribe(image + "/compressed", Ros1TypeOf(CompressedImageMessage::kType), /*queue=*/1,
                    [node, image](const std::string&, const std::string& bytes) {
                      node->TakeCompressedImage(bytes, image);
                    });
   } else {
-    ros->Subscribe(image, TypeOf(ImageMessage::kType), /*queue=*/1,
+    ros->Subscribe(image, Ros1TypeOf(ImageMessage::kType), /*queue=*/1,
                    [node, image](const std::string&, const std::string& bytes) {
                      node->TakeImage(bytes, image);
                    });
   }
   const std::string camera_info = BesideOf(image, "camera_info");
-  ros->Subscribe(camera_info, TypeOf(CameraInfoMessage::kType), /*queue=*/1,
+  ros->Subscribe(camera_info, Ros1TypeOf(CameraInfoMessage::kType), /*queue=*/1,
                  [node, camera_info](const std::string&, const std::string& bytes) {
                    node->TakeCameraInfo(bytes, camera_info);
                  });
@@ -88,7 +66,7 @@ void SubscribePoses(const NodeOptions& options, Ros1Connection* ros, VisionNode*
   if (options.poses == "none") return;
   for (const bool is_static : {true, false}) {
     const std::string topic = is_static ? "/tf_static" : "/tf";
-    ros->Subscribe(topic, TypeOf(TfMessage::kType), kPoseQueue,
+    ros->Subscribe(topic, Ros1TypeOf(TfMessage::kType), kPoseQueue,
                    [=](const std::string&, const std::string& bytes) {
                      node->TakeTransforms(bytes, is_static, topic);
                    });
@@ -131,26 +109,27 @@ void OfferServices(Ros1Connection* ros, VisionNode* node) {
 }
 
 int RunNode(int argc, char** argv) {
-  Ros1Connection ros(&argc, argv, "kestrel");
+  const auto ros =
+      std::make_shared<Ros1Connection>(&argc, argv, "kestrel", /*handles_interrupts=*/true);
   if (argc > 1) {
     fmt::print(stderr,
                "kestrel_node: unknown argument '{}'; parameters are given as _name:=value\n",
                argv[1]);
     return 2;
   }
-  if (!ros.HasMaster()) {
+  if (!ros->HasMaster()) {
     fmt::print(stderr, "kestrel_node: no ROS master at {}; start roscore\n",
                std::getenv("ROS_MASTER_URI") ? std::getenv("ROS_MASTER_URI") : "ROS_MASTER_URI");
     return 1;
   }
-  const NodeOptions options = ReadNodeOptions(ros.Parameters());
-  Ros1NodeConnection connection(
-      &ros, options.is_hunt() ? std::span<const ResultTopic>(kHuntTopics) : kLandingTopics);
+  const NodeOptions options = ReadNodeOptions(ros->Parameters());
+  Ros1NodeConnection connection(ros,
+                                options.is_hunt() ? ResultTopics(kHuntTopics) : kLandingTopics);
   VisionNode node(options, &connection);
-  SubscribeCamera(options, &ros, &node);
-  SubscribePoses(options, &ros, &node);
-  OfferServices(&ros, &node);
-  ros.Spin([&node] { node.Tick(); });
+  SubscribeCamera(options, ros.get(), &node);
+  SubscribePoses(options, ros.get(), &node);
+  OfferServices(ros.get(), &node);
+  ros->Spin([&node] { node.Tick(); });
   return 0;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/middleware/flight_dds.h"
+#include "kestrel/middleware/flight_ros.h"
 
 #include <chrono>
 #include <cstddef>
@@ -19,7 +19,7 @@ constexpr Duration kPatience = std::chrono::milliseconds(200);
 
 }  // namespace
 
-FlightDds::FlightDds(std::unique_ptr<DdsResults> results,
+FlightRos::FlightRos(std::unique_ptr<RosResults> results,
                      std::function<void(const std::string&)> tell)
     : results_(std::move(results)),
       tell_(std::move(tell)),
@@ -29,31 +29,31 @@ FlightDds::FlightDds(std::unique_ptr<DdsResults> results,
       next_report_(Now()),
       thread_([this] { Run(); }) {}
 
-FlightDds::~FlightDds() {
+FlightRos::~FlightRos() {
   is_over_ = true;
   seen_.Close();
   thread_.join();
 }
 
-void FlightDds::See(const Frame& frame, const LandingObservation& observation) {
+void FlightRos::See(const Frame& frame, const LandingObservation& observation) {
   seen_.Push({frame, observation});
 }
 
-void FlightDds::See(const Frame& frame, const HuntObservation& observation) {
+void FlightRos::See(const Frame& frame, const HuntObservation& observation) {
   seen_.Push({frame, observation});
 }
 
-void FlightDds::See(const FlightReport& report) {
+void FlightRos::See(const FlightReport& report) {
   const Time now = Now();
   if (now < next_report_) return;
   next_report_ = now + kReportPeriod;
   reports_.Push(report);
 }
 
-void FlightDds::SeeTeam(const TeamReport& report) { team_reports_.Push(report); }
+void FlightRos::SeeTeam(const TeamReport& report) { team_reports_.Push(report); }
 
-void FlightDds::Run() {
-  SetUpThisThread("dds", {});
+void FlightRos::Run() {
+  SetUpThisThread("ros", {});
   for (;;) {
     const bool was_over = is_over_;
     const auto seen = seen_.Pop(kPatience);
@@ -68,7 +68,7 @@ void FlightDds::Run() {
   }
   results_->Flush();
   if (seen_.dropped() == 0) return;
-  tell_(fmt::format("--dds: {} frames are left out: the network is too slow", seen_.dropped()));
+  tell_(fmt::format("ROS: {} frames are left out: the network is too slow", seen_.dropped()));
 }
 
 }  // namespace kestrel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/ros/ros1_connection.h"
+#include "kestrel/ros1/ros1_connection.h"
 
 #include <boost/make_shared.hpp>
 #include <cstring>
@@ -123,8 +123,10 @@ struct Ros1Connection::State {
   std::vector<ros::ServiceServer> services;
 };
 
-Ros1Connection::Ros1Connection(int* argc, char** argv, const std::string& node) {
-  ros::init(*argc, argv, node);
+Ros1Connection::Ros1Connection(int* argc, char** argv, const std::string& node,
+                               bool handles_interrupts) {
+  const std::uint32_t no_handler = ros::init_options::NoSigintHandler;
+  ros::init(*argc, argv, node, handles_interrupts ? 0 : no_handler);
   if (ros::master::check()) state_ = std::make_unique<State>();
 }
 

@@ -30,8 +30,8 @@ class Ros1Connection {
   using TakeMessage = std::function<void(const std::string& type, const std::string& bytes)>;
 
   // Takes the arguments of ROS (remappings, parameters) out of the command line. False from
-  // HasMaster: there is no master.
-  Ros1Connection(int* argc, char** argv, const std::string& node);
+  // HasMaster: there is no master. 'handles_interrupts': Ctrl-C ends Spin.
+  Ros1Connection(int* argc, char** argv, const std::string& node, bool handles_interrupts);
   ~Ros1Connection();
   bool HasMaster() const;
 

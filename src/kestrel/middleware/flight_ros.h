@@ -8,7 +8,7 @@
 #include <thread>
 #include <variant>
 
-#include "kestrel/middleware/dds_results.h"
+#include "kestrel/middleware/ros_results.h"
 #include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/flight_observer.h"
 
@@ -16,13 +16,13 @@ namespace kestrel {
 
 // Publishes a flight's results by a thread of its own: nobody waits for the network, and frames
 // that it does not keep up with are left out.
-class FlightDds : public FlightObserver {
+class FlightRos : public FlightObserver {
  public:
   // 'tell', at the end: how many frames are left out, where any is.
-  FlightDds(std::unique_ptr<DdsResults> results, std::function<void(const std::string&)> tell);
-  ~FlightDds() override;
-  FlightDds(const FlightDds&) = delete;
-  FlightDds& operator=(const FlightDds&) = delete;
+  FlightRos(std::unique_ptr<RosResults> results, std::function<void(const std::string&)> tell);
+  ~FlightRos() override;
+  FlightRos(const FlightRos&) = delete;
+  FlightRos& operator=(const FlightRos&) = delete;
 
   void See(const Frame& frame, const LandingObservation& observation) override;
   void See(const Frame& frame, const HuntObservation& observation) override;
@@ -37,7 +37,7 @@ class FlightDds : public FlightObserver {
 
   void Run();
 
-  std::unique_ptr<DdsResults> results_;
+  std::unique_ptr<RosResults> results_;
   std::function<void(const std::string&)> tell_;
   BoundedQueue<SeenFrame> seen_;
   BoundedQueue<FlightReport> reports_;
