@@ -34,8 +34,12 @@ class HttpExportTest : public testing::Test {
     return {.type = "video/mp4", .name = "clip-1-5.mp4", .file = file};
   }
 
-  ConsoleFeed feed_{
-      {.title = "test", .series = {}, .layers = {}, .offers = {}, .has_exports = true}};
+  ConsoleFeed feed_{{.title = "test",
+                     .series = {},
+                     .layers = {},
+                     .views = {},
+                     .offers = {},
+                     .has_exports = true}};
   WebServer server_{AnyPort(), &feed_};
   TestBrowser browser_{server_.port()};
 };

@@ -33,8 +33,8 @@ std::vector<ReplayFrame> Frames() {
 }
 
 ReplaySubject Subject() {
-  return {LandingSeries(), LandingLayers(), ReplayOptions(LandingPipelineOptions()),
-          /*has_truth=*/true};
+  return {LandingSeries(), LandingLayers(), LandingImageViews(),
+          ReplayOptions(LandingPipelineOptions()), /*has_truth=*/true};
 }
 
 class ReplayConsoleTest : public testing::Test {
