@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -18,6 +19,9 @@ namespace kestrel {
 namespace {
 
 constexpr std::uint32_t kPoseQueue = 200;
+constexpr std::array kHuntNodeTopics = {
+    ResultTopic::kDetections,  ResultTopic::kMarkers, ResultTopic::kAnnotatedImage,
+    ResultTopic::kDiagnostics, ResultTopic::kMap,     ResultTopic::kMapMarkers};
 
 // The node's topics, in ROS 1.
 class Ros1NodeConnection : public NodeConnection {
@@ -124,7 +128,7 @@ int RunNode(int argc, char** argv) {
   }
   const NodeOptions options = ReadNodeOptions(ros->Parameters());
   Ros1NodeConnection connection(ros,
-                                options.is_hunt() ? ResultTopics(kHuntTopics) : kLandingTopics);
+                                options.is_hunt() ? ResultTopics(kHuntNodeTopics) : kLandingTopics);
   VisionNode node(options, &connection);
   SubscribeCamera(options, ros.get(), &node);
   SubscribePoses(options, ros.get(), &node);
