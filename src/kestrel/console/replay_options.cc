@@ -132,12 +132,12 @@ ConsoleOptionList ReplayOptions(const HuntPipelineOptions& options) { return Lis
 
 LandingPipelineOptions WithSettings(LandingPipelineOptions options,
                                     const std::vector<std::string>& settings) {
-  return Changed(std::move(options), settings);
+  return Changed(options, settings);
 }
 
 HuntPipelineOptions WithSettings(HuntPipelineOptions options,
                                  const std::vector<std::string>& settings) {
-  return Changed(std::move(options), settings);
+  return Changed(options, settings);
 }
 
 }  // namespace kestrel
