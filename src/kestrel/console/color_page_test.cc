@@ -92,7 +92,7 @@ TEST_F(ColorPageTest, AColourIsMarkedTaughtSeenAndSaved) {
   EXPECT_EQ(Ask(&socket, R"({"colors": "choose", "color": "green"})")["color"], "green");
   state = Ask(&socket, kMarkPurple);
   EXPECT_EQ(state["strokes"], 1);
-  EXPECT_EQ(state["marked"], nlohmann::json({0}));
+  EXPECT_EQ(state["marked"], nlohmann::json::array({0}));
   EXPECT_EQ(Ask(&socket, kMarkGround)["strokes"], 2);
   cv::Mat labels = Labels(0);
   EXPECT_EQ(labels.at<cv::Vec3b>(30, 50), cv::Vec3b(0, 4, 0)) << "marked, not taught";
