@@ -32,7 +32,7 @@ dds: deps  ## ROS 2 and the team's map over DDS, and their tests
 	scripts/install-deps --dds
 	cmake --preset release
 	cmake --build --preset release --target kestrel $(DDS_ROOMS:%=kestrel_%_test)
-	ctest --preset release -j $$(nproc) -R '^(dds|middleware|team)/|DdsCommand|TeamCommand' --no-tests=error
+	ctest --preset release -j $$(nproc) -R '^(dds|middleware|team|hosts)/|DdsCommand|TeamCommand' --no-tests=error
 
 ros: deps  ## the node of ROS 1 and its tests, and bags of ROS 1 against its rosbag
 	scripts/install-deps --ros

@@ -22,6 +22,11 @@ void VideoFile::Write(const cv::Mat& image) {
 void VideoFile::Open(const cv::Size& size) {
   size_ = size;
   path_ = stem_ + ".mp4";
+  // OpenCV would try one encoder after the other, and say so on the terminal.
+  const std::filesystem::path folder = std::filesystem::absolute(path_).parent_path();
+  if (!std::filesystem::is_directory(folder)) {
+    throw InputError(path_ + ": cannot be written: there is no folder " + folder.string());
+  }
   if (writer_.open(path_, cv::VideoWriter::fourcc('m', 'p', '4', 'v'), rate_hz_, size)) return;
   std::error_code ignored;
   std::filesystem::remove(path_, ignored);
