@@ -339,7 +339,7 @@ TEST(BagSource, TakesTheMemoryOfAFewImagesOfABagOfAHundred) {
 TEST(OpenSourceOrBag, TellsThemApart) {
   const TestFolder folder;
   WriteTestFlight(folder / "flight.bag", 2);
-  const std::string image = folder.WriteImage("a.png", BagImage(1));
+  const std::string image = WriteTestImage(folder, "a.png", BagImage(1));
   EXPECT_EQ(OpenSourceOrBag({folder / "flight.bag"}, PixelFormat::kGray, {})->frame_count(), 2u);
   EXPECT_EQ(OpenSourceOrBag({image}, PixelFormat::kGray, {})->frame_count(), 1u);
   EXPECT_THAT(

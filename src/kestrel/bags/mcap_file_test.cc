@@ -16,7 +16,7 @@
 #include "kestrel/bags/mcap_reader.h"
 #include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
-#include "kestrel/recording/test_files.h"
+#include "kestrel/base/test_folder.h"
 
 namespace kestrel {
 namespace {

@@ -36,8 +36,8 @@ void WriteEurocFlight(const TestFolder& folder) {
   std::string images = "#timestamp [ns],filename\n";
   for (int i = 0; i < 5; ++i) {
     const std::string name = std::to_string(ToNanoseconds(BagTime(i))) + ".png";
-    folder.WriteImage("flight/mav0/cam0/data/" + name,
-                      NoiseImage(32, 24, i % 2 == 0 ? CV_8UC1 : CV_8UC3, i + 1));
+    WriteTestImage(folder, "flight/mav0/cam0/data/" + name,
+                   NoiseImage(32, 24, i % 2 == 0 ? CV_8UC1 : CV_8UC3, i + 1));
     images += std::to_string(ToNanoseconds(BagTime(i))) + "," + name + "\n";
     RigidTransform pose;
     pose.translation = {0.1 * i, -2, 30.123456};

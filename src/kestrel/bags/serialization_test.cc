@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/base/error.h"
-#include "kestrel/recording/test_files.h"
+#include "kestrel/base/test_folder.h"
 
 namespace kestrel {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/base/folder_lock.h"
 
-#include <filesystem>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/base/test_folder.h"
 
 namespace kestrel {
 namespace {
@@ -16,8 +16,8 @@ using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
 TEST(FolderLock, KeepsOthersOutUntilItIsGone) {
-  const std::string folder = ::testing::TempDir() + "folder_lock_test";
-  std::filesystem::create_directory(folder);
+  const TestFolder test_folder;
+  const std::string folder = test_folder.path();
   {
     const FolderLock lock(folder);
     EXPECT_THAT([&] { FolderLock second(folder); },

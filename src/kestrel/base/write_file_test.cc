@@ -3,12 +3,12 @@
 
 #include <filesystem>
 #include <string>
-#include <unistd.h>
 
 #include <gtest/gtest.h>
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
+#include "kestrel/base/test_folder.h"
 
 namespace kestrel {
 namespace {
@@ -17,18 +17,13 @@ namespace fs = std::filesystem;
 
 class WriteFileTest : public ::testing::Test {
  protected:
-  WriteFileTest()
-      : folder_(fs::temp_directory_path() / ("kestrel_write_file_" + std::to_string(getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~WriteFileTest() override { fs::remove_all(folder_); }
-
   std::string Path(const char* name) const { return (folder_ / name).string(); }
   std::ptrdiff_t FileCount() const {
     return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
   }
 
-  fs::path folder_;
+  const TestFolder test_folder_;
+  const fs::path folder_ = test_folder_.path();
 };
 
 TEST_F(WriteFileTest, ReplacesTheFileAndLeavesNothingElse) {

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/camera/calibration_reader.h"
 
-#include <filesystem>
-#include <fstream>
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
 #include "kestrel/base/error.h"
+#include "kestrel/base/test_folder.h"
 
 namespace kestrel {
 namespace {
@@ -365,20 +363,16 @@ TEST(CalibrationReader, TruncatedFilesAreRefused) {
 }
 
 TEST(CalibrationReader, ReadsFilesAndNamesMissingOnes) {
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / "kestrel_calibration_reader";
-  std::filesystem::create_directories(folder);
-  const std::filesystem::path file = folder / "any_name.txt";
-  std::ofstream(file) << kEuroc;
+  const TestFolder folder;
+  const std::string file = folder.Write("any_name.txt", kEuroc);
   EXPECT_EQ(ReadCalibration(file).intrinsics.fx_px, 458.654);
-  const std::filesystem::path missing = folder / "missing.yaml";
+  const std::string missing = folder / "missing.yaml";
   try {
     ReadCalibration(missing);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), AllOf(StartsWith(missing.string()), HasSubstr("no such file")));
+    EXPECT_THAT(error.what(), AllOf(StartsWith(missing), HasSubstr("no such file")));
   }
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "kestrel/calibration/lens_difference.h"
 #include "kestrel/camera/calibration_reader.h"
 #include "kestrel/cli/test_command.h"
+#include "kestrel/recording/test_files.h"
 #include "kestrel/geometry/angles.h"
 #include "kestrel/pipeline/test_pattern.h"
 #include "kestrel/stills/landing_stills.h"
@@ -29,8 +30,8 @@ class CalibrateLensCommandTest : public CommandTest {
           Eigen::Quaterniond(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX())) *
               Eigen::AngleAxisd(0.4 * i, Eigen::Vector3d::UnitZ()),
           {0.5 * (i % 4) - 0.75, 0.5 * (i / 4) - 0.5, 2 + 0.1 * i}};
-      folder_.WriteImage(fmt::format("level/{:03}.png", i),
-                         DrawPattern(camera, LandingPattern(), camera_from_pattern));
+      WriteTestImage(folder_, fmt::format("level/{:03}.png", i),
+                     DrawPattern(camera, LandingPattern(), camera_from_pattern));
     }
   }
 };
@@ -77,10 +78,10 @@ TEST_F(CalibrateLensCommandTest, RefusesLevelViewsAndSaysToTilt) {
 
 TEST_F(CalibrateLensCommandTest, SaysWhatIsWrongWithTheImages) {
   for (int i = 0; i < 9; ++i) {
-    folder_.WriteImage(fmt::format("gray/{}.png", i), cv::Mat(240, 320, CV_8UC1, 90));
+    WriteTestImage(folder_, fmt::format("gray/{}.png", i), cv::Mat(240, 320, CV_8UC1, 90));
   }
   ExpectInputError("calibrate lens " + (folder_ / "gray"), "the pattern is in 0 of them");
-  folder_.WriteImage("gray/a.png", cv::Mat(480, 640, CV_8UC1, 90));
+  WriteTestImage(folder_, "gray/a.png", cv::Mat(480, 640, CV_8UC1, 90));
   ExpectInputError("calibrate lens " + (folder_ / "gray"), "a.png: the image has 640 x 480 px");
   ExpectInputError("calibrate lens " + (folder_ / "nothing"), "nothing");
 }

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/base/test_folder.h"
 #include "kestrel/recording/object_csv.h"
-#include "kestrel/recording/test_files.h"
 
 namespace kestrel {
 namespace {

@@ -53,8 +53,8 @@ class KestrelCommandTest : public CommandTest {
         {0.3, 0.2, 3}};
     const CameraModel camera({640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}});
     const cv::Mat image = DrawPattern(camera, LandingPattern(), camera_from_pattern);
-    folder_.WriteImage("flight/mav0/cam0/data/100000000.png", image);
-    folder_.WriteImage("flight/mav0/cam0/data/200000000.png", cv::Mat(480, 640, CV_8UC1, 90));
+    WriteTestImage(folder_, "flight/mav0/cam0/data/100000000.png", image);
+    WriteTestImage(folder_, "flight/mav0/cam0/data/200000000.png", cv::Mat(480, 640, CV_8UC1, 90));
     folder_.Write("flight/mav0/cam0/data.csv",
                   "#timestamp [ns],filename\n100000000,100000000.png\n200000000,200000000.png\n");
     folder_.Write("flight/mav0/cam0/sensor.yaml", kSensor);
@@ -66,7 +66,7 @@ class KestrelCommandTest : public CommandTest {
 TEST_F(KestrelCommandTest, LandSaysOnceThatTheAltitudeIsWrong) {
   WriteRecording();
   const cv::Mat image = cv::imread(folder_ / "flight/mav0/cam0/data/100000000.png");
-  for (int i = 0; i < 12; ++i) folder_.WriteImage(fmt::format("images/{:02}.png", i), image);
+  for (int i = 0; i < 12; ++i) WriteTestImage(folder_, fmt::format("images/{:02}.png", i), image);
   const std::string land = fmt::format("land {} --camera {} --altitude ", folder_ / "images",
                                        folder_ / "flight/mav0/cam0/sensor.yaml");
   const std::string wrong = Run(land + "20").err;
@@ -211,7 +211,7 @@ TEST_F(KestrelCommandTest, CtrlCEndsCleanly) {
   const std::string camera = folder_.Write("camera.yaml", kSensor);
   std::string images;
   for (int i = 0; i < 3000; ++i) images += " a.png";
-  folder_.WriteImage("a.png", NoiseImage(640, 480, CV_8UC1));
+  WriteTestImage(folder_, "a.png", NoiseImage(640, 480, CV_8UC1));
   const std::string script = fmt::format(
       "cd '{}'; {} land --camera camera.yaml{} >rows 2>said & pid=$!; "
       "until [ \"$(wc -l <rows)\" -gt 3 ]; do sleep 0.01; done; kill -INT $pid; wait $pid",
@@ -227,14 +227,14 @@ TEST_F(KestrelCommandTest, CtrlCEndsCleanly) {
 
 TEST_F(KestrelCommandTest, SourceAtFaultIsNamed) {
   const std::string camera = " --camera " + folder_.Write("camera.yaml", kSensor);
-  const std::string image = folder_.WriteImage("a.png", NoiseImage(640, 480, CV_8UC1));
+  const std::string image = WriteTestImage(folder_, "a.png", NoiseImage(640, 480, CV_8UC1));
   ExpectInputError("land nowhere.png" + camera, "nowhere.png: no such file");
   ExpectInputError("land " + image, "no calibration");
   EXPECT_THAT(Run("land " + image + camera + " --predict 1 --output " + folder_ / "out").err,
               HasSubstr("no prediction: it needs a source with poses"));
-  const std::string deep = folder_.WriteImage("deep.png", cv::Mat(480, 640, CV_16UC1));
-  const std::string tiny = folder_.WriteImage("tiny.png", cv::Mat(1, 1, CV_8UC1));
-  const std::string wide = folder_.WriteImage("wide.png", cv::Mat(2, 20000, CV_8UC1));
+  const std::string deep = WriteTestImage(folder_, "deep.png", cv::Mat(480, 640, CV_16UC1));
+  const std::string tiny = WriteTestImage(folder_, "tiny.png", cv::Mat(1, 1, CV_8UC1));
+  const std::string wide = WriteTestImage(folder_, "wide.png", cv::Mat(2, 20000, CV_8UC1));
   TestFolder::CutOff(image, 0.5);
   for (const auto& [source, words] :
        {std::pair(deep, "deep.png: is a 16-bit image, expected 8 bits"),

@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/cli/test_command.h"
+#include "kestrel/recording/test_files.h"
 #include "kestrel/rendering/flight_camera.h"
 #include "kestrel/rendering/test_worlds.h"
 
@@ -56,7 +57,7 @@ TEST_F(PrintCommandTest, WhatIsPrintedIsDetectedAndRight) {
       << "pdftoppm is not there: scripts/install-deps";
   const std::string pdf = folder_ / "pattern.pdf";
   EXPECT_EQ(Run("print --output " + pdf).status, 0);
-  const std::string photo = folder_.WriteImage("photo.png", Photograph(pdf, 1.5));
+  const std::string photo = WriteTestImage(folder_, "photo.png", Photograph(pdf, 1.5));
   const std::string camera = " --camera " + WriteCamera();
   EXPECT_THAT(Run("land " + photo + camera).err, HasSubstr("pattern found in 1"));
 
@@ -113,7 +114,7 @@ TEST_F(PrintCommandTest, SaysWhatIsWrong) {
   ExpectInputError(
       "print --output " + folder_ / "o" + " --set landing.detector.pattern.board_size_m=7",
       "--paper");
-  const std::string gray = folder_.WriteImage("gray.png", cv::Mat(480, 640, CV_8UC1, 100));
+  const std::string gray = WriteTestImage(folder_, "gray.png", cv::Mat(480, 640, CV_8UC1, 100));
   ExpectInputError("print --check " + gray, "no landing pattern that can be measured");
   ExpectInputError("print --check " + gray + " --camera " + WriteCamera(),
                    "the image is 640x480 px");

@@ -13,6 +13,7 @@
 #include "kestrel/bags/result_messages.h"
 #include "kestrel/bags/serialization.h"
 #include "kestrel/cli/test_command.h"
+#include "kestrel/recording/test_files.h"
 #include "kestrel/dds/ros2_node.h"
 #include "kestrel/dds/test_dds.h"
 #include "kestrel/objects/test_objects.h"
@@ -49,7 +50,7 @@ class TeamCommandTest : public CommandTest {
     for (const auto& [pixel, paint] : discs) {
       scene.DrawDisc(scene.PointUnder(pixel, 0.012), 0.1, paint);
     }
-    folder_.WriteImage(name + "/mav0/cam0/data/image.png", scene.Image());
+    WriteTestImage(folder_, name + "/mav0/cam0/data/image.png", scene.Image());
     std::string images = "#timestamp [ns],filename\n";
     std::string poses =
         "#timestamp [ns],p_WB_W_x [m],p_WB_W_y [m],p_WB_W_z [m],q_WB_w [],q_WB_x [],q_WB_y [],"

@@ -12,6 +12,7 @@
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
+#include "kestrel/base/test_folder.h"
 #include "kestrel/base/write_file.h"
 #include "kestrel/console/test_browser.h"
 #include "kestrel/console/web_server.h"
@@ -35,9 +36,6 @@ cv::Mat Picture(std::size_t frame) {
 
 class ColorPageTest : public testing::Test {
  protected:
-  ColorPageTest() { std::filesystem::remove_all(folder_); }
-  ~ColorPageTest() override { std::filesystem::remove_all(folder_); }
-
   ColorSource Source() {
     return {"flight", kPictures,
             [this](std::size_t frame) {
@@ -70,9 +68,8 @@ class ColorPageTest : public testing::Test {
     return cv::imdecode(std::vector<unsigned char>(png.begin(), png.end()), cv::IMREAD_COLOR);
   }
 
-  // Its own for each test: they may run at the same time.
-  const std::string folder_ = testing::TempDir() + "kestrel_color_page_" +
-                              testing::UnitTest::GetInstance()->current_test_info()->name();
+  const TestFolder test_folder_;
+  const std::string folder_ = test_folder_ / "taught";
   std::atomic<std::size_t> missing_{99};
   ConsoleFeed feed_{Description()};
   WebServer server_{FreePort(), &feed_};

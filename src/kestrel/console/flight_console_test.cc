@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/base/test_folder.h"
 #include "kestrel/camera/paper_camera.h"
 #include "kestrel/console/test_browser.h"
 #include "kestrel/recording/image_file.h"
@@ -159,8 +160,8 @@ Frame ColorFrame() {
 
 TEST(HuntConsoleTest, FramesOfTheCameraAreKeptAndTaught) {
   namespace fs = std::filesystem;
-  const fs::path folder = fs::path(testing::TempDir()) / "kestrel_hunt_console";
-  fs::remove_all(folder);
+  const TestFolder test_folder;
+  const fs::path folder = test_folder.path();
   {
     FlightConsole console(FreePort(), "a hunt", HuntView{DefaultObjectModel()},
                           FlightExamination(PaperCalibration(), ".", 0), nullptr,
@@ -201,7 +202,6 @@ TEST(HuntConsoleTest, FramesOfTheCameraAreKeptAndTaught) {
   }
   EXPECT_TRUE(fs::exists(folder / "taught" / "draft.yaml"));
   EXPECT_TRUE(fs::exists(folder / "taught" / "objects.yaml"));
-  fs::remove_all(folder);
 }
 
 TEST(FlightHealthTest, ComparesSeconds) {

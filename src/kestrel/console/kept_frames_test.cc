@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/base/test_folder.h"
 
 namespace kestrel {
 namespace {
@@ -14,9 +15,6 @@ using ::testing::HasSubstr;
 
 class KeptFramesTest : public testing::Test {
  protected:
-  KeptFramesTest() { fs::remove_all(folder_); }
-  ~KeptFramesTest() override { fs::remove_all(folder_); }
-
   static cv::Mat Image(int value) { return {6, 8, CV_8UC3, cv::Scalar(value, 200, 255 - value)}; }
   std::string Refusal(const cv::Mat& image) {
     try {
@@ -27,9 +25,8 @@ class KeptFramesTest : public testing::Test {
     return "";
   }
 
-  // Its own for each test: they may run at the same time.
-  const fs::path folder_ = testing::TempDir() + "kestrel_kept_frames_" +
-                           testing::UnitTest::GetInstance()->current_test_info()->name();
+  const TestFolder test_folder_;
+  const fs::path folder_ = test_folder_ / "kept";
   KeptFrames kept_{folder_};
 };
 

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/base/test_folder.h"
 #include "kestrel/base/time.h"
-#include "kestrel/recording/test_files.h"
 
 namespace kestrel {
 

@@ -12,9 +12,9 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/bags/mcap_reader.h"
+#include "kestrel/base/test_folder.h"
 #include "kestrel/foxglove/test_observations.h"
 #include "kestrel/foxglove/test_protobuf.h"
-#include "kestrel/recording/test_files.h"
 
 namespace kestrel {
 namespace {

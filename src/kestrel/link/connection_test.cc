@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/base/test_folder.h"
 #include "kestrel/base/write_file.h"
 #include "kestrel/link/link_url.h"
 #include "kestrel/link/messages.h"
@@ -231,7 +232,6 @@ TEST_F(SerialLineTest, OutlivesItsDevice) {
 class SignedConnectionTest : public testing::Test {
  protected:
   SignedConnectionTest() {
-    std::filesystem::remove(path_ + ".timestamp");
     WriteKey(path_, "000102030405060708090a0b0c0d0e0f101112131415161718191a1b1c1d1e1f\n");
     options_.signing_key = path_;
   }
@@ -240,9 +240,8 @@ class SignedConnectionTest : public testing::Test {
     chmod(path.c_str(), S_IRUSR | S_IWUSR);
   }
 
-  // Of each test: tests that run at the same time would lock each other out.
-  std::string path_ = testing::TempDir() + "kestrel_signing_key_" +
-                      testing::UnitTest::GetInstance()->current_test_info()->name();
+  const TestFolder folder_;
+  const std::string path_ = folder_ / "signing_key";
   ConnectionOptions options_;
 };
 

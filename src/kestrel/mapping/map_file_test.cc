@@ -2,13 +2,13 @@
 #include "kestrel/mapping/map_file.h"
 
 #include <filesystem>
-#include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
+#include "kestrel/base/test_folder.h"
 #include "kestrel/mapping/test_map.h"
 
 namespace kestrel {
@@ -63,16 +63,14 @@ TEST(MapFile, ValuesThatNoMapHasAreNamed) {
 }
 
 TEST(MapFile, FailedSaveKeepsTheOldFile) {
-  const std::string folder = ::testing::TempDir() + "kestrel_map_file_test";
-  std::filesystem::create_directories(folder);
-  const std::string path = folder + "/map.json";
+  const TestFolder folder;
+  const std::string path = folder / "map.json";
   SaveObjects(path, SomeObjects());
   const std::string before = ReadFile(path);
   std::filesystem::create_directory(path + ".part");  // where the draft would go
   EXPECT_THROW(SaveObjects(path, {}), InputError);
   EXPECT_EQ(ReadFile(path), before);
   EXPECT_EQ(LoadObjects(path).size(), 2U);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(GeoJson, PlacesObjectsAroundTheOrigin) {

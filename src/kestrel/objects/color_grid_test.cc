@@ -2,7 +2,6 @@
 #include "kestrel/objects/color_grid.h"
 
 #include <algorithm>
-#include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +9,7 @@
 #include "kestrel/base/error.h"
 #include "kestrel/base/random.h"
 #include "kestrel/base/read_file.h"
+#include "kestrel/base/test_folder.h"
 #include "kestrel/objects/object_model.h"
 
 namespace kestrel {
@@ -51,11 +51,11 @@ TEST(ColorGrid, RegionsOfHueAndSaturationAreSetAndCleared) {
 
 TEST(ColorGrid, SavesAndLoadsTheRawBytes) {
   const ColorGrid grid(DefaultObjectModel().colors);
-  const std::string path = ::testing::TempDir() + "kestrel_color_grid_test.bin";
+  const TestFolder folder;
+  const std::string path = folder / "grid.bin";
   grid.Save(path);
   EXPECT_EQ(ReadFile(path).size(), 262144U);
   EXPECT_EQ(ColorGrid::Load(path, 5).labels(), grid.labels());
-  std::remove(path.c_str());
 }
 
 TEST(ColorGrid, RedChangesSlowestInAFile) {

@@ -27,7 +27,7 @@ class RealtimeReplayTest : public ::testing::Test {
     for (int i = 0; i < kFrames; ++i) {
       const std::string name = std::to_string(i) + ".png";
       rows += std::to_string(100'000'000'000 + 20'000'000LL * i) + "," + name + "\n";
-      folder_.WriteImage("mav0/cam0/data/" + name, cv::Mat(4, 4, CV_8UC1, cv::Scalar(10 * i)));
+      WriteTestImage(folder_, "mav0/cam0/data/" + name, cv::Mat(4, 4, CV_8UC1, cv::Scalar(10 * i)));
     }
     folder_.Write("mav0/cam0/data.csv", rows);
     std::string poses =

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/base/read_file.h"
-#include "kestrel/recording/test_files.h"
+#include "kestrel/base/test_folder.h"
 
 namespace kestrel {
 namespace {

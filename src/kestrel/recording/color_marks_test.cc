@@ -17,11 +17,11 @@ class ColorMarksTest : public ::testing::Test {
   ColorMarksTest() {
     cv::Mat image(6, 8, CV_8UC3, cv::Scalar(0, 0, 255));
     image.colRange(4, 8).setTo(cv::Scalar(255, 0, 0));
-    folder_.WriteImage("a.png", image);
+    WriteTestImage(folder_, "a.png", image);
     cv::Mat mask = cv::Mat::zeros(6, 8, CV_8UC1);
     mask.col(7).setTo(255);
-    folder_.WriteImage("mask.png", mask);
-    folder_.WriteImage("small.png", cv::Mat::zeros(2, 2, CV_8UC1));
+    WriteTestImage(folder_, "mask.png", mask);
+    WriteTestImage(folder_, "small.png", cv::Mat::zeros(2, 2, CV_8UC1));
   }
 
   auto Read(const std::string& yaml) const {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kestrel/recording/test_files.h"
+#include "kestrel/base/test_folder.h"
 
 namespace kestrel {
 namespace {

@@ -75,8 +75,8 @@ class EurocRecordingTest : public ::testing::Test {
  protected:
   EurocRecordingTest() {
     folder_.Write("mav0/cam0/data.csv", "#timestamp [ns],filename\n100,100.png\n200,200.png\n");
-    folder_.WriteImage("mav0/cam0/data/100.png", cv::Mat(2, 3, CV_8UC1, 9));
-    folder_.WriteImage("mav0/cam0/data/200.png", cv::Mat(2, 3, CV_8UC1, 9));
+    WriteTestImage(folder_, "mav0/cam0/data/100.png", cv::Mat(2, 3, CV_8UC1, 9));
+    WriteTestImage(folder_, "mav0/cam0/data/200.png", cv::Mat(2, 3, CV_8UC1, 9));
   }
 
   TestFolder folder_;

@@ -23,7 +23,7 @@ std::vector<std::string> NamesOf(FrameSource* source) {
 TEST(ImageSequence, FolderIsInNaturalOrderWithNamesBelowIt) {
   const TestFolder folder;
   for (const char* name : {"f10.png", "f9.png", "f010.jpg", "b/2.png", "b/10.png", "F1.PNG"}) {
-    folder.WriteImage(name, kSmall);
+    WriteTestImage(folder, name, kSmall);
   }
   folder.Write("notes.txt", "not an image");
   ImageSequence source = OpenImageFolder(folder.path());
@@ -34,15 +34,15 @@ TEST(ImageSequence, FolderIsInNaturalOrderWithNamesBelowIt) {
 
 TEST(ImageSequence, FilesKeepOrderAndNamesAsGiven) {
   const TestFolder folder;
-  const std::string a = folder.WriteImage("a.png", kSmall);
-  const std::string b = folder.WriteImage("b.png", kSmall);
+  const std::string a = WriteTestImage(folder, "a.png", kSmall);
+  const std::string b = WriteTestImage(folder, "b.png", kSmall);
   ImageSequence source = OpenImageFiles({b, a});
   EXPECT_THAT(NamesOf(&source), ElementsAre(b, a));
 }
 
 TEST(ImageSequence, TimesAreAtTheNominalRate) {
   const TestFolder folder;
-  const std::string a = folder.WriteImage("a.png", kSmall);
+  const std::string a = WriteTestImage(folder, "a.png", kSmall);
   ImageSequence source = OpenImageFiles({a, a, a, a});
   std::vector<std::int64_t> times;
   for (Frame frame; source.Next(&frame);) times.push_back(ToNanoseconds(frame.time));

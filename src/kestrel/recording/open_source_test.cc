@@ -17,8 +17,8 @@ std::string ErrorOf(const std::vector<std::string>& arguments) {
 
 TEST(OpenSource, TellsWhatTheArgumentsAre) {
   const TestFolder folder;
-  const std::string a = folder.WriteImage("images/a.png", cv::Mat(2, 3, CV_8UC1, 9));
-  const std::string b = folder.WriteImage("images/b!.png", cv::Mat(2, 3, CV_8UC1, 9));
+  const std::string a = WriteTestImage(folder, "images/a.png", cv::Mat(2, 3, CV_8UC1, 9));
+  const std::string b = WriteTestImage(folder, "images/b!.png", cv::Mat(2, 3, CV_8UC1, 9));
   folder.Write("flight/cam0/data.csv", "#timestamp [ns],filename\n1,1.png\n");
   EXPECT_EQ(OpenSource({a})->frame_count(), 1u);
   EXPECT_EQ(OpenSource({b})->frame_count(), 1u);
@@ -29,7 +29,7 @@ TEST(OpenSource, TellsWhatTheArgumentsAre) {
 
 TEST(OpenSource, SaysWhatIsWrong) {
   const TestFolder folder;
-  const std::string image = folder.WriteImage("a.png", cv::Mat(2, 3, CV_8UC1, 9));
+  const std::string image = WriteTestImage(folder, "a.png", cv::Mat(2, 3, CV_8UC1, 9));
   const std::string text = folder.Write("notes.txt", "hello");
   EXPECT_THAT(ErrorOf({}), HasSubstr("no source"));
   EXPECT_THAT(ErrorOf({folder / "none"}), HasSubstr("none: no such file or folder"));

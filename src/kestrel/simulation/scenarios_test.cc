@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/base/options.h"
+#include "kestrel/base/test_folder.h"
 #include "kestrel/flight/landing_flight.h"
-#include "kestrel/recording/test_files.h"
 #include "kestrel/world/motion.h"
 #include "kestrel/world/vehicle_motion.h"
 

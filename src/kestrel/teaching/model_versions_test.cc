@@ -7,6 +7,7 @@
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
+#include "kestrel/base/test_folder.h"
 #include "kestrel/base/write_file.h"
 
 namespace kestrel {
@@ -16,11 +17,8 @@ namespace fs = std::filesystem;
 
 class ModelVersionsTest : public ::testing::Test {
  protected:
-  ModelVersionsTest() { fs::create_directories(folder_); }
-  ~ModelVersionsTest() override { fs::remove_all(folder_); }
-
-  const fs::path folder_ = fs::path(::testing::TempDir()) / "kestrel_model_versions_test";
-  const std::string path_ = (folder_ / "objects.yaml").string();
+  const TestFolder folder_;
+  const std::string path_ = folder_ / "objects.yaml";
 };
 
 TEST_F(ModelVersionsTest, NothingIsOverwrittenWithoutACopy) {
@@ -51,8 +49,7 @@ TEST_F(ModelVersionsTest, AModelThatCannotBeReadIsNotWritten) {
   EXPECT_THROW(SaveModelVersion(path_, model), InputError);
   EXPECT_EQ(ReadFile(path_), before);
   EXPECT_FALSE(fs::exists(path_ + ".1"));
-  EXPECT_THROW(SaveModelVersion((folder_ / "none" / "objects.yaml").string(), DefaultObjectModel()),
-               InputError);
+  EXPECT_THROW(SaveModelVersion(folder_ / "none/objects.yaml", DefaultObjectModel()), InputError);
 }
 
 TEST(LineDifference, NamesTheColourOfWhatDiffers) {
