@@ -10,9 +10,9 @@
 #include "kestrel/calibration/lens_difference.h"
 #include "kestrel/camera/calibration_reader.h"
 #include "kestrel/cli/test_command.h"
-#include "kestrel/recording/test_files.h"
 #include "kestrel/geometry/angles.h"
 #include "kestrel/pipeline/test_pattern.h"
+#include "kestrel/recording/test_files.h"
 #include "kestrel/stills/landing_stills.h"
 
 namespace kestrel {

@@ -33,9 +33,8 @@ class ConsoleCommandTest : public CommandTest {
 TEST_F(ConsoleCommandTest, AFlightIsSeen) {
   RunningCommand fly(
       "fly sim:standing --autopilot sim:px4 --console 127.0.0.1:0 --set fly.sim_camera.scale=0.4",
-      folder_.Write("log", ""));
+      folder_);
   const int port = fly.Port();
-  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
   ExpectPage(port);
   TestSocket socket(port);
   socket.Send(R"({"images": true})");
@@ -54,7 +53,7 @@ TEST_F(ConsoleCommandTest, AFlightIsSeen) {
   const auto health = socket.Next("health");
   ASSERT_TRUE(health);
   EXPECT_THAT(health->dump(), HasSubstr("autopilot"));
-  EXPECT_EQ(fly.End(), 0) << ReadFile(folder_ / "log");
+  EXPECT_EQ(fly.End(), 0) << fly.Log();
 }
 
 TEST_F(ConsoleCommandTest, AFlightIsRecordedWhenThePageAsks) {
@@ -64,9 +63,8 @@ TEST_F(ConsoleCommandTest, AFlightIsRecordedWhenThePageAsks) {
       " --set fly.sim_camera.scale=0.4"
       " --set fly.keep_folder=" +
           kept,
-      folder_.Write("log", ""));
+      folder_);
   const int port = fly.Port();
-  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
   TestSocket socket(port);
   const auto is_recording = [&](bool wanted) {
     while (const auto status = socket.Next("status")) {
@@ -82,7 +80,7 @@ TEST_F(ConsoleCommandTest, AFlightIsRecordedWhenThePageAsks) {
   ASSERT_TRUE(is_recording(true));
   socket.Send(R"({"command": "record", "value": 0})");
   ASSERT_TRUE(is_recording(false));
-  EXPECT_EQ(fly.End(), 0) << ReadFile(folder_ / "log");
+  EXPECT_EQ(fly.End(), 0) << fly.Log();
   int recordings = 0, snapshots = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kept)) {
     recordings += std::filesystem::exists(entry.path() / "mav0/cam0/data.csv");
@@ -93,10 +91,8 @@ TEST_F(ConsoleCommandTest, AFlightIsRecordedWhenThePageAsks) {
 }
 
 TEST_F(ConsoleCommandTest, ARecordingIsReplayed) {
-  RunningCommand console("console " + Recording() + " --address 127.0.0.1:0",
-                         folder_.Write("log", ""));
+  RunningCommand console("console " + Recording() + " --address 127.0.0.1:0", folder_);
   const int port = console.Port();
-  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
   ExpectPage(port);
   TestSocket socket(port);
   const auto timeline = socket.Next("timeline");
@@ -127,7 +123,7 @@ TEST_F(ConsoleCommandTest, ARecordingIsReplayed) {
   } while (second["state"] == "running");
   EXPECT_EQ(second["state"], "done") << second;
   EXPECT_EQ(second["marks"], std::string(10, 'l'));
-  EXPECT_EQ(console.End(), 0) << ReadFile(folder_ / "log");
+  EXPECT_EQ(console.End(), 0) << console.Log();
 }
 
 TEST_F(ConsoleCommandTest, ColoursAreTaughtAndSaved) {
@@ -137,10 +133,8 @@ TEST_F(ConsoleCommandTest, ColoursAreTaughtAndSaved) {
                 " --set frames=2 --set ground.map_px=256 --set shutter.rays_per_pixel=1")
                 .status,
             0);
-  RunningCommand console("console " + hunt + " --address 127.0.0.1:0 --output " + taught,
-                         folder_.Write("log", ""));
+  RunningCommand console("console " + hunt + " --address 127.0.0.1:0 --output " + taught, folder_);
   const int port = console.Port();
-  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
   TestSocket socket(port);
   const auto hello = socket.Next("hello");
   ASSERT_TRUE(hello);
@@ -157,7 +151,7 @@ TEST_F(ConsoleCommandTest, ColoursAreTaughtAndSaved) {
       R"( "points": [600, 300, 700, 400]})");
   EXPECT_EQ(ask(R"({"colors": "teach", "color": "green"})")["answer"], "taught green");
   EXPECT_EQ(ask(R"({"colors": "save"})")["refused"], false);
-  EXPECT_EQ(console.End(), 0) << ReadFile(folder_ / "log");
+  EXPECT_EQ(console.End(), 0) << console.Log();
   EXPECT_TRUE(std::filesystem::exists(taught + "/draft.yaml"));
   EXPECT_EQ(Run("hunt " + hunt + " --model " + taught + "/objects.yaml").status, 0);
 }
@@ -171,9 +165,8 @@ TEST_F(ConsoleCommandTest, ColoursAreTaughtInFlightAndAfterIt) {
             0);
   RunningCommand fly(
       "fly " + hunt + " --hunt --loop --console 127.0.0.1:0" + " --set fly.keep_folder=" + kept,
-      folder_.Write("log", ""));
+      folder_);
   const int port = fly.Port();
-  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
   const auto ask = [](TestSocket* socket, const std::string& message) {
     socket->Send(message);
     return socket->Next("colors").value_or(nlohmann::json());
@@ -189,7 +182,7 @@ TEST_F(ConsoleCommandTest, ColoursAreTaughtInFlightAndAfterIt) {
                      R"( "size": 0, "points": [600, 300, 700, 400]})");
     EXPECT_EQ(state["strokes"], 1) << state["answer"];
   }
-  EXPECT_EQ(fly.End(), 0) << ReadFile(folder_ / "log");
+  EXPECT_EQ(fly.End(), 0) << fly.Log();
   std::string frames;
   for (const auto& entry : std::filesystem::directory_iterator(kept)) {
     if (entry.path().filename().string().starts_with("colors_")) frames = entry.path().string();
@@ -198,15 +191,13 @@ TEST_F(ConsoleCommandTest, ColoursAreTaughtInFlightAndAfterIt) {
   RunningCommand console("console " + frames + "/ --camera " + hunt +
                              "/mav0/cam0/sensor.yaml --address 127.0.0.1:0 --output " + kept +
                              "/taught",
-                         folder_.Write("log2", ""));
-  const int console_port = console.Port();
-  ASSERT_GT(console_port, 0) << ReadFile(folder_ / "log2");
-  TestSocket socket(console_port);
+                         folder_);
+  TestSocket socket(console.Port());
   const auto state = socket.Next("colors");
   ASSERT_TRUE(state);
   EXPECT_EQ((*state)["frames"], 1);
   EXPECT_EQ((*state)["strokes"], 1) << "goes on with the marks of the flight";
-  EXPECT_EQ(console.End(), 0) << ReadFile(folder_ / "log2");
+  EXPECT_EQ(console.End(), 0) << console.Log();
 }
 
 TEST_F(ConsoleCommandTest, APageCalibratesAsTheCommandAndReplacesNothing) {
@@ -217,10 +208,8 @@ TEST_F(ConsoleCommandTest, APageCalibratesAsTheCommandAndReplacesNothing) {
                 .status,
             0);
   const std::string saved = folder_ / "saved";
-  RunningCommand console("console " + flight + " --address 127.0.0.1:0 --output " + saved,
-                         folder_.Write("log", ""));
+  RunningCommand console("console " + flight + " --address 127.0.0.1:0 --output " + saved, folder_);
   const int port = console.Port();
-  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
   TestSocket socket(port);
   const auto next = [&socket](const std::string& state) {
     while (const auto message = socket.Next("calibration")) {
@@ -252,9 +241,8 @@ TEST_F(ConsoleCommandTest, ABagIsPlayedAndRefusedInTheWordsOfTheCommand) {
   const std::string bag = folder_ / "flight.mcap";
   ASSERT_EQ(Run("convert " + Recording() + " " + bag).status, 0);
   RunningCommand console("console " + bag + " --topic /camera/image_raw --address 127.0.0.1:0",
-                         folder_.Write("log", ""));
+                         folder_);
   const int port = console.Port();
-  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
   TestSocket socket(port);
   const auto timeline = socket.Next("timeline");
   ASSERT_TRUE(timeline);
@@ -287,9 +275,8 @@ TEST_F(ConsoleCommandTest, AResultIsShownOverItsRecording) {
   // With these options nothing would be found: what is shown is the result.
   RunningCommand console("console " + flight + " " + result +
                              " --address 127.0.0.1:0 --set landing.detector.min_quality=1",
-                         folder_.Write("log", ""));
+                         folder_);
   const int port = console.Port();
-  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
   TestSocket socket(port);
   const auto timeline = socket.Next("timeline");
   ASSERT_TRUE(timeline);
@@ -297,7 +284,7 @@ TEST_F(ConsoleCommandTest, AResultIsShownOverItsRecording) {
   TestBrowser browser(port);
   const std::string table = ReadFile(result + "/landing_detections.csv");
   EXPECT_EQ(browser.Send(browser.Get("/export/detections-1.csv")).body(), table);
-  EXPECT_EQ(console.End(), 0) << ReadFile(folder_ / "log");
+  EXPECT_EQ(console.End(), 0) << console.Log();
   const std::string row = table.substr(0, table.find('\n', table.find('\n') + 1) + 1);
   const auto one_row =
       Run("console --address 127.0.0.1:0 " + flight + " " + folder_.Write("one.csv", row));
@@ -319,10 +306,8 @@ TEST_F(ConsoleCommandTest, FaultsAreNamed) {
   ExpectInputError("console " + flight + " --model any.yaml", "has no images in color");
   ExpectInputError("console /dev/video0", "`kestrel fly --console` shows a camera");
   ExpectInputError("console " + folder_ / "missing", "no such file or folder");
-  RunningCommand first("console " + flight + " --address 127.0.0.1:0", folder_.Write("log", ""));
-  const int port = first.Port();
-  ASSERT_GT(port, 0);
-  ExpectInputError(fmt::format("{}127.0.0.1:{}", fly, port), "expected a free port");
+  RunningCommand first("console " + flight + " --address 127.0.0.1:0", folder_);
+  ExpectInputError(fmt::format("{}127.0.0.1:{}", fly, first.Port()), "expected a free port");
 }
 
 }  // namespace

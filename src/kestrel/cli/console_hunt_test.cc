@@ -34,10 +34,8 @@ class ConsoleHuntTest : public CommandTest {
 
 TEST_F(ConsoleHuntTest, AHuntIsReplayedAndRunAgain) {
   const std::string flight = Recording();
-  RunningCommand console("console --hunt " + flight + " --address 127.0.0.1:0",
-                         folder_.Write("log", ""));
+  RunningCommand console("console --hunt " + flight + " --address 127.0.0.1:0", folder_);
   const int port = console.Port();
-  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
   TestSocket socket(port);
   const auto hello = socket.Next("hello");
   ASSERT_TRUE(hello);
@@ -83,7 +81,7 @@ TEST_F(ConsoleHuntTest, AHuntIsReplayedAndRunAgain) {
   const std::string others = second["marks"];
   EXPECT_EQ(others.find_first_of("fx"), std::string::npos) << others;
   EXPECT_NE(others.find('l'), std::string::npos) << others;
-  EXPECT_EQ(console.End(), 0) << ReadFile(folder_ / "log");
+  EXPECT_EQ(console.End(), 0) << console.Log();
 }
 
 TEST_F(ConsoleHuntTest, AResultIsShownOverItsRecording) {
@@ -93,15 +91,14 @@ TEST_F(ConsoleHuntTest, AResultIsShownOverItsRecording) {
   // With these options nothing would be found: what is shown is the result.
   RunningCommand console("console --hunt " + flight + " " + result +
                              " --address 127.0.0.1:0 --set hunt.detector.min_pixels=100000",
-                         folder_.Write("log", ""));
+                         folder_);
   const int port = console.Port();
-  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
   TestSocket socket(port);
   const auto timeline = socket.Next("timeline");
   ASSERT_TRUE(timeline);
   EXPECT_THAT((*timeline)["marks"].dump(), HasSubstr("f"));
   EXPECT_EQ(Get(port, "/export/detections-1.csv"), ReadFile(result + "/object_detections.csv"));
-  EXPECT_EQ(console.End(), 0) << ReadFile(folder_ / "log");
+  EXPECT_EQ(console.End(), 0) << console.Log();
   ExpectInputError("console --hunt " + result, "expected the recording that it is of beside it");
   const std::string table = ReadFile(result + "/object_detections.csv");
   const std::string header = table.substr(0, table.find('\n') + 1);
@@ -112,10 +109,8 @@ TEST_F(ConsoleHuntTest, AResultIsShownOverItsRecording) {
 }
 
 TEST_F(ConsoleHuntTest, AClipIsGivenAway) {
-  RunningCommand console("console --hunt " + Recording() + " --address 127.0.0.1:0",
-                         folder_.Write("log", ""));
+  RunningCommand console("console --hunt " + Recording() + " --address 127.0.0.1:0", folder_);
   const int port = console.Port();
-  ASSERT_GT(port, 0) << ReadFile(folder_ / "log");
   TestSocket socket(port);
   ASSERT_TRUE(socket.Next("timeline"));
   const std::string clip = Get(port, "/export/overlays-1-4.mp4");

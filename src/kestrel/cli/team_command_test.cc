@@ -13,10 +13,10 @@
 #include "kestrel/bags/result_messages.h"
 #include "kestrel/bags/serialization.h"
 #include "kestrel/cli/test_command.h"
-#include "kestrel/recording/test_files.h"
 #include "kestrel/dds/ros2_node.h"
 #include "kestrel/dds/test_dds.h"
 #include "kestrel/objects/test_objects.h"
+#include "kestrel/recording/test_files.h"
 
 namespace kestrel {
 namespace {

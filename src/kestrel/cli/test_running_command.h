@@ -4,6 +4,7 @@
 #include <chrono>
 #include <csignal>
 #include <regex>
+#include <stdexcept>
 #include <string>
 #include <sys/types.h>
 #include <sys/wait.h>
@@ -17,9 +18,10 @@ namespace kestrel {
 // The command while it runs; ends with Ctrl-C.
 class RunningCommand {
  public:
-  // 'log': the file of its stderr.
-  RunningCommand(const std::string& arguments, const std::string& log) : log_(log) {
-    const std::string line = fmt::format("exec {} {} 2>'{}'", KESTREL_COMMAND, arguments, log);
+  // 'folder': where the file of its stderr, 'log', goes.
+  RunningCommand(const std::string& arguments, const TestFolder& folder)
+      : log_(folder.Write("log", "")) {
+    const std::string line = fmt::format("exec {} {} 2>'{}'", KESTREL_COMMAND, arguments, log_);
     process_ = fork();
     if (process_ != 0) return;
     execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
@@ -27,17 +29,20 @@ class RunningCommand {
   }
   ~RunningCommand() { End(); }
 
-  // Where it serves its page; 0 when it does not say so.
+  // What it has said on stderr.
+  std::string Log() const { return ReadFile(log_); }
+
+  // Where it serves its page. Throws when it does not say so.
   int Port() const {
     const std::regex url("console: http://127\\.0\\.0\\.1:([0-9]+)/");
     for (int i = 0; i < 1000; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       std::smatch match;
-      const std::string log = ReadFile(log_);
+      const std::string log = Log();
       if (std::regex_search(log, match, url)) return std::stoi(match[1]);
-      if (waitpid(process_, nullptr, WNOHANG) != 0) return 0;
+      if (waitpid(process_, nullptr, WNOHANG) != 0) break;
     }
-    return 0;
+    throw std::runtime_error("serves no page: " + Log());
   }
 
   // Its exit status; -1 when it had ended by itself.
