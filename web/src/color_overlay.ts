@@ -30,24 +30,25 @@ export interface OverlayWish {
 }
 
 /**
- * What is drawn over a frame, RGBA, from what the server says of its pixels: red what the grid takes
- * them for, green what they are marked as. The colour that is looked at is hatched and all else
+ * What is drawn over a frame, RGBA, from what the server says of its pixels: what the grid takes
+ * each of them for, and then what each is marked as. The colour that is looked at is hatched and all else
  * darker; marks have edges, white those of a colour and black those of none.
  */
 export function overlayPixels(
-  labels: Uint8ClampedArray,
+  labels: Uint8Array,
   width: number,
   height: number,
   wish: OverlayWish,
 ): Uint8ClampedArray<ArrayBuffer> {
   const pixels = new Uint8ClampedArray(4 * width * height);
+  const marks = labels.subarray(width * height);
   for (let v = 0; v < height; v++) {
     for (let u = 0; u < width; u++) {
-      const i = 4 * (v * width + u);
-      const mark = labels[i + 1] ?? 0;
-      if (wish.showsLabels) paintLabel(pixels, i, labels[i] ?? 0, (u + v) % 6 < 2, wish);
-      if (mark !== 0 && wish.showsMarks && isEdge(labels, mark, u, v, width, height)) {
-        paint(pixels, i, mark === noColor ? black : white, 255);
+      const i = v * width + u;
+      const mark = marks[i] ?? 0;
+      if (wish.showsLabels) paintLabel(pixels, 4 * i, labels[i] ?? 0, (u + v) % 6 < 2, wish);
+      if (mark !== 0 && wish.showsMarks && isEdge(marks, mark, u, v, width, height)) {
+        paint(pixels, 4 * i, mark === noColor ? black : white, 255);
       }
     }
   }
@@ -76,14 +77,14 @@ function paint(pixels: Uint8ClampedArray, at: number, color: Rgb, alpha: number)
 
 // A marked pixel beside one that is marked otherwise.
 function isEdge(
-  labels: Uint8ClampedArray,
+  marks: Uint8Array,
   mark: number,
   u: number,
   v: number,
   width: number,
   height: number,
 ): boolean {
-  const markAt = (x: number, y: number) =>
-    x < 0 || y < 0 || x >= width || y >= height ? 0 : (labels[4 * (y * width + x) + 1] ?? 0);
-  return [markAt(u - 1, v), markAt(u + 1, v), markAt(u, v - 1), markAt(u, v + 1)].some((one) => one !== mark);
+  const isMarkedSo = (x: number, y: number) =>
+    x >= 0 && y >= 0 && x < width && y < height && marks[y * width + x] === mark;
+  return !(isMarkedSo(u - 1, v) && isMarkedSo(u + 1, v) && isMarkedSo(u, v - 1) && isMarkedSo(u, v + 1));
 }

@@ -5,8 +5,8 @@ import { overlayPixels, shownAs } from "./color_overlay";
 const wish = { showsLabels: true, showsMarks: true, chosen: 2, colors: [shownAs("red", 0), shownAs("mauve", 1)] };
 
 /** One row of pixels, each with a label and a mark. */
-function row(...pixels: [number, number][]): Uint8ClampedArray {
-  return new Uint8ClampedArray(pixels.flatMap(([label, mark]) => [label, mark, 0, 255]));
+function row(...pixels: [number, number][]): Uint8Array {
+  return new Uint8Array([...pixels.map(([label]) => label), ...pixels.map(([, mark]) => mark)]);
 }
 
 test("background is darker, the chosen colour stronger than others", () => {

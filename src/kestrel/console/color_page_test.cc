@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/console/color_page.h"
 
+#include <array>
 #include <atomic>
 #include <filesystem>
 #include <memory>
 #include <thread>
+#include <opencv2/imgcodecs.hpp>
+#include <zlib.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
@@ -61,11 +63,19 @@ class ColorPageTest : public testing::Test {
     socket->Send(message);
     return socket->Next("colors").value_or(nlohmann::json());
   }
-  cv::Mat Labels(std::size_t frame) {
+  // What the grid takes the frame's pixels for, and what they are marked as.
+  std::array<cv::Mat1b, 2> Labels(std::size_t frame) {
     TestBrowser browser(server_.port());
-    const std::string png =
-        browser.Send(browser.Get(fmt::format("/export/labels-{}.png", frame))).body();
-    return cv::imdecode(std::vector<unsigned char>(png.begin(), png.end()), cv::IMREAD_COLOR);
+    const auto response = browser.Send(browser.Get(fmt::format("/export/labels-{}.bin", frame)));
+    EXPECT_EQ(response[boost::beast::http::field::content_encoding], "deflate");
+    const cv::Size size = Picture(frame).size();
+    cv::Mat1b both(2 * size.height, size.width);
+    uLongf bytes = both.total();
+    EXPECT_EQ(uncompress(both.data, &bytes, reinterpret_cast<const Bytef*>(response.body().data()),
+                         response.body().size()),
+              Z_OK);
+    EXPECT_EQ(bytes, both.total());
+    return {both.rowRange(0, size.height), both.rowRange(size.height, both.rows)};
   }
 
   const TestFolder test_folder_;
@@ -91,15 +101,16 @@ TEST_F(ColorPageTest, AColourIsMarkedTaughtSeenAndSaved) {
   EXPECT_EQ(state["strokes"], 1);
   EXPECT_EQ(state["marked"], nlohmann::json::array({0}));
   EXPECT_EQ(Ask(&socket, kMarkGround)["strokes"], 2);
-  cv::Mat labels = Labels(0);
-  EXPECT_EQ(labels.at<cv::Vec3b>(30, 50), cv::Vec3b(0, 4, 0)) << "marked, not taught";
-  EXPECT_EQ(labels.at<cv::Vec3b>(5, 5)[1], 255) << "marked as none of the colours";
+  auto [labels, marks] = Labels(0);
+  EXPECT_EQ(labels(30, 50), 0) << "not taught";
+  EXPECT_EQ(marks(30, 50), 4) << "green is the fourth";
+  EXPECT_EQ(marks(5, 5), 255) << "marked as none of the colours";
   state = Ask(&socket, R"({"colors": "teach", "color": "green"})");
   EXPECT_FALSE(state["refused"]) << state["answer"];
   EXPECT_THAT(state["difference"].dump(), HasSubstr("name: green"));
-  labels = Labels(0);
-  EXPECT_EQ(labels.at<cv::Vec3b>(30, 50), cv::Vec3b(0, 4, 4)) << "green is the fourth";
-  EXPECT_EQ(Labels(1).at<cv::Vec3b>(30, 50)[2], 4) << "in other light too";
+  EXPECT_EQ(Labels(0)[0](30, 50), 4);
+  EXPECT_EQ(Labels(0)[1](30, 50), 4);
+  EXPECT_EQ(Labels(1)[0](30, 50), 4) << "in other light too";
   nlohmann::json scores;
   do {
     scores = socket.Next("color-scores").value_or(nlohmann::json{{"revision", -1}});
@@ -164,7 +175,7 @@ TEST_F(ColorPageTest, RevertingAndSavingAgainKeepVersions) {
   Ask(&socket, R"({"colors": "teach", "color": "green"})");
   nlohmann::json state = Ask(&socket, R"({"colors": "revert"})");
   EXPECT_TRUE(state["difference"].empty());
-  EXPECT_EQ(Labels(0).at<cv::Vec3b>(30, 50)[2], 0);
+  EXPECT_EQ(Labels(0)[0](30, 50), 0);
   Ask(&socket, R"({"colors": "teach", "color": "green"})");
   state = Ask(&socket, R"({"colors": "save"})");
   EXPECT_EQ(state["versions"].size(), 1U);
@@ -179,7 +190,7 @@ TEST_F(ColorPageTest, PicturesAreOfTheFrameInColour) {
   ASSERT_EQ(picture.size(), cv::Size(120, 80));
   EXPECT_LT(cv::norm(picture.at<cv::Vec3b>(35, 55), Picture(1).at<cv::Vec3b>(35, 55)), 20);
   TestBrowser another(server_.port());
-  EXPECT_EQ(another.Send(another.Get("/export/labels-3.png")).result_int(), 404u);
+  EXPECT_EQ(another.Send(another.Get("/export/labels-3.bin")).result_int(), 404u);
 }
 
 TEST_F(ColorPageTest, OfARecordingNoFrameIsKept) {
@@ -217,7 +228,7 @@ TEST_F(ColorPageTest, OfACameraFramesAreKeptAndMarked) {
   EXPECT_EQ(state["frames"], 2);
   EXPECT_EQ(Ask(&socket, kMarkPurple)["strokes"], 1);
   EXPECT_FALSE(Ask(&socket, R"({"colors": "teach", "color": "green"})")["refused"]);
-  EXPECT_EQ(Labels(1).at<cv::Vec3b>(30, 50)[2], 4) << "seen in a frame that was not marked";
+  EXPECT_EQ(Labels(1)[0](30, 50), 4) << "seen in a frame that was not marked";
   page_.reset();  // before what it asks for the frames goes
 }
 

@@ -72,7 +72,7 @@ std::optional<ExportRequest> ParseExportPath(std::string_view path) {
   if (const auto frame = NumberBetween("/export/picture-", path, ".jpg")) {
     return ExportRequest{ExportRequest::Kind::kPicture, *frame};
   }
-  if (const auto frame = NumberBetween("/export/labels-", path, ".png")) {
+  if (const auto frame = NumberBetween("/export/labels-", path, ".bin")) {
     return ExportRequest{ExportRequest::Kind::kLabels, *frame};
   }
   if (const auto calibration = NumberBetween("/export/calibration-", path, ".yaml")) {

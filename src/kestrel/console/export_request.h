@@ -19,7 +19,7 @@ struct ExportRequest {
     kOverlays,      // /export/overlays-12.png: with what was found drawn on it
     kDetections,    // /export/detections-1.csv: all that the first or the second run found
     kPicture,       // /export/picture-12.jpg: the image in colour, as the page of colours shows it
-    kLabels,        // /export/labels-12.png: what its pixels are taken for and marked as
+    kLabels,        // /export/labels-12.bin: what its pixels are taken for and marked as
     kCalibration,   // /export/calibration-3.yaml: what the third calibration came to
     kClip,          // /export/clip-12-80.mp4: a video of the frames 12 to 80 as they are
     kOverlaysClip,  // /export/overlays-12-80.mp4: with what was found drawn on them
@@ -50,6 +50,7 @@ struct ExportAnswer {
   std::string name = {};     // that it is saved by
   std::shared_ptr<const ExportFile> file = nullptr;
   std::string refusal = {};  // why it is not made; empty where it is not known what is asked for
+  std::string coding = {};   // of the content, as "deflate"
 };
 
 // A request that waits for the thread that knows the recording.

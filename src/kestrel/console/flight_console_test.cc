@@ -191,7 +191,7 @@ TEST(HuntConsoleTest, FramesOfTheCameraAreKeptAndTaught) {
     EXPECT_EQ(state["strokes"], 1) << state["answer"];
     EXPECT_EQ(ask(R"({"colors": "teach", "color": "green"})")["answer"], "taught green");
     TestBrowser browser(PortOf(console));
-    EXPECT_EQ(browser.Send(browser.Get("/export/labels-0.png")).result_int(), 200u);
+    EXPECT_EQ(browser.Send(browser.Get("/export/labels-0.bin")).result_int(), 200u);
     TestBrowser other(PortOf(console));
     EXPECT_EQ(other.Send(other.Get("/export/frame-0.png")).result_int(), 404u)
         << "a flight has no other exports";

@@ -78,6 +78,7 @@ void SetPolicy(http::fields* fields) {
 
 void SetAttachment(const ExportAnswer& answer, http::fields* fields) {
   fields->set(http::field::content_type, answer.type);
+  if (!answer.coding.empty()) fields->set(http::field::content_encoding, answer.coding);
   fields->set(http::field::content_disposition,
               fmt::format("attachment; filename=\"{}\"", answer.name));
 }

@@ -12,8 +12,7 @@ interface Shown {
   frame: number;
   revision: number;
   picture: ImageBitmap;
-  /** RGBA as of overlayPixels. */
-  labels: ImageData;
+  labels: Uint8Array;
   /** When it was asked for. */
   began: number;
 }
@@ -28,7 +27,7 @@ export function ColorCanvas({ colors }: { colors: Colors }) {
   const size: Point = [shown?.picture.width ?? 0, shown?.picture.height ?? 0];
   const [took_ms, setTook] = useState(0);
   const layer = useMemo(
-    () => shown && overlayOf(shown.labels, colors, view),
+    () => shown && overlayOf(shown, colors, view),
     [shown, colors, view.showsLabels, view.showsMarks],
   );
   const draw = () => {
@@ -115,13 +114,13 @@ function useFrame(frame: number, revision: number): [Shown | null, string | null
       const began = performance.now();
       const known = last.current?.frame === frame ? last.current.picture : null;
       const [picture, labels] = await Promise.all([
-        known ?? fetchImage(`/export/picture-${frame}.jpg`, stop.signal),
-        fetchImage(`/export/labels-${frame}.png`, stop.signal),
+        known ?? fetchPicture(`/export/picture-${frame}.jpg`, stop.signal),
+        fetchBytes(`/export/labels-${frame}.bin`, stop.signal),
       ]);
       if (stop.signal.aborted) return;
       last.current = { frame, picture };
       setError(null);
-      setShown({ frame, revision, picture, labels: pixelsOf(labels), began });
+      setShown({ frame, revision, picture, labels: new Uint8Array(labels), began });
     };
     load().catch(() => {
       if (!stop.signal.aborted) setError(`Frame ${frame + 1} cannot be shown`);
@@ -131,18 +130,15 @@ function useFrame(frame: number, revision: number): [Shown | null, string | null
   return [shown, error];
 }
 
-async function fetchImage(path: string, signal: AbortSignal): Promise<ImageBitmap> {
+async function fetchBytes(path: string, signal: AbortSignal): Promise<ArrayBuffer> {
   const answer = await fetch(path, { signal });
   if (!answer.ok) throw new Error(path);
-  // The labels are numbers: no colour management.
-  return createImageBitmap(await answer.blob(), { colorSpaceConversion: "none" });
+  return answer.arrayBuffer();
 }
 
-function pixelsOf(image: ImageBitmap): ImageData {
-  const canvas = new OffscreenCanvas(image.width, image.height);
-  const context = canvas.getContext("2d", { willReadFrequently: true })!;
-  context.drawImage(image, 0, 0);
-  return context.getImageData(0, 0, image.width, image.height);
+async function fetchPicture(path: string, signal: AbortSignal): Promise<ImageBitmap> {
+  // The colours are looked at as the camera gave them.
+  return createImageBitmap(new Blob([await fetchBytes(path, signal)]), { colorSpaceConversion: "none" });
 }
 
 function cursorAfter(event: KeyboardEvent, [u, v]: Point, [width, height]: Point): Point | null {
@@ -161,8 +157,9 @@ function cursorAfter(event: KeyboardEvent, [u, v]: Point, [width, height]: Point
   ];
 }
 
-function overlayOf({ data, width, height }: ImageData, colors: Colors, view: ColorView): OffscreenCanvas {
-  const pixels = overlayPixels(data, width, height, {
+function overlayOf({ labels, picture }: Shown, colors: Colors, view: ColorView): OffscreenCanvas {
+  const { width, height } = picture;
+  const pixels = overlayPixels(labels, width, height, {
     showsLabels: view.showsLabels,
     showsMarks: view.showsMarks,
     chosen: colors.names.indexOf(colors.color) + 1,
