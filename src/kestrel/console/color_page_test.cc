@@ -6,11 +6,12 @@
 #include <filesystem>
 #include <memory>
 #include <thread>
-#include <opencv2/imgcodecs.hpp>
 #include <zlib.h>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
