@@ -7,7 +7,7 @@ part of it, a navigation that is off by 1 m and 2 degrees, and a clock 10 s afte
 connects them loses, delays and cuts (radio.py). At the end the team's maps of all must be the same,
 byte by byte, have what each has seen, nothing twice, and no error of more than 0.1 m. Prints a line
 for every case; status 1 when one fails, 77 where there can be no hosts. --short: one flight of
-15 s with a bad radio and a break; no times are judged. --keep: flights are kept there and
+15 s with a bad radio, a restart and a break; no times are judged. --keep: flights are kept there and
 used again.
 """
 
@@ -287,6 +287,18 @@ def reboot(new_flight):
     return flight.land(), [], ""
 
 
+def early(new_flight):
+    """uav1 and uav2 die before they have seen much, and start again."""
+    flight = new_flight()
+    until(flight, 5)
+    for number in (1, 2):
+        flight.uavs[number].kill()
+    time.sleep(2)
+    for number in (1, 2):
+        flight.start(number)
+    return flight.land(), [], ""
+
+
 def lost(new_flight):
     """uav5 dies for good: what it has seen stays, what it claimed is free."""
     flight = new_flight()
@@ -312,17 +324,20 @@ def namesakes(new_flight):
 
 
 def short(new_flight):
-    """A bad radio and a partition."""
+    """A bad radio, one that dies early and starts again, and a partition."""
     flight = new_flight()
     flight.radio.loss, flight.radio.delay_s = 0.2, 0.2
-    until(flight, 4)
+    until(flight, 5)
+    flight.uavs[1].kill()
+    flight.start(1)
+    time.sleep(1)
     flight.cut([{1, 2}, {3, 4, 5}])
-    time.sleep(7)
+    time.sleep(6)
     flight.heal()
     return flight.land(), [], ""
 
 
-CASES = [recordings, quiet, bad_radio, partition, rivals, deaf, reboot, lost, namesakes]
+CASES = [recordings, quiet, bad_radio, partition, rivals, deaf, reboot, early, lost, namesakes]
 FIELD = field.Field(objects=100, length_m=30, lane_m=5, speed_mps=1.5, frames=200)
 SHORT_FIELD = field.Field(objects=30, length_m=16, lane_m=4, speed_mps=2.5, frames=60)
 
