@@ -17,7 +17,7 @@ constexpr std::size_t kBeyondDoubt = 7;
 }  // namespace
 
 TeamFusion::TeamFusion(const TeamOptions& team, const ObjectMapOptions& options)
-    : options_(options), prior_{team.world_sigma_m, Radians(team.world_yaw_sigma_deg)}, nodes_(2) {}
+    : options_(options), prior_{team.world_sigma_m, Radians(team.world_yaw_sigma_deg)}, nodes_(4) {}
 
 void TeamFusion::Update(const TeamMap& map) {
   bool has_changed = false;
@@ -130,7 +130,7 @@ void TeamFusion::SetWorld(const WorldAlignment& common_from_world, bool is_place
 }
 
 void TeamFusion::FuseAll() {
-  const std::size_t leaves = std::bit_ceil(std::max<std::size_t>(order_.size(), 1));
+  const std::size_t leaves = std::bit_ceil(std::max<std::size_t>(order_.size(), 2));
   const bool is_new = order_ != fused_order_;
   if (is_new) nodes_.assign(2 * leaves, {});
   for (Node& node : nodes_) node.is_changed = is_new;
@@ -138,10 +138,7 @@ void TeamFusion::FuseAll() {
     Part& part = parts_.at(order_[i]);
     part.leaf = leaves + i;
     if (!is_new && !part.is_changed) continue;
-    Node& leaf = nodes_[part.leaf];
-    leaf.is_changed = true;
-    leaf.objects = part.objects;
-    for (MappedObject& object : leaf.objects) MoveToWorld(part.common_from_world, &object);
+    nodes_[part.leaf].is_changed = true;
     part.is_changed = false;
   }
   for (std::size_t i = leaves - 1; i > 0; --i) {
@@ -151,9 +148,18 @@ void TeamFusion::FuseAll() {
 }
 
 void TeamFusion::FuseChildren(std::size_t node) {
-  nodes_[node].objects = nodes_[2 * node].objects;
-  nodes_[node].from_right =
-      FuseObjects(nodes_[2 * node + 1].objects, options_, &nodes_[node].objects);
+  // A leaf's objects are moved when they are wanted: a copy of all maps would be much memory.
+  const auto objects_of = [&](std::size_t child) {
+    const std::size_t leaves = nodes_.size() / 2;
+    if (child < leaves) return nodes_[child].objects;
+    if (child - leaves >= order_.size()) return std::vector<MappedObject>();
+    const Part& part = parts_.at(order_[child - leaves]);
+    std::vector<MappedObject> objects = part.objects;
+    for (MappedObject& object : objects) MoveToWorld(part.common_from_world, &object);
+    return objects;
+  };
+  nodes_[node].objects = objects_of(2 * node);
+  nodes_[node].from_right = FuseObjects(objects_of(2 * node + 1), options_, &nodes_[node].objects);
   nodes_[node].is_changed = true;
 }
 

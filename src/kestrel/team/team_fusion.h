@@ -70,7 +70,7 @@ class TeamFusion {
   using Group = std::vector<Place>;
   // The children of node i are 2 i and 2 i + 1; the leaves are the last half.
   struct Node {
-    std::vector<MappedObject> objects;
+    std::vector<MappedObject> objects;    // of a leaf none: those of its part
     std::vector<std::size_t> from_right;  // where those of the second child are
     bool is_changed = true;
   };
