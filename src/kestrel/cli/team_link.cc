@@ -132,14 +132,14 @@ std::vector<std::optional<Claim>> TeamLink::Claims() const {
 }
 
 void TeamLink::Finish(std::vector<MappedObject> objects) {
-  constexpr Duration kStay = std::chrono::seconds(1);  // the others want to hear it too
+  constexpr Duration kStay = std::chrono::seconds(1);  // others may lack something, unheard
   constexpr Duration kPause = std::chrono::milliseconds(10);
   const Duration silence = DurationFromSeconds(options_.team.silence_s);
   Tell(std::move(objects));
   member_.SetDone();
   bool was_said = false;
   Time awaited = Now();  // the last time that somebody was not done
-  Time lacking = Now();  // or something was not here, or was new
+  Time lacking = Now();  // or something was not here or with another, or was new
   std::vector<std::optional<Claim>> claims;
   for (;;) {
     Exchange();
@@ -152,6 +152,7 @@ void TeamLink::Finish(std::vector<MappedObject> objects) {
     if (!are_done) awaited = now;
     if (!are_done && !std::exchange(was_said, true)) SayWhoIsAwaited();
     if (!are_done || !member_.IsWhole() || member_.Known().size() == 1) lacking = now;
+    if (member_.lacked()) lacking = std::max(lacking, *member_.lacked());
     if (WasInterrupted() || now - lacking >= kStay || now - awaited >= silence) break;
     std::this_thread::sleep_for(kPause);
   }

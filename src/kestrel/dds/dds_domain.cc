@@ -24,8 +24,10 @@ constexpr char kByIndex[] =
     "<ParticipantIndex>auto</ParticipantIndex>"
     "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>";
 
-// After a break of the radio others are found again within a second, not only after eight.
-constexpr char kOften[] = "<Discovery><SPDPInterval>1 s</SPDPInterval></Discovery>";
+// After a break of the radio of less than a minute the others are still known; after a longer one
+// they are found again within half a second, not only after eight.
+constexpr char kOften[] =
+    "<Discovery><LeaseDuration>60 s</LeaseDuration><SPDPInterval>500 ms</SPDPInterval></Discovery>";
 
 std::string Variable(const char* name) {
   const char* const value = std::getenv(name);

@@ -10,7 +10,7 @@
 namespace kestrel {
 
 // The topic on which a team's messages go through DDS (Eclipse Cyclone DDS): keyed by sender,
-// reliable, transient-local. How DDS finds the others can be set by CYCLONEDDS_URI. Send and
+// best effort. How DDS finds the others can be set by CYCLONEDDS_URI. Send and
 // Receive neither block nor throw.
 class TeamTopic {
  public:

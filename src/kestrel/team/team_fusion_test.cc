@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/team/team_fusion.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +14,8 @@
 namespace kestrel {
 namespace {
 
+using ::testing::Each;
+using ::testing::Eq;
 using ::testing::SizeIs;
 
 UavKey KeyOf(int uav) { return {std::string(1, static_cast<char>('a' + uav)), 1}; }
@@ -80,6 +85,83 @@ TEST(TeamFusion, WorldsAreAlignedByWayOfOthers) {
                field[35].position())
                   .norm(),
               0.3);
+  }
+}
+
+// A hundred discs of three colours over 30 m, a metre apart or more.
+std::vector<MappedObject> DenseField(std::uint64_t seed) {
+  Random random(seed);
+  std::vector<MappedObject> field = TestField(100, &random);
+  for (MappedObject& object : field) {
+    object.state *= 0.3;
+    object.color_log_likelihoods = {};
+    object.color_log_likelihoods[static_cast<std::size_t>(object.id) % 3] = 5;
+  }
+  return field;
+}
+
+// The UAV's navigation is off by a metre and two degrees.
+WorldAlignment BiasOf(int uav) {
+  WorldAlignment bias;
+  bias.translation = {std::cos(1.26 * uav), std::sin(1.26 * uav), 0};
+  bias.yaw = Radians(uav % 2 == 0 ? 2 : -2);
+  return bias;
+}
+
+// What a UAV of five has seen of the field that it flies over along x, in strips that overlap.
+PartMessage StripOf(int uav, const UavKey& key, const WorldAlignment& bias, double reach_m,
+                    const std::vector<MappedObject>& field, Random* random) {
+  PartMessage part{key, {}, {1, Time(), {}}, {}};
+  for (const MappedObject& truth : field) {
+    if (std::abs(truth.position().y() - 3 - 6 * uav) > 6 || truth.position().x() > reach_m)
+      continue;
+    const Eigen::Vector3d noise{random->Normal(), random->Normal(), random->Normal()};
+    MappedObject object = truth;
+    object.state.head<3>() = bias * truth.position() + 0.03 * noise;
+    part.contents.objects[object.id] = 1;
+    part.objects.push_back(object);
+  }
+  return part;
+}
+
+// How often each object of the field is in the map, within half a metre.
+std::vector<int> CountIn(const std::vector<MappedObject>& map,
+                         const std::vector<MappedObject>& field, const WorldAlignment& common) {
+  std::vector<int> counts;
+  for (const MappedObject& truth : field) {
+    const Eigen::Vector3d place = common * truth.position();
+    counts.push_back(static_cast<int>(std::count_if(map.begin(), map.end(), [&](const auto& seen) {
+      return seen.color_index() == truth.color_index() && (seen.position() - place).norm() < 0.5;
+    })));
+  }
+  return counts;
+}
+
+// What it had seen until then cannot be aligned, or only by chance, and nobody corrects it any
+// more.
+TEST(TeamFusion, AUavThatDiesEarlyAndReturnsLeavesNothingTwice) {
+  for (int seed = 1; seed <= 4; ++seed) {
+    for (int dead = 0; dead < 5; ++dead) {
+      for (const double reach_m : {0.5, 1.0, 2.0, 4.0, 8.0}) {
+        for (const std::uint32_t boot : {0u, 9u}) {  // before or after its other life, by key
+          Random random(static_cast<std::uint64_t>(seed));
+          const std::vector<MappedObject> field = DenseField(static_cast<std::uint64_t>(seed));
+          TeamMap map;
+          for (int uav = 0; uav < 5; ++uav) {
+            const WorldAlignment bias = BiasOf(uav == dead ? uav + 2 : uav);
+            map.Merge(StripOf(uav, KeyOf(uav), bias, 100, field, &random), Time());
+          }
+          map.Merge(StripOf(dead, {KeyOf(dead).name, boot}, BiasOf(dead), reach_m, field, &random),
+                    Time());
+          TeamFusion fusion({}, {});
+          fusion.Update(map);
+          EXPECT_EQ(fusion.standing().size(), 100u) << seed << ' ' << dead << ' ' << reach_m;
+          const WorldAlignment common = BiasOf(dead == 0 ? 2 : 0);
+          EXPECT_THAT(CountIn(fusion.standing(), field, common), Each(Eq(1)))
+              << seed << ' ' << dead << ' ' << reach_m;
+        }
+      }
+    }
   }
 }
 

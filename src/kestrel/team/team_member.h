@@ -56,6 +56,8 @@ class TeamMember {
 
   // Whether all that is known to have been told is here, and nothing waits to be told.
   bool IsWhole() const;
+  // When another UAV was heard last to lack what is here.
+  const std::optional<Time>& lacked() const { return lacked_; }
   // The UAV itself, and those that were heard of within silence_s, by whomever.
   bool IsAlive(const UavKey& uav, Time local) const;
   // All that were ever heard of, and the UAV itself.
@@ -110,6 +112,7 @@ class TeamMember {
   std::optional<Time> told_;
   std::optional<Time> last_digest_;
   std::optional<Time> last_tick_;
+  std::optional<Time> lacked_;
   bool has_news_ = false;         // for the digest
   double allowance_;              // bytes that may be sent now
   std::set<ObjectRef> queue_;     // to be sent

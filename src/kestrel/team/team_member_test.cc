@@ -149,7 +149,7 @@ TEST(TeamMember, SendsLessThan10kBPerSecondWith100Objects) {
     EXPECT_THAT(uav.sent_bytes / 20.0, Le(10'000));
     EXPECT_THAT(uav.largest, Le(kMaxTeamMessage + kSignatureSize));
   }
-  EXPECT_LT(UntilEqual(&team), 5);
+  EXPECT_LT(UntilEqual(&team), 6);
 }
 
 TEST(TeamMember, StrangersDoNoHarm) {

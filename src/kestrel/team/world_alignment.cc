@@ -214,16 +214,19 @@ Consensus Grow(const std::vector<Match>& matches, const WorldPrior& prior, Conse
   return from;
 }
 
-// The alignment that most of the matches agree on; nothing where nearly as many, which pair
-// objects otherwise, agree on another.
+// Whether one alignment stands out, on which 'best' matches agree, where on another 'rival' of
+// other matches do: by more than equal patterns and chance account for.
+bool StandsOut(std::size_t best, std::size_t rival) {
+  return 2 * best >= 3 * rival && 2 * (best - rival) * (best - rival) >= 3 * rival;
+}
+
+// The alignment that most of the matches agree on; nothing where it does not stand out from others,
+// which pair objects otherwise.
 std::optional<Consensus> FindConsensus(const std::vector<Match>& matches,
                                        const WorldAlignment& unknown, const WorldPrior& prior) {
   Consensus best;
   std::vector<char> is_in_best(matches.size());
   std::vector<std::vector<Match>> votes;
-  const auto is_rivalled_by = [&](std::size_t count) {
-    return 2 * best.matches.size() < 3 * count;
-  };
   for (std::size_t i = 0; i < matches.size(); ++i) {
     for (std::size_t k = i + 1; k < matches.size(); ++k) {
       // A pair of the best says what the best says.
@@ -239,14 +242,14 @@ std::optional<Consensus> FindConsensus(const std::vector<Match>& matches,
         is_in_best[m] = Contains(best.matches, matches[m]);
       }
       // All others together are too few for a rival.
-      if (!is_rivalled_by(matches.size() - best.matches.size())) return best;
+      if (StandsOut(best.matches.size(), matches.size() - best.matches.size())) return best;
     }
   }
   for (const std::vector<Match>& vote : votes) {
     const auto others = std::count_if(vote.begin(), vote.end(), [&](const Match& match) {
       return !Contains(best.matches, match);
     });
-    if (is_rivalled_by(static_cast<std::size_t>(others))) return std::nullopt;
+    if (!StandsOut(best.matches.size(), static_cast<std::size_t>(others))) return std::nullopt;
   }
   return best;
 }
@@ -308,7 +311,7 @@ WorldAlignment UnknownAlignment(const std::vector<MappedObject>& objects, const 
   return UnknownAlignmentOf(FindLandmarks(objects), PriorCovariance(prior));
 }
 
-std::optional<WorldAlignment> EstimateAlignment(const std::vector<MappedObject>& objects,
+std::optional<FoundAlignment> EstimateAlignment(const std::vector<MappedObject>& objects,
                                                 const std::vector<MappedObject>& reference,
                                                 const WorldPrior& prior) {
   const Landmarks landmarks = FindLandmarks(objects);
@@ -319,7 +322,7 @@ std::optional<WorldAlignment> EstimateAlignment(const std::vector<MappedObject>&
   if (!consensus || consensus->matches.size() < kMinMatches || !IsSure(consensus->alignment)) {
     return std::nullopt;
   }
-  return consensus->alignment;
+  return FoundAlignment{consensus->alignment, consensus->matches.size()};
 }
 
 }  // namespace kestrel

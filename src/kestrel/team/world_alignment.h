@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -38,11 +39,17 @@ struct WorldPrior {
 // The same worlds, as far as the prior goes, about the middle of these objects.
 WorldAlignment UnknownAlignment(const std::vector<MappedObject>& objects, const WorldPrior& prior);
 
+// An alignment, and how many pairs of objects agree on it.
+struct FoundAlignment {
+  WorldAlignment alignment;
+  std::size_t matches = 0;
+};
+
 // From the world of 'objects' to that of 'reference', by the standing objects that are in both: the
 // pairs of one shape and colour that agree on one alignment, and the least squares of all of them.
 // Nothing where that is not sure: fewer than three agree, nearly as many agree on another
 // alignment, or it is not better than 0.3 m and 1 degree. A pure function of its arguments.
-std::optional<WorldAlignment> EstimateAlignment(const std::vector<MappedObject>& objects,
+std::optional<FoundAlignment> EstimateAlignment(const std::vector<MappedObject>& objects,
                                                 const std::vector<MappedObject>& reference,
                                                 const WorldPrior& prior);
 

@@ -36,16 +36,17 @@ TEST(EstimateAlignment, FindsABiasWithItsCovariance) {
     // Each sees two thirds of the field.
     const std::vector<MappedObject> first(field.begin(), field.begin() + 40);
     const auto second = SeenIn(bias, {field.begin() + 20, field.end()}, 0.05, &random);
-    const auto alignment = EstimateAlignment(second, SeenIn({}, first, 0.05, &random), kPrior);
-    ASSERT_TRUE(alignment) << seed;
+    const auto estimate = EstimateAlignment(second, SeenIn({}, first, 0.05, &random), kPrior);
+    ASSERT_TRUE(estimate) << seed;
+    EXPECT_GE(estimate->matches, 10u) << seed;
+    const WorldAlignment& alignment = estimate->alignment;
     ++found;
     for (std::size_t i = 0; i < second.size(); ++i) {
-      const Eigen::Vector3d error = *alignment * second[i].position() - field[20 + i].position();
+      const Eigen::Vector3d error = alignment * second[i].position() - field[20 + i].position();
       EXPECT_LT(error.norm(), 0.4) << seed;
     }
-    const Eigen::Vector3d at_pivot =
-        *alignment * alignment->pivot - bias.Inverse() * alignment->pivot;
-    squares += at_pivot.dot(alignment->covariance.topLeftCorner<3, 3>().llt().solve(at_pivot));
+    const Eigen::Vector3d at_pivot = alignment * alignment.pivot - bias.Inverse() * alignment.pivot;
+    squares += at_pivot.dot(alignment.covariance.topLeftCorner<3, 3>().llt().solve(at_pivot));
   }
   EXPECT_LT(squares / (3 * found), 1.5);  // 1 when the covariance says what the errors are
 }
