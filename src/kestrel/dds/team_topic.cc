@@ -40,13 +40,18 @@ struct TeamTopic::Entities {
                   domain, "topic");
       const std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)> qos(dds_create_qos(),
                                                                       dds_delete_qos);
-      // What is lost is found by the digests, whoever has it sends it: what DDS would send again
-      // comes on top of that, and late.
-      dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);
       dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kHistory);
-      dds_qset_writer_data_lifecycle(qos.get(), false);
       dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
+      // Kestrel's own reader asks for no more than best effort: what is lost is found by the
+      // digests, and whoever has it sends it. What DDS sends again comes on top of that, and late.
+      dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);
       reader = Require(dds_create_reader(participant, topic, qos.get(), nullptr), domain, "reader");
+      // Others may ask for all.
+      dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, 0);
+      dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
+      dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, 1, DDS_LENGTH_UNLIMITED,
+                                  DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+      dds_qset_writer_data_lifecycle(qos.get(), false);
       writer = Require(dds_create_writer(participant, topic, qos.get(), nullptr), domain, "writer");
     } catch (...) {
       dds_delete(participant);

@@ -10,7 +10,8 @@
 namespace kestrel {
 
 // The topic on which a team's messages go through DDS (Eclipse Cyclone DDS): keyed by sender,
-// best effort. How DDS finds the others can be set by CYCLONEDDS_URI. Send and
+// reliable and transient-local for those who ask for that, which a TeamTopic does not: what it
+// misses TeamMember's digests find. How DDS finds the others can be set by CYCLONEDDS_URI. Send and
 // Receive neither block nor throw.
 class TeamTopic {
  public:
