@@ -61,6 +61,7 @@ async function scrubRecording(t) {
   await page.getByRole("button", { name: "+1 frame" }).click();
   await runAgain(page, "landing.detector.min_quality", /smallest probability/, "0.9");
   await page.waitForTimeout(500);
+  await page.evaluate(() => scrollTo(0, 0));
   await t.takePicture(page, "console_replay");
   await t.expectAccessible(page, "replay");
 }
