@@ -30,17 +30,13 @@ export interface OverlayWish {
 }
 
 /**
- * What is drawn over a frame, RGBA, from what the server says of its pixels: what the grid takes
+ * Paints what is drawn over a frame, from what the server says of its pixels: what the grid takes
  * each of them for, and then what each is marked as. The colour that is looked at is hatched and all else
  * darker; marks have edges, white those of a colour and black those of none.
  */
-export function overlayPixels(
-  labels: Uint8Array,
-  width: number,
-  height: number,
-  wish: OverlayWish,
-): Uint8ClampedArray<ArrayBuffer> {
-  const pixels = new Uint32Array(width * height);
+export function paintOverlay(labels: Uint8Array, image: Pick<ImageData, "data" | "width" | "height">, wish: OverlayWish): void {
+  const { width, height } = image;
+  const pixels = new Uint32Array(image.data.buffer);
   const marks = labels.subarray(width * height);
   const [plain, hatched] = [labelTable(false, wish), labelTable(true, wish)];
   const [ofColor, ofNone] = [packed(white, 255), packed(black, 255)];
@@ -48,13 +44,12 @@ export function overlayPixels(
     for (let u = 0; u < width; u++) {
       const i = v * width + u;
       const mark = marks[i] ?? 0;
-      if (wish.showsLabels) pixels[i] = ((u + v) % 6 < 2 ? hatched : plain)[labels[i] ?? 0] ?? 0;
+      pixels[i] = wish.showsLabels ? (((u + v) % 6 < 2 ? hatched : plain)[labels[i] ?? 0] ?? 0) : 0;
       if (mark !== 0 && wish.showsMarks && isEdge(marks, mark, u, v, width, height)) {
         pixels[i] = mark === noColor ? ofNone : ofColor;
       }
     }
   }
-  return new Uint8ClampedArray(pixels.buffer);
 }
 
 /** What each of the 256 labels is shown as: a table, since there are a million pixels. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import { mark } from "../color_actions";
-import { overlayPixels, shownAs } from "../color_overlay";
+import { paintOverlay, shownAs } from "../color_overlay";
 import type { Colors } from "../color_protocol";
 import type { ColorView } from "../color_view";
 import { useStore } from "../use_store";
@@ -26,15 +26,18 @@ export function ColorCanvas({ colors }: { colors: Colors }) {
   const [shown, error] = useFrame(view.frame, colors.revision);
   const size: Point = [shown?.picture.width ?? 0, shown?.picture.height ?? 0];
   const [took_ms, setTook] = useState(0);
+  // Not for every change of the colours: labels of another model are on their way then.
+  const reused = useRef<Layer | null>(null);
   const layer = useMemo(
-    () => shown && overlayOf(shown, colors, view),
-    [shown, colors, view.showsLabels, view.showsMarks],
+    () => shown && (reused.current = layerOf(shown, colors, view, reused.current)),
+    [shown, colors.names.join(), colors.color, view.showsLabels, view.showsMarks],
   );
   const draw = () => {
-    if (canvas.current && shown && layer) drawFrame(canvas.current, shown.picture, layer, view, way.current, cursor);
+    if (canvas.current && shown && layer) drawFrame(canvas.current, shown.picture, layer.canvas, view, way.current, cursor);
   };
-  useEffect(draw, [shown, layer, view, cursor]);
-  useEffect(() => {
+  // At once, not with the picture after the next.
+  useLayoutEffect(draw, [shown, layer, view, cursor]);
+  useLayoutEffect(() => {
     if (shown) setTook(performance.now() - shown.began);
   }, [shown]);
   const finish = () => {
@@ -108,7 +111,7 @@ function useFrame(frame: number, revision: number): [Shown | null, string | null
   const [shown, setShown] = useState<Shown | null>(null);
   const [error, setError] = useState<string | null>(null);
   const last = useRef<{ frame: number; picture: ImageBitmap } | null>(null);
-  useEffect(() => {
+  useLayoutEffect(() => {
     const stop = new AbortController();
     const load = async () => {
       const began = performance.now();
@@ -157,17 +160,29 @@ function cursorAfter(event: KeyboardEvent, [u, v]: Point, [width, height]: Point
   ];
 }
 
-function overlayOf({ labels, picture }: Shown, colors: Colors, view: ColorView): OffscreenCanvas {
+/** Pixels, and a canvas that they are drawn by. */
+interface Layer {
+  canvas: OffscreenCanvas;
+  image: ImageData;
+}
+
+/** What is drawn over the frame, in the layer before if it has the same size: megabytes of new memory cost much. */
+function layerOf({ labels, picture }: Shown, colors: Colors, view: ColorView, before: Layer | null): Layer {
   const { width, height } = picture;
-  const pixels = overlayPixels(labels, width, height, {
+  const isOfThisSize = before?.image.width === width && before.image.height === height;
+  const layer = before && isOfThisSize ? before : newLayer(width, height);
+  paintOverlay(labels, layer.image, {
     showsLabels: view.showsLabels,
     showsMarks: view.showsMarks,
     chosen: colors.names.indexOf(colors.color) + 1,
     colors: colors.names.map(shownAs),
   });
-  const layer = new OffscreenCanvas(width, height);
-  layer.getContext("2d")?.putImageData(new ImageData(pixels, width, height), 0, 0);
-  return layer;
+  layer.canvas.getContext("2d")?.putImageData(layer.image, 0, 0);
+  return { ...layer };
+}
+
+function newLayer(width: number, height: number): Layer {
+  return { canvas: new OffscreenCanvas(width, height), image: new ImageData(width, height) };
 }
 
 function drawFrame(
@@ -180,8 +195,8 @@ function drawFrame(
 ): void {
   const { width, height } = layer;
   const scale = Math.max(1, Math.round(1280 / width));
-  canvas.width = width * scale;
-  canvas.height = height * scale;
+  if (canvas.width !== width * scale) canvas.width = width * scale;
+  if (canvas.height !== height * scale) canvas.height = height * scale;
   const context = canvas.getContext("2d");
   if (!context) return;
   context.imageSmoothingEnabled = false;
