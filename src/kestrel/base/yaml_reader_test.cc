@@ -5,22 +5,13 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/base/test_folder.h"
 
 namespace kestrel {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-template <class Action>
-std::string ErrorOf(const Action& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 YamlReader ReaderOf(const std::string& text) { return YamlReader(text, "file.yaml"); }
 
@@ -40,28 +31,30 @@ TEST(YamlReader, ReadsJson) { EXPECT_EQ(ReaderOf(R"({"a": {"b": 4}})")["a"]["b"]
 
 TEST(YamlReader, ErrorsNameFileLineAndKey) {
   const YamlReader root = ReaderOf("a: 1\nb:\n  size: big\n");
-  EXPECT_THAT(ErrorOf([&] { root["b"]["size"].Number(); }),
+  EXPECT_THAT(InputErrorOf([&] { root["b"]["size"].Number(); }),
               AllOf(HasSubstr("file.yaml:3:"), HasSubstr("size"), HasSubstr("a finite number")));
-  EXPECT_THAT(ErrorOf([&] { root["c"]; }), HasSubstr("'c' is missing"));
-  EXPECT_THAT(ErrorOf([] { ReaderOf("a: [1, 2"); }), HasSubstr("file.yaml:"));
+  EXPECT_THAT(InputErrorOf([&] { root["c"]; }), HasSubstr("'c' is missing"));
+  EXPECT_THAT(InputErrorOf([] { ReaderOf("a: [1, 2"); }), HasSubstr("file.yaml:"));
 }
 
 TEST(YamlReader, WrongTypesAreRefused) {
   const YamlReader root = ReaderOf("list: [1, x]\nnumber: 1.5\nhuge: .inf\n");
-  EXPECT_THAT(ErrorOf([&] { root["list"].Text(); }), HasSubstr("a word"));
-  EXPECT_THAT(ErrorOf([&] { root["list"].Numbers(2); }), HasSubstr("a finite number"));
-  EXPECT_THAT(ErrorOf([&] { ReaderOf("[1, 2]").Numbers(3); }), HasSubstr("a list of 3 numbers"));
-  EXPECT_THAT(ErrorOf([&] { root["number"].Integer(); }), HasSubstr("a whole number"));
-  EXPECT_THAT(ErrorOf([&] { root["number"].Bool(); }), HasSubstr("true or false"));
-  EXPECT_THAT(ErrorOf([&] { root["number"].Items(); }), HasSubstr("a list"));
-  EXPECT_THAT(ErrorOf([&] { root["huge"].Number(); }), HasSubstr("a finite number"));
+  EXPECT_THAT(InputErrorOf([&] { root["list"].Text(); }), HasSubstr("a word"));
+  EXPECT_THAT(InputErrorOf([&] { root["list"].Numbers(2); }), HasSubstr("a finite number"));
+  EXPECT_THAT(InputErrorOf([&] { ReaderOf("[1, 2]").Numbers(3); }),
+              HasSubstr("a list of 3 numbers"));
+  EXPECT_THAT(InputErrorOf([&] { root["number"].Integer(); }), HasSubstr("a whole number"));
+  EXPECT_THAT(InputErrorOf([&] { root["number"].Bool(); }), HasSubstr("true or false"));
+  EXPECT_THAT(InputErrorOf([&] { root["number"].Items(); }), HasSubstr("a list"));
+  EXPECT_THAT(InputErrorOf([&] { root["huge"].Number(); }), HasSubstr("a finite number"));
 }
 
 TEST(YamlReader, KeysAreThoseThatAreKnownAndOnce) {
-  EXPECT_EQ(ErrorOf([] { ReaderOf("a: 1\nb: 2\n").RequireKeys({"a", "b", "c"}); }), "");
-  EXPECT_THAT(ErrorOf([] { ReaderOf("a: 1\nz: 2\n").RequireKeys({"a"}); }), HasSubstr("'z'"));
-  EXPECT_THAT(ErrorOf([] { ReaderOf("a: 1\na: 2\n").RequireKeys({"a"}); }), HasSubstr("twice"));
-  EXPECT_THAT(ErrorOf([] { ReaderOf("[1]").RequireKeys({"a"}); }), HasSubstr("name: value"));
+  EXPECT_EQ(InputErrorOf([] { ReaderOf("a: 1\nb: 2\n").RequireKeys({"a", "b", "c"}); }), "");
+  EXPECT_THAT(InputErrorOf([] { ReaderOf("a: 1\nz: 2\n").RequireKeys({"a"}); }), HasSubstr("'z'"));
+  EXPECT_THAT(InputErrorOf([] { ReaderOf("a: 1\na: 2\n").RequireKeys({"a"}); }),
+              HasSubstr("twice"));
+  EXPECT_THAT(InputErrorOf([] { ReaderOf("[1]").RequireKeys({"a"}); }), HasSubstr("name: value"));
 }
 
 }  // namespace

@@ -14,6 +14,11 @@ namespace {
 // Objects that agree on an alignment: so many do not by chance.
 constexpr std::size_t kBeyondDoubt = 7;
 
+std::vector<MappedObject> Moved(std::vector<MappedObject> objects, const WorldAlignment& to) {
+  for (MappedObject& object : objects) MoveToWorld(to, &object);
+  return objects;
+}
+
 }  // namespace
 
 TeamFusion::TeamFusion(const TeamOptions& team, const ObjectMapOptions& options)
@@ -154,9 +159,7 @@ void TeamFusion::FuseChildren(std::size_t node) {
     if (child < leaves) return nodes_[child].objects;
     if (child - leaves >= order_.size()) return std::vector<MappedObject>();
     const Part& part = parts_.at(order_[child - leaves]);
-    std::vector<MappedObject> objects = part.objects;
-    for (MappedObject& object : objects) MoveToWorld(part.common_from_world, &object);
-    return objects;
+    return Moved(part.objects, part.common_from_world);
   };
   nodes_[node].objects = objects_of(2 * node);
   nodes_[node].from_right = FuseObjects(objects_of(2 * node + 1), options_, &nodes_[node].objects);
@@ -169,10 +172,8 @@ void TeamFusion::FuseAdrift() {
   standing_ = nodes_[1].objects;
   for (auto& [uav, part] : parts_) {
     if (part.is_placed) continue;
-    std::vector<MappedObject> objects = part.objects;
-    for (MappedObject& object : objects) MoveToWorld(part.common_from_world, &object);
     std::vector<MappedObject> fused = standing_;
-    part.indices = FuseObjects(objects, options_, &fused);
+    part.indices = FuseObjects(Moved(part.objects, part.common_from_world), options_, &fused);
     standing_.insert(standing_.end(), fused.begin() + std::ssize(standing_), fused.end());
   }
 }
