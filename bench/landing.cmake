@@ -17,6 +17,12 @@ target_link_libraries(robustness_accuracy
 target_compile_definitions(robustness_accuracy
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
 
+add_executable(light_accuracy light_accuracy.cc landing_frames.cc landing_score.cc)
+target_link_libraries(light_accuracy PRIVATE kestrel::landing kestrel::recording kestrel::stills
+                                             CLI11::CLI11 fmt::fmt opencv_imgcodecs)
+target_compile_definitions(light_accuracy
+                           PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
+
 add_executable(landing_benchmark landing_benchmark.cc landing_frames.cc landing_score.cc)
 target_link_libraries(
   landing_benchmark

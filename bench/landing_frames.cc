@@ -204,7 +204,15 @@ std::vector<LandingFrameSet> ReadLandingHard(const std::string& data_dir) {
 
 LandingFrame FrameFromStill(const LandingStillMaker& maker, const std::string& set,
                             std::uint64_t seed) {
-  const LandingStill still = maker.MakePattern(seed);
+  return FrameFromStill(maker.MakePattern(seed), set, seed);
+}
+
+LandingFrame FrameFromLookalikes(const LandingStillMaker& maker, const std::string& group,
+                                 std::uint64_t seed) {
+  return FrameFromLookalikes(maker.MakeLookalikes(seed), group, seed);
+}
+
+LandingFrame FrameFromStill(const LandingStill& still, const std::string& set, std::uint64_t seed) {
   LandingFrame frame;
   frame.name = fmt::format("{} seed {}", set, seed);
   frame.group = GroupOf(still);
@@ -219,9 +227,8 @@ LandingFrame FrameFromStill(const LandingStillMaker& maker, const std::string& s
   return frame;
 }
 
-LandingFrame FrameFromLookalikes(const LandingStillMaker& maker, const std::string& group,
+LandingFrame FrameFromLookalikes(const LookalikeStill& still, const std::string& group,
                                  std::uint64_t seed) {
-  const LookalikeStill still = maker.MakeLookalikes(seed);
   LandingFrame frame;
   frame.name = fmt::format("{} seed {}: {}", group, seed, fmt::join(still.names, ", "));
   frame.group = group;

@@ -59,8 +59,11 @@ inline constexpr std::array<const char*, 4> kStillGroups{"whole, no shadow or hi
                                                          "highlight", "cut off or hidden in part"};
 
 // A rendered still, named after its set and seed.
+LandingFrame FrameFromStill(const LandingStill& still, const std::string& set, std::uint64_t seed);
 LandingFrame FrameFromStill(const LandingStillMaker& maker, const std::string& set,
                             std::uint64_t seed);
+LandingFrame FrameFromLookalikes(const LookalikeStill& still, const std::string& group,
+                                 std::uint64_t seed);
 LandingFrame FrameFromLookalikes(const LandingStillMaker& maker, const std::string& group,
                                  std::uint64_t seed);
 

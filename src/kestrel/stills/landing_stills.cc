@@ -93,12 +93,14 @@ std::optional<RigidTransform> RandomPose(const CameraModel& camera, double altit
   return RigidTransform{rotation, ray * (altitude_m / fall)};
 }
 
-// A point of the plane that the camera sees, or nothing.
+// A point of the plane that the camera sees or that lies up to 'margin_px' beside its image, or
+// nothing.
 std::optional<Vector2d> RandomPlacePoint(const CameraModel& camera,
                                          const RigidTransform& camera_from_pattern,
-                                         Random* random) {
+                                         double margin_px, Random* random) {
   Vector3d ray;
-  if (camera.Unproject(RandomPixel(camera, 0, random), &ray) != ProjectionStatus::kOk) {
+  if (camera.Unproject(RandomPixel(camera, margin_px, random), &ray) ==
+      ProjectionStatus::kOutsideModel) {
     return std::nullopt;
   }
   const RigidTransform pattern_from_camera = camera_from_pattern.Inverse();
@@ -164,15 +166,17 @@ struct LookalikePlace {
   double minor_px;  // of its circle's image
 };
 
-bool IsCircleSeen(const Vector2d& center, double radius, const Lens& lens,
-                  const RigidTransform& camera_from_pattern) {
+// Share of a circle that is in view.
+double SeenShare(const Vector2d& center, double radius, const Lens& lens,
+                 const RigidTransform& camera_from_pattern) {
   constexpr int kPoints = 24;
+  int seen = 0;
   for (int i = 0; i < kPoints; ++i) {
     const double angle = 2 * kPi * i / kPoints;
     const Vector2d point = center + radius * Vector2d(std::cos(angle), std::sin(angle));
-    if (!lens.Sees(camera_from_pattern * OnPlane(point))) return false;
+    seen += lens.Sees(camera_from_pattern * OnPlane(point));
   }
-  return true;
+  return static_cast<double>(seen) / kPoints;
 }
 
 // A place where a look-alike can be told from the pattern by eye and covers no other one, or
@@ -184,15 +188,16 @@ std::optional<LookalikePlace> RandomPlace(const LandingStillOptions& options,
                                           Random* random) {
   const double radius = 0.15 * std::pow(8, random->Uniform());  // 0.15 to 1.2 m
   const CameraModel& camera = renderer.camera();
-  const std::optional<Vector2d> center = RandomPlacePoint(camera, camera_from_pattern, random);
+  const bool whole = options.min_lookalike_visible == 1;
+  const double margin_px = whole ? 0 : 0.2 * camera.height_px();
+  const auto center = RandomPlacePoint(camera, camera_from_pattern, margin_px, random);
   if (!center) return std::nullopt;
   const auto overlaps = [&](const LookalikePlace& other) {
     return (*center - other.center).norm() < 2.2 * (radius + other.radius);
   };
-  if (std::any_of(taken.begin(), taken.end(), overlaps) ||
-      !IsCircleSeen(*center, 1.1 * radius, renderer.lens(), camera_from_pattern)) {
-    return std::nullopt;
-  }
+  if (std::any_of(taken.begin(), taken.end(), overlaps)) return std::nullopt;
+  const double seen = SeenShare(*center, 1.1 * radius, renderer.lens(), camera_from_pattern);
+  if (whole ? seen < 1 : seen == 1 || seen < options.min_lookalike_visible) return std::nullopt;
   const auto extent = ExtentOfCircle(camera, camera_from_pattern, *center, radius);
   if (!extent || extent->major_px < options.min_lookalike_major_px ||
       extent->minor_px < options.min_lookalike_minor_px ||
@@ -302,6 +307,8 @@ std::vector<std::string> LandingStillOptions::Validate() const {
   require(min_ring_major_px >= 0, "min_ring_major_px", min_ring_major_px, "0 or more");
   require(min_lookalike_minor_px >= 0, "min_lookalike_minor_px", min_lookalike_minor_px,
           "0 or more");
+  require(min_lookalike_visible > 0 && min_lookalike_visible <= 1, "min_lookalike_visible",
+          min_lookalike_visible, "more than 0, 1 at most");
   require(max_lookalike_minor_px > min_lookalike_minor_px, "max_lookalike_minor_px",
           max_lookalike_minor_px, "more than min_lookalike_minor_px");
   require(min_lookalike_major_px >= min_lookalike_minor_px, "min_lookalike_major_px",
@@ -310,6 +317,28 @@ std::vector<std::string> LandingStillOptions::Validate() const {
   require(std::abs(fold) <= 0.2, "fold", fold, "-0.2 to 0.2");
   require(std::abs(rolling_skew) <= 0.2, "rolling_skew", rolling_skew, "-0.2 to 0.2");
   return violations;
+}
+
+const char* ToString(StillCondition condition) {
+  switch (condition) {
+    case StillCondition::kMixed:
+      return "mixed";
+    case StillCondition::kUavShadow:
+      return "shadow of a UAV";
+    case StillCondition::kOtherShadow:
+      return "other shadows";
+    case StillCondition::kHeldOutShadow:
+      return "held-out shadows";
+    case StillCondition::kGlare:
+      return "glare";
+    case StillCondition::kDark:
+      return "dark";
+    case StillCondition::kDust:
+      return "dust";
+    case StillCondition::kBlur:
+      return "blur";
+  }
+  return "";
 }
 
 LandingStillMaker::LandingStillMaker(const LandingStillOptions& options)
@@ -324,11 +353,18 @@ LandingStill LandingStillMaker::PreparePattern(std::uint64_t seed, View* view) c
   const double radius = still.pattern.outer_radius_m();
   view->scene = RandomGround(&random);
   AddRandomPattern(still.pattern, &random, &view->scene);
-  AddRandomShadow(radius, &random, &view->scene);
-  AddRandomGlare(radius, &random, &view->scene);
+  const StillLight light{.condition = options_.condition,
+                         .shadow_caster = options_.shadow_caster,
+                         .center = {0, 0},
+                         .radius_m = radius,
+                         .shadow_reach_m = radius,
+                         .height_m = still.altitude_m,
+                         .size_px = still.ring_minor_px};
+  AddRandomShadows(light, &random, &view->scene);
+  AddRandomGlares(light, &random, &view->scene);
   still.has_shadow = !view->scene.shadows.empty();
   still.has_highlight = !view->scene.glares.empty();
-  view->imaging = RandomImaging(still.ring_minor_px, &random);
+  view->imaging = RandomImaging(light, &random);
   AddRandomMotion(camera_, still.camera_from_pattern, still.ring_minor_px, &random, &view->imaging);
   const double board_m = still.pattern.board_size_m;
   view->scene.relief = {board_m, options_.bulge * board_m, options_.fold * board_m};
@@ -389,12 +425,20 @@ LookalikeStill LandingStillMaker::PrepareLookalikes(std::uint64_t seed, View* vi
   still.up_in_camera = UpInCamera(still.camera_from_pattern);
   view->scene = RandomGround(&random);
   for (const LookalikePlace& place : places) {
-    still.names.emplace_back(AddRandomLookalike(place.center, place.radius, options_.counterfeits,
-                                                &random, &view->scene));
+    still.names.emplace_back(
+        AddRandomLookalike(place.center, place.radius, options_.lookalikes, &random, &view->scene));
   }
-  AddRandomShadow(2, &random, &view->scene);
   const double size_px = places.front().minor_px;
-  view->imaging = RandomImaging(size_px, &random);
+  const StillLight light{.condition = options_.condition,
+                         .shadow_caster = options_.shadow_caster,
+                         .center = places.front().center,
+                         .radius_m = places.front().radius,
+                         .shadow_reach_m = 2,
+                         .height_m = still.altitude_m,
+                         .size_px = size_px};
+  AddRandomShadows(light, &random, &view->scene);
+  if (options_.condition == StillCondition::kGlare) AddRandomGlares(light, &random, &view->scene);
+  view->imaging = RandomImaging(light, &random);
   AddRandomMotion(camera_, still.camera_from_pattern, size_px, &random, &view->imaging);
   return still;
 }

@@ -13,8 +13,23 @@
 #include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/landing/landing_pattern.h"
 #include "kestrel/stills/scene_renderer.h"
+#include "kestrel/world/landing_drawings.h"
 
 namespace kestrel {
+
+// What a still is hard to see by.
+enum class StillCondition {
+  kMixed,          // a little of everything
+  kUavShadow,      // sun, and the shadow of a UAV on the pattern
+  kOtherShadow,    // sun, and shadows of trees, masts, people, fences, parts of the vehicle
+  kHeldOutShadow,  // sun, and shadows of what is in neither of them
+  kGlare,          // a low sun, mirrored by wet or glossy print
+  kDark,           // little light and much noise
+  kDust,
+  kBlur,  // out of focus, or moving
+};
+inline constexpr int kStillConditions = 8;
+const char* ToString(StillCondition condition);  // "mixed", "shadow of a UAV", ...
 
 struct LandingStillOptions {
   CameraIntrinsics camera = PaperCamera();
@@ -37,7 +52,13 @@ struct LandingStillOptions {
   double min_lookalike_major_px = 26;
   double min_lookalike_minor_px = 15;
   double max_lookalike_minor_px = 1e9;
-  bool counterfeits = false;  // among the look-alikes, see Lookalikes
+  LookalikeSet lookalikes = LookalikeSet::kPlain;
+  // Of each look-alike the share of its circle that is in view is at least this, and where it is
+  // less than 1 no look-alike is whole.
+  double min_lookalike_visible = 1;
+  StillCondition condition = StillCondition::kMixed;
+  // Of the condition's casters of shadows the one of this index; any, where it is negative.
+  int shadow_caster = -1;
   // What makes the print no flat, rigid one: height of the middle of a board that bulges (negative:
   // sags), and of the creases of a sheet that was folded, shares of the board's size; and by how
   // much a rolling shutter skews the ring, share of its size.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "kestrel/geometry/angles.h"
+#include "kestrel/stills/shadow_casters.h"
 #include "kestrel/world/direction.h"
 #include "kestrel/world/landing_drawings.h"
 
@@ -34,6 +35,13 @@ Drawing ShadowEdge(double reach_m, Random* random) {
   const double distance = random->Uniform(-reach_m, reach_m);
   return Drawing().Add(
       Drawing::Bar{(distance + kHalfSize) * outward, outward, kHalfSize, kHalfSize});
+}
+
+// A mirrored sun that washes out a part of the pattern.
+void AddGlare(const Vector2d& around, double radius_m, Random* random, Scene* scene) {
+  const Vector2d center = around + radius_m * random->Uniform(0.5, 1.6) * RandomDirection(random);
+  scene->glares.push_back(
+      {center, radius_m * random->Uniform(0.15, 0.35), random->Uniform(0.3, 1.5)});
 }
 
 // White lines on the ground, straight across the scene.
@@ -91,9 +99,9 @@ void AddRandomPattern(const LandingPattern& pattern, Random* random, Scene* scen
   scene->layers.push_back({ink, random->Uniform(0.03, 0.15), dirt});
 }
 
-const char* AddRandomLookalike(const Vector2d& center, double radius_m, bool with_counterfeits,
+const char* AddRandomLookalike(const Vector2d& center, double radius_m, LookalikeSet set,
                                Random* random, Scene* scene) {
-  const auto kinds = Lookalikes(with_counterfeits);
+  const auto kinds = Lookalikes(set);
   const Lookalike& kind = kinds[random->Integer(0, static_cast<int>(kinds.size()) - 1)];
   const double yaw = random->Uniform(0, 2 * kPi);
   Drawing ink = kind.draw(center, radius_m, yaw, random);
@@ -113,7 +121,9 @@ const char* AddRandomLookalike(const Vector2d& center, double radius_m, bool wit
   return kind.name;
 }
 
-void AddRandomShadow(double reach_m, Random* random, Scene* scene) {
+namespace {
+
+void AddMixedShadow(double reach_m, Random* random, Scene* scene) {
   const double kind = random->Uniform();
   if (kind < 0.18) {
     scene->shadows.push_back({ShadowEdge(reach_m, random), random->Uniform(0.35, 0.75)});
@@ -124,23 +134,85 @@ void AddRandomShadow(double reach_m, Random* random, Scene* scene) {
   }
 }
 
-void AddRandomGlare(double radius_m, Random* random, Scene* scene) {
-  if (!random->Chance(0.1)) return;
-  const Vector2d center = radius_m * random->Uniform(0.5, 1.6) * RandomDirection(random);
-  scene->glares.push_back(
-      {center, radius_m * random->Uniform(0.15, 0.35), random->Uniform(0.3, 1.5)});
+std::span<const ShadowCaster> CastersOf(StillCondition condition) {
+  switch (condition) {
+    case StillCondition::kUavShadow:
+      return UavShadowCasters();
+    case StillCondition::kOtherShadow:
+      return SurroundingShadowCasters();
+    case StillCondition::kHeldOutShadow:
+      return HeldOutShadowCasters();
+    default:
+      return {};
+  }
 }
 
-ImagingOptions RandomImaging(double size_px, Random* random) {
+// A broad highlight over a part of the board that leaves some contrast, and smaller ones.
+void AddLowSun(const StillLight& light, Random* random, Scene* scene) {
+  const double radius_m = light.radius_m;
+  const double distance = radius_m * random->Uniform(0, 1.6);
+  const Vector2d center = light.center + distance * RandomDirection(random);
+  const double sigma_m = radius_m * 0.5 * std::pow(8, random->Uniform());
+  scene->glares.push_back({center, sigma_m, random->Uniform(0.2, 0.85)});
+  for (int i = random->Integer(0, 3); i > 0; --i) AddGlare(light.center, radius_m, random, scene);
+}
+
+double RandomContrast(StillCondition condition, Random* random) {
+  switch (condition) {
+    case StillCondition::kDark:
+      return 12 * std::pow(5, random->Uniform());
+    case StillCondition::kGlare:
+      return random->Uniform(150, 250);
+    case StillCondition::kMixed:
+      return random->Chance(0.15) ? random->Uniform(50, 90) : random->Uniform(90, 250);
+    default:
+      return random->Uniform(90, 250);
+  }
+}
+
+}  // namespace
+
+void AddRandomShadows(const StillLight& light, Random* random, Scene* scene) {
+  if (light.condition == StillCondition::kMixed) {
+    AddMixedShadow(light.shadow_reach_m, random, scene);
+    return;
+  }
+  const std::span<const ShadowCaster> casters = CastersOf(light.condition);
+  if (casters.empty()) return;
+  const int last = static_cast<int>(casters.size()) - 1;
+  const int index = light.shadow_caster < 0 ? random->Integer(0, last) : light.shadow_caster;
+  const SunLight sun{light.center, light.height_m, random->Uniform(0.25, 0.65)};
+  scene->shadows = casters[index].cast(sun, random);
+}
+
+void AddRandomGlares(const StillLight& light, Random* random, Scene* scene) {
+  if (light.condition == StillCondition::kGlare) return AddLowSun(light, random, scene);
+  if (light.condition == StillCondition::kMixed && random->Chance(0.1)) {
+    AddGlare(light.center, light.radius_m, random, scene);
+  }
+}
+
+ImagingOptions RandomImaging(const StillLight& light, Random* random) {
   ImagingOptions imaging;
-  const double contrast = random->Chance(0.15) ? random->Uniform(50, 90) : random->Uniform(90, 250);
-  if (random->Chance(0.25)) imaging.haze = random->Uniform(0.1, 0.45);
+  const StillCondition condition = light.condition;
+  const double contrast = RandomContrast(condition, random);
+  if (condition == StillCondition::kDust) {
+    imaging.haze = random->Uniform(0.3, 0.7);
+  } else if (condition == StillCondition::kMixed && random->Chance(0.25)) {
+    imaging.haze = random->Uniform(0.1, 0.45);
+  }
   imaging.haze_radiance = random->Uniform(0.4, 0.9);
   imaging.black_level = random->Uniform(0, 15);
   imaging.white_level = std::min(imaging.black_level + contrast, 255.0);
   imaging.gradient = random->Uniform(0, 0.5) * RandomDirection(random);
-  imaging.blur_sigma_px = random->Uniform(0.4, std::clamp(0.4 + 0.02 * size_px, 0.5, 1.0));
-  imaging.read_noise = (1 - imaging.haze) * contrast * random->Uniform(0.003, 0.018);
+  const double most_blur_px = std::clamp(0.4 + 0.02 * light.size_px, 0.5, 1.0);
+  imaging.blur_sigma_px = condition == StillCondition::kBlur
+                              ? random->Uniform(1, 1 + 0.02 * std::min(light.size_px, 100.0))
+                              : random->Uniform(0.4, most_blur_px);
+  // What an eye makes out in noise grows with the size.
+  const double most_noise =
+      condition == StillCondition::kDark ? std::clamp(0.003 * light.size_px, 0.05, 0.15) : 0.018;
+  imaging.read_noise = (1 - imaging.haze) * contrast * random->Uniform(0.003, most_noise);
   imaging.shot_noise = random->Uniform(0, 2);
   imaging.noise_seed = random->Bits();
   return imaging;

@@ -5,6 +5,7 @@
 
 #include "kestrel/base/random.h"
 #include "kestrel/landing/landing_pattern.h"
+#include "kestrel/stills/landing_stills.h"
 #include "kestrel/stills/scene_renderer.h"
 
 namespace kestrel {
@@ -18,17 +19,24 @@ Scene RandomGround(Random* random);
 void AddRandomPattern(const LandingPattern& pattern, Random* random, Scene* scene);
 
 // A look-alike of a random kind, on a board or painted on the ground; returns its name.
-const char* AddRandomLookalike(const Eigen::Vector2d& center, double radius_m,
-                               bool with_counterfeits, Random* random, Scene* scene);
+const char* AddRandomLookalike(const Eigen::Vector2d& center, double radius_m, LookalikeSet set,
+                               Random* random, Scene* scene);
 
-// In three of ten scenes a shadow within 'reach_m' of the origin: a hard edge or that of a UAV.
-void AddRandomShadow(double reach_m, Random* random, Scene* scene);
-
-// In one of ten scenes a mirrored sun that washes out a part of the pattern.
-void AddRandomGlare(double radius_m, Random* random, Scene* scene);
-
-// Light, haze, blur and noise for a pattern whose smallest width in the image is 'size_px'. The
-// noise follows the contrast and the blur the size, so that an eye can still see the pattern.
-ImagingOptions RandomImaging(double size_px, Random* random);
+// The light of a condition on what lies around 'center', 'radius_m' large, and how it becomes
+// gray values: shadows, highlights, haze, blur, noise, as strong as an eye can still see through.
+// 'shadow_reach_m': of mixed shadows, from the origin; 'height_m': of the UAV; 'size_px': smallest
+// width of the pattern in the image; 'shadow_caster': see LandingStillOptions.
+struct StillLight {
+  StillCondition condition;
+  int shadow_caster;
+  Eigen::Vector2d center;
+  double radius_m;
+  double shadow_reach_m;
+  double height_m;
+  double size_px;
+};
+void AddRandomShadows(const StillLight& light, Random* random, Scene* scene);
+void AddRandomGlares(const StillLight& light, Random* random, Scene* scene);
+ImagingOptions RandomImaging(const StillLight& light, Random* random);
 
 }  // namespace kestrel

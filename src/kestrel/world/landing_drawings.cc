@@ -304,6 +304,107 @@ Drawing LetterInRing(const Vector2d& center, double radius, double yaw, Random* 
   }
 }
 
+// The outline of a polygon whose corners lie on a circle.
+void AddPolygon(const Pen& pen, int corners, double radius, double half_width, Drawing* ink) {
+  const double half_turn = kPi / corners;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = 2 * half_turn * i;
+    ink->Add(pen.Bar(radius * std::cos(half_turn) * Direction(angle), angle + 0.5 * kPi,
+                     radius * std::sin(half_turn), half_width));
+  }
+}
+
+Drawing PolygonInRing(const Vector2d& center, double radius, double yaw, Random* random) {
+  const Pen pen(center, radius, yaw);
+  const double width = StrokeWidth(random);
+  Drawing ink;
+  ink.Add(pen.Ring(1, 1 - width));
+  AddPolygon(pen, random->Integer(3, 8), random->Uniform(0.4, 0.85), 0.5 * width, &ink);
+  return ink;
+}
+
+// The pattern's own cross, alone.
+Drawing CrossOfThePattern(const Vector2d& center, double radius, double yaw, Random* random) {
+  const Pen pen(center, radius, yaw);
+  const double half_length = random->Uniform(0.7, 0.9);
+  return Drawing()
+      .Add(pen.Bar({0, 0}, 0, half_length, 0.1))
+      .Add(pen.Bar({0, 0}, 0.5 * kPi, half_length, 0.1));
+}
+
+Drawing TriangleInRing(const Vector2d& center, double radius, double yaw, Random* random) {
+  const Pen pen(center, radius, yaw);
+  Drawing ink;
+  ink.Add(pen.Ring(1, random->Uniform(0.78, 0.86)));
+  AddPolygon(pen, 3, random->Uniform(0.75, 0.95), 0.09, &ink);
+  return ink.Add(pen.Spoke(0, 0.5, 0.08));
+}
+
+Drawing StarInRing(const Vector2d& center, double radius, double yaw, Random* random) {
+  const Pen pen(center, radius, yaw);
+  const int points = random->Integer(4, 6);
+  Drawing ink;
+  ink.Add(pen.Ring(1, random->Uniform(0.78, 0.86)));
+  for (int i = 0; i < points; ++i) {
+    ink.Add(pen.Spoke(2 * kPi * i / points, 0.7, 0.05 + 0.15 * random->Uniform()));
+  }
+  return ink.Add(pen.Ring(random->Uniform(0.2, 0.35)));
+}
+
+// Hands at a right angle and twelve marks.
+Drawing Clock(const Vector2d& center, double radius, double yaw, Random* random) {
+  const Pen pen(center, radius, yaw);
+  Drawing ink;
+  ink.Add(pen.Ring(1, 0.84)).Add(pen.Spoke(0, 0.7, 0.07)).Add(pen.Spoke(0.5 * kPi, 0.5, 0.08));
+  for (int i = 0; i < 12; ++i) {
+    ink.Add(pen.Bar(0.72 * Direction(i * kPi / 6), i * kPi / 6, 0.1, 0.03));
+  }
+  return random->Chance(0.5) ? ink.Add(pen.Ring(0.12)) : ink;
+}
+
+// Bars that bend at right angles in a ring, as of a hooked cross's mirror image or a maze.
+Drawing BentCross(const Vector2d& center, double radius, double yaw, Random* random) {
+  const Pen pen(center, radius, yaw);
+  const double half_width = random->Uniform(0.07, 0.1), hook = random->Uniform(0.15, 0.3);
+  Drawing ink;
+  ink.Add(pen.Ring(1, 0.82));
+  for (int i = 0; i < 2; ++i) {
+    const double angle = 0.5 * kPi * i;
+    ink.Add(pen.Bar({0, 0}, angle, 0.55, half_width));
+    for (const double end : {0.55, -0.55}) {
+      const Vector2d along = end * Direction(angle);
+      ink.Add(pen.Bar(along + hook * Direction(angle + 0.5 * kPi), angle + 0.5 * kPi, hook,
+                      half_width));
+    }
+  }
+  return ink;
+}
+
+// A window of four panes: a cross that reaches a round frame, with a second frame around it.
+Drawing RoundWindow(const Vector2d& center, double radius, double yaw, Random* random) {
+  const Pen pen(center, radius, yaw);
+  Drawing ink;
+  ink.Add(pen.Ring(1, 0.9)).Add(pen.Ring(0.8, random->Uniform(0.66, 0.72)));
+  const double half_width = random->Uniform(0.04, 0.09);
+  return ink.Add(pen.Bar({0, 0}, 0, 0.75, half_width))
+      .Add(pen.Bar({0, 0}, 0.5 * kPi, 0.75, half_width));
+}
+
+// Two arrows that meet at a right angle in a ring.
+Drawing ArrowsInRing(const Vector2d& center, double radius, double yaw, Random* random) {
+  const Pen pen(center, radius, yaw);
+  Drawing ink;
+  ink.Add(pen.Ring(1, random->Uniform(0.78, 0.86)));
+  for (const double angle : {0.0, 0.5 * kPi}) {
+    ink.Add(pen.Spoke(angle, 0.75, 0.08));
+    for (const double turn : {0.75 * kPi, -0.75 * kPi}) {
+      ink.Add(pen.Bar(0.65 * Direction(angle) + 0.14 * Direction(angle + turn), angle + turn, 0.2,
+                      0.06));
+    }
+  }
+  return ink;
+}
+
 constexpr std::array kLookalikes = {
     Lookalike{"ring", RingOnly},
     Lookalike{"disc", Disc},
@@ -332,6 +433,18 @@ constexpr std::array kLookalikes = {
     Lookalike{"cross in a bullseye", CrossInBullseye},
     Lookalike{"grating", Grating},
     Lookalike{"letter in a ring", LetterInRing},
+    Lookalike{"polygon in a ring", PolygonInRing},
+    Lookalike{"cross of the pattern", CrossOfThePattern},
+};
+constexpr std::size_t kCounterfeits = 9;
+
+constexpr std::array kHeldOutLookalikes = {
+    Lookalike{"triangle in a ring", TriangleInRing},
+    Lookalike{"star in a ring", StarInRing},
+    Lookalike{"clock", Clock},
+    Lookalike{"bent cross in a ring", BentCross},
+    Lookalike{"round window", RoundWindow},
+    Lookalike{"arrows in a ring", ArrowsInRing},
 };
 
 }  // namespace
@@ -363,9 +476,16 @@ void WearInk(const Vector2d& center, double radius_m, int patches, Random* rando
   }
 }
 
-std::span<const Lookalike> Lookalikes(bool with_counterfeits) {
-  constexpr std::size_t kCounterfeits = 7;
-  return std::span(kLookalikes).first(kLookalikes.size() - (with_counterfeits ? 0 : kCounterfeits));
+std::span<const Lookalike> Lookalikes(LookalikeSet set) {
+  switch (set) {
+    case LookalikeSet::kPlain:
+      return std::span(kLookalikes).first(kLookalikes.size() - kCounterfeits);
+    case LookalikeSet::kWithCounterfeits:
+      return kLookalikes;
+    case LookalikeSet::kHeldOut:
+      return kHeldOutLookalikes;
+  }
+  return {};
 }
 
 }  // namespace kestrel

@@ -28,8 +28,11 @@ struct Lookalike {
   Drawing (*draw)(const Eigen::Vector2d& center, double radius, double yaw, Random* random);
 };
 
-// All kinds of look-alikes; 'with_counterfeits': those too that differ from the pattern in one
-// thing only, which an eye may overlook.
-std::span<const Lookalike> Lookalikes(bool with_counterfeits = false);
+enum class LookalikeSet {
+  kPlain,             // what an eye can tell from the pattern at once
+  kWithCounterfeits,  // those too that differ from it in one thing only
+  kHeldOut,           // other kinds, which nothing is trained on
+};
+std::span<const Lookalike> Lookalikes(LookalikeSet set = LookalikeSet::kPlain);
 
 }  // namespace kestrel
