@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kestrel/landing/print_doubts.h"
@@ -17,9 +19,14 @@ struct ScoredPrint {
   bool is_pattern;  // whether it lies where the frame has the pattern
 };
 
+// What a frame may be hard to see by, a bit each: the conditions of stills, then these.
+inline constexpr std::array<std::string_view, 3> kFrameHardships{"small", "near", "cut off"};
+
 // All that a search located in a frame, near misses of the pattern left out.
 struct ScoredFrame {
   std::string name;
+  unsigned hardships;  // bits
+  bool is_held_out;    // nothing is trained on it
   bool has_pattern;
   std::vector<ScoredPrint> prints;
 };

@@ -4,8 +4,11 @@
 // calibration that may be wrong, and hard to see. A fifth of the stills is held out and measured
 // afterwards, and so are the real frames.
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <random>
@@ -17,6 +20,7 @@
 #include <fmt/format.h>
 #include <fmt/os.h>
 #include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/base/error.h"
 #include "kestrel/landing/landing_search.h"
@@ -43,71 +47,163 @@ constexpr double kSameSize = 1.33;  // times
 enum class Change { kNone, kOtherCamera, kHardToSee };
 
 // Frames that are made one by one.
-struct StillSource {
+struct TrainingSource {
   std::string name;
   CameraIntrinsics camera;
   std::size_t count;
   std::function<LandingFrame(std::size_t)> make;
   std::vector<Change> changes;
+  unsigned hardships = 0;  // of all its frames, see ScoredFrame
+  bool is_held_out = false;
 };
 
-StillSource Patterns(const PrintError& print, std::size_t count, std::uint64_t seed) {
-  const auto make = [makers = StillMakers(print), seed](std::size_t i) {
-    constexpr std::uint64_t kBinSeeds = 1'000'000;
-    const std::size_t bin = i % makers.size();
-    return FrameFromStill(makers[bin], std::string(kAltitudeBins[bin].Name()),
-                          seed + kBinSeeds * bin + i / makers.size());
-  };
-  return {std::string(print.name),
-          PaperCamera(),
-          count,
-          make,
-          {Change::kNone, Change::kOtherCamera, Change::kHardToSee}};
+unsigned BitOf(StillCondition condition) { return 1u << static_cast<unsigned>(condition); }
+enum FrameHardship : unsigned { kSmallFrame, kNearFrame, kCutOffFrame };
+unsigned BitOf(FrameHardship hardship) { return 1u << (kStillConditions + hardship); }
+
+std::string NameOf(unsigned bit) {
+  return bit < kStillConditions ? ToString(static_cast<StillCondition>(bit))
+                                : std::string(kFrameHardships[bit - kStillConditions]);
 }
 
-// Axes of the circles in pixels.
-struct Extent {
-  double min_major_px;
-  double min_minor_px;
-  double max_minor_px;
-};
-
-StillSource Lookalikes(const std::string& name, const Extent& extent, std::size_t count,
-                       std::uint64_t seed) {
-  LandingStillOptions options;
-  options.min_altitude_m = kAltitudeBins.front().min_m;
-  options.max_altitude_m = kAltitudeBins.back().max_m;
-  options.min_lookalike_major_px = extent.min_major_px;
-  options.min_lookalike_minor_px = extent.min_minor_px;
-  options.max_lookalike_minor_px = extent.max_minor_px;
-  options.counterfeits = true;
-  const auto make = [name, seed, maker = LandingStillMaker(options)](std::size_t i) {
-    return FrameFromLookalikes(maker, name, seed + i);
-  };
-  return {
-      name, PaperCamera(), count, make, {Change::kNone, Change::kOtherCamera, Change::kHardToSee}};
-}
-
-// 'stills': with a flat print.
-std::vector<StillSource> Stills(std::size_t stills) {
-  constexpr std::uint64_t kPatternSeed = 20'000'000, kBentSeed = 30'000'000,
-                          kLookalikeSeed = 40'000'000, kSmallSeed = 50'000'000,
-                          kFlatSeed = 60'000'000;
-  std::vector<StillSource> sources;
-  const std::span<const PrintError> prints = PrintErrors();
-  sources.push_back(Patterns(prints.front(), stills, kPatternSeed));
-  for (std::size_t i = 1; i < prints.size(); ++i) {
-    sources.push_back(Patterns(prints[i], stills / 7, kBentSeed + 1'000'000 * (i - 1)));
+// A still whose image is kept in a folder: read where it is there, else rendered and written. Empty
+// folder: none is kept.
+template <class Still>
+Still Kept(const std::string& folder, const std::string& name, const std::function<Still()>& place,
+           const std::function<Still()>& render) {
+  if (folder.empty()) return render();
+  const std::string file = (std::filesystem::path(folder) / (name + ".png")).string();
+  Still still = std::filesystem::exists(file) ? place() : render();
+  if (still.image.empty()) {
+    still.image = cv::imread(file, cv::IMREAD_GRAYSCALE);
+  } else {
+    cv::imwrite(file, still.image);
   }
-  sources.push_back(Lookalikes("look-alikes", {26, 15, 1e9}, stills * 5 / 3, kLookalikeSeed));
-  sources.push_back(Lookalikes("small look-alikes", {18, 6, 1e9}, stills, kSmallSeed));
-  sources.push_back(
-      Lookalikes("look-alikes seen from the side", {30, 6, 14}, stills / 2, kFlatSeed));
-  return sources;
+  return still;
 }
 
-std::vector<StillSource> RealFrames() {
-  std::vector<StillSource> sources;
+// All stills that the score is trained on or tested with, in proportion to 'scale'.
+class StillSources {
+ public:
+  StillSources(double scale, std::string image_folder)
+      : scale_(scale), image_folder_(std::move(image_folder)) {
+    AddPatterns();
+    AddLookalikes();
+  }
+
+  std::vector<TrainingSource> Take() { return std::move(sources_); }
+
+ private:
+  static constexpr double kLowest = 0.35, kHighest = 14;  // m
+  static constexpr std::uint64_t kFirstSeed = 120'000'000, kSeedsOfSource = 1'000'000;
+
+  void AddPatterns() {
+    // Near is as frequent as far.
+    constexpr std::array<AltitudeBin, 5> kBins{
+        {{kLowest, 1}, {1, 2}, {2, 4}, {4, 8}, {8, kHighest}}};
+    constexpr std::array<int, kStillConditions> kStills{500, 600, 400, 300, 500, 500, 250, 250};
+    for (int c = 0; c < kStillConditions; ++c) {
+      for (const AltitudeBin& bin : kBins) {
+        LandingStillOptions options = OptionsOf(c);
+        options.min_altitude_m = bin.min_m;
+        options.max_altitude_m = bin.max_m;
+        AddPattern(fmt::format("{}, {}", ToString(options.condition), bin.Name()), options,
+                   kStills[c] / static_cast<int>(kBins.size()));
+      }
+    }
+    constexpr int kBent = 60;
+    for (const PrintError& print : PrintErrors().subspan(1)) {
+      LandingStillOptions options = OptionsOf(0);
+      options.bulge = print.bulge;
+      options.fold = print.fold;
+      options.rolling_skew = print.rolling_skew;
+      AddPattern(std::string(print.name), options, kBent);
+    }
+  }
+
+  void AddLookalikes() {
+    constexpr double kCutOff = 0.25;
+    for (int c = 0; c < kStillConditions; ++c) {
+      const bool is_mixed = c == 0;
+      LandingStillOptions whole = OptionsOf(c);
+      whole.lookalikes = LookalikeSet::kWithCounterfeits;
+      LandingStillOptions cut = whole, small = whole;
+      cut.min_lookalike_visible = kCutOff;
+      small.min_lookalike_major_px = 18;
+      small.min_lookalike_minor_px = 6;
+      AddLookalike("look-alikes", whole, is_mixed ? 400 : 160);
+      AddLookalike("look-alikes cut off", cut, is_mixed ? 250 : 80);
+      AddLookalike("small look-alikes", small, is_mixed ? 200 : 60);
+      constexpr int kHeldOut = 40;
+      whole.lookalikes = cut.lookalikes = LookalikeSet::kHeldOut;
+      AddLookalike("held-out look-alikes", whole, kHeldOut);
+      AddLookalike("held-out look-alikes cut off", cut, kHeldOut);
+    }
+    LandingStillOptions flat = OptionsOf(0);
+    flat.lookalikes = LookalikeSet::kWithCounterfeits;
+    flat.min_lookalike_major_px = 30;
+    flat.min_lookalike_minor_px = 6;
+    flat.max_lookalike_minor_px = 14;
+    AddLookalike("look-alikes seen from the side", flat, 200);
+  }
+
+  static LandingStillOptions OptionsOf(int condition) {
+    LandingStillOptions options;
+    options.condition = static_cast<StillCondition>(condition);
+    options.min_altitude_m = kLowest;
+    options.max_altitude_m = kHighest;
+    return options;
+  }
+
+  TrainingSource& Add(const std::string& name, const LandingStillOptions& options, int count) {
+    TrainingSource source;
+    source.name = name;
+    std::replace(source.name.begin(), source.name.end(), ' ', '_');
+    source.camera = PaperCamera();
+    source.count = static_cast<std::size_t>(scale_ * count);
+    source.changes = {Change::kNone, Change::kOtherCamera};
+    if (options.condition == StillCondition::kMixed) source.changes.push_back(Change::kHardToSee);
+    source.hardships = BitOf(options.condition);
+    source.is_held_out = options.condition == StillCondition::kHeldOutShadow ||
+                         options.lookalikes == LookalikeSet::kHeldOut;
+    sources_.push_back(std::move(source));
+    return sources_.back();
+  }
+
+  std::uint64_t FirstSeed() const { return kFirstSeed + kSeedsOfSource * (sources_.size() - 1); }
+
+  void AddPattern(const std::string& name, const LandingStillOptions& options, int count) {
+    TrainingSource& source = Add(name, options, count);
+    source.make = [maker = std::make_shared<LandingStillMaker>(options), folder = image_folder_,
+                   name = source.name, first = FirstSeed()](std::size_t i) {
+      const auto still = Kept<LandingStill>(
+          folder, fmt::format("{}_{}", name, i), [&] { return maker->PlacePattern(first + i); },
+          [&] { return maker->MakePattern(first + i); });
+      return FrameFromStill(still, name, first + i);
+    };
+  }
+
+  void AddLookalike(const std::string& kind, const LandingStillOptions& options, int count) {
+    TrainingSource& source =
+        Add(fmt::format("{}, {}", kind, ToString(options.condition)), options, count);
+    if (options.min_lookalike_visible < 1) source.hardships |= BitOf(kCutOffFrame);
+    if (options.min_lookalike_minor_px < 10) source.hardships |= BitOf(kSmallFrame);
+    source.make = [maker = std::make_shared<LandingStillMaker>(options), folder = image_folder_,
+                   name = source.name, first = FirstSeed()](std::size_t i) {
+      const auto still = Kept<LookalikeStill>(
+          folder, fmt::format("{}_{}", name, i), [&] { return maker->PlaceLookalikes(first + i); },
+          [&] { return maker->MakeLookalikes(first + i); });
+      return FrameFromLookalikes(still, name, first + i);
+    };
+  }
+
+  double scale_;
+  std::string image_folder_;
+  std::vector<TrainingSource> sources_;
+};
+
+std::vector<TrainingSource> RealFrames() {
+  std::vector<TrainingSource> sources;
   for (const auto& sets : {ReadLandingReal(KESTREL_DATA_DIR), ReadLandingHard(KESTREL_DATA_DIR)}) {
     for (const LandingFrameSet& set : sets) {
       sources.push_back({set.name,
@@ -118,6 +214,16 @@ std::vector<StillSource> RealFrames() {
     }
   }
   return sources;
+}
+
+unsigned HardshipsOf(const LandingFrame& frame) {
+  constexpr double kSmallPx = 30, kNear_m = 1, kWhole = 0.75;
+  unsigned hardships = 0;
+  if (frame.altitude_m > 0 && frame.altitude_m < kNear_m) hardships |= BitOf(kNearFrame);
+  if (frame.truth != PatternTruth::kWhole) return hardships;
+  if (2 * frame.ring_radius_px < kSmallPx) hardships |= BitOf(kSmallFrame);
+  if (frame.visible_fraction < kWhole) hardships |= BitOf(kCutOffFrame);
+  return hardships;
 }
 
 // Changes the image, and chooses a calibration.
@@ -146,7 +252,7 @@ std::optional<bool> IsPattern(const PrintFinding& print, const LandingFrame& fra
   return false;
 }
 
-std::vector<ScoredFrame> Search(const StillSource& source) {
+std::vector<ScoredFrame> Search(const TrainingSource& source) {
   LandingPatternDetectorOptions options;
   options.min_quality = 1;  // nothing ends the search
   std::vector<std::unique_ptr<LandingModels>> models;
@@ -164,9 +270,13 @@ std::vector<ScoredFrame> Search(const StillSource& source) {
       const auto number = static_cast<std::size_t>(change);
       std::size_t calibration = 0;
       const cv::Mat image = Apply(change, 7919 * i + number, frame.image, &calibration);
-      ScoredFrame scored{
-          fmt::format("{}:{}:{}", source.name, i, number), frame.truth == PatternTruth::kWhole, {}};
-      std::replace(scored.name.begin(), scored.name.end(), ' ', '_');
+      // Of a still all its changes are held out, or none.
+      constexpr std::size_t kOneOf = 5;
+      ScoredFrame scored{fmt::format("{}:{}:{}", source.name, i, number),
+                         source.hardships | HardshipsOf(frame),
+                         source.is_held_out || i % kOneOf == kOneOf - 1,
+                         frame.truth == PatternTruth::kWhole,
+                         {}};
       const FindingObserver observer = [&](const PrintFinding& print) {
         const std::optional<bool> is_pattern = IsPattern(print, frame);
         if (is_pattern) scored.prints.push_back({print.kind, print.doubts, *is_pattern});
@@ -188,7 +298,8 @@ std::vector<ScoredFrame> Search(const StillSource& source) {
 void Write(const std::vector<ScoredFrame>& frames, const std::string& file) {
   auto out = fmt::output_file(file);
   for (const ScoredFrame& frame : frames) {
-    out.print("{} {} {}\n", frame.name, static_cast<int>(frame.has_pattern), frame.prints.size());
+    out.print("{} {} {} {} {}\n", frame.name, frame.hardships, static_cast<int>(frame.is_held_out),
+              static_cast<int>(frame.has_pattern), frame.prints.size());
     for (const ScoredPrint& print : frame.prints) {
       out.print("{} {}", static_cast<int>(print.kind), static_cast<int>(print.is_pattern));
       for (std::size_t i = 0; i < kPrintDoubts; ++i) {
@@ -204,7 +315,7 @@ std::vector<ScoredFrame> Read(const std::string& file) {
   std::vector<ScoredFrame> frames;
   ScoredFrame frame;
   std::size_t prints = 0;
-  while (in >> frame.name >> frame.has_pattern >> prints) {
+  while (in >> frame.name >> frame.hardships >> frame.is_held_out >> frame.has_pattern >> prints) {
     frame.prints.assign(prints, {});
     for (ScoredPrint& print : frame.prints) {
       int kind = 0;
@@ -221,20 +332,14 @@ std::vector<ScoredFrame> Read(const std::string& file) {
   return frames;
 }
 
-std::vector<ScoredFrame> SearchAll(const std::vector<StillSource>& sources) {
+std::vector<ScoredFrame> SearchAll(const std::vector<TrainingSource>& sources) {
   std::vector<ScoredFrame> all;
-  for (const StillSource& source : sources) {
+  for (const TrainingSource& source : sources) {
     const std::vector<ScoredFrame> frames = Search(source);
     fmt::print(stderr, "{}: {} frames\n", source.name, frames.size());
     all.insert(all.end(), frames.begin(), frames.end());
   }
   return all;
-}
-
-// Of a still all its changes are held out, or none.
-bool IsHeldOut(const ScoredFrame& frame) {
-  const std::size_t first = frame.name.find(':'), last = frame.name.rfind(':');
-  return std::stoul(frame.name.substr(first + 1, last - first - 1)) % 5 == 4;
 }
 
 void Report(const std::string& name, const PrintScore& score,
@@ -257,23 +362,47 @@ void Report(const std::string& name, const PrintScore& score,
   }
 }
 
-void Run(const std::string& output, const std::string& findings, std::size_t stills) {
+// How well it is calibrated by what makes a frame hard to see.
+void ReportHardships(const PrintScore& score, const std::vector<ScoredFrame>& frames) {
+  fmt::print(
+      "\n## By condition, held out\n\n| condition | frames | expected calibration error | found, "
+      "of "
+      "those with the pattern | false, of those without |\n|---|---|---|---|---|\n");
+  constexpr double kMinQuality = 0.6;  // the detector's default
+  for (unsigned bit = 0; bit < kStillConditions + kFrameHardships.size(); ++bit) {
+    std::vector<ScoredFrame> chosen;
+    std::copy_if(frames.begin(), frames.end(), std::back_inserter(chosen),
+                 [bit](const ScoredFrame& frame) { return frame.hardships >> bit & 1; });
+    const DetectionRates rates = MeasureRates(score, chosen, kMinQuality);
+    fmt::print("| {} | {} | {:.3f} | {:.1f} % | {:.2f} % |\n", NameOf(bit), chosen.size(),
+               MeasureReliability(score, chosen).expected_calibration_error, 100 * rates.found,
+               100 * rates.false_of_all);
+  }
+}
+
+struct Options {
+  std::string output, findings, images;
+  double scale = 1;
+};
+
+void Run(const Options& options) {
   std::vector<ScoredFrame> frames;
-  if (!findings.empty() && std::filesystem::exists(findings)) {
-    frames = Read(findings);
+  if (!options.findings.empty() && std::filesystem::exists(options.findings)) {
+    frames = Read(options.findings);
   } else {
-    frames = SearchAll(Stills(stills));
-    if (!findings.empty()) Write(frames, findings);
+    frames = SearchAll(StillSources(options.scale, options.images).Take());
+    if (!options.findings.empty()) Write(frames, options.findings);
   }
   const auto held_out = std::stable_partition(
-      frames.begin(), frames.end(), [](const ScoredFrame& frame) { return !IsHeldOut(frame); });
+      frames.begin(), frames.end(), [](const ScoredFrame& frame) { return !frame.is_held_out; });
   const std::vector<ScoredFrame> tests(held_out, frames.end());
   frames.erase(held_out, frames.end());
   const PrintScore score = TrainPrintScore(frames);
   Report("Stills that were trained on", score, frames);
   Report("Held-out stills", score, tests);
+  ReportHardships(score, tests);
   Report("Real and hard frames", score, SearchAll(RealFrames()));
-  if (!output.empty()) fmt::output_file(output).print("{}", ToSource(score));
+  if (!options.output.empty()) fmt::output_file(options.output).print("{}", ToSource(score));
 }
 
 }  // namespace
@@ -281,15 +410,17 @@ void Run(const std::string& output, const std::string& findings, std::size_t sti
 
 int main(int argc, char** argv) {
   CLI::App app("Trains the score of prints on seeded stills; an hour or two on two cores.");
-  std::string output, findings;
-  std::size_t stills = 1500;
-  app.add_option("--output", output, "Header to write, print_score_weights.h");
-  app.add_option("--findings", findings, "File of findings: read when it is there, else written");
-  app.add_option("--stills", stills, "Stills with a flat print; of others in proportion");
+  kestrel::Options options;
+  app.add_option("--output", options.output, "Header to write, print_score_weights.h");
+  app.add_option("--findings", options.findings,
+                 "File of findings: read when it is there, else written");
+  app.add_option("--images", options.images, "Folder that keeps the rendered stills")
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--scale", options.scale, "Share of the stills, of 7,300");
   CLI11_PARSE(app, argc, argv);
   cv::setNumThreads(1);
   return kestrel::ReportMain([&] {
-    kestrel::Run(output, findings, stills);
+    kestrel::Run(options);
     return 0;
   });
 }

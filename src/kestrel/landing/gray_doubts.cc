@@ -10,31 +10,17 @@ namespace {
 constexpr double kLeastLacking = 1e-3;  // of a correlation of 1
 constexpr double kLeastSigma = 1e-4;
 
-double LogLacking(double correlation) { return std::log(std::max(kLeastLacking, 1 - correlation)); }
-
 }  // namespace
 
-void DoubtParts(const PatternMatch& match, PrintDoubts* doubts) {
-  const PartShares::Means means = match.shares.MeansInView();
-  (*doubts)[PrintDoubt::kArmMissing] = 1 - means.worst_arm;
-  (*doubts)[PrintDoubt::kArmsWeak] = 1 - means.arms;
-  (*doubts)[PrintDoubt::kDarkQuadrant] = 1 - means.quadrants;
-  (*doubts)[PrintDoubt::kBrokenRing] = 1 - means.ring;
-  (*doubts)[PrintDoubt::kHidden] = 1 - match.seen;
-}
+double LogLacking(double correlation) { return std::log(std::max(kLeastLacking, 1 - correlation)); }
 
 void DoubtGrayValues(const SmallPatternFitter::Fit& fit, PrintDoubts* doubts) {
-  (*doubts)[PrintDoubt::kOtherSpoke] = fit.others.spoke;
-  (*doubts)[PrintDoubt::kOtherSpokes] = fit.others.spokes;
-  (*doubts)[PrintDoubt::kFrameCorners] = fit.others.frame_corners;
-  (*doubts)[PrintDoubt::kDarkBoard] = fit.others.board_darkness;
-  (*doubts)[PrintDoubt::kOtherFigure] = LogLacking(fit.others.cross_correlation);
-  (*doubts)[PrintDoubt::kUnlike] = LogLacking(fit.correlation);
-  (*doubts)[PrintDoubt::kUnexplained] = 1 - fit.explained;
+  const PartShares::Means means = fit.match.shares.MeansInView();
+  (*doubts)[PrintDoubt::kFaintArm] = 1 - means.worst_arm;
+  (*doubts)[PrintDoubt::kBrokenRing] = 1 - means.ring;
+  (*doubts)[PrintDoubt::kFrameCorners] = fit.frame_corners;
+  (*doubts)[PrintDoubt::kOtherFigure] = LogLacking(fit.cross_correlation);
   (*doubts)[PrintDoubt::kInside] = fit.inside_residual - fit.ring_residual;
-  (*doubts)[PrintDoubt::kOnRing] = fit.ring_residual - fit.inside_residual;
-  (*doubts)[PrintDoubt::kAround] =
-      fit.white_residual - std::max(fit.inside_residual, fit.ring_residual);
 }
 
 void DoubtView(const Eigen::Vector2d& diameters_px, double relative_sigma, PrintDoubts* doubts) {

@@ -3,16 +3,15 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/landing/pattern_match.h"
 #include "kestrel/landing/print_doubts.h"
 #include "kestrel/landing/small_pattern.h"
 
 namespace kestrel {
 
-// What the parts of a print lack: arms, white quadrants, ring.
-void DoubtParts(const PatternMatch& match, PrintDoubts* doubts);
+// Logarithm of what a correlation lacks of 1.
+double LogLacking(double correlation);
 
-// What the gray values of a print are not, and what other signs have of it.
+// What the gray values of a print that was fitted as a whole are not.
 void DoubtGrayValues(const SmallPatternFitter::Fit& fit, PrintDoubts* doubts);
 
 // How little is seen of it: 'diameters_px' of its ring, standard deviation of its position as a

@@ -3,10 +3,10 @@
 
 #include "kestrel/camera/camera_model.h"
 #include "kestrel/camera/ray_table.h"
+#include "kestrel/landing/ink_comparison.h"
 #include "kestrel/landing/landing_pattern_detector.h"
 #include "kestrel/landing/pattern_locator.h"
 #include "kestrel/landing/pattern_match.h"
-#include "kestrel/landing/rectified_print.h"
 #include "kestrel/landing/small_pattern.h"
 
 namespace kestrel {
@@ -19,7 +19,7 @@ struct LandingModels {
         rays(camera),
         matcher(options.pattern),
         locator(camera, options.pattern),
-        rectified(options.pattern),
+        ink(options.pattern),
         small(camera, rays, options.pattern) {}
   // The parts refer to each other.
   LandingModels(const LandingModels&) = delete;
@@ -30,7 +30,7 @@ struct LandingModels {
   RayTable rays;
   PatternMatcher matcher;
   PatternLocator locator;
-  RectifiedPrint rectified;
+  InkComparison ink;
   SmallPatternFitter small;
 };
 

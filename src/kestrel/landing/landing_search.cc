@@ -34,8 +34,7 @@ LandingSearch::LandingSearch(const LandingModels& models, const cv::Mat& image,
       image_(image, &buffers->image, &log_),
       choice_(models.options.min_quality, observer, &log_),
       rings_(models, &buffers->rings, &log_),
-      near_prints_(models, prior_, &image_, &buffers->near_prints,
-                   &buffers->small_prints.gray_values, &choice_, &log_),
+      near_prints_(models, prior_, &image_, &buffers->near_prints, &choice_, &log_),
       small_prints_(models, prior_, &image_, &buffers->small_prints, &choice_, &log_) {
   buffers_.Reserve(image);
   buffers_.near_prints.tested.Clear();

@@ -34,8 +34,6 @@ constexpr double kWhole = 0.75;    // share of the print in view that is no part
 // The middle of a print is where the edges around it have it, where the pose has it elsewhere by
 // more than chance: standard deviations.
 constexpr double kSureCenter = 4;
-constexpr double kSureInEvenLight = 3;  // log odds of what needs no look for shadows
-constexpr double kNotAtAll = -1e9;
 
 // Level of the pyramid at which a ring has about 40 to 80 pixels.
 int ViewLevel(double diameter_px) {
@@ -70,13 +68,11 @@ void NearPrintBuffers::Reserve() {
 
 NearPrintVerifier::NearPrintVerifier(const LandingModels& models, const PriorKnowledge& prior,
                                      SearchedImage* image, NearPrintBuffers* buffers,
-                                     SmallPatternWorkspace* gray_values, DetectionChoice* choice,
-                                     SearchLog* log)
+                                     DetectionChoice* choice, SearchLog* log)
     : models_(models),
       prior_(prior),
       image_(*image),
       buffers_(*buffers),
-      gray_values_(*gray_values),
       choice_(*choice),
       log_(*log) {}
 
@@ -236,17 +232,15 @@ bool NearPrintVerifier::TestPrint(const Hypothesis& print, const Eigen::Vector2d
                   min_step, &alignment)) {
     return false;
   }
-  const PatternView view(alignment.warp, models_.matcher.extent_m(), region);
+  const PatternView view(alignment.warp, models_.ink.extent_m(), region);
   if (!view.valid()) return false;
-  const PatternMatch match = models_.matcher.Match(image, view);
   PrintFinding finding;
-  finding.kind = PrintKind::kByEdges;
-  finding.method = match.seen < kWhole ? CrossMethod::kPartial : print.method;
   finding.diameters_px = diameters_px;
-  DoubtParts(alignment, match, &finding);
-  if (choice_.MayAccept(finding.kind, finding.doubts)) {
-    DoubtGrayValues(alignment, region, &finding.doubts);
-  }
+  const double seen = models_.ink.Doubt(image, view, &finding.doubts);
+  finding.kind = seen < kWhole ? PrintKind::kPart : PrintKind::kByEdges;
+  finding.method = seen < kWhole ? CrossMethod::kPartial : print.method;
+  finding.doubts[PrintDoubt::kHidden] = 1 - seen;
+  DoubtEdges(alignment, &finding);
   bool is_found = false;
   for (std::size_t i = 0; i < rings.size(); ++i) {
     if (!choice_.MayAccept(finding.kind, finding.doubts)) break;
@@ -299,47 +293,12 @@ void NearPrintVerifier::Refuse(const PrintFinding& finding, const PrintAlignment
   }
 }
 
-void NearPrintVerifier::DoubtParts(const PrintAlignment& alignment, const PatternMatch& match,
-                                   PrintFinding* finding) {
-  kestrel::DoubtParts(match, &finding->doubts);
+void NearPrintVerifier::DoubtEdges(const PrintAlignment& alignment, PrintFinding* finding) {
   const PartShares edge_shares = alignment.EdgeShares();
   const PartShares::Means edges = edge_shares.MeansInView();
   const bool shows_arms = *std::max_element(edge_shares.arm.begin(), edge_shares.arm.end()) >= 0;
   finding->doubts[PrintDoubt::kArmEdges] = shows_arms ? 1 - edges.arms : 0;
-  finding->doubts[PrintDoubt::kRingEdges] = 1 - edges.ring;
-  finding->doubts[PrintDoubt::kOtherSpokes] = 0.5 * match.spokes;
   finding->doubts[PrintDoubt::kScatter] = LogShare(alignment.edge_rms_px, MeanDiameter(*finding));
-}
-
-// In even light, or without the shadows on the print if it is more like the pattern so.
-void NearPrintVerifier::DoubtGrayValues(const PrintAlignment& alignment, const ImageRegion& region,
-                                        PrintDoubts* doubts) {
-  using Light = SmallPatternFitter::Light;
-  const PatternView view(alignment.warp, models_.rectified.extent_m(), region);
-  if (!view.valid()) return;
-  models_.rectified.Rectify(image_.At(region.level), view, &buffers_.rectified);
-  const auto doubt_in = [&](Light light) -> std::optional<PrintDoubts> {
-    const auto fit = models_.rectified.Compare(buffers_.rectified, light, &gray_values_);
-    if (!fit) return std::nullopt;
-    PrintDoubts more = *doubts;
-    kestrel::DoubtGrayValues(*fit, &more);
-    double& spokes = more[PrintDoubt::kOtherSpokes];
-    spokes = std::max(spokes, (*doubts)[PrintDoubt::kOtherSpokes]);
-    more[PrintDoubt::kShadows] = light == Light::kShadows ? 1 : 0;
-    return more;
-  };
-  const std::optional<PrintDoubts> even = doubt_in(Light::kEven);
-  const double log_odds = even ? PrintLogOdds(PrintKind::kByEdges, *even) : kNotAtAll;
-  const std::optional<PrintDoubts> evened =
-      log_odds < kSureInEvenLight ? doubt_in(Light::kShadows) : std::nullopt;
-  if (evened && PrintLogOdds(PrintKind::kByEdges, *evened) > log_odds) {
-    *doubts = *evened;
-  } else if (even) {
-    *doubts = *even;
-  } else {
-    (*doubts)[PrintDoubt::kOtherFigure] = (*doubts)[PrintDoubt::kUnlike] = 0;
-    (*doubts)[PrintDoubt::kUnexplained] = 1;
-  }
 }
 
 }  // namespace kestrel

@@ -9,18 +9,15 @@
 #include "kestrel/landing/landing_models.h"
 #include "kestrel/landing/print_alignment.h"
 #include "kestrel/landing/prior_knowledge.h"
-#include "kestrel/landing/rectified_print.h"
 #include "kestrel/landing/ring_candidates.h"
 #include "kestrel/landing/ring_memory.h"
 #include "kestrel/landing/searched_image.h"
-#include "kestrel/landing/small_pattern.h"
 
 namespace kestrel {
 
 // Memory of NearPrintVerifier, which does not allocate once it is reserved.
 struct NearPrintBuffers {
   CrossLinesWorkspace cross_lines;
-  RectifiedPrintBuffers rectified;
   RingMemory tested;
   RingMemory refused;  // rings whose edges were found, and that are something else
 
@@ -34,8 +31,7 @@ class NearPrintVerifier {
  public:
   // The arguments must outlive the test.
   NearPrintVerifier(const LandingModels& models, const PriorKnowledge& prior, SearchedImage* image,
-                    NearPrintBuffers* buffers, SmallPatternWorkspace* gray_values,
-                    DetectionChoice* choice, SearchLog* log);
+                    NearPrintBuffers* buffers, DetectionChoice* choice, SearchLog* log);
 
   void Test(const RingCandidate& ring);
 
@@ -63,16 +59,12 @@ class NearPrintVerifier {
   RigidTransform WithArmOf(const PrintAlignment& alignment, const CirclePose& ring) const;
   bool Locate(const PrintAlignment& alignment, const RigidTransform& initial, PrintFinding finding);
   void Refuse(const PrintFinding& finding, const PrintAlignment& alignment, double reach_px);
-  static void DoubtParts(const PrintAlignment& alignment, const PatternMatch& match,
-                         PrintFinding* finding);
-  void DoubtGrayValues(const PrintAlignment& alignment, const ImageRegion& region,
-                       PrintDoubts* doubts);
+  static void DoubtEdges(const PrintAlignment& alignment, PrintFinding* finding);
 
   const LandingModels& models_;
   const PriorKnowledge& prior_;
   SearchedImage& image_;
   NearPrintBuffers& buffers_;
-  SmallPatternWorkspace& gray_values_;
   DetectionChoice& choice_;
   SearchLog& log_;
 };

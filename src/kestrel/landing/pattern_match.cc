@@ -299,21 +299,7 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
     arm[contrast.quarter].in_highlight +=
         value.known() && sample(contrast.dark).first >= highlight[contrast.quarter];
   }
-  std::size_t place = 0;
-  for (int q = 0; q < 4; ++q) {
-    bool spoke = false;
-    for (int turn = 0; turn < kQuadrantTurns; ++turn) {
-      int dark = 0;
-      for (std::size_t radius = 0; radius < kQuadrantRadii.size(); ++radius, ++place) {
-        const Contrast& contrast = quadrants_[place];
-        const Seen value = look_at(contrast);
-        count_in(contrast, value, &quadrant);
-        dark += value.known() && !agrees(value, contrast.quarter);
-      }
-      spoke |= dark == static_cast<int>(kQuadrantRadii.size());
-    }
-    match.spokes += spoke;
-  }
+  for (const Contrast& contrast : quadrants_) count_in(contrast, look_at(contrast), &quadrant);
   for (int q = 0; q < 4; ++q) {
     match.shares.arm[q] = arm[q].Share();
     match.shares.quadrant[q] = quadrant[q].Share();

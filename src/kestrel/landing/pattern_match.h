@@ -36,7 +36,6 @@ struct PatternMatch {
   // hides both, nor when a half of an arm lies in a highlight. White: brighter than ring and arms.
   // Ring: darker than the white around it.
   PartShares shares;
-  int spokes = 0;       // quadrants with a dark line where all should be white
   double contrast = 0;  // of ring and white, gray values, median
   double seen = 0;      // share of all contrasts that the image shows
 

@@ -15,8 +15,7 @@ constexpr double kInPlace = 0.65;
 
 // Whether a match speaks for the print in all that it measures.
 bool AgreesInAll(const PatternMatch& match) {
-  return match.Agreement() > kInPlace && match.shares.MeansInView().worst_arm > kInPlace &&
-         match.spokes < 2;
+  return match.Agreement() > kInPlace && match.shares.MeansInView().worst_arm > kInPlace;
 }
 
 class PatternMatcherTest : public ::testing::Test {
@@ -41,7 +40,6 @@ TEST_F(PatternMatcherTest, ThePatternAgreesEverywhere) {
     EXPECT_GT(match.shares.ring[k], 0.95);
   }
   EXPECT_EQ(match.seen, 1);
-  EXPECT_EQ(match.spokes, 0);
   EXPECT_NEAR(match.contrast, 160, 25);
   EXPECT_GT(match.Agreement(), 0.9);
 }
@@ -151,7 +149,6 @@ TEST_F(PatternMatcherTest, AShadowBesideAnArmCostsLittle) {
   }
   const PatternMatch match = Match(shaded, pose_);
   for (int k = 0; k < 4; ++k) EXPECT_GT(match.shares.arm[k], 0.8) << k;
-  EXPECT_EQ(match.spokes, 0);
   EXPECT_GT(match.Agreement(), 0.8);
 }
 

@@ -8,39 +8,42 @@
 
 namespace kestrel {
 
-// How a print was looked at: by its edges, or as a whole where its strokes are no wider than the
-// blur.
-enum class PrintKind { kByEdges, kAsAWhole };
-inline constexpr std::size_t kPrintKinds = 2;
+// How a print was looked at: by its edges, all or a part of it; or as a whole where its strokes are
+// no wider than the blur.
+enum class PrintKind { kByEdges, kPart, kAsAWhole };
+inline constexpr std::size_t kPrintKinds = 3;
 
 // What may speak against a print that was located. The larger a number, the less it looks like the
-// pattern.
+// pattern. What was not measured counts nothing.
 enum class PrintDoubt {
-  kArmMissing,    // share of the contrast that the worst arm lacks
-  kArmsWeak,      // the same, mean of the arms
-  kDarkQuadrant,  // share of the contrast that the white between the arms lacks, mean
+  // By ink and white, see InkComparison. Shares of places, 0 to 1.
+  kInklessArm,     // not as dark as ink, of the worst arm
+  kDarkQuadrants,  // too dark for white between the arms, where it is best
+  kInkOnWhite,     // the same, as dark as ink
+  kDarkHub,        // too dark for white near the middle of the print, second worst of four
+  kOtherSpoke,     // as dark as ink on a line between the arms, the worst
+  kOtherSpokes,    // the same, of the second worst
+  kDarkBoard,      // too dark for white around the ring, median of the directions
+  kDarkCorners,    // the same beyond the ends of the arms, more than between them
+  kUnlike,         // logarithm of what the correlation with the print lacks of 1
+  // By edges
+  kArmEdges,  // share of the edges of the arms that are not in their place
+  kScatter,   // logarithm of the scatter of the edges, of the ring's mean diameter
+  kMisfit,    // logarithm of the edges' distance from a flat print seen through the lens
+  // By the fit of the print as a whole
+  kFaintArm,      // share of the contrast that the worst arm lacks
   kBrokenRing,    // share of the contrast that the ring lacks, mean but for the worst quarter
-  kArmEdges,      // share of the edges of the arms that are not in their place
-  kRingEdges,     // share of the edges of the ring that are not, but for the worst quarter
-  kOtherSpoke,    // darkness of the darkest line between the arms
-  kOtherSpokes,   // the same of the second darkest
   kFrameCorners,  // darkness beyond the ends of the arms, against between them
-  kDarkBoard,     // darkness of the board around the ring
   kOtherFigure,   // logarithm of what the correlation inside of the ring lacks of 1
-  kUnlike,        // the same of the whole print
-  kUnexplained,   // share of the variance of the gray values that the print leaves
   kInside,        // residuals inside of the ring more than on it, shares of the contrast
-  kOnRing,        // residuals on the ring more than inside
-  kAround,        // residuals around it more than on it and inside
-  kScatter,       // logarithm of the scatter of the edges, of the ring's mean diameter
-  kMisfit,        // logarithm of the edges' distance from a flat print seen through the lens
-  kUncertain,     // logarithm of the position's standard deviation, of the distance
-  kSmall,         // logarithm of the ring's shorter diameter in pixels, negative
-  kFlat,          // logarithm of its axis ratio, negative
-  kHidden,        // share of the print that is not in view
   kShadows,       // 1 where shadows had to be taken out to see it
+  // By how little is seen of it
+  kUncertain,  // logarithm of the position's standard deviation, of the distance
+  kSmall,      // logarithm of the ring's shorter diameter in pixels, negative
+  kFlat,       // logarithm of its axis ratio, negative
+  kHidden,     // share of the print that is not in view
 };
-inline constexpr std::size_t kPrintDoubts = 23;
+inline constexpr std::size_t kPrintDoubts = 22;
 
 class PrintDoubts {
  public:

@@ -12,7 +12,7 @@
 namespace kestrel {
 namespace {
 
-constexpr PrintKind kKinds[] = {PrintKind::kByEdges, PrintKind::kAsAWhole};
+constexpr PrintKind kKinds[] = {PrintKind::kByEdges, PrintKind::kPart, PrintKind::kAsAWhole};
 
 PrintDoubt DoubtAt(std::size_t index) { return static_cast<PrintDoubt>(index); }
 
@@ -87,7 +87,7 @@ TEST(PrintDoubts, TheMainDoubtIsTheOneThatTakesMost) {
     }
   }
   PrintDoubts no_arm;
-  no_arm[PrintDoubt::kArmMissing] = 1;
+  no_arm[PrintDoubt::kInklessArm] = 1;
   EXPECT_EQ(MainDoubt(PrintKind::kByEdges, no_arm), "an arm of the cross is missing");
   PrintDoubts broken;
   broken[PrintDoubt::kBrokenRing] = 1;

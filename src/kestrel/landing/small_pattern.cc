@@ -80,9 +80,8 @@ struct Zones {
     const SmallPatternWorkspace::Points& points = workspace.points;
     for (std::size_t i = 0; i < workspace.count; ++i) {
       const double radius = std::hypot(points.x[i], points.y[i]);
-      Zone& zone = radius < inner   ? quadrants[QuadrantOf(points.x[i], points.y[i])]
-                   : radius < outer ? ring
-                                    : white;
+      if (radius >= outer) continue;
+      Zone& zone = radius < inner ? quadrants[QuadrantOf(points.x[i], points.y[i])] : ring;
       const double residual =
           std::clamp<double>(points.seen[i] - points.expected[i], -limit, limit);
       zone.squares += residual * residual - noise_variance;
@@ -110,7 +109,7 @@ struct Zones {
   }
 
   std::array<Zone, 4> quadrants;  // of the inside of the ring
-  Zone ring, white;
+  Zone ring;
 };
 
 }  // namespace
@@ -120,7 +119,6 @@ SmallPatternFitter::SmallPatternFitter(const CameraModel& camera, const RayTable
     : camera_(camera), rays_(rays), pattern_(pattern) {
   const double margin = 0.5 * pattern.board_size_m - pattern.outer_radius_m();
   extent_m_ = pattern.outer_radius_m() + std::min(1.0 * pattern.ring_width_m, 0.6 * margin);
-  board_radius_m_ = pattern.outer_radius_m() + 0.6 * margin;
 }
 
 SmallPatternWorkspace::SmallPatternWorkspace() {
@@ -138,13 +136,12 @@ SmallPatternWorkspace::SmallPatternWorkspace() {
   make_room(points.dark_by_x, points.dark_by_y, points.dark_by_log_blur);
   make_room(points.expected, points.seen, points.residual, points.weight, points.root_weight);
   for (Column& column : jacobian) make_room(column);
-  for (Column& column : lines) make_room(column);
 }
 
 // Collects the pixels that show the disc of the print and the white around it under 'pose': every
 // second, third, ... of every such row where a box around them has more than 'enough_pixels'.
-bool SmallPatternFitter::Gather(const MaskedImage& image, const RigidTransform& pose,
-                                int enough_pixels, SmallPatternWorkspace* workspace) const {
+bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose, int enough_pixels,
+                                SmallPatternWorkspace* workspace) const {
   workspace->count = 0;
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
@@ -163,8 +160,8 @@ bool SmallPatternFitter::Gather(const MaskedImage& image, const RigidTransform& 
   }
   const int x0 = std::max(0, static_cast<int>(std::floor(low.x())));
   const int y0 = std::max(0, static_cast<int>(std::floor(low.y())));
-  const int x1 = std::min(image.gray.cols - 1, static_cast<int>(std::ceil(high.x())));
-  const int y1 = std::min(image.gray.rows - 1, static_cast<int>(std::ceil(high.y())));
+  const int x1 = std::min(image.cols - 1, static_cast<int>(std::ceil(high.x())));
+  const int y1 = std::min(image.rows - 1, static_cast<int>(std::ceil(high.y())));
   if (x1 - x0 < 4 || y1 - y0 < 4 || x1 - x0 > kMaxSide || y1 - y0 > kMaxSide) return false;
   const int stride =
       1 + static_cast<int>(std::sqrt((x1 - x0) * (y1 - y0) / static_cast<double>(enough_pixels)));
@@ -194,10 +191,9 @@ bool SmallPatternFitter::Gather(const MaskedImage& image, const RigidTransform& 
     const Eigen::Vector3f ray(pixels.ray[0][i], pixels.ray[1][i], pixels.ray[2][i]);
     const Eigen::Vector3f h = plane_from_ray * ray;
     const int row = static_cast<int>(workspace->v[i]), column = static_cast<int>(workspace->u[i]);
-    if (image.seen && image.seen->ptr(row)[column] == 0) continue;
     if (!(h.z() > 0) || h.head<2>().squaredNorm() > extent * h.z() * h.z()) continue;
     for (int k = 0; k < 3; ++k) pixels.ray[k][count] = ray(k);
-    pixels.gray[count] = image.gray.ptr(row)[column];
+    pixels.gray[count] = image.ptr(row)[column];
     workspace->u[count] = workspace->u[i];
     workspace->v[count++] = workspace->v[i];
   }
@@ -336,7 +332,7 @@ bool SmallPatternFitter::Improve(const System& system, const std::optional<Norma
 }
 
 std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
-    const MaskedImage& image, const RigidTransform& initial, Light light, int iterations,
+    const cv::Mat& image, const RigidTransform& initial, Light light, int iterations,
     SmallPatternWorkspace* workspace, const std::optional<NormalPrior>& prior) const {
   const int enough = light == Light::kShadows ? kEnoughToTellInk : kEnoughToFit;
   if (!Gather(image, initial, enough, workspace)) return std::nullopt;
@@ -370,12 +366,12 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   const Zones zones(pattern_, *workspace, limit, state.noise_variance);
   fit.inside_residual = zones.InsideRms() / state.contrast;
   fit.ring_residual = zones.ring.Rms() / state.contrast;
-  fit.white_residual = zones.white.Rms() / state.contrast;
   fit.correlation = system.correlation(state.noise_variance);
   fit.explained = system.explained(state.noise_variance);
   fit.match.contrast = state.contrast;
   MeasureParts(*workspace, state, &fit.match);
-  fit.others = MeasureOthers(image, state, workspace);
+  fit.frame_corners = FrameCorners(*workspace, state);
+  fit.cross_correlation = CrossCorrelation(*workspace, state);
   return fit;
 }
 

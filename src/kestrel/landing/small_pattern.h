@@ -24,7 +24,6 @@ namespace kestrel {
 // so that many are computed at once.
 struct SmallPatternWorkspace {
   static constexpr std::size_t kUnknowns = 11;
-  static constexpr std::size_t kLines = 3;
   using Column = std::vector<float>;
 
   struct Pixels {
@@ -70,10 +69,9 @@ struct SmallPatternWorkspace {
   Patch patch;
   Column light;  // on the pixels
   std::array<Column, kUnknowns + 1>
-      jacobian;                      // and the residual, both times the root of the weight
-  std::array<Column, kLines> lines;  // darkness of lines that are not on the print
-  Column u, v;                       // of the pixels that are gathered
-  Column magnitudes;                 // of the residuals
+      jacobian;       // and the residual, both times the root of the weight
+  Column u, v;        // of the pixels that are gathered
+  Column magnitudes;  // of the residuals
 
   SmallPatternWorkspace();
 };
@@ -88,16 +86,6 @@ class SmallPatternFitter {
   SmallPatternFitter(const CameraModel& camera, const RayTable& rays,
                      const LandingPattern& pattern);
 
-  // What tells other signs from the print. Darkness is a share of the print's contrast.
-  struct OtherSigns {
-    double spoke;              // darkest of the lines between the arms, one a quadrant
-    double spokes;             // the second of them
-    double frame_corners;      // beyond the ends of the arms, against between them
-    double cross_correlation;  // of image and print inside of the ring, noise left aside: low for
-                               // a blot
-    double board_darkness;     // around the ring: 0 white, 1 as dark as the ring
-  };
-
   struct Fit {
     PatternLocation location;  // without edges
     PatternMatch match;        // amplitudes of arms, white quadrants and ring instead of shares
@@ -107,17 +95,12 @@ class SmallPatternFitter {
     // of noise (adjusted R^2): low where few pixels are fitted well, by chance.
     double explained;
     // Residuals (root of their mean square, outliers bounded; share of the contrast) inside of the
-    // ring but for the worst quadrant, on the ring, and on the white around it.
+    // ring but for the worst quadrant, and on the ring.
     double inside_residual;
     double ring_residual;
-    double white_residual;
-    OtherSigns others;
-  };
-
-  // CV_8UC1; where 'seen', of the same kind, is 0, it shows nothing.
-  struct MaskedImage {
-    const cv::Mat& gray;
-    const cv::Mat* seen = nullptr;
+    double frame_corners;      // darkness beyond the ends of the arms, against between them
+    double cross_correlation;  // of image and print inside of the ring, noise left aside: low for
+                               // a blot
   };
 
   struct Start {
@@ -141,14 +124,14 @@ class SmallPatternFitter {
 
   // Refines 'initial', which must be within about a stroke's width. Nothing when the image shows
   // too little of the print, the fit does not converge or there are no shadows. Does not allocate.
-  std::optional<Fit> Refine(const MaskedImage& image, const RigidTransform& initial, Light light,
+  std::optional<Fit> Refine(const cv::Mat& image, const RigidTransform& initial, Light light,
                             int iterations, SmallPatternWorkspace* workspace,
                             const std::optional<NormalPrior>& prior = {}) const;
 
  private:
   struct State;
   struct System;
-  bool Gather(const MaskedImage& image, const RigidTransform& pose, int enough_pixels,
+  bool Gather(const cv::Mat& image, const RigidTransform& pose, int enough_pixels,
               SmallPatternWorkspace* workspace) const;
   void Predict(const RigidTransform& pose, double blur_px, SmallPatternWorkspace* workspace) const;
   void MeasureLevels(const SmallPatternWorkspace& workspace, State* state) const;
@@ -159,20 +142,12 @@ class SmallPatternFitter {
                const SmallPatternWorkspace& workspace, double limit, State* state) const;
   void MeasureParts(const SmallPatternWorkspace& workspace, const State& state,
                     PatternMatch* match) const;
-  OtherSigns MeasureOthers(const MaskedImage& image, const State& state,
-                           SmallPatternWorkspace* workspace) const;
-  std::array<double, 4> OtherSpokes(const State& state, SmallPatternWorkspace* workspace) const;
   double FrameCorners(const SmallPatternWorkspace& workspace, const State& state) const;
   double CrossCorrelation(const SmallPatternWorkspace& workspace, const State& state) const;
-  double WhiteDarkness(const State& state, SmallPatternWorkspace* workspace) const;
-  double BoardDarkness(const MaskedImage& image, const State& state,
-                       SmallPatternWorkspace* workspace) const;
-
   const CameraModel& camera_;
   const RayTable& rays_;
   LandingPattern pattern_;
-  double extent_m_;        // radius of what is fitted
-  double board_radius_m_;  // of a circle on the board, beyond that
+  double extent_m_;  // radius of what is fitted
 };
 
 }  // namespace kestrel

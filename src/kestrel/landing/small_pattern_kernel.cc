@@ -237,36 +237,6 @@ void SumProducts(std::span<const float* const> columns, std::size_t count, doubl
   }
 }
 
-void EvaluateLines(const PrintModel& model,
-                   const std::array<std::array<float, 2>, SmallPatternWorkspace::kLines>& normals,
-                   SmallPatternWorkspace* workspace) {
-  const SmallPatternWorkspace::Points& points = workspace->points;
-  const Vector zero = Of(0);
-  for (std::size_t i = 0; i < workspace->count; i += hn::Lanes(Floats())) {
-    // Turned by right angles into the first quadrant, x and y and their derivatives change places.
-    const auto in_place = hn::Ge(hn::Mul(At(points.x, i), At(points.y, i)), zero);
-    const auto turned = [&](const std::vector<float>& x, const std::vector<float>& y, bool first)
-                            HWY_ATTR {
-                              return first ? hn::IfThenElse(in_place, At(x, i), At(y, i))
-                                           : hn::IfThenElse(in_place, At(y, i), hn::Neg(At(x, i)));
-                            };
-    const auto across = [&](const std::vector<float>& x, const std::vector<float>& y,
-                            const std::array<float, 2>& normal) HWY_ATTR {
-      return hn::MulAdd(turned(x, y, true), Of(normal[0]),
-                        hn::Mul(turned(x, y, false), Of(normal[1])));
-    };
-    for (std::size_t line = 0; line < normals.size(); ++line) {
-      const Vector by_u = across(points.x_by_u, points.y_by_u, normals[line]);
-      const Vector by_v = across(points.x_by_v, points.y_by_v, normals[line]);
-      const Vector distance = across(points.x, points.y, normals[line]);
-      Put(BlurredStroke(distance, -model.arm_half_width_m, model.arm_half_width_m,
-                        InverseBlur(model.blur_px, Length(by_u, by_v)))
-              .value,
-          &workspace->lines[line], i);
-    }
-  }
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace kestrel
 HWY_AFTER_NAMESPACE();
@@ -278,7 +248,6 @@ HWY_EXPORT(EvaluatePrint);
 HWY_EXPORT(CompareGrays);
 HWY_EXPORT(Differentiate);
 HWY_EXPORT(SumProducts);
-HWY_EXPORT(EvaluateLines);
 
 void EvaluatePrint(const PrintModel& model, SmallPatternWorkspace* workspace) {
   HWY_DYNAMIC_DISPATCH(EvaluatePrint)(model, workspace);
@@ -294,12 +263,6 @@ void Differentiate(const PrintAxes& axes, float contrast, SmallPatternWorkspace*
 
 void SumProducts(std::span<const float* const> columns, std::size_t count, double* products) {
   HWY_DYNAMIC_DISPATCH(SumProducts)(columns, count, products);
-}
-
-void EvaluateLines(const PrintModel& model,
-                   const std::array<std::array<float, 2>, SmallPatternWorkspace::kLines>& normals,
-                   SmallPatternWorkspace* workspace) {
-  HWY_DYNAMIC_DISPATCH(EvaluateLines)(model, normals, workspace);
 }
 
 }  // namespace kestrel

@@ -52,10 +52,4 @@ void Differentiate(const PrintAxes& axes, float contrast, SmallPatternWorkspace*
 // Sums over 'count' rows of the products of any two columns: writes columns.size() squared of them.
 void SumProducts(std::span<const float* const> columns, std::size_t count, double* products);
 
-// How dark lines through the centre would be, of the arms' width and at so many directions in the
-// first quadrant, in the quadrant of each evaluated point: fills 'lines'.
-void EvaluateLines(const PrintModel& model,
-                   const std::array<std::array<float, 2>, SmallPatternWorkspace::kLines>& normals,
-                   SmallPatternWorkspace* workspace);
-
 }  // namespace kestrel

@@ -135,30 +135,6 @@ TEST_F(SmallPatternKernelTest, OutliersAndWhatIsCutOffCountLess) {
   });
 }
 
-TEST_F(SmallPatternKernelTest, LinesOfAQuadrantLieWhereTheyShould) {
-  ForEveryTarget([&] {
-    const PrintModel model = ModelOf(pattern_, pose_, 0.05);
-    EvaluatePrint(model, &workspace_);
-    std::array<std::array<float, 2>, SmallPatternWorkspace::kLines> normals;
-    constexpr std::array<double, SmallPatternWorkspace::kLines> kTurns{0.6, 0.785, 1.0};  // rad
-    for (std::size_t k = 0; k < kTurns.size(); ++k) {
-      normals[k] = {static_cast<float>(-std::sin(kTurns[k])),
-                    static_cast<float>(std::cos(kTurns[k]))};
-    }
-    EvaluateLines(model, normals, &workspace_);
-    for (std::size_t i = 0; i < workspace_.count; ++i) {
-      const double x = workspace_.points.x[i], y = workspace_.points.y[i];
-      const double angle = QuadrantOf(x, y) * std::acos(0.0);
-      for (std::size_t k = 0; k < kTurns.size(); ++k) {
-        const double across = y * std::cos(angle + kTurns[k]) - x * std::sin(angle + kTurns[k]);
-        const double away = std::abs(across) - 0.5 * pattern_.arm_width_m;
-        if (std::abs(away) < 0.02) continue;
-        EXPECT_NEAR(workspace_.lines[k][i], away < 0 ? 1 : 0, 0.01) << x << " " << y;
-      }
-    }
-  });
-}
-
 TEST(SumProducts, AreThoseOfAllPairs) {
   ForEveryTarget([&] {
     Random random(1);

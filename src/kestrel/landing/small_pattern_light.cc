@@ -139,20 +139,9 @@ bool SmallPatternFitter::EvenOut(SmallPatternWorkspace* workspace, State* state)
   const float brightest = Quantile(kBrightest, workspace->count, &workspace->magnitudes);
   const auto least = static_cast<float>(kLeastLight) * brightest;
 
-  std::array<double, kBoardDirections> sum{}, count{};
-  const SmallPatternWorkspace::Points& points = workspace->points;
   for (std::size_t i = 0; i < workspace->count; ++i) {
     const float factor = brightest / std::clamp(workspace->light[i], least, brightest);
     workspace->pixels.gray[i] *= factor;
-    if (std::hypot(points.x[i], points.y[i]) < pattern_.outer_radius_m()) continue;
-    const double turn = std::atan2(points.y[i], points.x[i]) / (2 * std::numbers::pi);
-    const int direction =
-        static_cast<int>(std::floor((turn + 1) * kBoardDirections + 0.5)) % kBoardDirections;
-    sum[direction] += factor;
-    ++count[direction];
-  }
-  for (int i = 0; i < kBoardDirections; ++i) {
-    state->board_factor[i] = count[i] > 0 ? sum[i] / count[i] : 1;
   }
   if (Unexplained(*workspace) > kMaxRemaining * before) return false;
   MeasureLevels(*workspace, state);

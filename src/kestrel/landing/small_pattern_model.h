@@ -24,7 +24,6 @@ inline constexpr double kMinContrast = 2;       // gray values
 inline constexpr int kEnoughToFit = 1200;
 inline constexpr int kEnoughToStart = 600;
 inline constexpr int kEnoughToTellInk = 2400;  // from light, by its width
-inline constexpr int kBoardDirections = 24;    // in which the board is looked at
 
 // Ray to homogeneous coordinates of the plane of a pose.
 inline Eigen::Matrix3d PlaneFromRay(const RigidTransform& camera_from_pattern) {
@@ -100,14 +99,6 @@ struct SmallPatternFitter::State {
   double noise_variance = 0;
 
   Eigen::Vector2d slope{0, 0};  // of the light over the print, gray values per metre
-  // Factors that take the shadows out of the gray values of the board, by direction.
-  std::array<double, kBoardDirections> board_factor = Filled(1.0);
-
-  static constexpr std::array<double, kBoardDirections> Filled(double value) {
-    std::array<double, kBoardDirections> all{};
-    all.fill(value);
-    return all;
-  }
   double White(double x, double y) const { return white + slope.x() * x + slope.y() * y; }
   // What exceeds white by more is a highlight: the print cannot be so bright.
   double Highlight() const {

@@ -91,7 +91,7 @@ SmallPrintVerifier::Outcome SmallPrintVerifier::TestPose(const CirclePose& pose,
   log_.Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
   const std::optional<NormalPrior> level = prior_.LevelPrior(pose.normal);
   const auto fit = [&](const RigidTransform& initial, Light light) {
-    return models_.small.Refine({image_.whole()}, initial, light, kFitIterations,
+    return models_.small.Refine(image_.whole(), initial, light, kFitIterations,
                                 &buffers_.gray_values, level);
   };
   const auto in_even = fit(start.camera_from_pattern, Light::kEven);
@@ -117,7 +117,6 @@ std::optional<PrintFinding> SmallPrintVerifier::FindingOf(const SmallPatternFitt
   const RigidTransform& pose = fit.location.camera_from_pattern;
   PrintFinding finding;
   finding.kind = PrintKind::kAsAWhole;
-  finding.method = fit.match.seen < kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants;
   finding.location = fit.location;
   finding.diameters_px =
       RingDiametersPx(models_.camera, models_.options.pattern.outer_radius_m(),
@@ -127,7 +126,11 @@ std::optional<PrintFinding> SmallPrintVerifier::FindingOf(const SmallPatternFitt
           ProjectionStatus::kOutsideModel) {
     return std::nullopt;
   }
-  DoubtParts(fit.match, &finding.doubts);
+  const PatternView view(models_.camera, pose, models_.ink.extent_m(), {});
+  if (!view.valid()) return std::nullopt;
+  const double seen = models_.ink.Doubt(image_.whole(), view, &finding.doubts);
+  finding.method = seen < kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants;
+  finding.doubts[PrintDoubt::kHidden] = 1 - seen;
   DoubtGrayValues(fit, &finding.doubts);
   DoubtView(finding.diameters_px, finding.relative_sigma(), &finding.doubts);
   finding.doubts[PrintDoubt::kShadows] = light == Light::kShadows ? 1 : 0;
