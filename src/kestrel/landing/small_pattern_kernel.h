@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstddef>
-#include <span>
 
 #include "kestrel/landing/small_pattern.h"
 
@@ -48,9 +47,6 @@ struct PrintAxes {
   std::array<float, 3> normal;
 };
 void Differentiate(const PrintAxes& axes, float contrast, SmallPatternWorkspace* workspace);
-
-// Sums over 'count' rows of the products of any two columns: writes columns.size() squared of them.
-void SumProducts(std::span<const float* const> columns, std::size_t count, double* products);
 
 // How dark lines through the centre would be, of the arms' width and at so many directions in the
 // first quadrant, in the quadrant of each evaluated point: fills 'lines'.
