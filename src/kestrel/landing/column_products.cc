@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/landing/column_products.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kestrel/landing/column_products.cc"
 #include <hwy/foreach_target.h>
@@ -13,36 +15,41 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Of a column and those of two others.
-HWY_INLINE void SumTwo(const float* column, const float* first, const float* second,
-                       std::size_t count, double* sums) {
-  const hn::CappedTag<double, 8> d;
-  const hn::Rebind<float, decltype(d)> df;
-  const std::size_t lanes = hn::Lanes(d);
-  auto sum0 = hn::Zero(d), sum1 = hn::Zero(d);
-  std::size_t i = 0;
-  for (; i + lanes <= count; i += lanes) {
-    const auto values = hn::PromoteTo(d, hn::LoadU(df, column + i));
-    sum0 = hn::MulAdd(values, hn::PromoteTo(d, hn::LoadU(df, first + i)), sum0);
-    sum1 = hn::MulAdd(values, hn::PromoteTo(d, hn::LoadU(df, second + i)), sum1);
-  }
-  sums[0] = hn::GetLane(hn::SumOfLanes(d, sum0));
-  sums[1] = hn::GetLane(hn::SumOfLanes(d, sum1));
-  for (; i < count; ++i) {
-    sums[0] += static_cast<double>(column[i]) * first[i];
-    sums[1] += static_cast<double>(column[i]) * second[i];
-  }
+using Doubles = hn::CappedTag<double, 8>;
+using Floats = hn::Rebind<float, Doubles>;
+constexpr std::size_t kMostLanes = 8;
+
+HWY_INLINE hn::Vec<Doubles> At(const float* values) {
+  return hn::PromoteTo(Doubles(), hn::LoadU(Floats(), values));
 }
 
 void SumProducts(std::span<const float* const> columns, std::size_t count, double* products) {
+  const Doubles d;
+  const std::size_t lanes = hn::Lanes(d);
   const std::size_t size = columns.size();
+  const std::size_t whole = count - count % lanes;
+  // The rows that fill no vector, and zeros.
+  float rest[kMostColumns][kMostLanes] = {};
+  for (std::size_t k = 0; k < size; ++k) {
+    std::copy(columns[k] + whole, columns[k] + count, rest[k]);
+  }
   for (std::size_t a = 0; a < size; ++a) {
     for (std::size_t b = 0; b <= a; b += 2) {
-      const std::size_t next = b < a ? b + 1 : b;
-      double sums[2];
-      SumTwo(columns[a], columns[b], columns[next], count, sums);
-      products[a * size + b] = products[b * size + a] = sums[0];
-      products[a * size + next] = products[next * size + a] = sums[next - b];
+      const std::size_t next = std::min(b + 1, a);
+      const auto last = At(rest[a]);
+      auto sum = hn::Mul(last, At(rest[b]));
+      auto next_sum = hn::Mul(last, At(rest[next]));
+      for (std::size_t i = 0; i < whole; i += lanes) {
+        const auto values = At(columns[a] + i);
+        sum = hn::MulAdd(values, At(columns[b] + i), sum);
+        next_sum = hn::MulAdd(values, At(columns[next] + i), next_sum);
+      }
+      const auto put = [&](std::size_t other, auto lane_sums) HWY_ATTR {
+        products[a * size + other] = products[other * size + a] =
+            hn::GetLane(hn::SumOfLanes(d, lane_sums));
+      };
+      put(b, sum);
+      put(next, next_sum);
     }
   }
 }

@@ -31,8 +31,6 @@ using Column = std::array<float, PrintOutline::kMaxPlaces>;
 using PoseVector = Eigen::Matrix<double, kPoseUnknowns, 1>;
 using Vector = Eigen::Matrix<double, kUnknowns, 1>;
 using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
-// Of the first unknowns, in memory of fixed size.
-using PartMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kUnknowns, kUnknowns>;
 
 constexpr std::size_t kMinEdges = 12;  // too few of those for a pose
 constexpr int kMaxSteps = 8;
@@ -103,6 +101,13 @@ struct PatternLocator::Equations {
     h(unknown, unknown) += weight;
     g(unknown) -= weight * value;
   }
+  // Step of the pose alone.
+  Vector PoseStep() const {
+    Vector step = Vector::Zero();
+    step.head<kPoseUnknowns>() =
+        h.topLeftCorner<kPoseUnknowns, kPoseUnknowns>().ldlt().solve(g.head<kPoseUnknowns>());
+    return step;
+  }
   void PullCalibration(const State& state, double focal_weight, double principal_weight) {
     PullToZero(kFocal, state.log_focal, focal_weight);
     PullToZero(kFocal + 1, state.principal_px.x(), principal_weight);
@@ -148,7 +153,8 @@ struct PatternLocator::Linearized {
     std::array<const float*, kEdgeColumns> pointers;
     int count = 0;
     for (int k = 0; k < kEdgeColumns; ++k) {
-      if (k >= unknowns && k != kSpread && k < kOffset) continue;
+      const bool is_asked = k < unknowns || k == kSpread || k == kOffset;
+      if (!is_asked && unknowns < kUnknowns) continue;
       which[count] = k;
       pointers[count++] = columns[k].data();
     }
@@ -342,33 +348,39 @@ void PatternLocator::Linearize(const State& state, double scale_px, int unknowns
 
 // What equations say of the first of their unknowns, where the others stay as they are.
 struct PatternLocator::Solution {
-  Solution(const Linearized& linearized, const Equations& equations, int unknowns)
-      : decomposition(equations.h.topLeftCorner(unknowns, unknowns)),
-        step(Solve(equations.g)),
-        residuals(linearized, step, unknowns) {}
-
-  Vector Solve(const Vector& g) const {
-    const auto unknowns = decomposition.rows();
-    Vector solution = Vector::Zero();
-    solution.head(unknowns) = decomposition.solve(g.head(unknowns));
+  template <int kCount>
+  static Solution Of(const Linearized& linearized, const Equations& equations) {
+    using Part = Eigen::Matrix<double, kCount, kCount>;
+    const Eigen::LDLT<Part> decomposition(equations.h.topLeftCorner<kCount, kCount>());
+    Solution solution;
+    solution.inverse.topLeftCorner<kCount, kCount>() = decomposition.solve(Part::Identity());
+    solution.step.head<kCount>() = decomposition.solve(equations.g.head<kCount>());
+    const Residuals residuals(linearized, solution.step, kCount);
+    solution.mean_square = residuals.MeanSquare();
+    solution.edge_variance = residuals.EdgeVariance();
     return solution;
   }
-  Matrix Covariance() const {
-    const auto unknowns = decomposition.rows();
-    Matrix covariance = Matrix::Zero();
-    covariance.topLeftCorner(unknowns, unknowns) =
-        residuals.EdgeVariance() *
-        decomposition.solve(PartMatrix::Identity(unknowns, unknowns).eval());
-    return covariance;
-  }
-  double Sigma(int unknown) const {
-    return std::sqrt(residuals.EdgeVariance() * Solve(Vector::Unit(unknown))(unknown));
-  }
 
-  Eigen::LDLT<PartMatrix> decomposition;
-  Vector step;
-  Residuals residuals;
+  Matrix Covariance() const { return edge_variance * inverse; }
+  double Sigma(int unknown) const { return std::sqrt(edge_variance * inverse(unknown, unknown)); }
+
+  Matrix inverse = Matrix::Zero();  // of the equations
+  Vector step = Vector::Zero();
+  double mean_square;  // of what the step leaves of the offsets
+  double edge_variance;
 };
+
+// The equations with what is known of the plane, which counts by the variance of the edges.
+PatternLocator::Equations PatternLocator::WithPrior(const Linearized& linearized,
+                                                    const State& state,
+                                                    const std::optional<NormalPrior>& prior) {
+  Equations equations = linearized.equations;
+  if (prior) {
+    const double variance = Residuals(linearized, Vector::Zero(), 0).EdgeVariance();
+    prior->AddTo(state.pose.rotation, variance, &equations.h, &equations.g);
+  }
+  return equations;
+}
 
 // The step of a state whose calibration stays as it is. The spread is held at none unless the edges
 // leave no doubt: to ask for it always would cost a sixth of the accuracy where there is none, and
@@ -376,19 +388,15 @@ struct PatternLocator::Solution {
 PatternLocator::Solution PatternLocator::SolvePose(const Linearized& linearized, const State& state,
                                                    const std::optional<NormalPrior>& prior,
                                                    bool has_spread) {
-  Equations equations = linearized.equations;
-  if (prior) {
-    const double variance = Residuals(linearized, Vector::Zero(), 0).EdgeVariance();
-    prior->AddTo(state.pose.rotation, variance, &equations.h, &equations.g);
-  }
+  Equations equations = WithPrior(linearized, state, prior);
   if (has_spread) {
-    Solution solution(linearized, equations, kPoseUnknowns + 1);
+    const Solution solution = Solution::Of<kPoseUnknowns + 1>(linearized, equations);
     const double least = std::max(kLeastSpreadPx, kSureSpread * solution.Sigma(kSpread));
     if (std::abs(state.spread_px + solution.step(kSpread)) > least) return solution;
   }
-  if (state.spread_px == 0) return {linearized, equations, kPoseUnknowns};
+  if (state.spread_px == 0) return Solution::Of<kPoseUnknowns>(linearized, equations);
   equations.PullToZero(kSpread, state.spread_px, kHeld);
-  return {linearized, equations, kPoseUnknowns + 1};
+  return Solution::Of<kPoseUnknowns + 1>(linearized, equations);
 }
 
 // The step of a state of which everything is asked.
@@ -401,11 +409,11 @@ PatternLocator::Solution PatternLocator::SolveCalibration(
     if (prior) prior->AddTo(state.pose.rotation, variance, &equations.h, &equations.g);
     equations.PullCalibration(state, variance / (kFocalSigma * kFocalSigma),
                               variance / (principal_sigma_px * principal_sigma_px));
-    return {linearized, equations, kUnknowns};
+    return Solution::Of<kUnknowns>(linearized, equations);
   };
   // What the step explains of the offsets is no variance of the edges.
   const Solution without_step = solve(Residuals(linearized, Vector::Zero(), 0).EdgeVariance());
-  return solve(without_step.residuals.EdgeVariance());
+  return solve(without_step.edge_variance);
 }
 
 CalibrationEvidence PatternLocator::Judge(const Solution& solution, const State& state) {
@@ -424,9 +432,9 @@ CalibrationEvidence PatternLocator::Judge(const Solution& solution, const State&
 // What a solution leaves of the offsets makes the covariance of the pose.
 void PatternLocator::Describe(const Linearized& linearized, const Solution& solution,
                               PatternLocation* location) {
-  const Vector blur = kBlurSpreadPx2 * solution.Solve(linearized.by_blur);
+  const Vector blur = kBlurSpreadPx2 * solution.inverse * linearized.by_blur;
   location->covariance = (solution.Covariance() + blur * blur.transpose()).topLeftCorner<6, 6>();
-  location->edge_rms_px = std::sqrt(solution.residuals.MeanSquare());
+  location->edge_rms_px = std::sqrt(solution.mean_square);
 }
 
 // Where the calibration may be wrong the pose is as uncertain as without it, and by as much as it
@@ -493,7 +501,7 @@ bool PatternLocator::Approach(const EdgeColumns& edges, const std::optional<Norm
   for (int i = 1; i <= kMaxSteps; ++i) {
     Linearize(*state, *scale_px, kPoseUnknowns, &linearized);
     if (linearized.used < kMinEdges) return false;
-    const Vector step = SolvePose(linearized, *state, prior, false).step;
+    const Vector step = WithPrior(linearized, *state, prior).PoseStep();
     if (!state->Move(step)) return false;
     *scale_px = linearized.NextScale(*scale_px);
     if (i >= kLeastSteps && linearized.Movement(step) < kSettledPx) break;
@@ -555,7 +563,7 @@ std::optional<RingLocation> PatternLocator::LocateRing(
     h.diagonal() *= 1 + 1e-4;
     const double weight = 1e-6 * h.diagonal().segment<3>(3).maxCoeff();
     for (int k = 3; k < 6; ++k) h(k, k) += weight;
-    const Vector step = SolvePose(linearized, state, prior, false).step;
+    const Vector step = WithPrior(linearized, state, prior).PoseStep();
     if (!state.Move(step)) return std::nullopt;
     const double before =
         std::exchange(scale, std::clamp(linearized.RobustScale(), kLeastScalePx, scale));

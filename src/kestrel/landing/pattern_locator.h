@@ -95,6 +95,8 @@ class PatternLocator {
   void Linearize(const State& state, double scale_px, int unknowns, Linearized* linearized) const;
   bool Approach(const EdgeColumns& edges, const std::optional<NormalPrior>& prior, State* state,
                 double* scale_px) const;
+  static Equations WithPrior(const Linearized& linearized, const State& state,
+                             const std::optional<NormalPrior>& prior);
   static Solution SolvePose(const Linearized& linearized, const State& state,
                             const std::optional<NormalPrior>& prior, bool has_spread);
   Solution SolveCalibration(const Linearized& linearized, const State& state,

@@ -25,7 +25,7 @@ constexpr double kLeastRmsPx = 0.05;
 constexpr double kSpreadSigmaPx = 0.3;  // before the image is looked at
 constexpr int kFarSteps = 2;            // at most, on the view
 constexpr int kNearSteps = 3;           // the same on the image
-constexpr double kSettledPx = 0.3;  // outlines that move by less are in place but for the last step
+constexpr double kSettledPx = 0.1;  // outlines that move by less are in place but for the last step
 // Places per place that all steps but the last look at: odd, so that both sides of the arms have
 // some; and too few edges of those.
 constexpr std::size_t kCoarseStride = 3;
