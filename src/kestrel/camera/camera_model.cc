@@ -341,6 +341,13 @@ CameraModel::CameraModel(const CameraIntrinsics& intrinsics) : intrinsics_(intri
   max_angle_ = MaxAngle(intrinsics.distortion_model, k_);
   max_tangent_ = std::tan(max_angle_);
   max_radius_ = MaxRadius(intrinsics.distortion_model, k_, max_angle_);
+  kernel_.is_equidistant = intrinsics.distortion_model == DistortionModel::kEquidistant;
+  std::copy(k_.begin(), k_.end(), kernel_.k.begin());
+  kernel_.limit = static_cast<float>(kernel_.is_equidistant ? max_angle_ : max_tangent_);
+  kernel_.fx_px = static_cast<float>(intrinsics.fx_px);
+  kernel_.fy_px = static_cast<float>(intrinsics.fy_px);
+  kernel_.cx_px = static_cast<float>(intrinsics.cx_px);
+  kernel_.cy_px = static_cast<float>(intrinsics.cy_px);
 }
 
 ProjectionStatus CameraModel::Project(const Eigen::Vector3d& point_in_camera,

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "kestrel/base/error.h"
+#include "kestrel/camera/projection_kernel.h"
 
 namespace kestrel {
 
@@ -62,6 +64,15 @@ class CameraModel {
   ProjectionStatus Project(const Eigen::Vector3d& point_in_camera, Eigen::Vector2d* pixel,
                            Eigen::Matrix<double, 2, 3>* d_pixel_d_point = nullptr) const;
 
+  // Project for 'count' points at once, in single precision (of the pixel 1e-3 px, of the
+  // derivative 1e-4): pixel and derivative are NaN where the lens model says nothing. 'points':
+  // columns of x, y and z; 'd_pixel_d_point': columns, row by row. Outputs must not overlap the
+  // points.
+  void ProjectMany(const std::array<const float*, 3>& points, std::size_t count, float* x_px,
+                   float* y_px, const std::array<float*, 6>* d_pixel_d_point = nullptr) const {
+    ProjectPoints(kernel_, points, count, x_px, y_px, d_pixel_d_point);
+  }
+
   // Unit ray through 'pixel'; the exact inverse of Project (Newton, to 1e-12 rad as long as the
   // pixel still moves with the angle) up to max_angle(). Pixels outside of the image are served as
   // well, as far as the model reaches.
@@ -89,6 +100,7 @@ class CameraModel {
   double max_angle_ = 0;
   double max_tangent_ = 0;  // pinhole kinds: tan(max_angle_)
   double max_radius_ = 0;   // distorted radius at max_angle_ by the radial part, focal length 1
+  ProjectionKernel kernel_{};
 };
 
 }  // namespace kestrel

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "kestrel/landing/column_products.h"
 #include "kestrel/landing/neighbor_correlation.h"
 
 namespace kestrel {
@@ -21,6 +23,11 @@ constexpr int kPoseUnknowns = 6;
 constexpr int kSpread = 6;
 constexpr int kFocal = 7;
 constexpr int kUnknowns = 10;
+// Columns behind those of the unknowns: the offsets, and their derivatives by the blur's square.
+constexpr int kOffset = 10;
+constexpr int kBlur = 11;
+constexpr int kEdgeColumns = 12;
+using Column = std::array<float, PrintOutline::kMaxPlaces>;
 using PoseVector = Eigen::Matrix<double, kPoseUnknowns, 1>;
 using Vector = Eigen::Matrix<double, kUnknowns, 1>;
 using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
@@ -28,6 +35,10 @@ using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 constexpr std::size_t kMinEdges = 12;  // too few of those for a pose
 constexpr int kMaxSteps = 8;
 constexpr int kLeastSteps = 3;
+constexpr double kHeld = 1e6;  // weight, in edges, of what is not to move
+// Edges per edge that all steps but the last few look at, and too few of those.
+constexpr std::size_t kCoarseEdges = 3;
+constexpr std::size_t kFewEdges = 36;
 constexpr double kFarScalePx = 1000;  // of the edges in the first step
 constexpr double kLeastScalePx = 0.25;
 constexpr double kSettledPx = 0.08;      // outlines that move by less stay where they are
@@ -45,7 +56,6 @@ constexpr double kFocalSigma = 0.25;
 constexpr double kPrincipalSigma = 0.1;
 constexpr double kSureCalibration = 30;
 constexpr double kDoubtfulCalibration = 8;  // from where it is worth to find out
-constexpr double kHeld = 1e6;               // weight, in edges, of what is not to move
 
 // Of rings that are to be located yet.
 constexpr std::size_t kCoarseStride = 3;  // places per place that is looked at first
@@ -91,7 +101,13 @@ struct PatternLocator::Equations {
     h(unknown, unknown) += weight;
     g(unknown) -= weight * value;
   }
-  void HoldSpread(const State& state) { PullToZero(kSpread, state.spread_px, kHeld); }
+  // Step of the pose alone.
+  Vector PoseStep() const {
+    Vector step = Vector::Zero();
+    step.head<kPoseUnknowns>() =
+        h.topLeftCorner<kPoseUnknowns, kPoseUnknowns>().ldlt().solve(g.head<kPoseUnknowns>());
+    return step;
+  }
   void PullCalibration(const State& state, double focal_weight, double principal_weight) {
     PullToZero(kFocal, state.log_focal, focal_weight);
     PullToZero(kFocal + 1, state.principal_px.x(), principal_weight);
@@ -99,22 +115,80 @@ struct PatternLocator::Equations {
   }
 };
 
+// Every so many edges, by columns.
+struct PatternLocator::EdgeColumns {
+  EdgeColumns() = default;
+  EdgeColumns(const PrintEdges& found, std::size_t stride) {
+    for (std::size_t i = 0; i < found.count; i += stride, ++count) {
+      const PrintEdge& edge = found.edges[i];
+      const Eigen::Vector2d pixel = edge.pixel();
+      x_m[count] = static_cast<float>(edge.place->point.x());
+      y_m[count] = static_cast<float>(edge.place->point.y());
+      across_x[count] = static_cast<float>(edge.across.x());
+      across_y[count] = static_cast<float>(edge.across.y());
+      x_px[count] = static_cast<float>(pixel.x());
+      y_px[count] = static_cast<float>(pixel.y());
+      bend[count] = static_cast<float>(edge.bend);
+      stretch[count] = 2 * edge.place->part + edge.place->side;
+      follows[count] = stride == 1 && edge.follows;
+    }
+  }
+
+  std::size_t count = 0;
+  Column x_m, y_m;            // place on the print
+  Column across_x, across_y;  // normal in the image
+  Column x_px, y_px;
+  Column bend;
+  std::array<int, PrintOutline::kMaxPlaces> stretch;  // by part and side
+  std::array<bool, PrintOutline::kMaxPlaces> follows;
+};
+
 // The edges as a state has them, and the equations that they make.
 struct PatternLocator::Linearized {
-  struct Edge {
-    const PrintOutline::Place* place;
-    Vector jacobian;  // of the offset
-    double offset;    // px, from where the state has it
-    double weight;
-    bool follows;  // the edge before is its neighbour on the outline
-  };
+  explicit Linearized(const EdgeColumns& of) : edges(of) {}
+
+  // The equations of the first 'unknowns', and what else the columns sum up to.
+  void Sum(int unknowns) {
+    std::array<int, kEdgeColumns> which;
+    std::array<const float*, kEdgeColumns> pointers;
+    int count = 0;
+    for (int k = 0; k < kEdgeColumns; ++k) {
+      const bool is_asked = k < unknowns || k == kSpread || k == kOffset;
+      if (!is_asked && unknowns < kUnknowns) continue;
+      which[count] = k;
+      pointers[count++] = columns[k].data();
+    }
+    std::array<double, kEdgeColumns * kEdgeColumns> sums;
+    SumProducts(std::span(pointers).first(count), edges.count, sums.data());
+    Eigen::Matrix<double, kEdgeColumns, kEdgeColumns> products;
+    products.setZero();
+    for (int a = 0; a < count; ++a) {
+      for (int b = 0; b < count; ++b) products(which[a], which[b]) = sums[a * count + b];
+    }
+    equations.h = products.topLeftCorner<kUnknowns, kUnknowns>();
+    equations.g = products.col(kOffset).head<kUnknowns>();
+    by_blur = products.col(kBlur).head<kUnknowns>();
+    weights = products(kSpread, kSpread);
+  }
 
   // Standard deviation of the offsets by the median of their magnitudes.
-  double RobustScale() {
+  double RobustScale() const {
+    Column magnitudes{};
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < edges.count; ++i) {
+      magnitudes[found] = std::abs(offsets[i]);
+      found += magnitudes[found] < kOutsideModelPx ? 1 : 0;
+    }
     const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(found / 2);
     std::nth_element(magnitudes.begin(), middle,
                      magnitudes.begin() + static_cast<std::ptrdiff_t>(found));
     return 1.4826 * static_cast<double>(*middle);
+  }
+
+  // Scale of the offsets in the next step, where it is 'scale_px' in this one.
+  double NextScale(double scale_px) const {
+    const double scale = std::clamp(RobustScale(), kLeastScalePx, scale_px);
+    return scale_px == kFarScalePx ? std::max(scale, 1.0) : scale;
   }
 
   // By how much (px, root mean square) 'step' moves the outlines in the image.
@@ -122,27 +196,43 @@ struct PatternLocator::Linearized {
     return std::sqrt(std::max(0.0, step.dot(equations.h * step)) / weights);
   }
 
+  static constexpr float kOutsideModelPx = 1e6f;  // offset of what the lens does not show
+
+  const EdgeColumns& edges;
+  Column offsets;  // px, from where the state has the edges
+  std::array<Column, kEdgeColumns>
+      columns;           // times the root of the weight, which is that of the spread
+  std::size_t used = 0;  // of the edges: those that have a weight
   Equations equations;
-  Vector by_blur = Vector::Zero();  // derivative of their right side
-  double weights = 0;
-  std::array<Edge, PrintOutline::kMaxPlaces> edges;  // that have a weight
-  std::size_t used = 0;
-  std::array<float, PrintOutline::kMaxPlaces> magnitudes;  // of all offsets
-  std::size_t found = 0;
+  Vector by_blur;  // derivative of their right side
+  double weights;
 };
 
 // What the edges are off the state once it has moved by a step.
 struct PatternLocator::Residuals {
-  Residuals(const Linearized& linearized, const Vector& step)
+  Residuals(const Linearized& linearized, const Vector& step, int unknowns)
       : used(static_cast<double>(linearized.used)), weights(linearized.weights) {
+    const EdgeColumns& edges = linearized.edges;
+    Column residuals = linearized.columns[kOffset];  // times the root of the weight
+    for (int k = 0; k < unknowns; ++k) {
+      const Column& column = linearized.columns[k];
+      const auto along = static_cast<float>(step(k));
+      for (std::size_t i = 0; i < edges.count; ++i) residuals[i] -= along * column[i];
+    }
     double before = 0;
-    for (const Linearized::Edge& edge : std::span(linearized.edges).first(linearized.used)) {
-      const double residual = edge.offset - edge.jacobian.dot(step);
-      weighted_squares += edge.weight * residual * residual;
-      Stretch& stretch = outline[2 * edge.place->part + edge.place->side];
-      stretch.sum += edge.weight * residual;
-      stretch.weights += edge.weight;
-      if (edge.follows) neighbors.Add(before, residual);
+    bool has_edge_before = false;
+    for (std::size_t i = 0; i < edges.count; ++i) {
+      const double root = linearized.columns[kSpread][i];
+      const bool has_weight = root > 0;
+      const bool follows = std::exchange(has_edge_before, has_weight) && edges.follows[i];
+      if (!has_weight) continue;
+      const double weighted = residuals[i];
+      weighted_squares += weighted * weighted;
+      Stretch& stretch = outline[edges.stretch[i]];
+      stretch.sum += root * weighted;
+      stretch.weights += root * root;
+      const double residual = weighted / root;
+      if (follows) neighbors.Add(before, residual);
       before = residual;
     }
   }
@@ -189,68 +279,108 @@ Eigen::Vector2d PatternLocator::Principal() const {
 }
 
 // What the edges say of the state, weighted by Tukey's function of their offsets with the given
-// scale.
-PatternLocator::Linearized PatternLocator::Linearize(const PrintEdges& edges, const State& state,
-                                                     double scale_px) const {
-  Linearized linearized;
-  Equations& equations = linearized.equations;
-  const Eigen::Matrix<double, 3, 2> plane = state.pose.rotation.toRotationMatrix().leftCols<2>();
-  const Eigen::Vector2d principal = Principal();
-  const double zoom = std::exp(state.log_focal);
-  Eigen::Matrix<double, 2, 3> d_pixel;
-  bool has_edge_before = false;
-  for (const PrintEdge& found : edges.all()) {
-    const bool follows = std::exchange(has_edge_before, false) && found.follows;
-    const Eigen::Vector3d from_center = plane * found.place->point;
-    Eigen::Vector2d pixel;
-    if (camera_.Project(from_center + state.pose.translation, &pixel, &d_pixel) ==
-        ProjectionStatus::kOutsideModel) {
-      continue;
+// scale: of its first 'unknowns'.
+void PatternLocator::Linearize(const State& state, double scale_px, int unknowns,
+                               Linearized* linearized) const {
+  const EdgeColumns& edges = linearized->edges;
+  const std::size_t count = edges.count;
+  const Eigen::Matrix<float, 3, 2> plane =
+      state.pose.rotation.toRotationMatrix().leftCols<2>().cast<float>();
+  const Eigen::Vector3f center = state.pose.translation.cast<float>();
+  std::array<Column, 3> from_center, points;
+  for (int k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < count; ++i) {
+      from_center[k][i] = plane(k, 0) * edges.x_m[i] + plane(k, 1) * edges.y_m[i];
+      points[k][i] = center(k) + from_center[k][i];
     }
-    const Eigen::Vector2d from_principal = zoom * (pixel - principal);
-    pixel = state.Recalibrated(pixel, principal);
-    const double offset = found.across.dot(found.pixel() - pixel) - state.spread_px;
-    linearized.magnitudes[linearized.found++] = static_cast<float>(std::abs(offset));
-    const double ratio = offset / (4 * scale_px);
-    if (std::abs(ratio) >= 1) continue;
-    const double weight = (1 - ratio * ratio) * (1 - ratio * ratio);
-    const Eigen::Vector3d d_point = zoom * d_pixel.transpose() * found.across;
-    Linearized::Edge& edge = linearized.edges[linearized.used++];
-    edge.place = found.place;
-    edge.jacobian << d_point, from_center.cross(d_point), 1, found.across.dot(from_principal),
-        found.across;
-    edge.offset = offset;
-    edge.weight = weight;
-    edge.follows = follows;
-    const Vector weighted = weight * edge.jacobian;
-    for (int c = 0; c < kUnknowns; ++c) equations.h.col(c) += edge.jacobian(c) * weighted;
-    equations.g += offset * weighted;
-    linearized.by_blur += found.bend * weighted;
-    linearized.weights += weight;
-    has_edge_before = true;
   }
-  return linearized;
+  Column x_px, y_px;
+  std::array<Column, 6> by_point;
+  const std::array<float*, 6> derivatives{by_point[0].data(), by_point[1].data(),
+                                          by_point[2].data(), by_point[3].data(),
+                                          by_point[4].data(), by_point[5].data()};
+  camera_.ProjectMany({points[0].data(), points[1].data(), points[2].data()}, count, x_px.data(),
+                      y_px.data(), &derivatives);
+  const Eigen::Vector2f principal = Principal().cast<float>();
+  const Eigen::Vector2f shown = (Principal() + state.principal_px).cast<float>();
+  const auto zoom = static_cast<float>(std::exp(state.log_focal));
+  const auto spread = static_cast<float>(state.spread_px);
+  const auto per_limit = static_cast<float>(1 / (4 * scale_px));
+  auto& columns = linearized->columns;
+  Column& roots = columns[kSpread];
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = zoom * (x_px[i] - principal.x()), y = zoom * (y_px[i] - principal.y());
+    const float offset = edges.across_x[i] * (edges.x_px[i] - shown.x() - x) +
+                         edges.across_y[i] * (edges.y_px[i] - shown.y() - y) - spread;
+    const float ratio = per_limit * offset;
+    const float root = 1 - ratio * ratio;
+    columns[kFocal][i] = edges.across_x[i] * x + edges.across_y[i] * y;
+    linearized->offsets[i] = offset;
+    roots[i] = root > 0 ? root : 0;
+  }
+  linearized->used = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    linearized->used += roots[i] > 0 ? 1 : 0;
+    if (!std::isnan(linearized->offsets[i])) continue;
+    linearized->offsets[i] = Linearized::kOutsideModelPx;
+    columns[kFocal][i] = 0;
+    for (Column& column : by_point) column[i] = 0;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const float across_x = roots[i] * edges.across_x[i], across_y = roots[i] * edges.across_y[i];
+    const float dx = zoom * (across_x * by_point[0][i] + across_y * by_point[3][i]);
+    const float dy = zoom * (across_x * by_point[1][i] + across_y * by_point[4][i]);
+    const float dz = zoom * (across_x * by_point[2][i] + across_y * by_point[5][i]);
+    columns[0][i] = dx;
+    columns[1][i] = dy;
+    columns[2][i] = dz;
+    columns[3][i] = from_center[1][i] * dz - from_center[2][i] * dy;
+    columns[4][i] = from_center[2][i] * dx - from_center[0][i] * dz;
+    columns[5][i] = from_center[0][i] * dy - from_center[1][i] * dx;
+    columns[kFocal][i] *= roots[i];
+    columns[kFocal + 1][i] = across_x;
+    columns[kFocal + 2][i] = across_y;
+    columns[kOffset][i] = roots[i] * linearized->offsets[i];
+    columns[kBlur][i] = roots[i] * edges.bend[i];
+  }
+  linearized->Sum(unknowns);
 }
 
-// What equations say of their unknowns.
+// What equations say of the first of their unknowns, where the others stay as they are.
 struct PatternLocator::Solution {
-  Solution(const Linearized& linearized, const Equations& equations)
-      : decomposition(equations.h),
-        step(decomposition.solve(equations.g)),
-        residuals(linearized, step) {}
-
-  Matrix Covariance() const {
-    return residuals.EdgeVariance() * decomposition.solve(Matrix::Identity().eval());
+  template <int kCount>
+  static Solution Of(const Linearized& linearized, const Equations& equations) {
+    using Part = Eigen::Matrix<double, kCount, kCount>;
+    const Eigen::LDLT<Part> decomposition(equations.h.topLeftCorner<kCount, kCount>());
+    Solution solution;
+    solution.inverse.topLeftCorner<kCount, kCount>() = decomposition.solve(Part::Identity());
+    solution.step.head<kCount>() = decomposition.solve(equations.g.head<kCount>());
+    const Residuals residuals(linearized, solution.step, kCount);
+    solution.mean_square = residuals.MeanSquare();
+    solution.edge_variance = residuals.EdgeVariance();
+    return solution;
   }
-  double Sigma(int unknown) const {
-    const double inverse = decomposition.solve(Vector::Unit(unknown))(unknown);
-    return std::sqrt(residuals.EdgeVariance() * inverse);
-  }
 
-  Eigen::LDLT<Matrix> decomposition;
-  Vector step;
-  Residuals residuals;
+  Matrix Covariance() const { return edge_variance * inverse; }
+  double Sigma(int unknown) const { return std::sqrt(edge_variance * inverse(unknown, unknown)); }
+
+  Matrix inverse = Matrix::Zero();  // of the equations
+  Vector step = Vector::Zero();
+  double mean_square;  // of what the step leaves of the offsets
+  double edge_variance;
 };
+
+// The equations with what is known of the plane, which counts by the variance of the edges.
+PatternLocator::Equations PatternLocator::WithPrior(const Linearized& linearized,
+                                                    const State& state,
+                                                    const std::optional<NormalPrior>& prior) {
+  Equations equations = linearized.equations;
+  if (prior) {
+    const double variance = Residuals(linearized, Vector::Zero(), 0).EdgeVariance();
+    prior->AddTo(state.pose.rotation, variance, &equations.h, &equations.g);
+  }
+  return equations;
+}
 
 // The step of a state whose calibration stays as it is. The spread is held at none unless the edges
 // leave no doubt: to ask for it always would cost a sixth of the accuracy where there is none, and
@@ -258,19 +388,15 @@ struct PatternLocator::Solution {
 PatternLocator::Solution PatternLocator::SolvePose(const Linearized& linearized, const State& state,
                                                    const std::optional<NormalPrior>& prior,
                                                    bool has_spread) {
-  Equations equations = linearized.equations;
-  if (prior) {
-    const double variance = Residuals(linearized, Vector::Zero()).EdgeVariance();
-    prior->AddTo(state.pose.rotation, variance, &equations.h, &equations.g);
-  }
-  equations.PullCalibration(state, kHeld, kHeld);
+  Equations equations = WithPrior(linearized, state, prior);
   if (has_spread) {
-    Solution solution(linearized, equations);
+    const Solution solution = Solution::Of<kPoseUnknowns + 1>(linearized, equations);
     const double least = std::max(kLeastSpreadPx, kSureSpread * solution.Sigma(kSpread));
     if (std::abs(state.spread_px + solution.step(kSpread)) > least) return solution;
   }
-  equations.HoldSpread(state);
-  return {linearized, equations};
+  if (state.spread_px == 0) return Solution::Of<kPoseUnknowns>(linearized, equations);
+  equations.PullToZero(kSpread, state.spread_px, kHeld);
+  return Solution::Of<kPoseUnknowns + 1>(linearized, equations);
 }
 
 // The step of a state of which everything is asked.
@@ -283,11 +409,11 @@ PatternLocator::Solution PatternLocator::SolveCalibration(
     if (prior) prior->AddTo(state.pose.rotation, variance, &equations.h, &equations.g);
     equations.PullCalibration(state, variance / (kFocalSigma * kFocalSigma),
                               variance / (principal_sigma_px * principal_sigma_px));
-    return {linearized, equations};
+    return Solution::Of<kUnknowns>(linearized, equations);
   };
   // What the step explains of the offsets is no variance of the edges.
-  const Solution without_step = solve(Residuals(linearized, Vector::Zero()).EdgeVariance());
-  return solve(without_step.residuals.EdgeVariance());
+  const Solution without_step = solve(Residuals(linearized, Vector::Zero(), 0).EdgeVariance());
+  return solve(without_step.edge_variance);
 }
 
 CalibrationEvidence PatternLocator::Judge(const Solution& solution, const State& state) {
@@ -306,9 +432,9 @@ CalibrationEvidence PatternLocator::Judge(const Solution& solution, const State&
 // What a solution leaves of the offsets makes the covariance of the pose.
 void PatternLocator::Describe(const Linearized& linearized, const Solution& solution,
                               PatternLocation* location) {
-  const Vector blur = kBlurSpreadPx2 * solution.decomposition.solve(linearized.by_blur);
+  const Vector blur = kBlurSpreadPx2 * solution.inverse * linearized.by_blur;
   location->covariance = (solution.Covariance() + blur * blur.transpose()).topLeftCorner<6, 6>();
-  location->edge_rms_px = std::sqrt(solution.residuals.MeanSquare());
+  location->edge_rms_px = std::sqrt(solution.mean_square);
 }
 
 // Where the calibration may be wrong the pose is as uncertain as without it, and by as much as it
@@ -320,16 +446,22 @@ void PatternLocator::DoubtCalibration(const Solution& held, const Solution& free
 }
 
 std::optional<PatternLocation> PatternLocator::Locate(
-    const PrintEdges& edges, const RigidTransform& initial,
+    const PrintEdges& found, const RigidTransform& initial,
     const std::optional<NormalPrior>& prior) const {
-  const bool is_part = edges.IsPart();
+  const bool is_part = found.IsPart();
   PatternLocation location;
   State state{initial};
   double scale = kFarScalePx;
+  if (found.count >= kCoarseEdges * kFewEdges) {
+    if (!Approach(EdgeColumns(found, kCoarseEdges), prior, &state, &scale)) return std::nullopt;
+  }
+  const EdgeColumns edges(found, 1);
+  Linearized linearized(edges);
+  const int least_steps = scale < kFarScalePx ? 1 : kLeastSteps;
   for (int i = 1; i <= kMaxSteps; ++i) {
-    Linearized linearized = Linearize(edges, state, scale);
+    Linearize(state, scale, kUnknowns, &linearized);
     if (linearized.used < kMinEdges) return std::nullopt;
-    const bool near = i >= kLeastSteps;
+    const bool near = i >= least_steps;
     const Solution solution = SolvePose(linearized, state, prior, near && !is_part);
     // The tilt of a pattern that is seen from straight above moves the edges by its square only:
     // there the steps are short of the goal.
@@ -346,8 +478,7 @@ std::optional<PatternLocation> PatternLocator::Locate(
       if (!is_part) location.calibration = evidence;
     }
     if (!state.Move(solution.step)) return std::nullopt;
-    scale = std::clamp(linearized.RobustScale(), kLeastScalePx, scale);
-    if (i == 1) scale = std::max(scale, 1.0);
+    scale = linearized.NextScale(scale);
     if (is_last) break;
   }
   if (location.calibration.surprise > kDoubtfulCalibration) {
@@ -363,13 +494,29 @@ std::optional<PatternLocation> PatternLocator::Locate(
   return location;
 }
 
+// Brings the state near to some of the edges; false when they do not fix it.
+bool PatternLocator::Approach(const EdgeColumns& edges, const std::optional<NormalPrior>& prior,
+                              State* state, double* scale_px) const {
+  Linearized linearized(edges);
+  for (int i = 1; i <= kMaxSteps; ++i) {
+    Linearize(*state, *scale_px, kPoseUnknowns, &linearized);
+    if (linearized.used < kMinEdges) return false;
+    const Vector step = WithPrior(linearized, *state, prior).PoseStep();
+    if (!state->Move(step)) return false;
+    *scale_px = linearized.NextScale(*scale_px);
+    if (i >= kLeastSteps && linearized.Movement(step) < kSettledPx) break;
+  }
+  return true;
+}
+
 // Asks the edges for the calibration too; changes state and location where they contradict the
 // camera's.
-void PatternLocator::Recalibrate(const PrintEdges& edges, const std::optional<NormalPrior>& prior,
+void PatternLocator::Recalibrate(const EdgeColumns& edges, const std::optional<NormalPrior>& prior,
                                  double scale_px, State* state, PatternLocation* location) const {
   State free = *state;
+  Linearized linearized(edges);
   for (int i = 1; i <= kMaxSteps; ++i) {
-    Linearized linearized = Linearize(edges, free, scale_px);
+    Linearize(free, scale_px, kUnknowns, &linearized);
     if (linearized.used < kMinEdges) return;
     const Solution solution = SolveCalibration(linearized, free, prior);
     if (i == kMaxSteps || linearized.Movement(solution.step) < kSettledPx) {
@@ -381,7 +528,7 @@ void PatternLocator::Recalibrate(const PrintEdges& edges, const std::optional<No
       return;
     }
     if (!free.Move(solution.step)) return;
-    scale_px = std::clamp(linearized.RobustScale(), kLeastScalePx, scale_px);
+    scale_px = linearized.NextScale(scale_px);
   }
 }
 
@@ -394,17 +541,20 @@ std::optional<RingLocation> PatternLocator::LocateRing(
   const std::span<const PrintOutline::Place> places = outline_.ring();
   const auto whole = static_cast<std::size_t>(kWholeRing * places.size() / kCoarseStride);
   bool is_whole = false;
-  PrintEdges edges;
+  PrintEdges found;
+  EdgeColumns edges;
+  Linearized linearized(edges);
   const auto measure = [&](std::size_t stride) {
     const PlaneWarp warp(camera_, state.pose, outline_.radius_m());
-    FindPrintEdges(image, {}, warp, places, {reach, min_step, stride}, &edges);
-    return Linearize(edges, state, scale);
+    FindPrintEdges(image, {}, warp, places, {reach, min_step, stride}, &found);
+    edges = EdgeColumns(found, 1);
+    Linearize(state, scale, kPoseUnknowns, &linearized);
   };
   for (int i = 0; i < iterations; ++i) {
-    Linearized linearized = measure(kCoarseStride);
+    measure(kCoarseStride);
     is_whole = linearized.used >= whole;
     if (!is_whole) {
-      linearized = measure(1);
+      measure(1);
       is_whole = linearized.used >= kCoarseStride * whole;
     }
     if (linearized.used < kMinEdges) return std::nullopt;
@@ -413,7 +563,7 @@ std::optional<RingLocation> PatternLocator::LocateRing(
     h.diagonal() *= 1 + 1e-4;
     const double weight = 1e-6 * h.diagonal().segment<3>(3).maxCoeff();
     for (int k = 3; k < 6; ++k) h(k, k) += weight;
-    const Vector step = SolvePose(linearized, state, prior, false).step;
+    const Vector step = WithPrior(linearized, state, prior).PoseStep();
     if (!state.Move(step)) return std::nullopt;
     const double before =
         std::exchange(scale, std::clamp(linearized.RobustScale(), kLeastScalePx, scale));

@@ -86,17 +86,22 @@ class PatternLocator {
  private:
   struct State;
   struct Equations;
+  struct EdgeColumns;
   struct Linearized;
   struct Residuals;
   struct Solution;
 
   Eigen::Vector2d Principal() const;
-  Linearized Linearize(const PrintEdges& edges, const State& state, double scale_px) const;
+  void Linearize(const State& state, double scale_px, int unknowns, Linearized* linearized) const;
+  bool Approach(const EdgeColumns& edges, const std::optional<NormalPrior>& prior, State* state,
+                double* scale_px) const;
+  static Equations WithPrior(const Linearized& linearized, const State& state,
+                             const std::optional<NormalPrior>& prior);
   static Solution SolvePose(const Linearized& linearized, const State& state,
                             const std::optional<NormalPrior>& prior, bool has_spread);
   Solution SolveCalibration(const Linearized& linearized, const State& state,
                             const std::optional<NormalPrior>& prior) const;
-  void Recalibrate(const PrintEdges& edges, const std::optional<NormalPrior>& prior,
+  void Recalibrate(const EdgeColumns& edges, const std::optional<NormalPrior>& prior,
                    double scale_px, State* state, PatternLocation* location) const;
   static CalibrationEvidence Judge(const Solution& solution, const State& state);
   static void Describe(const Linearized& linearized, const Solution& solution,

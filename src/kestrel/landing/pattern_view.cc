@@ -2,96 +2,36 @@
 #include "kestrel/landing/pattern_view.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "kestrel/image/gray_sampling.h"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kestrel/landing/pattern_view.cc"
-#include <hwy/foreach_target.h>
-#include <hwy/highway.h>
-
-HWY_BEFORE_NAMESPACE();
 namespace kestrel {
-namespace HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-// Pixels of 'count' points of the plane, bilinear between those of 'side' x 'side' nodes, the first
-// of which lies at 'first' on both axes.
-void InterpolateNodes(const float* nodes_x, const float* nodes_y, int side, float first,
-                      float nodes_per_m, const float* x_m, const float* y_m, std::size_t count,
-                      float* x_px, float* y_px) {
-  const auto interpolate = [&](auto d, std::size_t i) HWY_ATTR {
-    const hn::RebindToSigned<decltype(d)> di;
-    const auto scale = hn::Set(d, nodes_per_m);
-    const auto column = hn::Mul(hn::Sub(hn::LoadU(d, x_m + i), hn::Set(d, first)), scale);
-    const auto row = hn::Mul(hn::Sub(hn::LoadU(d, y_m + i), hn::Set(d, first)), scale);
-    const auto last = hn::Set(di, side - 2);
-    const auto zero = hn::Zero(di);
-    const auto column0 = hn::Max(hn::Min(hn::ConvertTo(di, column), last), zero);
-    const auto row0 = hn::Max(hn::Min(hn::ConvertTo(di, row), last), zero);
-    const auto along = hn::Sub(column, hn::ConvertTo(d, column0));
-    const auto down = hn::Sub(row, hn::ConvertTo(d, row0));
-    const auto node = hn::Add(hn::Mul(row0, hn::Set(di, side)), column0);
-    const auto between = [&](const float* nodes) HWY_ATTR {
-      const auto mix = [&](auto share, auto a, auto b)
-                           HWY_ATTR { return hn::MulAdd(share, hn::Sub(b, a), a); };
-      const auto upper =
-          mix(along, hn::GatherIndex(d, nodes, node), hn::GatherIndex(d, nodes + 1, node));
-      const auto lower = mix(along, hn::GatherIndex(d, nodes + side, node),
-                             hn::GatherIndex(d, nodes + side + 1, node));
-      return mix(down, upper, lower);
-    };
-    hn::StoreU(between(nodes_x), d, x_px + i);
-    hn::StoreU(between(nodes_y), d, y_px + i);
-  };
-  const hn::CappedTag<float, 8> d;
-  const std::size_t lanes = hn::Lanes(d);
-  if (count < lanes) {
-    for (std::size_t i = 0; i < count; ++i) interpolate(hn::CappedTag<float, 1>(), i);
-    return;
-  }
-  for (std::size_t i = 0; i + lanes <= count; i += lanes) interpolate(d, i);
-  // The last vector overlaps the one before it: some points are computed twice.
-  interpolate(d, count - lanes);
-}
-
-}  // namespace HWY_NAMESPACE
-}  // namespace kestrel
-HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
-namespace kestrel {
-
-HWY_EXPORT(InterpolateNodes);
 
 PatternView::PatternView(const CameraModel& camera, const RigidTransform& camera_from_pattern,
                          double extent_m, const ImageRegion& region)
     : PatternView(PlaneWarp(camera, camera_from_pattern, extent_m), extent_m, region) {}
 
 PatternView::PatternView(const PlaneWarp& warp, double extent_m, const ImageRegion& region)
-    : extent_m_(static_cast<float>(extent_m)),
-      nodes_per_m_(static_cast<float>((kNodes - 1) / (2 * extent_m))) {
-  for (int iy = 0; iy < kNodes; ++iy) {
-    for (int ix = 0; ix < kNodes; ++ix) {
-      const double x = extent_m * (2.0 * ix / (kNodes - 1) - 1);
-      const double y = extent_m * (2.0 * iy / (kNodes - 1) - 1);
-      Eigen::Vector2d pixel;
-      if (!warp.Project({x, y}, &pixel)) {
-        valid_ = false;
-        return;
-      }
-      const Eigen::Vector2f node = region.FromFull(pixel).cast<float>();
-      nodes_x_[iy * kNodes + ix] = node.x();
-      nodes_y_[iy * kNodes + ix] = node.y();
-    }
+    : warp_(warp), region_(region) {
+  constexpr int kNodes = 4;
+  std::array<float, kNodes * kNodes> x_m, y_m, x_px, y_px;
+  for (int i = 0; i < kNodes * kNodes; ++i) {
+    x_m[i] = static_cast<float>(extent_m * (2.0 * (i % kNodes) / (kNodes - 1) - 1));
+    y_m[i] = static_cast<float>(extent_m * (2.0 * (i / kNodes) / (kNodes - 1) - 1));
   }
+  warp.ProjectMany(x_m.data(), y_m.data(), x_m.size(), x_px.data(), y_px.data());
+  valid_ = std::none_of(x_px.begin(), x_px.end(), [](float x) { return std::isnan(x); });
 }
 
 void PatternView::Project(const float* x_m, const float* y_m, std::size_t count, float* x_px,
                           float* y_px) const {
-  HWY_DYNAMIC_DISPATCH(InterpolateNodes)
-  (nodes_x_.data(), nodes_y_.data(), kNodes, -extent_m_, nodes_per_m_, x_m, y_m, count, x_px, y_px);
+  warp_.ProjectMany(x_m, y_m, count, x_px, y_px);
+  const auto scale = static_cast<float>(1 / region_.scale());
+  const Eigen::Vector2f first = region_.FromFull(Eigen::Vector2d::Zero()).cast<float>();
+  for (std::size_t i = 0; i < count; ++i) x_px[i] = scale * x_px[i] + first.x();
+  for (std::size_t i = 0; i < count; ++i) y_px[i] = scale * y_px[i] + first.y();
 }
 
 void PatternView::Sample(const cv::Mat& image, const float* x_m, const float* y_m,
@@ -106,4 +46,3 @@ void PatternView::Sample(const cv::Mat& image, const float* x_m, const float* y_
 }
 
 }  // namespace kestrel
-#endif  // HWY_ONCE

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstddef>
 
 #include <Eigen/Core>
@@ -15,8 +14,7 @@
 namespace kestrel {
 
 // The plane of the pattern as an image shows it under an assumed pose: pattern coordinates to
-// pixels. Projects the nodes of a grid exactly and interpolates between them, because a candidate
-// is looked at in many more places than it is worth projecting.
+// pixels.
 class PatternView {
  public:
   // Covers |x|, |y| <= 'extent_m' of the plane. Pixels are those of 'region'.
@@ -37,13 +35,9 @@ class PatternView {
                float* y_px) const;
 
  private:
-  static constexpr int kNodes = 9;
-
-  float extent_m_;
-  float nodes_per_m_;
-  bool valid_ = true;
-  std::array<float, kNodes * kNodes> nodes_x_;
-  std::array<float, kNodes * kNodes> nodes_y_;
+  PlaneWarp warp_;
+  ImageRegion region_;
+  bool valid_;
 };
 
 }  // namespace kestrel

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include <Eigen/Core>
 
 #include "kestrel/camera/camera_model.h"
@@ -29,13 +32,30 @@ class PlaneWarp {
   bool Project(const Eigen::Vector2d& point, Eigen::Vector2d* pixel,
                Eigen::Matrix2d* d_pixel_d_point = nullptr) const;
 
+  // The same for 'count' points at once, in single precision: NaN where the lens does not show
+  // them. 'd_pixel_d_point': columns, row by row. Outputs must not overlap the points.
+  void ProjectMany(const float* x_m, const float* y_m, std::size_t count, float* x_px, float* y_px,
+                   const std::array<float*, 4>* d_pixel_d_point = nullptr) const;
+
   // The monomials at a point, by rising degree.
   Terms TermsAt(const Eigen::Vector2d& point) const;
   static int DegreeOf(int term);
 
+  double radius_m() const { return radius_m_; }
   const RigidTransform& pose() const { return pose_; }
   const Coefficients& displacement() const { return displacement_; }
   void Displace(const Coefficients& more) { displacement_ += more; }
+
+  // The polynomial of such coefficients at a point in units of the radius.
+  static float Displacement(const std::array<float, kTerms>& c, float x, float y) {
+    return c[0] + x * (c[1] + c[3] * x + c[4] * y) + y * (c[2] + c[5] * y) +
+           (x * x + y * y) * (c[6] * x + c[7] * y);
+  }
+  static std::array<float, kTerms> AxisOf(const Coefficients& coefficients, int axis) {
+    std::array<float, kTerms> of_axis;
+    for (int i = 0; i < kTerms; ++i) of_axis[i] = static_cast<float>(coefficients(axis, i));
+    return of_axis;
+  }
 
  private:
   const CameraModel& camera_;

@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
+
+#include "kestrel/landing/column_products.h"
 
 namespace kestrel {
 namespace {
@@ -22,8 +23,9 @@ constexpr double kLeastReachPx = 1.5;
 constexpr double kFarReachPx = 6;  // at least, pixels of the view
 constexpr double kLeastRmsPx = 0.05;
 constexpr double kSpreadSigmaPx = 0.3;  // before the image is looked at
-constexpr int kFarSteps = 2;            // on the view
-constexpr int kNearSteps = 3;           // on the image
+constexpr int kFarSteps = 2;            // at most, on the view
+constexpr int kNearSteps = 3;           // the same on the image
+constexpr double kSettledPx = 0.1;  // outlines that move by less are in place but for the last step
 // Places per place that all steps but the last look at: odd, so that both sides of the arms have
 // some; and too few edges of those.
 constexpr std::size_t kCoarseStride = 3;
@@ -32,94 +34,129 @@ constexpr std::size_t kFewEdges = 36;
 double Squared(double value) { return value * value; }
 
 constexpr int kUnknowns = 2 * kTerms + 1;  // the displacement along both axes, and the spread
-using Block = Eigen::Matrix<double, kTerms, kTerms>;
-using Terms = PlaneWarp::Terms;
+constexpr int kSpread = 2 * kTerms;
+using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+using Vector = Eigen::Matrix<double, kUnknowns, 1>;
+using Products = Eigen::Matrix<double, kUnknowns + 1, kUnknowns + 1>;
 
-// Normal equations of a step.
-struct Equations {
-  Block xx = Block::Zero(), xy = Block::Zero(), yy = Block::Zero();
-  Terms x_spread = Terms::Zero(), y_spread = Terms::Zero(), x = Terms::Zero(), y = Terms::Zero();
-  double weights = 0, spread = 0;
-
-  void Add(const Terms& terms, const Eigen::Vector2d& across, double offset, double weight) {
-    const Terms weighted = weight * terms;
-    const double cos = across.x(), sin = across.y();
-    for (int c = 0; c < kTerms; ++c) {
-      const Terms column = terms(c) * weighted;
-      xx.col(c) += cos * cos * column;
-      xy.col(c) += cos * sin * column;
-      yy.col(c) += sin * sin * column;
+// The edges by columns. Offsets are weighted by Tukey's function.
+class Columns {
+ public:
+  Columns(const PrintAlignment& alignment, double scale_px) : count_(alignment.edges.count) {
+    const double per_m = 1 / alignment.warp.radius_m();
+    for (std::size_t i = 0; i < count_; ++i) {
+      const PrintEdge& edge = alignment.edges.edges[i];
+      x_[i] = static_cast<float>(per_m * edge.place->point.x());
+      y_[i] = static_cast<float>(per_m * edge.place->point.y());
+      cos_[i] = static_cast<float>(edge.across.x());
+      sin_[i] = static_cast<float>(edge.across.y());
+      offset_[i] = static_cast<float>(alignment.edges.ResidualOf(edge));
     }
-    x_spread += cos * weighted;
-    y_spread += sin * weighted;
-    x += offset * cos * weighted;
-    y += offset * sin * weighted;
-    weights += weight;
-    spread += offset * weight;
+    const auto per_limit = static_cast<float>(1 / (4 * scale_px));
+    for (std::size_t i = 0; i < count_; ++i) {
+      const float ratio = per_limit * offset_[i];
+      root_[i] = std::max(0.0f, 1 - ratio * ratio);
+    }
   }
 
-  // Adds that the displacement should be small, by its degrees, and the spread too.
-  void AddPrior(const PrintAlignment& alignment, double scale_px, double ring_radius_px) {
-    const PlaneWarp::Coefficients& displacement = alignment.warp.displacement();
-    for (int i = 0; i < kTerms; ++i) {
-      const double sigma = kPriorShare[PlaneWarp::DegreeOf(i)] * ring_radius_px;
-      const double weight = Squared(scale_px / sigma);
-      xx(i, i) += weight;
-      yy(i, i) += weight;
-      x(i) -= weight * displacement(0, i);
-      y(i) -= weight * displacement(1, i);
+  // Sums of the products of derivatives and offset, weighted.
+  Products Sum() const {
+    std::array<Column, kUnknowns + 1> weighted;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const float x = x_[i], y = y_[i], square = x * x + y * y;
+      const std::array<float, kTerms> terms{1, x, y, x * x, x * y, y * y, square * x, square * y};
+      const float cos = root_[i] * cos_[i], sin = root_[i] * sin_[i];
+      for (int k = 0; k < kTerms; ++k) {
+        weighted[k][i] = cos * terms[k];
+        weighted[kTerms + k][i] = sin * terms[k];
+      }
+      weighted[kSpread][i] = root_[i];
+      weighted[kUnknowns][i] = root_[i] * offset_[i];
     }
-    const double weight = Squared(scale_px / kSpreadSigmaPx);
-    weights += weight;
-    spread -= weight * alignment.edges.spread_px;
+    std::array<const float*, kUnknowns + 1> pointers;
+    for (int k = 0; k <= kUnknowns; ++k) pointers[k] = weighted[k].data();
+    Products products;
+    SumProducts(pointers, count_, products.data());
+    return products;
   }
+
+  // Moves the edges by a displacement of the outlines and a spread, and returns the root mean
+  // square of what is left of the offsets.
+  double Move(const PlaneWarp::Coefficients& displacement, double spread_px, PrintEdges* edges) {
+    const auto by_x = PlaneWarp::AxisOf(displacement, 0), by_y = PlaneWarp::AxisOf(displacement, 1);
+    Column along;
+    for (std::size_t i = 0; i < count_; ++i) {
+      along[i] = cos_[i] * PlaneWarp::Displacement(by_x, x_[i], y_[i]) +
+                 sin_[i] * PlaneWarp::Displacement(by_y, x_[i], y_[i]);
+    }
+    edges->spread_px += spread_px;
+    double squares = 0, sum = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      PrintEdge& edge = edges->edges[i];
+      edge.expected_px += along[i] * edge.across;
+      edge.offset_px -= along[i];
+      const double weight = root_[i] * root_[i];
+      squares += weight * Squared(edges->ResidualOf(edge));
+      sum += weight;
+    }
+    return std::sqrt(squares / std::max(sum, 1e-9));
+  }
+
+ private:
+  using Column = std::array<float, PrintOutline::kMaxPlaces>;
+
+  std::size_t count_;
+  Column x_, y_;      // of the place, in radii
+  Column cos_, sin_;  // normal of the outline in the image
+  Column offset_;     // px
+  Column root_;       // of the weight
 };
 
-// Makes one step and leaves of the offsets what it does not explain.
-void Step(double scale_px, double ring_radius_px, PrintAlignment* alignment) {
-  PrintEdges& found = alignment->edges;
-  std::array<Terms, PrintOutline::kMaxPlaces> terms;
-  std::array<double, PrintOutline::kMaxPlaces> weights;
-  Equations equations;
-  const auto weight_of = [scale_px](double offset) {
-    const double ratio = offset / (4 * scale_px);
-    return std::abs(ratio) >= 1 ? 0 : Squared(1 - ratio * ratio);
-  };
-  for (std::size_t i = 0; i < found.count; ++i) {
-    const PrintEdge& edge = found.edges[i];
-    const double residual = found.ResidualOf(edge);
-    terms[i] = alignment->warp.TermsAt(edge.place->point);
-    weights[i] = weight_of(residual);
-    equations.Add(terms[i], edge.across, residual, weights[i]);
+// One step of least squares.
+class Step {
+ public:
+  // Makes the step and leaves of the offsets what it does not explain.
+  Step(double scale_px, double ring_radius_px, PrintAlignment* alignment) {
+    Columns columns(*alignment, scale_px);
+    const Products products = columns.Sum();
+    Matrix h = products.topLeftCorner<kUnknowns, kUnknowns>();
+    Vector g = products.topRightCorner<kUnknowns, 1>();
+    const double weights = h(kSpread, kSpread);
+    const PlaneWarp::Coefficients& before = alignment->warp.displacement();
+    // Displacements should be small, by their degrees, and the spread too.
+    const auto pull = [&](int unknown, double value, double sigma) {
+      const double weight = Squared(scale_px / sigma);
+      h(unknown, unknown) += weight;
+      g(unknown) -= weight * value;
+    };
+    for (int i = 0; i < kTerms; ++i) {
+      const double sigma = kPriorShare[PlaneWarp::DegreeOf(i)] * ring_radius_px;
+      pull(i, before(0, i), sigma);
+      pull(kTerms + i, before(1, i), sigma);
+    }
+    pull(kSpread, alignment->edges.spread_px, kSpreadSigmaPx);
+    decomposition_.compute(h);
+    const Vector step = decomposition_.solve(g);
+    moved_px_ = std::sqrt(std::max(0.0, step.dot(g)) / std::max(weights, 1e-9));
+    PlaneWarp::Coefficients displacement;
+    displacement << step.head<kTerms>().transpose(), step.segment<kTerms>(kTerms).transpose();
+    alignment->warp.Displace(displacement);
+    alignment->edge_rms_px = columns.Move(displacement, step(kSpread), &alignment->edges);
   }
-  equations.AddPrior(*alignment, scale_px, ring_radius_px);
-  Eigen::Matrix<double, kUnknowns, kUnknowns> h;
-  Eigen::Matrix<double, kUnknowns, 1> g;
-  h << equations.xx, equations.xy, equations.x_spread,  //
-      equations.xy, equations.yy, equations.y_spread,   //
-      equations.x_spread.transpose(), equations.y_spread.transpose(), equations.weights;
-  g << equations.x, equations.y, equations.spread;
-  const Eigen::LDLT<decltype(h)> decomposition(h);
-  const decltype(g) solution = decomposition.solve(g);
-  PlaneWarp::Coefficients step;
-  step << solution.head<kTerms>().transpose(), solution.segment<kTerms>(kTerms).transpose();
-  alignment->warp.Displace(step);
-  found.spread_px += solution(kUnknowns - 1);
 
-  double squares = 0, sum = 0;
-  for (std::size_t i = 0; i < found.count; ++i) {
-    PrintEdge& edge = found.edges[i];
-    const double along = edge.across.dot(step * terms[i]);
-    edge.expected_px += along * edge.across;
-    edge.offset_px -= along;
-    squares += weights[i] * Squared(found.ResidualOf(edge));
-    sum += weights[i];
+  // By how much the outlines were moved, root mean square.
+  double moved_px() const { return moved_px_; }
+
+  // Standard deviation of where the print's middle is now, per axis.
+  double CenterSigmaPx(double edge_rms_px) const {
+    const auto variance = [&](int i) { return decomposition_.solve(Vector::Unit(i).eval())(i); };
+    return std::max(edge_rms_px, kLeastRmsPx) * std::sqrt(0.5 * (variance(0) + variance(kTerms)));
   }
-  alignment->edge_rms_px = std::sqrt(squares / std::max(sum, 1e-9));
-  const auto variance = [&](int i) { return decomposition.solve(decltype(g)::Unit(i).eval())(i); };
-  alignment->center_sigma_px = std::max(alignment->edge_rms_px, kLeastRmsPx) *
-                               std::sqrt(0.5 * (variance(0) + variance(kTerms)));
-}
+
+ private:
+  Eigen::LLT<Matrix> decomposition_;
+  double moved_px_;
+};
 
 }  // namespace
 
@@ -149,24 +186,35 @@ bool AlignPrint(const cv::Mat& image, const cv::Mat& view, const ImageRegion& re
       places.front().point.norm() * std::sqrt(std::abs(d_plane.determinant()));
   double scale = std::max(1.0, 0.5 * reach_px);
   double reach = reach_px;
-  for (int i = 0; i < kFarSteps + kNearSteps; ++i) {
-    const bool far = i < kFarSteps;
-    const bool last = i + 1 == kFarSteps + kNearSteps;
+  bool settled = false;
+  const auto make_step = [&](const ImageRegion& seen, bool is_last) {
     // What is far off is looked for where a pixel is large.
-    const ImageRegion& seen = far ? region : ImageRegion{};
-    EdgeSearch search{reach / seen.scale(), min_step, last ? 1 : kCoarseStride};
+    const bool far = &seen == &region;
+    EdgeSearch search{reach / seen.scale(), min_step, is_last ? 1 : kCoarseStride};
     if (far) search.reach_px = std::max(kFarReachPx, search.reach_px);
-    FindPrintEdges(far ? view : image, seen, alignment->warp, places, search, &alignment->edges);
-    if (!last && alignment->edges.count < kFewEdges) {
-      search.stride = 1;
+    const auto look = [&] {
       FindPrintEdges(far ? view : image, seen, alignment->warp, places, search, &alignment->edges);
+    };
+    look();
+    if (!is_last && alignment->edges.count < kFewEdges) {
+      search.stride = 1;
+      look();
     }
     if (alignment->edges.count < kMinEdges) return false;
-    Step(scale, ring_radius_px, alignment);
+    const Step step(scale, ring_radius_px, alignment);
     scale = std::clamp(alignment->edges.RobustScale(), kLeastScalePx * seen.scale(), scale);
     reach = std::clamp(4 * scale, kLeastReachPx, reach);
-  }
-  return true;
+    settled = step.moved_px() < kSettledPx * seen.scale();
+    if (is_last) alignment->center_sigma_px = step.CenterSigmaPx(alignment->edge_rms_px);
+    return true;
+  };
+  const auto make_steps = [&](const ImageRegion& seen, int most) {
+    bool is_aligned = true;
+    settled = false;
+    for (int i = 0; i < most && is_aligned && !settled; ++i) is_aligned = make_step(seen, false);
+    return is_aligned;
+  };
+  return make_steps(region, kFarSteps) && make_steps({}, kNearSteps - 1) && make_step({}, true);
 }
 
 }  // namespace kestrel

@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "kestrel/landing/column_products.h"
 #include "kestrel/landing/neighbor_correlation.h"
 #include "kestrel/landing/small_pattern_kernel.h"
 #include "kestrel/landing/small_pattern_model.h"

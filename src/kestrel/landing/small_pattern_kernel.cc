@@ -213,30 +213,6 @@ void Differentiate(const PrintAxes& axes, float contrast, SmallPatternWorkspace*
   }
 }
 
-void SumProducts(std::span<const float* const> columns, std::size_t count, double* products) {
-  const Floats d;
-  const std::size_t lanes = hn::Lanes(d);
-  const std::size_t whole = count - count % lanes;
-  for (std::size_t a = 0; a < columns.size(); ++a) {
-    for (std::size_t b = 0; b <= a; ++b) {
-      // Two sums, so that one does not wait for the other.
-      Vector even = hn::Zero(d), odd = hn::Zero(d);
-      std::size_t i = 0;
-      for (; i + 2 * lanes <= count; i += 2 * lanes) {
-        even = hn::MulAdd(hn::LoadU(d, columns[a] + i), hn::LoadU(d, columns[b] + i), even);
-        odd = hn::MulAdd(hn::LoadU(d, columns[a] + i + lanes), hn::LoadU(d, columns[b] + i + lanes),
-                         odd);
-      }
-      if (i < whole) {
-        even = hn::MulAdd(hn::LoadU(d, columns[a] + i), hn::LoadU(d, columns[b] + i), even);
-      }
-      double sum = hn::GetLane(hn::SumOfLanes(d, hn::Add(even, odd)));
-      for (i = whole; i < count; ++i) sum += columns[a][i] * columns[b][i];
-      products[a * columns.size() + b] = products[b * columns.size() + a] = sum;
-    }
-  }
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace kestrel
 HWY_AFTER_NAMESPACE();
@@ -247,7 +223,6 @@ namespace kestrel {
 HWY_EXPORT(EvaluatePrint);
 HWY_EXPORT(CompareGrays);
 HWY_EXPORT(Differentiate);
-HWY_EXPORT(SumProducts);
 
 void EvaluatePrint(const PrintModel& model, SmallPatternWorkspace* workspace) {
   HWY_DYNAMIC_DISPATCH(EvaluatePrint)(model, workspace);
@@ -259,10 +234,6 @@ void CompareGrays(const PrintLight& light, float limit, SmallPatternWorkspace* w
 
 void Differentiate(const PrintAxes& axes, float contrast, SmallPatternWorkspace* workspace) {
   HWY_DYNAMIC_DISPATCH(Differentiate)(axes, contrast, workspace);
-}
-
-void SumProducts(std::span<const float* const> columns, std::size_t count, double* products) {
-  HWY_DYNAMIC_DISPATCH(SumProducts)(columns, count, products);
 }
 
 }  // namespace kestrel

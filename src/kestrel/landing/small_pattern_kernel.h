@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstddef>
-#include <span>
 
 #include "kestrel/landing/small_pattern.h"
 
@@ -48,8 +47,5 @@ struct PrintAxes {
   std::array<float, 3> normal;
 };
 void Differentiate(const PrintAxes& axes, float contrast, SmallPatternWorkspace* workspace);
-
-// Sums over 'count' rows of the products of any two columns: writes columns.size() squared of them.
-void SumProducts(std::span<const float* const> columns, std::size_t count, double* products);
 
 }  // namespace kestrel
