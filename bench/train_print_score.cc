@@ -368,12 +368,12 @@ void ReportHardships(const PrintScore& score, const std::vector<ScoredFrame>& fr
       "\n## By condition, held out\n\n| condition | frames | expected calibration error | found, "
       "of "
       "those with the pattern | false, of those without |\n|---|---|---|---|---|\n");
-  constexpr double kMinQuality = 0.6;  // the detector's default
+  const double min_quality = LandingPatternDetectorOptions().min_quality;
   for (unsigned bit = 0; bit < kStillConditions + kFrameHardships.size(); ++bit) {
     std::vector<ScoredFrame> chosen;
     std::copy_if(frames.begin(), frames.end(), std::back_inserter(chosen),
                  [bit](const ScoredFrame& frame) { return frame.hardships >> bit & 1; });
-    const DetectionRates rates = MeasureRates(score, chosen, kMinQuality);
+    const DetectionRates rates = MeasureRates(score, chosen, min_quality);
     fmt::print("| {} | {} | {:.3f} | {:.1f} % | {:.2f} % |\n", NameOf(bit), chosen.size(),
                MeasureReliability(score, chosen).expected_calibration_error, 100 * rates.found,
                100 * rates.false_of_all);

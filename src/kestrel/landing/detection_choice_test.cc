@@ -114,10 +114,10 @@ TEST_F(DetectionChoiceTest, TheMostProbableIsTaken) {
 TEST_F(DetectionChoiceTest, WhatIsNotProbableEnoughSaysWhy) {
   DetectionChoice choice = Choice(0.5);
   PrintFinding finding = FindingAt({10, 10}, -2);
-  finding.doubts[PrintDoubt::kBrokenRing] = 1;
+  finding.doubts[PrintDoubt::kDarkBoard] = 1;
   EXPECT_FALSE(choice.Add(finding));
   EXPECT_EQ(report_.reached, LandingStage::kLocate);
-  EXPECT_EQ(report_.reason, "the ring is broken");
+  EXPECT_EQ(report_.reason, "there is no white board around the ring");
   EXPECT_FALSE(choice.Detection());
   EXPECT_TRUE(choice.Add(FindingAt({90, 10}, 2)));
   EXPECT_EQ(report_.reached, LandingStage::kFound);

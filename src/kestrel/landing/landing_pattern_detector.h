@@ -86,7 +86,7 @@ struct LandingPatternDetectorOptions {
   // raises the danger of look-alikes.
   double min_ring_px = 6;
   // Smallest quality that is accepted, 0 to 1: the probability that it is the pattern.
-  double min_quality = 0.6;
+  double min_quality = 0.7;
   // How far from level the pattern may lie, standard deviation per axis: of a far one the image
   // hardly tells the tilt, on which its distance hangs. Used where the hint says what is up; larger
   // for a deck that rolls, smaller for a floor.
