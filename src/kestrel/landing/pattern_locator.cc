@@ -16,11 +16,15 @@ namespace kestrel {
 namespace {
 
 // The unknowns: pose (translation, then rotation vector), spread of the black, logarithm of the
-// focal length's factor, shift of the principal point.
+// focal length's factor, shift of the principal point, distortion: what the cube of the distance
+// from the principal point adds to it, in focal lengths. A single view tells too little of the
+// distortion to be solved for it; what it says is told all the same.
 constexpr int kPoseUnknowns = 6;
 constexpr int kSpread = 6;
 constexpr int kFocal = 7;
-constexpr int kUnknowns = 10;
+constexpr int kDistortion = 10;
+constexpr int kCalibrationUnknowns = 4;
+constexpr int kUnknowns = 11;
 using PoseVector = Eigen::Matrix<double, kPoseUnknowns, 1>;
 using Vector = Eigen::Matrix<double, kUnknowns, 1>;
 using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
@@ -45,7 +49,9 @@ constexpr double kFocalSigma = 0.25;
 constexpr double kPrincipalSigma = 0.1;
 constexpr double kSureCalibration = 30;
 constexpr double kDoubtfulCalibration = 8;  // from where it is worth to find out
-constexpr double kHeld = 1e6;               // weight, in edges, of what is not to move
+// Size of a ring, in focal lengths, over which the lens may bend otherwise than one number says.
+constexpr double kWideRing = 0.6;
+constexpr double kHeld = 1e6;  // weight, in edges, of what is not to move
 
 // Of rings that are to be located yet.
 constexpr std::size_t kCoarseStride = 3;  // places per place that is looked at first
@@ -76,7 +82,7 @@ struct PatternLocator::State {
     pose = Moved(pose, step.head<3>(), turn);
     spread_px += step(kSpread);
     log_focal += step(kFocal);
-    principal_px += step.tail<2>();
+    principal_px += step.segment<2>(kFocal + 1);
     return true;
   }
 };
@@ -96,6 +102,7 @@ struct PatternLocator::Equations {
     PullToZero(kFocal, state.log_focal, focal_weight);
     PullToZero(kFocal + 1, state.principal_px.x(), principal_weight);
     PullToZero(kFocal + 2, state.principal_px.y(), principal_weight);
+    PullToZero(kDistortion, 0, kHeld);
   }
 };
 
@@ -105,6 +112,7 @@ struct PatternLocator::Linearized {
     const PrintOutline::Place* place;
     Vector jacobian;  // of the offset
     double offset;    // px, from where the state has it
+    double shift;     // px, of where the state has it from where the camera's own lens does
     double weight;
     bool follows;  // the edge before is its neighbour on the outline
   };
@@ -139,6 +147,9 @@ struct PatternLocator::Residuals {
     for (const Linearized::Edge& edge : std::span(linearized.edges).first(linearized.used)) {
       const double residual = edge.offset - edge.jacobian.dot(step);
       weighted_squares += edge.weight * residual * residual;
+      const double by_camera =
+          residual + edge.shift + edge.jacobian.segment<3>(kFocal).dot(step.segment<3>(kFocal));
+      camera_squares += edge.weight * by_camera * by_camera;
       Stretch& stretch = outline[2 * edge.place->part + edge.place->side];
       stretch.sum += edge.weight * residual;
       stretch.weights += edge.weight;
@@ -148,6 +159,8 @@ struct PatternLocator::Residuals {
   }
 
   double MeanSquare() const { return weighted_squares / weights; }
+  // The same of what they are off where the camera's own lens has them.
+  double CameraMeanSquare() const { return camera_squares / weights; }
 
   // Variance of an edge as the pose sees it: what neighbours have in common does not average out,
   // and what whole stretches of an outline have in common shows in how their means differ.
@@ -177,6 +190,7 @@ struct PatternLocator::Residuals {
   double used;
   double weights;
   double weighted_squares = 0;
+  double camera_squares = 0;
   NeighborCorrelation neighbors;
   std::array<Stretch, 2 * PrintOutline::kParts> outline{};  // by part and side
 };
@@ -197,6 +211,7 @@ PatternLocator::Linearized PatternLocator::Linearize(const PrintEdges& edges, co
   const Eigen::Matrix<double, 3, 2> plane = state.pose.rotation.toRotationMatrix().leftCols<2>();
   const Eigen::Vector2d principal = Principal();
   const double zoom = std::exp(state.log_focal);
+  const double focal_px = zoom * camera_.intrinsics().fx_px;
   Eigen::Matrix<double, 2, 3> d_pixel;
   bool has_edge_before = false;
   for (const PrintEdge& found : edges.all()) {
@@ -207,6 +222,7 @@ PatternLocator::Linearized PatternLocator::Linearize(const PrintEdges& edges, co
         ProjectionStatus::kOutsideModel) {
       continue;
     }
+    const Eigen::Vector2d by_camera = pixel;
     const Eigen::Vector2d from_principal = zoom * (pixel - principal);
     pixel = state.Recalibrated(pixel, principal);
     const double offset = found.across.dot(found.pixel() - pixel) - state.spread_px;
@@ -217,9 +233,11 @@ PatternLocator::Linearized PatternLocator::Linearize(const PrintEdges& edges, co
     const Eigen::Vector3d d_point = zoom * d_pixel.transpose() * found.across;
     Linearized::Edge& edge = linearized.edges[linearized.used++];
     edge.place = found.place;
-    edge.jacobian << d_point, from_center.cross(d_point), 1, found.across.dot(from_principal),
-        found.across;
+    const double radial = found.across.dot(from_principal);
+    edge.jacobian << d_point, from_center.cross(d_point), 1, radial, found.across,
+        radial * from_principal.squaredNorm() / (focal_px * focal_px);
     edge.offset = offset;
+    edge.shift = found.across.dot(pixel - by_camera);
     edge.weight = weight;
     edge.follows = follows;
     const Vector weighted = weight * edge.jacobian;
@@ -232,24 +250,25 @@ PatternLocator::Linearized PatternLocator::Linearize(const PrintEdges& edges, co
   return linearized;
 }
 
-// What equations say of their unknowns.
+// What equations say of their unknowns. 'more_variance': of an edge, px^2, beside what the
+// residuals show.
 struct PatternLocator::Solution {
-  Solution(const Linearized& linearized, const Equations& equations)
+  Solution(const Linearized& linearized, const Equations& equations, double more_variance = 0)
       : decomposition(equations.h),
         step(decomposition.solve(equations.g)),
-        residuals(linearized, step) {}
+        residuals(linearized, step),
+        variance(residuals.EdgeVariance() + more_variance) {}
 
-  Matrix Covariance() const {
-    return residuals.EdgeVariance() * decomposition.solve(Matrix::Identity().eval());
-  }
+  Matrix Covariance() const { return variance * decomposition.solve(Matrix::Identity().eval()); }
   double Sigma(int unknown) const {
     const double inverse = decomposition.solve(Vector::Unit(unknown))(unknown);
-    return std::sqrt(residuals.EdgeVariance() * inverse);
+    return std::sqrt(variance * inverse);
   }
 
   Eigen::LDLT<Matrix> decomposition;
   Vector step;
   Residuals residuals;
+  double variance;  // of an edge, px^2
 };
 
 // The step of a state whose calibration stays as it is. The spread is held at none unless the edges
@@ -273,33 +292,65 @@ PatternLocator::Solution PatternLocator::SolvePose(const Linearized& linearized,
   return {linearized, equations};
 }
 
-// The step of a state of which everything is asked.
+// The step of a state of which everything is asked. A print that is not quite flat seems to be seen
+// through another lens.
 PatternLocator::Solution PatternLocator::SolveCalibration(
     const Linearized& linearized, const State& state,
     const std::optional<NormalPrior>& prior) const {
-  const double principal_sigma_px = kPrincipalSigma * camera_.intrinsics().fx_px;
+  const double focal_px = camera_.intrinsics().fx_px;
+  const double principal_sigma_px = kPrincipalSigma * focal_px;
+  const double diameter_px = 2 * outline_.radius_m() * focal_px / state.pose.translation.norm();
+  const double unflat = std::pow(kUnflatShare * diameter_px, 2);
   const auto solve = [&](double variance) -> Solution {
     Equations equations = linearized.equations;
     if (prior) prior->AddTo(state.pose.rotation, variance, &equations.h, &equations.g);
     equations.PullCalibration(state, variance / (kFocalSigma * kFocalSigma),
                               variance / (principal_sigma_px * principal_sigma_px));
-    return {linearized, equations};
+    return {linearized, equations, unflat};
   };
   // What the step explains of the offsets is no variance of the edges.
-  const Solution without_step = solve(Residuals(linearized, Vector::Zero()).EdgeVariance());
-  return solve(without_step.residuals.EdgeVariance());
+  const double before = Residuals(linearized, Vector::Zero()).EdgeVariance() + unflat;
+  return solve(solve(before).variance);
 }
 
-CalibrationEvidence PatternLocator::Judge(const Solution& solution, const State& state) {
+// What the edges alone say of the calibration, whatever the pose: nothing that was known before is
+// in it, for all views have that in common.
+void PatternLocator::AddInformation(const Linearized& linearized, const Solution& solution,
+                                    const State& state, CalibrationEvidence* evidence) const {
+  using OfPose = Eigen::Matrix<double, kFocal, kFocal>;
+  using Calibration = Eigen::Matrix<double, kCalibrationUnknowns, 1>;
+  if (2 * outline_.radius_m() > kWideRing * state.pose.translation.norm()) return;
+  const Matrix& h = linearized.equations.h;
+  const Vector& g = linearized.equations.g;
+  const Eigen::LDLT<OfPose> of_pose(h.topLeftCorner<kFocal, kFocal>());
+  const auto mixed = h.topRightCorner<kFocal, kCalibrationUnknowns>().eval();
+  const auto by_pose = of_pose.solve(mixed).eval();
+  const Eigen::Matrix4d information =
+      h.bottomRightCorner<kCalibrationUnknowns, kCalibrationUnknowns>() -
+      mixed.transpose() * by_pose;
+  const Calibration at(state.log_focal, state.principal_px.x(), state.principal_px.y(), 0);
+  const Calibration pull =
+      information * at + g.tail<kCalibrationUnknowns>() - by_pose.transpose() * g.head<kFocal>();
+  const double focal_px = camera_.intrinsics().fx_px;
+  const Calibration unit(1, focal_px, focal_px, 1);
+  evidence->edge_variance = solution.residuals.EdgeVariance();
+  evidence->information = unit.asDiagonal() * information * unit.asDiagonal();
+  evidence->information /= evidence->edge_variance;
+  evidence->pull = unit.cwiseProduct(pull) / evidence->edge_variance;
+}
+
+CalibrationEvidence PatternLocator::Judge(const Linearized& linearized, const Solution& solution,
+                                          const State& state) const {
   const Matrix covariance = solution.Covariance();
   Eigen::Vector3d error(state.log_focal, state.principal_px.x(), state.principal_px.y());
-  error += solution.step.tail<3>();
+  error += solution.step.segment<3>(kFocal);
   CalibrationEvidence evidence;
   evidence.log_focal = error.x();
   evidence.log_focal_sigma = std::sqrt(covariance(kFocal, kFocal));
   evidence.principal_px = error.tail<2>();
-  const Eigen::Matrix3d of_error = covariance.bottomRightCorner<3, 3>();
+  const Eigen::Matrix3d of_error = covariance.block<3, 3>(kFocal, kFocal);
   evidence.surprise = error.dot(of_error.ldlt().solve(error));
+  AddInformation(linearized, solution, state, &evidence);
   return evidence;
 }
 
@@ -309,6 +360,7 @@ void PatternLocator::Describe(const Linearized& linearized, const Solution& solu
   const Vector blur = kBlurSpreadPx2 * solution.decomposition.solve(linearized.by_blur);
   location->covariance = (solution.Covariance() + blur * blur.transpose()).topLeftCorner<6, 6>();
   location->edge_rms_px = std::sqrt(solution.residuals.MeanSquare());
+  location->misfit_px = std::sqrt(solution.residuals.CameraMeanSquare());
 }
 
 // Where the calibration may be wrong the pose is as uncertain as without it, and by as much as it
@@ -338,7 +390,7 @@ std::optional<PatternLocation> PatternLocator::Locate(
     if (is_last) {
       Describe(linearized, solution, &location);
       const Solution free = SolveCalibration(linearized, state, prior);
-      const CalibrationEvidence evidence = Judge(free, state);
+      const CalibrationEvidence evidence = Judge(linearized, free, state);
       if (evidence.surprise > kDoubtfulCalibration) {
         DoubtCalibration(solution, free, &location);
       }
@@ -351,7 +403,7 @@ std::optional<PatternLocation> PatternLocator::Locate(
     if (is_last) break;
   }
   if (location.calibration.surprise > kDoubtfulCalibration) {
-    Recalibrate(edges, prior, scale, &state, &location);
+    Recalibrate(edges, prior, &state, &location);
   }
   if (!location.covariance.allFinite()) return std::nullopt;
   location.camera_from_pattern = state.pose;
@@ -366,14 +418,16 @@ std::optional<PatternLocation> PatternLocator::Locate(
 // Asks the edges for the calibration too; changes state and location where they contradict the
 // camera's.
 void PatternLocator::Recalibrate(const PrintEdges& edges, const std::optional<NormalPrior>& prior,
-                                 double scale_px, State* state, PatternLocation* location) const {
+                                 State* state, PatternLocation* location) const {
+  location->calibration = {};
   State free = *state;
+  double scale = kFarScalePx;
   for (int i = 1; i <= kMaxSteps; ++i) {
-    Linearized linearized = Linearize(edges, free, scale_px);
+    Linearized linearized = Linearize(edges, free, scale);
     if (linearized.used < kMinEdges) return;
     const Solution solution = SolveCalibration(linearized, free, prior);
     if (i == kMaxSteps || linearized.Movement(solution.step) < kSettledPx) {
-      location->calibration = Judge(solution, free);
+      location->calibration = Judge(linearized, solution, free);
       location->calibration.contradicts = location->calibration.surprise > kSureCalibration;
       if (!location->calibration.contradicts || !free.Move(solution.step)) return;
       Describe(linearized, solution, location);
@@ -381,7 +435,8 @@ void PatternLocator::Recalibrate(const PrintEdges& edges, const std::optional<No
       return;
     }
     if (!free.Move(solution.step)) return;
-    scale_px = std::clamp(linearized.RobustScale(), kLeastScalePx, scale_px);
+    scale = std::clamp(linearized.RobustScale(), kLeastScalePx, scale);
+    if (i == 1) scale = std::max(scale, 1.0);
   }
 }
 
