@@ -51,16 +51,6 @@ std::string ToldWarning(const LandingPipeline& pipeline, std::optional<double> a
                      altitude_m.value_or(0) - excess->difference);
 }
 
-// What the detections say about the focal length, where that contradicts the calibration.
-std::string FocalRemark(const CalibrationMonitor& monitor, double focal_px) {
-  const auto focal = monitor.Contradiction();
-  if (!focal) return "";
-  return fmt::format(
-      "the pattern says f = {:.0f} +- {:.0f} px, the calibration {:.0f}: kestrel calibrate lens "
-      "estimates it from such views\n",
-      focal->factor * focal_px, focal->sigma * focal_px, focal_px);
-}
-
 class LandRun : public PipelineRun {
  public:
   LandRun(const OpenedSource& opened, const LandingPipelineOptions& options,
@@ -98,7 +88,8 @@ class LandRun : public PipelineRun {
 
   std::string Remarks() const override {
     const double focal_px = pipeline_.detector().camera().intrinsics().fx_px;
-    std::string remarks = FocalRemark(pipeline_.calibration_monitor(), focal_px);
+    std::string remarks = LensWarning(pipeline_.calibration_monitor(), focal_px);
+    if (!remarks.empty()) remarks += "\n";
     // Only where there are poses for some of the frames; a source that has none is nothing unusual.
     for (const auto& [pose, count] : poses_) {
       if (pose == PoseLookup::kFound || pose == PoseLookup::kEmpty ||

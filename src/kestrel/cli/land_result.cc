@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <initializer_list>
+#include <limits>
 #include <system_error>
 #include <utility>
 
@@ -64,10 +65,12 @@ LandResult::LandResult(const std::string& table) : file_(table), text_(ReadFile(
   const CsvTable cells(text_, file_);
   const std::size_t method = cells.Column("method"), quality = cells.Column("quality"),
                     rejected = cells.Column("rejected_at"), time = cells.Column("detect_ms");
+  const std::optional<std::size_t> misfit = cells.FindColumn("misfit_px");  // newer than the others
   for (DetectionRow& detection : ParseDetectionRows(text_, file_)) {
     const std::size_t index = rows_.size();
     Row& row = rows_.emplace_back();
     row.detect_time = DurationFromSeconds(1e-3 * cells.OptionalNumber(index, time).value_or(0));
+    if (misfit) row.misfit_px = cells.OptionalNumber(index, *misfit).value_or(0);
     if (detection.pattern) {
       row.method = KindIn(cells, index, method,
                           {CrossMethod::kQuadrants, CrossMethod::kThinning, CrossMethod::kLines,
@@ -104,6 +107,9 @@ LandingObservation LandResult::Next(Time time,
         observation.report.detection.emplace(DetectionOf(*pattern, world_from_camera));
     detection.method = row.method;
     detection.quality = row.quality;
+    detection.misfit_px = row.misfit_px;
+    // How much it should be at most is not in the table.
+    detection.misfit_bound_px = std::numeric_limits<double>::infinity();
     observation.center_in_world = pattern->center_in_world;
     observation.yaw_in_world = pattern->yaw_in_world;
   } else {

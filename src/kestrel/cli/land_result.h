@@ -34,6 +34,7 @@ class LandResult {
     DetectionRow detection;
     CrossMethod method = CrossMethod::kQuadrants;
     double quality = 0;
+    double misfit_px = 0;
     LandingStage reached = LandingStage::kFound;
     Duration detect_time{};
   };

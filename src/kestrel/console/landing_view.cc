@@ -36,6 +36,22 @@ std::vector<cv::Point2f> Outline(const CameraModel& camera,
   return outline;
 }
 
+// The same of a circle around the pattern's centre where it is seen.
+std::vector<cv::Point2f> SeenOutline(const CameraModel& camera, const LandingPattern& pattern,
+                                     const SeenPrint& seen, double radius_m) {
+  const PlaneWarp warp = seen.Warp(camera, pattern.outer_radius_m());
+  std::vector<cv::Point2f> outline;
+  for (int i = 0; i < kPiecesPerCircle; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kPiecesPerCircle;
+    Eigen::Vector2d pixel;
+    if (!warp.Project(radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)), &pixel)) {
+      continue;
+    }
+    if (pixel.allFinite()) outline.emplace_back(pixel.x(), pixel.y());
+  }
+  return outline;
+}
+
 std::vector<cv::Point2f> RingOutline(const CameraModel& camera,
                                      const RigidTransform& camera_from_pattern, double radius_m) {
   return Outline(camera, [&](double angle) {
@@ -60,6 +76,14 @@ std::vector<cv::Point2f> TrackOutline(const CameraModel& camera,
 
 std::string WhyNot(const LandingReport& report) {
   return fmt::format("{}: {}", ToString(report.reached), report.reason);
+}
+
+std::string MisfitInWords(const LandingDetection& detection) {
+  if (detection.misfit_px == 0) return "";
+  return fmt::format("{:.2f} px{}", detection.misfit_px,
+                     detection.is_misfit()
+                         ? fmt::format(", at most {:.2f} expected", detection.misfit_bound_px)
+                         : "");
 }
 
 ConsoleMapObject MapObject(const std::string& label, const TurnState& motion) {
@@ -114,13 +138,22 @@ std::vector<OverlayShape> LandingShapes(const LandingView& view,
   const LandingDetection& found = *observation.report.detection;
   const bool is_rejected = observation.fate == MeasurementFate::kFarFromTrack;
   const OverlayLayer layer = is_rejected ? OverlayLayer::kRejected : OverlayLayer::kDetection;
-  const std::string label = fmt::format("{} {:.2f}", ToString(found.method), found.quality);
-  shapes.push_back(
-      {layer, RingOutline(view.camera, found.camera_from_pattern, view.pattern.outer_radius_m()),
-       is_rejected ? label + ", far from the track" : label});
-  shapes.push_back(
-      {layer, RingOutline(view.camera, found.camera_from_pattern, view.pattern.inner_radius_m()),
-       ""});
+  const std::string label = fmt::format("{} {:.2f}{}", ToString(found.method), found.quality,
+                                        is_rejected ? ", far from the track" : "");
+  const double outer_m = view.pattern.outer_radius_m();
+  const double inner_m = view.pattern.inner_radius_m();
+  const bool is_seen_elsewhere = found.is_misfit() && found.seen;
+  if (is_seen_elsewhere) {
+    shapes.push_back(
+        {layer, SeenOutline(view.camera, view.pattern, *found.seen, outer_m), label + ", as seen"});
+    shapes.push_back({layer, SeenOutline(view.camera, view.pattern, *found.seen, inner_m), ""});
+  }
+  const OverlayLayer of_pose = is_seen_elsewhere ? OverlayLayer::kRejected : layer;
+  shapes.push_back({of_pose, RingOutline(view.camera, found.camera_from_pattern, outer_m),
+                    is_seen_elsewhere
+                        ? fmt::format("by the calibration: {:.1f} px beside", found.misfit_px)
+                        : label});
+  shapes.push_back({of_pose, RingOutline(view.camera, found.camera_from_pattern, inner_m), ""});
   shapes.push_back(
       {layer,
        {{static_cast<float>(found.center_px.x()), static_cast<float>(found.center_px.y())}},
@@ -150,6 +183,10 @@ ConsoleStatus LandingStatus(const LandingObservation& observation) {
     status.reason = "not found: " + WhyNot(report);
   } else if (observation.fate == MeasurementFate::kFarFromTrack) {
     status.reason = "found, but far from where the track has it";
+  } else if (report.detection->is_misfit()) {
+    status.reason =
+        fmt::format("found, but {:.1f} px beside where the calibration has it: is it this lens's?",
+                    report.detection->misfit_px);
   } else if (!observation.world_from_camera) {
     status.reason = "found, but where the UAV was is not known";
   }
@@ -159,11 +196,15 @@ ConsoleStatus LandingStatus(const LandingObservation& observation) {
 std::vector<ConsoleFact> LandingFacts(const LandingObservation& observation) {
   const auto& detection = observation.report.detection;
   if (!detection)
-    return {{"found", "no, " + WhyNot(observation.report)}, {"method", ""}, {"quality", ""}};
+    return {{"found", "no, " + WhyNot(observation.report)},
+            {"method", ""},
+            {"quality", ""},
+            {"misfit", ""}};
   const bool is_far = observation.fate == MeasurementFate::kFarFromTrack;
   return {{"found", is_far ? "yes, but far from the track" : "yes"},
           {"method", ToString(detection->method)},
-          {"quality", fmt::format("{:.2f}", detection->quality)}};
+          {"quality", fmt::format("{:.2f}", detection->quality)},
+          {"misfit", MisfitInWords(*detection)}};
 }
 
 ConsoleMap LandingMap(const LandingView& view, const LandingObservation& observation) {

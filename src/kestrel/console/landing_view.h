@@ -28,8 +28,9 @@ std::vector<SeriesDescription> LandingSeries();
 ConsoleSample LandingSample(const LandingObservation& observation);
 
 // The outlines of the ring and the centre of the cross where they were found, rejected where the
-// track says that this cannot be, and two standard deviations of where the track has the centre. A
-// line ends where the lens does.
+// track says that this cannot be, and two standard deviations of where the track has the centre. Of
+// a misfit the outlines as seen, and rejected where pose and calibration have them. A line ends
+// where the lens does.
 std::vector<OverlayLayer> LandingLayers();
 std::vector<OverlayShape> LandingShapes(const LandingView& view,
                                         const LandingObservation& observation);
@@ -41,7 +42,8 @@ std::vector<ImageView> LandingImageViews();
 // The state of the track, and why the pattern was not found.
 ConsoleStatus LandingStatus(const LandingObservation& observation);
 
-// Whether the pattern was found, or why not; by which method and with which quality.
+// Whether the pattern was found, or why not; by which method and with which quality; how far pose
+// and calibration are beside it.
 std::vector<ConsoleFact> LandingFacts(const LandingObservation& observation);
 
 // The camera (its heading is that of the image's upper edge), the target, and where it will be in

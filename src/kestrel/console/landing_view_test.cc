@@ -76,6 +76,28 @@ TEST(LandingViewTest, WhatTheTrackDoesNotTakeIsRejected) {
   EXPECT_NE(LandingStatus(observation).reason, "");
 }
 
+TEST(LandingViewTest, OfAMisfitBothOutlinesAreShown) {
+  LandingObservation observation = Seen();
+  LandingDetection& detection = *observation.report.detection;
+  detection.seen = SeenPrint{detection.camera_from_pattern, PlaneWarp::Coefficients::Zero()};
+  detection.seen->displacement_px(1, 0) = 25;
+  detection.misfit_px = 20;
+  detection.misfit_bound_px = 1;
+  const auto shapes = LandingShapes(View(), observation);
+  ASSERT_EQ(shapes.size(), 6U);
+  EXPECT_EQ(shapes[1].layer, OverlayLayer::kDetection);
+  EXPECT_EQ(shapes[3].layer, OverlayLayer::kRejected);
+  const cv::Point2f beside = Middle(shapes[1]) - Middle(shapes[3]);
+  EXPECT_NEAR(beside.x, 0, 0.1);
+  EXPECT_NEAR(beside.y, 25, 0.1);
+  EXPECT_NE(shapes[3].label.find("20.0 px beside"), std::string::npos) << shapes[3].label;
+  EXPECT_NE(LandingStatus(observation).reason.find("20.0 px beside"), std::string::npos);
+  EXPECT_EQ(LandingFacts(observation).back().value, "20.00 px, at most 1.00 expected");
+  EXPECT_EQ(LandingFacts(LandingObservation()).size(), LandingFacts(observation).size());
+  detection.misfit_bound_px = 30;
+  EXPECT_EQ(LandingShapes(View(), observation).size(), 4U) << "no more than should be";
+}
+
 TEST(LandingViewTest, NumbersAreThoseOfTheTrack) {
   const ConsoleSample sample = LandingSample(Seen());
   ASSERT_EQ(sample.values.size(), LandingSeries().size());

@@ -58,7 +58,7 @@ struct PatternSample {
   RigidTransform camera_from_pattern;
   std::optional<RigidTransform> mirror_camera_from_pattern;
   double ring_px = 0;        // its smaller diameter
-  double misfit_px = 0;      // root mean square of what the pose leaves unexplained of the edges
+  double misfit_px = 0;      // how far the edges are from where pose and lens have them
   bool contradicts = false;  // the calibration cannot explain it
   std::optional<RigidTransform> world_from_body;  // by the autopilot
 };

@@ -49,6 +49,13 @@ Eigen::Matrix<double, 6, 1> Difference(const RigidTransform& from, const RigidTr
   return difference;
 }
 
+// Edges scatter, and a sheet is not quite flat.
+double MisfitBoundPx(const PrintFinding& finding) {
+  constexpr double kSigmas = 3;
+  if (!finding.seen) return 0;
+  return kSigmas * std::hypot(finding.seen_rms_px, kUnflatShare * finding.diameters_px.x());
+}
+
 }  // namespace
 
 double PrintFinding::relative_sigma() const {
@@ -101,7 +108,9 @@ std::optional<LandingDetection> DetectionChoice::Detection() const {
   detection.quality = ProbabilityOf(best_->log_odds);
   detection.ring_semi_major_px = 0.5 * best_->diameters_px.x();
   detection.ring_semi_minor_px = 0.5 * best_->diameters_px.y();
-  detection.misfit_px = best_->location.edge_rms_px;
+  detection.misfit_px = best_->location.misfit_px;
+  detection.misfit_bound_px = MisfitBoundPx(*best_);
+  detection.seen = best_->seen;
   detection.calibration = best_->location.calibration;
   if (!mirror_) return detection;
   detection.mirror_camera_from_pattern = mirror_->location.camera_from_pattern;

@@ -106,7 +106,7 @@ TEST_F(DetectionChoiceTest, TheMostProbableIsTaken) {
     EXPECT_EQ(detection->center_px, best->center_px);
     EXPECT_DOUBLE_EQ(detection->quality, ProbabilityOf(best->log_odds));
     EXPECT_EQ(detection->ring_semi_major_px, 20);
-    EXPECT_EQ(detection->misfit_px, best->location.edge_rms_px);
+    EXPECT_EQ(detection->misfit_px, best->location.misfit_px);
     EXPECT_FALSE(detection->mirror_camera_from_pattern);
   }
 }

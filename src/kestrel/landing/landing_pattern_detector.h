@@ -16,6 +16,7 @@
 #include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/landing/calibration_evidence.h"
 #include "kestrel/landing/landing_pattern.h"
+#include "kestrel/landing/seen_print.h"
 
 namespace kestrel {
 
@@ -62,12 +63,19 @@ struct LandingDetection {
   double quality;
   double ring_semi_major_px;
   double ring_semi_minor_px;
-  // Root mean square of what the pose leaves unexplained of the edges, pixels; 0 where there were
-  // none to use. And what the edges say about the calibration.
+  // How far the edges are from where pose and lens have them, root mean square, pixels; and the
+  // most that it should be, where print and lens are as they are said to be. 0 where there were no
+  // edges to use.
   double misfit_px = 0;
-  CalibrationEvidence calibration;
+  double misfit_bound_px = 0;
+  std::optional<SeenPrint> seen;    // where the edges are
+  CalibrationEvidence calibration;  // what they say of it
   // The other pose under which the ring looks the same, when the image cannot tell the two apart.
   std::optional<RigidTransform> mirror_camera_from_pattern;
+
+  // Lens or print are not what they are said to be: pose and lens do not show the print where it
+  // is.
+  bool is_misfit() const { return misfit_px > misfit_bound_px; }
 };
 
 struct LandingReport {

@@ -275,6 +275,8 @@ bool NearPrintVerifier::Locate(const PrintAlignment& alignment, const RigidTrans
       models_.locator.Locate(alignment.edges, initial, prior_.LevelPrior(normal));
   if (!location) return false;
   finding.location = *location;
+  finding.seen = {alignment.warp.pose(), alignment.warp.displacement()};
+  finding.seen_rms_px = alignment.edge_rms_px;
   finding.center_px = CenterPx(*location, alignment);
   finding.doubts[PrintDoubt::kMisfit] = LogShare(location->edge_rms_px, MeanDiameter(finding));
   DoubtView(finding.diameters_px, finding.relative_sigma(), &finding.doubts);

@@ -18,15 +18,19 @@ namespace kestrel {
 namespace {
 
 // The unknowns: pose (translation, then rotation vector), spread of the black, logarithm of the
-// focal length's factor, shift of the principal point.
+// focal length's factor, shift of the principal point, distortion: what the cube of the distance
+// from the principal point adds to it, in focal lengths. A single view tells too little of the
+// distortion to be solved for it; what it says is told all the same.
 constexpr int kPoseUnknowns = 6;
 constexpr int kSpread = 6;
 constexpr int kFocal = 7;
-constexpr int kUnknowns = 10;
+constexpr int kDistortion = 10;
+constexpr int kCalibrationUnknowns = 4;
+constexpr int kUnknowns = 11;
 // Columns behind those of the unknowns: the offsets, and their derivatives by the blur's square.
-constexpr int kOffset = 10;
-constexpr int kBlur = 11;
-constexpr int kEdgeColumns = 12;
+constexpr int kOffset = 11;
+constexpr int kBlur = 12;
+constexpr int kEdgeColumns = 13;
 using Column = std::array<float, PrintOutline::kMaxPlaces>;
 using PoseVector = Eigen::Matrix<double, kPoseUnknowns, 1>;
 using Vector = Eigen::Matrix<double, kUnknowns, 1>;
@@ -56,6 +60,8 @@ constexpr double kFocalSigma = 0.25;
 constexpr double kPrincipalSigma = 0.1;
 constexpr double kSureCalibration = 30;
 constexpr double kDoubtfulCalibration = 8;  // from where it is worth to find out
+// Size of a ring, in focal lengths, over which the lens may bend otherwise than one number says.
+constexpr double kWideRing = 0.6;
 
 // Of rings that are to be located yet.
 constexpr std::size_t kCoarseStride = 3;  // places per place that is looked at first
@@ -86,7 +92,7 @@ struct PatternLocator::State {
     pose = Moved(pose, step.head<3>(), turn);
     spread_px += step(kSpread);
     log_focal += step(kFocal);
-    principal_px += step.tail<2>();
+    principal_px += step.segment<2>(kFocal + 1);
     return true;
   }
 };
@@ -112,6 +118,7 @@ struct PatternLocator::Equations {
     PullToZero(kFocal, state.log_focal, focal_weight);
     PullToZero(kFocal + 1, state.principal_px.x(), principal_weight);
     PullToZero(kFocal + 2, state.principal_px.y(), principal_weight);
+    PullToZero(kDistortion, 0, kHeld);
   }
 };
 
@@ -200,6 +207,7 @@ struct PatternLocator::Linearized {
 
   const EdgeColumns& edges;
   Column offsets;  // px, from where the state has the edges
+  Column shifts;   // px, of that from where the camera's own lens has them
   std::array<Column, kEdgeColumns>
       columns;           // times the root of the weight, which is that of the spread
   std::size_t used = 0;  // of the edges: those that have a weight
@@ -228,6 +236,11 @@ struct PatternLocator::Residuals {
       if (!has_weight) continue;
       const double weighted = residuals[i];
       weighted_squares += weighted * weighted;
+      double by_camera = weighted + root * linearized.shifts[i];
+      for (int k = kFocal; k < std::min(kDistortion, unknowns); ++k) {
+        by_camera += step(k) * linearized.columns[k][i];
+      }
+      camera_squares += by_camera * by_camera;
       Stretch& stretch = outline[edges.stretch[i]];
       stretch.sum += root * weighted;
       stretch.weights += root * root;
@@ -238,6 +251,8 @@ struct PatternLocator::Residuals {
   }
 
   double MeanSquare() const { return weighted_squares / weights; }
+  // The same of what they are off where the camera's own lens has them.
+  double CameraMeanSquare() const { return camera_squares / weights; }
 
   // Variance of an edge as the pose sees it: what neighbours have in common does not average out,
   // and what whole stretches of an outline have in common shows in how their means differ.
@@ -267,6 +282,7 @@ struct PatternLocator::Residuals {
   double used;
   double weights;
   double weighted_squares = 0;
+  double camera_squares = 0;
   NeighborCorrelation neighbors;
   std::array<Stretch, 2 * PrintOutline::kParts> outline{};  // by part and side
 };
@@ -304,6 +320,8 @@ void PatternLocator::Linearize(const State& state, double scale_px, int unknowns
   const Eigen::Vector2f principal = Principal().cast<float>();
   const Eigen::Vector2f shown = (Principal() + state.principal_px).cast<float>();
   const auto zoom = static_cast<float>(std::exp(state.log_focal));
+  const auto per_focal_squared =
+      static_cast<float>(1 / std::pow(zoom * camera_.intrinsics().fx_px, 2));
   const auto spread = static_cast<float>(state.spread_px);
   const auto per_limit = static_cast<float>(1 / (4 * scale_px));
   auto& columns = linearized->columns;
@@ -314,8 +332,12 @@ void PatternLocator::Linearize(const State& state, double scale_px, int unknowns
                          edges.across_y[i] * (edges.y_px[i] - shown.y() - y) - spread;
     const float ratio = per_limit * offset;
     const float root = 1 - ratio * ratio;
-    columns[kFocal][i] = edges.across_x[i] * x + edges.across_y[i] * y;
+    const float radial = edges.across_x[i] * x + edges.across_y[i] * y;
+    columns[kFocal][i] = radial;
+    columns[kDistortion][i] = radial * (x * x + y * y) * per_focal_squared;
     linearized->offsets[i] = offset;
+    linearized->shifts[i] = edges.across_x[i] * (shown.x() + x - x_px[i]) +
+                            edges.across_y[i] * (shown.y() + y - y_px[i]);
     roots[i] = root > 0 ? root : 0;
   }
   linearized->used = 0;
@@ -323,7 +345,7 @@ void PatternLocator::Linearize(const State& state, double scale_px, int unknowns
     linearized->used += roots[i] > 0 ? 1 : 0;
     if (!std::isnan(linearized->offsets[i])) continue;
     linearized->offsets[i] = Linearized::kOutsideModelPx;
-    columns[kFocal][i] = 0;
+    linearized->shifts[i] = columns[kFocal][i] = columns[kDistortion][i] = 0;
     for (Column& column : by_point) column[i] = 0;
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -338,6 +360,7 @@ void PatternLocator::Linearize(const State& state, double scale_px, int unknowns
     columns[4][i] = from_center[2][i] * dx - from_center[0][i] * dz;
     columns[5][i] = from_center[0][i] * dy - from_center[1][i] * dx;
     columns[kFocal][i] *= roots[i];
+    columns[kDistortion][i] *= roots[i];
     columns[kFocal + 1][i] = across_x;
     columns[kFocal + 2][i] = across_y;
     columns[kOffset][i] = roots[i] * linearized->offsets[i];
@@ -347,9 +370,11 @@ void PatternLocator::Linearize(const State& state, double scale_px, int unknowns
 }
 
 // What equations say of the first of their unknowns, where the others stay as they are.
+// 'more_variance': of an edge, px^2, beside what the residuals show.
 struct PatternLocator::Solution {
   template <int kCount>
-  static Solution Of(const Linearized& linearized, const Equations& equations) {
+  static Solution Of(const Linearized& linearized, const Equations& equations,
+                     double more_variance = 0) {
     using Part = Eigen::Matrix<double, kCount, kCount>;
     const Eigen::LDLT<Part> decomposition(equations.h.topLeftCorner<kCount, kCount>());
     Solution solution;
@@ -357,7 +382,9 @@ struct PatternLocator::Solution {
     solution.step.head<kCount>() = decomposition.solve(equations.g.head<kCount>());
     const Residuals residuals(linearized, solution.step, kCount);
     solution.mean_square = residuals.MeanSquare();
-    solution.edge_variance = residuals.EdgeVariance();
+    solution.camera_mean_square = residuals.CameraMeanSquare();
+    solution.scatter_variance = residuals.EdgeVariance();
+    solution.edge_variance = solution.scatter_variance + more_variance;
     return solution;
   }
 
@@ -366,8 +393,10 @@ struct PatternLocator::Solution {
 
   Matrix inverse = Matrix::Zero();  // of the equations
   Vector step = Vector::Zero();
-  double mean_square;  // of what the step leaves of the offsets
-  double edge_variance;
+  double mean_square;         // of what the step leaves of the offsets
+  double camera_mean_square;  // the same of those from where the camera's own lens has the edges
+  double scatter_variance;    // of an edge, px^2, by the residuals
+  double edge_variance;       // the same and what else is known of it
 };
 
 // The equations with what is known of the plane, which counts by the variance of the edges.
@@ -399,33 +428,65 @@ PatternLocator::Solution PatternLocator::SolvePose(const Linearized& linearized,
   return Solution::Of<kPoseUnknowns + 1>(linearized, equations);
 }
 
-// The step of a state of which everything is asked.
+// The step of a state of which everything is asked. A print that is not quite flat seems to be seen
+// through another lens.
 PatternLocator::Solution PatternLocator::SolveCalibration(
     const Linearized& linearized, const State& state,
     const std::optional<NormalPrior>& prior) const {
-  const double principal_sigma_px = kPrincipalSigma * camera_.intrinsics().fx_px;
+  const double focal_px = camera_.intrinsics().fx_px;
+  const double principal_sigma_px = kPrincipalSigma * focal_px;
+  const double diameter_px = 2 * outline_.radius_m() * focal_px / state.pose.translation.norm();
+  const double unflat = std::pow(kUnflatShare * diameter_px, 2);
   const auto solve = [&](double variance) -> Solution {
     Equations equations = linearized.equations;
     if (prior) prior->AddTo(state.pose.rotation, variance, &equations.h, &equations.g);
     equations.PullCalibration(state, variance / (kFocalSigma * kFocalSigma),
                               variance / (principal_sigma_px * principal_sigma_px));
-    return Solution::Of<kUnknowns>(linearized, equations);
+    return Solution::Of<kUnknowns>(linearized, equations, unflat);
   };
   // What the step explains of the offsets is no variance of the edges.
-  const Solution without_step = solve(Residuals(linearized, Vector::Zero(), 0).EdgeVariance());
-  return solve(without_step.edge_variance);
+  const double before = Residuals(linearized, Vector::Zero(), 0).EdgeVariance() + unflat;
+  return solve(solve(before).edge_variance);
 }
 
-CalibrationEvidence PatternLocator::Judge(const Solution& solution, const State& state) {
+// What the edges alone say of the calibration, whatever the pose: nothing that was known before is
+// in it, for all views have that in common.
+void PatternLocator::AddInformation(const Linearized& linearized, const Solution& solution,
+                                    const State& state, CalibrationEvidence* evidence) const {
+  using OfPose = Eigen::Matrix<double, kFocal, kFocal>;
+  using Calibration = Eigen::Matrix<double, kCalibrationUnknowns, 1>;
+  if (2 * outline_.radius_m() > kWideRing * state.pose.translation.norm()) return;
+  const Matrix& h = linearized.equations.h;
+  const Vector& g = linearized.equations.g;
+  const Eigen::LDLT<OfPose> of_pose(h.topLeftCorner<kFocal, kFocal>());
+  const auto mixed = h.topRightCorner<kFocal, kCalibrationUnknowns>().eval();
+  const auto by_pose = of_pose.solve(mixed).eval();
+  const Eigen::Matrix4d information =
+      h.bottomRightCorner<kCalibrationUnknowns, kCalibrationUnknowns>() -
+      mixed.transpose() * by_pose;
+  const Calibration at(state.log_focal, state.principal_px.x(), state.principal_px.y(), 0);
+  const Calibration pull =
+      information * at + g.tail<kCalibrationUnknowns>() - by_pose.transpose() * g.head<kFocal>();
+  const double focal_px = camera_.intrinsics().fx_px;
+  const Calibration unit(1, focal_px, focal_px, 1);
+  evidence->edge_variance = solution.scatter_variance;
+  evidence->information = unit.asDiagonal() * information * unit.asDiagonal();
+  evidence->information /= evidence->edge_variance;
+  evidence->pull = unit.cwiseProduct(pull) / evidence->edge_variance;
+}
+
+CalibrationEvidence PatternLocator::Judge(const Linearized& linearized, const Solution& solution,
+                                          const State& state) const {
   const Matrix covariance = solution.Covariance();
   Eigen::Vector3d error(state.log_focal, state.principal_px.x(), state.principal_px.y());
-  error += solution.step.tail<3>();
+  error += solution.step.segment<3>(kFocal);
   CalibrationEvidence evidence;
   evidence.log_focal = error.x();
   evidence.log_focal_sigma = std::sqrt(covariance(kFocal, kFocal));
   evidence.principal_px = error.tail<2>();
-  const Eigen::Matrix3d of_error = covariance.bottomRightCorner<3, 3>();
+  const Eigen::Matrix3d of_error = covariance.block<3, 3>(kFocal, kFocal);
   evidence.surprise = error.dot(of_error.ldlt().solve(error));
+  AddInformation(linearized, solution, state, &evidence);
   return evidence;
 }
 
@@ -435,6 +496,7 @@ void PatternLocator::Describe(const Linearized& linearized, const Solution& solu
   const Vector blur = kBlurSpreadPx2 * solution.inverse * linearized.by_blur;
   location->covariance = (solution.Covariance() + blur * blur.transpose()).topLeftCorner<6, 6>();
   location->edge_rms_px = std::sqrt(solution.mean_square);
+  location->misfit_px = std::sqrt(solution.camera_mean_square);
 }
 
 // Where the calibration may be wrong the pose is as uncertain as without it, and by as much as it
@@ -470,7 +532,7 @@ std::optional<PatternLocation> PatternLocator::Locate(
     if (is_last) {
       Describe(linearized, solution, &location);
       const Solution free = SolveCalibration(linearized, state, prior);
-      const CalibrationEvidence evidence = Judge(free, state);
+      const CalibrationEvidence evidence = Judge(linearized, free, state);
       if (evidence.surprise > kDoubtfulCalibration) {
         DoubtCalibration(solution, free, &location);
       }
@@ -482,7 +544,7 @@ std::optional<PatternLocation> PatternLocator::Locate(
     if (is_last) break;
   }
   if (location.calibration.surprise > kDoubtfulCalibration) {
-    Recalibrate(edges, prior, scale, &state, &location);
+    Recalibrate(edges, prior, &state, &location);
   }
   if (!location.covariance.allFinite()) return std::nullopt;
   location.camera_from_pattern = state.pose;
@@ -512,15 +574,17 @@ bool PatternLocator::Approach(const EdgeColumns& edges, const std::optional<Norm
 // Asks the edges for the calibration too; changes state and location where they contradict the
 // camera's.
 void PatternLocator::Recalibrate(const EdgeColumns& edges, const std::optional<NormalPrior>& prior,
-                                 double scale_px, State* state, PatternLocation* location) const {
+                                 State* state, PatternLocation* location) const {
+  location->calibration = {};
   State free = *state;
   Linearized linearized(edges);
+  double scale = kFarScalePx;
   for (int i = 1; i <= kMaxSteps; ++i) {
-    Linearize(free, scale_px, kUnknowns, &linearized);
+    Linearize(free, scale, kUnknowns, &linearized);
     if (linearized.used < kMinEdges) return;
     const Solution solution = SolveCalibration(linearized, free, prior);
     if (i == kMaxSteps || linearized.Movement(solution.step) < kSettledPx) {
-      location->calibration = Judge(solution, free);
+      location->calibration = Judge(linearized, solution, free);
       location->calibration.contradicts = location->calibration.surprise > kSureCalibration;
       if (!location->calibration.contradicts || !free.Move(solution.step)) return;
       Describe(linearized, solution, location);
@@ -528,7 +592,7 @@ void PatternLocator::Recalibrate(const EdgeColumns& edges, const std::optional<N
       return;
     }
     if (!free.Move(solution.step)) return;
-    scale_px = linearized.NextScale(scale_px);
+    scale = linearized.NextScale(scale);
   }
 }
 

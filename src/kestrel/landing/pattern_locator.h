@@ -25,6 +25,9 @@ struct PatternLocation {
   // that was fitted as a whole. The other one is 0.
   double edge_rms_px = 0;
   double gray_rms = 0;
+  // Of edges: root mean square of how far they are from where the pose and the camera's own lens
+  // have them; the same as edge_rms_px unless the calibration is contradicted.
+  double misfit_px = 0;
   // Of edges: where the lens shows the pattern's centre, by what the calibration has to be; and
   // what that is.
   Eigen::Vector2d center_px = Eigen::Vector2d::Zero();
@@ -101,9 +104,12 @@ class PatternLocator {
                             const std::optional<NormalPrior>& prior, bool has_spread);
   Solution SolveCalibration(const Linearized& linearized, const State& state,
                             const std::optional<NormalPrior>& prior) const;
-  void Recalibrate(const EdgeColumns& edges, const std::optional<NormalPrior>& prior,
-                   double scale_px, State* state, PatternLocation* location) const;
-  static CalibrationEvidence Judge(const Solution& solution, const State& state);
+  void Recalibrate(const EdgeColumns& edges, const std::optional<NormalPrior>& prior, State* state,
+                   PatternLocation* location) const;
+  void AddInformation(const Linearized& linearized, const Solution& solution, const State& state,
+                      CalibrationEvidence* evidence) const;
+  CalibrationEvidence Judge(const Linearized& linearized, const Solution& solution,
+                            const State& state) const;
   static void Describe(const Linearized& linearized, const Solution& solution,
                        PatternLocation* location);
   static void DoubtCalibration(const Solution& held, const Solution& free,

@@ -250,6 +250,39 @@ TEST_F(CalibrationEvidenceTest, AContradictedCalibrationDoesNotBendThePose) {
   }
 }
 
+TEST_F(CalibrationEvidenceTest, TheMisfitIsThatOfTheCamerasOwnLens) {
+  Random random(16);
+  const RigidTransform truth = PrintPose({0.3, -0.2, 1.4}, 0.6, 1, 0.3);
+  const auto right = LocateWith(1, truth, 2, &random);
+  const auto wrong = LocateWith(1.25, truth, 2, &random);
+  ASSERT_TRUE(right && wrong);
+  EXPECT_EQ(right->misfit_px, right->edge_rms_px);
+  ASSERT_TRUE(wrong->calibration.contradicts);
+  EXPECT_LT(wrong->edge_rms_px, 0.4);
+  // The centre, 57 px from the principal point, is moved by about a quarter of that, and by what
+  // the principal point is believed to be off.
+  EXPECT_GT(wrong->misfit_px, 4);
+}
+
+// A view leaves something open; from several sides there is but one focal length.
+TEST_F(CalibrationEvidenceTest, ViewsAddUpToTheFocalLength) {
+  Random random(17);
+  for (const double factor : {0.8, 1.0, 1.25}) {
+    Eigen::Matrix4d information = Eigen::Vector4d(4, 400, 400, 100).asDiagonal();
+    Eigen::Vector4d pull = Eigen::Vector4d::Zero();
+    for (int trial = 0; trial < 20; ++trial) {
+      const auto location = LocateWith(factor, NearPose(&random), 4, &random);
+      ASSERT_TRUE(location);
+      information += location->calibration.information;
+      pull += location->calibration.pull;
+    }
+    const Eigen::Vector4d error = information.ldlt().solve(pull);
+    EXPECT_NEAR(error(0), -std::log(factor), 0.02) << factor;
+    EXPECT_LT(error.segment<2>(1).norm(), 0.02) << factor;
+    EXPECT_NEAR(error(3), 0, 0.05) << factor;
+  }
+}
+
 // A far print that faces the camera is as large under any focal length.
 TEST_F(CalibrationEvidenceTest, AFarViewSaysLittle) {
   Random random(14);
@@ -268,6 +301,7 @@ TEST_F(CalibrationEvidenceTest, APartSaysNothing) {
   EXPECT_EQ(location->calibration.log_focal, 0);
   EXPECT_EQ(location->calibration.log_focal_sigma, CalibrationEvidence().log_focal_sigma);
   EXPECT_FALSE(location->calibration.contradicts);
+  EXPECT_EQ(location->calibration.information.norm(), 0);
 }
 
 }  // namespace

@@ -128,7 +128,17 @@ void FlightProgram::See() {
     frames_ = snapshot.frames;
     detections_ = snapshot.detections;
     track_.Set(snapshot);
+    WarnOnce();
   }
+}
+
+// That the set-up contradicts what is seen; the end says it again, with all that is known by then.
+void FlightProgram::WarnOnce() {
+  if (was_warned_) return;
+  const std::string warning = parts_.vision->Warning();
+  if (warning.empty()) return;
+  was_warned_ = true;
+  say_(warning);
 }
 
 // What a camera repeats shows where the target was, not where it is.
@@ -250,6 +260,9 @@ std::string FlightProgram::Summary() const {
       "; {} missed and {} repeated by the camera, {} dropped before the vision, {} without "
       "a pose in time\n",
       capture.missed, repeated_frames_, events.dropped_frames, events.unposed_frames);
+  if (const std::string warning = parts_.vision->Warning(); !warning.empty()) {
+    summary += warning + "\n";
+  }
   summary += latency_.InWords();
   if (parts_.connection == nullptr) return summary;
   const ConnectionCounters link = parts_.connection->counters();

@@ -87,6 +87,7 @@ class FlightProgram {
   void WriteResults();
 
   bool IsFrozen(const Frame& frame);
+  void WarnOnce();
   void Take(Event event);
   void TakePose(const PoseSample& pose);
   void TellTarget(Time now);
@@ -114,7 +115,9 @@ class FlightProgram {
   Time heard_;  // the autopilot, the last time
   std::optional<PoseSample> newest_pose_;
 
-  RepeatedImage repeated_image_;  // of the vision's thread
+  // Of the vision's thread.
+  RepeatedImage repeated_image_;
+  bool was_warned_ = false;
 
   std::atomic<int> repeated_frames_{0}, frames_{0}, detections_{0}, messages_{0};
   std::atomic<TargetPhase> phase_{TargetPhase::kSearching};

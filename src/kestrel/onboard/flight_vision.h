@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "kestrel/base/time.h"
 #include "kestrel/navigation/pose_history.h"
 #include "kestrel/onboard/flight_observer.h"
@@ -22,6 +24,10 @@ class FlightVision {
 
   // 'observer': gets what the frame showed; null: there is none.
   virtual TrackSnapshot Process(const Frame& frame, FlightObserver* observer) = 0;
+
+  // What of the set-up contradicts what was seen, and what to do, as far as it is known by now;
+  // empty where nothing does. By the vision's thread, or after the flight.
+  virtual std::string Warning() const { return ""; }
 
   // Writes the rows of the frames that were processed meanwhile; false when the disk does not take
   // them any more (then they are lost, and said to be).

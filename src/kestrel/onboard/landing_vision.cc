@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/pipeline/calibration_monitor.h"
 #include "kestrel/pipeline/measurement_noise.h"
 #include "kestrel/pipeline/pattern_area.h"
 #include "kestrel/recording/landing_csv.h"
@@ -81,6 +82,11 @@ void LandingVision::ControlExposure(const cv::Mat& image, const LandingObservati
   exposure_->Update(
       image, detection ? PatternArea(*detection, detector.options().pattern, detector.camera())
                        : cv::Rect());
+}
+
+std::string LandingVision::Warning() const {
+  return LensWarning(pipeline_.calibration_monitor(),
+                     pipeline_.detector().camera().intrinsics().fx_px);
 }
 
 bool LandingVision::WriteResults() {

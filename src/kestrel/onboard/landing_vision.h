@@ -26,6 +26,7 @@ class LandingVision : public FlightVision {
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
   Duration pose_lead() const override { return clock_offset_; }
   TrackSnapshot Process(const Frame& frame, FlightObserver* observer) override;
+  std::string Warning() const override;
   bool WriteResults() override;
   std::string Found() const override;
 

@@ -3,81 +3,142 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <fmt/format.h>
 
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kMinViews = 10;
-constexpr double kSureSigmas = 3;
+constexpr std::size_t kMinViews = 6;
+constexpr std::size_t kMinSides = 4;
+constexpr double kSureSigmas = 3.5;  // it is asked after every view
 constexpr double kLeastContradiction = 0.015;
-// Largest standard deviation of a view that says something.
-constexpr double kMaxSigma = 0.1;
-// What detections have in common, such as a sheet that is not flat.
-constexpr double kSharedSigma = 0.003;
-// Of a normal distribution: its standard deviation as a factor of the median deviation, and the
-// standard deviation of a median as a factor of that of a mean.
-constexpr double kSigmaOfDeviation = 1.4826;
-constexpr double kSigmaOfMedian = 1.2533;
+// Of calibrations: the logarithm of the focal length, the principal point in focal lengths, and the
+// distortion (of the cube of the distance from the principal point in focal lengths).
+constexpr std::array<double, 4> kPriorSigma{0.5, 0.05, 0.05, 0.1};
+// How large a part of a turn or of the image counts as one side, rad and focal lengths.
+constexpr double kSideWidth = 0.1;
+// Of the edges of a print that is not quite flat, share of the ring's diameter: what views from one
+// side have in common.
+constexpr double kSharedShare = 0.001;
+constexpr double kSharedSigma = 0.003;  // of the logarithm of the focal length: of all views
+constexpr double kFarSurprise = 4;      // a side that is so surprising counts half (Cauchy)
+constexpr int kRounds = 2;              // of weights, a view: they settle from view to view
 
-constexpr double kBinWidth = 0.001;
+Eigen::Vector4d PriorInformation() {
+  return Eigen::Vector4d(kPriorSigma.data()).cwiseAbs2().cwiseInverse();
+}
 
 }  // namespace
 
-void CalibrationMonitor::Add(const CalibrationEvidence& evidence) {
-  // What one expects of any calibration is in every view's estimate. It is taken out: it would
-  // count with each of them.
-  const double expected_sigma = CalibrationEvidence().log_focal_sigma;
-  const double of_view = 1 - std::pow(evidence.log_focal_sigma / expected_sigma, 2);
-  const double variance = std::pow(evidence.log_focal_sigma, 2) / of_view;
-  if (!(of_view > 0 && variance > 0 && variance < kMaxSigma * kMaxSigma)) return;
-  const double weight = 1 / (variance + kSharedSigma * kSharedSigma);
-  const double bin = std::round(evidence.log_focal / of_view / kBinWidth) + kMiddleBin;
-  if (!std::isfinite(bin)) return;
-  weights_[static_cast<int>(std::clamp(bin, 0.0, kBins - 1.0))] += weight;
-  weight_ += weight;
-  squared_weights_ += weight * weight;
+double CalibrationMonitor::Side::Surprise(const Eigen::Vector4d& error) const {
+  const double more = error.dot(information * error) - 2 * error.dot(pull);
+  return Trust() * std::max(0.0, surprise_0 + more);
+}
+
+CalibrationMonitor::Side* CalibrationMonitor::SideOf(const LandingDetection& detection) {
+  const RigidTransform& pose = detection.camera_from_pattern;
+  const Eigen::Vector3d in_camera = pose.translation.normalized();
+  const Eigen::Vector3d in_pattern = pose.rotation.conjugate() * in_camera;
+  const auto part = [](double share) { return static_cast<int>(std::lround(share / kSideWidth)); };
+  const std::array<int, 4> key{part(in_pattern.x()), part(in_pattern.y()), part(in_camera.x()),
+                               part(in_camera.y())};
+  for (Side& side : std::span(sides_).first(side_count_)) {
+    if (side.key == key) return &side;
+  }
+  if (side_count_ == kMostSides) return nullptr;
+  sides_[side_count_].key = key;
+  return &sides_[side_count_++];
+}
+
+void CalibrationMonitor::Add(const LandingDetection& detection) {
+  if (detection.misfit_px > 0) ++misfits_.detections;
+  if (detection.is_misfit()) ++misfits_.misfits;
+  AddEvidence(detection);
+}
+
+// Views that say nothing are left out.
+void CalibrationMonitor::AddEvidence(const LandingDetection& detection) {
+  const CalibrationEvidence& evidence = detection.calibration;
+  if (!(evidence.edge_variance > 0) || !evidence.information.allFinite()) return;
+  Side* const side = SideOf(detection);
+  if (side == nullptr) return;
+  side->information += evidence.information;
+  side->pull += evidence.pull;
+  const double shared_px = kSharedShare * 2 * detection.ring_semi_major_px;
+  side->shared += shared_px * shared_px / evidence.edge_variance;
+  // What it says least of is not to be divided by next to nothing.
+  constexpr double kWeak = 1e-3;
+  Eigen::Matrix4d h = side->information;
+  h.diagonal() += kWeak * PriorInformation();
+  side->surprise_0 = side->pull.dot(h.ldlt().solve(side->pull));
   ++views_;
+  Weigh();
 }
 
-// The bin that half of the weight lies below.
-int CalibrationMonitor::MedianBin() const {
-  int bin = 0;
-  for (double below = weights_[0]; below < 0.5 * weight_ && bin + 1 < kBins;) {
-    below += weights_[++bin];
+// Robust least squares: sides that do not agree with the others count less, and make the result
+// less sure.
+void CalibrationMonitor::Weigh() {
+  constexpr double kKnownBySide = 2;  // numbers: a side leaves the others open
+  constexpr double kAsked = 4;
+  const Eigen::Vector4d prior = PriorInformation();
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Matrix4d information = prior.asDiagonal();
+    Eigen::Vector4d pull = Eigen::Vector4d::Zero();
+    double weights = 0, surprise = 0;
+    for (const Side& side : std::span(sides_).first(side_count_)) {
+      const double surprise_of_side = side.Surprise(error_);
+      const double weight = 1 / (1 + surprise_of_side / kFarSurprise);
+      information += weight * side.Trust() * side.information;
+      pull += weight * side.Trust() * side.pull;
+      weights += weight;
+      surprise += weight * surprise_of_side;
+    }
+    const Eigen::LDLT<Eigen::Matrix4d> decomposition(information);
+    error_ = decomposition.solve(pull);
+    const double variance = decomposition.solve(Eigen::Vector4d::UnitX())(0);
+    const double scatter = surprise / std::max(1.0, kKnownBySide * weights - kAsked);
+    log_focal_sigma_ = std::hypot(kSharedSigma, std::sqrt(variance * std::max(1.0, scatter)));
   }
-  return bin;
-}
-
-double CalibrationMonitor::MedianDeviation(int from_bin) const {
-  const auto weight_of = [&](int bin) { return bin >= 0 && bin < kBins ? weights_[bin] : 0; };
-  int reach = 0;
-  for (double within = weights_[from_bin]; within < 0.5 * weight_ && reach < kBins;) {
-    ++reach;
-    within += weight_of(from_bin - reach) + weight_of(from_bin + reach);
-  }
-  return kBinWidth * reach;
 }
 
 std::optional<FocalFactor> CalibrationMonitor::Focal() const {
-  if (views_ < kMinViews) return std::nullopt;
-  const int median = MedianBin();
-  // By the views' own standard deviations, or by how far they scatter where that is more.
-  const double told_variance = 1 / weight_;
-  const double scatter = kSigmaOfDeviation * MedianDeviation(median);
-  const double seen_variance = scatter * scatter * squared_weights_ / (weight_ * weight_);
-  const double sigma =
-      std::hypot(kSharedSigma, kSigmaOfMedian * std::sqrt(std::max(told_variance, seen_variance)));
-  const double log_focal = kBinWidth * (median - kMiddleBin);
-  const double factor = std::exp(log_focal);
-  return FocalFactor{factor, factor * sigma, views_};
+  if (views_ < kMinViews || side_count_ < kMinSides) return std::nullopt;
+  const double factor = std::exp(error_(0));
+  return FocalFactor{factor, factor * log_focal_sigma_, views_};
 }
 
 std::optional<FocalFactor> CalibrationMonitor::Contradiction() const {
   const std::optional<FocalFactor> focal = Focal();
-  if (!focal) return std::nullopt;
-  const double difference = std::abs(focal->factor - 1);
-  const bool contradicts = difference > std::max(kLeastContradiction, kSureSigmas * focal->sigma);
-  return contradicts ? focal : std::nullopt;
+  const double least = std::max(kLeastContradiction, kSureSigmas * log_focal_sigma_);
+  return focal && std::abs(error_(0)) > least ? focal : std::nullopt;
+}
+
+std::optional<MisfitCount> CalibrationMonitor::Misfits() const {
+  constexpr std::size_t kLeast = 10;
+  constexpr double kLeastShare = 0.2;
+  const auto detections = static_cast<double>(misfits_.detections);
+  const bool are_many = misfits_.misfits >= kLeast &&
+                        static_cast<double>(misfits_.misfits) > kLeastShare * detections;
+  return are_many ? std::optional(misfits_) : std::nullopt;
+}
+
+std::string LensWarning(const CalibrationMonitor& monitor, double focal_px) {
+  constexpr char kAdvice[] = "kestrel calibrate lens estimates it from such views";
+  if (const auto focal = monitor.Contradiction()) {
+    return fmt::format("the pattern says f = {:.0f} +- {:.0f} px, the calibration {:.0f}: {}",
+                       focal->factor * focal_px, focal->sigma * focal_px, focal_px, kAdvice);
+  }
+  if (const auto count = monitor.Misfits()) {
+    return fmt::format(
+        "in {} of {} frames the pattern is seen beside where pose and calibration have it "
+        "(misfit_px): lens or print are not what they are said to be; {}",
+        count->misfits, count->detections, kAdvice);
+  }
+  return "";
 }
 
 }  // namespace kestrel

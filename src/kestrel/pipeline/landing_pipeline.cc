@@ -88,7 +88,7 @@ void LandingPipeline::Detect(const cv::Mat& image, LandingObservation* observati
   auto& detection = observation->report.detection;
   if (!detection) return;
   contradictions_.Add(told, *detection);
-  calibration_monitor_.Add(detection->calibration);
+  calibration_monitor_.Add(*detection);
   if (!options_.still) AddErrorOfFocalLength(&*detection);
 }
 

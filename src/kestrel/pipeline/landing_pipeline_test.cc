@@ -262,8 +262,8 @@ TEST_F(LandingPipelineTest, LocatesByAltitudeWhateverTheWorldsZeroIs) {
   EXPECT_LT((*observation.center_in_world - expected).norm(), 0.1);
 }
 
-// Near and tilted views say that the focal length is wrong; of a far one the distance is then not
-// sure, but its direction is.
+// Near and tilted views from all sides say that the focal length is wrong; of a far one the
+// distance is then not sure, but its direction is.
 TEST_F(LandingPipelineTest, AWrongFocalLengthMakesDistancesUnsure) {
   const CameraModel camera(calibration_.intrinsics);
   calibration_.intrinsics.fx_px = calibration_.intrinsics.fy_px = 1.15 * 400;
@@ -271,7 +271,8 @@ TEST_F(LandingPipelineTest, AWrongFocalLengthMakesDistancesUnsure) {
     LandingPipeline pipeline(calibration_, options_);
     const auto see = [&](double distance_m, double tilt, int i) {
       const RigidTransform pose = {Rotation(0.2 * i, {0, 0, 1}) * Rotation(tilt, {1, 0, 0}) *
-                                       Rotation(std::numbers::pi, {1, 0, 0}),
+                                       Rotation(std::numbers::pi, {1, 0, 0}) *
+                                       Rotation(0.5 * i, {0, 0, 1}),
                                    {0, 0, distance_m}};
       return pipeline.Process(DrawPattern(camera, options_.detector.pattern, pose),
                               kTime + i * DurationFromSeconds(0.1));

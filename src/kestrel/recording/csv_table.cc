@@ -62,14 +62,17 @@ void CsvTable::AddLine(std::size_t line, std::string_view content) {
 }
 
 std::size_t CsvTable::Column(std::string_view name) const {
+  if (const auto found = FindColumn(name)) return *found;
+  throw InputError(fmt::format("{}: no column '{}', the header row has '{}'", file_, name,
+                               fmt::join(header_, ",")));
+}
+
+std::optional<std::size_t> CsvTable::FindColumn(std::string_view name) const {
   const std::string wanted = WithoutBlanks(name);
   const auto found = std::find_if(header_.begin(), header_.end(), [&](std::string_view column) {
     return WithoutBlanks(column) == wanted;
   });
-  if (found == header_.end()) {
-    throw InputError(fmt::format("{}: no column '{}', the header row has '{}'", file_, name,
-                                 fmt::join(header_, ",")));
-  }
+  if (found == header_.end()) return std::nullopt;
   return found - header_.begin();
 }
 

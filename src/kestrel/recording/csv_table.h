@@ -20,8 +20,10 @@ class CsvTable {
 
   std::size_t row_count() const { return rows_.size(); }
 
-  // Index of the column 'name'; the header's names are compared without their blanks.
+  // Index of the column 'name'; the header's names are compared without their blanks. FindColumn:
+  // nothing where there is none, which Column throws for.
   std::size_t Column(std::string_view name) const;
+  std::optional<std::size_t> FindColumn(std::string_view name) const;
 
   std::string_view Text(std::size_t row, std::size_t column) const;
   double Number(std::size_t row, std::size_t column) const;  // finite

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -15,11 +16,14 @@ namespace kestrel {
 namespace {
 
 using Polyline = std::vector<Eigen::Vector3d>;  // in the pattern's frame, m
+// Pixel of a point in the pattern's frame; false when it has none.
+using Projection = std::function<bool(const Eigen::Vector3d& point, Eigen::Vector2d* pixel)>;
 
 const cv::Scalar kRed(40, 40, 255);
 const cv::Scalar kGreen(60, 220, 60);
 const cv::Scalar kBlue(255, 120, 40);
 const cv::Scalar kYellow(0, 230, 255);
+const cv::Scalar kMagenta(255, 90, 255);
 const cv::Scalar kOutline(0, 0, 0);
 
 // A lens bends lines: an edge is drawn in as many pieces.
@@ -64,18 +68,17 @@ Polyline Cross(const LandingPattern& pattern) {
 
 class Canvas {
  public:
-  Canvas(const cv::Mat& gray, const CameraModel& camera) : camera_(camera) {
+  explicit Canvas(const cv::Mat& gray) {
     cv::cvtColor(gray, image_, cv::COLOR_GRAY2BGR);
     scale_ = std::clamp(gray.cols / 900.0, 0.4, 4.0);
   }
 
-  void DrawLine(const Polyline& line, const RigidTransform& camera_from_pattern,
-                const cv::Scalar& color) {
+  void DrawLine(const Polyline& line, const Projection& project, const cv::Scalar& color) {
     Eigen::Vector2d last;
     bool has_last = false;
     for (const Eigen::Vector3d& point : line) {
       Eigen::Vector2d pixel;
-      const bool is_drawable = Project(camera_from_pattern * point, &pixel);
+      const bool is_drawable = project(point, &pixel) && IsNear(pixel);
       if (has_last && is_drawable) {
         cv::line(image_, Fixed(last), Fixed(pixel), color, Thickness(), cv::LINE_AA, kFixedBits);
       }
@@ -90,9 +93,12 @@ class Canvas {
     cv::circle(image_, Fixed(pixel), radius, kYellow, Thickness(), cv::LINE_AA, kFixedBits);
   }
 
-  void Write(const std::string& text, const cv::Scalar& color) {
+  // 'row': from the top.
+  void Write(const std::string& text, const cv::Scalar& color, int row = 0) {
     const double font_scale = 0.6 * std::max(scale_, 0.7);
-    const cv::Point origin(static_cast<int>(8 * scale_), static_cast<int>(8 + 22 * font_scale));
+    const double line_height_px = 34 * font_scale;
+    const cv::Point origin(static_cast<int>(8 * scale_),
+                           static_cast<int>(8 + 22 * font_scale + row * line_height_px));
     for (const auto& [thickness, ink] : {std::pair(3, kOutline), std::pair(1, color)}) {
       cv::putText(image_, text, origin, cv::FONT_HERSHEY_SIMPLEX, font_scale, ink,
                   thickness * Thickness(), cv::LINE_AA);
@@ -105,10 +111,6 @@ class Canvas {
   static constexpr int kFixedBits = 4;  // of a pixel, for OpenCV's drawing
   static constexpr int kFixedOne = 1 << kFixedBits;
 
-  bool Project(const Eigen::Vector3d& point_in_camera, Eigen::Vector2d* pixel) const {
-    return camera_.Project(point_in_camera, pixel) != ProjectionStatus::kOutsideModel &&
-           IsNear(*pixel);
-  }
   // OpenCV's integers overflow far outside of the image.
   static bool IsNear(const Eigen::Vector2d& pixel) { return pixel.cwiseAbs().maxCoeff() < 1e5; }
   static cv::Point Fixed(const Eigen::Vector2d& pixel) {
@@ -117,22 +119,44 @@ class Canvas {
   }
   int Thickness() const { return std::max(1, static_cast<int>(scale_)); }
 
-  const CameraModel& camera_;
   cv::Mat image_;
   double scale_;  // of lines and letters, by the width of the image
 };
 
-void DrawDetection(const LandingDetection& detection, const LandingPattern& pattern,
-                   Canvas* canvas) {
+void DrawPrint(const LandingPattern& pattern, const Projection& project, const cv::Scalar& color,
+               Canvas* canvas) {
+  canvas->DrawLine(Circle(pattern.outer_radius_m()), project, color);
+  canvas->DrawLine(Circle(pattern.inner_radius_m()), project, color);
+  canvas->DrawLine(Cross(pattern), project, color);
+}
+
+// The print where its edges are, beside where pose and lens have it.
+void DrawMisfit(const LandingDetection& detection, const CameraModel& camera,
+                const LandingPattern& pattern, Canvas* canvas) {
+  const PlaneWarp seen = detection.seen->Warp(camera, pattern.outer_radius_m());
+  const auto project = [&](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
+    return seen.Project(point.head<2>(), pixel);
+  };
+  DrawPrint(pattern, project, kMagenta, canvas);
+  canvas->Write("magenta: where it is seen", kMagenta, 1);
+  canvas->Write(fmt::format("yellow: where pose and calibration have it, {:.1f} px beside",
+                            detection.misfit_px),
+                kYellow, 2);
+}
+
+void DrawDetection(const LandingDetection& detection, const CameraModel& camera,
+                   const LandingPattern& pattern, Canvas* canvas) {
   const RigidTransform& pose = detection.camera_from_pattern;
-  canvas->DrawLine(Circle(pattern.outer_radius_m()), pose, kYellow);
-  canvas->DrawLine(Circle(pattern.inner_radius_m()), pose, kYellow);
-  canvas->DrawLine(Cross(pattern), pose, kYellow);
+  const auto project = [&](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
+    return camera.Project(pose * point, pixel) != ProjectionStatus::kOutsideModel;
+  };
+  DrawPrint(pattern, project, kYellow, canvas);
   const std::array<cv::Scalar, 3> colors = {kRed, kGreen, kBlue};
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector3d end = pattern.outer_radius_m() * Eigen::Vector3d::Unit(axis);
-    canvas->DrawLine(LineBetween(Eigen::Vector3d::Zero(), end), pose, colors[axis]);
+    canvas->DrawLine(LineBetween(Eigen::Vector3d::Zero(), end), project, colors[axis]);
   }
+  if (detection.is_misfit() && detection.seen) DrawMisfit(detection, camera, pattern, canvas);
   canvas->DrawCenter(detection.center_px);
   canvas->Write(fmt::format("{}  {:.2f} m  quality {:.2f}", ToString(detection.method),
                             pose.translation.norm(), detection.quality),
@@ -143,10 +167,10 @@ void DrawDetection(const LandingDetection& detection, const LandingPattern& patt
 
 cv::Mat DrawLandingOverlay(const cv::Mat& image, const CameraModel& camera,
                            const LandingPattern& pattern, const LandingObservation& observation) {
-  Canvas canvas(image, camera);
+  Canvas canvas(image);
   const LandingReport& report = observation.report;
   if (report.detection) {
-    DrawDetection(*report.detection, pattern, &canvas);
+    DrawDetection(*report.detection, camera, pattern, &canvas);
   } else {
     canvas.Write(fmt::format("not found: {}: {}", ToString(report.reached), report.reason), kRed);
   }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 
 namespace kestrel {
 namespace {
@@ -38,6 +39,34 @@ TEST(LandingOverlay, DrawsTheRingWhereThePoseSaysIt) {
   EXPECT_TRUE(IsYellow(drawn, 319 - 60, 239 - 80));
   EXPECT_TRUE(IsYellow(drawn, 319 - 48, 239 - 64));
   EXPECT_FALSE(IsYellow(drawn, 319 - 54, 239 - 72));
+}
+
+bool IsMagenta(const cv::Mat& image, int x, int y) {
+  const auto& pixel = image.at<cv::Vec3b>(y, x);
+  return pixel[2] > 150 && pixel[0] > 150 && pixel[1] < 120;
+}
+
+// Seen 40 px to the right of where pose and lens have it.
+TEST(LandingOverlay, OfAMisfitBothOutlinesAreDrawn) {
+  LandingObservation observation = FoundAt({0.0, 0.0, 2.0});
+  LandingDetection& detection = *observation.report.detection;
+  detection.seen = SeenPrint{detection.camera_from_pattern, PlaneWarp::Coefficients::Zero()};
+  detection.seen->displacement_px(0, 0) = 40;
+  detection.misfit_px = 28;
+  detection.misfit_bound_px = 30;
+  const auto drawn = [&] {
+    return DrawLandingOverlay(kGray, kCamera, LandingPattern(), observation);
+  };
+  EXPECT_FALSE(IsMagenta(drawn(), 359 + 60, 239 + 80)) << "no more than should be";
+  detection.misfit_bound_px = 1;
+  EXPECT_TRUE(IsYellow(drawn(), 319 + 60, 239 + 80));
+  EXPECT_TRUE(IsMagenta(drawn(), 359 + 60, 239 + 80));
+  EXPECT_TRUE(IsMagenta(drawn(), 359 + 48, 239 + 64));
+  // What the colours mean.
+  cv::Mat magenta;
+  cv::inRange(drawn().rowRange(0, 100), cv::Scalar(150, 0, 150), cv::Scalar(255, 120, 255),
+              magenta);
+  EXPECT_GT(cv::countNonZero(magenta), 50);
 }
 
 TEST(LandingOverlay, SurvivesAPatternNextToOrBehindTheCamera) {
