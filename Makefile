@@ -8,13 +8,14 @@ SCENARIOS ?=
 PREFIX ?= /usr/local
 FUZZ_SECONDS ?= 60
 ROOMS ?=
+FIGURES ?=
 empty :=
 space := $(empty) $(empty)
 DDS_ROOMS := dds middleware team cli
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 export CCACHE_BASEDIR ?= $(CURDIR)
 
-.PHONY: demo console test dds ros interop browser bench accuracy format check asan fuzz install command tests build configure deps
+.PHONY: demo console test dds ros interop browser bench accuracy figures check-figures format check asan fuzz install command tests build configure deps
 
 demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
 	scripts/demo $(BIN) "$(DATA)" "$(CAMERA)"
@@ -52,12 +53,20 @@ browser: deps  ## the console's page: its unit tests, and used in Chromium as a 
 	cd web && npm test && npm run try -- ../$(BIN)/src/kestrel/cli/kestrel ../out/browser
 
 bench: build  ## speed
-	@for program in $(BIN)/bench/*_benchmark; do echo "== $$program"; $$program || exit; done
+	@for program in $(BIN)/bench/*_benchmark $(BIN)/bench/landing_speed; do echo "== $$program"; $$program || exit; done
 
 accuracy: build  ## errors against truth; simulated flights (landings: SCENARIOS) to docs/accuracy.md, docs/hunt_accuracy.md
 	scripts/accuracy $(BIN) $(SCENARIOS)
 	scripts/hunt_accuracy $(BIN)
 	@for program in $(BIN)/bench/*accuracy; do echo "== $$program"; $$program || exit; done
+
+figures: configure  ## all figures of README and docs, or FIGURES, measured and written
+	targets=$$(scripts/figures --targets $(FIGURES)) && cmake --build --preset release --target $$targets
+	scripts/figures --build $(BIN) $(FIGURES)
+
+check-figures: configure  ## what README and docs quote: form, commands, and what is quick to measure
+	targets=$$(scripts/figures --check --targets) && cmake --build --preset release --target $$targets
+	scripts/figures --build $(BIN) --check
 
 format:
 	scripts/check-format --fix

@@ -321,8 +321,10 @@ void ReportVariants(const Options& options) {
   }
   fmt::print(
       "Every frame also seen in mirrors: four of each.\n\n"
-      "| variant | real frames | found | wrong | without pattern | false | rendered stills | found "
-      "| wrong | without | false |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "| variant | real frames | real: found | real: wrong | real: without | real: false | stills "
+      "| "
+      "stills: found | stills: wrong | stills: without | stills: false "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|\n");
   const auto cells = [](const LandingTally& t) {
     return fmt::format("{} | {} | {} | {} | {}", t.frames, t.found, t.wrong, t.negatives,
                        t.false_detections);
@@ -366,17 +368,19 @@ std::vector<LandingScore> ReportStillsOfBin(std::size_t bin, int stills, FaultLo
 void PrintStillsByGroup(const std::vector<std::vector<LandingScore>>& bins) {
   fmt::print("\n| found of |");
   for (const AltitudeBin& bin : kAltitudeBins) fmt::print(" {} |", bin.Name());
-  fmt::print("\n|---|---|---|---|---|---|\n");
+  fmt::print(" all |\n|---|---|---|---|---|---|---|\n");
   for (const char* group : kStillGroups) {
     fmt::print("| {} |", group);
+    LandingTally all;
     for (const std::vector<LandingScore>& scores : bins) {
       LandingTally tally;
       for (const LandingScore& score : scores) {
         if (score.group == group) tally.Add(score);
       }
       fmt::print(" {} of {} |", tally.found, tally.frames);
+      all.Add(tally);
     }
-    fmt::print("\n");
+    fmt::print(" {} of {} |\n", all.found, all.frames);
   }
 }
 

@@ -127,10 +127,11 @@ void Run() {
   for (int round = 0; round < kRounds; ++round) {
     for (int i = 0; i < 3; ++i) RunRound(&vision, port, counts[i], &times[i]);
   }
-  fmt::print("{:>9} {:>12} {:>12} {:>12} {:>12}\n", "browsers", "wall p50 ms", "wall p99 ms",
-             "cpu p50 ms", "cpu p99 ms");
+  fmt::print(
+      "| browsers | vision, median, ms | 99 %, ms | its CPU time, median, ms | its 99 %, ms |\n"
+      "|---|---|---|---|---|\n");
   for (int i = 0; i < 3; ++i) {
-    fmt::print("{:>9} {:>12.3f} {:>12.3f} {:>12.3f} {:>12.3f}\n", counts[i],
+    fmt::print("| {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n", counts[i],
                Quantile(times[i].wall_ms, 0.5), Quantile(times[i].wall_ms, 0.99),
                Quantile(times[i].cpu_ms, 0.5), Quantile(times[i].cpu_ms, 0.99));
   }

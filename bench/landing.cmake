@@ -23,13 +23,17 @@ target_link_libraries(light_accuracy PRIVATE kestrel::landing kestrel::recording
 target_compile_definitions(light_accuracy
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
 
-add_executable(landing_benchmark landing_benchmark.cc landing_frames.cc landing_score.cc)
-target_link_libraries(
-  landing_benchmark
-  PRIVATE kestrel::landing kestrel::recording kestrel::stills CLI11::CLI11 apriltag::apriltag
-          benchmark::benchmark fmt::fmt opencv_aruco opencv_imgproc)
-target_compile_definitions(landing_benchmark
-                           PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
+add_executable(landing_benchmark landing_benchmark.cc landing_frames.cc landing_peers.cc
+                                 landing_score.cc)
+add_executable(landing_speed landing_speed.cc landing_frames.cc landing_peers.cc landing_score.cc)
+target_link_libraries(landing_benchmark PRIVATE benchmark::benchmark)
+foreach(program landing_benchmark landing_speed)
+  target_link_libraries(
+    ${program} PRIVATE kestrel::landing kestrel::recording kestrel::stills CLI11::CLI11
+                       apriltag::apriltag fmt::fmt opencv_aruco opencv_imgproc)
+  target_compile_definitions(${program}
+                             PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
+endforeach()
 
 add_executable(train_print_score train_print_score.cc print_score_training.cc landing_falsehoods.cc
                                  landing_frames.cc landing_hardships.cc landing_score.cc

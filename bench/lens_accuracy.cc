@@ -148,15 +148,10 @@ void ReportReal(const Options& options) {
   const LensCalibration lens = CalibrateLens(ImagesOf(sets), {});
   const CameraIntrinsics& camera = lens.intrinsics;
   fmt::print(
-      "\n## Real sequences\n\nAll of them together, {} views: focal length {:.1f} +- {:.1f} px, "
-      "principal point ({:.1f}, {:.1f}) +- ({:.1f}, {:.1f}), distortion {} [{:.4f}], residual "
-      "{:.2f} px; {}. By sequence: the focal length with all else as it is.\n\n| sequence | views "
-      "used | focal length, px | f = 370: found | centre error median, px | 95 %, px | this lens: "
-      "found | centre error median, px | 95 %, px |\n|---|---|---|---|---|---|---|---|---|\n",
-      lens.views.size(), camera.fx_px, lens.fit.sigmas(kFocal), camera.cx_px, camera.cy_px,
-      lens.fit.sigmas(kPrincipalX), lens.fit.sigmas(kPrincipalY),
-      DistortionName(camera.distortion_model), fmt::join(camera.distortion, ", "),
-      lens.fit.RootMeanSquare(), lens.coverage.InWords());
+      "\n## Real sequences\n\nThe focal length of each with all else as it is of all.\n\n"
+      "| sequence | views used | focal length, px | f = 370: found | centre error median, px | "
+      "95 %, px | this lens: found | its centre error median, px | its 95 %, px "
+      "|\n|---|---|---|---|---|---|---|---|---|\n");
   double squares = 0;
   int fitted = 0;
   for (const LandingFrameSet& set : sets) {
@@ -176,8 +171,16 @@ void ReportReal(const Options& options) {
     std::fflush(stdout);
   }
   fmt::print(
-      "\nThe focal lengths of the sequences are {:.1f} px (root mean square) from that of all.\n",
-      std::sqrt(squares / std::max(fitted, 1)));
+      "\n| all sequences: views | focal length, px | from those of the sequences, RMS, px | "
+      "principal point, px | distortion | residual, px | coverage "
+      "|\n|---|---|---|---|---|---|---|\n"
+      "| {} | {:.1f} +- {:.1f} | {:.1f} | ({:.1f}, {:.1f}) +- ({:.1f}, {:.1f}) | {} [{:.4f}] | "
+      "{:.2f} | {} |\n",
+      lens.views.size(), camera.fx_px, lens.fit.sigmas(kFocal),
+      std::sqrt(squares / std::max(fitted, 1)), camera.cx_px, camera.cy_px,
+      lens.fit.sigmas(kPrincipalX), lens.fit.sigmas(kPrincipalY),
+      DistortionName(camera.distortion_model), fmt::join(camera.distortion, ", "),
+      lens.fit.RootMeanSquare(), lens.coverage.InWords());
 }
 
 int Run(int argc, char** argv) {

@@ -55,7 +55,8 @@ std::vector<TouchdownResult> FlyAll(const TouchdownSimulationOptions& options,
   return results;
 }
 
-void PrintSummary(const std::string& scenario, const std::vector<TouchdownResult>& results) {
+// A row of the table.
+std::string Summary(const std::string& scenario, const std::vector<TouchdownResult>& results) {
   std::vector<double> times_s, distances_m, slips_mps;
   for (const TouchdownResult& result : results) {
     if (result.outcome != TouchdownOutcome::kLanded) continue;
@@ -63,25 +64,30 @@ void PrintSummary(const std::string& scenario, const std::vector<TouchdownResult
     distances_m.push_back(result.distance_m);
     slips_mps.push_back(result.slip_mps);
   }
-  fmt::print("\n{}: {} of {} landed\n", scenario, times_s.size(), results.size());
-  const auto print = [](const char* what, const std::vector<double>& values) {
-    fmt::print("{:<32}median {:6.2f}   95 % {:6.2f}   worst {:6.2f}\n", what, Median(values),
-               Quantile(values, 0.95), Quantile(values, 1));
+  const auto spread = [](const std::vector<double>& values) {
+    return fmt::format("{:.2f} | {:.2f} | {:.2f}", Median(values), Quantile(values, 0.95),
+                       Quantile(values, 1));
   };
-  print("time, s", times_s);
-  print("distance from the centre, m", distances_m);
-  print("speed against the board, m/s", slips_mps);
+  return fmt::format("| {} | {} of {} | {} | {} | {} |\n", scenario, times_s.size(), results.size(),
+                     spread(times_s), spread(distances_m), spread(slips_mps));
 }
 
 void Run(const Arguments& arguments) {
   const auto scenarios = arguments.scenario.empty() ? std::vector<std::string>{"figure8", "fast"}
                                                     : std::vector<std::string>{arguments.scenario};
+  std::string summaries;
   for (const std::string& scenario : scenarios) {
     const auto options = ReadTouchdownSimulation(scenario, "", arguments.settings);
     fmt::print("== {}\n{}", scenario, TouchdownCsvHeader());
     std::cout << std::flush;
-    PrintSummary(scenario, FlyAll(options, arguments));
+    summaries += Summary(scenario, FlyAll(options, arguments));
   }
+  fmt::print(
+      "\n| scenario | landed | time median, s | time 95 %, s | time worst, s | distance median, m "
+      "| "
+      "distance 95 %, m | distance worst, m | slip median, m/s | slip 95 %, m/s | slip worst, m/s "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|\n{}",
+      summaries);
 }
 
 }  // namespace

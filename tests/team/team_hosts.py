@@ -5,8 +5,9 @@
 Five UAVs on five hosts (network namespaces of this machine) fly over one field, each with its own
 part of it, a navigation that is off by 1 m and 2 degrees, and a clock 10 s after the last one's. What
 connects them loses, delays and cuts (radio.py). At the end the team's maps of all must be the same,
-byte by byte, have what each has seen, nothing twice, and no error of more than 0.1 m. Prints a line
-for every case; status 1 when one fails, 77 where there can be no hosts. --short: one flight of
+byte by byte, have what each has seen, nothing twice, and no error of more than 0.1 m. Prints a table
+with a row for every case: "equal" is the time from the last landing until all have all, the bytes
+are those of the UAV that sends most; status 1 when one fails, 77 where there can be no hosts. --short: one flight of
 15 s with a bad radio, a restart and a break; no times are judged. --keep: flights are kept there and
 used again.
 """
@@ -200,10 +201,7 @@ class Figures:
         return wrong
 
     def __str__(self):
-        return (
-            f"{self.objects} objects, error {self.error_m:.3f} m, equal {self.late_s:.2f} s after the last landing, "
-            f"{self.rate / 1000:.1f} kB/s at most, {len(self.holders)} claimed"
-        )
+        return f"{self.objects} | {self.error_m:.3f} | {self.late_s:.2f} | {self.rate / 1000:.1f} | {len(self.holders)}"
 
 
 def until(flight, seconds):
@@ -241,7 +239,7 @@ def partition(new_flight):
     healed = time.time()
     figures = flight.land()
     figures.late_s = max(uav.had_all() for uav in flight.uavs.values()) - healed
-    return figures, [], "(after the heal)"
+    return figures, [], "equal: after the break"
 
 
 def rivals(new_flight):
@@ -342,9 +340,10 @@ def run(case, kestrel, flights, made, folder, judges_times):
     wrong = figures.check() + wrong
     if judges_times and figures.rate > MAX_RATE:
         wrong.append("too many bytes")
-    print(f"{case.__name__:10} {figures} {remark}", flush=True)
+    what = case.__doc__.splitlines()[0].rstrip(".")
+    print(f"| {case.__name__} | {what} | {figures} | {remark} |", flush=True)
     for text in wrong:
-        print(f"{case.__name__:10} FAILED: {text}", flush=True)
+        print(f"{case.__name__} FAILED: {text}", file=sys.stderr)
     return not wrong
 
 
@@ -365,6 +364,8 @@ def main():
         kept = arguments.keep or Path(scratch) / "flights"
         kept.mkdir(parents=True, exist_ok=True)
         made = flights.fly(arguments.kestrel, kept, TEAM)
+        print("| case | what happens | objects | error, m | equal, s | kB/s at most | claimed | remark |")
+        print("|---|---|---|---|---|---|---|---|")
         results = [
             run(case, arguments.kestrel, flights, made, Path(scratch) / case.__name__, not arguments.short)
             for case in cases
