@@ -41,23 +41,32 @@ const ScoredPrint* MostProbable(const PrintScore& score, const ScoredFrame& fram
   return best;
 }
 
-// The prints of a kind that are learned from: all, or of a frame the most probable pattern and the
-// most probable other one.
-std::vector<const ScoredPrint*> Select(std::span<const ScoredFrame> frames, std::size_t kind,
+// The kinds of prints that one is learned from. What speaks against a whole print speaks against a
+// part of one, of which there are fewer.
+std::vector<PrintKind> LearnedFrom(PrintKind kind) {
+  if (kind == PrintKind::kPart) return {PrintKind::kPart, PrintKind::kByEdges};
+  return {kind};
+}
+
+// The prints that a kind is learned from: all, or of a frame the most probable pattern and the most
+// probable other one.
+std::vector<const ScoredPrint*> Select(std::span<const ScoredFrame> frames, PrintKind kind,
                                        const PrintScore* score) {
   std::vector<const ScoredPrint*> selected;
   for (const ScoredFrame& frame : frames) {
-    for (const bool is_pattern : {true, false}) {
-      const auto counts = [&](const ScoredPrint& print) {
-        return static_cast<std::size_t>(print.kind) == kind && print.is_pattern == is_pattern;
-      };
-      if (score != nullptr) {
-        const ScoredPrint* best = MostProbable(*score, frame, counts);
-        if (best != nullptr) selected.push_back(best);
-        continue;
-      }
-      for (const ScoredPrint& print : frame.prints) {
-        if (counts(print)) selected.push_back(&print);
+    for (const PrintKind of : LearnedFrom(kind)) {
+      for (const bool is_pattern : {true, false}) {
+        const auto counts = [&](const ScoredPrint& print) {
+          return print.kind == of && print.is_pattern == is_pattern;
+        };
+        if (score != nullptr) {
+          const ScoredPrint* best = MostProbable(*score, frame, counts);
+          if (best != nullptr) selected.push_back(best);
+          continue;
+        }
+        for (const ScoredPrint& print : frame.prints) {
+          if (counts(print)) selected.push_back(&print);
+        }
       }
     }
   }
@@ -203,7 +212,9 @@ PrintScore TrainPrintScore(std::span<const ScoredFrame> frames) {
   for (int round = 0; round < kRounds; ++round) {
     const PrintScore before = score;
     for (std::size_t kind = 0; kind < kPrintKinds; ++kind) {
-      score[kind] = Regression(Select(frames, kind, round > 0 ? &before : nullptr)).Solve();
+      score[kind] =
+          Regression(Select(frames, static_cast<PrintKind>(kind), round > 0 ? &before : nullptr))
+              .Solve();
     }
   }
   Calibrate(frames, &score);
