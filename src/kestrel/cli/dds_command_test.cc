@@ -247,7 +247,11 @@ TEST_F(DdsCommandTest, FaultsAreNamed) {
   ExpectInputError(fly + "/deep", "16UC1");
   is_over = true;
   publisher.join();
+}
+
+TEST_F(DdsCommandTest, FaultsOfTheArgumentsAreNamedWithAndWithoutDds) {
   ExpectInputError("fly --dds mine --force dds:/deep", "--dds 'mine'");
+  ExpectInputError("fly --dds 300 --force dds:/deep", "0 to 232");
   ExpectInputError("land --dds 300 --force nothing", "nothing");
   ExpectInputError("land x --set dds.node=1x", "dds.node");
   ExpectInputError("land x --set dds.distribution=foxy", "dds.distribution");

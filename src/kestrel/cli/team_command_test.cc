@@ -201,7 +201,7 @@ TEST_F(TeamCommandTest, FaultsAreNamed) {
                    "expected --autopilot or a source with poses");
   ExpectInputError("hunt " + flight + " --team t --set team.uav=a/b", "team.uav");
   ExpectInputError("hunt " + flight + " --team t --set team.key=none.key", "none.key");
-  if (HasDds(flight)) ExpectInputError("hunt " + flight + " --team t --dds 300", "0 to 232");
+  ExpectInputError("hunt " + flight + " --team t --dds 300", "0 to 232");
 }
 
 }  // namespace

@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
-#include <dds/dds.h>
-#include <map>
-#include <mutex>
 #include <string_view>
 #include <unistd.h>
 
@@ -23,11 +20,6 @@ namespace {
 constexpr char kByIndex[] =
     "<ParticipantIndex>auto</ParticipantIndex>"
     "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>";
-
-// After a break of the radio of less than a minute the others are still known; after a longer one
-// they are found again within half a second, not only after eight.
-constexpr char kOften[] =
-    "<Discovery><LeaseDuration>60 s</LeaseDuration><SPDPInterval>500 ms</SPDPInterval></Discovery>";
 
 std::string Variable(const char* name) {
   const char* const value = std::getenv(name);
@@ -61,28 +53,6 @@ std::string WithPeers(const std::string& peers) {
   return fmt::format("<Discovery>{}<Peers><Peer Address=\"localhost\"/>{}</Peers></Discovery>",
                      kByIndex, peers);
 }
-
-class Domain {
- public:
-  explicit Domain(int domain) {
-    dds_set_log_sink([](void* /*unused*/, const dds_log_data_t* /*data*/) {}, nullptr);
-    const std::string told = Variable("CYCLONEDDS_URI");
-    std::string settings = kOften;
-    for (const std::string& more : {DiscoverySettings(), told}) {
-      if (!more.empty()) settings += "," + more;
-    }
-    entity_ = dds_create_domain(static_cast<dds_domainid_t>(domain), settings.c_str());
-    if (entity_ >= 0) return;
-    throw InputError(fmt::format("DDS domain {}: {} (CYCLONEDDS_URI '{}'; is there a network?)",
-                                 domain, dds_strretcode(-entity_), Shown(told)));
-  }
-  ~Domain() { dds_delete(entity_); }
-  Domain(const Domain&) = delete;
-  Domain& operator=(const Domain&) = delete;
-
- private:
-  dds_entity_t entity_;
-};
 
 }  // namespace
 
@@ -119,15 +89,6 @@ std::string DiscoverySettings() {
         Shown(range)));
   }
   return peers.empty() ? "" : WithPeers(peers);
-}
-
-std::shared_ptr<const void> OpenDdsDomain(int domain) {
-  static std::mutex mutex;
-  static std::map<int, std::weak_ptr<const void>> domains;
-  const std::lock_guard lock(mutex);
-  std::shared_ptr<const void> opened = domains[domain].lock();
-  if (!opened) domains[domain] = opened = std::make_shared<const Domain>(domain);
-  return opened;
 }
 
 }  // namespace kestrel

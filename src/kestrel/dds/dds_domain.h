@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -16,10 +15,5 @@ int DdsDomain(const std::optional<int>& told);
 // as LOCALHOST; goes first) and ROS_STATIC_PEERS (addresses, with semicolons between them); empty
 // where they say nothing. Throws InputError for other values.
 std::string DiscoverySettings();
-
-// Keeps the domain, with these settings and then those of CYCLONEDDS_URI, as long as it lives; all
-// that is opened in one process meanwhile shares it. What Cyclone logs of peers that cannot be
-// reached, period after period, is not shown. Throws InputError where the settings are at fault.
-std::shared_ptr<const void> OpenDdsDomain(int domain);
 
 }  // namespace kestrel

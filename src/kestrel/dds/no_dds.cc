@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// In the place of the other sources where Cyclone DDS is not installed.
+// In the place of the sources that use Cyclone DDS where it is not installed.
 #include "kestrel/base/error.h"
-#include "kestrel/dds/dds_domain.h"
 #include "kestrel/dds/ros2_node.h"
 #include "kestrel/dds/team_topic.h"
 
@@ -14,12 +13,6 @@ namespace {
 }
 
 }  // namespace
-
-int DdsDomain(const std::optional<int>& /*told*/) { SayHowToGetIt(); }
-
-std::string DiscoverySettings() { SayHowToGetIt(); }
-
-std::shared_ptr<const void> OpenDdsDomain(int /*domain*/) { SayHowToGetIt(); }
 
 struct Ros2Node::Entities {};
 

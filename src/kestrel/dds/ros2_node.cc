@@ -20,6 +20,7 @@
 #include "kestrel/bags/type_hash.h"
 #include "kestrel/base/error.h"
 #include "kestrel/dds/dds_domain.h"
+#include "kestrel/dds/opened_domain.h"
 #include "ros2_types.h"
 
 namespace kestrel {

@@ -11,6 +11,7 @@
 
 #include "kestrel/base/error.h"
 #include "kestrel/dds/dds_domain.h"
+#include "kestrel/dds/opened_domain.h"
 #include "team_sample.h"
 
 namespace kestrel {
