@@ -13,6 +13,8 @@
 
 #include "kestrel/landing/column_products.h"
 #include "kestrel/landing/neighbor_correlation.h"
+#include "kestrel/landing/positive_solver.h"
+#include "kestrel/landing/robust_scale.h"
 
 namespace kestrel {
 namespace {
@@ -35,7 +37,8 @@ using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 constexpr std::size_t kMinEdges = 12;  // too few of those for a pose
 constexpr int kMaxSteps = 8;
 constexpr int kLeastSteps = 3;
-constexpr double kHeld = 1e6;  // weight, in edges, of what is not to move
+constexpr float kOutsideModelPx = 1e6;  // offset of an edge whose place the lens does not show
+constexpr double kHeld = 1e6;           // weight, in edges, of what is not to move
 // Edges per edge that all steps but the last few look at, and too few of those.
 constexpr std::size_t kCoarseEdges = 3;
 constexpr std::size_t kFewEdges = 36;
@@ -104,8 +107,8 @@ struct PatternLocator::Equations {
   // Step of the pose alone.
   Vector PoseStep() const {
     Vector step = Vector::Zero();
-    step.head<kPoseUnknowns>() =
-        h.topLeftCorner<kPoseUnknowns, kPoseUnknowns>().ldlt().solve(g.head<kPoseUnknowns>());
+    step.head<kPoseUnknowns>() = SolvePositive<kPoseUnknowns, 1>(
+        h.topLeftCorner<kPoseUnknowns, kPoseUnknowns>(), g.head<kPoseUnknowns>());
     return step;
   }
   void PullCalibration(const State& state, double focal_weight, double principal_weight) {
@@ -147,6 +150,9 @@ struct PatternLocator::EdgeColumns {
 struct PatternLocator::Linearized {
   explicit Linearized(const EdgeColumns& of) : edges(of) {}
 
+  // Fills the columns by what is shown, from the roots of the weights and the offsets.
+  void Differentiate(const ShownEdges& shown, const Column& from_principal, float zoom);
+
   // The equations of the first 'unknowns', and what else the columns sum up to.
   void Sum(int unknowns) {
     std::array<int, kEdgeColumns> which;
@@ -172,18 +178,7 @@ struct PatternLocator::Linearized {
   }
 
   // Standard deviation of the offsets by the median of their magnitudes.
-  double RobustScale() const {
-    Column magnitudes{};
-    std::size_t found = 0;
-    for (std::size_t i = 0; i < edges.count; ++i) {
-      magnitudes[found] = std::abs(offsets[i]);
-      found += magnitudes[found] < kOutsideModelPx ? 1 : 0;
-    }
-    const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(found / 2);
-    std::nth_element(magnitudes.begin(), middle,
-                     magnitudes.begin() + static_cast<std::ptrdiff_t>(found));
-    return 1.4826 * static_cast<double>(*middle);
-  }
+  double RobustScale() const { return kestrel::RobustScale(std::span(offsets).first(edges.count)); }
 
   // Scale of the offsets in the next step, where it is 'scale_px' in this one.
   double NextScale(double scale_px) const {
@@ -195,8 +190,6 @@ struct PatternLocator::Linearized {
   double Movement(const Vector& step) const {
     return std::sqrt(std::max(0.0, step.dot(equations.h * step)) / weights);
   }
-
-  static constexpr float kOutsideModelPx = 1e6f;  // offset of what the lens does not show
 
   const EdgeColumns& edges;
   Column offsets;  // px, from where the state has the edges
@@ -278,87 +271,112 @@ Eigen::Vector2d PatternLocator::Principal() const {
   return {camera_.intrinsics().cx_px, camera_.intrinsics().cy_px};
 }
 
+// Where the lens shows the places of edges.
+struct PatternLocator::ShownEdges {
+  std::array<Column, 3> from_center;  // of the print, in the camera frame, m
+  Column x_px, y_px;                  // by the camera's calibration
+  std::array<Column, 6> by_point;     // derivative, row by row
+};
+
+void PatternLocator::Show(const EdgeColumns& edges, const RigidTransform& pose,
+                          ShownEdges* shown) const {
+  const Eigen::Matrix<float, 3, 2> plane =
+      pose.rotation.toRotationMatrix().leftCols<2>().cast<float>();
+  const Eigen::Vector3f center = pose.translation.cast<float>();
+  std::array<Column, 3> points;
+  for (int k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < edges.count; ++i) {
+      shown->from_center[k][i] = plane(k, 0) * edges.x_m[i] + plane(k, 1) * edges.y_m[i];
+      points[k][i] = center(k) + shown->from_center[k][i];
+    }
+  }
+  std::array<float*, 6> by_point;
+  for (int k = 0; k < 6; ++k) by_point[k] = shown->by_point[k].data();
+  camera_.ProjectMany({points[0].data(), points[1].data(), points[2].data()}, edges.count,
+                      shown->x_px.data(), shown->y_px.data(), &by_point);
+  for (std::size_t i = 0; i < edges.count; ++i) {
+    if (!std::isnan(shown->x_px[i])) continue;
+    shown->x_px[i] = shown->y_px[i] = kOutsideModelPx;
+    for (Column& column : shown->by_point) column[i] = 0;
+  }
+}
+
+void PatternLocator::Linearized::Differentiate(const ShownEdges& shown,
+                                               const Column& from_principal, float zoom) {
+  const Column& roots = columns[kSpread];
+  std::array<Column, 3> by_point;
+  for (int k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < edges.count; ++i) {
+      by_point[k][i] =
+          zoom * roots[i] *
+          (edges.across_x[i] * shown.by_point[k][i] + edges.across_y[i] * shown.by_point[3 + k][i]);
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    const Column &next = by_point[(k + 1) % 3], &last = by_point[(k + 2) % 3];
+    const Column &next_from = shown.from_center[(k + 1) % 3],
+                 &last_from = shown.from_center[(k + 2) % 3];
+    for (std::size_t i = 0; i < edges.count; ++i) {
+      columns[k][i] = by_point[k][i];
+      columns[3 + k][i] = next_from[i] * last[i] - last_from[i] * next[i];
+    }
+  }
+  used = 0;
+  for (std::size_t i = 0; i < edges.count; ++i) {
+    columns[kFocal][i] = roots[i] * from_principal[i];
+    columns[kFocal + 1][i] = roots[i] * edges.across_x[i];
+    columns[kFocal + 2][i] = roots[i] * edges.across_y[i];
+    columns[kOffset][i] = roots[i] * offsets[i];
+    columns[kBlur][i] = roots[i] * edges.bend[i];
+  }
+  for (std::size_t i = 0; i < edges.count; ++i) used += roots[i] > 0 ? 1 : 0;
+}
+
 // What the edges say of the state, weighted by Tukey's function of their offsets with the given
 // scale: of its first 'unknowns'.
 void PatternLocator::Linearize(const State& state, double scale_px, int unknowns,
                                Linearized* linearized) const {
   const EdgeColumns& edges = linearized->edges;
-  const std::size_t count = edges.count;
-  const Eigen::Matrix<float, 3, 2> plane =
-      state.pose.rotation.toRotationMatrix().leftCols<2>().cast<float>();
-  const Eigen::Vector3f center = state.pose.translation.cast<float>();
-  std::array<Column, 3> from_center, points;
-  for (int k = 0; k < 3; ++k) {
-    for (std::size_t i = 0; i < count; ++i) {
-      from_center[k][i] = plane(k, 0) * edges.x_m[i] + plane(k, 1) * edges.y_m[i];
-      points[k][i] = center(k) + from_center[k][i];
-    }
-  }
-  Column x_px, y_px;
-  std::array<Column, 6> by_point;
-  const std::array<float*, 6> derivatives{by_point[0].data(), by_point[1].data(),
-                                          by_point[2].data(), by_point[3].data(),
-                                          by_point[4].data(), by_point[5].data()};
-  camera_.ProjectMany({points[0].data(), points[1].data(), points[2].data()}, count, x_px.data(),
-                      y_px.data(), &derivatives);
+  ShownEdges shown;
+  Show(edges, state.pose, &shown);
   const Eigen::Vector2f principal = Principal().cast<float>();
-  const Eigen::Vector2f shown = (Principal() + state.principal_px).cast<float>();
+  const Eigen::Vector2f moved = (Principal() + state.principal_px).cast<float>();
   const auto zoom = static_cast<float>(std::exp(state.log_focal));
   const auto spread = static_cast<float>(state.spread_px);
   const auto per_limit = static_cast<float>(1 / (4 * scale_px));
-  auto& columns = linearized->columns;
-  Column& roots = columns[kSpread];
-  for (std::size_t i = 0; i < count; ++i) {
-    const float x = zoom * (x_px[i] - principal.x()), y = zoom * (y_px[i] - principal.y());
-    const float offset = edges.across_x[i] * (edges.x_px[i] - shown.x() - x) +
-                         edges.across_y[i] * (edges.y_px[i] - shown.y() - y) - spread;
+  Column from_principal;  // along the normal
+  for (std::size_t i = 0; i < edges.count; ++i) {
+    const float x = zoom * (shown.x_px[i] - principal.x());
+    const float y = zoom * (shown.y_px[i] - principal.y());
+    const float offset = edges.across_x[i] * (edges.x_px[i] - moved.x() - x) +
+                         edges.across_y[i] * (edges.y_px[i] - moved.y() - y) - spread;
     const float ratio = per_limit * offset;
-    const float root = 1 - ratio * ratio;
-    columns[kFocal][i] = edges.across_x[i] * x + edges.across_y[i] * y;
+    from_principal[i] = edges.across_x[i] * x + edges.across_y[i] * y;
     linearized->offsets[i] = offset;
-    roots[i] = root > 0 ? root : 0;
+    linearized->columns[kSpread][i] = std::max(0.0f, 1 - ratio * ratio);
   }
-  linearized->used = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    linearized->used += roots[i] > 0 ? 1 : 0;
-    if (!std::isnan(linearized->offsets[i])) continue;
-    linearized->offsets[i] = Linearized::kOutsideModelPx;
-    columns[kFocal][i] = 0;
-    for (Column& column : by_point) column[i] = 0;
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const float across_x = roots[i] * edges.across_x[i], across_y = roots[i] * edges.across_y[i];
-    const float dx = zoom * (across_x * by_point[0][i] + across_y * by_point[3][i]);
-    const float dy = zoom * (across_x * by_point[1][i] + across_y * by_point[4][i]);
-    const float dz = zoom * (across_x * by_point[2][i] + across_y * by_point[5][i]);
-    columns[0][i] = dx;
-    columns[1][i] = dy;
-    columns[2][i] = dz;
-    columns[3][i] = from_center[1][i] * dz - from_center[2][i] * dy;
-    columns[4][i] = from_center[2][i] * dx - from_center[0][i] * dz;
-    columns[5][i] = from_center[0][i] * dy - from_center[1][i] * dx;
-    columns[kFocal][i] *= roots[i];
-    columns[kFocal + 1][i] = across_x;
-    columns[kFocal + 2][i] = across_y;
-    columns[kOffset][i] = roots[i] * linearized->offsets[i];
-    columns[kBlur][i] = roots[i] * edges.bend[i];
-  }
+  linearized->Differentiate(shown, from_principal, zoom);
   linearized->Sum(unknowns);
 }
 
 // What equations say of the first of their unknowns, where the others stay as they are.
 struct PatternLocator::Solution {
   template <int kCount>
-  static Solution Of(const Linearized& linearized, const Equations& equations) {
+  static Solution Of(const Equations& equations) {
     using Part = Eigen::Matrix<double, kCount, kCount>;
-    const Eigen::LDLT<Part> decomposition(equations.h.topLeftCorner<kCount, kCount>());
     Solution solution;
-    solution.inverse.topLeftCorner<kCount, kCount>() = decomposition.solve(Part::Identity());
-    solution.step.head<kCount>() = decomposition.solve(equations.g.head<kCount>());
-    const Residuals residuals(linearized, solution.step, kCount);
-    solution.mean_square = residuals.MeanSquare();
-    solution.edge_variance = residuals.EdgeVariance();
+    const Part inverse = SolvePositive<kCount, kCount>(equations.h.topLeftCorner<kCount, kCount>(),
+                                                       Part::Identity());
+    solution.inverse.topLeftCorner<kCount, kCount>() = inverse;
+    solution.step.head<kCount>() = inverse * equations.g.head<kCount>();
+    solution.unknowns = kCount;
     return solution;
+  }
+  // What the step leaves of the offsets makes the variance.
+  void Assess(const Linearized& linearized) {
+    const Residuals residuals(linearized, step, unknowns);
+    mean_square = residuals.MeanSquare();
+    edge_variance = residuals.EdgeVariance();
   }
 
   Matrix Covariance() const { return edge_variance * inverse; }
@@ -366,8 +384,9 @@ struct PatternLocator::Solution {
 
   Matrix inverse = Matrix::Zero();  // of the equations
   Vector step = Vector::Zero();
-  double mean_square;  // of what the step leaves of the offsets
-  double edge_variance;
+  int unknowns;
+  double mean_square = 0;  // of what the step leaves of the offsets
+  double edge_variance = 0;
 };
 
 // The equations with what is known of the plane, which counts by the variance of the edges.
@@ -390,30 +409,27 @@ PatternLocator::Solution PatternLocator::SolvePose(const Linearized& linearized,
                                                    bool has_spread) {
   Equations equations = WithPrior(linearized, state, prior);
   if (has_spread) {
-    const Solution solution = Solution::Of<kPoseUnknowns + 1>(linearized, equations);
+    Solution solution = Solution::Of<kPoseUnknowns + 1>(equations);
+    solution.Assess(linearized);
     const double least = std::max(kLeastSpreadPx, kSureSpread * solution.Sigma(kSpread));
     if (std::abs(state.spread_px + solution.step(kSpread)) > least) return solution;
   }
-  if (state.spread_px == 0) return Solution::Of<kPoseUnknowns>(linearized, equations);
+  if (state.spread_px == 0) return Solution::Of<kPoseUnknowns>(equations);
   equations.PullToZero(kSpread, state.spread_px, kHeld);
-  return Solution::Of<kPoseUnknowns + 1>(linearized, equations);
+  return Solution::Of<kPoseUnknowns + 1>(equations);
 }
 
-// The step of a state of which everything is asked.
-PatternLocator::Solution PatternLocator::SolveCalibration(
-    const Linearized& linearized, const State& state,
-    const std::optional<NormalPrior>& prior) const {
+// The step of a state of which everything is asked. 'variance': of the edges.
+PatternLocator::Solution PatternLocator::SolveCalibration(const Linearized& linearized,
+                                                          const State& state,
+                                                          const std::optional<NormalPrior>& prior,
+                                                          double variance) const {
   const double principal_sigma_px = kPrincipalSigma * camera_.intrinsics().fx_px;
-  const auto solve = [&](double variance) -> Solution {
-    Equations equations = linearized.equations;
-    if (prior) prior->AddTo(state.pose.rotation, variance, &equations.h, &equations.g);
-    equations.PullCalibration(state, variance / (kFocalSigma * kFocalSigma),
-                              variance / (principal_sigma_px * principal_sigma_px));
-    return Solution::Of<kUnknowns>(linearized, equations);
-  };
-  // What the step explains of the offsets is no variance of the edges.
-  const Solution without_step = solve(Residuals(linearized, Vector::Zero(), 0).EdgeVariance());
-  return solve(without_step.edge_variance);
+  Equations equations = linearized.equations;
+  if (prior) prior->AddTo(state.pose.rotation, variance, &equations.h, &equations.g);
+  equations.PullCalibration(state, variance / (kFocalSigma * kFocalSigma),
+                            variance / (principal_sigma_px * principal_sigma_px));
+  return Solution::Of<kUnknowns>(equations);
 }
 
 CalibrationEvidence PatternLocator::Judge(const Solution& solution, const State& state) {
@@ -458,18 +474,25 @@ std::optional<PatternLocation> PatternLocator::Locate(
   const EdgeColumns edges(found, 1);
   Linearized linearized(edges);
   const int least_steps = scale < kFarScalePx ? 1 : kLeastSteps;
+  double variance = 0;  // of the edges
   for (int i = 1; i <= kMaxSteps; ++i) {
     Linearize(state, scale, kUnknowns, &linearized);
     if (linearized.used < kMinEdges) return std::nullopt;
     const bool near = i >= least_steps;
-    const Solution solution = SolvePose(linearized, state, prior, near && !is_part);
+    Solution solution = SolvePose(linearized, state, prior, near && !is_part);
     // The tilt of a pattern that is seen from straight above moves the edges by its square only:
     // there the steps are short of the goal.
     const bool is_last =
         i == kMaxSteps || (near && linearized.Movement(solution.step) < kSettledPx);
     if (is_last) {
+      solution.Assess(linearized);
       Describe(linearized, solution, &location);
-      const Solution free = SolveCalibration(linearized, state, prior);
+      // What a calibration explains of the offsets is no variance of the edges.
+      Solution free = SolveCalibration(linearized, state, prior, solution.edge_variance);
+      free.Assess(linearized);
+      variance = free.edge_variance;
+      free = SolveCalibration(linearized, state, prior, variance);
+      free.Assess(linearized);
       const CalibrationEvidence evidence = Judge(free, state);
       if (evidence.surprise > kDoubtfulCalibration) {
         DoubtCalibration(solution, free, &location);
@@ -482,7 +505,7 @@ std::optional<PatternLocation> PatternLocator::Locate(
     if (is_last) break;
   }
   if (location.calibration.surprise > kDoubtfulCalibration) {
-    Recalibrate(edges, prior, scale, &state, &location);
+    Recalibrate(edges, prior, scale, variance, &state, &location);
   }
   if (!location.covariance.allFinite()) return std::nullopt;
   location.camera_from_pattern = state.pose;
@@ -509,16 +532,19 @@ bool PatternLocator::Approach(const EdgeColumns& edges, const std::optional<Norm
   return true;
 }
 
-// Asks the edges for the calibration too; changes state and location where they contradict the
-// camera's.
+// Asks the edges, of about the given variance, for the calibration too; changes state and location
+// where they contradict the camera's.
 void PatternLocator::Recalibrate(const EdgeColumns& edges, const std::optional<NormalPrior>& prior,
-                                 double scale_px, State* state, PatternLocation* location) const {
+                                 double scale_px, double variance, State* state,
+                                 PatternLocation* location) const {
   State free = *state;
   Linearized linearized(edges);
   for (int i = 1; i <= kMaxSteps; ++i) {
     Linearize(free, scale_px, kUnknowns, &linearized);
     if (linearized.used < kMinEdges) return;
-    const Solution solution = SolveCalibration(linearized, free, prior);
+    Solution solution = SolveCalibration(linearized, free, prior, variance);
+    solution.Assess(linearized);
+    variance = solution.edge_variance;
     if (i == kMaxSteps || linearized.Movement(solution.step) < kSettledPx) {
       location->calibration = Judge(solution, free);
       location->calibration.contradicts = location->calibration.surprise > kSureCalibration;

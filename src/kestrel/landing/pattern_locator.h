@@ -87,11 +87,13 @@ class PatternLocator {
   struct State;
   struct Equations;
   struct EdgeColumns;
+  struct ShownEdges;
   struct Linearized;
   struct Residuals;
   struct Solution;
 
   Eigen::Vector2d Principal() const;
+  void Show(const EdgeColumns& edges, const RigidTransform& pose, ShownEdges* shown) const;
   void Linearize(const State& state, double scale_px, int unknowns, Linearized* linearized) const;
   bool Approach(const EdgeColumns& edges, const std::optional<NormalPrior>& prior, State* state,
                 double* scale_px) const;
@@ -100,9 +102,9 @@ class PatternLocator {
   static Solution SolvePose(const Linearized& linearized, const State& state,
                             const std::optional<NormalPrior>& prior, bool has_spread);
   Solution SolveCalibration(const Linearized& linearized, const State& state,
-                            const std::optional<NormalPrior>& prior) const;
+                            const std::optional<NormalPrior>& prior, double variance) const;
   void Recalibrate(const EdgeColumns& edges, const std::optional<NormalPrior>& prior,
-                   double scale_px, State* state, PatternLocation* location) const;
+                   double scale_px, double variance, State* state, PatternLocation* location) const;
   static CalibrationEvidence Judge(const Solution& solution, const State& state);
   static void Describe(const Linearized& linearized, const Solution& solution,
                        PatternLocation* location);
