@@ -2,12 +2,12 @@
 #include "kestrel/camera/projection_kernel.h"
 
 #include <limits>
+#include <numbers>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kestrel/camera/projection_kernel.cc"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for every instruction set.
-#include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -39,6 +39,17 @@ HWY_INLINE hn::Vec<D> Polynomial(D d, hn::Vec<D> s, const std::array<float, kCou
   return value;
 }
 
+// Arc tangent of t from 0 to 1, to two units in the last place: t (1 + t^2 (c0 + c1 t^2 + ...)),
+// minimax (SLEEF's atanf).
+template <class D>
+HWY_INLINE hn::Vec<D> Atan(D d, hn::Vec<D> t) {
+  constexpr std::array<float, 8> kCoefficients{-0.333331019f,  0.199926957f,  -0.142027363f,
+                                               0.106347933f,   -0.074890092f, 0.0425049886f,
+                                               -0.0159569029f, 0.00282363896f};
+  const auto square = hn::Mul(t, t);
+  return hn::MulAdd(hn::Mul(t, square), Polynomial(d, square, kCoefficients), t);
+}
+
 template <class D>
 HWY_INLINE DistortedPoints<D> DistortEquidistant(D d, const ProjectionKernel& lens,
                                                  const VectorPoint<D>& p) {
@@ -47,11 +58,14 @@ HWY_INLINE DistortedPoints<D> DistortEquidistant(D d, const ProjectionKernel& le
   const auto rho2 = hn::MulAdd(p.x, p.x, hn::Mul(p.y, p.y));
   const auto norm2 = hn::MulAdd(p.z, p.z, rho2);
   const auto norm = hn::Sqrt(norm2);
-  // On the axis as close beside it; half the angle is exact there as well.
+  // On the axis as close beside it.
   const auto rho = hn::Max(hn::Sqrt(rho2), hn::Mul(norm, hn::Set(d, 1e-9f)));
-  const auto from_behind = hn::Add(norm, p.z);
-  const auto half = hn::Atan(d, hn::Div(rho, from_behind));
-  const auto theta = hn::Add(half, half);
+  // Half the angle to the nearer side of the axis is exact everywhere.
+  const auto half = Atan(d, hn::Div(rho, hn::Add(norm, hn::Abs(p.z))));
+  const auto acute = hn::Add(half, half);
+  const auto is_behind = hn::Lt(p.z, hn::Zero(d));
+  const auto theta =
+      hn::IfThenElse(is_behind, hn::Sub(hn::Set(d, std::numbers::pi_v<float>), acute), acute);
   const auto s = hn::Mul(theta, theta);
   const auto radius = hn::Mul(theta, Polynomial(d, s, std::array{1.0f, k[0], k[1], k[2], k[3]}));
   const auto slope = Polynomial(d, s, std::array{1.0f, 3 * k[0], 5 * k[1], 7 * k[2], 9 * k[3]});
@@ -60,9 +74,9 @@ HWY_INLINE DistortedPoints<D> DistortEquidistant(D d, const ProjectionKernel& le
   DistortedPoints<D> result;
   result.x = hn::Mul(across, p.x);
   result.y = hn::Mul(across, p.y);
-  result.valid = hn::And(hn::Le(theta, hn::Set(d, lens.limit)),
-                         hn::And(hn::Gt(from_behind, hn::Zero(d)),
-                                 hn::Lt(norm2, hn::Set(d, std::numeric_limits<float>::max()))));
+  const auto is_finite = hn::Lt(norm2, hn::Set(d, std::numeric_limits<float>::max()));
+  const auto has_side = hn::Or(hn::Not(is_behind), hn::Gt(rho2, hn::Zero(d)));
+  result.valid = hn::And(hn::And(is_finite, has_side), hn::Le(theta, hn::Set(d, lens.limit)));
   const auto cosine = hn::Mul(p.x, inverse_rho);
   const auto sine = hn::Mul(p.y, inverse_rho);
   const auto scaled = hn::Div(slope, norm2);

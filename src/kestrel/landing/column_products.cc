@@ -15,42 +15,44 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Doubles = hn::CappedTag<double, 8>;
-using Floats = hn::Rebind<float, Doubles>;
+// Rows that are summed up at once: whole vectors of at most so many lanes, filled up with zeros.
 constexpr std::size_t kMostLanes = 8;
+constexpr std::size_t kBlockRows = 10 * kMostLanes;
+using Block = double[kMostColumns][kBlockRows];
 
-HWY_INLINE hn::Vec<Doubles> At(const float* values) {
-  return hn::PromoteTo(Doubles(), hn::LoadU(Floats(), values));
-}
-
-void SumProducts(std::span<const float* const> columns, std::size_t count, double* products) {
-  const Doubles d;
-  const std::size_t lanes = hn::Lanes(d);
-  const std::size_t size = columns.size();
-  const std::size_t whole = count - count % lanes;
-  // The rows that fill no vector, and zeros.
-  float rest[kMostColumns][kMostLanes] = {};
-  for (std::size_t k = 0; k < size; ++k) {
-    std::copy(columns[k] + whole, columns[k] + count, rest[k]);
-  }
+// Adds the sums of a block to the products on and below the diagonal.
+HWY_INLINE void AddBlock(const Block& block, std::size_t size, std::size_t rows, double* products) {
+  const hn::CappedTag<double, 8> d;
   for (std::size_t a = 0; a < size; ++a) {
     for (std::size_t b = 0; b <= a; b += 2) {
       const std::size_t next = std::min(b + 1, a);
-      const auto last = At(rest[a]);
-      auto sum = hn::Mul(last, At(rest[b]));
-      auto next_sum = hn::Mul(last, At(rest[next]));
-      for (std::size_t i = 0; i < whole; i += lanes) {
-        const auto values = At(columns[a] + i);
-        sum = hn::MulAdd(values, At(columns[b] + i), sum);
-        next_sum = hn::MulAdd(values, At(columns[next] + i), next_sum);
+      auto sum = hn::Zero(d), next_sum = hn::Zero(d);
+      for (std::size_t i = 0; i < rows; i += hn::Lanes(d)) {
+        const auto values = hn::Load(d, &block[a][i]);
+        sum = hn::MulAdd(values, hn::Load(d, &block[b][i]), sum);
+        next_sum = hn::MulAdd(values, hn::Load(d, &block[next][i]), next_sum);
       }
-      const auto put = [&](std::size_t other, auto lane_sums) HWY_ATTR {
-        products[a * size + other] = products[other * size + a] =
-            hn::GetLane(hn::SumOfLanes(d, lane_sums));
-      };
-      put(b, sum);
-      put(next, next_sum);
+      products[a * size + b] += hn::GetLane(hn::SumOfLanes(d, sum));
+      if (next > b) products[a * size + next] += hn::GetLane(hn::SumOfLanes(d, next_sum));
     }
+  }
+}
+
+void SumProducts(std::span<const float* const> columns, std::size_t count, double* products) {
+  const std::size_t size = columns.size();
+  std::fill(products, products + size * size, 0.0);
+  HWY_ALIGN Block block;
+  for (std::size_t first = 0; first < count; first += kBlockRows) {
+    const std::size_t rows = std::min(kBlockRows, count - first);
+    const std::size_t whole = rows + (kBlockRows - rows) % kMostLanes;
+    for (std::size_t k = 0; k < size; ++k) {
+      for (std::size_t i = 0; i < rows; ++i) block[k][i] = columns[k][first + i];
+      for (std::size_t i = rows; i < whole; ++i) block[k][i] = 0;
+    }
+    AddBlock(block, size, rows, products);
+  }
+  for (std::size_t a = 0; a < size; ++a) {
+    for (std::size_t b = 0; b < a; ++b) products[b * size + a] = products[a * size + b];
   }
 }
 

@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include "kestrel/landing/column_products.h"
+#include "kestrel/landing/positive_solver.h"
+#include "kestrel/landing/robust_scale.h"
 
 namespace kestrel {
 namespace {
@@ -80,27 +80,34 @@ class Columns {
     return products;
   }
 
-  // Moves the edges by a displacement of the outlines and a spread, and returns the root mean
-  // square of what is left of the offsets.
-  double Move(const PlaneWarp::Coefficients& displacement, double spread_px, PrintEdges* edges) {
+  // Moves the edges by a displacement of the outlines and a spread.
+  void Move(const PlaneWarp::Coefficients& displacement, double spread_px, PrintEdges* edges) {
     const auto by_x = PlaneWarp::AxisOf(displacement, 0), by_y = PlaneWarp::AxisOf(displacement, 1);
+    const auto spread = static_cast<float>(spread_px);
     Column along;
     for (std::size_t i = 0; i < count_; ++i) {
       along[i] = cos_[i] * PlaneWarp::Displacement(by_x, x_[i], y_[i]) +
                  sin_[i] * PlaneWarp::Displacement(by_y, x_[i], y_[i]);
+      offset_[i] -= along[i] + spread;
     }
-    edges->spread_px += spread_px;
-    double squares = 0, sum = 0;
     for (std::size_t i = 0; i < count_; ++i) {
       PrintEdge& edge = edges->edges[i];
       edge.expected_px += along[i] * edge.across;
       edge.offset_px -= along[i];
-      const double weight = root_[i] * root_[i];
-      squares += weight * Squared(edges->ResidualOf(edge));
-      sum += weight;
+    }
+    edges->spread_px += spread_px;
+  }
+
+  // Root mean square of the offsets, weighted, and their standard deviation by the median.
+  double Rms() const {
+    double squares = 0, sum = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      squares += Squared(root_[i] * offset_[i]);
+      sum += Squared(root_[i]);
     }
     return std::sqrt(squares / std::max(sum, 1e-9));
   }
+  double RobustScale() const { return kestrel::RobustScale(std::span(offset_).first(count_)); }
 
  private:
   using Column = std::array<float, PrintOutline::kMaxPlaces>;
@@ -112,51 +119,47 @@ class Columns {
   Column root_;       // of the weight
 };
 
-// One step of least squares.
-class Step {
- public:
-  // Makes the step and leaves of the offsets what it does not explain.
-  Step(double scale_px, double ring_radius_px, PrintAlignment* alignment) {
-    Columns columns(*alignment, scale_px);
-    const Products products = columns.Sum();
-    Matrix h = products.topLeftCorner<kUnknowns, kUnknowns>();
-    Vector g = products.topRightCorner<kUnknowns, 1>();
-    const double weights = h(kSpread, kSpread);
-    const PlaneWarp::Coefficients& before = alignment->warp.displacement();
-    // Displacements should be small, by their degrees, and the spread too.
-    const auto pull = [&](int unknown, double value, double sigma) {
-      const double weight = Squared(scale_px / sigma);
-      h(unknown, unknown) += weight;
-      g(unknown) -= weight * value;
-    };
-    for (int i = 0; i < kTerms; ++i) {
-      const double sigma = kPriorShare[PlaneWarp::DegreeOf(i)] * ring_radius_px;
-      pull(i, before(0, i), sigma);
-      pull(kTerms + i, before(1, i), sigma);
-    }
-    pull(kSpread, alignment->edges.spread_px, kSpreadSigmaPx);
-    decomposition_.compute(h);
-    const Vector step = decomposition_.solve(g);
-    moved_px_ = std::sqrt(std::max(0.0, step.dot(g)) / std::max(weights, 1e-9));
-    PlaneWarp::Coefficients displacement;
-    displacement << step.head<kTerms>().transpose(), step.segment<kTerms>(kTerms).transpose();
-    alignment->warp.Displace(displacement);
-    alignment->edge_rms_px = columns.Move(displacement, step(kSpread), &alignment->edges);
-  }
-
-  // By how much the outlines were moved, root mean square.
-  double moved_px() const { return moved_px_; }
-
-  // Standard deviation of where the print's middle is now, per axis.
-  double CenterSigmaPx(double edge_rms_px) const {
-    const auto variance = [&](int i) { return decomposition_.solve(Vector::Unit(i).eval())(i); };
-    return std::max(edge_rms_px, kLeastRmsPx) * std::sqrt(0.5 * (variance(0) + variance(kTerms)));
-  }
-
- private:
-  Eigen::LLT<Matrix> decomposition_;
-  double moved_px_;
+// What a step of least squares did.
+struct Step {
+  double moved_px;  // by how much it moved the outlines, root mean square
+  double scale_px;  // standard deviation of what is left of the offsets
 };
+
+// Makes a step and leaves of the offsets what it does not explain.
+Step MakeStep(double scale_px, double ring_radius_px, PrintAlignment* alignment) {
+  Columns columns(*alignment, scale_px);
+  const Products products = columns.Sum();
+  Matrix h = products.topLeftCorner<kUnknowns, kUnknowns>();
+  // The step, and where a push of the print's middle along each axis would bring it.
+  constexpr int kSides = 3;
+  Eigen::Matrix<double, kUnknowns, kSides> sides;
+  sides << products.topRightCorner<kUnknowns, 1>(), Vector::Unit(0), Vector::Unit(kTerms);
+  const double weights = h(kSpread, kSpread);
+  // Displacements should be small, by their degrees, and the spread too.
+  const auto pull = [&](int unknown, double value, double sigma) {
+    const double weight = Squared(scale_px / sigma);
+    h(unknown, unknown) += weight;
+    sides(unknown, 0) -= weight * value;
+  };
+  const PlaneWarp::Coefficients& before = alignment->warp.displacement();
+  for (int i = 0; i < kTerms; ++i) {
+    const double sigma = kPriorShare[PlaneWarp::DegreeOf(i)] * ring_radius_px;
+    pull(i, before(0, i), sigma);
+    pull(kTerms + i, before(1, i), sigma);
+  }
+  pull(kSpread, alignment->edges.spread_px, kSpreadSigmaPx);
+  const auto solutions = SolvePositive<kUnknowns, kSides>(h, sides);
+  const Vector step = solutions.col(0);
+  PlaneWarp::Coefficients displacement;
+  displacement << step.head<kTerms>().transpose(), step.segment<kTerms>(kTerms).transpose();
+  alignment->warp.Displace(displacement);
+  columns.Move(displacement, step(kSpread), &alignment->edges);
+  alignment->edge_rms_px = columns.Rms();
+  alignment->center_sigma_px = std::max(alignment->edge_rms_px, kLeastRmsPx) *
+                               std::sqrt(0.5 * (solutions(0, 1) + solutions(kTerms, 2)));
+  const double moved = std::max(0.0, step.dot(sides.col(0))) / std::max(weights, 1e-9);
+  return {std::sqrt(moved), columns.RobustScale()};
+}
 
 }  // namespace
 
@@ -201,11 +204,10 @@ bool AlignPrint(const cv::Mat& image, const cv::Mat& view, const ImageRegion& re
       look();
     }
     if (alignment->edges.count < kMinEdges) return false;
-    const Step step(scale, ring_radius_px, alignment);
-    scale = std::clamp(alignment->edges.RobustScale(), kLeastScalePx * seen.scale(), scale);
+    const Step step = MakeStep(scale, ring_radius_px, alignment);
+    scale = std::clamp(step.scale_px, kLeastScalePx * seen.scale(), scale);
     reach = std::clamp(4 * scale, kLeastReachPx, reach);
-    settled = step.moved_px() < kSettledPx * seen.scale();
-    if (is_last) alignment->center_sigma_px = step.CenterSigmaPx(alignment->edge_rms_px);
+    settled = step.moved_px < kSettledPx * seen.scale();
     return true;
   };
   const auto make_steps = [&](const ImageRegion& seen, int most) {

@@ -72,17 +72,6 @@ bool PrintEdges::IsPart() const {
   return 4 * in_image < 3 * std::accumulate(part_places.begin(), part_places.end(), 0);
 }
 
-double PrintEdges::RobustScale() const {
-  std::array<float, PrintOutline::kMaxPlaces> magnitudes{};
-  for (std::size_t i = 0; i < count; ++i) {
-    magnitudes[i] = static_cast<float>(std::abs(ResidualOf(edges[i])));
-  }
-  const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(count / 2);
-  std::nth_element(magnitudes.begin(), middle,
-                   magnitudes.begin() + static_cast<std::ptrdiff_t>(count));
-  return 1.4826 * static_cast<double>(*middle);
-}
-
 void FindPrintEdges(const cv::Mat& image, const ImageRegion& region, const PlaneWarp& warp,
                     std::span<const PrintOutline::Place> places, const EdgeSearch& search,
                     PrintEdges* found) {

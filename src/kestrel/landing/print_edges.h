@@ -44,9 +44,6 @@ struct PrintEdges {
 
   // How far (px) an edge is off where it is expected, but for the spread.
   double ResidualOf(const PrintEdge& edge) const { return edge.offset_px - spread_px; }
-
-  // Standard deviation (px) of the residuals by the median of their magnitudes.
-  double RobustScale() const;
 };
 
 // How edges are looked for.
