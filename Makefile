@@ -13,6 +13,7 @@ space := $(empty) $(empty)
 DDS_ROOMS := dds middleware team cli
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 export CCACHE_BASEDIR ?= $(CURDIR)
+export CCACHE_SLOPPINESS ?= locale
 
 .PHONY: demo console test dds ros interop browser bench accuracy format check asan fuzz install command tests build configure deps
 
@@ -40,9 +41,10 @@ ros: deps  ## the node of ROS 1 and its tests, and bags of ROS 1 against its ros
 	cmake --build --preset release --target kestrel kestrel_node kestrel_ros_test
 	ctest --preset release -R ^ros/ --no-tests=error --verbose
 
-interop: tests  ## MAVLink, MCAP, live flights, bags and ROS 2 against implementations of others, which npm installs
+interop: deps  ## MAVLink, MCAP, live flights, bags and ROS 2 against implementations of others, which npm installs
 	scripts/install-deps --interop
 	cmake --preset release
+	cmake --build --preset release --target interop
 	ctest --preset release -R ^interop/ --no-tests=error
 
 browser: deps  ## the console's page: its unit tests, and used in Chromium as a person would; pictures to out/browser
