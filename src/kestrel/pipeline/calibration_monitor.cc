@@ -24,9 +24,12 @@ constexpr double kSideWidth = 0.1;
 // Of the edges of a print that is not quite flat, share of the ring's diameter: what views from one
 // side have in common.
 constexpr double kSharedShare = 0.001;
-constexpr double kSharedSigma = 0.003;  // of the logarithm of the focal length: of all views
-constexpr double kFarSurprise = 4;      // a side that is so surprising counts half (Cauchy)
-constexpr int kRounds = 2;              // of weights, a view: they settle from view to view
+// Standard deviations of the logarithm of the focal length that all views share: what a sheet is
+// off, and what the square of a large error adds to equations that are linear.
+constexpr double kSharedSigma = 0.003;
+constexpr double kOfSquare = 0.1;
+constexpr double kFarSurprise = 4;  // a side that is so surprising counts half (Cauchy)
+constexpr int kRounds = 2;          // of weights, a view: they settle from view to view
 
 Eigen::Vector4d PriorInformation() {
   return Eigen::Vector4d(kPriorSigma.data()).cwiseAbs2().cwiseInverse();
@@ -101,7 +104,8 @@ void CalibrationMonitor::Weigh() {
     error_ = decomposition.solve(pull);
     const double variance = decomposition.solve(Eigen::Vector4d::UnitX())(0);
     const double scatter = surprise / std::max(1.0, kKnownBySide * weights - kAsked);
-    log_focal_sigma_ = std::hypot(kSharedSigma, std::sqrt(variance * std::max(1.0, scatter)));
+    log_focal_sigma_ = std::hypot(kSharedSigma, kOfSquare * error_(0) * error_(0),
+                                  std::sqrt(variance * std::max(1.0, scatter)));
   }
 }
 
