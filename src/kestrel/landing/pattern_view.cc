@@ -18,8 +18,9 @@ PatternView::PatternView(const PlaneWarp& warp, double extent_m, const ImageRegi
   constexpr int kNodes = 4;
   std::array<float, kNodes * kNodes> x_m, y_m, x_px, y_px;
   for (int i = 0; i < kNodes * kNodes; ++i) {
-    x_m[i] = static_cast<float>(extent_m * (2.0 * (i % kNodes) / (kNodes - 1) - 1));
-    y_m[i] = static_cast<float>(extent_m * (2.0 * (i / kNodes) / (kNodes - 1) - 1));
+    const int row = i / kNodes, column = i % kNodes;
+    x_m[i] = static_cast<float>(extent_m * (2.0 * column / (kNodes - 1) - 1));
+    y_m[i] = static_cast<float>(extent_m * (2.0 * row / (kNodes - 1) - 1));
   }
   warp.ProjectMany(x_m.data(), y_m.data(), x_m.size(), x_px.data(), y_px.data());
   valid_ = std::none_of(x_px.begin(), x_px.end(), [](float x) { return std::isnan(x); });
