@@ -37,8 +37,8 @@ struct Ramp {
   }
 };
 constexpr Ramp kIsInk{0.2f, 0.6f}, kIsDark{0.35f, 0.85f}, kIsInkOnly{0.7f, 0.95f};
-constexpr float kHighlight = 0.15f;  // beyond lit white, of the contrast: a highlight hides ink
-constexpr float kLeastContrast = 2;  // gray values
+constexpr float kBeyondWhite = 0.15f;  // beyond lit white, of the contrast: a highlight hides ink
+constexpr float kLeastContrast = 2;    // gray values
 constexpr float kLeastOfContrast = 0.25;  // of the whole print's, in any direction
 constexpr double kEnoughSeen = 0.25;      // share of places by which a part can be judged
 
@@ -145,7 +145,7 @@ void InkComparison::AddPlace(double x_m, double y_m) {
   const double turn = std::atan2(y_m, x_m) / (2 * std::numbers::pi) + 1;
   x_m_.push_back(static_cast<float>(x_m));
   y_m_.push_back(static_cast<float>(y_m));
-  sector_.push_back(static_cast<std::uint8_t>(static_cast<int>(turn * kSectors + 0.5) % kSectors));
+  sector_.push_back(static_cast<std::uint8_t>(std::lround(turn * kSectors) % kSectors));
 }
 
 void InkComparison::AddPlaces() {
@@ -249,7 +249,7 @@ InkComparison::Levels InkComparison::MeasureLevels(
   for (std::size_t i = 0; i < x_m_.size(); ++i) {
     if (gray[i] < 0) continue;
     Histogram& histogram = (i < ink_end_ ? ink : white)[sector_[i]];
-    ++histogram[static_cast<std::size_t>(gray[i] + 0.5f)];
+    ++histogram[static_cast<std::size_t>(std::lround(gray[i]))];
   }
   // Of a sector and its neighbours, where these show any, else of all.
   const auto around = [](const std::array<Histogram, kSectors>& of_sectors, int sector, int reach) {
@@ -286,7 +286,7 @@ InkComparison::Levels InkComparison::MeasureLevels(
   for (int s = 0; s < kSectors; ++s) {
     const float span = std::max(contrast[s], least);
     levels.per_gray[s] = 1 / span;
-    levels.highlight[s] = std::min(kSaturatedGray - 4, lit[s] + kHighlight * span);
+    levels.highlight[s] = std::min(kSaturatedGray - 4, lit[s] + kBeyondWhite * span);
   }
   return levels;
 }

@@ -419,7 +419,7 @@ PatternLocator::Solution PatternLocator::SolvePose(const Linearized& linearized,
                                                    bool has_spread) {
   Equations equations = WithPrior(linearized, state, prior);
   if (has_spread) {
-    const Solution solution = Solution::Of<kPoseUnknowns + 1>(linearized, equations);
+    Solution solution = Solution::Of<kPoseUnknowns + 1>(linearized, equations);
     const double least = std::max(kLeastSpreadPx, kSureSpread * solution.Sigma(kSpread));
     if (std::abs(state.spread_px + solution.step(kSpread)) > least) return solution;
   }
