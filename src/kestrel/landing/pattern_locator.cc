@@ -533,7 +533,8 @@ std::optional<PatternLocation> PatternLocator::Locate(
       Describe(linearized, solution, &location);
       const Solution free = SolveCalibration(linearized, state, prior);
       const CalibrationEvidence evidence = Judge(linearized, free, state);
-      if (evidence.surprise > kDoubtfulCalibration) {
+      // A print that is not flat misleads the pose as a wrong lens does.
+      if (evidence.surprise * free.edge_variance > kDoubtfulCalibration * free.scatter_variance) {
         DoubtCalibration(solution, free, &location);
       }
       // A part of a print bends to any calibration.
