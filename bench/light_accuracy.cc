@@ -69,6 +69,9 @@ std::vector<Row> StillRows() {
     rows.push_back(StillRow(condition, {}, -1, kHigh, 0.25));
     rows.back().name += ", to 14 m, a quarter in view";
   }
+  rows.push_back(rows.back());
+  rows.back().name = "worn, to 14 m, a quarter in view";
+  rows.back().stills.wear = 1;
   return rows;
 }
 

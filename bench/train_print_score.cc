@@ -58,7 +58,7 @@ struct TrainingSource {
 };
 
 unsigned BitOf(StillCondition condition) { return 1u << static_cast<unsigned>(condition); }
-enum FrameHardship : unsigned { kSmallFrame, kNearFrame, kCutOffFrame };
+enum FrameHardship : unsigned { kSmallFrame, kNearFrame, kCutOffFrame, kWornFrame };
 unsigned BitOf(FrameHardship hardship) { return 1u << (kStillConditions + hardship); }
 
 std::string NameOf(unsigned bit) {
@@ -89,18 +89,21 @@ class StillSources {
       : scale_(scale), image_folder_(std::move(image_folder)) {
     AddPatterns();
     AddLookalikes();
+    AddWorn();
   }
 
   std::vector<TrainingSource> Take() { return std::move(sources_); }
 
  private:
   static constexpr double kLowest = 0.35, kHighest = 14;  // m
+  static constexpr double kCutOff = 0.25;                 // least of a look-alike in view
   static constexpr std::uint64_t kFirstSeed = 120'000'000, kSeedsOfSource = 1'000'000;
 
+  // Near is as frequent as far.
+  static constexpr std::array<AltitudeBin, 5> kBins{
+      {{kLowest, 1}, {1, 2}, {2, 4}, {4, 8}, {8, kHighest}}};
+
   void AddPatterns() {
-    // Near is as frequent as far.
-    constexpr std::array<AltitudeBin, 5> kBins{
-        {{kLowest, 1}, {1, 2}, {2, 4}, {4, 8}, {8, kHighest}}};
     constexpr std::array<int, kStillConditions> kStills{500, 600, 400, 300, 500, 500, 250, 250};
     for (int c = 0; c < kStillConditions; ++c) {
       for (const AltitudeBin& bin : kBins) {
@@ -122,7 +125,6 @@ class StillSources {
   }
 
   void AddLookalikes() {
-    constexpr double kCutOff = 0.25;
     for (int c = 0; c < kStillConditions; ++c) {
       const bool is_mixed = c == 0;
       LandingStillOptions whole = OptionsOf(c);
@@ -139,12 +141,37 @@ class StillSources {
       AddLookalike("held-out look-alikes", whole, kHeldOut);
       AddLookalike("held-out look-alikes cut off", cut, kHeldOut);
     }
-    LandingStillOptions flat = OptionsOf(0);
-    flat.lookalikes = LookalikeSet::kWithCounterfeits;
-    flat.min_lookalike_major_px = 30;
-    flat.min_lookalike_minor_px = 6;
-    flat.max_lookalike_minor_px = 14;
-    AddLookalike("look-alikes seen from the side", flat, 200);
+    AddLookalike("look-alikes seen from the side", FlatLookalikes(0), 200);
+  }
+
+  // Dirty and scraped ones, and what else is hardest to tell from them.
+  void AddWorn() {
+    for (const AltitudeBin& bin : kBins) {
+      LandingStillOptions options = OptionsOf(0);
+      options.min_altitude_m = bin.min_m;
+      options.max_altitude_m = bin.max_m;
+      options.wear = 1;
+      AddPattern("worn, " + bin.Name(), options, 90);
+    }
+    LandingStillOptions whole = OptionsOf(0);
+    whole.lookalikes = LookalikeSet::kWithCounterfeits;
+    whole.wear = 1;
+    LandingStillOptions cut = whole;
+    cut.min_lookalike_visible = kCutOff;
+    AddLookalike("worn look-alikes", whole, 300);
+    AddLookalike("worn look-alikes cut off", cut, 100);
+    for (int c = 1; c < kStillConditions; ++c) {
+      AddLookalike("look-alikes seen from the side", FlatLookalikes(c), 80);
+    }
+  }
+
+  static LandingStillOptions FlatLookalikes(int condition) {
+    LandingStillOptions options = OptionsOf(condition);
+    options.lookalikes = LookalikeSet::kWithCounterfeits;
+    options.min_lookalike_major_px = 30;
+    options.min_lookalike_minor_px = 6;
+    options.max_lookalike_minor_px = 14;
+    return options;
   }
 
   static LandingStillOptions OptionsOf(int condition) {
@@ -164,6 +191,7 @@ class StillSources {
     source.changes = {Change::kNone, Change::kOtherCamera};
     if (options.condition == StillCondition::kMixed) source.changes.push_back(Change::kHardToSee);
     source.hardships = BitOf(options.condition);
+    if (options.wear > 0) source.hardships = BitOf(kWornFrame);
     source.is_held_out = options.condition == StillCondition::kHeldOutShadow ||
                          options.lookalikes == LookalikeSet::kHeldOut;
     sources_.push_back(std::move(source));
@@ -416,7 +444,7 @@ int main(int argc, char** argv) {
                  "File of findings: read when it is there, else written");
   app.add_option("--images", options.images, "Folder that keeps the rendered stills")
       ->check(CLI::ExistingDirectory);
-  app.add_option("--scale", options.scale, "Share of the stills, of 7,300");
+  app.add_option("--scale", options.scale, "Share of the stills, of 8,700");
   CLI11_PARSE(app, argc, argv);
   cv::setNumThreads(1);
   return kestrel::ReportMain([&] {

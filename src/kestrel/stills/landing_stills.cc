@@ -316,6 +316,7 @@ std::vector<std::string> LandingStillOptions::Validate() const {
   require(std::abs(bulge) <= 0.2, "bulge", bulge, "-0.2 to 0.2");
   require(std::abs(fold) <= 0.2, "fold", fold, "-0.2 to 0.2");
   require(std::abs(rolling_skew) <= 0.2, "rolling_skew", rolling_skew, "-0.2 to 0.2");
+  require(wear >= 0 && wear <= 1, "wear", wear, "0 to 1");
   return violations;
 }
 
@@ -353,6 +354,7 @@ LandingStill LandingStillMaker::PreparePattern(std::uint64_t seed, View* view) c
   const double radius = still.pattern.outer_radius_m();
   view->scene = RandomGround(&random);
   AddRandomPattern(still.pattern, &random, &view->scene);
+  AddRandomWear({0, 0}, radius, options_.wear, &random, &view->scene);
   const StillLight light{.condition = options_.condition,
                          .shadow_caster = options_.shadow_caster,
                          .center = {0, 0},
@@ -427,6 +429,7 @@ LookalikeStill LandingStillMaker::PrepareLookalikes(std::uint64_t seed, View* vi
   for (const LookalikePlace& place : places) {
     still.names.emplace_back(
         AddRandomLookalike(place.center, place.radius, options_.lookalikes, &random, &view->scene));
+    AddRandomWear(place.center, place.radius, options_.wear, &random, &view->scene);
   }
   const double size_px = places.front().minor_px;
   const StillLight light{.condition = options_.condition,

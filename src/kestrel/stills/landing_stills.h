@@ -65,6 +65,8 @@ struct LandingStillOptions {
   double bulge = 0;
   double fold = 0;
   double rolling_skew = 0;
+  // How dirty and scraped a print is, 0 to 1: as much as an eye can still read.
+  double wear = 0;
 
   // Every violation in words; empty when stills can be made.
   std::vector<std::string> Validate() const;

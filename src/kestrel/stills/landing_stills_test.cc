@@ -144,5 +144,49 @@ TEST(LandingStillMakerTest, RefusesBadOptionsInWords) {
   EXPECT_THAT(ErrorOf(too_high), HasSubstr("no pose at an altitude of 100.00 m"));
 }
 
+constexpr int kStills = 6;
+
+struct MeanLevels {
+  double ink = 0, white = 0;
+  int shadows = 0;  // stills that have one
+};
+
+// Of some stills of a condition.
+MeanLevels LevelsUnder(StillCondition condition) {
+  LandingStillOptions options;
+  options.condition = condition;
+  options.min_visible_fraction = 1;
+  const LandingStillMaker maker(options);
+  MeanLevels levels;
+  for (int seed = 0; seed < kStills; ++seed) {
+    const LandingStill still = maker.MakePattern(seed);
+    levels.ink += MeanOnPattern(still, maker.camera(), true) / kStills;
+    levels.white += MeanOnPattern(still, maker.camera(), false) / kStills;
+    levels.shadows += still.has_shadow;
+  }
+  return levels;
+}
+
+TEST(LandingStillMakerTest, ConditionsAreSeenInTheImage) {
+  const MeanLevels mixed = LevelsUnder(StillCondition::kMixed);
+  const MeanLevels dark = LevelsUnder(StillCondition::kDark);
+  EXPECT_LT(dark.white - dark.ink, 0.5 * (mixed.white - mixed.ink));
+  EXPECT_GT(LevelsUnder(StillCondition::kDust).ink, mixed.ink + 20);
+  EXPECT_GT(LevelsUnder(StillCondition::kGlare).ink, mixed.ink + 20);
+  EXPECT_EQ(LevelsUnder(StillCondition::kUavShadow).shadows, kStills);
+  EXPECT_LT(mixed.shadows, kStills);
+}
+
+TEST(LandingStillMakerTest, WearChangesThePrintAndNothingElse) {
+  LandingStillOptions options;
+  options.min_visible_fraction = 1;
+  const LandingStill clean = LandingStillMaker(options).MakePattern(3);
+  options.wear = 1;
+  const LandingStill worn = LandingStillMaker(options).MakePattern(3);
+  EXPECT_TRUE(
+      clean.camera_from_pattern.translation.isApprox(worn.camera_from_pattern.translation));
+  EXPECT_GT(cv::norm(clean.image, worn.image, cv::NORM_L1) / clean.image.total(), 0.5);
+}
+
 }  // namespace
 }  // namespace kestrel

@@ -99,6 +99,28 @@ void AddRandomPattern(const LandingPattern& pattern, Random* random, Scene* scen
   scene->layers.push_back({ink, random->Uniform(0.03, 0.15), dirt});
 }
 
+// Each is a trail of round spots that grow smaller: dark dirt, pale dust, or bare white.
+void AddRandomWear(const Vector2d& center, double radius_m, double wear, Random* random,
+                   Scene* scene) {
+  constexpr double kMostStains = 9, kReach = 1.2;
+  if (wear == 0) return;
+  const auto stains = static_cast<int>(std::lround(wear * random->Uniform(0.3, 1) * kMostStains));
+  for (int i = 0; i < stains; ++i) {
+    const double distance_m = kReach * radius_m * std::sqrt(random->Uniform());
+    Vector2d place = center + distance_m * RandomDirection(random);
+    const Vector2d drift = RandomDirection(random);
+    double size_m = radius_m * random->Uniform(0.03, 0.11);
+    Drawing stain;
+    for (int spots = random->Integer(2, 9); spots > 0; --spots, size_m *= 0.9) {
+      stain.Add(Drawing::Ring{place, size_m});
+      place += size_m * (drift + RandomDirection(random));
+    }
+    const double reflectance =
+        random->Chance(0.4) ? random->Uniform(0.1, 0.35) : random->Uniform(0.45, 0.9);
+    scene->layers.push_back({stain, reflectance, random->Uniform(0.1, 0.4)});
+  }
+}
+
 const char* AddRandomLookalike(const Vector2d& center, double radius_m, LookalikeSet set,
                                Random* random, Scene* scene) {
   const auto kinds = Lookalikes(set);

@@ -18,6 +18,11 @@ Scene RandomGround(Random* random);
 // The landing pattern on its board, often on a vehicle's roof, sometimes worn.
 void AddRandomPattern(const LandingPattern& pattern, Random* random, Scene* scene);
 
+// Dirt and scraped places on what lies around 'center', 'radius_m' large: 'wear' of 1 is as much as
+// leaves it readable to an eye, 0 nothing.
+void AddRandomWear(const Eigen::Vector2d& center, double radius_m, double wear, Random* random,
+                   Scene* scene);
+
 // A look-alike of a random kind, on a board or painted on the ground; returns its name.
 const char* AddRandomLookalike(const Eigen::Vector2d& center, double radius_m, LookalikeSet set,
                                Random* random, Scene* scene);
