@@ -50,6 +50,8 @@ struct LandingHint {
   std::optional<Eigen::Vector3d> up_in_camera;
   // Where the search of this frame begins: LandingReport::next_step of the frame before.
   int first_step = 0;
+  // Time (ms) that this frame may take where the options say none; 0: any.
+  double max_search_ms = 0;
 };
 
 struct LandingDetection {

@@ -120,7 +120,8 @@ void LandingSearch::TestCrosses(std::size_t pass) {
 }
 
 bool LandingSearch::IsOutOfTime() const {
-  const double limit_ms = models_.options.max_search_ms;
+  const double told_ms = models_.options.max_search_ms;
+  const double limit_ms = told_ms > 0 ? told_ms : hint_.max_search_ms;
   if (limit_ms == 0) return false;
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start_;
   return spent.count() > limit_ms;

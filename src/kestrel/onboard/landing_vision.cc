@@ -40,6 +40,7 @@ LandingVision::LandingVision(const CameraCalibration& calibration,
 }
 
 TrackSnapshot LandingVision::Process(const Frame& frame, FlightObserver* observer) {
+  LimitSearch(frame);
   const LandingObservation observation = pipeline_.Process(frame.image, frame.time);
   snapshot_.captured = frame.time + clock_offset_;
   snapshot_.state = observation.track_state;
@@ -56,6 +57,16 @@ TrackSnapshot LandingVision::Process(const Frame& frame, FlightObserver* observe
   if (detections_) results_.Push({frame.name, observation});
   if (observer != nullptr) observer->See(frame, observation);
   return snapshot_;
+}
+
+// A search that takes longer than the camera's period costs a frame; one that is given up goes on
+// in the next. What is left is for the step that it is in, and for all else that a frame takes.
+void LandingVision::LimitSearch(const Frame& frame) {
+  constexpr double kSearchShare = 0.6;
+  period_.Add(frame.time);
+  if (const auto period = period_.Get()) {
+    pipeline_.LimitSearch(kSearchShare * 1e3 * ToSeconds(*period));
+  }
 }
 
 std::optional<TargetReport> LandingVision::Sighting(const LandingObservation& observation) const {

@@ -9,6 +9,7 @@
 #include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/exposure_drive.h"
 #include "kestrel/onboard/flight_vision.h"
+#include "kestrel/onboard/frame_period.h"
 #include "kestrel/pipeline/landing_pipeline.h"
 #include "kestrel/recording/output_folder.h"
 
@@ -36,10 +37,12 @@ class LandingVision : public FlightVision {
     LandingObservation observation;
   };
 
+  void LimitSearch(const Frame& frame);
   std::optional<TargetReport> Sighting(const LandingObservation& observation) const;
   void ControlExposure(const cv::Mat& image, const LandingObservation& observation);
 
   LandingPipeline pipeline_;
+  FramePeriod period_;
   std::optional<RigidTransform> camera_from_body_;
   Duration clock_offset_;
   TrackSnapshot snapshot_;

@@ -80,6 +80,7 @@ void LandingPipeline::Detect(const cv::Mat& image, LandingObservation* observati
     AddTrack(*observation, &hint);
     AddLastSighting(*observation, &hint);
     hint.first_step = next_step_;
+    hint.max_search_ms = max_search_ms_;
   }
   const auto start = std::chrono::steady_clock::now();
   observation->report = detector_.Detect(image, hint, workspace_);

@@ -122,6 +122,9 @@ class LandingPipeline {
   // Height (m) of the camera above the pattern, for frames without a pose; nothing: not known.
   void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
 
+  // Time (ms) that the search of a frame may take where the options say none; 0: any.
+  void LimitSearch(double max_search_ms) { max_search_ms_ = max_search_ms; }
+
   // Goes on with other options, and keeps the track and the poses: what 'tracker', 'unmodelled' and
   // the options of the poses say stays as it was. Throws InputError, and changes nothing, when they
   // are not valid.
@@ -169,6 +172,7 @@ class LandingPipeline {
   bool is_track_trusted_ = true;  // the last detection was where the track expected it
   std::optional<Sighting> last_;
   int next_step_ = 0;  // where the search of the last frame was given up
+  double max_search_ms_ = 0;
   ToldContradictions contradictions_;
   CalibrationMonitor calibration_monitor_;
 };

@@ -293,12 +293,14 @@ TEST_F(LandingPipelineTest, AWrongFocalLengthMakesDistancesUnsure) {
 
 // Each frame has time for one step only.
 TEST_F(LandingPipelineTest, ASearchOutOfTimeGoesOnInTheNextFrame) {
-  options_.detector.max_search_ms = 1e-6;
+  constexpr double kOneStep_ms = 1e-6;
   world_from_body_.translation.z() = 12.5;  // small: none of the first steps finds it
   const cv::Mat image = Draw();
-  for (const bool still : {true, false}) {
+  for (const auto& [still, by_options] : {std::pair{true, true}, {false, true}, {false, false}}) {
     options_.still = still;
+    options_.detector.max_search_ms = by_options ? kOneStep_ms : 0;
     LandingPipeline pipeline(calibration_, options_);
+    if (!by_options) pipeline.LimitSearch(kOneStep_ms);
     bool is_found = false;
     for (int i = 0; i < 48 && !is_found; ++i) {
       is_found = pipeline.Process(image, kTime + i * Duration(1)).report.detection.has_value();
