@@ -77,6 +77,31 @@ TEST_F(KestrelCommandTest, LandSaysOnceThatTheAltitudeIsWrong) {
   EXPECT_THAT(Run(land + "3").err, Not(HasSubstr("altitude told")));
 }
 
+// The frames are of a lens of 400 px.
+TEST_F(KestrelCommandTest, LandSaysThatTheLensIsAnother) {
+  const CameraModel camera({640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}});
+  Random random(1);
+  for (int i = 0; i < 30; ++i) {
+    WriteTestImage(folder_, fmt::format("images/{:02}.png", i),
+                   DrawRandomView(camera, LandingPattern(), &random));
+  }
+  const std::string output = folder_ / "out";
+  const auto land = [&](const std::string& focal_px) {
+    std::string sensor = kSensor;
+    const std::string right = "400, 400";
+    sensor.replace(sensor.find(right), right.size(), focal_px + ", " + focal_px);
+    return Run(fmt::format("land {} --still --camera {} --output {} --force", folder_ / "images",
+                           folder_.Write("sensor.yaml", sensor), output));
+  };
+  const auto misfit_of_last = [&] {
+    const std::string csv = ReadFile(output + "/landing_detections.csv");
+    return std::stod(csv.substr(csv.rfind(',') + 1));
+  };
+  EXPECT_THAT(land("400").err, Not(HasSubstr("the pattern says")));
+  EXPECT_LT(misfit_of_last(), 0.5);
+  EXPECT_THAT(land("540").err, HasSubstr("px, the calibration 540: kestrel calibrate lens"));
+}
+
 TEST_F(KestrelCommandTest, HelpAndVersion) {
   for (const char* arguments : {"help", "--help"}) {
     const Outcome outcome = Run(arguments);

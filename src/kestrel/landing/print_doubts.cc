@@ -20,6 +20,7 @@ constexpr std::array<std::string_view, kPrintDoubts> kReasons = {
     "there are lines beyond the ring",
     "ink and white are not where those of the print are",
     "the arms of the cross have no edges where they should",
+    "an arm of the cross has no edges where it should",
     "the edges are not where those of the print are",
     "the edges are not those of a flat print",
     "an arm of the cross is faint",

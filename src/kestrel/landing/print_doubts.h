@@ -28,6 +28,7 @@ enum class PrintDoubt {
   kUnlike,         // logarithm of what the correlation with the print lacks of 1
   // By edges
   kArmEdges,  // share of the edges of the arms that are not in their place
+  kArmEdge,   // the same, of the worst arm alone
   kScatter,   // logarithm of the scatter of the edges, of the ring's mean diameter
   kMisfit,    // logarithm of the edges' distance from a flat print seen through the lens
   // By the fit of the print as a whole
@@ -43,7 +44,7 @@ enum class PrintDoubt {
   kFlat,       // logarithm of its axis ratio, negative
   kHidden,     // share of the print that is not in view
 };
-inline constexpr std::size_t kPrintDoubts = 22;
+inline constexpr std::size_t kPrintDoubts = 23;
 
 class PrintDoubts {
  public:

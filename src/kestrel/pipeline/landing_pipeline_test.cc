@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -289,6 +290,47 @@ TEST_F(LandingPipelineTest, AWrongFocalLengthMakesDistancesUnsure) {
   EXPECT_LT(std::sqrt(before(2, 2)), 0.02 * 9);
   EXPECT_NEAR(std::sqrt(after(2, 2)), 0.13 * 9 * 1.15, 0.4) << "it seems to be 1.35 m farther away";
   EXPECT_LT(std::sqrt(after(0, 0)), 0.02);
+}
+
+// A lens of 370 px. Its own calibration is never contradicted; another one's is, within 30 frames.
+TEST_F(LandingPipelineTest, AnotherLensIsSaidWithinThirtyFrames) {
+  constexpr double kFocal_px = 370;
+  options_.still = true;
+  const auto intrinsics = [](double focal_px, double center_x_px) {
+    return CameraIntrinsics{
+        640, 360, focal_px, focal_px, center_x_px, 179.5, DistortionModel::kNone, {}};
+  };
+  const auto pipeline_with = [&](double focal_px, double center_x_px = 319.5) {
+    calibration_.intrinsics = intrinsics(focal_px, center_x_px);
+    return LandingPipeline(calibration_, options_);
+  };
+  const CameraModel camera(intrinsics(kFocal_px, 319.5));
+  for (const std::uint64_t seed : {1, 2}) {
+    LandingPipeline right = pipeline_with(kFocal_px),
+                    other_center = pipeline_with(kFocal_px, 359.5);
+    std::vector<LandingPipeline> wrong;
+    for (const double focal_px : {500.0, 444.0, 296.0}) wrong.push_back(pipeline_with(focal_px));
+    Random random(seed);
+    for (int i = 0; i < 30; ++i) {
+      const cv::Mat image = DrawRandomView(camera, options_.detector.pattern, &random);
+      const LandingObservation seen = right.Process(image, kTime);
+      ASSERT_TRUE(seen.report.detection) << seed << " " << i;
+      EXPECT_LT(seen.report.detection->misfit_px, 0.5) << seed << " " << i;
+      EXPECT_FALSE(seen.report.detection->is_misfit()) << seed << " " << i;
+      EXPECT_EQ(LensWarning(right.calibration_monitor(), kFocal_px), "") << seed << " " << i;
+      other_center.Process(image, kTime);
+      EXPECT_FALSE(other_center.calibration_monitor().Contradiction()) << seed << " " << i;
+      for (LandingPipeline& pipeline : wrong) pipeline.Process(image, kTime);
+    }
+    EXPECT_NE(LensWarning(other_center.calibration_monitor(), kFocal_px), "") << seed;
+    for (const LandingPipeline& pipeline : wrong) {
+      const double told_px = pipeline.detector().camera().intrinsics().fx_px;
+      const auto focal = pipeline.calibration_monitor().Contradiction();
+      ASSERT_TRUE(focal) << seed << " " << told_px;
+      EXPECT_NEAR(focal->factor * told_px, kFocal_px, 3 * focal->sigma * told_px) << seed;
+      EXPECT_LT(focal->sigma, 0.07) << seed;
+    }
+  }
 }
 
 // Each frame has time for one step only.

@@ -8,6 +8,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "kestrel/base/random.h"
 #include "kestrel/camera/camera_model.h"
 #include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/landing/landing_pattern.h"
@@ -49,6 +50,32 @@ inline cv::Mat DrawPattern(const CameraModel& camera, const LandingPattern& patt
     gray = cv::saturate_cast<std::uint8_t>(sum / (kRays * kRays));
   });
   cv::GaussianBlur(image, image, cv::Size(), 0.6);
+  return image;
+}
+
+// The pattern all of which a camera sees, 2 to 5 m away, anywhere in the image, tilted by up to 45
+// degrees to any side; with noise.
+inline cv::Mat DrawRandomView(const CameraModel& camera, const LandingPattern& pattern,
+                              Random* random) {
+  const double angle = random->Uniform(0, 2 * M_PI);
+  const Eigen::Vector3d tilt_axis(std::cos(angle), std::sin(angle), 0);
+  Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
+  camera.Unproject({camera.width_px() * random->Uniform(0.25, 0.75),
+                    camera.height_px() * random->Uniform(0.3, 0.7)},
+                   &ray);
+  const RigidTransform pose = {
+      Eigen::AngleAxisd(random->Uniform(0, M_PI / 4), tilt_axis) *
+          Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()) *
+          Eigen::AngleAxisd(random->Uniform(0, 2 * M_PI), Eigen::Vector3d::UnitZ()),
+      random->Uniform(2, 5) * ray};
+  cv::Mat image = DrawPattern(camera, pattern, pose);
+  constexpr double kNoise = 2;
+  for (int v = 0; v < image.rows; ++v) {
+    for (int u = 0; u < image.cols; ++u) {
+      auto& gray = image.at<std::uint8_t>(v, u);
+      gray = cv::saturate_cast<std::uint8_t>(gray + kNoise * random->Normal());
+    }
+  }
   return image;
 }
 
