@@ -183,8 +183,7 @@ TEST(LandingStillMakerTest, WearChangesThePrintAndNothingElse) {
   const LandingStill clean = LandingStillMaker(options).MakePattern(3);
   options.wear = 1;
   const LandingStill worn = LandingStillMaker(options).MakePattern(3);
-  EXPECT_TRUE(
-      clean.camera_from_pattern.translation.isApprox(worn.camera_from_pattern.translation));
+  EXPECT_TRUE(clean.camera_from_pattern.translation.isApprox(worn.camera_from_pattern.translation));
   EXPECT_GT(cv::norm(clean.image, worn.image, cv::NORM_L1) / clean.image.total(), 0.5);
 }
 
