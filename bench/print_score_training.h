@@ -21,7 +21,7 @@ struct ScoredPrint {
 
 // What a frame may be hard to see by, a bit each: the conditions of stills, then these.
 inline constexpr std::array<std::string_view, 4> kFrameHardships{"small", "near", "cut off",
-                                                                      "worn"};
+                                                                 "worn"};
 
 // All that a search located in a frame, near misses of the pattern left out.
 struct ScoredFrame {
