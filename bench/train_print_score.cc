@@ -90,6 +90,7 @@ class StillSources {
     AddPatterns();
     AddLookalikes();
     AddWorn();
+    for (int c = 1; c < kStillConditions; ++c) AddFlatLookalikes(c, 80);
   }
 
   std::vector<TrainingSource> Take() { return std::move(sources_); }
@@ -141,10 +142,10 @@ class StillSources {
       AddLookalike("held-out look-alikes", whole, kHeldOut);
       AddLookalike("held-out look-alikes cut off", cut, kHeldOut);
     }
-    AddLookalike("look-alikes seen from the side", FlatLookalikes(0), 200);
+    AddFlatLookalikes(0, 200);
   }
 
-  // Dirty and scraped ones, and what else is hardest to tell from them.
+  // Prints and look-alikes that are dirty and scraped.
   void AddWorn() {
     for (const AltitudeBin& bin : kBins) {
       LandingStillOptions options = OptionsOf(0);
@@ -160,18 +161,15 @@ class StillSources {
     cut.min_lookalike_visible = kCutOff;
     AddLookalike("worn look-alikes", whole, 300);
     AddLookalike("worn look-alikes cut off", cut, 100);
-    for (int c = 1; c < kStillConditions; ++c) {
-      AddLookalike("look-alikes seen from the side", FlatLookalikes(c), 80);
-    }
   }
 
-  static LandingStillOptions FlatLookalikes(int condition) {
+  void AddFlatLookalikes(int condition, int count) {
     LandingStillOptions options = OptionsOf(condition);
     options.lookalikes = LookalikeSet::kWithCounterfeits;
     options.min_lookalike_major_px = 30;
     options.min_lookalike_minor_px = 6;
     options.max_lookalike_minor_px = 14;
-    return options;
+    AddLookalike("look-alikes seen from the side", options, count);
   }
 
   static LandingStillOptions OptionsOf(int condition) {
@@ -190,8 +188,7 @@ class StillSources {
     source.count = static_cast<std::size_t>(scale_ * count);
     source.changes = {Change::kNone, Change::kOtherCamera};
     if (options.condition == StillCondition::kMixed) source.changes.push_back(Change::kHardToSee);
-    source.hardships = BitOf(options.condition);
-    if (options.wear > 0) source.hardships = BitOf(kWornFrame);
+    source.hardships = options.wear > 0 ? BitOf(kWornFrame) : BitOf(options.condition);
     source.is_held_out = options.condition == StillCondition::kHeldOutShadow ||
                          options.lookalikes == LookalikeSet::kHeldOut;
     sources_.push_back(std::move(source));

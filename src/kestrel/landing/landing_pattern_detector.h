@@ -103,8 +103,8 @@ struct LandingPatternDetectorOptions {
   double level_sigma_deg = 3;
   // Height of the camera (m) up to which a partial pattern is searched for, when it is known.
   double max_partial_altitude_m = 2.5;
-  // Time (ms) after which the search of a frame is given up, to be continued in the next one; 0: it
-  // never is.
+  // Time (ms) after which the search of a frame is given up, to be continued in the next one; 0: as
+  // the hint says.
   double max_search_ms = 0;
 
   template <class Self, class Visitor>
@@ -118,7 +118,8 @@ struct LandingPatternDetectorOptions {
     visitor("max_partial_altitude_m", self.max_partial_altitude_m, "m",
             "height up to which a pattern that is cut off by the image border is searched for");
     visitor("max_search_ms", self.max_search_ms, "ms",
-            "time after which a search goes on in the next frame; 0: no limit");
+            "time after which a search goes on in the next frame; 0: no limit, in flight what "
+            "the camera's period leaves");
   }
   std::vector<std::string> Validate() const;
 };

@@ -135,7 +135,7 @@ TEST_F(LandingPatternDetectorTest, OtherSignsAreNotThePattern) {
                                  empty,
                                  cross_only,
                                  off_center};
-  int taken = 0;  // for the pattern, doubtfully: one of the 32, with and without a prediction
+  int taken = 0;  // for the pattern: the score doubts it
   const auto expect_doubtful = [&](const LandingReport& report, std::size_t sign, double distance) {
     if (!report.detection) return;
     ++taken;
@@ -150,7 +150,7 @@ TEST_F(LandingPatternDetectorTest, OtherSignsAreNotThePattern) {
       const LandingReport report = Detect(Draw(signs[i], pose), hint);
       expect_doubtful(report, i, distance);
       EXPECT_NE(report.reason.empty(), !report.detection);
-      // Nor where one was predicted.
+      // The same where one was predicted.
       hint.center_in_camera = pose.translation;
       hint.up_in_camera = pose.rotation * Eigen::Vector3d::UnitZ();
       expect_doubtful(Detect(Draw(signs[i], pose), hint), i, distance);

@@ -300,7 +300,7 @@ void NearPrintVerifier::DoubtEdges(const PrintAlignment& alignment, PrintFinding
   const PartShares::Means edges = edge_shares.MeansInView();
   const bool shows_arms = *std::max_element(edge_shares.arm.begin(), edge_shares.arm.end()) >= 0;
   finding->doubts[PrintDoubt::kArmEdges] = shows_arms ? 1 - edges.arms : 0;
-  finding->doubts[PrintDoubt::kArmEdge] = shows_arms ? 1 - edges.worst_arm : 0;
+  finding->doubts[PrintDoubt::kWorstArmEdges] = shows_arms ? 1 - edges.worst_arm : 0;
   finding->doubts[PrintDoubt::kScatter] = LogShare(alignment.edge_rms_px, MeanDiameter(*finding));
 }
 

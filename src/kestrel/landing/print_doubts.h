@@ -27,10 +27,10 @@ enum class PrintDoubt {
   kDarkCorners,    // the same beyond the ends of the arms, more than between them
   kUnlike,         // logarithm of what the correlation with the print lacks of 1
   // By edges
-  kArmEdges,  // share of the edges of the arms that are not in their place
-  kArmEdge,   // the same, of the worst arm alone
-  kScatter,   // logarithm of the scatter of the edges, of the ring's mean diameter
-  kMisfit,    // logarithm of the edges' distance from a flat print seen through the lens
+  kArmEdges,       // share of the edges of the arms that are not in their place
+  kWorstArmEdges,  // the same, of the worst arm alone
+  kScatter,        // logarithm of the scatter of the edges, of the ring's mean diameter
+  kMisfit,         // logarithm of the edges' distance from a flat print seen through the lens
   // By the fit of the print as a whole
   kFaintArm,      // share of the contrast that the worst arm lacks
   kBrokenRing,    // share of the contrast that the ring lacks, mean but for the worst quarter

@@ -10,7 +10,7 @@
 
 namespace kestrel {
 
-// The period of a camera by the times of its images, some of which may have been dropped.
+// The period of a camera by the times of its images, of which some come late and some not at all.
 class FramePeriod {
  public:
   // Times that do not grow are left out.
@@ -19,10 +19,15 @@ class FramePeriod {
     last_ = captured;
   }
 
-  // The shortest of the last times between two images; nothing before there are enough.
+  // The lower quartile of the last times between two images: images that were dropped do not
+  // lengthen it, nor does a late one, which the next follows at once, shorten it. Nothing before
+  // there are enough.
   std::optional<Duration> Get() const {
     if (count_ < kFrames) return std::nullopt;
-    return *std::min_element(between_.begin(), between_.end());
+    std::array<Duration, kFrames> sorted = between_;
+    const auto quartile = sorted.begin() + kFrames / 4;
+    std::nth_element(sorted.begin(), quartile, sorted.end());
+    return *quartile;
   }
 
  private:

@@ -19,6 +19,12 @@ TEST(FramePeriodTest, DroppedFramesDoNotLengthenIt) {
   EXPECT_EQ(period.Get(), Duration(milliseconds(50)));
 }
 
+TEST(FramePeriodTest, LateFramesDoNotShortenIt) {
+  FramePeriod period;
+  for (int i = 0; i < 40; ++i) period.Add(Time(milliseconds(50 * i + (i % 6 == 0 ? 45 : 0))));
+  EXPECT_EQ(period.Get(), Duration(milliseconds(50)));
+}
+
 TEST(FramePeriodTest, ItFollowsTheCamera) {
   FramePeriod period;
   Time time{};

@@ -59,15 +59,17 @@ inline cv::Mat DrawRandomView(const CameraModel& camera, const LandingPattern& p
                               Random* random) {
   const double angle = random->Uniform(0, 2 * M_PI);
   const Eigen::Vector3d tilt_axis(std::cos(angle), std::sin(angle), 0);
+  const double u_px = camera.width_px() * random->Uniform(0.25, 0.75);
+  const double v_px = camera.height_px() * random->Uniform(0.3, 0.7);
   Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
-  camera.Unproject({camera.width_px() * random->Uniform(0.25, 0.75),
-                    camera.height_px() * random->Uniform(0.3, 0.7)},
-                   &ray);
-  const RigidTransform pose = {
-      Eigen::AngleAxisd(random->Uniform(0, M_PI / 4), tilt_axis) *
-          Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()) *
-          Eigen::AngleAxisd(random->Uniform(0, 2 * M_PI), Eigen::Vector3d::UnitZ()),
-      random->Uniform(2, 5) * ray};
+  camera.Unproject({u_px, v_px}, &ray);
+  const double yaw = random->Uniform(0, 2 * M_PI);
+  const double tilt = random->Uniform(0, M_PI / 4);
+  const double distance_m = random->Uniform(2, 5);
+  const RigidTransform pose = {Eigen::AngleAxisd(tilt, tilt_axis) *
+                                   Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()) *
+                                   Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()),
+                               distance_m * ray};
   cv::Mat image = DrawPattern(camera, pattern, pose);
   constexpr double kNoise = 2;
   for (int v = 0; v < image.rows; ++v) {

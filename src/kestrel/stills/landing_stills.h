@@ -65,7 +65,8 @@ struct LandingStillOptions {
   double bulge = 0;
   double fold = 0;
   double rolling_skew = 0;
-  // How dirty and scraped a print is, 0 to 1: as much as an eye can still read.
+  // Amount of dirt and scraped places on a print: 0, none, to 1, as much as an eye still reads
+  // through.
   double wear = 0;
 
   // Every violation in words; empty when stills can be made.

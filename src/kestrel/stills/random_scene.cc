@@ -99,7 +99,7 @@ void AddRandomPattern(const LandingPattern& pattern, Random* random, Scene* scen
   scene->layers.push_back({ink, random->Uniform(0.03, 0.15), dirt});
 }
 
-// Each is a trail of round spots that grow smaller: dark dirt, pale dust, or bare white.
+// A stain is a trail of round spots that grow smaller: dark dirt, pale dust, or bare white.
 void AddRandomWear(const Vector2d& center, double radius_m, double wear, Random* random,
                    Scene* scene) {
   constexpr double kMostStains = 9, kReach = 1.2;

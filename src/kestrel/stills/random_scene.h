@@ -18,8 +18,8 @@ Scene RandomGround(Random* random);
 // The landing pattern on its board, often on a vehicle's roof, sometimes worn.
 void AddRandomPattern(const LandingPattern& pattern, Random* random, Scene* scene);
 
-// Dirt and scraped places on what lies around 'center', 'radius_m' large: 'wear' of 1 is as much as
-// leaves it readable to an eye, 0 nothing.
+// Stains and scraped places on a print around 'center', 'radius_m' large. 'wear': as in
+// LandingStillOptions; 0 adds nothing and draws no random number.
 void AddRandomWear(const Eigen::Vector2d& center, double radius_m, double wear, Random* random,
                    Scene* scene);
 
