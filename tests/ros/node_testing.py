@@ -11,6 +11,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 import genpy.dynamic
@@ -23,6 +24,8 @@ from std_srvs.srv import Trigger
 TIMEOUT_S = 60
 AGAIN_S = 1
 TOLERANCE = 2e-6  # the tables have 1e-6
+# genpy generates classes in global state, and each topic's messages come in a thread of its own.
+GENERATION = threading.Lock()
 
 
 def free_port():
@@ -41,7 +44,8 @@ def wait_until(is_done, what):
 
 def types_of(name, definition):
     """The classes that a definition says; genpy 0.7.0 forgets formats of lists in lists."""
-    types = genpy.dynamic.generate_dynamic(name, definition)
+    with GENERATION:
+        types = genpy.dynamic.generate_dynamic(name, definition)
     module = sys.modules[types[name].__module__]
     for numbers in re.findall(r"_get_struct_(\w+)\(\)", inspect.getsource(module)):
         if not hasattr(module, f"_get_struct_{numbers}"):
