@@ -27,9 +27,8 @@ const std::array<SearchStep, kSearchSteps> kSteps = {{
     {3, SearchMethod::kArcs},     {4, SearchMethod::kArcs},     {5, SearchMethod::kArcs},
     {0, SearchMethod::kCross},    {1, SearchMethod::kCross},    {6, SearchMethod::kAreas},
     {7, SearchMethod::kAreas},    {8, SearchMethod::kAreas},    {9, SearchMethod::kAreas},
-    {2, SearchMethod::kCutAreas}, {6, SearchMethod::kCutAreas}, {7, SearchMethod::kCutAreas},
-    {8, SearchMethod::kCutAreas}, {9, SearchMethod::kCutAreas}, {6, SearchMethod::kArcs},
-    {7, SearchMethod::kArcs},     {8, SearchMethod::kArcs},     {9, SearchMethod::kArcs},
+    {2, SearchMethod::kCutAreas}, {6, SearchMethod::kCutAreas}, {8, SearchMethod::kCutAreas},
+    {6, SearchMethod::kArcs},     {7, SearchMethod::kArcs},     {8, SearchMethod::kArcs},
 }};
 
 }  // namespace kestrel

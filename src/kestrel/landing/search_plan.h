@@ -39,7 +39,7 @@ extern const std::array<SearchPass, kSearchPasses> kPasses;
 // All that is done to an image in which the pattern is not found, in this order: near patterns
 // first, for they are found at a sixteenth of the cost and matter most; closed areas, the cheaper
 // way to a ring, before arcs, the surer one.
-inline constexpr std::size_t kSearchSteps = 24;
+inline constexpr std::size_t kSearchSteps = 21;
 extern const std::array<SearchStep, kSearchSteps> kSteps;
 
 }  // namespace kestrel
