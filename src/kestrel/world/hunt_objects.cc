@@ -83,15 +83,11 @@ class Placer {
 
   void AddMovingDisc() {
     const Vector2d home = places_.Next();
-    // Sines of about this period and amplitude are about that fast.
-    constexpr double kPeriod_s = 14;
-    const double sigma = options_.yellow_speed_mps * kPeriod_s / (2 * kPi);
-    const auto x = Wander(sigma / std::numbers::sqrt2, kPeriod_s, random_);
-    const auto y = Wander(sigma / std::numbers::sqrt2, kPeriod_s, random_);
+    const Path path = options_.yellow_path == "straight" ? Straight() : Wandering();
     const int body = static_cast<int>(world_->bodies.size());
     world_->bodies.push_back([=](double time_s) {
       return RigidTransform{Eigen::Quaterniond::Identity(),
-                            {home.x() + x(time_s), home.y() + y(time_s), 0}};
+                            Vector3d(home.x(), home.y(), 0) + path(time_s)};
     });
     const Motion motion = world_->bodies.back();
     const auto dark = PlainPaint(Gray(0.05), world_->channels);
@@ -159,6 +155,22 @@ class Placer {
                .half_size = Vector2d::Constant(half)});
   }
 
+  Path Wandering() {
+    // Sines of about this period and amplitude are about that fast.
+    constexpr double kPeriod_s = 14;
+    const double sigma = options_.yellow_speed_mps * kPeriod_s / (2 * kPi);
+    const auto x = Wander(sigma / std::numbers::sqrt2, kPeriod_s, random_);
+    const auto y = Wander(sigma / std::numbers::sqrt2, kPeriod_s, random_);
+    return [=](double time_s) { return Vector3d(x(time_s), y(time_s), 0); };
+  }
+
+  Path Straight() {
+    const double course = random_->Uniform(0, 2 * kPi);
+    const Vector3d velocity =
+        options_.yellow_speed_mps * Vector3d(std::cos(course), std::sin(course), 0);
+    return [=](double time_s) { return Vector3d(time_s * velocity); };
+  }
+
   int AddStanding(const Vector2d& place, double yaw) {
     world_->bodies.push_back(Standing(place, yaw));
     return static_cast<int>(world_->bodies.size()) - 1;
@@ -194,6 +206,10 @@ std::vector<std::string> HuntObjectsOptions::Validate() const {
   std::vector<std::string> violations;
   if (shape != "disc" && shape != "cuboid") {
     violations.push_back(fmt::format("shape is '{}', expected disc or cuboid", shape));
+  }
+  if (yellow_path != "wander" && yellow_path != "straight") {
+    violations.push_back(
+        fmt::format("yellow_path is '{}', expected wander or straight", yellow_path));
   }
   constexpr int kMost = 200;
   RequireIn(size_m, 0.02, 2, "size_m", &violations);

@@ -23,6 +23,8 @@ struct HuntObjectsOptions {
   int blue = 4;
   int yellow = 3;  // discs that move
   double yellow_speed_mps = 0.6;
+  // wander: about a place, at about that speed; straight: from there, at that speed.
+  std::string yellow_path = "wander";
   int orange = 1;        // large discs, 0.5 m
   int orange_bars = 1;   // 2 m long
   int distractors = 10;  // other shapes
@@ -39,6 +41,8 @@ struct HuntObjectsOptions {
     visitor("blue", self.blue, "1", "blue objects");
     visitor("yellow", self.yellow, "1", "yellow discs, which move");
     visitor("yellow_speed_mps", self.yellow_speed_mps, "m/s", "how fast these move, about");
+    visitor("yellow_path", self.yellow_path, "",
+            "wander: about a place, at about that speed; straight: from there, at that speed");
     visitor("orange", self.orange, "1", "large orange discs, 0.5 m");
     visitor("orange_bars", self.orange_bars, "1", "orange bars, 2 m long");
     visitor("distractors", self.distractors, "1", "things of the same colours and other shapes");
