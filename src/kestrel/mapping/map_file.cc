@@ -17,7 +17,7 @@
 namespace kestrel {
 namespace {
 
-constexpr int kFormat = 2;
+constexpr int kFormat = 3;
 constexpr std::array kShapes = {ObjectShape::kDisc, ObjectShape::kCuboid, ObjectShape::kBar};
 
 template <class Range>
@@ -28,14 +28,15 @@ std::string List(const Range& range) {
 std::string Print(const MappedObject& object) {
   return fmt::format(
       "{{\"id\": {}, \"shape\": \"{}\", \"first_seen_ns\": {}, \"last_seen_ns\": {}, "
-      "\"time_ns\": {}, \"state\": {}, \"covariance\": {}, \"may_move\": {}, \"detections\": {}, "
-      "\"log_odds\": {}, \"color\": [{}, {}, {}], \"color_log_likelihoods\": {}, "
+      "\"time_ns\": {}, \"state\": {}, \"covariance\": {}, \"may_move\": {}, "
+      "\"move_log_odds\": {}, \"moves\": {}, \"detections\": {}, \"log_odds\": {}, "
+      "\"color\": [{}, {}, {}], \"color_log_likelihoods\": {}, "
       "\"digit_log_likelihoods\": {}}}",
       object.id, ToString(object.shape), ToNanoseconds(object.first_seen),
       ToNanoseconds(object.last_seen), ToNanoseconds(object.time), List(object.state.reshaped()),
-      List(object.covariance.reshaped()), object.may_move, object.detections, object.log_odds,
-      object.color.hue_deg, object.color.saturation, object.color.value,
-      List(object.color_log_likelihoods), List(object.digit_log_likelihoods));
+      List(object.covariance.reshaped()), object.may_move, object.move_log_odds, object.moves,
+      object.detections, object.log_odds, object.color.hue_deg, object.color.saturation,
+      object.color.value, List(object.color_log_likelihoods), List(object.digit_log_likelihoods));
 }
 
 ObjectShape ParseShape(const YamlReader& reader) {
@@ -56,8 +57,8 @@ Time ParseTime(const YamlReader& reader) { return TimeFromNanoseconds(reader.Int
 
 MappedObject ParseObject(const YamlReader& reader) {
   reader.RequireKeys({"id", "shape", "first_seen_ns", "last_seen_ns", "time_ns", "state",
-                      "covariance", "may_move", "detections", "log_odds", "color",
-                      "color_log_likelihoods", "digit_log_likelihoods"});
+                      "covariance", "may_move", "move_log_odds", "moves", "detections", "log_odds",
+                      "color", "color_log_likelihoods", "digit_log_likelihoods"});
   constexpr int kStateSize = MappedObject::kStateSize;
   MappedObject object;
   object.id = reader["id"].Integer();
@@ -73,6 +74,8 @@ MappedObject ParseObject(const YamlReader& reader) {
     reader["covariance"].Fail("expected the covariance of a position, positive definite");
   }
   object.may_move = reader["may_move"].Bool();
+  object.move_log_odds = reader["move_log_odds"].Number();
+  object.moves = reader["moves"].Bool();
   object.detections = static_cast<int>(
       std::clamp<std::int64_t>(reader["detections"].Integer(), 0, std::int64_t{1} << 30));
   object.log_odds = reader["log_odds"].Number();
@@ -149,7 +152,7 @@ std::string PrintGeoJson(const std::vector<MappedObject>& objects, const ObjectM
         object.id, origin.longitude_deg + kDegrees * object.position().x() / across_m,
         origin.latitude_deg + kDegrees * object.position().y() / meridian_m,
         Quoted(index ? model.classes[*index].name : ""), ScoreOf(object, model), object.sigma_m(),
-        object.velocity().x(), object.velocity().y(), object.velocity().z(), object.may_move,
+        object.velocity().x(), object.velocity().y(), object.velocity().z(), object.moves,
         i + 1 < objects.size() ? "," : "");
   }
   return text + "]}\n";

@@ -41,6 +41,12 @@ TEST(MapFile, KeepsEveryBit) {
   const std::string text = PrintObjects(SomeObjects());
   EXPECT_EQ(PrintObjects(ParseObjects(text, "map")), text);
   EXPECT_TRUE(ParseObjects(PrintObjects({}), "map").empty());
+  MappedObject moving = SomeObjects()[1];
+  moving.moves = true;
+  moving.move_log_odds = 5.25;
+  const std::vector<MappedObject> parsed = ParseObjects(PrintObjects({moving}), "map");
+  EXPECT_TRUE(parsed.at(0).moves);
+  EXPECT_EQ(parsed[0].move_log_odds, 5.25);
 }
 
 TEST(MapFile, CutOffAnywhereIsRefused) {
@@ -57,7 +63,7 @@ TEST(MapFile, ValuesThatNoMapHasAreNamed) {
     return changed.replace(changed.find(from), from.size(), to);
   };
   EXPECT_THAT(ErrorOf(with("disc", "ball")), HasSubstr("'ball' is no shape"));
-  EXPECT_THAT(ErrorOf(with("\"kestrel_map\": 2", "\"kestrel_map\": 1")), HasSubstr("format 2"));
+  EXPECT_THAT(ErrorOf(with("\"kestrel_map\": 3", "\"kestrel_map\": 2")), HasSubstr("format 3"));
   EXPECT_THAT(ErrorOf(with("\"state\": [", "\"state\": [nan, ")), HasSubstr("finite number"));
   EXPECT_THAT(ErrorOf(with("\"covariance\": [", "\"covariance\": [-")), HasSubstr("map.json:2"));
 }
@@ -80,6 +86,7 @@ TEST(GeoJson, PlacesObjectsAroundTheOrigin) {
   // A minute of latitude at the equator is 1842.9 m.
   EXPECT_THAT(text, HasSubstr("[10.000000000, 0.0090436"));
   EXPECT_THAT(text, HasSubstr("\"class\": \"red\""));
+  EXPECT_THAT(text, HasSubstr("\"moving\": false"));
 }
 
 }  // namespace

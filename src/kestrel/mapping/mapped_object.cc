@@ -53,6 +53,25 @@ void UnifyStates(const MappedObject& other, MappedObject* kept) {
   kept->covariance.topLeftCorner<kSize, kSize>() = 0.5 * (left + left.transpose());
 }
 
+void UnifyMotions(const MappedObject& other, MappedObject* kept) {
+  if (kept->moves != other.moves) {
+    const auto sureness = [](const MappedObject& object) {
+      return std::pair(std::abs(object.move_log_odds), object.last_seen);
+    };
+    if (sureness(other) > sureness(*kept)) {
+      kept->state = other.state;
+      kept->covariance = other.covariance;
+      kept->moves = other.moves;
+    }
+  } else if (kept->may_move || other.may_move) {
+    // A standing object's velocity has no covariance, hence a solver for what is singular.
+    UnifyStates<MappedObject::kStateSize>(other, kept);
+  } else {
+    UnifyStates<3>(other, kept);
+  }
+  kept->move_log_odds += other.move_log_odds;
+}
+
 }  // namespace
 
 double MappedObject::sigma_m() const {
@@ -76,36 +95,39 @@ std::optional<LikelyDigit> MappedObject::digit() const {
   return LikeliestDigit(likelihoods);
 }
 
+MotionStep DrivingStep(double dt, const ObjectMotion& motion) {
+  const AxisMotion axis = PredictAxis(dt, motion);
+  const Eigen::DiagonalMatrix<double, 3> shares(1, 1, kClimb * kClimb);
+  MotionStep step;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      step.transition.block<3, 3>(3 * i, 3 * k) =
+          axis.transition(i, k) * Eigen::Matrix3d::Identity();
+      step.noise.block<3, 3>(3 * i, 3 * k) = axis.noise(i, k) * shares.toDenseMatrix();
+    }
+  }
+  return step;
+}
+
+MotionStep StandingStep(double dt, const ObjectMotion& motion) {
+  MotionStep step{MappedObject::Covariance::Identity(), MappedObject::Covariance::Zero()};
+  step.noise.topLeftCorner<3, 3>().diagonal().setConstant(motion.drift_noise * motion.drift_noise *
+                                                          dt);
+  return step;
+}
+
 void PredictObject(Time time, const ObjectMotion& motion, MappedObject* object) {
   const double dt = ToSeconds(time - object->time);
   if (!(dt > 0)) return;
   object->time = time;
-  if (!object->may_move) {
-    object->covariance.topLeftCorner<3, 3>().diagonal().array() +=
-        motion.drift_noise * motion.drift_noise * dt;
-    return;
-  }
-  const AxisMotion axis = PredictAxis(dt, motion);
-  MappedObject::Covariance transition;
-  MappedObject::Covariance noise;
-  const Eigen::DiagonalMatrix<double, 3> shares(1, 1, kClimb * kClimb);
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      transition.block<3, 3>(3 * i, 3 * k) = axis.transition(i, k) * Eigen::Matrix3d::Identity();
-      noise.block<3, 3>(3 * i, 3 * k) = axis.noise(i, k) * shares.toDenseMatrix();
-    }
-  }
-  object->state = (transition * object->state).eval();
-  object->covariance = (transition * object->covariance * transition.transpose() + noise).eval();
+  const MotionStep step = object->may_move ? DrivingStep(dt, motion) : StandingStep(dt, motion);
+  object->state = (step.transition * object->state).eval();
+  object->covariance =
+      (step.transition * object->covariance * step.transition.transpose() + step.noise).eval();
 }
 
 void UnifyObjects(const MappedObject& other, MappedObject* kept) {
-  // A standing object's velocity has no covariance, hence a solver for what is singular.
-  if (kept->may_move || other.may_move) {
-    UnifyStates<MappedObject::kStateSize>(other, kept);
-  } else {
-    UnifyStates<3>(other, kept);
-  }
+  UnifyMotions(other, kept);
   kept->first_seen = std::min(kept->first_seen, other.first_seen);
   kept->last_seen = std::max(kept->last_seen, other.last_seen);
   kept->detections += other.detections;

@@ -45,5 +45,30 @@ TEST(FuseObjects, ThoseOfOneMapStayApart) {
   EXPECT_THAT(fused, SizeIs(2));
 }
 
+// A yellow disc that one map says to move, or to stand, at x = 'x'.
+MappedObject Yellow(double x, double move_log_odds) {
+  MappedObject object;
+  object.may_move = true;
+  object.moves = move_log_odds > 0;
+  object.move_log_odds = move_log_odds;
+  object.color_log_likelihoods[kYellow] = 5;
+  object.state.head<4>() << x, 0, 0, object.moves ? 0.6 : 0;
+  object.covariance.diagonal().setConstant(0.01);
+  return object;
+}
+
+TEST(FuseObjects, OfOneThatMovesAndOneThatStandsTheSurerIsRight) {
+  std::vector<MappedObject> fused = {Yellow(0, -2)};
+  FuseObjects({Yellow(0.1, 6)}, {}, &fused);
+  ASSERT_THAT(fused, SizeIs(1));
+  EXPECT_TRUE(fused[0].moves);
+  EXPECT_EQ(fused[0].velocity().x(), 0.6);
+  fused = {Yellow(0, -6)};
+  FuseObjects({Yellow(0.1, 2)}, {}, &fused);
+  EXPECT_FALSE(fused[0].moves);
+  EXPECT_EQ(fused[0].velocity().x(), 0);
+  EXPECT_EQ(fused[0].move_log_odds, -4);
+}
+
 }  // namespace
 }  // namespace kestrel

@@ -20,17 +20,8 @@ double LogOdds(double probability) { return std::log(probability / (1 - probabil
 
 bool IsUsable(const ObjectMeasurement& measurement) {
   return measurement.position.allFinite() && measurement.covariance.allFinite() &&
+         measurement.clock_shift.allFinite() &&
          measurement.covariance.llt().info() == Eigen::Success;
-}
-
-using Observation = Eigen::Matrix<double, 3, MappedObject::kStateSize>;
-
-// From the state to where the object is 'delay_s' after the state's time: a moment.
-Observation ObservationAfter(double delay_s) {
-  Observation observation = Observation::Zero();
-  observation.leftCols<3>().setIdentity();
-  observation.middleCols<3>(3).diagonal().setConstant(delay_s);
-  return observation;
 }
 
 // Adds the logarithms of 'probabilities', and keeps the greatest sum at 0.
@@ -41,6 +32,22 @@ void AddLogarithms(const Array& probabilities, Array* sums) {
   }
   const double best = *std::max_element(sums->begin(), sums->end());
   for (double& sum : *sums) sum -= best;
+}
+
+Eigen::Matrix3d PositionCovariance(const MappedObject& object) {
+  return object.covariance.topLeftCorner<3, 3>();
+}
+
+// A Kalman filter's update of a position alone.
+void FuseStanding(const ObjectMeasurement& measurement, MappedObject* object) {
+  const Eigen::Matrix3d covariance = PositionCovariance(*object);
+  const Eigen::Matrix3d innovation = covariance + measurement.covariance;
+  const Eigen::Matrix3d gain = innovation.llt().solve(covariance).transpose();
+  object->state.head<3>() += (gain * (measurement.position - object->position())).eval();
+  // Joseph's form stays symmetric and positive.
+  const Eigen::Matrix3d rest = Eigen::Matrix3d::Identity() - gain;
+  object->covariance.topLeftCorner<3, 3>() =
+      rest * covariance * rest.transpose() + gain * measurement.covariance * gain.transpose();
 }
 
 // How likely both have the same colour: -log of the sum of products of probabilities.
@@ -70,6 +77,11 @@ std::vector<std::string> ObjectMapOptions::Validate() const {
   require(acceleration_time_s >= 0.01, "acceleration_time_s must be at least 0.01");
   require(velocity_time_s >= 0.01, "velocity_time_s must be at least 0.01");
   require(start_speed_sigma_mps > 0, "start_speed_sigma_mps must be positive");
+  require(wander_sigma_m >= 0, "wander_sigma_m must not be negative");
+  require(wander_time_s >= 0.01, "wander_time_s must be at least 0.01");
+  require(clock_sigma_s >= 0, "clock_sigma_s must not be negative");
+  require(moving_probability > 0.5 && moving_probability < 1,
+          "moving_probability must be in 0.5 to 1");
   require(shared_sigma_m >= 0, "shared_sigma_m must not be negative");
   require(is_share(detection_probability), "detection_probability must be in 0 to 1");
   require(is_share(false_probability) && false_probability < detection_probability,
@@ -82,6 +94,12 @@ std::vector<std::string> ObjectMapOptions::Validate() const {
   return violations;
 }
 
+ObjectMotion ObjectMapOptions::motion() const {
+  return {drift_noise,     acceleration_sigma_mps2, acceleration_time_s,
+          velocity_time_s, start_speed_sigma_mps,   wander_sigma_m,
+          wander_time_s,   clock_sigma_s,           LogOdds(moving_probability)};
+}
+
 ObjectMap::ObjectMap(const ObjectModel& model, const ObjectMapOptions& options)
     : model_(model),
       options_(Checked(options)),
@@ -90,9 +108,10 @@ ObjectMap::ObjectMap(const ObjectModel& model, const ObjectMapOptions& options)
           std::log((1 - options.detection_probability) / (1 - options.false_probability))),
       new_cost_(-2 * std::log(options.new_density)),
       max_log_odds_(LogOdds(options.max_probability)),
-      removal_log_odds_(LogOdds(options.removal_probability)) {
+      removal_log_odds_(LogOdds(options.removal_probability)),
+      motion_(options.motion()) {
   const auto capacity = static_cast<std::size_t>(options.capacity);
-  objects_.reserve(capacity + kMaxMeasurements);
+  entries_.reserve(capacity + kMaxMeasurements);
   predicted_.reserve(capacity + kMaxMeasurements);
   measurements_.reserve(kMaxMeasurements);
   costs_.resize(kMaxMeasurements, static_cast<Eigen::Index>(capacity + kMaxMeasurements));
@@ -107,8 +126,8 @@ void ObjectMap::Update(Time time, std::span<const ObjectMeasurement> measurement
     if (measurements_.size() == kMaxMeasurements) break;
     if (IsUsable(measurement)) measurements_.push_back(measurement);
   }
-  predicted_ = objects_;
-  for (MappedObject& object : predicted_) PredictObject(time, options_.motion(), &object);
+  predicted_ = entries_;
+  for (Entry& entry : predicted_) Predict(time, &entry);
   Assign(time);
   FadeUnseen(time, view);
   UnifyNeighbors();
@@ -117,7 +136,7 @@ void ObjectMap::Update(Time time, std::span<const ObjectMeasurement> measurement
 
 std::vector<MappedObject> ObjectMap::Confirmed() const {
   std::vector<MappedObject> confirmed;
-  for (const MappedObject& object : objects_) {
+  for (const auto& [object, motion] : entries_) {
     if (object.detections >= options_.confirm_count && object.log_odds > 0) {
       confirmed.push_back(object);
     }
@@ -127,15 +146,28 @@ std::vector<MappedObject> ObjectMap::Confirmed() const {
   return confirmed;
 }
 
-double ObjectMap::Cost(const ObjectMeasurement& measurement, const MappedObject& object) const {
+std::vector<MappedObject> ObjectMap::objects() const {
+  std::vector<MappedObject> objects;
+  for (const auto& [object, motion] : entries_) objects.push_back(object);
+  return objects;
+}
+
+void ObjectMap::Predict(Time time, Entry* entry) const {
+  const double dt = ToSeconds(time - entry->object.time);
+  if (entry->object.may_move && dt > 0) entry->motion.Predict(dt, motion_);
+  PredictObject(time, motion_, &entry->object);
+}
+
+double ObjectMap::Cost(const ObjectMeasurement& measurement, const Entry& entry) const {
+  const MappedObject& object = entry.object;
   if (measurement.shape != object.shape) return kImpossibleCost;
-  const Observation observation = ObservationAfter(measurement.delay_s);
-  Eigen::Matrix3d covariance =
-      observation * object.covariance * observation.transpose() + measurement.covariance;
+  const ExpectedPosition expected =
+      object.may_move ? entry.motion.Expect(measurement)
+                      : ExpectedPosition{object.position(), PositionCovariance(object)};
+  Eigen::Matrix3d covariance = expected.covariance + measurement.covariance;
   covariance.diagonal().array() += options_.shared_sigma_m * options_.shared_sigma_m;
   const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
-  const Eigen::Vector3d whitened =
-      llt.matrixL().solve(measurement.position - observation * object.state);
+  const Eigen::Vector3d whitened = llt.matrixL().solve(measurement.position - expected.position);
   const double distance = whitened.squaredNorm();
   if (distance > options_.gate) return kImpossibleCost;
   // -2 log of the likelihood.
@@ -144,17 +176,14 @@ double ObjectMap::Cost(const ObjectMeasurement& measurement, const MappedObject&
          2 * ColorCost(measurement.color_probabilities, object.color_log_likelihoods);
 }
 
-void ObjectMap::Fuse(const ObjectMeasurement& measurement, MappedObject* object) const {
-  const Observation observation = ObservationAfter(measurement.delay_s);
-  const Observation seen = observation * object->covariance;
-  const Eigen::Matrix3d innovation = seen * observation.transpose() + measurement.covariance;
-  const Eigen::Matrix<double, MappedObject::kStateSize, 3> gain =
-      innovation.llt().solve(seen).transpose();
-  object->state += (gain * (measurement.position - observation * object->state)).eval();
-  // Joseph's form stays symmetric and positive.
-  const MappedObject::Covariance rest = MappedObject::Covariance::Identity() - gain * observation;
-  object->covariance = rest * object->covariance * rest.transpose() +
-                       gain * measurement.covariance * gain.transpose();
+void ObjectMap::Fuse(const ObjectMeasurement& measurement, Entry* entry) const {
+  MappedObject* const object = &entry->object;
+  if (object->may_move) {
+    entry->motion.Fuse(measurement, motion_);
+    entry->motion.Publish(object);
+  } else {
+    FuseStanding(measurement, object);
+  }
   object->color = measurement.color;
   AddLogarithms(measurement.color_probabilities, &object->color_log_likelihoods);
   if (measurement.digits) AddLogarithms(*measurement.digits, &object->digit_log_likelihoods);
@@ -163,8 +192,9 @@ void ObjectMap::Fuse(const ObjectMeasurement& measurement, MappedObject* object)
   ++object->detections;
 }
 
-MappedObject ObjectMap::Start(Time time, const ObjectMeasurement& measurement) {
-  MappedObject object;
+ObjectMap::Entry ObjectMap::Start(Time time, const ObjectMeasurement& measurement) {
+  Entry entry;
+  MappedObject& object = entry.object;
   object.id = next_id_++;
   object.shape = measurement.shape;
   object.first_seen = object.last_seen = object.time = time;
@@ -177,21 +207,15 @@ MappedObject ObjectMap::Start(Time time, const ObjectMeasurement& measurement) {
   const auto index = ClassOf(object, model_);
   object.may_move = index && model_.classes[*index].may_move;
   if (object.may_move) {
-    const Eigen::Vector3d axes(1, 1, kClimb);
-    Eigen::Matrix<double, 6, 1> sigmas;  // of velocity and acceleration
-    sigmas << options_.start_speed_sigma_mps * axes, options_.acceleration_sigma_mps2 * axes;
-    object.covariance.bottomRightCorner<6, 6>().diagonal() = sigmas.cwiseAbs2();
-    // As fast as it may be, it was as far from there at the time of the frame.
-    MappedObject::Covariance back = MappedObject::Covariance::Identity();
-    back.topRows<3>() = ObservationAfter(-measurement.delay_s);
-    object.covariance = (back * object.covariance * back.transpose()).eval();
+    entry.motion = MotionFilter(measurement, motion_);
+    entry.motion.Publish(&object);
   }
-  return object;
+  return entry;
 }
 
 void ObjectMap::Assign(Time time) {
   const auto rows = static_cast<Eigen::Index>(measurements_.size());
-  const auto known = static_cast<Eigen::Index>(objects_.size());
+  const auto known = static_cast<Eigen::Index>(entries_.size());
   if (rows == 0) return;
   // One column for each object, and one of its own for each detection that is of none.
   auto costs = costs_.topLeftCorner(rows, known + rows);
@@ -203,46 +227,49 @@ void ObjectMap::Assign(Time time) {
   const std::vector<int>& columns = solver_.Solve(costs);
   for (Eigen::Index i = 0; i < rows; ++i) {
     if (columns[i] < known) {
-      MappedObject& object = objects_[columns[i]];
-      object = predicted_[columns[i]];
-      Fuse(measurements_[i], &object);
+      Entry& entry = entries_[columns[i]];
+      entry = predicted_[columns[i]];
+      Fuse(measurements_[i], &entry);
     } else {
-      objects_.push_back(Start(time, measurements_[i]));
+      entries_.push_back(Start(time, measurements_[i]));
     }
   }
 }
 
 void ObjectMap::FadeUnseen(Time time, const FieldOfView& view) {
   for (std::size_t i = 0; i < predicted_.size(); ++i) {
-    if (objects_[i].last_seen != time && view.Shows(predicted_[i])) {
-      objects_[i].log_odds += miss_log_odds_;
+    MappedObject& object = entries_[i].object;
+    if (object.last_seen != time && view.Shows(predicted_[i].object)) {
+      object.log_odds += miss_log_odds_;
     }
   }
-  std::erase_if(objects_,
-                [&](const MappedObject& object) { return object.log_odds < removal_log_odds_; });
+  std::erase_if(entries_,
+                [&](const Entry& entry) { return entry.object.log_odds < removal_log_odds_; });
 }
 
 void ObjectMap::UnifyNeighbors() {
-  for (std::size_t i = 0; i < objects_.size(); ++i) {
-    for (std::size_t k = objects_.size() - 1; k > i; --k) {
-      MappedObject& kept = objects_[i];
-      const MappedObject& other = objects_[k];
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    for (std::size_t k = entries_.size() - 1; k > i; --k) {
+      MappedObject& kept = entries_[i].object;
+      const MappedObject& other = entries_[k].object;
       if (kept.shape != other.shape || kept.color_index() != other.color_index() ||
           (kept.position() - other.position()).norm() >= options_.min_separation_m) {
         continue;
       }
+      if (other.detections > kept.detections) entries_[i].motion = entries_[k].motion;
       UnifyObjects(other, &kept);
-      objects_.erase(objects_.begin() + static_cast<std::ptrdiff_t>(k));
+      entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(k));
     }
   }
 }
 
 void ObjectMap::RemoveSurplus() {
-  while (objects_.size() > static_cast<std::size_t>(options_.capacity)) {
-    const auto is_less_sure = [](const MappedObject& a, const MappedObject& b) {
-      return std::pair(a.log_odds, a.last_seen) < std::pair(b.log_odds, b.last_seen);
+  while (entries_.size() > static_cast<std::size_t>(options_.capacity)) {
+    const auto is_less_sure = [](const Entry& a, const Entry& b) {
+      return std::pair(a.object.log_odds, a.object.last_seen) <
+             std::pair(b.object.log_odds, b.object.last_seen);
     };
-    objects_.erase(std::min_element(objects_.begin(), objects_.end(), is_less_sure));
+    entries_.erase(std::min_element(entries_.begin(), entries_.end(), is_less_sure));
   }
 }
 

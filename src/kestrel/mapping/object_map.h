@@ -11,6 +11,7 @@
 #include "kestrel/base/time.h"
 #include "kestrel/mapping/assignment.h"
 #include "kestrel/mapping/mapped_object.h"
+#include "kestrel/mapping/motion_filter.h"
 
 namespace kestrel {
 
@@ -26,10 +27,17 @@ struct ObjectMapOptions {
   // How fast the position of a standing object becomes uncertain; how a moving one accelerates, and
   // for how long it keeps its acceleration and its velocity.
   double drift_noise = 0.005;
-  double acceleration_sigma_mps2 = 0.5;
-  double acceleration_time_s = 1;
-  double velocity_time_s = 3;
-  double start_speed_sigma_mps = 1;
+  double acceleration_sigma_mps2 = 0.2;
+  double acceleration_time_s = 2;
+  double velocity_time_s = 30;
+  double start_speed_sigma_mps = 1.5;
+  // What looks like motion and is none: an error that the detections of a moment share and that
+  // wanders, per axis and about so fast (the navigation's), and an error of the clock offset.
+  double wander_sigma_m = 0.05;
+  double wander_time_s = 3;
+  double clock_sigma_s = 0.03;
+  // From this probability on an object is said to move.
+  double moving_probability = 0.99;
   // Error of the position, per axis, that many detections in a row share (bias of the navigation,
   // clock): no object is known better than this.
   double shared_sigma_m = 0.02;
@@ -57,6 +65,12 @@ struct ObjectMapOptions {
     visitor("velocity_time_s", self.velocity_time_s, "s", "how long a velocity is kept, about");
     visitor("start_speed_sigma_mps", self.start_speed_sigma_mps, "m/s",
             "speed of a new object that may move, standard deviation per axis");
+    visitor("wander_sigma_m", self.wander_sigma_m, "m",
+            "error that detections share and that wanders, standard deviation per axis");
+    visitor("wander_time_s", self.wander_time_s, "s", "how long that error stays, about");
+    visitor("clock_sigma_s", self.clock_sigma_s, "s", "of the clock offset, standard deviation");
+    visitor("moving_probability", self.moving_probability, "1",
+            "from which on an object is said to move");
     visitor("shared_sigma_m", self.shared_sigma_m, "m",
             "error that detections in a row share, per axis");
     visitor("detection_probability", self.detection_probability, "1",
@@ -71,9 +85,7 @@ struct ObjectMapOptions {
   }
   std::vector<std::string> Validate() const;
 
-  ObjectMotion motion() const {
-    return {drift_noise, acceleration_sigma_mps2, acceleration_time_s, velocity_time_s};
-  }
+  ObjectMotion motion() const;
 };
 
 // Says where an object should have been seen, if it were there.
@@ -85,7 +97,7 @@ class FieldOfView {
 
 // The objects around, from detections in the world: the paper's section 3.7 with covariances. Each
 // frame's detections are assigned to the objects together, the cheapest way in all (Mahalanobis
-// distance and how alike colours are); a Kalman filter fuses them, with a velocity for what may
+// distance and how alike colours are); a Kalman filter fuses them, a MotionFilter those of what may
 // move; what should be seen and is not fades and is removed. Bounded memory and time per update.
 class ObjectMap {
  public:
@@ -101,14 +113,21 @@ class ObjectMap {
   std::vector<MappedObject> Confirmed() const;
 
   // All, with those that were seen once.
-  const std::vector<MappedObject>& objects() const { return objects_; }
+  std::vector<MappedObject> objects() const;
 
   static constexpr std::size_t kMaxMeasurements = 64;
 
  private:
-  double Cost(const ObjectMeasurement& measurement, const MappedObject& object) const;
-  void Fuse(const ObjectMeasurement& measurement, MappedObject* object) const;
-  MappedObject Start(Time time, const ObjectMeasurement& measurement);
+  // An object, and of what may move whether it does.
+  struct Entry {
+    MappedObject object;
+    MotionFilter motion;
+  };
+
+  void Predict(Time time, Entry* entry) const;
+  double Cost(const ObjectMeasurement& measurement, const Entry& entry) const;
+  void Fuse(const ObjectMeasurement& measurement, Entry* entry) const;
+  Entry Start(Time time, const ObjectMeasurement& measurement);
   void Assign(Time time);
   void FadeUnseen(Time time, const FieldOfView& view);
   void UnifyNeighbors();
@@ -121,8 +140,9 @@ class ObjectMap {
   double new_cost_;  // -2 log of how likely a detection is that of a new object
   double max_log_odds_;
   double removal_log_odds_;
-  std::vector<MappedObject> objects_;
-  std::vector<MappedObject> predicted_;  // the same at the time of the update
+  ObjectMotion motion_;
+  std::vector<Entry> entries_;
+  std::vector<Entry> predicted_;  // the same at the time of the update
   std::vector<ObjectMeasurement> measurements_;
   Eigen::MatrixXd costs_;
   AssignmentSolver solver_;

@@ -17,11 +17,6 @@ namespace {
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-constexpr std::size_t kRed = 0;
-constexpr std::size_t kYellow = 2;
-
-Time At(double seconds) { return Time(DurationFromSeconds(seconds)); }
-
 TEST(ObjectMap, ObjectIsConfirmedAndItsPositionIsFused) {
   ObjectMap map(DefaultObjectModel(), {});
   Random random(1);
@@ -127,7 +122,7 @@ TEST(ObjectMap, AfterAnHourTheStateIsStillFinite) {
   MappedObject object = map.objects()[0];
   PredictObject(At(3600), ObjectMapOptions{}.motion(), &object);
   EXPECT_TRUE(object.covariance.allFinite());
-  EXPECT_LT(object.sigma_m(), 200);
+  EXPECT_LT(object.sigma_m(), 1000) << "far less than at the speed that it may have";
 }
 
 TEST(ObjectMap, WhatIsPickedUpFadesAndWhatIsOutOfViewStays) {

@@ -6,6 +6,12 @@
 
 namespace kestrel {
 
+// Colours of the model.
+inline constexpr std::size_t kRed = 0;
+inline constexpr std::size_t kYellow = 2;
+
+inline Time At(double seconds) { return Time(DurationFromSeconds(seconds)); }
+
 // A disc of the model's colour 'color' seen at 'position', with this deviation per axis.
 inline ObjectMeasurement MeasureDisc(const Eigen::Vector3d& position, std::size_t color,
                                      double sigma_m = 0.05) {

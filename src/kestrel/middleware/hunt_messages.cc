@@ -197,7 +197,7 @@ MarkerArrayMessage MapMarkersOf(const std::vector<MappedObject>& objects, Time s
     const Body body = BodyOf(object, model);
     message.markers.push_back(BodyMarker(object, body, header));
     message.markers.push_back(LabelMarker(object, LabelOf(object, body, model), header));
-    if (object.may_move) message.markers.push_back(VelocityMarker(object, header));
+    if (!object.velocity().isZero()) message.markers.push_back(VelocityMarker(object, header));
   }
   return message;
 }

@@ -188,6 +188,7 @@ void HuntPipeline::UpdateMap() {
     measurement.covariance = in_world->covariance;
     measurement.covariance.diagonal().array() +=
         options_.pose_sigma_m * options_.pose_sigma_m + swing_m * swing_m;
+    measurement.clock_shift = ClockShift(detection);
     measurement.shape = detector_.model().classes[detection.class_index].shape;
     measurement.color = detection.mean_color;
     measurement.color_probabilities = detection.color_probabilities;
@@ -196,6 +197,17 @@ void HuntPipeline::UpdateMap() {
   map_.Update(
       observation_.time, measurements_,
       ObjectView(detector_, observation_.report, *observation_.world_from_camera, saw_all_));
+}
+
+// See ObjectMeasurement.
+Eigen::Vector3d HuntPipeline::ClockShift(const ObjectDetection& detection) const {
+  constexpr double kStep_s = 0.1;  // long enough for the noise of the poses
+  const Time time = TimeOfRow(detection.center_px.y());
+  const auto camera = poses_.At(time);
+  const auto before = poses_.At(time - DurationFromSeconds(kStep_s));
+  if (!camera || !before) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d& position = detection.location->position;
+  return (camera->world_from_camera * position - before->world_from_camera * position) / kStep_s;
 }
 
 void HuntPipeline::RememberForTracking() {

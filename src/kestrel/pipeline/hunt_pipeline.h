@@ -139,6 +139,7 @@ class HuntPipeline {
   void LocateInWorld();
   void UpdateMap();
   void RememberForTracking();
+  Eigen::Vector3d ClockShift(const ObjectDetection& detection) const;
   Time TimeOfRow(double v_px) const;
 
   HuntPipelineOptions options_;

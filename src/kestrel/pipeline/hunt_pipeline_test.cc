@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/pipeline/hunt_pipeline.h"
 
+#include <cmath>
 #include <numbers>
 
 #include <gmock/gmock.h>
@@ -138,6 +139,35 @@ TEST(HuntPipeline, ClockOffsetIsAppliedToThePoses) {
   const HuntObservation& seen = pipeline.Process(DrawDiscs({{319.5, 240}}), At(0.5));
   ASSERT_THAT(seen.report.detections, SizeIs(1));
   EXPECT_NEAR(seen.in_world[0]->position.x(), 3 * 0.7, 0.02);
+}
+
+// Whether a yellow disc at the origin, over which the UAV flies to and fro, was ever said to move:
+// with a clock offset that is wrong by 60 ms.
+bool IsSaidToMove(const HuntPipelineOptions& options) {
+  constexpr double kTop_m = 0.14;
+  constexpr double kClockError_s = 0.06;
+  const auto east = [](double time_s) { return 1.5 * std::sin(2 * time_s); };
+  HuntPipeline pipeline(Calibration(), DefaultObjectModel(), options);
+  for (int i = 0; i < 900; ++i) {
+    pipeline.AddPose({At(0.01 * i + kClockError_s), Over(east(0.01 * i), 0)});
+  }
+  bool is_said = false;
+  for (int i = 5; i < 80; ++i) {
+    const double u_px = 319.5 - east(0.1 * i) / (kHeight_m - kTop_m) * 500;
+    ObjectScene scene(kHeight_m, /*tilt=*/0);
+    scene.DrawDisc(scene.PointUnder({u_px, 239.5}, kTop_m), 0.1, kYellowPaint);
+    pipeline.Process(scene.Image(), At(0.1 * i));
+    EXPECT_THAT(pipeline.map().objects(), SizeIs(1));
+    is_said = is_said || pipeline.map().objects().front().moves;
+  }
+  return is_said;
+}
+
+TEST(HuntPipeline, AWrongClockDoesNotMoveWhatStands) {
+  HuntPipelineOptions options;
+  EXPECT_FALSE(IsSaidToMove(options));
+  options.map.clock_sigma_s = 0;
+  EXPECT_TRUE(IsSaidToMove(options)) << "else it proves nothing";
 }
 
 TEST(HuntPipeline, TrackFollowsSoManyAndSearchesWhenOneIsLost) {

@@ -84,6 +84,7 @@ TEST(ObjectMapCsv, ColumnsAreThoseOfTheObject) {
   object.id = 7;
   object.state.head<6>() << 1, 2, 3, 0.5, 0, 0;
   object.covariance.diagonal().head<6>() << 0.01, 0.01, 0.01, 1e-4, 1e-4, 1e-4;
+  object.moves = true;
   object.detections = 12;
   object.first_seen = TimeFromNanoseconds(5);
   object.last_seen = TimeFromNanoseconds(9);
@@ -97,7 +98,10 @@ TEST(ObjectMapCsv, ColumnsAreThoseOfTheObject) {
   EXPECT_EQ(Cell(table, 0, "detections"), "12");
   EXPECT_EQ(Cell(table, 0, "first_seen_ns"), "5");
   EXPECT_EQ(Cell(table, 0, "last_seen_ns"), "9");
-  EXPECT_EQ(Cell(table, 0, "moving"), "1") << "much faster than its speed is uncertain";
+  EXPECT_EQ(Cell(table, 0, "moving"), "1");
+  object.moves = false;
+  const std::string unsure = ObjectMapCsv({object}, DefaultObjectModel());
+  EXPECT_EQ(Cell(CsvTable(unsure, "csv"), 0, "moving"), "0") << "has a velocity, but may stand";
 }
 
 }  // namespace

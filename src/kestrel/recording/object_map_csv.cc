@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/recording/object_map_csv.h"
 
-#include <cmath>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,12 +8,6 @@
 
 namespace kestrel {
 namespace {
-
-bool IsMoving(const MappedObject& object) {
-  constexpr double kMinSpeed_mps = 0.05;
-  const double sigma_mps = std::sqrt(object.covariance.bottomRightCorner<3, 3>().trace() / 3);
-  return object.velocity().norm() > std::max(kMinSpeed_mps, 3 * sigma_mps);
-}
 
 constexpr char kHeader[] =
     "id,class,score,p_x_m,p_y_m,p_z_m,v_x_mps,v_y_mps,v_z_mps,sigma_m,detections,first_seen_ns,"
@@ -30,7 +22,7 @@ std::string Row(const MappedObject& object, const ObjectModel& model, const std:
   return fmt::format("{},{},{:g},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{},{},{},{},{}",
                      object.id, index ? CsvCell(model.classes[*index].name) : "",
                      ScoreOf(object, model), p.x(), p.y(), p.z(), v.x(), v.y(), v.z(),
-                     object.sigma_m(), object.detections, seen, IsMoving(object) ? 1 : 0,
+                     object.sigma_m(), object.detections, seen, object.moves ? 1 : 0,
                      ToString(object.shape),
                      digit ? fmt::format("{},{:.4f}", digit->digit, digit->probability) : ",");
 }

@@ -10,8 +10,8 @@
 namespace kestrel {
 
 // object_map.csv: a header row and one row for each object. 'score': the digit of a cuboid, else
-// the class's; 'moving': 1 for what moves by more than three standard deviations of its velocity;
-// 'digit': the likeliest by all its detections, empty where none was read.
+// the class's; 'moving': 1 for what moves beyond doubt, where its class may; 'digit': the likeliest
+// by all its detections, empty where none was read.
 std::string ObjectMapCsv(const std::vector<MappedObject>& objects, const ObjectModel& model);
 
 // team_map.csv: the same and 'uavs', the names of those that have the object in their maps, with

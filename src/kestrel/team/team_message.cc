@@ -13,7 +13,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::uint32_t kMagic = 0x0154'4b01;  // the last byte is the format's number
+constexpr std::uint32_t kMagic = 0x0254'4b01;  // the last byte is the format's number
 constexpr std::size_t kMaxNameSize = 32;
 constexpr std::int64_t kMaxId = std::int64_t{1} << 48;
 constexpr std::uint64_t kMaxAge_ns = 1'000'000'000'000'000;  // eleven days
@@ -22,7 +22,7 @@ constexpr double kMaxNumber = 1e9;
 constexpr int kMaxDetections = 1 << 30;
 constexpr int kStanding = 3;  // numbers of the state of what does not move
 enum Kind : std::uint8_t { kDigest, kPart };
-enum Flag : std::uint8_t { kMayMove = 1, kHasDigits = 2, kDone = 1 };
+enum Flag : std::uint8_t { kMayMove = 1, kHasDigits = 2, kMoves = 4, kDone = 1 };
 
 void Write(const UavKey& key, ByteWriter* out) {
   out->Text(key.name);
@@ -65,7 +65,8 @@ void Write(const MappedObject& object, Time now, ByteWriter* out) {
       std::any_of(digits.begin(), digits.end(), [](double x) { return x != 0; });
   out->Whole(static_cast<std::uint64_t>(object.id));
   out->Byte(static_cast<std::uint8_t>(object.shape));
-  out->Byte((object.may_move ? kMayMove : 0) | (has_digits ? kHasDigits : 0));
+  out->Byte((object.may_move ? kMayMove : 0) | (has_digits ? kHasDigits : 0) |
+            (object.moves ? kMoves : 0));
   for (const Time time : {object.first_seen, object.last_seen, object.time}) {
     WriteAge(time, now, out);
   }
@@ -75,6 +76,7 @@ void Write(const MappedObject& object, Time now, ByteWriter* out) {
   out->Single(object.color.saturation);
   out->Single(object.color.value);
   const int size = object.may_move ? MappedObject::kStateSize : kStanding;
+  if (object.may_move) out->Single(object.move_log_odds);
   for (int i = 0; i < kStanding; ++i) out->Double(object.state[i]);
   for (int i = kStanding; i < size; ++i) out->Single(object.state[i]);
   for (int i = 0; i < size; ++i) {
@@ -112,8 +114,10 @@ MappedObject ReadObject(Time now, ByteReader* in) {
   in->Require(shape <= static_cast<std::uint8_t>(ObjectShape::kBar));
   object.shape = static_cast<ObjectShape>(shape);
   const std::uint8_t flags = in->Byte();
-  in->Require(flags <= (kMayMove | kHasDigits));
+  in->Require(flags <= (kMayMove | kHasDigits | kMoves));
   object.may_move = (flags & kMayMove) != 0;
+  object.moves = (flags & kMoves) != 0;
+  in->Require(object.may_move || !object.moves);
   object.first_seen = ReadAge(now, in);
   object.last_seen = ReadAge(now, in);
   object.time = ReadAge(now, in);
@@ -123,6 +127,7 @@ MappedObject ReadObject(Time now, ByteReader* in) {
   object.color.hue_deg = static_cast<float>(ReadSingle(in));
   object.color.saturation = static_cast<float>(ReadSingle(in));
   object.color.value = static_cast<float>(ReadSingle(in));
+  if (object.may_move) object.move_log_odds = ReadSingle(in);
   ReadState(in, &object);
   const std::size_t colors = in->Byte();
   if (!in->Require(colors <= object.color_log_likelihoods.size())) return object;

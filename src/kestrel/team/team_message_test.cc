@@ -26,7 +26,8 @@ TeamMessage PartOf(const std::vector<MappedObject>& objects) {
 
 TEST(TeamMessage, APartComesAsItWasSent) {
   MappedObject moving = TestDisc(300, {5e6, -2, 0.5}, kNow);
-  moving.may_move = true;
+  moving.may_move = moving.moves = true;
+  moving.move_log_odds = 4.75;
   moving.state[3] = 1.5;
   moving.covariance += 0.25 * MappedObject::Covariance::Identity();
   moving.covariance(0, 4) = moving.covariance(4, 0) = 0.125;
@@ -50,6 +51,9 @@ TEST(TeamMessage, APartComesAsItWasSent) {
   EXPECT_EQ(part.objects[0].position().x(), 5e6);
   EXPECT_EQ(part.objects[0].covariance, moving.covariance);
   EXPECT_EQ(part.objects[0].first_seen, moving.first_seen);
+  EXPECT_TRUE(part.objects[0].moves);
+  EXPECT_EQ(part.objects[0].move_log_odds, 4.75);
+  EXPECT_FALSE(part.objects[1].moves);
   EXPECT_EQ(part.objects[1].shape, ObjectShape::kCuboid);
   EXPECT_EQ(part.objects[1].digit_log_likelihoods, cuboid.digit_log_likelihoods);
 }
