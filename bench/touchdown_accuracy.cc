@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Many simulated touchdowns, in closed loop: how many land, how long they take and how well they
 // hit. Usage: touchdown_accuracy [--scenario NAME] [--flights N] [--first-seed N] [--set K=V]...
-#include <algorithm>
-#include <atomic>
 #include <cstdint>
 #include <iostream>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -19,6 +16,7 @@
 #include "kestrel/simulation/scenarios.h"
 #include "kestrel/simulation/touchdown_simulation.h"
 #include "report_main.h"
+#include "run_parallel.h"
 
 namespace kestrel {
 namespace {
@@ -39,19 +37,12 @@ TouchdownResult Fly(const TouchdownSimulationOptions& options, std::uint64_t see
 std::vector<TouchdownResult> FlyAll(const TouchdownSimulationOptions& options,
                                     const Arguments& arguments) {
   std::vector<TouchdownResult> results(arguments.flights);
-  std::atomic<int> next = 0;
   std::mutex mutex;
-  const auto work = [&] {
-    for (int i = next++; i < arguments.flights; i = next++) {
-      results[i] = Fly(options, arguments.first_seed + i);
-      const std::lock_guard lock(mutex);
-      std::cout << TouchdownCsvRow(arguments.first_seed + i, results[i]) << std::flush;
-    }
-  };
-  std::vector<std::thread> threads(std::max(1U, std::thread::hardware_concurrency()) - 1);
-  for (std::thread& thread : threads) thread = std::thread(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
+  RunParallel(arguments.flights, [&](int i) {
+    results[i] = Fly(options, arguments.first_seed + i);
+    const std::lock_guard lock(mutex);
+    std::cout << TouchdownCsvRow(arguments.first_seed + i, results[i]) << std::flush;
+  });
   return results;
 }
 
