@@ -30,6 +30,7 @@ std::vector<double> LensDifferencePx(const CameraModel& truth, const CameraModel
       estimated.push_back(other);
     }
   }
+  if (rays.empty()) return {};
   const auto count = std::ssize(rays);
   const Eigen::Map<const Eigen::Matrix3Xd> from(rays.front().data(), 3, count);
   const Eigen::Map<const Eigen::Matrix3Xd> to(estimated.front().data(), 3, count);

@@ -9,10 +9,10 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
+#include "kestrel/base/bounded_queue.h"
 #include "kestrel/base/error.h"
 #include "kestrel/cli/fly_arguments.h"
 #include "kestrel/cli/fly_autopilot.h"
@@ -21,11 +21,10 @@
 #include "kestrel/cli/team_link.h"
 #include "kestrel/console/flight_console.h"
 #include "kestrel/foxglove/flight_live.h"
-#include "kestrel/foxglove/flight_mcap.h"
+#include "kestrel/foxglove/mcap_sink.h"
 #include "kestrel/link/mavlink_enums.h"
-#include "kestrel/middleware/flight_ros.h"
 #include "kestrel/middleware/ros2_result_connection.h"
-#include "kestrel/onboard/bounded_queue.h"
+#include "kestrel/middleware/ros_sink.h"
 #include "kestrel/onboard/camera_automatics.h"
 #include "kestrel/onboard/flight_keeper.h"
 #include "kestrel/onboard/hunt_vision.h"
@@ -112,7 +111,7 @@ class Flight {
 
   FlightEnd Run() {
     CatchInterrupts();
-    if (console_) console_->Obey(Requests());
+    if (console_ != nullptr) console_->Answer(Requests());
     if (simulated_autopilot_) simulated_autopilot_->Start();
     Time next_state = Now();
     const FlightEnd end = program_->Run([&] {
@@ -126,19 +125,13 @@ class Flight {
     });
     if (simulated_autopilot_) simulated_autopilot_->Stop();
     Finish(end);
-    if (hunt_ != nullptr && output_) hunt_->WriteMap(*output_);
-    if (team_) LeaveTeam();
-    ros_.clear();
-    log_.Show();
     return end;
   }
 
  private:
   void Say(const std::string& text, EventLevel level = EventLevel::kInfo) {
     log_.Say(text);
-    if (console_) console_->Say(level, text);
-    if (live_) live_->Say(level, text);
-    if (mcap_) mcap_->Say(level, text);
+    sinks_.Take(SessionEvent{Now(), level, text});
   }
 
   ObjectModel ReadModel() const {
@@ -153,21 +146,21 @@ class Flight {
   // First of all: a port that is taken is said before anything is written.
   void OpenConsole() {
     if (!arguments_.console) return;
-    live_ = std::make_unique<FlightLive>(source_.calibration.intrinsics, View(),
-                                         all_options_.console.max_image_rate_hz);
-    console_.emplace(all_options_.console, arguments_.source.sources.front(), View(),
-                     FlightExamination(source_.calibration,
-                                       arguments_.record.empty() ? all_options_.fly.keep_folder
-                                                                 : arguments_.record,
-                                       all_options_.fly.recorder.free_space_mb),
-                     live_->channels(), Colors());
-    observers_.Add(&*console_);
-    observers_.Add(live_.get());
+    const ConsoleOptions& options = all_options_.console;
+    FlightLive* const live = sinks_.Add(std::make_unique<FlightLive>(
+        source_.calibration.intrinsics, View(), options.max_image_rate_hz));
+    const FlightExamination examination(
+        source_.calibration,
+        arguments_.record.empty() ? all_options_.fly.keep_folder : arguments_.record,
+        all_options_.fly.recorder.free_space_mb);
+    console_ = sinks_.Add(std::make_unique<FlightConsole>(options,
+                                                          arguments_.source.sources.front(), View(),
+                                                          examination, live->channels(), Colors()));
     log_.Say("console: " + console_->url());
     log_.Say("for Foxglove: " + console_->viewer_url());
   }
 
-  // What a hunt's page teaches them by.
+  // Of a hunt: where the page of colours keeps frames and models.
   std::optional<FlightColors> Colors() const {
     if (!arguments_.hunt) return std::nullopt;
     const std::filesystem::path folder = all_options_.fly.keep_folder;
@@ -210,23 +203,18 @@ class Flight {
   }
 
   void OpenRos(std::unique_ptr<ResultConnection> connection, WireFormat format) {
-    ros_.push_back(std::make_unique<FlightRos>(
+    sinks_.Add(MakeRosSink(
         std::make_unique<RosResults>(std::move(connection), format, all_options_.dds, Frames(),
                                      source_.calibration, all_options_.landing, ReadModel()),
         [this](const std::string& text) { log_.Say(text); }));
-    observers_.Add(ros_.back().get());
   }
 
   void OpenMcap() {
     const SourceArguments& source = arguments_.source;
     if (source.mcap.empty()) return;
     RequireNoSource(source.mcap, source.sources);
-    mcap_ = std::make_unique<FlightMcap>(source.mcap, source.force, source_.calibration.intrinsics,
-                                         View(), [this](const std::string& text) {
-                                           log_.Say(text);
-                                           if (console_) console_->Say(EventLevel::kWarning, text);
-                                         });
-    observers_.Add(mcap_.get());
+    sinks_.Add(OpenMcapSink(source.mcap, source.force, source_.calibration.intrinsics, View(),
+                            [this](const std::string& text) { Say(text, EventLevel::kWarning); }));
   }
 
   // Before anything is written.
@@ -315,7 +303,7 @@ class Flight {
     parts.connection = connection_ ? &*connection_ : nullptr;
     parts.autopilot = autopilot_ ? &*autopilot_ : nullptr;
     parts.recording = &recording_;
-    parts.observer = observers_.empty() ? nullptr : &observers_;
+    parts.sink = &sinks_;
     parts.guides = arguments_.guide;
     parts.source_has_poses = source_.has_poses;
     parts.pattern_size_m = all_options_.landing.detector.pattern.outer_diameter_m;
@@ -332,7 +320,7 @@ class Flight {
     if (auto map = hunt_->TakeMap()) {
       if (map->position) team_->SetPosition(*map->position);
       team_->Tell(std::move(map->objects));
-      if (!observers_.empty()) observers_.SeeTeam({map->captured, team_->Map()});
+      sinks_.Take(TeamReport{map->captured, team_->Map()});
       seen_ = map->captured;
     }
     team_->Exchange();
@@ -340,12 +328,8 @@ class Flight {
 
   void LeaveTeam() {
     team_->Finish(hunt_->Objects());
-    const TeamReport report{seen_, team_->Map()};
-    for (const auto& each : ros_) each->SeeTeam(report);
-    if (console_) console_->SeeTeam(report);
+    sinks_.Take(TeamReport{seen_, team_->Map()});
     if (output_) team_->WriteMap(/*origin=*/{}, *output_);
-    log_.Show();
-    fmt::print(stderr, "{}\n", team_->Found());
   }
 
   void TakePose(const PoseSample& pose) {
@@ -358,13 +342,17 @@ class Flight {
     if (const auto recorder = recording_.Get()) recorder->AddTruePose(pose);
   }
 
+  // What waits is written, the recording first; then all that is known is said.
   void Finish(FlightEnd end) {
-    recording_.Close();  // writes what is left
-    mcap_.reset();
+    recording_.Close();
+    if (hunt_ != nullptr && output_) hunt_->WriteMap(*output_);
+    if (team_) LeaveTeam();
+    sinks_.Finish();
     log_.Show();
     fmt::print(stderr, "{}", program_->Summary());
     if (simulated_autopilot_) fmt::print(stderr, "{}", InWords(simulated_autopilot_->result()));
     if (end == FlightEnd::kLanded) fmt::print(stderr, "landed\n");
+    if (team_) fmt::print(stderr, "{}\n", team_->Found());
   }
 
   FlyArguments arguments_;
@@ -375,11 +363,8 @@ class Flight {
     return OpenRecorder(folder, replace);
   }};
   FlightKeeper keeper_{all_options_.fly.keep_folder, &recording_};
-  std::unique_ptr<FlightLive> live_;
-  std::optional<FlightConsole> console_;
-  std::unique_ptr<FlightMcap> mcap_;
-  std::vector<std::unique_ptr<FlightRos>> ros_;
-  FlightObservers observers_;
+  ObservationSinks sinks_;
+  FlightConsole* console_ = nullptr;         // of the sinks; null: none
   RecordingEnd recording_end_{&recording_};  // while the console can still be told of it
   std::optional<OutputFolder> output_;
   std::unique_ptr<FlightVision> vision_;

@@ -12,7 +12,7 @@
 #include "kestrel/middleware/ros_results.h"
 #include "kestrel/navigation/pose_history.h"
 #include "kestrel/onboard/exposure_drive.h"
-#include "kestrel/onboard/live_source.h"
+#include "kestrel/session/live_source.h"
 #include "kestrel/sitl/simulated_camera.h"
 #include "kestrel/sitl/vehicle_world.h"
 

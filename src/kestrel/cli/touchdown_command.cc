@@ -18,8 +18,8 @@
 #include "kestrel/cli/source_arguments.h"
 #include "kestrel/evaluation/touchdown_plot.h"
 #include "kestrel/recording/output_folder.h"
+#include "kestrel/recording/recording_writer.h"
 #include "kestrel/simulation/landing_simulation.h"
-#include "kestrel/simulation/recording_writer.h"
 #include "kestrel/simulation/touchdown_simulation.h"
 
 namespace kestrel {

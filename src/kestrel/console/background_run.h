@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "kestrel/base/error.h"
-#include "kestrel/onboard/thread_setup.h"
+#include "kestrel/base/thread_setup.h"
 
 namespace kestrel {
 

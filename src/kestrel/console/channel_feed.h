@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "kestrel/base/bounded_queue.h"
 #include "kestrel/base/time.h"
-#include "kestrel/onboard/bounded_queue.h"
 
 namespace kestrel {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "kestrel/onboard/thread_setup.h"
+#include "kestrel/base/thread_setup.h"
 
 namespace kestrel {
 namespace {

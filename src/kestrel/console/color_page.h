@@ -7,9 +7,9 @@
 #include <thread>
 #include <vector>
 
+#include "kestrel/base/bounded_queue.h"
 #include "kestrel/console/color_session.h"
 #include "kestrel/console/console_feed.h"
-#include "kestrel/onboard/bounded_queue.h"
 
 namespace kestrel {
 

@@ -12,13 +12,14 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "kestrel/base/bounded_queue.h"
+#include "kestrel/base/latest_value.h"
 #include "kestrel/base/time.h"
 #include "kestrel/console/calibration_report.h"
 #include "kestrel/console/client_message.h"
 #include "kestrel/console/color_state.h"
 #include "kestrel/console/export_request.h"
-#include "kestrel/onboard/bounded_queue.h"
-#include "kestrel/onboard/latest_value.h"
+#include "kestrel/session/session_event.h"
 
 namespace kestrel {
 
@@ -116,13 +117,6 @@ struct ConsoleDoctor {
   std::vector<ConsoleCheck> checks;
 };
 
-enum class EventLevel { kInfo, kWarning, kError };
-struct ConsoleEvent {
-  Time time;
-  EventLevel level = EventLevel::kInfo;
-  std::string text;
-};
-
 // The frames of a recording, for the timeline.
 enum class FrameMark { kNothing, kFound, kLost, kFalse };
 struct ConsoleTimeline {
@@ -177,7 +171,7 @@ struct ConsoleClip {
 };
 
 using ConsoleUpdate =
-    std::variant<ConsoleSample, ConsoleStatus, ConsoleMap, ConsoleHealth, ConsoleEvent,
+    std::variant<ConsoleSample, ConsoleStatus, ConsoleMap, ConsoleHealth, SessionEvent,
                  ConsoleTimeline, ConsolePlayback, ConsoleDoctor, ConsoleOptionList,
                  ConsoleSecondRun, ConsoleFindings, ConsoleClip, ConsoleColors, ConsoleColorScores,
                  ConsoleCalibration, ConsoleTeam>;

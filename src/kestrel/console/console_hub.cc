@@ -77,7 +77,7 @@ void ConsoleHub::Broadcast(const ConsoleUpdate& update) {
   const bool is_sample = std::holds_alternative<ConsoleSample>(update);
   if (is_sample && clients_.empty()) return;
   const auto message = std::make_shared<const std::string>(ToJson(update));
-  if (std::holds_alternative<ConsoleEvent>(update)) {
+  if (std::holds_alternative<SessionEvent>(update)) {
     events_.push_back(message);
     if (events_.size() > kEventsForNewcomers) events_.pop_front();
   } else if (!is_sample) {

@@ -108,7 +108,7 @@ Json Message(const ConsoleDoctor& doctor) {
   return {{"kind", "doctor"}, {"checks", Checks(doctor.checks)}};
 }
 
-Json Message(const ConsoleEvent& event) {
+Json Message(const SessionEvent& event) {
   static constexpr const char* kLevels[] = {"info", "warning", "error"};
   return {{"kind", "event"},
           {"time", TimeText(event.time)},

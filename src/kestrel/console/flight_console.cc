@@ -2,21 +2,21 @@
 #include "kestrel/console/flight_console.h"
 
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "kestrel/base/error.h"
-#include "kestrel/onboard/thread_setup.h"
+#include "kestrel/base/thread_setup.h"
 
 namespace kestrel {
 namespace {
 
 // Frames that wait to be shown: more are too old for a live picture.
-constexpr std::size_t kSeenFrames = 2;
-constexpr Duration kPatience = std::chrono::milliseconds(200);
+constexpr std::size_t kFrames = 2;
 // Times of frames that wait for the checks: some seconds.
 constexpr std::size_t kArrivals = 256;
 constexpr Duration kCheckInterval = std::chrono::seconds(2);
-constexpr Duration kObeyInterval = std::chrono::milliseconds(50);
+constexpr Duration kAnswerInterval = std::chrono::milliseconds(50);
 
 ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightView& view,
                                        bool has_colors) {
@@ -36,22 +36,112 @@ ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightVie
 
 }  // namespace
 
+// What the page shows, made by one thread.
+class FlightConsole::Page : public SinkWriter {
+ public:
+  Page(FlightConsole* console, FlightView view, FlightExamination examination)
+      : console_(*console),
+        feed_(console->feed_),
+        view_(std::move(view)),
+        examination_(std::move(examination)) {}
+
+  void Write(const Observation& observation, std::size_t /*waiting*/) override {
+    frame_.captured = observation.frame.time;
+    frame_.image = observation.frame.image;
+    const Duration latency = observation.latency.value_or(Duration::zero());
+    std::visit([&](const auto& seen) { Show(seen, latency); }, observation.seen);
+    examination_.Look(frame_.image, Now());
+    {
+      const std::lock_guard lock(console_.mutex_);
+      console_.shown_ = {frame_.image, frame_.captured};
+    }
+    feed_.SetFrame(&frame_);
+  }
+
+  void Write(const FlightReport& report) override {
+    if (const auto health = health_.Update(report, Now())) feed_.Add(*health);
+    report_ = report;
+    ShowStatus();
+  }
+
+  void Write(const TeamReport& report) override {
+    if (const auto* const view = std::get_if<HuntView>(&view_)) feed_.Add(HuntTeam(*view, report));
+  }
+
+  void Rest(bool /*had_frame*/) override {
+    while (const auto frame = console_.arrivals_.TryPop()) examination_.AddFrame(*frame);
+    ShowChecks();
+  }
+
+ private:
+  void Show(const LandingObservation& observation, Duration latency) {
+    const LandingView& view = std::get<LandingView>(view_);
+    examination_.Look(observation);
+    frame_.shapes = LandingShapes(view, observation);
+    AddSample(LandingSample(observation), latency);
+    feed_.Add(LandingMap(view, observation));
+    vision_ = LandingStatus(observation);
+  }
+
+  void Show(const HuntObservation& observation, Duration latency) {
+    const HuntView& view = std::get<HuntView>(view_);
+    frame_.shapes = HuntShapes(view, observation);
+    AddSample(HuntSample(observation), latency);
+    feed_.Add(HuntMap(view, observation));
+    vision_ = HuntStatus(observation);
+  }
+
+  void AddSample(ConsoleSample sample, Duration latency) {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    sample.values.push_back(1e3 * ToSeconds(latency));
+    sample.values.push_back(health_.link_rate_hz().value_or(kUnknown));
+    feed_.Add(std::move(sample));
+  }
+
+  void ShowStatus() {
+    const ConsoleStatus status = FlightStatus(report_, vision_);
+    if (status == told_) return;
+    told_ = status;
+    feed_.Add(status);
+  }
+
+  void ShowChecks() {
+    const Time now = Now();
+    if (!feed_.IsWatched() || now - examined_ < kCheckInterval) return;
+    examined_ = now;
+    ConsoleDoctor doctor;
+    for (const Finding& finding : examination_.Check(report_)) {
+      doctor.checks.push_back(
+          {finding.check, ToString(finding.verdict), finding.measured, finding.advice});
+    }
+    feed_.Add(std::move(doctor));
+  }
+
+  FlightConsole& console_;
+  ConsoleFeed& feed_;
+  FlightView view_;
+  ConsoleFrame frame_;
+  FlightExamination examination_;
+  Time examined_{};
+  FlightHealth health_;
+  FlightReport report_;   // the newest
+  ConsoleStatus vision_;  // what the newest frame says
+  ConsoleStatus told_;    // the page, the last time
+};
+
 FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& title,
                              FlightView view, FlightExamination examination, ChannelFeed* channels,
                              std::optional<FlightColors> colors)
-    : view_(std::move(view)),
-      feed_(DescriptionOf(title, view_, colors.has_value())),
-      seen_(kSeenFrames),
+    : feed_(DescriptionOf(title, view, colors.has_value())),
       arrivals_(kArrivals),
-      examination_(std::move(examination)),
-      link_rate_hz_(std::numeric_limits<double>::quiet_NaN()),
-      server_(options, &feed_, WebAssets(), channels) {
-  if (colors) TeachColors(*colors);
-  thread_ = std::thread([this] { Show(); });
+      server_(options, &feed_, WebAssets(), channels),
+      pictures_({.thread_name = "console frames", .frames = kFrames},
+                std::make_unique<Page>(this, view, std::move(examination))) {
+  if (colors) TeachColors(*colors, view);
 }
 
 // They begin with the model that the flight uses.
-void FlightConsole::TeachColors(const FlightColors& colors) {
+void FlightConsole::TeachColors(const FlightColors& colors, const FlightView& view) {
   kept_.emplace(colors.frames);
   const auto keep = [this] {
     const Image newest = Newest();
@@ -61,7 +151,7 @@ void FlightConsole::TeachColors(const FlightColors& colors) {
       ColorSource{.recording = std::filesystem::absolute(colors.frames).lexically_normal().string(),
                   .frame_count = 0,
                   .read = [this](std::size_t frame) { return kept_->Read(frame); },
-                  .model = std::get<HuntView>(view_).model,
+                  .model = std::get<HuntView>(view).model,
                   .folder = colors.folder,
                   .keep = keep,
                   .warn = colors.warn},
@@ -70,113 +160,28 @@ void FlightConsole::TeachColors(const FlightColors& colors) {
 
 FlightConsole::~FlightConsole() {
   is_over_ = true;
-  seen_.Close();
-  thread_.join();
-  if (obeying_thread_.joinable()) obeying_thread_.join();
+  if (answering_thread_.joinable()) answering_thread_.join();
 }
 
-void FlightConsole::See(const Frame& frame, const LandingObservation& observation) {
+void FlightConsole::Take(const Observation& observation) {
   if (!feed_.IsWatched()) return;
-  See({frame.image, frame.time, Now() - frame.time, observation}, observation.detect_time);
+  const Time captured = observation.frame.time;
+  const Duration latency = observation.latency.value_or(Duration::zero());
+  arrivals_.Push({captured, captured + latency - DetectTime(observation)});
+  pictures_.Take(observation);
 }
 
-void FlightConsole::See(const Frame& frame, const HuntObservation& observation) {
-  if (!feed_.IsWatched()) return;
-  See({frame.image, frame.time, Now() - frame.time, observation}, observation.detect_time);
-}
-
-void FlightConsole::See(SeenFrame seen, Duration detect_time) {
-  arrivals_.Push({seen.captured, seen.captured + seen.latency - detect_time});
-  seen_.Push(std::move(seen));
-}
-
-void FlightConsole::See(const FlightReport& report) {
-  if (const auto health = health_.Update(report, Now())) feed_.Add(*health);
-  if (const auto rate_hz = health_.link_rate_hz()) link_rate_hz_ = *rate_hz;
-  const std::lock_guard lock(mutex_);
-  report_ = report;
-  const ConsoleStatus status = FlightStatus(report, vision_);
-  if (status == told_) return;
-  told_ = status;
-  feed_.Add(status);
-}
-
-void FlightConsole::SeeTeam(const TeamReport& report) {
-  if (const auto* const view = std::get_if<HuntView>(&view_)) feed_.Add(HuntTeam(*view, report));
-}
-
-void FlightConsole::Show() {
-  SetUpThisThread("console frames", {});
-  while (!is_over_) {
-    if (auto seen = seen_.Pop(kPatience)) Show(*std::move(seen));
-    while (const auto frame = arrivals_.TryPop()) examination_.AddFrame(*frame);
-    ShowChecks();
-  }
-}
-
-void FlightConsole::Show(SeenFrame seen) {
-  frame_.captured = seen.captured;
-  frame_.image = std::move(seen.image);
-  std::visit([&](const auto& observation) { Show(observation, seen.latency); }, seen.observation);
-  examination_.Look(frame_.image, Now());
-  {
-    const std::lock_guard lock(mutex_);
-    shown_ = {frame_.image, frame_.captured};
-  }
-  feed_.SetFrame(&frame_);
-}
-
-void FlightConsole::ShowChecks() {
-  const Time now = Now();
-  if (!feed_.IsWatched() || now - examined_ < kCheckInterval) return;
-  examined_ = now;
-  FlightReport report;
-  {
-    const std::lock_guard lock(mutex_);
-    report = report_;
-  }
-  ConsoleDoctor doctor;
-  for (const Finding& finding : examination_.Check(report)) {
-    doctor.checks.push_back(
-        {finding.check, ToString(finding.verdict), finding.measured, finding.advice});
-  }
-  feed_.Add(std::move(doctor));
-}
-
-void FlightConsole::Show(const LandingObservation& observation, Duration latency) {
-  const LandingView& view = std::get<LandingView>(view_);
-  examination_.Look(observation);
-  frame_.shapes = LandingShapes(view, observation);
-  AddSample(LandingSample(observation), latency);
-  feed_.Add(LandingMap(view, observation));
-  SetVision(LandingStatus(observation));
-}
-
-void FlightConsole::Show(const HuntObservation& observation, Duration latency) {
-  const HuntView& view = std::get<HuntView>(view_);
-  frame_.shapes = HuntShapes(view, observation);
-  AddSample(HuntSample(observation), latency);
-  feed_.Add(HuntMap(view, observation));
-  SetVision(HuntStatus(observation));
-}
-
-void FlightConsole::AddSample(ConsoleSample sample, Duration latency) {
-  sample.values.push_back(1e3 * ToSeconds(latency));
-  sample.values.push_back(link_rate_hz_);
-  feed_.Add(std::move(sample));
-}
-
-void FlightConsole::Obey(FlightRequests requests) {
-  obeying_thread_ = std::thread([this, requests = std::move(requests)] {
+void FlightConsole::Answer(FlightRequests requests) {
+  answering_thread_ = std::thread([this, requests = std::move(requests)] {
     SetUpThisThread("console asks", {});
     while (!is_over_) {
-      while (const auto command = feed_.TakeCommand()) Obey(requests, *command);
-      std::this_thread::sleep_for(kObeyInterval);
+      while (const auto command = feed_.TakeCommand()) Answer(requests, *command);
+      std::this_thread::sleep_for(kAnswerInterval);
     }
   });
 }
 
-void FlightConsole::Obey(const FlightRequests& requests, const ConsoleCommand& command) {
+void FlightConsole::Answer(const FlightRequests& requests, const ConsoleCommand& command) {
   try {
     if (command.kind == ConsoleCommandKind::kRecord) {
       Say(EventLevel::kInfo, requests.record(command.value != 0));
@@ -199,11 +204,6 @@ void FlightConsole::KeepSnapshot(const FlightRequests& requests) {
 FlightConsole::Image FlightConsole::Newest() {
   const std::lock_guard lock(mutex_);
   return shown_;
-}
-
-void FlightConsole::SetVision(const ConsoleStatus& status) {
-  const std::lock_guard lock(mutex_);
-  vision_ = status;
 }
 
 }  // namespace kestrel

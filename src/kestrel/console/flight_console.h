@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "kestrel/base/bounded_queue.h"
 #include "kestrel/console/color_page.h"
 #include "kestrel/console/console_feed.h"
 #include "kestrel/console/console_options.h"
@@ -20,8 +21,7 @@
 #include "kestrel/console/landing_view.h"
 #include "kestrel/console/web_server.h"
 #include "kestrel/doctor/flight_examination.h"
-#include "kestrel/onboard/bounded_queue.h"
-#include "kestrel/onboard/flight_observer.h"
+#include "kestrel/session/asynchronous_sink.h"
 
 namespace kestrel {
 
@@ -42,9 +42,9 @@ struct FlightColors {
   std::function<std::vector<std::string>()> warn;  // as ColorSource's
 };
 
-// A flight on the page. What the vision sees is handed to a thread that makes of it what the page
+// A session on the page. What the vision sees is handed to a thread that makes of it what the page
 // shows, and only while somebody looks: else a frame costs the vision one look at a number.
-class FlightConsole : public FlightObserver {
+class FlightConsole : public ObservationSink {
  public:
   // Serves from now on. 'title': of the page. 'channels' as for WebServer. 'colors': of a hunt,
   // whose model's colours can be taught then. Throws InputError as WebServer and ColorPage do.
@@ -60,72 +60,41 @@ class FlightConsole : public FlightObserver {
   // The same for a viewer that speaks Foxglove's protocol.
   std::string viewer_url() const { return server_.viewer_url(); }
 
-  // Obeys from now on, by a thread of its own: until then what the users ask waits. Once only; what
-  // is asked of outlives the console.
-  void Obey(FlightRequests requests);
+  // Answers requests from now on, by a thread of its own: until then what the users ask waits. Once
+  // only; what is asked of outlives the console.
+  void Answer(FlightRequests requests);
 
-  // Something that happened, in words. By any thread.
-  void Say(EventLevel level, const std::string& text) {
-    feed_.Add(ConsoleEvent{Now(), level, text});
-  }
-
-  void See(const Frame& frame, const LandingObservation& observation) override;
-  void See(const Frame& frame, const HuntObservation& observation) override;
-  void See(const FlightReport& report) override;
-  void SeeTeam(const TeamReport& report) override;
+  bool IsWanted() const override { return feed_.IsWatched(); }
+  void Take(const Observation& observation) override;
+  void Take(const FlightReport& report) override { pictures_.Take(report); }
+  void Take(const TeamReport& report) override { pictures_.Take(report); }
+  void Take(const SessionEvent& event) override { feed_.Add(event); }
 
  private:
-  struct SeenFrame {
-    cv::Mat image;
-    Time captured;
-    Duration latency{};  // from capture until it was processed
-    std::variant<LandingObservation, HuntObservation> observation;
-  };
-
   struct Image {
     cv::Mat image;  // empty: none yet
     Time captured;
   };
+  class Page;
 
-  void See(SeenFrame seen, Duration detect_time);
-  void TeachColors(const FlightColors& colors);
+  void TeachColors(const FlightColors& colors, const FlightView& view);
   Image Newest();
-  void Obey(const FlightRequests& requests, const ConsoleCommand& command);
+  void Answer(const FlightRequests& requests, const ConsoleCommand& command);
   void KeepSnapshot(const FlightRequests& requests);
+  void Say(EventLevel level, const std::string& text) {
+    feed_.Add(SessionEvent{Now(), level, text});
+  }
 
-  void Show();
-  void Show(SeenFrame seen);
-  void ShowChecks();
-  void Show(const LandingObservation& observation, Duration latency);
-  void Show(const HuntObservation& observation, Duration latency);
-  void AddSample(ConsoleSample sample, Duration latency);
-  void SetVision(const ConsoleStatus& status);
-
-  FlightView view_;
   ConsoleFeed feed_;
-  BoundedQueue<SeenFrame> seen_;
   BoundedQueue<FrameSample> arrivals_;
-
-  // Of the thread that shows.
-  ConsoleFrame frame_;
-  FlightExamination examination_;
-  Time examined_{};
-
-  // Of the flight's own thread.
-  FlightHealth health_;
-
-  std::atomic<double> link_rate_hz_;  // NaN: not known
-  std::mutex mutex_;                  // of what is below
-  ConsoleStatus vision_;              // what the newest frame says
-  ConsoleStatus told_;                // the page, the last time
-  FlightReport report_;               // the newest
-  Image shown_;                       // the newest
-
+  std::mutex mutex_;  // of what is below
+  Image shown_;       // the newest
   WebServer server_;
   std::optional<KeptFrames> kept_;  // of the page of colours
   std::optional<ColorPage> colors_;
+  AsynchronousSink pictures_;
   std::atomic<bool> is_over_{false};
-  std::thread thread_, obeying_thread_;
+  std::thread answering_thread_;
 };
 
 }  // namespace kestrel

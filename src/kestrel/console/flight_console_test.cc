@@ -38,6 +38,10 @@ CameraCalibration PaperCalibration() {
 
 Frame GrayFrame() { return {"", Now(), cv::Mat(240, 376, CV_8UC1, cv::Scalar(99))}; }
 
+Observation ObservationOf(const Frame& frame, const LandingObservation& seen) {
+  return {frame, seen, Now() - frame.time};
+}
+
 class FlightConsoleTest : public testing::Test {
  protected:
   FlightConsole console_{FreePort(), "a flight",
@@ -56,7 +60,7 @@ TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
   LandingObservation observation;
   observation.report.reason = "no ring";
   observation.detect_time = 3ms;
-  console_.See(GrayFrame(), observation);
+  console_.Take(ObservationOf(GrayFrame(), observation));
   const auto sample = socket.Next("sample");
   ASSERT_TRUE(sample);
   EXPECT_EQ((*sample)["values"].size(), (*hello)["series"].size());
@@ -72,7 +76,7 @@ TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
   ASSERT_TRUE(threshold);
   EXPECT_EQ((*threshold)["view"], "threshold 1/2");
   EXPECT_EQ((*threshold)["sequence"], (*image)["sequence"]);
-  console_.See(FlightReport{});
+  console_.Take(FlightReport{});
   const auto status = socket.Next("status");
   ASSERT_TRUE(status);
   EXPECT_THAT((*status)["reason"].get<std::string>(), testing::HasSubstr("no ring"));
@@ -88,7 +92,7 @@ TEST(FlightConsoleOfAHunt, ShowsWhatTheTeamKnows) {
   known.object.color_log_likelihoods[0] = 5;
   known.uavs = {"one", "two"};
   known.holder = "two";
-  console.SeeTeam({Now(), {known}});
+  console.Take(TeamReport{Now(), {known}});
   TestSocket socket(PortOf(console));
   const auto team = socket.Next("team");
   ASSERT_TRUE(team);
@@ -115,14 +119,15 @@ TEST_F(FlightConsoleTest, ObeysWhatThePageAsks) {
   ASSERT_TRUE(socket.Next("hello"));
   // What is asked before anybody obeys waits.
   socket.Send(R"({"command": "record", "value": 1})");
-  console_.Obey({.record = [](bool is_on) -> std::string {
-                   if (!is_on) throw InputError("the disk is full");
-                   return "recording";
-                 },
-                 .keep_snapshot =
-                     [](const cv::Mat& image, Time captured) {
-                       return fmt::format("kept {} px of {}", image.cols, ToNanoseconds(captured));
-                     }});
+  console_.Answer({.record = [](bool is_on) -> std::string {
+                     if (!is_on) throw InputError("the disk is full");
+                     return "recording";
+                   },
+                   .keep_snapshot =
+                       [](const cv::Mat& image, Time captured) {
+                         return fmt::format("kept {} px of {}", image.cols,
+                                            ToNanoseconds(captured));
+                       }});
   const auto begun = socket.Next("event");
   ASSERT_TRUE(begun);
   EXPECT_EQ((*begun)["text"], "recording");
@@ -136,7 +141,7 @@ TEST_F(FlightConsoleTest, ObeysWhatThePageAsks) {
   ASSERT_TRUE(none);
   EXPECT_THAT((*none)["text"].get<std::string>(), testing::HasSubstr("no image yet"));
   const Frame frame = GrayFrame();
-  console_.See(frame, LandingObservation());
+  console_.Take(ObservationOf(frame, LandingObservation()));
   socket.Send(R"({"images": true})");
   ASSERT_TRUE(socket.Next("image"));
   socket.Send(R"({"command": "snapshot"})");
@@ -147,7 +152,7 @@ TEST_F(FlightConsoleTest, ObeysWhatThePageAsks) {
 
 TEST_F(FlightConsoleTest, KeepsNoImageWhenNobodyLooks) {
   const Frame frame = GrayFrame();
-  console_.See(frame, LandingObservation());
+  console_.Take(ObservationOf(frame, LandingObservation()));
   std::this_thread::sleep_for(20ms);
   EXPECT_EQ(frame.image.u->refcount, 1);
 }
@@ -181,7 +186,7 @@ TEST(HuntConsoleTest, FramesOfTheCameraAreKeptAndTaught) {
     EXPECT_THAT(ask(R"({"colors": "keep"})")["answer"].get<std::string>(),
                 testing::HasSubstr("there is no image yet"));
     const Frame frame = ColorFrame();
-    console.See(frame, HuntObservation());
+    console.Take(Observation{frame, HuntObservation()});
     socket.Send(R"({"images": "segmentation"})");
     const auto image = socket.Next("image");
     ASSERT_TRUE(image);

@@ -57,8 +57,8 @@ ConsoleCheck ProcessorCheck(double cpu_s, double interval_s) {
           fmt::format("{:.0f} % of one, there are {}", 100 * load, processors)};
 }
 
-ConsoleCheck RecorderCheck(const FlightRecorder::Counters& now,
-                           const std::optional<FlightRecorder::Counters>& last) {
+ConsoleCheck RecorderCheck(const RecorderCounters& now,
+                           const std::optional<RecorderCounters>& last) {
   const bool is_dropping = last && now.dropped > last->dropped;
   return {"recording", is_dropping ? "doubtful" : "good",
           fmt::format("{} images, {:.0f} MB, {} dropped", now.images,

@@ -6,7 +6,7 @@
 
 #include "kestrel/base/time.h"
 #include "kestrel/console/console_feed.h"
-#include "kestrel/onboard/flight_observer.h"
+#include "kestrel/session/flight_report.h"
 
 namespace kestrel {
 

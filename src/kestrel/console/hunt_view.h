@@ -6,8 +6,8 @@
 
 #include "kestrel/console/console_feed.h"
 #include "kestrel/objects/object_model.h"
-#include "kestrel/onboard/flight_observer.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
+#include "kestrel/session/flight_report.h"
 
 namespace kestrel {
 

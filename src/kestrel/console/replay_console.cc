@@ -158,7 +158,7 @@ void ReplayConsole::ShowFrame() {
     picture_.image = read_(index);
   } catch (const InputError& error) {  // its file is gone
     playhead_->Hold();
-    feed_.Add(ConsoleEvent{picture_.captured, EventLevel::kError, error.what()});
+    feed_.Add(SessionEvent{picture_.captured, EventLevel::kError, error.what()});
     return;
   }
   feed_.SetFrame(&picture_);

@@ -12,9 +12,9 @@
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/options.h"
+#include "kestrel/base/thread_setup.h"
 #include "kestrel/console/console_hub.h"
 #include "kestrel/console/http_session.h"
-#include "kestrel/onboard/thread_setup.h"
 
 namespace kestrel {
 namespace {

@@ -282,7 +282,7 @@ TEST_F(WebServerTest, NewcomersGetWhatIsKnown) {
   const WebServer server(AnyPort(), &feed_, kAssets);
   feed_.Add(ConsoleStatus{"searching", "no pattern", false});
   feed_.Add(ConsoleStatus{"tracking", "", true});
-  feed_.Add(ConsoleEvent{TimeFromNanoseconds(5), EventLevel::kWarning, "camera came back"});
+  feed_.Add(SessionEvent{TimeFromNanoseconds(5), EventLevel::kWarning, "camera came back"});
   ASSERT_TRUE(Eventually([&] {
     TestSocket socket(server.port());
     const auto status = socket.Next("status");

@@ -14,9 +14,9 @@
 #include "kestrel/link/autopilot.h"
 #include "kestrel/link/connection.h"
 #include "kestrel/navigation/pose_history.h"
-#include "kestrel/onboard/live_events.h"
-#include "kestrel/onboard/live_source.h"
 #include "kestrel/pipeline/landing_pipeline.h"
+#include "kestrel/session/live_events.h"
+#include "kestrel/session/live_source.h"
 
 namespace kestrel {
 

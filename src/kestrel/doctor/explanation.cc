@@ -12,12 +12,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "kestrel/autopilot_rules/ardupilot_target.h"
+#include "kestrel/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/autopilot_rules/px4_target.h"
+#include "kestrel/autopilot_rules/px4_time_sync.h"
 #include "kestrel/geometry/angles.h"
 #include "kestrel/link/ned.h"
-#include "kestrel/sitl/ardupilot_target.h"
-#include "kestrel/sitl/autopilot_parameters.h"
-#include "kestrel/sitl/px4_target.h"
-#include "kestrel/sitl/px4_time_sync.h"
 
 namespace kestrel {
 namespace {

@@ -11,8 +11,8 @@
 #include "kestrel/camera/calibration.h"
 #include "kestrel/doctor/finding.h"
 #include "kestrel/doctor/observations.h"
-#include "kestrel/onboard/flight_observer.h"
 #include "kestrel/pipeline/landing_pipeline.h"
+#include "kestrel/session/flight_report.h"
 
 namespace kestrel {
 

@@ -15,8 +15,8 @@
 #include "kestrel/link/connection.h"
 #include "kestrel/link/link_url.h"
 #include "kestrel/link/target_profile.h"
-#include "kestrel/onboard/live_source.h"
 #include "kestrel/pipeline/calibration_monitor.h"
+#include "kestrel/session/live_source.h"
 
 // What the checks look at: all that camera, autopilot and computer showed in some seconds. The
 // checks are functions of these alone, whoever filled them in.

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <string>
 
+#include "kestrel/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/doctor/observations.h"
 #include "kestrel/doctor/parameter_checks.h"
 #include "kestrel/geometry/angles.h"
 #include "kestrel/link/mavlink_enums.h"
-#include "kestrel/sitl/autopilot_parameters.h"
 
 namespace kestrel {
 

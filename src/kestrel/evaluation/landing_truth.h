@@ -10,7 +10,7 @@
 
 #include "kestrel/base/time.h"
 #include "kestrel/geometry/rigid_transform.h"
-#include "kestrel/simulation/truth_text.h"
+#include "kestrel/recording/truth_rows.h"
 
 namespace kestrel {
 

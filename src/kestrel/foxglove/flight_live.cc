@@ -5,13 +5,12 @@
 #include <chrono>
 #include <cstddef>
 #include <memory>
-#include <sys/resource.h>
 #include <utility>
 #include <vector>
 
 #include "kestrel/base/error.h"
 #include "kestrel/foxglove/foxglove_topics.h"
-#include "kestrel/onboard/thread_setup.h"
+#include "kestrel/foxglove/observation_writer.h"
 
 namespace kestrel {
 namespace {
@@ -19,8 +18,7 @@ namespace {
 constexpr std::size_t kLiveFrames = 16;
 // With more that wait, images are left out until there are fewer.
 constexpr std::size_t kFramesInTime = 2;
-constexpr Duration kLivePatience = std::chrono::milliseconds(200);
-// What flies goes first.
+// The threads that fly go first.
 constexpr int kNiceness = 10;
 
 std::vector<LiveChannel> ChannelsOf(bool is_hunt) {
@@ -44,58 +42,68 @@ std::size_t ChannelOf(const std::vector<LiveChannel>& channels, std::string_view
   return static_cast<std::size_t>(channel - channels.begin());
 }
 
-}  // namespace
+// Puts messages into the feed.
+class FeedSink : public FoxgloveSink {
+ public:
+  FeedSink(ChannelFeed* feed, double max_image_rate_hz)
+      : feed_(*feed), min_image_interval_(DurationFromSeconds(1 / max_image_rate_hz)) {}
 
-FlightLive::Sink::Sink(FlightLive* flight, double max_image_rate_hz)
-    : flight_(flight), min_image_interval_(DurationFromSeconds(1 / max_image_rate_hz)) {}
+  void set_waiting_frames(std::size_t waiting) { waiting_frames_ = waiting; }
 
-bool FlightLive::Sink::Wants(std::string_view topic) {
-  const ChannelFeed& feed = flight_->feed_;
-  if (!feed.IsWanted(ChannelOf(feed.channels(), topic))) return false;
-  return topic != kImageTopic.name || IsTimeForImage();
-}
-
-bool FlightLive::Sink::IsTimeForImage() {
-  const Time now = Now();
-  if (now - image_made_ < min_image_interval_ || flight_->waiting_frames() > kFramesInTime) {
-    return false;
+ private:
+  bool Wants(std::string_view topic) override {
+    if (!feed_.IsWanted(ChannelOf(feed_.channels(), topic))) return false;
+    return topic != kImageTopic.name || IsTimeForImage();
   }
-  image_made_ = now;
-  return true;
-}
 
-void FlightLive::Sink::Put(const FoxgloveTopicInfo& topic, Time time, std::string message) {
-  ChannelFeed& feed = flight_->feed_;
-  const std::size_t channel = ChannelOf(feed.channels(), topic.name);
-  if (!feed.IsWanted(channel)) return;
-  feed.Add({channel, time, std::make_shared<const std::string>(std::move(message))});
-}
+  void Put(const FoxgloveTopicInfo& topic, Time time, std::string message) override {
+    const std::size_t channel = ChannelOf(feed_.channels(), topic.name);
+    if (!feed_.IsWanted(channel)) return;
+    feed_.Add({channel, time, std::make_shared<const std::string>(std::move(message))});
+  }
 
-FlightLive::FlightLive(const CameraIntrinsics& camera, std::variant<LandingView, HuntView> view,
-                       double max_image_rate_hz)
-    : FlightWriter(kLiveFrames),
-      feed_(ChannelsOf(std::holds_alternative<HuntView>(view))),
-      sink_(this, max_image_rate_hz),
-      writer_(&sink_, camera, std::move(view)),
-      thread_([this] { Run(); }) {}
+  bool IsTimeForImage() {
+    const Time now = Now();
+    if (now - image_made_ < min_image_interval_ || waiting_frames_ > kFramesInTime) return false;
+    image_made_ = now;
+    return true;
+  }
 
-FlightLive::~FlightLive() {
-  is_over_ = true;
-  EndFrames();
-  thread_.join();
-}
+  ChannelFeed& feed_;
+  Duration min_image_interval_;
+  Time image_made_{};
+  std::size_t waiting_frames_ = 0;
+};
 
-void FlightLive::Run() {
-  SetUpThisThread("foxglove", {});
-  // Of this thread alone, on Linux. Where it is not permitted all goes on as usual.
-  setpriority(PRIO_PROCESS, 0, kNiceness);
-  while (!is_over_) {
+class FeedWriter : public SinkWriter {
+ public:
+  FeedWriter(ChannelFeed* feed, const CameraIntrinsics& camera,
+             const std::variant<LandingView, HuntView>& view, double max_image_rate_hz)
+      : feed_(*feed), sink_(feed, max_image_rate_hz), writer_(&sink_, camera, view) {}
+
+  bool IsWanted() const override { return feed_.IsWatched(); }
+  void Write(const Observation& observation, std::size_t waiting) override {
+    sink_.set_waiting_frames(waiting);
     try {
-      WriteNext(&writer_, kLivePatience);
+      writer_.Write(observation);
     } catch (const InputError& error) {  // an image that cannot be shown
-      writer_.WriteLog(Now(), EventLevel::kWarning, error.what());
+      Write(SessionEvent{Now(), EventLevel::kWarning, error.what()});
     }
   }
-}
+  void Write(const SessionEvent& event) override { writer_.Write(event); }
+
+ private:
+  ChannelFeed& feed_;
+  FeedSink sink_;
+  ObservationWriter writer_;
+};
+
+}  // namespace
+
+FlightLive::FlightLive(const CameraIntrinsics& camera,
+                       const std::variant<LandingView, HuntView>& view, double max_image_rate_hz)
+    : feed_(ChannelsOf(std::holds_alternative<HuntView>(view))),
+      messages_({.thread_name = "foxglove", .frames = kLiveFrames, .niceness = kNiceness},
+                std::make_unique<FeedWriter>(&feed_, camera, view, max_image_rate_hz)) {}
 
 }  // namespace kestrel

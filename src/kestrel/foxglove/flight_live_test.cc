@@ -40,7 +40,7 @@ std::map<std::string, std::vector<ChannelMessage>> TakeFrames(FlightLive* flight
 
 void SeeFrame(FlightLive* flight, int index) {
   const Frame frame = ObservedFrame(index);
-  flight->See(frame, ObservedLanding(frame.time));
+  flight->Take(Observation{frame, ObservedLanding(frame.time)});
 }
 
 TEST(FlightLiveTest, GivesTheMessagesOfTheFile) {
@@ -62,7 +62,7 @@ TEST(FlightLiveTest, GivesTheMessagesOfTheFile) {
 TEST(FlightLiveTest, MakesOnlyWhatIsWanted) {
   FlightLive flight(ObservedCamera(), ObservedView(), kAnyRate_hz);
   const Frame frame = ObservedFrame(0);
-  flight.See(frame, ObservedLanding(frame.time));
+  flight.Take(Observation{frame, ObservedLanding(frame.time)});
   std::this_thread::sleep_for(20ms);
   EXPECT_EQ(frame.image.u->refcount, 1);  // nobody looks: it is not even kept
   flight.channels()->SetWanted(std::uint64_t{1} << ChannelOf(&flight, "/result"));
@@ -83,7 +83,7 @@ TEST(FlightLiveTest, ImagesAreLimited) {
 TEST(FlightLiveTest, SaysWhatHappens) {
   FlightLive flight(ObservedCamera(), ObservedView(), kAnyRate_hz);
   flight.channels()->SetWanted(~std::uint64_t{0});
-  flight.Say(EventLevel::kWarning, "camera came back");
+  flight.Take(SessionEvent{Now(), EventLevel::kWarning, "camera came back"});
   SeeFrame(&flight, 0);
   const auto messages = TakeFrames(&flight, 1);
   ASSERT_GE(messages.count("/log"), 1u);

@@ -24,13 +24,9 @@ class ObservationFile {
 
   ObservationWriter& writer() { return writer_; }
   // As those of the writer.
-  template <class Observation>
-  void Write(const Frame& frame, const Observation& observation,
-             std::optional<Duration> latency = std::nullopt) {
-    writer_.Write(frame, observation, latency);
-  }
-  void WriteLog(Time time, EventLevel level, const std::string& text) {
-    writer_.WriteLog(time, level, text);
+  template <class Seen>
+  void Write(const Frame& frame, const Seen& seen, std::optional<Duration> latency = std::nullopt) {
+    writer_.Write(frame, seen, latency);
   }
 
   // Writes what waits for more of its second.

@@ -58,8 +58,8 @@ void ObservationWriter::Write(const Frame& frame, const LandingObservation& obse
   WriteResult(frame, latency, FoxgloveResult(observation));
   const TrackState state = observation.track_state;
   if (std::exchange(track_state_, state) == state) return;
-  WriteLog(time, state == TrackState::kLost ? EventLevel::kWarning : EventLevel::kInfo,
-           fmt::format("track: {}", ToString(state)));
+  Write(SessionEvent{time, state == TrackState::kLost ? EventLevel::kWarning : EventLevel::kInfo,
+                     fmt::format("track: {}", ToString(state))});
 }
 
 void ObservationWriter::Write(const Frame& frame, const HuntObservation& observation,
@@ -74,8 +74,14 @@ void ObservationWriter::Write(const Frame& frame, const HuntObservation& observa
   WriteResult(frame, latency, FoxgloveResult(view, observation));
 }
 
-void ObservationWriter::WriteLog(Time time, EventLevel level, const std::string& text) {
-  sink_->Write(kLogTopic, time, foxglove::Log{time, LevelOf(level), text, "kestrel"});
+void ObservationWriter::Write(const Observation& observation) {
+  std::visit([&](const auto& seen) { Write(observation.frame, seen, observation.latency); },
+             observation.seen);
+}
+
+void ObservationWriter::Write(const SessionEvent& event) {
+  sink_->Write(kLogTopic, event.time,
+               foxglove::Log{event.time, LevelOf(event.level), event.text, "kestrel"});
 }
 
 void ObservationWriter::WriteCameraPose(Time time, const RigidTransform& world_from_camera) {

@@ -17,6 +17,8 @@
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/pipeline/landing_pipeline.h"
 #include "kestrel/recording/frame.h"
+#include "kestrel/session/observation.h"
+#include "kestrel/session/session_event.h"
 
 namespace kestrel {
 
@@ -43,7 +45,8 @@ class ObservationWriter {
              std::optional<Duration> latency = std::nullopt);
   void Write(const Frame& frame, const HuntObservation& observation,
              std::optional<Duration> latency = std::nullopt);
-  void WriteLog(Time time, EventLevel level, const std::string& text);
+  void Write(const Observation& observation);
+  void Write(const SessionEvent& event);
 
  private:
   void WriteCameraPose(Time time, const RigidTransform& world_from_camera);

@@ -18,8 +18,8 @@
 #include "kestrel/camera/calibration.h"
 #include "kestrel/dds/ros2_node.h"
 #include "kestrel/middleware/live_transforms.h"
-#include "kestrel/onboard/live_source.h"
 #include "kestrel/recording/frame.h"
+#include "kestrel/session/live_source.h"
 
 namespace kestrel {
 

@@ -8,8 +8,8 @@
 #include "kestrel/base/time.h"
 #include "kestrel/mapping/mapped_object.h"
 #include "kestrel/objects/object_model.h"
-#include "kestrel/onboard/flight_observer.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
+#include "kestrel/session/flight_report.h"
 
 namespace kestrel {
 

@@ -13,8 +13,8 @@
 #include "kestrel/mapping/object_map.h"
 #include "kestrel/middleware/result_connection.h"
 #include "kestrel/objects/object_model.h"
-#include "kestrel/onboard/flight_observer.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
+#include "kestrel/session/flight_report.h"
 
 namespace kestrel {
 

@@ -15,10 +15,10 @@
 #include "kestrel/middleware/landing_results.h"
 #include "kestrel/middleware/result_connection.h"
 #include "kestrel/objects/object_model.h"
-#include "kestrel/onboard/flight_observer.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/pipeline/landing_pipeline.h"
 #include "kestrel/recording/frame.h"
+#include "kestrel/session/flight_report.h"
 
 namespace kestrel {
 

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/base/thread_setup.h"
 #include "kestrel/guidance/guidance_options.h"
 #include "kestrel/link/target_profile.h"
-#include "kestrel/onboard/live_events.h"
 #include "kestrel/onboard/target_reporter.h"
-#include "kestrel/onboard/thread_setup.h"
+#include "kestrel/session/live_events.h"
 
 namespace kestrel {
 

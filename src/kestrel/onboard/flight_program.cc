@@ -44,7 +44,7 @@ FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
   if (parts_.connection != nullptr) threads.emplace_back([this] { Communicate(); });
   while (!is_over_) {
     if (is_stopped()) End(FlightEnd::kStopped);
-    if (parts_.observer != nullptr) parts_.observer->See(ReportNow());
+    if (parts_.sink != nullptr) parts_.sink->Take(ReportNow());
     std::this_thread::sleep_for(kPatience);
   }
   events_.Close();
@@ -123,7 +123,7 @@ void FlightProgram::See() {
     const auto& frame = std::get<Frame>(event);
     if (IsFrozen(frame)) continue;
     latency_.step(kVision).Add(Now() - frame.time);
-    const TrackSnapshot snapshot = parts_.vision->Process(frame, parts_.observer);
+    const TrackSnapshot snapshot = parts_.vision->Process(frame, parts_.sink);
     latency_.step(kDetection).Add(snapshot.detect_time);
     frames_ = snapshot.frames;
     detections_ = snapshot.detections;

@@ -9,24 +9,24 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/base/latest_value.h"
 #include "kestrel/base/time.h"
 #include "kestrel/link/autopilot.h"
 #include "kestrel/link/connection.h"
 #include "kestrel/link/target_profile.h"
 #include "kestrel/navigation/pose_history.h"
-#include "kestrel/onboard/flight_observer.h"
 #include "kestrel/onboard/flight_options.h"
 #include "kestrel/onboard/flight_vision.h"
 #include "kestrel/onboard/guided_flight.h"
 #include "kestrel/onboard/landing_watch.h"
 #include "kestrel/onboard/latency_statistics.h"
-#include "kestrel/onboard/latest_value.h"
-#include "kestrel/onboard/live_events.h"
-#include "kestrel/onboard/live_source.h"
 #include "kestrel/onboard/recording_switch.h"
 #include "kestrel/onboard/repeated_image.h"
 #include "kestrel/onboard/target_sender.h"
-#include "kestrel/simulation/truth_text.h"
+#include "kestrel/recording/truth_rows.h"
+#include "kestrel/session/live_events.h"
+#include "kestrel/session/live_source.h"
+#include "kestrel/session/observation_sink.h"
 
 namespace kestrel {
 
@@ -45,7 +45,7 @@ struct FlightParts {
   Connection* connection = nullptr;
   Autopilot* autopilot = nullptr;  // on the connection
   RecordingSwitch* recording = nullptr;
-  FlightObserver* observer = nullptr;
+  ObservationSink* sink = nullptr;
   bool guides = false;                 // flies by set-points when the pilot gives the mode
   bool source_has_poses = false;       // then those of the autopilot are not used
   std::optional<LinkProfile> profile;  // nothing: by the heartbeat

@@ -17,7 +17,7 @@
 #include "kestrel/base/violations.h"
 #include "kestrel/base/write_file.h"
 #include "kestrel/recording/euroc_text.h"
-#include "kestrel/simulation/recording_writer.h"
+#include "kestrel/recording/recording_writer.h"
 
 namespace kestrel {
 namespace {
@@ -157,7 +157,7 @@ void FlightRecorder::AddPacket(Time time, std::span<const std::uint8_t> bytes) {
   if (records_.Push(packet)) lost_count_.fetch_add(1, std::memory_order_relaxed);
 }
 
-FlightRecorder::Counters FlightRecorder::counters() const {
+RecorderCounters FlightRecorder::counters() const {
   return {image_count_, drop_count_, byte_count_, lost_count_};
 }
 

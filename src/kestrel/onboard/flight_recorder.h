@@ -17,15 +17,16 @@
 #include <variant>
 #include <vector>
 
+#include "kestrel/base/bounded_queue.h"
 #include "kestrel/base/folder_lock.h"
+#include "kestrel/base/thread_setup.h"
 #include "kestrel/base/time.h"
 #include "kestrel/camera/calibration.h"
 #include "kestrel/navigation/pose_history.h"
-#include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/recorded_files.h"
-#include "kestrel/onboard/thread_setup.h"
 #include "kestrel/recording/frame.h"
-#include "kestrel/simulation/truth_text.h"
+#include "kestrel/recording/truth_rows.h"
+#include "kestrel/session/flight_report.h"
 
 namespace kestrel {
 
@@ -95,13 +96,7 @@ class FlightRecorder {
   // A MAVLink packet as it was on the wire; more than 280 bytes are none.
   void AddPacket(Time time, std::span<const std::uint8_t> bytes);
 
-  struct Counters {
-    std::uint64_t images = 0;        // written
-    std::uint64_t dropped = 0;       // images that are not, see dropped.csv
-    std::uint64_t bytes = 0;         // of the images that are written
-    std::uint64_t lost_records = 0;  // poses, exposures and packets for which there was no time
-  };
-  Counters counters() const;
+  RecorderCounters counters() const;
   bool is_recording_images() const { return !are_images_stopped_; }
 
  private:

@@ -161,7 +161,7 @@ TEST_F(FlightRecorderTest, WhatGoesBackInTimeIsLeftOut) {
 }
 
 TEST_F(FlightRecorderTest, FramesThatTheDiskCannotKeepUpWithAreDroppedAndNoted) {
-  FlightRecorder::Counters counters;
+  RecorderCounters counters;
   constexpr int kFrames = 200;
   {
     const auto recorder = Recorder({.png_level = 9, .queue_frames = 2});

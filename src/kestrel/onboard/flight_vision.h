@@ -5,9 +5,9 @@
 
 #include "kestrel/base/time.h"
 #include "kestrel/navigation/pose_history.h"
-#include "kestrel/onboard/flight_observer.h"
 #include "kestrel/onboard/target_reporter.h"
 #include "kestrel/recording/frame.h"
+#include "kestrel/session/observation_sink.h"
 
 namespace kestrel {
 
@@ -22,8 +22,8 @@ class FlightVision {
   // How much later than a frame's time, on the navigation's clock, the last pose is that it needs.
   virtual Duration pose_lead() const = 0;
 
-  // 'observer': gets what the frame showed; null: there is none.
-  virtual TrackSnapshot Process(const Frame& frame, FlightObserver* observer) = 0;
+  // 'sink': gets what the frame showed; null: there is none.
+  virtual TrackSnapshot Process(const Frame& frame, ObservationSink* sink) = 0;
 
   // What of the set-up contradicts what was seen, and what to do, as far as it is known by now;
   // empty where nothing does. By the vision's thread, or after the flight.

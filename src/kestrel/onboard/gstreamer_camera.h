@@ -11,7 +11,7 @@
 #include "kestrel/camera/camera_model.h"
 #include "kestrel/onboard/exposure_drive.h"
 #include "kestrel/onboard/image_pool.h"
-#include "kestrel/onboard/live_source.h"
+#include "kestrel/session/live_source.h"
 
 namespace kestrel {
 

@@ -32,7 +32,7 @@ Duration HuntVision::pose_lead() const {
   return clock_offset_ + DurationFromSeconds(pipeline_.options().readout_s / 2);
 }
 
-TrackSnapshot HuntVision::Process(const Frame& frame, FlightObserver* observer) {
+TrackSnapshot HuntVision::Process(const Frame& frame, ObservationSink* sink) {
   const HuntObservation& observation = pipeline_.Process(frame.image, frame.time);
   snapshot_.captured = frame.time + clock_offset_;
   snapshot_.detect_time = observation.detect_time;
@@ -40,7 +40,9 @@ TrackSnapshot HuntVision::Process(const Frame& frame, FlightObserver* observer) 
   if (!observation.report.detections.empty()) ++snapshot_.detections;
   objects_ += observation.report.detections.size();
   if (file_) rows_.Push(ObjectCsvRows(frame.name, observation, pipeline_.detector().model()));
-  if (observer != nullptr) observer->See(frame, observation);
+  if (sink != nullptr && sink->IsWanted()) {
+    sink->Take(Observation{frame, observation, Now() - frame.time});
+  }
   PublishMap(frame, observation);
   return snapshot_;
 }

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/base/bounded_queue.h"
 #include "kestrel/camera/calibration.h"
 #include "kestrel/objects/object_model.h"
-#include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/flight_vision.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/recording/output_folder.h"
@@ -32,7 +32,7 @@ class HuntVision : public FlightVision {
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
   Duration pose_lead() const override;
-  TrackSnapshot Process(const Frame& frame, FlightObserver* observer) override;
+  TrackSnapshot Process(const Frame& frame, ObservationSink* sink) override;
   bool WriteResults() override;
   std::string Found() const override;
 

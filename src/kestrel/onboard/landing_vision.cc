@@ -39,7 +39,7 @@ LandingVision::LandingVision(const CameraCalibration& calibration,
   WriteAtOnce(TrackCsvHeader(), kTrack, &*track_);
 }
 
-TrackSnapshot LandingVision::Process(const Frame& frame, FlightObserver* observer) {
+TrackSnapshot LandingVision::Process(const Frame& frame, ObservationSink* sink) {
   LimitSearch(frame);
   const LandingObservation observation = pipeline_.Process(frame.image, frame.time);
   snapshot_.captured = frame.time + clock_offset_;
@@ -55,7 +55,9 @@ TrackSnapshot LandingVision::Process(const Frame& frame, FlightObserver* observe
   if (observation.report.detection) ++snapshot_.detections;
   if (exposure_) ControlExposure(frame.image, observation);
   if (detections_) results_.Push({frame.name, observation});
-  if (observer != nullptr) observer->See(frame, observation);
+  if (sink != nullptr && sink->IsWanted()) {
+    sink->Take(Observation{frame, observation, Now() - frame.time});
+  }
   return snapshot_;
 }
 

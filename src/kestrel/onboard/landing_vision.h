@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "kestrel/base/bounded_queue.h"
 #include "kestrel/camera/calibration.h"
-#include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/exposure_drive.h"
 #include "kestrel/onboard/flight_vision.h"
 #include "kestrel/onboard/frame_period.h"
@@ -26,7 +26,7 @@ class LandingVision : public FlightVision {
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
   Duration pose_lead() const override { return clock_offset_; }
-  TrackSnapshot Process(const Frame& frame, FlightObserver* observer) override;
+  TrackSnapshot Process(const Frame& frame, ObservationSink* sink) override;
   std::string Warning() const override;
   bool WriteResults() override;
   std::string Found() const override;

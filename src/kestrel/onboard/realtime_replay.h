@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "kestrel/onboard/live_source.h"
 #include "kestrel/recording/frame_source.h"
+#include "kestrel/session/live_source.h"
 
 namespace kestrel {
 

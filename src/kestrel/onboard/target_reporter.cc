@@ -17,20 +17,6 @@ std::vector<std::string> TargetReporterOptions::Validate() const {
   return violations;
 }
 
-const char* ToString(TargetPhase phase) {
-  switch (phase) {
-    case TargetPhase::kSearching:
-      return "searching";
-    case TargetPhase::kFound:
-      return "found";
-    case TargetPhase::kLost:
-      return "lost";
-    case TargetPhase::kContact:
-      return "contact";
-  }
-  return "";
-}
-
 TargetReporter::TargetReporter(const TargetReporterOptions& options,
                                const TargetTrackerOptions& tracker)
     : options_(Checked(options)), noise_(Checked(tracker).Noise()), contact_(options.contact) {}

@@ -12,6 +12,7 @@
 #include "kestrel/guidance/contact_detector.h"
 #include "kestrel/link/target_profile.h"
 #include "kestrel/navigation/pose_history.h"
+#include "kestrel/session/flight_report.h"
 #include "kestrel/tracking/target_tracker.h"
 
 namespace kestrel {
@@ -48,15 +49,6 @@ struct TargetReporterOptions {
   }
   std::vector<std::string> Validate() const;
 };
-
-// What is known of the target's whereabouts, for people.
-enum class TargetPhase {
-  kSearching,  // not seen yet
-  kFound,      // tracked, or predicted well enough
-  kLost,       // was found, and is not any more
-  kContact,    // the UAV stands on it
-};
-const char* ToString(TargetPhase phase);  // "searching", "found", "lost", "contact"
 
 // From the track to what the autopilot is told, at any instant: the target predicted to when the
 // message is used, seen from where the UAV will be then. After contact the camera sees nothing any

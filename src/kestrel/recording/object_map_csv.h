@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kestrel/mapping/mapped_object.h"
-#include "kestrel/team/team_view.h"
+#include "kestrel/mapping/team_object.h"
 
 namespace kestrel {
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "kestrel/mapping/team_object.h"
 #include "kestrel/pipeline/hunt_pipeline.h"
 #include "kestrel/recording/output_folder.h"
-#include "kestrel/team/team_view.h"
 
 namespace kestrel {
 

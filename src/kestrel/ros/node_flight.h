@@ -8,13 +8,13 @@
 #include <optional>
 #include <thread>
 
+#include "kestrel/base/bounded_queue.h"
+#include "kestrel/base/thread_setup.h"
 #include "kestrel/base/time.h"
 #include "kestrel/camera/calibration.h"
-#include "kestrel/onboard/bounded_queue.h"
 #include "kestrel/onboard/latency_statistics.h"
-#include "kestrel/onboard/live_events.h"
-#include "kestrel/onboard/thread_setup.h"
 #include "kestrel/ros/node_task.h"
+#include "kestrel/session/live_events.h"
 
 namespace kestrel {
 

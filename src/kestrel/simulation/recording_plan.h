@@ -10,7 +10,7 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/base/time.h"
-#include "kestrel/simulation/recording_writer.h"
+#include "kestrel/recording/recording_writer.h"
 
 namespace kestrel {
 

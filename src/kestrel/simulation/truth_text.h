@@ -5,27 +5,16 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "kestrel/base/time.h"
 #include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/landing/landing_pattern.h"
 #include "kestrel/navigation/pose_history.h"
+#include "kestrel/recording/truth_rows.h"
 #include "kestrel/rendering/flight_camera.h"
 #include "kestrel/world/motion.h"
 #include "kestrel/world/world.h"
 
 namespace kestrel {
-
-// A row of landing_pattern0/data.csv: where the pattern was when an image was taken.
-struct TruePattern {
-  Time time;
-  RigidTransform world_from_pattern;
-  Eigen::Vector3d velocity_in_world = Eigen::Vector3d::Zero();
-  Eigen::Vector2d center_px = Eigen::Vector2d::Zero();  // may lie outside of the image
-  double altitude_m = 0;                                // of the camera above the pattern
-  double visible_fraction = 0;  // part of ring and cross that the image shows
-};
 
 // state_groundtruth_estimate0/data.csv of a flight: the true pose and velocity at 100 Hz from
 // 'begin_s' to 'end_s', and at all image times.
@@ -34,15 +23,6 @@ std::string TrueStateText(const Motion& world_from_body, double begin_s, double 
 
 // The same of poses that have nothing to do with each other: without velocities.
 std::string TrueStateText(const std::vector<PoseSample>& poses);
-
-// Header and row of that file.
-std::string TrueStateHeader();
-std::string TrueStateRow(Time time, const RigidTransform& world_from_body,
-                         const Eigen::Vector3d& velocity);
-
-// Header and row of landing_pattern0/data.csv.
-std::string LandingTruthHeader();
-std::string LandingTruthRow(const TruePattern& pattern);
 
 // The pattern in the image that 'camera' takes at 'time_s', whose stamp is 'stamp'; nothing where
 // the camera's model does not see the pattern's centre.

@@ -3,8 +3,8 @@
 
 #include <optional>
 
+#include "kestrel/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/base/time.h"
-#include "kestrel/sitl/autopilot_parameters.h"
 #include "kestrel/sitl/guided_rules.h"
 #include "kestrel/sitl/shaped_path.h"
 

@@ -3,9 +3,9 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/sitl/ardupilot_target.h"
-#include "kestrel/sitl/autopilot_parameters.h"
-#include "kestrel/sitl/landing_rules.h"
+#include "kestrel/autopilot_rules/ardupilot_target.h"
+#include "kestrel/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/autopilot_rules/landing_rules.h"
 #include "kestrel/sitl/shaped_path.h"
 
 namespace kestrel {

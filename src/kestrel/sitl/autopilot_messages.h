@@ -10,10 +10,10 @@
 
 #include <Eigen/Core>
 
+#include "kestrel/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/link/messages.h"
 #include "kestrel/link/packet.h"
 #include "kestrel/navigation/pose_history.h"
-#include "kestrel/sitl/autopilot_parameters.h"
 
 namespace kestrel {
 

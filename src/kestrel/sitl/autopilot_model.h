@@ -9,6 +9,9 @@
 
 #include <Eigen/Core>
 
+#include "kestrel/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/autopilot_rules/landing_rules.h"
+#include "kestrel/autopilot_rules/px4_time_sync.h"
 #include "kestrel/base/random.h"
 #include "kestrel/base/time.h"
 #include "kestrel/flight/navigation_model.h"
@@ -16,12 +19,9 @@
 #include "kestrel/navigation/set_point.h"
 #include "kestrel/sitl/autopilot_messages.h"
 #include "kestrel/sitl/autopilot_model_options.h"
-#include "kestrel/sitl/autopilot_parameters.h"
 #include "kestrel/sitl/guided_rules.h"
 #include "kestrel/sitl/land_detector.h"
-#include "kestrel/sitl/landing_rules.h"
 #include "kestrel/sitl/message_streams.h"
-#include "kestrel/sitl/px4_time_sync.h"
 #include "kestrel/sitl/return_flight.h"
 #include "kestrel/sitl/simulated_pilot.h"
 #include "kestrel/sitl/simulated_uav.h"

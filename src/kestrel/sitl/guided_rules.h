@@ -3,9 +3,9 @@
 
 #include <optional>
 
+#include "kestrel/autopilot_rules/landing_rules.h"
 #include "kestrel/link/autopilot_kind.h"
 #include "kestrel/link/messages.h"
-#include "kestrel/sitl/landing_rules.h"
 
 namespace kestrel {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "kestrel/sitl/autopilot_parameters.h"
+#include "kestrel/autopilot_rules/autopilot_parameters.h"
 
 namespace kestrel {
 

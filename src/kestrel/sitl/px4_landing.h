@@ -3,10 +3,10 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/sitl/autopilot_parameters.h"
-#include "kestrel/sitl/landing_rules.h"
-#include "kestrel/sitl/px4_target.h"
-#include "kestrel/sitl/px4_time_sync.h"
+#include "kestrel/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/autopilot_rules/landing_rules.h"
+#include "kestrel/autopilot_rules/px4_target.h"
+#include "kestrel/autopilot_rules/px4_time_sync.h"
 
 namespace kestrel {
 

@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "kestrel/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/base/time.h"
-#include "kestrel/sitl/autopilot_parameters.h"
 #include "kestrel/sitl/guided_rules.h"
 
 namespace kestrel {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "kestrel/sitl/autopilot_parameters.h"
-#include "kestrel/sitl/landing_rules.h"
+#include "kestrel/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/autopilot_rules/landing_rules.h"
 
 namespace kestrel {
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 
+#include "kestrel/autopilot_rules/landing_rules.h"
 #include "kestrel/link/messages.h"
 #include "kestrel/navigation/set_point.h"
-#include "kestrel/sitl/landing_rules.h"
 
 namespace kestrel {
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/sitl/landing_rules.h"
+#include "kestrel/autopilot_rules/landing_rules.h"
 
 namespace kestrel {
 

@@ -9,12 +9,12 @@
 #include <thread>
 #include <vector>
 
+#include "kestrel/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/base/random.h"
 #include "kestrel/base/time.h"
 #include "kestrel/link/connection.h"
 #include "kestrel/sitl/autopilot_messages.h"
 #include "kestrel/sitl/autopilot_model.h"
-#include "kestrel/sitl/autopilot_parameters.h"
 #include "kestrel/sitl/link_faults.h"
 #include "kestrel/sitl/vehicle_world.h"
 

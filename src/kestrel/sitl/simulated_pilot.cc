@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "kestrel/autopilot_rules/landing_rules.h"
 #include "kestrel/base/options.h"
 #include "kestrel/base/violations.h"
-#include "kestrel/sitl/landing_rules.h"
 
 namespace kestrel {
 

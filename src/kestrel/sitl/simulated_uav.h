@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "kestrel/autopilot_rules/landing_rules.h"
 #include "kestrel/base/random.h"
 #include "kestrel/base/time.h"
 #include "kestrel/base/violations.h"
@@ -15,7 +16,6 @@
 #include "kestrel/geometry/rigid_transform.h"
 #include "kestrel/navigation/pose_history.h"
 #include "kestrel/navigation/set_point.h"
-#include "kestrel/sitl/landing_rules.h"
 #include "kestrel/sitl/vehicle_world.h"
 #include "kestrel/world/motion.h"
 

@@ -8,6 +8,7 @@
 
 #include "kestrel/base/time.h"
 #include "kestrel/mapping/object_map.h"
+#include "kestrel/mapping/team_object.h"
 #include "kestrel/objects/object_model.h"
 #include "kestrel/team/team_fusion.h"
 #include "kestrel/team/team_member.h"
@@ -30,13 +31,6 @@ struct TeamView {
 
 // All UAVs' maps as one. 'fusion' is this member's own, which remembers what does not change.
 TeamView ViewTeam(const TeamMember& member, Time local, TeamFusion* fusion);
-
-// An object of the team's map.
-struct TeamObject {
-  MappedObject object;
-  std::vector<std::string> uavs;  // that have it in their maps, by name
-  std::string holder;             // the one that goes for it; empty: none
-};
 
 // The objects of the view: in the UAV's own world and on its own clock.
 std::vector<TeamObject> OwnMap(const TeamView& view);

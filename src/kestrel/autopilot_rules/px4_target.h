@@ -7,12 +7,12 @@
 
 #include <Eigen/Core>
 
+#include "kestrel/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/autopilot_rules/landing_rules.h"
+#include "kestrel/autopilot_rules/position_velocity_filter.h"
+#include "kestrel/autopilot_rules/px4_time_sync.h"
 #include "kestrel/link/messages.h"
 #include "kestrel/navigation/pose_history.h"
-#include "kestrel/sitl/autopilot_parameters.h"
-#include "kestrel/sitl/landing_rules.h"
-#include "kestrel/sitl/position_velocity_filter.h"
-#include "kestrel/sitl/px4_time_sync.h"
 
 namespace kestrel {
 

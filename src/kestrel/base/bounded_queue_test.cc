@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/onboard/bounded_queue.h"
+#include "kestrel/base/bounded_queue.h"
 
 #include <memory>
 #include <thread>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/foxglove/flight_mcap.h"
+#include "kestrel/foxglove/mcap_sink.h"
 
 #include <chrono>
 #include <filesystem>
@@ -21,17 +21,17 @@ namespace {
 
 using ::testing::IsEmpty;
 
-TEST(FlightMcapTest, WritesAllThatItWasGiven) {
+TEST(McapSinkTest, WritesAllThatItWasGiven) {
   const TestFolder folder;
   const std::string path = folder / "flight.mcap";
   std::vector<std::string> told;
   {
-    FlightMcap mcap(path, false, ObservedCamera(), ObservedView(),
-                    [&](const std::string& text) { told.push_back(text); });
-    mcap.Say(EventLevel::kWarning, "the autopilot is gone");
+    const auto mcap = OpenMcapSink(path, false, ObservedCamera(), ObservedView(),
+                                   [&](const std::string& text) { told.push_back(text); });
+    mcap->Take(SessionEvent{Now(), EventLevel::kWarning, "the autopilot is gone"});
     for (int i = 0; i < 20; ++i) {
       const Frame frame = ObservedFrame(i);
-      mcap.See(frame, ObservedLanding(frame.time));
+      mcap->Take(Observation{frame, ObservedLanding(frame.time)});
     }
   }
   EXPECT_THAT(told, IsEmpty());
@@ -43,12 +43,13 @@ TEST(FlightMcapTest, WritesAllThatItWasGiven) {
 }
 
 // What a crash would leave: the file is there and is read, though nothing follows.
-TEST(FlightMcapTest, ASecondAfterAFrameItIsInTheFile) {
+TEST(McapSinkTest, ASecondAfterAFrameItIsInTheFile) {
   const TestFolder folder;
   const std::string path = folder / "flight.mcap";
-  FlightMcap mcap(path, false, ObservedCamera(), ObservedView(), [](const std::string&) {});
+  const auto mcap =
+      OpenMcapSink(path, false, ObservedCamera(), ObservedView(), [](const std::string&) {});
   const Frame frame = ObservedFrame(0);
-  mcap.See(frame, ObservedLanding(frame.time));
+  mcap->Take(Observation{frame, ObservedLanding(frame.time)});
   std::size_t topics = 0;
   for (int i = 0; i < 200 && topics < 9; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -58,18 +59,18 @@ TEST(FlightMcapTest, ASecondAfterAFrameItIsInTheFile) {
   EXPECT_EQ(topics, 9u);
 }
 
-TEST(FlightMcapTest, AFullDiskIsSaidAndTheFlightGoesOn) {
+TEST(McapSinkTest, AFullDiskIsSaidAndTheFlightGoesOn) {
   std::mutex mutex;
   std::vector<std::string> told;
   {
-    FlightMcap mcap("/dev/full", true, ObservedCamera(), ObservedView(),
-                    [&](const std::string& text) {
-                      const std::lock_guard lock(mutex);
-                      told.push_back(text);
-                    });
+    const auto mcap = OpenMcapSink("/dev/full", true, ObservedCamera(), ObservedView(),
+                                   [&](const std::string& text) {
+                                     const std::lock_guard lock(mutex);
+                                     told.push_back(text);
+                                   });
     for (int i = 0; i < 40; ++i) {
       const Frame frame = ObservedFrame(i);
-      mcap.See(frame, ObservedLanding(frame.time));
+      mcap->Take(Observation{frame, ObservedLanding(frame.time)});
     }
   }
   ASSERT_EQ(told.size(), 1u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/sitl/ardupilot_target.h"
+#include "kestrel/autopilot_rules/ardupilot_target.h"
 
 #include <algorithm>
 #include <chrono>

@@ -7,10 +7,10 @@
 
 #include <Eigen/Geometry>
 
+#include "kestrel/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/autopilot_rules/landing_rules.h"
+#include "kestrel/autopilot_rules/position_velocity_filter.h"
 #include "kestrel/link/messages.h"
-#include "kestrel/sitl/autopilot_parameters.h"
-#include "kestrel/sitl/landing_rules.h"
-#include "kestrel/sitl/position_velocity_filter.h"
 
 namespace kestrel {
 

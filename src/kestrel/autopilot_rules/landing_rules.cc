@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/sitl/landing_rules.h"
+#include "kestrel/autopilot_rules/landing_rules.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/onboard/latest_value.h"
+#include "kestrel/base/latest_value.h"
 
 #include <thread>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/onboard/thread_setup.h"
+#include "kestrel/base/thread_setup.h"
 
 #include <array>
 #include <pthread.h>

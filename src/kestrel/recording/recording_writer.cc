@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/simulation/recording_writer.h"
+#include "kestrel/recording/recording_writer.h"
 
 #include <cstdint>
 #include <fstream>
@@ -20,7 +20,7 @@ void Require(const std::error_code& error, const fs::path& path, const char* wha
   if (error) throw InputError(fmt::format("{}: {}: {}", path.string(), what, error.message()));
 }
 
-void MakeFolder(const fs::path& folder) {
+void CreateFolders(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   Require(error, folder, "cannot be made");
@@ -28,7 +28,7 @@ void MakeFolder(const fs::path& folder) {
 
 // Under another name first: what has its name is whole.
 void WriteWhole(const fs::path& path, const char* bytes, std::size_t size) {
-  MakeFolder(path.parent_path());
+  CreateFolders(path.parent_path());
   const fs::path unfinished = path.string() + ".unfinished";
   std::ofstream file(unfinished, std::ios::binary);
   file.write(bytes, static_cast<std::streamsize>(size));
@@ -68,7 +68,7 @@ RecordingWriter::RecordingWriter(const fs::path& output, bool replace, const std
   output_ = path.has_filename() ? path : path.parent_path();
   RequireFreeForRecording(output_, replace);
   part_ = output_.string() + ".part";
-  MakeFolder(part_);
+  CreateFolders(part_);
   lock_.emplace(part_.string());
   const fs::path scene_file = part_ / "mav0" / "scene.yaml";
   if (!fs::exists(scene_file) || ReadFile(scene_file.string()) != scene) {
@@ -79,7 +79,7 @@ RecordingWriter::RecordingWriter(const fs::path& output, bool replace, const std
     }
     WriteText(scene_file, scene);
   }
-  MakeFolder(part_ / kImages);
+  CreateFolders(part_ / kImages);
 }
 
 bool RecordingWriter::HasImage(Time time) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/onboard/live_events.h"
+#include "kestrel/session/live_events.h"
 
 #include <utility>
 
