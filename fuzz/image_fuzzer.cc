@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whatever the bytes of an image file are, they are an image of the size that is allowed, or are
+// refused in one line.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "kestrel/base/error.h"
+#include "kestrel/codec/image_codec.h"
+
+namespace {
+
+constexpr std::size_t kMaxPixels = 1 << 20;
+
+void RequireImage(const cv::Mat& image) {
+  const bool has_depth = image.depth() == CV_8U || image.depth() == CV_16U;
+  if (image.empty() || image.total() > kMaxPixels || !has_depth || image.channels() > 4) {
+    std::abort();
+  }
+}
+
+void RequireOneLine(std::string_view message) {
+  if (!message.starts_with("image: ") || message.find('\n') != std::string_view::npos) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  try {
+    RequireImage(kestrel::DecodeImage(bytes, "image", kMaxPixels));
+  } catch (const kestrel::InputError& error) {
+    RequireOneLine(error.what());
+  }
+  return 0;
+}
