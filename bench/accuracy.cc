@@ -14,9 +14,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/base/error.h"
+#include "kestrel/codec/image_codec.h"
 #include "landing_frames.h"
 #include "landing_score.h"
 #include "landing_variants.h"
@@ -144,9 +144,7 @@ class FaultLog {
         name.begin(), name.end(), [](char c) { return !std::isalnum(c) && c != '.'; }, '_');
     std::filesystem::create_directories(options_.misses_dir);
     const std::string file = options_.misses_dir + "/" + name + ".png";
-    if (!cv::imwrite(file, frame.image)) {
-      throw InputError(file + ": cannot be written, expected a folder with room for it");
-    }
+    WriteImage(file, frame.image);
   }
 
   const Options& options_;

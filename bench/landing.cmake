@@ -4,8 +4,8 @@ find_package(OpenCV 4.5 REQUIRED COMPONENTS aruco)
 add_executable(kestrel_accuracy accuracy.cc landing_frames.cc landing_score.cc
                                 landing_variants.cc)
 target_link_libraries(
-  kestrel_accuracy PRIVATE kestrel::landing kestrel::recording kestrel::stills
-                           CLI11::CLI11 fmt::fmt opencv_imgcodecs opencv_imgproc)
+  kestrel_accuracy PRIVATE kestrel::codec kestrel::landing kestrel::recording kestrel::stills
+                           CLI11::CLI11 fmt::fmt opencv_imgproc)
 target_compile_definitions(kestrel_accuracy
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
 
@@ -18,8 +18,8 @@ target_compile_definitions(robustness_accuracy
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
 
 add_executable(light_accuracy light_accuracy.cc landing_frames.cc landing_score.cc)
-target_link_libraries(light_accuracy PRIVATE kestrel::landing kestrel::recording kestrel::stills
-                                             CLI11::CLI11 fmt::fmt opencv_imgcodecs)
+target_link_libraries(light_accuracy PRIVATE kestrel::codec kestrel::landing kestrel::recording kestrel::stills
+                                             CLI11::CLI11 fmt::fmt)
 target_compile_definitions(light_accuracy
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
 
@@ -38,8 +38,8 @@ endforeach()
 add_executable(train_print_score train_print_score.cc print_score_training.cc landing_falsehoods.cc
                                  landing_frames.cc landing_hardships.cc landing_score.cc
                                  landing_variants.cc)
-target_link_libraries(train_print_score PRIVATE kestrel::landing kestrel::recording
+target_link_libraries(train_print_score PRIVATE kestrel::codec kestrel::landing kestrel::recording
                                                 kestrel::stills CLI11::CLI11 fmt::fmt
-                                                opencv_imgcodecs opencv_imgproc)
+                                                opencv_imgproc)
 target_compile_definitions(train_print_score
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")

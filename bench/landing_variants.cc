@@ -5,8 +5,10 @@
 #include <cmath>
 #include <vector>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "kestrel/codec/image_codec.h"
+#include "kestrel/codec/jpeg_codec.h"
 
 namespace kestrel {
 namespace {
@@ -65,9 +67,7 @@ cv::Mat Sharpened(const cv::Mat& image, std::uint64_t /*seed*/) {
 }
 
 cv::Mat Compressed(const cv::Mat& image, std::uint64_t /*seed*/) {
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, 60});
-  return cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
+  return DecodeImage(EncodeJpeg(image, 60), "image");
 }
 
 constexpr std::array kVariants = {ImageVariant{"as they are", Same},

@@ -10,8 +10,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
+#include "kestrel/codec/image_codec.h"
 #include "kestrel/stills/shadow_casters.h"
 #include "landing_frames.h"
 #include "landing_score.h"
@@ -155,7 +155,7 @@ class Report {
     std::string file = score.name;
     std::replace_if(
         file.begin(), file.end(), [](char c) { return c == ' ' || c == '/'; }, '_');
-    cv::imwrite((std::filesystem::path(options_.keep) / (file + ".png")).string(), frame.image);
+    WriteImage((std::filesystem::path(options_.keep) / (file + ".png")).string(), frame.image);
   }
 
   static void PrintPatternRow(const std::string& name, const std::vector<LandingScore>& scores) {

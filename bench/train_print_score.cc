@@ -20,10 +20,11 @@
 #include <fmt/format.h>
 #include <fmt/os.h>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/base/error.h"
+#include "kestrel/codec/image_codec.h"
 #include "kestrel/landing/landing_search.h"
+#include "kestrel/recording/image_file.h"
 #include "landing_falsehoods.h"
 #include "landing_frames.h"
 #include "landing_hardships.h"
@@ -75,9 +76,9 @@ Still Kept(const std::string& folder, const std::string& name, const std::functi
   const std::string file = (std::filesystem::path(folder) / (name + ".png")).string();
   Still still = std::filesystem::exists(file) ? place() : render();
   if (still.image.empty()) {
-    still.image = cv::imread(file, cv::IMREAD_GRAYSCALE);
+    still.image = ReadGrayImage(file);
   } else {
-    cv::imwrite(file, still.image);
+    WriteImage(file, still.image);
   }
   return still;
 }

@@ -11,10 +11,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/bags/test_bags.h"
 #include "kestrel/base/read_file.h"
+#include "kestrel/codec/png_codec.h"
 #include "kestrel/recording/test_files.h"
 
 namespace kestrel {
@@ -211,10 +211,8 @@ TEST(BagSource, AsksWhichOfSeveralCameras) {
 TEST(BagSource, TakesTheRawImagesWhereTheyAreCompressedToo) {
   const TestFolder folder;
   const std::string path = folder / "flight.mcap";
-  std::vector<unsigned char> png;
-  cv::imencode(".png", BagImage(4), png);
-  const CompressedImageMessage compressed = BagCompressedMessage(
-      {reinterpret_cast<const char*>(png.data()), png.size()}, BagTime(4), "png");
+  const std::string png = EncodePng(BagImage(4));
+  const CompressedImageMessage compressed = BagCompressedMessage(png, BagTime(4), "png");
   TestBag bag(path);
   bag.Add("/camera/image_raw/compressed", compressed);
   bag.AddImage(1);

@@ -6,10 +6,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/bags/test_bags.h"
+#include "kestrel/codec/png_codec.h"
 #include "kestrel/recording/test_files.h"
 
 namespace kestrel {
@@ -98,11 +98,10 @@ TEST(DecodeImage, SaysWhatIsWrong) {
 
 TEST(DecodeImage, ReadsCompressedImages) {
   const cv::Mat image = NoiseImage(40, 30, CV_8UC3);
-  std::vector<unsigned char> png;
-  cv::imencode(".png", image, png);
+  const std::string png = EncodePng(image);
   CompressedImageMessage message;
   message.format = "bgr8; png compressed bgr8";
-  message.data = {reinterpret_cast<const char*>(png.data()), png.size()};
+  message.data = png;
   EXPECT_EQ(cv::norm(DecodeImage(message, PixelFormat::kBgr, "image"), image, cv::NORM_INF), 0);
   message.data = message.data.substr(0, 500);
   EXPECT_THAT(InputErrorOf([&] { DecodeImage(message, PixelFormat::kBgr, "image"); }),

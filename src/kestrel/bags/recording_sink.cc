@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/bags/bag_writer.h"
 #include "kestrel/bags/camera_info.h"
@@ -14,6 +13,7 @@
 #include "kestrel/bags/messages.h"
 #include "kestrel/bags/serialization.h"
 #include "kestrel/base/error.h"
+#include "kestrel/codec/image_codec.h"
 #include "kestrel/recording/euroc_text.h"
 #include "kestrel/recording/output_folder.h"
 
@@ -154,9 +154,7 @@ class EurocSink : public RecordingSink {
   void AddFrame(const Frame& frame) override {
     const std::string name = fmt::format("{}.png", ToNanoseconds(frame.time));
     const std::string path = folder_.NewFile("mav0/cam0/data/" + name).string();
-    if (!cv::imwrite(path, Smallest(frame.image))) {
-      throw InputError(path + ": cannot be written");
-    }
+    WriteImage(path, Smallest(frame.image));
     images_ << fmt::format("{},{}\n", ToNanoseconds(frame.time), name);
   }
 

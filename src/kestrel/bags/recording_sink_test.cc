@@ -11,6 +11,7 @@
 #include "kestrel/bags/bag_source.h"
 #include "kestrel/bags/test_bags.h"
 #include "kestrel/base/read_file.h"
+#include "kestrel/codec/image_codec.h"
 #include "kestrel/recording/euroc_text.h"
 #include "kestrel/recording/test_files.h"
 
@@ -67,8 +68,8 @@ TEST_P(ThereAndBack, ARecordingIsTheSame) {
   const auto images = std::filesystem::path(folder / "flight/mav0/cam0/data");
   for (const auto& entry : std::filesystem::directory_iterator(images)) {
     const std::string back = folder / ("back/mav0/cam0/data/" + entry.path().filename().string());
-    const cv::Mat a = cv::imread(entry.path(), cv::IMREAD_UNCHANGED);
-    const cv::Mat b = cv::imread(back, cv::IMREAD_UNCHANGED);
+    const cv::Mat a = ReadImage(entry.path().string());
+    const cv::Mat b = ReadImage(back);
     ASSERT_EQ(a.type(), b.type());
     EXPECT_EQ(cv::norm(a, b, cv::NORM_INF), 0);
   }

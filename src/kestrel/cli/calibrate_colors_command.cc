@@ -10,11 +10,11 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
 #include "kestrel/base/write_file.h"
+#include "kestrel/codec/image_codec.h"
 #include "kestrel/objects/color_grid.h"
 #include "kestrel/objects/color_samples.h"
 #include "kestrel/objects/object_model.h"
@@ -61,8 +61,7 @@ void ReplaceColors(const std::map<std::string, std::vector<Hsv>>& samples, int c
 }
 
 void WritePicture(const OutputFolder& folder, const std::string& name, const cv::Mat& picture) {
-  const std::string path = folder.NewFile(name).string();
-  if (!cv::imwrite(path, picture)) throw InputError(path + ": cannot be written");
+  WriteImage(folder.NewFile(name).string(), picture);
 }
 
 void RunColors(const ColorsArguments& arguments) {

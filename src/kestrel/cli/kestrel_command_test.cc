@@ -10,11 +10,10 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/videoio.hpp>
 
 #include "kestrel/base/read_file.h"
 #include "kestrel/cli/test_command.h"
+#include "kestrel/codec/image_codec.h"
 #include "kestrel/foxglove/test_protobuf.h"
 #include "kestrel/pipeline/test_pattern.h"
 #include "kestrel/recording/test_files.h"
@@ -63,9 +62,20 @@ class KestrelCommandTest : public CommandTest {
   }
 };
 
+// GDAL, FFmpeg and what else OpenCV's codecs need take longer to load than a short command to run.
+TEST_F(KestrelCommandTest, NeedsNoneOfOpenCvsCodecs) {
+  const std::string list = folder_ / "libraries.txt";
+  ASSERT_EQ(std::system(fmt::format("ldd '{}' > '{}'", KESTREL_COMMAND, list).c_str()), 0);
+  const std::string libraries = ReadFile(list);
+  EXPECT_THAT(libraries, HasSubstr("libopencv_core"));
+  for (const char* name : {"imgcodecs", "videoio", "highgui", "gdal", "avcodec"}) {
+    EXPECT_THAT(libraries, Not(HasSubstr(name)));
+  }
+}
+
 TEST_F(KestrelCommandTest, LandSaysOnceThatTheAltitudeIsWrong) {
   WriteRecording();
-  const cv::Mat image = cv::imread(folder_ / "flight/mav0/cam0/data/100000000.png");
+  const cv::Mat image = ReadImage(folder_ / "flight/mav0/cam0/data/100000000.png");
   for (int i = 0; i < 12; ++i) WriteTestImage(folder_, fmt::format("images/{:02}.png", i), image);
   const std::string land = fmt::format("land {} --camera {} --altitude ", folder_ / "images",
                                        folder_ / "flight/mav0/cam0/sensor.yaml");
@@ -159,7 +169,7 @@ TEST_F(KestrelCommandTest, LandsOnARecording) {
   EXPECT_THAT(csv, HasSubstr("\nmav0/cam0/data/200000000.png,200000000,0,,,"));
   for (const char* name : {"100000000", "200000000"}) {
     const std::string image = output + "/annotated/mav0/cam0/data/" + name + ".png";
-    EXPECT_EQ(cv::imread(image).size(), cv::Size(640, 480));
+    EXPECT_EQ(ReadImage(image).size(), cv::Size(640, 480));
   }
 }
 
@@ -275,10 +285,7 @@ TEST_F(KestrelCommandTest, SourceAtFaultIsNamed) {
 TEST_F(KestrelCommandTest, VideoThatEndsEarlyGivesItsFramesAndSaysSo) {
   const std::string camera = " --camera " + folder_.Write("camera.yaml", kSensor);
   const std::string video = folder_ / "flight.avi";
-  cv::VideoWriter writer(video, cv::CAP_OPENCV_MJPEG, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'),
-                         30, cv::Size(640, 480));
-  for (int i = 0; i < 20; ++i) writer.write(NoiseImage(640, 480, CV_8UC3, i));
-  writer.release();
+  WriteTestVideo(folder_ / "flight", VideoFormat::kAvi, 20, cv::Size(640, 480));
   TestFolder::CutOff(video, 0.5);
   const Outcome outcome = Run("land " + video + camera);
   EXPECT_EQ(outcome.status, 1);

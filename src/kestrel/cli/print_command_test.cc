@@ -6,9 +6,9 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/cli/test_command.h"
+#include "kestrel/codec/image_codec.h"
 #include "kestrel/recording/test_files.h"
 #include "kestrel/rendering/flight_camera.h"
 #include "kestrel/rendering/test_worlds.h"
@@ -34,7 +34,7 @@ class PrintCommandTest : public CommandTest {
   static cv::Mat Photograph(const std::string& pdf, double size_m) {
     const std::string command = fmt::format("pdftoppm -r 50.8 -gray -singlefile '{0}' '{0}'", pdf);
     EXPECT_EQ(std::system(command.c_str()), 0) << command;
-    cv::Mat paint = cv::imread(pdf + ".pgm", cv::IMREAD_GRAYSCALE);
+    cv::Mat paint = ReadImage(pdf + ".pgm");
     EXPECT_FALSE(paint.empty());
     paint.forEach<std::uint8_t>([](std::uint8_t& gray, const int*) {
       gray = CodeOfReflectance(0.05 + 0.75 * gray / 255);  // ink and paper

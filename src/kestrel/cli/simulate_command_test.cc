@@ -4,6 +4,7 @@
 #include <string>
 
 #include "kestrel/cli/test_command.h"
+#include "kestrel/codec/image_codec.h"
 
 namespace kestrel {
 namespace {
@@ -50,7 +51,7 @@ TEST_F(SimulateCommandTest, SimulatesAHuntWithTheUsersCamera) {
   const std::string flight = folder_ / "hunt";
   const Outcome outcome = Run("simulate hunt --output " + flight + " --camera " + camera + kSmall);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  const cv::Mat image = cv::imread(flight + "/mav0/cam0/data/100000000000.png", -1);
+  const cv::Mat image = ReadImage(flight + "/mav0/cam0/data/100000000000.png");
   EXPECT_EQ(image.size(), cv::Size(160, 90));
   EXPECT_EQ(image.channels(), 3);
 }

@@ -7,10 +7,10 @@
 #include <thread>
 
 #include <gtest/gtest.h>
-#include <opencv2/videoio.hpp>
 
 #include "kestrel/base/error.h"
 #include "kestrel/console/test_browser.h"
+#include "kestrel/recording/video_source.h"
 
 namespace kestrel {
 namespace {
@@ -76,10 +76,10 @@ TEST_F(ClipMakerTest, AClipHasItsFramesAndIsRemovedWithTheLastWhoHoldsIt) {
   EXPECT_EQ(Told()->frames, 0u);
   const std::string path = asked.answer->file->path;
   EXPECT_EQ(asked.answer->name, "clip-0" + std::filesystem::path(path).extension().string());
-  cv::VideoCapture video(path);
+  const auto video = OpenVideoFile(path);
   int frames = 0;
-  for (cv::Mat image; video.read(image); ++frames) {
-    EXPECT_NEAR(cv::mean(image)[1], 20.0 * frames, 8) << frames;
+  for (Frame frame; video->Next(&frame); ++frames) {
+    EXPECT_NEAR(cv::mean(frame.image)[0], 20.0 * frames, 8) << frames;
   }
   EXPECT_EQ(frames, 9);
   asked.answer.reset();

@@ -11,12 +11,12 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
 #include "kestrel/base/test_folder.h"
 #include "kestrel/base/write_file.h"
+#include "kestrel/codec/image_codec.h"
 #include "kestrel/console/test_browser.h"
 #include "kestrel/console/web_server.h"
 
@@ -186,8 +186,7 @@ TEST_F(ColorPageTest, RevertingAndSavingAgainKeepVersions) {
 TEST_F(ColorPageTest, PicturesAreOfTheFrameInColour) {
   TestBrowser browser(server_.port());
   const std::string jpeg = browser.Send(browser.Get("/export/picture-1.jpg")).body();
-  const cv::Mat picture =
-      cv::imdecode(std::vector<unsigned char>(jpeg.begin(), jpeg.end()), cv::IMREAD_COLOR);
+  const cv::Mat picture = DecodeImage(jpeg, "picture");
   ASSERT_EQ(picture.size(), cv::Size(120, 80));
   EXPECT_LT(cv::norm(picture.at<cv::Vec3b>(35, 55), Picture(1).at<cv::Vec3b>(35, 55)), 20);
   TestBrowser another(server_.port());

@@ -9,10 +9,10 @@
 
 #include <opencv2/core.hpp>
 
+#include "kestrel/codec/jpeg_codec.h"
 #include "kestrel/console/color_request.h"
 #include "kestrel/console/color_state.h"
 #include "kestrel/console/export_request.h"
-#include "kestrel/console/jpeg_encoder.h"
 #include "kestrel/teaching/color_editor.h"
 
 namespace kestrel {

@@ -4,10 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-
-#include "kestrel/base/error.h"
 
 namespace kestrel {
 namespace {
@@ -86,14 +83,6 @@ cv::Mat WithShapes(const cv::Mat& image, const std::vector<OverlayShape>& shapes
     Draw(shape.outline, label, ColorOf(OverlayLayer::kSecond), &picture);
   }
   return picture;
-}
-
-std::string PngOf(const cv::Mat& image) {
-  std::vector<unsigned char> png;
-  if (image.empty() || !cv::imencode(".png", image, png)) {
-    throw InputError("the image cannot be encoded as PNG");
-  }
-  return {png.begin(), png.end()};
 }
 
 }  // namespace kestrel

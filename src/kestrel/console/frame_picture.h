@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -13,8 +12,5 @@ namespace kestrel {
 // The image (8-bit gray or BGR) in colour, with the shapes drawn on it as on the page: what a
 // second run found over the first run's shapes.
 cv::Mat WithShapes(const cv::Mat& image, const std::vector<OverlayShape>& shapes);
-
-// A PNG file's bytes. Throws InputError when the image cannot be encoded.
-std::string PngOf(const cv::Mat& image);
 
 }  // namespace kestrel

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "kestrel/codec/jpeg_codec.h"
 #include "kestrel/console/console_feed.h"
-#include "kestrel/console/jpeg_encoder.h"
 #include "kestrel/console/telemetry_channel.h"
 
 namespace kestrel {

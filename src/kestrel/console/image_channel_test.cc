@@ -6,7 +6,8 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
+
+#include "kestrel/codec/image_codec.h"
 
 namespace kestrel {
 namespace {
@@ -42,8 +43,8 @@ Unpacked Unpack(const std::string& message) {
   std::size_t size = 0;
   for (int i = 0; i < 4; ++i)
     size |= static_cast<std::size_t>(static_cast<unsigned char>(message[i])) << 8 * i;
-  const std::vector<char> jpeg(message.begin() + 4 + size, message.end());
-  return {nlohmann::json::parse(message.substr(4, size)), cv::imdecode(jpeg, cv::IMREAD_UNCHANGED)};
+  return {nlohmann::json::parse(message.substr(4, size)),
+          DecodeImage(message.substr(4 + size), "image")};
 }
 
 TEST(ImageChannelTest, OneMessageHoldsTheImageAndWhatWasFoundInIt) {

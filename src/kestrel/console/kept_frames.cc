@@ -6,8 +6,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
-#include "kestrel/base/write_file.h"
-#include "kestrel/console/frame_picture.h"
+#include "kestrel/codec/image_codec.h"
 #include "kestrel/recording/image_file.h"
 
 namespace kestrel {
@@ -24,7 +23,7 @@ std::string KeptFrames::Keep(const cv::Mat& image, Time captured) {
   // In the order of the numbers, when they are read as a folder.
   const std::string file =
       (folder_ / fmt::format("{:02}_{}.png", files_.size() + 1, ToNanoseconds(captured))).string();
-  WriteFile(file, PngOf(image));
+  WriteImage(file, image);
   files_.push_back(file);
   return fmt::format("frame {} is kept as {}", files_.size(), file);
 }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/base/error.h"
+#include "kestrel/codec/png_codec.h"
 #include "kestrel/console/frame_picture.h"
 
 namespace kestrel {
@@ -207,9 +208,9 @@ ExportAnswer ReplayConsole::MakeExport(const ExportRequest& request) const {
                                        ToNanoseconds(first_->frames[request.number].time));
   try {
     const cv::Mat image = read_(request.number);
-    if (!has_shapes) return {PngOf(image), "image/png", name};
-    return {PngOf(WithShapes(image, ShapesOf(*first_, second_.get(), request.number))), "image/png",
-            name};
+    if (!has_shapes) return {EncodePng(image), "image/png", name};
+    return {EncodePng(WithShapes(image, ShapesOf(*first_, second_.get(), request.number))),
+            "image/png", name};
   } catch (const InputError&) {  // its file is gone
     return {};
   }

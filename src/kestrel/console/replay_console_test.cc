@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/videoio.hpp>
 
 #include "kestrel/base/error.h"
+#include "kestrel/codec/image_codec.h"
 #include "kestrel/console/replay_options.h"
 #include "kestrel/console/test_browser.h"
 #include "kestrel/recording/test_files.h"
+#include "kestrel/recording/video_source.h"
 
 namespace kestrel {
 namespace {
@@ -200,12 +200,14 @@ TEST_F(ReplayConsoleTest, GivesAClipAway) {
   EXPECT_TRUE(disposition.starts_with("attachment; filename=\"overlays-3-8.")) << disposition;
   EXPECT_EQ(clip["X-Content-Type-Options"], "nosniff");
   const TestFolder folder;
-  cv::VideoCapture video(
+  const auto video = OpenVideoFile(
       folder.Write(clip["Content-Type"] == "video/mp4" ? "a.mp4" : "a.avi", clip.body()));
   int frames = 0;
-  for (cv::Mat image; video.read(image); ++frames) EXPECT_EQ(image.size(), cv::Size(376, 240));
+  for (Frame frame; video->Next(&frame); ++frames) {
+    EXPECT_EQ(frame.image.size(), cv::Size(376, 240));
+  }
   EXPECT_EQ(frames, 6);
-  EXPECT_NEAR(video.get(cv::CAP_PROP_FPS), 10, 0.1);
+  EXPECT_NEAR(video->rate_hz(), 10, 0.1);
   // The connection goes on; of a clip that ends after the recording there is none.
   EXPECT_EQ(browser.Send(browser.Get("/export/frame-1.png")).result_int(), 200u);
   EXPECT_EQ(browser.Send(browser.Get("/export/clip-3-20.mp4")).result_int(), 404u);
@@ -229,8 +231,7 @@ TEST_F(ReplayConsoleTest, GivesFramesAndTablesAway) {
   const auto get = [&](const std::string& path) { return browser.Send(browser.Get(path)); };
   const auto picture = [&](const std::string& path) {
     const std::string png = get(path).body();
-    const std::vector<unsigned char> bytes(png.begin(), png.end());
-    return bytes.empty() ? cv::Mat() : cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+    return png.empty() ? cv::Mat() : DecodeImage(png, "picture");
   };
   const cv::Mat plain(240, 376, CV_8UC1, cv::Scalar(7));
   EXPECT_EQ(cv::norm(picture("/export/frame-7.png"), plain, cv::NORM_INF), 0);

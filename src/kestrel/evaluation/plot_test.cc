@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/codec/image_codec.h"
 #include "kestrel/recording/test_files.h"
 
 namespace kestrel {
@@ -48,7 +49,7 @@ TEST(PlotScript, LegendHasRoomForItsLongestLabel) {
 TEST(WritePlot, DrawsAPicture) {
   const TestFolder folder;
   WritePlot(TwoPanels(), folder / "it's.png");
-  const cv::Mat picture = cv::imread(folder / "it's.png");
+  const cv::Mat picture = ReadImage(folder / "it's.png");
   ASSERT_FALSE(picture.empty());
   EXPECT_GT(cv::countNonZero(picture.reshape(1) < 128), 500);
 }

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "kestrel/camera/camera_model.h"
-#include "kestrel/console/jpeg_encoder.h"
+#include "kestrel/codec/jpeg_codec.h"
 #include "kestrel/foxglove/foxglove_sink.h"
 #include "kestrel/recording/frame.h"
 

@@ -7,10 +7,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
+#include "kestrel/codec/image_codec.h"
 #include "kestrel/foxglove/test_observations.h"
 #include "kestrel/foxglove/test_protobuf.h"
 #include "kestrel/recording/test_files.h"
@@ -45,8 +45,7 @@ TEST(ObservationFileTest, WritesALanding) {
   EXPECT_EQ(image.time(1), ObservedFrame(3).time);
   EXPECT_EQ(image.bytes(3), "jpeg");
   const std::string jpeg = image.bytes(2);
-  const cv::Mat decoded =
-      cv::imdecode(std::vector<char>(jpeg.begin(), jpeg.end()), cv::IMREAD_GRAYSCALE);
+  const cv::Mat decoded = DecodeImage(jpeg, "image");
   EXPECT_EQ(decoded.size(), cv::Size(64, 48));
   EXPECT_NEAR(decoded.at<std::uint8_t>(20, 20), 100, 1);
 

@@ -4,14 +4,12 @@
 #include <chrono>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/base/error.h"
-#include "kestrel/base/write_file.h"
+#include "kestrel/codec/image_codec.h"
 
 namespace kestrel {
 namespace {
@@ -55,9 +53,7 @@ std::string FlightKeeper::KeepSnapshot(const cv::Mat& image, Time captured) {
   MakeFolder();
   const fs::path path =
       FreeName(folder_, fmt::format("snapshot_{}", ToNanoseconds(captured)), ".png");
-  std::vector<unsigned char> png;
-  if (!cv::imencode(".png", image, png)) throw InputError(path.string() + ": cannot be encoded");
-  WriteFile(path.string(), {reinterpret_cast<const char*>(png.data()), png.size()});
+  WriteImage(path.string(), image);
   return "snapshot kept as " + path.string();
 }
 

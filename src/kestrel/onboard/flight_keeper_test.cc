@@ -10,9 +10,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/base/error.h"
+#include "kestrel/codec/image_codec.h"
 #include "kestrel/recording/euroc_recording.h"
 #include "kestrel/recording/test_files.h"
 
@@ -103,7 +103,7 @@ TEST_F(FlightKeeperTest, SnapshotsReplaceNothing) {
   EXPECT_THAT(said, HasSubstr("snapshot_1000007000000.png"));
   EXPECT_THAT(keeper_.KeepSnapshot(frame.image, frame.time), HasSubstr("-2.png"));
   for (const fs::path& kept : Kept()) {
-    const cv::Mat image = cv::imread(kept.string(), cv::IMREAD_UNCHANGED);
+    const cv::Mat image = ReadImage(kept.string());
     EXPECT_EQ(cv::norm(image, frame.image, cv::NORM_INF), 0);
   }
 }

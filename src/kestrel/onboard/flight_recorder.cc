@@ -10,12 +10,12 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/options.h"
 #include "kestrel/base/violations.h"
 #include "kestrel/base/write_file.h"
+#include "kestrel/codec/png_codec.h"
 #include "kestrel/recording/euroc_text.h"
 #include "kestrel/recording/recording_writer.h"
 
@@ -65,11 +65,6 @@ std::vector<RecordedFiles::File> FilesOf(const fs::path& folder) {
           {folder / "mavlink.tlog", ""}};
 }
 
-std::vector<int> EncodingOf(const FlightRecorderOptions& options) {
-  if (options.compression == "jpg") return {cv::IMWRITE_JPEG_QUALITY, options.jpg_quality};
-  return {cv::IMWRITE_PNG_COMPRESSION, options.png_level};
-}
-
 Duration UtcOffset() {
   return std::chrono::duration_cast<Duration>(std::chrono::system_clock::now().time_since_epoch()) -
          Now().time_since_epoch();
@@ -98,11 +93,11 @@ FlightRecorder::FlightRecorder(const fs::path& folder, bool replace,
       folder_(MadeFolder(folder, replace, options)),
       lock_(folder_.string()),
       tell_(std::move(tell)),
-      encoding_(EncodingOf(options)),
       utc_offset_(UtcOffset()),
       files_(folder_, FilesOf(folder_)),
       images_(static_cast<std::size_t>(options.queue_frames)),
       records_(kRecords) {
+  if (options_.compression == "jpg") jpeg_encoder_.emplace(options_.jpg_quality);
   MakeParts(folder_);
   WriteFile(folder_ / "mav0/cam0/sensor.yaml", EurocCalibrationText(calibration, rate_hz));
   WriteFile(folder_ / "mav0/nav0/sensor.yaml", EurocPoseSensorText(kPoseRate_hz));
@@ -225,17 +220,22 @@ void FlightRecorder::StopImages(const std::string& reason) {
   Say(fmt::format("recording: no more images, the flight goes on: {}", reason));
 }
 
+void FlightRecorder::Encode(const cv::Mat& image) {
+  encoded_.clear();
+  if (!jpeg_encoder_) return AppendPng(image, options_.png_level, &encoded_);
+  if (!jpeg_encoder_->Append(image, &encoded_)) throw InputError("no JPEG of an image");
+}
+
 bool FlightRecorder::WriteImage(const cv::Mat& image, const fs::path& path) {
   const fs::path draft = path.string() + ".part";
   try {
-    cv::imencode("." + options_.compression, image, encoded_, encoding_);
-  } catch (const cv::Exception& error) {
-    StopImages(error.err);
+    Encode(image);
+  } catch (const InputError& error) {
+    StopImages(error.what());
     return false;
   }
   std::ofstream file(draft, std::ios::binary | std::ios::trunc);
-  file.write(reinterpret_cast<const char*>(encoded_.data()),
-             static_cast<std::streamsize>(encoded_.size()));
+  file.write(encoded_.data(), static_cast<std::streamsize>(encoded_.size()));
   file.close();
   if (!file || std::rename(draft.c_str(), path.c_str()) != 0) {
     std::error_code ignored;

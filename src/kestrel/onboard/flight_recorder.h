@@ -22,6 +22,7 @@
 #include "kestrel/base/thread_setup.h"
 #include "kestrel/base/time.h"
 #include "kestrel/camera/calibration.h"
+#include "kestrel/codec/jpeg_codec.h"
 #include "kestrel/navigation/pose_history.h"
 #include "kestrel/onboard/recorded_files.h"
 #include "kestrel/recording/frame.h"
@@ -140,6 +141,7 @@ class FlightRecorder {
   void Write(const RecordedImage& image);
   void Drop(Time time, const char* reason);
   bool HasRoom();
+  void Encode(const cv::Mat& image);
   bool WriteImage(const cv::Mat& image, const std::filesystem::path& path);
   void StopImages(const std::string& reason);
 
@@ -155,15 +157,15 @@ class FlightRecorder {
   std::filesystem::path folder_;
   FolderLock lock_;
   Tell tell_;
-  std::vector<int> encoding_;
-  Duration utc_offset_;  // UTC minus Now()
+  std::optional<JpegEncoder> jpeg_encoder_;  // where images are not PNG
+  Duration utc_offset_;                      // UTC minus Now()
   RecordedFiles files_;
   BoundedQueue<RecordedImage> images_;
   BoundedQueue<Record> records_;
 
   // The writer's.
   std::array<std::optional<Time>, kFileCount> last_times_;
-  std::vector<std::uint8_t> encoded_;
+  std::string encoded_;
   std::string row_;
   Time next_attempt_;  // after a failure to write
 

@@ -2,7 +2,6 @@
 #include "kestrel/onboard/gstreamer_camera.h"
 
 #include <algorithm>
-#include <gst/video/video.h>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -20,38 +19,10 @@ namespace {
 constexpr std::string_view kDevice = "/dev/video";
 constexpr std::size_t kPooledImages = 64;  // what vision and the recorder's queue have at a time
 
-std::string SourceElements(const std::string& camera, const CameraIntrinsics& calibration,
-                           const GstreamerCameraOptions& options) {
-  if (camera.starts_with("rtsp://") || camera.starts_with("rtsps://")) {
-    return fmt::format("rtspsrc location=\"{}\" latency=0 ! decodebin", camera);
-  }
-  if (!camera.starts_with(kDevice)) return camera;
-  const std::string caps = options.device_caps.empty()
-                               ? fmt::format("video/x-raw,width={},height={}", calibration.width_px,
-                                             calibration.height_px)
-                               : options.device_caps;
-  const char* decoder = caps.starts_with("image/jpeg") ? " ! jpegdec" : "";
-  return fmt::format("v4l2src device={} ! {}{}", camera, caps, decoder);
-}
-
-std::string PipelineText(const std::string& camera, const CameraIntrinsics& calibration,
-                         const GstreamerCameraOptions& options) {
-  std::string source = SourceElements(camera, calibration, options);
-  if (source.find("appsink") != std::string::npos) return source;
-  return source + " ! videoconvert ! appsink";
-}
-
-// Copies the pixels into 'image' of the pool; false when they cannot be read.
-bool CopyPixels(GstSample* sample, const GstVideoInfo& info, cv::Mat* image) {
-  GstVideoFrame frame;
-  if (gst_video_frame_map(&frame, &info, gst_sample_get_buffer(sample), GST_MAP_READ) == FALSE) {
-    return false;
-  }
-  const cv::Mat pixels(image->size(), image->type(), GST_VIDEO_FRAME_PLANE_DATA(&frame, 0),
-                       static_cast<std::size_t>(GST_VIDEO_FRAME_PLANE_STRIDE(&frame, 0)));
-  pixels.copyTo(*image);
-  gst_video_frame_unmap(&frame);
-  return true;
+// What a device is asked for.
+std::string DeviceCaps(const CameraIntrinsics& calibration, const GstreamerCameraOptions& options) {
+  if (!options.device_caps.empty()) return options.device_caps;
+  return fmt::format("video/x-raw,width={},height={}", calibration.width_px, calibration.height_px);
 }
 
 }  // namespace
@@ -89,8 +60,8 @@ GstreamerCamera::GstreamerCamera(const std::string& camera, const CameraIntrinsi
 GstreamerCamera::~GstreamerCamera() = default;
 
 void GstreamerCamera::Open() {
-  auto pipeline = std::make_unique<GstreamerPipeline>(PipelineText(camera_, calibration_, options_),
-                                                      camera_, format_);
+  auto pipeline = std::make_unique<GstreamerPipeline>(
+      CameraPipelineText(camera_, DeviceCaps(calibration_, options_)), camera_, format_);
   if (!options_.exposure_property.empty()) {
     pipeline->UseExposureProperty(options_.exposure_property, options_.exposure_unit_s);
   }

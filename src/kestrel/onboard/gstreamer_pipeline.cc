@@ -14,43 +14,6 @@ namespace kestrel {
 namespace {
 
 using GstClockPointer = std::unique_ptr<GstClock, GstReleaser>;
-using GstCapsPointer = std::unique_ptr<GstCaps, GstReleaser>;
-using GstMessagePointer = std::unique_ptr<GstMessage, GstReleaser>;
-using GstErrorPointer = std::unique_ptr<GError, GstReleaser>;
-
-void InitialiseGstreamer() {
-  GError* error = nullptr;
-  if (gst_init_check(nullptr, nullptr, &error) != FALSE) return;
-  const GstErrorPointer owner(error);
-  throw InputError(fmt::format("GStreamer does not start: {}", error ? error->message : "unknown"));
-}
-
-GstElementPointer Parse(const std::string& text, const std::string& camera) {
-  InitialiseGstreamer();
-  GError* error = nullptr;
-  GstElementPointer pipeline(
-      gst_parse_launch_full(text.c_str(), nullptr, GST_PARSE_FLAG_FATAL_ERRORS, &error));
-  const GstErrorPointer owner(error);
-  if (error != nullptr) throw InputError(fmt::format("{}: GStreamer: {}", camera, error->message));
-  if (!GST_IS_PIPELINE(pipeline.get())) {
-    throw InputError(camera + ": is no GStreamer pipeline, expected elements joined by '!'");
-  }
-  return pipeline;
-}
-
-GstElementPointer FindAppSink(GstElement* pipeline, const std::string& camera) {
-  GstIterator* sinks = gst_bin_iterate_sinks(GST_BIN(pipeline));
-  const auto is_other = [](gconstpointer item, gconstpointer) {
-    return GST_IS_APP_SINK(g_value_get_object(static_cast<const GValue*>(item))) ? 0 : 1;
-  };
-  GValue found = G_VALUE_INIT;
-  const bool is_found = gst_iterator_find_custom(sinks, is_other, &found, nullptr) != FALSE;
-  gst_iterator_free(sinks);
-  if (!is_found) throw InputError(camera + ": the pipeline has no appsink at its end");
-  GstElementPointer sink(GST_ELEMENT(g_value_dup_object(&found)));
-  g_value_unset(&found);
-  return sink;
-}
 
 // The source's number of a frame; GST_BUFFER_OFFSET_NONE where it has none: what counts bytes does
 // not end one further.
@@ -95,9 +58,9 @@ void GstExposureProperty::Set(double exposure_s) {
 GstreamerPipeline::GstreamerPipeline(const std::string& text, const std::string& camera,
                                      PixelFormat format)
     : camera_(camera),
-      pipeline_(Parse(text, camera)),
+      pipeline_(ParsePipeline(text, camera)),
       sink_(FindAppSink(pipeline_.get(), camera)),
-      bus_(gst_element_get_bus(pipeline_.get())) {
+      watch_(pipeline_.get()) {
   SetUpSink(format);
   UseMonotonicClock();
 }
@@ -109,8 +72,7 @@ void GstreamerPipeline::UseExposureProperty(const std::string& name, double unit
 }
 
 GstSamplePointer GstreamerPipeline::Pull(Duration timeout) {
-  const auto ns = static_cast<GstClockTime>(std::max<std::int64_t>(timeout.count(), 0));
-  return GstSamplePointer(gst_app_sink_try_pull_sample(GST_APP_SINK(sink_.get()), ns));
+  return PullSample(sink_.get(), timeout);
 }
 
 std::optional<Time> GstreamerPipeline::DriverTime(GstSample* sample) const {
@@ -143,12 +105,8 @@ bool GstreamerPipeline::HasEnded() const {
 }
 
 std::string GstreamerPipeline::Fault() {
-  const GstMessagePointer message(gst_bus_pop_filtered(bus_.get(), GST_MESSAGE_ERROR));
-  if (!message) return "";
-  GError* error = nullptr;
-  gst_message_parse_error(message.get(), &error, nullptr);
-  const GstErrorPointer owner(error);
-  return fmt::format("{}: {}", camera_, error->message);
+  watch_.Poll();
+  return watch_.fault().empty() ? "" : fmt::format("{}: {}", camera_, watch_.fault());
 }
 
 bool GstreamerPipeline::SetExposure(double exposure_s) {
@@ -158,10 +116,7 @@ bool GstreamerPipeline::SetExposure(double exposure_s) {
 
 void GstreamerPipeline::SetUpSink(PixelFormat format) {
   GstAppSink* sink = GST_APP_SINK(sink_.get());
-  const GstCapsPointer caps(gst_caps_new_simple("video/x-raw", "format", G_TYPE_STRING,
-                                                format == PixelFormat::kGray ? "GRAY8" : "BGR",
-                                                nullptr));
-  gst_app_sink_set_caps(sink, caps.get());
+  SetPixelFormat(sink_.get(), format);
   gst_app_sink_set_max_buffers(sink, 1);
   gst_app_sink_set_drop(sink, TRUE);
   gst_app_sink_set_emit_signals(sink, FALSE);

@@ -2,30 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <gst/gst.h>
-#include <memory>
 #include <optional>
 #include <string>
 
 #include "kestrel/base/time.h"
 #include "kestrel/recording/frame.h"
+#include "kestrel/recording/gstreamer.h"
 
 namespace kestrel {
-
-// Owners of GStreamer's objects.
-struct GstReleaser {
-  void operator()(GstCaps* caps) const { gst_caps_unref(caps); }
-  void operator()(GstSample* sample) const { gst_sample_unref(sample); }
-  void operator()(GstMessage* message) const { gst_message_unref(message); }
-  void operator()(GError* error) const { g_error_free(error); }
-  template <class T>
-  void operator()(T* object) const {
-    gst_object_unref(object);
-  }
-};
-using GstElementPointer = std::unique_ptr<GstElement, GstReleaser>;
-using GstBusPointer = std::unique_ptr<GstBus, GstReleaser>;
-using GstSamplePointer = std::unique_ptr<GstSample, GstReleaser>;
 
 // "element.property" of a pipeline that sets the exposure.
 class GstExposureProperty {
@@ -83,7 +67,7 @@ class GstreamerPipeline {
   std::string camera_;
   GstElementPointer pipeline_;
   GstElementPointer sink_;
-  GstBusPointer bus_;
+  GstWatch watch_;
   std::optional<GstExposureProperty> exposure_;
   bool is_live_ = true;
   guint64 last_number_ = GST_BUFFER_OFFSET_NONE;

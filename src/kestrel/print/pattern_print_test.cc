@@ -11,11 +11,11 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/base/error.h"
 #include "kestrel/geometry/angles.h"
+#include "kestrel/recording/image_file.h"
 #include "kestrel/recording/test_files.h"
 
 namespace kestrel {
@@ -35,7 +35,7 @@ cv::Mat RenderPdf(const std::string& file, int page, double pixels_per_m) {
   const std::string command = fmt::format("pdftoppm -r {} -f {} -l {} -gray -singlefile '{}' '{}'",
                                           pixels_per_m * kInch_m, page, page, file, image);
   EXPECT_EQ(std::system(command.c_str()), 0) << command;
-  return cv::imread(image + ".pgm", cv::IMREAD_GRAYSCALE);
+  return ReadGrayImage(image + ".pgm");
 }
 
 cv::Mat RenderSvg(const std::string& file, double pixels_per_m) {
@@ -43,7 +43,7 @@ cv::Mat RenderSvg(const std::string& file, double pixels_per_m) {
   const std::string command = fmt::format("rsvg-convert -d {0} -p {0} -b white -o '{1}' '{2}'",
                                           pixels_per_m * kInch_m, image, file);
   EXPECT_EQ(std::system(command.c_str()), 0) << command;
-  return cv::imread(image, cv::IMREAD_GRAYSCALE);
+  return ReadGrayImage(image);
 }
 
 // Black on the way from one point to the other (m, from the upper left corner), in m: exact where
@@ -169,7 +169,7 @@ cv::Mat Assemble(const std::vector<std::string>& sheets, double scale, const Til
   const int side = static_cast<int>(scale * board_size_m);
   cv::Mat board(side, side, CV_8UC1, cv::Scalar(0));
   for (int i = 0; i < tiling.count(); ++i) {
-    const cv::Mat sheet = cv::imread(sheets[i], cv::IMREAD_GRAYSCALE);
+    const cv::Mat sheet = ReadGrayImage(sheets[i]);
     const Vector2d across = CutMarks(sheet, scale, tiling);
     const Vector2d down = CutMarks(sheet.t(), scale, turned);
     EXPECT_NEAR((across[1] - across[0]) / scale, tiling.tile.x(), 0.0001);

@@ -3,9 +3,7 @@
 
 #include <filesystem>
 
-#include <opencv2/imgcodecs.hpp>
-
-#include "kestrel/base/error.h"
+#include "kestrel/codec/image_codec.h"
 #include "kestrel/recording/video_file.h"
 
 namespace kestrel {
@@ -18,7 +16,7 @@ class ImageWriter : public AnnotatedWriter {
   void Write(const std::string& frame_name, const cv::Mat& image) override {
     std::filesystem::path name = "annotated" / std::filesystem::path(frame_name).relative_path();
     const std::string path = folder_.NewFile(name.replace_extension(".png")).string();
-    if (!cv::imwrite(path, image)) throw InputError(path + ": cannot be written");
+    WriteImage(path, image);
   }
 
  private:

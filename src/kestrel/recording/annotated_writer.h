@@ -21,7 +21,7 @@ class AnnotatedWriter {
 // annotated/<name of the frame>.png. 'folder' must outlive the writer.
 std::unique_ptr<AnnotatedWriter> MakeImageWriter(const OutputFolder& folder);
 
-// annotated.mp4, or annotated.avi (motion JPEG) where OpenCV has no encoder for the first.
+// annotated.mp4, or annotated.avi (motion JPEG) where GStreamer has no encoder for the first.
 std::unique_ptr<AnnotatedWriter> MakeVideoWriter(const OutputFolder& folder, double rate_hz);
 
 }  // namespace kestrel

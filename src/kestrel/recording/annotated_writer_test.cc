@@ -3,9 +3,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <opencv2/videoio.hpp>
 
 #include "kestrel/recording/test_files.h"
+#include "kestrel/recording/video_source.h"
 
 namespace kestrel {
 namespace {
@@ -31,9 +31,11 @@ TEST(AnnotatedWriter, VideoHasAllFrames) {
   for (int i = 0; i < 12; ++i) writer->Write("", NoiseImage(64, 48, CV_8UC3, i + 1));
   writer.reset();
   const bool is_mp4 = std::filesystem::exists(folder / "annotated.mp4");
-  cv::VideoCapture video(folder / (is_mp4 ? "annotated.mp4" : "annotated.avi"));
+  const auto video = OpenVideoFile(folder / (is_mp4 ? "annotated.mp4" : "annotated.avi"));
   int frames = 0;
-  for (cv::Mat image; video.read(image); ++frames) EXPECT_EQ(image.size(), cv::Size(64, 48));
+  for (Frame frame; video->Next(&frame); ++frames) {
+    EXPECT_EQ(frame.image.size(), cv::Size(64, 48));
+  }
   EXPECT_EQ(frames, 12);
 }
 

@@ -29,7 +29,7 @@ std::unique_ptr<FrameSource> OpenFile(const std::string& path) {
     case FileKind::kImage:
       return std::make_unique<ImageSequence>(OpenImageFiles({path}));
     case FileKind::kVideo:
-      return std::make_unique<VideoSource>(OpenVideoFile(path));
+      return OpenVideoFile(path);
     case FileKind::kOther:
       break;
   }
@@ -37,7 +37,7 @@ std::unique_ptr<FrameSource> OpenFile(const std::string& path) {
 }
 
 std::unique_ptr<FrameSource> OpenOne(const std::string& source) {
-  if (IsCamera(source)) return std::make_unique<VideoSource>(OpenCamera(source));
+  if (IsCamera(source)) return OpenCamera(source);
   if (!Exists(source)) throw InputError(source + ": no such file or folder");
   return fs::is_directory(source) ? OpenFolder(source) : OpenFile(source);
 }

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/recording/recording_writer.h"
 
-#include <cstdint>
 #include <fstream>
 
 #include <fmt/format.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
+#include "kestrel/codec/png_codec.h"
 
 namespace kestrel {
 namespace {
@@ -27,20 +26,16 @@ void CreateFolders(const fs::path& folder) {
 }
 
 // Under another name first: what has its name is whole.
-void WriteWhole(const fs::path& path, const char* bytes, std::size_t size) {
+void WriteWhole(const fs::path& path, const std::string& bytes) {
   CreateFolders(path.parent_path());
   const fs::path unfinished = path.string() + ".unfinished";
   std::ofstream file(unfinished, std::ios::binary);
-  file.write(bytes, static_cast<std::streamsize>(size));
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
   if (!file) throw InputError(path.string() + ": cannot be written, is the disk full?");
   std::error_code error;
   fs::rename(unfinished, path, error);
   Require(error, path, "cannot be written");
-}
-
-void WriteText(const fs::path& path, const std::string& text) {
-  WriteWhole(path, text.data(), text.size());
 }
 
 constexpr char kImages[] = "mav0/cam0/data";
@@ -77,7 +72,7 @@ RecordingWriter::RecordingWriter(const fs::path& output, bool replace, const std
       fs::remove_all(old, error);
       Require(error, old, "cannot be removed");
     }
-    WriteText(scene_file, scene);
+    WriteWhole(scene_file, scene);
   }
   CreateFolders(part_ / kImages);
 }
@@ -87,22 +82,19 @@ bool RecordingWriter::HasImage(Time time) const {
 }
 
 void RecordingWriter::WriteImage(Time time, const cv::Mat& image) const {
-  std::vector<std::uint8_t> bytes;
-  constexpr int kFast = 1;
-  cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, kFast});
-  WriteWhole(part_ / RecordedImagePath(time), reinterpret_cast<const char*>(bytes.data()),
-             bytes.size());
+  constexpr int kLevel = 1;
+  WriteWhole(part_ / RecordedImagePath(time), EncodePng(image, kLevel));
 }
 
 void RecordingWriter::Publish(const std::vector<Time>& times,
                               const std::vector<RecordingFile>& files) const {
-  for (const RecordingFile& file : files) WriteText(part_ / "mav0" / file.name, file.text);
+  for (const RecordingFile& file : files) WriteWhole(part_ / "mav0" / file.name, file.text);
   std::string rows = "#timestamp [ns],filename\n";
   for (const Time time : times) {
     rows +=
         fmt::format("{},{}\n", ToNanoseconds(time), RecordedImagePath(time).filename().string());
   }
-  WriteText(part_ / "mav0" / "cam0" / "data.csv", rows);
+  WriteWhole(part_ / "mav0" / "cam0" / "data.csv", rows);
   std::error_code error;
   fs::remove_all(output_, error);
   Require(error, output_, "cannot be replaced");

@@ -6,9 +6,10 @@
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "kestrel/base/test_folder.h"
+#include "kestrel/codec/image_codec.h"
+#include "kestrel/recording/video_file.h"
 
 namespace kestrel {
 
@@ -17,7 +18,7 @@ inline std::string WriteTestImage(const TestFolder& folder, const std::string& n
                                   const cv::Mat& image) {
   const std::string path = folder / name;
   std::filesystem::create_directories(std::filesystem::path(path).parent_path());
-  EXPECT_TRUE(cv::imwrite(path, image)) << name;
+  WriteImage(path, image);
   return path;
 }
 
@@ -27,6 +28,17 @@ inline cv::Mat NoiseImage(int width, int height, int type, int seed = 1) {
   cv::RNG random(seed);
   random.fill(image, cv::RNG::UNIFORM, 0, 256);
   return image;
+}
+
+// A video of noise; returns the file's path.
+inline std::string WriteTestVideo(const std::string& stem, VideoFormat format, int frames,
+                                  const cv::Size& size, double rate_hz = 20) {
+  VideoFile video(stem, rate_hz, format);
+  for (int i = 0; i < frames; ++i) {
+    video.Write(NoiseImage(size.width, size.height, CV_8UC3, i + 1));
+  }
+  video.Close();
+  return video.path();
 }
 
 }  // namespace kestrel

@@ -5,12 +5,13 @@
 #include <array>
 #include <cmath>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/base/hash.h"
 #include "kestrel/base/random.h"
 #include "kestrel/base/violations.h"
+#include "kestrel/codec/image_codec.h"
+#include "kestrel/codec/jpeg_codec.h"
 
 namespace kestrel {
 namespace {
@@ -50,9 +51,7 @@ void Sharpen(double part, cv::Mat* image) {
 }
 
 cv::Mat Compressed(const cv::Mat& image, int jpeg_quality) {
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, jpeg_quality});
-  return cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+  return DecodeImage(EncodeJpeg(image, jpeg_quality), "image");
 }
 
 // Gray values of all amounts of light in steps of a quarter.

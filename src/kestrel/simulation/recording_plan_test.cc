@@ -10,6 +10,7 @@
 
 #include "kestrel/base/error.h"
 #include "kestrel/base/read_file.h"
+#include "kestrel/codec/image_codec.h"
 #include "kestrel/flight/flight_time.h"
 #include "kestrel/recording/euroc_recording.h"
 #include "kestrel/recording/test_files.h"
@@ -56,7 +57,7 @@ TEST(RecordingPlanTest, WritesAWholeRecording) {
   const auto rows = ParseImageRows(ReadFile(folder / "flight/mav0/cam0/data.csv"), "data.csv");
   ASSERT_EQ(rows.size(), kImages);
   EXPECT_EQ(rows[1].time, TimeOfFlight(0.1));
-  const cv::Mat image = cv::imread(folder / ("flight/mav0/cam0/data/" + rows[3].filename), -1);
+  const cv::Mat image = ReadImage(folder / ("flight/mav0/cam0/data/" + rows[3].filename));
   EXPECT_EQ(image.at<std::uint8_t>(0, 0), 30);
   EXPECT_FALSE(fs::exists(folder / "flight.part"));
 }
