@@ -11,7 +11,7 @@ ROOMS ?=
 FIGURES ?=
 empty :=
 space := $(empty) $(empty)
-DDS_ROOMS := dds middleware team cli
+DDS_ROOMS := dds ros team cli
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 export CCACHE_BASEDIR ?= $(CURDIR)
 export CCACHE_SLOPPINESS ?= locale
@@ -25,7 +25,7 @@ console:  ## the web page: what it needs, built in, over a simulated flight
 	scripts/install-deps --console
 	cmake --preset release
 	cmake --build --preset release --target kestrel
-	$(BIN)/src/kestrel/cli/kestrel fly sim:figure8 --autopilot sim:px4 --guide --console
+	$(BIN)/src/kestrel/app/cli/kestrel fly sim:figure8 --autopilot sim:px4 --guide --console
 
 test: tests
 	ctest --preset release -j $$(nproc)
@@ -34,13 +34,13 @@ dds: deps  ## ROS 2 and the team's map over DDS, and their tests
 	scripts/install-deps --dds
 	cmake --preset release
 	cmake --build --preset release --target kestrel $(DDS_ROOMS:%=kestrel_%_test)
-	ctest --preset release -j $$(nproc) -R '^(dds|middleware|team|hosts)/|DdsCommand|TeamCommand' --no-tests=error
+	ctest --preset release -j $$(nproc) -R '^(dds|ros|team|hosts)/|DdsCommand|TeamCommand' --no-tests=error
 
 ros: deps  ## the node of ROS 1 and its tests, and bags of ROS 1 against its rosbag
 	scripts/install-deps --ros
 	cmake --preset release
-	cmake --build --preset release --target kestrel kestrel_node kestrel_ros_test
-	ctest --preset release -R ^ros/ --no-tests=error --verbose
+	cmake --build --preset release --target kestrel kestrel_node kestrel_ros_node_test
+	ctest --preset release -R ^ros_node/ --no-tests=error --verbose
 
 interop: deps  ## MAVLink, MCAP, live flights, bags and ROS 2 against implementations of others, which npm installs
 	scripts/install-deps --interop
@@ -52,7 +52,7 @@ browser: deps  ## the console's page: its unit tests, and used in Chromium as a 
 	scripts/install-deps --browser
 	cmake --preset release
 	cmake --build --preset release --target kestrel
-	cd web && npm test && npm run try -- ../$(BIN)/src/kestrel/cli/kestrel ../out/browser
+	cd web && npm test && npm run try -- ../$(BIN)/src/kestrel/app/cli/kestrel ../out/browser
 
 bench: build  ## speed
 	@for program in $(BIN)/bench/*_benchmark $(BIN)/bench/landing_speed; do echo "== $$program"; $$program || exit; done

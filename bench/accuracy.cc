@@ -15,8 +15,8 @@
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
 
-#include "kestrel/base/error.h"
-#include "kestrel/codec/image_codec.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/codec/image_codec.h"
 #include "landing_frames.h"
 #include "landing_score.h"
 #include "landing_variants.h"

@@ -13,11 +13,11 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/camera/paper_camera.h"
-#include "kestrel/console/flight_console.h"
-#include "kestrel/console/test_browser.h"
-#include "kestrel/pipeline/landing_pipeline.h"
-#include "kestrel/stills/landing_stills.h"
+#include "kestrel/app/console/flight_console.h"
+#include "kestrel/app/console/test_browser.h"
+#include "kestrel/core/camera/paper_camera.h"
+#include "kestrel/simulation/labelled_images/landing_stills.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
 
 namespace kestrel {
 namespace {

@@ -9,5 +9,5 @@ add_executable(hunt_benchmark hunt_benchmark.cc)
 target_link_libraries(hunt_benchmark PRIVATE kestrel::objects benchmark::benchmark opencv_imgproc)
 
 add_executable(mover_accuracy mover_accuracy.cc)
-target_link_libraries(mover_accuracy PRIVATE kestrel::pipeline kestrel::recording kestrel::simulation
+target_link_libraries(mover_accuracy PRIVATE kestrel::pipeline kestrel::recording kestrel::recordings
                                              kestrel::evaluation CLI11::CLI11 fmt::fmt)

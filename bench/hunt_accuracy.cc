@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "hunt_score.h"
-#include "kestrel/evaluation/object_tables.h"
+#include "kestrel/app/evaluation/object_tables.h"
 #include "report_main.h"
 
 namespace kestrel {

@@ -11,8 +11,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "kestrel/base/random.h"
-#include "kestrel/objects/object_detector.h"
+#include "kestrel/core/base/random.h"
+#include "kestrel/vision/objects/object_detector.h"
 
 namespace kestrel {
 namespace {

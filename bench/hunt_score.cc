@@ -8,14 +8,14 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "kestrel/base/error.h"
-#include "kestrel/base/parse_number.h"
-#include "kestrel/base/read_file.h"
-#include "kestrel/pipeline/hunt_pipeline.h"
-#include "kestrel/recording/event_source.h"
-#include "kestrel/recording/image_file.h"
-#include "kestrel/recording/object_csv.h"
-#include "kestrel/recording/open_source.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/parse_number.h"
+#include "kestrel/core/base/read_file.h"
+#include "kestrel/io/recording/event_source.h"
+#include "kestrel/io/recording/image_file.h"
+#include "kestrel/io/recording/object_csv.h"
+#include "kestrel/io/recording/open_source.h"
+#include "kestrel/vision/pipeline/hunt_pipeline.h"
 
 namespace kestrel {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "kestrel/evaluation/object_comparison.h"
-#include "kestrel/objects/object_model.h"
+#include "kestrel/app/evaluation/object_comparison.h"
+#include "kestrel/vision/objects/object_model.h"
 
 namespace kestrel {
 

@@ -4,7 +4,7 @@ find_package(OpenCV 4.5 REQUIRED COMPONENTS aruco)
 add_executable(kestrel_accuracy accuracy.cc landing_frames.cc landing_score.cc
                                 landing_variants.cc)
 target_link_libraries(
-  kestrel_accuracy PRIVATE kestrel::codec kestrel::landing kestrel::recording kestrel::stills
+  kestrel_accuracy PRIVATE kestrel::codec kestrel::landing kestrel::recording kestrel::labelled_images
                            CLI11::CLI11 fmt::fmt opencv_imgproc)
 target_compile_definitions(kestrel_accuracy
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
@@ -12,13 +12,13 @@ target_compile_definitions(kestrel_accuracy
 add_executable(robustness_accuracy robustness_accuracy.cc landing_falsehoods.cc landing_frames.cc
                                    landing_score.cc)
 target_link_libraries(robustness_accuracy
-                      PRIVATE kestrel::landing kestrel::recording kestrel::stills CLI11::CLI11
+                      PRIVATE kestrel::landing kestrel::recording kestrel::labelled_images CLI11::CLI11
                               fmt::fmt)
 target_compile_definitions(robustness_accuracy
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
 
 add_executable(light_accuracy light_accuracy.cc landing_frames.cc landing_score.cc)
-target_link_libraries(light_accuracy PRIVATE kestrel::codec kestrel::landing kestrel::recording kestrel::stills
+target_link_libraries(light_accuracy PRIVATE kestrel::codec kestrel::landing kestrel::recording kestrel::labelled_images
                                              CLI11::CLI11 fmt::fmt)
 target_compile_definitions(light_accuracy
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
@@ -29,7 +29,7 @@ add_executable(landing_speed landing_speed.cc landing_frames.cc landing_peers.cc
 target_link_libraries(landing_benchmark PRIVATE benchmark::benchmark)
 foreach(program landing_benchmark landing_speed)
   target_link_libraries(
-    ${program} PRIVATE kestrel::landing kestrel::recording kestrel::stills CLI11::CLI11
+    ${program} PRIVATE kestrel::landing kestrel::recording kestrel::labelled_images CLI11::CLI11
                        apriltag::apriltag fmt::fmt opencv_aruco opencv_imgproc)
   target_compile_definitions(${program}
                              PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
@@ -39,7 +39,7 @@ add_executable(train_print_score train_print_score.cc print_score_training.cc la
                                  landing_frames.cc landing_hardships.cc landing_score.cc
                                  landing_variants.cc)
 target_link_libraries(train_print_score PRIVATE kestrel::codec kestrel::landing kestrel::recording
-                                                kestrel::stills CLI11::CLI11 fmt::fmt
+                                                kestrel::labelled_images CLI11::CLI11 fmt::fmt
                                                 opencv_imgproc)
 target_compile_definitions(train_print_score
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")

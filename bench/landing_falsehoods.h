@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "kestrel/camera/camera_model.h"
-#include "kestrel/landing/landing_pattern_detector.h"
-#include "kestrel/stills/landing_stills.h"
+#include "kestrel/core/camera/camera_model.h"
+#include "kestrel/simulation/labelled_images/landing_stills.h"
+#include "kestrel/vision/landing/landing_pattern_detector.h"
 #include "landing_frames.h"
 
 namespace kestrel {

@@ -10,13 +10,13 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "kestrel/base/error.h"
-#include "kestrel/base/read_file.h"
-#include "kestrel/camera/calibration_reader.h"
-#include "kestrel/camera/paper_camera.h"
-#include "kestrel/recording/csv_table.h"
-#include "kestrel/recording/euroc_recording.h"
-#include "kestrel/recording/image_file.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/read_file.h"
+#include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/core/camera/paper_camera.h"
+#include "kestrel/io/recording/csv_table.h"
+#include "kestrel/io/recording/euroc_recording.h"
+#include "kestrel/io/recording/image_file.h"
 
 namespace kestrel {
 namespace {

@@ -9,10 +9,10 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
-#include "kestrel/camera/camera_model.h"
-#include "kestrel/geometry/ellipse.h"
-#include "kestrel/geometry/rigid_transform.h"
-#include "kestrel/stills/landing_stills.h"
+#include "kestrel/core/camera/camera_model.h"
+#include "kestrel/core/geometry/ellipse.h"
+#include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/simulation/labelled_images/landing_stills.h"
 
 namespace kestrel {
 

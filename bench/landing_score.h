@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "kestrel/landing/landing_pattern_detector.h"
+#include "kestrel/vision/landing/landing_pattern_detector.h"
 #include "landing_frames.h"
 
 namespace kestrel {

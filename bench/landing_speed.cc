@@ -14,9 +14,9 @@
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
 
-#include "kestrel/base/random.h"
-#include "kestrel/camera/paper_camera.h"
-#include "kestrel/landing/landing_pattern_detector.h"
+#include "kestrel/core/base/random.h"
+#include "kestrel/core/camera/paper_camera.h"
+#include "kestrel/vision/landing/landing_pattern_detector.h"
 #include "landing_frames.h"
 #include "landing_peers.h"
 #include "landing_score.h"

@@ -7,8 +7,8 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "kestrel/codec/image_codec.h"
-#include "kestrel/codec/jpeg_codec.h"
+#include "kestrel/core/codec/image_codec.h"
+#include "kestrel/core/codec/jpeg_codec.h"
 
 namespace kestrel {
 namespace {

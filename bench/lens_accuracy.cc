@@ -13,12 +13,12 @@
 #include <fmt/ranges.h>
 #include <opencv2/core.hpp>
 
-#include "kestrel/base/error.h"
-#include "kestrel/calibration/lens_calibration.h"
-#include "kestrel/calibration/lens_difference.h"
-#include "kestrel/geometry/angles.h"
-#include "kestrel/recording/euroc_text.h"
-#include "kestrel/stills/landing_stills.h"
+#include "kestrel/calibration/lens/lens_calibration.h"
+#include "kestrel/calibration/lens/lens_difference.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/geometry/angles.h"
+#include "kestrel/io/recording/euroc_text.h"
+#include "kestrel/simulation/labelled_images/landing_stills.h"
 #include "landing_frames.h"
 #include "landing_score.h"
 #include "report_main.h"

@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
 
-#include "kestrel/codec/image_codec.h"
-#include "kestrel/stills/shadow_casters.h"
+#include "kestrel/core/codec/image_codec.h"
+#include "kestrel/simulation/labelled_images/shadow_casters.h"
 #include "landing_frames.h"
 #include "landing_score.h"
 #include "report_main.h"

@@ -15,14 +15,14 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "kestrel/base/error.h"
-#include "kestrel/evaluation/object_truth.h"
-#include "kestrel/evaluation/report_table.h"
-#include "kestrel/evaluation/statistics.h"
-#include "kestrel/pipeline/hunt_pipeline.h"
-#include "kestrel/recording/euroc_recording.h"
-#include "kestrel/simulation/hunt_simulation.h"
-#include "kestrel/simulation/scenarios.h"
+#include "kestrel/app/evaluation/object_truth.h"
+#include "kestrel/app/evaluation/report_table.h"
+#include "kestrel/app/evaluation/statistics.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/io/recording/euroc_recording.h"
+#include "kestrel/simulation/recordings/hunt_simulation.h"
+#include "kestrel/simulation/recordings/scenarios.h"
+#include "kestrel/vision/pipeline/hunt_pipeline.h"
 #include "report_main.h"
 #include "run_parallel.h"
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/base/error.h"
+#include "kestrel/core/base/error.h"
 
 namespace kestrel {
 

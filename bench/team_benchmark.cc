@@ -9,9 +9,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "kestrel/base/random.h"
-#include "kestrel/team/team_member.h"
-#include "kestrel/team/team_view.h"
+#include "kestrel/comms/team/team_member.h"
+#include "kestrel/comms/team/team_view.h"
+#include "kestrel/core/base/random.h"
 
 namespace kestrel {
 namespace {

@@ -1,4 +1,4 @@
 # Landings on a moving vehicle in closed loop (paper, section 4).
 add_executable(touchdown_accuracy touchdown_accuracy.cc)
-target_link_libraries(touchdown_accuracy PRIVATE kestrel::simulation kestrel::evaluation
+target_link_libraries(touchdown_accuracy PRIVATE kestrel::recordings kestrel::evaluation
                                                  CLI11::CLI11 fmt::fmt)

@@ -11,10 +11,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "kestrel/evaluation/statistics.h"
-#include "kestrel/simulation/landing_simulation.h"
-#include "kestrel/simulation/scenarios.h"
-#include "kestrel/simulation/touchdown_simulation.h"
+#include "kestrel/app/evaluation/statistics.h"
+#include "kestrel/simulation/recordings/landing_simulation.h"
+#include "kestrel/simulation/recordings/scenarios.h"
+#include "kestrel/simulation/recordings/touchdown_simulation.h"
 #include "report_main.h"
 #include "run_parallel.h"
 

@@ -21,10 +21,10 @@
 #include <fmt/os.h>
 #include <opencv2/core.hpp>
 
-#include "kestrel/base/error.h"
-#include "kestrel/codec/image_codec.h"
-#include "kestrel/landing/landing_search.h"
-#include "kestrel/recording/image_file.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/codec/image_codec.h"
+#include "kestrel/io/recording/image_file.h"
+#include "kestrel/vision/landing/landing_search.h"
 #include "landing_falsehoods.h"
 #include "landing_frames.h"
 #include "landing_hardships.h"

@@ -12,9 +12,9 @@
 #include <fmt/format.h>
 #include <opencv2/calib3d.hpp>
 
-#include "kestrel/camera/fisheye_undistortion.h"
-#include "kestrel/camera/ray_table.h"
-#include "kestrel/camera/test_cameras.h"
+#include "kestrel/core/camera/fisheye_undistortion.h"
+#include "kestrel/core/camera/ray_table.h"
+#include "kestrel/core/camera/test_cameras.h"
 
 namespace kestrel {
 namespace {

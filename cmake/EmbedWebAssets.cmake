@@ -55,7 +55,7 @@ if(NOT files)
 endif()
 
 file(WRITE ${OUTPUT}.new "// Made by cmake/EmbedWebAssets.cmake.
-#include \"kestrel/console/web_assets.h\"
+#include \"kestrel/app/console/web_assets.h\"
 
 namespace kestrel {
 namespace {

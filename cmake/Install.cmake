@@ -1,22 +1,45 @@
 # `cmake --install` puts the command, the rooms as static libraries and their headers in place, and
-# the package that `find_package(kestrel)` finds. The rooms cli, ros and ros1 belong to their programs alone.
+# the package that `find_package(kestrel COMPONENTS ...)` finds. A component is what a user wants, and
+# asks only for the libraries that it needs: cmake/kestrelConfig.cmake.in.
 include(CMakePackageConfigHelpers)
 
-get_property(rooms GLOBAL PROPERTY KESTREL_ROOMS)
-list(REMOVE_ITEM rooms kestrel_cli kestrel_ros kestrel_ros1)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/kestrel)
+# Rooms that belong to their programs alone.
+set(programs cli ros_node ros1)
+# Component of each floor, but for these rooms.
+set(component_core vision)
+set(component_vision vision)
+set(component_calibration calibration)
+set(component_io io)
+set(component_comms flight)
+set(component_flight flight)
+set(component_simulation simulation)
+set(component_app console)
+set(component_of_codec io)
 
-install(TARGETS ${rooms} EXPORT kestrel)
-install(EXPORT kestrel NAMESPACE kestrel:: FILE kestrelTargets.cmake DESTINATION ${package_dir})
-install(
-  DIRECTORY src/kestrel
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-  FILES_MATCHING
-  PATTERN "*.h"
-  PATTERN "test_*.h" EXCLUDE
-  PATTERN "cli" EXCLUDE
-  PATTERN "ros" EXCLUDE
-  PATTERN "ros1" EXCLUDE)
+get_property(floors GLOBAL PROPERTY KESTREL_FLOORS)
+foreach(floor IN LISTS floors)
+  separate_arguments(rooms UNIX_COMMAND "${floor}")
+  list(POP_FRONT rooms name)
+  list(REMOVE_ITEM rooms ${programs})
+  foreach(room IN LISTS rooms)
+    set(component ${component_${name}})
+    if(component_of_${room})
+      set(component ${component_of_${room}})
+    endif()
+    install(TARGETS kestrel_${room} EXPORT kestrel_${component})
+    install(
+      DIRECTORY src/kestrel/${name}/${room}
+      DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kestrel/${name}
+      FILES_MATCHING
+      PATTERN "*.h"
+      PATTERN "test_*.h" EXCLUDE)
+  endforeach()
+endforeach()
+foreach(component vision calibration io flight simulation console)
+  install(EXPORT kestrel_${component} NAMESPACE kestrel:: FILE kestrel_${component}.cmake
+          DESTINATION ${package_dir})
+endforeach()
 
 # Configurations of boards and cameras, and the unit that flies from power-on.
 install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kestrel)

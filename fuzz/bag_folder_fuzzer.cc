@@ -8,8 +8,8 @@
 #include <string>
 #include <unistd.h>
 
-#include "kestrel/bags/bag_folder.h"
-#include "kestrel/base/error.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/io/bags/bag_folder.h"
 
 namespace {
 

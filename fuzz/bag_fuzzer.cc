@@ -12,9 +12,9 @@
 #include <unistd.h>
 #include <vector>
 
-#include "kestrel/bags/bag_source.h"
-#include "kestrel/bags/open_bag.h"
-#include "kestrel/base/error.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/io/bags/bag_source.h"
+#include "kestrel/io/bags/open_bag.h"
 
 namespace {
 

@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "kestrel/base/error.h"
-#include "kestrel/camera/calibration_reader.h"
-#include "kestrel/camera/ray_table.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/core/camera/ray_table.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "kestrel/base/error.h"
-#include "kestrel/codec/image_codec.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/codec/image_codec.h"
 
 namespace {
 

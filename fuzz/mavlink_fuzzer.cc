@@ -11,9 +11,9 @@
 #include <memory>
 #include <span>
 
-#include "kestrel/link/autopilot.h"
-#include "kestrel/link/message_table.h"
-#include "kestrel/link/signing.h"
+#include "kestrel/comms/mavlink/autopilot.h"
+#include "kestrel/comms/mavlink/message_table.h"
+#include "kestrel/comms/mavlink/signing.h"
 
 namespace {
 

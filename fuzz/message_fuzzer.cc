@@ -7,11 +7,11 @@
 #include <string>
 #include <string_view>
 
-#include "kestrel/bags/camera_info.h"
-#include "kestrel/bags/image_message.h"
-#include "kestrel/bags/messages.h"
-#include "kestrel/bags/serialization.h"
-#include "kestrel/base/error.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/io/bags/camera_info.h"
+#include "kestrel/io/bags/image_message.h"
+#include "kestrel/io/bags/messages.h"
+#include "kestrel/io/bags/serialization.h"
 
 namespace {
 

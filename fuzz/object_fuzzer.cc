@@ -6,12 +6,12 @@
 #include <cstdlib>
 #include <string>
 
-#include "kestrel/base/error.h"
-#include "kestrel/mapping/map_file.h"
-#include "kestrel/objects/color_grid.h"
-#include "kestrel/objects/digit_classifier.h"
-#include "kestrel/objects/object_model.h"
-#include "kestrel/teaching/color_draft.h"
+#include "kestrel/calibration/color_training/color_draft.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/vision/mapping/map_file.h"
+#include "kestrel/vision/objects/color_grid.h"
+#include "kestrel/vision/objects/digit_classifier.h"
+#include "kestrel/vision/objects/object_model.h"
 
 namespace {
 

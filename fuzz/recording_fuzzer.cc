@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "kestrel/base/error.h"
-#include "kestrel/recording/euroc_recording.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/io/recording/euroc_recording.h"
 
 namespace {
 

@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <span>
 
-#include "kestrel/team/team_member.h"
-#include "kestrel/team/team_view.h"
+#include "kestrel/comms/team/team_member.h"
+#include "kestrel/comms/team/team_view.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span bytes(data, size);

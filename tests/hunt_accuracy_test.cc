@@ -11,11 +11,11 @@
 #include <gtest/gtest.h>
 
 #include "hunt_score.h"
-#include "kestrel/base/read_file.h"
-#include "kestrel/evaluation/object_truth.h"
-#include "kestrel/evaluation/statistics.h"
-#include "kestrel/recording/open_source.h"
-#include "kestrel/teaching/color_editor.h"
+#include "kestrel/app/evaluation/object_truth.h"
+#include "kestrel/app/evaluation/statistics.h"
+#include "kestrel/calibration/color_training/color_editor.h"
+#include "kestrel/core/base/read_file.h"
+#include "kestrel/io/recording/open_source.h"
 
 namespace kestrel {
 namespace {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "count_allocations.h"
-#include "kestrel/objects/test_objects.h"
-#include "kestrel/pipeline/hunt_pipeline.h"
+#include "kestrel/vision/objects/test_objects.h"
+#include "kestrel/vision/pipeline/hunt_pipeline.h"
 
 namespace kestrel {
 namespace {

@@ -7,10 +7,10 @@
 #include <opencv2/core.hpp>
 
 #include "count_allocations.h"
-#include "kestrel/camera/paper_camera.h"
-#include "kestrel/landing/landing_pattern_detector.h"
-#include "kestrel/stills/landing_stills.h"
-#include "kestrel/tracking/target_tracker.h"
+#include "kestrel/core/camera/paper_camera.h"
+#include "kestrel/simulation/labelled_images/landing_stills.h"
+#include "kestrel/vision/landing/landing_pattern_detector.h"
+#include "kestrel/vision/tracking/target_tracker.h"
 
 namespace kestrel {
 namespace {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Trains the digit model on rendered faces and prints how many digits of other fonts it gets right:
 //
-//   train_digits --train A.ttf B.ttf ... --test C.ttf ... --output src/kestrel/objects/digits.txt
+//   train_digits --train A.ttf B.ttf ... --test C.ttf ... --output
+//   src/kestrel/vision/objects/digits.txt
 //
 // A face is painted, given a white digit, and seen from an oblique side at 18 to 70 px, blurred,
 // noisy, in sun or shade, and with corners that are off by up to 4 % of its side. docs/digits.md
@@ -19,10 +20,10 @@
 #include <opencv2/freetype.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "kestrel/base/error.h"
-#include "kestrel/base/random.h"
-#include "kestrel/base/write_file.h"
-#include "kestrel/objects/digit_classifier.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/random.h"
+#include "kestrel/core/base/write_file.h"
+#include "kestrel/vision/objects/digit_classifier.h"
 
 namespace kestrel {
 namespace {

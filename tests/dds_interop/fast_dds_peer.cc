@@ -20,8 +20,8 @@
 #include <string>
 #include <unistd.h>
 
-#include "kestrel/dds/test_dds.h"
-#include "kestrel/dds/test_fast_dds.h"
+#include "kestrel/comms/dds/test_dds.h"
+#include "kestrel/comms/dds/test_fast_dds.h"
 
 namespace kestrel {
 namespace {

@@ -5,8 +5,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "kestrel/pipeline/landing_pipeline.h"
-#include "kestrel/recording/landing_csv.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
 
 namespace {
 
@@ -46,8 +45,11 @@ int main() {
   kestrel::LandingPipeline pipeline(calibration, {});
   const cv::Mat image = DrawPattern(pipeline.options().detector.pattern);
   const kestrel::LandingObservation seen = pipeline.Process(image, kestrel::Time{});
-  std::cout << kestrel::LandingCsvHeader() << kestrel::LandingCsvRow("drawn", seen);
-  if (!seen.report.detection) return 1;
+  if (!seen.report.detection) {
+    std::cout << seen.report.reason << "\n";
+    return 1;
+  }
   const double distance = seen.report.detection->camera_from_pattern.translation.norm();
+  std::cout << "the pattern is " << distance << " m away\n";
   return std::abs(distance - kHeight_m) < 0.02 * kHeight_m ? 0 : 1;
 }

@@ -16,10 +16,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "kestrel/link/messages.h"
-#include "kestrel/link/packet_parser.h"
-#include "kestrel/link/packet_writer.h"
-#include "kestrel/link/signing.h"
+#include "kestrel/comms/mavlink/messages.h"
+#include "kestrel/comms/mavlink/packet_parser.h"
+#include "kestrel/comms/mavlink/packet_writer.h"
+#include "kestrel/comms/mavlink/signing.h"
 
 namespace {
 

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/cli/bag_arguments.h"
+
+#include <fmt/format.h>
+
+namespace kestrel {
+
+void BagArguments::AddTo(CLI::App* command) {
+  command
+      ->add_option("--topic", topics,
+                   "Topic of a bag to read: the images, where it has several cameras, or the poses")
+      ->type_name("NAME")
+      ->take_all();
+  command->add_flag("--arrival-times", use_arrival_times,
+                    "Time what a bag has by when it was recorded, not by the stamps in it");
+}
+
+std::unique_ptr<FrameSource> BagArguments::Open(const std::vector<std::string>& sources,
+                                                PixelFormat format) const {
+  return OpenSourceOrBag(sources, format, {topics, use_arrival_times, [](const std::string& text) {
+                                             fmt::print(stderr, "kestrel: {}\n", text);
+                                           }});
+}
+
+}  // namespace kestrel

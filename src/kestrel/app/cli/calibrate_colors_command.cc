@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/cli/calibrate_colors_command.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "kestrel/calibration/color_training/color_teaching.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/read_file.h"
+#include "kestrel/core/base/write_file.h"
+#include "kestrel/core/codec/image_codec.h"
+#include "kestrel/io/recording/color_marks.h"
+#include "kestrel/io/recording/color_pictures.h"
+#include "kestrel/io/recording/image_file.h"
+#include "kestrel/io/recording/output_folder.h"
+#include "kestrel/vision/objects/color_grid.h"
+#include "kestrel/vision/objects/color_samples.h"
+#include "kestrel/vision/objects/object_model.h"
+
+namespace kestrel {
+namespace {
+
+struct ColorsArguments {
+  std::string marks;
+  std::string model;
+  std::string output;
+  int components = 2;
+  bool force = false;
+};
+
+// Puts the fitted colours in the place of those of the model that have their names.
+void ReplaceColors(const std::map<std::string, std::vector<Hsv>>& samples, int components,
+                   ObjectModel* model) {
+  std::vector<ColorMixture>& colors = model->colors.colors;
+  for (const auto& entry : samples) {
+    const std::string& name = entry.first;
+    const auto found = std::find_if(colors.begin(), colors.end(),
+                                    [&](const ColorMixture& color) { return color.name == name; });
+    if (found == colors.end()) {
+      throw InputError(fmt::format("'{}' is none of the model's colors", name));
+    }
+    *found = ChooseColorMixture(name, entry.second, components).mixture;
+    fmt::print(stderr, "{}: {} Gaussians fitted to {} pixels\n", name, found->components.size(),
+               entry.second.size());
+    for (const std::string& warning : SampleWarnings(entry.second)) {
+      fmt::print(stderr, "{}: {}\n", name, warning);
+    }
+  }
+  const std::vector<std::string> violations = model->Validate();
+  if (!violations.empty()) throw InputError(fmt::format("{}", fmt::join(violations, "; ")));
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    if (samples.contains(colors[i].name)) RequireDistinct(model->colors, i);
+  }
+}
+
+void WritePicture(const OutputFolder& folder, const std::string& name, const cv::Mat& picture) {
+  WriteImage(folder.NewFile(name).string(), picture);
+}
+
+void RunColors(const ColorsArguments& arguments) {
+  const std::vector<ColorMark> marks = ParseColorMarks(ReadFile(arguments.marks), arguments.marks);
+  ObjectModel model =
+      arguments.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments.model);
+  const auto samples = ReadMarkedColors(marks);
+  ReplaceColors(samples, arguments.components, &model);
+  const ColorGrid grid(model.colors);
+  const OutputFolder folder(arguments.output, arguments.force);
+  WriteFile(folder.NewFile("objects.yaml").string(), PrintObjectModel(model));
+  grid.Save(folder.NewFile("colors.grid").string());
+  WritePicture(folder, "hue_saturation.png", DrawHueSaturation(grid));
+  std::set<std::string> images;
+  for (const ColorMark& mark : marks) images.insert(mark.image);
+  int count = 0;
+  for (const std::string& image : images) {
+    WritePicture(folder, fmt::format("labels_{:02}.png", ++count),
+                 DrawLabels(ReadImage(image, PixelFormat::kBgr), grid));
+  }
+}
+
+}  // namespace
+
+void AddCalibrateColorsCommand(CLI::App* calibrate) {
+  CLI::App* command =
+      calibrate->add_subcommand("colors", "Colour models from images with marked pixels");
+  const auto arguments = std::make_shared<ColorsArguments>();
+  command
+      ->add_option("MARKS", arguments->marks,
+                   "YAML list of {image: FILE, color: NAME, rectangle: [x, y, width, height]} or "
+                   "{image: FILE, color: NAME, mask: FILE}")
+      ->required();
+  command
+      ->add_option("--model", arguments->model,
+                   "Objects whose colours are fitted, in place of the built-in ones")
+      ->type_name("FILE");
+  command
+      ->add_option("--output", arguments->output,
+                   "Folder for objects.yaml, colors.grid and the pictures")
+      ->type_name("DIR")
+      ->required();
+  command
+      ->add_option(
+          "--components", arguments->components,
+          "Gaussians of a colour, at most; as many as the Bayesian information criterion asks "
+          "for")
+      ->type_name("N")
+      ->check(CLI::Range(1, 8));
+  command->add_flag("--force", arguments->force, "Replace files that exist");
+  command->callback([arguments] { RunColors(*arguments); });
+}
+
+}  // namespace kestrel

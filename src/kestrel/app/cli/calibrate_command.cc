@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/cli/calibrate_command.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "kestrel/app/cli/bag_arguments.h"
+#include "kestrel/app/cli/calibrate_colors_command.h"
+#include "kestrel/app/cli/calibrate_lens_command.h"
+#include "kestrel/app/cli/calibration_output.h"
+#include "kestrel/app/cli/flight_sightings.h"
+#include "kestrel/app/cli/frame_loop.h"
+#include "kestrel/app/cli/option_arguments.h"
+#include "kestrel/calibration/mount/flight_calibration.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/core/geometry/angles.h"
+
+namespace kestrel {
+namespace {
+
+struct CalibrateArguments {
+  std::string recording;
+  BagArguments bag;
+  std::string camera;
+  std::string output;
+  OptionArguments options;
+  bool both = false;
+  bool moving = false;
+  bool force = false;
+};
+
+CameraCalibration ReadGiven(const CalibrateArguments& arguments, const FrameSource& source) {
+  const std::string& file = arguments.camera.empty() ? arguments.recording : arguments.camera;
+  const std::optional<CameraCalibration> calibration =
+      arguments.camera.empty() ? source.calibration() : ReadCalibration(arguments.camera);
+  if (!calibration) throw InputError(file + ": has no calibration, give one by --camera FILE");
+  return *calibration;
+}
+
+void PrintResult(const FlightCalibration& result, const FlightCalibrationOptions& options) {
+  if (options.estimate_mount) {
+    const Eigen::Vector3d angles = Degrees(1) * result.angles;
+    const Eigen::Vector3d sigmas = Degrees(1) * result.angle_sigmas;
+    fmt::print(stderr,
+               "mount: turned by roll {:.3f} +- {:.3f}, pitch {:.3f} +- {:.3f}, yaw {:.3f} +- "
+               "{:.3f} degrees\n",
+               angles.x(), sigmas.x(), angles.y(), sigmas.y(), angles.z(), sigmas.z());
+  }
+  if (options.estimate_clock) {
+    fmt::print(stderr, "clock offset: {:.4f} +- {:.4f} s\n", result.estimate.clock_offset_s,
+               result.clock_sigma_s);
+  }
+  fmt::print(stderr,
+             "positions in the world, RMS: {:.3f} m before, {:.3f} m after, in {} images ({} left "
+             "out)\n",
+             result.rms_before_m, result.rms_after_m, result.sightings, result.outliers);
+  for (const std::string& warning : result.warnings) {
+    fmt::print(stderr, "kestrel: warning: {}\n", warning);
+  }
+}
+
+void RunCalibrate(const CalibrateArguments& arguments, FlightCalibrationOptions options) {
+  const LandingPipelineOptions landing = arguments.options.Read().landing;
+  if (arguments.both) options.estimate_mount = options.estimate_clock = true;
+  if (arguments.moving) options.knot_spacing_s = kMovingKnotSpacing_s;
+  const std::unique_ptr<FrameSource> source = arguments.bag.Open({arguments.recording});
+  CameraCalibration calibration = ReadGiven(arguments, *source);
+  const MountAndClock given = GivenMountAndClock(
+      calibration, arguments.camera.empty() ? arguments.recording : arguments.camera);
+  const std::vector<PoseSample> poses = FlightPoses(*source, arguments.recording);
+  FlightSightings flight(calibration.intrinsics, landing);
+  ForEachFrame(source.get(), calibration.intrinsics,
+               [&](const Frame& frame, const ProgressBar&) { flight.Add(frame); });
+  const FlightCalibration result = CalibrateFlight(flight.sightings(), poses, given, options);
+  PrintResult(result, options);
+  SetMountAndClock(result.estimate, &calibration);
+  WriteCalibration(calibration, source->rate_hz(), arguments.output, arguments.force);
+}
+
+void AddFlightCalibration(CLI::App* parent, const std::string& name, const std::string& meaning,
+                          const FlightCalibrationOptions& options) {
+  CLI::App* command = parent->add_subcommand(name, meaning);
+  const auto arguments = std::make_shared<CalibrateArguments>();
+  command
+      ->add_option("RECORDING", arguments->recording,
+                   "A recording folder or a bag with the poses of the UAV")
+      ->required();
+  arguments->bag.AddTo(command);
+  command
+      ->add_option("--camera", arguments->camera,
+                   "Calibration to start from, with a mount; overrides the recording's")
+      ->type_name("FILE");
+  arguments->options.AddTo(command);
+  command
+      ->add_option("--output", arguments->output,
+                   "File for the calibration, which --camera reads (else stdout)")
+      ->type_name("FILE");
+  command->add_flag("--both", arguments->both, "Mount and clock together");
+  command->add_flag("--moving", arguments->moving, "The pattern moves, on a smooth path");
+  command->add_flag("--force", arguments->force, "Replace a file that exists");
+  command->callback([arguments, options] { RunCalibrate(*arguments, options); });
+}
+
+}  // namespace
+
+void AddCalibrateCommand(CLI::App* app) {
+  CLI::App* command = app->add_subcommand("calibrate", "Estimate lens, mount, clock or colours");
+  command->require_subcommand(1);
+  AddFlightCalibration(command, "mount",
+                       "The camera's angles in the body, from a slow flight over the pattern",
+                       {.estimate_mount = true, .estimate_clock = false});
+  AddFlightCalibration(command, "clock",
+                       "The offset from the images' clock to the navigation's, from a quick flight",
+                       {.estimate_mount = false, .estimate_clock = true});
+  AddCalibrateLensCommand(command);
+  AddCalibrateColorsCommand(command);
+}
+
+}  // namespace kestrel

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/cli/calibrate_lens_command.h"
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "kestrel/app/cli/bag_arguments.h"
+#include "kestrel/app/cli/calibration_output.h"
+#include "kestrel/app/cli/even_sample.h"
+#include "kestrel/app/cli/interrupt.h"
+#include "kestrel/app/cli/option_arguments.h"
+#include "kestrel/app/cli/progress_bar.h"
+#include "kestrel/app/evaluation/lens_plots.h"
+#include "kestrel/calibration/lens/lens_calibration.h"
+#include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/io/recording/euroc_text.h"
+#include "kestrel/io/recording/output_folder.h"
+
+namespace kestrel {
+namespace {
+
+// The kinds of distortion that can be asked for, by their names.
+std::map<std::string, DistortionModel> Models() {
+  std::map<std::string, DistortionModel> models;
+  for (const auto model : {DistortionModel::kNone, DistortionModel::kRadialTangential,
+                           DistortionModel::kEquidistant}) {
+    models[DistortionName(model)] = model;
+  }
+  return models;
+}
+
+struct LensArguments {
+  std::vector<std::string> sources;
+  BagArguments bag;
+  std::string camera;
+  std::string output;
+  std::string plots;
+  std::string model;
+  OptionArguments options;
+  bool force = false;
+};
+
+// What the sources hold, and what their files say beside the lens.
+struct LensSources {
+  std::vector<LensImage> images;
+  CameraMount mount;   // of the first
+  double rate_hz = 0;  // of the first
+};
+
+LensSources ReadSources(const std::vector<std::string>& arguments, const BagArguments& bag) {
+  LensSources sources;
+  for (const std::string& argument : arguments) {
+    const std::unique_ptr<FrameSource> source = bag.Open({argument});
+    if (sources.rate_hz == 0) {
+      sources.rate_hz = source->rate_hz();
+      sources.mount = source->mount();
+    }
+    ProgressBar progress(source->frame_count());
+    EvenSample sample;
+    std::size_t frames = 0;
+    for (Frame frame; !WasInterrupted() && source->Next(&frame); progress.Show(++frames)) {
+      sample.Add(frame);
+    }
+    for (LensImage& image : sample.Take()) sources.images.push_back(std::move(image));
+  }
+  return sources;
+}
+
+void PrintResult(const LensCalibration& lens, std::size_t images) {
+  const CameraIntrinsics& camera = lens.intrinsics;
+  const auto& sigmas = lens.fit.sigmas;
+  fmt::print(stderr,
+             "focal length: {:.2f} x {:.2f} +- {:.2f} px ({:.2g} %)\n"
+             "principal point: ({:.2f}, {:.2f}) +- ({:.2f}, {:.2f}) px\n"
+             "distortion: {}",
+             camera.fx_px, camera.fy_px, sigmas(kFocal), 100 * sigmas(kFocal) / camera.fx_px,
+             camera.cx_px, camera.cy_px, sigmas(kPrincipalX), sigmas(kPrincipalY),
+             DistortionName(camera.distortion_model));
+  for (int i = 0; i < lens.fit.freedom.distortion; ++i) {
+    fmt::print(stderr, "{} {:.5f} +- {:.5f}", i == 0 ? ":" : ",", camera.distortion[i],
+               sigmas(kDistortion + i));
+  }
+  fmt::print(stderr,
+             "\npattern found in {} of {} images, {} views used ({} left out), residual {:.3f} px\n"
+             "{}\n",
+             lens.found, images, lens.views.size(), lens.outliers, lens.fit.RootMeanSquare(),
+             lens.coverage.InWords());
+  for (const std::string& warning : lens.warnings) {
+    fmt::print(stderr, "kestrel: warning: {}\n", warning);
+  }
+}
+
+void WritePlots(const LensCalibration& lens, const OutputFolder& folder) {
+  for (const Plot& plot : {LensResidualPlot(lens), LensCoveragePlot(lens)}) {
+    WritePlot(plot, folder.NewFile(plot.name + ".png").string());
+  }
+}
+
+void RunLens(const LensArguments& arguments) {
+  LensCalibrationOptions options;
+  options.detector = arguments.options.Read().landing.detector;
+  if (!arguments.model.empty()) options.model = Models().at(arguments.model);
+  CameraCalibration calibration;
+  if (!arguments.camera.empty()) {
+    calibration = ReadCalibration(arguments.camera);
+    options.start = calibration.intrinsics;
+  }
+  CatchInterrupts();
+  const LensSources sources = ReadSources(arguments.sources, arguments.bag);
+  if (arguments.camera.empty()) {
+    calibration.body_from_camera = sources.mount.body_from_camera;
+    calibration.clock_offset = sources.mount.clock_offset;
+  }
+  const LensCalibration lens = CalibrateLens(sources.images, options);
+  PrintResult(lens, sources.images.size());
+  calibration.intrinsics = lens.intrinsics;
+  WriteCalibration(calibration, sources.rate_hz, arguments.output, arguments.force);
+  if (!arguments.plots.empty()) WritePlots(lens, OutputFolder(arguments.plots, arguments.force));
+}
+
+}  // namespace
+
+void AddCalibrateLensCommand(CLI::App* calibrate) {
+  CLI::App* command = calibrate->add_subcommand(
+      "lens", "Focal length, principal point and distortion from views of the landing pattern");
+  const auto arguments = std::make_shared<LensArguments>();
+  command
+      ->add_option(
+          "SOURCE", arguments->sources,
+          "Recording folders (EuRoC), bags, folders of images, image files or videos of "
+          "one camera, that show the pattern near and far, tilted, and in all of the image")
+      ->required();
+  arguments->bag.AddTo(command);
+  command
+      ->add_option("--camera", arguments->camera,
+                   "Calibration to start from; without it several guesses are tried")
+      ->type_name("FILE");
+  command
+      ->add_option("--model", arguments->model,
+                   "Kind of distortion, else the one that the views choose")
+      ->type_name("NAME")
+      ->check(CLI::IsMember(Models()));
+  arguments->options.AddTo(command);
+  command
+      ->add_option("--output", arguments->output,
+                   "File for the calibration, which --camera reads (else stdout)")
+      ->type_name("FILE");
+  command
+      ->add_option("--plots", arguments->plots,
+                   "Folder for lens_residuals.png and lens_coverage.png")
+      ->type_name("DIR");
+  command->add_flag("--force", arguments->force, "Replace files that exist");
+  command->callback([arguments] { RunLens(*arguments); });
+}
+
+}  // namespace kestrel

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/cli/console_colors.h"
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include <fmt/format.h>
+#include <opencv2/core.hpp>
+
+#include "kestrel/vision/objects/object_model.h"
+
+namespace kestrel {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A gray camera's images have three equal channels, if any.
+bool HasColor(const cv::Mat& bgr) {
+  constexpr double kMinDifference = 16;
+  std::vector<cv::Mat> channels;
+  cv::split(bgr, channels);
+  return cv::norm(channels[0], channels[1], cv::NORM_INF) > kMinDifference ||
+         cv::norm(channels[0], channels[2], cv::NORM_INF) > kMinDifference;
+}
+
+// The one that is given, or saved the last time.
+ObjectModel FirstModel(const std::string& model, const std::string& folder) {
+  if (!model.empty()) return ReadObjectModel(model);
+  const std::string saved = (fs::path(folder) / "objects.yaml").string();
+  return fs::exists(saved) ? ReadObjectModel(saved) : DefaultObjectModel();
+}
+
+}  // namespace
+
+std::optional<ColorSource> FindColors(const SourceArguments& arguments, const std::string& model,
+                                      const std::string& folder) {
+  const std::vector<std::string>& sources = arguments.sources;
+  const std::shared_ptr<FrameSource> source = arguments.bag.Open(sources, PixelFormat::kBgr);
+  Frame first;
+  if (!source->Read(0, &first) || !HasColor(first.image)) return std::nullopt;
+  const auto read = [source](std::size_t index) {
+    Frame frame;
+    source->Read(index, &frame);
+    return frame.image;
+  };
+  std::vector<std::string> names;
+  for (const std::string& name : sources) {
+    // As a folder with a slash behind its name.
+    names.push_back((fs::absolute(name) / "").lexically_normal().parent_path().string());
+  }
+  return ColorSource{fmt::format("{}", fmt::join(names, " ")), source->frame_count().value_or(1),
+                     read, FirstModel(model, folder), folder};
+}
+
+}  // namespace kestrel

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/cli/console_command.h"
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "kestrel/app/cli/console_calibration.h"
+#include "kestrel/app/cli/console_colors.h"
+#include "kestrel/app/cli/frame_winder.h"
+#include "kestrel/app/cli/hunt_replay.h"
+#include "kestrel/app/cli/interrupt.h"
+#include "kestrel/app/cli/landing_replay.h"
+#include "kestrel/app/cli/pipeline_run.h"
+#include "kestrel/app/cli/result_argument.h"
+#include "kestrel/app/cli/source_arguments.h"
+#include "kestrel/app/console/replay_console.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
+#include "kestrel/io/recording/open_source.h"
+#include "kestrel/vision/objects/object_model.h"
+
+namespace kestrel {
+namespace {
+
+struct ConsoleArguments {
+  SourceArguments source;
+  std::string address;
+  std::string model;
+  std::string output = "taught";  // for what the page saves
+  bool is_hunt = false;
+  // Of `kestrel land` or `hunt`, which is shown instead of being found again; none where it is
+  // empty.
+  std::string result;
+
+  ConsoleOptions Options(const KestrelOptions& options) const {
+    if (address.empty()) return options.console;
+    return Checked(WithAddress(options.console, address, "--address"));
+  }
+};
+
+void RequireEnd(const std::vector<std::string>& sources) {
+  for (const std::string& source : sources) {
+    if (!IsCamera(source)) continue;
+    throw InputError(source +
+                     ": the page goes to and fro, expected a recording, a bag, images or a video; "
+                     "`kestrel fly --console` shows a camera");
+  }
+}
+
+LandingPipelineOptions LandingOptions(const ConsoleArguments& arguments,
+                                      const KestrelOptions& options) {
+  LandingPipelineOptions landing = options.landing;
+  landing.still = landing.still || arguments.source.still;
+  return landing;
+}
+
+// What is looked for, with the options of `kestrel land` or `kestrel hunt`.
+std::unique_ptr<ReplaySearch> MakeSearch(const ConsoleArguments& arguments,
+                                         const KestrelOptions& options) {
+  const SourceArguments& source = arguments.source;
+  if (!arguments.is_hunt) return SearchForPattern(source, LandingOptions(arguments, options));
+  HuntPipelineOptions hunt = options.hunt;
+  hunt.still = hunt.still || source.still;
+  return SearchForObjects(
+      source, hunt,
+      arguments.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments.model));
+}
+
+// 'arguments' and 'search' outlive it.
+ReplayConsole::Recording RecordingOf(const ConsoleArguments& arguments,
+                                     const ReplaySearch& search) {
+  const auto open = [&arguments, &search]() -> ReplayConsole::ReadFrame {
+    const auto winder = std::make_shared<FrameWinder>([&arguments, &search] {
+      return arguments.source.bag.Open(arguments.source.sources, search.format());
+    });
+    return [winder](std::size_t index) { return winder->Read(index); };
+  };
+  const auto detect = [&arguments, &search](const std::vector<std::string>& settings) {
+    return [&arguments, &search, start = search.Detect(settings)](const SecondRun::GoOn& go_on) {
+      return DetectAgain(arguments.source, search.format(), start, go_on);
+    };
+  };
+  return {open, detect};
+}
+
+void RunConsole(const ConsoleArguments& arguments) {
+  const KestrelOptions options = arguments.source.options.Read();
+  RequireEnd(arguments.source.sources);
+  const std::unique_ptr<ReplaySearch> search = MakeSearch(arguments, options);
+  const OpenedSource opened = arguments.source.Open(search->format());
+  const std::string& name = arguments.source.sources.front();
+  std::optional<ColorSource> colors =
+      FindColors(arguments.source, arguments.model, arguments.output);
+  const bool has_colors = colors.has_value();
+  if (!has_colors && !arguments.model.empty() && !arguments.is_hunt) {
+    throw InputError("--model: " + name + " has no images in color to teach it by");
+  }
+  ReplayConsole console(arguments.Options(options), name, search->Subject(), std::move(colors));
+  fmt::print(stderr, "console: {}\n", console.url());
+  if (has_colors) fmt::print(stderr, "colors that are taught: {}\n", arguments.output);
+  const auto start = arguments.result.empty() ? search->Detect({}) : search->Show(arguments.result);
+  const std::unique_ptr<ReplayRun> run = start(opened);
+  run->TellProgress([&](std::size_t done) {
+    const std::size_t frames = opened.source->frame_count().value_or(0);
+    console.SetProgress(fmt::format("{} of {} frames", done, frames));
+  });
+  RunPipeline(opened, run.get());
+  if (WasInterrupted()) return;
+  if (run->done() == 0) throw InputError(name + ": has no images to show");
+  const LandingPipelineOptions landing = LandingOptions(arguments, options);
+  console.OfferCalibration(CalibrationTools(arguments.source, landing, arguments.output));
+  console.Play(run->TakeResult(), RecordingOf(arguments, *search), WasInterrupted);
+}
+
+}  // namespace
+
+void AddConsoleCommand(CLI::App* app) {
+  CLI::App* command =
+      app->add_subcommand("console", "The web page on a recording: replay it, teach its colors");
+  const auto arguments = std::make_shared<ConsoleArguments>();
+  arguments->source.AddReadingTo(command);
+  command
+      ->add_option("--address", arguments->address,
+                   "Where the page is served (127.0.0.1:8080); port 0: any free one")
+      ->type_name("ADDRESS:PORT");
+  command->add_flag("--hunt", arguments->is_hunt,
+                    "Look for coloured objects, as `kestrel hunt`, not for the landing pattern");
+  command
+      ->add_option("--model", arguments->model,
+                   "Objects (YAML) whose colours the page teaches, in place of those saved before "
+                   "or the built-in ones; with --hunt also those that are looked for")
+      ->type_name("FILE");
+  command
+      ->add_option("--output", arguments->output,
+                   "Folder for what the page saves: calibrations, and the model that it teaches "
+                   "(objects.yaml), its versions and the draft (taught)")
+      ->type_name("DIR");
+  command->callback([arguments] {
+    const char* const table =
+        arguments->is_hunt ? "object_detections.csv" : "landing_detections.csv";
+    arguments->result = TakeResult(table, &arguments->source.sources).value_or("");
+    RunConsole(*arguments);
+  });
+}
+
+}  // namespace kestrel

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <filesystem>
+#include <string>
+
+#include "kestrel/app/cli/test_running_command.h"
+#include "kestrel/app/console/test_browser.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::HasSubstr;
+
+class ConsoleCommandTest : public CommandTest {
+ protected:
+  // A short flight with truth.
+  std::string Recording() const {
+    const std::string flight = folder_ / "flight";
+    EXPECT_EQ(Run("simulate landing --scenario calm --seed 2 --output " + flight +
+                  " --set frames=10 --set rate_hz=10 --set ground.map_px=256"
+                  " --set shutter.rays_per_pixel=4")
+                  .status,
+              0);
+    return flight;
+  }
+  static void ExpectPage(int port) {
+    TestBrowser browser(port);
+    auto request = browser.Get("/");
+    request.set(boost::beast::http::field::accept_encoding, "gzip");
+    EXPECT_EQ(browser.Send(request).result_int(), 200u);
+  }
+};
+
+TEST_F(ConsoleCommandTest, AFlightIsSeen) {
+  RunningCommand fly(
+      "fly sim:standing --autopilot sim:px4 --console 127.0.0.1:0 --set fly.sim_camera.scale=0.4",
+      folder_);
+  const int port = fly.Port();
+  ExpectPage(port);
+  TestSocket socket(port);
+  socket.Send(R"({"images": true})");
+  const auto hello = socket.Next("hello");
+  ASSERT_TRUE(hello);
+  EXPECT_EQ((*hello)["title"], "sim:standing");
+  EXPECT_EQ((*hello)["live"], true);
+  const auto image = socket.Next("image");
+  ASSERT_TRUE(image);
+  EXPECT_GT((*image)["width"], 100);
+  EXPECT_LT((*image)["age_ms"], 5000);
+  const auto sample = socket.Next("sample");
+  ASSERT_TRUE(sample);
+  EXPECT_EQ((*sample)["values"].size(), (*hello)["series"].size());
+  EXPECT_TRUE(socket.Next("map"));
+  const auto health = socket.Next("health");
+  ASSERT_TRUE(health);
+  EXPECT_THAT(health->dump(), HasSubstr("autopilot"));
+  EXPECT_EQ(fly.End(), 0) << fly.Log();
+}
+
+TEST_F(ConsoleCommandTest, AFlightIsRecordedWhenThePageAsks) {
+  const std::string kept = folder_ / "kept";
+  RunningCommand fly(
+      "fly sim:standing --autopilot sim:px4 --console 127.0.0.1:0"
+      " --set fly.sim_camera.scale=0.4"
+      " --set fly.keep_folder=" +
+          kept,
+      folder_);
+  const int port = fly.Port();
+  TestSocket socket(port);
+  const auto is_recording = [&](bool wanted) {
+    while (const auto status = socket.Next("status")) {
+      if ((*status)["recording"] == wanted) return true;
+    }
+    return false;
+  };
+  // Until there is an image, for the snapshot.
+  socket.Send(R"({"images": true})");
+  ASSERT_TRUE(socket.Next("image"));
+  socket.Send(R"({"command": "snapshot"})");
+  socket.Send(R"({"command": "record", "value": 1})");
+  ASSERT_TRUE(is_recording(true));
+  socket.Send(R"({"command": "record", "value": 0})");
+  ASSERT_TRUE(is_recording(false));
+  EXPECT_EQ(fly.End(), 0) << fly.Log();
+  int recordings = 0, snapshots = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kept)) {
+    recordings += std::filesystem::exists(entry.path() / "mav0/cam0/data.csv");
+    snapshots += entry.path().extension() == ".png";
+  }
+  EXPECT_EQ(recordings, 1);
+  EXPECT_EQ(snapshots, 1);
+}
+
+TEST_F(ConsoleCommandTest, ARecordingIsReplayed) {
+  RunningCommand console("console " + Recording() + " --address 127.0.0.1:0", folder_);
+  const int port = console.Port();
+  ExpectPage(port);
+  TestSocket socket(port);
+  const auto timeline = socket.Next("timeline");
+  ASSERT_TRUE(timeline);
+  EXPECT_EQ((*timeline)["marks"], std::string(10, 'f'));
+  socket.Send(R"({"command": "step", "value": 3})");
+  for (;;) {
+    const auto playback = socket.Next("playback");
+    ASSERT_TRUE(playback);
+    if ((*playback)["frame"] == 3) break;
+  }
+  socket.Send(R"({"images": true})");
+  const auto image = socket.Next("image");
+  ASSERT_TRUE(image);
+  EXPECT_EQ((*image)["age_ms"], nullptr);
+  EXPECT_EQ((*image)["shapes"][0]["layer"], "prediction");
+  TestBrowser browser(port);
+  EXPECT_THAT(browser.Send(browser.Get("/export/detections-1.csv")).body(),
+              ::testing::StartsWith("frame,timestamp_ns,detected,"));
+  EXPECT_THAT(browser.Send(browser.Get("/export/overlays-3.png")).body(), HasSubstr("PNG"));
+  // Nothing is as sure as this: a second run finds none.
+  socket.Send(R"({"command": "detect", "settings": ["landing.detector.min_quality=1"]})");
+  nlohmann::json second;
+  do {
+    const auto message = socket.Next("second");
+    ASSERT_TRUE(message);
+    second = *message;
+  } while (second["state"] == "running");
+  EXPECT_EQ(second["state"], "done") << second;
+  EXPECT_EQ(second["marks"], std::string(10, 'l'));
+  EXPECT_EQ(console.End(), 0) << console.Log();
+}
+
+TEST_F(ConsoleCommandTest, ColoursAreTaughtAndSaved) {
+  const std::string hunt = folder_ / "hunt";
+  const std::string taught = folder_ / "taught";
+  ASSERT_EQ(Run("simulate hunt --seed 4 --output " + hunt +
+                " --set frames=2 --set ground.map_px=256 --set shutter.rays_per_pixel=1")
+                .status,
+            0);
+  RunningCommand console("console " + hunt + " --address 127.0.0.1:0 --output " + taught, folder_);
+  const int port = console.Port();
+  TestSocket socket(port);
+  const auto hello = socket.Next("hello");
+  ASSERT_TRUE(hello);
+  EXPECT_EQ((*hello)["colors"], true);
+  const auto ask = [&](const std::string& message) {
+    socket.Send(message);
+    return socket.Next("colors").value_or(nlohmann::json());
+  };
+  const auto state = socket.Next("colors");
+  ASSERT_TRUE(state);
+  EXPECT_EQ((*state)["frames"], 2);
+  // The ground, as green: the model does not matter here.
+  ask(R"({"colors": "mark", "frame": 1, "color": "green", "tool": "rectangle", "size": 0,)"
+      R"( "points": [600, 300, 700, 400]})");
+  EXPECT_EQ(ask(R"({"colors": "teach", "color": "green"})")["answer"], "taught green");
+  EXPECT_EQ(ask(R"({"colors": "save"})")["refused"], false);
+  EXPECT_EQ(console.End(), 0) << console.Log();
+  EXPECT_TRUE(std::filesystem::exists(taught + "/draft.yaml"));
+  EXPECT_EQ(Run("hunt " + hunt + " --model " + taught + "/objects.yaml").status, 0);
+}
+
+TEST_F(ConsoleCommandTest, ColoursAreTaughtInFlightAndAfterIt) {
+  const std::string hunt = folder_ / "hunt";
+  const std::string kept = folder_ / "kept";
+  ASSERT_EQ(Run("simulate hunt --seed 4 --output " + hunt +
+                " --set frames=2 --set ground.map_px=256 --set shutter.rays_per_pixel=1")
+                .status,
+            0);
+  RunningCommand fly(
+      "fly " + hunt + " --hunt --loop --console 127.0.0.1:0" + " --set fly.keep_folder=" + kept,
+      folder_);
+  const int port = fly.Port();
+  const auto ask = [](TestSocket* socket, const std::string& message) {
+    socket->Send(message);
+    return socket->Next("colors").value_or(nlohmann::json());
+  };
+  {
+    TestSocket socket(port);
+    ASSERT_TRUE(socket.Next("colors"));
+    socket.Send(R"({"images": true})");
+    ASSERT_TRUE(socket.Next("image"));
+    EXPECT_EQ(ask(&socket, R"({"colors": "keep"})")["frames"], 1);
+    const auto state =
+        ask(&socket, R"({"colors": "mark", "frame": 0, "color": "green", "tool": "rectangle",)"
+                     R"( "size": 0, "points": [600, 300, 700, 400]})");
+    EXPECT_EQ(state["strokes"], 1) << state["answer"];
+  }
+  EXPECT_EQ(fly.End(), 0) << fly.Log();
+  std::string frames;
+  for (const auto& entry : std::filesystem::directory_iterator(kept)) {
+    if (entry.path().filename().string().starts_with("colors_")) frames = entry.path().string();
+  }
+  ASSERT_NE(frames, "");
+  RunningCommand console("console " + frames + "/ --camera " + hunt +
+                             "/mav0/cam0/sensor.yaml --address 127.0.0.1:0 --output " + kept +
+                             "/taught",
+                         folder_);
+  TestSocket socket(console.Port());
+  const auto state = socket.Next("colors");
+  ASSERT_TRUE(state);
+  EXPECT_EQ((*state)["frames"], 1);
+  EXPECT_EQ((*state)["strokes"], 1) << "goes on with the marks of the flight";
+  EXPECT_EQ(console.End(), 0) << console.Log();
+}
+
+TEST_F(ConsoleCommandTest, APageCalibratesAsTheCommandAndReplacesNothing) {
+  const std::string flight = folder_ / "flight";
+  ASSERT_EQ(Run("simulate landing --scenario aggressive --seed 11 --output " + flight +
+                " --set frames=60 --set rate_hz=15 --set ground.map_px=256"
+                " --set shutter.rays_per_pixel=4")
+                .status,
+            0);
+  const std::string saved = folder_ / "saved";
+  RunningCommand console("console " + flight + " --address 127.0.0.1:0 --output " + saved, folder_);
+  const int port = console.Port();
+  TestSocket socket(port);
+  const auto next = [&socket](const std::string& state) {
+    while (const auto message = socket.Next("calibration")) {
+      if ((*message)["state"] != "running") {
+        EXPECT_EQ((*message)["state"], state) << *message;
+        return *message;
+      }
+    }
+    return nlohmann::json();
+  };
+  ASSERT_TRUE(next("none").is_object());
+  socket.Send(R"({"command": "calibrate", "settings": ["mount", "clock", "moving"]})");
+  const nlohmann::json done = next("done");
+  EXPECT_EQ(done["numbers"].size(), 4u);
+  EXPECT_LT(done["residuals"]["rms_after"], done["residuals"]["rms_before"]);
+  socket.Send(R"({"command": "calibrate-save"})");
+  EXPECT_EQ(next("done")["saved"], saved + "/mount_clock.yaml");
+  socket.Send(R"({"command": "calibrate-save"})");
+  EXPECT_EQ(next("done")["saved"], saved + "/mount_clock_2.yaml");
+  const std::string by_command = folder_ / "command.yaml";
+  ASSERT_EQ(Run("calibrate clock --both --moving " + flight + " --output " + by_command).status, 0);
+  EXPECT_EQ(ReadFile(saved + "/mount_clock.yaml"), ReadFile(by_command));
+  EXPECT_EQ(ReadFile(saved + "/mount_clock_2.yaml"), ReadFile(by_command));
+  TestBrowser browser(port);
+  EXPECT_EQ(browser.Send(browser.Get("/export/calibration-1.yaml")).body(), ReadFile(by_command));
+}
+
+TEST_F(ConsoleCommandTest, ABagIsPlayedAndRefusedInTheWordsOfTheCommand) {
+  const std::string bag = folder_ / "flight.mcap";
+  ASSERT_EQ(Run("convert " + Recording() + " " + bag).status, 0);
+  RunningCommand console("console " + bag + " --topic /camera/image_raw --address 127.0.0.1:0",
+                         folder_);
+  const int port = console.Port();
+  TestSocket socket(port);
+  const auto timeline = socket.Next("timeline");
+  ASSERT_TRUE(timeline);
+  EXPECT_EQ((*timeline)["times_ms"].size(), 10u);
+  TestBrowser browser(port);
+  const auto frame = [&browser](int number) {
+    return browser.Send(browser.Get(fmt::format("/export/frame-{}.png", number))).body();
+  };
+  const std::string last = frame(9);
+  EXPECT_THAT(last, HasSubstr("PNG"));
+  EXPECT_NE(frame(2), last) << "a bag is wound back";
+  const std::string too_few = "images with poses around them, expected at least 20";
+  socket.Send(R"({"command": "calibrate", "settings": ["mount"]})");
+  nlohmann::json refused;
+  do {
+    const auto message = socket.Next("calibration");
+    ASSERT_TRUE(message);
+    refused = *message;
+  } while (refused["state"] != "refused");
+  EXPECT_THAT(refused["error"].dump(), HasSubstr(too_few));
+  EXPECT_THAT(refused["coverage"].dump(), HasSubstr("of 10 images"));
+  ExpectInputError("calibrate mount " + bag, too_few);
+  ExpectInputError("console " + bag + " --topic /up", "flight.mcap: has no topic /up");
+}
+
+TEST_F(ConsoleCommandTest, AResultIsShownOverItsRecording) {
+  const std::string flight = Recording();
+  const std::string result = folder_ / "result";
+  ASSERT_EQ(Run("land " + flight + " --output " + result).status, 0);
+  // With these options nothing would be found: what is shown is the result.
+  RunningCommand console("console " + flight + " " + result +
+                             " --address 127.0.0.1:0 --set landing.detector.min_quality=1",
+                         folder_);
+  const int port = console.Port();
+  TestSocket socket(port);
+  const auto timeline = socket.Next("timeline");
+  ASSERT_TRUE(timeline);
+  EXPECT_EQ((*timeline)["marks"], std::string(10, 'f'));
+  TestBrowser browser(port);
+  const std::string table = ReadFile(result + "/landing_detections.csv");
+  EXPECT_EQ(browser.Send(browser.Get("/export/detections-1.csv")).body(), table);
+  EXPECT_EQ(console.End(), 0) << console.Log();
+  const std::string row = table.substr(0, table.find('\n', table.find('\n') + 1) + 1);
+  const auto one_row =
+      Run("console --address 127.0.0.1:0 " + flight + " " + folder_.Write("one.csv", row));
+  EXPECT_EQ(one_row.status, 1);
+  EXPECT_THAT(one_row.err, HasSubstr("row 2 is not of the recording's frame at"));
+  ExpectInputError("console " + result, "expected the recording that it is of beside it");
+  ExpectInputError("console " + flight + " " + result + " " + result, "is a second result");
+}
+
+TEST_F(ConsoleCommandTest, FaultsAreNamed) {
+  const std::string fly = "fly sim:standing --console ";
+  ExpectInputError(fly + "8080", "--console '8080': expected ADDRESS:PORT");
+  ExpectInputError(fly + "0.0.0.0:8080", "token is empty, expected one");
+  ExpectInputError(fly + "192.0.2.1:8080 --set console.token=0123456789abcdef",
+                   "cannot listen at 192.0.2.1 port 8080");
+  ExpectInputError(fly + "--set console.token=short", "console.token is not 16 to 128");
+  const std::string flight = Recording();
+  ExpectInputError("console " + flight + " --address nowhere:1", "--address 'nowhere:1'");
+  ExpectInputError("console " + flight + " --model any.yaml", "has no images in color");
+  ExpectInputError("console /dev/video0", "`kestrel fly --console` shows a camera");
+  ExpectInputError("console " + folder_ / "missing", "no such file or folder");
+  RunningCommand first("console " + flight + " --address 127.0.0.1:0", folder_);
+  ExpectInputError(fmt::format("{}127.0.0.1:{}", fly, first.Port()), "expected a free port");
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <string>
+
+#include "kestrel/app/cli/test_running_command.h"
+#include "kestrel/app/console/test_browser.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class ConsoleHuntTest : public CommandTest {
+ protected:
+  // A short flight over objects, with truth.
+  std::string Recording(const std::string& name = "hunt") const {
+    const std::string flight = folder_ / name;
+    EXPECT_EQ(Run("simulate hunt --seed 4 --output " + flight +
+                  " --set frames=6 --set ground.map_px=512 --set shutter.rays_per_pixel=1")
+                  .status,
+              0);
+    return flight;
+  }
+  static std::string Get(int port, const std::string& path) {
+    TestBrowser browser(port);
+    return browser.Send(browser.Get(path)).body();
+  }
+  // Without the time that it took.
+  static std::string WithoutTimes(const std::string& table) {
+    return std::regex_replace(table, std::regex("(,[0-9]*),[0-9]+\\.[0-9]{4},"), "$1,,");
+  }
+};
+
+TEST_F(ConsoleHuntTest, AHuntIsReplayedAndRunAgain) {
+  const std::string flight = Recording();
+  RunningCommand console("console --hunt " + flight + " --address 127.0.0.1:0", folder_);
+  const int port = console.Port();
+  TestSocket socket(port);
+  const auto hello = socket.Next("hello");
+  ASSERT_TRUE(hello);
+  EXPECT_THAT((*hello)["layers"].dump(), HasSubstr("truth"));
+  EXPECT_EQ((*hello)["series"].back()["name"], "error");
+  const auto timeline = socket.Next("timeline");
+  ASSERT_TRUE(timeline);
+  const std::string marks = (*timeline)["marks"];
+  ASSERT_EQ(marks.size(), 6u);
+  ASSERT_NE(marks.find('f'), std::string::npos) << marks;
+  // Where all that there is was found, it is shown with how far it is from where it is.
+  socket.Send(fmt::format(R"({{"command": "step", "value": {}}})", marks.find('f')));
+  nlohmann::json findings;
+  do {
+    const auto message = socket.Next("findings");
+    ASSERT_TRUE(message);
+    findings = *message;
+  } while (findings["frame"] != marks.find('f'));
+  EXPECT_THAT(findings["runs"][0].dump(), HasSubstr(" px"));
+  // The picture of the frame before may still be on its way.
+  std::string shapes = "[]";
+  while (shapes == "[]") {
+    socket.Send(R"({"images": true})");
+    const auto image = socket.Next("image");
+    ASSERT_TRUE(image);
+    shapes = (*image)["shapes"].dump();
+    socket.Send(fmt::format(R"({{"ack": {}}})", (*image)["sequence"].get<int>()));
+  }
+  EXPECT_THAT(shapes, HasSubstr("detection"));
+  EXPECT_THAT(shapes, HasSubstr("truth"));
+  // The same as the command finds.
+  const auto hunt = Run("hunt " + flight);
+  EXPECT_EQ(WithoutTimes(Get(port, "/export/detections-1.csv")), WithoutTimes(hunt.out));
+  // Nothing is as large as this.
+  socket.Send(R"({"command": "detect", "settings": ["hunt.detector.min_pixels=100000"]})");
+  nlohmann::json second;
+  do {
+    const auto message = socket.Next("second");
+    ASSERT_TRUE(message);
+    second = *message;
+  } while (second["state"] == "running");
+  EXPECT_EQ(second["state"], "done") << second;
+  const std::string others = second["marks"];
+  EXPECT_EQ(others.find_first_of("fx"), std::string::npos) << others;
+  EXPECT_NE(others.find('l'), std::string::npos) << others;
+  EXPECT_EQ(console.End(), 0) << console.Log();
+}
+
+TEST_F(ConsoleHuntTest, AResultIsShownOverItsRecording) {
+  const std::string flight = Recording();
+  const std::string result = folder_ / "result";
+  ASSERT_EQ(Run("hunt " + flight + " --output " + result).status, 0);
+  // With these options nothing would be found: what is shown is the result.
+  RunningCommand console("console --hunt " + flight + " " + result +
+                             " --address 127.0.0.1:0 --set hunt.detector.min_pixels=100000",
+                         folder_);
+  const int port = console.Port();
+  TestSocket socket(port);
+  const auto timeline = socket.Next("timeline");
+  ASSERT_TRUE(timeline);
+  EXPECT_THAT((*timeline)["marks"].dump(), HasSubstr("f"));
+  EXPECT_EQ(Get(port, "/export/detections-1.csv"), ReadFile(result + "/object_detections.csv"));
+  EXPECT_EQ(console.End(), 0) << console.Log();
+  ExpectInputError("console --hunt " + result, "expected the recording that it is of beside it");
+  const std::string table = ReadFile(result + "/object_detections.csv");
+  const std::string header = table.substr(0, table.find('\n') + 1);
+  const auto empty =
+      Run("console --hunt --address 127.0.0.1:0 " + flight + " " + folder_.Write("a.csv", header));
+  EXPECT_EQ(empty.status, 1);
+  EXPECT_THAT(empty.err, HasSubstr("has no row of the recording's frame at"));
+}
+
+TEST_F(ConsoleHuntTest, AClipIsGivenAway) {
+  RunningCommand console("console --hunt " + Recording() + " --address 127.0.0.1:0", folder_);
+  const int port = console.Port();
+  TestSocket socket(port);
+  ASSERT_TRUE(socket.Next("timeline"));
+  const std::string clip = Get(port, "/export/overlays-1-4.mp4");
+  EXPECT_TRUE(clip.substr(4, 4) == "ftyp" || clip.starts_with("RIFF"));
+  EXPECT_GT(clip.size(), 10'000u);
+}
+
+}  // namespace
+}  // namespace kestrel

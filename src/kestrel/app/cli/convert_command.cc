@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/cli/convert_command.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "kestrel/app/cli/bag_arguments.h"
+#include "kestrel/app/cli/interrupt.h"
+#include "kestrel/app/cli/progress_bar.h"
+#include "kestrel/app/cli/source_arguments.h"
+#include "kestrel/app/foxglove/foxglove_recording.h"
+#include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/io/bags/bag_writer.h"
+#include "kestrel/io/bags/recording_sink.h"
+#include "kestrel/io/recording/frame_source.h"
+
+namespace kestrel {
+namespace {
+
+struct ConvertArguments {
+  std::string source;
+  std::string destination;
+  BagArguments bag;
+  std::string camera;
+  std::string compression = "none";
+  bool for_foxglove = false;
+  bool force = false;
+};
+
+// The calibration FILE or the source's, with the source's mount where FILE has none.
+std::optional<CameraCalibration> CalibrationFor(const ConvertArguments& arguments,
+                                                const FrameSource& source) {
+  std::optional<CameraCalibration> calibration =
+      arguments.camera.empty() ? source.calibration() : ReadCalibration(arguments.camera);
+  if (calibration && !calibration->body_from_camera) {
+    calibration->body_from_camera = source.mount().body_from_camera;
+  }
+  return calibration;
+}
+
+// What the destination has no place for.
+void SayWhatIsLost(const ConvertArguments& arguments, const RecordingHead& head) {
+  const bool is_bag = IsBagName(arguments.destination);
+  if (!head.calibration) fmt::print(stderr, "kestrel: no calibration: the source has none\n");
+  if (is_bag && head.calibration && head.calibration->clock_offset) {
+    fmt::print(stderr,
+               "kestrel: a bag has no place for the clock offset: give --clock-offset {} with it\n",
+               ToSeconds(*head.calibration->clock_offset));
+  }
+  if ((!is_bag || arguments.for_foxglove) && head.has_motion) {
+    fmt::print(stderr, "kestrel: {} no place for velocities: they are left out\n",
+               is_bag ? "Foxglove's poses have" : "a EuRoC folder has");
+  }
+}
+
+std::unique_ptr<RecordingSink> OpenDestination(const ConvertArguments& arguments,
+                                               const RecordingHead& head) {
+  if (arguments.for_foxglove) {
+    RequireNoSource(arguments.destination, {arguments.source});
+    return std::make_unique<FoxgloveRecording>(arguments.destination, head, arguments.force);
+  }
+  return NewRecording(arguments.destination, head,
+                      CompressionOf(arguments.compression, "--compression"), arguments.force);
+}
+
+void RunConvert(const ConvertArguments& arguments) {
+  const auto source = arguments.bag.Open({arguments.source}, PixelFormat::kBgr);
+  const std::vector<PoseSample> poses = source->poses();
+  const RecordingHead head{
+      .calibration = CalibrationFor(arguments, *source),
+      .rate_hz = source->rate_hz(),
+      .has_poses = !poses.empty(),
+      .has_motion = std::any_of(poses.begin(), poses.end(),
+                                [](const PoseSample& pose) { return pose.motion.has_value(); })};
+  SayWhatIsLost(arguments, head);
+  const auto recording = OpenDestination(arguments, head);
+  CatchInterrupts();
+  ProgressBar progress(source->frame_count());
+  std::size_t frames = 0;
+  auto pose = poses.begin();
+  for (Frame frame; !WasInterrupted() && source->Next(&frame); progress.Show(++frames)) {
+    for (; pose != poses.end() && pose->time <= frame.time; ++pose) recording->AddPose(*pose);
+    recording->AddFrame(frame);
+  }
+  for (; pose != poses.end() && !WasInterrupted(); ++pose) recording->AddPose(*pose);
+  recording->Close();
+  fmt::print(stderr, "{} frames, {} poses\n", frames, pose - poses.begin());
+}
+
+}  // namespace
+
+void AddConvertCommand(CLI::App* app) {
+  CLI::App* command = app->add_subcommand(
+      "convert", "Convert between EuRoC folders, ROS 1 bags and ROS 2 bags (MCAP, sqlite3)");
+  const auto arguments = std::make_shared<ConvertArguments>();
+  command
+      ->add_option("SOURCE", arguments->source,
+                   "A recording folder (EuRoC), a ROS bag, a folder of images or a video")
+      ->required();
+  command
+      ->add_option("DESTINATION", arguments->destination,
+                   "A bag (.bag: ROS 1; .mcap, .db3: ROS 2), or a folder (EuRoC)")
+      ->required();
+  arguments->bag.AddTo(command);
+  command->add_option("--camera", arguments->camera, "Calibration; overrides the source's")
+      ->type_name("FILE");
+  CLI::Option* compression =
+      command
+          ->add_option("--compression", arguments->compression,
+                       "Of the bag: none; bz2, lz4 (.bag); lz4, zstd (.mcap)")
+          ->check(CLI::IsMember({"none", "bz2", "lz4", "zstd"}));
+  command
+      ->add_flag("--foxglove", arguments->for_foxglove,
+                 "An .mcap with Foxglove's messages, images as JPEG, in place of ROS 2's")
+      ->excludes(compression);
+  command->add_flag("--force", arguments->force, "Replace files that exist");
+  command->callback([arguments] { RunConvert(*arguments); });
+}
+
+}  // namespace kestrel

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/cli/dds_arguments.h"
+
+#include <fmt/format.h>
+
+#include "kestrel/comms/dds/dds_domain.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/parse_number.h"
+
+namespace kestrel {
+
+void DdsArguments::AddTo(CLI::App* command) {
+  command
+      ->add_option_function<std::string>(
+          "--dds", [this](const std::string& domain) { told = domain; },
+          "Publish the results as messages of ROS 2, in this DDS domain (else ROS_DOMAIN_ID, else "
+          "0)")
+      ->type_name("[DOMAIN]")
+      ->expected(0, 1);
+}
+
+int DdsArguments::Domain() const {
+  if (!told || told->empty()) return DdsDomain(std::nullopt);
+  const auto domain = ParseNumber<int>(*told);
+  if (!domain) throw InputError(fmt::format("--dds '{}': expected a domain, 0 to 232", *told));
+  return DdsDomain(*domain);
+}
+
+std::shared_ptr<Ros2Node> DdsArguments::OpenNode(const DdsOptions& options) const {
+  return std::make_shared<Ros2Node>(Domain(), Ros2NodeOptions{options.node, options.is_humble()});
+}
+
+RosFrames OwnFrames(const DdsOptions& options, bool has_world) {
+  RosFrames frames;
+  frames.camera = options.camera_frame;
+  if (has_world) frames.world = options.world_frame;
+  frames.body = options.body_frame;
+  return frames;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/cli/doctor_command.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "kestrel/app/cli/fly_arguments.h"
+#include "kestrel/app/cli/fly_autopilot.h"
+#include "kestrel/app/cli/fly_source.h"
+#include "kestrel/app/cli/interrupt.h"
+#include "kestrel/comms/mavlink/link_url.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/flight/doctor/computer_checks.h"
+#include "kestrel/flight/doctor/examination.h"
+#include "kestrel/flight/doctor/explanation.h"
+#include "kestrel/flight/doctor/finding.h"
+
+namespace kestrel {
+namespace {
+
+struct DoctorArguments {
+  FlyArguments flight;
+  double moving_mps = 0;  // 0: the target stands
+  double duration_s = 8;
+  bool explain = false;
+  bool json = false;
+  bool fix = false;
+};
+
+// One look at camera and autopilot. What cannot be opened is a finding as well.
+class DoctorVisit {
+ public:
+  explicit DoctorVisit(const DoctorArguments& arguments)
+      : arguments_(arguments), options_(arguments.flight.ReadOptions()) {
+    SetUse();
+    OpenSource();
+    OpenLink();
+    ExaminationParts parts;
+    parts.source = source_.source.get();
+    parts.calibration = source_.calibration;
+    parts.connection = connection_ ? &*connection_ : nullptr;
+    parts.autopilot = autopilot_ ? &*autopilot_ : nullptr;
+    examination_.emplace(options_.landing, options_.fly.flight.events, parts);
+  }
+
+  std::vector<Finding> Look() {
+    CatchInterrupts();
+    if (simulated_) simulated_->Start();
+    examination_->Run(DurationFromSeconds(arguments_.duration_s), WasInterrupted, &observations_);
+    ComputerObservations computer = ObserveComputer(observations_.use.record);
+    computer.frame_mb = observations_.computer.frame_mb;
+    computer.least_disk_mb = options_.fly.recorder.free_space_mb;
+    observations_.computer = computer;
+    return Check(observations_);
+  }
+
+  // Sets what is not good and the user agrees to, reads it back, and checks again.
+  std::vector<Finding> Fix(const std::vector<Finding>& findings) {
+    if (!autopilot_ || !autopilot_->is_here()) return findings;
+    if (autopilot_->is_armed()) {
+      fmt::print(stderr, "the autopilot is armed: its parameters are left alone\n");
+      return findings;
+    }
+    std::vector<ParameterFix> wanted;
+    for (const Finding& finding : findings) {
+      if (finding.fix && IsWanted(finding)) wanted.push_back(*finding.fix);
+    }
+    if (wanted.empty()) return findings;
+    for (const ParameterFix& fix : wanted) autopilot_->SetParameter(fix.name, fix.value);
+    WaitForWrites();
+    bool needs_reboot = false;
+    for (const ParameterFix& fix : wanted) needs_reboot |= TakeOver(fix) && fix.needs_reboot;
+    if (needs_reboot) {
+      fmt::print(stderr, "restart the autopilot: some take effect only then\n");
+    }
+    return Check(observations_);
+  }
+
+ private:
+  void SetUse() {
+    DoctorUse& use = observations_.use;
+    const FlyArguments& flight = arguments_.flight;
+    if (flight.profile != "auto") use.profile = ParseLinkProfile(flight.profile);
+    use.guides = arguments_.flight.guide;
+    if (arguments_.moving_mps > 0) use.target_mps = arguments_.moving_mps;
+    use.sends_distance = options_.fly.flight.messages.sends_distance;
+    use.attitude_rate_hz = options_.fly.autopilot.attitude_rate_hz;
+    use.position_rate_hz = options_.fly.autopilot.position_rate_hz;
+    if (options_.fly.flight.link_delay_s >= 0) use.link_delay_s = options_.fly.flight.link_delay_s;
+    use.record = flight.record;
+  }
+
+  void OpenSource() {
+    CameraObservations& camera = observations_.camera;
+    try {
+      source_ = OpenFlySource(arguments_.flight.source, PixelFormat::kGray, options_,
+                              arguments_.flight.loop);
+    } catch (const ImageSizeError& error) {
+      camera.open_error = error.what();
+      camera.has_other_size = true;
+      source_.calibration = ReadCalibration(arguments_.flight.source.camera);
+    } catch (const InputError& error) {
+      camera.open_error = error.what();
+    }
+  }
+
+  void OpenLink() {
+    LinkObservations& link = observations_.link;
+    if (arguments_.flight.autopilot.empty()) return;
+    link.is_asked = true;
+    link.is_signed = !options_.fly.link.signing_key.empty();
+    try {
+      FlyAutopilot opened = MakeFlyAutopilot(arguments_.flight.autopilot, options_.fly, &source_);
+      const LinkUrl url = ParseLinkUrl(opened.url);
+      link.scheme = url.scheme;
+      link.baud = url.number;
+      simulated_ = std::move(opened.simulated);
+      connection_.emplace(opened.url, options_.fly.link);
+    } catch (const InputError& error) {
+      link.open_error = error.what();
+      return;
+    }
+    autopilot_.emplace(
+        source_.Asking(options_.fly.autopilot), &*connection_,
+        AutopilotListener{
+            .pose = [this](const PoseSample& pose) { TakePose(pose); },
+            .true_pose = [this](const PoseSample& pose) { source_.TakeTruePose(pose); },
+            .event = [this](const AutopilotEvent& e) { examination_->TakeEvent(e); },
+            .text = {},
+        });
+  }
+
+  void TakePose(const PoseSample& pose) {
+    if (!source_.has_poses) examination_->TakePose(pose);
+    source_.TakePose(pose);
+  }
+
+  bool IsWanted(const Finding& finding) const {
+    const ToldParameter& told = observations_.parameters.at(finding.fix->name);
+    fmt::print(stderr, "{} is {:g}. Set it to {:g}? (y/n) ", told.own_name, told.value / told.scale,
+               finding.fix->value / told.scale);
+    std::string answer;
+    std::getline(std::cin, answer);
+    return answer.starts_with('y') || answer.starts_with('Y');
+  }
+
+  void WaitForWrites() {
+    constexpr Duration kLongest = std::chrono::seconds(15);
+    constexpr Duration kPatience = std::chrono::milliseconds(5);
+    const Time start = Now();
+    while (!autopilot_->parameter_writes().is_done() && Now() - start < kLongest) {
+      connection_->Receive(kPatience, [this](const mavlink::Packet& packet, Time received) {
+        autopilot_->Handle(packet, received);
+      });
+      autopilot_->Tick(Now());
+    }
+  }
+
+  // What the autopilot told back goes into the observations; false: it was not written.
+  bool TakeOver(const ParameterFix& fix) {
+    const ParameterWriteState state = autopilot_->parameter_writes().StateOf(fix.name);
+    ToldParameter& told = observations_.parameters.at(fix.name);
+    told.value = autopilot_->parameters().Find(fix.name).value_or(told.value);
+    fmt::print(stderr, "{}: {}, now {:g}\n", told.own_name, ToString(state),
+               told.value / told.scale);
+    return state == ParameterWriteState::kWritten;
+  }
+
+  DoctorArguments arguments_;
+  KestrelOptions options_;
+  DoctorObservations observations_;
+  FlySource source_;
+  std::unique_ptr<SimulatedAutopilot> simulated_;
+  std::optional<Connection> connection_;
+  std::optional<Autopilot> autopilot_;
+  std::optional<Examination> examination_;
+};
+
+void RunDoctor(const DoctorArguments& arguments) {
+  if (arguments.explain) {
+    fmt::print("{}", Explain({}));
+    return;
+  }
+  if (arguments.flight.source.sources.empty()) throw CLI::RequiredError("SOURCE");
+  DoctorVisit visit(arguments);
+  fmt::print(stderr, "looking for {:g} s\n", arguments.duration_s);
+  std::vector<Finding> findings = visit.Look();
+  const bool has_colors = isatty(STDOUT_FILENO) != 0;
+  if (arguments.fix) {
+    fmt::print(stderr, "{}", FindingsTable(findings, isatty(STDERR_FILENO) != 0));
+    findings = visit.Fix(findings);
+  }
+  fmt::print("{}", arguments.json ? FindingsJson(findings) : FindingsTable(findings, has_colors));
+  std::vector<std::string_view> wrong;
+  for (const Finding& finding : findings) {
+    if (finding.verdict == Verdict::kWrong) wrong.push_back(finding.check);
+  }
+  if (!wrong.empty()) throw InputError(fmt::format("wrong: {}", fmt::join(wrong, ", ")));
+}
+
+}  // namespace
+
+void AddDoctorCommand(CLI::App* app) {
+  constexpr double kFastest_mps = 40;
+  CLI::App* command = app->add_subcommand(
+      "doctor", "Says what is wrong with camera, calibration, mount, autopilot and computer");
+  const auto arguments = std::make_shared<DoctorArguments>();
+  arguments->flight.AddTo(command);
+  command->get_option("SOURCE")->required(false);  // --explain needs none
+  command
+      ->add_flag("--moving{4.2}", arguments->moving_mps,
+                 "Check for a target that moves, with 4.2 m/s or --moving=SPEED")
+      ->check(InRange(0, kFastest_mps, "a speed in m/s, up to 40"));
+  command->add_option("--duration", arguments->duration_s, "How long to look (8 s)")
+      ->type_name("S")
+      ->check(InRange(0.999, 600.001, "1 to 600 seconds"));
+  CLI::Option* explain = command->add_flag(
+      "--explain", arguments->explain,
+      "Only print what is sent for a pattern 2 m ahead, 1 m right, 5 m below, and "
+      "where the autopilots will think it is");
+  command->add_flag("--json", arguments->json, "The findings as JSON")->excludes(explain);
+  command
+      ->add_flag("--fix", arguments->fix,
+                 "Set the parameters that are not good, after asking for each")
+      ->excludes(explain);
+  command->callback([arguments] { RunDoctor(*arguments); });
+}
+
+}  // namespace kestrel

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/cli/fly_arguments.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/base/parse_number.h"
+
+namespace kestrel {
+namespace {
+
+// What `land` can do and a flight cannot.
+void RequireFlyable(const SourceArguments& source) {
+  if (source.sources.size() > 1) throw InputError("fly takes one SOURCE");
+  if (source.still) throw InputError("--still: the frames of a flight follow each other");
+  if (!source.annotate.empty()) {
+    throw InputError("--annotate: record the flight, then kestrel land DIR --annotate");
+  }
+  if (source.altitude_m) throw InputError("--altitude: a flight has the autopilot's poses");
+}
+
+// Set-points end with the mode: to be told that once a second is too seldom. A simulated
+// pilot gives the mode when it would have landed, and has set its PX4 up for decks that drive.
+void PrepareGuidance(const std::string& autopilot, FlyOptions* options) {
+  constexpr double kMode_hz = 20;
+  double& mode_hz = options->autopilot.mode_rate_hz;
+  if (mode_hz == 0) mode_hz = kMode_hz;
+  PilotOptions& pilot = options->sim_autopilot.model.pilot;
+  if (pilot.guide_after_s < 0) pilot.guide_after_s = std::exchange(pilot.land_after_s, -1);
+  std::string& parameters = options->sim_autopilot.model.parameters;
+  if (autopilot == "sim:px4" && parameters.empty()) parameters = "LNDMC_XY_VEL_MAX=12";
+}
+
+double ParseLinkDelay(const std::string& text) {
+  const auto delay_s = ParseNumber<double>(text);
+  if (!delay_s || !(*delay_s >= 0)) {
+    throw InputError(fmt::format("--link-delay '{}': expected seconds or auto", text));
+  }
+  return *delay_s;
+}
+
+// What a recording has, a flight may have to do without: the pose after a frame.
+void PredictPoses(KestrelOptions* options) {
+  constexpr double kLongest_s = 0.2;
+  for (double* const ahead_s :
+       {&options->landing.pose_extrapolation_s, &options->hunt.pose_extrapolation_s}) {
+    if (*ahead_s == 0) *ahead_s = kLongest_s;
+  }
+}
+
+}  // namespace
+
+void FlyArguments::AddTo(CLI::App* command) {
+  source.AddTo(command);
+  command
+      ->add_option("--autopilot", autopilot,
+                   "serial:///dev/ttyAMA0:921600, udpin://0.0.0.0:14550, udpout://HOST:PORT, "
+                   "tcpout://HOST:PORT, tcpin://HOST:PORT; sim:ardupilot, sim:px4: a simulated one")
+      ->type_name("URL");
+  command
+      ->add_option("--profile", profile,
+                   "What the autopilot is told: auto (by its heartbeat), ardupilot, px4, px4-vte")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"auto", "ardupilot", "px4", "px4-vte"}));
+  command->add_option("--rate", rate_hz, "Landing targets or set-points per second (50)")
+      ->type_name("HZ")
+      ->check(InRange(0.999, 400.001, "1 to 400 per second"));
+  command
+      ->add_option("--link-delay", link_delay,
+                   "From sending to the autopilot's use; auto: half of the round trip")
+      ->type_name("S");
+  command
+      ->add_option("--signing-key", signing_key,
+                   "MAVLink 2 signing: sign, and refuse what is not signed")
+      ->type_name("FILE");
+  command
+      ->add_option("--record", record,
+                   "Record the flight: a EuRoC folder with images and poses, and mavlink.tlog")
+      ->type_name("DIR");
+  command
+      ->add_option_function<std::string>(
+          "--console", [this](const std::string& address) { console = address; },
+          "Serve the web page, at 127.0.0.1:8080 unless told otherwise")
+      ->type_name("[ADDRESS:PORT]")
+      ->expected(0, 1);
+  command->add_flag("--ros", ros, "Publish the results as a node of ROS 1; --dds: of ROS 2");
+  CLI::Option* guide_flag = command->add_flag(
+      "--guide", guide, "Fly the UAV by set-points when the pilot gives it GUIDED or OFFBOARD");
+  CLI::Option* hunt_flag =
+      command->add_flag("--hunt", hunt, "Coloured objects instead of the landing pattern");
+  command->add_option("--model", model, "Objects and their colours (YAML), with --hunt")
+      ->type_name("FILE")
+      ->needs(hunt_flag);
+  guide_flag->excludes(hunt_flag);
+  team.AddTo(command)->needs(hunt_flag);
+  command->add_flag("--loop", loop, "Play a recording again and again");
+}
+
+KestrelOptions FlyArguments::ReadOptions() const {
+  RequireFlyable(source);
+  KestrelOptions options = source.options.Read();
+  if (rate_hz) options.fly.flight.rate_hz = *rate_hz;
+  if (!signing_key.empty()) options.fly.link.signing_key = signing_key;
+  if (link_delay != "auto") options.fly.flight.link_delay_s = ParseLinkDelay(link_delay);
+  if (guide && autopilot.empty()) throw InputError("--guide: expected --autopilot URL");
+  if (guide) PrepareGuidance(autopilot, &options.fly);
+  if (console && !console->empty()) {
+    options.console = WithAddress(options.console, *console, "--console");
+    RequireValid(options.console);
+  }
+  PredictPoses(&options);
+  return options;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "kestrel/app/cli/kestrel_options.h"
+#include "kestrel/app/cli/source_arguments.h"
+#include "kestrel/app/cli/team_link.h"
+
+namespace kestrel {
+
+// The arguments that `fly` and `doctor` share. Must live until the command line is parsed.
+struct FlyArguments {
+  SourceArguments source;
+  std::string autopilot;  // URL, or "sim:ardupilot", "sim:px4"; empty: none
+  std::string profile = "auto";
+  std::optional<double> rate_hz;
+  std::string link_delay = "auto";
+  std::string signing_key;
+  std::string record;
+  bool ros = false;
+  std::optional<std::string> console;  // ADDRESS:PORT; empty: as the options say
+  bool guide = false;
+  bool hunt = false;
+  std::string model;  // of the objects
+  TeamArguments team;
+  bool loop = false;
+
+  void AddTo(CLI::App* command);
+
+  // The options with what these arguments say of them. Throws InputError with what `land` can do
+  // and a flight cannot, and where options are not valid.
+  KestrelOptions ReadOptions() const;
+};
+
+}  // namespace kestrel

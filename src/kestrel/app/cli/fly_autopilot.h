@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "kestrel/app/cli/fly_options.h"
+#include "kestrel/app/cli/fly_source.h"
+#include "kestrel/simulation/autopilots/simulated_autopilot.h"
+
+namespace kestrel {
+
+// Where the autopilot of a flight is reached.
+struct FlyAutopilot {
+  std::string url;
+  std::unique_ptr<SimulatedAutopilot> simulated;  // null: a real one
+};
+
+// Of the argument --autopilot: "sim:ardupilot" and "sim:px4" make a simulated one, not yet started,
+// in the world of 'source', which gets a standing one where it has none. The source must outlive
+// it. Throws InputError when the options are not valid.
+FlyAutopilot MakeFlyAutopilot(const std::string& argument, const FlyOptions& options,
+                              FlySource* source);
+
+}  // namespace kestrel

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <filesystem>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "kestrel/app/cli/test_command.h"
+#include "kestrel/app/foxglove/test_protobuf.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+namespace fs = std::filesystem;
+
+class FlyCommandTest : public CommandTest {
+ protected:
+  // A landing from near by, quickly rendered.
+  static constexpr const char* kNear =
+      " --set fly.sim_autopilot.pilot.start_altitude_m=4"
+      " --set fly.sim_autopilot.pilot.offset_east_m=0.5"
+      " --set fly.sim_autopilot.pilot.offset_north_m=-0.5 --set fly.sim_camera.scale=0.4";
+
+  // Each row of the table has its image and its result, none more.
+  static void ExpectSameTimes(const std::string& mcap, const std::string& csv) {
+    std::vector<std::string> rows, results, images;
+    std::istringstream table(ReadFile(csv));
+    std::string row;
+    for (std::getline(table, row); std::getline(table, row);) {
+      const std::size_t begin = row.find(',') + 1;
+      rows.push_back(row.substr(begin, row.find(',', begin) - begin));
+    }
+    const auto messages = ReadMessages(mcap);
+    const auto time_of = [](const StoredMessage& message) {
+      EXPECT_EQ(message.time, message.fields.time(1));
+      return std::to_string(ToNanoseconds(message.time));
+    };
+    for (const auto& message : messages.at("/result")) results.push_back(time_of(message));
+    for (const auto& message : messages.at("/camera/image")) images.push_back(time_of(message));
+    EXPECT_THAT(results, ::testing::ElementsAreArray(rows));
+    EXPECT_EQ(images, results);
+  }
+
+  // Metres from the pattern's centre at contact, by the simulated autopilot; 99 without.
+  static double MissOf(const Outcome& outcome) {
+    std::smatch match;
+    const std::regex on_board("on the board, ([0-9.]+) m");
+    return std::regex_search(outcome.err, match, on_board) ? std::stod(match[1]) : 99;
+  }
+};
+
+TEST_F(FlyCommandTest, ASimulatedArduPilotLandsByWhatItIsTold) {
+  const std::string flight = folder_ / "flight";
+  const Outcome outcome =
+      Run("fly sim:standing --autopilot sim:ardupilot --record " + flight + " --output " +
+          folder_ / "out" + " --mcap " + folder_ / "flight.mcap" + kNear);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("pattern found"), HasSubstr("landed")));
+  EXPECT_LT(MissOf(outcome), 0.15) << outcome.err;
+  EXPECT_TRUE(fs::exists(folder_ / "out/landing_track.csv"));
+  EXPECT_GT(fs::file_size(flight + "/mavlink.tlog"), 10'000u);
+  ExpectSameTimes(folder_ / "flight.mcap", folder_ / "out/landing_detections.csv");
+  // What it recorded is a recording with its truth.
+  const Outcome again = Run("land " + flight + " --output " + folder_ / "again");
+  EXPECT_EQ(again.status, 0) << again.err;
+  const Outcome compared = Run("evaluate " + flight + " " + folder_ / "again");
+  EXPECT_EQ(compared.status, 0) << compared.err;
+}
+
+TEST_F(FlyCommandTest, ASimulatedPx4LandsByBothProfiles) {
+  for (const std::string arguments :
+       {"px4", "px4-vte --set fly.sim_autopilot.parameters=VTE_EN=1"}) {
+    const Outcome outcome =
+        Run("fly sim:standing --autopilot sim:px4 --profile " + arguments + kNear);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_LT(MissOf(outcome), 0.15) << arguments << "\n" << outcome.err;
+  }
+}
+
+TEST_F(FlyCommandTest, GuidesASimulatedPx4OntoACar) {
+  const Outcome outcome = Run(std::string("fly sim:figure8 --autopilot sim:px4 --guide") + kNear);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_LT(MissOf(outcome), 0.5) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("descend: "), HasSubstr("landed: contact")));
+}
+
+TEST_F(FlyCommandTest, PlaysARecordingInRealTime) {
+  const std::string flight = folder_ / "flight";
+  ASSERT_EQ(Run("simulate landing --scenario calm --seed 2 --output " + flight +
+                " --set frames=10 --set rate_hz=10 --set ground.map_px=256"
+                " --set shutter.rays_per_pixel=4")
+                .status,
+            0);
+  const Outcome outcome = Run("fly " + flight + " --output " + folder_ / "out");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("10 frames, pattern found in 10"));
+  EXPECT_EQ(Lines(ReadFile(folder_ / "out/landing_detections.csv")), 11);
+}
+
+TEST_F(FlyCommandTest, FaultsAreNamed) {
+  const std::string source = "fly sim:standing --autopilot ";
+  ExpectInputError(source + "udp://127.0.0.1:14550", "udp");
+  ExpectInputError(source + "serial:///dev/no_such_line:57600", "/dev/no_such_line");
+  ExpectInputError("fly sim:nowhere", "there is no scenario 'sim:nowhere'");
+  ExpectInputError("fly 'videotestsrc is-live=true ! video/x-raw,width=64'", "no calibration");
+  ExpectInputError("fly " + folder_ / "missing", "no such file or folder");
+  ExpectInputError(source + "sim:ardupilot --link-delay soon", "--link-delay 'soon'");
+  ExpectInputError("fly sim:standing --still", "--still");
+  ExpectInputError("fly sim:standing --annotate --output " + folder_ / "out", "kestrel land");
+  ExpectInputError("fly sim:standing --set fly.rate_hz=0", "rate_hz");
+  ExpectInputError("fly sim:standing --guide", "--autopilot URL");
+  ExpectInputError(source + "sim:px4 --guide --rate 10", "at least 20 set-points");
+  const std::string key = folder_.Write("key", std::string(64, 'a'));
+  fs::permissions(key, fs::perms::owner_read | fs::perms::others_read);
+  ExpectInputError(source + "sim:ardupilot --signing-key " + key, key);
+  EXPECT_EQ(Run(source + "sim:ardupilot --profile betaflight").status, 2);
+}
+
+}  // namespace
+}  // namespace kestrel

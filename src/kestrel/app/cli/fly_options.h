@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kestrel/comms/mavlink/autopilot.h"
+#include "kestrel/comms/mavlink/connection.h"
+#include "kestrel/core/camera/exposure_controller.h"
+#include "kestrel/flight/onboard/flight_program.h"
+#include "kestrel/flight/onboard/flight_recorder.h"
+#include "kestrel/flight/onboard/gstreamer_camera.h"
+#include "kestrel/simulation/autopilots/simulated_autopilot.h"
+#include "kestrel/simulation/autopilots/simulated_camera.h"
+
+namespace kestrel {
+
+// The options of `kestrel fly`.
+struct FlyOptions {
+  FlightOptions flight;
+  GstreamerCameraOptions camera;
+  // Keep the exposure of the camera right by what it sees. Switch on for cameras that cannot.
+  bool control_exposure = false;
+  ExposureOptions exposure;
+  ConnectionOptions link;
+  AutopilotOptions autopilot;
+  FlightRecorderOptions recorder;
+  SimulatedCameraOptions sim_camera;
+  SimulatedAutopilotOptions sim_autopilot;
+  int sim_seed = 1;
+  std::string keep_folder = "kept";  // where recordings and snapshots that the page asks for go
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    FlightOptions::Visit(self.flight, visitor);
+    visitor.Group("camera", self.camera);
+    visitor("control_exposure", self.control_exposure, "",
+            "set the camera's exposure by the brightness of its images");
+    visitor.Group("exposure", self.exposure);
+    visitor.Group("link", self.link);
+    visitor.Group("autopilot", self.autopilot);
+    visitor.Group("recorder", self.recorder);
+    visitor.Group("sim_camera", self.sim_camera);
+    visitor.Group("sim_autopilot", self.sim_autopilot);
+    visitor("sim_seed", self.sim_seed, "", "of what a simulated world and autopilot draw");
+    visitor("keep_folder", self.keep_folder, "",
+            "where recordings and snapshots that the console's page asks for go");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+}  // namespace kestrel

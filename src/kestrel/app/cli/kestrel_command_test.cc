@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs the binary `kestrel` as a user does: what it writes, what it says, how it exits.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <numbers>
+#include <string>
+#include <sys/wait.h>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/app/cli/test_command.h"
+#include "kestrel/app/foxglove/test_protobuf.h"
+#include "kestrel/core/base/read_file.h"
+#include "kestrel/core/codec/image_codec.h"
+#include "kestrel/io/recording/test_files.h"
+#include "kestrel/vision/pipeline/test_pattern.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+constexpr char kSensor[] = R"(sensor_type: camera
+T_BS:
+  cols: 4
+  rows: 4
+  data: [0, -1, 0, 0, -1, 0, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1]
+rate_hz: 10
+resolution: [640, 480]
+camera_model: pinhole
+intrinsics: [400, 400, 319.5, 239.5]
+distortion_model: none
+distortion_coefficients: []
+)";
+constexpr char kPoses[] =
+    "#timestamp [ns],p_WB_W_x [m],p_WB_W_y [m],p_WB_W_z [m],q_WB_w [],q_WB_x [],q_WB_y [],q_WB_z "
+    "[]\n"
+    "100000000,5,6,3,1,0,0,0\n200000000,5,6,3,1,0,0,0\n";
+
+class KestrelCommandTest : public CommandTest {
+ protected:
+  // A pattern 1 m in diameter, 3 m below the camera; two frames and their poses.
+  std::string WriteRecording() const {
+    const RigidTransform camera_from_pattern = {
+        Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX())),
+        {0.3, 0.2, 3}};
+    const CameraModel camera({640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}});
+    const cv::Mat image = DrawPattern(camera, LandingPattern(), camera_from_pattern);
+    WriteTestImage(folder_, "flight/mav0/cam0/data/100000000.png", image);
+    WriteTestImage(folder_, "flight/mav0/cam0/data/200000000.png", cv::Mat(480, 640, CV_8UC1, 90));
+    folder_.Write("flight/mav0/cam0/data.csv",
+                  "#timestamp [ns],filename\n100000000,100000000.png\n200000000,200000000.png\n");
+    folder_.Write("flight/mav0/cam0/sensor.yaml", kSensor);
+    folder_.Write("flight/mav0/nav0/data.csv", kPoses);
+    return folder_ / "flight";
+  }
+};
+
+// GDAL, FFmpeg and what else OpenCV's codecs need take longer to load than a short command to run.
+TEST_F(KestrelCommandTest, NeedsNoneOfOpenCvsCodecs) {
+  const std::string list = folder_ / "libraries.txt";
+  ASSERT_EQ(std::system(fmt::format("ldd '{}' > '{}'", KESTREL_COMMAND, list).c_str()), 0);
+  const std::string libraries = ReadFile(list);
+  EXPECT_THAT(libraries, HasSubstr("libopencv_core"));
+  for (const char* name : {"imgcodecs", "videoio", "highgui", "gdal", "avcodec"}) {
+    EXPECT_THAT(libraries, Not(HasSubstr(name)));
+  }
+}
+
+TEST_F(KestrelCommandTest, LandSaysOnceThatTheAltitudeIsWrong) {
+  WriteRecording();
+  const cv::Mat image = ReadImage(folder_ / "flight/mav0/cam0/data/100000000.png");
+  for (int i = 0; i < 12; ++i) WriteTestImage(folder_, fmt::format("images/{:02}.png", i), image);
+  const std::string land = fmt::format("land {} --camera {} --altitude ", folder_ / "images",
+                                       folder_ / "flight/mav0/cam0/sensor.yaml");
+  const std::string wrong = Run(land + "20").err;
+  EXPECT_THAT(wrong, HasSubstr("pattern found in 12"));
+  const std::size_t first = wrong.find("set --altitude 3.0");
+  EXPECT_NE(first, std::string::npos) << wrong;
+  EXPECT_EQ(wrong.find("set --altitude", first + 1), std::string::npos) << "said twice";
+  EXPECT_THAT(Run(land + "3").err, Not(HasSubstr("altitude told")));
+}
+
+// The frames are of a lens of 400 px.
+TEST_F(KestrelCommandTest, LandSaysThatTheLensIsAnother) {
+  const CameraModel camera({640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}});
+  Random random(1);
+  for (int i = 0; i < 30; ++i) {
+    WriteTestImage(folder_, fmt::format("images/{:02}.png", i),
+                   DrawRandomView(camera, LandingPattern(), &random));
+  }
+  const std::string output = folder_ / "out";
+  const auto land = [&](const std::string& focal_px) {
+    std::string sensor = kSensor;
+    const std::string right = "400, 400";
+    sensor.replace(sensor.find(right), right.size(), focal_px + ", " + focal_px);
+    return Run(fmt::format("land {} --still --camera {} --output {} --force", folder_ / "images",
+                           folder_.Write("sensor.yaml", sensor), output));
+  };
+  const auto misfit_of_last = [&] {
+    const std::string csv = ReadFile(output + "/landing_detections.csv");
+    return std::stod(csv.substr(csv.rfind(',') + 1));
+  };
+  EXPECT_THAT(land("400").err, Not(HasSubstr("the pattern says")));
+  EXPECT_LT(misfit_of_last(), 0.5);
+  EXPECT_THAT(land("540").err, HasSubstr("px, the calibration 540: kestrel calibrate lens"));
+}
+
+TEST_F(KestrelCommandTest, HelpAndVersion) {
+  for (const char* arguments : {"help", "--help"}) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("Run the landing pipeline"));
+  }
+  for (const char* arguments : {"help land", "land --help"}) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("--altitude"));
+  }
+  const Outcome version = Run("--version");
+  EXPECT_EQ(version.status, 0);
+  EXPECT_THAT(version.out, StartsWith("kestrel 0."));
+}
+
+TEST_F(KestrelCommandTest, WrongUsageIsStatusTwo) {
+  for (const char* arguments :
+       {"", "swim", "help swim", "land", "land a.png --altitude nan", "land a.png --altitude -1",
+        "land a.png --clock-offset inf", "land a.png --annotate", "land a.png --colour",
+        "land a.png --output o --annotate=gif", "land a.png --predict 1", "calibrate",
+        "land a.png --output o --predict 0.5,-1", "hunt a.png --origin 50",
+        "hunt a.png --origin 50,14,3"}) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_THAT(outcome.err, Not(IsEmpty())) << arguments;
+    EXPECT_THAT(outcome.out, IsEmpty()) << arguments;
+  }
+}
+
+TEST_F(KestrelCommandTest, UnknownCommandIsNamed) {
+  const Outcome outcome = Run("lnd a.png");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("there is no command 'lnd'"));
+}
+
+TEST_F(KestrelCommandTest, ConfigReadsBackToItself) {
+  const Outcome first = Run("config --set landing.detector.min_ring_px=9.5");
+  EXPECT_EQ(first.status, 0);
+  const Outcome again = Run("config --config " + folder_.Write("c.yaml", first.out));
+  EXPECT_EQ(again.out, first.out);
+  EXPECT_THAT(again.out, HasSubstr("min_ring_px: 9.5 "));
+}
+
+TEST_F(KestrelCommandTest, LandsOnARecording) {
+  const std::string output = folder_ / "out";
+  const Outcome outcome =
+      Run("land " + WriteRecording() + " --output " + output + " --annotate=images");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_THAT(outcome.err, HasSubstr("2 frames, pattern found in 1, detect_ms median"));
+  const std::string csv = ReadFile(output + "/landing_detections.csv");
+  EXPECT_EQ(Lines(csv), 3);
+  EXPECT_THAT(csv, HasSubstr("\nmav0/cam0/data/100000000.png,100000000,1,"));
+  EXPECT_THAT(csv, HasSubstr("\nmav0/cam0/data/200000000.png,200000000,0,,,"));
+  for (const char* name : {"100000000", "200000000"}) {
+    const std::string image = output + "/annotated/mav0/cam0/data/" + name + ".png";
+    EXPECT_EQ(ReadImage(image).size(), cv::Size(640, 480));
+  }
+}
+
+TEST_F(KestrelCommandTest, SaysWhereThePatternIsInTheWorld) {
+  const Outcome outcome = Run("land --still " + WriteRecording());
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::string row = outcome.out.substr(outcome.out.find('\n') + 1);
+  std::vector<std::string> cells;
+  for (std::size_t end = 0; (end = row.find(',')) != std::string::npos; row.erase(0, end + 1)) {
+    cells.push_back(row.substr(0, end));
+  }
+  ASSERT_GE(cells.size(), 14u) << outcome.out;
+  EXPECT_NEAR(std::stod(cells[3]), 319.5 + 40, 0.2);             // u_px
+  EXPECT_NEAR(std::stod(cells[4]), 239.5 + 400 * 0.2 / 3, 0.2);  // v_px
+  EXPECT_NEAR(std::stod(cells[9]), 3, 0.03);                     // p_CP_C_z_m
+  EXPECT_NEAR(std::stod(cells[10]), 5 - 0.2, 0.03);              // p_WP_W_x_m
+  EXPECT_NEAR(std::stod(cells[11]), 6 - 0.3, 0.03);              // p_WP_W_y_m
+  EXPECT_NEAR(std::stod(cells[12]), 0, 0.03);                    // p_WP_W_z_m
+}
+
+TEST_F(KestrelCommandTest, WritesAnAnnotatedVideo) {
+  const std::string output = folder_ / "out";
+  const Outcome outcome = Run("land --annotate " + WriteRecording() + " --output " + output);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(std::filesystem::exists(output + "/annotated.mp4"),
+            std::filesystem::exists(output + "/annotated.avi"));
+}
+
+TEST_F(KestrelCommandTest, ReplacesResultsOnlyWithForce) {
+  const std::string arguments = "land " + WriteRecording() + " --output " + (folder_ / "out");
+  EXPECT_EQ(Run(arguments).status, 0);
+  ExpectInputError(arguments, "landing_detections.csv: exists already");
+  EXPECT_EQ(Run(arguments + " --force").status, 0);
+}
+
+TEST_F(KestrelCommandTest, LandAndHuntWriteMcap) {
+  const std::string recording = WriteRecording();
+  const std::string mcap = folder_ / "flight.mcap";
+  for (const std::string command : {"land", "hunt"}) {
+    const Outcome outcome = Run(command + " --force " + recording + " --mcap " + mcap);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const auto messages = ReadMessages(mcap);
+    EXPECT_EQ(messages.at("/camera/image").size(), 2u);
+    ASSERT_EQ(messages.at("/result").size(), 2u);
+    const StoredMessage& second = messages.at("/result")[1];
+    EXPECT_EQ(ToNanoseconds(second.time), 200'000'000);
+    EXPECT_EQ(second.fields.time(1), second.time);
+    EXPECT_EQ(second.fields.bytes(2), "mav0/cam0/data/200000000.png");
+    EXPECT_EQ(messages.at("/result")[0].fields.count(7), command == "land" ? 1u : 0u);
+  }
+}
+
+TEST_F(KestrelCommandTest, NothingIsWrittenWhereAnMcapFileIsThere) {
+  const std::string recording = WriteRecording();
+  const std::string mcap = folder_.Write("mine.mcap", "mine");
+  ExpectInputError("land " + recording + " --mcap " + mcap + " --output " + (folder_ / "out"),
+                   "mine.mcap: is there already");
+  EXPECT_EQ(ReadFile(mcap), "mine");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  // The other way round: no file is left behind.
+  ASSERT_EQ(Run("land " + recording + " --output " + (folder_ / "out")).status, 0);
+  ExpectInputError(
+      "land " + recording + " --mcap " + (folder_ / "new.mcap") + " --output " + (folder_ / "out"),
+      "landing_detections.csv: exists already");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "new.mcap"));
+  const std::string bag = folder_ / "bag.mcap";
+  ASSERT_EQ(Run("convert " + recording + " " + bag).status, 0);
+  const std::string bytes = ReadFile(bag);
+  ExpectInputError("land --force " + bag + " --mcap " + bag, "bag.mcap: is the source");
+  EXPECT_EQ(ReadFile(bag), bytes);
+}
+
+TEST_F(KestrelCommandTest, CtrlCEndsCleanly) {
+  const std::string camera = folder_.Write("camera.yaml", kSensor);
+  std::string images;
+  for (int i = 0; i < 3000; ++i) images += " a.png";
+  WriteTestImage(folder_, "a.png", NoiseImage(640, 480, CV_8UC1));
+  const std::string script = fmt::format(
+      "cd '{}'; {} land --camera camera.yaml{} >rows 2>said & pid=$!; "
+      "until [ \"$(wc -l <rows)\" -gt 3 ]; do sleep 0.01; done; kill -INT $pid; wait $pid",
+      folder_.path(), KESTREL_COMMAND, images);
+  const int status = std::system(script.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  const std::string rows = ReadFile(folder_ / "rows");
+  EXPECT_TRUE(rows.ends_with('\n'));
+  EXPECT_LT(Lines(rows), 3001);
+  EXPECT_THAT(ReadFile(folder_ / "said"),
+              StartsWith(fmt::format("{} frames, pattern found in", Lines(rows) - 1)));
+}
+
+TEST_F(KestrelCommandTest, SourceAtFaultIsNamed) {
+  const std::string camera = " --camera " + folder_.Write("camera.yaml", kSensor);
+  const std::string image = WriteTestImage(folder_, "a.png", NoiseImage(640, 480, CV_8UC1));
+  ExpectInputError("land nowhere.png" + camera, "nowhere.png: no such file");
+  ExpectInputError("land " + image, "no calibration");
+  EXPECT_THAT(Run("land " + image + camera + " --predict 1 --output " + folder_ / "out").err,
+              HasSubstr("no prediction: it needs a source with poses"));
+  const std::string deep = WriteTestImage(folder_, "deep.png", cv::Mat(480, 640, CV_16UC1));
+  const std::string tiny = WriteTestImage(folder_, "tiny.png", cv::Mat(1, 1, CV_8UC1));
+  const std::string wide = WriteTestImage(folder_, "wide.png", cv::Mat(2, 20000, CV_8UC1));
+  TestFolder::CutOff(image, 0.5);
+  for (const auto& [source, words] :
+       {std::pair(deep, "deep.png: is a 16-bit image, expected 8 bits"),
+        std::pair(tiny, "is 1x1 px, expected 640x480 px as in the calibration"),
+        std::pair(wide, "is 20000x2 px, expected 640x480 px as in the calibration"),
+        std::pair(image, "a.png: the image file is cut off")}) {
+    const Outcome outcome = Run(fmt::format("land {}{}", source, camera));
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_THAT(outcome.err, HasSubstr(words));
+  }
+}
+
+TEST_F(KestrelCommandTest, VideoThatEndsEarlyGivesItsFramesAndSaysSo) {
+  const std::string camera = " --camera " + folder_.Write("camera.yaml", kSensor);
+  const std::string video = folder_ / "flight.avi";
+  WriteTestVideo(folder_ / "flight", VideoFormat::kAvi, 20, cv::Size(640, 480));
+  TestFolder::CutOff(video, 0.5);
+  const Outcome outcome = Run("land " + video + camera);
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("flight.avi: the video ends after"));
+  EXPECT_GT(Lines(outcome.out), 5);
+}
+
+TEST_F(KestrelCommandTest, RecordingAtFaultIsNamed) {
+  const std::string recording = WriteRecording();
+  folder_.Write("flight/mav0/nav0/data.csv", std::string(kPoses) + "150000000,5,6,3,1,0,0,0\n");
+  ExpectInputError("land " + recording, "nav0/data.csv: line 4: timestamp 150000000 out of order");
+}
+
+TEST_F(KestrelCommandTest, CalibrationAtFaultIsNamed) {
+  const std::string recording = WriteRecording();
+  std::string sensor = kSensor;
+  sensor.replace(sensor.find("[400,"), 5, "[.nan,");
+  ExpectInputError("land " + recording + " --camera " + folder_.Write("nan.yaml", sensor),
+                   "nan.yaml");
+}
+
+TEST_F(KestrelCommandTest, OutputFolderThatCannotBeMadeIsNamed) {
+  const std::string recording = WriteRecording();
+  ExpectInputError("land " + recording + " --output " + folder_.Write("file", "") + "/out",
+                   "file/out: cannot be made");
+}
+
+TEST_F(KestrelCommandTest, MisspeltOptionNamesTheNearest) {
+  const std::string recording = WriteRecording();
+  const std::string config = folder_.Write("c.yaml", "landing:\n  hint_sigma: 1\n");
+  ExpectInputError("land " + recording + " --config " + config,
+                   "c.yaml:2: unknown key 'landing.hint_sigma', did you mean "
+                   "'landing.hint_sigma_m'?");
+  ExpectInputError("land " + recording + " --set landing.hint_sigmam=1", "did you mean");
+}
+
+TEST_F(KestrelCommandTest, EvaluateComparesALandingWithItsTruth) {
+  const std::string flight = WriteRecording();
+  folder_.Write("flight/mav0/state_groundtruth_estimate0/data.csv",
+                "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y "
+                "[],q_RS_z []\n100000000,5,6,3,1,0,0,0\n200000000,5,6,3,1,0,0,0\n");
+  folder_.Write(
+      "flight/mav0/landing_pattern0/data.csv",
+      "#timestamp [ns],p_WP_W_x [m],p_WP_W_y [m],p_WP_W_z [m],q_WP_w [],q_WP_x [],q_WP_y [],q_WP_z "
+      "[],v_WP_W_x [m s^-1],v_WP_W_y [m s^-1],v_WP_W_z [m s^-1],u [px],v [px],altitude "
+      "[m],visible_fraction []\n100000000,4.8,5.7,0,1,0,0,0,0,0,0,359.5,266.17,3,1\n");
+  const std::string output = folder_ / "o";
+  ASSERT_EQ(Run("land " + flight + " --output " + output).status, 0);
+  const Outcome outcome = Run("evaluate " + flight + " " + output);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("| all | 2 to 6 | 1 | 1 | 100.0 |"));
+  EXPECT_TRUE(std::filesystem::exists(output + "/evaluation/report.md"));
+  EXPECT_TRUE(std::filesystem::exists(output + "/evaluation/error.png"));
+  ExpectInputError("evaluate " + flight + " " + output, "--force replaces it");
+  ExpectInputError("evaluate " + flight + " " + (folder_ / "none"), "no folder");
+  ExpectInputError("evaluate " + output + " " + output, "no recording");
+}
+
+TEST_F(KestrelCommandTest, LandWritesTrackAndPrediction) {
+  const std::string flight = WriteRecording();
+  const std::string output = folder_ / "o";
+  ASSERT_EQ(Run("land " + flight + " --output " + output + " --predict 0.5,1.0").status, 0);
+  EXPECT_THAT(ReadFile(output + "/landing_track.csv"), HasSubstr("\n100000000,searching,"));
+  EXPECT_THAT(ReadFile(output + "/landing_prediction.csv"), StartsWith("timestamp_ns,horizon_s"));
+  const std::string still = folder_ / "still";
+  ASSERT_EQ(Run("land --still " + flight + " --output " + still).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(still + "/landing_track.csv"));
+}
+
+TEST_F(KestrelCommandTest, CalibrateSaysWhatIsMissing) {
+  const std::string flight = WriteRecording();
+  ExpectInputError("calibrate mount " + flight, "seen in 0 images with poses around them");
+  std::filesystem::remove(flight + "/mav0/nav0/data.csv");
+  ExpectInputError("calibrate clock " + flight, "has no poses of the UAV");
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdlib>
+#include <exception>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <opencv2/core/utils/logger.hpp>
+
+#include "kestrel/app/cli/calibrate_command.h"
+#include "kestrel/app/cli/config_command.h"
+#include "kestrel/app/cli/console_command.h"
+#include "kestrel/app/cli/convert_command.h"
+#include "kestrel/app/cli/doctor_command.h"
+#include "kestrel/app/cli/evaluate_command.h"
+#include "kestrel/app/cli/fly_command.h"
+#include "kestrel/app/cli/help_command.h"
+#include "kestrel/app/cli/hunt_command.h"
+#include "kestrel/app/cli/land_command.h"
+#include "kestrel/app/cli/print_command.h"
+#include "kestrel/app/cli/simulate_command.h"
+
+namespace {
+
+constexpr int kInputAtFault = 1;
+constexpr int kWrongUsage = 2;
+constexpr int kFlightFailed = 3;
+
+// What is wrong is said once and in our words; the decoders' own messages would bury it.
+void SilenceDecoders() {
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", /*replace=*/0);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  SilenceDecoders();
+  CLI::App app("Kestrel gives UAVs eyes for landing on moving targets.", "kestrel");
+  app.set_version_flag("--version", "kestrel " KESTREL_VERSION);
+  app.require_subcommand(1);
+  kestrel::AddLandCommand(&app);
+  kestrel::AddHuntCommand(&app);
+  kestrel::AddFlyCommand(&app);
+  kestrel::AddDoctorCommand(&app);
+  kestrel::AddConsoleCommand(&app);
+  kestrel::AddSimulateCommand(&app);
+  kestrel::AddEvaluateCommand(&app);
+  kestrel::AddCalibrateCommand(&app);
+  kestrel::AddPrintCommand(&app);
+  kestrel::AddConvertCommand(&app);
+  kestrel::AddConfigCommand(&app);
+  kestrel::AddHelpCommand(&app);
+  try {
+    app.parse(argc, argv);
+    return EXIT_SUCCESS;
+  } catch (const CLI::Success& wanted) {  // help, version
+    return app.exit(wanted);
+  } catch (const CLI::ParseError& error) {
+    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
+      fmt::print(stderr, "kestrel: there is no command '{}'; kestrel --help lists them\n", argv[1]);
+      return kWrongUsage;
+    }
+    app.exit(error);
+    return kWrongUsage;
+  } catch (const kestrel::FlightFailed& failure) {
+    fmt::print(stderr, "kestrel: {}\n", failure.what());
+    return kFlightFailed;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "kestrel: {}\n", error.what());
+    return kInputAtFault;
+  }
+}

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "kestrel/app/cli/kestrel_options.h"
+
+namespace kestrel {
+
+// --config and --set, which several subcommands take. Must live until the command line is parsed.
+struct OptionArguments {
+  std::string config;
+  std::vector<std::string> settings;
+
+  void AddTo(CLI::App* command) {
+    command->add_option("--config", config, "Options from a YAML file (see `kestrel config`)")
+        ->type_name("FILE");
+    command->add_option("--set", settings, "One option, as key=value; may be given again")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+  }
+  KestrelOptions Read() const { return ReadKestrelOptions(config, settings); }
+};
+
+}  // namespace kestrel

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "kestrel/app/cli/test_command.h"
+#include "kestrel/core/codec/image_codec.h"
+#include "kestrel/io/recording/test_files.h"
+#include "kestrel/simulation/rendering/flight_camera.h"
+#include "kestrel/simulation/rendering/test_worlds.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr char kCamera[] = R"(sensor_type: camera
+rate_hz: 10
+resolution: [1280, 960]
+camera_model: pinhole
+intrinsics: [950, 950, 640, 480]
+distortion_model: none
+distortion_coefficients: []
+)";
+
+class PrintCommandTest : public CommandTest {
+ protected:
+  // The page of a PDF on a board on the ground, by the simulator's camera 1.8 m above it.
+  static cv::Mat Photograph(const std::string& pdf, double size_m) {
+    const std::string command = fmt::format("pdftoppm -r 50.8 -gray -singlefile '{0}' '{0}'", pdf);
+    EXPECT_EQ(std::system(command.c_str()), 0) << command;
+    cv::Mat paint = ReadImage(pdf + ".pgm");
+    EXPECT_FALSE(paint.empty());
+    paint.forEach<std::uint8_t>([](std::uint8_t& gray, const int*) {
+      gray = CodeOfReflectance(0.05 + 0.75 * gray / 255);  // ink and paper
+    });
+    World world = PlainWorld(0.3);
+    AddPlate(0, {0, 0, 0.01}, size_m / 2, size_m / 2, 0.3, std::make_shared<Texture>(paint, 1),
+             &world);
+    const CameraModel camera({1280, 960, 950, 950, 640, 480, DistortionModel::kNone, {}});
+    const RigidTransform pose{
+        LookingDown({0, 0, 0}).rotation * Eigen::AngleAxisd(0.2, Eigen::Vector3d(0.8, 0.6, 0)),
+        {0.2, -0.3, 1.8}};
+    return FlightCamera(camera, {}, {}, {}, world, [&](double) { return pose; }).Capture(0, 1, 1);
+  }
+
+  std::string WriteCamera() const { return folder_.Write("camera.yaml", kCamera); }
+};
+
+TEST_F(PrintCommandTest, WhatIsPrintedIsDetectedAndRight) {
+  ASSERT_EQ(std::system("command -v pdftoppm >/dev/null"), 0)
+      << "pdftoppm is not there: scripts/install-deps";
+  const std::string pdf = folder_ / "pattern.pdf";
+  EXPECT_EQ(Run("print --output " + pdf).status, 0);
+  const std::string photo = WriteTestImage(folder_, "photo.png", Photograph(pdf, 1.5));
+  const std::string camera = " --camera " + WriteCamera();
+  EXPECT_THAT(Run("land " + photo + camera).err, HasSubstr("pattern found in 1"));
+
+  const std::string check = "print --check " + photo + camera;
+  const Outcome right = Run(check);
+  EXPECT_EQ(right.status, 0) << right.out << right.err;
+  EXPECT_THAT(right.out, HasSubstr("no scale"));
+  EXPECT_THAT(right.out, Not(HasSubstr("WRONG")));
+  EXPECT_EQ(Run("print --check " + photo).status, 0) << "without a calibration";
+  const double distance = std::sqrt(0.2 * 0.2 + 0.3 * 0.3 + 1.79 * 1.79);
+  const Outcome scaled = Run(check + fmt::format(" --distance {}", distance));
+  EXPECT_EQ(scaled.status, 0) << scaled.out << scaled.err;
+  EXPECT_THAT(scaled.out, HasSubstr("outer_diameter_m"));
+
+  ExpectInputError(check + fmt::format(" --distance {}", 0.93 * distance), "outer_diameter_m=0.9");
+  ExpectInputError(check + " --ruler 0.19", "outer_diameter_m=0.95");
+  ExpectInputError(check + " --set landing.detector.pattern.ring_width_m=0.12",
+                   "ring_width_m; print again at 100 %, or say what is there: --set "
+                   "landing.detector.pattern.ring_width_m=0.1");
+}
+
+TEST_F(PrintCommandTest, WritesWhatItNamesAndReplacesNothing) {
+  const std::string first = folder_ / "first", second = folder_ / "second";
+  const Outcome whole = Run("print --output " + first);
+  EXPECT_EQ(whole.status, 0) << whole.err;
+  EXPECT_THAT(whole.err, HasSubstr("first/landing_pattern.pdf\n"));
+  const Outcome tiled = Run("print --paper a3 --output " + first);
+  EXPECT_EQ(tiled.status, 0) << tiled.err;
+  EXPECT_THAT(tiled.err, HasSubstr("24 sheets, 4 rows of 6"));
+  EXPECT_TRUE(std::filesystem::exists(first + "/landing_pattern_a3/sheet_4.6.svg"));
+  ExpectInputError("print --output " + first, "landing_pattern.pdf: exists already");
+  EXPECT_EQ(Run("print --force --output " + first).status, 0);
+
+  EXPECT_EQ(Run("print --output " + second).status, 0);
+  EXPECT_EQ(Run("print --paper a3 --output " + second).status, 0);
+  for (const auto& file : std::filesystem::recursive_directory_iterator(first)) {
+    if (!file.is_regular_file()) continue;
+    const auto other = second / std::filesystem::relative(file.path(), first);
+    EXPECT_TRUE(ReadFile(file.path()) == ReadFile(other)) << other << " has other bytes";
+  }
+}
+
+TEST_F(PrintCommandTest, OneFileIsOneFormat) {
+  const std::string svg = folder_ / "mine.svg";
+  EXPECT_EQ(Run("print --output " + svg).status, 0);
+  EXPECT_THAT(ReadFile(svg), HasSubstr("width=\"4251.96"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "mine.pdf"));
+}
+
+TEST_F(PrintCommandTest, SaysWhatIsWrong) {
+  ExpectInputError(
+      "print --output " + folder_ / "o" + " --set landing.detector.pattern.ring_width_m=0.7",
+      "ring_width_m");
+  ExpectInputError(
+      "print --output " + folder_ / "o" + " --set landing.detector.pattern.board_size_m=7",
+      "--paper");
+  const std::string gray = WriteTestImage(folder_, "gray.png", cv::Mat(480, 640, CV_8UC1, 100));
+  ExpectInputError("print --check " + gray, "no landing pattern that can be measured");
+  ExpectInputError("print --check " + gray + " --camera " + WriteCamera(),
+                   "the image is 640x480 px");
+  ExpectInputError("print --check " + folder_ / "none.png", "none.png");
+  for (const char* wrong :
+       {"print --paper a5", "print --distance 2", "print --check x.png --distance 2",
+        "print --check x.png --ruler -1", "print --check x.png --paper a4"}) {
+    EXPECT_EQ(Run(wrong).status, 2) << wrong;
+  }
+}
+
+}  // namespace
+}  // namespace kestrel

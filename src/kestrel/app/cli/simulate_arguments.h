@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/simulation/recordings/scenarios.h"
+
+namespace kestrel {
+
+// The arguments that all kinds of simulations share. Must live until the command line is parsed.
+struct SimulateArguments {
+  std::string output;
+  std::string scenario;
+  std::string config;
+  std::vector<std::string> settings;
+  std::string camera;
+  std::uint64_t seed = 1;
+  bool list = false;
+  bool print_config = false;
+  bool force = false;
+
+  void AddTo(CLI::App* command);
+
+  // The file's lens; what it does not say of the mount is the default camera's.
+  CameraCalibration FindCamera(const CameraCalibration& by_default) const;
+};
+
+void PrintScenarios(std::span<const Scenario> scenarios);
+
+}  // namespace kestrel

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/cli/simulate_command.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <iostream>
+#include <memory>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "kestrel/app/cli/interrupt.h"
+#include "kestrel/app/cli/progress_bar.h"
+#include "kestrel/app/cli/simulate_arguments.h"
+#include "kestrel/app/cli/touchdown_command.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
+#include "kestrel/simulation/recordings/hunt_simulation.h"
+#include "kestrel/simulation/recordings/landing_simulation.h"
+#include "kestrel/simulation/recordings/recording_plan.h"
+#include "kestrel/simulation/recordings/scenarios.h"
+
+namespace kestrel {
+namespace {
+
+void Render(const RecordingPlan& plan, const SimulateArguments& arguments, int wanted_threads) {
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  const int threads = wanted_threads > 0 ? wanted_threads : std::max(cores, 1);
+  CatchInterrupts();
+  ProgressBar progress(plan.times.size());
+  const auto start = std::chrono::steady_clock::now();
+  std::size_t rendered = 0;
+  const bool complete =
+      WriteRecording(plan, arguments.output, arguments.force, threads, [&](std::size_t done) {
+        progress.Show(done);
+        rendered = done;
+        return !WasInterrupted();
+      });
+  if (!complete) {
+    throw InputError(fmt::format("interrupted after {} of {} images; the same command goes on",
+                                 rendered, plan.times.size()));
+  }
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  fmt::print(stderr, "{}: {} images in {:.1f} s\n", arguments.output, plan.times.size(),
+             took.count());
+}
+
+// What `landing` and `hunt` differ in.
+template <class Options>
+struct Kind {
+  std::span<const Scenario> scenarios;
+  Options (*read)(const std::string& scenario, const std::string& config_file,
+                  const std::vector<std::string>& settings);
+  RecordingPlan (*plan)(const Options& options, const CameraCalibration& camera,
+                        std::uint64_t seed);
+  CameraCalibration camera;  // where none is given
+};
+
+template <class Options>
+void Run(const Kind<Options>& kind, const SimulateArguments& arguments, int threads) {
+  if (arguments.list) return PrintScenarios(kind.scenarios);
+  const Options options = kind.read(arguments.scenario, arguments.config, arguments.settings);
+  if (arguments.print_config) {
+    std::cout << PrintOptions(options);
+    return;
+  }
+  RecordingPlan plan = kind.plan(options, arguments.FindCamera(kind.camera), arguments.seed);
+  // By which an evaluation sorts its results.
+  if (!arguments.scenario.empty()) plan.scene += "condition: " + arguments.scenario + "\n";
+  Render(plan, arguments, threads);
+}
+
+template <class Options>
+void AddKind(CLI::App* command, const char* name, const char* meaning, const Kind<Options>& kind) {
+  CLI::App* subcommand = command->add_subcommand(name, meaning);
+  const auto arguments = std::make_shared<SimulateArguments>();
+  const auto threads = std::make_shared<int>(0);
+  arguments->AddTo(subcommand);
+  subcommand->add_option("--threads", *threads, "Default: as many as there are cores")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  subcommand->callback([=] { Run(kind, *arguments, *threads); });
+}
+
+}  // namespace
+
+void AddSimulateCommand(CLI::App* app) {
+  CLI::App* command = app->add_subcommand("simulate", "Render a flight with truth, as a recording");
+  command->require_subcommand(1);
+  AddKind(command, "landing",
+          "A flight over the landing pattern on a vehicle (gray fisheye camera)",
+          Kind<LandingSimulationOptions>{LandingScenarios(), ReadLandingSimulation, PlanLanding,
+                                         PaperCalibration()});
+  AddKind(command, "hunt", "A flight over coloured objects (colour camera, rolling shutter)",
+          Kind<HuntSimulationOptions>{HuntScenarios(), ReadHuntSimulation, PlanHunt,
+                                      HuntCalibration()});
+  AddTouchdownCommand(command);
+}
+
+}  // namespace kestrel

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <csignal>
+#include <regex>
+#include <stdexcept>
+#include <string>
+#include <sys/types.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+#include "kestrel/app/cli/test_command.h"
+
+namespace kestrel {
+
+// The command while it runs; ends with Ctrl-C.
+class RunningCommand {
+ public:
+  // 'folder': where the file of its stderr, 'log', goes.
+  RunningCommand(const std::string& arguments, const TestFolder& folder)
+      : log_(folder.Write("log", "")) {
+    const std::string line = fmt::format("exec {} {} 2>'{}'", KESTREL_COMMAND, arguments, log_);
+    process_ = fork();
+    if (process_ != 0) return;
+    execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+    _exit(127);
+  }
+  ~RunningCommand() { End(); }
+
+  // What it has said on stderr.
+  std::string Log() const { return ReadFile(log_); }
+
+  // Where it serves its page. Throws when it does not say so.
+  int Port() const {
+    const std::regex url("console: http://127\\.0\\.0\\.1:([0-9]+)/");
+    for (int i = 0; i < 1000; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      std::smatch match;
+      const std::string log = Log();
+      if (std::regex_search(log, match, url)) return std::stoi(match[1]);
+      if (waitpid(process_, nullptr, WNOHANG) != 0) break;
+    }
+    throw std::runtime_error("serves no page: " + Log());
+  }
+
+  // Its exit status; -1 when it had ended by itself.
+  int End() {
+    if (process_ <= 0) return -1;
+    kill(process_, SIGINT);
+    int status = 0;
+    const bool was_there = waitpid(process_, &status, 0) == process_;
+    process_ = 0;
+    return was_there && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  std::string log_;
+  pid_t process_ = 0;
+};
+
+}  // namespace kestrel

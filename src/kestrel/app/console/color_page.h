@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "kestrel/app/console/color_session.h"
+#include "kestrel/app/console/console_feed.h"
+#include "kestrel/core/base/bounded_queue.h"
+
+namespace kestrel {
+
+// The page that teaches colours: a ColorSession in a thread of its own, beside one that scores what
+// was taught, so that neither the server nor a preview waits for that.
+class ColorPage {
+ public:
+  // Works from now on. 'feed' outlives the page. Throws InputError as ColorSession does.
+  ColorPage(ColorSource source, ConsoleFeed* feed);
+  // Waits for the work that is under way.
+  ~ColorPage();
+  ColorPage(const ColorPage&) = delete;
+  ColorPage& operator=(const ColorPage&) = delete;
+
+ private:
+  // A copy of all that ScoreColor needs.
+  struct Exam {
+    std::uint64_t revision = 0;
+    std::size_t color = 0;
+    ColorModel model;
+    ColorGrid grid;
+    std::vector<FrameMarks> marks;
+  };
+
+  void Serve();
+  void Score();
+  void Tell();
+
+  ConsoleFeed* feed_;
+  ColorSession session_;  // of the thread of Serve
+  std::atomic<bool> is_stopped_{false};
+  BoundedQueue<Exam> exams_{1};  // the newest only
+  std::thread server_, scorer_;
+};
+
+}  // namespace kestrel

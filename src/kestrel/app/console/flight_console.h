@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "kestrel/app/console/color_page.h"
+#include "kestrel/app/console/console_feed.h"
+#include "kestrel/app/console/console_options.h"
+#include "kestrel/app/console/flight_health.h"
+#include "kestrel/app/console/hunt_view.h"
+#include "kestrel/app/console/kept_frames.h"
+#include "kestrel/app/console/landing_view.h"
+#include "kestrel/app/console/web_server.h"
+#include "kestrel/core/base/bounded_queue.h"
+#include "kestrel/flight/doctor/flight_examination.h"
+#include "kestrel/flight/session/asynchronous_sink.h"
+
+namespace kestrel {
+
+// What a flight looks for.
+using FlightView = std::variant<LandingView, HuntView>;
+
+// What the page may ask of a flight; each says what became of it, and throws InputError when it
+// cannot be done. They may wait.
+struct FlightRequests {
+  std::function<std::string(bool is_on)> record;  // on or off
+  std::function<std::string(const cv::Mat& image, Time captured)> keep_snapshot;
+};
+
+// Where what the page of colours keeps of a flight goes.
+struct FlightColors {
+  std::filesystem::path frames;  // a folder that does not exist: for the frames that are kept
+  std::string folder;            // for the model, its versions and the draft
+  std::function<std::vector<std::string>()> warn;  // as ColorSource's
+};
+
+// A session on the page. What the vision sees is handed to a thread that makes of it what the page
+// shows, and only while somebody looks: else a frame costs the vision one look at a number.
+class FlightConsole : public ObservationSink {
+ public:
+  // Serves from now on. 'title': of the page. 'channels' as for WebServer. 'colors': of a hunt,
+  // whose model's colours can be taught then. Throws InputError as WebServer and ColorPage do.
+  FlightConsole(const ConsoleOptions& options, const std::string& title, FlightView view,
+                FlightExamination examination, ChannelFeed* channels = nullptr,
+                std::optional<FlightColors> colors = std::nullopt);
+  ~FlightConsole() override;
+  FlightConsole(const FlightConsole&) = delete;
+  FlightConsole& operator=(const FlightConsole&) = delete;
+
+  // What to open in a browser on this computer.
+  std::string url() const { return server_.url(); }
+  // The same for a viewer that speaks Foxglove's protocol.
+  std::string viewer_url() const { return server_.viewer_url(); }
+
+  // Answers requests from now on, by a thread of its own: until then what the users ask waits. Once
+  // only; what is asked of outlives the console.
+  void Answer(FlightRequests requests);
+
+  bool IsWanted() const override { return feed_.IsWatched(); }
+  void Take(const Observation& observation) override;
+  void Take(const FlightReport& report) override { pictures_.Take(report); }
+  void Take(const TeamReport& report) override { pictures_.Take(report); }
+  void Take(const SessionEvent& event) override { feed_.Add(event); }
+
+ private:
+  struct Image {
+    cv::Mat image;  // empty: none yet
+    Time captured;
+  };
+  class Page;
+
+  void TeachColors(const FlightColors& colors, const FlightView& view);
+  Image Newest();
+  void Answer(const FlightRequests& requests, const ConsoleCommand& command);
+  void KeepSnapshot(const FlightRequests& requests);
+  void Say(EventLevel level, const std::string& text) {
+    feed_.Add(SessionEvent{Now(), level, text});
+  }
+
+  ConsoleFeed feed_;
+  BoundedQueue<FrameSample> arrivals_;
+  std::mutex mutex_;  // of what is below
+  Image shown_;       // the newest
+  WebServer server_;
+  std::optional<KeptFrames> kept_;  // of the page of colours
+  std::optional<ColorPage> colors_;
+  AsynchronousSink pictures_;
+  std::atomic<bool> is_over_{false};
+  std::thread answering_thread_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/console/flight_console.h"
+
+#include <filesystem>
+#include <thread>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/app/console/test_browser.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/test_folder.h"
+#include "kestrel/core/camera/paper_camera.h"
+#include "kestrel/io/recording/image_file.h"
+
+namespace kestrel {
+namespace {
+
+using namespace std::chrono_literals;
+
+int PortOf(const FlightConsole& console) {
+  const std::string url = console.url();
+  return std::stoi(url.substr(url.rfind(':') + 1));
+}
+
+ConsoleOptions FreePort() {
+  ConsoleOptions options;
+  options.port = 0;
+  return options;
+}
+
+CameraCalibration PaperCalibration() {
+  CameraCalibration calibration;
+  calibration.intrinsics = PaperCamera();
+  return calibration;
+}
+
+Frame GrayFrame() { return {"", Now(), cv::Mat(240, 376, CV_8UC1, cv::Scalar(99))}; }
+
+Observation ObservationOf(const Frame& frame, const LandingObservation& seen) {
+  return {frame, seen, Now() - frame.time};
+}
+
+class FlightConsoleTest : public testing::Test {
+ protected:
+  FlightConsole console_{FreePort(), "a flight",
+                         LandingView{CameraModel(PaperCamera()), {}, TurnNoise()},
+                         FlightExamination(PaperCalibration(), ".", 0)};
+};
+
+TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
+  TestSocket socket(PortOf(console_));
+  const auto hello = socket.Next("hello");
+  ASSERT_TRUE(hello);
+  EXPECT_EQ((*hello)["title"], "a flight");
+  EXPECT_EQ((*hello)["offers"], (nlohmann::json{"record", "snapshot"}));
+  EXPECT_EQ((*hello)["colors"], false);
+  EXPECT_EQ((*hello)["views"].size(), 4u);
+  LandingObservation observation;
+  observation.report.reason = "no ring";
+  observation.detect_time = 3ms;
+  console_.Take(ObservationOf(GrayFrame(), observation));
+  const auto sample = socket.Next("sample");
+  ASSERT_TRUE(sample);
+  EXPECT_EQ((*sample)["values"].size(), (*hello)["series"].size());
+  EXPECT_EQ((*sample)["values"][4], 3.0);
+  socket.Send(R"({"images": true})");
+  const auto image = socket.Next("image");
+  ASSERT_TRUE(image);
+  EXPECT_EQ((*image)["width"], 376);
+  socket.Send(fmt::format(R"({{"ack": {}}})", (*image)["sequence"].get<int>()));
+  // The same frame, as there is no newer one.
+  socket.Send(R"({"images": "threshold 1/2"})");
+  const auto threshold = socket.Next("image");
+  ASSERT_TRUE(threshold);
+  EXPECT_EQ((*threshold)["view"], "threshold 1/2");
+  EXPECT_EQ((*threshold)["sequence"], (*image)["sequence"]);
+  console_.Take(FlightReport{});
+  const auto status = socket.Next("status");
+  ASSERT_TRUE(status);
+  EXPECT_THAT((*status)["reason"].get<std::string>(), testing::HasSubstr("no ring"));
+}
+
+// Who opens the page later sees it as well.
+TEST(FlightConsoleOfAHunt, ShowsWhatTheTeamKnows) {
+  FlightConsole console(FreePort(), "a hunt", HuntView{DefaultObjectModel()},
+                        FlightExamination(PaperCalibration(), ".", 0));
+  TeamObject known;
+  known.object.state.head<2>() << 3, -4;
+  known.object.covariance(0, 1) = 0.25;
+  known.object.color_log_likelihoods[0] = 5;
+  known.uavs = {"one", "two"};
+  known.holder = "two";
+  console.Take(TeamReport{Now(), {known}});
+  TestSocket socket(PortOf(console));
+  const auto team = socket.Next("team");
+  ASSERT_TRUE(team);
+  ASSERT_EQ((*team)["objects"].size(), 1u);
+  const nlohmann::json object = (*team)["objects"][0];
+  EXPECT_EQ(object["label"], "red");
+  EXPECT_EQ(object["position"], (nlohmann::json{3.0, -4.0}));
+  EXPECT_EQ(object["covariance"], (nlohmann::json{0.0, 0.25, 0.0}));
+  EXPECT_EQ(object["uavs"], (nlohmann::json{"one", "two"}));
+  EXPECT_EQ(object["holder"], "two");
+}
+
+TEST_F(FlightConsoleTest, ShowsTheDoctorsChecks) {
+  TestSocket socket(PortOf(console_));
+  ASSERT_TRUE(socket.Next("hello"));
+  const auto doctor = socket.Next("doctor");
+  ASSERT_TRUE(doctor);
+  EXPECT_EQ((*doctor)["checks"][0]["name"], "image size");
+  EXPECT_EQ((*doctor)["checks"][0]["verdict"], "not checked");
+}
+
+TEST_F(FlightConsoleTest, ObeysWhatThePageAsks) {
+  TestSocket socket(PortOf(console_));
+  ASSERT_TRUE(socket.Next("hello"));
+  // What is asked before anybody obeys waits.
+  socket.Send(R"({"command": "record", "value": 1})");
+  console_.Answer({.record = [](bool is_on) -> std::string {
+                     if (!is_on) throw InputError("the disk is full");
+                     return "recording";
+                   },
+                   .keep_snapshot =
+                       [](const cv::Mat& image, Time captured) {
+                         return fmt::format("kept {} px of {}", image.cols,
+                                            ToNanoseconds(captured));
+                       }});
+  const auto begun = socket.Next("event");
+  ASSERT_TRUE(begun);
+  EXPECT_EQ((*begun)["text"], "recording");
+  socket.Send(R"({"command": "record", "value": 0})");
+  const auto ended = socket.Next("event");
+  ASSERT_TRUE(ended);
+  EXPECT_EQ((*ended)["text"], "the disk is full");
+  EXPECT_EQ((*ended)["level"], "error");
+  socket.Send(R"({"command": "snapshot"})");
+  const auto none = socket.Next("event");
+  ASSERT_TRUE(none);
+  EXPECT_THAT((*none)["text"].get<std::string>(), testing::HasSubstr("no image yet"));
+  const Frame frame = GrayFrame();
+  console_.Take(ObservationOf(frame, LandingObservation()));
+  socket.Send(R"({"images": true})");
+  ASSERT_TRUE(socket.Next("image"));
+  socket.Send(R"({"command": "snapshot"})");
+  const auto kept = socket.Next("event");
+  ASSERT_TRUE(kept);
+  EXPECT_EQ((*kept)["text"], fmt::format("kept 376 px of {}", ToNanoseconds(frame.time)));
+}
+
+TEST_F(FlightConsoleTest, KeepsNoImageWhenNobodyLooks) {
+  const Frame frame = GrayFrame();
+  console_.Take(ObservationOf(frame, LandingObservation()));
+  std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(frame.image.u->refcount, 1);
+}
+
+// A green square on gray ground.
+Frame ColorFrame() {
+  cv::Mat image(240, 376, CV_8UC3, cv::Scalar(90, 100, 95));
+  image(cv::Rect(100, 100, 60, 60)).setTo(cv::Scalar(40, 160, 40));
+  return {"", Now(), image};
+}
+
+TEST(HuntConsoleTest, FramesOfTheCameraAreKeptAndTaught) {
+  namespace fs = std::filesystem;
+  const TestFolder test_folder;
+  const fs::path folder = test_folder.path();
+  {
+    FlightConsole console(FreePort(), "a hunt", HuntView{DefaultObjectModel()},
+                          FlightExamination(PaperCalibration(), ".", 0), nullptr,
+                          FlightColors{folder / "colors", (folder / "taught").string(), {}});
+    TestSocket socket(PortOf(console));
+    const auto hello = socket.Next("hello");
+    ASSERT_TRUE(hello);
+    EXPECT_EQ((*hello)["colors"], true);
+    EXPECT_EQ((*hello)["exports"], false);
+    EXPECT_EQ((*hello)["views"], nlohmann::json{"segmentation"});
+    const auto ask = [&](const std::string& message) {
+      socket.Send(message);
+      return socket.Next("colors").value_or(nlohmann::json());
+    };
+    ASSERT_TRUE(socket.Next("colors"));
+    EXPECT_THAT(ask(R"({"colors": "keep"})")["answer"].get<std::string>(),
+                testing::HasSubstr("there is no image yet"));
+    const Frame frame = ColorFrame();
+    console.Take(Observation{frame, HuntObservation()});
+    socket.Send(R"({"images": "segmentation"})");
+    const auto image = socket.Next("image");
+    ASSERT_TRUE(image);
+    EXPECT_EQ((*image)["view"], "segmentation");
+    EXPECT_EQ(ask(R"({"colors": "keep"})")["frames"], 1);
+    const auto state = ask(
+        R"({"colors": "mark", "frame": 0, "color": "green", "tool": "grow", "size": 8, "points": [120, 120]})");
+    EXPECT_EQ(state["strokes"], 1) << state["answer"];
+    EXPECT_EQ(ask(R"({"colors": "teach", "color": "green"})")["answer"], "taught green");
+    TestBrowser browser(PortOf(console));
+    EXPECT_EQ(browser.Send(browser.Get("/export/labels-0.bin")).result_int(), 200u);
+    TestBrowser other(PortOf(console));
+    EXPECT_EQ(other.Send(other.Get("/export/frame-0.png")).result_int(), 404u)
+        << "a flight has no other exports";
+    EXPECT_FALSE(ask(R"({"colors": "save"})")["refused"]);
+    const std::string file =
+        (folder / "colors" / fmt::format("01_{}.png", ToNanoseconds(frame.time))).string();
+    EXPECT_EQ(cv::norm(ReadImage(file, PixelFormat::kBgr), frame.image, cv::NORM_INF), 0);
+  }
+  EXPECT_TRUE(fs::exists(folder / "taught" / "draft.yaml"));
+  EXPECT_TRUE(fs::exists(folder / "taught" / "objects.yaml"));
+}
+
+TEST(FlightHealthTest, ComparesSeconds) {
+  FlightHealth health;
+  FlightReport state;
+  state.autopilot.emplace().is_here = true;
+  const Time start = Now();
+  EXPECT_FALSE(health.Update(state, start));
+  state.capture.captured = 30;
+  state.autopilot->link.received = 100;
+  EXPECT_FALSE(health.Update(state, start + 500ms));
+  const auto good = health.Update(state, start + 1s);
+  ASSERT_TRUE(good);
+  EXPECT_EQ(health.link_rate_hz(), 100);
+  for (const ConsoleCheck& check : good->checks) EXPECT_EQ(check.verdict, "good") << check.name;
+  state.autopilot->is_here = false;
+  state.events.dropped_frames = 1;
+  const auto bad = health.Update(state, start + 2s);
+  ASSERT_TRUE(bad);
+  const auto verdict = [&](const std::string& name) {
+    for (const ConsoleCheck& check : bad->checks) {
+      if (check.name == name) return check.verdict;
+    }
+    return std::string();
+  };
+  EXPECT_EQ(verdict("camera"), "wrong") << "no frame in a second";
+  EXPECT_EQ(verdict("vision"), "doubtful");
+  EXPECT_EQ(verdict("autopilot"), "wrong");
+}
+
+TEST(FlightStatusTest, SaysWhatMattersMost) {
+  const ConsoleStatus vision{"tracking", "", false};
+  FlightReport state;
+  EXPECT_EQ(FlightStatus(state, vision), vision);
+  state.autopilot.emplace().is_here = true;
+  state.autopilot->is_landing = true;
+  EXPECT_EQ(FlightStatus(state, vision).state, "landing, tracking");
+  state.autopilot->guidance = GuidancePhase::kDescend;
+  EXPECT_EQ(FlightStatus(state, vision).state, "descend, tracking");
+  state.autopilot->target = TargetPhase::kContact;
+  EXPECT_EQ(FlightStatus(state, vision).state, "on the pattern");
+  state.trouble = "the camera is gone";
+  state.recorder.emplace();
+  EXPECT_EQ(FlightStatus(state, vision), (ConsoleStatus{"blind", "the camera is gone", true}));
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/console/flight_health.h"
+
+#include <algorithm>
+#include <sys/resource.h>
+#include <thread>
+
+#include <fmt/format.h>
+
+namespace kestrel {
+namespace {
+
+constexpr Duration kInterval = std::chrono::seconds(1);
+
+// What the whole program has used of processors, s.
+double CpuTime_s() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+ConsoleCheck CameraCheck(const FlightReport& now, const FlightReport& last, double interval_s) {
+  const auto frames = static_cast<double>(now.capture.captured - last.capture.captured);
+  const bool is_missing = now.capture.missed > last.capture.missed;
+  const bool is_repeating = now.repeated_frames > last.repeated_frames;
+  ConsoleCheck check{"camera", is_missing || is_repeating ? "doubtful" : "good",
+                     fmt::format("{:.1f} frames/s, {} missed, {} repeated", frames / interval_s,
+                                 now.capture.missed, now.repeated_frames)};
+  if (frames == 0) check.verdict = "wrong";
+  if (!now.trouble.empty()) check.measured = now.trouble;
+  return check;
+}
+
+ConsoleCheck VisionCheck(const FlightReport& now, const FlightReport& last) {
+  const bool is_late = now.events.dropped_frames > last.events.dropped_frames;
+  const bool is_unposed = now.events.unposed_frames > last.events.unposed_frames;
+  return {"vision", is_late || is_unposed ? "doubtful" : "good",
+          fmt::format("{} frames, {} dropped for want of time, {} without a pose in time",
+                      now.events.frames, now.events.dropped_frames, now.events.unposed_frames)};
+}
+
+ConsoleCheck LinkCheck(const AutopilotState& autopilot, double rate_hz, bool is_damaged) {
+  if (!autopilot.is_here) return {"autopilot", "wrong", "no heartbeat"};
+  return {"autopilot", is_damaged ? "doubtful" : "good",
+          fmt::format("{:.0f} packets/s, {} damaged, {} not sent", rate_hz,
+                      autopilot.link.bad_checksums, autopilot.link.unsent)};
+}
+
+ConsoleCheck ProcessorCheck(double cpu_s, double interval_s) {
+  constexpr double kNearlyAll = 0.9;
+  const auto processors = std::max(1U, std::thread::hardware_concurrency());
+  const double load = cpu_s / interval_s;
+  return {"processor", load < kNearlyAll * processors ? "good" : "doubtful",
+          fmt::format("{:.0f} % of one, there are {}", 100 * load, processors)};
+}
+
+ConsoleCheck RecorderCheck(const RecorderCounters& now,
+                           const std::optional<RecorderCounters>& last) {
+  const bool is_dropping = last && now.dropped > last->dropped;
+  return {"recording", is_dropping ? "doubtful" : "good",
+          fmt::format("{} images, {:.0f} MB, {} dropped", now.images,
+                      static_cast<double>(now.bytes) / 1e6, now.dropped)};
+}
+
+}  // namespace
+
+std::optional<ConsoleHealth> FlightHealth::Update(const FlightReport& report, Time now) {
+  if (checked_ && now - *checked_ < kInterval) return std::nullopt;
+  std::optional<ConsoleHealth> health;
+  if (checked_) health = Compare(report, ToSeconds(now - *checked_));
+  checked_ = now;
+  last_ = report;
+  last_cpu_s_ = CpuTime_s();
+  return health;
+}
+
+ConsoleHealth FlightHealth::Compare(const FlightReport& report, double interval_s) {
+  ConsoleHealth health;
+  health.checks = {CameraCheck(report, last_, interval_s), VisionCheck(report, last_)};
+  if (report.autopilot && last_.autopilot) {
+    const ConnectionCounters& link = report.autopilot->link;
+    const ConnectionCounters& last = last_.autopilot->link;
+    link_rate_hz_ = static_cast<double>(link.received - last.received) / interval_s;
+    const bool is_damaged = link.bad_checksums > last.bad_checksums || link.unsent > last.unsent;
+    health.checks.push_back(LinkCheck(*report.autopilot, *link_rate_hz_, is_damaged));
+  }
+  health.checks.push_back(ProcessorCheck(CpuTime_s() - last_cpu_s_, interval_s));
+  if (report.recorder) health.checks.push_back(RecorderCheck(*report.recorder, last_.recorder));
+  return health;
+}
+
+ConsoleStatus FlightStatus(const FlightReport& report, const ConsoleStatus& vision) {
+  ConsoleStatus status = vision;
+  status.is_recording = report.recorder.has_value();
+  if (!report.trouble.empty()) {
+    status.state = "blind";
+    status.reason = report.trouble;
+  } else if (report.autopilot && report.autopilot->target == TargetPhase::kContact) {
+    status.state = "on the pattern";
+    status.reason = "";
+  } else if (report.autopilot && !report.autopilot->is_here) {
+    status.reason = "no heartbeat of the autopilot";
+  } else if (report.autopilot &&
+             report.autopilot->guidance.value_or(GuidancePhase::kIdle) != GuidancePhase::kIdle) {
+    status.state = fmt::format("{}, {}", ToString(*report.autopilot->guidance), vision.state);
+  } else if (report.autopilot && report.autopilot->is_landing) {
+    status.state = fmt::format("landing, {}", vision.state);
+  }
+  return status;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "kestrel/app/console/console_hub.h"
+
+namespace kestrel {
+
+// A connection that asks for the page's files, or becomes the WebSocket. Lives as long as an
+// operation of it is under way.
+class HttpSession : public std::enable_shared_from_this<HttpSession> {
+ public:
+  // 'slot': the connection's right to be. 'hub' outlives the session.
+  HttpSession(boost::asio::ip::tcp::socket socket, ConsoleHub* hub, std::shared_ptr<void> slot);
+
+  // Reads the next request.
+  void Read();
+
+ private:
+  using Body = boost::beast::http::empty_body;
+  using Request = boost::beast::http::request<Body>;
+  using Response = boost::beast::http::response<boost::beast::http::string_body>;
+  using Status = boost::beast::http::status;
+
+  void Answer(const Request& request);
+  void AnswerAdmitted(const Request& request);
+  void Upgrade(const Request& request);
+  void SendAsset(const Request& request, const WebAsset& asset);
+  void SendExport(const Request& request, const ExportRequest& wanted);
+  void SendAnswer(const ExportAnswer& answer, bool keep_alive, bool is_head);
+  void EndWaitWithBrowser();
+  void SignIn(const Request& request);
+  // Says what is wrong, and ends the connection.
+  void Refuse(Status status, const std::string& why);
+  void Send(Response response, bool is_head);
+  struct Download;
+  void SendFile(const ExportAnswer& answer, bool keep_alive, bool is_head);
+  void SendPiece(const std::shared_ptr<Download>& download);
+  // Reads the next request, or ends the connection.
+  void GoOn(bool keep_alive);
+
+  boost::beast::tcp_stream stream_;
+  ConsoleHub* hub_;
+  std::shared_ptr<void> slot_;
+  boost::beast::flat_buffer buffer_;
+  std::optional<boost::beast::http::request_parser<Body>> parser_;
+  // Keeps the session while it waits for an answer, and not for ever.
+  boost::asio::steady_timer patience_;
+};
+
+}  // namespace kestrel

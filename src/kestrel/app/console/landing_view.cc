@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/console/landing_view.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include <Eigen/Eigenvalues>
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include "kestrel/app/console/map_view.h"
+#include "kestrel/vision/landing/threshold_view.h"
+
+namespace kestrel {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr int kPiecesPerCircle = 64;
+constexpr double kSigmas = 2;
+
+// The image of a closed curve, given by its points in the camera frame for angles 0 to 2 pi.
+std::vector<cv::Point2f> Outline(const CameraModel& camera,
+                                 const std::function<Eigen::Vector3d(double)>& curve) {
+  std::vector<cv::Point2f> outline;
+  for (int i = 0; i < kPiecesPerCircle; ++i) {
+    Eigen::Vector2d pixel;
+    const Eigen::Vector3d point = curve(2 * std::numbers::pi * i / kPiecesPerCircle);
+    if (camera.Project(point, &pixel) == ProjectionStatus::kOutsideModel) continue;
+    if (pixel.allFinite()) outline.emplace_back(pixel.x(), pixel.y());
+  }
+  return outline;
+}
+
+// The same of a circle around the pattern's centre where it is seen.
+std::vector<cv::Point2f> SeenOutline(const CameraModel& camera, const LandingPattern& pattern,
+                                     const SeenPrint& seen, double radius_m) {
+  const PlaneWarp warp = seen.Warp(camera, pattern.outer_radius_m());
+  std::vector<cv::Point2f> outline;
+  for (int i = 0; i < kPiecesPerCircle; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kPiecesPerCircle;
+    Eigen::Vector2d pixel;
+    if (!warp.Project(radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)), &pixel)) {
+      continue;
+    }
+    if (pixel.allFinite()) outline.emplace_back(pixel.x(), pixel.y());
+  }
+  return outline;
+}
+
+std::vector<cv::Point2f> RingOutline(const CameraModel& camera,
+                                     const RigidTransform& camera_from_pattern, double radius_m) {
+  return Outline(camera, [&](double angle) {
+    return Eigen::Vector3d(camera_from_pattern * Eigen::Vector3d(radius_m * std::cos(angle),
+                                                                 radius_m * std::sin(angle), 0));
+  });
+}
+
+std::vector<cv::Point2f> TrackOutline(const CameraModel& camera,
+                                      const RigidTransform& camera_from_world,
+                                      const TurnState& motion) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(
+      motion.covariance.topLeftCorner<2, 2>());
+  const Eigen::Matrix2d root =
+      axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+  return Outline(camera, [&](double angle) {
+    Eigen::Vector3d point = motion.position();
+    point.head<2>() += kSigmas * root * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    return Eigen::Vector3d(camera_from_world * point);
+  });
+}
+
+std::string WhyNot(const LandingReport& report) {
+  return fmt::format("{}: {}", ToString(report.reached), report.reason);
+}
+
+std::string MisfitInWords(const LandingDetection& detection) {
+  if (detection.misfit_px == 0) return "";
+  return fmt::format("{:.2f} px{}", detection.misfit_px,
+                     detection.is_misfit()
+                         ? fmt::format(", at most {:.2f} expected", detection.misfit_bound_px)
+                         : "");
+}
+
+ConsoleMapObject MapObject(const std::string& label, const TurnState& motion) {
+  return {.label = label,
+          .color = "",
+          .position = motion.position().head<2>(),
+          .covariance = motion.covariance.topLeftCorner<2, 2>()};
+}
+
+}  // namespace
+
+LandingView ViewOf(const CameraCalibration& calibration, const LandingPipelineOptions& options) {
+  return {CameraModel(calibration.intrinsics), options.detector.pattern, options.tracker.Noise()};
+}
+
+std::vector<SeriesDescription> LandingSeries() {
+  return {{"height", "m", "Height"},
+          {"offset", "m", "Offset"},
+          {"speed", "m/s", "Target's speed"},
+          {"quality", "", "Quality"},
+          {"detect", "ms", "Detection"}};
+}
+
+ConsoleSample LandingSample(const LandingObservation& observation) {
+  ConsoleSample sample{observation.time, std::vector<double>(LandingSeries().size(), kUnknown)};
+  if (observation.target && observation.world_from_camera) {
+    const Eigen::Vector3d offset =
+        observation.world_from_camera->translation - observation.target->motion.position();
+    sample.values[0] = offset.z();
+    sample.values[1] = offset.head<2>().norm();
+  }
+  if (observation.target) sample.values[2] = observation.target->speed();
+  if (observation.report.detection) sample.values[3] = observation.report.detection->quality;
+  sample.values[4] = 1e3 * ToSeconds(observation.detect_time);
+  return sample;
+}
+
+std::vector<OverlayLayer> LandingLayers() {
+  return {OverlayLayer::kDetection, OverlayLayer::kPrediction, OverlayLayer::kRejected};
+}
+
+std::vector<OverlayShape> LandingShapes(const LandingView& view,
+                                        const LandingObservation& observation) {
+  std::vector<OverlayShape> shapes;
+  if (observation.target && observation.world_from_camera) {
+    shapes.push_back({OverlayLayer::kPrediction,
+                      TrackOutline(view.camera, observation.world_from_camera->Inverse(),
+                                   observation.target->motion),
+                      ""});
+  }
+  if (!observation.report.detection) return shapes;
+  const LandingDetection& found = *observation.report.detection;
+  const bool is_rejected = observation.fate == MeasurementFate::kFarFromTrack;
+  const OverlayLayer layer = is_rejected ? OverlayLayer::kRejected : OverlayLayer::kDetection;
+  const std::string label = fmt::format("{} {:.2f}{}", ToString(found.method), found.quality,
+                                        is_rejected ? ", far from the track" : "");
+  const double outer_m = view.pattern.outer_radius_m();
+  const double inner_m = view.pattern.inner_radius_m();
+  const bool is_seen_elsewhere = found.is_misfit() && found.seen;
+  if (is_seen_elsewhere) {
+    shapes.push_back(
+        {layer, SeenOutline(view.camera, view.pattern, *found.seen, outer_m), label + ", as seen"});
+    shapes.push_back({layer, SeenOutline(view.camera, view.pattern, *found.seen, inner_m), ""});
+  }
+  const OverlayLayer of_pose = is_seen_elsewhere ? OverlayLayer::kRejected : layer;
+  shapes.push_back({of_pose, RingOutline(view.camera, found.camera_from_pattern, outer_m),
+                    is_seen_elsewhere
+                        ? fmt::format("by the calibration: {:.1f} px beside", found.misfit_px)
+                        : label});
+  shapes.push_back({of_pose, RingOutline(view.camera, found.camera_from_pattern, inner_m), ""});
+  shapes.push_back(
+      {layer,
+       {{static_cast<float>(found.center_px.x()), static_cast<float>(found.center_px.y())}},
+       ""});
+  return shapes;
+}
+
+std::vector<ImageView> LandingImageViews() {
+  const auto view = std::make_shared<ThresholdView>();
+  std::vector<ImageView> views;
+  for (const int level : {3, 2, 1, 0}) {
+    views.push_back(
+        {fmt::format("threshold 1/{}", 1 << level), [view, level](const cv::Mat& image) {
+           cv::Mat gray = image;
+           if (image.channels() == 3) cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
+           return view->Draw(gray, level);
+         }});
+  }
+  return views;
+}
+
+ConsoleStatus LandingStatus(const LandingObservation& observation) {
+  const LandingReport& report = observation.report;
+  ConsoleStatus status;
+  status.state = ToString(observation.track_state);
+  if (!report.detection) {
+    status.reason = "not found: " + WhyNot(report);
+  } else if (observation.fate == MeasurementFate::kFarFromTrack) {
+    status.reason = "found, but far from where the track has it";
+  } else if (report.detection->is_misfit()) {
+    status.reason =
+        fmt::format("found, but {:.1f} px beside where the calibration has it: is it this lens's?",
+                    report.detection->misfit_px);
+  } else if (!observation.world_from_camera) {
+    status.reason = "found, but where the UAV was is not known";
+  }
+  return status;
+}
+
+std::vector<ConsoleFact> LandingFacts(const LandingObservation& observation) {
+  const auto& detection = observation.report.detection;
+  if (!detection)
+    return {{"found", "no, " + WhyNot(observation.report)},
+            {"method", ""},
+            {"quality", ""},
+            {"misfit", ""}};
+  const bool is_far = observation.fate == MeasurementFate::kFarFromTrack;
+  return {{"found", is_far ? "yes, but far from the track" : "yes"},
+          {"method", ToString(detection->method)},
+          {"quality", fmt::format("{:.2f}", detection->quality)},
+          {"misfit", MisfitInWords(*detection)}};
+}
+
+ConsoleMap LandingMap(const LandingView& view, const LandingObservation& observation) {
+  ConsoleMap map;
+  PlaceUav(observation.world_from_camera, &map);
+  if (!observation.target) return map;
+  const TurnState& motion = observation.target->motion;
+  map.target = MapObject("target", motion);
+  map.target_velocity = motion.velocity().head<2>();
+  for (const int seconds : {1, 2, 3}) {
+    map.prediction.push_back(
+        MapObject(fmt::format("+{} s", seconds), Propagate(motion, seconds, view.noise)));
+  }
+  return map;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/console/web_server.h"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <sys/resource.h>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/app/console/console_hub.h"
+#include "kestrel/app/console/http_session.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/base/thread_setup.h"
+
+namespace kestrel {
+namespace {
+
+namespace asio = boost::asio;
+using Tcp = asio::ip::tcp;
+
+// How often is looked for something new: while somebody watches it adds to the image's age, and
+// while nobody does only what newcomers will get is kept.
+constexpr std::chrono::milliseconds kWatchedInterval(4), kUnwatchedInterval(100);
+// What flies goes first.
+constexpr int kNiceness = 10;
+
+Tcp::acceptor Listen(asio::io_context& context, const ConsoleOptions& options) {
+  const Tcp::endpoint endpoint(asio::ip::make_address(options.address),
+                               static_cast<unsigned short>(options.port));
+  try {
+    return Tcp::acceptor(context, endpoint);
+  } catch (const boost::system::system_error& error) {
+    throw InputError(fmt::format(
+        "console: cannot listen at {} port {} ({}), expected a free port of this computer",
+        options.address, options.port, error.code().message()));
+  }
+}
+
+}  // namespace
+
+class WebServer::Impl {
+ public:
+  Impl(const ConsoleOptions& options, ConsoleFeed* feed, std::span<const WebAsset> assets,
+       ChannelFeed* channels)
+      : options_(Checked(options)),
+        acceptor_(Listen(context_, options_)),
+        timer_(context_),
+        port_(acceptor_.local_endpoint().port()) {
+    hub_ = std::make_unique<ConsoleHub>(options_, feed, assets, port_, channels);
+    Accept();
+    Tick();
+    thread_ = std::thread([this] { Serve(); });
+  }
+
+  ~Impl() {
+    context_.stop();
+    thread_.join();
+  }
+
+  int port() const { return port_; }
+  const ConsoleHub& hub() const { return *hub_; }
+
+  std::string Url(std::string_view scheme, std::string_view path) const {
+    const auto address = acceptor_.local_endpoint().address();
+    std::string host = address.is_unspecified() ? "localhost" : address.to_string();
+    if (address.is_v6() && !address.is_unspecified()) host = "[" + host + "]";
+    const std::string query = options_.token.empty() ? "" : "?token=" + options_.token;
+    return fmt::format("{}://{}:{}{}{}", scheme, host, port_, path, query);
+  }
+
+ private:
+  void Serve() {
+    SetUpThisThread("console", {});
+    // Of this thread alone, on Linux. Where it is not permitted all goes on as usual.
+    setpriority(PRIO_PROCESS, 0, kNiceness);
+    context_.run();
+  }
+
+  void Accept() {
+    acceptor_.async_accept([this](boost::system::error_code error, Tcp::socket socket) {
+      if (error) return AcceptLater();
+      if (auto slot = hub_->TakeSlot()) {
+        socket.set_option(Tcp::no_delay(true), error);
+        std::make_shared<HttpSession>(std::move(socket), hub_.get(), std::move(slot))->Read();
+      }
+      Accept();
+    });
+  }
+
+  // There are no more file descriptors: they come back.
+  void AcceptLater() {
+    const auto wait = std::make_shared<asio::steady_timer>(context_, kUnwatchedInterval);
+    wait->async_wait([this, wait](boost::system::error_code) { Accept(); });
+  }
+
+  void Tick() {
+    hub_->Tick(Now());
+    timer_.expires_after(hub_->has_clients() ? kWatchedInterval : kUnwatchedInterval);
+    timer_.async_wait([this](boost::system::error_code error) {
+      if (!error) Tick();
+    });
+  }
+
+  ConsoleOptions options_;
+  // The connections, which leave it, are destroyed with the context.
+  std::unique_ptr<ConsoleHub> hub_;
+  asio::io_context context_{1};
+  Tcp::acceptor acceptor_;
+  asio::steady_timer timer_;
+  int port_;
+  std::thread thread_;
+};
+
+WebServer::WebServer(const ConsoleOptions& options, ConsoleFeed* feed,
+                     std::span<const WebAsset> assets, ChannelFeed* channels)
+    : impl_(std::make_unique<Impl>(options, feed, assets, channels)) {}
+
+WebServer::~WebServer() = default;
+
+int WebServer::port() const { return impl_->port(); }
+
+std::string WebServer::url() const { return impl_->Url("http", "/"); }
+
+std::string WebServer::viewer_url() const { return impl_->Url("ws", kViewerPath); }
+
+WebServer::Counters WebServer::counters() const {
+  const ConsoleHub& hub = impl_->hub();
+  return {hub.connections(), hub.refused(), hub.encoded(), hub.clients(), hub.viewers()};
+}
+
+}  // namespace kestrel

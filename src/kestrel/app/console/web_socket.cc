@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/console/web_socket.h"
+
+#include <array>
+#include <utility>
+
+namespace kestrel {
+namespace {
+
+namespace beast = boost::beast;
+namespace websocket = beast::websocket;
+
+// A browser sends acknowledgements and commands, a viewer what it subscribes to.
+constexpr std::size_t kMaxMessageBytes = 16 * 1024;
+constexpr int kMaxMessagesPerSecond = 500;
+constexpr std::chrono::seconds kHandshakeTimeout(5);
+
+}  // namespace
+
+WebSocket::WebSocket(beast::tcp_stream stream, ConsoleHub* hub, std::shared_ptr<void> slot)
+    : stream_(std::move(stream)), hub_(hub), slot_(std::move(slot)) {}
+
+void WebSocket::Accept(const Request& request, const std::string& subprotocol) {
+  // The WebSocket has times of its own.
+  beast::get_lowest_layer(stream_).expires_never();
+  const Duration idle = DurationFromSeconds(hub_->options().idle_timeout_s);
+  stream_.set_option(websocket::stream_base::timeout{kHandshakeTimeout, idle, true});
+  stream_.set_option(
+      websocket::stream_base::decorator([subprotocol](websocket::response_type& response) {
+        if (!subprotocol.empty()) {
+          response.set(beast::http::field::sec_websocket_protocol, subprotocol);
+        }
+      }));
+  stream_.read_message_max(kMaxMessageBytes);
+  stream_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
+    if (error) return;
+    self->is_open_ = true;
+    self->Opened();
+    self->Read();
+  });
+}
+
+// What is not understood ends the connection: neither the page, which is ours, nor a viewer sends
+// it.
+void WebSocket::Read() {
+  stream_.async_read(received_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+    const Time now = Now();
+    if (error || self->IsTooBusy(now)) return self->Close();
+    const auto data = self->received_.cdata();
+    if (!self->Take({static_cast<const char*>(data.data()), data.size()}, self->stream_.got_text(),
+                    now)) {
+      self->hub_->CountRefusal();
+      return self->Close();
+    }
+    self->received_.clear();
+    if (self->is_open_) self->Read();
+  });
+}
+
+bool WebSocket::IsTooBusy(Time now) {
+  if (now - second_began_ >= std::chrono::seconds(1)) {
+    second_began_ = now;
+    received_in_second_ = 0;
+  }
+  if (++received_in_second_ <= kMaxMessagesPerSecond) return false;
+  hub_->CountRefusal();
+  return true;
+}
+
+void WebSocket::Write(std::string head, SharedMessage content, bool is_text) {
+  is_sending_ = true;
+  head_ = std::move(head);
+  content_ = std::move(content);
+  stream_.text(is_text);
+  const std::array<boost::asio::const_buffer, 2> parts = {
+      boost::asio::buffer(head_),
+      content_ ? boost::asio::buffer(*content_) : boost::asio::const_buffer()};
+  stream_.async_write(parts, [self = shared_from_this()](beast::error_code error, std::size_t) {
+    self->content_.reset();
+    self->is_sending_ = false;
+    if (error) return self->Close();
+    self->SendNext();
+  });
+}
+
+void WebSocket::LimitSendBuffer(int bytes) {
+  beast::error_code ignored;  // the system's own limit then holds
+  beast::get_lowest_layer(stream_).socket().set_option(
+      boost::asio::socket_base::send_buffer_size(bytes), ignored);
+}
+
+void WebSocket::Close() {
+  if (!is_open_) return;
+  is_open_ = false;
+  Closed();
+  beast::get_lowest_layer(stream_).close();
+}
+
+}  // namespace kestrel

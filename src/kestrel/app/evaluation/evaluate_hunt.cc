@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/evaluation/evaluate_hunt.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "kestrel/app/evaluation/object_comparison.h"
+#include "kestrel/app/evaluation/object_tables.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/read_file.h"
+
+namespace kestrel {
+namespace {
+
+namespace fs = std::filesystem;
+
+Points2d Positions(const std::vector<TrueSighting>& sightings) {
+  Points2d points;
+  for (const TrueSighting& s : sightings) points.push_back(s.position_in_world.head<2>());
+  return points;
+}
+
+Points2d Positions(const std::vector<ObjectRow>& objects) {
+  Points2d points;
+  for (const ObjectRow& row : objects) {
+    if (row.center_in_world) points.push_back(row.center_in_world->head<2>());
+  }
+  return points;
+}
+
+Points2d Positions(const std::vector<MapRow>& map) {
+  Points2d points;
+  for (const MapRow& row : map) points.push_back(row.position_in_world.head<2>());
+  return points;
+}
+
+Plot MapPlot(const std::vector<TrueSighting>& sightings, const ObjectRows& rows,
+             const std::vector<MapRow>& map) {
+  PlotPanel panel{"x (east), m", "y (north), m", {}, /*equal_axes=*/true};
+  panel.series = {{"true, when in view", PlotStyle::kCircles, Positions(sightings), {}},
+                  {"detected", PlotStyle::kPoints, Positions(rows.objects), {}},
+                  {"in the map", PlotStyle::kCrosses, Positions(map), {}}};
+  return {"map", "Objects, seen from above", {panel}};
+}
+
+}  // namespace
+
+Report EvaluateHunt(const std::string& recording, const std::string& output) {
+  const FlightTruth flight(recording);
+  const auto [objects, sightings] = ReadObjectTruth(flight.root());
+  const std::string rows_file = (fs::path(output) / "object_detections.csv").string();
+  const ObjectRows rows = ParseObjectRows(ReadFile(rows_file), rows_file);
+  if (rows.frames.empty()) throw InputError(rows_file + ": no rows, expected some for every image");
+  const auto comparisons = CompareObjects(flight, objects, sightings, rows, rows_file);
+
+  Report report;
+  report.title = fmt::format("Hunt: {}", fs::path(recording).lexically_normal().string());
+  report.tables = {DetectionTable(comparisons), ConfusionTable(comparisons),
+                   ProbabilityTable(comparisons)};
+  std::vector<MapRow> map;
+  const std::string map_file = (fs::path(output) / "object_map.csv").string();
+  if (fs::exists(map_file)) {
+    map = ParseMapRows(ReadFile(map_file), map_file);
+    report.tables.push_back(MapTable(CompareMap(objects, sightings, comparisons, map)));
+  }
+  report.plots = {MapPlot(sightings, rows, map)};
+  return report;
+}
+
+}  // namespace kestrel

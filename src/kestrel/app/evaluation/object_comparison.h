@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kestrel/app/evaluation/flight_truth.h"
+#include "kestrel/app/evaluation/object_results.h"
+#include "kestrel/app/evaluation/object_truth.h"
+
+namespace kestrel {
+
+// A detection, an object that is in view, or both when one is that of the other.
+struct ObjectComparison {
+  Time time;
+  std::optional<int> true_id;  // empty: there is no such object
+  std::string true_class;
+  std::string true_shape;
+  std::optional<int> true_digit;
+  bool is_wanted = false;  // wholly in view with at least 50 px: it must be found
+  // Of what was found; the class is empty where nothing was.
+  std::string detected_class;
+  std::string detected_shape;
+  double class_probability = 0;
+  std::optional<SaidDigit> digit;
+  // Of what was found, estimate minus truth.
+  double center_error_px = 0;
+  std::optional<double> depth_error;  // over the distance, positive: too far away
+  std::optional<double> world_error_m;
+
+  bool IsObject() const { return true_id.has_value(); }
+  bool IsDetected() const { return !detected_class.empty(); }
+};
+
+// Whether both digits look the same: a 6 that is upside down is a 9.
+bool LooksAlike(int digit, int other);
+
+// A detection is that of the nearest object in view (whatever its class) whose centre is at most
+// its semi-major axis, or 5 px, away. Merged ones are left out where at least two discs of their
+// class are so near, and are of nothing where they are not. Frames that have no row in 'rows' are
+// left out. Throws InputError for a row that is of no image.
+std::vector<ObjectComparison> CompareObjects(const FlightTruth& flight, const TrueObjects& objects,
+                                             const std::vector<TrueSighting>& sightings,
+                                             const ObjectRows& rows, const std::string& file);
+
+// An entry of the map, an object that should be in it, or both.
+struct MapComparison {
+  std::string true_class;    // empty: there is no such object
+  std::string mapped_class;  // empty: it is not in the map
+  bool is_shape_right = false;
+  std::optional<bool> is_digit_right;  // of what has a digit; 6 and 9 as one
+  double position_error_m = 0;
+  double velocity_error_mps = 0;
+
+  bool IsObject() const { return !true_class.empty(); }
+  bool IsMapped() const { return !mapped_class.empty(); }
+};
+
+// Objects of which at least three sightings were wanted, and the entries of the map, matched where
+// they are at most 1 m apart when the entry was last seen.
+std::vector<MapComparison> CompareMap(const TrueObjects& objects,
+                                      const std::vector<TrueSighting>& sightings,
+                                      const std::vector<ObjectComparison>& comparisons,
+                                      const std::vector<MapRow>& rows);
+
+}  // namespace kestrel

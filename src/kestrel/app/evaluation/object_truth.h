@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kestrel/core/base/time.h"
+
+namespace kestrel {
+
+// A row of objects0/objects.csv: what an object is; and its digit, by objects0/digits.csv.
+struct TrueObject {
+  std::string class_name;
+  double diameter_m = 0;
+  std::string shape;  // disc, cuboid, bar
+  std::optional<int> digit;
+};
+using TrueObjects = std::map<int, TrueObject>;  // by id
+
+// A row of objects0/data.csv: an object in view of an image.
+struct TrueSighting {
+  Time time;
+  int id = 0;
+  Eigen::Vector3d position_in_world;
+  Eigen::Vector3d velocity_in_world;
+  Eigen::Vector2d center_px;
+  double visible_fraction = 0;
+};
+
+// Throw InputError with file and line for what is at fault; sightings are in order of time, and
+// their ids must be among 'objects'.
+TrueObjects ParseTrueObjects(std::string_view text, const std::string& file);
+void ParseTrueDigits(std::string_view text, const std::string& file, TrueObjects* objects);
+std::vector<TrueSighting> ParseTrueSightings(std::string_view text, const std::string& file,
+                                             const TrueObjects& objects);
+
+// All of objects0 of a recording.
+struct ObjectTruth {
+  TrueObjects objects;
+  std::vector<TrueSighting> sightings;
+};
+// 'root': the folder in which objects0 lies. Throws InputError as above, and for a missing file
+// other than digits.csv.
+ObjectTruth ReadObjectTruth(const std::string& root);
+
+// The sighting of the object that is nearest to 'time'; null when it was never in view.
+const TrueSighting* NearestSighting(const std::vector<TrueSighting>& sightings, int id, Time time);
+
+// Where an object that keeps its velocity is at another time than that of its sighting.
+Eigen::Vector3d PositionAt(const TrueSighting& sighting, Time time);
+
+}  // namespace kestrel

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include <Eigen/Geometry>
+
+#include "kestrel/core/base/time.h"
+
+namespace kestrel {
+
+// What scene.yaml of a recording says of it as a whole and of its single images. Keys that are not
+// there leave the defaults; keys that are not known here are left alone.
+struct SceneTruth {
+  std::string condition = "all";  // light and weather
+  double ring_diameter_m = 1;     // options.pattern.outer_diameter_m
+  // R_BS_true = mount_error * R_BS_nominal: mount_error.yaw_deg, pitch_deg, roll_deg.
+  Eigen::Quaterniond mount_error = Eigen::Quaterniond::Identity();
+  double clock_offset_s = 0;         // time_offset_s: t_nav = t_image + offset
+  std::optional<double> exposure_s;  // options.shutter.exposure_s
+
+  // frames.<timestamp>.condition and .exposure_s, where an image has its own.
+  std::map<Time, std::string> frame_conditions;
+  std::map<Time, double> frame_exposures_s;
+
+  const std::string& ConditionAt(Time time) const;
+  std::optional<double> ExposureAt(Time time) const;
+};
+
+// Throws InputError with file and key for what is no YAML or no number.
+SceneTruth ParseSceneTruth(const std::string& text, const std::string& file);
+
+}  // namespace kestrel

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "kestrel/app/evaluation/plot.h"
+#include "kestrel/simulation/recordings/touchdown_result.h"
+
+namespace kestrel {
+
+// The paths of the UAV and of the vehicle, seen from above and from the side: in the vertical plane
+// through the first and the last position of the UAV.
+Plot TouchdownPlot(const TouchdownResult& result);
+
+}  // namespace kestrel

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "kestrel/app/foxglove/foxglove_sink.h"
+#include "kestrel/core/camera/camera_model.h"
+#include "kestrel/core/codec/jpeg_codec.h"
+#include "kestrel/io/recording/frame.h"
+
+namespace kestrel {
+
+// Writes frames as /camera/image (foxglove.CompressedImage, JPEG) and, with each, what the camera
+// is, where that is known, as /camera/calibration (foxglove.CameraCalibration).
+class CameraWriter {
+ public:
+  // 'sink' outlives this.
+  CameraWriter(FoxgloveSink* sink, const std::optional<CameraIntrinsics>& camera);
+
+  // Throws InputError when the sink cannot be written, or the frame is neither 8-bit gray nor BGR.
+  void Write(const Frame& frame);
+
+ private:
+  FoxgloveSink* sink_;
+  std::optional<CameraIntrinsics> camera_;
+  JpegEncoder encoder_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/foxglove/flight_live.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "kestrel/app/foxglove/foxglove_topics.h"
+#include "kestrel/app/foxglove/observation_writer.h"
+#include "kestrel/core/base/error.h"
+
+namespace kestrel {
+namespace {
+
+constexpr std::size_t kLiveFrames = 16;
+// With more that wait, images are left out until there are fewer.
+constexpr std::size_t kFramesInTime = 2;
+// The threads that fly go first.
+constexpr int kNiceness = 10;
+
+std::vector<LiveChannel> ChannelsOf(bool is_hunt) {
+  std::vector<LiveChannel> channels;
+  for (const FoxgloveTopicInfo& topic : kObservationTopics) {
+    if (is_hunt && topic.name == kTargetTopic.name) continue;
+    channels.push_back({.topic = std::string(topic.name),
+                        .encoding = "protobuf",
+                        .schema_name = std::string(topic.type),
+                        .schema_encoding = "protobuf",
+                        .schema = topic.schema(),
+                        .is_image = topic.name == kImageTopic.name});
+  }
+  return channels;
+}
+
+// The channel of a topic of kObservationTopics.
+std::size_t ChannelOf(const std::vector<LiveChannel>& channels, std::string_view topic) {
+  const auto channel = std::find_if(channels.begin(), channels.end(),
+                                    [&](const LiveChannel& each) { return each.topic == topic; });
+  return static_cast<std::size_t>(channel - channels.begin());
+}
+
+// Puts messages into the feed.
+class FeedSink : public FoxgloveSink {
+ public:
+  FeedSink(ChannelFeed* feed, double max_image_rate_hz)
+      : feed_(*feed), min_image_interval_(DurationFromSeconds(1 / max_image_rate_hz)) {}
+
+  void set_waiting_frames(std::size_t waiting) { waiting_frames_ = waiting; }
+
+ private:
+  bool Wants(std::string_view topic) override {
+    if (!feed_.IsWanted(ChannelOf(feed_.channels(), topic))) return false;
+    return topic != kImageTopic.name || IsTimeForImage();
+  }
+
+  void Put(const FoxgloveTopicInfo& topic, Time time, std::string message) override {
+    const std::size_t channel = ChannelOf(feed_.channels(), topic.name);
+    if (!feed_.IsWanted(channel)) return;
+    feed_.Add({channel, time, std::make_shared<const std::string>(std::move(message))});
+  }
+
+  bool IsTimeForImage() {
+    const Time now = Now();
+    if (now - image_made_ < min_image_interval_ || waiting_frames_ > kFramesInTime) return false;
+    image_made_ = now;
+    return true;
+  }
+
+  ChannelFeed& feed_;
+  Duration min_image_interval_;
+  Time image_made_{};
+  std::size_t waiting_frames_ = 0;
+};
+
+class FeedWriter : public SinkWriter {
+ public:
+  FeedWriter(ChannelFeed* feed, const CameraIntrinsics& camera,
+             const std::variant<LandingView, HuntView>& view, double max_image_rate_hz)
+      : feed_(*feed), sink_(feed, max_image_rate_hz), writer_(&sink_, camera, view) {}
+
+  bool IsWanted() const override { return feed_.IsWatched(); }
+  void Write(const Observation& observation, std::size_t waiting) override {
+    sink_.set_waiting_frames(waiting);
+    try {
+      writer_.Write(observation);
+    } catch (const InputError& error) {  // an image that cannot be shown
+      Write(SessionEvent{Now(), EventLevel::kWarning, error.what()});
+    }
+  }
+  void Write(const SessionEvent& event) override { writer_.Write(event); }
+
+ private:
+  ChannelFeed& feed_;
+  FeedSink sink_;
+  ObservationWriter writer_;
+};
+
+}  // namespace
+
+FlightLive::FlightLive(const CameraIntrinsics& camera,
+                       const std::variant<LandingView, HuntView>& view, double max_image_rate_hz)
+    : feed_(ChannelsOf(std::holds_alternative<HuntView>(view))),
+      messages_({.thread_name = "foxglove", .frames = kLiveFrames, .niceness = kNiceness},
+                std::make_unique<FeedWriter>(&feed_, camera, view, max_image_rate_hz)) {}
+
+}  // namespace kestrel

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "kestrel/app/console/hunt_view.h"
+#include "kestrel/app/console/landing_view.h"
+#include "kestrel/flight/session/asynchronous_sink.h"
+
+namespace kestrel {
+
+// A sink that writes an MCAP file, as ObservationFile does. 'tell', by the thread that writes: the
+// file cannot be written any more (the session goes on), or how many frames are left out. Throws
+// InputError as ObservationFile does.
+std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
+                                               const CameraIntrinsics& camera,
+                                               const std::variant<LandingView, HuntView>& view,
+                                               std::function<void(const std::string&)> tell);
+
+}  // namespace kestrel

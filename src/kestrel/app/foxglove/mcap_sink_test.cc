@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/foxglove/mcap_sink.h"
+
+#include <chrono>
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/app/foxglove/test_observations.h"
+#include "kestrel/app/foxglove/test_protobuf.h"
+#include "kestrel/core/base/test_folder.h"
+#include "kestrel/io/bags/mcap_reader.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::IsEmpty;
+
+TEST(McapSinkTest, WritesAllThatItWasGiven) {
+  const TestFolder folder;
+  const std::string path = folder / "flight.mcap";
+  std::vector<std::string> told;
+  {
+    const auto mcap = OpenMcapSink(path, false, ObservedCamera(), ObservedView(),
+                                   [&](const std::string& text) { told.push_back(text); });
+    mcap->Take(SessionEvent{Now(), EventLevel::kWarning, "the autopilot is gone"});
+    for (int i = 0; i < 20; ++i) {
+      const Frame frame = ObservedFrame(i);
+      mcap->Take(Observation{frame, ObservedLanding(frame.time)});
+    }
+  }
+  EXPECT_THAT(told, IsEmpty());
+  const auto messages = ReadMessages(path);
+  EXPECT_EQ(messages.at("/result").size(), 20u);
+  ASSERT_EQ(messages.at("/log").size(), 2u);
+  EXPECT_EQ(messages.at("/log")[0].fields.bytes(3), "the autopilot is gone");
+  EXPECT_EQ(messages.at("/log")[0].fields.number<std::int64_t>(2), 3);
+}
+
+// What a crash would leave: the file is there and is read, though nothing follows.
+TEST(McapSinkTest, ASecondAfterAFrameItIsInTheFile) {
+  const TestFolder folder;
+  const std::string path = folder / "flight.mcap";
+  const auto mcap =
+      OpenMcapSink(path, false, ObservedCamera(), ObservedView(), [](const std::string&) {});
+  const Frame frame = ObservedFrame(0);
+  mcap->Take(Observation{frame, ObservedLanding(frame.time)});
+  std::size_t topics = 0;
+  for (int i = 0; i < 200 && topics < 9; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    // Nothing of it, or a part only, may be there yet.
+    InputErrorOf([&] { topics = McapReader(path).topics().size(); });
+  }
+  EXPECT_EQ(topics, 9u);
+}
+
+TEST(McapSinkTest, AFullDiskIsSaidAndTheFlightGoesOn) {
+  std::mutex mutex;
+  std::vector<std::string> told;
+  {
+    const auto mcap = OpenMcapSink("/dev/full", true, ObservedCamera(), ObservedView(),
+                                   [&](const std::string& text) {
+                                     const std::lock_guard lock(mutex);
+                                     told.push_back(text);
+                                   });
+    for (int i = 0; i < 40; ++i) {
+      const Frame frame = ObservedFrame(i);
+      mcap->Take(Observation{frame, ObservedLanding(frame.time)});
+    }
+  }
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0], "/dev/full: cannot be written: the flight goes on without it");
+}
+
+}  // namespace
+}  // namespace kestrel

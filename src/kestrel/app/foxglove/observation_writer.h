@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "kestrel/app/console/console_feed.h"
+#include "kestrel/app/console/hunt_view.h"
+#include "kestrel/app/console/landing_view.h"
+#include "kestrel/app/foxglove/camera_writer.h"
+#include "kestrel/app/foxglove/foxglove_messages.h"
+#include "kestrel/app/foxglove/foxglove_sink.h"
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/camera/camera_model.h"
+#include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/flight/session/observation.h"
+#include "kestrel/flight/session/session_event.h"
+#include "kestrel/io/recording/frame.h"
+#include "kestrel/vision/pipeline/hunt_pipeline.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
+
+namespace kestrel {
+
+// Frames and what a pipeline makes of them, as messages for Foxglove and other viewers. Every
+// message of a frame has the frame's time:
+//
+//   /camera/image, /camera/calibration   foxglove.CompressedImage (JPEG), CameraCalibration
+//   /camera/annotations                  foxglove.ImageAnnotations
+//   /camera/pose, /tf                    foxglove.PoseInFrame, FrameTransforms, where it is known
+//   /landing/target                      foxglove.PoseInFrame: the track
+//   /scene                               foxglove.SceneUpdate
+//   /result                              kestrel.FrameResult: covariances and times
+//   /log                                 foxglove.Log
+//
+// All calls throw InputError when the sink cannot be written.
+class ObservationWriter {
+ public:
+  // 'sink' outlives this. 'view': what is looked for.
+  ObservationWriter(FoxgloveSink* sink, const CameraIntrinsics& camera,
+                    std::variant<LandingView, HuntView> view);
+
+  // The observation must be of what the view is of. 'latency': from capture to the result, live.
+  void Write(const Frame& frame, const LandingObservation& observation,
+             std::optional<Duration> latency = std::nullopt);
+  void Write(const Frame& frame, const HuntObservation& observation,
+             std::optional<Duration> latency = std::nullopt);
+  void Write(const Observation& observation);
+  void Write(const SessionEvent& event);
+
+ private:
+  void WriteCameraPose(Time time, const RigidTransform& world_from_camera);
+  void WriteResult(const Frame& frame, std::optional<Duration> latency,
+                   foxglove::FrameResult result);
+
+  FoxgloveSink* sink_;
+  CameraWriter images_;
+  std::variant<LandingView, HuntView> view_;
+  TrackState track_state_ = TrackState::kSearching;
+};
+
+}  // namespace kestrel

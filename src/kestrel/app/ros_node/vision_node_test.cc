@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/ros_node/vision_node.h"
+
+#include <chrono>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/app/ros_node/test_vision_node.h"
+#include "kestrel/core/base/error.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::Field;
+using ::testing::HasSubstr;
+
+TEST_F(VisionNodeTest, AnImageAndItsCameraInfoAreADetection) {
+  VisionNode node(Options("none"), &connection_);
+  TakeCameraInfo(&node);
+  TakeImage(&node, kStamp);
+  const auto message =
+      connection_.Newest<PoseWithCovarianceStampedMessage>(ResultTopic::kTargetPose);
+  EXPECT_EQ(message.header.stamp, kStamp);
+  EXPECT_EQ(message.header.frame_id, "camera");
+  EXPECT_NEAR(message.pose.position.x, 0.2, 0.02);
+  EXPECT_NEAR(message.pose.position.z, 3, 0.05);
+  EXPECT_GT(message.covariance[0], 0);
+  const auto tf = connection_.Newest<TfMessage>(ResultTopic::kTransforms);
+  ASSERT_EQ(tf.transforms.size(), 1);
+  EXPECT_EQ(tf.transforms[0].child_frame_id, "landing_pattern");
+  EXPECT_EQ(connection_.Newest<ImageMessage>(ResultTopic::kAnnotatedImage).encoding, "bgr8");
+  node.Tick();
+  const auto status = connection_.Newest<DiagnosticArrayMessage>(ResultTopic::kDiagnostics).status;
+  ASSERT_EQ(status.size(), 1);
+  EXPECT_EQ(status[0].level, DiagnosticStatusMessage::kOk);
+  EXPECT_TRUE(connection_.warnings().empty());
+}
+
+TEST_F(VisionNodeTest, WithPosesAndTheMountThereIsATrackInTheWorld) {
+  VisionNode node(Options("topic"), &connection_);
+  TakeCameraInfo(&node);
+  TakeMount(&node);
+  for (int i = 0; i < 8; ++i) {
+    const Time stamp = kStamp + i * std::chrono::milliseconds(100);
+    TakePose(&node, stamp);
+    TakePose(&node, stamp + std::chrono::milliseconds(50));
+    TakeImage(&node, stamp);
+    connection_.At<Detection3DArrayMessage>(ResultTopic::kDetections, stamp);
+  }
+  const auto track = connection_.Newest<OdometryMessage>(ResultTopic::kTrack);
+  EXPECT_EQ(track.header.frame_id, "map");
+  // The camera's x is the world's, its y and z point the other way.
+  EXPECT_NEAR(track.pose.position.x, 10.2, 0.05);
+  EXPECT_NEAR(track.pose.position.y, 19.9, 0.05);
+  EXPECT_NEAR(track.pose.position.z, 0, 0.1);
+}
+
+TEST_F(VisionNodeTest, WhatIsMissingIsSaid) {
+  VisionNode node(Options("topic"), &connection_);
+  TakeImage(&node, kStamp);
+  EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("no camera_info yet")));
+  TakeCameraInfo(&node);
+  TakeImage(&node, kStamp + std::chrono::seconds(1));
+  EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("from base_link to camera")));
+  TakeMount(&node);
+  TakeImage(&node, kStamp + std::chrono::seconds(2));
+  EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("no poses yet")));
+  EXPECT_FALSE(connection_.HasPublished(ResultTopic::kDetections));
+}
+
+TEST_F(VisionNodeTest, BrokenMessagesAreLeftOutAndSaid) {
+  VisionNode node(Options("topic"), &connection_);
+  TakeImage(&node, Time());
+  EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("have no stamps")));
+  TakeImage(&node, kStamp, /*frame=*/"");
+  EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("no frame_id")));
+  node.TakeImage("cut", "image");
+  EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("image: ")));
+  node.TakePose("std_msgs/String", "", "poses");
+  EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("is of type std_msgs/String")));
+}
+
+TEST_F(VisionNodeTest, AStoppedNodeTakesNoImages) {
+  VisionNode node(Options("none"), &connection_);
+  TakeCameraInfo(&node);
+  node.Stop();
+  TakeImage(&node, kStamp);
+  node.Tick();
+  const auto status = connection_.Newest<DiagnosticArrayMessage>(ResultTopic::kDiagnostics).status;
+  EXPECT_EQ(status[0].message, "stopped");
+  EXPECT_FALSE(connection_.HasPublished(ResultTopic::kDetections));
+  node.Start();
+  TakeImage(&node, kStamp);
+  EXPECT_EQ(connection_.Newest<Detection3DArrayMessage>(ResultTopic::kDetections).detections.size(),
+            1);
+}
+
+// A bag that is played again.
+TEST_F(VisionNodeTest, StampsThatJumpBackStartAnew) {
+  VisionNode node(Options("none"), &connection_);
+  TakeCameraInfo(&node);
+  TakeImage(&node, kStamp + std::chrono::seconds(3));
+  TakeImage(&node, kStamp);
+  EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("jump back")));
+  connection_.At<Detection3DArrayMessage>(ResultTopic::kDetections, kStamp);
+}
+
+TEST_F(VisionNodeTest, ResetTakesNewOptionsAndRefusesWhatCannotChange) {
+  VisionNode node(Options("none"), &connection_);
+  EXPECT_THROW(node.Reset(Options("tf")), InputError);
+  TakeCameraInfo(&node);
+  node.Reset(ReadNodeOptions({{"landing.detector.min_quality", "1"}}));
+  TakeImage(&node, kStamp);
+  EXPECT_TRUE(
+      connection_.Newest<Detection3DArrayMessage>(ResultTopic::kDetections).detections.empty());
+}
+
+TEST_F(VisionNodeTest, AnUpdateTakesWhatNeedsNoResetAndKeepsTheTrack) {
+  VisionNode node(Options("topic"), &connection_);
+  EXPECT_THROW(node.Update(Options("tf")), InputError);
+  TakeCameraInfo(&node);
+  TakeMount(&node);
+  Time stamp = kStamp;
+  const auto process = [&] {
+    stamp += std::chrono::milliseconds(100);
+    TakePose(&node, stamp);
+    TakePose(&node, stamp + std::chrono::milliseconds(50));
+    TakeImage(&node, stamp);
+    return connection_.At<Detection3DArrayMessage>(ResultTopic::kDetections, stamp)
+        .detections.size();
+  };
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(process(), 1);
+  EXPECT_EQ(node.Update(ReadNodeOptions({{"poses", "topic"},
+                                         {"landing.detector.min_quality", "1"},
+                                         {"landing.tracker.gate", "20"},
+                                         {"target_frame", "car"}})),
+            "taken: target_frame, landing.detector.min_quality; not taken without a reset: "
+            "landing.tracker.gate");
+  EXPECT_EQ(process(), 0);
+  const auto track = connection_.At<OdometryMessage>(ResultTopic::kTrack, stamp);
+  EXPECT_EQ(track.child_frame_id, "car");
+}
+
+TEST_F(VisionNodeTest, AStopForgetsNothing) {
+  VisionNode node(Options("none"), &connection_);
+  TakeCameraInfo(&node);
+  TakeImage(&node, kStamp);
+  connection_.At<Detection3DArrayMessage>(ResultTopic::kDetections, kStamp);
+  node.Stop();
+  TakeImage(&node, kStamp + std::chrono::seconds(1));
+  node.Start();
+  TakeImage(&node, kStamp + std::chrono::seconds(2));
+  connection_.At<Detection3DArrayMessage>(ResultTopic::kDetections,
+                                          kStamp + std::chrono::seconds(2));
+  node.Tick();
+  const auto status = connection_.Newest<DiagnosticArrayMessage>(ResultTopic::kDiagnostics).status;
+  EXPECT_THAT(status[0].values, Contains(AllOf(Field(&KeyValueMessage::key, "images processed"),
+                                               Field(&KeyValueMessage::value, "2"))));
+}
+
+TEST(NodeOptions, AreThoseOfTheConfigurationByTheSameNames) {
+  const NodeOptions options = ReadNodeOptions({{"landing.detector.min_quality", "0.7"},
+                                               {"fly.events.pose_wait_s", "0.1"},
+                                               {"altitude_m", "5"}});
+  EXPECT_EQ(options.kestrel.landing.detector.min_quality, 0.7);
+  EXPECT_EQ(options.kestrel.fly.flight.events.pose_wait_s, 0.1);
+  EXPECT_EQ(options.altitude_m, 5);
+  EXPECT_THROW(ReadNodeOptions({{"landing.detector.min_qualty", "0.7"}}), InputError);
+  EXPECT_THROW(ReadNodeOptions({{"poses", "gps"}}), InputError);
+  EXPECT_THROW(ReadNodeOptions({{"task", "fly"}}), InputError);
+  EXPECT_THROW(ReadNodeOptions({{"origin", "50.1"}}), InputError);
+  EXPECT_THROW(ReadNodeOptions({{"origin", "95,14"}}), InputError);
+}
+
+}  // namespace
+}  // namespace kestrel

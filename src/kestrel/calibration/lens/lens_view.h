@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "kestrel/core/camera/camera_model.h"
+#include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/vision/landing/landing_pattern_detector.h"
+#include "kestrel/vision/landing/print_outline.h"
+
+namespace kestrel {
+
+// A point of the print's outline as an image shows it: where the edge is across the outline; along
+// it an edge says nothing.
+struct LensEdge {
+  Eigen::Vector2d on_print;  // of the pattern's plane, m
+  Eigen::Vector2d pixel;
+  Eigen::Vector2d across;  // unit normal of the outline in the image, from black to white
+};
+
+// The edges of one image of the pattern.
+struct LensView {
+  std::string name;
+  std::vector<LensEdge> edges;
+  RigidTransform camera_from_pattern;  // near the true one
+};
+
+// Finds the edges of the pattern in images.
+class LensViewFinder {
+ public:
+  // 'camera': may be a guess. It only has to be near enough for the pattern to be detected: where
+  // an edge is found is a question to the image alone (AlignPrint). Throws InputError when camera
+  // or options are not valid.
+  LensViewFinder(const CameraIntrinsics& camera, const LandingPatternDetectorOptions& options);
+
+  // 'image': CV_8UC1 of the camera's size. Nothing where the pattern is not found, or too small for
+  // its edges to be found.
+  std::optional<LensView> Find(const std::string& name, const cv::Mat& image);
+
+ private:
+  LandingPatternDetector detector_;
+  PrintOutline outline_;
+  LandingWorkspace workspace_;
+};
+
+}  // namespace kestrel

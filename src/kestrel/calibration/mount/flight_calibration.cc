@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/calibration/mount/flight_calibration.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/LU>
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+
+#include "kestrel/calibration/mount/pose_smoothing.h"
+#include "kestrel/calibration/mount/target_path.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/geometry/angles.h"
+
+namespace kestrel {
+namespace {
+
+constexpr std::size_t kMinSightings = 20;
+constexpr int kRounds = 3;  // of leaving out what does not fit
+constexpr Duration kMaxGap = std::chrono::milliseconds(200);
+constexpr Duration kSmoothing = std::chrono::milliseconds(100);  // to either side
+constexpr int kAngles = 3;
+// Indices of the clock offset and the scale among the parameters.
+constexpr int kClock = 3;
+constexpr int kScale = 4;
+constexpr int kParameters = 5;
+constexpr double kScaleSigma = 0.005;
+
+// Roll, pitch, yaw of the mount's error (rad), clock offset (s), and by what part all distances are
+// too short: an error of the pattern's size, of kScaleSigma, that a descent would else turn into
+// one of the clock.
+using Parameters = Eigen::Vector<double, kParameters>;
+// By how much they are changed for the derivative. The clock's spans several poses, whose noise
+// would else be that of the derivative.
+const Parameters kSteps(1e-5, 1e-5, 1e-5, 0.01, 1e-5);
+
+Eigen::Quaterniond MountError(const Eigen::Vector3d& angles) {
+  return Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
+         Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX());
+}
+
+MountAndClock Applied(const MountAndClock& given, const Parameters& parameters) {
+  const RigidTransform& mount = given.body_from_camera;
+  return {
+      {(MountError(parameters.head<kAngles>()) * mount.rotation).normalized(), mount.translation},
+      parameters(kClock)};
+}
+
+// Sightings, poses and path as a function of the parameters.
+class FlightFit {
+ public:
+  FlightFit(std::vector<TargetSighting> sightings, const PoseHistory* poses,
+            const MountAndClock& given, double knot_spacing_s)
+      : sightings_(std::move(sightings)),
+        poses_(poses),
+        given_(given),
+        path_(TimesOf(sightings_), WeightsOf(sightings_), knot_spacing_s) {}
+
+  const std::vector<TargetSighting>& sightings() const { return sightings_; }
+  Eigen::Index path_size() const { return path_.size(); }
+
+  // Weighted distances of the positions in the world from the path, a row for each sighting.
+  Eigen::MatrixX3d Residuals(const Parameters& parameters) const {
+    const MountAndClock applied = Applied(given_, parameters);
+    const Duration offset = DurationFromSeconds(applied.clock_offset_s);
+    Eigen::MatrixX3d positions(sightings_.size(), 3);
+    for (std::size_t i = 0; i < sightings_.size(); ++i) {
+      const auto world_from_body = poses_->Lookup(sightings_[i].time + offset);
+      positions.row(static_cast<Eigen::Index>(i)) =
+          *world_from_body * (applied.body_from_camera *
+                              ((1 + parameters(kScale)) * sightings_[i].center_in_camera).eval());
+    }
+    return path_.Residuals(positions);
+  }
+
+  // All of them in one column, and last the scale against its standard deviation.
+  Eigen::VectorXd Errors(const Parameters& parameters) const {
+    const Eigen::MatrixX3d residuals = Residuals(parameters);
+    Eigen::VectorXd errors(residuals.size() + 1);
+    errors << residuals.reshaped(), parameters(kScale) / kScaleSigma;
+    return errors;
+  }
+
+  // From the path, in metres, of each sighting.
+  Eigen::VectorXd Distances(const Parameters& parameters) const {
+    return (WeightsOf(sightings_).cwiseInverse().asDiagonal() * Residuals(parameters))
+        .rowwise()
+        .norm();
+  }
+
+ private:
+  static std::vector<Time> TimesOf(const std::vector<TargetSighting>& sightings) {
+    std::vector<Time> times;
+    for (const TargetSighting& sighting : sightings) times.push_back(sighting.time);
+    return times;
+  }
+  static Eigen::VectorXd WeightsOf(const std::vector<TargetSighting>& sightings) {
+    Eigen::VectorXd weights(sightings.size());
+    for (std::size_t i = 0; i < sightings.size(); ++i) {
+      weights(static_cast<Eigen::Index>(i)) = 1 / sightings[i].sigma_m;
+    }
+    return weights;
+  }
+
+  std::vector<TargetSighting> sightings_;
+  const PoseHistory* poses_;
+  MountAndClock given_;
+  TargetPath path_;
+};
+
+Eigen::MatrixXd Jacobian(const FlightFit& fit, const Parameters& parameters) {
+  Eigen::MatrixXd jacobian(3 * fit.sightings().size() + 1, kParameters);
+  for (int k = 0; k < kParameters; ++k) {
+    Parameters step = Parameters::Zero();
+    step(k) = kSteps(k);
+    jacobian.col(k) =
+        (fit.Errors(parameters + step) - fit.Errors(parameters - step)) / (2 * kSteps(k));
+  }
+  return jacobian;
+}
+
+// The whole flight as one residual block of Ceres.
+class FlightCost : public ceres::CostFunction {
+ public:
+  explicit FlightCost(const FlightFit* fit) : fit_(fit) {
+    set_num_residuals(static_cast<int>(3 * fit->sightings().size() + 1));
+    mutable_parameter_block_sizes()->push_back(kParameters);
+  }
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const Eigen::Map<const Parameters> at(parameters[0]);
+    Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = fit_->Errors(at);
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, kParameters, Eigen::RowMajor>>(
+          jacobians[0], num_residuals(), kParameters) = Jacobian(*fit_, at);
+    }
+    return true;
+  }
+
+ private:
+  const FlightFit* fit_;
+};
+
+bool IsFixed(int parameter, const FlightCalibrationOptions& options) {
+  if (parameter < kAngles) return !options.estimate_mount;
+  return parameter == kClock && !options.estimate_clock;
+}
+
+Parameters Refine(const FlightFit& fit, Parameters parameters,
+                  const FlightCalibrationOptions& options) {
+  ceres::Problem problem;
+  problem.AddResidualBlock(new FlightCost(&fit), nullptr, parameters.data());
+  std::vector<int> fixed;
+  for (int k = 0; k < kParameters; ++k) {
+    if (IsFixed(k, options)) fixed.push_back(k);
+  }
+  if (!fixed.empty()) {
+    problem.SetManifold(parameters.data(), new ceres::SubsetManifold(kParameters, fixed));
+  }
+  // The offset stays where there are poses.
+  problem.SetParameterLowerBound(parameters.data(), kClock,
+                                 std::min(options.min_offset_s, parameters(kClock)));
+  problem.SetParameterUpperBound(parameters.data(), kClock,
+                                 std::max(options.max_offset_s, parameters(kClock)));
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  return parameters;
+}
+
+// The paper's grid search: offset first, then the angles.
+Parameters SearchGrid(const FlightFit& fit, const Parameters& given,
+                      const FlightCalibrationOptions& options) {
+  Parameters best = given;
+  double least = fit.Errors(best).squaredNorm();
+  const auto offer = [&](const Parameters& candidate) {
+    const double cost = fit.Errors(candidate).squaredNorm();
+    if (cost >= least) return;
+    least = cost;
+    best = candidate;
+  };
+  if (options.estimate_clock) {
+    Parameters candidate = best;
+    for (double offset = options.min_offset_s; offset <= options.max_offset_s + 1e-9;
+         offset += options.offset_step_s) {
+      candidate(kClock) = offset;
+      offer(candidate);
+    }
+  }
+  if (!options.estimate_mount) return best;
+  const int reach = static_cast<int>(options.max_angle_deg / options.angle_step_deg);
+  Parameters candidate = best;
+  for (int roll = -reach; roll <= reach; ++roll) {
+    for (int pitch = -reach; pitch <= reach; ++pitch) {
+      for (int yaw = -reach; yaw <= reach; ++yaw) {
+        candidate.head<kAngles>() =
+            Radians(options.angle_step_deg) * Eigen::Vector3d(roll, pitch, yaw);
+        offer(candidate);
+      }
+    }
+  }
+  return best;
+}
+
+// Those sightings whose distance from the path is at most four standard deviations per axis, by the
+// median of all.
+std::vector<TargetSighting> WithoutOutliers(const FlightFit& fit, const Parameters& parameters) {
+  constexpr double kSigmas = 4;
+  constexpr double kMedianOfThree = 1.538;  // of a chi variable with 3 degrees of freedom
+  const Eigen::VectorXd distances = fit.Residuals(parameters).rowwise().norm();
+  std::vector<double> sorted(distances.data(), distances.data() + distances.size());
+  std::nth_element(sorted.begin(), sorted.begin() + distances.size() / 2, sorted.end());
+  const double limit = kSigmas * sorted[sorted.size() / 2] / kMedianOfThree;
+  std::vector<TargetSighting> kept;
+  for (Eigen::Index i = 0; i < distances.size(); ++i) {
+    if (distances(i) <= limit) kept.push_back(fit.sightings()[i]);
+  }
+  return kept;
+}
+
+// How many times larger the variance of a mean is than that of independent values, for values as
+// like their neighbours in time as these residuals: (1 + r) / (1 - r) with r their correlation
+// (that of a first-order autoregressive process).
+double VarianceInflation(const Eigen::MatrixX3d& residuals) {
+  const Eigen::Index pairs = residuals.rows() - 1;
+  const double products = residuals.topRows(pairs).cwiseProduct(residuals.bottomRows(pairs)).sum();
+  const double correlation = std::clamp(products / residuals.squaredNorm(), 0.0, 0.95);
+  return (1 + correlation) / (1 - correlation);
+}
+
+// Standard deviations of those parameters that were estimated; infinite where nothing is known.
+Parameters Sigmas(const FlightFit& fit, const Parameters& parameters,
+                  const FlightCalibrationOptions& options) {
+  const Eigen::MatrixXd jacobian = Jacobian(fit, parameters);
+  const Eigen::MatrixX3d residuals = fit.Residuals(parameters);
+  const double freedom = static_cast<double>(residuals.size() - 3 * fit.path_size() - kParameters);
+  const double variance =
+      VarianceInflation(residuals) * residuals.squaredNorm() / std::max(1.0, freedom);
+  Eigen::Matrix<double, kParameters, kParameters> information = jacobian.transpose() * jacobian;
+  for (int k = 0; k < kParameters; ++k) {
+    if (!IsFixed(k, options)) continue;
+    information.row(k).setZero();
+    information.col(k).setZero();
+    information(k, k) = 1;
+  }
+  Parameters sigmas = Parameters::Constant(std::numeric_limits<double>::infinity());
+  const Eigen::FullPivLU<decltype(information)> decomposition(information);
+  if (decomposition.isInvertible()) {
+    sigmas = (variance * decomposition.inverse().diagonal()).cwiseSqrt();
+  }
+  for (int k = 0; k < kParameters; ++k) {
+    if (IsFixed(k, options)) sigmas(k) = 0;
+  }
+  return sigmas;
+}
+
+std::vector<std::string> Warnings(const Parameters& sigmas) {
+  constexpr double kMaxAngleSigma = Radians(0.1);
+  constexpr double kMaxClockSigma_s = 0.005;
+  constexpr std::array<const char*, kAngles> kNames = {"roll", "pitch", "yaw"};
+  std::vector<std::string> warnings;
+  for (int i = 0; i < kAngles; ++i) {
+    if (sigmas(i) <= kMaxAngleSigma) continue;
+    warnings.push_back(fmt::format(
+        "the flight cannot tell the {} of the mount (standard deviation {:.2g} degrees): fly "
+        "slowly around a standing pattern, at several heights and headings",
+        kNames[i], Degrees(sigmas(i))));
+  }
+  if (sigmas(kClock) > kMaxClockSigma_s) {
+    warnings.push_back(fmt::format(
+        "the flight cannot tell the clock offset (standard deviation {:.2g} s): tilt and turn the "
+        "UAV quickly, and say so when the pattern moves (--moving)",
+        sigmas(kClock)));
+  }
+  return warnings;
+}
+
+double RootMeanSquare(const Eigen::VectorXd& values) {
+  return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
+}
+
+// Sightings that have a pose whatever the offset within the bounds.
+std::vector<TargetSighting> WithPoses(const std::vector<TargetSighting>& sightings,
+                                      const PoseHistory& poses, const MountAndClock& given,
+                                      const FlightCalibrationOptions& options) {
+  const double step = kSteps(kClock);
+  const double low = std::min(options.min_offset_s, given.clock_offset_s) - step;
+  const double high = std::max(options.max_offset_s, given.clock_offset_s) + step;
+  std::vector<TargetSighting> kept;
+  for (const TargetSighting& sighting : sightings) {
+    bool has_poses = true;
+    for (double offset = low; has_poses && offset <= high + step; offset += step) {
+      has_poses = poses.Has(sighting.time + DurationFromSeconds(offset));
+    }
+    if (has_poses) kept.push_back(sighting);
+  }
+  return kept;
+}
+
+// Those that a history takes, smoothed: a UAV moves more evenly than its navigation says.
+PoseHistory HistoryOf(const std::vector<PoseSample>& samples) {
+  PoseHistory history(samples.size(), kMaxGap);
+  std::vector<PoseSample> valid;
+  for (const PoseSample& sample : samples) {
+    if (history.Add(sample) == PoseStatus::kOk) valid.push_back(sample);
+  }
+  PoseHistory smooth(samples.size(), kMaxGap);
+  for (const PoseSample& sample : SmoothPoses(valid, kSmoothing)) smooth.Add(sample);
+  return smooth;
+}
+
+}  // namespace
+
+FlightCalibration CalibrateFlight(const std::vector<TargetSighting>& sightings,
+                                  const std::vector<PoseSample>& poses, const MountAndClock& given,
+                                  const FlightCalibrationOptions& options) {
+  const PoseHistory history = HistoryOf(poses);
+  const auto usable = WithPoses(sightings, history, given, options);
+  if (usable.size() < kMinSightings) {
+    throw InputError(fmt::format(
+        "the pattern was seen in {} images with poses around them, expected at least {}",
+        usable.size(), kMinSightings));
+  }
+  Parameters start = Parameters::Zero();
+  start(kClock) = given.clock_offset_s;
+  const FlightFit all(usable, &history, given, options.knot_spacing_s);
+  Parameters fine = Refine(all, SearchGrid(all, start, options), options);
+  FlightFit fit = all;
+  for (int i = 0; i < kRounds; ++i) {
+    fit = FlightFit(WithoutOutliers(all, fine), &history, given, options.knot_spacing_s);
+    fine = Refine(fit, fine, options);
+  }
+  const Parameters sigmas = Sigmas(fit, fine, options);
+
+  FlightCalibration calibration;
+  calibration.estimate = Applied(given, fine);
+  calibration.angles = fine.head<kAngles>();
+  calibration.angle_sigmas = sigmas.head<kAngles>();
+  calibration.clock_sigma_s = sigmas(kClock);
+  const Eigen::VectorXd before = fit.Distances(start), after = fit.Distances(fine);
+  for (Eigen::Index i = 0; i < before.size(); ++i) {
+    calibration.residuals.push_back({fit.sightings()[i].time, before(i), after(i)});
+  }
+  calibration.rms_before_m = RootMeanSquare(before);
+  calibration.rms_after_m = RootMeanSquare(after);
+  calibration.sightings = static_cast<int>(fit.sightings().size());
+  calibration.outliers = static_cast<int>(usable.size() - fit.sightings().size());
+  calibration.warnings = Warnings(sigmas);
+  return calibration;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/calibration/print/pattern_print.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "kestrel/calibration/print/canvas.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/geometry/angles.h"
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kMaxPage_m = 14400 * 0.0254 / 72;
+constexpr Canvas::Ink kBlack{0, 0, 0};
+constexpr Canvas::Ink kGray{0.5, 0.5, 0.5};  // of what is on the board and not of the pattern
+constexpr Canvas::Ink kBlue{0.2, 0.5, 1};
+constexpr double kTextHeight_m = 0.004;
+constexpr double kThinLine_m = 0.0002;
+
+// Around the centre of the board.
+void DrawRingAndCross(const LandingPattern& pattern, Canvas* canvas) {
+  cairo_t* const cairo = canvas->cairo();
+  canvas->SetInk(kBlack);
+  cairo_new_path(cairo);
+  cairo_arc(cairo, 0, 0, pattern.outer_radius_m(), 0, 2 * kPi);
+  cairo_close_path(cairo);
+  cairo_new_sub_path(cairo);
+  cairo_arc_negative(cairo, 0, 0, pattern.inner_radius_m(), 2 * kPi, 0);
+  cairo_close_path(cairo);
+  canvas->Fill();
+  const Vector2d half_arm(pattern.arm_half_length_m, 0.5 * pattern.arm_width_m);
+  if (half_arm.norm() > pattern.outer_radius_m()) {  // the corners of the arms end with the ring
+    cairo_arc(cairo, 0, 0, pattern.outer_radius_m(), 0, 2 * kPi);
+    cairo_clip(cairo);
+  }
+  for (const Vector2d& half : {half_arm, Vector2d(half_arm.reverse())}) {
+    canvas->Rectangle(-half, 2 * half);
+    canvas->Fill();
+  }
+}
+
+// From the upper left corner of the board.
+void DrawBoard(const LandingPattern& pattern, Canvas* canvas) {
+  canvas->Within(Vector2d::Constant(0.5 * pattern.board_size_m), 0.25 * kPi, 1,
+                 [&] { DrawRingAndCross(pattern, canvas); });
+}
+
+// To the right from the origin, ticks upwards; 'scale' of ticks and text.
+void DrawRuler(double length_m, double scale, Canvas* canvas) {
+  constexpr int kTicks = 20;
+  const double line = scale * kThinLine_m;
+  canvas->Line({-0.5 * line, 0}, {length_m + 0.5 * line, 0}, line);
+  for (int i = 0; i <= kTicks; ++i) {
+    const double x = length_m * i / kTicks;
+    const double tick = i % kTicks == 0 ? 0.0035 : i % 10 == 0 ? 0.003 : 0.002;
+    canvas->Line({x, 0}, {x, -scale * tick}, line);
+  }
+  canvas->Text({length_m + scale * 0.002, 0}, 0.75 * scale * kTextHeight_m,
+               fmt::format("{:.0f} mm", 1000 * length_m));
+}
+
+std::vector<std::string> DimensionLines(const LandingPattern& pattern) {
+  return {fmt::format("ring: outer diameter {:g} mm, width {:g} mm",
+                      1000 * pattern.outer_diameter_m, 1000 * pattern.ring_width_m),
+          fmt::format("cross: arms {:g} mm wide, {:g} mm from the centre to their ends",
+                      1000 * pattern.arm_width_m, 1000 * pattern.arm_half_length_m),
+          fmt::format("board: {0:g} x {0:g} mm, white", 1000 * pattern.board_size_m)};
+}
+
+void DrawLines(const std::vector<std::string>& lines, const Vector2d& first, double height_m,
+               double align, Canvas* canvas) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    canvas->Text(first + Vector2d(0, 1.4 * height_m * static_cast<double>(i)), height_m, lines[i],
+                 align);
+  }
+}
+
+// Rulers in the lower left corner of the board, words in the lower right one.
+void DrawNotes(const LandingPattern& pattern, Canvas* canvas) {
+  const double size = pattern.board_size_m;
+  const double scale = std::min(1.0, size / 0.75);
+  const double border = 0.006 * scale;
+  canvas->SetInk(kGray);
+  const double ruler = RulerLength(pattern);
+  const Vector2d corner(border, size - border);
+  canvas->Within(corner + Vector2d(border, 0), 0, 1, [&] { DrawRuler(ruler, scale, canvas); });
+  canvas->Within(corner - Vector2d(0, border), -0.5 * kPi, 1,
+                 [&] { DrawRuler(ruler, scale, canvas); });
+  std::vector<std::string> lines = DimensionLines(pattern);
+  lines.insert(lines.begin(), "Kestrel landing pattern");
+  lines.push_back("Print at 100 %, matt, on a flat, stiff board; measure both rulers.");
+  const double height = 0.75 * scale * kTextHeight_m;
+  DrawLines(lines,
+            {size - border, size - border - 1.4 * height * (static_cast<double>(lines.size()) - 1)},
+            height, 1, canvas);
+  const double line = scale * kThinLine_m;
+  const auto corner_of = [&](int i) {
+    return Vector2d(i == 1 || i == 2 ? size - 0.5 * line : 0.5 * line,
+                    i >= 2 ? size - 0.5 * line : 0.5 * line);
+  };
+  for (int i = 0; i < 4; ++i) canvas->Line(corner_of(i), corner_of((i + 1) % 4), line);
+}
+
+void DrawWholeBoard(const LandingPattern& pattern, Canvas* canvas) {
+  DrawBoard(pattern, canvas);
+  DrawNotes(pattern, canvas);
+}
+
+// At the four corners of the tile, outside of it.
+void DrawCutMarks(const Tiling& tiling, Canvas* canvas) {
+  constexpr double kFrom_m = 0.001, kTo_m = 0.005;
+  for (const double right : {0.0, 1.0}) {
+    for (const double down : {0.0, 1.0}) {
+      const Vector2d corner =
+          tiling.tile_on_sheet + Vector2d(right, down).cwiseProduct(tiling.tile);
+      const Vector2d aside(2 * right - 1, 0), along(0, 2 * down - 1);
+      for (const Vector2d& way : {aside, along}) {
+        canvas->Line(corner + kFrom_m * way, corner + kTo_m * way, kThinLine_m);
+      }
+    }
+  }
+}
+
+void DrawTile(const LandingPattern& pattern, const Tiling& tiling, int row, int column,
+              Canvas* canvas) {
+  canvas->Within(tiling.tile_on_sheet, 0, 1, [&] {
+    canvas->Rectangle({0, 0}, tiling.tile);
+    cairo_clip(canvas->cairo());
+    canvas->Within(-tiling.TileOnBoard(row, column), 0, 1, [&] { DrawBoard(pattern, canvas); });
+  });
+  canvas->SetInk(kBlack);
+  DrawCutMarks(tiling, canvas);
+  const double left = std::max(tiling.tile_on_sheet.x(), 0.01);
+  const double bottom = tiling.sheet.y();
+  canvas->Text({left + 0.002, bottom - 0.0095}, 0.75 * kTextHeight_m,
+               fmt::format("Sheet {}.{}: row {} of {}, column {} of {}. Print at 100 %, cut at the "
+                           "marks, glue edge to edge.",
+                           row + 1, column + 1, row + 1, tiling.rows, column + 1, tiling.columns));
+  const double ruler = RulerLength(pattern);
+  constexpr double kRoom_m = 0.02;  // for the ruler's label
+  if (tiling.sheet.x() >= 2 * 0.01 + ruler + kRoom_m) {
+    canvas->Within({left + 0.002, bottom - 0.005}, 0, 1, [&] { DrawRuler(ruler, 1, canvas); });
+  } else {
+    const Vector2d lower_left(0.009, tiling.tile_on_sheet.y() + tiling.tile.y() - 0.003);
+    canvas->Within(lower_left, -0.5 * kPi, 1, [&] { DrawRuler(ruler, 1, canvas); });
+  }
+}
+
+void DrawGrid(const LandingPattern& pattern, const Tiling& tiling, double line, Canvas* canvas) {
+  const double size = pattern.board_size_m;
+  canvas->SetInk(kBlue);
+  for (int row = 0; row <= tiling.rows; ++row) {
+    canvas->Line({0, row * tiling.tile.y()}, {size, row * tiling.tile.y()}, line);
+  }
+  for (int column = 0; column <= tiling.columns; ++column) {
+    canvas->Line({column * tiling.tile.x(), 0}, {column * tiling.tile.x(), size}, line);
+  }
+  const double height = 0.2 * tiling.tile.minCoeff();
+  for (int row = 0; row < tiling.rows; ++row) {
+    for (int column = 0; column < tiling.columns; ++column) {
+      const Vector2d middle = tiling.TileOnBoard(row, column) + 0.5 * tiling.tile;
+      canvas->Text(middle + Vector2d(0, 0.35 * height), height,
+                   fmt::format("{}.{}", row + 1, column + 1), 0.5);
+    }
+  }
+}
+
+void DrawOverview(const LandingPattern& pattern, const Tiling& tiling, Canvas* canvas) {
+  std::vector<std::string> lines = DimensionLines(pattern);
+  lines.insert(lines.begin(), fmt::format("Kestrel landing pattern: {} sheets, {} rows of {}",
+                                          tiling.count(), tiling.rows, tiling.columns));
+  lines.insert(
+      lines.end(),
+      {"1. Print at 100 % (not \"fit to page\") on matt paper: gloss mirrors the sun.",
+       fmt::format("2. Measure the ruler of a sheet: {:.1f} mm. If it is not, the printer scaled: "
+                   "print again.",
+                   1000 * RulerLength(pattern)),
+       "3. Cut at the marks. Sheet 2.3 is the third of the second row, seen from the front.",
+       "4. Glue edge to edge (nothing overlaps) on a flat, stiff, white board.",
+       "5. Photograph it, all of it in view, and run: kestrel print --check PHOTO"});
+  constexpr double kBorder_m = 0.015;
+  const double height = kTextHeight_m * std::min(tiling.sheet.x() / 0.21, 3.0);
+  const double text = 1.4 * height * static_cast<double>(lines.size());
+  const double side =
+      std::min(tiling.sheet.x() - 2 * kBorder_m, tiling.sheet.y() - 2 * kBorder_m - text - height);
+  const double scale = side / pattern.board_size_m;
+  canvas->Within({0.5 * (tiling.sheet.x() - side), kBorder_m}, 0, scale, [&] {
+    DrawBoard(pattern, canvas);
+    DrawGrid(pattern, tiling, 1.5 * kThinLine_m / scale, canvas);
+  });
+  canvas->SetInk(kBlack);
+  DrawLines(lines, {kBorder_m, kBorder_m + side + 2 * height}, height, 0, canvas);
+}
+
+Canvas OnePage(Canvas::Format format, const LandingPattern& pattern, const std::string& file) {
+  RequireValid(pattern);
+  if (format == Canvas::Format::kPdf && pattern.board_size_m > kMaxPage_m) {
+    throw InputError(
+        fmt::format("a board of {} m is more than a page can have, {} m: tile it (--paper)",
+                    pattern.board_size_m, kMaxPage_m));
+  }
+  return Canvas(format, file, Vector2d::Constant(pattern.board_size_m));
+}
+
+void PrintSvg(const LandingPattern& pattern, const Tiling& tiling, const std::string& file,
+              const std::function<void(Canvas*)>& draw) {
+  RequireValid(pattern);
+  Canvas canvas(Canvas::Format::kSvg, file, tiling.sheet);
+  draw(&canvas);
+  canvas.Finish();
+}
+
+}  // namespace
+
+double RulerLength(const LandingPattern& pattern) {
+  constexpr double kLongest_m = 0.2;
+  const double room = 0.25 * pattern.board_size_m;
+  if (room >= kLongest_m) return kLongest_m;
+  // The largest of ... 0.01, 0.02, 0.05, 0.1 ... m that has room.
+  const double decade = std::pow(10, std::floor(std::log10(room)));
+  for (const double step : {5, 2}) {
+    if (step * decade <= room) return step * decade;
+  }
+  return decade;
+}
+
+void PrintPatternPdf(const LandingPattern& pattern, const std::string& file) {
+  Canvas canvas = OnePage(Canvas::Format::kPdf, pattern, file);
+  DrawWholeBoard(pattern, &canvas);
+  canvas.Finish();
+}
+
+void PrintPatternSvg(const LandingPattern& pattern, const std::string& file) {
+  Canvas canvas = OnePage(Canvas::Format::kSvg, pattern, file);
+  DrawWholeBoard(pattern, &canvas);
+  canvas.Finish();
+}
+
+void PrintTilesPdf(const LandingPattern& pattern, const Tiling& tiling, const std::string& file) {
+  RequireValid(pattern);
+  Canvas canvas(Canvas::Format::kPdf, file, tiling.sheet);
+  DrawOverview(pattern, tiling, &canvas);
+  for (int row = 0; row < tiling.rows; ++row) {
+    for (int column = 0; column < tiling.columns; ++column) {
+      canvas.NextPage();
+      DrawTile(pattern, tiling, row, column, &canvas);
+    }
+  }
+  canvas.Finish();
+}
+
+void PrintOverviewSvg(const LandingPattern& pattern, const Tiling& tiling,
+                      const std::string& file) {
+  PrintSvg(pattern, tiling, file, [&](Canvas* canvas) { DrawOverview(pattern, tiling, canvas); });
+}
+
+void PrintTileSvg(const LandingPattern& pattern, const Tiling& tiling, int row, int column,
+                  const std::string& file) {
+  PrintSvg(pattern, tiling, file,
+           [&](Canvas* canvas) { DrawTile(pattern, tiling, row, column, canvas); });
+}
+
+}  // namespace kestrel

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/calibration/print/tiling.h"
+
+#include <gtest/gtest.h>
+
+#include "kestrel/core/base/error.h"
+
+namespace kestrel {
+namespace {
+
+TEST(TilingTest, TilesCoverTheBoardAndFitTheirSheets) {
+  for (const std::string& name : PaperNames()) {
+    for (const double board : {0.1, 0.3, 0.75, 1.5, 3.0}) {
+      const Tiling tiling = TileBoard(board, *PaperSize(name));
+      EXPECT_NEAR(tiling.columns * tiling.tile.x(), board, 1e-9);
+      EXPECT_NEAR(tiling.rows * tiling.tile.y(), board, 1e-9);
+      const Eigen::Vector2d beyond = tiling.sheet - tiling.tile_on_sheet - tiling.tile;
+      EXPECT_GE(tiling.tile_on_sheet.minCoeff(), 0.00999) << name << ' ' << board;
+      EXPECT_GE(beyond.minCoeff(), 0.00999) << name << ' ' << board;
+    }
+  }
+}
+
+TEST(TilingTest, TurnsTheSheetWhereThatSavesSome) {
+  EXPECT_EQ(TileBoard(1.5, *PaperSize("a4")).count(), 48);
+  const Tiling wide = TileBoard(0.27, *PaperSize("a4"));  // 2 x 1 either way: stays upright
+  EXPECT_EQ(wide.count(), 2);
+  EXPECT_LT(wide.sheet.x(), wide.sheet.y());
+  for (double board = 0.1; board < 3; board += 0.05) {
+    const Tiling tiling = TileBoard(board, *PaperSize("a3"));
+    const Eigen::Array2d room = tiling.sheet.reverse().array() - Eigen::Array2d(0.02, 0.025);
+    EXPECT_LE(tiling.count(), (board / room).ceil().prod()) << board;
+  }
+}
+
+TEST(TilingTest, RefusesMoreSheetsThanAnyoneGlues) {
+  EXPECT_THROW(TileBoard(50, *PaperSize("a4")), InputError);
+  EXPECT_FALSE(PaperSize("a5"));
+}
+
+}  // namespace
+}  // namespace kestrel

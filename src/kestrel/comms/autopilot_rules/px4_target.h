@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/comms/autopilot_rules/landing_rules.h"
+#include "kestrel/comms/autopilot_rules/position_velocity_filter.h"
+#include "kestrel/comms/autopilot_rules/px4_time_sync.h"
+#include "kestrel/comms/mavlink/messages.h"
+#include "kestrel/core/poses/pose_history.h"
+
+namespace kestrel {
+
+// What PX4 makes of LANDING_TARGET (an absolute place, taken as it is when it arrives), or with
+// VTE_EN of TARGET_RELATIVE, which it filters.
+class Px4Target {
+ public:
+  // A target as PX4's precision landing knows it.
+  struct Place {
+    Eigen::Vector3d in_world{0, 0, 0};
+    Eigen::Vector2d velocity{0, 0};  // m/s; only the vision target estimator knows one
+    std::int64_t stamp_us = 0;       // on its own clock
+  };
+
+  // All of them must outlive it.
+  Px4Target(const AutopilotParameters& parameters, const Px4TimeSync& clock, Announce announce);
+
+  void Handle(const mavlink::LandingTarget& target, const FlightState& state);
+  void Handle(const mavlink::TargetRelative& target, const FlightState& state);
+  void Estimate(const FlightState& state);
+
+  // The newest place; a new one since the last call is 'updated'.
+  const std::optional<Place>& place() const { return place_; }
+  bool TakeUpdated();
+
+ private:
+  bool uses_vision_estimator() const { return parameters_["VTE_EN"] != 0; }
+  std::optional<Eigen::Vector3d> InWorld(const mavlink::TargetRelative& target,
+                                         const RigidTransform& world_from_body) const;
+  void Fuse(const Eigen::Vector3d& in_world, const Eigen::Vector3d& sigma,
+            const FlightState& state);
+
+  const AutopilotParameters& parameters_;
+  const Px4TimeSync& clock_;
+  Announce announce_;
+  PoseHistory poses_;  // on its own clock
+  std::optional<Place> place_;
+  bool is_updated_ = false;
+  std::array<PositionVelocityFilter, 3> filters_;  // of the target in the world
+  bool is_filtering_ = false;
+  std::int64_t fused_us_ = 0;
+  int outliers_ = 0;  // in a row
+  std::int64_t told_old_us_ = 0;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Against another implementation of DDS, which ROS 2 has by default: Fast DDS of Debian, that knows
+// nothing of the types but their names.
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/comms/dds/ros2_node.h"
+#include "kestrel/comms/dds/test_dds.h"
+#include "kestrel/comms/dds/test_fast_dds.h"
+#include "kestrel/io/bags/result_messages.h"
+#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/bags/type_hash.h"
+
+namespace kestrel {
+namespace {
+
+constexpr Duration kPatience = std::chrono::seconds(10);
+constexpr Duration kPause = std::chrono::milliseconds(10);
+constexpr FastQos kKept{.is_kept = true};
+
+template <class Condition>
+bool WaitUntil(const Condition& holds) {
+  for (const Time end = Now() + kPatience; Now() < end;) {
+    if (holds()) return true;
+    std::this_thread::sleep_for(kPause);
+  }
+  return false;
+}
+
+// The first message that comes; empty when none does.
+std::string Hear(fast::DataReader* reader) {
+  std::string bytes;
+  WaitUntil([&] { return TakeRaw(reader, &bytes); });
+  return bytes;
+}
+
+OdometryMessage SomeOdometry() {
+  OdometryMessage message;
+  message.header = {0, TimeFromNanoseconds(1'700'000'000'123'456'789), "map"};
+  message.child_frame_id = "target";
+  message.pose.position = {1, 2, 3};
+  message.pose_covariance[35] = 0.25;
+  return message;
+}
+
+TEST(FastDds, HearsWhatANodePublishes) {
+  const int domain = TestDomain();
+  const std::string bytes = SerializeMessage(SomeOdometry(), WireFormat::kCdr);
+  Ros2Node node(domain, {"kestrel"});
+  const std::size_t track = node.Advertise("/kestrel/track", OdometryMessage::kType, kLatchedQos);
+  ASSERT_TRUE(node.Publish(track, bytes));
+  FastParticipant peer(domain);
+  EXPECT_EQ(Hear(peer.Read("rt/kestrel/track", "nav_msgs::msg::dds_::Odometry_", kKept)), bytes);
+}
+
+TEST(FastDds, IsHeardByANode) {
+  const int domain = TestDomain();
+  std::string bytes = SerializeMessage(SomeOdometry(), WireFormat::kCdr);
+  Ros2Node node(domain, {"kestrel"});
+  node.Subscribe("/odom", OdometryMessage::kType, kLatchedQos);
+  FastParticipant peer(domain);
+  peer.Write("rt/odom", "nav_msgs::msg::dds_::Odometry_", kKept)->write(&bytes);
+  std::optional<std::string> heard;
+  for (const Time end = Now() + kPatience; !heard && Now() < end;) {
+    node.Take(kPause, [&](std::size_t, std::string_view message) { heard = std::string(message); });
+  }
+  EXPECT_EQ(heard, bytes);
+}
+
+TEST(FastDds, IsToldTheHashesOfTypes) {
+  const int domain = TestDomain();
+  Ros2Node node(domain, {"kestrel"});
+  node.Advertise("/image", ImageMessage::kType, kSensorDataQos);
+  node.Subscribe("/tf", TfMessage::kType, kTransformsQos);
+  const FastParticipant peer(domain);
+  const std::set<std::string> expected{
+      "enclave=/;", "typehash=" + TypeHash("sensor_msgs/Image") + ";",
+      "typehash=" + TypeHash("tf2_msgs/TFMessage") + ";",
+      "typehash=" + TypeHash("rmw_dds_common/ParticipantEntitiesInfo") + ";"};
+  std::set<std::string> heard;
+  WaitUntil([&] {
+    for (const FastEntity& entity : peer.others().heard()) heard.insert(entity.user_data);
+    return heard.size() >= expected.size();
+  });
+  EXPECT_EQ(heard, expected);
+}
+
+// The 16 bytes by which 'peer' knows the endpoint of a topic, or with "" the participant; empty
+// when it does not come to know it.
+std::string GidHeard(const FastParticipant& peer, const std::string& topic) {
+  std::string gid;
+  WaitUntil([&] {
+    for (const FastEntity& entity : peer.others().heard()) {
+      if (entity.topic == topic) gid = entity.gid;
+    }
+    return !gid.empty();
+  });
+  return gid;
+}
+
+// ParticipantEntitiesInfo, field by field, as Iron and later ones and as Humble have it; all Gids
+// are those by which the other side knows the endpoints, up to 24 bytes with zeros for Humble.
+TEST(FastDds, ListsTheNode) {
+  for (const bool is_humble : {false, true}) {
+    const int domain = TestDomain();
+    Ros2Node node(domain, {"eyes", is_humble});
+    node.Advertise("/a", TfMessage::kType, kDefaultQos);
+    node.Subscribe("/b", TfMessage::kType, kDefaultQos);
+    node.Subscribe("/c", TfMessage::kType, kDefaultQos);
+    FastParticipant peer(domain);
+    const std::string bytes = Hear(peer.Read(
+        "ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_", kKept));
+    const std::string name = "info";
+    WireReader wire(bytes, WireFormat::kCdr, name);
+    const auto expect_gid = [&](const std::string& topic) {
+      const std::string heard = GidHeard(peer, topic);
+      EXPECT_EQ(heard.size(), 16u) << topic;
+      std::string read(is_humble ? 24 : 16, '\xff');
+      for (char& byte : read) wire(byte);
+      EXPECT_EQ(read, heard + std::string(read.size() - heard.size(), '\0')) << topic;
+    };
+    const auto expect_count = [&](std::uint32_t expected) {
+      std::uint32_t number = 0;
+      wire(number);
+      EXPECT_EQ(number, expected);
+    };
+    expect_gid("");
+    expect_count(1);
+    std::string name_space, node_name;
+    wire(name_space);
+    wire(node_name);
+    EXPECT_EQ(name_space, "/");
+    EXPECT_EQ(node_name, "eyes");
+    expect_count(2);
+    expect_gid("rt/b");
+    expect_gid("rt/c");
+    expect_count(1);
+    expect_gid("rt/a");
+  }
+}
+
+// As docs.ros.org has it: a subscriber hears a publisher that offers as much as it asks for.
+// Kestrel offers no deadline and no lease, and asks for none.
+struct QosPair {
+  const char* what;
+  Ros2Qos own;
+  FastQos other;
+  // Where the other subscribes and where it publishes: the policy that does not match, 0 where all
+  // do.
+  fast::QosPolicyId_t subscribing, publishing;
+};
+
+constexpr fast::QosPolicyId_t kMatch{};
+constexpr Ros2Qos kBestEffort{false, false, 5};
+constexpr Ros2Qos kBestEffortKept{false, true, 5};
+
+const QosPair kQosPairs[] = {
+    {"alike", kDefaultQos, {}, kMatch, kMatch},
+    {"the other best effort",
+     kDefaultQos,
+     {.is_reliable = false},
+     kMatch,
+     fast::RELIABILITY_QOS_POLICY_ID},
+    {"the other reliable", kBestEffort, {}, fast::RELIABILITY_QOS_POLICY_ID, kMatch},
+    {"both best effort", kBestEffort, {.is_reliable = false}, kMatch, kMatch},
+    {"the other kept", kDefaultQos, kKept, fast::DURABILITY_QOS_POLICY_ID, kMatch},
+    {"the other volatile", kLatchedQos, {}, kMatch, fast::DURABILITY_QOS_POLICY_ID},
+    {"both kept", kLatchedQos, kKept, kMatch, kMatch},
+    {"both kept, best effort",
+     kBestEffortKept,
+     {.is_reliable = false, .is_kept = true},
+     kMatch,
+     kMatch},
+    {"a deadline", kDefaultQos, {.deadline_s = 1}, fast::DEADLINE_QOS_POLICY_ID, kMatch},
+    {"alive by the topic",
+     kDefaultQos,
+     {.liveliness = fast::MANUAL_BY_TOPIC_LIVELINESS_QOS},
+     fast::LIVELINESS_QOS_POLICY_ID,
+     kMatch},
+    {"alive by the participant",
+     kDefaultQos,
+     {.liveliness = fast::MANUAL_BY_PARTICIPANT_LIVELINESS_QOS},
+     fast::LIVELINESS_QOS_POLICY_ID,
+     kMatch},
+    {"a lease", kDefaultQos, {.lease_s = 5}, fast::LIVELINESS_QOS_POLICY_ID, kMatch},
+};
+
+// What the other says of a pair: whether they match, and which policy does not.
+bool IsAsExpected(int matches, const fast::IncompatibleQosStatus& refused,
+                  fast::QosPolicyId_t expected) {
+  if (expected == kMatch) return matches == 1 && refused.total_count == 0;
+  return matches == 0 && refused.total_count > 0 && refused.last_policy_id == expected;
+}
+
+TEST(FastDds, QosMatchesAsInRos) {
+  const int domain = TestDomain();
+  const std::string type = "tf2_msgs::msg::dds_::TFMessage_";
+  Ros2Node node(domain, {});
+  FastParticipant peer(domain);
+  for (const QosPair& pair : kQosPairs) {
+    const std::string name = pair.what;
+    const std::string topic = "q" + std::to_string(&pair - kQosPairs);
+    node.Advertise("/to_" + topic, TfMessage::kType, pair.own);
+    node.Subscribe("/from_" + topic, TfMessage::kType, pair.own);
+    fast::DataReader* const reader = peer.Read("rt/to_" + topic, type, pair.other);
+    fast::DataWriter* const writer = peer.Write("rt/from_" + topic, type, pair.other);
+    EXPECT_TRUE(WaitUntil([&] {
+      fast::SubscriptionMatchedStatus matched;
+      fast::IncompatibleQosStatus refused;
+      reader->get_subscription_matched_status(matched);
+      reader->get_requested_incompatible_qos_status(refused);
+      return IsAsExpected(matched.current_count, refused, pair.subscribing);
+    })) << name
+        << ", the other subscribes";
+    EXPECT_TRUE(WaitUntil([&] {
+      fast::PublicationMatchedStatus matched;
+      fast::IncompatibleQosStatus refused;
+      writer->get_publication_matched_status(matched);
+      writer->get_offered_incompatible_qos_status(refused);
+      return IsAsExpected(matched.current_count, refused, pair.publishing);
+    })) << name
+        << ", the other publishes";
+  }
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/comms/dds/ros2_node.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <dds/dds.h>
+#include <dds/ddsi/ddsi_cdrstream.h>
+#include <dds/ddsi/ddsi_serdata.h>
+#include <dds/ddsi/q_protocol.h>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/comms/dds/dds_domain.h"
+#include "kestrel/comms/dds/opened_domain.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/bags/type_hash.h"
+#include "ros2_types.h"
+
+namespace kestrel {
+namespace {
+
+constexpr std::size_t kEncapsulation = 4;  // bytes before the data of CDR
+constexpr char kDiscoveryInfo[] = "rmw_dds_common/ParticipantEntitiesInfo";
+constexpr std::string_view kTypeMiddle = "::msg::dds_::";
+constexpr std::string_view kTopicPrefix = "rt/";
+
+const dds_topic_descriptor_t* const kTypes[] = {
+    &sensor_msgs_msg_dds__Image__desc,
+    &sensor_msgs_msg_dds__CompressedImage__desc,
+    &sensor_msgs_msg_dds__CameraInfo__desc,
+    &geometry_msgs_msg_dds__PoseStamped__desc,
+    &geometry_msgs_msg_dds__PoseWithCovarianceStamped__desc,
+    &geometry_msgs_msg_dds__TransformStamped__desc,
+    &tf2_msgs_msg_dds__TFMessage__desc,
+    &nav_msgs_msg_dds__Odometry__desc,
+    &nav_msgs_msg_dds__Path__desc,
+    &visualization_msgs_msg_dds__MarkerArray__desc,
+    &diagnostic_msgs_msg_dds__DiagnosticArray__desc,
+    &vision_msgs_msg_dds__Detection3DArray__desc,
+    &rmw_dds_common_msg_dds__ParticipantEntitiesInfo__desc,
+};
+
+// "sensor_msgs/Image" for "sensor_msgs::msg::dds_::Image_"; nothing for what is no message of ROS.
+std::optional<std::string> RosTypeOf(std::string_view dds_type) {
+  const std::size_t middle = dds_type.find(kTypeMiddle);
+  if (middle == std::string_view::npos || !dds_type.ends_with('_')) return std::nullopt;
+  std::string_view name = dds_type.substr(middle + kTypeMiddle.size());
+  name.remove_suffix(1);
+  return fmt::format("{}/{}", dds_type.substr(0, middle), name);
+}
+
+const dds_topic_descriptor_t* DescriptorOf(std::string_view type) {
+  const auto* const known = std::find_if(
+      std::begin(kTypes), std::end(kTypes),
+      [&](const dds_topic_descriptor_t* each) { return RosTypeOf(each->m_typename) == type; });
+  return known == std::end(kTypes) ? nullptr : *known;
+}
+
+// A message as Cyclone wants it to be given.
+class RosSample {
+ public:
+  explicit RosSample(const dds_topic_descriptor_t* type)
+      : type_(type), memory_(std::calloc(1, type->m_size)) {}
+  ~RosSample() {
+    dds_stream_free_sample(memory_, type_->m_ops);
+    std::free(memory_);
+  }
+  RosSample(const RosSample&) = delete;
+  RosSample& operator=(const RosSample&) = delete;
+
+  // False where the bytes are not of the type.
+  bool Read(std::string_view bytes) {
+    if (bytes.size() < kEncapsulation) return false;
+    std::string data(bytes.substr(kEncapsulation));
+    const auto size = static_cast<std::uint32_t>(data.size());
+    std::uint32_t used = 0;
+    const bool is_whole = dds_stream_normalize_data(data.data(), &used, size, /*bswap=*/false,
+                                                    CDR_ENC_VERSION_1, type_->m_ops) != nullptr;
+    if (!is_whole || used != size) return false;
+    dds_istream_t stream;
+    dds_istream_init(&stream, size, data.data(), CDR_ENC_VERSION_1);
+    dds_stream_read(&stream, static_cast<char*>(memory_), type_->m_ops);
+    return true;
+  }
+
+  const void* get() const { return memory_; }
+
+ private:
+  const dds_topic_descriptor_t* type_;
+  void* memory_;
+};
+
+struct QosDeleter {
+  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+};
+using QosPointer = std::unique_ptr<dds_qos_t, QosDeleter>;
+
+QosPointer MakeQos(const Ros2Qos& qos, const std::string& user_data) {
+  QosPointer made(dds_create_qos());
+  dds_qset_reliability(made.get(),
+                       qos.is_reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
+  dds_qset_durability(made.get(),
+                      qos.is_kept ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  dds_qset_history(made.get(), DDS_HISTORY_KEEP_LAST, qos.depth);
+  dds_qset_durability_service(made.get(), 0, DDS_HISTORY_KEEP_LAST, qos.depth, DDS_LENGTH_UNLIMITED,
+                              DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  dds_qset_writer_data_lifecycle(made.get(), /*autodispose=*/false);
+  dds_qset_ignorelocal(made.get(), DDS_IGNORELOCAL_PARTICIPANT);
+  dds_qset_userdata(made.get(), user_data.data(), user_data.size());
+  return made;
+}
+
+// As it was sent: Cyclone fills it up to four bytes, and has their number in the fourth.
+std::string BytesOf(const ddsi_serdata& message) {
+  constexpr std::size_t kOptions = 3;
+  std::string bytes(ddsi_serdata_size(&message), '\0');
+  ddsi_serdata_to_ser(&message, 0, bytes.size(), bytes.data());
+  bytes.resize(bytes.size() - static_cast<std::size_t>(bytes[kOptions] & 3));
+  bytes[kOptions] = 0;
+  return bytes;
+}
+
+// The same message of Humble, by the same name.
+const dds_topic_descriptor_t& HumbleInfo() {
+  static const dds_topic_descriptor_t kType = [] {
+    dds_topic_descriptor_t type = rmw_dds_common_humble_dds__ParticipantEntitiesInfo__desc;
+    type.m_typename = rmw_dds_common_msg_dds__ParticipantEntitiesInfo__desc.m_typename;
+    return type;
+  }();
+  return kType;
+}
+
+const dds_topic_descriptor_t* KnownType(std::string_view type) {
+  if (const auto* const known = DescriptorOf(type)) return known;
+  throw InputError(fmt::format("the type {} is not spoken over DDS", type));
+}
+
+// "rt/tf" for "/tf" and "tf".
+std::string DdsTopicName(std::string_view topic) {
+  return fmt::format("{}{}", kTopicPrefix, topic.substr(topic.starts_with('/')));
+}
+
+std::string HashOf(std::string_view type) { return fmt::format("typehash={};", TypeHash(type)); }
+
+}  // namespace
+
+struct Ros2Node::Entities {
+  // What tells others of this node's publishers and subscribers: ParticipantEntitiesInfo of one
+  // node.
+  struct GidMessage {
+    dds_guid_t guid{};
+    bool is_humble = false;  // 24 bytes, the last of them zeros
+
+    template <class Self, class Wire>
+    static void Fields(Self& self, Wire& wire) {
+      for (const std::uint8_t byte : self.guid.v) wire(byte);
+      constexpr std::array<std::uint8_t, 8> kRest{};
+      if (!self.is_humble) return;
+      for (const std::uint8_t byte : kRest) wire(byte);
+    }
+  };
+
+  struct NodeInfoMessage {
+    GidMessage participant;
+    std::string name_space = "/";
+    std::string name;
+    std::vector<GidMessage> readers;
+    std::vector<GidMessage> writers;
+
+    template <class Self, class Wire>
+    static void Fields(Self& self, Wire& wire) {
+      constexpr std::uint32_t kNodes = 1;
+      wire(self.participant);
+      wire(kNodes);
+      wire(self.name_space);
+      wire(self.name);
+      wire.List(self.readers);
+      wire.List(self.writers);
+    }
+  };
+
+  // With all that is made in it.
+  struct Participant {
+    Participant() = default;
+    ~Participant() {
+      if (id > 0) dds_delete(id);
+    }
+    Participant(const Participant&) = delete;
+    Participant& operator=(const Participant&) = delete;
+
+    dds_entity_t id = 0;
+  };
+
+  struct Publisher {
+    dds_entity_t writer;
+    const dds_topic_descriptor_t* type;
+  };
+
+  Entities(int domain_number, Ros2NodeOptions node_options)
+      : domain(domain_number), options(std::move(node_options)), opened(OpenDdsDomain(domain)) {
+    constexpr std::string_view kEnclave = "enclave=/;";
+    const QosPointer qos(dds_create_qos());
+    dds_qset_userdata(qos.get(), kEnclave.data(), kEnclave.size());
+    participant.id =
+        Require(dds_create_participant(static_cast<dds_domainid_t>(domain), qos.get(), nullptr),
+                "participant (is there a network?)");
+    waitset = Require(dds_create_waitset(participant.id), "waitset");
+    discovery = Require(
+        dds_create_reader(participant.id, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
+        "reader");
+    info.participant = GidOf(participant.id);
+    info.name = options.name;
+    const dds_topic_descriptor_t* const type =
+        options.is_humble ? &HumbleInfo() : DescriptorOf(kDiscoveryInfo);
+    constexpr Ros2Qos kInfoQos{true, true, 1};
+    info_publisher = {Write("ros_discovery_info", type, kInfoQos, kDiscoveryInfo), type};
+    TellInfo();
+  }
+
+  dds_entity_t Require(dds_entity_t entity, const char* what) const {
+    if (entity >= 0) return entity;
+    throw InputError(
+        fmt::format("DDS domain {}: no {}: {}", domain, what, dds_strretcode(-entity)));
+  }
+
+  dds_entity_t TopicOf(const std::string& name, const dds_topic_descriptor_t* type) const {
+    return Require(dds_create_topic(participant.id, type, name.c_str(), nullptr, nullptr),
+                   ("topic " + name).c_str());
+  }
+  dds_entity_t Write(const std::string& name, const dds_topic_descriptor_t* type,
+                     const Ros2Qos& qos, std::string_view ros_type) const {
+    return Require(dds_create_writer(participant.id, TopicOf(name, type),
+                                     MakeQos(qos, HashOf(ros_type)).get(), nullptr),
+                   "writer");
+  }
+
+  GidMessage GidOf(dds_entity_t entity) const {
+    GidMessage gid{{}, options.is_humble};
+    dds_get_guid(entity, &gid.guid);
+    return gid;
+  }
+
+  void TellInfo() const {
+    static_cast<void>(Publish(info_publisher, SerializeMessage(info, WireFormat::kCdr)));
+  }
+
+  static bool Publish(const Publisher& publisher, std::string_view bytes) {
+    RosSample sample(publisher.type);
+    return sample.Read(bytes) && dds_write(publisher.writer, sample.get()) >= 0;
+  }
+
+  int domain;
+  Ros2NodeOptions options;
+  std::shared_ptr<const void> opened;
+  Participant participant;
+  dds_entity_t waitset = 0;
+  dds_entity_t discovery = 0;  // hears what others publish
+  Publisher info_publisher{};
+  NodeInfoMessage info;
+  std::vector<Publisher> publishers;
+  std::vector<dds_entity_t> subscribers;
+};
+
+Ros2Node::Ros2Node(int domain, const Ros2NodeOptions& options)
+    : entities_(std::make_unique<Entities>(DdsDomain(domain), options)) {}
+
+Ros2Node::~Ros2Node() = default;
+
+bool Ros2Node::Knows(std::string_view type) { return DescriptorOf(type) != nullptr; }
+
+std::size_t Ros2Node::Advertise(const std::string& topic, std::string_view type,
+                                const Ros2Qos& qos) {
+  const dds_topic_descriptor_t* const known = KnownType(type);
+  const dds_entity_t writer = entities_->Write(DdsTopicName(topic), known, qos, type);
+  entities_->publishers.push_back({writer, known});
+  entities_->info.writers.push_back(entities_->GidOf(writer));
+  entities_->TellInfo();
+  return entities_->publishers.size() - 1;
+}
+
+bool Ros2Node::HasSubscribers(std::size_t publisher) const {
+  dds_publication_matched_status_t status{};
+  dds_get_publication_matched_status(entities_->publishers[publisher].writer, &status);
+  return status.current_count > 0;
+}
+
+bool Ros2Node::Publish(std::size_t publisher, std::string_view bytes) {
+  return Entities::Publish(entities_->publishers[publisher], bytes);
+}
+
+void Ros2Node::Flush(Duration timeout) const {
+  const Time end = Now() + timeout;
+  for (const Entities::Publisher& publisher : entities_->publishers) {
+    dds_wait_for_acks(publisher.writer, std::max(end - Now(), Duration::zero()).count());
+  }
+}
+
+std::size_t Ros2Node::Subscribe(const std::string& topic, std::string_view type,
+                                const Ros2Qos& qos) {
+  const dds_entity_t participant = entities_->participant.id;
+  const dds_entity_t reader = entities_->Require(
+      dds_create_reader(participant, entities_->TopicOf(DdsTopicName(topic), KnownType(type)),
+                        MakeQos(qos, HashOf(type)).get(), nullptr),
+      "reader");
+  dds_set_status_mask(reader, DDS_DATA_AVAILABLE_STATUS);
+  entities_->Require(dds_waitset_attach(entities_->waitset, reader,
+                                        static_cast<dds_attach_t>(entities_->subscribers.size())),
+                     "waiting for messages");
+  entities_->subscribers.push_back(reader);
+  entities_->info.readers.push_back(entities_->GidOf(reader));
+  entities_->TellInfo();
+  return entities_->subscribers.size() - 1;
+}
+
+void Ros2Node::Take(Duration timeout, const TakeMessage& take) {
+  constexpr std::size_t kAtOnce = 16;
+  dds_waitset_wait(entities_->waitset, nullptr, 0, timeout.count());
+  for (std::size_t i = 0; i < entities_->subscribers.size(); ++i) {
+    std::array<ddsi_serdata*, kAtOnce> messages{};
+    std::array<dds_sample_info_t, kAtOnce> infos{};
+    const int count = dds_takecdr(entities_->subscribers[i], messages.data(), kAtOnce, infos.data(),
+                                  DDS_ANY_STATE);
+    for (int k = 0; k < count; ++k) {
+      if (infos[k].valid_data) {
+        take(i, BytesOf(*messages[k]));
+      }
+      ddsi_serdata_unref(messages[k]);
+    }
+  }
+}
+
+std::vector<BagTopic> Ros2Node::Topics() const {
+  constexpr std::size_t kMost = 1024;
+  std::vector<void*> samples(kMost, nullptr);
+  std::vector<dds_sample_info_t> infos(kMost);
+  std::map<std::string, std::string> types;  // by topic
+  const int count =
+      dds_read_mask(entities_->discovery, samples.data(), infos.data(), kMost, kMost,
+                    DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE | DDS_ALIVE_INSTANCE_STATE);
+  for (int i = 0; i < count; ++i) {
+    const auto* const endpoint = static_cast<const dds_builtintopic_endpoint_t*>(samples[i]);
+    const bool is_own = std::memcmp(endpoint->participant_key.v, entities_->info.participant.guid.v,
+                                    sizeof(dds_guid_t)) == 0;
+    const std::string_view name = infos[i].valid_data ? endpoint->topic_name : "";
+    if (is_own || !name.starts_with(kTopicPrefix)) continue;
+    const auto type = RosTypeOf(endpoint->type_name);
+    if (!type || !Knows(*type)) continue;
+    types.emplace(PlainTopicName(name.substr(kTopicPrefix.size() - 1)), *type);
+  }
+  if (count > 0) dds_return_loan(entities_->discovery, samples.data(), count);
+  std::vector<BagTopic> topics;
+  for (const auto& [name, type] : types) topics.push_back({name, type, WireFormat::kCdr, {}});
+  return topics;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/comms/dds/team_topic.h"
+
+#include <chrono>
+#include <string>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/comms/dds/test_dds.h"
+#include "kestrel/comms/team/team_member.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/time.h"
+
+namespace kestrel {
+namespace {
+
+// Takes part until 'count' UAVs are known and nothing is lacking; false after ten seconds. Those
+// that are done stay for the others.
+bool TakePart(int domain, const std::string& name, std::size_t count) {
+  const UavKey self{name, 1};
+  TeamTopic topic(domain, "test", name);
+  TeamMember member(self, {});
+  MappedObject object;
+  object.covariance.diagonal().head<3>().setConstant(0.01);
+  member.Tell({object}, Time());
+  const Time start = Now();
+  std::optional<Time> done;
+  while (Now() - start < std::chrono::seconds(10)) {
+    topic.Receive([&](std::span<const std::uint8_t> bytes) { member.Hear(bytes, Now()); });
+    member.Tick(Now(), [&](std::span<const std::uint8_t> bytes) { topic.Send(bytes); });
+    if (!done && member.map().parts().size() == count && member.IsWhole()) done = Now();
+    if (done && Now() - *done > std::chrono::seconds(1)) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+TEST(TeamTopic, ThreeProcessesShareTheirMaps) {
+  const int domain = TestDomain();
+  for (const char* name : {"b", "c"}) {
+    if (fork() == 0) _exit(TakePart(domain, name, 3) ? 0 : 1);
+  }
+  EXPECT_TRUE(TakePart(domain, "a", 3));
+  for (int i = 0; i < 2; ++i) {
+    int status = 1;
+    wait(&status);
+    EXPECT_EQ(status, 0);
+  }
+}
+
+TEST(TeamTopic, DomainsAreChecked) {
+  EXPECT_THROW(TeamTopic(-1, "test", "a"), InputError);
+  EXPECT_THROW(TeamTopic(233, "test", "a"), InputError);
+}
+
+}  // namespace
+}  // namespace kestrel

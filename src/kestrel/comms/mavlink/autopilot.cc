@@ -1,0 +1,545 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/comms/mavlink/autopilot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/base/violations.h"
+
+namespace kestrel {
+namespace {
+
+using std::chrono::seconds;
+
+bool IsAutopilotHeartbeat(const mavlink::Heartbeat& heartbeat) {
+  return heartbeat.autopilot != mavlink::kAutopilotInvalid && heartbeat.type != mavlink::kTypeGcs &&
+         heartbeat.type != mavlink::kTypeOnboardController;
+}
+
+bool IsArmed(const mavlink::Heartbeat& heartbeat) {
+  return (heartbeat.base_mode & mavlink::kModeFlagArmed) != 0;
+}
+
+bool IsInFailsafe(const mavlink::Heartbeat& heartbeat) {
+  return heartbeat.system_status == mavlink::kStateCritical ||
+         heartbeat.system_status == mavlink::kStateEmergency;
+}
+
+}  // namespace
+
+std::vector<std::string> AutopilotOptions::Validate() const {
+  constexpr int kMaxId = 255;
+  constexpr double kMaxRate_hz = 500;
+  std::vector<std::string> violations;
+  RequireIn(system_id, 0, kMaxId, "system_id", &violations);
+  RequireIn(attitude_rate_hz, 0, kMaxRate_hz, "attitude_rate_hz", &violations);
+  RequireIn(position_rate_hz, 0, kMaxRate_hz, "position_rate_hz", &violations);
+  RequireIn(landed_rate_hz, 0, kMaxRate_hz, "landed_rate_hz", &violations);
+  RequireIn(range_rate_hz, 0, kMaxRate_hz, "range_rate_hz", &violations);
+  RequireIn(status_rate_hz, 0, kMaxRate_hz, "status_rate_hz", &violations);
+  RequireIn(mode_rate_hz, 0, kMaxRate_hz, "mode_rate_hz", &violations);
+  RequireIn(true_pose_rate_hz, 0, kMaxRate_hz, "true_pose_rate_hz", &violations);
+  RequirePositive(away_after_s, "away_after_s", &violations);
+  RequirePositive(position_age_s, "position_age_s", &violations);
+  return violations;
+}
+
+Autopilot::Autopilot(const AutopilotOptions& options, Connection* connection,
+                     AutopilotListener listener)
+    : options_(options),
+      connection_(connection),
+      listener_(std::move(listener)),
+      poses_(options.position_age_s) {
+  RequireValid(options);
+}
+
+bool Autopilot::is_armed() const { return IsArmed(heartbeat_); }
+
+bool Autopilot::is_in_failsafe() const { return IsInFailsafe(heartbeat_); }
+
+std::optional<bool> Autopilot::is_position_good(Time now) const {
+  const auto& estimator = status_.estimator();
+  if (!estimator || ToSeconds(now - estimator->received) > options_.away_after_s) {
+    return std::nullopt;
+  }
+  return estimator->is_good;
+}
+
+void Autopilot::Tell(AutopilotEventKind kind, std::string text) {
+  if (listener_.event) listener_.event({kind, std::move(text)});
+}
+
+template <class Text>
+void Autopilot::TellOnce(AutopilotEventKind kind, const Text& make_text) {
+  const std::uint32_t bit = 1u << static_cast<unsigned>(kind);
+  if ((told_ & bit) != 0) return;
+  told_ |= bit;
+  Tell(kind, make_text());
+}
+
+void Autopilot::Handle(const mavlink::Packet& packet, Time received) {
+  if (const auto heartbeat = packet.As<mavlink::Heartbeat>()) {
+    HandleHeartbeat(packet, *heartbeat, received);
+  }
+  if (packet.system == connection_->system() && packet.component == connection_->component() &&
+      !(packet.system == system_ && packet.component == component_)) {
+    ++counters_.own_ids;
+    TellOnce(AutopilotEventKind::kIdClash, [&] {
+      return fmt::format(
+          "somebody else sends as system {} component {}, or the link sends our own messages back: "
+          "they are ignored",
+          packet.system, packet.component);
+    });
+    return;
+  }
+  if (packet.id == mavlink::LandingTarget::kId) {
+    ++counters_.target_echoes;
+    TellOnce(AutopilotEventKind::kTargetEcho, [&] {
+      return fmt::format("system {} component {} sends landing targets too: they are ignored",
+                         packet.system, packet.component);
+    });
+    return;
+  }
+  if (IsFromAutopilot(packet)) HandleFromAutopilot(packet, received);
+}
+
+bool Autopilot::IsFromAutopilot(const mavlink::Packet& packet) {
+  if (system_ == 0) return false;
+  if (packet.system != system_) ++counters_.other_systems;
+  return packet.system == system_ && packet.component == component_;
+}
+
+void Autopilot::HandleHeartbeat(const mavlink::Packet& packet, const mavlink::Heartbeat& heartbeat,
+                                Time received) {
+  if (!IsAutopilotHeartbeat(heartbeat) || packet.system == 0) return;
+  if (options_.system_id != 0 && packet.system != options_.system_id) return;
+  if (system_ == 0) Adopt(packet, heartbeat);
+  if (packet.system != system_ || packet.component != component_) {
+    TellOnce(AutopilotEventKind::kOtherAutopilot, [&] {
+      return fmt::format(
+          "another autopilot, system {} component {}, is on the link: only system {} component {} "
+          "is listened to",
+          packet.system, packet.component, system_, component_);
+    });
+    return;
+  }
+  const mavlink::Heartbeat before = std::exchange(heartbeat_, heartbeat);
+  heard_ = mode_told_ = received;
+  if (is_here_) return TellChange(before);
+  is_here_ = true;
+  const bool is_first = kind_ == AutopilotKind::kUnknown;
+  kind_ = AutopilotKindOf(heartbeat.autopilot);
+  WantStreams();
+  Tell(is_first ? AutopilotEventKind::kHeard : AutopilotEventKind::kBack,
+       fmt::format("{} (system {}) {}, {}, {}", ToString(kind_), system_,
+                   is_first ? "heard" : "is back", mode_name(), is_armed() ? "armed" : "disarmed"));
+}
+
+void Autopilot::TellChange(const mavlink::Heartbeat& before) {
+  if (heartbeat_.custom_mode != before.custom_mode && heartbeat_.custom_mode != requested_mode_) {
+    commands_.Drop(mavlink::kCommandDoSetMode);
+  }
+  if (heartbeat_.custom_mode != before.custom_mode || is_armed() != IsArmed(before)) {
+    Tell(AutopilotEventKind::kModeChanged,
+         fmt::format("mode {}, {}", mode_name(), is_armed() ? "armed" : "disarmed"));
+  }
+  if (is_in_failsafe() && !IsInFailsafe(before)) {
+    Tell(AutopilotEventKind::kFailsafe,
+         fmt::format("the autopilot reports a failsafe, mode {}", mode_name()));
+  }
+}
+
+void Autopilot::Adopt(const mavlink::Packet& packet, const mavlink::Heartbeat& heartbeat) {
+  system_ = packet.system;
+  component_ = packet.component;
+  heartbeat_ = heartbeat;
+  if (connection_->takes_system_of_autopilot()) connection_->SetSystem(system_);
+  if (connection_->system() == system_ && connection_->component() == component_) {
+    TellOnce(AutopilotEventKind::kOwnIdIsAutopilots, [&] {
+      return fmt::format(
+          "system {} component {} is the autopilot itself, which ignores whoever sends as it: "
+          "expected another component_id, as 191",
+          system_, component_);
+    });
+  }
+}
+
+void Autopilot::HandleFromAutopilot(const mavlink::Packet& packet, Time received) {
+  received_ = received;
+  CountLost(packet);
+  streams_.Count(packet.id);
+  if (const auto mode = packet.As<mavlink::CurrentMode>()) {
+    const mavlink::Heartbeat before = heartbeat_;
+    heartbeat_.custom_mode = mode->custom_mode;
+    mode_told_ = received;
+    TellChange(before);
+  } else if (const auto timesync = packet.As<mavlink::Timesync>()) {
+    HandleTimesync(*timesync, received);
+  } else if (const auto ack = packet.As<mavlink::CommandAck>()) {
+    HandleAck(*ack);
+  } else if (const auto value = packet.As<mavlink::ParamValue>()) {
+    parameters_.Handle(kind_, *value);
+    writes_.Handle(kind_, *value, parameters_);
+  } else if (const auto text = packet.As<mavlink::Statustext>()) {
+    if (listener_.text) listener_.text(text->severity, TextOf(text->text));
+  } else if (!HandlePose(packet, received) && !HandleTruePose(packet, received)) {
+    HandleStatus(packet, received);
+  }
+}
+
+bool Autopilot::HandlePose(const mavlink::Packet& packet, Time received) {
+  PoseSample pose;
+  if (const auto quaternion = packet.As<mavlink::AttitudeQuaternion>()) {
+    TellPose(poses_.Handle(*quaternion, received, &clock_, &pose), "attitude", pose);
+  } else if (const auto attitude = packet.As<mavlink::Attitude>()) {
+    TellPose(poses_.Handle(*attitude, received, &clock_, &pose), "attitude", pose);
+  } else if (const auto position = packet.As<mavlink::LocalPositionNed>()) {
+    const PoseFate fate = poses_.Handle(*position);
+    // By itself it makes no pose.
+    TellPose(fate == PoseFate::kUsed ? PoseFate::kNone : fate, "position", pose);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void Autopilot::TellPose(PoseFate fate, const char* what, const PoseSample& pose) {
+  switch (fate) {
+    case PoseFate::kUsed:
+      newest_pose_ = pose.time;
+      if (listener_.pose) listener_.pose(pose);
+      break;
+    case PoseFate::kNone:
+      return;
+    case PoseFate::kNotFinite:
+      return TellNotFinite(what);
+    case PoseFate::kBackwards:
+      ++counters_.backwards;
+      return TellOnce(AutopilotEventKind::kTimeBackwards, [&] {
+        return fmt::format(
+            "a message of the autopilot is {:.3f} s older than the one before: ignored",
+            poses_.back_s());
+      });
+    case PoseFate::kRestarted:
+      ++counters_.backwards;
+      return Restart();
+    case PoseFate::kWithoutClock:
+      ++counters_.without_clock;
+      return;
+    case PoseFate::kWithoutPosition:
+      ++counters_.without_position;
+      break;
+  }
+  if (!clock_.is_one_way()) return;
+  TellOnce(AutopilotEventKind::kNoTimeSync, [] {
+    return std::string(
+        "the autopilot does not answer TIMESYNC: its clock is known by the delay of the line only");
+  });
+}
+
+bool Autopilot::HandleTruePose(const mavlink::Packet& packet, Time received) {
+  const auto sim_state = packet.As<mavlink::SimState>();
+  const auto hil_state = packet.As<mavlink::HilStateQuaternion>();
+  if (!sim_state && !hil_state) return false;
+  const auto origin = status_.origin();
+  if (!listener_.true_pose || !origin) return true;
+  PoseSample pose;
+  const PoseFate fate = sim_state
+                            ? TruePoseOf(*sim_state, kind_, *origin, clock_.sync(), received, &pose)
+                            : TruePoseOf(*hil_state, kind_, *origin, clock_.sync(), &pose);
+  if (sim_state) pose.time = BetweenAttitudes(pose.time);
+  if (fate == PoseFate::kNotFinite) TellNotFinite("true pose");
+  if (fate == PoseFate::kUsed) listener_.true_pose(pose);
+  return true;
+}
+
+// The time of a message that has none of its own, by when it came, which a link that delays as it
+// likes makes wrong: it was sent between the attitude before it and the next one.
+Time Autopilot::BetweenAttitudes(Time guess) const {
+  if (!newest_pose_ || options_.attitude_rate_hz == 0) return guess;
+  const Duration period = DurationFromSeconds(1 / options_.attitude_rate_hz);
+  return std::clamp(guess, *newest_pose_, *newest_pose_ + period);
+}
+
+// Messages that come seldom.
+void Autopilot::HandleStatus(const mavlink::Packet& packet, Time received) {
+  const LandedState before = status_.landed();
+  status_.Handle(packet, clock_.sync(), received);
+  if (status_.landed() != before) {
+    Tell(AutopilotEventKind::kModeChanged, ToString(status_.landed()));
+  }
+}
+
+void Autopilot::CountLost(const mavlink::Packet& packet) {
+  constexpr std::uint8_t kLongestGap = 128;  // more is out of order
+  if (sequence_) {
+    const auto gap = static_cast<std::uint8_t>(packet.sequence - *sequence_ - 1);
+    if (gap < kLongestGap) counters_.lost_packets += gap;
+  }
+  sequence_ = packet.sequence;
+}
+
+// 0 is for everybody.
+bool Autopilot::IsForThis(std::uint8_t target_system, std::uint8_t target_component) const {
+  return (target_system == 0 || target_system == connection_->system()) &&
+         (target_component == 0 || target_component == connection_->component());
+}
+
+void Autopilot::HandleAck(const mavlink::CommandAck& message) {
+  if (!IsForThis(message.target_system, message.target_component)) return;
+  if (const auto ending = commands_.Handle(message)) TellEnding(*ending);
+}
+
+void Autopilot::HandleTimesync(const mavlink::Timesync& message, Time received) {
+  if (!IsForThis(message.target_system, message.target_component)) return;
+  auto answer = clock_.Handle(message, received);
+  if (answer) {
+    answer->target_system = system_;
+    answer->target_component = component_;
+    connection_->Send(*answer);
+  }
+  WantTimesync();
+  if (clock_.sync().jumps() != jumps_) {
+    Restart();
+    jumps_ = clock_.sync().jumps();
+  }
+}
+
+// The autopilot's clock began anew, or was set.
+void Autopilot::Restart() {
+  ++restarts_;
+  clock_.Reset();
+  streams_.AskAgain();
+  parameters_.AskAgain();
+  poses_.Reset();
+  newest_pose_.reset();
+  status_.Reset();
+  sequence_.reset();
+  questions_ = 0;
+  questions_due_ = {};
+  Tell(AutopilotEventKind::kRestarted,
+       "the autopilot started again: its clock is learned and its streams are asked for anew");
+}
+
+void Autopilot::TellNotFinite(const char* what) {
+  ++counters_.not_finite;
+  TellOnce(AutopilotEventKind::kNotFinite,
+           [&] { return fmt::format("the autopilot's {} is not a number: ignored", what); });
+}
+
+void Autopilot::Tick(Time now) {
+  SendHeartbeat(now);
+  if (system_ == 0) return;
+  CheckPresence(now);
+  if (is_here_) SendRequests(now);
+}
+
+void Autopilot::CheckPresence(Time now) {
+  if (!is_here_ || ToSeconds(now - heard_) < options_.away_after_s) return;
+  is_here_ = false;
+  Tell(AutopilotEventKind::kAway,
+       fmt::format("no heartbeat of the autopilot for {:.1f} s", ToSeconds(now - heard_)));
+}
+
+void Autopilot::SendHeartbeat(Time now) {
+  if (now < heartbeat_due_) return;
+  heartbeat_due_ = now + seconds(1);
+  mavlink::Heartbeat heartbeat;
+  heartbeat.type = mavlink::kTypeOnboardController;
+  heartbeat.autopilot = mavlink::kAutopilotInvalid;
+  heartbeat.system_status = mavlink::kStateActive;
+  constexpr std::uint8_t kMavlinkVersion = 3;
+  heartbeat.mavlink_version = kMavlinkVersion;
+  connection_->Send(heartbeat);
+  if (!options_.poses_as_ground_station) return;
+  heartbeat.type = mavlink::kTypeGcs;
+  connection_->Send(heartbeat);
+}
+
+void Autopilot::WantStreams() {
+  streams_.AskAgain();
+  streams_.Want(mavlink::AttitudeQuaternion::kId, options_.attitude_rate_hz);
+  streams_.Want(mavlink::LocalPositionNed::kId, options_.position_rate_hz);
+  streams_.Want(mavlink::ExtendedSysState::kId, options_.landed_rate_hz);
+  // Not every vehicle has one.
+  streams_.WantIfThere(mavlink::DistanceSensor::kId, options_.range_rate_hz);
+  const bool is_px4 = kind_ == AutopilotKind::kPx4;
+  streams_.WantIfThere(is_px4 ? mavlink::CurrentMode::kId : mavlink::Heartbeat::kId,
+                       options_.mode_rate_hz);
+  streams_.WantIfThere(is_px4 ? mavlink::EstimatorStatus::kId : mavlink::EkfStatusReport::kId,
+                       options_.status_rate_hz);
+  streams_.WantIfThere(mavlink::SysStatus::kId, options_.status_rate_hz);
+  if (options_.wants_true_pose) {
+    streams_.Want(is_px4 ? mavlink::HilStateQuaternion::kId : mavlink::SimState::kId,
+                  options_.true_pose_rate_hz);
+  }
+  WantTimesync();
+}
+
+// PX4 trusts stamps after 500 answers, which takes it 50 s at the rate at which it asks by itself.
+void Autopilot::WantTimesync() {
+  constexpr int kTrusted = 600;
+  constexpr double kHurry_hz = 100;
+  constexpr double kSteady_hz = 10;
+  if (kind_ != AutopilotKind::kPx4) return;
+  streams_.Want(mavlink::Timesync::kId, clock_.answers() < kTrusted ? kHurry_hz : kSteady_hz);
+}
+
+void Autopilot::SendRequests(Time now) {
+  if (auto question = clock_.Ask(now)) {
+    question->target_system = system_;
+    question->target_component = component_;
+    connection_->Send(*question);
+  }
+  StreamRequests::Request request;
+  if (streams_.Next(now, &request)) SendStreamRequest(request);
+  SendCommands(now);
+  SendParameterRequests(now);
+  SendQuestions(now);
+}
+
+void Autopilot::SendParameterRequests(Time now) {
+  const std::string_view name = parameters_.Next(now);
+  if (!name.empty()) {
+    mavlink::ParamRequestRead read;
+    read.target_system = system_;
+    read.target_component = component_;
+    SetText(name, read.param_id);
+    read.param_index = -1;
+    connection_->Send(read);
+  }
+  if (auto write = writes_.Next(kind_, parameters_, now)) {
+    write->target_system = system_;
+    write->target_component = component_;
+    connection_->Send(*write);
+  }
+}
+
+void Autopilot::SetParameter(std::string_view name, double value) {
+  if (!parameters_.EntryOf(name)) parameters_.Want(name);
+  writes_.Set(name, value);
+}
+
+bool Autopilot::RequestMode(FlightMode mode) {
+  constexpr std::uint32_t kByte = 0xff;
+  const std::uint32_t custom_mode = CustomModeOf(kind_, mode);
+  if (custom_mode == 0) return false;
+  requested_mode_ = custom_mode;
+  const bool is_px4 = kind_ == AutopilotKind::kPx4;
+  mavlink::CommandLong command =
+      MakeCommand(mavlink::kCommandDoSetMode, mavlink::kModeFlagCustom,
+                  static_cast<float>(is_px4 ? custom_mode >> 16 & kByte : custom_mode));
+  if (is_px4) command.param3 = static_cast<float>(custom_mode >> 24);
+  commands_.Want(command);
+  return true;
+}
+
+void Autopilot::DisarmByForce() {
+  commands_.Want(MakeCommand(mavlink::kCommandArmDisarm, 0, mavlink::kArmByForce));
+}
+
+bool Autopilot::is_request_pending() const {
+  return commands_.IsWanted(mavlink::kCommandDoSetMode) ||
+         commands_.IsWanted(mavlink::kCommandArmDisarm);
+}
+
+void Autopilot::SendCommands(Time now) {
+  std::optional<CommandRequests::Ending> ended;
+  if (const auto command = commands_.Next(now, &ended)) connection_->Send(*command);
+  if (ended) TellEnding(*ended);
+}
+
+void Autopilot::TellEnding(const CommandRequests::Ending& ending) {
+  const bool is_mode = ending.command.command == mavlink::kCommandDoSetMode;
+  const std::string what =
+      is_mode ? "mode " + ModeName(kind_, requested_mode_) : std::string("disarming");
+  if (!ending.result) {
+    Tell(AutopilotEventKind::kCommandUnanswered,
+         fmt::format("the autopilot was asked for {} and does not answer", what));
+  } else if (ending.is_accepted()) {
+    Tell(AutopilotEventKind::kCommandAccepted, fmt::format("the autopilot accepts {}", what));
+  } else {
+    Tell(AutopilotEventKind::kCommandRefused,
+         fmt::format("the autopilot refuses {}: {}", what, CommandResultName(*ending.result)));
+  }
+}
+
+// What is told once, when it is asked for.
+void Autopilot::SendQuestions(Time now) {
+  constexpr int kQuick = 10;
+  constexpr Duration kSlow = seconds(10);
+  if (now < questions_due_) return;
+  questions_due_ = now + (questions_ < kQuick ? Duration(seconds(1)) : kSlow);
+  ++questions_;
+  const auto ask = [&](std::uint32_t id) {
+    connection_->Send(MakeCommand(mavlink::kCommandRequestMessage, static_cast<float>(id), 0));
+  };
+  if (!version() && questions_ < kQuick) ask(mavlink::AutopilotVersion::kId);
+  if (!origin()) ask(mavlink::GpsGlobalOrigin::kId);
+  if (!home()) ask(mavlink::HomePosition::kId);
+}
+
+void Autopilot::SendStreamRequest(const StreamRequests::Request& request) {
+  SendInterval(request.id, request.rate_hz);
+  const bool is_attitude = request.id == mavlink::AttitudeQuaternion::kId;
+  if (!is_attitude && request.id != mavlink::LocalPositionNed::kId) return;
+  if (request.is_unanswered) SendOldStreamRequest(is_attitude, request.rate_hz);
+  constexpr int kManyRequests = 6;
+  if (request.requests < kManyRequests) return;
+  TellOnce(AutopilotEventKind::kSlowStream, [&] {
+    return fmt::format(
+        "the autopilot tells its {} {:.0f} times a second, asked {} times for {:.0f}: is the line "
+        "too slow, or another ground station asking for less?",
+        is_attitude ? "attitude" : "position", streams_.RateOf(request.id), request.requests,
+        request.rate_hz);
+  });
+}
+
+// For an autopilot that does not know the message, or not the command.
+void Autopilot::SendOldStreamRequest(bool is_attitude, double rate_hz) {
+  if (is_attitude) SendInterval(mavlink::Attitude::kId, rate_hz);
+  mavlink::RequestDataStream request;
+  request.target_system = system_;
+  request.target_component = component_;
+  request.req_stream_id = is_attitude ? mavlink::kStreamExtra1 : mavlink::kStreamPosition;
+  request.req_message_rate = static_cast<std::uint16_t>(std::lround(rate_hz));
+  request.start_stop = 1;
+  connection_->Send(request);
+}
+
+void Autopilot::SendInterval(std::uint32_t id, double rate_hz) {
+  constexpr double kMicroseconds = 1e6;
+  connection_->Send(MakeCommand(mavlink::kCommandSetMessageInterval, static_cast<float>(id),
+                                static_cast<float>(std::round(kMicroseconds / rate_hz))));
+}
+
+mavlink::CommandLong Autopilot::MakeCommand(std::uint16_t command, float param1,
+                                            float param2) const {
+  mavlink::CommandLong message;
+  message.target_system = system_;
+  message.target_component = component_;
+  message.command = command;
+  message.param1 = param1;
+  message.param2 = param2;
+  return message;
+}
+
+void Autopilot::Announce(std::uint8_t severity, std::string_view text) {
+  mavlink::Statustext message;
+  message.severity = severity;
+  const std::size_t piece = message.text.size();
+  if (text.size() > piece) message.id = ++text_id_ == 0 ? ++text_id_ : text_id_;
+  do {
+    SetText(text.substr(0, piece), message.text);
+    connection_->Send(message);
+    text.remove_prefix(std::min(piece, text.size()));
+    ++message.chunk_seq;
+  } while (!text.empty());
+}
+
+}  // namespace kestrel

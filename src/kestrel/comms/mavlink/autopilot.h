@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kestrel/comms/mavlink/autopilot_kind.h"
+#include "kestrel/comms/mavlink/autopilot_poses.h"
+#include "kestrel/comms/mavlink/autopilot_status.h"
+#include "kestrel/comms/mavlink/clock_exchange.h"
+#include "kestrel/comms/mavlink/command_requests.h"
+#include "kestrel/comms/mavlink/connection.h"
+#include "kestrel/comms/mavlink/global_position.h"
+#include "kestrel/comms/mavlink/messages.h"
+#include "kestrel/comms/mavlink/parameter_reader.h"
+#include "kestrel/comms/mavlink/parameter_writer.h"
+#include "kestrel/comms/mavlink/stream_requests.h"
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/poses/pose_history.h"
+
+namespace kestrel {
+
+struct AutopilotOptions {
+  // System of the autopilot; 0: the first that is heard.
+  int system_id = 0;
+  // How often the autopilot is asked to tell these; 0: as often as it does by itself.
+  double attitude_rate_hz = 100;
+  double position_rate_hz = 50;
+  double landed_rate_hz = 5;
+  double range_rate_hz = 20;
+  double status_rate_hz = 2;
+  // Where set-points depend on the mode it has to be told more often than the heartbeat does, once
+  // a second: by more heartbeats, and by CURRENT_MODE, which PX4 sends as soon as it changes.
+  double mode_rate_hz = 0;
+  // Ask for the true pose, which only simulated vehicles know, and how often.
+  bool wants_true_pose = false;
+  double true_pose_rate_hz = 100;
+  // After so long without a heartbeat the autopilot is away.
+  double away_after_s = 3;
+  // After so long a position is too old to say where the vehicle is now.
+  double position_age_s = 0.5;
+  // Heartbeats as a ground station's too: PX4 sends its texts to such only. It then also thinks
+  // that a ground station is there when there is none.
+  bool poses_as_ground_station = false;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("system_id", self.system_id, "", "system of the autopilot; 0: the first heard");
+    visitor("attitude_rate_hz", self.attitude_rate_hz, "Hz", "asked of attitudes; 0: not asked");
+    visitor("position_rate_hz", self.position_rate_hz, "Hz", "asked of positions");
+    visitor("landed_rate_hz", self.landed_rate_hz, "Hz", "asked of the landed state");
+    visitor("range_rate_hz", self.range_rate_hz, "Hz", "asked of distance sensors");
+    visitor("status_rate_hz", self.status_rate_hz, "Hz",
+            "asked of the battery and of the health of its estimate");
+    visitor("mode_rate_hz", self.mode_rate_hz, "Hz",
+            "asked of the mode; 0: once a second, by heartbeats");
+    visitor("wants_true_pose", self.wants_true_pose, "",
+            "ask a simulated vehicle for its true pose");
+    visitor("true_pose_rate_hz", self.true_pose_rate_hz, "Hz", "how often");
+    visitor("away_after_s", self.away_after_s, "s", "without heartbeat for so long: away");
+    visitor("position_age_s", self.position_age_s, "s", "oldest position that makes a pose");
+    visitor("poses_as_ground_station", self.poses_as_ground_station, "",
+            "send a ground station's heartbeats too, for PX4's texts");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+enum class AutopilotEventKind {
+  kHeard,              // there it is
+  kAway,               // no heartbeat any more
+  kBack,               // and there it is again
+  kRestarted,          // it began anew: its clock, and all that it was asked
+  kModeChanged,        // mode, armed or landed state
+  kFailsafe,           // it says that it is in an emergency
+  kCommandAccepted,    // a request of this program; no proof that it is done
+  kCommandRefused,     // and why
+  kCommandUnanswered,  // however often it was sent
+  kOtherAutopilot,     // another autopilot is on the link, and ignored
+  kIdClash,            // somebody else sends with this program's ids
+  kOwnIdIsAutopilots,  // this program's ids are the autopilot's: it will ignore all
+  kTargetEcho,         // somebody else sends landing targets
+  kNotFinite,          // an attitude or position is not finite
+  kTimeBackwards,      // a message is older than the one before
+  kNoTimeSync,         // it does not answer TIMESYNC: its clock is known roughly
+  kSlowStream,         // it does not send as often as it was asked to
+};
+
+// Something that a pilot should know, in words. Each of those from kOtherAutopilot on is told once.
+struct AutopilotEvent {
+  AutopilotEventKind kind;
+  std::string text;
+};
+
+// Packets that were received and not used, and why.
+struct AutopilotCounters {
+  std::uint64_t lost_packets = 0;  // of the autopilot, by its sequence
+  std::uint64_t other_systems = 0;
+  std::uint64_t own_ids = 0;
+  std::uint64_t target_echoes = 0;
+  std::uint64_t not_finite = 0;
+  std::uint64_t backwards = 0;
+  std::uint64_t without_position = 0;  // attitudes for which no position is young enough
+  std::uint64_t without_clock = 0;     // attitudes before the clock was known
+};
+
+// Which poses and words come of an autopilot. All are called in the thread that calls Handle.
+struct AutopilotListener {
+  // Body (FLU) in the world (ENU, origin of the autopilot's local frame), on the local clock. One
+  // for each attitude, with the position of that instant by the newest position and velocity.
+  std::function<void(const PoseSample&)> pose;
+  std::function<void(const PoseSample&)> true_pose;  // as above, of a simulated vehicle
+  std::function<void(const AutopilotEvent&)> event;
+  std::function<void(std::uint8_t severity, std::string_view text)> text;  // STATUSTEXT
+};
+
+// The autopilot at the other end of a connection: finds it, keeps up with what it does, asks it for
+// what is needed, as often as is needed, and learns its clock. Driven by one thread:
+//
+//   connection.Receive(timeout, [&](const auto& packet, Time time) { autopilot.Handle(packet,
+//   time); }); autopilot.Tick(Now());
+//
+// Hostile bytes neither throw nor crash; nothing is allocated per message after the first seconds.
+class Autopilot {
+ public:
+  // 'connection' has to outlive this. Throws InputError when the options are not valid.
+  Autopilot(const AutopilotOptions& options, Connection* connection, AutopilotListener listener);
+
+  void Handle(const mavlink::Packet& packet, Time received);
+  // Sends what is due: heartbeats, requests, questions of time. To be called every 10 ms or so.
+  void Tick(Time now);
+
+  // A heartbeat was heard lately.
+  bool is_here() const { return is_here_; }
+  Time mode_told() const { return mode_told_; }  // by the newest heartbeat, or PX4's CURRENT_MODE
+  Time received() const { return received_; }    // the newest message
+  AutopilotKind kind() const { return kind_; }
+  std::uint8_t system() const { return system_; }
+  std::uint8_t component() const { return component_; }
+  std::uint32_t custom_mode() const { return heartbeat_.custom_mode; }
+  std::string mode_name() const { return ModeName(kind_, heartbeat_.custom_mode); }
+  bool is_landing_mode() const { return IsLandingMode(kind_, heartbeat_.custom_mode); }
+  bool is_guided_mode() const { return IsGuidedMode(kind_, heartbeat_.custom_mode); }
+  bool is_armed() const;
+  // It says that it is in an emergency, and does what it is set to do then.
+  bool is_in_failsafe() const;
+  std::uint8_t vehicle_type() const { return heartbeat_.type; }  // MAV_TYPE
+  bool is_multicopter() const { return IsMulticopter(heartbeat_.type); }
+  LandedState landed_state() const { return status_.landed(); }
+  // What it says about itself, each where it was told.
+  const AutopilotStatus& status() const { return status_; }
+  std::optional<AutopilotVersion> version() const { return status_.version(); }
+  std::optional<AutopilotRange> range() const { return status_.range(); }
+  std::optional<GlobalPosition> origin() const { return status_.origin(); }  // of the local frame
+  std::optional<GlobalPosition> home() const { return status_.home(); }
+  std::optional<AutopilotBattery> battery() const { return status_.battery(); }
+  // Whether it trusts its own attitude, velocity and place; nothing: it does not say, or not for
+  // 'away_after_s' any more.
+  std::optional<bool> is_position_good(Time now) const;
+
+  const TimeSync& time_sync() const { return clock_.sync(); }
+  const StreamRequests& streams() const { return streams_; }
+  ParameterReader& parameters() { return parameters_; }
+  const ParameterReader& parameters() const { return parameters_; }
+  const ParameterWriter& parameter_writes() const { return writes_; }
+  const AutopilotCounters& counters() const { return counters_; }
+  int restarts() const { return restarts_; }
+
+  // Asks for this mode until it is answered, which an event tells; whether it was entered the mode
+  // tells. Given up at once when the autopilot goes to yet another mode, which somebody else wants
+  // then. False: an autopilot of this kind cannot be asked.
+  bool RequestMode(FlightMode mode);
+  // Stops the motors at once, also in flight.
+  void DisarmByForce();
+  // An answer to one of the two is awaited.
+  bool is_request_pending() const;
+
+  // Sets a parameter by its first name and in that one's unit (parameter_names.h), until the
+  // autopilot tells it back: parameter_writes() tells whether it did.
+  void SetParameter(std::string_view name, double value);
+
+  // A text for the ground station, in pieces of 50 characters where it is longer; 'severity' as
+  // MAV_SEVERITY.
+  void Announce(std::uint8_t severity, std::string_view text);
+
+ private:
+  bool IsFromAutopilot(const mavlink::Packet& packet);
+  bool IsForThis(std::uint8_t target_system, std::uint8_t target_component) const;
+  void HandleHeartbeat(const mavlink::Packet& packet, const mavlink::Heartbeat& heartbeat,
+                       Time received);
+  void Adopt(const mavlink::Packet& packet, const mavlink::Heartbeat& heartbeat);
+  void TellChange(const mavlink::Heartbeat& before);
+  void HandleFromAutopilot(const mavlink::Packet& packet, Time received);
+  bool HandlePose(const mavlink::Packet& packet, Time received);
+  bool HandleTruePose(const mavlink::Packet& packet, Time received);
+  void TellPose(PoseFate fate, const char* what, const PoseSample& pose);
+  Time BetweenAttitudes(Time guess) const;
+  void HandleStatus(const mavlink::Packet& packet, Time received);
+  void HandleTimesync(const mavlink::Timesync& message, Time received);
+  void HandleAck(const mavlink::CommandAck& message);
+  void CountLost(const mavlink::Packet& packet);
+  void TellNotFinite(const char* what);
+  void Restart();
+  void CheckPresence(Time now);
+  void SendHeartbeat(Time now);
+  void SendRequests(Time now);
+  void WantStreams();
+  void WantTimesync();
+  void SendStreamRequest(const StreamRequests::Request& request);
+  void SendOldStreamRequest(bool is_attitude, double rate_hz);
+  void SendInterval(std::uint32_t id, double rate_hz);
+  mavlink::CommandLong MakeCommand(std::uint16_t command, float param1, float param2) const;
+  void SendCommands(Time now);
+  void TellEnding(const CommandRequests::Ending& ending);
+  void SendParameterRequests(Time now);
+  void SendQuestions(Time now);
+  void Tell(AutopilotEventKind kind, std::string text);
+  template <class Text>
+  void TellOnce(AutopilotEventKind kind, const Text& make_text);
+
+  AutopilotOptions options_;
+  Connection* connection_;
+  AutopilotListener listener_;
+
+  bool is_here_ = false;
+  std::uint8_t system_ = 0;  // 0: none was heard yet
+  std::uint8_t component_ = 0;
+  AutopilotKind kind_ = AutopilotKind::kUnknown;
+  mavlink::Heartbeat heartbeat_;
+  Time heard_{};
+  Time received_{};
+  Time mode_told_{};
+  std::optional<std::uint8_t> sequence_;
+
+  ClockExchange clock_;
+  int jumps_ = 0;  // of the clock, that were seen
+  AutopilotStatus status_;
+  AutopilotPoses poses_;
+  std::optional<Time> newest_pose_;
+  StreamRequests streams_;
+  CommandRequests commands_;
+  std::uint32_t requested_mode_ = 0;
+  ParameterReader parameters_;
+  ParameterWriter writes_;
+
+  Time heartbeat_due_{};
+  Time questions_due_{};
+  int questions_ = 0;
+  std::uint16_t text_id_ = 0;
+  AutopilotCounters counters_;
+  int restarts_ = 0;
+  std::uint32_t told_ = 0;  // bits of kinds that are told once
+};
+
+}  // namespace kestrel

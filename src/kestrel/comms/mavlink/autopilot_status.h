@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "kestrel/comms/mavlink/global_position.h"
+#include "kestrel/comms/mavlink/messages.h"
+#include "kestrel/comms/mavlink/packet.h"
+#include "kestrel/comms/mavlink/time_sync.h"
+#include "kestrel/core/base/time.h"
+
+namespace kestrel {
+
+enum class LandedState { kUnknown, kOnGround, kInAir, kTakingOff, kLanding };
+const char* ToString(LandedState state);  // "unknown", "on ground", "in air", ...
+
+struct AutopilotVersion {
+  int major = 0;
+  int minor = 0;
+  int patch = 0;
+};
+
+// Distance to the ground below, by the autopilot's own sensor.
+struct AutopilotRange {
+  Time time;
+  double distance_m;
+};
+
+// Nothing: the autopilot does not measure it.
+struct AutopilotBattery {
+  std::optional<double> voltage_v;
+  std::optional<double> current_a;
+  std::optional<double> remaining;  // 0 to 1
+};
+
+// Bits of MAV_SYS_STATUS_SENSOR.
+struct AutopilotSensors {
+  std::uint32_t present = 0;
+  std::uint32_t enabled = 0;
+  std::uint32_t healthy = 0;
+
+  std::uint32_t failed() const { return present & enabled & ~healthy; }
+};
+
+// What the autopilot thinks of its own estimate.
+struct EstimatorHealth {
+  Time received;
+  std::uint16_t flags = 0;  // ESTIMATOR_STATUS_FLAGS, or EKF_STATUS_FLAGS of ArduPilot
+  bool is_good = false;     // attitude, velocity and place are known, and it trusts its GNSS
+};
+
+// What an autopilot says about itself, seldom and by itself or when it is asked.
+class AutopilotStatus {
+ public:
+  // Any of its messages; others than those below are left alone.
+  void Handle(const mavlink::Packet& packet, const TimeSync& clock, Time received);
+
+  // The autopilot started again.
+  void Reset() { *this = {}; }
+
+  const std::optional<AutopilotVersion>& version() const { return version_; }
+  LandedState landed() const { return landed_; }
+  const std::optional<AutopilotRange>& range() const { return range_; }
+  const std::optional<GlobalPosition>& origin() const { return origin_; }  // of the local frame
+  const std::optional<GlobalPosition>& home() const { return home_; }
+  const std::optional<AutopilotBattery>& battery() const { return battery_; }
+  const std::optional<AutopilotSensors>& sensors() const { return sensors_; }
+  const std::optional<EstimatorHealth>& estimator() const { return estimator_; }
+
+ private:
+  void HandleSystem(const mavlink::SysStatus& message);
+  void HandleRange(const mavlink::DistanceSensor& message, const TimeSync& clock);
+
+  std::optional<AutopilotVersion> version_;
+  LandedState landed_ = LandedState::kUnknown;
+  std::optional<AutopilotRange> range_;
+  std::optional<GlobalPosition> origin_;
+  std::optional<GlobalPosition> home_;
+  std::optional<AutopilotBattery> battery_;
+  std::optional<AutopilotSensors> sensors_;
+  std::optional<EstimatorHealth> estimator_;
+};
+
+// Nanoseconds of a time in milliseconds, which was cut off: half of one is missing on average.
+std::int64_t NanosecondsOfBoot(std::uint32_t boot_ms);
+
+}  // namespace kestrel

@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <limits>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/comms/mavlink/test_autopilot.h"
+
+namespace kestrel {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+
+constexpr std::uint32_t kArduCopterLandMode = 9;
+
+TEST_F(AutopilotTest, IsFoundByItsHeartbeat) {
+  Start();
+  Say(mavlink::Heartbeat{mavlink::kTypeGcs, 8, 0, 0, 4, 3}, 255, 190);
+  Pass(1, false);
+  EXPECT_EQ(autopilot_->kind(), AutopilotKind::kUnknown);
+  SayHeartbeat();
+  EXPECT_EQ(autopilot_->kind(), AutopilotKind::kArduPilot);
+  EXPECT_EQ(autopilot_->mode_name(), "GUIDED");
+  EXPECT_TRUE(autopilot_->is_armed());
+  EXPECT_EQ(TextOfEvent(AutopilotEventKind::kHeard), "ArduPilot (system 1) heard, GUIDED, armed");
+  SayHeartbeat(mavlink::kAutopilotArduPilot, kArduCopterLandMode);
+  EXPECT_TRUE(autopilot_->is_landing_mode());
+  EXPECT_EQ(TextOfEvent(AutopilotEventKind::kModeChanged), "mode LAND, armed");
+}
+
+TEST_F(AutopilotTest, SendsAHeartbeatPerSecondFromTheBeginning) {
+  Start();
+  Pass(10, false);
+  EXPECT_EQ(heard_[0], 10);
+  const auto heartbeat = last_heard_[0].As<mavlink::Heartbeat>();
+  EXPECT_EQ(heartbeat->type, mavlink::kTypeOnboardController);
+  EXPECT_EQ(heartbeat->autopilot, mavlink::kAutopilotInvalid);
+  EXPECT_EQ(last_heard_[0].component, 191);
+}
+
+TEST_F(AutopilotTest, TakesTheSystemOfTheAutopilot) {
+  Start();
+  Say(mavlink::Heartbeat{2, 3, 0, 0, 4, 3}, 42, 1);
+  EXPECT_EQ(autopilot_->system(), 42);
+  EXPECT_EQ(connection_->system(), 42);
+}
+
+TEST_F(AutopilotTest, TellsPosesInKestrelsFrames) {
+  Start();
+  Pass(1);
+  SayPose();
+  ASSERT_EQ(poses_.size(), 1u);
+  const PoseSample& pose = poses_[0];
+  // 0.1 s after the position, at 2 m/s.
+  EXPECT_TRUE(pose.world_from_body.translation.isApprox(Eigen::Vector3d(1.2, 3, 5), 1e-6));
+  // The nose looks east, which is x of the world.
+  EXPECT_TRUE((pose.world_from_body.rotation * Eigen::Vector3d::UnitX())
+                  .isApprox(Eigen::Vector3d::UnitX(), 1e-6));
+  EXPECT_TRUE((pose.world_from_body.rotation * Eigen::Vector3d::UnitZ())
+                  .isApprox(Eigen::Vector3d::UnitZ(), 1e-6));
+  ASSERT_TRUE(pose.motion);
+  EXPECT_TRUE(pose.motion->velocity_in_world.isApprox(Eigen::Vector3d(2, 0, 0), 1e-6));
+  EXPECT_TRUE(pose.motion->rate_in_body.isApprox(Eigen::Vector3d(0.1, -0.2, -0.3), 1e-6));
+  EXPECT_NEAR(ToSeconds(pose.time - now_), 0.1, 0.002);
+}
+
+TEST_F(AutopilotTest, UsesEulerAnglesWhereThereAreNoQuaternions) {
+  Start();
+  Pass(1);
+  SayPose();
+  mavlink::Attitude attitude;
+  attitude.time_boot_ms = BootMs() + 200;
+  attitude.yaw = static_cast<float>(M_PI / 2);
+  attitude.pitch = 0.3f;
+  Say(attitude);
+  EXPECT_EQ(poses_.size(), 1u);  // quaternions come
+  attitude.time_boot_ms = BootMs() + 700;
+  Say(attitude);
+  EXPECT_EQ(poses_.size(), 1u);  // and the position is old by now
+  now_ += milliseconds(700);
+  SayPose();
+  poses_.clear();
+  now_ += milliseconds(200);
+  attitude.time_boot_ms = BootMs() + 600;
+  SayPose();
+  attitude.time_boot_ms = BootMs() + 350;
+  Say(attitude);
+  EXPECT_EQ(autopilot_->counters().without_position, 1u);
+}
+
+TEST_F(AutopilotTest, AsksForItsStreamsAndAgainWhenTheyAreTakenAway) {
+  Start();
+  Pass(1);
+  EXPECT_EQ(intervals_us_[mavlink::AttitudeQuaternion::kId], 10000);
+  EXPECT_EQ(intervals_us_[mavlink::LocalPositionNed::kId], 20000);
+  EXPECT_EQ(intervals_us_[mavlink::ExtendedSysState::kId], 200000);
+  const auto ask_count = [&] {
+    intervals_us_.clear();
+    for (int i = 0; i < 300; ++i) {
+      Pass(0.01, i % 100 == 0);
+      Say(AttitudeAt(BootMs()));
+    }
+    return intervals_us_.count(mavlink::AttitudeQuaternion::kId);
+  };
+  ask_count();
+  EXPECT_EQ(ask_count(), 0u);  // it comes
+  Pass(7);
+  EXPECT_EQ(intervals_us_.count(mavlink::AttitudeQuaternion::kId), 1u);
+}
+
+TEST_F(AutopilotTest, AsksOlderAutopilotsInTheOldWay) {
+  Start();
+  Pass(5);
+  EXPECT_GT(heard_[mavlink::RequestDataStream::kId], 0);
+  EXPECT_EQ(intervals_us_[mavlink::Attitude::kId], 10000);
+  Pass(20);
+  EXPECT_EQ(EventsOf(AutopilotEventKind::kSlowStream), 1);
+}
+
+TEST_F(AutopilotTest, HurriesPx4ToTrustItsStamps) {
+  kind_ = mavlink::kAutopilotPx4;
+  Start();
+  Pass(1);
+  EXPECT_EQ(intervals_us_[mavlink::Timesync::kId], 10000);
+  heard_.clear();
+  for (int i = 0; i < 700; ++i) {
+    mavlink::Timesync question;
+    question.ts1 = RemoteAt(now_);
+    Say(question);
+    Pass(0.01, i % 100 == 0);
+  }
+  EXPECT_GE(heard_[mavlink::Timesync::kId], 700);
+  EXPECT_EQ(intervals_us_[mavlink::Timesync::kId], 100000);
+}
+
+TEST_F(AutopilotTest, AnswersTimesyncOnTheAutopilotsClock) {
+  Start();
+  Pass(2);
+  mavlink::Timesync question;
+  question.ts1 = RemoteAt(now_ - milliseconds(2));
+  Say(question);
+  const auto answer = last_heard_[mavlink::Timesync::kId].As<mavlink::Timesync>();
+  EXPECT_EQ(answer->ts1, question.ts1);
+  EXPECT_NEAR(answer->tc1, RemoteAt(now_), 1e5);
+  EXPECT_EQ(answer->target_system, 1);
+}
+
+TEST_F(AutopilotTest, KnowsTheClockRoughlyWithoutTimesync) {
+  answers_timesync_ = false;
+  Start();
+  for (int i = 0; i < 800; ++i) {
+    Pass(0.01, i % 100 == 0);
+    if (i % 2 == 0) SayPose();
+  }
+  EXPECT_GT(poses_.size(), 100u);
+  EXPECT_EQ(EventsOf(AutopilotEventKind::kNoTimeSync), 1);
+}
+
+TEST_F(AutopilotTest, NoticesThatItStartedAgain) {
+  Start();
+  Pass(3);
+  SayPose();
+  boot_ = now_ - milliseconds(1500);
+  Pass(1);
+  EXPECT_EQ(EventsOf(AutopilotEventKind::kRestarted), 1);
+  EXPECT_EQ(autopilot_->restarts(), 1);
+  Pass(1);
+  poses_.clear();
+  SayPose();
+  ASSERT_EQ(poses_.size(), 1u);
+  EXPECT_NEAR(ToSeconds(poses_[0].time - now_), 0.1, 0.002);
+  EXPECT_EQ(autopilot_->restarts(), 1);
+}
+
+TEST_F(AutopilotTest, NoticesByItsStampsThatItStartedAgain) {
+  Start();
+  Pass(3);
+  SayPose();
+  answers_timesync_ = false;
+  boot_ = now_ - milliseconds(1500);
+  for (int i = 0; i < 5; ++i) {
+    now_ += milliseconds(20);
+    SayPose();
+  }
+  EXPECT_EQ(autopilot_->restarts(), 1);
+}
+
+TEST_F(AutopilotTest, IgnoresAMessageFromThePast) {
+  Start();
+  Pass(1);
+  SayPose();
+  poses_.clear();
+  Say(AttitudeAt(BootMs() - 500));
+  Say(AttitudeAt(BootMs() - 50000));
+  EXPECT_TRUE(poses_.empty());
+  EXPECT_EQ(autopilot_->counters().backwards, 2u);
+  EXPECT_THAT(TextOfEvent(AutopilotEventKind::kTimeBackwards),
+              HasSubstr("older than the one before"));
+  EXPECT_EQ(EventsOf(AutopilotEventKind::kTimeBackwards), 1);
+  EXPECT_EQ(autopilot_->restarts(), 0);
+}
+
+TEST_F(AutopilotTest, IgnoresWhatIsNotFinite) {
+  Start();
+  Pass(1);
+  SayPose();
+  poses_.clear();
+  mavlink::AttitudeQuaternion attitude = AttitudeAt(BootMs() + 120);
+  attitude.q2 = std::numeric_limits<float>::quiet_NaN();
+  Say(attitude);
+  mavlink::Attitude euler;
+  euler.time_boot_ms = BootMs() + 130;
+  euler.roll = std::numeric_limits<float>::quiet_NaN();
+  Say(euler);
+  EXPECT_TRUE(poses_.empty());
+  EXPECT_EQ(autopilot_->counters().not_finite, 2u);
+  EXPECT_EQ(EventsOf(AutopilotEventKind::kNotFinite), 1);
+}
+
+TEST_F(AutopilotTest, IgnoresOthers) {
+  Start();
+  Pass(1);
+  Say(mavlink::Heartbeat{2, 12, 0, 0, 4, 3}, 7, 1);
+  EXPECT_EQ(autopilot_->kind(), AutopilotKind::kArduPilot);
+  EXPECT_THAT(TextOfEvent(AutopilotEventKind::kOtherAutopilot), HasSubstr("system 7 component 1"));
+  SayPose();
+  poses_.clear();
+  Say(AttitudeAt(BootMs() + 200), 7, 1);
+  EXPECT_TRUE(poses_.empty());
+  EXPECT_GT(autopilot_->counters().other_systems, 0u);
+  Say(mavlink::LandingTarget{}, 1, 1);
+  Say(mavlink::LandingTarget{}, 1, 1);
+  EXPECT_EQ(autopilot_->counters().target_echoes, 2u);
+  EXPECT_EQ(EventsOf(AutopilotEventKind::kTargetEcho), 1);
+}
+
+TEST_F(AutopilotTest, TellsThatSomebodyElseHasItsIds) {
+  Start();
+  Pass(1);
+  Say(mavlink::Heartbeat{18, 8, 0, 0, 4, 3}, 1, 191);
+  EXPECT_THAT(TextOfEvent(AutopilotEventKind::kIdClash),
+              HasSubstr("somebody else sends as system 1 component 191"));
+}
+
+TEST_F(AutopilotTest, TellsThatItsOwnIdsAreTheAutopilots) {
+  ConnectionOptions options;
+  options.component_id = 1;
+  Start({}, options);
+  SayHeartbeat();
+  EXPECT_THAT(TextOfEvent(AutopilotEventKind::kOwnIdIsAutopilots),
+              HasSubstr("system 1 component 1 is the autopilot itself"));
+}
+
+TEST_F(AutopilotTest, TellsThatItIsAwayAndBack) {
+  Start();
+  Pass(1);
+  Pass(4, false);
+  EXPECT_FALSE(autopilot_->is_here());
+  EXPECT_EQ(EventsOf(AutopilotEventKind::kAway), 1);
+  SayHeartbeat();
+  EXPECT_TRUE(autopilot_->is_here());
+  EXPECT_EQ(EventsOf(AutopilotEventKind::kBack), 1);
+}
+
+TEST_F(AutopilotTest, KnowsHowItsVehicleIs) {
+  Start();
+  EXPECT_FALSE(autopilot_->is_position_good(now_));
+  Say(mavlink::Heartbeat{mavlink::kTypeSurfaceBoat, mavlink::kAutopilotArduPilot, 0, 0, 4, 3});
+  EXPECT_FALSE(autopilot_->is_multicopter());
+  EXPECT_STREQ(VehicleName(autopilot_->vehicle_type()), "a boat");
+  Pass(1);
+  EXPECT_TRUE(autopilot_->is_multicopter());
+  EXPECT_EQ(intervals_us_[mavlink::EkfStatusReport::kId], 500000);
+  mavlink::SysStatus system;
+  system.voltage_battery = 15200;
+  system.current_battery = -1;
+  system.battery_remaining = 41;
+  Say(system);
+  EXPECT_NEAR(*autopilot_->battery()->voltage_v, 15.2, 1e-9);
+  EXPECT_FALSE(autopilot_->battery()->current_a);
+  EXPECT_NEAR(*autopilot_->battery()->remaining, 0.41, 1e-9);
+  mavlink::HomePosition home;
+  home.latitude = 5;
+  home.altitude = 584000;
+  Say(home);
+  EXPECT_EQ(autopilot_->home()->altitude_m, 584);
+  Say(mavlink::Heartbeat{mavlink::kTypeQuadrotor, kind_, 0, mode_, mavlink::kStateCritical, 3});
+  EXPECT_TRUE(autopilot_->is_in_failsafe());
+  EXPECT_EQ(EventsOf(AutopilotEventKind::kFailsafe), 1);
+}
+
+TEST_F(AutopilotTest, KnowsWhetherItsEstimateIsGood) {
+  Start();
+  Pass(1);
+  mavlink::EkfStatusReport report;
+  report.flags = 831;  // as ArduPilot tells it in flight
+  Say(report);
+  EXPECT_EQ(autopilot_->is_position_good(now_), true);
+  report.flags = mavlink::kEkfUninitialized;
+  Say(report);
+  EXPECT_EQ(autopilot_->is_position_good(now_), false);
+  report.flags = 167;  // constant position: no GNSS
+  Say(report);
+  EXPECT_EQ(autopilot_->is_position_good(now_), false);
+  EXPECT_FALSE(autopilot_->is_position_good(now_ + std::chrono::seconds(4)));
+  mavlink::EstimatorStatus status;
+  status.flags = 831;
+  Say(status);
+  EXPECT_EQ(autopilot_->is_position_good(now_), true);
+}
+
+TEST_F(AutopilotTest, KnowsVersionLandedStateRangeAndTexts) {
+  Start();
+  Pass(1);
+  mavlink::AutopilotVersion version;
+  version.flight_sw_version = 4 << 24 | 5 << 16 | 7 << 8;
+  Say(version);
+  EXPECT_EQ(autopilot_->version()->minor, 5);
+  Say(mavlink::ExtendedSysState{0, mavlink::kLandedInAir});
+  EXPECT_EQ(autopilot_->landed_state(), LandedState::kInAir);
+  mavlink::DistanceSensor range{BootMs(), 20, 1000, 345, 0, 0, mavlink::kOrientationDown};
+  Say(range);
+  EXPECT_NEAR(autopilot_->range()->distance_m, 3.45, 1e-9);
+  mavlink::Statustext text;
+  SetText("PrecLand: Target Found", text.text);
+  Say(text);
+  EXPECT_THAT(texts_, testing::ElementsAre("PrecLand: Target Found"));
+}
+
+TEST_F(AutopilotTest, TellsTheTruePoseOfASimulation) {
+  AutopilotOptions options;
+  options.wants_true_pose = true;
+  Start(options);
+  Pass(1);
+  EXPECT_EQ(intervals_us_[mavlink::SimState::kId], 10000);
+  const GlobalPosition origin{-353632621, 1491652374, 584};
+  Say(mavlink::GpsGlobalOrigin{origin.latitude_e7, origin.longitude_e7, 584000});
+  const GlobalPosition place = GlobalFromLocal(AutopilotKind::kArduPilot, origin, {12.5, -7.25, 4});
+  mavlink::SimState state;
+  state.q1 = 1;
+  state.lat_int = place.latitude_e7;
+  state.lon_int = place.longitude_e7;
+  state.alt = 588;
+  Say(state);
+  ASSERT_EQ(true_poses_.size(), 1u);
+  EXPECT_LT((true_poses_[0].world_from_body.translation - Eigen::Vector3d(12.5, -7.25, 4)).norm(),
+            0.01);
+  EXPECT_NEAR(ToSeconds(now_ - true_poses_[0].time), 0.002, 0.001);
+}
+
+// It has no time of its own, and a link that delays as it likes says little of it.
+TEST_F(AutopilotTest, TheTruePoseOfASimulationIsOfTheAttitudesAroundIt) {
+  AutopilotOptions options;
+  options.wants_true_pose = true;
+  Start(options);
+  Pass(1);
+  Say(mavlink::GpsGlobalOrigin{-353632621, 1491652374, 584000});
+  SayPose();
+  ASSERT_EQ(poses_.size(), 1u);
+  now_ += milliseconds(500);  // on its way
+  mavlink::SimState state;
+  state.q1 = 1;
+  state.lat_int = -353632621;
+  state.lon_int = 1491652374;
+  Say(state);
+  ASSERT_EQ(true_poses_.size(), 1u);
+  EXPECT_GE(true_poses_[0].time, poses_[0].time);
+  EXPECT_LE(true_poses_[0].time, poses_[0].time + milliseconds(10));
+}
+
+// PX4's heartbeat comes once a second, whatever it is asked.
+TEST_F(AutopilotTest, KnowsTheModeOfPx4BeforeTheNextHeartbeat) {
+  kind_ = mavlink::kAutopilotPx4;
+  mode_ = Px4CustomMode(6, 0);
+  AutopilotOptions options;
+  options.mode_rate_hz = 20;
+  Start(options);
+  Pass(1.5);
+  EXPECT_TRUE(autopilot_->is_guided_mode());
+  EXPECT_EQ(intervals_us_[mavlink::CurrentMode::kId], 50000);
+  mavlink::CurrentMode changed;
+  changed.custom_mode = Px4CustomMode(3, 0);
+  Say(changed);
+  EXPECT_FALSE(autopilot_->is_guided_mode());
+  EXPECT_EQ(autopilot_->mode_told(), now_);
+  EXPECT_EQ(EventsOf(AutopilotEventKind::kModeChanged), 1);
+}
+
+TEST_F(AutopilotTest, AnnouncesLongTextsInPieces) {
+  Start();
+  autopilot_->Announce(mavlink::kSeverityInfo, "Kestrel: target found");
+  auto text = last_heard_[mavlink::Statustext::kId].As<mavlink::Statustext>();
+  EXPECT_EQ(TextOf(text->text), "Kestrel: target found");
+  EXPECT_EQ(text->id, 0);
+  autopilot_->Announce(mavlink::kSeverityInfo, std::string(60, 'x'));
+  text = last_heard_[mavlink::Statustext::kId].As<mavlink::Statustext>();
+  EXPECT_EQ(TextOf(text->text), std::string(10, 'x'));
+  EXPECT_EQ(text->chunk_seq, 1);
+  EXPECT_NE(text->id, 0);
+}
+
+TEST_F(AutopilotTest, CountsLostPackets) {
+  Start();
+  Pass(1);
+  mavlink::PacketWriter& writer = writers_.at({1, 1});
+  writer.Write(mavlink::Heartbeat{});
+  writer.Write(mavlink::Heartbeat{});
+  SayHeartbeat();
+  EXPECT_EQ(autopilot_->counters().lost_packets, 2u);
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kestrel/comms/mavlink/packet.h"
+#include "kestrel/comms/mavlink/packet_parser.h"
+#include "kestrel/comms/mavlink/packet_writer.h"
+#include "kestrel/comms/mavlink/signing.h"
+#include "kestrel/comms/mavlink/timestamp_file.h"
+#include "kestrel/comms/mavlink/transport.h"
+#include "kestrel/core/base/time.h"
+
+namespace kestrel {
+
+struct ConnectionOptions {
+  // Who this program is: 0 for the system is the autopilot's own, 1 until that is heard.
+  int system_id = 0;
+  int component_id = 191;
+  // File with the key that packets are signed with, and without which none is believed; empty: not
+  // signed. What was signed last is kept in a file of this name and ".timestamp".
+  std::string signing_key;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("system_id", self.system_id, "", "this program's system, 0: the autopilot's, to 255");
+    visitor("component_id", self.component_id, "",
+            "this program's component, 1 to 255; 191 is an on-board computer");
+    visitor("signing_key", self.signing_key, "",
+            "file with the key of signed packets (mode 0600); empty: not signed");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// What went over a connection, since it was made.
+struct ConnectionCounters {
+  std::uint64_t received = 0;          // packets that were handed on
+  std::uint64_t sent = 0;              // packets that the system took
+  std::uint64_t unsent = 0;            // that it did not: line full, or nobody there
+  std::uint64_t bad_checksums = 0;     // frames that were damaged
+  std::uint64_t garbage_bytes = 0;     // in no packet
+  std::uint64_t unsigned_packets = 0;  // refused by a signed connection, as are the next two
+  std::uint64_t forged_packets = 0;
+  std::uint64_t replayed_packets = 0;
+};
+
+// A line to an autopilot that carries messages: transport, parser, writer and signing in one. It
+// connects again by itself. One thread calls Receive; Send may be called by others meanwhile.
+// Neither waits for the other end, throws, or allocates.
+class Connection {
+ public:
+  using Handler = std::function<void(const mavlink::Packet&, Time received)>;
+  // Sees every frame that goes over the line, in the thread that sends or receives it.
+  using Tap = std::function<void(std::span<const std::uint8_t> frame, Time time)>;
+
+  // Throws InputError as ParseLinkUrl, OpenTransport and ReadSigningKey do.
+  Connection(const std::string& url, const ConnectionOptions& options, Tap tap = {});
+
+  // False when it was not sent: see ConnectionCounters::unsent.
+  template <class Message>
+  bool Send(const Message& message) {
+    const std::lock_guard lock(send_mutex_);
+    return SendFrame(writer_.Write(message, signing_.has_value()));
+  }
+
+  // Waits at most 'timeout' for the other end to say something, and hands 'handler' the packets
+  // that are there. However much comes in, it returns soon after 'timeout'.
+  void Receive(Duration timeout, const Handler& handler);
+
+  // Who this program is from now on (see ConnectionOptions::system_id).
+  void SetSystem(std::uint8_t system);
+  bool takes_system_of_autopilot() const { return takes_system_; }
+  std::uint8_t system() const;
+  std::uint8_t component() const { return component_; }
+
+  bool is_connected() const { return transport_->is_connected(); }
+  const std::string& url() const { return url_; }
+  ConnectionCounters counters() const;
+
+ private:
+  bool SendFrame(std::span<const std::uint8_t> frame);
+  bool IsTrusted(const mavlink::Packet& packet);
+  bool ReceiveOnce(Duration timeout, const Handler& handler);
+
+  std::string url_;
+  bool takes_system_;
+  std::uint8_t component_;
+  std::unique_ptr<Transport> transport_;
+  Tap tap_;
+  std::vector<std::uint8_t> buffer_;
+  mavlink::PacketParser parser_;
+  mutable std::mutex send_mutex_;  // of the writer and the signing
+  mavlink::PacketWriter writer_;
+  std::unique_ptr<TimestampFile> timestamp_file_;
+  std::optional<mavlink::Signing> signing_;
+
+  std::atomic<std::uint64_t> received_ = 0;
+  std::atomic<std::uint64_t> sent_ = 0;
+  std::atomic<std::uint64_t> unsent_ = 0;
+  std::atomic<std::uint64_t> bad_checksums_ = 0;
+  std::atomic<std::uint64_t> garbage_bytes_ = 0;
+  std::atomic<std::uint64_t> unsigned_packets_ = 0;
+  std::atomic<std::uint64_t> forged_packets_ = 0;
+  std::atomic<std::uint64_t> replayed_packets_ = 0;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/comms/mavlink/message_table.h"
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+#include "kestrel/comms/mavlink/messages.h"
+
+namespace kestrel::mavlink {
+namespace {
+
+template <class... Messages>
+constexpr auto MakeTable() {
+  return std::array<MessageInfo, sizeof...(Messages)>{
+      MessageInfo{Messages::kId, Messages::kName, &kLayout<Messages>}...};
+}
+
+constexpr auto kTable =
+    MakeTable<Heartbeat, SysStatus, SystemTime, SetMode, ParamRequestRead, ParamRequestList,
+              ParamValue, ParamSet, Attitude, AttitudeQuaternion, LocalPositionNed,
+              GlobalPositionInt, GpsGlobalOrigin, RcChannels, RequestDataStream, CommandLong,
+              CommandAck, SetPositionTargetLocalNed, SimState, Timesync, HilStateQuaternion,
+              DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget, EkfStatusReport,
+              EstimatorStatus, HomePosition, MessageInterval, ExtendedSysState, Statustext,
+              CurrentMode, TargetRelative>();
+
+constexpr bool IsSortedById() {
+  return std::is_sorted(kTable.begin(), kTable.end(),
+                        [](const auto& a, const auto& b) { return a.id < b.id; });
+}
+static_assert(IsSortedById());
+
+// What the autopilots' own headers, generated from the XML, have: a description that differs from
+// theirs does not compile.
+template <class Message>
+constexpr bool Is(std::uint8_t crc_extra, std::size_t base_length, std::size_t full_length) {
+  constexpr const MessageLayout& layout = kLayout<Message>;
+  return layout.crc_extra == crc_extra && layout.base_length == base_length &&
+         layout.full_length == full_length;
+}
+static_assert(Is<Heartbeat>(50, 9, 9));
+static_assert(Is<SysStatus>(124, 31, 43));
+static_assert(Is<SystemTime>(137, 12, 12));
+static_assert(Is<SetMode>(89, 6, 6));
+static_assert(Is<ParamRequestRead>(214, 20, 20));
+static_assert(Is<ParamRequestList>(159, 2, 2));
+static_assert(Is<ParamValue>(220, 25, 25));
+static_assert(Is<ParamSet>(168, 23, 23));
+static_assert(Is<Attitude>(39, 28, 28));
+static_assert(Is<AttitudeQuaternion>(246, 32, 48));
+static_assert(Is<LocalPositionNed>(185, 28, 28));
+static_assert(Is<GlobalPositionInt>(104, 28, 28));
+static_assert(Is<GpsGlobalOrigin>(39, 12, 20));
+static_assert(Is<RcChannels>(118, 42, 42));
+static_assert(Is<RequestDataStream>(148, 6, 6));
+static_assert(Is<CommandLong>(152, 33, 33));
+static_assert(Is<CommandAck>(143, 3, 10));
+static_assert(Is<SetPositionTargetLocalNed>(143, 53, 53));
+static_assert(Is<SimState>(32, 84, 92));
+static_assert(Is<Timesync>(34, 16, 18));
+static_assert(Is<HilStateQuaternion>(4, 64, 64));
+static_assert(Is<DistanceSensor>(85, 14, 39));
+static_assert(Is<FollowTarget>(127, 93, 93));
+static_assert(Is<AutopilotVersion>(178, 60, 78));
+static_assert(Is<LandingTarget>(200, 30, 60));
+static_assert(Is<EkfStatusReport>(71, 22, 26));
+static_assert(Is<EstimatorStatus>(163, 42, 42));
+static_assert(Is<HomePosition>(104, 52, 60));
+static_assert(Is<MessageInterval>(95, 6, 6));
+static_assert(Is<ExtendedSysState>(130, 2, 2));
+static_assert(Is<Statustext>(83, 51, 54));
+static_assert(Is<CurrentMode>(193, 9, 9));
+static_assert(Is<TargetRelative>(28, 71, 71));
+
+}  // namespace
+
+std::span<const MessageInfo> KnownMessages() { return kTable; }
+
+const MessageInfo* FindMessage(std::uint32_t id) {
+  const auto* found = std::lower_bound(
+      kTable.begin(), kTable.end(), id,
+      [](const MessageInfo& info, std::uint32_t wanted) { return info.id < wanted; });
+  return found != kTable.end() && found->id == id ? found : nullptr;
+}
+
+}  // namespace kestrel::mavlink

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/comms/mavlink/set_point_message.h"
+
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+
+namespace kestrel {
+namespace {
+
+TEST(SetPointMessageTest, IsInLocalNed) {
+  SetPoint set_point;
+  set_point.velocity = {1, 2, 3};
+  set_point.acceleration = {0.1, 0.2, 0.3};
+  set_point.yaw = 0;  // east
+  const auto message = SetPointMessage(set_point, AutopilotKind::kArduPilot, 7, 1, 1234);
+  EXPECT_EQ(message.target_system, 7);
+  EXPECT_EQ(message.target_component, 1);
+  EXPECT_EQ(message.time_boot_ms, 1234u);
+  EXPECT_EQ(message.coordinate_frame, mavlink::kFrameLocalNed);
+  EXPECT_EQ(message.type_mask, 0x807) << "velocity, acceleration and yaw";
+  EXPECT_FLOAT_EQ(message.vx, 2);
+  EXPECT_FLOAT_EQ(message.vy, 1);
+  EXPECT_FLOAT_EQ(message.vz, -3);
+  EXPECT_FLOAT_EQ(message.afx, 0.2f);
+  EXPECT_FLOAT_EQ(message.afy, 0.1f);
+  EXPECT_FLOAT_EQ(message.afz, -0.3f);
+  EXPECT_FLOAT_EQ(message.yaw, std::numbers::pi / 2);
+}
+
+TEST(SetPointMessageTest, TheNoseStaysWithoutAYaw) {
+  EXPECT_EQ(SetPointMessage({}, AutopilotKind::kPx4, 1, 1, 0).type_mask, 0xc07);
+  const auto message = SetPointMessage({}, AutopilotKind::kArduPilot, 1, 1, 0);
+  EXPECT_EQ(message.type_mask, 0x407) << "else ArduPilot turns it along the velocity";
+  EXPECT_EQ(message.yaw_rate, 0);
+}
+
+TEST(SetPointMessageTest, WhatIsNotFiniteIsNotSent) {
+  int sent = 0;
+  Connection connection("udpout://127.0.0.1:9", {}, [&](auto, Time) { ++sent; });
+  const Autopilot autopilot({}, &connection, {});
+  SetPoint set_point;
+  EXPECT_TRUE(SendSetPoint(set_point, autopilot, Time(), &connection));
+  set_point.acceleration.y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(SendSetPoint(set_point, autopilot, Time(), &connection));
+  EXPECT_EQ(sent, 1);
+}
+
+}  // namespace
+}  // namespace kestrel

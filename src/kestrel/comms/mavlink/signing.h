@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "kestrel/comms/mavlink/packet.h"
+
+namespace kestrel::mavlink {
+
+using SigningKey = std::array<std::uint8_t, 32>;
+
+// The key in a file: 32 bytes, or 64 hexadecimal digits. Throws InputError when there is no such
+// file, when others than its owner may read or write it, or when it holds no key; a key of zeros is
+// none, because it means "do not sign" to autopilots.
+SigningKey ReadSigningKey(const std::string& path);
+
+// Signs packets and judges those of others, as mavlink.io/en/guide/message_signing says. A signed
+// packet carries a timestamp that only ever rises, so that nobody can play it again. Neither throws
+// nor allocates after construction; not thread-safe.
+class Signing {
+ public:
+  // Ticks of 10 us since 2015.
+  using Timestamp = std::uint64_t;
+  static Timestamp TimestampOf(std::uint64_t unix_ns);
+
+  // 'stored': the last timestamp of the run before; this one's are later, even on a computer whose
+  // clock does not go while it is off.
+  Signing(const SigningKey& key, Timestamp stored);
+
+  // Puts the signature behind a frame that says it will be signed; the frame with it. 'memory'
+  // begins with the frame. 'unix_ns': what the clock of the computer says.
+  std::span<const std::uint8_t> Sign(std::span<const std::uint8_t> frame,
+                                     std::span<std::uint8_t, kMaxFrame> memory,
+                                     std::uint64_t unix_ns);
+
+  enum class Verdict {
+    kGood,
+    kUnsigned,
+    kForged,    // another key, or changed on its way
+    kReplayed,  // not later than the last one of the same sender, or a minute behind this clock
+  };
+  Verdict Check(const Packet& packet, std::uint64_t unix_ns);
+
+  // The latest of all: what the next run has to begin after.
+  Timestamp timestamp() const { return timestamp_; }
+
+ private:
+  using Signature = std::array<std::uint8_t, 6>;
+  struct Stream {
+    std::uint8_t system = 0;
+    std::uint8_t component = 0;
+    std::uint8_t link = 0;
+    Timestamp last = 0;
+  };
+
+  Signature SignatureOf(std::span<const std::uint8_t> signed_bytes) const;
+  bool IsLater(const Packet& packet, std::uint8_t link, Timestamp timestamp);
+
+  SigningKey key_;
+  Timestamp timestamp_;
+  std::array<Stream, 64> streams_;
+  std::size_t stream_count_ = 0;
+};
+
+}  // namespace kestrel::mavlink

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <mutex>
+#include <sys/types.h>
+
+#include "kestrel/comms/mavlink/file_descriptor.h"
+#include "kestrel/comms/mavlink/packet.h"
+#include "kestrel/comms/mavlink/transport.h"
+
+namespace kestrel {
+
+// Lines without datagrams: what they have in common. How one is opened its heirs say.
+class StreamTransport : public Transport {
+ public:
+  std::size_t Receive(Duration timeout, std::span<std::uint8_t> buffer) override;
+  bool Send(std::span<const std::uint8_t> frame) override;
+  bool is_connected() const override { return is_connected_; }
+  bool has_datagrams() const override { return false; }
+
+ protected:
+  struct Line {
+    FileDescriptor file;
+    bool is_connecting = false;  // it is ready as soon as it can be written to
+  };
+
+  // A line, or one without a file where that is not possible now. Does not block.
+  virtual Line Open() = 0;
+  // Where new lines arrive by themselves; -1: they have to be opened again and again.
+  virtual int listener() const { return -1; }
+  // As write() of the system, but never with a signal.
+  virtual ssize_t Write(int file, std::span<const std::uint8_t> bytes);
+
+  void Use(Line line);
+
+ private:
+  void Reopen(Duration timeout);
+  void AwaitConnection(Duration timeout);
+  void Replace();
+  void Close();
+  bool Flush();
+
+  FileDescriptor file_;  // changed by the thread that receives only, under the lock
+  std::atomic<bool> is_connected_ = false;
+  std::atomic<bool> is_broken_ = false;  // a sender found out
+  Time heard_{};
+  Time next_attempt_{};
+  Duration backoff_ = kFirstBackoff;
+  std::mutex mutex_;  // of the file against senders, and of what follows
+  // The part of a frame that the system did not take: the next frame goes behind it.
+  std::array<std::uint8_t, mavlink::kMaxFrame> rest_{};
+  std::size_t rest_begin_ = 0;
+  std::size_t rest_end_ = 0;
+
+  static constexpr Duration kFirstBackoff = std::chrono::milliseconds(100);
+};
+
+}  // namespace kestrel

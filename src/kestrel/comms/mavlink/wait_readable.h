@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <ctime>
+#include <poll.h>
+#include <span>
+
+#include "kestrel/core/base/time.h"
+
+namespace kestrel {
+
+// Waits at most 'timeout' until something happens at one of the files; how many it happened at.
+inline int WaitForAny(std::span<pollfd> files, Duration timeout) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  const std::int64_t ns = timeout.count() > 0 ? timeout.count() : 0;
+  const timespec time = {static_cast<std::time_t>(ns / kSecond), static_cast<long>(ns % kSecond)};
+  return ppoll(files.data(), files.size(), &time, nullptr);
+}
+
+// Whether there is something to read within 'timeout'.
+inline bool WaitReadable(int file, Duration timeout) {
+  pollfd entry = {file, POLLIN, 0};
+  return WaitForAny({&entry, 1}, timeout) > 0;
+}
+
+}  // namespace kestrel

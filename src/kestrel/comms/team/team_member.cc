@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/comms/team/team_member.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/core/base/error.h"
+
+namespace kestrel {
+namespace {
+
+// Of objects in one message: with what else is in it, it is one frame of most radios. Of two frames
+// one would be lost nearly twice as often.
+constexpr std::size_t kPartBytes = 900;
+
+bool IsSame(const MappedObject& a, const MappedObject& b) {
+  const Time now = std::max({a.time, b.time, a.last_seen, b.last_seen});
+  return EncodeObject(a, now) == EncodeObject(b, now);
+}
+
+bool HaveSameIds(const Contents& a, const Contents& b) {
+  return std::equal(a.objects.begin(), a.objects.end(), b.objects.begin(), b.objects.end(),
+                    [](const auto& x, const auto& y) { return x.first == y.first; });
+}
+
+// Whether a beat comes after another: the count begins again after its greatest number.
+bool IsLater(std::uint32_t beat, std::uint32_t other) {
+  return static_cast<std::int32_t>(beat - other) > 0;
+}
+
+// Whether the message says of the part what the part does not say of itself.
+bool Contradicts(const PartMessage& message, const TeamMap::Part& part) {
+  if (message.contents.version > part.contents.version) return true;
+  if (message.contents.version == part.contents.version &&
+      message.contents.objects != part.contents.objects) {
+    return true;
+  }
+  return std::any_of(message.objects.begin(), message.objects.end(), [&](const auto& object) {
+    const auto own = part.objects.find(object.id);
+    return own != part.objects.end() &&
+           own->second.version == message.contents.objects.at(object.id) &&
+           !IsSame(object, own->second.object);
+  });
+}
+
+}  // namespace
+
+TeamMember::TeamMember(const UavKey& self, const TeamOptions& options, std::optional<TeamKey> key)
+    : self_(self), options_(options), key_(key), allowance_(options.rate_bytes_per_s) {
+  const std::vector<std::string> violations = options.Validate();
+  if (!violations.empty()) {
+    throw InputError(fmt::format("team options: {}", fmt::join(violations, "; ")));
+  }
+  if (!IsUavName(self.name)) {
+    throw InputError(fmt::format(
+        "'{}' is no name of a UAV: expected 1 to 32 letters, digits, '_', '-' and '.'", self.name));
+  }
+  peers_[self_];
+}
+
+void TeamMember::Tell(std::vector<MappedObject> objects, Time now) {
+  if (objects.size() > kMaxToldObjects) {
+    std::stable_sort(objects.begin(), objects.end(),
+                     [](const auto& a, const auto& b) { return a.detections > b.detections; });
+    objects.resize(kMaxToldObjects);
+  }
+  untold_ = {std::move(objects), now};
+}
+
+void TeamMember::SetClaim(const std::optional<Claim>& claim) {
+  std::optional<Claim> told = claim;
+  if (told) told->bid = static_cast<float>(told->bid);
+  if (told == peers_[self_].claim) return;
+  peers_[self_].claim = told;
+  has_news_ = true;
+}
+
+void TeamMember::SetDone() {
+  peers_[self_].is_done = true;
+  has_news_ = true;
+}
+
+void TeamMember::Hear(std::span<const std::uint8_t> bytes, Time local) {
+  const auto content = key_ ? CheckSignature(*key_, bytes) : bytes;
+  const auto message = content ? ParseMessage(*content) : std::nullopt;
+  if (!message) {
+    ++refused_;
+    Warn(key_ ? "messages are refused that are not signed by the team's key"
+              : "messages are refused that are damaged, or signed with a key that is not given");
+    return;
+  }
+  if (message->sender.name == self_.name && message->sender != self_) {
+    // One that has started again may still be heard from its life before.
+    const Time since = twins_.try_emplace(message->sender, local).first->second;
+    if (twins_.size() > kMaxUavs) twins_.clear();
+    constexpr Duration kEcho = std::chrono::seconds(2);
+    if (local - since > kEcho) {
+      Warn(fmt::format("another UAV is called '{}': give each a name of its own", self_.name));
+    }
+  }
+  if (const auto* digest = std::get_if<Digest>(&message->body)) {
+    HearDigest(message->sender, *digest, local);
+  } else {
+    HearPart(std::get<PartMessage>(message->body), local);
+  }
+}
+
+void TeamMember::HearPart(const PartMessage& part, Time local) {
+  if (part.uav == self_) {
+    Defend(part, local);
+  } else if (Know(part.uav) != nullptr) {
+    map_.Merge(part, local);
+  }
+}
+
+// Somebody tells another map under this UAV's name. Only a version above it makes all forget it.
+void TeamMember::Defend(const PartMessage& part, Time local) {
+  const TeamMap::Part* own = map_.Find(self_);
+  const TeamMap::Part nothing;
+  if (own == nullptr) own = &nothing;
+  if (!Contradicts(part, *own)) return;
+  Warn("somebody tells a map under this UAV's name: use a key that the team shares");
+  const std::uint64_t version = std::max(part.contents.version, own->contents.version) + 1;
+  if (version > kMaxVersion) return;
+  PartMessage renewed{self_, local - own->told_at, {version, own->contents.now, {}}, {}};
+  for (const auto& [id, entry] : own->objects) {
+    renewed.contents.objects[id] = version;
+    renewed.objects.push_back(entry.object);
+  }
+  MergeOwn(renewed, local);
+}
+
+void TeamMember::HearDigest(const UavKey& sender, const Digest& digest, Time local) {
+  if (sender == self_) return;
+  std::map<UavKey, const DigestLine*> lines;
+  for (const DigestLine& line : digest) {
+    lines[line.uav] = &line;
+    HearLine(line, local);
+  }
+  for (const auto& [uav, part] : map_.parts()) {
+    const auto line = lines.find(uav);
+    Answer(sender, line == lines.end() ? DigestLine{uav, {}, {}, {}, {}, {}, {}} : *line->second,
+           local);
+  }
+}
+
+void TeamMember::HearLine(const DigestLine& line, Time local) {
+  Peer* const peer = Know(line.uav);
+  if (peer == nullptr) return;
+  if (line.uav == self_) {
+    if (IsLater(line.beat, peer->beat)) peer->beat = line.beat;  // forged: stay ahead of it
+    return;
+  }
+  peer->newest = std::max(peer->newest, line.version);
+  if (peer->beat_at && !IsLater(line.beat, peer->beat)) return;
+  peer->beat = line.beat;
+  peer->beat_at = local;
+  peer->claim = line.claim;
+  peer->is_done = line.is_done;
+}
+
+// Queues what the sender of the line lacks, if it is this UAV's turn.
+void TeamMember::Answer(const UavKey& sender, const DigestLine& line, Time local) {
+  const TeamMap::Part& part = *map_.Find(line.uav);
+  if (line.version >= part.contents.version && line.missing.empty()) return;
+  lacked_ = local;
+  if (line.uav == sender || RankAfter(line.uav, sender, local) > line.tries) return;
+  const std::set<std::int64_t> missing(line.missing.begin(), line.missing.end());
+  // Who still lacks it after so many digests does not hear the one that told it.
+  constexpr int kPatience = 8;
+  const Duration resend = DurationFromSeconds(line.tries > kPatience ? 0 : options_.resend_s);
+  bool is_on_air = false;
+  for (const auto& [id, entry] : part.objects) {
+    if (!part.Has(id) || (entry.version <= line.version && !missing.contains(id))) continue;
+    if (local - entry.on_air < resend) {
+      is_on_air = true;
+    } else {
+      queue_.insert({line.uav, id});
+    }
+  }
+  // With an object come the contents.
+  if (line.version < part.contents.version && !is_on_air) queue_.insert({line.uav, kContents});
+}
+
+// How many UAVs answer before this one when somebody lacks a part of the owner's map.
+int TeamMember::RankAfter(const UavKey& owner, const UavKey& asker, Time local) const {
+  if (owner == self_) return 0;
+  const auto before = peers_.lower_bound(self_);
+  return 1 + static_cast<int>(std::count_if(peers_.begin(), before, [&](const auto& peer) {
+           return peer.first != owner && peer.first != asker && IsAlive(peer.first, local);
+         }));
+}
+
+// Null when there are as many as there can be.
+TeamMember::Peer* TeamMember::Know(const UavKey& uav) {
+  if (peers_.size() >= kMaxUavs && !peers_.contains(uav)) return nullptr;
+  return &peers_[uav];
+}
+
+bool TeamMember::IsBehind(const UavKey& uav, const Peer& peer) const {
+  const TeamMap::Part* const part = map_.Find(uav);
+  if (part == nullptr) return peer.newest > 0;
+  return peer.newest > part->contents.version || !part->Missing(1).empty();
+}
+
+bool TeamMember::IsWhole() const {
+  return !untold_ && queue_.empty() &&
+         std::none_of(peers_.begin(), peers_.end(),
+                      [&](const auto& peer) { return IsBehind(peer.first, peer.second); });
+}
+
+bool TeamMember::IsAlive(const UavKey& uav, Time local) const {
+  if (uav == self_) return true;
+  const auto peer = peers_.find(uav);
+  return peer != peers_.end() && peer->second.beat_at &&
+         local - *peer->second.beat_at <= DurationFromSeconds(options_.silence_s);
+}
+
+std::vector<UavKey> TeamMember::Known() const {
+  std::vector<UavKey> known;
+  for (const auto& [uav, peer] : peers_) known.push_back(uav);
+  return known;
+}
+
+bool TeamMember::AreAllDone(Time local) const {
+  return std::all_of(peers_.begin(), peers_.end(), [&](const auto& peer) {
+    return peer.second.is_done || !IsAlive(peer.first, local);
+  });
+}
+
+std::optional<Claim> TeamMember::ClaimOf(const UavKey& uav, Time local) const {
+  return IsAlive(uav, local) ? peers_.at(uav).claim : std::nullopt;
+}
+
+void TeamMember::Tick(Time local, const Send& send) {
+  if (last_tick_) {
+    const double more = ToSeconds(local - *last_tick_) * options_.rate_bytes_per_s;
+    allowance_ = std::min(allowance_ + more, options_.rate_bytes_per_s);
+  }
+  last_tick_ = local;
+  const auto is_due = [&](const std::optional<Time>& last, double period_s) {
+    return !last || local - *last >= DurationFromSeconds(period_s);
+  };
+  if (untold_ && is_due(told_, options_.tell_period_s)) TellOwn(local);
+  if (allowance_ > 0 && (has_news_ || is_due(last_digest_, options_.digest_period_s))) {
+    SendDigest(local, send);
+  }
+  while (allowance_ > 0 && !queue_.empty()) SendQueued(local, send);
+}
+
+// A new version, with what has changed.
+void TeamMember::TellOwn(Time local) {
+  const TeamMap::Part* part = map_.Find(self_);
+  const TeamMap::Part nothing;
+  if (part == nullptr) part = &nothing;
+  const std::uint64_t version = part->contents.version + 1;
+  PartMessage own{self_, {}, {version, untold_->now, {}}, {}};
+  for (const MappedObject& object : untold_->objects) {
+    const auto told = AsTold(object, untold_->now);
+    if (!told) continue;
+    const auto held = part->objects.find(told->id);
+    const bool is_same = held != part->objects.end() && IsSame(*told, held->second.object);
+    own.contents.objects[told->id] = is_same ? held->second.version : version;
+    if (!is_same) own.objects.push_back(*told);
+  }
+  const bool has_changed = !own.objects.empty() || !HaveSameIds(own.contents, part->contents);
+  if (has_changed && version <= kMaxVersion) MergeOwn(own, local);
+  told_ = local;
+  untold_.reset();
+}
+
+void TeamMember::MergeOwn(const PartMessage& own, Time local) {
+  map_.Merge(own, local);
+  queue_.insert({self_, kContents});
+  for (const MappedObject& object : own.objects) queue_.insert({self_, object.id});
+}
+
+void TeamMember::SendDigest(Time local, const Send& send) {
+  Digest digest;
+  std::size_t room = kMaxMissing;
+  peers_[self_].beat += 1;
+  for (auto& [uav, peer] : peers_) {
+    const TeamMap::Part* const part = map_.Find(uav);
+    DigestLine line;
+    line.uav = uav;
+    line.beat = peer.beat;
+    if (part != nullptr) line.version = part->contents.version;
+    line.is_done = peer.is_done && !(uav == self_ && untold_);
+    line.claim = ClaimOf(uav, local);
+    if (part != nullptr) line.missing = part->Missing(room);
+    room -= line.missing.size();
+    peer.tries = IsBehind(uav, peer) ? std::min(peer.tries + 1, kMaxTries) : 0;
+    line.tries = peer.tries;
+    digest.push_back(std::move(line));
+  }
+  SendMessage({self_, std::move(digest)}, send);
+  last_digest_ = local;
+  has_news_ = false;
+}
+
+// One message with the contents of the UAV whose turn it is and the objects next in turn.
+void TeamMember::SendQueued(Time local, const Send& send) {
+  auto next = queue_.lower_bound(cursor_);
+  if (next == queue_.end()) next = queue_.begin();
+  const UavKey uav = next->uav;
+  const TeamMap::Part& part = *map_.Find(uav);
+  PartMessage message{uav, local - part.told_at, part.contents, {}};
+  std::size_t bytes = 0;
+  while (next != queue_.end() && next->uav == uav && bytes < kPartBytes) {
+    const auto entry = part.objects.find(next->id);
+    if (entry != part.objects.end() && part.Has(next->id)) {
+      message.objects.push_back(entry->second.object);
+      bytes += EncodeObject(entry->second.object, part.contents.now).size();
+    }
+    cursor_ = {uav, next->id + 1};
+    next = queue_.erase(next);
+  }
+  // The contents are in it.
+  queue_.erase({uav, kContents});
+  map_.Merge(message, local);  // it is on the air now
+  SendMessage({self_, std::move(message)}, send);
+}
+
+void TeamMember::SendMessage(const TeamMessage& message, const Send& send) {
+  std::vector<std::uint8_t> bytes = EncodeMessage(message);
+  if (key_) SignMessage(*key_, &bytes);
+  allowance_ -= static_cast<double>(bytes.size());
+  send(bytes);
+}
+
+std::vector<std::string> TeamMember::TakeWarnings() { return std::exchange(warnings_, {}); }
+
+void TeamMember::Warn(const std::string& warning) {
+  if (warned_.insert(warning).second) warnings_.push_back(warning);
+}
+
+}  // namespace kestrel

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/comms/team/team_view.h"
+
+#include <algorithm>
+
+#include "kestrel/vision/mapping/object_fusion.h"
+
+namespace kestrel {
+namespace {
+
+// What has to be added to times of the UAV's clock to get those of the clock that says 'now' at
+// 'local'.
+Duration ShiftOf(const TeamMap::Part& part, Time local, Time now) {
+  const Duration since_told = std::max(local - part.told_at, Duration::zero());
+  return now - since_told - part.contents.now;
+}
+
+// What may move in a UAV's map, at 'now' and in the common world.
+std::vector<MappedObject> MovingObjects(const TeamMap::Part& part, Duration shift, Time now,
+                                        const ObjectMotion& motion,
+                                        const WorldAlignment& common_from_world) {
+  std::vector<MappedObject> moving;
+  for (const auto& [id, entry] : part.objects) {
+    if (!entry.object.may_move) continue;
+    MappedObject& object = moving.emplace_back(entry.object);
+    for (Time* time : {&object.time, &object.first_seen, &object.last_seen}) *time += shift;
+    PredictObject(now, motion, &object);
+    MoveToWorld(common_from_world, &object);
+  }
+  return moving;
+}
+
+// Which objects of the view those of the UAV's map are; what stands is seen when they were.
+void Index(const UavKey& uav, const TeamMap::Part& part, Duration shift,
+           const std::vector<std::size_t>& standing, const std::vector<std::size_t>& moving,
+           TeamView* view) {
+  auto next_standing = standing.begin();
+  auto next_moving = moving.begin();
+  for (const auto& [id, entry] : part.objects) {
+    const std::size_t index = entry.object.may_move ? *next_moving++ : *next_standing++;
+    view->index.emplace_hint(view->index.end(), ObjectRef{uav, id}, index);
+    if (entry.object.may_move) continue;
+    MappedObject& object = view->objects[index];
+    object.first_seen = std::min(object.first_seen, entry.object.first_seen + shift);
+    object.last_seen = std::max(object.last_seen, entry.object.last_seen + shift);
+  }
+}
+
+// To each claimed object the one who has it.
+void FindHolders(const TeamMember& member, Time local, TeamView* view) {
+  view->holders.resize(view->objects.size());
+  std::vector<double> bids(view->objects.size());
+  for (const UavKey& uav : member.Known()) {
+    const std::optional<Claim> claim = member.ClaimOf(uav, local);
+    if (!claim) continue;
+    const auto object = view->index.find(claim->object);
+    if (object == view->index.end()) continue;
+    std::optional<UavKey>& holder = view->holders[object->second];
+    if (holder && bids[object->second] >= claim->bid) continue;
+    holder = uav;
+    bids[object->second] = claim->bid;
+  }
+}
+
+}  // namespace
+
+TeamView ViewTeam(const TeamMember& member, Time local, TeamFusion* fusion) {
+  const TeamMap& map = member.map();
+  const TeamMap::Part* const own = map.Find(member.self());
+  const Time now =
+      own == nullptr ? local : own->contents.now + std::max(local - own->told_at, Duration::zero());
+  fusion->Update(map);
+  TeamView view;
+  view.objects = fusion->standing();
+  for (MappedObject& object : view.objects) {
+    object.first_seen = Time::max();
+    object.last_seen = Time::min();
+  }
+  std::vector<MappedObject> moving;
+  for (const auto& [uav, part] : map.parts()) {
+    if (part.objects.empty()) continue;
+    const WorldAlignment& alignment = fusion->CommonFromWorld(uav);
+    if (fusion->IsPlaced(uav)) view.common_from_world.emplace(uav, alignment);
+    const ObjectMapOptions& options = fusion->options();
+    const Duration shift = ShiftOf(part, local, now);
+    std::vector<std::size_t> indices =
+        FuseObjects(MovingObjects(part, shift, now, options.motion(), alignment), options, &moving);
+    for (std::size_t& index : indices) index += fusion->standing().size();
+    Index(uav, part, shift, fusion->IndicesOf(uav), indices, &view);
+  }
+  view.objects.insert(view.objects.end(), moving.begin(), moving.end());
+  const auto common_from_own = view.common_from_world.find(member.self());
+  if (common_from_own != view.common_from_world.end()) {
+    WorldAlignment own_from_common = common_from_own->second.Inverse();
+    own_from_common.covariance.setZero();  // errors of both ways are the same
+    for (MappedObject& object : view.objects) MoveToWorld(own_from_common, &object);
+  }
+  for (std::size_t i = 0; i < view.objects.size(); ++i) {
+    view.objects[i].id = static_cast<std::int64_t>(i) + 1;
+    view.objects[i].time = now;
+  }
+  FindHolders(member, local, &view);
+  return view;
+}
+
+std::vector<TeamObject> OwnMap(const TeamView& view) {
+  std::vector<TeamObject> objects(view.objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    objects[i].object = view.objects[i];
+    if (view.holders[i]) objects[i].holder = view.holders[i]->name;
+  }
+  for (const auto& [ref, i] : view.index) {
+    // Two starts of one UAV have one name.
+    std::vector<std::string>& uavs = objects[i].uavs;
+    if (uavs.empty() || uavs.back() != ref.uav.name) uavs.push_back(ref.uav.name);
+  }
+  return objects;
+}
+
+std::vector<TeamObject> CommonMap(const TeamMember& member, const TeamView& view,
+                                  const TeamFusion& fusion) {
+  std::vector<TeamObject> objects = OwnMap(view);
+  const std::vector<MappedObject>& standing = fusion.standing();
+  for (std::size_t i = 0; i < standing.size(); ++i) objects[i].object = standing[i];
+  std::vector<bool> is_found(objects.size());  // where it moves
+  for (const auto& [ref, i] : view.index) {
+    if (i < standing.size()) continue;
+    const MappedObject& told = member.map().Find(ref.uav)->objects.at(ref.id).object;
+    if (is_found[i] && told.sigma_m() >= objects[i].object.sigma_m()) continue;
+    is_found[i] = true;
+    objects[i].object = told;
+    MoveToWorld(fusion.CommonFromWorld(ref.uav), &objects[i].object);
+  }
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    objects[i].object.id = static_cast<std::int64_t>(i) + 1;
+  }
+  return objects;
+}
+
+std::optional<std::size_t> ChooseObject(const TeamView& view, const Eigen::Vector3d& position,
+                                        const ObjectModel& model, Time local, TeamMember* member) {
+  if (const auto claim = member->ClaimOf(member->self(), local)) {
+    const auto held = view.index.find(claim->object);
+    if (held != view.index.end() && view.holders[held->second] == member->self()) {
+      return held->second;
+    }
+  }
+  std::optional<Claim> best;
+  std::optional<std::size_t> chosen;
+  for (const auto& [ref, i] : view.index) {
+    if (view.holders[i] && view.holders[i] != member->self()) continue;
+    // A metre is as good as nothing: of objects that are near the value decides.
+    const double bid =
+        ScoreOf(view.objects[i], model) / (1 + (view.objects[i].position() - position).norm());
+    if (!(bid > 0) || (best && best->bid >= bid)) continue;
+    best = Claim{ref, bid};
+    chosen = i;
+  }
+  member->SetClaim(best);
+  return chosen;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstddef>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "kestrel/core/base/time.h"
+
+namespace kestrel {
+
+// A hand-over between threads that never makes the giver wait: when it is full the oldest value
+// goes, so that with a capacity of 1 the newest wins. Values are moved in and out while the lock is
+// held, and destroyed without it. Allocates at construction only, as far as moving a T does not.
+// Any number of threads may call each function.
+template <class T>
+class BoundedQueue {
+ public:
+  // 'capacity': at least 1.
+  explicit BoundedQueue(std::size_t capacity) : ring_(std::max<std::size_t>(capacity, 1)) {}
+
+  // Appends a value, unless the queue is closed. Returns what had to make room for it, or 'value'
+  // itself when the queue is closed.
+  std::optional<T> Push(T value) {
+    std::optional<T> dropped;
+    {
+      const std::lock_guard lock(mutex_);
+      if (is_closed_) return value;
+      if (size_ == ring_.size()) {
+        dropped = TakeFirst();
+        ++dropped_;
+      }
+      ring_[(first_ + size_++) % ring_.size()] = std::move(value);
+    }
+    changed_.notify_one();
+    return dropped;
+  }
+
+  // The oldest value, if there is one.
+  std::optional<T> TryPop() {
+    const std::lock_guard lock(mutex_);
+    return TakeFirst();
+  }
+
+  // The same, for which it waits up to 'timeout', and no longer than until Close.
+  std::optional<T> Pop(Duration timeout) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, timeout, [this] { return size_ > 0 || is_closed_; });
+    return TakeFirst();
+  }
+
+  // Nothing goes in any more; what is inside can still be taken out. Nobody waits any longer.
+  void Close() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_closed_ = true;
+    }
+    changed_.notify_all();
+  }
+
+  std::size_t size() const {
+    const std::lock_guard lock(mutex_);
+    return size_;
+  }
+  // How many values made room for others.
+  std::size_t dropped() const {
+    const std::lock_guard lock(mutex_);
+    return dropped_;
+  }
+
+ private:
+  std::optional<T> TakeFirst() {
+    if (size_ == 0) return std::nullopt;
+    std::optional<T> value(std::move(ring_[first_]));
+    first_ = (first_ + 1) % ring_.size();
+    --size_;
+    return value;
+  }
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<T> ring_;
+  std::size_t first_ = 0;
+  std::size_t size_ = 0;
+  std::size_t dropped_ = 0;
+  bool is_closed_ = false;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/core/base/options.h"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/parse_number.h"
+
+namespace kestrel {
+namespace {
+
+constexpr int kMeaningColumn = 36;
+
+std::optional<bool> ParseBool(const std::string& text) {
+  if (text == "true") return true;
+  if (text == "false") return false;
+  return std::nullopt;
+}
+
+template <class Value>
+bool Assign(const std::optional<Value>& parsed, Value* value) {
+  if (parsed) *value = *parsed;
+  return parsed.has_value();
+}
+
+struct Assigner {
+  const std::string& text;
+  bool operator()(bool* value) const { return Assign(ParseBool(text), value); }
+  bool operator()(int* value) const { return Assign(ParseNumber<int>(text), value); }
+  bool operator()(double* value) const { return Assign(ParseNumber<double>(text), value); }
+  bool operator()(std::string* value) const { return Assign(std::optional(text), value); }
+};
+
+struct TypeName {
+  const char* operator()(bool*) const { return "true or false"; }
+  const char* operator()(int*) const { return "a whole number"; }
+  const char* operator()(double*) const { return "a finite number"; }
+  const char* operator()(std::string*) const { return "a word"; }
+};
+
+std::string Expected(const OptionField& field) {
+  return fmt::format(
+      "expected {}{}", std::visit(TypeName(), field.value),
+      field.unit.empty() || field.unit == "1" ? "" : fmt::format(" ({})", field.unit));
+}
+
+void AssignText(const std::string& text, const std::string& where, const OptionField& field) {
+  if (std::visit(Assigner{text}, field.value)) return;
+  throw InputError(fmt::format("{}: {} is '{}', {}", where, field.key, text, Expected(field)));
+}
+
+// Levenshtein's distance: the number of letters to insert, delete or replace.
+int EditDistance(std::string_view a, std::string_view b) {
+  std::vector<int> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    int diagonal = std::exchange(row[0], static_cast<int>(i) + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const int replaced = diagonal + (a[i] != b[j]);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
+    }
+  }
+  return row.back();
+}
+
+std::pair<std::string_view, std::string_view> SplitLast(std::string_view key) {
+  const std::size_t dot = key.rfind('.');
+  if (dot == std::string_view::npos) return {"", key};
+  return {key.substr(0, dot), key.substr(dot + 1)};
+}
+
+// A misspelt name counts more than the right name in the wrong group.
+int KeyDistance(std::string_view a, std::string_view b) {
+  const auto [group_a, name_a] = SplitLast(a);
+  const auto [group_b, name_b] = SplitLast(b);
+  return 2 * EditDistance(name_a, name_b) + (group_a == group_b ? 0 : 1);
+}
+
+// The keys of all fields and of the groups that they are in.
+std::set<std::string> AllKeys(const OptionFields& fields) {
+  std::set<std::string> keys;
+  for (const OptionField& field : fields) {
+    for (std::string_view key = field.key; !key.empty(); key = SplitLast(key).first) {
+      keys.emplace(key);
+    }
+  }
+  return keys;
+}
+
+[[noreturn]] void ThrowUnknownKey(const std::string& key, const std::string& where,
+                                  const OptionFields& fields) {
+  const std::set<std::string> keys = AllKeys(fields);
+  const auto nearest =
+      std::min_element(keys.begin(), keys.end(), [&](const std::string& a, const std::string& b) {
+        return KeyDistance(key, a) < KeyDistance(key, b);
+      });
+  throw InputError(fmt::format("{}: unknown key '{}', did you mean '{}'?", where, key, *nearest));
+}
+
+const OptionField* FindField(const std::string& key, const OptionFields& fields) {
+  const auto found = std::find_if(fields.begin(), fields.end(),
+                                  [&](const OptionField& field) { return field.key == key; });
+  return found == fields.end() ? nullptr : &*found;
+}
+
+bool IsGroup(const std::string& key, const OptionFields& fields) {
+  return std::any_of(fields.begin(), fields.end(),
+                     [&](const OptionField& field) { return field.key.starts_with(key + "."); });
+}
+
+std::string Where(const std::string& file, const YAML::Node& node) {
+  return fmt::format("{}:{}", file, node.Mark().line + 1);
+}
+
+void ReadGroup(const YAML::Node& group, const std::string& prefix, const std::string& file,
+               const OptionFields& fields) {
+  std::set<std::string> seen;
+  for (const auto& entry : group) {
+    const YAML::Node& name = entry.first;
+    const YAML::Node& value = entry.second;
+    const std::string where = Where(file, name);
+    if (!name.IsScalar()) throw InputError(where + ": expected 'name: value'");
+    const std::string key = prefix + name.Scalar();
+    if (!seen.insert(key).second)
+      throw InputError(fmt::format("{}: {} is given twice", where, key));
+    if (const OptionField* field = FindField(key, fields)) {
+      if (!value.IsScalar()) {
+        throw InputError(fmt::format("{}: {}: {}", where, key, Expected(*field)));
+      }
+      AssignText(value.Scalar(), where, *field);
+    } else if (!IsGroup(key, fields)) {
+      ThrowUnknownKey(key, where, fields);
+    } else if (value.IsMap()) {
+      ReadGroup(value, key + ".", file, fields);
+    } else if (!value.IsNull()) {
+      throw InputError(fmt::format("{}: {}: expected a group of options", where, key));
+    }
+  }
+}
+
+struct ValuePrinter {
+  std::string operator()(const bool* value) const { return *value ? "true" : "false"; }
+  std::string operator()(const int* value) const { return fmt::to_string(*value); }
+  std::string operator()(const double* value) const { return fmt::to_string(*value); }
+  // Without quotes nothing at all would be read back as no value.
+  std::string operator()(const std::string* value) const {
+    return value->empty() ? "\"\"" : *value;
+  }
+};
+
+std::vector<std::string> SplitKey(const std::string& key) {
+  std::vector<std::string> names;
+  std::istringstream stream(key);
+  for (std::string name; std::getline(stream, name, '.');) names.push_back(name);
+  return names;
+}
+
+}  // namespace
+
+void ReadOptionFields(const std::string& yaml, const std::string& file,
+                      const OptionFields& fields) {
+  try {
+    const YAML::Node root = YAML::Load(yaml);
+    if (root.IsNull()) return;
+    if (!root.IsMap()) throw InputError(file + ": expected 'name: value' lines (YAML)");
+    ReadGroup(root, "", file, fields);
+  } catch (const YAML::Exception& error) {
+    throw InputError(fmt::format("{}:{}: not YAML: {}", file, error.mark.line + 1, error.msg));
+  }
+}
+
+void SetOptionField(const std::string& assignment, const OptionFields& fields) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos) {
+    throw InputError("'" + assignment + "': expected key=value");
+  }
+  const std::string key = assignment.substr(0, equals);
+  const OptionField* field = FindField(key, fields);
+  if (!field) ThrowUnknownKey(key, "'" + assignment + "'", fields);
+  AssignText(assignment.substr(equals + 1), "'" + assignment + "'", *field);
+}
+
+std::string PrintOptionFields(const OptionFields& fields) {
+  std::string text;
+  std::vector<std::string> open;  // the groups that the last field was in
+  for (const OptionField& field : fields) {
+    std::vector<std::string> names = SplitKey(field.key);
+    const std::string name = names.back();
+    names.pop_back();
+    const auto differs = std::mismatch(open.begin(), open.end(), names.begin(), names.end()).second;
+    for (auto group = differs; group != names.end(); ++group) {
+      text += fmt::format("{:{}}{}:\n", "", 2 * (group - names.begin()), *group);
+    }
+    const std::string line = fmt::format("{:{}}{}: {}", "", 2 * names.size(), name,
+                                         std::visit(ValuePrinter(), field.value));
+    text += fmt::format("{:<{}}  # {}{}\n", line, kMeaningColumn,
+                        field.unit.empty() ? "" : fmt::format("[{}] ", field.unit), field.meaning);
+    open = std::move(names);
+  }
+  return text;
+}
+
+void ThrowIfAny(const std::vector<std::string>& violations) {
+  if (!violations.empty()) throw InputError(fmt::format("{}", fmt::join(violations, "; ")));
+}
+
+}  // namespace kestrel

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "kestrel/core/base/read_file.h"
+
+namespace kestrel {
+
+// Options are plain structs that name their fields once, in
+//
+//   template <class Self, class Visitor> static void Visit(Self& self, Visitor&& visitor) {
+//     visitor("range_m", self.range_m, "m", "how far to look");
+//     visitor.Group("pattern", self.pattern);
+//   }
+//   std::vector<std::string> Validate() const;
+//
+// From this the functions below read and print them. A key is the path of names: "pattern.size_m".
+
+// One field of an options struct; 'value' points into the struct.
+struct OptionField {
+  std::string key;
+  std::variant<bool*, int*, double*, std::string*> value;
+  std::string_view unit;  // "1" for a pure number, empty where a unit makes no sense
+  std::string_view meaning;
+};
+using OptionFields = std::vector<OptionField>;
+
+// The untyped functions behind those below.
+void ReadOptionFields(const std::string& yaml, const std::string& file, const OptionFields& fields);
+void SetOptionField(const std::string& assignment, const OptionFields& fields);
+std::string PrintOptionFields(const OptionFields& fields);
+void ThrowIfAny(const std::vector<std::string>& violations);
+
+// Visitor that lists the fields of an options struct with their keys.
+class OptionFieldCollector {
+ public:
+  explicit OptionFieldCollector(OptionFields* fields, std::string prefix = "")
+      : fields_(fields), prefix_(std::move(prefix)) {}
+
+  template <class Value>
+  void operator()(const char* name, Value& value, const char* unit, const char* meaning) {
+    fields_->push_back({prefix_ + name, &value, unit, meaning});
+  }
+  template <class Options>
+  void Group(const char* name, Options& options) {
+    Options::Visit(options, OptionFieldCollector(fields_, prefix_ + name + "."));
+  }
+
+ private:
+  OptionFields* fields_;
+  std::string prefix_;
+};
+
+// All fields of 'options', in the order of Visit; they point into 'options'.
+template <class Options>
+OptionFields FieldsOf(Options& options) {
+  static_assert(!std::is_const_v<Options>);
+  OptionFields fields;
+  Options::Visit(options, OptionFieldCollector(&fields));
+  return fields;
+}
+
+// Sets the fields that the YAML file names, leaves the others. Throws InputError with file and line
+// for an unknown key (names the nearest one), a key given twice, or a value of the wrong type.
+template <class Options>
+void ReadOptions(const std::string& path, Options* options) {
+  ReadOptionFields(ReadFile(path), path, FieldsOf(*options));
+}
+
+// Sets one field by "key=value". Throws InputError as ReadOptions does.
+template <class Options>
+void SetOption(const std::string& assignment, Options* options) {
+  SetOptionField(assignment, FieldsOf(*options));
+}
+
+// YAML with the unit and the meaning of every field as a comment; ReadOptions gets the same values
+// from it, to the last bit.
+template <class Options>
+std::string PrintOptions(Options options) {
+  return PrintOptionFields(FieldsOf(options));
+}
+
+// Throws InputError with everything that Validate() finds.
+template <class Options>
+void RequireValid(const Options& options) {
+  ThrowIfAny(options.Validate());
+}
+
+// The same, for the initializers of a constructor: returns the options.
+template <class Options>
+const Options& Checked(const Options& options) {
+  RequireValid(options);
+  return options;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/core/codec/encoded_image.h"
+
+namespace kestrel {
+
+bool IsPng(std::string_view bytes);
+
+// See DecodeImage. Gray with alpha becomes BGRA; a transparent colour is alpha, but of gray.
+cv::Mat DecodePng(const EncodedImage& image);
+
+// How a PNG is compressed: by zlib's level, 0 to 9, or the fastest way for images of a camera.
+inline constexpr int kFastPng = -1;
+
+// Appends the PNG of an image of 8 or 16 bits with 1, 3 (BGR) or 4 channels (BGRA). Throws
+// InputError for any other.
+void AppendPng(const cv::Mat& image, int level, std::string* output);
+
+// The same on its own.
+std::string EncodePng(const cv::Mat& image, int level = kFastPng);
+
+}  // namespace kestrel

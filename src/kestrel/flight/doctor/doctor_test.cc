@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <functional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/flight/doctor/examination.h"
+#include "kestrel/flight/doctor/finding.h"
+#include "kestrel/flight/doctor/test_setups.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using Break = std::function<void(DoctorObservations*)>;
+
+std::vector<std::string> Flagged(const std::vector<Finding>& findings) {
+  std::vector<std::string> flagged;
+  for (const Finding& finding : findings) {
+    if (finding.verdict == Verdict::kDoubtful || finding.verdict == Verdict::kWrong) {
+      flagged.push_back(finding.check + ": " + finding.measured);
+    }
+  }
+  return flagged;
+}
+
+// --- A good set-up ---
+
+TEST(DoctorTest, IsSilentOnAGoodSetup) {
+  for (const AutopilotKind kind : {AutopilotKind::kArduPilot, AutopilotKind::kPx4}) {
+    EXPECT_THAT(Flagged(Check(GoodSetup(kind))), IsEmpty()) << ToString(kind);
+    EXPECT_THAT(Flagged(Check(GoodGuidedSetup(kind))), IsEmpty()) << ToString(kind);
+  }
+}
+
+TEST(DoctorTest, ChecksAllOfAGoodSetup) {
+  for (const Finding& finding : Check(GoodSetup(AutopilotKind::kPx4))) {
+    EXPECT_EQ(finding.verdict, Verdict::kGood) << finding.check << ": " << finding.measured;
+  }
+}
+
+// --- One fault at a time ---
+
+enum class Setup { kArduPilot, kPx4, kGuidedArduPilot, kGuidedPx4 };
+
+DoctorObservations Make(Setup setup) {
+  switch (setup) {
+    case Setup::kArduPilot:
+      return GoodSetup(AutopilotKind::kArduPilot);
+    case Setup::kPx4:
+      return GoodSetup(AutopilotKind::kPx4);
+    case Setup::kGuidedArduPilot:
+      return GoodGuidedSetup(AutopilotKind::kArduPilot);
+    case Setup::kGuidedPx4:
+      return GoodGuidedSetup(AutopilotKind::kPx4);
+  }
+  return {};
+}
+
+struct Fault {
+  std::string name;
+  Setup setup;
+  Break break_it;
+  std::string check;  // that names it
+  Verdict verdict;
+  std::string words;  // in what was measured or the advice
+};
+
+Break Parameter(const std::string& name, double value) {
+  return [=](DoctorObservations* all) { all->parameters[name] = {value, name, 1}; };
+}
+
+// The camera is mounted turned from what the calibration says.
+Break TurnedCamera(const Eigen::Vector3d& axis, double degrees) {
+  return [=](DoctorObservations* all) {
+    RigidTransform mount = DownwardMount();
+    mount.rotation = mount.rotation * Eigen::AngleAxisd(Radians(degrees), axis);
+    all->vision.patterns = PatternsSeen(mount, 15);
+  };
+}
+
+Break Qualities(const std::function<void(ImageQuality*)>& change) {
+  return [=](DoctorObservations* all) {
+    for (ImageQuality& quality : all->camera.qualities) change(&quality);
+  };
+}
+
+void SlowDown(DoctorObservations* all) {
+  for (int i = 0; i < kFrames; ++i) {
+    FrameSample& frame = all->camera.frames[static_cast<std::size_t>(i)];
+    frame.stamp = FrameTime(4 * i);
+    frame.arrival = frame.stamp + std::chrono::milliseconds(30);
+  }
+}
+
+void JumpClock(DoctorObservations* all) {
+  for (std::size_t i = 80; i < kFrames; ++i) {
+    all->camera.frames[i].stamp += std::chrono::seconds(2);
+  }
+}
+
+void Silence(DoctorObservations* all) {
+  all->link.is_heard = false;
+  all->link.counters = {};
+  all->link.heartbeats = 0;
+  all->parameters.clear();
+}
+
+void MoveTarget(DoctorObservations* all) { all->use.target_mps = 4.2; }
+
+const Eigen::Vector3d kAxis = Eigen::Vector3d::UnitZ();  // of the camera
+
+std::vector<Fault> CameraFaults() {
+  return {
+      {"swapped width and height", Setup::kArduPilot,
+       [](DoctorObservations* all) {
+         std::swap(all->calibration.intrinsics.width_px, all->calibration.intrinsics.height_px);
+       },
+       "image size", Verdict::kWrong, "swapped"},
+      {"a camera that does not open", Setup::kPx4,
+       [](DoctorObservations* all) {
+         all->camera = {};
+         all->camera.open_error = "/dev/video7: there is no such device";
+       },
+       "images", Verdict::kWrong, "/dev/video7"},
+      {"no images", Setup::kPx4,
+       [](DoctorObservations* all) {
+         all->camera.frames.clear();
+         all->camera.qualities.clear();
+       },
+       "images", Verdict::kWrong, "none in 8 s"},
+      {"calibration of another lens", Setup::kArduPilot,
+       [](DoctorObservations* all) {
+         all->vision.focal = all->vision.focal_contradiction = FocalFactor{1.2, 0.01, 80};
+       },
+       "calibration by the pattern", Verdict::kWrong, "calibrate lens"},
+      {"another pattern", Setup::kArduPilot,
+       [](DoctorObservations* all) {
+         for (PatternSample& pattern : all->vision.patterns) pattern.misfit_px = 2.5;
+       },
+       "calibration by the pattern", Verdict::kWrong, "another pattern"},
+      {"a lens model that bends back", Setup::kPx4,
+       [](DoctorObservations* all) {
+         all->calibration.intrinsics.distortion_model = DistortionModel::kRadialTangential;
+         all->calibration.intrinsics.distortion = {-0.6, 0.05, 0, 0};
+       },
+       "lens model", Verdict::kWrong, "border"},
+      {"dark", Setup::kArduPilot, Qualities([](ImageQuality* q) { q->bright_gray = 30; }),
+       "exposure", Verdict::kWrong, "dark"},
+      {"saturated", Setup::kArduPilot, Qualities([](ImageQuality* q) { q->saturated_share = 0.4; }),
+       "exposure", Verdict::kWrong, "saturated"},
+      {"blurred", Setup::kPx4, Qualities([](ImageQuality* q) { q->edge_px = 9; }), "focus",
+       Verdict::kWrong, "blurred"},
+      {"5 frames/s", Setup::kArduPilot, SlowDown, "frame rate", Verdict::kWrong, "5.0 images/s"},
+      {"frozen frames", Setup::kPx4, Qualities([](ImageQuality* q) { q->hash = 7; }),
+       "frozen images", Verdict::kWrong, "repeats"},
+      {"clock jump", Setup::kArduPilot, JumpClock, "capture clock", Verdict::kWrong, "jumped"},
+      {"times that go back", Setup::kArduPilot,
+       [](DoctorObservations* all) { all->camera.frames[50].stamp = all->camera.frames[40].stamp; },
+       "capture clock", Verdict::kWrong, "back"},
+      {"late images", Setup::kArduPilot,
+       [](DoctorObservations* all) {
+         for (FrameSample& frame : all->camera.frames) frame.arrival += std::chrono::seconds(1);
+       },
+       "capture clock", Verdict::kWrong, "buffering"},
+      {"images that are lost", Setup::kPx4,
+       [](DoctorObservations* all) { all->camera.counters.missed = kFrames; }, "missed images",
+       Verdict::kDoubtful, "50 %"},
+  };
+}
+
+std::vector<Fault> MountFaults() {
+  return {
+      {"no mount", Setup::kPx4,
+       [](DoctorObservations* all) { all->calibration.body_from_camera.reset(); }, "mount",
+       Verdict::kWrong, "T_BS"},
+      {"a mount that looks up", Setup::kPx4,
+       [](DoctorObservations* all) {
+         all->calibration.body_from_camera->rotation =
+             Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX()) * DownwardMount().rotation;
+       },
+       "mount", Verdict::kWrong, "180 deg from straight down"},
+      {"mount turned by 90 degrees", Setup::kArduPilot, TurnedCamera(kAxis, 90),
+       "mount against motion", Verdict::kWrong,
+       "90 deg clockwise (seen from behind) about its optical axis"},
+      {"mount turned the other way", Setup::kPx4, TurnedCamera(kAxis, -90), "mount against motion",
+       Verdict::kWrong, "counterclockwise"},
+      {"camera upside down", Setup::kArduPilot, TurnedCamera(kAxis, 180), "mount against motion",
+       Verdict::kWrong, "upside down"},
+      {"camera tilted by 45 degrees", Setup::kPx4, TurnedCamera(Eigen::Vector3d::UnitX(), 45),
+       "mount against gravity", Verdict::kWrong, "from level"},
+  };
+}
+
+std::vector<Fault> LinkFaults() {
+  return {
+      {"no heartbeat", Setup::kArduPilot, Silence, "heartbeat", Verdict::kWrong, "MAVLink"},
+      {"wrong baud", Setup::kPx4,
+       [](DoctorObservations* all) {
+         Silence(all);
+         all->link.baud = 57600;
+         all->link.counters.garbage_bytes = 30'000;
+       },
+       "line", Verdict::kWrong, "57600"},
+      {"a damaged line", Setup::kArduPilot,
+       [](DoctorObservations* all) { all->link.counters.bad_checksums = 200; }, "line",
+       Verdict::kDoubtful, "200 damaged"},
+      {"streams missing", Setup::kArduPilot,
+       [](DoctorObservations* all) { all->link.attitudes = 0; }, "attitude", Verdict::kWrong,
+       "none came"},
+      {"streams that are too slow", Setup::kPx4,
+       [](DoctorObservations* all) { all->link.attitudes = 20; }, "attitude", Verdict::kWrong,
+       "921600"},
+      {"position lost", Setup::kPx4, [](DoctorObservations* all) { all->link.position_age_s = 3; },
+       "position", Verdict::kWrong, "3.0 s ago"},
+      {"position not trusted", Setup::kArduPilot,
+       [](DoctorObservations* all) { all->link.has_good_position = false; }, "position estimate",
+       Verdict::kWrong, "GNSS"},
+      {"a plane", Setup::kArduPilot, [](DoctorObservations* all) { all->link.vehicle_type = 1; },
+       "vehicle", Verdict::kWrong, "multicopter"},
+      {"an autopilot that started anew", Setup::kPx4,
+       [](DoctorObservations* all) { all->link.restarts = 1; }, "heartbeat", Verdict::kWrong,
+       "power"},
+      {"a clock that jumps", Setup::kArduPilot,
+       [](DoctorObservations* all) { all->link.clock_jumps = 2; }, "autopilot's clock",
+       Verdict::kWrong, "jumped"},
+      {"a link that takes half a second", Setup::kArduPilot,
+       [](DoctorObservations* all) { all->link.round_trip_s = 0.5; }, "round trip", Verdict::kWrong,
+       "500"},
+      {"unsigned link refused", Setup::kPx4,
+       [](DoctorObservations* all) {
+         Silence(all);
+         all->link.is_signed = true;
+         all->link.counters.unsigned_packets = 300;
+       },
+       "signing", Verdict::kWrong, "SETUP_SIGNING"},
+      {"an autopilot that signs", Setup::kArduPilot,
+       [](DoctorObservations* all) { all->link.hears_signed = true; }, "signing", Verdict::kWrong,
+       "--signing-key"},
+      {"another source of targets", Setup::kArduPilot,
+       [](DoctorObservations* all) { all->link.events = {"somebody else sends targets"}; },
+       "others on the line", Verdict::kDoubtful, "targets"},
+  };
+}
+
+std::vector<Fault> ParameterFaults() {
+  return {
+      {"PLND_TYPE wrong", Setup::kArduPilot, Parameter("PLND_TYPE", 2), "PLND_TYPE",
+       Verdict::kWrong, "param set PLND_TYPE 1, then reboot"},
+      {"PLND_ENABLED", Setup::kArduPilot, Parameter("PLND_ENABLED", 0), "PLND_ENABLED",
+       Verdict::kWrong, "param set PLND_ENABLED 1"},
+      {"precision landing off, and hidden", Setup::kArduPilot,
+       [](DoctorObservations* all) {
+         std::erase_if(all->parameters, [](const auto& p) { return p.first.starts_with("PLND"); });
+         all->parameters["PLND_ENABLED"] = {0, "PLND_ENABLED", 1};
+       },
+       "PLND_ENABLED", Verdict::kWrong, "hidden"},
+      {"LAG too small", Setup::kArduPilot,
+       [](DoctorObservations* all) { all->vision.latency_s = 0.12; }, "latency", Verdict::kDoubtful,
+       "param set PLND_LAG 0.12"},
+      {"PLND_YAW_ALIGN", Setup::kArduPilot, Parameter("PLND_YAW_ALIGN", 9000), "PLND_YAW_ALIGN",
+       Verdict::kWrong, "param set PLND_YAW_ALIGN 0"},
+      {"frame of the target wrong for ArduPilot", Setup::kArduPilot,
+       [](DoctorObservations* all) { all->use.profile = LinkProfile::kPx4; }, "frame of the target",
+       Verdict::kWrong, "LOCAL_NED is ignored"},
+      {"frame of the target wrong for PX4", Setup::kPx4,
+       [](DoctorObservations* all) { all->use.profile = LinkProfile::kArduPilot; },
+       "frame of the target", Verdict::kWrong, "BODY_FRD is refused"},
+      {"VTE_EN 0", Setup::kPx4,
+       [](DoctorObservations* all) { all->use.profile = LinkProfile::kPx4Vte; }, "VTE_EN",
+       Verdict::kWrong, "param set VTE_EN 1"},
+      {"a target that moves, and PX4's own landing", Setup::kPx4, MoveTarget, "moving target",
+       Verdict::kWrong, "--guide"},
+      {"a target that moves, PLND_OPTIONS 0", Setup::kArduPilot, MoveTarget, "PLND_OPTIONS",
+       Verdict::kWrong, "param set PLND_OPTIONS 1"},
+      {"a target that moves, PLND_RET_MAX 4", Setup::kArduPilot, MoveTarget, "PLND_RET_MAX",
+       Verdict::kWrong, "param set PLND_RET_MAX 0"},
+      {"a target that moves, PLND_XY_DIST_MAX 2.5", Setup::kArduPilot, MoveTarget,
+       "PLND_XY_DIST_MAX", Verdict::kWrong, "param set PLND_XY_DIST_MAX 0"},
+      {"the old name, in centimetres", Setup::kGuidedArduPilot,
+       [](DoctorObservations* all) {
+         all->parameters["WP_SPD"] = {3, "WPNAV_SPEED", 0.01};
+       },
+       "WPNAV_SPEED", Verdict::kWrong, "param set WPNAV_SPEED 800"},
+      {"too little acceleration for a curve", Setup::kGuidedArduPilot, Parameter("WP_ACC", 2.5),
+       "WP_ACC", Verdict::kDoubtful, "param set WP_ACC 6"},
+      {"too little jerk for a curve", Setup::kGuidedArduPilot, Parameter("PSC_JERK_NE", 5),
+       "PSC_JERK_NE", Verdict::kDoubtful, "param set PSC_JERK_NE 20"},
+      {"height by range finder", Setup::kGuidedArduPilot, Parameter("EK3_SRC1_POSZ", 2),
+       "EK3_SRC1_POSZ", Verdict::kWrong, "deck"},
+      {"GUID_TIMEOUT", Setup::kGuidedArduPilot, Parameter("GUID_TIMEOUT", 3), "GUID_TIMEOUT",
+       Verdict::kWrong, "param set GUID_TIMEOUT 1"},
+      {"another ground station only", Setup::kArduPilot,
+       [](DoctorObservations* all) {
+         all->parameters["MAV_OPTIONS"] = {1, "MAV_OPTIONS", 1};
+       },
+       "MAV_GCS_SYSID", Verdict::kWrong, "listened"},
+      {"COM_OF_LOSS_T", Setup::kGuidedPx4, Parameter("COM_OF_LOSS_T", 5), "COM_OF_LOSS_T",
+       Verdict::kWrong, "param set COM_OF_LOSS_T 1"},
+      {"COM_OBL_RC_ACT with NAV_RCL_ACT 0", Setup::kGuidedPx4, Parameter("NAV_RCL_ACT", 0),
+       "COM_OBL_RC_ACT", Verdict::kWrong, "for ever"},
+      {"COM_OBL_RC_ACT that stops the motors", Setup::kGuidedPx4, Parameter("COM_OBL_RC_ACT", 7),
+       "COM_OBL_RC_ACT", Verdict::kWrong, "motors"},
+      {"LNDMC_XY_VEL_MAX", Setup::kGuidedPx4, Parameter("LNDMC_XY_VEL_MAX", 1.5),
+       "LNDMC_XY_VEL_MAX", Verdict::kWrong, "param set LNDMC_XY_VEL_MAX 6"},
+      {"MPC_XY_VEL_MAX", Setup::kGuidedPx4, Parameter("MPC_XY_VEL_MAX", 4), "MPC_XY_VEL_MAX",
+       Verdict::kWrong, "param set MPC_XY_VEL_MAX 8"},
+      {"dead sticks", Setup::kGuidedPx4, Parameter("MAN_OVERRIDE_SPD", -1), "MAN_OVERRIDE_SPD",
+       Verdict::kDoubtful, "sticks"},
+      {"landing slower than allowed", Setup::kPx4, Parameter("MPC_Z_VEL_MAX_DN", 0.5),
+       "MPC_Z_VEL_MAX_DN", Verdict::kWrong, "contact"},
+  };
+}
+
+std::vector<Fault> ComputerFaults() {
+  return {
+      {"too slow a computer", Setup::kPx4,
+       [](DoctorObservations* all) { all->vision.detect_s = all->vision.detect_p90_s = 0.08; },
+       "detection time", Verdict::kWrong, "smaller images"},
+      {"a busy computer", Setup::kPx4, [](DoctorObservations* all) { all->computer.load = 8; },
+       "load", Verdict::kDoubtful, "top"},
+      {"throttled", Setup::kPx4, [](DoctorObservations* all) { all->computer.throttled = 0x5; },
+       "heat, power", Verdict::kWrong, "5 V"},
+      {"hot", Setup::kArduPilot, [](DoctorObservations* all) { all->computer.hottest_c = 83; },
+       "heat, power", Verdict::kDoubtful, "83"},
+      {"a full disk", Setup::kArduPilot,
+       [](DoctorObservations* all) { all->computer.free_disk_mb = 100; }, "disk", Verdict::kWrong,
+       "100 MB"},
+  };
+}
+
+// For the names of failed tests.
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+
+class DoctorFaultTest : public ::testing::TestWithParam<Fault> {};
+
+TEST_P(DoctorFaultTest, IsNamed) {
+  const Fault& fault = GetParam();
+  DoctorObservations all = Make(fault.setup);
+  fault.break_it(&all);
+  const std::vector<Finding> findings = Check(all);
+  const auto found = std::ranges::find(findings, fault.check, &Finding::check);
+  ASSERT_NE(found, findings.end()) << FindingsTable(findings, false);
+  EXPECT_EQ(found->verdict, fault.verdict) << FindingsTable(findings, false);
+  EXPECT_THAT(found->measured + " " + found->advice, HasSubstr(fault.words));
+  EXPECT_FALSE(found->advice.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Camera, DoctorFaultTest, ::testing::ValuesIn(CameraFaults()));
+INSTANTIATE_TEST_SUITE_P(Mount, DoctorFaultTest, ::testing::ValuesIn(MountFaults()));
+INSTANTIATE_TEST_SUITE_P(Link, DoctorFaultTest, ::testing::ValuesIn(LinkFaults()));
+INSTANTIATE_TEST_SUITE_P(Parameters, DoctorFaultTest, ::testing::ValuesIn(ParameterFaults()));
+INSTANTIATE_TEST_SUITE_P(Computer, DoctorFaultTest, ::testing::ValuesIn(ComputerFaults()));
+
+// --- What a check must not be misled by ---
+
+TEST(DoctorTest, AMountIsNotJudgedByAUavThatStandsStill) {
+  DoctorObservations all = GoodSetup(AutopilotKind::kArduPilot);
+  RigidTransform turned = DownwardMount();
+  turned.rotation = turned.rotation * Eigen::AngleAxisd(kPi / 2, kAxis);
+  for (const RigidTransform& mount : {DownwardMount(), turned}) {
+    all.vision.patterns = PatternsSeen(mount, 0);
+    const std::vector<Finding> findings = Check(all);
+    EXPECT_THAT(Flagged(findings), IsEmpty());
+    const auto motion = std::ranges::find(findings, "mount against motion", &Finding::check);
+    EXPECT_EQ(motion->verdict, Verdict::kNotChecked);
+  }
+}
+
+TEST(DoctorTest, ImagesThatAreLeftOutAreNoJitter) {
+  DoctorObservations all = GoodSetup(AutopilotKind::kPx4);
+  auto& frames = all.camera.frames;
+  for (std::size_t i = 150; i > 10; i -= 7) frames.erase(frames.begin() + static_cast<long>(i));
+  EXPECT_THAT(Flagged(Check(all)), IsEmpty());
+}
+
+TEST(DoctorTest, NothingAtAllIsFoundWrongAndNotFatal) {
+  const std::vector<Finding> findings = Check({});
+  EXPECT_TRUE(AnyWrong(findings));
+  EXPECT_THAT(FindingsTable(findings, false), HasSubstr("none in 0 s"));
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/doctor/examination.h"
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <thread>
+#include <utility>
+#include <variant>
+
+#include "kestrel/flight/doctor/calibration_checks.h"
+#include "kestrel/flight/doctor/camera_checks.h"
+#include "kestrel/flight/doctor/computer_checks.h"
+#include "kestrel/flight/doctor/link_checks.h"
+#include "kestrel/flight/doctor/mount_checks.h"
+#include "kestrel/flight/doctor/parameter_checks.h"
+#include "kestrel/flight/doctor/statistics.h"
+
+namespace kestrel {
+namespace {
+
+constexpr Duration kPatience = std::chrono::milliseconds(100);  // of a thread that waits
+constexpr Duration kLinkPatience = std::chrono::milliseconds(5);
+// Until the streams that were asked for run as they are to.
+constexpr Duration kStreamsStart = std::chrono::milliseconds(2500);
+constexpr std::size_t kRememberedPoses = 1024;
+constexpr Duration kLargestGap = std::chrono::milliseconds(500);
+
+CameraCalibration WithoutMount(CameraCalibration calibration) {
+  calibration.body_from_camera.reset();
+  return calibration;
+}
+
+Duration ClockOffsetOf(const CameraCalibration& calibration) {
+  return calibration.clock_offset.value_or(Duration::zero());
+}
+
+}  // namespace
+
+Examination::Examination(const LandingPipelineOptions& options, const LiveEventsOptions& events,
+                         const ExaminationParts& parts)
+    : parts_(parts),
+      events_(events, ClockOffsetOf(parts.calibration)),
+      poses_(kRememberedPoses, kLargestGap) {
+  if (parts.source != nullptr) pipeline_.emplace(WithoutMount(parts.calibration), options);
+}
+
+void Examination::Run(Duration duration, const std::function<bool()>& is_stopped,
+                      DoctorObservations* observations) {
+  std::vector<std::thread> threads;
+  if (parts_.source != nullptr) {
+    threads.emplace_back([this] { See(); });
+    threads.emplace_back([this] { Capture(); });
+  }
+  const Time start = Now();
+  while (Now() - start < duration && !is_stopped()) {
+    if (parts_.connection == nullptr) {
+      std::this_thread::sleep_for(kPatience);
+    } else {
+      Communicate(Now());
+    }
+  }
+  is_over_ = true;
+  events_.Close();
+  for (std::thread& thread : threads) thread.join();
+  Summarize(start, Now(), observations);
+}
+
+// --- The capture thread ---
+
+void Examination::Capture() {
+  while (!is_over_) {
+    std::optional<Event> event = parts_.source->Next(kPatience);
+    if (!event) continue;
+    if (std::holds_alternative<EndOfStream>(*event)) return;
+    if (const auto* pose = std::get_if<PoseSample>(&*event)) {
+      events_.Push(*pose);
+      continue;
+    }
+    auto& frame = std::get<Frame>(*event);
+    frames_.push_back({frame.time, Now()});
+    width_px_ = frame.image.cols;
+    height_px_ = frame.image.rows;
+    events_.Push(std::move(frame));
+  }
+}
+
+// --- The vision thread ---
+
+void Examination::See() {
+  for (;;) {
+    const Event event = events_.Next();
+    if (std::holds_alternative<EndOfStream>(event)) return;
+    if (const auto* pose = std::get_if<PoseSample>(&event)) {
+      poses_.Add(*pose);
+    } else {
+      Look(std::get<Frame>(event));
+    }
+  }
+}
+
+void Examination::Look(const Frame& frame) {
+  constexpr Duration kFurthestPose = std::chrono::milliseconds(100);
+  const LandingObservation seen = pipeline_->Process(frame.image, frame.time);
+  detect_s_.push_back(ToSeconds(seen.detect_time));
+  const Time taken = frame.time + ClockOffsetOf(parts_.calibration);
+  latency_s_.push_back(ToSeconds(Now() - taken));
+  qualities_.push_back(MeasureImageQuality(frame.image));
+  const auto& detection = seen.report.detection;
+  if (!detection) return;
+  PatternSample sample = PatternSampleOf(*detection);
+  sample.time = taken;
+  if (const auto pose = poses_.Predict(taken, kFurthestPose, {})) {
+    sample.world_from_body = pose->world_from_body;
+  }
+  patterns_.push_back(sample);
+}
+
+// --- The link ---
+
+void Examination::Communicate(Time now) {
+  parts_.connection->Receive(kLinkPatience, [this](const mavlink::Packet& packet, Time received) {
+    TakePacket(packet, received);
+    parts_.autopilot->Handle(packet, received);
+  });
+  parts_.autopilot->Tick(now);
+  if (parts_.autopilot->is_here()) WantParameters();
+}
+
+void Examination::TakePacket(const mavlink::Packet& packet, Time received) {
+  hears_signed_ = hears_signed_ || packet.is_signed;
+  if (packet.system != parts_.autopilot->system()) return;
+  if (!heard_) heard_ = received;
+  if (!listening_ && received - *heard_ > kStreamsStart) listening_ = received;
+  if (packet.id == mavlink::Heartbeat::kId) ++heartbeats_;
+  const bool is_attitude = packet.id == mavlink::AttitudeQuaternion::kId;
+  const bool is_position = packet.id == mavlink::LocalPositionNed::kId;
+  if (is_attitude) attitude_time_ = received;
+  if (is_position) position_time_ = received;
+  if (!listening_) return;
+  attitudes_ += is_attitude ? 1 : 0;
+  positions_ += is_position ? 1 : 0;
+}
+
+void Examination::WantParameters() {
+  if (asked_parameters_) return;
+  asked_parameters_ = true;
+  for (const std::string_view name : CheckedParameters(parts_.autopilot->kind())) {
+    parts_.autopilot->parameters().Want(name);
+  }
+}
+
+void Examination::TakeEvent(const AutopilotEvent& event) {
+  constexpr std::size_t kMost = 8;
+  switch (event.kind) {
+    case AutopilotEventKind::kOtherAutopilot:
+    case AutopilotEventKind::kIdClash:
+    case AutopilotEventKind::kOwnIdIsAutopilots:
+    case AutopilotEventKind::kTargetEcho:
+    case AutopilotEventKind::kNotFinite:
+    case AutopilotEventKind::kTimeBackwards:
+      if (told_.size() < kMost) told_.push_back(event.text);
+      break;
+    case AutopilotEventKind::kNoTimeSync:
+      is_one_way_ = true;
+      break;
+    default:
+      break;  // said by other checks
+  }
+}
+
+// --- In the end ---
+
+void Examination::Summarize(Time start, Time end, DoctorObservations* observations) const {
+  observations->calibration = parts_.calibration;
+  if (parts_.source != nullptr) {
+    CameraObservations& camera = observations->camera;
+    camera.error = parts_.source->error();
+    camera.duration_s = ToSeconds(end - start);
+    camera.width_px = width_px_;
+    camera.height_px = height_px_;
+    camera.frames = frames_;
+    camera.qualities = qualities_;
+    camera.counters = parts_.source->counters();
+    constexpr double kMega = 1e6;
+    observations->computer.frame_mb = width_px_ * height_px_ / kMega;
+    SummarizeVision(&observations->vision);
+  }
+  if (parts_.autopilot == nullptr) return;
+  SummarizeLink(end, &observations->link);
+  SummarizeParameters(&observations->parameters);
+}
+
+void Examination::SummarizeVision(VisionObservations* vision) const {
+  constexpr double kMostOf = 0.9;
+  vision->frames = static_cast<int>(detect_s_.size());
+  vision->dropped_frames = static_cast<int>(events_.counters().dropped_frames);
+  vision->patterns = patterns_;
+  vision->focal = pipeline_->calibration_monitor().Focal();
+  vision->focal_contradiction = pipeline_->calibration_monitor().Contradiction();
+  if (detect_s_.empty()) return;
+  vision->detect_s = MedianOf(detect_s_);
+  vision->detect_p90_s = QuantileOf(detect_s_, kMostOf);
+  vision->latency_s = MedianOf(latency_s_);
+}
+
+void Examination::SummarizeLink(Time end, LinkObservations* link) const {
+  const Autopilot& autopilot = *parts_.autopilot;
+  link->counters = parts_.connection->counters();
+  link->own_system = parts_.connection->system();
+  link->hears_signed = hears_signed_;
+  link->is_heard = autopilot.is_here();
+  link->kind = autopilot.kind();
+  link->version = autopilot.version();
+  link->mode = autopilot.mode_name();
+  link->is_armed = autopilot.is_armed();
+  link->heartbeats = heartbeats_;
+  if (autopilot.is_here()) link->vehicle_type = autopilot.vehicle_type();
+  link->listened_s = listening_ ? ToSeconds(end - *listening_) : 0;
+  link->attitudes = attitudes_;
+  link->positions = positions_;
+  link->attitude_age_s = ToSeconds(end - attitude_time_);
+  link->position_age_s = ToSeconds(end - position_time_);
+  link->has_good_position = autopilot.is_position_good(end);
+  link->lost_packets = autopilot.counters().lost_packets;
+  const TimeSync& clock = autopilot.time_sync();
+  link->knows_clock = clock.is_known();
+  if (clock.is_known()) {
+    link->round_trip_s = ToSeconds(clock.round_trip());
+    link->drift = clock.drift();
+    link->clock_sigma_s = clock.sigma_s(end);
+  }
+  link->is_one_way = is_one_way_;
+  link->clock_jumps = clock.jumps();
+  link->restarts = autopilot.restarts();
+  link->events = told_;
+}
+
+void Examination::SummarizeParameters(ParameterValues* values) const {
+  const ParameterReader& reader = parts_.autopilot->parameters();
+  for (const std::string_view name : CheckedParameters(parts_.autopilot->kind())) {
+    const auto value = reader.Find(name);
+    const auto entry = reader.EntryOf(name);
+    if (!value || !entry) continue;
+    values->insert_or_assign(std::string(name), ToldParameter{*value, entry->name, entry->scale});
+  }
+}
+
+PatternSample PatternSampleOf(const LandingDetection& detection) {
+  PatternSample sample;
+  sample.camera_from_pattern = detection.camera_from_pattern;
+  sample.mirror_camera_from_pattern = detection.mirror_camera_from_pattern;
+  sample.ring_px = 2 * detection.ring_semi_minor_px;
+  sample.misfit_px = detection.misfit_px;
+  sample.contradicts = detection.calibration.contradicts;
+  return sample;
+}
+
+std::vector<Finding> Check(const DoctorObservations& observations) {
+  std::vector<Finding> findings;
+  const auto add = [&](const std::vector<Finding>& part) {
+    findings.insert(findings.end(), part.begin(), part.end());
+  };
+  add(CheckCalibration(observations));
+  add(CheckCamera(observations.camera));
+  add(CheckMount(observations));
+  add(CheckLink(observations.link, observations.use));
+  add(CheckParameters(observations));
+  add(CheckComputer(observations));
+  return findings;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kestrel/comms/mavlink/autopilot.h"
+#include "kestrel/comms/mavlink/connection.h"
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/core/poses/pose_history.h"
+#include "kestrel/flight/doctor/finding.h"
+#include "kestrel/flight/doctor/observations.h"
+#include "kestrel/flight/session/live_events.h"
+#include "kestrel/flight/session/live_source.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
+
+namespace kestrel {
+
+// What an examination looks at; all outlive it. Null where there is none.
+struct ExaminationParts {
+  LiveSource* source = nullptr;
+  CameraCalibration calibration;  // of the source
+  Connection* connection = nullptr;
+  Autopilot* autopilot = nullptr;  // on the connection
+};
+
+// Looks at camera and autopilot for some seconds: capture, vision and link, each in a thread of its
+// own, as a flight does, but nothing is sent that would move the UAV.
+class Examination {
+ public:
+  // Throws InputError when options or calibration are not valid.
+  Examination(const LandingPipelineOptions& options, const LiveEventsOptions& events,
+              const ExaminationParts& parts);
+
+  // A pose of the autopilot, on the local clock: what its listener gets, by the thread that calls
+  // Run.
+  void TakePose(const PoseSample& pose) { events_.Push(pose); }
+  // What the autopilot's listener tells. Same thread.
+  void TakeEvent(const AutopilotEvent& event);
+
+  // Looks for 'duration', or until 'is_stopped', and adds what it saw. Once only.
+  void Run(Duration duration, const std::function<bool()>& is_stopped,
+           DoctorObservations* observations);
+
+ private:
+  void Capture();
+  void See();
+  void Communicate(Time now);
+  void Look(const Frame& frame);
+  void TakePacket(const mavlink::Packet& packet, Time received);
+  void WantParameters();
+  void Summarize(Time start, Time end, DoctorObservations* observations) const;
+  void SummarizeVision(VisionObservations* vision) const;
+  void SummarizeLink(Time end, LinkObservations* link) const;
+  void SummarizeParameters(ParameterValues* values) const;
+
+  ExaminationParts parts_;
+  LiveEvents events_;
+  // Where there is a source. Without mount: what it finds owes nothing to the attitude.
+  std::optional<LandingPipeline> pipeline_;
+  PoseHistory poses_;  // the vision thread's
+  std::atomic<bool> is_over_{false};
+
+  // Of the capture thread.
+  std::vector<FrameSample> frames_;
+  int width_px_ = 0;
+  int height_px_ = 0;
+  // Of the vision thread.
+  std::vector<ImageQuality> qualities_;
+  std::vector<PatternSample> patterns_;
+  std::vector<double> detect_s_;
+  std::vector<double> latency_s_;
+  // Of the link's.
+  bool asked_parameters_ = false;
+  int heartbeats_ = 0;
+  bool hears_signed_ = false;
+  bool is_one_way_ = false;  // TIMESYNC is not answered
+  int attitudes_ = 0;
+  int positions_ = 0;
+  std::optional<Time> heard_;      // the first time
+  std::optional<Time> listening_;  // to the streams, since
+  Time attitude_time_;
+  Time position_time_;
+  std::vector<std::string> told_;
+};
+
+// What a detection tells the checks; its time and the UAV's pose are left to the caller.
+PatternSample PatternSampleOf(const LandingDetection& detection);
+
+// All checks, in the order in which a set-up is put right.
+std::vector<Finding> Check(const DoctorObservations& observations);
+
+}  // namespace kestrel

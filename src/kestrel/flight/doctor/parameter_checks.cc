@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/doctor/parameter_checks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/flight/doctor/link_checks.h"
+#include "kestrel/flight/doctor/statistics.h"
+
+namespace kestrel {
+namespace {
+
+constexpr std::array<std::string_view, 20> kOfArduPilot = {
+    "PLND_ENABLED", "PLND_TYPE",     "PLND_EST_TYPE",  "PLND_OPTIONS",   "PLND_LAG",
+    "PLND_STRICT",  "PLND_RET_MAX",  "PLND_ORIENT",    "PLND_YAW_ALIGN", "PLND_XY_DIST_MAX",
+    "RNGFND1_TYPE", "EK3_SRC1_POSZ", "EK3_SRC1_VELXY", "WP_SPD",         "ATC_ANGLE_MAX",
+    "GUID_TIMEOUT", "MAV_GCS_SYSID", "MAV_OPTIONS",    "WP_ACC",         "PSC_JERK_NE"};
+
+constexpr std::array<std::string_view, 18> kOfPx4 = {
+    "VTE_EN",          "VTE_AID_MASK",     "LTEST_MODE",      "PLD_HACC_RAD",   "EKF2_HGT_REF",
+    "EKF2_RNG_CTRL",   "EKF2_OF_CTRL",     "COM_DISARM_LAND", "MPC_LAND_SPEED", "MPC_Z_VEL_MAX_DN",
+    "MPC_XY_VEL_MAX",  "MPC_TILTMAX_AIR",  "COM_OF_LOSS_T",   "COM_OBL_RC_ACT", "NAV_RCL_ACT",
+    "COM_RC_OVERRIDE", "MAN_OVERRIDE_SPD", "LNDMC_XY_VEL_MAX"};
+
+// Of a vehicle of which nothing is told, the paper's: 15 km/h.
+constexpr double kUsualSpeed_mps = 4.2;
+// By which the UAV has to be faster than what it follows.
+constexpr double kSpeedMargin_mps = 3;
+
+// What is wanted of a parameter.
+struct Wanted {
+  double value;
+  std::string_view why;  // what happens otherwise
+  bool needs_reboot = false;
+};
+
+// Looks at one parameter after the other and keeps what it finds.
+class ParameterRules {
+ public:
+  explicit ParameterRules(const DoctorObservations& observations) : all_(observations) {}
+
+  std::optional<double> Find(std::string_view name) const {
+    const auto found = all_.parameters.find(name);
+    if (found == all_.parameters.end()) return std::nullopt;
+    return found->second.value;
+  }
+  bool IsSet(std::string_view name, int bit) const {
+    return (static_cast<int>(Find(name).value_or(0)) >> bit & 1) != 0;
+  }
+
+  // Good where 'is_good', else what 'otherwise' says, with what to set. A parameter that the
+  // autopilot does not have is left out.
+  template <class IsGood>
+  void Want(std::string_view name, Verdict otherwise, const Wanted& wanted, const IsGood& is_good) {
+    const auto found = all_.parameters.find(name);
+    if (found == all_.parameters.end()) return;
+    const ToldParameter& told = found->second;
+    Finding finding = Good(told.own_name, fmt::format("{:g}", told.value / told.scale));
+    if (!is_good(told.value)) {
+      finding.verdict = otherwise;
+      finding.measured += fmt::format(": {}", wanted.why);
+      finding.advice =
+          fmt::format("param set {} {:g}{}; or kestrel doctor --fix", told.own_name,
+                      wanted.value / told.scale, wanted.needs_reboot ? ", then reboot" : "");
+      finding.fix = ParameterFix{std::string(name), wanted.value, wanted.needs_reboot};
+    }
+    findings_.push_back(std::move(finding));
+  }
+  void WantExactly(std::string_view name, Verdict otherwise, const Wanted& wanted) {
+    Want(name, otherwise, wanted, [&](double value) { return value == wanted.value; });
+  }
+  void WantAtLeast(std::string_view name, Verdict otherwise, double least, const Wanted& wanted) {
+    Want(name, otherwise, wanted, [&](double value) { return value >= least; });
+  }
+  void WantBit(std::string_view name, Verdict otherwise, int bit, std::string_view why) {
+    const auto now = static_cast<int>(Find(name).value_or(0));
+    Want(name, otherwise, {static_cast<double>(now | 1 << bit), why},
+         [&](double value) { return (static_cast<int>(value) >> bit & 1) != 0; });
+  }
+  void Add(Finding finding) { findings_.push_back(std::move(finding)); }
+
+  // Where targets are ignored: set-points land without them, less surely.
+  Verdict without_targets() const { return all_.use.guides ? Verdict::kDoubtful : Verdict::kWrong; }
+  bool moves() const { return all_.use.target_mps.has_value(); }
+  // Wanted of the UAV's speed, m/s.
+  double wanted_mps() const { return target_mps() + kSpeedMargin_mps; }
+  double target_mps() const { return all_.use.target_mps.value_or(kUsualSpeed_mps); }
+  const DoctorObservations& all() const { return all_; }
+  std::vector<Finding> Take() { return std::move(findings_); }
+
+ private:
+  const DoctorObservations& all_;
+  std::vector<Finding> findings_;
+};
+
+// --- ArduPilot ---
+
+void CheckPrecisionLandingOfArduPilot(ParameterRules* rules) {
+  if (rules->Find("PLND_ENABLED").value_or(0) == 0 && !rules->Find("PLND_TYPE")) {
+    // ArduPilot hides the others until then.
+    rules->WantExactly("PLND_ENABLED", rules->without_targets(),
+                       {1,
+                        "precision landing is off, and its parameters hidden until it is on "
+                        "and the autopilot restarted",
+                        true});
+    return;
+  }
+  rules->WantExactly("PLND_ENABLED", rules->without_targets(), {1, "targets are ignored", true});
+  rules->WantExactly("PLND_TYPE", rules->without_targets(),
+                     {1, "targets by MAVLink are ignored", true});
+  constexpr double kDown = 25;
+  rules->WantExactly("PLND_ORIENT", rules->without_targets(),
+                     {kDown, "targets are taken for ones in another direction", true});
+  rules->WantExactly("PLND_YAW_ALIGN", rules->without_targets(),
+                     {0, "Kestrel's targets are turned by it: it lands beside or flies away"});
+  constexpr int kSupportedDistance = 10;
+  if (rules->all().use.sends_distance) {
+    rules->WantExactly("RNGFND1_TYPE", rules->without_targets(),
+                       {kSupportedDistance, "distances by MAVLink are ignored", true});
+  }
+}
+
+void CheckMovingTargetOfArduPilot(ParameterRules* rules) {
+  constexpr double kFarEnough_m = 5;
+  rules->WantExactly("PLND_EST_TYPE", rules->without_targets(),
+                     {1, "the raw estimate lags a target that moves and never lands on it"});
+  rules->WantBit("PLND_OPTIONS", rules->without_targets(), 0,
+                 "without bit 0 the target is thought to stand: it trails by metres");
+  rules->Want("PLND_XY_DIST_MAX", rules->without_targets(),
+              {0, "it does not descend while it is further off than this"},
+              [](double metres) { return metres == 0 || metres >= kFarEnough_m; });
+  rules->WantExactly("PLND_STRICT", Verdict::kDoubtful,
+                     {0, "when the target is lost it flies to where it was"});
+  rules->WantExactly("PLND_RET_MAX", rules->without_targets(),
+                     {0, "retries go back to a place where the target no longer is"});
+}
+
+void CheckSpeedsOfArduPilot(ParameterRules* rules) {
+  constexpr double kLeastTilt_deg = 20;
+  constexpr double kTilt_deg = 30;
+  const double speed_mps = std::ceil(rules->wanted_mps());
+  rules->WantAtLeast("WP_SPD", Verdict::kWrong, rules->target_mps() + 1,
+                     {speed_mps, "slower than the target and a margin: it falls behind"});
+  rules->WantAtLeast("ATC_ANGLE_MAX", Verdict::kDoubtful, kLeastTilt_deg,
+                     {kTilt_deg, "too little tilt to follow in wind"});
+}
+
+void CheckEstimatorOfArduPilot(ParameterRules* rules) {
+  constexpr double kRangeFinder = 2;
+  constexpr double kOpticalFlow = 5;
+  const Verdict otherwise = rules->moves() ? Verdict::kWrong : Verdict::kDoubtful;
+  rules->Want("EK3_SRC1_POSZ", otherwise, {1, "height by range finder jumps over the deck", true},
+              [](double source) { return source != kRangeFinder; });
+  rules->Want("EK3_SRC1_VELXY", otherwise, {3, "speed by optical flow is the deck's", true},
+              [](double source) { return source != kOpticalFlow; });
+}
+
+void CheckTrustOfArduPilot(ParameterRules* rules) {
+  const auto ground_station = rules->Find("MAV_GCS_SYSID");
+  const bool is_enforced = rules->IsSet("MAV_OPTIONS", 0);
+  if (!ground_station || !is_enforced) return;
+  const int own = rules->all().link.own_system;
+  rules->WantExactly("MAV_GCS_SYSID", Verdict::kWrong,
+                     {static_cast<double>(own),
+                      "only this system is listened to (MAV_OPTIONS bit "
+                      "0), and Kestrel is another"});
+}
+
+void CheckGuidanceOfArduPilot(ParameterRules* rules) {
+  constexpr double kLongest_s = 1;
+  constexpr double kShortest_s = 0.3;
+  constexpr double kFarTooLong_s = 2;
+  const double timeout_s = rules->Find("GUID_TIMEOUT").value_or(0);
+  rules->Want("GUID_TIMEOUT", timeout_s > kFarTooLong_s ? Verdict::kWrong : Verdict::kDoubtful,
+              {kLongest_s, timeout_s < kShortest_s
+                               ? "it stops whenever the link is slow"
+                               : "so long the last velocity is flown when the link is lost"},
+              [](double s) { return s >= kShortest_s && s <= kLongest_s; });
+}
+
+// How fast it turns into the curve of a vehicle that it is guided to.
+void CheckAgilityOfArduPilot(ParameterRules* rules) {
+  constexpr double kLeastAcceleration = 4;
+  constexpr double kAcceleration = 6;
+  constexpr double kLeastJerk = 12;
+  constexpr double kJerk = 20;
+  rules->WantAtLeast(
+      "WP_ACC", Verdict::kDoubtful, kLeastAcceleration,
+      {kAcceleration, "too little acceleration to come up with a vehicle in a curve"});
+  rules->WantAtLeast("PSC_JERK_NE", Verdict::kDoubtful, kLeastJerk,
+                     {kJerk, "changes its acceleration too slowly to follow a curve closely"});
+}
+
+void CheckArduPilot(ParameterRules* rules) {
+  CheckPrecisionLandingOfArduPilot(rules);
+  if (rules->moves()) CheckMovingTargetOfArduPilot(rules);
+  if (rules->moves() || rules->all().use.guides) CheckSpeedsOfArduPilot(rules);
+  CheckEstimatorOfArduPilot(rules);
+  CheckTrustOfArduPilot(rules);
+  if (rules->all().use.guides) CheckGuidanceOfArduPilot(rules);
+  if (rules->all().use.guides && rules->moves()) CheckAgilityOfArduPilot(rules);
+}
+
+// --- PX4 ---
+
+void CheckTargetsOfPx4(ParameterRules* rules) {
+  const bool uses_estimator = ProfileOf(rules->all()) == LinkProfile::kPx4Vte;
+  if (uses_estimator && !rules->Find("VTE_EN")) {
+    rules->Add(Wrong("VTE_EN", "not there: a firmware without the vision target estimator",
+                     "--profile px4, or a build with CONFIG_MODULES_VISION_TARGET_ESTIMATOR"));
+  }
+  rules->WantExactly("VTE_EN", Verdict::kWrong,
+                     {uses_estimator ? 1.0 : 0.0,
+                      uses_estimator ? "targets of the profile px4-vte are ignored"
+                                     : "the target estimator ignores LANDING_TARGET: --profile "
+                                       "px4-vte",
+                      true});
+  if (uses_estimator) {
+    rules->WantBit("VTE_AID_MASK", Verdict::kWrong, 1, "the estimator does not use vision");
+  }
+  if (rules->moves()) {
+    rules->WantExactly("LTEST_MODE", Verdict::kWrong,
+                       {0,
+                        "a target that moves is taken for one that stands, and its speed for "
+                        "the UAV's"});
+  }
+  if (rules->moves() && !rules->all().use.guides) {
+    rules->Add(Wrong("moving target",
+                     "PX4's own precision landing is for patterns that stand: it trails behind, or "
+                     "never descends",
+                     "kestrel fly --guide"));
+  }
+}
+
+void CheckLandingOfPx4(ParameterRules* rules) {
+  constexpr double kUsualLanding_mps = 0.7;
+  const double landing_mps = rules->Find("MPC_LAND_SPEED").value_or(kUsualLanding_mps);
+  rules->WantAtLeast("MPC_Z_VEL_MAX_DN", Verdict::kWrong, landing_mps,
+                     {std::max(landing_mps, 1.5),
+                      "slower than MPC_LAND_SPEED: contact is never "
+                      "detected"});
+  rules->Want("COM_DISARM_LAND", Verdict::kDoubtful, {2, "the motors run on after the landing"},
+              [](double s) { return s > 0; });
+}
+
+void CheckEstimatorOfPx4(ParameterRules* rules) {
+  constexpr double kRange = 2;
+  constexpr double kAlways = 2;
+  const bool moves = rules->moves();
+  rules->Want("EKF2_HGT_REF", moves ? Verdict::kWrong : Verdict::kDoubtful,
+              {1, "height by range finder follows the deck", true},
+              [](double source) { return source != kRange; });
+  if (!moves) return;
+  rules->Want("EKF2_RNG_CTRL", Verdict::kDoubtful,
+              {1, "the range finder corrects the height over the deck too"},
+              [](double control) { return control < kAlways; });
+  rules->WantExactly("EKF2_OF_CTRL", Verdict::kDoubtful,
+                     {0, "speed by optical flow is the deck's"});
+}
+
+void CheckLossOfPx4(ParameterRules* rules) {
+  constexpr double kLongest_s = 1;
+  constexpr double kFarTooLong_s = 2;
+  constexpr double kHold = 5;
+  const double timeout_s = rules->Find("COM_OF_LOSS_T").value_or(0);
+  rules->Want("COM_OF_LOSS_T", timeout_s > kFarTooLong_s ? Verdict::kWrong : Verdict::kDoubtful,
+              {kLongest_s, "so long the last set-point is flown when the link is lost"},
+              [](double s) { return s <= kLongest_s; });
+  const double on_radio_loss = rules->Find("NAV_RCL_ACT").value_or(2);
+  const double on_loss = rules->Find("COM_OBL_RC_ACT").value_or(0);
+  const bool flies_on = on_loss == 0 && on_radio_loss == 0;
+  constexpr int kTerminate = 6;
+  const bool falls = on_loss >= kTerminate;
+  rules->Want("COM_OBL_RC_ACT", flies_on || falls ? Verdict::kWrong : Verdict::kDoubtful,
+              {kHold, flies_on ? "with NAV_RCL_ACT 0 the last velocity is flown on for ever when "
+                                 "set-points stop"
+                      : falls  ? "the motors stop in the air when set-points stop"
+                               : "it drifts when set-points stop"},
+              [&](double action) {
+                return !flies_on && !falls && (action == 0 || (action >= 3 && action <= kHold));
+              });
+}
+
+void CheckPilotOfPx4(ParameterRules* rules) {
+  constexpr int kInOffboard = 1;
+  if (rules->Find("MAN_OVERRIDE_SPD")) {
+    rules->Want("MAN_OVERRIDE_SPD", Verdict::kDoubtful,
+                {1, "the sticks do not end OFFBOARD, only the mode switch does"},
+                [](double speed) { return speed >= 0; });
+    return;
+  }
+  rules->WantBit("COM_RC_OVERRIDE", Verdict::kDoubtful, kInOffboard,
+                 "the sticks do not end OFFBOARD, only the mode switch does");
+}
+
+void CheckGuidanceOfPx4(ParameterRules* rules) {
+  constexpr double kLandingMargin = 1.2;
+  constexpr double kLeastTilt_deg = 20;
+  constexpr double kTilt_deg = 45;
+  CheckLossOfPx4(rules);
+  CheckPilotOfPx4(rules);
+  const double landing_mps = std::max(1.5, std::ceil(kLandingMargin * rules->target_mps()));
+  rules->WantAtLeast("LNDMC_XY_VEL_MAX", Verdict::kWrong, rules->target_mps(),
+                     {landing_mps,
+                      "on a deck that is faster it never notices that it has landed, "
+                      "and does not disarm"});
+  rules->WantAtLeast("MPC_XY_VEL_MAX", Verdict::kWrong, rules->target_mps() + 1,
+                     {std::ceil(rules->wanted_mps()),
+                      "slower than the target and a margin: it "
+                      "falls behind"});
+  rules->WantAtLeast("MPC_TILTMAX_AIR", Verdict::kDoubtful, kLeastTilt_deg,
+                     {kTilt_deg, "too little tilt to follow in wind"});
+}
+
+void CheckPx4(ParameterRules* rules) {
+  if (!rules->all().use.guides) CheckTargetsOfPx4(rules);
+  CheckLandingOfPx4(rules);
+  CheckEstimatorOfPx4(rules);
+  if (rules->all().use.guides) CheckGuidanceOfPx4(rules);
+}
+
+double LinkDelayOf(const DoctorObservations& observations) {
+  return observations.use.link_delay_s.value_or(observations.link.round_trip_s / 2);
+}
+
+}  // namespace
+
+std::span<const std::string_view> CheckedParameters(AutopilotKind kind) {
+  switch (kind) {
+    case AutopilotKind::kArduPilot:
+      return kOfArduPilot;
+    case AutopilotKind::kPx4:
+      return kOfPx4;
+    case AutopilotKind::kUnknown:
+    case AutopilotKind::kOther:
+      break;
+  }
+  return {};
+}
+
+Finding CheckProfile(const DoctorObservations& observations) {
+  const std::string check = "frame of the target";
+  const LinkProfile profile = ProfileOf(observations);
+  const AutopilotKind kind = observations.link.kind;
+  const bool is_for_px4 = profile != LinkProfile::kArduPilot;
+  const bool is_px4 = kind == AutopilotKind::kPx4;
+  const std::string measured = fmt::format("profile {} for {}", ToString(profile), ToString(kind));
+  if (is_for_px4 == is_px4) return Good(check, measured);
+  return Wrong(check,
+               measured + (is_px4 ? ": frame BODY_FRD is refused" : ": frame LOCAL_NED is ignored"),
+               "--profile auto");
+}
+
+Finding CheckLatency(const DoctorObservations& observations) {
+  constexpr double kGood_s = 0.06;
+  constexpr double kWrong_s = 0.15;
+  constexpr double kSlow_s = 0.15;
+  constexpr double kTooSlow_s = 0.35;
+  constexpr double kShortestLag_s = 0.02;
+  constexpr double kLongestLag_s = 0.25;
+  constexpr double kRound = 100;  // per second
+  const std::string check = "latency";
+  const VisionObservations& vision = observations.vision;
+  if (vision.frames == 0) return NotChecked(check, "no image was processed");
+  const double delay_s = LinkDelayOf(observations);
+  const double latency_s = vision.latency_s + delay_s;
+  const std::string measured =
+      fmt::format("{:.0f} ms from light to message, {:.0f} on the line",
+                  kMilliseconds * vision.latency_s, kMilliseconds * delay_s);
+  const std::string advice = "a shorter exposure, less buffering, a smaller image, a faster line";
+  if (latency_s > kTooSlow_s) return Wrong(check, measured, advice);
+  const auto lag = observations.parameters.find("PLND_LAG");
+  if (lag != observations.parameters.end()) {
+    const double difference_s = std::abs(latency_s - lag->second.value);
+    if (difference_s > kGood_s) {
+      const double wanted_s =
+          std::clamp(std::round(kRound * latency_s) / kRound, kShortestLag_s, kLongestLag_s);
+      Finding finding{
+          check, difference_s > kWrong_s ? Verdict::kWrong : Verdict::kDoubtful,
+          fmt::format("{}; PLND_LAG {:g} s: Kestrel predicts over the difference, and "
+                      "ArduPilot circles where the prediction is wrong",
+                      measured, lag->second.value),
+          fmt::format("param set PLND_LAG {:g}, then reboot; or kestrel doctor --fix", wanted_s)};
+      finding.fix = ParameterFix{"PLND_LAG", wanted_s, true};
+      return finding;
+    }
+  }
+  if (latency_s > kSlow_s) return Doubtful(check, measured, advice);
+  return Good(check, measured);
+}
+
+std::vector<Finding> CheckParameters(const DoctorObservations& observations) {
+  const AutopilotKind kind = observations.link.kind;
+  if (!observations.link.is_heard) return {};
+  std::vector<Finding> findings;
+  if (!observations.use.guides) findings.push_back(CheckProfile(observations));
+  findings.push_back(CheckLatency(observations));
+  if (observations.parameters.empty()) {
+    findings.push_back(
+        NotChecked("parameters", "the autopilot told none", "a line in both directions"));
+    return findings;
+  }
+  ParameterRules rules(observations);
+  if (kind == AutopilotKind::kArduPilot) CheckArduPilot(&rules);
+  if (kind == AutopilotKind::kPx4) CheckPx4(&rules);
+  std::ranges::move(rules.Take(), std::back_inserter(findings));
+  return findings;
+}
+
+}  // namespace kestrel

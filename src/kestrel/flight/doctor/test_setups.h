@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/core/geometry/angles.h"
+#include "kestrel/flight/doctor/observations.h"
+#include "kestrel/flight/doctor/parameter_checks.h"
+
+namespace kestrel {
+
+constexpr double kPeriod_s = 0.05;
+constexpr int kFrames = 160;
+
+inline Time FrameTime(int i) {
+  return Time(std::chrono::seconds(100)) + DurationFromSeconds(kPeriod_s * i);
+}
+
+// A camera under the body that looks down, its image's up ahead.
+inline RigidTransform DownwardMount() {
+  Eigen::Matrix3d body_from_camera;
+  body_from_camera << 0, -1, 0, -1, 0, 0, 0, 0, -1;
+  return {Eigen::Quaterniond(body_from_camera), {0.1, 0, -0.05}};
+}
+
+// A UAV that is held above the origin and tilted about.
+inline RigidTransform HeldPose(double time_s, double tilt_deg) {
+  const Eigen::Quaterniond level(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()));
+  const Eigen::Vector3d tilt =
+      Radians(tilt_deg) * Eigen::Vector3d(std::sin(2 * time_s), std::cos(1.3 * time_s), 0);
+  return {level * RotationBy(tilt), {0.3, -0.2, 2.5}};
+}
+
+// What the camera with 'true_mount' sees of a pattern that lies at the origin.
+inline std::vector<PatternSample> PatternsSeen(const RigidTransform& true_mount, double tilt_deg) {
+  std::vector<PatternSample> patterns;
+  for (int i = 0; i < kFrames; i += 2) {
+    PatternSample sample;
+    sample.time = FrameTime(i);
+    sample.world_from_body = HeldPose(kPeriod_s * i, tilt_deg);
+    sample.camera_from_pattern = (*sample.world_from_body * true_mount).Inverse();
+    sample.ring_px = 100;
+    sample.misfit_px = 0.2;
+    patterns.push_back(sample);
+  }
+  return patterns;
+}
+
+inline ImageQuality GoodQuality(int i) {
+  ImageQuality quality;
+  quality.mean_gray = 110;
+  quality.bright_gray = 220;
+  quality.dark_gray = 20;
+  quality.saturated_share = 0.001;
+  quality.edge_px = 2;
+  quality.hash = static_cast<std::uint64_t>(i);
+  return quality;
+}
+
+inline CameraObservations GoodCamera() {
+  CameraObservations camera;
+  camera.duration_s = kPeriod_s * kFrames;
+  camera.width_px = 752;
+  camera.height_px = 480;
+  for (int i = 0; i < kFrames; ++i) {
+    camera.frames.push_back({FrameTime(i), FrameTime(i) + std::chrono::milliseconds(30)});
+    camera.qualities.push_back(GoodQuality(i));
+  }
+  camera.counters.captured = kFrames;
+  return camera;
+}
+
+inline LinkObservations GoodLink(AutopilotKind kind) {
+  LinkObservations link;
+  link.is_asked = true;
+  link.scheme = LinkScheme::kSerial;
+  link.baud = 921600;
+  link.counters.received = 1500;
+  link.counters.sent = 200;
+  link.is_heard = true;
+  link.kind = kind;
+  link.version =
+      kind == AutopilotKind::kPx4 ? AutopilotVersion{1, 18, 0} : AutopilotVersion{4, 7, 0};
+  link.vehicle_type = mavlink::kTypeQuadrotor;
+  link.mode = "LOITER";
+  link.heartbeats = 8;
+  link.listened_s = 5;
+  link.attitudes = 490;
+  link.positions = 245;
+  link.attitude_age_s = 0.01;
+  link.position_age_s = 0.02;
+  link.has_good_position = true;
+  link.knows_clock = true;
+  link.round_trip_s = 0.004;
+  link.drift = 1e-5;
+  link.clock_sigma_s = 0.001;
+  link.own_system = 1;
+  return link;
+}
+
+// Those of the simulated autopilot.
+inline ParameterValues DefaultParameters(AutopilotKind kind) {
+  const AutopilotParameters defaults(kind == AutopilotKind::kPx4 ? AutopilotFirmware::kPx4
+                                                                 : AutopilotFirmware::kArduPilot);
+  ParameterValues values;
+  for (const std::string_view name : CheckedParameters(kind)) {
+    if (!defaults.Find(name)) continue;
+    values[std::string(name)] = {defaults[name], std::string(name), 1};
+  }
+  return values;
+}
+
+// A set-up that is right for landing on a pattern that stands.
+inline DoctorObservations GoodSetup(AutopilotKind kind) {
+  DoctorObservations all;
+  all.calibration.intrinsics = {752, 480, 420, 420, 375.5, 239.5, DistortionModel::kNone, {}};
+  all.calibration.body_from_camera = DownwardMount();
+  all.camera = GoodCamera();
+  all.vision.frames = kFrames;
+  all.vision.patterns = PatternsSeen(DownwardMount(), 15);
+  all.vision.detect_s = 0.004;
+  all.vision.detect_p90_s = 0.008;
+  all.vision.latency_s = 0.04;
+  all.link = GoodLink(kind);
+  all.parameters = DefaultParameters(kind);
+  all.computer = {4, 1.5, 55, 0, 20'000, 200, 0.36};
+  all.use.record = "flight";
+  return all;
+}
+
+// One that is right for guidance onto a car, too.
+inline DoctorObservations GoodGuidedSetup(AutopilotKind kind) {
+  DoctorObservations all = GoodSetup(kind);
+  all.use.guides = true;
+  all.use.target_mps = 4.2;
+  const auto set = [&](const std::string& name, double value) {
+    all.parameters[name] = {value, name, 1};
+  };
+  if (kind == AutopilotKind::kPx4) {
+    set("COM_RC_OVERRIDE", 3);
+    set("LNDMC_XY_VEL_MAX", 6);
+    set("MAN_OVERRIDE_SPD", 1);
+  } else {
+    set("WP_ACC", 6);
+    set("PSC_JERK_NE", 20);
+    set("PLND_OPTIONS", 1);
+    set("PLND_STRICT", 0);
+    set("PLND_RET_MAX", 0);
+    set("PLND_XY_DIST_MAX", 0);
+    set("GUID_TIMEOUT", 1);
+  }
+  return all;
+}
+
+}  // namespace kestrel

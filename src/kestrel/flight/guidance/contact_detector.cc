@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/guidance/contact_detector.h"
+
+#include <cmath>
+
+#include "kestrel/core/base/violations.h"
+
+namespace kestrel {
+
+std::vector<std::string> ContactOptions::Validate() const {
+  std::vector<std::string> violations;
+  RequireIn(height_m, 0.02, 2, "height_m", &violations);
+  RequireIn(reach_m, 0.05, 5, "reach_m", &violations);
+  RequireIn(speed_mps, 0.01, 1, "speed_mps", &violations);
+  RequireIn(time_s, 0.1, 10, "time_s", &violations);
+  return violations;
+}
+
+bool ContactDetector::Update(Time now, const Eigen::Vector3d& feet, const Eigen::Vector3d& velocity,
+                             const std::optional<Deck>& deck) {
+  if (contact_z_m_ && feet.z() > *contact_z_m_ + 2 * options_.height_m) Reset();
+  if (contact_z_m_) return true;
+  if (!deck || !RestsOn(*deck, feet, velocity)) {
+    resting_since_.reset();
+    return false;
+  }
+  if (!resting_since_) resting_since_ = now;
+  if (now - *resting_since_ < DurationFromSeconds(options_.time_s)) return false;
+  contact_z_m_ = feet.z();
+  return true;
+}
+
+bool ContactDetector::RestsOn(const Deck& deck, const Eigen::Vector3d& feet,
+                              const Eigen::Vector3d& velocity) const {
+  const Eigen::Vector3d offset = feet - deck.position;
+  return offset.z() < options_.height_m && offset.head<2>().norm() < options_.reach_m &&
+         std::abs(velocity.z() - deck.velocity.z()) < options_.speed_mps;
+}
+
+void ContactDetector::Reset() {
+  resting_since_.reset();
+  contact_z_m_.reset();
+}
+
+}  // namespace kestrel

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kestrel/core/base/time.h"
+
+namespace kestrel {
+
+// Contact: as near to the deck, and as much at rest against it, as when the legs stand there.
+struct ContactOptions {
+  // Less than what an autopilot sinks by near the ground, longer than the bottom of a bounce takes.
+  double height_m = 0.25;  // of the feet above the deck, by the track
+  double reach_m = 0.6;    // and how far they may be beside its middle
+  double speed_mps = 0.1;
+  double time_s = 0.5;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("height_m", self.height_m, "m", "the feet are at most so high above the deck");
+    visitor("reach_m", self.reach_m, "m", "and so far from its middle");
+    visitor("speed_mps", self.speed_mps, "m/s", "and come nearer to it by less than this");
+    visitor("time_s", self.time_s, "s", "for so long");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// Whether the UAV stands on the deck. Once it does the camera sees nothing any more: contact then
+// lasts until it has risen by twice the height.
+class ContactDetector {
+ public:
+  explicit ContactDetector(const ContactOptions& options) : options_(options) {}
+
+  struct Deck {
+    Eigen::Vector3d position;
+    Eigen::Vector3d velocity;
+  };
+  // Where the feet and the deck are in the world (m, m/s); no deck while it is not known. Returns
+  // has_contact().
+  bool Update(Time now, const Eigen::Vector3d& feet, const Eigen::Vector3d& velocity,
+              const std::optional<Deck>& deck);
+
+  bool has_contact() const { return contact_z_m_.has_value(); }
+  void Reset();
+
+ private:
+  bool RestsOn(const Deck& deck, const Eigen::Vector3d& feet,
+               const Eigen::Vector3d& velocity) const;
+
+  ContactOptions options_;
+  std::optional<Time> resting_since_;
+  std::optional<double> contact_z_m_;  // of the feet, at contact
+};
+
+}  // namespace kestrel

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kestrel/core/poses/set_point.h"
+
+namespace kestrel {
+
+// Where guidance may fly, and how fast. The defaults are within those that ArduCopter and PX4 come
+// with.
+struct FlightLimitsOptions {
+  double geofence_radius_m = 100;  // horizontal, around the home position
+  double ceiling_m = 30;           // above the world's z = 0
+  double floor_m = 3;              // the same, of the body while it follows no target
+  double max_speed_mps = 10;       // horizontal
+  double max_climb_mps = 2.5;
+  double max_sink_mps = 1.5;
+  double max_tilt_deg = 30;  // limits the acceleration that is commanded
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("geofence_radius_m", self.geofence_radius_m, "m",
+            "how far it may fly from the home position");
+    visitor("ceiling_m", self.ceiling_m, "m", "how high, above the world's z = 0");
+    visitor("floor_m", self.floor_m, "m", "how low while no target is followed");
+    visitor("max_speed_mps", self.max_speed_mps, "m/s", "largest horizontal speed");
+    visitor("max_climb_mps", self.max_climb_mps, "m/s", "fastest climb");
+    visitor("max_sink_mps", self.max_sink_mps, "m/s", "fastest descent");
+    visitor("max_tilt_deg", self.max_tilt_deg, "deg", "the acceleration commanded needs no more");
+  }
+  std::vector<std::string> Validate() const;
+
+  double max_acceleration() const;  // horizontal, of the largest tilt, m/s^2
+};
+
+// What the autopilot itself limits, as far as its parameters are known: beyond that it would not
+// follow.
+struct AutopilotLimits {
+  std::optional<double> max_speed_mps = std::nullopt;  // horizontal
+  std::optional<double> max_climb_mps = std::nullopt;
+  std::optional<double> max_sink_mps = std::nullopt;
+  std::optional<double> max_tilt_deg = std::nullopt;
+};
+
+// One line for each limit that is beyond the autopilot's own.
+std::vector<std::string> ViolationsOf(const AutopilotLimits& autopilot,
+                                      const FlightLimitsOptions& limits);
+
+// The one place where what is commanded is limited. No allocation, no throw.
+class FlightLimits {
+ public:
+  // 'center' of the geofence, in the world. Throws InputError when the options are not valid.
+  FlightLimits(const FlightLimitsOptions& options, const Eigen::Vector2d& center);
+
+  // One line on why guidance must not begin with the body at 'position' (outside of the geofence,
+  // above the ceiling); empty when it may. Allocates only when it may not.
+  std::string WhyNot(const Eigen::Vector3d& position) const;
+  bool Contains(const Eigen::Vector3d& position) const;
+
+  // 'wanted' of a body at 'position', limited: it can still brake before the geofence, the ceiling
+  // and, without a target, the floor; beyond one of them it is brought back.
+  SetPoint Limited(const SetPoint& wanted, const Eigen::Vector3d& position,
+                   bool follows_target) const;
+
+  void set_center(const Eigen::Vector2d& center) { center_ = center; }
+  const FlightLimitsOptions& options() const { return options_; }
+
+ private:
+  void LimitHeight(double z_m, bool follows_target, SetPoint* limited) const;
+  void KeepInFence(const Eigen::Vector2d& position, SetPoint* limited) const;
+
+  FlightLimitsOptions options_;
+  Eigen::Vector2d center_;
+  double max_acceleration_;  // m/s^2
+};
+
+}  // namespace kestrel

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kestrel/flight/guidance/contact_detector.h"
+#include "kestrel/flight/guidance/flight_limits.h"
+#include "kestrel/flight/guidance/flight_model.h"
+
+namespace kestrel {
+
+struct GuidanceOptions {
+  double leg_m = 0.35;  // from the body's origin down to the feet
+  // Without a target: to where it should pass or was last, at this altitude above the world's
+  // z = 0. After search_wait_s there it circles outwards, to search_radius_m (0: it stays).
+  double search_altitude_m = 10;
+  double search_wait_s = 15;
+  double search_radius_m = 0;
+  double search_speed_mps = 4;
+  // Height of the feet above the board at which it follows the vehicle before it goes down; further
+  // away it flies higher, by 'glide' per metre.
+  double follow_height_m = 2.5;
+  double glide = 0.7;
+  // Speed towards the target: in proportion to the distance (less where the autopilot is slow, as
+  // the flight tells), further away as fast as it can still be braked.
+  double position_gain = 2.5;
+  double braking = 3;
+  // How fast the autopilot changes the acceleration (m/s^3; 0: at once). ArduCopter shapes what it
+  // is told by PSC_JERK_NE, which `fly` reads: what asks for more swings about the target.
+  double autopilot_jerk = 0;
+  // Speed per metre and second that it stays off: what remains of the wind and the curve.
+  double integral_gain = 0.2;
+  // Over how long the target's velocity is smoothed: a vehicle sways on its springs, faster than a
+  // UAV can follow.
+  double smoothing_s = 0.5;
+  // It goes down, in proportion to the height, while the target is within a cone: 'cone_m' wide on
+  // the board and 'cone_slope' wider per metre of height.
+  double sink_gain = 0.8;
+  double touchdown_sink_mps = 0.7;
+  double cone_m = 0.15;
+  double cone_slope = 0.35;
+  // Below this height it goes through with it.
+  double commit_height_m = 0.35;
+  // Where the target is known no better (standard deviation per axis) it does not go down, and
+  // twice as badly it climbs.
+  double max_sigma_m = 0.25;
+  // In sight is what a frame showed so recently. Out of sight it does not go down, and below
+  // sight_height_m it climbs; only the last bit it may go down for commit_sight_s.
+  double sight_s = 0.5;
+  double sight_height_m = 2;
+  double commit_sight_s = 1;
+  // A target that rises or sinks faster is none.
+  double max_target_climb_mps = 1;
+  // Without a pose it flies on level for hold_pose_s, after lose_pose_s it gives up.
+  double hold_pose_s = 0.3;
+  double lose_pose_s = 1;
+  // A camera that is away for so long: gives up.
+  double lose_camera_s = 10;
+  // After a link that was away for so long it sends nothing until the autopilot has told its mode
+  // anew, and then goes around.
+  double lose_link_s = 0.8;
+  // A velocity that differs so much from the one commanded and comes no nearer to it, for so long,
+  // says that the autopilot does not obey.
+  double disobey_mps = 3;
+  double disobey_s = 3;
+  // Streams set-points of standing still before the mode is given: PX4 does not go to OFFBOARD
+  // without.
+  bool stream_before_start = false;
+  // In contact: asks for the LAND mode (ArduPilot; PX4 would brake there), disarms by force after
+  // disarm_after_s (0: never).
+  bool land_in_contact = false;
+  double disarm_after_s = 0;
+  ContactOptions contact;
+  FlightLimitsOptions limits;
+  FlightModelOptions model;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("leg_m", self.leg_m, "m", "from the body's origin down to the feet");
+    visitor("search_altitude_m", self.search_altitude_m, "m", "height above ground of the search");
+    visitor("search_wait_s", self.search_wait_s, "s", "waits so long before it circles outwards");
+    visitor("search_radius_m", self.search_radius_m, "m", "circles so far out; 0: it stays");
+    visitor("search_speed_mps", self.search_speed_mps, "m/s", "speed of that");
+    visitor("follow_height_m", self.follow_height_m, "m", "height above the board to follow in");
+    visitor("glide", self.glide, "m/m", "height in approach, per metre of distance");
+    visitor("position_gain", self.position_gain, "1/s", "speed towards the target per metre");
+    visitor("braking", self.braking, "m/s^2", "deceleration that it counts on when far away");
+    visitor("autopilot_jerk", self.autopilot_jerk, "m/s^3",
+            "with which the autopilot changes the acceleration; 0: at once");
+    visitor("integral_gain", self.integral_gain, "1/s^2",
+            "speed per metre and second that it stays off");
+    visitor("smoothing_s", self.smoothing_s, "s",
+            "over how long the target's velocity is smoothed");
+    visitor("sink_gain", self.sink_gain, "1/s", "speed of the descent per metre of height");
+    visitor("touchdown_sink_mps", self.touchdown_sink_mps, "m/s", "slowest descent");
+    visitor("cone_m", self.cone_m, "m", "how far off it may be at the board to go down");
+    visitor("cone_slope", self.cone_slope, "m/m", "and more, per metre of height");
+    visitor("commit_height_m", self.commit_height_m, "m", "below it goes through with it");
+    visitor("max_sigma_m", self.max_sigma_m, "m", "known no better it does not go down");
+    visitor("sight_s", self.sight_s, "s", "in sight is what a frame showed so recently");
+    visitor("sight_height_m", self.sight_height_m, "m",
+            "lower than this it climbs without a target in sight");
+    visitor("commit_sight_s", self.commit_sight_s, "s",
+            "the last bit it goes down when a frame showed it so recently");
+    visitor("max_target_climb_mps", self.max_target_climb_mps, "m/s",
+            "a target that rises or sinks faster is none");
+    visitor("hold_pose_s", self.hold_pose_s, "s", "flies on level for so long without a pose");
+    visitor("lose_pose_s", self.lose_pose_s, "s", "gives up after so long without a pose");
+    visitor("lose_camera_s", self.lose_camera_s, "s", "gives up after so long without images");
+    visitor("lose_link_s", self.lose_link_s, "s",
+            "after so long without the link it waits for the mode and goes around");
+    visitor("disobey_mps", self.disobey_mps, "m/s",
+            "so far from the velocity commanded is disobedience");
+    visitor("disobey_s", self.disobey_s, "s", "for so long: gives up");
+    visitor("stream_before_start", self.stream_before_start, "",
+            "set-points of standing still before the mode is given");
+    visitor("land_in_contact", self.land_in_contact, "", "asks for the LAND mode in contact");
+    visitor("disarm_after_s", self.disarm_after_s, "s",
+            "disarms by force after so long in contact; 0: never");
+    visitor.Group("contact", self.contact);
+    visitor.Group("limits", self.limits);
+    visitor.Group("model", self.model);
+  }
+  std::vector<std::string> Validate() const;
+};
+
+}  // namespace kestrel

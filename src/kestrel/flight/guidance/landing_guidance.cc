@@ -1,0 +1,483 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/guidance/landing_guidance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kestrel/core/base/options.h"
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kHeightGain = 1;      // climb rate per metre that it is too low
+constexpr double kResting_mps = 0.25;  // what is told to go down and sinks no faster rests
+constexpr double kToldDown_mps = 0.3;
+constexpr double kStanding_mps = 0.5;  // a deck that is slower stands
+constexpr double kMaxClosing_mps = 1;  // faster over the target it does not go down
+// Following ends where it is so many cones off, the last bit where it is so many off.
+constexpr double kFollowCones = 4;
+constexpr double kCommitCones = 3;
+// A mode that the autopilot has not told for so long is not known: it tells it once a second.
+constexpr double kMaxModeAge_s = 3.5;
+constexpr double kLongestStep_s = 0.2;
+constexpr double kCommitAcceleration = 0.2;  // m/s^2, downwards
+// Over so long a change of the velocity is judged, and at least so much (m/s^2) is obedience.
+constexpr double kTrend_s = 1;
+constexpr double kLeastObedience = 0.5;
+constexpr double kLeastAcceleration = 1;  // m/s^2; no autopilot is set up for less
+
+constexpr const char* kWaits = "waits for the pilot to give the mode";
+constexpr const char* kWasGuided = "the mode was on already: leave it and give it anew";
+
+bool IsLongerThan(double seconds, const std::optional<Time>& since, Time now) {
+  return since && ToSeconds(now - *since) >= seconds;
+}
+
+// Since when 'is' has been so.
+void Remember(bool is, Time now, std::optional<Time>* since) {
+  if (!is) {
+    since->reset();
+  } else if (!*since) {
+    *since = now;
+  }
+}
+
+bool IsFinite(const UavState& uav) {
+  return uav.world_from_body.translation.allFinite() &&
+         uav.world_from_body.rotation.coeffs().allFinite() && uav.velocity_in_world.allFinite();
+}
+
+bool IsFinite(const TargetEstimate& target) {
+  return target.motion.mean.allFinite() && target.motion.covariance.diagonal().allFinite();
+}
+
+}  // namespace
+
+const char* ToString(GuidancePhase phase) {
+  switch (phase) {
+    case GuidancePhase::kIdle:
+      return "idle";
+    case GuidancePhase::kSearch:
+      return "search";
+    case GuidancePhase::kApproach:
+      return "approach";
+    case GuidancePhase::kFollow:
+      return "follow";
+    case GuidancePhase::kDescend:
+      return "descend";
+    case GuidancePhase::kCommit:
+      return "commit";
+    case GuidancePhase::kGoAround:
+      return "go-around";
+    case GuidancePhase::kLanded:
+      return "landed";
+  }
+  return "";
+}
+
+const char* ToString(GuidanceRequest request) {
+  switch (request) {
+    case GuidanceRequest::kNone:
+      return "none";
+    case GuidanceRequest::kLand:
+      return "land";
+    case GuidanceRequest::kHold:
+      return "hold";
+    case GuidanceRequest::kDisarm:
+      return "disarm";
+  }
+  return "";
+}
+
+LandingGuidance::LandingGuidance(const GuidanceOptions& options,
+                                 const std::optional<Vector2d>& place)
+    : options_(Checked(options)),
+      has_place_(place.has_value()),
+      limits_(options.limits, place.value_or(Vector2d::Zero())),
+      model_(options.model),
+      pursuit_(options),
+      search_(options),
+      contact_(options.contact),
+      reason_(kWaits),
+      may_stream_(options.stream_before_start),
+      place_(place.value_or(Vector2d::Zero())) {}
+
+void LandingGuidance::SetFenceCenter(const Vector2d& center) {
+  has_fence_center_ = true;
+  limits_.set_center(center);
+}
+
+void LandingGuidance::Rearm() {
+  if (!is_active_) may_stream_ = options_.stream_before_start;
+}
+
+GuidanceOutput LandingGuidance::Update(const GuidanceInput& input) {
+  if (input.target && !IsFinite(*input.target)) {
+    GuidanceInput without = input;
+    without.target.reset();
+    return Update(without);
+  }
+  if (!HasLink(input)) {
+    last_ = input.now;
+    sent_.reset();
+    return Output(std::nullopt, GuidanceRequest::kNone);
+  }
+  FollowMode(input);
+  GuidanceOutput output;
+  if (!is_active_) {
+    output = Idle(input);
+  } else if (!input.uav || !IsFinite(*input.uav)) {
+    output = Blind(input);
+  } else {
+    output = Fly(input);
+  }
+  sent_ = output.set_point;
+  last_ = input.now;
+  return output;
+}
+
+// Whether there is a link and the mode is known. After a long gap both are waited for: the
+// autopilot may have left the mode meanwhile, and PX4 would go back to it for a set-point.
+bool LandingGuidance::HasLink(const GuidanceInput& input) {
+  const bool is_gone = !input.is_link_up || !(input.mode_age_s <= kMaxModeAge_s);
+  if (is_gone) {
+    if (!link_lost_ && is_active_) reason_ = "the link is gone";
+    Remember(true, input.now, &link_lost_);
+    return false;
+  }
+  if (IsLongerThan(options_.lose_link_s, link_lost_, input.now)) mode_wanted_since_ = input.now;
+  link_lost_.reset();
+  if (!mode_wanted_since_) return true;
+  if (input.mode_age_s > ToSeconds(input.now - *mode_wanted_since_)) return false;
+  mode_wanted_since_.reset();
+  if (IsLow() || phase_ == GuidancePhase::kFollow) GoAround("the link was gone");
+  pursuit_.Reset();
+  return true;
+}
+
+void LandingGuidance::FollowMode(const GuidanceInput& input) {
+  const bool was_guided = was_guided_.value_or(input.is_guided);
+  if (!was_guided_ && input.is_guided) reason_ = kWasGuided;
+  was_guided_ = input.is_guided;
+  if (input.is_guided && !was_guided) Start(input);
+  if (!input.is_guided && was_guided) {
+    End(phase_ == GuidancePhase::kLanded ? "landed; guidance has ended"
+                                         : "the mode was left: give it anew to begin again");
+    has_given_up_ = false;
+  }
+}
+
+void LandingGuidance::Start(const GuidanceInput& input) {
+  may_stream_ = false;
+  has_given_up_ = true;  // until nothing speaks against it
+  if (!input.uav || !IsFinite(*input.uav)) return End("refused: the UAV's position is not known");
+  if (!input.is_armed || input.is_landed) {
+    has_given_up_ = false;  // nothing to hold
+    return End("refused: the UAV is on the ground");
+  }
+  const Vector3d& position = input.uav->world_from_body.translation;
+  if (!has_place_) place_ = position.head<2>();
+  if (!has_fence_center_) limits_.set_center(place_);
+  if (!limits_.Contains(position)) {
+    return End("refused: the UAV is outside of the geofence or above the ceiling");
+  }
+  has_given_up_ = false;
+  is_active_ = true;
+  yaw_ = HeadingOf(input.uav->world_from_body.rotation);
+  last_ = input.now;
+  go_arounds_ = 0;
+  poses_lost_.reset();
+  camera_lost_.reset();
+  disobeys_since_.reset();
+  velocity_trend_ = input.uav->velocity_in_world;
+  contact_.Reset();
+  contact_since_.reset();
+  pursuit_.Reset();
+  search_.Start(place_);
+  Enter(GuidancePhase::kSearch, "the pilot has given the mode");
+}
+
+void LandingGuidance::End(const char* reason) {
+  is_active_ = false;
+  if (phase_ != GuidancePhase::kLanded) phase_ = GuidancePhase::kIdle;
+  reason_ = reason;
+}
+
+GuidanceOutput LandingGuidance::Idle(const GuidanceInput& input) const {
+  if (has_given_up_) return Output(std::nullopt, GuidanceRequest::kHold);
+  if (!may_stream_ || input.is_guided || !input.uav) {
+    return Output(std::nullopt, GuidanceRequest::kNone);
+  }
+  SetPoint hold;
+  hold.yaw = HeadingOf(input.uav->world_from_body.rotation);
+  return Output(hold, GuidanceRequest::kNone);
+}
+
+// Without a pose: level on for a moment, then standing still, then not at all.
+GuidanceOutput LandingGuidance::Blind(const GuidanceInput& input) {
+  Remember(true, input.now, &poses_lost_);
+  model_.Forgo();
+  if (IsLongerThan(options_.lose_pose_s, poses_lost_, input.now)) {
+    has_given_up_ = true;
+    End("the poses have stopped: gave up");
+    return Idle(input);
+  }
+  SetPoint on = sent_.value_or(SetPoint());
+  on.acceleration.setZero();
+  if (phase_ != GuidancePhase::kLanded) on.velocity.z() = std::max(on.velocity.z(), 0.0);
+  if (IsLongerThan(options_.hold_pose_s, poses_lost_, input.now)) {
+    on.velocity.setZero();
+    reason_ = "the poses have stopped";
+  }
+  return Output(on, GuidanceRequest::kNone);
+}
+
+GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
+  if (IsLongerThan(options_.hold_pose_s, poses_lost_, input.now) && IsLow()) {
+    GoAround("the poses had stopped");
+  }
+  poses_lost_.reset();
+  if (GivesUp(input)) return Idle(input);
+  const Situation now = Look(input);
+  ChoosePhase(input, now);
+  if (!is_active_) return Idle(input);
+  SetPoint wanted;
+  if (phase_ == GuidancePhase::kLanded) {
+    wanted = Rest(input, now);
+  } else {
+    wanted = input.target ? Pursue(input, now) : Search(input, now);
+  }
+  wanted.yaw = yaw_;
+  const Vector3d& position = input.uav->world_from_body.translation;
+  const bool is_flying = phase_ != GuidancePhase::kLanded;
+  const SetPoint limited =
+      limits_.Limited(wanted, position, input.target.has_value() || !is_flying);
+  model_.Observe(input.now, now.velocity, input.uav->world_from_body.rotation * Vector3d::UnitZ(),
+                 is_flying ? std::optional(limited) : std::nullopt, input.link_delay_s);
+  return Output(limited, RequestInContact(input));
+}
+
+// What ends guidance while the pilot still leaves it the mode.
+bool LandingGuidance::GivesUp(const GuidanceInput& input) {
+  if (!input.is_armed) {
+    End(phase_ == GuidancePhase::kLanded ? "landed and disarmed" : "the motors are off");
+    return true;
+  }
+  if (phase_ == GuidancePhase::kLanded) return false;
+  const char* reason = nullptr;
+  Remember(!input.is_camera_up, input.now, &camera_lost_);
+  if (IsLongerThan(options_.lose_camera_s, camera_lost_, input.now)) {
+    reason = "no new images: gave up";
+  }
+  if (!Obeys(input)) reason = "the autopilot does not obey the set-points: gave up";
+  if (!reason) return false;
+  has_given_up_ = true;
+  End(reason);
+  return true;
+}
+
+// An autopilot that does not fly what it is told does not even come nearer to it.
+bool LandingGuidance::Obeys(const GuidanceInput& input) {
+  const Vector3d& velocity = input.uav->velocity_in_world;
+  const double part = std::min(ToSeconds(input.now - last_) / kTrend_s, 1.0);
+  velocity_trend_ += part * (velocity - velocity_trend_);
+  const Vector3d error = sent_ ? Vector3d(sent_->velocity - velocity) : Vector3d::Zero();
+  const double size = error.norm();
+  const double nearer = (velocity - velocity_trend_).dot(error) / kTrend_s;
+  const double least = std::min(kLeastObedience * size, kLeastAcceleration);
+  const bool disobeys = size > options_.disobey_mps && nearer < least;
+  Remember(disobeys, input.now, &disobeys_since_);
+  return !IsLongerThan(options_.disobey_s, disobeys_since_, input.now);
+}
+
+LandingGuidance::Situation LandingGuidance::Look(const GuidanceInput& input) const {
+  Situation now;
+  now.feet = input.uav->world_from_body * Vector3d(0, 0, -options_.leg_m);
+  now.velocity = input.uav->velocity_in_world;
+  if (!input.target) return now;
+  const TurnState& target = input.target->motion;
+  const Vector3d from_target = now.feet - target.position();
+  now.height_m = from_target.z();
+  now.off_m = from_target.head<2>().norm();
+  now.slip_mps = (target.velocity() - now.velocity).head<2>().norm();
+  now.is_in_sight = input.is_camera_up && input.target_age_s <= options_.sight_s;
+  now.is_known = input.target->position_sigma_m() <= options_.max_sigma_m;
+  const double climb_sigma = std::sqrt(std::max(target.covariance(5, 5), 0.0));
+  now.is_credible =
+      std::abs(target.velocity().z()) <= options_.max_target_climb_mps + 2 * climb_sigma;
+  return now;
+}
+
+void LandingGuidance::ChoosePhase(const GuidanceInput& input, const Situation& now) {
+  if (FindContact(input, now)) return;
+  if (!input.target) {
+    if (IsLow()) ++go_arounds_;
+    if (phase_ != GuidancePhase::kSearch) {
+      search_.Start(place_);
+      pursuit_.Reset();
+      Enter(GuidancePhase::kSearch, "the target is lost");
+    }
+    return;
+  }
+  place_ = input.target->motion.position().head<2>();
+  if (phase_ == GuidancePhase::kSearch) Enter(GuidancePhase::kApproach, "the target is found");
+  if (phase_ == GuidancePhase::kGoAround && now.height_m >= options_.sight_height_m) {
+    Enter(GuidancePhase::kApproach, "high enough to come again");
+  }
+  ChooseAbove(now);
+  ChooseDescent(input, now);
+}
+
+// Approach, follow and the beginning of the descent.
+void LandingGuidance::ChooseAbove(const Situation& now) {
+  const double cone_m = Cone(now.height_m);
+  if (phase_ == GuidancePhase::kApproach && now.off_m < cone_m && now.slip_mps < kMaxClosing_mps) {
+    Enter(GuidancePhase::kFollow, "above the target");
+  }
+  if (phase_ != GuidancePhase::kFollow) return;
+  if (now.off_m > kFollowCones * cone_m) {
+    Enter(GuidancePhase::kApproach, "too far from the target");
+  } else if (now.is_known && now.is_credible && now.is_in_sight && now.off_m < cone_m &&
+             now.slip_mps < kMaxClosing_mps) {
+    Enter(GuidancePhase::kDescend, "above the target, which is in sight");
+  }
+}
+
+// The descent: through to the deck, or up again.
+void LandingGuidance::ChooseDescent(const GuidanceInput& input, const Situation& now) {
+  const double cone_m = Cone(now.height_m);
+  if (phase_ == GuidancePhase::kDescend) {
+    if (!now.is_known) return GoAround("the target is not known well enough");
+    if (!now.is_credible) return GoAround("the target rises or sinks: not a deck");
+    if (now.off_m > 2 * cone_m) return GoAround("too far beside the target");
+    if (!now.is_in_sight && now.height_m < options_.sight_height_m) {
+      return GoAround("low, and the target is not in sight");
+    }
+    if (now.height_m < options_.commit_height_m && now.off_m < cone_m) {
+      Enter(GuidancePhase::kCommit, "near the deck, within the cone");
+    }
+  }
+  if (phase_ != GuidancePhase::kCommit) return;
+  // One that does not sink any more stands on the deck, where the camera may see nothing.
+  const bool sinks = now.velocity.z() - input.target->motion.velocity().z() < -kResting_mps;
+  if (sinks && !(input.target_age_s <= options_.commit_sight_s)) {
+    return GoAround("near the deck, and the target was not in sight for too long");
+  }
+  if (now.is_in_sight && now.off_m > kCommitCones * cone_m) GoAround("beside the deck");
+  if (now.height_m > 2 * options_.commit_height_m) GoAround("has risen from the deck");
+}
+
+// Whether it stands on the deck, by its own rest against it or by what the autopilot says.
+bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& now) {
+  // What is not told to go down may hover there.
+  const bool is_told_down = sent_ && sent_->velocity.z() < -kToldDown_mps;
+  std::optional<ContactDetector::Deck> deck;
+  if (input.target && is_told_down) {
+    deck = ContactDetector::Deck{input.target->motion.position(), input.target->motion.velocity()};
+  }
+  const bool was_in_contact = phase_ == GuidancePhase::kLanded;
+  const bool may_touch = IsLow() || was_in_contact;
+  if (!may_touch) contact_.Reset();
+  const bool touches = may_touch && contact_.Update(input.now, now.feet, now.velocity, deck);
+  Remember(touches, input.now, &contact_since_);
+  if (touches || (may_touch && input.is_landed)) {
+    if (!was_in_contact) {
+      ride_.Reset();
+      Enter(GuidancePhase::kLanded, "contact with the deck");
+    }
+    return true;
+  }
+  if (was_in_contact) GoAround("has lost contact with the deck");
+  if (input.is_landed) End("the UAV is on the ground");
+  return false;
+}
+
+GuidanceRequest LandingGuidance::RequestInContact(const GuidanceInput& input) const {
+  if (phase_ != GuidancePhase::kLanded) return GuidanceRequest::kNone;
+  if (options_.disarm_after_s > 0 &&
+      IsLongerThan(options_.disarm_after_s, contact_since_, input.now)) {
+    return GuidanceRequest::kDisarm;
+  }
+  // On a deck that drives on LAND would brake, unless the autopilot has found that it has landed:
+  // until then the set-points go on.
+  const bool may_land =
+      input.is_landed || input.uav->velocity_in_world.head<2>().norm() < kStanding_mps;
+  return options_.land_in_contact && may_land ? GuidanceRequest::kLand : GuidanceRequest::kNone;
+}
+
+// On the deck: a descent that goes on, and along with the deck. So the autopilot finds that it has
+// landed, and does not lean against what carries it.
+SetPoint LandingGuidance::Rest(const GuidanceInput& input, const Situation& now) {
+  ride_.Observe(input.now, now.velocity.head<2>());
+  SetPoint command;
+  command.velocity << ride_.Velocity(model_.delay_s()), -options_.touchdown_sink_mps;
+  command.acceleration.head<2>() = ride_.acceleration();
+  return command;
+}
+
+SetPoint LandingGuidance::Search(const GuidanceInput& input, const Situation& now) {
+  const double seconds = std::clamp(ToSeconds(input.now - last_), 0.0, kLongestStep_s);
+  const Vector2d place = search_.Advance(now.feet.head<2>(), seconds);
+  SetPoint command = pursuit_.To(place, {now.feet.head<2>(), now.velocity.head<2>()}, model_,
+                                 options_.limits.max_speed_mps);
+  command.velocity.z() = kHeightGain * (options_.search_altitude_m - now.feet.z());
+  return command;
+}
+
+SetPoint LandingGuidance::Pursue(const GuidanceInput& input, const Situation& now) {
+  SetPoint command =
+      pursuit_.Above(*input.target, {now.feet.head<2>(), now.velocity.head<2>()}, model_);
+  command.velocity.z() = ClimbRate(input, now);
+  // Out of sight nothing goes down but the last bit. Low it stops at once, for it takes a UAV a
+  // while to, and goes around when that has lasted.
+  const double patience_s =
+      now.height_m < options_.sight_height_m ? 0.5 * options_.sight_s : options_.sight_s;
+  const bool is_seen = now.is_in_sight && input.target_age_s <= patience_s;
+  if (!is_seen && phase_ != GuidancePhase::kCommit) {
+    command.velocity.z() = std::max(command.velocity.z(), 0.0);
+  }
+  return command;
+}
+
+double LandingGuidance::ClimbRate(const GuidanceInput& input, const Situation& now) const {
+  const double sink = std::max(options_.sink_gain * now.height_m, options_.touchdown_sink_mps);
+  if (phase_ == GuidancePhase::kCommit) {
+    // Ever faster: an autopilot that is told so does not take the deck for its own braking.
+    return -sink - kCommitAcceleration * ToSeconds(input.now - entered_);
+  }
+  if (phase_ == GuidancePhase::kDescend) return now.off_m < Cone(now.height_m) ? -sink : 0;
+  const double top_m = options_.search_altitude_m - input.target->motion.position().z();
+  const bool is_unknown = input.target->position_sigma_m() > 2 * options_.max_sigma_m;
+  const double wanted_m =
+      is_unknown ? top_m : std::max(options_.follow_height_m, options_.glide * now.off_m);
+  return kHeightGain * (std::min(wanted_m, top_m) - now.height_m);
+}
+
+void LandingGuidance::Enter(GuidancePhase phase, const char* reason) {
+  phase_ = phase;
+  reason_ = reason;
+  entered_ = last_;
+}
+
+void LandingGuidance::GoAround(const char* reason) {
+  ++go_arounds_;
+  Enter(GuidancePhase::kGoAround, reason);
+}
+
+double LandingGuidance::Cone(double height_m) const {
+  return options_.cone_m + options_.cone_slope * std::max(height_m, 0.0);
+}
+
+bool LandingGuidance::IsLow() const {
+  return phase_ == GuidancePhase::kDescend || phase_ == GuidancePhase::kCommit;
+}
+
+GuidanceOutput LandingGuidance::Output(const std::optional<SetPoint>& set_point,
+                                       GuidanceRequest request) const {
+  return {set_point, phase_, request, reason_};
+}
+
+}  // namespace kestrel

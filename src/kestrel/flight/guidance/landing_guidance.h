@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/set_point.h"
+#include "kestrel/flight/guidance/contact_detector.h"
+#include "kestrel/flight/guidance/deck_ride.h"
+#include "kestrel/flight/guidance/flight_limits.h"
+#include "kestrel/flight/guidance/flight_model.h"
+#include "kestrel/flight/guidance/guidance_options.h"
+#include "kestrel/flight/guidance/search_path.h"
+#include "kestrel/flight/guidance/target_pursuit.h"
+#include "kestrel/vision/tracking/target_tracker.h"
+
+namespace kestrel {
+
+enum class GuidancePhase {
+  kIdle,      // not begun, refused, or ended: the pilot flies
+  kSearch,    // to where the vehicle was last or should pass, waits there, then circles outwards
+  kApproach,  // to above the target
+  kFollow,    // above it, at the height of following, until it may go down
+  kDescend,   // down above it
+  kCommit,    // the last bit
+  kGoAround,  // up again
+  kLanded,    // in contact with the deck; stays so until guidance begins anew
+};
+// "idle", "search", "approach", "follow", "descend", "commit", "go-around", "landed"
+const char* ToString(GuidancePhase phase);
+
+// What the autopilot should be asked for, beside the set-points. Repeated for as long as it holds:
+// the caller limits how often it asks.
+enum class GuidanceRequest {
+  kNone,
+  kLand,    // its LAND mode, in contact
+  kHold,    // LOITER or HOLD: guidance has given up
+  kDisarm,  // by force, in contact
+};
+const char* ToString(GuidanceRequest request);  // "none", "land", "hold", "disarm"
+
+// What the UAV knows of itself.
+struct UavState {
+  RigidTransform world_from_body;               // FLU to ENU
+  Eigen::Vector3d velocity_in_world{0, 0, 0};   // m/s
+  std::optional<double> position_sigma_m = {};  // per axis, where it is known
+};
+
+// All that guidance knows at an instant.
+struct GuidanceInput {
+  Time now;                              // never earlier than the one before
+  std::optional<UavState> uav;           // predicted to now; nothing when the poses have stopped
+  std::optional<TargetEstimate> target;  // predicted to now; nothing while there is none, or lost
+  // Since a frame was taken that showed the target, s.
+  double target_age_s = std::numeric_limits<double>::infinity();
+  bool is_guided = false;  // the mode in which the autopilot obeys set-points, by its heartbeat
+  bool is_armed = false;
+  bool is_landed = false;    // the autopilot says that it is on the ground
+  bool is_link_up = true;    // messages come from the autopilot
+  bool is_camera_up = true;  // new images come that are not the same as before
+  double mode_age_s = 0;     // since the autopilot told the mode, s
+  double link_delay_s = 0;   // from sending a set-point to its use, s
+};
+
+struct GuidanceOutput {
+  std::optional<SetPoint> set_point;  // nothing: send none
+  GuidancePhase phase = GuidancePhase::kIdle;
+  GuidanceRequest request = GuidanceRequest::kNone;
+  const char* reason = "";  // why the phase is what it is, for the user; a literal
+};
+
+// Flies a multicopter to a moving target, by set-points, and down onto it. A state machine without
+// clock, socket or thread: all that happens is in the inputs. docs/guidance.md has its phases and
+// what it does about each loss.
+//
+// It begins when is_guided turns true, and ends when it turns false; the mode must then be left and
+// given anew. Update does not allocate and does not throw.
+class LandingGuidance {
+ public:
+  // 'place': where the vehicle should pass (m, world); nothing: where guidance begins. Throws
+  // InputError when the options are not valid.
+  explicit LandingGuidance(const GuidanceOptions& options,
+                           const std::optional<Eigen::Vector2d>& place = std::nullopt);
+
+  // To be called at 20 Hz or more, in order of time.
+  GuidanceOutput Update(const GuidanceInput& input);
+
+  // Set-points of standing still are sent again before the mode is given (stream_before_start):
+  // after the mode was left they are not, until this is called. PX4 would go back to OFFBOARD by
+  // itself. Nothing happens while guidance flies.
+  void Rearm();
+
+  // The geofence's middle from now on, instead of where guidance begins.
+  void SetFenceCenter(const Eigen::Vector2d& center);
+
+  GuidancePhase phase() const { return phase_; }
+  int go_arounds() const { return go_arounds_; }  // how often it went up again
+  // What the flight has told of the wind, the drag and the autopilot.
+  const FlightModel& model() const { return model_; }
+
+ private:
+  // Where the UAV is, by what is known of it and of the target.
+  struct Situation {
+    Eigen::Vector3d feet;
+    Eigen::Vector3d velocity;
+    double height_m = 0;  // of the feet above the target
+    double off_m = 0;     // horizontally
+    double slip_mps = 0;  // horizontal speed against the target
+    bool is_in_sight = false;
+    bool is_known = false;  // well enough to go down
+    bool is_credible = true;
+  };
+
+  // Beginning and end.
+  void FollowMode(const GuidanceInput& input);
+  void Start(const GuidanceInput& input);
+  void End(const char* reason);
+  bool HasLink(const GuidanceInput& input);
+  bool GivesUp(const GuidanceInput& input);
+  bool Obeys(const GuidanceInput& input);
+
+  // What is sent.
+  GuidanceOutput Idle(const GuidanceInput& input) const;
+  GuidanceOutput Blind(const GuidanceInput& input);
+  GuidanceOutput Fly(const GuidanceInput& input);
+  SetPoint Search(const GuidanceInput& input, const Situation& now);
+  SetPoint Pursue(const GuidanceInput& input, const Situation& now);
+  SetPoint Rest(const GuidanceInput& input, const Situation& now);
+  double ClimbRate(const GuidanceInput& input, const Situation& now) const;
+  GuidanceRequest RequestInContact(const GuidanceInput& input) const;
+  GuidanceOutput Output(const std::optional<SetPoint>& set_point, GuidanceRequest request) const;
+
+  // Which phase.
+  Situation Look(const GuidanceInput& input) const;
+  void ChoosePhase(const GuidanceInput& input, const Situation& now);
+  void ChooseAbove(const Situation& now);
+  void ChooseDescent(const GuidanceInput& input, const Situation& now);
+  bool FindContact(const GuidanceInput& input, const Situation& now);
+  void Enter(GuidancePhase phase, const char* reason);
+  void GoAround(const char* reason);
+  double Cone(double height_m) const;
+  bool IsLow() const;  // in a phase in which it goes down
+
+  GuidanceOptions options_;
+  bool has_place_;
+  bool has_fence_center_ = false;
+  FlightLimits limits_;
+  FlightModel model_;
+  TargetPursuit pursuit_;
+  SearchPath search_;
+  ContactDetector contact_;
+  DeckRide ride_;
+
+  GuidancePhase phase_ = GuidancePhase::kIdle;
+  const char* reason_;
+  int go_arounds_ = 0;
+  Time entered_;  // the phase
+  bool is_active_ = false;
+  bool has_given_up_ = false;  // and asks for hold while it has the mode
+  bool may_stream_;
+  std::optional<bool> was_guided_;         // nothing: not told yet
+  Time last_;                              // time of the last update
+  std::optional<Time> link_lost_;          // since when there is none
+  std::optional<Time> mode_wanted_since_;  // the autopilot has not told its mode since
+  std::optional<Time> poses_lost_;
+  std::optional<Time> camera_lost_;
+  std::optional<Time> disobeys_since_;
+  Eigen::Vector3d velocity_trend_{0, 0, 0};  // of the UAV, a low pass
+  std::optional<Time> contact_since_;
+  Eigen::Vector2d place_{0, 0};  // where the vehicle was last, or should pass
+  double yaw_ = 0;               // that the nose keeps, rad
+  std::optional<SetPoint> sent_;
+};
+
+}  // namespace kestrel

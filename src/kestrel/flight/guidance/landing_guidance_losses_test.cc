@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/flight/guidance/test_flight_phases.h"
+
+namespace kestrel {
+namespace {
+
+using Phase = GuidancePhase;
+
+// No descent without a target in sight below 2 m, but for the last bit for a moment.
+class UnseenTest : public testing::TestWithParam<double> {};
+TEST_P(UnseenTest, DoesNotGoDown) {
+  TestFlight flight = InPhase(Phase::kDescend);
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.Height() < GetParam(); }, 20));
+  const Time last_seen = flight.Input().now;
+  double lowest_m = flight.Height();
+  const double began_m = lowest_m;
+  flight.FlyUntil(
+      [&] {
+        lowest_m = std::min(lowest_m, flight.Height());
+        const bool is_unseen = ToSeconds(flight.Input().now - last_seen) > 0.52;
+        if (is_unseen) {
+          EXPECT_GE(flight.output.set_point->velocity.z(), 0);
+        }
+        return false;
+      },
+      6,
+      [&](GuidanceInput& input) {
+        input.target_age_s = ToSeconds(input.now - last_seen);
+        if (input.target_age_s > 3) input.target.reset();
+      });
+  EXPECT_GT(lowest_m, std::min(0.4 * began_m, began_m - 0.3));
+  EXPECT_EQ(flight.guidance.go_arounds(), 1);
+  EXPECT_GT(flight.Height(), 2.3);
+}
+INSTANTIATE_TEST_SUITE_P(FromHeights, UnseenTest, testing::Values(2.2, 1.8, 1.2, 0.8));
+
+TEST(LandingGuidanceLossesTest, HoldsItsHeightAboveTwoMetresAndThenSearches) {
+  TestFlight flight = InPhase(Phase::kDescend);
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.Height() < 2.45; }, 20, kAsItIs));
+  flight.FlyUntil([] { return false; }, 1, kUnseen);
+  EXPECT_GT(flight.Height(), 2);
+  flight.FlyUntil([] { return false; }, 12, kNoTarget);
+  EXPECT_EQ(flight.output.phase, Phase::kSearch);
+  EXPECT_NEAR(flight.Feet().z(), 10, 0.5);
+}
+
+TEST(LandingGuidanceLossesTest, CommitsOnlyWithAFreshSight) {
+  TestFlight flight = InPhase(Phase::kCommit);
+  flight.Step([](GuidanceInput& input) { input.target_age_s = 0.9; });
+  EXPECT_LT(flight.output.set_point->velocity.z(), -0.5);
+  flight.Step([](GuidanceInput& input) { input.target_age_s = 1.1; });
+  EXPECT_EQ(flight.output.phase, Phase::kGoAround);
+  EXPECT_GT(flight.output.set_point->velocity.z(), 0.5);
+}
+
+TEST(LandingGuidanceLossesTest, DoesNotGoDownOnWhatItHardlyKnows) {
+  TestFlight flight;
+  double sigma_m = 0.4;
+  const auto is_bad = [&](GuidanceInput& input) {
+    input.target = flight.target.Estimate(input.now, flight.time_s, sigma_m);
+  };
+  flight.FlyUntil([] { return false; }, 20, is_bad);
+  EXPECT_EQ(flight.output.phase, Phase::kFollow);
+  EXPECT_NEAR(flight.Height(), 2.5, 0.4) << "follows";
+  sigma_m = 0.8;
+  flight.FlyUntil([] { return false; }, 20, is_bad);
+  EXPECT_NEAR(flight.Feet().z(), 10, 0.4) << "climbs";
+}
+
+// As a picture that is frozen makes it: the target seems to sink as the UAV does.
+TEST(LandingGuidanceLossesTest, DoesNotFollowATargetDown) {
+  TestFlight flight = InPhase(Phase::kDescend);
+  flight.Step([](GuidanceInput& input) { input.target->motion.mean(5) = -1.3; });
+  EXPECT_EQ(flight.output.phase, Phase::kGoAround);
+  EXPECT_THAT(flight.output.reason, testing::HasSubstr("not a deck"));
+}
+
+TEST(LandingGuidanceLossesTest, GoesAroundWhenTheTrackJumps) {
+  TestFlight flight = InPhase(Phase::kDescend);
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.Height() < 1; }, 20));
+  flight.Step([](GuidanceInput& input) { input.target->motion.mean(0) += 3; });
+  EXPECT_EQ(flight.output.phase, Phase::kGoAround);
+  EXPECT_GT(flight.output.set_point->velocity.z(), 0.5);
+}
+
+TEST(LandingGuidanceLossesTest, ACameraThatIsDownIsNoSight) {
+  TestFlight flight = InPhase(Phase::kDescend);
+  const auto camera_down = [](GuidanceInput& input) { input.is_camera_up = false; };
+  flight.Step(camera_down);
+  EXPECT_GE(flight.output.set_point->velocity.z(), 0);
+  flight.FlyUntil([] { return false; }, 11, camera_down);
+  EXPECT_FALSE(flight.output.set_point);
+  EXPECT_EQ(flight.output.request, GuidanceRequest::kHold);
+  EXPECT_FALSE(flight.Step().set_point) << "does not begin again by itself";
+}
+
+class PosesStopTest : public testing::TestWithParam<Phase> {};
+TEST_P(PosesStopTest, StopsTheDescentThenGivesUp) {
+  TestFlight flight = InPhase(GetParam());
+  const auto no_pose = [](GuidanceInput& input) { input.uav.reset(); };
+  double sent_s = 0;
+  flight.FlyUntil(
+      [&] {
+        if (!flight.output.set_point) return false;
+        sent_s += kTestStep_s;
+        EXPECT_GE(flight.output.set_point->velocity.z(), 0);
+        return false;
+      },
+      3, no_pose);
+  EXPECT_NEAR(sent_s, 1, 0.1);
+  EXPECT_EQ(flight.output.request, GuidanceRequest::kHold);
+  EXPECT_FALSE(flight.Step().set_point) << "does not begin again by itself";
+  EXPECT_EQ(flight.output.request, GuidanceRequest::kHold);
+  flight.Step(kTakenBack);
+  EXPECT_EQ(flight.output.request, GuidanceRequest::kNone);
+  EXPECT_TRUE(flight.Step().set_point);
+}
+INSTANTIATE_TEST_SUITE_P(InEachPhase, PosesStopTest,
+                         testing::Values(Phase::kSearch, Phase::kApproach, Phase::kFollow,
+                                         Phase::kDescend, Phase::kCommit, Phase::kGoAround));
+
+TEST(LandingGuidanceLossesTest, PosesThatWereAwayForAMomentEndTheDescent) {
+  TestFlight flight = InPhase(Phase::kDescend);
+  flight.FlyUntil([] { return false; }, 0.6, [](GuidanceInput& input) { input.uav.reset(); });
+  flight.Step();
+  EXPECT_EQ(flight.guidance.go_arounds(), 1);
+}
+
+class LinkGoneTest : public testing::TestWithParam<double> {};
+TEST_P(LinkGoneTest, SendsNothingAndGoesAroundAfterALongTime) {
+  TestFlight flight = InPhase(Phase::kDescend);
+  const auto gone = [](GuidanceInput& input) { input.is_link_up = false; };
+  flight.FlyUntil(
+      [&] {
+        EXPECT_FALSE(flight.output.set_point);
+        return false;
+      },
+      GetParam(), gone);
+  const Time back = flight.Input().now;
+  const auto mode_not_told = [&](GuidanceInput& input) {
+    input.mode_age_s = 0.3 + ToSeconds(input.now - back);
+  };
+  if (GetParam() < 0.8) {
+    EXPECT_TRUE(flight.Step(mode_not_told).set_point);
+    EXPECT_EQ(flight.guidance.go_arounds(), 0);
+    return;
+  }
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(flight.Step(mode_not_told).set_point);
+  flight.Step();
+  ASSERT_TRUE(flight.output.set_point);
+  EXPECT_EQ(flight.guidance.go_arounds(), 1);
+  EXPECT_GE(flight.output.set_point->velocity.z(), 0);
+}
+INSTANTIATE_TEST_SUITE_P(ForSeconds, LinkGoneTest, testing::Values(0.5, 2.0, 10.0));
+
+TEST(LandingGuidanceLossesTest, AModeThatWasLeftWhileTheLinkWasGoneEndsIt) {
+  TestFlight flight = InPhase(Phase::kDescend);
+  flight.FlyUntil([] { return false; }, 2, [](GuidanceInput& input) { input.is_link_up = false; });
+  for (int i = 0; i < 50; ++i) EXPECT_FALSE(flight.Step(kTakenBack).set_point);
+  EXPECT_EQ(flight.output.phase, Phase::kIdle);
+}
+
+TEST(LandingGuidanceLossesTest, GivesUpWhenTheAutopilotDoesNotObey) {
+  TestFlight flight;
+  flight.Step();
+  const UavState hovering = flight.uav.State();
+  flight.FlyUntil([] { return false; }, 10, [&](GuidanceInput& input) { input.uav = hovering; });
+  EXPECT_FALSE(flight.output.set_point);
+  EXPECT_EQ(flight.output.request, GuidanceRequest::kHold);
+  EXPECT_THAT(flight.output.reason, testing::HasSubstr("does not obey"));
+}
+
+TEST(LandingGuidanceLossesTest, NothingThatIsNotFiniteIsSent) {
+  TestFlight flight = InPhase(Phase::kDescend);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (int i = 0; i < 100; ++i) {
+    flight.Step([&](GuidanceInput& input) {
+      if (i % 4 == 0) input.target->motion.mean(i % 7) = nan;
+      if (i % 4 == 1) input.uav->velocity_in_world.x() = nan;
+      if (i % 4 == 2) input.target_age_s = nan;
+    });
+    if (!flight.output.set_point) continue;
+    EXPECT_TRUE(flight.output.set_point->velocity.allFinite());
+    EXPECT_TRUE(flight.output.set_point->acceleration.allFinite());
+  }
+}
+
+}  // namespace
+}  // namespace kestrel

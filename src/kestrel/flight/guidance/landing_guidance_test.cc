@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/guidance/landing_guidance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/flight/guidance/test_flight_phases.h"
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Phase = GuidancePhase;
+
+TEST(LandingGuidanceTest, ComesDownOnATargetThatTurnsInTheWind) {
+  TestFlight flight;
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.Height() <= 0; }, 30));
+  EXPECT_EQ(flight.output.phase, Phase::kCommit);
+  EXPECT_EQ(flight.guidance.go_arounds(), 0);
+  const Vector3d slip = flight.uav.velocity() - flight.target.Velocity(flight.time_s);
+  EXPECT_LT(flight.Off(), 0.25);
+  EXPECT_LT(slip.head<2>().norm(), 0.5);
+  EXPECT_NEAR(-slip.z(), 0.7, 0.2);
+}
+
+TEST(LandingGuidanceTest, GoesThroughThePhasesInOrder) {
+  TestFlight flight;
+  std::vector<Phase> phases;
+  flight.FlyUntil(
+      [&] {
+        if (phases.empty() || phases.back() != flight.output.phase) {
+          phases.push_back(flight.output.phase);
+        }
+        return flight.Height() <= 0;
+      },
+      30,
+      [&](GuidanceInput& input) {
+        if (flight.time_s < 1) input.target.reset();
+      });
+  // Following is over at once where all is well.
+  EXPECT_THAT(phases, testing::ElementsAre(Phase::kIdle, Phase::kSearch, Phase::kApproach,
+                                           Phase::kDescend, Phase::kCommit));
+}
+
+struct Autopilot {
+  const char* name;
+  TestUavOptions uav;
+};
+
+// Autopilots that differ in all that guidance is not told.
+TEST(LandingGuidanceTest, LandsWithWhateverAutopilot) {
+  TestUavOptions stiff;
+  stiff.compensates_drag = true;
+  TestUavOptions slow = stiff;
+  slow.attitude_lag_s = 0.12;
+  TestUavOptions weak;
+  weak.p = 2;
+  TestUavOptions much_drag = TestUavOptions::Px4();
+  much_drag.drag = 0.4;
+  TestUavOptions late = TestUavOptions::Px4();
+  late.delay_s = 0.1;
+  TestUavOptions shaping = TestUavOptions::ArduCopter();
+  shaping.shaping_accel = 9;
+  shaping.shaping_jerk = 20;
+  shaping.max_tilt_deg = 45;
+  const Autopilot autopilots[] = {{"stiff", stiff},         {"slow", slow},
+                                  {"weak", weak},           {"PX4", TestUavOptions::Px4()},
+                                  {"much drag", much_drag}, {"late", late},
+                                  {"ArduCopter", shaping}};
+  for (const double speed_mps : {4.2, 8.33}) {
+    VehicleMotionOptions vehicle;
+    vehicle.speed_mps = speed_mps;
+    if (speed_mps > 5) vehicle.radius_m = 26;
+    GuidanceOptions options;
+    options.limits.max_speed_mps = 16;
+    options.limits.max_tilt_deg = 45;
+    for (const Autopilot& autopilot : autopilots) {
+      SCOPED_TRACE(std::string(autopilot.name) + (speed_mps > 5 ? ", 30 km/h" : ", 15 km/h"));
+      std::vector<double> off_m;
+      for (int seed = 1; seed <= 10; ++seed) {
+        TestFlight flight(options, autopilot.uav, vehicle, seed);
+        flight.FlyUntil([&] { return flight.Height() <= 0; }, 60,
+                        [&](GuidanceInput& input) { input.link_delay_s = autopilot.uav.delay_s; });
+        off_m.push_back(flight.Height() <= 0 ? flight.Off() : 100);
+      }
+      std::sort(off_m.begin(), off_m.end());
+      EXPECT_LT(off_m[5], speed_mps > 5 ? 0.35 : 0.25);
+      EXPECT_LT(off_m[8], 0.5);
+    }
+  }
+}
+
+// Beginning and end.
+
+TEST(LandingGuidanceTest, BeginsOnlyWhenTheModeIsGiven) {
+  TestFlight flight;
+  for (int i = 0; i < 50; ++i) {
+    flight.Step(kTakenBack);
+    EXPECT_EQ(flight.output.phase, Phase::kIdle);
+    EXPECT_FALSE(flight.output.set_point);
+  }
+  flight.Step();
+  EXPECT_EQ(flight.output.phase, Phase::kApproach);
+  EXPECT_TRUE(flight.output.set_point);
+}
+
+TEST(LandingGuidanceTest, AModeThatWasOnAlreadyIsNotGiven) {
+  TestFlight flight;
+  flight.time_s = 1;
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(flight.Step().set_point);
+  EXPECT_THAT(flight.output.reason, testing::HasSubstr("leave it"));
+  flight.Step(kTakenBack);
+  EXPECT_TRUE(flight.Step().set_point);
+}
+
+TEST(LandingGuidanceTest, StreamsBeforeTheFirstStartOnlyAndAfterRearm) {
+  GuidanceOptions options;
+  options.stream_before_start = true;
+  TestFlight flight(options);
+  flight.Step(kTakenBack);
+  ASSERT_TRUE(flight.output.set_point);
+  EXPECT_EQ(flight.output.set_point->velocity.norm(), 0);
+  flight.FlyUntil([] { return false; }, 2);
+  flight.guidance.Rearm();  // nothing while it flies
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(flight.Step(kTakenBack).set_point);
+  flight.guidance.Rearm();
+  EXPECT_TRUE(flight.Step(kTakenBack).set_point);
+}
+
+class TakenBackTest : public testing::TestWithParam<Phase> {};
+TEST_P(TakenBackTest, SendsNothingUntilTheModeIsGivenAnew) {
+  GuidanceOptions options;
+  options.stream_before_start = true;
+  TestFlight flight = InPhase(GetParam(), options);
+  ASSERT_TRUE(flight.output.set_point);
+  for (int i = 0; i < 200; ++i) {
+    flight.Step(kTakenBack);
+    EXPECT_FALSE(flight.output.set_point);
+    EXPECT_EQ(flight.output.request, GuidanceRequest::kNone);
+  }
+  EXPECT_EQ(flight.output.phase, GetParam() == Phase::kLanded ? Phase::kLanded : Phase::kIdle);
+  flight.is_on_deck = false;
+  EXPECT_TRUE(flight.Step().set_point);
+}
+INSTANTIATE_TEST_SUITE_P(InEachPhase, TakenBackTest,
+                         testing::Values(Phase::kSearch, Phase::kApproach, Phase::kFollow,
+                                         Phase::kDescend, Phase::kCommit, Phase::kGoAround,
+                                         Phase::kLanded));
+
+TEST(LandingGuidanceTest, RefusesWhatCannotBeFlown) {
+  struct Refusal {
+    const char* reason;
+    void (*change)(GuidanceInput&);
+    GuidanceRequest request;
+  };
+  const Refusal refusals[] = {
+      {"on the ground", [](GuidanceInput& input) { input.is_armed = false; },
+       GuidanceRequest::kNone},
+      {"on the ground", [](GuidanceInput& input) { input.is_landed = true; },
+       GuidanceRequest::kNone},
+      {"not known", [](GuidanceInput& input) { input.uav.reset(); }, GuidanceRequest::kHold},
+      {"geofence", [](GuidanceInput& input) { input.uav->world_from_body.translation.x() = 101; },
+       GuidanceRequest::kHold},
+      {"ceiling", [](GuidanceInput& input) { input.uav->world_from_body.translation.z() = 31; },
+       GuidanceRequest::kHold}};
+  for (const Refusal& refusal : refusals) {
+    TestFlight flight;
+    flight.guidance = LandingGuidance({}, Vector2d(0, 0));
+    flight.Step();  // the mode is not yet given
+    for (int i = 0; i < 5; ++i) {
+      flight.Step(refusal.change);
+      EXPECT_FALSE(flight.output.set_point);
+      EXPECT_EQ(flight.output.request, refusal.request);
+      EXPECT_THAT(flight.output.reason, testing::HasSubstr(refusal.reason));
+    }
+    EXPECT_FALSE(flight.Step().set_point) << "the mode has to be given anew";
+    flight.Step(kTakenBack);
+    EXPECT_TRUE(flight.Step().set_point);
+  }
+}
+
+TEST(LandingGuidanceTest, EndsWhenTheMotorsAreOff) {
+  TestFlight flight = InPhase(Phase::kDescend);
+  flight.Step([](GuidanceInput& input) { input.is_armed = false; });
+  EXPECT_FALSE(flight.output.set_point);
+  EXPECT_EQ(flight.output.phase, Phase::kIdle);
+}
+
+// Search.
+
+TEST(LandingGuidanceTest, WaitsWhereTheVehicleShouldPass) {
+  TestFlight flight;
+  flight.guidance = LandingGuidance({}, Vector2d(8, -5));
+  flight.FlyUntil([] { return false; }, 12, kNoTarget);
+  EXPECT_EQ(flight.output.phase, Phase::kSearch);
+  EXPECT_LT((flight.Feet() - Vector3d(8, -5, 10)).norm(), 1);
+}
+
+TEST(LandingGuidanceTest, CirclesOutwardsAfterAWhile) {
+  GuidanceOptions options;
+  options.search_wait_s = 2;
+  options.search_radius_m = 20;
+  TestFlight flight(options);
+  double furthest_m = 0;
+  flight.FlyUntil(
+      [&] {
+        furthest_m = std::max(furthest_m, flight.Feet().head<2>().norm());
+        return false;
+      },
+      60, kNoTarget);
+  EXPECT_GT(furthest_m, 17);
+  EXPECT_LT(furthest_m, 23);
+}
+
+// Limits.
+
+TEST(LandingGuidanceTest, StaysWithinItsLimitsWhereverTheTargetGoes) {
+  GuidanceOptions options;
+  options.limits.geofence_radius_m = 25;
+  VehicleMotionOptions vehicle;
+  vehicle.path = "straight";
+  TestFlight flight(options, {}, vehicle);
+  double furthest_m = 0;
+  flight.FlyUntil(
+      [&] {
+        furthest_m = std::max(furthest_m, flight.uav.position().head<2>().norm());
+        if (!flight.output.set_point) return false;
+        EXPECT_LE(flight.output.set_point->velocity.head<2>().norm(), 12 + 1e-9);
+        EXPECT_LE(flight.output.set_point->acceleration.head<2>().norm(), 5.67);
+        return false;
+      },
+      30,
+      [&](GuidanceInput& input) {
+        input.target = flight.target.Estimate(input.now, flight.time_s, 0.4);
+      });
+  EXPECT_LT(furthest_m, 25.5);
+  EXPECT_GT(furthest_m, 20);
+}
+
+// Contact.
+
+TEST(LandingGuidanceTest, GoesOnDownWithTheDeckInContact) {
+  TestFlight flight = InPhase(Phase::kLanded);
+  const Vector3d deck = flight.target.Velocity(flight.time_s);
+  ASSERT_TRUE(flight.output.set_point);
+  EXPECT_LT((flight.output.set_point->velocity - deck).head<2>().norm(), 0.3);
+  EXPECT_LT(flight.output.set_point->velocity.z(), -0.5);
+  EXPECT_EQ(flight.output.request, GuidanceRequest::kNone);
+  // The camera sees nothing any more.
+  flight.FlyUntil([] { return false; }, 5, kNoTarget);
+  EXPECT_EQ(flight.output.phase, Phase::kLanded);
+  EXPECT_LT(flight.output.set_point->velocity.z(), -0.5);
+  flight.Step([](GuidanceInput& input) { input.is_armed = false; });
+  EXPECT_EQ(flight.output.phase, Phase::kLanded);
+  EXPECT_FALSE(flight.output.set_point);
+}
+
+TEST(LandingGuidanceTest, AsksForLandOrDisarmsOnlyByOptionAndInContact) {
+  GuidanceOptions options;
+  options.land_in_contact = true;
+  options.disarm_after_s = 2;
+  TestFlight flight(options);
+  flight.FlyUntil(
+      [&] {
+        EXPECT_EQ(flight.output.request, GuidanceRequest::kNone);
+        return flight.Height() <= 0;
+      },
+      30);
+  flight.LandOnDeck();
+  EXPECT_EQ(flight.output.request, GuidanceRequest::kNone) << "LAND brakes where a deck drives";
+  flight.Step([](GuidanceInput& input) { input.is_landed = true; });
+  EXPECT_EQ(flight.output.request, GuidanceRequest::kLand);
+  flight.FlyUntil([] { return false; }, 2.1, kNoTarget);
+  EXPECT_EQ(flight.output.request, GuidanceRequest::kDisarm);
+  flight.Step([](GuidanceInput& input) { input.uav->world_from_body.translation.z() += 0.8; });
+  EXPECT_EQ(flight.output.request, GuidanceRequest::kNone);
+  EXPECT_EQ(flight.output.phase, Phase::kGoAround);
+}
+
+TEST(LandingGuidanceTest, TheAutopilotsOwnContactCounts) {
+  TestFlight flight = InPhase(Phase::kCommit);
+  flight.Step([](GuidanceInput& input) { input.is_landed = true; });
+  EXPECT_EQ(flight.output.phase, Phase::kLanded);
+}
+
+TEST(GuidanceOptionsTest, FaultyOptionsAreNamed) {
+  GuidanceOptions options;
+  options.leg_m = 3;
+  options.limits.max_tilt_deg = 90;
+  options.contact.time_s = 0;
+  options.model.memory_s = 0;
+  options.search_altitude_m = 40;
+  const std::vector<std::string> violations = options.Validate();
+  EXPECT_THAT(violations, testing::ElementsAre(testing::HasSubstr("leg_m is 3"),
+                                               testing::HasSubstr("contact.time_s"),
+                                               testing::HasSubstr("limits.max_tilt_deg is 90"),
+                                               testing::HasSubstr("model.memory_s"),
+                                               testing::HasSubstr("search_altitude_m")));
+}
+
+}  // namespace
+}  // namespace kestrel

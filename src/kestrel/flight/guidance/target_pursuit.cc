@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/guidance/target_pursuit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// Largest product of the position's gain and the delay: beyond, it would swing about the target.
+constexpr double kMaxGainDelay = 0.35;
+// Of the acceleration that the limits allow: with so much it brakes before a place.
+constexpr double kBrakingShare = 0.6;
+// Closing in from so far away with a gain k changes the acceleration by k^3 times the distance per
+// second; a jerk that the autopilot does not have makes it swing. Braking sets in within so long.
+constexpr double kJerkReach_m = 2.5;
+constexpr double kBrakingOnset_s = 0.4;
+constexpr double kMaxLag_mps = 1;
+constexpr double kIntegrateWithin_m = 0.5;
+constexpr double kMaxIntegral_mps = 0.8;
+
+// A vector turned on by the target's curve for 'ahead_s', and how the velocity changes then.
+Vector3d Turned(const TurnState& motion, const Vector3d& vector, double ahead_s) {
+  const double angle = (motion.turn_rate() + 0.5 * ahead_s * motion.turn_change()) * ahead_s;
+  return Eigen::AngleAxisd(angle, Vector3d::UnitZ()) * vector;
+}
+Vector3d AccelerationAhead(const TurnState& motion, double ahead_s) {
+  const Vector3d velocity = Turned(motion, motion.velocity(), ahead_s);
+  const double turn_rate = motion.turn_rate() + ahead_s * motion.turn_change();
+  return turn_rate * Vector3d(-velocity.y(), velocity.x(), 0);
+}
+
+}  // namespace
+
+Closing ClosingSpeed(double distance_m, double gain, double braking) {
+  const double reach = braking / (gain * gain);  // where the straight line touches the parabola
+  if (distance_m <= reach) return {gain * distance_m, gain};
+  const double speed = std::sqrt(braking * (2 * distance_m - reach));
+  return {speed, braking / speed};
+}
+
+TargetPursuit::TargetPursuit(const GuidanceOptions& options)
+    : options_(options),
+      gain_(options.position_gain),
+      braking_(std::min(options.braking, kBrakingShare * options.limits.max_acceleration())) {
+  if (options.autopilot_jerk == 0) return;
+  gain_ = std::min(gain_, std::cbrt(options.autopilot_jerk / kJerkReach_m));
+  braking_ = std::min(braking_, kBrakingOnset_s * options.autopilot_jerk);
+}
+
+SetPoint TargetPursuit::To(const Vector2d& place, const Motion& uav, const FlightModel& model,
+                           double max_speed_mps) const {
+  SetPoint command;
+  const Vector2d slip = -uav.velocity;
+  Close(place - uav.position + model.delay_s() * slip, slip, uav.velocity, Gain(model), &command);
+  const double speed = command.velocity.norm();
+  if (speed > max_speed_mps) command.velocity *= max_speed_mps / speed;
+  command.velocity.head<2>() =
+      model.VelocityCommand(command.velocity.head<2>(), command.acceleration.head<2>());
+  return command;
+}
+
+SetPoint TargetPursuit::Above(const TargetEstimate& target, const Motion& uav,
+                              const FlightModel& model) {
+  const TurnState& motion = target.motion;
+  const double delay_s = model.delay_s();
+  const Vector2d offset = Vector2d(motion.position().head<2>()) - uav.position;
+  const Vector3d velocity = Smoothed(target);
+  const Vector2d slip = velocity.head<2>() - uav.velocity;
+  Integrate(target, offset);
+  SetPoint command;
+  command.velocity = Turned(motion, velocity, delay_s);
+  command.velocity.z() = 0;
+  command.velocity.head<2>() += integral_;
+  command.acceleration = AccelerationAhead(motion, delay_s);
+  Close(offset + delay_s * slip, slip, uav.velocity, Gain(model), &command);
+  command.velocity.head<2>() =
+      model.VelocityCommand(command.velocity.head<2>(), command.acceleration.head<2>());
+  return command;
+}
+
+void TargetPursuit::Reset() {
+  smoothed_.reset();
+  integrated_.reset();
+  integral_.setZero();
+}
+
+double TargetPursuit::Gain(const FlightModel& model) const {
+  return std::min(gain_, kMaxGainDelay / std::max(model.delay_s(), 0.01));
+}
+
+void TargetPursuit::Close(const Vector2d& offset, const Vector2d& slip, const Vector2d& velocity,
+                          double gain, SetPoint* command) const {
+  const double distance_m = offset.norm();
+  const Closing closing = ClosingSpeed(distance_m, gain, braking_);
+  if (distance_m > 0) command->velocity.head<2>() += closing.speed / distance_m * offset;
+  // A UAV that is yet to reach that velocity has nothing to brake.
+  const Vector2d behind = command->velocity.head<2>() - velocity;
+  Vector2d change = closing.rate * slip;
+  if (const double along = change.dot(behind); along < 0 && behind.norm() > kMaxLag_mps) {
+    change -= along / behind.squaredNorm() * behind;
+  }
+  command->acceleration.head<2>() += change;
+}
+
+// A low pass that turns with the target: it does not lag in curves.
+Vector3d TargetPursuit::Smoothed(const TargetEstimate& target) {
+  const Vector3d velocity = target.motion.velocity();
+  if (!smoothed_) smoothed_ = {target.time, velocity};
+  const double seconds = ToSeconds(target.time - smoothed_->time);
+  const double part = 1 - std::exp(-seconds / options_.smoothing_s);
+  const Vector3d turned = smoothed_->in_world + seconds * AccelerationAhead(target.motion, 0);
+  smoothed_ = {target.time, turned + part * (velocity - turned)};
+  return smoothed_->in_world;
+}
+
+void TargetPursuit::Integrate(const TargetEstimate& target, const Vector2d& offset) {
+  const double seconds = integrated_ ? ToSeconds(target.time - *integrated_) : 0;
+  integrated_ = target.time;
+  integral_ = Eigen::Rotation2Dd(target.motion.turn_rate() * seconds) * integral_;
+  if (offset.norm() > kIntegrateWithin_m) return;
+  integral_ += options_.integral_gain * seconds * offset;
+  const double length = integral_.norm();
+  if (length > kMaxIntegral_mps) integral_ *= kMaxIntegral_mps / length;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/poses/set_point.h"
+#include "kestrel/flight/guidance/flight_model.h"
+#include "kestrel/flight/guidance/guidance_options.h"
+#include "kestrel/vision/tracking/target_tracker.h"
+
+namespace kestrel {
+
+// The speed at which to close in on something 'distance_m' away, and its derivative by the
+// distance: in proportion to it while that can be braked, by the root further away.
+struct Closing {
+  double speed;
+  double rate;
+};
+Closing ClosingSpeed(double distance_m, double gain, double braking);
+
+// Horizontal set-points to a place or to above a target that moves. The velocity wanted is the
+// target's, smoothed, plus one towards it; both, and the accelerations that they need (the target's
+// in its curve, that of closing in), are those of the moment at which the set-point has its effect,
+// and the UAV's model says what to command for them. What remains is integrated, in a frame that
+// turns with the target.
+class TargetPursuit {
+ public:
+  explicit TargetPursuit(const GuidanceOptions& options);
+
+  struct Motion {
+    Eigen::Vector2d position;
+    Eigen::Vector2d velocity;
+  };
+  // Velocity and acceleration without their vertical parts.
+  SetPoint To(const Eigen::Vector2d& place, const Motion& uav, const FlightModel& model,
+              double max_speed_mps) const;
+  SetPoint Above(const TargetEstimate& target, const Motion& uav, const FlightModel& model);
+
+  // Forgets the target.
+  void Reset();
+
+ private:
+  struct Velocity {
+    Time time;
+    Eigen::Vector3d in_world;
+  };
+
+  double Gain(const FlightModel& model) const;
+  Eigen::Vector3d Smoothed(const TargetEstimate& target);
+  void Integrate(const TargetEstimate& target, const Eigen::Vector2d& offset);
+  void Close(const Eigen::Vector2d& offset, const Eigen::Vector2d& slip,
+             const Eigen::Vector2d& velocity, double gain, SetPoint* command) const;
+
+  GuidanceOptions options_;
+  double gain_;                       // speed per metre, 1/s
+  double braking_;                    // m/s^2
+  std::optional<Velocity> smoothed_;  // of the target
+  std::optional<Time> integrated_;    // until when
+  Eigen::Vector2d integral_{0, 0};    // m/s
+};
+
+}  // namespace kestrel

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kestrel/comms/mavlink/target_profile.h"
+#include "kestrel/core/base/thread_setup.h"
+#include "kestrel/flight/guidance/guidance_options.h"
+#include "kestrel/flight/onboard/target_reporter.h"
+#include "kestrel/flight/session/live_events.h"
+
+namespace kestrel {
+
+struct FlightOptions {
+  double rate_hz = 50;
+  // From sending to the autopilot's use, s; negative: half of the fastest round trip that TIMESYNC
+  // measures. Give it where the link delays much more often than not.
+  double link_delay_s = -1;
+  // When it is no use to wait any longer: the flight has ended, badly.
+  double source_timeout_s = 60;
+  double autopilot_timeout_s = 60;
+  TargetReporterOptions target;
+  TargetMessageOptions messages;
+  GuidanceOptions guidance;
+  LiveEventsOptions events;
+  ThreadOptions vision_thread;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("rate_hz", self.rate_hz, "Hz", "of landing targets or set-points");
+    visitor("link_delay_s", self.link_delay_s, "s",
+            "from sending to the autopilot's use; negative: as measured");
+    visitor("source_timeout_s", self.source_timeout_s, "s",
+            "without an image for so long the flight ends");
+    visitor("autopilot_timeout_s", self.autopilot_timeout_s, "s",
+            "without a heartbeat for so long the flight ends");
+    visitor.Group("target", self.target);
+    visitor.Group("messages", self.messages);
+    visitor.Group("guidance", self.guidance);
+    visitor.Group("events", self.events);
+    visitor.Group("vision_thread", self.vision_thread);
+  }
+  std::vector<std::string> Validate() const;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/onboard/flight_program.h"
+
+#include <chrono>
+#include <thread>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "kestrel/core/base/options.h"
+
+namespace kestrel {
+namespace {
+
+constexpr Duration kPatience = std::chrono::milliseconds(100);  // of a thread that waits
+constexpr Duration kLinkPatience = std::chrono::milliseconds(2);
+constexpr Duration kOutputPeriod = std::chrono::milliseconds(50);
+constexpr std::size_t kPoses = 512;  // of the link: some seconds
+constexpr Duration kPoseGap = std::chrono::milliseconds(500);
+
+}  // namespace
+
+FlightProgram::FlightProgram(const FlightOptions& options, const TargetTrackerOptions& tracker,
+                             const FlightParts& parts, std::function<void(const std::string&)> say)
+    : options_(Checked(options)),
+      parts_(parts),
+      say_(std::move(say)),
+      events_(options.events, parts.vision->pose_lead()),
+      poses_(kPoses, kPoseGap),
+      latency_({"capture to arrival", "capture to vision", "detection", "capture to message",
+                "capture to set-point"}) {
+  if (parts.connection == nullptr) return;
+  sender_.emplace(options, tracker, parts.profile, parts.pattern_size_m, parts.autopilot,
+                  parts.connection, say_);
+  if (parts.guides) guided_.emplace(options, tracker, parts.autopilot, parts.connection, say_);
+}
+
+FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
+  std::vector<std::thread> threads;
+  threads.emplace_back([this] { See(); });
+  threads.emplace_back([this] { Capture(); });
+  threads.emplace_back([this] { WriteResults(); });
+  if (parts_.connection != nullptr) threads.emplace_back([this] { Communicate(); });
+  while (!is_over_) {
+    if (is_stopped()) End(FlightEnd::kStopped);
+    if (parts_.sink != nullptr) parts_.sink->Take(ReportNow());
+    std::this_thread::sleep_for(kPatience);
+  }
+  events_.Close();
+  for (std::thread& thread : threads) thread.join();
+  parts_.vision->WriteResults();  // of the last frames
+  return end_;
+}
+
+// The first reason counts.
+void FlightProgram::End(FlightEnd end) {
+  std::call_once(ended_, [&] {
+    end_ = end;
+    is_over_ = true;
+  });
+}
+
+// --- The capture thread ---
+
+void FlightProgram::Capture() {
+  SetUpThisThread("capture", {});
+  std::string trouble;
+  Time last = Now();
+  while (!is_over_) {
+    std::optional<Event> event = parts_.source->Next(kPatience);
+    if (event && std::holds_alternative<EndOfStream>(*event)) {
+      // The last frame may still wait for its pose.
+      std::this_thread::sleep_for(DurationFromSeconds(options_.events.pose_wait_s) + kPatience);
+      return End(FlightEnd::kSourceEnded);
+    }
+    if (event) {
+      last = Now();
+      Take(std::move(*event));
+    }
+    if (const std::string error = parts_.source->error(); error != trouble) {
+      say_(error.empty() ? "the camera is back" : error);
+      trouble = error;
+    }
+    if (ToSeconds(Now() - last) < options_.source_timeout_s) continue;
+    say_(fmt::format("no image for {:g} s: the flight's vision ends", options_.source_timeout_s));
+    return End(FlightEnd::kFailed);
+  }
+}
+
+void FlightProgram::Take(Event event) {
+  if (const auto* pose = std::get_if<PoseSample>(&event)) {
+    source_pose_.Set(*pose);
+    return TakePose(*pose);
+  }
+  auto& frame = std::get<Frame>(event);
+  latency_.step(kArrival).Add(Now() - frame.time);
+  if (const auto recorder = Recorder()) {
+    recorder->AddFrame(frame, parts_.truth ? parts_.truth(frame) : std::nullopt);
+  }
+  events_.Push(std::move(frame));
+}
+
+void FlightProgram::TakePose(const PoseSample& pose) {
+  events_.Push(pose);
+  if (const auto recorder = Recorder()) recorder->AddPose(pose);
+}
+
+// --- The vision thread ---
+
+void FlightProgram::See() {
+  if (const std::string problem = SetUpThisThread("vision", options_.vision_thread);
+      !problem.empty()) {
+    say_(problem);
+  }
+  for (;;) {
+    const Event event = events_.Next();
+    if (std::holds_alternative<EndOfStream>(event)) return;
+    if (const auto* pose = std::get_if<PoseSample>(&event)) {
+      parts_.vision->AddPose(*pose);
+      continue;
+    }
+    const auto& frame = std::get<Frame>(event);
+    if (IsFrozen(frame)) continue;
+    latency_.step(kVision).Add(Now() - frame.time);
+    const TrackSnapshot snapshot = parts_.vision->Process(frame, parts_.sink);
+    latency_.step(kDetection).Add(snapshot.detect_time);
+    frames_ = snapshot.frames;
+    detections_ = snapshot.detections;
+    track_.Set(snapshot);
+    WarnOnce();
+  }
+}
+
+// That the set-up contradicts what is seen; the end says it again, with all that is known by then.
+void FlightProgram::WarnOnce() {
+  if (was_warned_) return;
+  const std::string warning = parts_.vision->Warning();
+  if (warning.empty()) return;
+  was_warned_ = true;
+  say_(warning);
+}
+
+// What a camera repeats shows where the target was, not where it is.
+bool FlightProgram::IsFrozen(const Frame& frame) {
+  constexpr int kFrozen = 5;  // repetitions: no accident of a driver any more
+  const bool was_frozen = repeated_image_.in_a_row() >= kFrozen;
+  const bool is_repeated = repeated_image_.IsRepeated(frame.image);
+  if (is_repeated) ++repeated_frames_;
+  if (repeated_image_.in_a_row() == kFrozen) say_("the camera repeats its image");
+  if (was_frozen && !is_repeated) say_("the camera's images move again");
+  return is_repeated;
+}
+
+// --- The output thread ---
+
+void FlightProgram::WriteResults() {
+  SetUpThisThread("output", {});
+  bool is_written = true;
+  while (!is_over_) {
+    std::this_thread::sleep_for(kOutputPeriod);
+    if (parts_.vision->WriteResults() || !is_written) continue;
+    is_written = false;
+    say_("the results cannot be written any more: is the disk full? The flight goes on");
+  }
+}
+
+// --- The link thread ---
+
+void FlightProgram::Communicate() {
+  SetUpThisThread("link", {});
+  heard_ = Now();
+  while (!is_over_) {
+    parts_.connection->Receive(kLinkPatience, [this](const mavlink::Packet& packet, Time received) {
+      parts_.autopilot->Handle(packet, received);
+    });
+    if (parts_.source_has_poses) poses_.Add(source_pose_.Get());  // once: another is out of order
+    const Time now = Now();
+    parts_.autopilot->Tick(now);
+    TellTarget(now);
+    WatchFlight(now);
+  }
+}
+
+void FlightProgram::TellTarget(Time now) {
+  const TrackSnapshot& track = track_.Get();
+  if (guided_) sender_->set_may_stand(!guided_->is_flying());
+  if (sender_->Tell(now, track, poses_)) latency_.step(kMessage).Add(Now() - track.captured);
+  phase_ = sender_->phase();
+  height_m_ = sender_->height_m();
+  messages_ = sender_->messages();
+  if (!guided_) return;
+  if (guided_->Fly(now, track, poses_)) latency_.step(kSetPoint).Add(Now() - track.captured);
+  guidance_phase_ = guided_->phase();
+  set_points_ = guided_->set_points();
+}
+
+void FlightProgram::TakeAutopilotPose(const PoseSample& pose) {
+  newest_pose_ = pose;
+  if (parts_.source_has_poses) return;
+  poses_.Add(pose);
+  TakePose(pose);
+}
+
+void FlightProgram::WatchFlight(Time now) {
+  is_autopilot_here_ = parts_.autopilot->is_here();
+  is_landing_ = parts_.autopilot->is_armed() && parts_.autopilot->is_landing_mode();
+  if (parts_.autopilot->is_here()) {
+    heard_ = now;
+    const double z = newest_pose_ ? newest_pose_->world_from_body.translation.z() : 0;
+    landing_.Observe(parts_.autopilot->is_armed(), parts_.autopilot->landed_state(), z);
+    if (landing_.has_landed()) End(FlightEnd::kLanded);
+    return;
+  }
+  if (ToSeconds(now - heard_) < options_.autopilot_timeout_s) return;
+  say_(fmt::format("no heartbeat of the autopilot for {:g} s", options_.autopilot_timeout_s));
+  End(FlightEnd::kFailed);
+}
+
+// --- How it is ---
+
+std::shared_ptr<FlightRecorder> FlightProgram::Recorder() const {
+  return parts_.recording != nullptr ? parts_.recording->Get() : nullptr;
+}
+
+FlightReport FlightProgram::ReportNow() const {
+  FlightReport report{.trouble = parts_.source->error(),
+                      .capture = parts_.source->counters(),
+                      .events = events_.counters(),
+                      .repeated_frames = repeated_frames_,
+                      .autopilot = {},
+                      .recorder = {}};
+  if (const auto recorder = Recorder()) report.recorder = recorder->counters();
+  if (parts_.connection == nullptr) return report;
+  AutopilotState& autopilot = report.autopilot.emplace();
+  autopilot.is_here = is_autopilot_here_;
+  autopilot.is_landing = is_landing_;
+  if (guided_) autopilot.guidance = guidance_phase_.load();
+  autopilot.target = phase_;
+  autopilot.link = parts_.connection->counters();
+  return report;
+}
+
+std::string FlightProgram::State() const {
+  const CaptureCounters capture = parts_.source->counters();
+  std::string state = fmt::format("{} frames, {} with the target", frames_, detections_);
+  if (capture.missed > 0) state += fmt::format(", {} missed", capture.missed);
+  if (parts_.autopilot == nullptr) return state;
+  state += fmt::format("; target {}", ToString(phase_));
+  if (phase_ == TargetPhase::kFound) state += fmt::format(", {:.1f} m below", height_m_.load());
+  if (guided_) return state + fmt::format("; guidance: {}", ToString(guidance_phase_.load()));
+  return state + fmt::format("; {} messages sent", messages_);
+}
+
+std::string FlightProgram::Summary() const {
+  const LiveEvents::Counters events = events_.counters();
+  const CaptureCounters capture = parts_.source->counters();
+  std::string summary = fmt::format("{} frames, {}", frames_, parts_.vision->Found());
+  summary += fmt::format(
+      "; {} missed and {} repeated by the camera, {} dropped before the vision, {} without "
+      "a pose in time\n",
+      capture.missed, repeated_frames_, events.dropped_frames, events.unposed_frames);
+  if (const std::string warning = parts_.vision->Warning(); !warning.empty()) {
+    summary += warning + "\n";
+  }
+  summary += latency_.InWords();
+  if (parts_.connection == nullptr) return summary;
+  const ConnectionCounters link = parts_.connection->counters();
+  summary += fmt::format(
+      "{} targets and {} set-points sent; {} packets received, {} sent, {} not sent; {} damaged\n",
+      messages_, set_points_, link.received, link.sent, link.unsent, link.bad_checksums);
+  return summary;
+}
+
+}  // namespace kestrel

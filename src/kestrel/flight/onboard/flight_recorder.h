@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "kestrel/core/base/bounded_queue.h"
+#include "kestrel/core/base/folder_lock.h"
+#include "kestrel/core/base/thread_setup.h"
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/core/codec/jpeg_codec.h"
+#include "kestrel/core/poses/pose_history.h"
+#include "kestrel/flight/onboard/recorded_files.h"
+#include "kestrel/flight/session/flight_report.h"
+#include "kestrel/io/recording/frame.h"
+#include "kestrel/io/recording/truth_rows.h"
+
+namespace kestrel {
+
+struct FlightRecorderOptions {
+  // "png" keeps every gray value; "jpg" is a fifth of its size and of its work, and moves edges by
+  // hundredths of a pixel.
+  std::string compression = "png";
+  int png_level = 1;  // 0 (as it is, quick) to 9 (smallest, slow)
+  int jpg_quality = 95;
+  int queue_frames = 32;  // that may wait for the disk; more is dropped
+  // No images when the disk has less room than this, until it has a tenth more.
+  double free_space_mb = 200;
+  // How often the disk is asked to keep what was written: at most so much is lost when the power
+  // goes.
+  double commit_period_s = 1;
+  ThreadOptions thread = {};
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("compression", self.compression, "", "of images: png or jpg");
+    visitor("png_level", self.png_level, "1", "0, as it is and quick, to 9, smallest and slow");
+    visitor("jpg_quality", self.jpg_quality, "1", "1 to 100");
+    visitor("queue_frames", self.queue_frames, "1", "frames that may wait for the disk");
+    visitor("free_space_mb", self.free_space_mb, "MB", "room on the disk that images leave");
+    visitor("commit_period_s", self.commit_period_s, "s",
+            "at most so much is lost when the power goes");
+    visitor.Group("thread", self.thread);
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// Writes a flight as a recording in the EuRoC layout (docs/recording.md) that `kestrel land`,
+// `hunt`, `calibrate` and `evaluate` read, with threads of its own: nobody who gives it something
+// waits, and what the disk cannot keep up with is dropped. Every image that is listed is whole,
+// whatever happens: it is written under another name, and listed once it is on the disk.
+//
+//   mav0/cam0/data.csv, data/*.png, sensor.yaml   images, as they were given out by the camera
+//   mav0/cam0/exposure.csv                        timestamp, exposure (s) from that image on
+//   mav0/cam0/dropped.csv                         timestamp, reason: images that are not there
+//   mav0/nav0/data.csv                            poses as the autopilot told them
+//   mav0/state_groundtruth_estimate0/data.csv     true poses, where a simulation tells them
+//   mav0/landing_pattern0/data.csv                the pattern's truth, of images that are there
+//   mavlink.tlog                                  what was sent and received (us of UTC, bytes)
+class FlightRecorder {
+ public:
+  // What is told to the user: of images, that the disk is full and that it goes on. Called by a
+  // thread of the recorder.
+  using Tell = std::function<void(const std::string&)>;
+
+  // Throws InputError when 'folder' has something else in it (or a recording, unless 'replace'),
+  // cannot be written or is written by another, or the options are not valid. 'rate_hz': of images.
+  FlightRecorder(const std::filesystem::path& folder, bool replace,
+                 const CameraCalibration& calibration, double rate_hz,
+                 const FlightRecorderOptions& options, Tell tell);
+  // Writes all that it was given.
+  ~FlightRecorder();
+  FlightRecorder(const FlightRecorder&) = delete;
+  FlightRecorder& operator=(const FlightRecorder&) = delete;
+
+  // These may be called by any thread, and do not wait, throw or allocate. Each kind in order of
+  // time: what is not later than the last of its kind is left out. 'truth': of the pattern when the
+  // frame was taken. Nobody may write into the frame's pixels any more.
+  void AddFrame(const Frame& frame, const std::optional<TruePattern>& truth = std::nullopt);
+  void AddPose(const PoseSample& pose);
+  void AddTruePose(const PoseSample& pose);
+  void AddExposure(Time from, double exposure_s);
+  // A MAVLink packet as it was on the wire; more than 280 bytes are none.
+  void AddPacket(Time time, std::span<const std::uint8_t> bytes);
+
+  RecorderCounters counters() const;
+  bool is_recording_images() const { return !are_images_stopped_; }
+
+ private:
+  enum FileIndex : std::size_t {
+    kImages,
+    kExposures,
+    kDropped,
+    kPoses,
+    kTruePoses,
+    kTruePatterns,
+    kPackets,
+    kFileCount
+  };
+  struct RecordedImage {
+    Frame frame;
+    std::optional<TruePattern> truth;
+  };
+  struct TruePose {
+    PoseSample pose;
+  };
+  struct Exposure {
+    Time from;
+    double exposure_s;
+  };
+  struct Dropped {
+    Time time;
+    const char* reason;
+  };
+  struct Packet {
+    static constexpr std::size_t kMaxSize = 280;
+    Time time;
+    std::size_t size;
+    std::array<std::uint8_t, kMaxSize> bytes;
+  };
+  using Record = std::variant<PoseSample, TruePose, Exposure, Dropped, Packet>;
+
+  void RunWriter();
+  void RunCommitter();
+  void Say(const std::string& text) const;
+
+  void Write(const RecordedImage& image);
+  void Drop(Time time, const char* reason);
+  bool HasRoom();
+  void Encode(const cv::Mat& image);
+  bool WriteImage(const cv::Mat& image, const std::filesystem::path& path);
+  void StopImages(const std::string& reason);
+
+  void WriteRecords();
+  bool IsNext(FileIndex file, Time time);
+  void WriteRecord(const PoseSample& pose);
+  void WriteRecord(const TruePose& truth);
+  void WriteRecord(const Exposure& exposure);
+  void WriteRecord(const Dropped& dropped);
+  void WriteRecord(const Packet& packet);
+
+  FlightRecorderOptions options_;
+  std::filesystem::path folder_;
+  FolderLock lock_;
+  Tell tell_;
+  std::optional<JpegEncoder> jpeg_encoder_;  // where images are not PNG
+  Duration utc_offset_;                      // UTC minus Now()
+  RecordedFiles files_;
+  BoundedQueue<RecordedImage> images_;
+  BoundedQueue<Record> records_;
+
+  // The writer's.
+  std::array<std::optional<Time>, kFileCount> last_times_;
+  std::string encoded_;
+  std::string row_;
+  Time next_attempt_;  // after a failure to write
+
+  std::atomic<bool> are_images_stopped_{false};
+  std::atomic<std::uint64_t> image_count_{0};
+  std::atomic<std::uint64_t> drop_count_{0};
+  std::atomic<std::uint64_t> byte_count_{0};
+  std::atomic<std::uint64_t> lost_count_{0};
+
+  std::mutex stop_mutex_;
+  std::condition_variable stop_;
+  bool is_stopping_ = false;
+  std::atomic<bool> is_closing_{false};
+  std::thread writer_;
+  std::thread committer_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/onboard/gstreamer_camera.h"
+
+#include <algorithm>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/base/violations.h"
+#include "kestrel/flight/onboard/gstreamer_pipeline.h"
+
+namespace kestrel {
+namespace {
+
+constexpr std::string_view kDevice = "/dev/video";
+constexpr std::size_t kPooledImages = 64;  // what vision and the recorder's queue have at a time
+
+// What a device is asked for.
+std::string DeviceCaps(const CameraIntrinsics& calibration, const GstreamerCameraOptions& options) {
+  if (!options.device_caps.empty()) return options.device_caps;
+  return fmt::format("video/x-raw,width={},height={}", calibration.width_px, calibration.height_px);
+}
+
+}  // namespace
+
+std::vector<std::string> GstreamerCameraOptions::Validate() const {
+  std::vector<std::string> violations;
+  RequireIn(readout_s, -1, 1, "readout_s", &violations);
+  RequireIn(exposure_s, 0, 1, "exposure_s", &violations);
+  RequirePositive(exposure_unit_s, "exposure_unit_s", &violations);
+  RequireIn(stall_s, 0.1, 3600, "stall_s", &violations);
+  RequireIn(reopen_s, 0.01, 3600, "reopen_s", &violations);
+  RequireIn(max_reopen_s, reopen_s, 3600, "max_reopen_s", &violations);
+  return violations;
+}
+
+GstreamerCamera::GstreamerCamera(const std::string& camera, const CameraIntrinsics& calibration,
+                                 PixelFormat format, const GstreamerCameraOptions& options)
+    : camera_(camera),
+      calibration_(calibration),
+      format_(format),
+      options_(Checked(options)),
+      exposure_s_(options.exposure_s),
+      images_(kPooledImages),
+      back_off_(DurationFromSeconds(options.reopen_s)) {
+  constexpr Duration kFirstFrame = std::chrono::seconds(10);
+  if (camera.starts_with(kDevice) && options.exposure_property.empty()) {
+    v4l2_exposure_.emplace(camera);
+  }
+  Open();
+  const Time deadline = Now() + kFirstFrame;
+  while (!first_ && Now() < deadline) first_ = TakeFrame(deadline - Now());
+  if (!first_) throw InputError(camera + ": no frame came within 10 s");
+}
+
+GstreamerCamera::~GstreamerCamera() = default;
+
+void GstreamerCamera::Open() {
+  auto pipeline = std::make_unique<GstreamerPipeline>(
+      CameraPipelineText(camera_, DeviceCaps(calibration_, options_)), camera_, format_);
+  if (!options_.exposure_property.empty()) {
+    pipeline->UseExposureProperty(options_.exposure_property, options_.exposure_unit_s);
+  }
+  pipeline->Start();
+  last_arrival_ = Now();
+  const std::lock_guard lock(mutex_);
+  pipeline_ = std::move(pipeline);
+}
+
+std::optional<Event> GstreamerCamera::Next(Duration timeout) {
+  if (has_ended_) return EndOfStream{};
+  if (first_) return std::exchange(first_, std::nullopt);
+  if (pipeline_) return TakeFrameOrFail(timeout);
+  const Time now = Now();
+  if (now < next_attempt_) {
+    std::this_thread::sleep_for(std::min(timeout, next_attempt_ - now));
+    return std::nullopt;
+  }
+  return Reopen() ? TakeFrameOrFail(timeout) : std::nullopt;
+}
+
+std::optional<Event> GstreamerCamera::TakeFrameOrFail(Duration timeout) {
+  try {
+    return TakeFrame(timeout);
+  } catch (const InputError& fault) {
+    Fail(fault.what());
+    return std::nullopt;
+  }
+}
+
+// What was opened is only back when a frame has come: 'error_' stays until then.
+bool GstreamerCamera::Reopen() {
+  try {
+    Open();
+    return true;
+  } catch (const InputError& fault) {
+    Fail(fault.what());
+    return false;
+  }
+}
+
+void GstreamerCamera::Fail(const std::string& reason) {
+  next_attempt_ = Now() + back_off_;
+  back_off_ = std::min(2 * back_off_, DurationFromSeconds(options_.max_reopen_s));
+  std::unique_ptr<GstreamerPipeline> gone;  // stops without the lock
+  const std::lock_guard lock(mutex_);
+  gone = std::exchange(pipeline_, nullptr);
+  error_ = reason;
+}
+
+std::optional<Event> GstreamerCamera::TakeFrame(Duration timeout) {
+  const GstSamplePointer sample = pipeline_->Pull(timeout);
+  const Time now = Now();
+  if (!sample) {
+    const std::string fault = pipeline_->Fault();
+    if (!fault.empty()) throw InputError(fault);
+    const bool has_ended = pipeline_->HasEnded();
+    has_ended_ = has_ended && !pipeline_->is_live();
+    if (has_ended_) return EndOfStream{};
+    if (has_ended) throw InputError(camera_ + ": the camera has stopped");
+    if (now - last_arrival_ > DurationFromSeconds(options_.stall_s)) {
+      throw InputError(fmt::format("{}: no frame for {} s", camera_, options_.stall_s));
+    }
+    return std::nullopt;
+  }
+  GstVideoInfo info;
+  if (gst_video_info_from_caps(&info, gst_sample_get_caps(sample.get())) == FALSE) {
+    throw InputError(camera_ + ": gives no images");
+  }
+  CheckImageSize(calibration_, info.width, info.height, camera_);
+  const std::uint64_t missed = pipeline_->MissedBefore(sample.get());
+  Frame frame;
+  frame.image =
+      images_.Take({info.width, info.height}, format_ == PixelFormat::kGray ? CV_8UC1 : CV_8UC3);
+  if (!CopyPixels(sample.get(), info, &frame.image)) return std::nullopt;
+  last_arrival_ = now;
+  back_off_ = DurationFromSeconds(options_.reopen_s);
+  const std::optional<Time> driver_time = pipeline_->DriverTime(sample.get());
+
+  const std::lock_guard lock(mutex_);
+  counters_.missed += missed;
+  if (!error_.empty()) ++counters_.reopened;
+  error_.clear();
+  frame.time = CaptureTime(driver_time, now);
+  if (frame.time <= last_time_) {  // nobody needs a frame from before the last
+    ++counters_.missed;
+    return std::nullopt;
+  }
+  last_time_ = frame.time;
+  frame.name = fmt::format("camera/{:06}", counters_.captured++);
+  return frame;
+}
+
+// A driver whose clock is another one would put frames anywhere: the arrival serves then.
+Time GstreamerCamera::CaptureTime(std::optional<Time> driver_time, Time now) {
+  constexpr Duration kOldest = std::chrono::seconds(5);
+  constexpr Duration kNewest = std::chrono::milliseconds(100);
+  const bool is_plausible =
+      driver_time && *driver_time > now - kOldest && *driver_time < now + kNewest;
+  if (!is_plausible) ++counters_.untimed;
+  const double before_s = 0.5 * exposure_s_.load(std::memory_order_relaxed) + options_.readout_s;
+  return (is_plausible ? *driver_time : now) - DurationFromSeconds(before_s);
+}
+
+std::string GstreamerCamera::error() const {
+  const std::lock_guard lock(mutex_);
+  return error_;
+}
+
+CaptureCounters GstreamerCamera::counters() const {
+  const std::lock_guard lock(mutex_);
+  return counters_;
+}
+
+bool GstreamerCamera::SetExposure(double exposure_s) {
+  bool is_set = false;
+  if (v4l2_exposure_) {
+    is_set = v4l2_exposure_->SetExposure(exposure_s);
+  } else {
+    const std::lock_guard lock(mutex_);
+    is_set = pipeline_ && pipeline_->SetExposure(exposure_s);
+  }
+  if (is_set) exposure_s_.store(exposure_s, std::memory_order_relaxed);
+  return is_set;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kestrel/core/camera/camera_model.h"
+#include "kestrel/flight/onboard/exposure_drive.h"
+#include "kestrel/flight/onboard/image_pool.h"
+#include "kestrel/flight/session/live_source.h"
+
+namespace kestrel {
+
+class GstreamerPipeline;
+
+struct GstreamerCameraOptions {
+  // From the middle of the exposure to the time that the driver gives the frame, without half of
+  // the exposure itself: what `kestrel calibrate clock` finds, or the sensor's read-out time where
+  // the driver stamps the end of it.
+  double readout_s = 0;
+  // Length of the exposure, half of which is before the time that the driver gives; 0 where the
+  // driver stamps its middle. Exposure control knows better once it runs.
+  double exposure_s = 0;
+  // Element and property that set the exposure, as "source.exposure"; empty: a device's by V4L2.
+  std::string exposure_property = {};
+  double exposure_unit_s = 1e-6;  // of that property
+  // Caps that a device is asked for; empty: raw images of the calibration's size. "image/jpeg,
+  // width=752,height=480,framerate=50/1" asks for compressed ones.
+  std::string device_caps = {};
+  // Without a frame for so long the camera is taken to be gone.
+  double stall_s = 2;
+  // From one attempt to get it back to the next: at first, and at most, when it has doubled.
+  double reopen_s = 0.5;
+  double max_reopen_s = 8;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("readout_s", self.readout_s, "s", "from the end of the exposure to the driver's time");
+    visitor("exposure_s", self.exposure_s, "s", "length of the exposure, until it is controlled");
+    visitor("exposure_property", self.exposure_property, "",
+            "GStreamer's element.property that sets the exposure, empty for V4L2's control");
+    visitor("exposure_unit_s", self.exposure_unit_s, "s", "unit of that property");
+    visitor("device_caps", self.device_caps, "",
+            "what /dev/videoN is asked for, empty for raw images of the calibration's size");
+    visitor("stall_s", self.stall_s, "s", "without a frame for so long the camera is gone");
+    visitor("reopen_s", self.reopen_s, "s", "between the first attempts to get it back");
+    visitor("max_reopen_s", self.max_reopen_s, "s", "and between the last");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// A camera through GStreamer: a device (/dev/video0), an RTSP address, or any pipeline. The newest
+// frame wins; a frame's time is its buffer's PTS on the pipeline's clock, which is that of Now(),
+// less half of the exposure and the read-out.
+class GstreamerCamera : public LiveSource, public ExposureActuator {
+ public:
+  // 'camera': "/dev/video0", "rtsp://..." or a pipeline ("videotestsrc is-live=true ! ..."), with
+  // or without an appsink at its end. Waits for the first frame, up to 10 s. Throws InputError with
+  // one line: no such device, a pipeline that does not parse or start, frames of another size than
+  // the calibration's, options that are not valid.
+  GstreamerCamera(const std::string& camera, const CameraIntrinsics& calibration,
+                  PixelFormat format, const GstreamerCameraOptions& options);
+  ~GstreamerCamera() override;
+
+  std::optional<Event> Next(Duration timeout) override;
+  std::string error() const override;
+  CaptureCounters counters() const override;
+
+  // By any thread. The times of frames follow.
+  bool SetExposure(double exposure_s) override;
+
+ private:
+  // These throw InputError, in words for the user.
+  void Open();
+  std::optional<Event> TakeFrame(Duration timeout);
+
+  std::optional<Event> TakeFrameOrFail(Duration timeout);
+  void Fail(const std::string& reason);
+  bool Reopen();
+  Time CaptureTime(std::optional<Time> driver_time, Time now);
+
+  std::string camera_;
+  CameraIntrinsics calibration_;
+  PixelFormat format_;
+  GstreamerCameraOptions options_;
+  std::optional<V4l2ExposureActuator> v4l2_exposure_;
+  std::atomic<double> exposure_s_;
+  ImagePool images_;
+  std::optional<Event> first_;  // the frame that the constructor waited for
+  Time last_time_ = Time::min();
+  Time last_arrival_;
+  Time next_attempt_;  // to reopen
+  Duration back_off_{};
+  bool has_ended_ = false;
+
+  mutable std::mutex mutex_;  // of what follows
+  // Only Next replaces it, and may use it without the lock.
+  std::unique_ptr<GstreamerPipeline> pipeline_;
+  CaptureCounters counters_;
+  std::string error_;
+};
+
+}  // namespace kestrel

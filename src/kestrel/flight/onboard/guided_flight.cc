@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/onboard/guided_flight.h"
+
+#include <algorithm>
+#include <chrono>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/comms/mavlink/set_point_message.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/flight/onboard/guidance_permission.h"
+#include "kestrel/flight/onboard/target_sender.h"
+
+namespace kestrel {
+namespace {
+
+constexpr double kMinRate_hz = 20;  // guidance is made for no less
+constexpr double kMaxFrameAge_s = 1;
+constexpr double kLinkAge_s = 0.5;  // without a pose for so long the link is away
+constexpr Duration kPermissionPeriod = std::chrono::milliseconds(500);
+constexpr Duration kAskPeriod = std::chrono::seconds(1);
+
+const FlightOptions& CheckedRate(const FlightOptions& options) {
+  if (options.rate_hz < kMinRate_hz) {
+    throw InputError(fmt::format("--rate {:g}: guidance needs at least {:g} set-points per second",
+                                 options.rate_hz, kMinRate_hz));
+  }
+  return options;
+}
+
+}  // namespace
+
+GuidedFlight::GuidedFlight(const FlightOptions& options, const TargetTrackerOptions& tracker,
+                           Autopilot* autopilot, Connection* connection,
+                           std::function<void(const std::string&)> say)
+    : options_(CheckedRate(options)),
+      noise_(tracker.Noise()),
+      autopilot_(*autopilot),
+      connection_(connection),
+      say_(std::move(say)),
+      schedule_(options.rate_hz) {
+  guidance_.emplace(options.guidance);
+}
+
+bool GuidedFlight::Fly(Time now, const TrackSnapshot& track, const PoseHistory& poses) {
+  const bool is_news = track.captured != told_frame_;
+  if (!schedule_.IsDue(now, is_news)) return false;
+  KnowAutopilot(now);
+  if (kind_ == AutopilotKind::kUnknown) return false;
+  GuidanceInput input = Input(now, track, poses);
+  WatchMode(input, now);
+  input.is_guided = is_begun_;
+  const GuidanceOutput output = guidance_->Update(input);
+  SayPhase(output);
+  Ask(now, output.request);
+  told_frame_ = track.captured;
+  const bool is_allowed = is_begun_ || may_begin_;
+  if (!output.set_point || !is_allowed) return false;
+  if (!SendSetPoint(*output.set_point, autopilot_, now, connection_)) return false;
+  ++set_points_;
+  return is_news && is_begun_;
+}
+
+// What guidance is for, once it is heard, and a mode that it has then was not given to this
+// program.
+void GuidedFlight::KnowAutopilot(Time now) {
+  if (!autopilot_.is_here() || autopilot_.kind() == kind_) return;
+  kind_ = autopilot_.kind();
+  WantGuidanceParameters(&autopilot_);
+  permission_due_ = now;
+  was_mode_ = autopilot_.is_guided_mode();
+  if (was_mode_ && autopilot_.is_armed()) {
+    Tell(mavlink::kSeverityWarning,
+         fmt::format("{} was on before: leave it and give it again", autopilot_.mode_name()));
+  }
+}
+
+// Begins when the pilot has given the mode and the UAV is in the air (a take-off in the same mode
+// is the autopilot's), unless something speaks against it; then the mode has to be given anew.
+void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
+  const bool is_mode = autopilot_.is_here() ? autopilot_.is_guided_mode() : was_mode_;
+  if (is_mode && !was_mode_) is_given_ = true;
+  if (!is_mode) is_given_ = is_begun_ = false;
+  was_mode_ = is_mode;
+  if (was_armed_ && !input.is_armed) guidance_->Rearm();
+  was_armed_ = input.is_armed;
+  if (!is_begun_ && now >= permission_due_) CheckPermission(input, now);
+  const LandedState landed = autopilot_.landed_state();
+  const bool is_flying =
+      input.is_armed && (landed == LandedState::kInAir || landed == LandedState::kLanding);
+  if (!is_given_ || is_begun_ || !is_flying) return;
+  CheckPermission(input, now);
+  is_begun_ = may_begin_;
+  is_given_ = false;
+  if (const auto home = HomeOf(autopilot_)) guidance_->SetFenceCenter(*home);
+  if (!is_begun_) Tell(mavlink::kSeverityWarning, "guidance refused: " + refusal_);
+}
+
+void GuidedFlight::CheckPermission(const GuidanceInput& input, Time now) {
+  permission_due_ = now + kPermissionPeriod;
+  refusal_ = input.uav ? WhyNotGuide(autopilot_, options_.guidance.limits,
+                                     input.uav->world_from_body.translation, now)
+                       : "no position is told";
+  may_begin_ = refusal_.empty();
+  if (knows_parameters_ || !autopilot_.parameters().is_done()) return;
+  knows_parameters_ = true;
+  guidance_.emplace(OptionsFor(autopilot_, options_.guidance));
+  guidance_->Update(input);  // which has not begun
+  if (const std::string danger = DangerOfGuidance(autopilot_); !danger.empty()) {
+    Tell(mavlink::kSeverityWarning, danger);
+  }
+}
+
+GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
+                                  const PoseHistory& poses) const {
+  GuidanceInput input;
+  input.now = now;
+  const auto pose =
+      poses.Predict(now, DurationFromSeconds(options_.target.max_pose_age_s), UnmodelledMotion());
+  if (pose) {
+    input.uav = UavState{pose->world_from_body, pose->motion.velocity_in_world,
+                         pose->uncertainty.position_m};
+  }
+  input.target = Target(now, track);
+  if (track.seen) input.target_age_s = ToSeconds(now - *track.seen);
+  input.is_armed = autopilot_.is_armed();
+  input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;
+  input.is_link_up = ToSeconds(now - autopilot_.received()) < kLinkAge_s;
+  input.is_camera_up = ToSeconds(now - track.captured) < kMaxFrameAge_s;
+  input.mode_age_s = ToSeconds(now - autopilot_.mode_told());
+  input.link_delay_s = ToSeconds(LinkDelay(options_, autopilot_));
+  return input;
+}
+
+std::optional<TargetEstimate> GuidedFlight::Target(Time now, const TrackSnapshot& track) const {
+  if (!track.target || track.state == TrackState::kSearching || track.state == TrackState::kLost) {
+    return std::nullopt;
+  }
+  const double ahead_s = ToSeconds(now - track.captured);
+  return TargetEstimate{now, Propagate(track.target->motion, std::max(ahead_s, 0.0), noise_)};
+}
+
+void GuidedFlight::Ask(Time now, GuidanceRequest request) {
+  if (request == GuidanceRequest::kNone || now < asked_ + kAskPeriod) return;
+  if (autopilot_.is_request_pending()) return;
+  asked_ = now;
+  switch (request) {
+    case GuidanceRequest::kNone:
+      return;
+    case GuidanceRequest::kLand:
+      autopilot_.RequestMode(FlightMode::kLand);
+      return;
+    case GuidanceRequest::kHold:
+      autopilot_.RequestMode(FlightMode::kHold);
+      return;
+    case GuidanceRequest::kDisarm:
+      Tell(mavlink::kSeverityWarning, "disarming by force, in contact");
+      autopilot_.DisarmByForce();
+      return;
+  }
+}
+
+void GuidedFlight::SayPhase(const GuidanceOutput& output) {
+  if (output.phase == said_phase_ && output.reason == std::string_view(said_reason_)) return;
+  said_phase_ = output.phase;
+  said_reason_ = output.reason;
+  Tell(mavlink::kSeverityInfo, fmt::format("{}{}{}", ToString(output.phase),
+                                           *output.reason == '\0' ? "" : ": ", output.reason));
+}
+
+void GuidedFlight::Tell(std::uint8_t severity, const std::string& text) {
+  say_(text);
+  autopilot_.Announce(severity, "Kestrel: " + text);
+}
+
+}  // namespace kestrel

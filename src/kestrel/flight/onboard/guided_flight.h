@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "kestrel/comms/mavlink/autopilot.h"
+#include "kestrel/comms/mavlink/connection.h"
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/poses/pose_history.h"
+#include "kestrel/flight/guidance/landing_guidance.h"
+#include "kestrel/flight/onboard/flight_options.h"
+#include "kestrel/flight/onboard/send_schedule.h"
+#include "kestrel/flight/onboard/target_reporter.h"
+#include "kestrel/vision/tracking/target_tracker.h"
+
+namespace kestrel {
+
+// Flies the UAV by the guidance's set-points while the pilot gives it the mode, and tells people
+// what it does. Of the link's thread.
+class GuidedFlight {
+ public:
+  // 'tracker': of the track that is predicted. 'say': a line for the user. Throws InputError when
+  // the options are not valid, or the rate is too low to fly by.
+  GuidedFlight(const FlightOptions& options, const TargetTrackerOptions& tracker,
+               Autopilot* autopilot, Connection* connection,
+               std::function<void(const std::string&)> say);
+
+  // Sends what is due at 'now'; true when it was the first set-point of a new frame.
+  bool Fly(Time now, const TrackSnapshot& track, const PoseHistory& poses);
+
+  // It flies the UAV, which has not landed.
+  bool is_flying() const { return is_begun_ && phase() != GuidancePhase::kLanded; }
+  GuidancePhase phase() const { return guidance_->phase(); }
+  int set_points() const { return set_points_; }  // sent
+
+ private:
+  void KnowAutopilot(Time now);
+  void WatchMode(const GuidanceInput& input, Time now);
+  void CheckPermission(const GuidanceInput& input, Time now);
+  GuidanceInput Input(Time now, const TrackSnapshot& track, const PoseHistory& poses) const;
+  std::optional<TargetEstimate> Target(Time now, const TrackSnapshot& track) const;
+  void Ask(Time now, GuidanceRequest request);
+  void SayPhase(const GuidanceOutput& output);
+  void Tell(std::uint8_t severity, const std::string& text);
+
+  FlightOptions options_;
+  TurnNoise noise_;
+  Autopilot& autopilot_;
+  Connection* connection_;
+  std::function<void(const std::string&)> say_;
+  std::optional<LandingGuidance> guidance_;  // for this autopilot, once its parameters are known
+  AutopilotKind kind_ = AutopilotKind::kUnknown;
+  SendSchedule schedule_;
+
+  bool was_mode_ = false;  // GUIDED or OFFBOARD was on
+  bool is_given_ = false;  // the pilot has given it, and guidance has not begun yet
+  bool is_begun_ = false;
+  bool was_armed_ = false;
+  Time permission_due_{};
+  bool may_begin_ = false;  // nothing speaks against it
+  std::string refusal_;     // what does
+  bool knows_parameters_ = false;
+
+  Time told_frame_;  // the newest frame that a set-point was made from
+  Time asked_{};     // the autopilot, for a mode or to disarm
+  GuidancePhase said_phase_ = GuidancePhase::kIdle;
+  const char* said_reason_ = "";
+  int set_points_ = 0;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/onboard/guided_flight.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/comms/mavlink/packet_parser.h"
+#include "kestrel/comms/mavlink/packet_writer.h"
+#include "kestrel/core/base/error.h"
+
+namespace kestrel {
+namespace {
+
+using std::chrono_literals::operator""ms;
+using testing::HasSubstr;
+
+// An autopilot that says what it is told to, and a UAV that hovers at (3, 1, 8) m. Time is
+// simulated.
+class GuidedFlightTest : public testing::Test {
+ protected:
+  void Start(std::uint8_t autopilot, const FlightOptions& options = {}) {
+    heartbeat_.autopilot = autopilot;
+    connection_ = std::make_unique<Connection>(
+        "udpout://127.0.0.1:9", ConnectionOptions(), [this](auto frame, Time) {
+          parser_.Parse(frame, [this](const auto& packet) { Hear(packet); });
+        });
+    autopilot_ =
+        std::make_unique<Autopilot>(AutopilotOptions(), connection_.get(), AutopilotListener());
+    guided_ = std::make_unique<GuidedFlight>(
+        options, TargetTrackerOptions(), autopilot_.get(), connection_.get(),
+        [this](const std::string& text) { said_ += text + "\n"; });
+  }
+
+  // What Kestrel sends.
+  void Hear(const mavlink::Packet& packet) {
+    if (packet.As<mavlink::SetPositionTargetLocalNed>()) ++set_points_;
+    if (const auto question = packet.As<mavlink::ParamRequestRead>()) {
+      mavlink::ParamValue value;
+      value.param_id = question->param_id;
+      value.param_value = limit_;
+      value.param_type = mavlink::kParamReal32;
+      answers_.push_back(value);
+    }
+  }
+
+  template <class Message>
+  void Say(const Message& message) {
+    mavlink::PacketParser().Parse(writer_.Write(message), [&](const mavlink::Packet& packet) {
+      autopilot_->Handle(packet, now_);
+    });
+  }
+
+  // Time goes on in steps of 10 ms, with a frame that shows the target, standing below, every 50.
+  void Pass(double seconds) {
+    for (int i = 0; i < 100 * seconds; ++i) {
+      now_ += 10ms;
+      if (i % 10 == 0) Say(heartbeat_);
+      if (i % 20 == 0) {
+        Say(mavlink::ExtendedSysState{0, landed_});
+        Say(mavlink::EkfStatusReport{.flags = ekf_flags_});
+        Say(mavlink::EstimatorStatus{.flags = ekf_flags_});
+        Say(mavlink::GpsGlobalOrigin{473977420, 85455940, 488000, 0});
+        if (has_home_) Say(home_);
+      }
+      for (const auto& answer : std::exchange(answers_, {})) Say(answer);
+      poses_.Add({now_, {Eigen::Quaterniond::Identity(), {3, 1, 8}}, BodyMotion()});
+      if (i % 5 == 0) SeeTarget();
+      autopilot_->Tick(now_);
+      guided_->Fly(now_, track_, poses_);
+    }
+  }
+  void SeeTarget() {
+    track_.captured = now_;
+    track_.seen = now_;
+    track_.state = TrackState::kTracking;
+    track_.target.emplace();
+    track_.target->time = now_;
+    track_.target->motion.mean.head<3>() << 3, 1, 0;
+    track_.target->motion.covariance.setIdentity();
+    track_.target->motion.covariance *= 1e-4;
+  }
+  int SetPointsDuring(double seconds) {
+    set_points_ = 0;
+    Pass(seconds);
+    return set_points_;
+  }
+
+  static constexpr std::uint32_t kGuided = 4, kLoiter = 5;
+  static constexpr std::uint32_t kOffboard = 6 << 16, kPositionControl = 3 << 16;
+
+  Time now_ = TimeFromNanoseconds(1'000'000'000'000);
+  mavlink::Heartbeat heartbeat_{mavlink::kTypeQuadrotor,
+                                mavlink::kAutopilotArduPilot,
+                                mavlink::kModeFlagArmed,
+                                kLoiter,
+                                4,
+                                3};
+  std::uint8_t landed_ = mavlink::kLandedInAir;
+  std::uint16_t ekf_flags_ = 0x3f;  // attitude, velocities and positions
+  bool has_home_ = true;
+  mavlink::HomePosition home_{.latitude = 473977420, .longitude = 85455940, .altitude = 488000};
+  float limit_ = 50;  // of all that the autopilot limits
+  TrackSnapshot track_;
+  PoseHistory poses_{512, 500ms};
+  mavlink::PacketParser parser_;
+  mavlink::PacketWriter writer_{1, 1};
+  std::vector<mavlink::ParamValue> answers_;
+  std::unique_ptr<Connection> connection_;
+  std::unique_ptr<Autopilot> autopilot_;
+  std::unique_ptr<GuidedFlight> guided_;
+  std::string said_;
+  int set_points_ = 0;
+};
+
+TEST_F(GuidedFlightTest, FliesWhileThePilotGivesTheMode) {
+  Start(mavlink::kAutopilotArduPilot);
+  EXPECT_EQ(SetPointsDuring(2), 0);
+  heartbeat_.custom_mode = kGuided;
+  EXPECT_NEAR(SetPointsDuring(2), 100, 15);
+  EXPECT_NE(guided_->phase(), GuidancePhase::kIdle) << said_;
+  heartbeat_.custom_mode = kLoiter;
+  EXPECT_LE(SetPointsDuring(0.1), 6) << "until the heartbeat";
+  EXPECT_EQ(SetPointsDuring(3), 0);
+  EXPECT_EQ(guided_->phase(), GuidancePhase::kIdle);
+  heartbeat_.custom_mode = kGuided;
+  EXPECT_GT(SetPointsDuring(1), 30) << "given anew";
+}
+
+TEST_F(GuidedFlightTest, StreamsForPx4UntilTheModeWasLeftOnce) {
+  Start(mavlink::kAutopilotPx4);
+  heartbeat_.custom_mode = kPositionControl;
+  Pass(2);
+  EXPECT_GT(SetPointsDuring(1), 30) << "without them PX4 does not go to OFFBOARD";
+  heartbeat_.custom_mode = kOffboard;
+  EXPECT_GT(SetPointsDuring(1), 30);
+  heartbeat_.custom_mode = kPositionControl;
+  Pass(0.1);
+  EXPECT_EQ(SetPointsDuring(5), 0) << "PX4 would go back to OFFBOARD";
+  heartbeat_.base_mode = 0;
+  Pass(0.5);
+  EXPECT_GT(SetPointsDuring(1), 30) << "a new flight";
+}
+
+TEST_F(GuidedFlightTest, ATakeOffIsTheAutopilots) {
+  Start(mavlink::kAutopilotArduPilot);
+  Pass(1);
+  heartbeat_.custom_mode = kGuided;
+  for (const std::uint8_t state : {mavlink::kLandedOnGround, mavlink::kLandedTakeoff}) {
+    landed_ = state;
+    EXPECT_EQ(SetPointsDuring(2), 0);
+  }
+  landed_ = mavlink::kLandedInAir;
+  Pass(0.3);
+  EXPECT_GT(SetPointsDuring(1), 30) << said_;
+}
+
+TEST_F(GuidedFlightTest, AModeThatWasOnBeforeIsNotTaken) {
+  Start(mavlink::kAutopilotArduPilot);
+  heartbeat_.custom_mode = kGuided;
+  EXPECT_EQ(SetPointsDuring(3), 0);
+  EXPECT_THAT(said_, HasSubstr("GUIDED was on before: leave it and give it again"));
+}
+
+TEST_F(GuidedFlightTest, RefusesInOneLineBeforeAnythingMoves) {
+  const struct {
+    const char* words;
+    std::function<void()> fault;
+  } refusals[] = {
+      {"the vehicle is a plane, expected a multicopter", [&] { heartbeat_.type = 1; }},
+      {"the vehicle is a boat, expected a multicopter", [&] { heartbeat_.type = 11; }},
+      {"no good estimate of its position", [&] { ekf_flags_ = 1; }},
+      {"no home position", [&] { has_home_ = false; }},
+      {"limits.max_speed_mps is 10 m/s, the autopilot's own limit is 9 m/s", [&] { limit_ = 9; }},
+      {"from the", [&] { home_.latitude += 20000; }},  // 222 m north
+      {"in a failsafe", [&] { heartbeat_.system_status = 5; }},
+  };
+  const auto good = heartbeat_;
+  const auto home = home_;
+  for (const auto& [words, fault] : refusals) {
+    heartbeat_ = good;
+    home_ = home;
+    ekf_flags_ = 0x3f;
+    has_home_ = true;
+    limit_ = 50;
+    fault();
+    said_.clear();
+    Start(mavlink::kAutopilotArduPilot);
+    Pass(2);
+    heartbeat_.custom_mode = kGuided;
+    EXPECT_EQ(SetPointsDuring(2), 0) << words;
+    EXPECT_THAT(said_, HasSubstr("guidance refused: "));
+    EXPECT_THAT(said_, HasSubstr(words));
+  }
+}
+
+TEST_F(GuidedFlightTest, ARateThatIsTooLowIsRefused) {
+  FlightOptions options;
+  options.rate_hz = 10;
+  EXPECT_THROW(Start(mavlink::kAutopilotArduPilot, options), InputError);
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kestrel/core/base/bounded_queue.h"
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/flight/onboard/flight_vision.h"
+#include "kestrel/io/recording/output_folder.h"
+#include "kestrel/vision/objects/object_model.h"
+#include "kestrel/vision/pipeline/hunt_pipeline.h"
+
+namespace kestrel {
+
+// The map of a hunt while it goes on.
+struct SharedMap {
+  std::vector<MappedObject> objects;
+  Time captured;                            // the newest frame
+  std::optional<Eigen::Vector3d> position;  // of the camera then, in the world, where it is known
+};
+
+// The pipeline of coloured objects in flight; writes object_detections.csv, and at the end the
+// map. It has no landing target.
+class HuntVision : public FlightVision {
+ public:
+  // As LandingVision.
+  HuntVision(const CameraCalibration& calibration, const ObjectModel& model,
+             const HuntPipelineOptions& options, const OutputFolder* output);
+
+  void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
+  Duration pose_lead() const override;
+  TrackSnapshot Process(const Frame& frame, ObservationSink* sink) override;
+  bool WriteResults() override;
+  std::string Found() const override;
+
+  // From now on the map is there for another thread, anew every 'period'. Before the first frame.
+  void ShareMap(Duration period) { share_period_ = period; }
+  // The newest, when it was not taken yet; any thread's.
+  std::optional<SharedMap> TakeMap() { return shared_.TryPop(); }
+
+  // The map of all that was seen, and its objects; after the last frame. Throws InputError when it
+  // cannot be written.
+  void WriteMap(const OutputFolder& output) const;
+  std::vector<MappedObject> Objects() const { return pipeline_.map().Confirmed(); }
+
+ private:
+  void PublishMap(const Frame& frame, const HuntObservation& observation);
+
+  HuntPipeline pipeline_;
+  Duration clock_offset_;
+  TrackSnapshot snapshot_;
+  std::size_t objects_ = 0;
+  BoundedQueue<std::string> rows_;
+  std::optional<std::ofstream> file_;
+  BoundedQueue<SharedMap> shared_{1};
+  std::optional<Duration> share_period_;  // nothing: with nobody
+  Time next_share_ = Time::min();
+};
+
+}  // namespace kestrel

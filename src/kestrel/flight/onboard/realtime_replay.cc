@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/onboard/realtime_replay.h"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include "kestrel/core/base/error.h"
+
+namespace kestrel {
+namespace {
+
+// Poses from before the first frame that are played: what a history has when a flight begins.
+constexpr Duration kPosesAhead = std::chrono::milliseconds(200);
+
+}  // namespace
+
+RealtimeReplay::RealtimeReplay(Open open, Duration clock_offset, bool is_looped)
+    : open_(std::move(open)), clock_offset_(clock_offset), is_looped_(is_looped) {
+  Begin();
+  if (!frame_) throw InputError("the recording has no frames");
+}
+
+void RealtimeReplay::Begin() {
+  source_ = open_();
+  poses_ = source_->poses();
+  if (!ReadFrame()) return;
+  const auto is_early = [this](const PoseSample& pose) {
+    return pose.time - clock_offset_ < frame_->time - kPosesAhead;
+  };
+  const auto first = std::find_if_not(poses_.begin(), poses_.end(), is_early);
+  next_pose_ = static_cast<std::size_t>(first - poses_.begin());
+}
+
+bool RealtimeReplay::ReadFrame() {
+  Frame frame;
+  frame_.reset();
+  if (source_->Next(&frame)) frame_ = std::move(frame);
+  return frame_.has_value();
+}
+
+std::optional<Event> RealtimeReplay::Next(Duration timeout) {
+  constexpr Duration kMaxLate = std::chrono::milliseconds(250);
+  if (has_ended_) return EndOfStream{};
+  const Time now = Now();
+  if (!std::exchange(is_started_, true)) shift_ = now + kPosesAhead - frame_->time;
+  const Time due = IsPoseNext() ? DueOf(poses_[next_pose_]) : DueOf(*frame_);
+  if (due > now + timeout) {
+    std::this_thread::sleep_for(timeout);
+    return std::nullopt;
+  }
+  if (due > now) std::this_thread::sleep_for(due - now);
+  if (now - due > kMaxLate) shift_ += now - due;
+  if (IsPoseNext()) return TakePose();
+  return TakeFrame();
+}
+
+bool RealtimeReplay::IsPoseNext() const {
+  return next_pose_ < poses_.size() && DueOf(poses_[next_pose_]) <= DueOf(*frame_);
+}
+
+// In a further round the first poses may be from before the last of the round before.
+std::optional<Event> RealtimeReplay::TakePose() {
+  PoseSample pose = poses_[next_pose_++];
+  pose.time += shift_;
+  if (last_pose_ && pose.time <= *last_pose_) return std::nullopt;
+  last_pose_ = pose.time;
+  return pose;
+}
+
+Event RealtimeReplay::TakeFrame() {
+  Frame frame = *std::exchange(frame_, std::nullopt);
+  frame.time += shift_;
+  last_frame_ = frame.time;
+  {
+    const std::lock_guard lock(mutex_);
+    ++counters_.captured;
+  }
+  try {
+    if (!ReadFrame()) BeginAgainOrEnd();
+  } catch (const InputError& fault) {
+    has_ended_ = true;
+    const std::lock_guard lock(mutex_);
+    error_ = fault.what();
+  }
+  return frame;
+}
+
+void RealtimeReplay::BeginAgainOrEnd() {
+  has_ended_ = !is_looped_;
+  if (has_ended_) return;
+  const Duration period = DurationFromSeconds(1 / source_->rate_hz());
+  Begin();
+  shift_ = *last_frame_ + period - frame_->time;
+}
+
+std::string RealtimeReplay::error() const {
+  const std::lock_guard lock(mutex_);
+  return error_;
+}
+
+CaptureCounters RealtimeReplay::counters() const {
+  const std::lock_guard lock(mutex_);
+  return counters_;
+}
+
+}  // namespace kestrel

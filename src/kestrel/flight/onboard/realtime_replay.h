@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kestrel/flight/session/live_source.h"
+#include "kestrel/io/recording/frame_source.h"
+
+namespace kestrel {
+
+// A recording played at the pace at which it was flown: its frames and poses come when they are
+// due, with their times moved to the clock of Now(). Where it cannot be read fast enough it is
+// played slower, in jerks.
+class RealtimeReplay : public LiveSource {
+ public:
+  using Open = std::function<std::unique_ptr<FrameSource>()>;
+
+  // 'open' gives the recording from its begin, once for each round. 'clock_offset': of its
+  // calibration, t_nav = t_image + clock_offset: a pose comes with the frames of its instant.
+  // 'is_looped': it begins again after the last frame, at once, so that positions jump; else it
+  // ends. Throws InputError when 'open' does, or the recording has no frame.
+  RealtimeReplay(Open open, Duration clock_offset, bool is_looped);
+
+  std::optional<Event> Next(Duration timeout) override;
+  std::string error() const override;
+  CaptureCounters counters() const override;
+
+ private:
+  void Begin();
+  bool ReadFrame();
+  Time DueOf(const Frame& frame) const { return frame.time + shift_; }
+  Time DueOf(const PoseSample& pose) const { return pose.time - clock_offset_ + shift_; }
+  bool IsPoseNext() const;
+  std::optional<Event> TakePose();
+  Event TakeFrame();
+  void BeginAgainOrEnd();
+
+  Open open_;
+  Duration clock_offset_;
+  bool is_looped_;
+  std::unique_ptr<FrameSource> source_;
+  std::vector<PoseSample> poses_;
+  std::size_t next_pose_ = 0;
+  std::optional<Frame> frame_;      // the next one
+  std::optional<Time> last_frame_;  // that was given out, and of poses
+  std::optional<Time> last_pose_;
+  Duration shift_{};  // Now() minus the recording's time
+  bool is_started_ = false;
+  bool has_ended_ = false;
+
+  mutable std::mutex mutex_;  // of what follows
+  CaptureCounters counters_;
+  std::string error_;
+};
+
+}  // namespace kestrel

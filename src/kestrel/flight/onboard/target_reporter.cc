@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/onboard/target_reporter.h"
+
+#include <cmath>
+
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/base/violations.h"
+
+namespace kestrel {
+
+std::vector<std::string> TargetReporterOptions::Validate() const {
+  std::vector<std::string> violations;
+  RequirePositive(max_sigma_m, "max_sigma_m", &violations);
+  RequireIn(max_pose_age_s, 0.01, 5, "max_pose_age_s", &violations);
+  AddViolations("contact", contact.Validate(), &violations);
+  RequirePositive(contact_below_m, "contact_below_m", &violations);
+  return violations;
+}
+
+TargetReporter::TargetReporter(const TargetReporterOptions& options,
+                               const TargetTrackerOptions& tracker)
+    : options_(Checked(options)), noise_(Checked(tracker).Noise()), contact_(options.contact) {}
+
+std::optional<TargetReport> TargetReporter::Report(Time now, Duration until_use,
+                                                   const TrackSnapshot& track,
+                                                   const PoseHistory& poses) {
+  const Time time_of_use = now + until_use;
+  const auto pose = poses.Predict(time_of_use, DurationFromSeconds(options_.max_pose_age_s), {});
+  if (!pose) return std::nullopt;
+  TargetReport report;
+  report.time = time_of_use;
+  report.world_from_body = pose->world_from_body;
+  const Eigen::Vector3d& body_velocity = pose->motion.velocity_in_world;
+  std::optional<ContactDetector::Deck> deck;
+  if (PredictTarget(track, &report)) {
+    deck = ContactDetector::Deck{report.position_in_world, report.velocity_in_world};
+    height_m_ = report.world_from_body.translation.z() - report.position_in_world.z();
+  }
+  // A UAV that is held in the air so low is told the truth all the same: the deck is straight
+  // below.
+  if (!may_stand_) contact_.Reset();
+  if (may_stand_ && contact_.Update(now, report.world_from_body.translation, body_velocity, deck)) {
+    phase_ = TargetPhase::kContact;
+    return Below(report, body_velocity);
+  }
+  if (deck) {
+    phase_ = TargetPhase::kFound;
+    return report;
+  }
+  if (phase_ != TargetPhase::kSearching) phase_ = TargetPhase::kLost;
+  return std::nullopt;
+}
+
+bool TargetReporter::PredictTarget(const TrackSnapshot& track, TargetReport* report) const {
+  if (!track.target || track.state == TrackState::kSearching) return false;
+  const double ahead_s = ToSeconds(report->time - track.captured);
+  const TurnState target = Propagate(track.target->motion, std::max(ahead_s, 0.0), noise_);
+  report->position_in_world = target.position();
+  report->velocity_in_world = target.velocity();
+  report->covariance = target.covariance.topLeftCorner<3, 3>();
+  // Written so that what is not finite is refused.
+  return report->covariance.trace() <= 3 * std::pow(options_.max_sigma_m, 2) &&
+         report->position_in_world.allFinite();
+}
+
+TargetReport TargetReporter::Below(TargetReport report,
+                                   const Eigen::Vector3d& body_velocity) const {
+  report.position_in_world = report.world_from_body.translation;
+  report.position_in_world.z() -= options_.contact_below_m;
+  report.velocity_in_world = body_velocity;
+  report.covariance = std::pow(0.1, 2) * Eigen::Matrix3d::Identity();
+  return report;
+}
+
+}  // namespace kestrel

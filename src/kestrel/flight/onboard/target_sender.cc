@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/onboard/target_sender.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/comms/mavlink/ned.h"
+
+namespace kestrel {
+namespace {
+
+// ArduPilot's: the delay that it reckons with, and where it takes the camera to be.
+constexpr std::string_view kLag = "PLND_LAG", kCameraX = "PLND_CAM_POS_X",
+                           kCameraY = "PLND_CAM_POS_Y", kCameraZ = "PLND_CAM_POS_Z";
+constexpr std::array kParameters = {kLag, kCameraX, kCameraY, kCameraZ};
+constexpr double kDefaultLag_s = 0.02;
+
+}  // namespace
+
+Duration LinkDelay(const FlightOptions& options, const Autopilot& autopilot) {
+  return options.link_delay_s >= 0 ? DurationFromSeconds(options.link_delay_s)
+                                   : autopilot.time_sync().round_trip() / 2;
+}
+
+TargetSender::TargetSender(const FlightOptions& options, const TargetTrackerOptions& tracker,
+                           std::optional<LinkProfile> profile, double size_m, Autopilot* autopilot,
+                           Connection* connection, std::function<void(const std::string&)> say)
+    : options_(options),
+      profile_(profile),
+      size_m_(size_m),
+      autopilot_(*autopilot),
+      connection_(connection),
+      say_(std::move(say)),
+      reporter_(options.target, tracker),
+      schedule_(options.rate_hz) {}
+
+bool TargetSender::Tell(Time now, const TrackSnapshot& track, const PoseHistory& poses) {
+  SayLanding();
+  const bool is_news = track.captured != told_frame_;
+  if (!schedule_.IsDue(now, is_news) || !autopilot_.is_here()) return false;
+  WantParameters();
+  const LinkProfile profile = profile_.value_or(ProfileFor(autopilot_.kind()));
+  auto report = reporter_.Report(now, UntilUse(), track, poses);
+  SayPhase();
+  // PX4's target estimator filters by itself, and corrects the UAV's velocity by what it is told:
+  // a track, which has the UAV's own estimate in it, would lead it in a circle. It gets what each
+  // frame shows, with its time.
+  if (report && profile != LinkProfile::kArduPilot) WarnOfSpeed(report->velocity_in_world);
+  if (profile == LinkProfile::kPx4Vte) report = is_news ? track.sighting : std::nullopt;
+  told_frame_ = track.captured;
+  if (!report) return false;
+  report->size_m = size_m_;
+  if (profile == LinkProfile::kArduPilot) {
+    report->position_in_world -= report->world_from_body.rotation * CameraOfArduPilot();
+  }
+  if (!SendTarget(profile, options_.messages, *report, autopilot_, now, connection_)) return false;
+  ++messages_;
+  return is_news;
+}
+
+// What an autopilot does not have it is not asked for.
+void TargetSender::WantParameters() {
+  if (asked_parameters_ || autopilot_.kind() != AutopilotKind::kArduPilot) return;
+  asked_parameters_ = true;
+  for (const std::string_view parameter : kParameters) autopilot_.parameters().Want(parameter);
+}
+
+// Where ArduPilot takes the camera to be (FLU): it adds that to what it is told, which is measured
+// from the body's origin.
+Eigen::Vector3d TargetSender::CameraOfArduPilot() const {
+  const ParameterReader& parameters = autopilot_.parameters();
+  const auto in_frd = [&](std::string_view name) { return parameters.Find(name).value_or(0); };
+  return FluFromFrd({in_frd(kCameraX), in_frd(kCameraY), in_frd(kCameraZ)});
+}
+
+// The link takes some time; and ArduPilot takes a target for one that was seen some time ago.
+Duration TargetSender::UntilUse() const {
+  const Duration delay = LinkDelay(options_, autopilot_);
+  if (autopilot_.kind() != AutopilotKind::kArduPilot) return delay;
+  return delay - DurationFromSeconds(autopilot_.parameters().Find(kLag).value_or(kDefaultLag_s));
+}
+
+// Said once, when it is sure.
+void TargetSender::WarnOfSpeed(const Eigen::Vector3d& velocity) {
+  constexpr double kStanding_mps = 1;
+  constexpr int kSure = 50;  // messages in a row
+  const double speed_mps = velocity.head<2>().norm();
+  moving_messages_ = speed_mps > kStanding_mps ? moving_messages_ + 1 : 0;
+  if (moving_messages_ != kSure || is_warned_) return;
+  is_warned_ = true;
+  say_(
+      fmt::format("the pattern moves at {:.1f} m/s: PX4's own precision landing is for patterns "
+                  "that stand, and trails behind this one",
+                  speed_mps));
+  autopilot_.Announce(mavlink::kSeverityWarning,
+                      "Kestrel: the pattern moves, PX4 will not land on it");
+}
+
+// Tells the user and the ground station when the target is found, lost, stood on.
+void TargetSender::SayPhase() {
+  const TargetPhase phase = reporter_.phase();
+  if (phase == said_phase_) return;
+  said_phase_ = phase;
+  std::string text;
+  std::uint8_t severity = mavlink::kSeverityInfo;
+  switch (phase) {
+    case TargetPhase::kSearching:
+      return;
+    case TargetPhase::kFound:
+      text = fmt::format("pattern found, {:.1f} m below", reporter_.height_m());
+      break;
+    case TargetPhase::kLost:
+      text = "pattern lost";
+      severity = mavlink::kSeverityWarning;
+      break;
+    case TargetPhase::kContact:
+      text = "on the pattern";
+      break;
+  }
+  say_(text);
+  autopilot_.Announce(severity, "Kestrel: " + text);
+}
+
+// And when the autopilot begins to land by it.
+void TargetSender::SayLanding() {
+  const bool is_landing = autopilot_.is_landing_mode() && autopilot_.is_armed();
+  if (is_landing && !was_landing_) {
+    autopilot_.Announce(mavlink::kSeverityInfo,
+                        fmt::format("Kestrel: landing, pattern {}", ToString(phase())));
+  }
+  was_landing_ = is_landing;
+}
+
+}  // namespace kestrel

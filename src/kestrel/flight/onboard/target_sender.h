@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "kestrel/comms/mavlink/autopilot.h"
+#include "kestrel/comms/mavlink/connection.h"
+#include "kestrel/comms/mavlink/target_profile.h"
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/poses/pose_history.h"
+#include "kestrel/flight/onboard/flight_options.h"
+#include "kestrel/flight/onboard/send_schedule.h"
+#include "kestrel/flight/onboard/target_reporter.h"
+#include "kestrel/vision/tracking/target_tracker.h"
+
+namespace kestrel {
+
+// From sending to the autopilot's use: as configured, or half of the fastest round trip.
+Duration LinkDelay(const FlightOptions& options, const Autopilot& autopilot);
+
+// Tells the autopilot where the target is, steadily, and people what is known of it. Of the link's
+// thread.
+class TargetSender {
+ public:
+  // 'profile': nothing: by the heartbeat. 'size_m': across the pattern. 'say': a line for the user.
+  TargetSender(const FlightOptions& options, const TargetTrackerOptions& tracker,
+               std::optional<LinkProfile> profile, double size_m, Autopilot* autopilot,
+               Connection* connection, std::function<void(const std::string&)> say);
+
+  // Sends what is due at 'now'; true when it was the first of a new frame.
+  bool Tell(Time now, const TrackSnapshot& track, const PoseHistory& poses);
+
+  // See TargetReporter.
+  void set_may_stand(bool may_stand) { reporter_.set_may_stand(may_stand); }
+
+  TargetPhase phase() const { return reporter_.phase(); }
+  double height_m() const { return reporter_.height_m(); }  // of the UAV above the target
+  int messages() const { return messages_; }                // targets sent
+
+ private:
+  void WantParameters();
+  Duration UntilUse() const;
+  Eigen::Vector3d CameraOfArduPilot() const;
+  void WarnOfSpeed(const Eigen::Vector3d& velocity);
+  void SayPhase();
+  void SayLanding();
+
+  FlightOptions options_;
+  std::optional<LinkProfile> profile_;
+  double size_m_;
+  Autopilot& autopilot_;
+  Connection* connection_;
+  std::function<void(const std::string&)> say_;
+  TargetReporter reporter_;
+  SendSchedule schedule_;
+  Time told_frame_;  // the newest frame that a message was made from
+  TargetPhase said_phase_ = TargetPhase::kSearching;
+  int moving_messages_ = 0;  // in a row of which the target moved
+  bool is_warned_ = false;
+  bool was_landing_ = false;
+  bool asked_parameters_ = false;
+  int messages_ = 0;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/io/bags/messages.h"
+#include "kestrel/io/bags/result_messages.h"
+#include "kestrel/vision/landing/landing_pattern.h"
+#include "kestrel/vision/landing/landing_pattern_detector.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
+#include "kestrel/vision/tracking/target_tracker.h"
+#include "kestrel/vision/tracking/turn_motion.h"
+
+namespace kestrel {
+
+// What the landing pipeline says, in the messages of ROS. Stamps are capture times. Frames by REP
+// 103: the camera's is an optical one, the world's z is up.
+
+// The detection as it is, in the camera's frame; no detection is an empty list. The box is the
+// board's, the score the detection's quality.
+Detection3DArrayMessage DetectionsOf(const LandingObservation& observation,
+                                     const std::string& camera_frame,
+                                     const LandingPattern& pattern);
+
+// The pose of the pattern in the camera's frame, with its covariance.
+PoseWithCovarianceStampedMessage TargetPoseOf(const LandingDetection& detection, Time stamp,
+                                              const std::string& camera_frame);
+
+// The same for tf.
+TfMessage PatternTransformOf(const LandingDetection& detection, Time stamp,
+                             const std::string& camera_frame, const std::string& pattern_frame);
+
+// The track: where the target is in the world, headed where it drives; velocities in its own frame.
+// What the track does not know (roll, pitch and their rates) has a variance of pi^2 / 3.
+OdometryMessage TrackOf(const TargetEstimate& target, const std::string& world_frame,
+                        const std::string& target_frame);
+
+// Where the target will be, from its own time on, 'horizon' ahead in steps of 'step' (above 0),
+// when nothing but 'noise' disturbs its motion.
+PathMessage PredictionOf(const TargetEstimate& target, const TurnNoise& noise, Duration horizon,
+                         Duration step, const std::string& world_frame);
+
+// For RViz: the pattern's ring in the camera's frame; in the world's, where that is known, where
+// the target drives within a second, and the ellipsoid of three standard deviations around it.
+MarkerArrayMessage MarkersOf(const LandingObservation& observation, const LandingPattern& pattern,
+                             const std::string& camera_frame,
+                             const std::optional<std::string>& world_frame);
+
+// An image (CV_8UC3, BGR, continuous), whose pixels the message shows without a copy.
+ImageMessage ImageMessageOf(const cv::Mat& image, Time stamp, const std::string& camera_frame);
+
+}  // namespace kestrel

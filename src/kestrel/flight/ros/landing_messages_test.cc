@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/ros/landing_messages.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace kestrel {
+namespace {
+
+const Time kTrackTime = TimeFromNanoseconds(7'000'000'000);
+
+// Drives north at 2 m/s, which is known to 0.1 m/s along and 0.2 m/s across; turns left.
+TargetEstimate DrivingNorth() {
+  TargetEstimate target;
+  target.time = kTrackTime;
+  target.motion.mean.head<7>() << 10, 20, 0.5, 0, 2, 0, 0.3;
+  target.motion.covariance.diagonal().head<7>() << 1, 2, 3, 0.04, 0.01, 0.09, 0.16;
+  target.motion.covariance(3, 6) = target.motion.covariance(6, 3) = 0.05;
+  return target;
+}
+
+// REP 103 and nav_msgs/Odometry: the pose in the world, the twist in the frame that drives.
+TEST(LandingMessages, TheTrackIsHeadedWhereItDrives) {
+  const OdometryMessage track = TrackOf(DrivingNorth(), "map", "target");
+  EXPECT_EQ(track.header.frame_id, "map");
+  EXPECT_EQ(track.header.stamp, kTrackTime);
+  EXPECT_EQ(track.child_frame_id, "target");
+  EXPECT_EQ(track.pose.position.y, 20);
+  EXPECT_NEAR(track.pose.orientation.z, std::sqrt(0.5), 1e-9);
+  EXPECT_NEAR(track.pose.orientation.w, std::sqrt(0.5), 1e-9);
+  EXPECT_NEAR(track.twist.linear.x, 2, 1e-9);
+  EXPECT_NEAR(track.twist.linear.y, 0, 1e-9);
+  EXPECT_NEAR(track.twist.angular.z, 0.3, 1e-9);
+}
+
+TEST(LandingMessages, TheTrackHasTheCovariancesOfItsFrames) {
+  const OdometryMessage track = TrackOf(DrivingNorth(), "map", "target");
+  const auto pose = [&](int row, int column) { return track.pose_covariance[6 * row + column]; };
+  const auto twist = [&](int row, int column) { return track.twist_covariance[6 * row + column]; };
+  EXPECT_EQ(pose(0, 0), 1);
+  EXPECT_EQ(pose(2, 2), 3);
+  EXPECT_GT(pose(3, 3), 3);                             // roll is not known
+  EXPECT_NEAR(pose(5, 5), std::pow(0.2 / 2, 2), 1e-9);  // of the velocity's direction
+  EXPECT_NEAR(twist(0, 0), 0.01, 1e-9);                 // along
+  EXPECT_NEAR(twist(1, 1), 0.04, 1e-9);                 // across
+  EXPECT_NEAR(twist(5, 5), 0.16, 1e-9);
+  EXPECT_NEAR(twist(1, 5), -0.05, 1e-9);  // to the left is west, -x of the world
+  EXPECT_NEAR(twist(5, 1), -0.05, 1e-9);
+}
+
+TEST(LandingMessages, OfATargetThatStandsTheHeadingIsNotKnown) {
+  TargetEstimate target = DrivingNorth();
+  target.motion.mean.segment<3>(3).setZero();
+  EXPECT_GT(TrackOf(target, "map", "target").pose_covariance[35], 3);
+}
+
+TEST(LandingMessages, NothingFoundIsAnEmptyListAndDeletesTheMarker) {
+  LandingObservation observation;
+  observation.time = kTrackTime;
+  const auto detections = DetectionsOf(observation, "camera", LandingPattern());
+  EXPECT_TRUE(detections.detections.empty());
+  EXPECT_EQ(detections.header.frame_id, "camera");
+  const auto markers = MarkersOf(observation, LandingPattern(), "camera", "map").markers;
+  ASSERT_EQ(markers.size(), 3);
+  for (const MarkerMessage& marker : markers) EXPECT_EQ(marker.action, MarkerMessage::kDelete);
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/camera/camera_model.h"
+#include "kestrel/flight/ros/result_connection.h"
+#include "kestrel/io/bags/serialization.h"
+#include "kestrel/vision/landing/landing_pattern.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
+#include "kestrel/vision/tracking/turn_motion.h"
+
+namespace kestrel {
+
+// By what names results are published, and how far the prediction goes.
+struct LandingResultsOptions {
+  WireFormat format = WireFormat::kRos1;
+  std::string camera_frame;
+  std::optional<std::string> world_frame;  // where there are poses
+  std::string pattern_frame;
+  std::string target_frame;
+  bool publish_tf = true;
+  Duration horizon{};  // of the prediction
+  Duration step{};     // between its poses, above 0
+  LandingPattern pattern;
+  TurnNoise noise;  // of the track's motion
+};
+
+// Publishes what the landing pipeline says of a frame. What is only looked at is made only for
+// those who look.
+class LandingResults {
+ public:
+  // 'connection' must outlive this.
+  LandingResults(LandingResultsOptions options, ResultConnection* connection);
+
+  void PublishDetection(const LandingObservation& observation);
+  // Also markers.
+  void PublishTrack(const LandingObservation& observation);
+  // With what was found drawn on it.
+  void PublishImage(const cv::Mat& image, const CameraModel& camera,
+                    const LandingObservation& observation);
+
+ private:
+  template <class Message>
+  void Publish(ResultTopic topic, const Message& message) {
+    connection_->Publish(topic, SerializeMessage(message, options_.format));
+  }
+
+  LandingResultsOptions options_;
+  ResultConnection* connection_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/ros/live_transforms.h"
+
+#include <cstddef>
+
+#include "kestrel/io/bags/frame_tree.h"
+
+namespace kestrel {
+
+void LiveTransforms::Add(const TransformStampedMessage& transform, bool is_static) {
+  const auto parent_from_frame = TransformOf(transform.transform);
+  if (!parent_from_frame) return;
+  links_[FrameName(transform.child_frame_id)] = {FrameName(transform.header.frame_id),
+                                                 *parent_from_frame, is_static};
+}
+
+std::vector<LiveTransforms::Ancestor> LiveTransforms::AncestorsOf(const std::string& frame,
+                                                                  bool only_static) const {
+  std::vector<Ancestor> ancestors{{frame, {}}};
+  // No longer than there are links: frames may be each other's parents.
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const auto link = links_.find(ancestors.back().name);
+    if (link == links_.end() || (only_static && !link->second.is_static)) break;
+    ancestors.push_back({link->second.parent,
+                         link->second.parent_from_frame * ancestors.back().ancestor_from_frame});
+  }
+  return ancestors;
+}
+
+std::optional<RigidTransform> LiveTransforms::Fixed(const std::string& to,
+                                                    const std::string& from) const {
+  const std::vector<Ancestor> above_to = AncestorsOf(to, /*only_static=*/true);
+  for (const Ancestor& above_from : AncestorsOf(from, /*only_static=*/true)) {
+    for (const Ancestor& common : above_to) {
+      if (common.name != above_from.name) continue;
+      return common.ancestor_from_frame.Inverse() * above_from.ancestor_from_frame;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<LiveTransforms::WorldPose> LiveTransforms::PoseBy(
+    const TransformStampedMessage& transform, const std::string& body,
+    const std::string& world) const {
+  const std::string moving = AncestorsOf(body, /*only_static=*/true).back().name;
+  if (moving != FrameName(transform.child_frame_id)) return std::nullopt;
+  const std::vector<Ancestor> ancestors = AncestorsOf(body, /*only_static=*/false);
+  for (const Ancestor& ancestor : ancestors) {
+    const bool is_asked_for =
+        world.empty() ? &ancestor == &ancestors.back() : ancestor.name == FrameName(world);
+    if (is_asked_for && ancestor.name != body) {
+      return WorldPose{ancestor.name, {transform.header.stamp, ancestor.ancestor_from_frame}};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace kestrel

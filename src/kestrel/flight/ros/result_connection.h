@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "kestrel/io/bags/messages.h"
+#include "kestrel/io/bags/result_messages.h"
+
+namespace kestrel {
+
+// What a node publishes. A name without a slash is below the node's own.
+enum class ResultTopic : std::size_t {
+  kDetections,
+  kTargetPose,
+  kTrack,
+  kPrediction,
+  kMarkers,
+  kAnnotatedImage,
+  kTransforms,
+  kDiagnostics,
+  kMap,
+  kMapMarkers,
+  kTeamMap,
+  kTeamMarkers,
+  kStaticTransforms,
+};
+
+struct ResultTopicInfo {
+  std::string_view name;
+  std::string_view type;
+  bool is_latched = false;  // who comes later gets the newest, too
+};
+
+inline constexpr std::array kResultTopics = {
+    // in the order of ResultTopic
+    ResultTopicInfo{"detections", Detection3DArrayMessage::kType},
+    ResultTopicInfo{"target_pose", PoseWithCovarianceStampedMessage::kType},
+    ResultTopicInfo{"track", OdometryMessage::kType},
+    ResultTopicInfo{"prediction", PathMessage::kType},
+    ResultTopicInfo{"markers", MarkerArrayMessage::kType},
+    ResultTopicInfo{"image_annotated", ImageMessage::kType},
+    ResultTopicInfo{"/tf", TfMessage::kType},
+    ResultTopicInfo{"/diagnostics", DiagnosticArrayMessage::kType},
+    ResultTopicInfo{"map", Detection3DArrayMessage::kType, true},
+    ResultTopicInfo{"map_markers", MarkerArrayMessage::kType, true},
+    ResultTopicInfo{"team_map", Detection3DArrayMessage::kType, true},
+    ResultTopicInfo{"team_markers", MarkerArrayMessage::kType, true},
+    ResultTopicInfo{"/tf_static", TfMessage::kType, true},
+};
+
+constexpr const ResultTopicInfo& InfoOf(ResultTopic topic) {
+  return kResultTopics[static_cast<std::size_t>(topic)];
+}
+
+// Those that others are told of at once. What is latched they are told of when there is some.
+using ResultTopics = std::span<const ResultTopic>;
+inline constexpr std::array kLandingTopics = {
+    ResultTopic::kDetections, ResultTopic::kTargetPose, ResultTopic::kTrack,
+    ResultTopic::kPrediction, ResultTopic::kMarkers,    ResultTopic::kAnnotatedImage,
+    ResultTopic::kTransforms, ResultTopic::kDiagnostics};
+inline constexpr std::array kHuntTopics = {ResultTopic::kDetections, ResultTopic::kMarkers,
+                                           ResultTopic::kAnnotatedImage, ResultTopic::kTransforms,
+                                           ResultTopic::kDiagnostics};
+
+// The way of results to others. All calls from any thread.
+class ResultConnection {
+ public:
+  virtual ~ResultConnection() = default;
+
+  virtual bool HasSubscribers(ResultTopic topic) const = 0;
+  virtual void Publish(ResultTopic topic, const std::string& bytes) = 0;
+  // Waits until all that hear have all, as far as that is known, and not for long.
+  virtual void Flush() {}
+};
+
+}  // namespace kestrel

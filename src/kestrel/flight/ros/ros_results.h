@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/flight/ros/dds_options.h"
+#include "kestrel/flight/ros/hunt_results.h"
+#include "kestrel/flight/ros/landing_results.h"
+#include "kestrel/flight/ros/result_connection.h"
+#include "kestrel/flight/session/flight_report.h"
+#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/recording/frame.h"
+#include "kestrel/vision/objects/object_model.h"
+#include "kestrel/vision/pipeline/hunt_pipeline.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
+
+namespace kestrel {
+
+// By what frames the results are published, and what they are about.
+struct RosFrames {
+  std::string camera;
+  std::optional<std::string> world;  // where there are poses
+  std::optional<std::string> body;   // tell tf of the UAV and the mount; nothing: others do
+  Duration to_stamps{};              // from the time of frames to that of stamps
+};
+
+// What has to be added to times by Now() to get ROS' time, which is that of the day, as it is now.
+Duration RosTimeAhead();
+
+// What the pipelines find, on topics of ROS 1 or ROS 2, by the same names (docs/ros2.md). One
+// thread at a time.
+class RosResults {
+ public:
+  // 'connection' takes messages of 'format'.
+  RosResults(std::unique_ptr<ResultConnection> connection, WireFormat format,
+             const DdsOptions& options, const RosFrames& frames,
+             const CameraCalibration& calibration, const LandingPipelineOptions& landing,
+             ObjectModel model);
+
+  // Until somebody hears, but not longer: who is there is found after a moment only.
+  void WaitForSubscribers(Duration timeout) const;
+
+  void Publish(const Frame& frame, const LandingObservation& observation);
+  void Publish(const Frame& frame, const HuntObservation& observation);
+  // The team's map, where the frames have a world; kept for those that come late.
+  void Publish(const TeamReport& team);
+  // Rates since the last call.
+  void Publish(const FlightReport& report);
+
+  // Waits until all that hear have all.
+  void Flush() const { connection_->Flush(); }
+
+ private:
+  std::string TransformBytes(Time stamp, const std::string& parent, const std::string& child,
+                             const RigidTransform& parent_from_child) const;
+  void PublishMount();
+  void PublishBody(const std::optional<RigidTransform>& world_from_camera, Time stamp);
+
+  WireFormat format_;
+  DdsOptions options_;
+  RosFrames frames_;
+  std::optional<RigidTransform> body_from_camera_;
+  CameraModel camera_;
+  std::unique_ptr<ResultConnection> connection_;
+  LandingResults landing_;
+  HuntResults hunt_;
+  Time reported_;
+  std::uint64_t reported_frames_ = 0;
+};
+
+}  // namespace kestrel

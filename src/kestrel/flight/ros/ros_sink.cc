@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/ros/ros_sink.h"
+
+#include <chrono>
+#include <cstddef>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+namespace kestrel {
+namespace {
+
+constexpr std::size_t kFrames = 8;  // that wait for the network
+constexpr Duration kReportPeriod = std::chrono::seconds(1);
+
+class RosWriter : public SinkWriter {
+ public:
+  RosWriter(std::unique_ptr<RosResults> results, std::function<void(const std::string&)> tell)
+      : results_(std::move(results)), tell_(std::move(tell)), next_report_(Now()) {}
+
+  void Write(const Observation& observation, std::size_t /*waiting*/) override {
+    std::visit([&](const auto& seen) { results_->Publish(observation.frame, seen); },
+               observation.seen);
+  }
+  void Write(const FlightReport& report) override {
+    const Time now = Now();
+    if (now < next_report_) return;
+    next_report_ = now + kReportPeriod;
+    results_->Publish(report);
+  }
+  void Write(const TeamReport& report) override { results_->Publish(report); }
+  void Finish(std::size_t dropped) override {
+    results_->Flush();
+    if (dropped == 0) return;
+    tell_(fmt::format("ROS: {} frames are left out: the network is too slow", dropped));
+  }
+
+ private:
+  std::unique_ptr<RosResults> results_;
+  std::function<void(const std::string&)> tell_;
+  Time next_report_;
+};
+
+}  // namespace
+
+std::unique_ptr<AsynchronousSink> MakeRosSink(std::unique_ptr<RosResults> results,
+                                              std::function<void(const std::string&)> tell) {
+  return std::make_unique<AsynchronousSink>(
+      AsynchronousSinkOptions{.thread_name = "ros", .frames = kFrames},
+      std::make_unique<RosWriter>(std::move(results), std::move(tell)));
+}
+
+}  // namespace kestrel

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "kestrel/flight/ros/ros_results.h"
+#include "kestrel/flight/session/asynchronous_sink.h"
+
+namespace kestrel {
+
+// A sink that publishes on ROS topics. 'tell', by the thread that publishes: how many frames are
+// left out because the network is too slow.
+std::unique_ptr<AsynchronousSink> MakeRosSink(std::unique_ptr<RosResults> results,
+                                              std::function<void(const std::string&)> tell);
+
+}  // namespace kestrel

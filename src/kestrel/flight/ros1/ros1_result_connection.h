@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "kestrel/flight/ros/result_connection.h"
+#include "kestrel/flight/ros1/ros1_connection.h"
+
+namespace kestrel {
+
+// A type of messages as ROS 1 knows it.
+Ros1Connection::MessageType Ros1TypeOf(std::string_view type);
+
+// A node of ROS 1 that has a master; Ctrl-C is the program's own. Throws InputError, which begins
+// with 'asked_by', where there is no master.
+std::shared_ptr<Ros1Connection> OpenRos1(const std::string& node, const std::string& asked_by);
+
+// The results' topics in ROS 1.
+class Ros1ResultConnection : public ResultConnection {
+ public:
+  Ros1ResultConnection(std::shared_ptr<Ros1Connection> ros, ResultTopics topics);
+
+  bool HasSubscribers(ResultTopic topic) const override;
+  void Publish(ResultTopic topic, const std::string& bytes) override;
+
+ private:
+  std::size_t Advertise(ResultTopic topic);
+
+  std::shared_ptr<Ros1Connection> ros_;
+  std::map<ResultTopic, std::size_t> topics_;  // as ROS numbers them
+};
+
+}  // namespace kestrel

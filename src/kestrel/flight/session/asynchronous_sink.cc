@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/session/asynchronous_sink.h"
+
+#include <sys/resource.h>
+#include <utility>
+
+#include "kestrel/core/base/thread_setup.h"
+
+namespace kestrel {
+
+AsynchronousSink::AsynchronousSink(AsynchronousSinkOptions options,
+                                   std::unique_ptr<SinkWriter> writer)
+    : options_(std::move(options)),
+      writer_(std::move(writer)),
+      observations_(options_.frames),
+      thread_([this] { Run(); }) {}
+
+void AsynchronousSink::Take(const Observation& observation) {
+  if (writer_->IsWanted()) observations_.Push(observation);
+}
+
+void AsynchronousSink::Finish() {
+  is_over_ = true;
+  observations_.Close();
+  if (thread_.joinable()) thread_.join();
+}
+
+void AsynchronousSink::Run() {
+  SetUpThisThread(options_.thread_name, {});
+  // Of this thread alone, on Linux. Where it is not permitted all goes on as usual.
+  if (options_.niceness > 0) setpriority(PRIO_PROCESS, 0, options_.niceness);
+  for (;;) {
+    const bool was_over = is_over_;
+    const auto observation = observations_.Pop(options_.patience);
+    while (const auto event = events_.TryPop()) writer_->Write(*event);
+    while (const auto report = reports_.TryPop()) writer_->Write(*report);
+    while (const auto report = team_reports_.TryPop()) writer_->Write(*report);
+    if (observation) writer_->Write(*observation, observations_.size());
+    writer_->Rest(observation.has_value());
+    if (was_over && !observation) break;
+  }
+  writer_->Finish(observations_.dropped());
+}
+
+}  // namespace kestrel

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/session/live_events.h"
+
+#include <utility>
+
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/base/violations.h"
+
+namespace kestrel {
+namespace {
+
+constexpr std::size_t kWaitingPoses = 256;  // seconds of any autopilot
+
+Duration PoseWaitOf(const LiveEventsOptions& options) {
+  RequireValid(options);
+  return DurationFromSeconds(options.pose_wait_s);
+}
+
+}  // namespace
+
+std::vector<std::string> LiveEventsOptions::Validate() const {
+  std::vector<std::string> violations;
+  RequireIn(pose_wait_s, 0, 1, "pose_wait_s", &violations);
+  return violations;
+}
+
+LiveEvents::LiveEvents(const LiveEventsOptions& options, Duration lead)
+    : pose_wait_(PoseWaitOf(options)), lead_(lead), poses_(kWaitingPoses) {}
+
+void LiveEvents::Push(Frame frame) {
+  std::optional<WaitingFrame> arrived(WaitingFrame{std::move(frame), Now() + pose_wait_});
+  {
+    const std::lock_guard lock(mutex_);
+    // The frame that waits for its pose stays: if every newer one took its place, and the poses
+    // took longer than from frame to frame, none would ever get through.
+    std::swap(waiting_ ? newest_ : waiting_, arrived);
+    if (arrived) ++counters_.dropped_frames;
+  }
+  changed_.notify_one();
+}
+
+void LiveEvents::Push(const PoseSample& pose) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (pose_count_ == poses_.size()) {
+      first_pose_ = (first_pose_ + 1) % poses_.size();
+      --pose_count_;
+      ++counters_.dropped_poses;
+    }
+    poses_[(first_pose_ + pose_count_++) % poses_.size()] = pose;
+  }
+  changed_.notify_one();
+}
+
+void LiveEvents::Close() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_closed_ = true;
+  }
+  changed_.notify_all();
+}
+
+bool LiveEvents::HasPoseAfter(const Frame& frame) const {
+  return newest_pose_ && *newest_pose_ >= frame.time + lead_;
+}
+
+bool LiveEvents::IsReady(const std::optional<WaitingFrame>& frame, Time now) const {
+  return frame && (now >= frame->deadline || HasPoseAfter(frame->frame));
+}
+
+Event LiveEvents::TakePose() {
+  const PoseSample pose = poses_[first_pose_];
+  first_pose_ = (first_pose_ + 1) % poses_.size();
+  --pose_count_;
+  newest_pose_ = pose.time;
+  return pose;
+}
+
+Event LiveEvents::TakeFrame() {
+  ++counters_.frames;
+  if (!HasPoseAfter(waiting_->frame)) ++counters_.unposed_frames;
+  Event event = std::move(waiting_->frame);
+  waiting_ = std::exchange(newest_, std::nullopt);
+  return event;
+}
+
+Event LiveEvents::Next() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    if (is_closed_) return EndOfStream{};
+    if (pose_count_ > 0) return TakePose();
+    if (!waiting_) {
+      changed_.wait(lock);
+      continue;
+    }
+    const Time now = Now();
+    if (IsReady(newest_, now)) {
+      waiting_ = std::exchange(newest_, std::nullopt);
+      ++counters_.dropped_frames;
+    }
+    if (IsReady(waiting_, now)) return TakeFrame();
+    changed_.wait_for(lock, waiting_->deadline - now);
+  }
+}
+
+LiveEvents::Counters LiveEvents::counters() const {
+  const std::lock_guard lock(mutex_);
+  return counters_;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/poses/pose_history.h"
+#include "kestrel/io/recording/event_source.h"
+
+namespace kestrel {
+
+struct LiveEventsOptions {
+  // A frame waits so long for the pose after its time. More than the delay of the poses on the
+  // link; 0: it never waits, and its pose is predicted.
+  double pose_wait_s = 0.03;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("pose_wait_s", self.pose_wait_s, "s",
+            "how long a frame waits for the pose after its time");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// The stream of a flight: frames and poses that threads of their own put in, for the one thread
+// that processes them. Of the frames that come while it is busy only the newest that has its pose
+// is given out. Nobody who puts in waits, and nothing is allocated once the memory of images is.
+class LiveEvents : public EventSource {
+ public:
+  // 'lead': the time of a frame + 'lead' is until when it needs poses, see RecordingEvents. Throws
+  // InputError when the options are not valid.
+  LiveEvents(const LiveEventsOptions& options, Duration lead);
+
+  void Push(Frame frame);
+  void Push(const PoseSample& pose);
+  // The end: Next gives EndOfStream and waits no more.
+  void Close();
+
+  // Waits for an event: poses at once, a frame when the pose after it has been given out or has
+  // been waited for in vain.
+  Event Next() override;
+
+  struct Counters {
+    std::uint64_t frames = 0;          // given out
+    std::uint64_t dropped_frames = 0;  // made room for a newer one
+    std::uint64_t unposed_frames = 0;  // given out before the pose after them
+    std::uint64_t dropped_poses = 0;   // made room for newer ones
+  };
+  Counters counters() const;
+
+ private:
+  struct WaitingFrame {
+    Frame frame;
+    Time deadline;  // when it goes without a pose
+  };
+  bool HasPoseAfter(const Frame& frame) const;
+  bool IsReady(const std::optional<WaitingFrame>& frame, Time now) const;
+  Event TakePose();
+  Event TakeFrame();
+
+  Duration pose_wait_;
+  Duration lead_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<PoseSample> poses_;  // a ring
+  std::size_t first_pose_ = 0;
+  std::size_t pose_count_ = 0;
+  std::optional<Time> newest_pose_;      // that was given out
+  std::optional<WaitingFrame> waiting_;  // the next to be given out
+  std::optional<WaitingFrame> newest_;   // came after that
+  Counters counters_;
+  bool is_closed_ = false;
+};
+
+}  // namespace kestrel

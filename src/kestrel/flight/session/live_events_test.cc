@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/session/live_events.h"
+
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "kestrel/core/base/error.h"
+
+namespace kestrel {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+Time AtMs(int ms) { return Time(milliseconds(ms)); }
+Frame EmptyFrame(int ms) { return {"", AtMs(ms), {}}; }
+PoseSample UnitPose(int ms) { return {AtMs(ms), {}}; }
+
+// "f20" or "p10", "end".
+std::string InWords(const Event& event) {
+  if (const auto* frame = std::get_if<Frame>(&event)) {
+    return "f" + std::to_string(ToNanoseconds(frame->time) / 1'000'000);
+  }
+  if (const auto* pose = std::get_if<PoseSample>(&event)) {
+    return "p" + std::to_string(ToNanoseconds(pose->time) / 1'000'000);
+  }
+  return "end";
+}
+
+TEST(LiveEvents, AFrameWaitsForThePoseAfterIt) {
+  LiveEvents events({.pose_wait_s = 1}, milliseconds(5));
+  events.Push(EmptyFrame(20));
+  events.Push(UnitPose(10));
+  events.Push(UnitPose(24));
+  EXPECT_EQ(InWords(events.Next()), "p10");
+  EXPECT_EQ(InWords(events.Next()), "p24");
+  std::thread autopilot([&] {
+    std::this_thread::sleep_for(milliseconds(20));
+    events.Push(UnitPose(25));
+  });
+  EXPECT_EQ(InWords(events.Next()), "p25") << "20 + the lead";
+  EXPECT_EQ(InWords(events.Next()), "f20");
+  autopilot.join();
+  EXPECT_EQ(events.counters().unposed_frames, 0u);
+}
+
+TEST(LiveEvents, AFrameWaitsNoLongerThanAsked) {
+  LiveEvents events({.pose_wait_s = 0.02}, Duration::zero());
+  events.Push(UnitPose(10));
+  const Time start = Now();
+  events.Push(EmptyFrame(20));
+  EXPECT_EQ(InWords(events.Next()), "p10");
+  EXPECT_EQ(InWords(events.Next()), "f20");
+  EXPECT_GE(Now() - start, milliseconds(20));
+  EXPECT_EQ(events.counters().unposed_frames, 1u);
+}
+
+TEST(LiveEvents, TheNewestFrameWinsWhileTheReaderIsBusy) {
+  LiveEvents events({.pose_wait_s = 1}, Duration::zero());
+  for (int ms = 0; ms < 100; ms += 10) events.Push(EmptyFrame(ms));
+  events.Push(UnitPose(200));
+  EXPECT_EQ(InWords(events.Next()), "p200");
+  EXPECT_EQ(InWords(events.Next()), "f90");
+  EXPECT_EQ(events.counters().dropped_frames, 9u);
+}
+
+// Else poses that are later than the next frame would let none through.
+TEST(LiveEvents, NewerFramesDoNotReplaceTheOneThatWaits) {
+  LiveEvents events({.pose_wait_s = 1}, Duration::zero());
+  for (int ms = 0; ms < 50; ms += 10) events.Push(EmptyFrame(ms));
+  events.Push(UnitPose(5));
+  EXPECT_EQ(InWords(events.Next()), "p5");
+  EXPECT_EQ(InWords(events.Next()), "f0");
+  events.Push(UnitPose(45));
+  EXPECT_EQ(InWords(events.Next()), "p45");
+  EXPECT_EQ(InWords(events.Next()), "f40");
+  EXPECT_EQ(events.counters().dropped_frames, 3u);
+}
+
+TEST(LiveEvents, EndsAtOnceWhenItIsClosed) {
+  LiveEvents events({}, Duration::zero());
+  std::thread closer([&] {
+    std::this_thread::sleep_for(milliseconds(10));
+    events.Close();
+  });
+  EXPECT_EQ(InWords(events.Next()), "end");
+  EXPECT_EQ(InWords(events.Next()), "end");
+  closer.join();
+}
+
+TEST(LiveEvents, TooManyPosesDropTheOldest) {
+  LiveEvents events({}, Duration::zero());
+  for (int ms = 0; ms < 300; ++ms) events.Push(UnitPose(ms));
+  EXPECT_EQ(events.counters().dropped_poses, 300u - 256u);
+  EXPECT_EQ(InWords(events.Next()), "p44");
+}
+
+TEST(LiveEvents, RefusesAWaitThatIsNone) {
+  EXPECT_THROW(LiveEvents({.pose_wait_s = -1}, Duration::zero()), InputError);
+}
+
+}  // namespace
+}  // namespace kestrel

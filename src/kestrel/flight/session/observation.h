@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/io/recording/frame.h"
+#include "kestrel/vision/pipeline/hunt_pipeline.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
+
+namespace kestrel {
+
+// A frame and what a pipeline made of it: a landing pattern, or coloured objects.
+struct Observation {
+  Frame frame;  // nobody changes its pixels any more
+  std::variant<LandingObservation, HuntObservation> seen;
+  std::optional<Duration> latency = {};  // from capture until it was processed; live only
+};
+
+// Time that the detection alone took.
+inline Duration DetectTime(const Observation& observation) {
+  return std::visit([](const auto& seen) { return seen.detect_time; }, observation.seen);
+}
+
+}  // namespace kestrel

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/io/bags/bag_source.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/io/bags/camera_info.h"
+#include "kestrel/io/bags/image_message.h"
+#include "kestrel/io/bags/open_bag.h"
+#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/recording/open_source.h"
+
+namespace kestrel {
+namespace {
+
+constexpr std::size_t kMaxWaiting = 8;
+constexpr std::size_t kImagesForRate = 32;
+
+}  // namespace
+
+BagSource::BagSource(const std::string& path, BagChoice choice)
+    : path_(path), choice_(std::move(choice)), bag_(OpenBag(path)) {
+  if (!bag_->remark().empty()) Tell(bag_->remark());
+  topics_ = ChooseTopics(bag_->topics(), choice_.topics, path_);
+  ReadCameraInfo();
+  const std::string camera_frame = ReadFirstImages();
+  BagPoses poses = ReadPoses(bag_.get(), topics_, camera_frame, choice_.use_arrival_times, path_);
+  if (!poses.remark.empty()) Tell(poses.remark);
+  poses_ = std::move(poses.poses);
+  body_from_camera_ = poses.body_from_camera;
+  bag_->Select({topics_.image});
+}
+
+std::string BagSource::NameOf(std::size_t topic) const {
+  return fmt::format("{}: {}", path_, bag_->topics()[topic].name);
+}
+
+void BagSource::Tell(const std::string& text) const {
+  if (choice_.tell) choice_.tell(text);
+}
+
+void BagSource::ReadCameraInfo() {
+  if (!topics_.camera_info) return;
+  bag_->Select({*topics_.camera_info});
+  BagMessage message;
+  if (!bag_->Next(&message)) return;
+  camera_info_ = ParseMessage<CameraInfoMessage>(
+      message.data, bag_->topics()[message.topic].wire_format, NameOf(message.topic));
+}
+
+std::optional<CameraCalibration> BagSource::calibration() const {
+  if (!camera_info_) return std::nullopt;
+  const bool is_rectified = IsRectified(bag_->topics()[topics_.image].name);
+  CameraCalibration calibration =
+      CalibrationOf(*camera_info_, is_rectified, NameOf(*topics_.camera_info));
+  calibration.body_from_camera = body_from_camera_;
+  return calibration;
+}
+
+std::optional<std::size_t> BagSource::frame_count() const {
+  return bag_->topics()[topics_.image].messages;
+}
+
+// Estimates the rate; returns the frame of the camera.
+std::string BagSource::ReadFirstImages() {
+  bag_->Select({topics_.image});
+  const BagTopic& topic = bag_->topics()[topics_.image];
+  std::string camera_frame;
+  std::vector<Time> times;
+  BagMessage message;
+  while (times.size() < kImagesForRate && bag_->Next(&message)) {
+    // Both kinds of images begin with the header.
+    const auto header =
+        ParseMessage<HeaderMessage>(message.data, topic.wire_format, NameOf(message.topic));
+    if (times.empty()) camera_frame = header.frame_id;
+    times.push_back(TimeOf(header, message));
+  }
+  if (times.empty()) throw InputError(NameOf(topics_.image) + ": has no images, expected some");
+  const auto [first, last] = std::minmax_element(times.begin(), times.end());
+  const double span_s = ToSeconds(*last - *first);
+  if (span_s > 0) rate_hz_ = static_cast<double>(times.size() - 1) / span_s;
+  return camera_frame;
+}
+
+Time BagSource::TimeOf(const HeaderMessage& header, const BagMessage& message) const {
+  if (choice_.use_arrival_times) return message.arrival;
+  if (ToNanoseconds(header.stamp) <= 0) {
+    throw InputError(NameOf(message.topic) +
+                     ": an image has no stamp (zero), expected the time of its light; "
+                     "--arrival-times takes when it was recorded");
+  }
+  return header.stamp;
+}
+
+template <class Message>
+Frame BagSource::FrameOf(const BagMessage& message) const {
+  const BagTopic& topic = bag_->topics()[message.topic];
+  const auto image = ParseMessage<Message>(message.data, topic.wire_format, NameOf(message.topic));
+  Frame frame;
+  frame.time = TimeOf(image.header, message);
+  frame.name = fmt::format("{}/{}", topic.name.substr(topic.name.starts_with('/')),
+                           ToNanoseconds(frame.time));
+  frame.image = DecodeImage(image, format(), fmt::format("{}: {}", path_, frame.name));
+  return frame;
+}
+
+bool BagSource::ReadFrame(Frame* frame) {
+  BagMessage message;
+  if (!bag_->Next(&message)) return false;
+  const bool is_raw = bag_->topics()[message.topic].type == ImageMessage::kType;
+  *frame = is_raw ? FrameOf<ImageMessage>(message) : FrameOf<CompressedImageMessage>(message);
+  return true;
+}
+
+void BagSource::TellWhatIsMissing() const {
+  if (!bag_->damage().empty()) Tell(bag_->damage());
+  if (left_out_ == 0) return;
+  Tell(fmt::format(
+      "{}: {} images with the stamp of another, or late by more than {} images, are left out",
+      NameOf(topics_.image), left_out_, kMaxWaiting));
+}
+
+bool BagSource::Next(Frame* frame) {
+  while (!has_ended_ && waiting_.size() < kMaxWaiting) {
+    Frame read;
+    if (!ReadFrame(&read)) {
+      has_ended_ = true;
+      TellWhatIsMissing();
+      break;
+    }
+    const auto place =
+        std::lower_bound(waiting_.begin(), waiting_.end(), read.time,
+                         [](const Frame& waiting, Time time) { return waiting.time < time; });
+    const bool is_repeated = place != waiting_.end() && place->time == read.time;
+    if (is_repeated || (last_time_ && read.time <= *last_time_)) {
+      ++left_out_;
+      continue;
+    }
+    waiting_.insert(place, std::move(read));
+  }
+  if (waiting_.empty()) return false;
+  *frame = std::move(waiting_.front());
+  waiting_.erase(waiting_.begin());
+  last_time_ = frame->time;
+  return true;
+}
+
+std::unique_ptr<FrameSource> OpenSourceOrBag(const std::vector<std::string>& arguments,
+                                             PixelFormat format, const BagChoice& choice) {
+  if (arguments.size() == 1 && IsBag(arguments.front())) {
+    auto bag = std::make_unique<BagSource>(arguments.front(), choice);
+    bag->set_format(format);
+    return bag;
+  }
+  for (const std::string& argument : arguments) {
+    if (IsBag(argument)) {
+      throw InputError(argument + ": is a bag, expected no other source beside it");
+    }
+  }
+  if (!choice.topics.empty() || choice.use_arrival_times) {
+    throw InputError("--topic and --arrival-times are for bags, which the source is not");
+  }
+  return OpenSource(arguments, format);
+}
+
+}  // namespace kestrel

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/io/bags/messages.h"
+#include "kestrel/io/recording/frame.h"
+
+namespace kestrel {
+
+// The picture of a message in 'format': mono8, 8UC1, bgr8, 8UC3, rgb8, bgra8, 8UC4, rgba8, Bayer's
+// patterns (bayer_rggb8, ...), yuv422 (UYVY), yuv422_yuy2 (YUYV), by these and the other names that
+// ROS has for them. It has pixels of its own. Throws InputError, with 'name', for another encoding
+// (16 bits), and where size, step and bytes do not fit.
+cv::Mat DecodeImage(const ImageMessage& message, PixelFormat format, const std::string& name);
+
+// The same of JPEG and PNG.
+cv::Mat DecodeImage(const CompressedImageMessage& message, PixelFormat format,
+                    const std::string& name);
+
+}  // namespace kestrel

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/io/bags/recording_sink.h"
+
+#include <fstream>
+#include <utility>
+
+#include <fmt/format.h>
+#include <opencv2/core.hpp>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/codec/image_codec.h"
+#include "kestrel/io/bags/bag_writer.h"
+#include "kestrel/io/bags/camera_info.h"
+#include "kestrel/io/bags/frame_tree.h"
+#include "kestrel/io/bags/messages.h"
+#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/recording/euroc_text.h"
+#include "kestrel/io/recording/output_folder.h"
+
+namespace kestrel {
+namespace {
+
+constexpr const char* kWorldFrame = "map";
+constexpr const char* kBodyFrame = "base_link";
+constexpr const char* kCameraFrame = "camera_optical_frame";
+
+// The image, in one channel where the three say the same.
+cv::Mat Smallest(const cv::Mat& bgr) {
+  if (bgr.channels() == 1) return bgr;
+  cv::Mat channels[3];
+  cv::split(bgr, channels);
+  const bool is_gray = cv::norm(channels[0], channels[1], cv::NORM_INF) == 0 &&
+                       cv::norm(channels[0], channels[2], cv::NORM_INF) == 0;
+  return is_gray ? channels[0] : bgr;
+}
+
+Vector3Message Vector3Of(const Eigen::Vector3d& vector) {
+  return {vector.x(), vector.y(), vector.z()};
+}
+
+class BagSink : public RecordingSink {
+ public:
+  BagSink(std::unique_ptr<BagWriter> bag, const RecordingHead& head)
+      : bag_(std::move(bag)), head_(head) {
+    image_ = bag_->AddTopic("/camera/image_raw", ImageMessage::kType);
+    if (head_.calibration) {
+      camera_info_ = bag_->AddTopic("/camera/camera_info", CameraInfoMessage::kType);
+      if (head_.calibration->body_from_camera) {
+        mount_ = bag_->AddTopic("/tf_static", TfMessage::kType, /*is_latched=*/true);
+      }
+    }
+    if (head_.has_poses) {
+      pose_ = head_.has_motion ? bag_->AddTopic("/odom", OdometryMessage::kType)
+                               : bag_->AddTopic("/pose", PoseStampedMessage::kType);
+    }
+  }
+
+  void AddPose(const PoseSample& pose) override {
+    WriteMount(pose.time);
+    if (head_.has_motion) {
+      Write(*pose_, pose.time, OdometryOf(pose));
+    } else {
+      const PoseStampedMessage message{HeaderOf(pose.time, kWorldFrame, &pose_count_),
+                                       PoseMessageOf(pose.world_from_body)};
+      Write(*pose_, pose.time, message);
+    }
+  }
+
+  void AddFrame(const Frame& frame) override {
+    WriteMount(frame.time);
+    cv::Mat image = Smallest(frame.image);
+    if (!image.isContinuous()) image = image.clone();
+    ImageMessage message;
+    message.header = HeaderOf(frame.time, kCameraFrame, &image_count_);
+    message.height = static_cast<std::uint32_t>(image.rows);
+    message.width = static_cast<std::uint32_t>(image.cols);
+    message.encoding = image.channels() == 1 ? "mono8" : "bgr8";
+    message.step = static_cast<std::uint32_t>(image.step[0]);
+    message.data = {reinterpret_cast<const char*>(image.data), image.total() * image.elemSize()};
+    Write(image_, frame.time, message);
+    if (!camera_info_) return;
+    CameraInfoMessage info = CameraInfoOf(head_.calibration->intrinsics);
+    info.header = message.header;
+    Write(*camera_info_, frame.time, info);
+  }
+
+  void Close() override { bag_->Close(); }
+
+ private:
+  static HeaderMessage HeaderOf(Time time, const char* frame, std::uint32_t* count) {
+    return {(*count)++, time, frame};
+  }
+
+  OdometryMessage OdometryOf(const PoseSample& pose) {
+    OdometryMessage message;
+    message.header = HeaderOf(pose.time, kWorldFrame, &pose_count_);
+    message.child_frame_id = kBodyFrame;
+    message.pose = PoseMessageOf(pose.world_from_body);
+    if (pose.motion) {
+      const Eigen::Quaterniond body_from_world = pose.world_from_body.rotation.conjugate();
+      message.twist = {Vector3Of(body_from_world * pose.motion->velocity_in_world),
+                       Vector3Of(pose.motion->rate_in_body)};
+    }
+    return message;
+  }
+
+  // Once, before all else.
+  void WriteMount(Time time) {
+    if (!mount_ || std::exchange(is_mount_written_, true)) return;
+    TfMessage message;
+    std::uint32_t count = 0;
+    message.transforms.push_back({HeaderOf(time, kBodyFrame, &count), kCameraFrame,
+                                  PoseMessageOf(*head_.calibration->body_from_camera)});
+    Write(*mount_, time, message);
+  }
+
+  template <class Message>
+  void Write(std::size_t topic, Time time, const Message& message) {
+    bag_->Write(topic, time, SerializeMessage(message, bag_->format()));
+  }
+
+  std::unique_ptr<BagWriter> bag_;
+  RecordingHead head_;
+  std::size_t image_ = 0;
+  std::optional<std::size_t> camera_info_;
+  std::optional<std::size_t> mount_;
+  std::optional<std::size_t> pose_;
+  bool is_mount_written_ = false;
+  std::uint32_t image_count_ = 0;
+  std::uint32_t pose_count_ = 0;
+};
+
+class EurocSink : public RecordingSink {
+ public:
+  EurocSink(const std::string& folder, const RecordingHead& head, bool replace)
+      : folder_(folder, replace), images_(folder_.OpenText("mav0/cam0/data.csv")) {
+    images_ << "#timestamp [ns],filename\n";
+    if (head.calibration) {
+      folder_.OpenText("mav0/cam0/sensor.yaml")
+          << EurocCalibrationText(*head.calibration, head.rate_hz);
+    }
+    if (!head.has_poses) return;
+    poses_ = folder_.OpenText("mav0/nav0/data.csv");
+    poses_ << EurocPoseColumns("WB") << "\n";
+  }
+
+  void AddPose(const PoseSample& pose) override {
+    poses_ << EurocPoseCells(pose.time, pose.world_from_body) << "\n";
+    if (!first_pose_) first_pose_ = pose.time;
+    last_pose_ = pose.time;
+    ++pose_count_;
+  }
+
+  void AddFrame(const Frame& frame) override {
+    const std::string name = fmt::format("{}.png", ToNanoseconds(frame.time));
+    const std::string path = folder_.NewFile("mav0/cam0/data/" + name).string();
+    WriteImage(path, Smallest(frame.image));
+    images_ << fmt::format("{},{}\n", ToNanoseconds(frame.time), name);
+  }
+
+  void Close() override {
+    WriteAtOnce("", "mav0/cam0/data.csv", &images_);
+    if (!first_pose_) return;
+    WriteAtOnce("", "mav0/nav0/data.csv", &poses_);
+    const double span_s = ToSeconds(last_pose_ - *first_pose_);
+    if (span_s > 0) {
+      folder_.OpenText("mav0/nav0/sensor.yaml")
+          << EurocPoseSensorText(static_cast<double>(pose_count_ - 1) / span_s);
+    }
+  }
+
+ private:
+  OutputFolder folder_;
+  std::ofstream images_;
+  std::ofstream poses_;
+  std::optional<Time> first_pose_;
+  Time last_pose_;
+  std::size_t pose_count_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<RecordingSink> NewRecording(const std::string& path, const RecordingHead& head,
+                                            Compression compression, bool replace) {
+  if (IsBagName(path)) {
+    return std::make_unique<BagSink>(NewBag(path, compression, replace), head);
+  }
+  if (compression != Compression::kNone) {
+    throw InputError(path + ": is to be a folder, expected no --compression with it");
+  }
+  return std::make_unique<EurocSink>(path, head, replace);
+}
+
+}  // namespace kestrel

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kestrel/io/bags/bag_reader.h"
+#include "kestrel/io/bags/sqlite_handles.h"
+
+namespace kestrel {
+
+// What an sqlite3 file begins with.
+inline constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
+
+// A file of rosbag2's sqlite3 storage (.db3), in all versions of its tables.
+class SqliteBag : public BagReader {
+ public:
+  // 'has_compressed_messages': each is zstd, as metadata.yaml says it (compression_mode: MESSAGE).
+  // Throws InputError when the file is no such bag or is broken.
+  explicit SqliteBag(const std::string& path, bool has_compressed_messages = false);
+
+  const std::vector<BagTopic>& topics() const override { return topics_; }
+  void Select(const std::vector<std::size_t>& topics) override;
+  bool Next(BagMessage* message) override;
+  std::string remark() const override { return remark_; }
+
+ private:
+  SqliteStatement Prepare(const std::string& sql) const;
+  bool Step(sqlite3_stmt* statement) const;  // whether there is a row
+  [[noreturn]] void Fail() const;
+  bool HasTimeIndex() const;
+  void ReadTopics();
+  std::size_t TopicOfId(std::int64_t id) const;
+
+  std::string path_;
+  bool has_compressed_messages_;
+  SqliteDatabase database_;
+  std::vector<BagTopic> topics_;
+  std::vector<std::int64_t> ids_;  // of the topics
+  SqliteStatement messages_;
+  std::string decompressed_;
+  std::string remark_;
+};
+
+}  // namespace kestrel

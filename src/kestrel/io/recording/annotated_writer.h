@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/io/recording/output_folder.h"
+
+namespace kestrel {
+
+// Where frames with drawings on them (CV_8UC3) go.
+class AnnotatedWriter {
+ public:
+  virtual ~AnnotatedWriter() = default;
+  // Throws InputError when the image cannot be written.
+  virtual void Write(const std::string& frame_name, const cv::Mat& image) = 0;
+};
+
+// annotated/<name of the frame>.png. 'folder' must outlive the writer.
+std::unique_ptr<AnnotatedWriter> MakeImageWriter(const OutputFolder& folder);
+
+// annotated.mp4, or annotated.avi (motion JPEG) where GStreamer has no encoder for the first.
+std::unique_ptr<AnnotatedWriter> MakeVideoWriter(const OutputFolder& folder, double rate_hz);
+
+}  // namespace kestrel

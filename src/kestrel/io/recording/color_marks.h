@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/vision/objects/hsv.h"
+
+namespace kestrel {
+
+// Pixels of one colour in an image: a rectangle, or where a mask image is not black.
+struct ColorMark {
+  std::string image;  // path
+  std::string color;
+  cv::Rect rectangle;  // px; empty when there is a mask
+  std::string mask;    // path; may be empty
+};
+
+// Marks from a YAML list of {image: FILE, color: NAME, rectangle: [x, y, width, height]} or
+// {image: FILE, color: NAME, mask: FILE}; paths are relative to the file's folder. Throws
+// InputError for what is missing, unknown or of the wrong type.
+std::vector<ColorMark> ParseColorMarks(const std::string& yaml, const std::string& file);
+
+// The marked colours by name. Throws InputError when an image cannot be read, a rectangle is not
+// inside of it, or a mask is not of its size.
+std::map<std::string, std::vector<Hsv>> ReadMarkedColors(const std::vector<ColorMark>& marks);
+
+}  // namespace kestrel

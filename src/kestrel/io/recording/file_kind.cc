@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/io/recording/file_kind.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string>
+#include <string_view>
+
+namespace kestrel {
+namespace {
+
+constexpr std::array<std::string_view, 9> kImages = {".png", ".jpg", ".jpeg", ".bmp", ".pgm",
+                                                     ".ppm", ".tif", ".tiff", ".webp"};
+constexpr std::array<std::string_view, 13> kVideos = {".mp4",   ".avi",  ".mkv",  ".mov", ".m4v",
+                                                      ".webm",  ".mpg",  ".mpeg", ".ts",  ".wmv",
+                                                      ".mjpeg", ".h264", ".h265"};
+
+}  // namespace
+
+FileKind FileKindOf(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  const auto is_in = [&](const auto& extensions) {
+    return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+  };
+  if (is_in(kImages)) return FileKind::kImage;
+  return is_in(kVideos) ? FileKind::kVideo : FileKind::kOther;
+}
+
+}  // namespace kestrel

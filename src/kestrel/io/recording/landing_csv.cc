@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/io/recording/landing_csv.h"
+
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "kestrel/io/recording/csv_table.h"
+
+namespace kestrel {
+namespace {
+
+std::string Position(const std::optional<Eigen::Vector3d>& position) {
+  if (!position) return ",,";
+  return fmt::format("{:.6f},{:.6f},{:.6f}", position->x(), position->y(), position->z());
+}
+
+// u_px to p_CP_C_z_m: what the detection says.
+std::string ImageCells(const std::optional<LandingDetection>& detection) {
+  if (!detection) return ",,,,,,";
+  return fmt::format("{:.3f},{:.3f},{},{:.4f},{}", detection->center_px.x(),
+                     detection->center_px.y(), ToString(detection->method), detection->quality,
+                     Position(detection->camera_from_pattern.translation));
+}
+
+// Edges are never met to the last bit: 0 is where there were none.
+std::string MisfitCell(const std::optional<LandingDetection>& detection) {
+  if (!detection || detection->misfit_px == 0) return "";
+  return fmt::format("{:.3f}", detection->misfit_px);
+}
+
+std::string SigmaCells(const std::optional<LandingDetection>& detection) {
+  if (!detection) return ",,";
+  return Position(detection->covariance.diagonal().head<3>().cwiseSqrt().eval());
+}
+
+}  // namespace
+
+std::string LandingCsvHeader() {
+  return "frame,timestamp_ns,detected,u_px,v_px,method,quality,p_CP_C_x_m,p_CP_C_y_m,p_CP_C_z_m,"
+         "p_WP_W_x_m,p_WP_W_y_m,p_WP_W_z_m,yaw_WP_rad,sigma_x_m,sigma_y_m,sigma_z_m,rejected_at,"
+         "detect_ms,misfit_px\n";
+}
+
+std::string LandingCsvRow(const std::string& frame_name, const LandingObservation& observation) {
+  const LandingReport& report = observation.report;
+  const auto& yaw = observation.yaw_in_world;
+  return fmt::format("{},{},{},{},{},{},{},{},{:.4f},{}\n", CsvCell(frame_name),
+                     ToNanoseconds(observation.time), report.detection ? 1 : 0,
+                     ImageCells(report.detection), Position(observation.center_in_world),
+                     yaw ? fmt::format("{:.6f}", *yaw) : "", SigmaCells(report.detection),
+                     report.detection ? "" : ToString(report.reached),
+                     1e3 * ToSeconds(observation.detect_time), MisfitCell(report.detection));
+}
+
+}  // namespace kestrel

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/io/recording/landing_overlay.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+namespace kestrel {
+namespace {
+
+using Polyline = std::vector<Eigen::Vector3d>;  // in the pattern's frame, m
+// Pixel of a point in the pattern's frame; false when it has none.
+using Projection = std::function<bool(const Eigen::Vector3d& point, Eigen::Vector2d* pixel)>;
+
+const cv::Scalar kRed(40, 40, 255);
+const cv::Scalar kGreen(60, 220, 60);
+const cv::Scalar kBlue(255, 120, 40);
+const cv::Scalar kYellow(0, 230, 255);
+const cv::Scalar kMagenta(255, 90, 255);
+const cv::Scalar kOutline(0, 0, 0);
+
+// A lens bends lines: an edge is drawn in as many pieces.
+constexpr int kPiecesPerEdge = 12;
+constexpr int kPiecesPerCircle = 96;
+
+Polyline Circle(double radius) {
+  Polyline points;
+  for (int i = 0; i <= kPiecesPerCircle; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kPiecesPerCircle;
+    points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
+  }
+  return points;
+}
+
+Polyline LineBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  Polyline points;
+  for (int i = 0; i <= kPiecesPerEdge; ++i) {
+    points.push_back(from + (to - from) * i / kPiecesPerEdge);
+  }
+  return points;
+}
+
+// Outline of both arms: one corner between the arms and two at the end of each, four times.
+Polyline Cross(const LandingPattern& pattern) {
+  const double half_width = 0.5 * pattern.arm_width_m;
+  const double length = std::min(pattern.arm_half_length_m, pattern.inner_radius_m());
+  Polyline corners;
+  for (int quarter = 0; quarter <= 4; ++quarter) {
+    const Eigen::AngleAxisd turn(quarter * std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
+    corners.push_back(turn * Eigen::Vector3d(half_width, -half_width, 0));
+    corners.push_back(turn * Eigen::Vector3d(length, -half_width, 0));
+    corners.push_back(turn * Eigen::Vector3d(length, half_width, 0));
+  }
+  Polyline outline;
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    const Polyline edge = LineBetween(corners[i - 1], corners[i]);
+    outline.insert(outline.end(), edge.begin(), edge.end());
+  }
+  return outline;
+}
+
+class Canvas {
+ public:
+  explicit Canvas(const cv::Mat& gray) {
+    cv::cvtColor(gray, image_, cv::COLOR_GRAY2BGR);
+    scale_ = std::clamp(gray.cols / 900.0, 0.4, 4.0);
+  }
+
+  void DrawLine(const Polyline& line, const Projection& project, const cv::Scalar& color) {
+    Eigen::Vector2d last;
+    bool has_last = false;
+    for (const Eigen::Vector3d& point : line) {
+      Eigen::Vector2d pixel;
+      const bool is_drawable = project(point, &pixel) && IsNear(pixel);
+      if (has_last && is_drawable) {
+        cv::line(image_, Fixed(last), Fixed(pixel), color, Thickness(), cv::LINE_AA, kFixedBits);
+      }
+      last = pixel;
+      has_last = is_drawable;
+    }
+  }
+
+  void DrawCenter(const Eigen::Vector2d& pixel) {
+    if (!IsNear(pixel)) return;
+    const int radius = static_cast<int>(std::lround(4 * scale_ * kFixedOne));
+    cv::circle(image_, Fixed(pixel), radius, kYellow, Thickness(), cv::LINE_AA, kFixedBits);
+  }
+
+  // 'row': from the top.
+  void Write(const std::string& text, const cv::Scalar& color, int row = 0) {
+    const double font_scale = 0.6 * std::max(scale_, 0.7);
+    const double line_height_px = 34 * font_scale;
+    const cv::Point origin(static_cast<int>(8 * scale_),
+                           static_cast<int>(8 + 22 * font_scale + row * line_height_px));
+    for (const auto& [thickness, ink] : {std::pair(3, kOutline), std::pair(1, color)}) {
+      cv::putText(image_, text, origin, cv::FONT_HERSHEY_SIMPLEX, font_scale, ink,
+                  thickness * Thickness(), cv::LINE_AA);
+    }
+  }
+
+  const cv::Mat& image() const { return image_; }
+
+ private:
+  static constexpr int kFixedBits = 4;  // of a pixel, for OpenCV's drawing
+  static constexpr int kFixedOne = 1 << kFixedBits;
+
+  // OpenCV's integers overflow far outside of the image.
+  static bool IsNear(const Eigen::Vector2d& pixel) { return pixel.cwiseAbs().maxCoeff() < 1e5; }
+  static cv::Point Fixed(const Eigen::Vector2d& pixel) {
+    return {static_cast<int>(std::lround(pixel.x() * kFixedOne)),
+            static_cast<int>(std::lround(pixel.y() * kFixedOne))};
+  }
+  int Thickness() const { return std::max(1, static_cast<int>(scale_)); }
+
+  cv::Mat image_;
+  double scale_;  // of lines and letters, by the width of the image
+};
+
+void DrawPrint(const LandingPattern& pattern, const Projection& project, const cv::Scalar& color,
+               Canvas* canvas) {
+  canvas->DrawLine(Circle(pattern.outer_radius_m()), project, color);
+  canvas->DrawLine(Circle(pattern.inner_radius_m()), project, color);
+  canvas->DrawLine(Cross(pattern), project, color);
+}
+
+// The print where its edges are, beside where pose and lens have it.
+void DrawMisfit(const LandingDetection& detection, const CameraModel& camera,
+                const LandingPattern& pattern, Canvas* canvas) {
+  const PlaneWarp seen = detection.seen->Warp(camera, pattern.outer_radius_m());
+  const auto project = [&](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
+    return seen.Project(point.head<2>(), pixel);
+  };
+  DrawPrint(pattern, project, kMagenta, canvas);
+  canvas->Write("magenta: where it is seen", kMagenta, 1);
+  canvas->Write(fmt::format("yellow: where pose and calibration have it, {:.1f} px beside",
+                            detection.misfit_px),
+                kYellow, 2);
+}
+
+void DrawDetection(const LandingDetection& detection, const CameraModel& camera,
+                   const LandingPattern& pattern, Canvas* canvas) {
+  const RigidTransform& pose = detection.camera_from_pattern;
+  const auto project = [&](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
+    return camera.Project(pose * point, pixel) != ProjectionStatus::kOutsideModel;
+  };
+  DrawPrint(pattern, project, kYellow, canvas);
+  const std::array<cv::Scalar, 3> colors = {kRed, kGreen, kBlue};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d end = pattern.outer_radius_m() * Eigen::Vector3d::Unit(axis);
+    canvas->DrawLine(LineBetween(Eigen::Vector3d::Zero(), end), project, colors[axis]);
+  }
+  if (detection.is_misfit() && detection.seen) DrawMisfit(detection, camera, pattern, canvas);
+  canvas->DrawCenter(detection.center_px);
+  canvas->Write(fmt::format("{}  {:.2f} m  quality {:.2f}", ToString(detection.method),
+                            pose.translation.norm(), detection.quality),
+                kGreen);
+}
+
+}  // namespace
+
+cv::Mat DrawLandingOverlay(const cv::Mat& image, const CameraModel& camera,
+                           const LandingPattern& pattern, const LandingObservation& observation) {
+  Canvas canvas(image);
+  const LandingReport& report = observation.report;
+  if (report.detection) {
+    DrawDetection(*report.detection, camera, pattern, &canvas);
+  } else {
+    canvas.Write(fmt::format("not found: {}: {}", ToString(report.reached), report.reason), kRed);
+  }
+  return canvas.image();
+}
+
+}  // namespace kestrel

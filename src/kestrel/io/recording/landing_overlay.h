@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/core/camera/camera_model.h"
+#include "kestrel/vision/landing/landing_pattern.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
+
+namespace kestrel {
+
+// The frame (CV_8UC1) with what was found in it, as CV_8UC3 (BGR): both edges of the ring and the
+// outline of the cross where the pose projects them through the lens, the centre, the axes (x red,
+// y green, z blue), and in words method, distance and quality; or else the stage at which the best
+// candidate fell, and why. Of a misfit also the print where it is seen, in another colour, and what
+// the colours mean.
+cv::Mat DrawLandingOverlay(const cv::Mat& image, const CameraModel& camera,
+                           const LandingPattern& pattern, const LandingObservation& observation);
+
+}  // namespace kestrel

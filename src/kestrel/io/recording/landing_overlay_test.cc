@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/io/recording/landing_overlay.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+namespace kestrel {
+namespace {
+
+const CameraModel kCamera({640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}});
+const cv::Mat kGray(480, 640, CV_8UC1, 128);
+
+LandingObservation FoundAt(const Eigen::Vector3d& center_in_camera) {
+  LandingDetection detection{};
+  // The printed face looks at the camera.
+  detection.camera_from_pattern.rotation =
+      Eigen::AngleAxisd(3.14159265358979, Eigen::Vector3d::UnitX());
+  detection.camera_from_pattern.translation = center_in_camera;
+  kCamera.Project(center_in_camera, &detection.center_px);
+  LandingObservation observation;
+  observation.report.detection = detection;
+  observation.report.reached = LandingStage::kFound;
+  return observation;
+}
+
+bool IsYellow(const cv::Mat& image, int x, int y) {
+  const auto& pixel = image.at<cv::Vec3b>(y, x);
+  return pixel[2] > 150 && pixel[1] > 150 && pixel[0] < 90;
+}
+
+TEST(LandingOverlay, DrawsTheRingWhereThePoseSaysIt) {
+  const cv::Mat drawn =
+      DrawLandingOverlay(kGray, kCamera, LandingPattern(), FoundAt({0.0, 0.0, 2.0}));
+  ASSERT_EQ(drawn.type(), CV_8UC3);
+  ASSERT_EQ(drawn.size(), kGray.size());
+  // The outer radius of 0.5 m at 2 m is 100 px, the inner one of 0.4 m 80 px; off the axes.
+  EXPECT_TRUE(IsYellow(drawn, 319 - 60, 239 - 80));
+  EXPECT_TRUE(IsYellow(drawn, 319 - 48, 239 - 64));
+  EXPECT_FALSE(IsYellow(drawn, 319 - 54, 239 - 72));
+}
+
+bool IsMagenta(const cv::Mat& image, int x, int y) {
+  const auto& pixel = image.at<cv::Vec3b>(y, x);
+  return pixel[2] > 150 && pixel[0] > 150 && pixel[1] < 120;
+}
+
+// Seen 40 px to the right of where pose and lens have it.
+TEST(LandingOverlay, OfAMisfitBothOutlinesAreDrawn) {
+  LandingObservation observation = FoundAt({0.0, 0.0, 2.0});
+  LandingDetection& detection = *observation.report.detection;
+  detection.seen = SeenPrint{detection.camera_from_pattern, PlaneWarp::Coefficients::Zero()};
+  detection.seen->displacement_px(0, 0) = 40;
+  detection.misfit_px = 28;
+  detection.misfit_bound_px = 30;
+  const auto drawn = [&] {
+    return DrawLandingOverlay(kGray, kCamera, LandingPattern(), observation);
+  };
+  EXPECT_FALSE(IsMagenta(drawn(), 359 + 60, 239 + 80)) << "no more than should be";
+  detection.misfit_bound_px = 1;
+  EXPECT_TRUE(IsYellow(drawn(), 319 + 60, 239 + 80));
+  EXPECT_TRUE(IsMagenta(drawn(), 359 + 60, 239 + 80));
+  EXPECT_TRUE(IsMagenta(drawn(), 359 + 48, 239 + 64));
+  // What the colours mean.
+  cv::Mat magenta;
+  cv::inRange(drawn().rowRange(0, 100), cv::Scalar(150, 0, 150), cv::Scalar(255, 120, 255),
+              magenta);
+  EXPECT_GT(cv::countNonZero(magenta), 50);
+}
+
+TEST(LandingOverlay, SurvivesAPatternNextToOrBehindTheCamera) {
+  for (const double z : {1e-9, 0.01, -1.0}) {
+    EXPECT_EQ(DrawLandingOverlay(kGray, kCamera, LandingPattern(), FoundAt({0.2, 0.1, z})).size(),
+              kGray.size());
+  }
+}
+
+TEST(LandingOverlay, SaysWhyNothingWasFound) {
+  LandingObservation observation;
+  observation.report.reached = LandingStage::kCross;
+  observation.report.reason = "no arms";
+  const cv::Mat drawn = DrawLandingOverlay(kGray, kCamera, LandingPattern(), observation);
+  cv::Mat channels[3];
+  cv::split(drawn, channels);
+  EXPECT_GT(cv::norm(channels[2], kGray, cv::NORM_INF), 100);
+  EXPECT_EQ(cv::norm(channels[2].rowRange(100, 480), kGray.rowRange(100, 480), cv::NORM_INF), 0);
+}
+
+}  // namespace
+}  // namespace kestrel

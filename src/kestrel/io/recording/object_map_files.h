@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "kestrel/io/recording/output_folder.h"
+#include "kestrel/vision/mapping/team_object.h"
+#include "kestrel/vision/pipeline/hunt_pipeline.h"
+
+namespace kestrel {
+
+// Writes the confirmed objects of the pipeline's map: object_map.csv, object_map.json (nothing is
+// lost), and object_map.geojson where 'origin' is known: latitude and longitude (degrees) of the
+// world's origin, or empty. Throws InputError when they cannot be written.
+void WriteObjectMap(const HuntPipeline& pipeline, const std::vector<double>& origin,
+                    const OutputFolder& folder);
+
+// Writes the team's map: team_map.csv, in the world that is common to the team, and, where 'origin'
+// is known, team_map.geojson: 'own' are the same objects in the world whose origin that is. Throws
+// InputError when they cannot be written.
+void WriteTeamMap(const std::vector<TeamObject>& common, const std::vector<MappedObject>& own,
+                  const ObjectModel& model, const std::vector<double>& origin,
+                  const OutputFolder& folder);
+
+}  // namespace kestrel

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include <Eigen/Core>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/geometry/rigid_transform.h"
+
+namespace kestrel {
+
+// Rows of the files of a recording that hold what is true, where a simulation or a survey knows it.
+
+// Where the pattern was when an image was taken.
+struct TruePattern {
+  Time time;
+  RigidTransform world_from_pattern;
+  Eigen::Vector3d velocity_in_world = Eigen::Vector3d::Zero();
+  Eigen::Vector2d center_px = Eigen::Vector2d::Zero();  // may lie outside of the image
+  double altitude_m = 0;                                // of the camera above the pattern
+  double visible_fraction = 0;  // part of ring and cross that the image shows
+};
+
+// Header and row of state_groundtruth_estimate0/data.csv.
+std::string TrueStateHeader();
+std::string TrueStateRow(Time time, const RigidTransform& world_from_body,
+                         const Eigen::Vector3d& velocity);
+
+// Header and row of landing_pattern0/data.csv.
+std::string LandingTruthHeader();
+std::string LandingTruthRow(const TruePattern& pattern);
+
+}  // namespace kestrel

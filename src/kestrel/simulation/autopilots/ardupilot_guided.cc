@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/simulation/autopilots/ardupilot_guided.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/core/geometry/angles.h"
+#include "kestrel/core/poses/gravity.h"
+#include "kestrel/simulation/autopilots/set_point_reading.h"
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector2d;
+using Vector1d = ShapedPath<1>::Vector;
+
+bool IsFrameOfGuided(std::uint8_t frame) {
+  constexpr std::array<std::uint8_t, 4> kFrames = {
+      mavlink::kFrameLocalNed, mavlink::kFrameLocalOffsetNed, mavlink::kFrameBodyNed,
+      mavlink::kFrameBodyOffsetNed};
+  return std::ranges::find(kFrames, frame) != kFrames.end();
+}
+
+}  // namespace
+
+// A set-point that it cannot take stops it.
+void ArduPilotGuided::Handle(const mavlink::SetPositionTargetLocalNed& message,
+                             const FlightState& state, bool is_guided) {
+  constexpr double kFastest_mps = 1000;
+  if (!is_guided) return;
+  told_.reset();
+  const bool has_place = (message.type_mask & mavlink::kIgnorePosition) != mavlink::kIgnorePosition;
+  if (!IsFrameOfGuided(message.coordinate_frame) || has_place) return;
+  const auto order = VelocityOrderOf(message, state);
+  if (!order || order->set_point.velocity.norm() > kFastest_mps) return;
+  wanted_ = order->set_point;
+  turn_rate_ = order->turn_rate;
+  told_ = state.time;
+}
+
+void ArduPilotGuided::Start(const FlightState& state) {
+  told_.reset();
+  limit_ = {};
+  horizontal_.Start(state.position().head<2>(), state.velocity().head<2>());
+  vertical_.Start(state.position().tail<1>(), state.velocity().tail<1>());
+}
+
+FlightCommand ArduPilotGuided::Fly(const FlightState& state) {
+  constexpr double kLeastTimeout_s = 0.1;
+  const double timeout_s = std::max(parameters_["GUID_TIMEOUT"], kLeastTimeout_s);
+  if (told_ && ToSeconds(state.time - *told_) > timeout_s) told_.reset();
+  if (!told_) {
+    wanted_ = {};
+    turn_rate_ = 0;
+  }
+  Follow(state);
+  FlightCommand command;
+  const Vector2d way = horizontal_.position() - state.position().head<2>();
+  const double climb = vertical_.position().x() - state.position().z();
+  command.set_point.velocity << horizontal_.velocity() + parameters_["PSC_NE_POS_P"] * way,
+      vertical_.velocity().x() + parameters_["PSC_D_POS_P"] * climb;
+  command.set_point.acceleration << horizontal_.acceleration(), vertical_.acceleration().x();
+  limit_ = LimitOf(way, command.set_point.velocity.head<2>() - state.velocity().head<2>());
+  if (wanted_.yaw) {
+    command.set_point.yaw = wanted_.yaw;
+  } else if (turn_rate_) {
+    if (*turn_rate_ != 0) command.set_point.yaw = HeadingOf(state) + *turn_rate_;  // a second on
+  } else if (wanted_.velocity.head<2>().norm() > 1) {
+    // By WP_YAW_BEHAVIOR the nose goes where it flies.
+    command.set_point.yaw = std::atan2(wanted_.velocity.y(), wanted_.velocity.x());
+  }
+  return command;
+}
+
+// Where its control of the velocity asks for more than it may lean.
+ShapedPath<2>::Limit ArduPilotGuided::LimitOf(const Vector2d& way,
+                                              const Vector2d& velocity_error) const {
+  const Vector2d wanted = horizontal_.acceleration() + parameters_["PSC_NE_VEL_P"] * velocity_error;
+  const bool is_limited =
+      wanted.norm() > kGravity * std::tan(Radians(parameters_["ATC_ANGLE_MAX"]));
+  return {is_limited ? wanted : Vector2d(0, 0), way, velocity_error};
+}
+
+void ArduPilotGuided::Follow(const FlightState& state) {
+  horizontal_.Step(wanted_.velocity.head<2>(), wanted_.acceleration.head<2>(),
+                   parameters_["WP_ACC"], parameters_["PSC_JERK_NE"], state.step_s, limit_);
+  vertical_.Step(Vector1d(wanted_.velocity.z()), Vector1d(wanted_.acceleration.z()),
+                 parameters_["WP_ACC_Z"], parameters_["PSC_JERK_D"], state.step_s);
+  if (!state.is_standing) return;
+  // What carries it takes the path along.
+  horizontal_.MoveTo(state.position().head<2>());
+  vertical_.MoveTo(state.position().tail<1>());
+}
+
+}  // namespace kestrel

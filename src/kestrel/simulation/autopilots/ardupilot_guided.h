@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/core/base/time.h"
+#include "kestrel/simulation/autopilots/guided_rules.h"
+#include "kestrel/simulation/autopilots/shaped_path.h"
+
+namespace kestrel {
+
+// ArduCopter's GUIDED mode by velocities, with acceleration or not. Set-points of places are not
+// modelled: it stops, as by one that it refuses.
+class ArduPilotGuided : public GuidedRules {
+ public:
+  // The parameters must outlive it.
+  explicit ArduPilotGuided(const AutopilotParameters& parameters) : parameters_(parameters) {}
+
+  void Handle(const mavlink::SetPositionTargetLocalNed& message, const FlightState& state,
+              bool is_guided) override;
+  bool IsAvailable(const FlightState& /*state*/) const override { return true; }
+  void Start(const FlightState& state) override;
+  FlightCommand Fly(const FlightState& state) override;
+  // Without set-points it stays in the mode, and stops.
+  std::optional<FlightMode> LossAction(const FlightState& /*state*/) const override {
+    return std::nullopt;
+  }
+
+ private:
+  ShapedPath<2>::Limit LimitOf(const Eigen::Vector2d& way,
+                               const Eigen::Vector2d& velocity_error) const;
+  void Follow(const FlightState& state);
+
+  const AutopilotParameters& parameters_;
+  SetPoint wanted_;
+  std::optional<double> turn_rate_;  // ENU, rad/s
+  std::optional<Time> told_;         // when; nothing: it is to stop
+  ShapedPath<2> horizontal_;
+  ShapedPath<2>::Limit limit_;
+  ShapedPath<1> vertical_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/simulation/autopilots/autopilot_model.h"
+
+// What the simulated autopilot is told.
+namespace kestrel {
+namespace {
+
+constexpr std::uint32_t kPx4TakeOff = Px4CustomMode(4, 2);
+// Numbers of ArduCopter's modes that can be asked for.
+constexpr std::array<std::uint32_t, 12> kArduPilotModes = {0, 2, 3, 4, 5, 6, 7, 9, 16, 17, 21, 23};
+constexpr std::uint32_t kPx4LastMain = 8;
+constexpr std::uint32_t kPx4LastSub = 9;
+
+}  // namespace
+
+void AutopilotModel::Handle(const CompanionMessage& message, std::uint8_t system,
+                            std::uint8_t component, Time now) {
+  if (IsSilentAfterReboot(now)) return;
+  // What claims to be the autopilot itself is dropped.
+  if (system == options_.system_id && component == mavlink::kComponentAutopilot) return;
+  peer_system_ = system;
+  peer_component_ = component;
+  std::visit([&](const auto& typed) { Receive(typed, now); }, message);
+}
+
+void AutopilotModel::Receive(const mavlink::Heartbeat& message, Time /*now*/) {
+  has_gcs_ = has_gcs_ || message.type == mavlink::kTypeGcs;
+}
+
+void AutopilotModel::Receive(const mavlink::Timesync& message, Time now) {
+  if (message.tc1 == 0) {
+    send_(mavlink::Timesync{.tc1 = OwnTime(now),
+                            .ts1 = message.ts1,
+                            .target_system = peer_system_,
+                            .target_component = peer_component_});
+  } else {
+    px4_clock_.AddAnswer(message.ts1 / 1000, message.tc1 / 1000, OwnMicroseconds(now));
+  }
+}
+
+void AutopilotModel::Receive(const mavlink::LandingTarget& message, Time /*now*/) {
+  landing_->Handle(message, state_);
+}
+
+void AutopilotModel::Receive(const mavlink::TargetRelative& message, Time /*now*/) {
+  landing_->Handle(message, state_);
+}
+
+void AutopilotModel::Receive(const mavlink::SetPositionTargetLocalNed& message, Time now) {
+  if (!IsForIt(message.target_system)) return;
+  const bool is_guided = IsIn(FlightMode::kGuided);
+  if (is_guided) {
+    ++result_.set_points;
+    is_taking_off_ = false;
+  } else if (result_.left) {
+    ++result_.set_points_after_take_back;
+    result_.last_set_point_after_s = ToSeconds(now - *result_.left);
+  }
+  FlightState state = state_;
+  state.time = now;
+  guided_->Handle(message, state, is_guided);
+}
+
+bool AutopilotModel::IsForIt(std::uint8_t target_system) const {
+  return target_system == 0 || target_system == options_.system_id;
+}
+
+void AutopilotModel::Receive(const mavlink::ParamRequestRead& message, Time /*now*/) {
+  if (message.target_system != options_.system_id) return;
+  const auto index = message.param_index < 0 ? parameters_.Find(TextOf(message.param_id))
+                                             : std::optional<std::size_t>(message.param_index);
+  if (index && *index < parameters_.size()) send_(ParamValueOf(parameters_, *index, firmware_));
+}
+
+void AutopilotModel::Receive(const mavlink::ParamRequestList& message, Time /*now*/) {
+  if (message.target_system != options_.system_id) return;
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    send_(ParamValueOf(parameters_, i, firmware_));
+  }
+}
+
+void AutopilotModel::Receive(const mavlink::ParamSet& message, Time /*now*/) {
+  if (message.target_system != options_.system_id) return;
+  const auto index = parameters_.Find(TextOf(message.param_id));
+  const double value = ValueOf(message, firmware_);
+  if (!index || !std::isfinite(value)) return;
+  parameters_.Set(*index, value);
+  send_(ParamValueOf(parameters_, *index, firmware_));
+}
+
+void AutopilotModel::Receive(const mavlink::SetMode& message, Time now) {
+  if (message.target_system != options_.system_id) return;
+  if ((message.base_mode & mavlink::kModeFlagCustom) != 0) {
+    EnterMode(message.custom_mode, Wish::kLink, now);
+  }
+}
+
+void AutopilotModel::Receive(const mavlink::CommandLong& message, Time now) {
+  if (!IsForIt(message.target_system)) return;
+  send_(mavlink::CommandAck{.command = message.command,
+                            .result = Execute(message, now),
+                            .target_system = peer_system_,
+                            .target_component = peer_component_});
+}
+
+std::uint8_t AutopilotModel::Execute(const mavlink::CommandLong& command, Time now) {
+  const bool has_id = command.param1 >= 0 && command.param1 < (1 << 24);
+  const auto id = static_cast<std::uint32_t>(has_id ? command.param1 : 0);
+  switch (command.command) {
+    case mavlink::kCommandSetMessageInterval:
+      return has_id ? streams_.SetInterval(id, command.param2) : mavlink::kResultDenied;
+    case mavlink::kCommandRequestMessage:
+      return has_id && SendMessage(id, now) ? mavlink::kResultAccepted
+                                            : mavlink::kResultUnsupported;
+    case mavlink::kCommandDoSetMode:
+      return SetModeBy(command, now);
+    case mavlink::kCommandArmDisarm:
+      return Arm(command.param1 == 1, command.param2 == mavlink::kArmByForce);
+    case mavlink::kCommandTakeOff:
+      return TakeOff(command.param7, now);
+    default:
+      return mavlink::kResultUnsupported;
+  }
+}
+
+std::uint8_t AutopilotModel::SetModeBy(const mavlink::CommandLong& command, Time now) {
+  const auto is_index = [](float value, std::uint32_t last) {
+    return value >= 0 && value <= static_cast<float>(last) && value == std::floor(value);
+  };
+  if (command.param1 != mavlink::kModeFlagCustom) return mavlink::kResultDenied;
+  if (is_px4()) {
+    if (!is_index(command.param2, kPx4LastMain) || !is_index(command.param3, kPx4LastSub)) {
+      return mavlink::kResultDenied;
+    }
+    const std::uint32_t mode = Px4CustomMode(static_cast<std::uint32_t>(command.param2),
+                                             static_cast<std::uint32_t>(command.param3));
+    return EnterMode(mode, Wish::kLink, now) ? mavlink::kResultAccepted
+                                             : mavlink::kResultTemporarilyRejected;
+  }
+  const auto mode = std::ranges::find_if(kArduPilotModes, [&](std::uint32_t known) {
+    return static_cast<float>(known) == command.param2;
+  });
+  if (mode == kArduPilotModes.end()) return mavlink::kResultFailed;
+  EnterMode(*mode, Wish::kLink, now);
+  return mavlink::kResultAccepted;
+}
+
+std::uint8_t AutopilotModel::Arm(bool arm, bool by_force) {
+  if (arm == is_armed_) return mavlink::kResultAccepted;
+  // A plain disarm is for what has landed.
+  if (!arm && !by_force && !detector_.has_landed()) return mavlink::kResultFailed;
+  is_armed_ = arm;
+  resumes_guided_ = false;
+  if (arm) {
+    hold_ = state_.position();
+    landing_since_.reset();
+  } else {
+    result_.was_forced = by_force;
+    Say(Severity::kInfo, "Disarming motors");
+  }
+  return mavlink::kResultAccepted;
+}
+
+// 'altitude': above home for ArduPilot, above the sea for PX4.
+std::uint8_t AutopilotModel::TakeOff(double altitude, Time now) {
+  constexpr double kPx4Default_m = 2.5;
+  if (!is_armed_) return mavlink::kResultFailed;
+  if (is_px4()) {
+    EnterMode(kPx4TakeOff, Wish::kLink, now);
+    hold_.z() = std::isfinite(altitude) ? altitude - options_.origin.altitude_m
+                                        : state_.position().z() + kPx4Default_m;
+    return mavlink::kResultAccepted;
+  }
+  if (!IsIn(FlightMode::kGuided) || !std::isfinite(altitude) || altitude <= 0) {
+    return mavlink::kResultFailed;
+  }
+  pilot_flies_ = false;
+  is_taking_off_ = true;
+  hold_.z() = altitude;
+  return mavlink::kResultAccepted;
+}
+
+}  // namespace kestrel

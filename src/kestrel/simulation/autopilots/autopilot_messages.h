@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include <Eigen/Core>
+
+#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/comms/mavlink/messages.h"
+#include "kestrel/comms/mavlink/packet.h"
+#include "kestrel/core/poses/pose_history.h"
+
+namespace kestrel {
+
+// All that a simulated autopilot says.
+using AutopilotMessage =
+    std::variant<mavlink::Heartbeat, mavlink::Attitude, mavlink::AttitudeQuaternion,
+                 mavlink::LocalPositionNed, mavlink::GlobalPositionInt, mavlink::GpsGlobalOrigin,
+                 mavlink::HomePosition, mavlink::SimState, mavlink::ExtendedSysState,
+                 mavlink::Timesync, mavlink::Statustext, mavlink::CurrentMode,
+                 mavlink::AutopilotVersion, mavlink::ParamValue, mavlink::CommandAck,
+                 mavlink::SysStatus, mavlink::EkfStatusReport, mavlink::EstimatorStatus>;
+
+// All that it listens to.
+using CompanionMessage =
+    std::variant<mavlink::Heartbeat, mavlink::CommandLong, mavlink::SetMode, mavlink::Timesync,
+                 mavlink::LandingTarget, mavlink::TargetRelative, mavlink::ParamRequestRead,
+                 mavlink::ParamRequestList, mavlink::ParamSet, mavlink::SetPositionTargetLocalNed>;
+
+// What a packet says, if it listens to that.
+std::optional<CompanionMessage> CompanionMessageOf(const mavlink::Packet& packet);
+
+// Where the local frame's origin is on the Earth.
+struct GlobalOrigin {
+  double latitude_deg = 47.397742;
+  double longitude_deg = 8.545594;
+  double altitude_m = 488;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("latitude_deg", self.latitude_deg, "deg", "of the local frame's origin");
+    visitor("longitude_deg", self.longitude_deg, "deg", "of the local frame's origin");
+    visitor("altitude_m", self.altitude_m, "m", "of the local frame's origin above the sea");
+  }
+};
+
+// The messages of a pose (ENU, FLU, with motion) at 'boot_ms' on the autopilot's clock.
+mavlink::Attitude AttitudeOf(const PoseSample& pose, std::uint32_t boot_ms);
+mavlink::AttitudeQuaternion AttitudeQuaternionOf(const PoseSample& pose, std::uint32_t boot_ms);
+mavlink::LocalPositionNed LocalPositionOf(const PoseSample& pose, std::uint32_t boot_ms);
+mavlink::GlobalPositionInt GlobalPositionOf(const PoseSample& pose, const GlobalOrigin& origin,
+                                            std::uint32_t boot_ms);
+mavlink::SimState SimStateOf(const PoseSample& pose, const GlobalOrigin& origin);
+mavlink::HomePosition HomePositionOf(const GlobalOrigin& origin, std::int64_t boot_us);
+mavlink::GpsGlobalOrigin GlobalOriginOf(const GlobalOrigin& origin, std::int64_t boot_us);
+
+// Battery and sensors; a low battery, or a good one.
+mavlink::SysStatus SysStatusOf(bool has_low_battery);
+
+// Flags of EKF_STATUS_REPORT and of ESTIMATOR_STATUS, with and without a position.
+std::uint16_t EstimatorFlags(bool has_position);
+
+// PX4 puts the bits of an integer into the float, ArduPilot its value.
+mavlink::ParamValue ParamValueOf(const AutopilotParameters& parameters, std::size_t index,
+                                 AutopilotFirmware firmware);
+double ValueOf(const mavlink::ParamSet& set, AutopilotFirmware firmware);
+
+// Text in a field that is not closed by a zero when it is full, and back.
+template <std::size_t kSize>
+std::array<char, kSize> CharsOf(std::string_view text) {
+  std::array<char, kSize> chars{};
+  text.copy(chars.data(), kSize);
+  return chars;
+}
+template <std::size_t kSize>
+std::string_view TextOf(const std::array<char, kSize>& chars) {
+  const std::string_view text(chars.data(), kSize);
+  return text.substr(0, text.find('\0'));
+}
+
+}  // namespace kestrel

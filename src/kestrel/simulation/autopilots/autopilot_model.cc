@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/simulation/autopilots/autopilot_model.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/base/parse_number.h"
+#include "kestrel/core/geometry/angles.h"
+#include "kestrel/simulation/autopilots/ardupilot_guided.h"
+#include "kestrel/simulation/autopilots/ardupilot_landing.h"
+#include "kestrel/simulation/autopilots/px4_landing.h"
+#include "kestrel/simulation/autopilots/px4_offboard.h"
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr Duration kModelStep = std::chrono::milliseconds(4);
+constexpr Duration kBootTime = std::chrono::seconds(3);  // silent after a reboot
+
+// "NAME=value,NAME=value"
+void SetParameters(const std::string& list, AutopilotParameters* parameters) {
+  for (std::size_t begin = 0; begin < list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string setting = list.substr(begin, end - begin);
+    const std::size_t equals = setting.find('=');
+    const auto index = parameters->Find(setting.substr(0, equals));
+    const auto value = equals == std::string::npos
+                           ? std::nullopt
+                           : ParseNumber<double>(setting.substr(equals + 1));
+    if (!index || !value) {
+      throw InputError(fmt::format(
+          "parameters has '{}', expected NAME=value of a parameter of this autopilot", setting));
+    }
+    parameters->Set(*index, *value);
+    begin = end + 1;
+  }
+}
+
+AutopilotParameters ParametersOf(AutopilotFirmware firmware, const std::string& list) {
+  AutopilotParameters parameters(firmware);
+  SetParameters(list, &parameters);
+  return parameters;
+}
+
+// The autopilot keeps its own limit of the tilt, whatever the UAV could do.
+SimulatedUavOptions WithTiltOf(AutopilotFirmware firmware, const AutopilotParameters& parameters,
+                               SimulatedUavOptions uav) {
+  const double tilt_deg =
+      parameters[firmware == AutopilotFirmware::kPx4 ? "MPC_TILTMAX_AIR" : "ATC_ANGLE_MAX"];
+  uav.multicopter.max_tilt_deg = std::min(uav.multicopter.max_tilt_deg, tilt_deg);
+  return uav;
+}
+
+SimulatedUav MakeUav(const SimulatedUavOptions& options, const PilotOptions& pilot,
+                     const VehicleWorld& world, Time start, Random* random) {
+  const double heading = Radians(90 - pilot.heading_deg);
+  if (pilot.start_altitude_m <= 0) {
+    return {options, world, start, Vector3d::Zero(), Vector3d::Zero(), heading, random};
+  }
+  const Vector3d place = SimulatedPilot(pilot, world, start).PlaceAt(start);
+  const Vector3d velocity =
+      pilot.follows_vehicle ? world.VelocityAt(start) : Vector3d(Vector3d::Zero());
+  return {options, world, start, place, velocity, heading, random};
+}
+
+}  // namespace
+
+AutopilotModel::AutopilotModel(AutopilotFirmware firmware, const AutopilotModelOptions& options,
+                               VehicleWorld* world, Time start, std::uint64_t seed, Send send)
+    : firmware_(firmware),
+      options_(Checked(options)),
+      world_(*world),
+      send_(std::move(send)),
+      random_(seed),
+      parameters_(ParametersOf(firmware, options.parameters)),
+      uav_(MakeUav(WithTiltOf(firmware, parameters_, options.uav), options.pilot, *world, start,
+                   &random_)),
+      navigation_(options.navigation, NavigationErrors(), Random(random_.Bits())),
+      pilot_(options.pilot, *world, start),
+      detector_(firmware, parameters_),
+      return_(firmware, parameters_),
+      streams_(firmware),
+      start_(start),
+      stepped_to_(start),
+      booted_at_(start),
+      boot_uptime_s_(options.uptime_s) {
+  const Announce announce = [this](Severity severity, const std::string& text) {
+    Say(severity, text);
+  };
+  if (is_px4()) {
+    landing_ = std::make_unique<Px4Landing>(parameters_, px4_clock_, announce);
+    guided_ = std::make_unique<Px4Offboard>(parameters_, announce);
+    custom_mode_ = CustomModeOf(kind(), FlightMode::kHold);
+  } else {
+    landing_ = std::make_unique<ArduPilotLanding>(parameters_, announce);
+    guided_ = std::make_unique<ArduPilotGuided>(parameters_);
+    custom_mode_ = CustomModeOf(kind(), FlightMode::kPilot);
+  }
+  pilot_flies_ = options.pilot.start_altitude_m > 0;
+  is_armed_ = pilot_flies_;
+  ObserveFlight(start);
+  hold_ = state_.position();
+}
+
+std::int64_t AutopilotModel::OwnTime(Time now) const {
+  const double rate = 1 + 1e-6 * options_.drift_ppm;
+  const auto since_boot = static_cast<double>((now - booted_at_).count());
+  return std::llround(1e9 * boot_uptime_s_) + std::llround(rate * since_boot) + clock_jump_.count();
+}
+
+bool AutopilotModel::IsSilentAfterReboot(Time now) const {
+  return now - booted_at_ < kBootTime && booted_at_ != start_;
+}
+
+bool AutopilotModel::IsWithin(Time now, double after_s, double for_s) const {
+  const double since_s = ToSeconds(now - start_);
+  return after_s >= 0 && since_s >= after_s && since_s < after_s + for_s;
+}
+
+bool AutopilotModel::HasLostPosition(Time now) const {
+  return IsWithin(now, options_.estimate.lost_after_s, std::numeric_limits<double>::infinity());
+}
+
+void AutopilotModel::Step(Time now) {
+  while (stepped_to_ + kModelStep <= now) {
+    stepped_to_ += kModelStep;
+    StepOnce(stepped_to_);
+  }
+}
+
+void AutopilotModel::StepOnce(Time now) {
+  const FlightCommand command = Fly();
+  uav_.Step(now, command, is_armed_);
+  world_.ObserveUav(now, uav_.pose().world_from_body.translation);
+  ObserveFlight(now);
+  landing_->Estimate(state_);
+  detector_.Observe(state_, command.set_point);
+  if (IsIn(FlightMode::kGuided)) result_.guided_s += state_.step_s;
+  FollowPilot(now);
+  WatchSetPoints(now);
+  ObserveContact(now);
+  DisarmAfterLanding(now);
+  if (IsSilentAfterReboot(now)) return;
+  streams_.SendDue(OwnMicroseconds(now), [&](std::uint32_t id) { SendMessage(id, now); });
+}
+
+void AutopilotModel::ObserveFlight(Time now) {
+  const PoseSample& truth = uav_.pose();
+  const EstimateFaultOptions& faults = options_.estimate;
+  const bool jumps = IsWithin(now, faults.jump_after_s, std::numeric_limits<double>::infinity());
+  state_.step_s = ToSeconds(now - state_.time);
+  state_.time = now;
+  state_.boot_us = OwnMicroseconds(now);
+  state_.pose = navigation_.Report(world_.SceneTime(truth.time), truth.world_from_body);
+  state_.pose.time = now;
+  state_.pose.motion = truth.motion;
+  if (jumps) state_.pose.world_from_body.translation.x() += faults.jump_m;
+  // It knows when its estimate was reset: what it holds goes along.
+  if (jumps && !std::exchange(has_jumped_, true)) hold_.x() += faults.jump_m;
+  state_.is_standing = uav_.is_standing();
+}
+
+void AutopilotModel::FollowPilot(Time now) {
+  if (pilot_.LosesBattery(now)) EnterBatteryFailsafe(now);
+  if (const auto mode = pilot_.Switch(now, pilot_flies_)) EnterMode(*mode, Wish::kPilot, now);
+}
+
+// Whatever its parameters say of the battery but to land, it returns: that is what is tried here.
+void AutopilotModel::EnterBatteryFailsafe(Time now) {
+  constexpr int kArduPilotLands = 1;
+  constexpr int kPx4Lands = 2;
+  const bool lands = is_px4() ? parameters_["COM_LOW_BAT_ACT"] == kPx4Lands
+                              : parameters_["BATT_FS_LOW_ACT"] == kArduPilotLands;
+  is_in_failsafe_ = true;
+  Say(Severity::kCritical, is_px4() ? "Critical battery" : "Battery 1 low: failsafe");
+  // As the pilot's, it is not undone by set-points.
+  EnterMode(lands ? FlightMode::kLand : FlightMode::kReturn, Wish::kPilot, now);
+}
+
+// Set-points that end, and, after its own failsafe, come again.
+void AutopilotModel::WatchSetPoints(Time now) {
+  if (!is_armed_) return;
+  if (IsIn(FlightMode::kGuided)) {
+    if (const auto action = guided_->LossAction(state_)) {
+      Say(Severity::kCritical, "Failsafe activated: no offboard signal");
+      EnterMode(*action, Wish::kFailsafe, now);
+    }
+  } else if (resumes_guided_ && guided_->IsAvailable(state_)) {
+    EnterMode(FlightMode::kGuided, Wish::kResumption, now);
+  }
+}
+
+FlightCommand AutopilotModel::Fly() {
+  FlightCommand command;
+  if (LandsByTarget()) {
+    command.set_point = landing_->Land(state_);
+  } else if (IsIn(FlightMode::kGuided) && !is_taking_off_) {
+    command = guided_->Fly(state_);
+    // ArduPilot's velocities do not lift it off.
+    double& climb = command.set_point.velocity.z();
+    if (!is_px4() && detector_.has_landed()) climb = std::min(climb, 0.0);
+  } else if (IsIn(FlightMode::kReturn)) {
+    command.set_point = return_.Fly(state_);
+  } else if (pilot_flies_ && pilot_.follows_vehicle()) {
+    command.set_point = pilot_.FollowVehicle(state_.time, truth().world_from_body.translation);
+  } else {
+    command.set_point = Hold();
+  }
+  return command;
+}
+
+SetPoint AutopilotModel::Hold() const {
+  constexpr double kMax_mps = 5;
+  const Vector3d way = hold_ - state_.position();
+  SetPoint command;
+  command.velocity.head<2>() = BrakingVelocity(way.head<2>(), 1, 2.5, kMax_mps);
+  command.velocity.z() = std::clamp(way.z(), -1.5, 2.5);
+  // PX4's plain LAND goes straight down.
+  if (is_px4() && IsIn(FlightMode::kLand)) command.velocity.z() = -parameters_["MPC_LAND_SPEED"];
+  return command;
+}
+
+// False when it refuses the mode.
+bool AutopilotModel::EnterMode(std::uint32_t custom_mode, Wish wish, Time now) {
+  const bool is_guided = custom_mode == CustomModeOf(kind(), FlightMode::kGuided);
+  if (is_guided && !guided_->IsAvailable(state_)) return false;
+  if (wish == Wish::kLink) ++result_.modes_by_link;
+  pilot_flies_ = false;
+  resumes_guided_ = wish == Wish::kFailsafe;
+  is_in_failsafe_ = pilot_.has_low_battery() || wish == Wish::kFailsafe;
+  if (custom_mode == custom_mode_) return true;
+  LeaveMode(now);
+  custom_mode_ = custom_mode;
+  hold_ = state_.position();
+  if (MayComeDown() && !landing_since_) {
+    landing_since_ = now;
+    result_.contact.reset();
+    result_.is_disarmed = false;
+  }
+  if (LandsByTarget()) landing_->StartLanding(state_);
+  if (IsIn(FlightMode::kReturn)) return_.Start(state_);
+  if (is_guided) {
+    guided_->Start(state_);
+    ++result_.guided_entries;
+  }
+  // ArduPilot tells at once, PX4 when the next heartbeat is due.
+  if (!is_px4() && !IsSilentAfterReboot(now)) send_(HeartbeatOf());
+  return true;
+}
+
+void AutopilotModel::LeaveMode(Time now) {
+  is_taking_off_ = false;
+  if (IsIn(FlightMode::kGuided)) {
+    result_.left = now;
+    result_.set_points_after_take_back = 0;
+    result_.last_set_point_after_s = 0;
+  }
+  // What the pilot does by hand is no landing.
+  if (!result_.contact && !MayComeDown()) landing_since_.reset();
+}
+
+bool AutopilotModel::MayComeDown() const {
+  return LandsByTarget() || IsIn(FlightMode::kGuided) || IsIn(FlightMode::kLand);
+}
+
+// The last time that it came down counts: it may have gone around after another.
+void AutopilotModel::ObserveContact(Time now) {
+  if (!MayComeDown() || !landing_since_ || !is_armed_ || !uav_.is_standing()) return;
+  const auto& contact = uav_.contact();
+  if (!contact || contact->time < *landing_since_) return;
+  if (result_.contact && result_.contact->time == contact->time) return;
+  result_.contact = contact;
+  result_.landing_s = ToSeconds(now - *landing_since_);
+}
+
+void AutopilotModel::DisarmAfterLanding(Time now) {
+  if (!is_armed_ || !detector_.has_landed() || detector_.landed_s() < 0) return;
+  const bool lands = MayComeDown() && !IsIn(FlightMode::kGuided);
+  // ArduPilot's modes that land do not wait.
+  double wait_s = parameters_[is_px4() ? "COM_DISARM_LAND" : "DISARM_DELAY"];
+  if (!is_px4() && (lands || IsIn(FlightMode::kReturn))) {
+    wait_s = 0;
+  } else if (wait_s <= 0) {
+    return;
+  }
+  if (detector_.landed_s() < wait_s) return;
+  is_armed_ = false;
+  resumes_guided_ = false;
+  result_.is_disarmed = true;
+  if (result_.contact) result_.disarm_s = ToSeconds(now - result_.contact->time);
+  Say(Severity::kInfo, is_px4() ? "Disarmed by landing" : "Disarming motors");
+}
+
+void AutopilotModel::Reboot(Time now) {
+  booted_at_ = now;
+  boot_uptime_s_ = 0;
+  clock_jump_ = Duration(0);
+  streams_ = MessageStreams(firmware_);
+  px4_clock_ = Px4TimeSync();
+  has_gcs_ = false;
+}
+
+void AutopilotModel::JumpClock(Duration change) { clock_jump_ += change; }
+
+}  // namespace kestrel

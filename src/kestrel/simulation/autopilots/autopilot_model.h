@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/comms/autopilot_rules/landing_rules.h"
+#include "kestrel/comms/autopilot_rules/px4_time_sync.h"
+#include "kestrel/comms/mavlink/autopilot_kind.h"
+#include "kestrel/core/base/random.h"
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/poses/set_point.h"
+#include "kestrel/simulation/autopilots/autopilot_messages.h"
+#include "kestrel/simulation/autopilots/autopilot_model_options.h"
+#include "kestrel/simulation/autopilots/guided_rules.h"
+#include "kestrel/simulation/autopilots/land_detector.h"
+#include "kestrel/simulation/autopilots/message_streams.h"
+#include "kestrel/simulation/autopilots/return_flight.h"
+#include "kestrel/simulation/autopilots/simulated_pilot.h"
+#include "kestrel/simulation/autopilots/simulated_uav.h"
+#include "kestrel/simulation/autopilots/sitl_result.h"
+#include "kestrel/simulation/autopilots/vehicle_world.h"
+#include "kestrel/simulation/vehicle/navigation_model.h"
+
+namespace kestrel {
+
+// A UAV with its autopilot, as far as a companion computer can tell it from a real one: its clock,
+// messages, modes, parameters, and how it flies and lands by what it is told. Steps on whatever
+// clock it is given; no thread, no socket.
+class AutopilotModel {
+ public:
+  using Send = std::function<void(const AutopilotMessage& message)>;
+
+  // The world must outlive it. Throws InputError when the options are not valid, or name a
+  // parameter that does not exist.
+  AutopilotModel(AutopilotFirmware firmware, const AutopilotModelOptions& options,
+                 VehicleWorld* world, Time start, std::uint64_t seed, Send send);
+
+  // Goes on to 'now' on the local clock, in steps of 4 ms.
+  void Step(Time now);
+
+  // A message from 'system', 'component' arrived at 'now'.
+  void Handle(const CompanionMessage& message, std::uint8_t system, std::uint8_t component,
+              Time now);
+
+  // Injected faults.
+  void Reboot(Time now);            // of all but the flight: clock, streams, and silent for a while
+  void JumpClock(Duration change);  // of its own clock
+  void set_nan_attitude(bool nan) { nan_attitude_ = nan; }
+
+  // Its own clock, ns since boot.
+  std::int64_t OwnTime(Time now) const;
+
+  const PoseSample& truth() const { return uav_.pose(); }  // at the last step
+  std::uint32_t custom_mode() const { return custom_mode_; }
+  bool is_armed() const { return is_armed_; }
+  const SitlResult& result() const { return result_; }
+  AutopilotParameters& parameters() { return parameters_; }
+
+ private:
+  // Who wants a mode.
+  enum class Wish { kPilot, kLink, kFailsafe, kResumption };
+
+  // autopilot_model.cc: how it flies.
+  void StepOnce(Time now);
+  void ObserveFlight(Time now);
+  FlightCommand Fly();
+  SetPoint Hold() const;
+  void FollowPilot(Time now);
+  void WatchSetPoints(Time now);
+  void EnterBatteryFailsafe(Time now);
+  bool EnterMode(std::uint32_t custom_mode, Wish wish, Time now);
+  void EnterMode(FlightMode mode, Wish wish, Time now) {
+    EnterMode(CustomModeOf(kind(), mode), wish, now);
+  }
+  void LeaveMode(Time now);
+  bool IsIn(FlightMode mode) const { return custom_mode_ == CustomModeOf(kind(), mode); }
+  bool LandsByTarget() const { return IsIn(FlightMode::kPrecisionLand); }
+  bool MayComeDown() const;
+  void ObserveContact(Time now);
+  void DisarmAfterLanding(Time now);
+  bool is_px4() const { return firmware_ == AutopilotFirmware::kPx4; }
+  AutopilotKind kind() const { return is_px4() ? AutopilotKind::kPx4 : AutopilotKind::kArduPilot; }
+  std::int64_t OwnMicroseconds(Time now) const { return OwnTime(now) / 1000; }
+  bool IsSilentAfterReboot(Time now) const;
+  // Seconds since the start lie within 'for_s' from 'after_s' on, which is not negative.
+  bool IsWithin(Time now, double after_s, double for_s) const;
+  bool HasLostPosition(Time now) const;
+
+  // autopilot_reports.cc: what it says.
+  bool SendMessage(std::uint32_t id, Time now);
+  bool SendPose(std::uint32_t id, Time now);
+  bool SendPlace(std::uint32_t id, Time now);
+  void Say(Severity severity, const std::string& text) const;
+  std::uint8_t LandedState() const;
+  mavlink::Heartbeat HeartbeatOf() const;
+  mavlink::AutopilotVersion VersionOf() const;
+
+  // autopilot_commands.cc: what it is told.
+  void Receive(const mavlink::Heartbeat& message, Time now);
+  void Receive(const mavlink::CommandLong& message, Time now);
+  void Receive(const mavlink::SetMode& message, Time now);
+  void Receive(const mavlink::Timesync& message, Time now);
+  void Receive(const mavlink::LandingTarget& message, Time now);
+  void Receive(const mavlink::TargetRelative& message, Time now);
+  void Receive(const mavlink::SetPositionTargetLocalNed& message, Time now);
+  void Receive(const mavlink::ParamRequestRead& message, Time now);
+  void Receive(const mavlink::ParamRequestList& message, Time now);
+  void Receive(const mavlink::ParamSet& message, Time now);
+  bool IsForIt(std::uint8_t target_system) const;
+  std::uint8_t Execute(const mavlink::CommandLong& command, Time now);
+  std::uint8_t SetModeBy(const mavlink::CommandLong& command, Time now);
+  std::uint8_t Arm(bool arm, bool by_force);
+  std::uint8_t TakeOff(double altitude, Time now);
+
+  AutopilotFirmware firmware_;
+  AutopilotModelOptions options_;
+  VehicleWorld& world_;
+  Send send_;
+  Random random_;
+  AutopilotParameters parameters_;
+  SimulatedUav uav_;
+  NavigationSensor navigation_;
+  SimulatedPilot pilot_;
+  Px4TimeSync px4_clock_;
+  std::unique_ptr<LandingRules> landing_;
+  std::unique_ptr<GuidedRules> guided_;
+  LandDetector detector_;
+  ReturnFlight return_;
+  MessageStreams streams_;
+
+  Time start_;
+  Time stepped_to_;
+  Time booted_at_;
+  double boot_uptime_s_;  // own clock when it booted
+  Duration clock_jump_{0};
+  FlightState state_;
+  bool has_jumped_ = false;        // its position
+  Eigen::Vector3d hold_{0, 0, 0};  // where it hovers where nothing else moves it
+  std::uint32_t custom_mode_ = 0;
+  bool is_armed_ = false;
+  bool pilot_flies_ = true;      // the script, not the link
+  bool is_taking_off_ = false;   // in the mode that is guided
+  bool resumes_guided_ = false;  // its own failsafe ended the mode: it goes back to it
+  bool is_in_failsafe_ = false;
+  bool has_gcs_ = false;  // a ground station's heartbeat has come
+  bool nan_attitude_ = false;
+  std::uint8_t peer_system_ = 0;  // of the message that is handled
+  std::uint8_t peer_component_ = 0;
+  std::optional<Time> landing_since_;
+  SitlResult result_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kestrel/simulation/autopilots/autopilot_messages.h"
+#include "kestrel/simulation/autopilots/simulated_pilot.h"
+#include "kestrel/simulation/autopilots/simulated_uav.h"
+#include "kestrel/simulation/vehicle/navigation_model.h"
+
+namespace kestrel {
+
+// What goes wrong with the autopilot's own estimate. Times are from the start of the simulation;
+// negative: never.
+struct EstimateFaultOptions {
+  double silent_after_s = -1;  // it tells neither attitude nor position
+  double silent_for_s = 2;
+  double jump_after_s = -1;  // of the position, to the east
+  double jump_m = 5;
+  double lost_after_s = -1;  // of the position, for good
+  bool has_home = true;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("silent_after_s", self.silent_after_s, "s",
+            "when it stops to tell attitude and position; negative: never");
+    visitor("silent_for_s", self.silent_for_s, "s", "for so long");
+    visitor("jump_after_s", self.jump_after_s, "s",
+            "when its position jumps to the east; negative: never");
+    visitor("jump_m", self.jump_m, "m", "by so much");
+    visitor("lost_after_s", self.lost_after_s, "s",
+            "when it loses its position for good; negative: never");
+    visitor("has_home", self.has_home, "", "it has a home to return to");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+struct AutopilotModelOptions {
+  AutopilotModelOptions();
+
+  int system_id = 1;
+  int vehicle_type = 2;    // MAV_TYPE in its heartbeat; it flies as a quadrotor all the same
+  double uptime_s = 100;   // its own clock at the start
+  double drift_ppm = 0;    // by which its clock is fast
+  std::string parameters;  // "NAME=value,NAME=value": other than the defaults
+  SimulatedUavOptions uav;
+  NavigationOptions navigation;  // errors of its estimate
+  EstimateFaultOptions estimate;
+  GlobalOrigin origin;
+  PilotOptions pilot;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("system_id", self.system_id, "1", "its MAVLink system id");
+    visitor("vehicle_type", self.vehicle_type, "",
+            "MAV_TYPE in its heartbeat: 2 quadrotor, 1 plane, 11 boat");
+    visitor("uptime_s", self.uptime_s, "s", "its own clock at the start");
+    visitor("drift_ppm", self.drift_ppm, "ppm", "by which its clock is fast");
+    visitor("parameters", self.parameters, "", "NAME=value,NAME=value: other than the defaults");
+    visitor.Group("uav", self.uav);
+    visitor.Group("navigation", self.navigation);
+    visitor.Group("estimate", self.estimate);
+    visitor.Group("origin", self.origin);
+    visitor.Group("pilot", self.pilot);
+  }
+  std::vector<std::string> Validate() const;
+};
+
+}  // namespace kestrel

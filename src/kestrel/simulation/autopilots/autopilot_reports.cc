@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <limits>
+
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/simulation/autopilots/autopilot_model.h"
+
+// What the simulated autopilot says.
+namespace kestrel {
+
+// PX4 tells texts only where a ground station listens; to others it sends events, which nobody here
+// needs.
+void AutopilotModel::Say(Severity severity, const std::string& text) const {
+  if (is_px4() && !has_gcs_) return;
+  mavlink::Statustext message;
+  message.severity = static_cast<std::uint8_t>(severity);
+  message.text = CharsOf<50>(text);
+  send_(message);
+}
+
+std::uint8_t AutopilotModel::LandedState() const {
+  if (!is_armed_ || detector_.has_landed()) return mavlink::kLandedOnGround;
+  if (LandsByTarget() || IsIn(FlightMode::kLand)) return mavlink::kLandedLanding;
+  return mavlink::kLandedInAir;
+}
+
+mavlink::Heartbeat AutopilotModel::HeartbeatOf() const {
+  constexpr std::uint8_t kVersion = 3;
+  mavlink::Heartbeat message;
+  message.type = static_cast<std::uint8_t>(options_.vehicle_type);
+  message.autopilot = is_px4() ? mavlink::kAutopilotPx4 : mavlink::kAutopilotArduPilot;
+  message.base_mode = mavlink::kModeFlagCustom;
+  if (is_armed_) message.base_mode |= mavlink::kModeFlagArmed;
+  message.custom_mode = custom_mode_;
+  message.system_status = is_armed_ ? mavlink::kStateActive : mavlink::kStateStandby;
+  if (is_in_failsafe_) message.system_status = mavlink::kStateCritical;
+  message.mavlink_version = kVersion;
+  return message;
+}
+
+mavlink::AutopilotVersion AutopilotModel::VersionOf() const {
+  // Major, minor, patch, type (255: a release; 0: in development).
+  constexpr std::uint32_t kArduPilot47 = 4u << 24 | 7u << 16;
+  constexpr std::uint32_t kPx4118 = 1u << 24 | 18u << 16;
+  mavlink::AutopilotVersion message;
+  message.flight_sw_version = is_px4() ? kPx4118 : kArduPilot47;
+  constexpr std::uint64_t kSpeaksMavlink2 = 8192;
+  message.capabilities = kSpeaksMavlink2;
+  message.uid = static_cast<std::uint64_t>(options_.system_id);
+  return message;
+}
+
+// False: it cannot send that message.
+bool AutopilotModel::SendMessage(std::uint32_t id, Time now) {
+  switch (id) {
+    case mavlink::Heartbeat::kId:
+      send_(HeartbeatOf());
+      return true;
+    case mavlink::CurrentMode::kId:
+      send_(mavlink::CurrentMode{
+          .standard_mode = 0, .custom_mode = custom_mode_, .intended_custom_mode = custom_mode_});
+      return true;
+    case mavlink::ExtendedSysState::kId:
+      send_(mavlink::ExtendedSysState{.vtol_state = 0, .landed_state = LandedState()});
+      return true;
+    case mavlink::SysStatus::kId:
+      send_(SysStatusOf(pilot_.has_low_battery()));
+      return true;
+    case mavlink::Timesync::kId:
+      send_(mavlink::Timesync{.tc1 = 0, .ts1 = OwnTime(now)});
+      return true;
+    case mavlink::AutopilotVersion::kId:
+      send_(VersionOf());
+      return true;
+    default:
+      return SendPose(id, now) || SendPlace(id, now);
+  }
+}
+
+// Of its estimate.
+bool AutopilotModel::SendPose(std::uint32_t id, Time now) {
+  const PoseSample& pose = state_.pose;
+  const auto own_ms = static_cast<std::uint32_t>(state_.boot_us / 1000);
+  const EstimateFaultOptions& faults = options_.estimate;
+  const bool is_silent = IsWithin(now, faults.silent_after_s, faults.silent_for_s);
+  const bool has_position = !HasLostPosition(now);
+  switch (id) {
+    case mavlink::Attitude::kId: {
+      mavlink::Attitude message = AttitudeOf(pose, own_ms);
+      if (nan_attitude_) message.roll = std::numeric_limits<float>::quiet_NaN();
+      if (!is_silent) send_(message);
+      return true;
+    }
+    case mavlink::AttitudeQuaternion::kId: {
+      mavlink::AttitudeQuaternion message = AttitudeQuaternionOf(pose, own_ms);
+      if (nan_attitude_) message.q1 = std::numeric_limits<float>::quiet_NaN();
+      if (!is_silent) send_(message);
+      return true;
+    }
+    case mavlink::LocalPositionNed::kId:
+      if (!is_silent && has_position) send_(LocalPositionOf(pose, own_ms));
+      return true;
+    case mavlink::GlobalPositionInt::kId:
+      if (!is_silent && has_position) send_(GlobalPositionOf(pose, options_.origin, own_ms));
+      return true;
+    case mavlink::EkfStatusReport::kId:
+      send_(mavlink::EkfStatusReport{.flags = EstimatorFlags(has_position)});
+      return !is_px4();
+    case mavlink::EstimatorStatus::kId:
+      send_(mavlink::EstimatorStatus{.time_usec = static_cast<std::uint64_t>(state_.boot_us),
+                                     .flags = EstimatorFlags(has_position)});
+      return is_px4();
+    default:
+      return false;
+  }
+}
+
+bool AutopilotModel::SendPlace(std::uint32_t id, Time now) {
+  const std::int64_t own_us = OwnMicroseconds(now);
+  switch (id) {
+    case mavlink::GpsGlobalOrigin::kId:
+      send_(GlobalOriginOf(options_.origin, own_us));
+      return true;
+    case mavlink::HomePosition::kId:
+      if (options_.estimate.has_home) send_(HomePositionOf(options_.origin, own_us));
+      return options_.estimate.has_home;
+    case mavlink::SimState::kId:
+      send_(SimStateOf(uav_.pose(), options_.origin));
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace kestrel

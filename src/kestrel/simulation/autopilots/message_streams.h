@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
+
+namespace kestrel {
+
+// Which messages an autopilot sends by itself, and how often.
+class MessageStreams {
+ public:
+  // The defaults: of ArduPilot nothing but heartbeats, of PX4 those of its onboard mode.
+  explicit MessageStreams(AutopilotFirmware firmware);
+
+  // MAV_CMD_SET_MESSAGE_INTERVAL: 'interval_us' -1 stops it, 0 is the default. Returns MAV_RESULT.
+  std::uint8_t SetInterval(std::uint32_t id, double interval_us);
+
+  // Whether it can send that message at all.
+  bool Has(std::uint32_t id) const;
+
+  // Calls 'send' with the id of each message whose time has come by the autopilot's own clock.
+  template <class Send>
+  void SendDue(std::int64_t own_us, Send&& send) {
+    for (Stream& stream : streams_) {
+      if (stream.interval_us <= 0) continue;
+      // After a reboot or a jump the clock may be far from what was due.
+      const std::int64_t until = stream.due_us - own_us;
+      if (until > stream.interval_us || until < -kLate_us) stream.due_us = own_us;
+      if (stream.due_us > own_us) continue;
+      stream.due_us += stream.interval_us;
+      send(stream.id);
+    }
+  }
+
+ private:
+  static constexpr std::int64_t kLate_us = 500'000;
+
+  struct Stream {
+    std::uint32_t id;
+    std::int64_t default_us;  // 0: not by default
+    std::int64_t interval_us;
+    std::int64_t due_us = 0;
+  };
+
+  AutopilotFirmware firmware_;
+  std::vector<Stream> streams_;
+};
+
+}  // namespace kestrel

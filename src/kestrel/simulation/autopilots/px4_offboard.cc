@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/simulation/autopilots/px4_offboard.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/core/geometry/angles.h"
+#include "kestrel/core/poses/gravity.h"
+#include "kestrel/simulation/autopilots/set_point_reading.h"
+#include "kestrel/simulation/vehicle/multicopter_motion.h"
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kStream_s = 0.6;    // of set-points, before it trusts them (measured)
+constexpr double kSlowest_s = 0.5;   // between two of a stream
+constexpr double kReaction_s = 0.3;  // of its failsafe, after the time-out (measured)
+
+}  // namespace
+
+Px4Offboard::Px4Offboard(const AutopilotParameters& parameters, Announce announce)
+    : parameters_(parameters), announce_(std::move(announce)) {}
+
+void Px4Offboard::Handle(const mavlink::SetPositionTargetLocalNed& message,
+                         const FlightState& state, bool /*is_guided*/) {
+  const std::uint8_t frame = message.coordinate_frame;
+  if (frame != mavlink::kFrameLocalNed && frame != mavlink::kFrameBodyNed) {
+    announce_(Severity::kCritical,
+              fmt::format("SET_POSITION_TARGET_LOCAL_NED coordinate frame {} unsupported", frame));
+    return;
+  }
+  const auto order = VelocityOrderOf(message, state);
+  if (!order) return;
+  if (!first_told_ || SilentFor(state) > kSlowest_s) first_told_ = state.time;
+  told_ = state.time;
+  wanted_ = order->set_point;
+  turn_rate_ = order->turn_rate;
+}
+
+double Px4Offboard::SilentFor(const FlightState& state) const {
+  return first_told_ ? ToSeconds(state.time - told_) : std::numeric_limits<double>::infinity();
+}
+
+bool Px4Offboard::IsAvailable(const FlightState& state) const {
+  return SilentFor(state) < kSlowest_s && ToSeconds(told_ - *first_told_) >= kStream_s;
+}
+
+void Px4Offboard::Start(const FlightState& state) {
+  integral_.setZero();
+  change_.setZero();
+  last_velocity_ = state.velocity();
+}
+
+Vector3d Px4Offboard::WithinLimits(const Vector3d& velocity) const {
+  const double speed = velocity.head<2>().norm();
+  const double most = parameters_["MPC_XY_VEL_MAX"];
+  Vector3d limited = velocity;
+  if (speed > most) limited.head<2>() *= most / speed;
+  limited.z() =
+      std::clamp(limited.z(), -parameters_["MPC_Z_VEL_MAX_DN"], parameters_["MPC_Z_VEL_MAX_UP"]);
+  return limited;
+}
+
+// The last set-point is flown on for as long as the mode lasts.
+FlightCommand Px4Offboard::Fly(const FlightState& state) {
+  FlightCommand command;
+  command.is_thrust = true;
+  command.set_point.velocity = WithinLimits(wanted_.velocity);
+  command.set_point.acceleration =
+      wanted_.acceleration + ControlVelocity(state, command.set_point.velocity);
+  command.set_point.yaw = wanted_.yaw;
+  if (!wanted_.yaw && turn_rate_) command.set_point.yaw = HeadingOf(state) + *turn_rate_;
+  return command;
+}
+
+// P, I and D, as an acceleration; the integral stops where the tilt is at its limit.
+Vector3d Px4Offboard::ControlVelocity(const FlightState& state, const Vector3d& velocity) {
+  constexpr double kFilter_s = 0.03;  // of the derivative
+  const auto gains = [this](const char* horizontal, const char* vertical) {
+    return Vector3d(parameters_[horizontal], parameters_[horizontal], parameters_[vertical]);
+  };
+  const Vector3d error = velocity - state.velocity();
+  const double blend = std::min(1.0, state.step_s / kFilter_s);
+  change_ += blend * ((state.velocity() - last_velocity_) / state.step_s - change_);
+  last_velocity_ = state.velocity();
+  Vector3d control = gains("MPC_XY_VEL_P_ACC", "MPC_Z_VEL_P_ACC").cwiseProduct(error) + integral_ -
+                     gains("MPC_XY_VEL_D_ACC", "MPC_Z_VEL_D_ACC").cwiseProduct(change_);
+  const double most = kGravity * std::tan(Radians(parameters_["MPC_TILTMAX_AIR"]));
+  if (state.is_standing) {
+    integral_.setZero();
+  } else if ((control + wanted_.acceleration).head<2>().norm() < most) {
+    integral_ += state.step_s * gains("MPC_XY_VEL_I_ACC", "MPC_Z_VEL_I_ACC").cwiseProduct(error);
+  }
+  return control;
+}
+
+std::optional<FlightMode> Px4Offboard::LossAction(const FlightState& state) const {
+  if (SilentFor(state) < parameters_["COM_OF_LOSS_T"] + kReaction_s) return std::nullopt;
+  switch (static_cast<int>(parameters_["COM_OBL_RC_ACT"])) {
+    case 3:
+      return FlightMode::kReturn;
+    case 4:
+    case 6:  // would stop the motors, which is not modelled
+    case 7:
+      return FlightMode::kLand;
+    case 5:
+      return FlightMode::kHold;
+    default:
+      break;
+  }
+  // To a mode of the pilot's it cannot go without a transmitter.
+  switch (static_cast<int>(parameters_["NAV_RCL_ACT"])) {
+    case 1:
+      return FlightMode::kHold;
+    case 2:
+      return FlightMode::kReturn;
+    case 3:
+      return FlightMode::kLand;
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace kestrel

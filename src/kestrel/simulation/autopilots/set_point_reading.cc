@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/simulation/autopilots/set_point_reading.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/comms/mavlink/ned.h"
+
+namespace kestrel {
+namespace {
+
+constexpr double kNorth = std::numbers::pi / 2;
+
+bool IsOfBody(std::uint8_t frame) {
+  return frame == mavlink::kFrameBodyNed || frame == mavlink::kFrameBodyOffsetNed;
+}
+
+}  // namespace
+
+double HeadingOf(const FlightState& state) {
+  return HeadingOf(state.pose.world_from_body.rotation);
+}
+
+std::optional<VelocityOrder> VelocityOrderOf(const mavlink::SetPositionTargetLocalNed& message,
+                                             const FlightState& state) {
+  // One axis that is left out leaves out all three.
+  if ((message.type_mask & mavlink::kIgnoreVelocity) != 0) return std::nullopt;
+  const bool is_of_body = IsOfBody(message.coordinate_frame);
+  const Eigen::AngleAxisd turn(is_of_body ? HeadingOf(state) - kNorth : 0,
+                               Eigen::Vector3d::UnitZ());
+  VelocityOrder order;
+  order.set_point.velocity = turn * EnuFromNed({message.vx, message.vy, message.vz});
+  if ((message.type_mask & mavlink::kIgnoreAcceleration) == 0) {
+    order.set_point.acceleration = turn * EnuFromNed({message.afx, message.afy, message.afz});
+  }
+  if ((message.type_mask & mavlink::kIgnoreYaw) == 0) {
+    order.set_point.yaw = is_of_body ? HeadingOf(state) - message.yaw : kNorth - message.yaw;
+  } else if ((message.type_mask & mavlink::kIgnoreYawRate) == 0) {
+    order.turn_rate = -message.yaw_rate;
+  }
+  if (!order.set_point.velocity.allFinite() || !order.set_point.acceleration.allFinite() ||
+      !std::isfinite(order.set_point.yaw.value_or(0)) ||
+      !std::isfinite(order.turn_rate.value_or(0))) {
+    return std::nullopt;
+  }
+  return order;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/simulation/autopilots/simulated_camera.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/core/base/hash.h"
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/base/violations.h"
+#include "kestrel/simulation/recordings/landing_simulation.h"
+#include "kestrel/simulation/recordings/truth_text.h"
+#include "kestrel/simulation/rendering/lens.h"
+#include "kestrel/simulation/scene/solids.h"
+
+namespace kestrel {
+namespace {
+
+constexpr std::size_t kCameraPoses = 1000;
+// The autopilot's link may be away for so long and its pose between is still told.
+constexpr Duration kLongestPoseGap = std::chrono::milliseconds(500);
+
+// The paper's camera with 'scale' times its pixels. The corners of the image stay where they are.
+CameraCalibration ScaledCalibration(double scale) {
+  CameraCalibration calibration = PaperCalibration();
+  CameraIntrinsics& lens = calibration.intrinsics;
+  lens.width_px = static_cast<int>(std::lround(scale * lens.width_px));
+  lens.height_px = static_cast<int>(std::lround(scale * lens.height_px));
+  lens.fx_px *= scale;
+  lens.fy_px *= scale;
+  lens.cx_px = scale * (lens.cx_px + 0.5) - 0.5;
+  lens.cy_px = scale * (lens.cy_px + 0.5) - 0.5;
+  return calibration;
+}
+
+}  // namespace
+
+// Few rays: an image in a few ms.
+SimulatedCameraOptions::SimulatedCameraOptions() { shutter.rays_per_pixel = 3; }
+
+std::vector<std::string> SimulatedCameraOptions::Validate() const {
+  std::vector<std::string> violations;
+  RequireIn(rate_hz, 0.1, 200, "rate_hz", &violations);
+  RequireIn(scale, 0.1, 2, "scale", &violations);
+  RequireIn(clock_offset_s, -1, 1, "clock_offset_s", &violations);
+  RequireIn(pose_wait_s, 0, 5, "pose_wait_s", &violations);
+  AddViolations("lens", lens.Validate(), &violations);
+  AddViolations("shutter", shutter.Validate(), &violations);
+  AddViolations("sensor", sensor.Validate(), &violations);
+  AddViolations("fault", fault.Validate(), &violations);
+  return violations;
+}
+
+SimulatedCamera::SimulatedCamera(const SimulatedCameraOptions& options, VehicleWorld* world,
+                                 Time start, std::uint64_t seed)
+    : options_(Checked(options)),
+      world_(*world),
+      start_(start),
+      seed_(seed),
+      calibration_(ScaledCalibration(options.scale)),
+      drawn_(world->scene().world),
+      poses_(kCameraPoses, kLongestPoseGap) {
+  const SurroundingsOptions& surroundings = world->options().surroundings;
+  if (surroundings.uav_shadow) {
+    constexpr double kSize_m = 0.8;  // from rotor to rotor
+    drawn_.bodies.push_back([this](double time_s) { return BodyAt(time_s); });
+    AddUavShadow(static_cast<int>(drawn_.bodies.size()) - 1, kSize_m, &drawn_);
+  }
+  LensOptions lens;
+  lens.half_angle_deg = options.lens.half_angle_deg;
+  lens.vignette = options.lens.vignette;
+  if (surroundings.landing_legs) lens.airframe = LandingLegs(calibration_.intrinsics, true);
+  camera_ = std::make_unique<FlightCamera>(
+      CameraModel(calibration_.intrinsics), lens, options.shutter, options.sensor, drawn_,
+      [this](double time_s) { return BodyAt(time_s) * *calibration_.body_from_camera; });
+}
+
+void SimulatedCamera::AddPose(const PoseSample& pose) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (poses_.Add(pose) != PoseStatus::kOk) return;
+    newest_pose_ = pose;
+  }
+  pose_came_.notify_one();
+  world_.ObserveUav(pose.time, pose.world_from_body.translation);
+}
+
+bool SimulatedCamera::Next(Frame* frame, Duration timeout) {
+  const Time deadline = Now() + timeout;
+  for (;;) {
+    const Time capture = NextCapture();
+    if (capture > deadline) break;
+    if (IsLeftOut(capture)) {
+      ++next_;
+      continue;
+    }
+    std::this_thread::sleep_for(capture - Now());
+    WaitForPose(capture, deadline);
+    ++next_;
+    if (auto captured = Capture(capture)) {
+      *frame = std::move(*captured);
+      return true;
+    }
+    ++left_out_;
+  }
+  std::this_thread::sleep_for(deadline - Now());
+  return false;
+}
+
+CameraFault SimulatedCamera::FaultAt(Time capture) const {
+  return options_.fault.At(ToSeconds(capture - start_));
+}
+
+// By its fault.
+bool SimulatedCamera::IsLeftOut(Time capture) const {
+  constexpr double kSlow_hz = 3;
+  const CameraFault fault = FaultAt(capture);
+  if (fault == CameraFault::kStopped) return true;
+  const auto slower = static_cast<std::int64_t>(std::max(options_.rate_hz / kSlow_hz, 1.0));
+  return fault == CameraFault::kSlow && next_ % slower != 0;
+}
+
+// When the next image is taken: the newest one whose time has come, or the next to come.
+Time SimulatedCamera::NextCapture() {
+  const double due = std::floor(ToSeconds(Now() - start_) * options_.rate_hz);
+  const auto newest = static_cast<std::int64_t>(due);
+  if (newest > next_) {
+    left_out_ += newest - next_;
+    next_ = newest;
+  }
+  return start_ + DurationFromSeconds(static_cast<double>(next_) / options_.rate_hz);
+}
+
+void SimulatedCamera::WaitForPose(Time capture, Time deadline) {
+  std::unique_lock lock(mutex_);
+  const Time until = std::min(deadline, capture + DurationFromSeconds(options_.pose_wait_s));
+  pose_came_.wait_for(lock, until - Now(),
+                      [&] { return newest_pose_ && newest_pose_->time >= capture; });
+}
+
+std::optional<Frame> SimulatedCamera::Capture(Time capture) {
+  const auto snapshot = SnapshotAt(capture);
+  if (!snapshot) return std::nullopt;
+  snapshot_ = *snapshot;
+  const CameraFault fault = FaultAt(capture);
+  constexpr double kBeside_m = 1.5;
+  constexpr double kBright = 30;
+  if (fault == CameraFault::kBeside) snapshot_.world_from_body.translation.x() += kBeside_m;
+  const auto noise = static_cast<std::uint64_t>(ToNanoseconds(capture));
+  Frame frame;
+  frame.time = StampOf(capture);
+  frame.name = fmt::format("{}.png", ToNanoseconds(frame.time));
+  if (fault == CameraFault::kFrozen && !last_image_.empty()) {
+    frame.image = last_image_.clone();
+    return frame;
+  }
+  const double gain = fault == CameraFault::kBright ? kBright : 1;
+  frame.image = camera_->Capture(snapshot_.time_s, gain, Hash(seed_, noise));
+  if (fault == CameraFault::kBlack) frame.image.setTo(0);
+  if (options_.fault.kind == "frozen") last_image_ = frame.image.clone();
+  return frame;
+}
+
+// The pose at 'capture' and how it changes, from the poses around; from the newest one where none
+// is later.
+std::optional<SimulatedCamera::Snapshot> SimulatedCamera::SnapshotAt(Time capture) {
+  constexpr Duration kStep = std::chrono::milliseconds(10);
+  const std::lock_guard lock(mutex_);
+  if (!newest_pose_ || capture - newest_pose_->time > kLongestPoseGap) return std::nullopt;
+  Snapshot snapshot;
+  snapshot.time_s = world_.SceneTime(capture);
+  if (const auto pose = poses_.Lookup(capture)) {
+    snapshot.world_from_body = *pose;
+    if (const auto before = poses_.Lookup(capture - kStep)) {
+      const double step_s = ToSeconds(kStep);
+      snapshot.motion.velocity_in_world = (pose->translation - before->translation) / step_s;
+      snapshot.motion.rate_in_body =
+          RotationVector(before->rotation.conjugate() * pose->rotation) / step_s;
+    }
+    return snapshot;
+  }
+  if (capture < newest_pose_->time) return std::nullopt;  // within a gap, or too long ago
+  snapshot.motion = newest_pose_->motion.value_or(BodyMotion());
+  const double since_s = ToSeconds(capture - newest_pose_->time);
+  snapshot.world_from_body = newest_pose_->world_from_body;
+  snapshot.world_from_body.translation += since_s * snapshot.motion.velocity_in_world;
+  snapshot.world_from_body.rotation =
+      (snapshot.world_from_body.rotation * RotationBy(since_s * snapshot.motion.rate_in_body))
+          .normalized();
+  return snapshot;
+}
+
+RigidTransform SimulatedCamera::BodyAt(double time_s) const {
+  const double since_s = time_s - snapshot_.time_s;
+  const RigidTransform& pose = snapshot_.world_from_body;
+  return {(pose.rotation * RotationBy(since_s * snapshot_.motion.rate_in_body)).normalized(),
+          pose.translation + since_s * snapshot_.motion.velocity_in_world};
+}
+
+Time SimulatedCamera::StampOf(Time capture) const {
+  return capture - DurationFromSeconds(options_.clock_offset_s);
+}
+
+Time SimulatedCamera::CaptureOf(Time stamp) const {
+  return stamp + DurationFromSeconds(options_.clock_offset_s);
+}
+
+RigidTransform SimulatedCamera::PatternAt(Time stamp) const {
+  return world_.PatternAt(CaptureOf(stamp));
+}
+
+std::optional<TruePattern> SimulatedCamera::Truth(const Frame& frame) const {
+  return SeenPattern(frame.time, world_.SceneTime(CaptureOf(frame.time)), *camera_,
+                     world_.scene().pattern, world_.scene().world_from_pattern);
+}
+
+}  // namespace kestrel

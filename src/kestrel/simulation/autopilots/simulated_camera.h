@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/pose_history.h"
+#include "kestrel/io/recording/frame.h"
+#include "kestrel/io/recording/truth_rows.h"
+#include "kestrel/simulation/autopilots/camera_faults.h"
+#include "kestrel/simulation/autopilots/vehicle_world.h"
+#include "kestrel/simulation/rendering/flight_camera.h"
+#include "kestrel/simulation/scene/light_options.h"
+#include "kestrel/simulation/scene/world.h"
+
+namespace kestrel {
+
+struct SimulatedCameraOptions {
+  SimulatedCameraOptions();
+
+  double rate_hz = 20;
+  double scale = 0.5;         // of the paper's image of 752x480
+  double clock_offset_s = 0;  // t_nav = t_image + clock_offset_s; a late stamp is negative
+  double pose_wait_s = 0.3;   // longest that an image waits for its pose, then it is extrapolated
+  LensViewOptions lens;
+  ShutterOptions shutter;
+  SensorOptions sensor;
+  CameraFaultOptions fault;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("rate_hz", self.rate_hz, "Hz", "images per second");
+    visitor("scale", self.scale, "1", "size of the image; the paper's 752x480 is 1");
+    visitor("clock_offset_s", self.clock_offset_s, "s",
+            "to add to an image's stamp to get when it was taken; stamps that are late: negative");
+    visitor("pose_wait_s", self.pose_wait_s, "s",
+            "how long an image waits for its pose before the pose is extrapolated");
+    visitor.Group("lens", self.lens);
+    visitor.Group("shutter", self.shutter);
+    visitor.Group("sensor", self.sensor);
+    visitor.Group("fault", self.fault);
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// A live camera that is rendered: what is seen from where the autopilot says that the UAV is, over
+// a vehicle that drives in real time.
+class SimulatedCamera {
+ public:
+  // The world must outlive it. The first image is taken at 'start' on the local clock. Throws
+  // InputError when the options are not valid.
+  SimulatedCamera(const SimulatedCameraOptions& options, VehicleWorld* world, Time start,
+                  std::uint64_t seed);
+  SimulatedCamera(const SimulatedCamera&) = delete;  // the renderer looks into it
+  SimulatedCamera& operator=(const SimulatedCamera&) = delete;
+
+  // Where the UAV was, on the local clock. Thread-safe; wakes Next.
+  void AddPose(const PoseSample& pose);
+
+  // Waits for the next image of the rate, and for its pose, and renders it; images whose time has
+  // gone by meanwhile are left out and counted. False when there is none within 'timeout': no pose
+  // has come yet, or the next image is later. One thread at a time.
+  bool Next(Frame* frame, Duration timeout);
+
+  // The image that is taken at 'capture' on the local clock; nothing without any pose near. One
+  // thread at a time, the same as Next.
+  std::optional<Frame> Capture(Time capture);
+
+  // Nominal: with the mount, without a clock offset.
+  const CameraCalibration& calibration() const { return calibration_; }
+
+  // world_from_pattern when the image with that stamp was taken.
+  RigidTransform PatternAt(Time stamp) const;
+
+  // Of the pattern in the newest frame; nothing when it cannot be in it. Same thread as Next.
+  std::optional<TruePattern> Truth(const Frame& frame) const;
+
+  std::int64_t left_out() const { return left_out_; }  // images, for lack of time or pose
+
+ private:
+  // A pose with its motion, as it is while one image is exposed.
+  struct Snapshot {
+    double time_s = 0;  // of the scene
+    RigidTransform world_from_body;
+    BodyMotion motion;
+  };
+
+  CameraFault FaultAt(Time capture) const;
+  bool IsLeftOut(Time capture) const;
+  Time NextCapture();
+  void WaitForPose(Time capture, Time deadline);
+  RigidTransform BodyAt(double time_s) const;
+  std::optional<Snapshot> SnapshotAt(Time capture);
+  Time StampOf(Time capture) const;
+  Time CaptureOf(Time stamp) const;
+
+  SimulatedCameraOptions options_;
+  VehicleWorld& world_;
+  Time start_;
+  std::uint64_t seed_;
+  CameraCalibration calibration_;
+  World drawn_;  // with the UAV's shadow
+  std::unique_ptr<FlightCamera> camera_;
+  Snapshot snapshot_;
+  cv::Mat last_image_;
+  std::int64_t next_ = 0;  // index of the next image
+  std::int64_t left_out_ = 0;
+
+  std::mutex mutex_;  // of what follows
+  std::condition_variable pose_came_;
+  PoseHistory poses_;
+  std::optional<PoseSample> newest_pose_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/simulation/autopilots/vehicle_world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/base/violations.h"
+
+namespace kestrel {
+namespace {
+
+constexpr double kWaiting = std::numeric_limits<double>::infinity();
+// Of the track that is painted on the ground and kept free of things.
+constexpr double kTrackDuration_s = 60;
+
+const std::vector<SitlScenario>& AllSitlScenarios() {
+  static const std::vector<SitlScenario> scenarios = {
+      {"standing", "a vehicle that stands at the origin", {"vehicle.path=standing"}},
+      {"straight",
+       "waits at the origin until the UAV has been 5 m high, then drives straight on at 2 m/s",
+       {"vehicle.path=straight", "vehicle.speed_mps=2", "drive_altitude_m=5", "drive_delay_s=5"}},
+      {"circle",
+       "drives on a circle of 15 m around the origin at 2 m/s",
+       {"vehicle.path=circle", "vehicle.speed_mps=2"}},
+      {"figure8",
+       "the contest: 15 km/h on a figure of eight through the origin",
+       {"vehicle.path=figure8", "vehicle.speed_mps=4.2"}},
+  };
+  return scenarios;
+}
+
+const SitlScenario& FindSitlScenario(const std::string& name) {
+  std::vector<const char*> names;
+  for (const SitlScenario& scenario : AllSitlScenarios()) {
+    if (name == scenario.name) return scenario;
+    names.push_back(scenario.name);
+  }
+  throw InputError(
+      fmt::format("there is no scenario 'sim:{}', expected {}", name, fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+// The board is where the ground of an autopilot in software is, which lands on nothing else. Few
+// things around: every surface costs time of each frame. And a coarser ground is drawn sooner.
+VehicleWorldOptions::VehicleWorldOptions() {
+  board.carrier = "none";
+  ground.map_px = 2048;
+  surroundings.vehicles = 1;
+  surroundings.lookalikes = 1;
+  surroundings.banners = 1;
+}
+
+std::vector<std::string> VehicleWorldOptions::Validate() const {
+  std::vector<std::string> violations;
+  RequireIn(drive_altitude_m, 0, 1000, "drive_altitude_m", &violations);
+  RequireIn(drive_delay_s, 0, 1000, "drive_delay_s", &violations);
+  RequireIn(drive_acceleration, 0.1, 10, "drive_acceleration", &violations);
+  std::ranges::copy(LandingSceneOptions::Validate(), std::back_inserter(violations));
+  return violations;
+}
+
+std::span<const SitlScenario> SitlScenarios() { return AllSitlScenarios(); }
+
+VehicleWorldOptions ReadVehicleWorld(const std::string& scenario,
+                                     const std::vector<std::string>& settings) {
+  VehicleWorldOptions options;
+  for (const char* setting : FindSitlScenario(scenario).settings) SetOption(setting, &options);
+  for (const std::string& setting : settings) SetOption(setting, &options);
+  RequireValid(options);
+  return options;
+}
+
+VehicleWorld::VehicleWorld(const VehicleWorldOptions& options, Time start, std::uint64_t seed)
+    : options_(Checked(options)),
+      start_(start),
+      departure_s_(kWaiting),
+      scene_(MakeLandingScene(options, kTrackDuration_s, /*channels=*/1, seed)) {
+  constexpr std::size_t kVehicleBody = 1;
+  const auto delayed = [this](const auto& motion) {
+    return [this, motion](double time_s) { return motion(DrivenTime(time_s)); };
+  };
+  Motion& vehicle = scene_.world.bodies[kVehicleBody];
+  vehicle = delayed(vehicle);
+  scene_.world_from_pattern = delayed(scene_.world_from_pattern);
+  scene_.target = delayed(scene_.target);
+}
+
+RigidTransform VehicleWorld::PatternAt(Time time) const {
+  return scene_.world_from_pattern(SceneTime(time));
+}
+
+Eigen::Vector3d VehicleWorld::VelocityAt(Time time) const {
+  return VelocityOf(scene_.world_from_pattern, SceneTime(time));
+}
+
+bool VehicleWorld::IsOnBoard(const Eigen::Vector3d& point_in_pattern) const {
+  // The pattern's arms, its axes, point to the corners of the board.
+  const double diagonal =
+      std::numbers::sqrt2 * (0.5 * scene_.pattern.board_size_m + options_.board.border_m);
+  return std::abs(point_in_pattern.x()) + std::abs(point_in_pattern.y()) <= diagonal;
+}
+
+void VehicleWorld::ObserveUav(Time time, const Eigen::Vector3d& position_in_world) {
+  if (position_in_world.z() < options_.drive_altitude_m) return;
+  double waiting = kWaiting;
+  departure_s_.compare_exchange_strong(waiting, SceneTime(time) + options_.drive_delay_s);
+}
+
+// How long it would have driven at full speed to be where it is.
+double VehicleWorld::DrivenTime(double scene_time_s) const {
+  if (options_.drive_altitude_m <= 0) return scene_time_s;
+  const double driving_s = scene_time_s - departure_s_;
+  if (!(driving_s > 0)) return 0;
+  const double start_s = options_.vehicle.speed_mps / options_.drive_acceleration;
+  if (driving_s < start_s) return driving_s * driving_s / (2 * start_s);
+  return driving_s - 0.5 * start_s;
+}
+
+}  // namespace kestrel

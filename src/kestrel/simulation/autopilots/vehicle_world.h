@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/simulation/scene/landing_scene.h"
+#include "kestrel/vision/landing/landing_pattern.h"
+
+namespace kestrel {
+
+// The vehicle with the pattern in the autopilot's local frame (ENU), driving in real time.
+struct VehicleWorldOptions : LandingSceneOptions {
+  VehicleWorldOptions();
+
+  // 0: it drives all the time. Else it waits at its start until a UAV has been so high above
+  // ground, and 'drive_delay_s' longer.
+  double drive_altitude_m = 0;
+  double drive_delay_s = 0;
+  double drive_acceleration = 1;  // with which it drives off after it has waited
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("drive_altitude_m", self.drive_altitude_m, "m",
+            "the vehicle waits until the UAV has been so high; 0: it drives all the time");
+    visitor("drive_delay_s", self.drive_delay_s, "s", "and so much longer");
+    visitor("drive_acceleration", self.drive_acceleration, "m/s^2", "with which it drives off");
+    LandingSceneOptions::Visit(self, visitor);
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// A named vehicle of `sim:SCENARIO`.
+struct SitlScenario {
+  const char* name;
+  const char* meaning;
+  std::vector<const char*> settings;  // "key=value"
+};
+std::span<const SitlScenario> SitlScenarios();
+
+// The options of a scenario (standing, straight, circle, figure8), then the settings "key=value".
+// Throws InputError when there is no such scenario, a setting is at fault, or the result is not
+// valid.
+VehicleWorldOptions ReadVehicleWorld(const std::string& scenario,
+                                     const std::vector<std::string>& settings);
+
+// What the simulated camera and the simulated autopilot share: one vehicle, on one clock. Its
+// drawn scene is fixed by the options and the seed. Thread-safe.
+class VehicleWorld {
+ public:
+  // Time 0 of the scene is at 'start' on the local clock. Throws InputError when the options are
+  // not valid.
+  VehicleWorld(const VehicleWorldOptions& options, Time start, std::uint64_t seed);
+  VehicleWorld(const VehicleWorld&) = delete;  // the scene's motions look into it
+  VehicleWorld& operator=(const VehicleWorld&) = delete;
+
+  // Seconds since the start: the time of the scene's motions.
+  double SceneTime(Time time) const { return ToSeconds(time - start_); }
+
+  RigidTransform PatternAt(Time time) const;    // world_from_pattern
+  Eigen::Vector3d VelocityAt(Time time) const;  // of the pattern's centre in the world, m/s
+
+  // Whether a point of the pattern's plane (in the pattern's frame) is on the board.
+  bool IsOnBoard(const Eigen::Vector3d& point_in_pattern) const;
+
+  // Tells where a UAV is, for a vehicle that waits for it.
+  void ObserveUav(Time time, const Eigen::Vector3d& position_in_world);
+
+  const LandingScene& scene() const { return scene_; }
+  const VehicleWorldOptions& options() const { return options_; }
+
+ private:
+  double DrivenTime(double scene_time_s) const;
+
+  VehicleWorldOptions options_;
+  Time start_;
+  std::atomic<double> departure_s_;  // scene time; infinite while it waits
+  LandingScene scene_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/simulation/labelled_images/scene_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/base/random.h"
+#include "kestrel/core/base/violations.h"
+#include "kestrel/simulation/labelled_images/ground_texture.h"
+
+namespace kestrel {
+namespace {
+
+// A pixel with an edge is cut into cells, each with its own ray. Where the plane moves during the
+// exposure, every cell is seen at several times: only whole grids of cells leave an edge in place.
+constexpr int kCellsPerSideStill = 4;
+constexpr int kCellsPerSideMoving = 2;
+constexpr int kTimesMoving = 12;
+
+// Rays that fall on the plane flatter than this (sine of the angle) see the sky: the plane ends at
+// the horizon, a thousand camera heights away.
+constexpr double kHorizonSine = 1e-3;
+
+// Gray values of radiances in units of white, with noise.
+cv::Mat Expose(const ImagingOptions& imaging, const cv::Mat& radiance) {
+  constexpr double kShotNoiseGray = 100;  // gray value at which 'shot_noise' is given
+  Random random(imaging.noise_seed);
+  cv::Mat image(radiance.size(), CV_8UC1);
+  const double range = imaging.white_level - imaging.black_level;
+  for (int v = 0; v < image.rows; ++v) {
+    for (int u = 0; u < image.cols; ++u) {
+      const double light = range * radiance.at<float>(v, u);
+      const double shot = imaging.shot_noise * std::sqrt(light / kShotNoiseGray);
+      const double noise = std::sqrt(imaging.read_noise * imaging.read_noise + shot * shot);
+      const double gray = imaging.black_level + light + (noise > 0 ? noise * random.Normal() : 0);
+      image.at<std::uint8_t>(v, u) = cv::saturate_cast<std::uint8_t>(gray);
+    }
+  }
+  return image;
+}
+
+void CheckPose(const RigidTransform& camera_from_pattern) {
+  const double height = camera_from_pattern.Inverse().translation.z();
+  if (!(height > 0 && std::isfinite(height))) {
+    throw InputError(
+        fmt::format("camera_from_pattern puts the camera {} m above the pattern's plane, expected "
+                    "a positive height",
+                    height));
+  }
+}
+
+}  // namespace
+
+RigidTransform PoseAt(const RigidTransform& camera_from_pattern, const ImagingOptions& imaging,
+                      double time_s) {
+  return Moved(camera_from_pattern, time_s * imaging.velocity_in_camera,
+               time_s * imaging.angular_velocity_in_camera);
+}
+
+double RowTime(const ImagingOptions& imaging, double row, int rows) {
+  return imaging.readout_s * ((row + 0.5) / rows - 0.5);
+}
+
+std::vector<std::string> Scene::Validate() const {
+  std::vector<std::string> violations;
+  RequireIn(ground_reflectance, 0, 1, "ground_reflectance", &violations);
+  RequireIn(ground_texture, 0, 1, "ground_texture", &violations);
+  RequireNotNegative(sky_radiance, "sky_radiance", &violations);
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    RequireIn(layers[i].reflectance, 0, 1, fmt::format("layers[{}].reflectance", i), &violations);
+    RequireIn(layers[i].texture, 0, 1, fmt::format("layers[{}].texture", i), &violations);
+  }
+  for (std::size_t i = 0; i < shadows.size(); ++i) {
+    RequireIn(shadows[i].transmission, 0, 1, fmt::format("shadows[{}].transmission", i),
+              &violations);
+    RequireNotNegative(shadows[i].penumbra_m, fmt::format("shadows[{}].penumbra_m", i),
+                       &violations);
+  }
+  for (std::size_t i = 0; i < glares.size(); ++i) {
+    RequireIn(glares[i].sigma_m, 1e-3, 1e3, fmt::format("glares[{}].sigma_m", i), &violations);
+    RequireNotNegative(glares[i].strength, fmt::format("glares[{}].strength", i), &violations);
+  }
+  AddViolations("relief", relief.Validate(), &violations);
+  return violations;
+}
+
+std::vector<std::string> ImagingOptions::Validate() const {
+  std::vector<std::string> violations;
+  RequireIn(black_level, 0, 255, "black_level", &violations);
+  RequireIn(white_level, 0, 255, "white_level", &violations);
+  if (!(white_level > black_level)) {
+    violations.push_back(fmt::format("white_level is {}, expected more than black_level, {}",
+                                     white_level, black_level));
+  }
+  RequireIn(blur_sigma_px, 0, 20, "blur_sigma_px", &violations);
+  RequireFinite(gradient.norm(), "gradient", &violations);
+  RequireIn(haze, 0, 1, "haze", &violations);
+  RequireNotNegative(haze_radiance, "haze_radiance", &violations);
+  RequireNotNegative(read_noise, "read_noise", &violations);
+  RequireNotNegative(shot_noise, "shot_noise", &violations);
+  RequireNotNegative(exposure_s, "exposure_s", &violations);
+  RequireNotNegative(readout_s, "readout_s", &violations);
+  RequireFinite(velocity_in_camera.norm(), "velocity_in_camera", &violations);
+  RequireFinite(angular_velocity_in_camera.norm(), "angular_velocity_in_camera", &violations);
+  return violations;
+}
+
+// The radiance of single pixels of one picture.
+class SceneRenderer::PlanePainter {
+ public:
+  // The arguments must outlive the painter.
+  PlanePainter(const Scene& scene, const GroundTexture& texture,
+               const RigidTransform& camera_from_pattern, const ImagingOptions& imaging)
+      : scene_(scene), texture_(texture), middle_(camera_from_pattern, scene.relief) {
+    const bool moving = imaging.exposure_s > 0 && !(imaging.velocity_in_camera.isZero() &&
+                                                    imaging.angular_velocity_in_camera.isZero());
+    cells_per_side_ = moving ? kCellsPerSideMoving : kCellsPerSideStill;
+    const int times = moving ? kTimesMoving : 1;
+    for (int i = 0; i < times; ++i) {
+      const double time = ((i + 0.5) / times - 0.5) * imaging.exposure_s;
+      const RigidTransform pose = PoseAt(camera_from_pattern, imaging, time);
+      CheckPose(pose);
+      views_.emplace_back(pose, scene.relief);
+    }
+  }
+
+  // 'rays': of the upper left, upper right, lower left and lower right corner of the pixel.
+  double Radiance(const std::array<Eigen::Vector3d, 4>& rays) const {
+    const std::optional<Footprint> footprint = FootprintOf(rays);
+    if (!footprint) return ManyRays(rays);
+    if (footprint->sky) return scene_.sky_radiance;
+    if (HasEdgeWithin(footprint->center, footprint->radius)) return ManyRays(rays);
+    const double texture = texture_.At(footprint->center, footprint->size);
+    return RadianceAt(footprint->center, *footprint, texture);
+  }
+
+ private:
+  // A camera pose as the plane sees it, or the sheet on it.
+  struct PlaneView {
+    Eigen::Matrix3d pattern_from_camera;
+    Eigen::Vector3d camera_in_pattern;
+    const Relief& relief;
+
+    PlaneView(const RigidTransform& camera_from_pattern, const Relief& sheet)
+        : pattern_from_camera(camera_from_pattern.rotation.conjugate().toRotationMatrix()),
+          camera_in_pattern(camera_from_pattern.Inverse().translation),
+          relief(sheet) {}
+
+    // The point of the plane that a ray of any length sees, or false when it sees none.
+    bool Hit(const Eigen::Vector3d& ray_in_camera, Eigen::Vector2d* point) const {
+      const Eigen::Vector3d ray = pattern_from_camera * ray_in_camera;
+      if (ray.z() > -kHorizonSine) return false;
+      const Eigen::Vector2d run = ray.head<2>() / ray.z();
+      *point = camera_in_pattern.head<2>() - camera_in_pattern.z() * run;
+      if (relief.IsFlat()) return true;
+      // The height is that of the point that is seen: by steps towards it.
+      constexpr int kSteps = 8;
+      const Eigen::Vector2d on_plane = *point;
+      for (int i = 0; i < kSteps; ++i) *point = on_plane + relief.HeightAt(*point) * run;
+      return true;
+    }
+  };
+
+  // What a pixel sees of the plane.
+  struct Footprint {
+    bool sky = false;
+    Eigen::Vector2d center{0, 0};
+    Eigen::Vector2d right{0, 0};  // from one pixel to its right neighbour
+    Eigen::Vector2d down{0, 0};
+    double size = 0;    // geometric mean of its sides
+    double radius = 0;  // of the circle that holds it during the whole exposure
+  };
+
+  // Nothing when the pixel sees the horizon.
+  std::optional<Footprint> FootprintOf(const std::array<Eigen::Vector3d, 4>& rays) const {
+    std::array<Eigen::Vector2d, 4> corners;
+    int hits = 0;
+    for (int i = 0; i < 4; ++i) hits += middle_.Hit(rays[i], &corners[i]);
+    if (hits == 0) return Footprint{.sky = true};
+    if (hits < 4) return std::nullopt;
+    Footprint footprint;
+    footprint.center = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+    footprint.right = 0.5 * (corners[1] + corners[3] - corners[0] - corners[2]);
+    footprint.down = 0.5 * (corners[2] + corners[3] - corners[0] - corners[1]);
+    footprint.size = std::sqrt(std::abs(footprint.right.x() * footprint.down.y() -
+                                        footprint.right.y() * footprint.down.x()));
+    for (const Eigen::Vector2d& corner : corners) {
+      footprint.radius = std::max(footprint.radius, (corner - footprint.center).norm());
+    }
+    footprint.radius += 0.5 * MotionOf(rays[0]);
+    return footprint;
+  }
+
+  // How far the point under a ray moves over the plane during the exposure.
+  double MotionOf(const Eigen::Vector3d& ray) const {
+    Eigen::Vector2d from;
+    Eigen::Vector2d to;
+    if (!views_.front().Hit(ray, &from) || !views_.back().Hit(ray, &to)) return 0;
+    return (to - from).norm();
+  }
+
+  bool HasEdgeWithin(const Eigen::Vector2d& center, double radius) const {
+    const auto near_layer = [&](const PaintLayer& layer) {
+      return std::abs(layer.shape.NearestEdge(center).distance) < radius;
+    };
+    const auto near_shadow = [&](const Shadow& shadow) {
+      const double reach = radius + 0.5 * shadow.penumbra_m;
+      return std::abs(shadow.shape.NearestEdge(center).distance) < reach;
+    };
+    return std::any_of(scene_.layers.begin(), scene_.layers.end(), near_layer) ||
+           std::any_of(scene_.shadows.begin(), scene_.shadows.end(), near_shadow);
+  }
+
+  double ManyRays(const std::array<Eigen::Vector3d, 4>& rays) const {
+    Footprint cell = FootprintOf(rays).value_or(Footprint{});
+    const double texture = texture_.At(cell.center, cell.size);
+    cell.right /= cells_per_side_;
+    cell.down /= cells_per_side_;
+    double sum = 0;
+    for (int i = 0; i < cells_per_side_ * cells_per_side_; ++i) {
+      const int column = i % cells_per_side_;
+      const int row = i / cells_per_side_;
+      const double x = (column + 0.5) / cells_per_side_;
+      const double y = (row + 0.5) / cells_per_side_;
+      const Eigen::Vector3d ray =
+          (1 - y) * ((1 - x) * rays[0] + x * rays[1]) + y * ((1 - x) * rays[2] + x * rays[3]);
+      for (const PlaneView& view : views_) {
+        Eigen::Vector2d point;
+        sum += view.Hit(ray, &point) ? RadianceAt(point, cell, texture) : scene_.sky_radiance;
+      }
+    }
+    return sum / (cells_per_side_ * cells_per_side_ * static_cast<double>(views_.size()));
+  }
+
+  double RadianceAt(const Eigen::Vector2d& point, const Footprint& cell, double texture) const {
+    double reflectance = scene_.ground_reflectance * (1 + scene_.ground_texture * texture);
+    for (const PaintLayer& layer : scene_.layers) {
+      const double cover = CoverOf(layer.shape, point, cell, 0);
+      reflectance += cover * (layer.reflectance * (1 + layer.texture * texture) - reflectance);
+    }
+    double light = 1;
+    for (const Shadow& shadow : scene_.shadows) {
+      const double cover = CoverOf(shadow.shape, point, cell, shadow.penumbra_m);
+      light *= 1 - cover * (1 - shadow.transmission);
+    }
+    double glare = 0;
+    for (const Glare& spot : scene_.glares) {
+      const double distance = (point - spot.center).norm() / spot.sigma_m;
+      glare += spot.strength * std::exp(-0.5 * distance * distance);
+    }
+    return std::max(reflectance, 0.0) * light + glare;
+  }
+
+  // The edge is a ramp as wide as the cell is across the edge.
+  static double CoverOf(const Drawing& shape, const Eigen::Vector2d& point, const Footprint& cell,
+                        double min_width) {
+    const Drawing::Edge edge = shape.NearestEdge(point);
+    const Eigen::Vector2d width(cell.right.dot(edge.normal), cell.down.dot(edge.normal));
+    return Coverage(edge.distance, std::max(width.norm(), min_width));
+  }
+
+  const Scene& scene_;
+  const GroundTexture& texture_;
+  PlaneView middle_;
+  std::vector<PlaneView> views_;  // at several times of the exposure, in order
+  int cells_per_side_ = 1;
+};
+
+cv::Mat SceneRenderer::Render(const Scene& scene, const RigidTransform& camera_from_pattern,
+                              const ImagingOptions& imaging) const {
+  RequireValid(scene);
+  RequireValid(imaging);
+  CheckPose(camera_from_pattern);
+  cv::Mat radiance = PaintRadiance(scene, camera_from_pattern, imaging);
+  PassLens(imaging, &radiance);
+  return Expose(imaging, radiance);
+}
+
+cv::Mat SceneRenderer::PaintRadiance(const Scene& scene, const RigidTransform& camera_from_pattern,
+                                     const ImagingOptions& imaging) const {
+  const GroundTexture texture(scene.texture_seed);
+  std::optional<PlanePainter> painter;
+  cv::Mat radiance(lens_.gain().size(), CV_32F, cv::Scalar(0));
+  for (int v = 0; v < radiance.rows; ++v) {
+    if (!painter || imaging.readout_s > 0) {
+      const double time = RowTime(imaging, v, radiance.rows);
+      painter.emplace(scene, texture, PoseAt(camera_from_pattern, imaging, time), imaging);
+    }
+    for (int u = 0; u < radiance.cols; ++u) {
+      if (lens_.gain().at<float>(v, u) <= 0) continue;
+      std::array<Eigen::Vector3d, 4> corners;
+      std::ranges::transform(lens_.PixelCorners(u, v), corners.begin(),
+                             [](const Eigen::Vector3f& ray) { return ray.cast<double>(); });
+      radiance.at<float>(v, u) = static_cast<float>(painter->Radiance(corners));
+    }
+  }
+  return radiance;
+}
+
+void SceneRenderer::PassLens(const ImagingOptions& imaging, cv::Mat* radiance) const {
+  for (int v = 0; v < radiance->rows; ++v) {
+    for (int u = 0; u < radiance->cols; ++u) {
+      float& value = radiance->at<float>(v, u);
+      const double hazy = value + imaging.haze * (imaging.haze_radiance - value);
+      const double cover = lens_.airframe_cover().at<float>(v, u);
+      const double seen = hazy + cover * (lens_.options().airframe_radiance - hazy);
+      const double light = 1 + imaging.gradient.x() * ((u + 0.5) / radiance->cols - 0.5) +
+                           imaging.gradient.y() * ((v + 0.5) / radiance->rows - 0.5);
+      value = static_cast<float>(seen * std::max(light, 0.0) * lens_.gain().at<float>(v, u));
+    }
+  }
+  if (imaging.blur_sigma_px > 0) {
+    cv::GaussianBlur(*radiance, *radiance, cv::Size(), imaging.blur_sigma_px, imaging.blur_sigma_px,
+                     cv::BORDER_REPLICATE);
+  }
+}
+
+}  // namespace kestrel

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/simulation/recordings/recording_plan.h"
+#include "kestrel/simulation/recordings/simulated_flight.h"
+#include "kestrel/simulation/scene/ground_painter.h"
+#include "kestrel/simulation/scene/hunt_objects.h"
+#include "kestrel/simulation/scene/light_options.h"
+
+namespace kestrel {
+
+// How the UAV flies over the objects.
+struct HuntFlightOptions {
+  std::string path = "sweep";   // sweep: to and fro over the area; descend: down on an object
+  double altitude_m = 6;        // of the sweep, or at the start of the descent
+  double end_altitude_m = 0.8;  // at the end of the descent
+  double speed_mps = 3.5;       // of the sweep
+  double length_m = 30;         // of the area, along the lanes
+  double width_m = 20;
+  double lane_m = 6.5;    // from one lane to the next
+  double first_lane = 0;  // with which the sweep begins: UAVs of a team begin with several
+  double attitude_noise_deg = 0.4;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("path", self.path, "", "sweep: to and fro over the area; descend: down on an object");
+    visitor("altitude_m", self.altitude_m, "m", "of the sweep, or at the start of the descent");
+    visitor("end_altitude_m", self.end_altitude_m, "m", "at the end of the descent");
+    visitor("speed_mps", self.speed_mps, "m/s", "of the sweep");
+    visitor("length_m", self.length_m, "m", "of the area, along the lanes");
+    visitor("width_m", self.width_m, "m", "of the area, across the lanes");
+    visitor("lane_m", self.lane_m, "m", "from one lane to the next");
+    visitor("first_lane", self.first_lane, "1", "lane with which the sweep begins");
+    visitor("attitude_noise_deg", self.attitude_noise_deg, "deg", "errors of the attitude control");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// A flight over coloured objects, from the motion to the sensor.
+struct HuntSimulationOptions {
+  FlightRecordingOptions recording = ConsumerCamera();
+  HuntFlightOptions flight;
+  HuntObjectsOptions objects;
+  GroundOptions ground = Arena();
+  LightOptions light;
+  int field_seed = 0;  // of all that is not the flight's; 0: the recording's seed
+  int banners = 4;
+  int vehicles = 1;
+  bool uav_shadow = true;
+
+  static GroundOptions Arena();
+
+  // A colour camera with a rolling shutter on a mount that shakes, which sharpens and compresses.
+  static FlightRecordingOptions ConsumerCamera();
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    FlightRecordingOptions::Visit(self.recording, visitor);
+    visitor.Group("flight", self.flight);
+    visitor.Group("objects", self.objects);
+    visitor.Group("ground", self.ground);
+    visitor.Group("light", self.light);
+    visitor("field_seed", self.field_seed, "",
+            "what lies around is drawn by it, for several flights over one field; 0: by --seed");
+    visitor("banners", self.banners, "1", "banners around");
+    visitor("vehicles", self.vehicles, "1", "parked vehicles");
+    visitor("uav_shadow", self.uav_shadow, "", "the UAV's shadow");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// 1280x720, 77 degrees wide, looks down, the upper side of its image is forward.
+CameraCalibration HuntCalibration();
+
+// Plans the recording: everything but the images is made. 'camera' has a mount (the nominal one).
+// The same arguments give the same recording. Throws InputError when options are not valid.
+RecordingPlan PlanHunt(const HuntSimulationOptions& options, const CameraCalibration& camera,
+                       std::uint64_t seed);
+
+}  // namespace kestrel

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/simulation/recordings/recording_plan.h"
+#include "kestrel/simulation/recordings/simulated_flight.h"
+#include "kestrel/simulation/recordings/stills_simulation.h"
+#include "kestrel/simulation/scene/landing_scene.h"
+#include "kestrel/simulation/vehicle/landing_flight.h"
+
+namespace kestrel {
+
+// A flight over the landing pattern, from the motion to the sensor.
+struct LandingSimulationOptions : LandingSceneOptions {
+  FlightRecordingOptions recording;
+  StillsOptions stills;  // of what follows, stills use only the pattern and the lens' half angle
+  LandingFlightOptions flight;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    FlightRecordingOptions::Visit(self.recording, visitor);
+    visitor.Group("stills", self.stills);
+    visitor.Group("flight", self.flight);
+    LandingSceneOptions::Visit(self, visitor);
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// The camera of the paper on a UAV: it looks down, the upper side of its image is forward.
+CameraCalibration PaperCalibration();
+
+// Plans a flight, or stills, as a recording: everything but the images is made. 'camera' has a
+// mount (the nominal one). The same arguments give the same recording. Throws InputError when
+// options are not valid.
+RecordingPlan PlanLanding(const LandingSimulationOptions& options, const CameraCalibration& camera,
+                          std::uint64_t seed);
+
+}  // namespace kestrel

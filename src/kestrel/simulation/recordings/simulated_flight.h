@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/simulation/recordings/recording_plan.h"
+#include "kestrel/simulation/rendering/flight_camera.h"
+#include "kestrel/simulation/scene/drawing.h"
+#include "kestrel/simulation/scene/light_options.h"
+#include "kestrel/simulation/scene/motion.h"
+#include "kestrel/simulation/vehicle/navigation_model.h"
+
+namespace kestrel {
+
+// What every flight has, whatever it flies over.
+struct FlightRecordingOptions {
+  int frames = 300;
+  double rate_hz = 30;
+  NavigationOptions navigation;
+  LensViewOptions lens;
+  ShutterOptions shutter;
+  SensorOptions sensor;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("frames", self.frames, "1", "number of images");
+    visitor("rate_hz", self.rate_hz, "Hz", "images per second");
+    visitor.Group("navigation", self.navigation);
+    visitor.Group("lens", self.lens);
+    visitor.Group("shutter", self.shutter);
+    visitor.Group("sensor", self.sensor);
+  }
+  std::vector<std::string> Validate() const;
+
+  double duration_s() const { return frames / rate_hz; }
+};
+
+// A flight through a world with a camera and all the errors of its navigation. Thread-safe.
+class SimulatedFlight {
+ public:
+  // 'camera' has a mount, the nominal one; 'airframe' stands in front of the lens.
+  SimulatedFlight(const FlightRecordingOptions& options, const CameraCalibration& camera,
+                  const Drawing& airframe, World world, Motion world_from_body, std::uint64_t seed);
+  SimulatedFlight(const SimulatedFlight&) = delete;  // the camera looks into the world in it
+  SimulatedFlight& operator=(const SimulatedFlight&) = delete;
+
+  const FlightCamera& camera() const { return *camera_; }
+  const World& world() const { return world_; }
+  const NavigationErrors& errors() const { return errors_; }
+  const std::vector<double>& times_s() const { return times_s_; }  // of the images
+
+  // 'gain' multiplies the light, besides the wandering gain of the options.
+  cv::Mat Image(std::size_t index, double gain = 1) const;
+
+  // Leaves out the images from 'index' on: a flight that is over.
+  void EndBefore(std::size_t index);
+
+  // The navigation, before its first report, which is that of 'begin_s'.
+  NavigationSensor navigation() const;
+  double begin_s() const;
+
+  // What scene.yaml says of any flight; lines to go on after.
+  std::string SceneText(const std::string& kind) const;
+
+  // cam0/sensor.yaml, nav0 and state_groundtruth_estimate0.
+  std::vector<RecordingFile> Files() const;
+
+ private:
+  FlightRecordingOptions options_;
+  CameraCalibration nominal_;
+  World world_;
+  Motion world_from_body_;
+  std::uint64_t seed_;
+  NavigationErrors errors_;
+  std::vector<double> times_s_;
+  std::function<double(double time_s)> gain_;
+  std::unique_ptr<FlightCamera> camera_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/simulation/recordings/recording_plan.h"
+#include "kestrel/vision/landing/landing_pattern.h"
+
+namespace kestrel {
+
+// Images that have nothing to do with each other, as LandingStillMaker makes them.
+struct StillsOptions {
+  std::string show = "nothing";  // pattern, lookalikes; nothing: it is a flight
+  double min_altitude_m = 0.35;  // of the camera above the pattern
+  double max_altitude_m = 14;
+  double max_tilt_deg = 40;
+  double min_visible_fraction = 0.25;  // of the pattern
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("show", self.show, "",
+            "pattern or lookalikes: single images instead of a flight; nothing: a flight");
+    visitor("min_altitude_m", self.min_altitude_m, "m", "least height of the camera");
+    visitor("max_altitude_m", self.max_altitude_m, "m", "largest height of the camera");
+    visitor("max_tilt_deg", self.max_tilt_deg, "deg", "largest tilt of the camera");
+    visitor("min_visible_fraction", self.min_visible_fraction, "1",
+            "least part of the pattern that is in view");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// Plans a recording of 'frames' stills, one a second, in which the pattern, or the plane of the
+// look-alikes, is the world's z = 0. The navigation has no error. Arguments that go together are
+// checked (InputError); 'camera' has a mount.
+RecordingPlan PlanStills(const StillsOptions& options, const LandingPattern& pattern, int frames,
+                         double lens_half_angle_deg, const CameraCalibration& camera,
+                         std::uint64_t seed);
+
+}  // namespace kestrel

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/core/camera/exposure_controller.h"
+#include "kestrel/core/poses/set_point.h"
+#include "kestrel/flight/guidance/landing_guidance.h"
+#include "kestrel/simulation/recordings/simulated_landing.h"
+#include "kestrel/simulation/recordings/touchdown_result.h"
+#include "kestrel/simulation/scene/landing_scene.h"
+#include "kestrel/simulation/scene/motion.h"
+#include "kestrel/simulation/vehicle/flown_path.h"
+#include "kestrel/simulation/vehicle/multicopter.h"
+#include "kestrel/simulation/vehicle/wind.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
+
+namespace kestrel {
+
+// Where the UAV starts, what a touchdown is, and how late the vision.
+struct TouchdownOptions {
+  double start_altitude_m = 10;  // above ground
+  double start_distance_m = 20;  // from the place where the vehicle should pass
+  // The vehicle passes that place at a time drawn between these. The UAV knows the place, not the
+  // time. The vehicle is not nearer to the start than that place.
+  double pass_min_s = 4;
+  double pass_max_s = 8;
+  // From the middle of an image's exposure until its result can be used: transfer and detection.
+  double processing_delay_s = 0.06;
+  double leg_m = 0.35;  // from the body's origin down to its feet
+  double feet_radius_m =
+      0.25;  // its feet stand on the board when their middle is so far from the edge
+  double max_slip_mps = 1.5;  // horizontal speed against the board with which it stays there
+  double max_sink_mps = 2;    // and vertical
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("start_altitude_m", self.start_altitude_m, "m", "height above ground at the start");
+    visitor("start_distance_m", self.start_distance_m, "m",
+            "from the start to the place where the vehicle passes");
+    visitor("pass_min_s", self.pass_min_s, "s", "earliest time at which it passes there");
+    visitor("pass_max_s", self.pass_max_s, "s", "latest time at which it passes there");
+    visitor("processing_delay_s", self.processing_delay_s, "s",
+            "from the middle of an exposure to the result");
+    visitor("leg_m", self.leg_m, "m", "from the body's origin down to its feet");
+    visitor("feet_radius_m", self.feet_radius_m, "m", "room that the feet need on the board");
+    visitor("max_slip_mps", self.max_slip_mps, "m/s", "horizontal speed at which it stays there");
+    visitor("max_sink_mps", self.max_sink_mps, "m/s", "vertical speed that the legs stand");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// A simulated UAV that lands on a vehicle by what the pipeline sees.
+struct TouchdownSimulationOptions : LandingSceneOptions {
+  TouchdownSimulationOptions();
+
+  TouchdownOptions touchdown;
+  FlightRecordingOptions recording;  // 'frames': after so many the flight ends
+  MulticopterOptions multicopter;
+  WindOptions wind;
+  GuidanceOptions guidance;
+  ExposureOptions exposure;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    FlightRecordingOptions::Visit(self.recording, visitor);
+    visitor.Group("touchdown", self.touchdown);
+    visitor.Group("multicopter", self.multicopter);
+    visitor.Group("wind", self.wind);
+    visitor.Group("guidance", self.guidance);
+    visitor.Group("exposure", self.exposure);
+    LandingSceneOptions::Visit(self, visitor);
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// A closed loop: the UAV flies by the track, the track comes from the pipeline, the pipeline gets
+// the rendered images, late, and the poses that the navigation reports, and the images show what
+// the UAV sees where its flight has brought it. The truth is used for rendering and for the result
+// only. The same arguments give the same flight.
+class TouchdownSimulation {
+ public:
+  // 'camera' has a mount; the pipeline knows it and the clock offset that was drawn. Throws
+  // InputError when options are not valid.
+  TouchdownSimulation(const TouchdownSimulationOptions& options, const CameraCalibration& camera,
+                      std::uint64_t seed);
+  TouchdownSimulation(const TouchdownSimulation&) =
+      delete;  // the camera looks along the path in it
+  TouchdownSimulation& operator=(const TouchdownSimulation&) = delete;
+
+  // Called with every image and what the pipeline made of it, in order; returns whether to go on.
+  using FrameSink = std::function<bool(const cv::Mat& image, const LandingObservation& observation,
+                                       const LandingPipeline& pipeline)>;
+
+  // Flies until touchdown, or the last image. Nothing when 'sink' stopped it. Once only.
+  std::optional<TouchdownResult> Fly(const FrameSink& sink);
+
+  // The texts of a recording: scene.yaml, and after the flight the other files.
+  std::string SceneText() const { return landing_.SceneText("touchdown", PrintOptions(options_)); }
+  std::vector<RecordingFile> Files() const { return landing_.Files(); }
+
+ private:
+  struct Start {
+    Eigen::Vector3d position;
+    double heading;         // rad, towards the place
+    Eigen::Vector2d place;  // where the vehicle will pass
+  };
+  struct TakenImage {
+    cv::Mat image;
+    Time time;
+  };
+
+  Start DrawStart() const;
+  void ReportPoses(double time_s);
+  void TakeImage(double time_s);
+  bool ProcessImages(double until_s, const FrameSink& sink, TouchdownResult* result);
+  SetPoint Guide(double time_s);
+  bool HasEnded(double time_s, TouchdownResult* result) const;
+  TouchdownOutcome OutcomeOf(const Eigen::Vector3d& feet_on_board,
+                             const TouchdownResult& result) const;
+  void RideOn(double time_s);
+  Eigen::Vector3d FeetAt(double time_s) const;
+
+  TouchdownSimulationOptions options_;
+  std::uint64_t seed_;
+  FlownPath path_;
+  SimulatedLanding landing_;
+  Path wind_;
+  Start start_;
+  Multicopter multicopter_;
+  LandingGuidance guidance_;
+  NavigationSensor navigation_;
+  PoseSample newest_pose_;
+  int poses_ = 0;  // reported
+  Duration clock_offset_;
+  LandingPipeline pipeline_;
+  ExposureController exposure_;
+  std::deque<double> exposures_s_;  // of the next images
+  cv::Rect pattern_area_;           // in the newest image processed
+  std::deque<TakenImage> images_;   // taken, not yet processed
+  std::size_t next_image_ = 0;
+  std::optional<Time> last_seen_;  // when the last image was taken that showed the target
+};
+
+}  // namespace kestrel

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/pose_history.h"
+#include "kestrel/io/recording/truth_rows.h"
+#include "kestrel/simulation/rendering/flight_camera.h"
+#include "kestrel/simulation/scene/motion.h"
+#include "kestrel/simulation/scene/world.h"
+#include "kestrel/vision/landing/landing_pattern.h"
+
+namespace kestrel {
+
+// state_groundtruth_estimate0/data.csv of a flight: the true pose and velocity at 100 Hz from
+// 'begin_s' to 'end_s', and at all image times.
+std::string TrueStateText(const Motion& world_from_body, double begin_s, double end_s,
+                          const std::vector<double>& image_times_s);
+
+// The same of poses that have nothing to do with each other: without velocities.
+std::string TrueStateText(const std::vector<PoseSample>& poses);
+
+// The pattern in the image that 'camera' takes at 'time_s', whose stamp is 'stamp'; nothing where
+// the camera's model does not see the pattern's centre.
+std::optional<TruePattern> SeenPattern(Time stamp, double time_s, const FlightCamera& camera,
+                                       const LandingPattern& pattern,
+                                       const Motion& world_from_pattern);
+
+// A text of lines as a part of a YAML map: two blanks before each.
+std::string Indented(const std::string& lines);
+
+}  // namespace kestrel

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "kestrel/simulation/rendering/frame_view.h"
+#include "kestrel/simulation/rendering/lens.h"
+#include "kestrel/simulation/scene/motion.h"
+#include "kestrel/simulation/scene/world.h"
+
+namespace kestrel {
+
+// How a frame collects its light.
+struct ShutterOptions {
+  double exposure_s = 0.003;  // of a row, > 0
+  double readout_s = 0;       // from the first row's exposure to the last's; 0: global shutter
+  int rays_per_pixel = 8;     // 1 to 64, spread over the pixel and over the exposure
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("exposure_s", self.exposure_s, "s", "exposure time of a row");
+    visitor("readout_s", self.readout_s, "s",
+            "from the first row's exposure to the last's (rolling shutter); 0 is a global shutter");
+    visitor("rays_per_pixel", self.rays_per_pixel, "1",
+            "rays per pixel, spread over its area and over the exposure");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// Ray casting: the light that falls on the pixels of a moving camera in a moving world. Every ray
+// has its own place in the pixel and its own moment of the exposure, hence motion blur and rolling
+// shutter are what they are in a camera. Immutable and thread-safe; a frame depends on nothing but
+// its own arguments.
+class FrameRenderer {
+ public:
+  // 'world' and 'lens' must outlive the renderer. Throws InputError when options are not valid.
+  FrameRenderer(const Lens& lens, const World& world, const ShutterOptions& shutter);
+
+  // CV_32FC1 or CV_32FC3 (the world's channels): linear light in units of white, before the lens
+  // takes its part; 0 where the lens lets nothing through. 'time_s' is the middle of the exposure
+  // (of the middle row), 'world_from_camera' the camera's motion. 'seed' makes the places of the
+  // rays within pixels.
+  cv::Mat Render(double time_s, const Motion& world_from_camera, std::uint64_t seed) const;
+
+  // When row 'v' (fractions allowed) has the middle of its exposure, relative to the frame's time.
+  double RowTime(double v) const;
+
+  const ShutterOptions& shutter() const { return shutter_; }
+
+ private:
+  template <int kChannels>
+  cv::Mat RenderChannels(double time_s, const Motion& world_from_camera, std::uint64_t seed) const;
+
+  const Lens& lens_;
+  const World& world_;
+  ShutterOptions shutter_;
+  ImageTiles tiles_;
+};
+
+}  // namespace kestrel

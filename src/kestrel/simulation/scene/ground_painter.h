@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "kestrel/core/base/random.h"
+#include "kestrel/simulation/scene/paint.h"
+#include "kestrel/simulation/scene/world.h"
+
+namespace kestrel {
+
+// The ground of a world: what lies there and what is painted on it.
+struct GroundOptions {
+  std::string material = "asphalt";  // asphalt, concrete, sand, grass
+  int markings = 12;                 // lines, bays, crossings
+  int details = 30;                  // manhole covers, drains, cracks, stains, tyre marks
+  bool curb = true;                  // a round curb, another material behind it
+  bool shadows = true;               // of trees and houses that are not in the world
+  double map_size_m = 64;            // side of the square that repeats (mirrored)
+  int map_px = 4096;                 // its side; a power of two, 64 to 8192
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("material", self.material, "", "asphalt, concrete, sand or grass");
+    visitor("markings", self.markings, "1", "number of road markings");
+    visitor("details", self.details, "1",
+            "number of manhole covers, drains, cracks, stains and tyre marks");
+    visitor("curb", self.curb, "", "a curb around, another material behind it");
+    visitor("shadows", self.shadows, "", "shadows of trees and houses");
+    visitor("map_size_m", self.map_size_m, "m", "side of the ground's map, which repeats");
+    visitor("map_px", self.map_px, "px", "the same in pixels, a power of two: how fine it is");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// Draws on the ground's map, in metres around its middle (x right, y up in the map).
+class GroundPainter {
+ public:
+  GroundPainter(const GroundOptions& options, Random* random);
+
+  void Markings(int count, Random* random);
+  void Details(int count, Random* random);
+  // A curb 'radius_m' around the middle, not quite round, 'material' behind it.
+  void Curb(double radius_m, const std::string& material, Random* random);
+  // Two white lines, 'half_width_m' to both sides of a closed or open track.
+  void TrackLines(const std::vector<Eigen::Vector2d>& track, double half_width_m);
+
+  Ground ToGround(int channels) const;
+
+ private:
+  using Points = std::vector<Eigen::Vector2d>;
+
+  cv::Point ToMap(const Eigen::Vector2d& point) const;  // in 1 / 16 px
+  void FillPolygon(const Points& corners, const Color& color, double opacity);
+  void Strip(const Points& line, double width_m, const Color& color, double opacity);
+  void Dashes(const Points& line, double width_m, double dash_m, double gap_m, const Color& color);
+  void Disc(const Eigen::Vector2d& center, double radius_m, const Color& color, double opacity);
+  void Bays(const Eigen::Vector2d& corner, double yaw, Random* random);
+  void Crossing(const Eigen::Vector2d& corner, double yaw, Random* random);
+  void Manhole(const Eigen::Vector2d& center, Random* random);
+  void Drain(const Eigen::Vector2d& center, double yaw);
+  void Crack(const Eigen::Vector2d& start, double yaw, Random* random);
+  void TyreMarks(const Eigen::Vector2d& start, double yaw, Random* random);
+  void Patch(const Eigen::Vector2d& center, double yaw, Random* random);
+  Eigen::Vector2d Place(Random* random) const;
+
+  double map_size_m_;
+  int map_px_;
+  double per_m_;
+  bool paved_;
+  Color marking_;
+  cv::Mat map_;     // CV_8UC3 codes
+  cv::Mat detail_;  // CV_8UC1 codes
+};
+
+// The whole ground by its options. 'track': where the vehicle drives; may be empty.
+Ground MakeGround(const GroundOptions& options, const std::vector<Eigen::Vector2d>& track,
+                  int channels, Random* random);
+
+}  // namespace kestrel

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kestrel/core/base/random.h"
+#include "kestrel/simulation/scene/ground_painter.h"
+#include "kestrel/simulation/scene/light_options.h"
+#include "kestrel/simulation/scene/motion.h"
+#include "kestrel/simulation/scene/vehicle_motion.h"
+#include "kestrel/simulation/scene/world.h"
+#include "kestrel/vision/landing/landing_pattern.h"
+
+namespace kestrel {
+
+// The board with the pattern, and the vehicle that carries it.
+struct BoardOptions {
+  std::string carrier = "pickup";  // pickup, car, box (0.4 m high) or none: on the ground
+  double border_m = 0.08;          // dark frame around the white board
+  double arm_variation_m = 0.03;   // the arms' length is drawn up to this above or below
+  double dirt = 0.06;              // relative variation of the print
+  int scratches = 4;               // and places where the ink is gone
+  double gloss = 0.15;             // strength of the sun's mirror image in it, in units of white
+  double gloss_width_deg = 12;     // angle at which that has faded to a third
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("carrier", self.carrier, "",
+            "what carries the board: pickup, car, box, or none: it slides over the ground");
+    visitor("border_m", self.border_m, "m", "dark frame around the white board");
+    visitor("arm_variation_m", self.arm_variation_m, "m",
+            "the arms may be this much shorter or longer");
+    visitor("dirt", self.dirt, "1", "variation of the print's reflectance");
+    visitor("scratches", self.scratches, "1", "places where the ink is gone");
+    visitor("gloss", self.gloss, "1", "strength of the sun's mirror image in the board");
+    visitor("gloss_width_deg", self.gloss_width_deg, "deg", "width of the sun's mirror image");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// What else stands around.
+struct SurroundingsOptions {
+  int vehicles = 3;
+  int lookalikes = 2;
+  int banners = 3;
+  bool landing_legs = true;  // of the UAV, in the corners of the image
+  bool uav_shadow = true;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("vehicles", self.vehicles, "1", "other vehicles, parked");
+    visitor("lookalikes", self.lookalikes, "1", "things on the ground that look like the pattern");
+    visitor("banners", self.banners, "1", "banners around");
+    visitor("landing_legs", self.landing_legs, "", "the UAV's legs in the corners of the image");
+    visitor("uav_shadow", self.uav_shadow, "", "the UAV's shadow");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// What a landing flies over.
+struct LandingSceneOptions {
+  VehicleMotionOptions vehicle;
+  LandingPattern pattern;
+  BoardOptions board;
+  GroundOptions ground;
+  SurroundingsOptions surroundings;
+  LightOptions light;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor.Group("vehicle", self.vehicle);
+    visitor.Group("pattern", self.pattern);
+    visitor.Group("board", self.board);
+    visitor.Group("ground", self.ground);
+    visitor.Group("surroundings", self.surroundings);
+    visitor.Group("light", self.light);
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// A world with the landing pattern on a vehicle.
+struct LandingScene {
+  World world;
+  LandingPattern pattern;  // as it was drawn
+  Motion world_from_pattern;
+  Path target;  // the pattern's centre without the vehicle's shaking, for a UAV to follow
+};
+
+// Each part of a simulated landing has random numbers of its own: options of one do not change
+// another.
+enum class LandingPart { kVehicle, kBoard, kFlight, kGround, kLight, kSurroundings, kStart, kWind };
+Random RandomOf(std::uint64_t seed, LandingPart part);
+
+// Draws everything that 'options' leave open. Things stand beside where the vehicle drives within
+// 'duration_s'. Gray (1 channel) or colour (3).
+LandingScene MakeLandingScene(const LandingSceneOptions& options, double duration_s, int channels,
+                              std::uint64_t seed);
+
+}  // namespace kestrel

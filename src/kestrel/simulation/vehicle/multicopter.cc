@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/simulation/vehicle/multicopter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kestrel/core/base/violations.h"
+#include "kestrel/core/poses/gravity.h"
+#include "kestrel/simulation/vehicle/multicopter_motion.h"
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kDragLag_s = 0.2;
+constexpr double kMaxVertical = 5;  // m/s^2; the rotors neither stop nor have double power
+
+// 'vector' with its horizontal part and its height no longer than these.
+Vector3d Limited(const Vector3d& vector, double horizontal, double vertical) {
+  const double length = std::hypot(vector.x(), vector.y());
+  const double scale = length > horizontal ? horizontal / length : 1;
+  return {scale * vector.x(), scale * vector.y(), std::clamp(vector.z(), -vertical, vertical)};
+}
+
+}  // namespace
+
+std::vector<std::string> MulticopterOptions::Validate() const {
+  std::vector<std::string> violations;
+  RequireIn(max_tilt_deg, 1, 80, "max_tilt_deg", &violations);
+  RequireIn(max_acceleration, 0.1, 50, "max_acceleration", &violations);
+  RequireIn(max_speed_mps, 0.1, 50, "max_speed_mps", &violations);
+  RequireIn(max_climb_mps, 0.1, 20, "max_climb_mps", &violations);
+  RequireIn(attitude_lag_s, 0.01, 1, "attitude_lag_s", &violations);
+  RequireIn(drag, 0, 5, "drag", &violations);
+  RequireIn(velocity_gain, 0.1, 10, "velocity_gain", &violations);
+  RequireIn(max_turn_dps, 0, 1000, "max_turn_dps", &violations);
+  return violations;
+}
+
+Multicopter::Multicopter(const MulticopterOptions& options, const Vector3d& position,
+                         double heading, const Vector3d& velocity)
+    : options_(options),
+      position_(position),
+      velocity_(velocity),
+      thrust_(kGravity * Vector3d::UnitZ()),
+      lagging_(thrust_),
+      heading_(heading) {}
+
+void Multicopter::Step(const SetPoint& command, const Vector3d& wind, double seconds) {
+  Move(WantedThrust(command), wind, seconds);
+  Turn(command.yaw, seconds);
+}
+
+void Multicopter::StepByThrust(const Vector3d& acceleration, std::optional<double> yaw,
+                               const Vector3d& wind, double seconds) {
+  const Vector3d limited = Limited(acceleration, options_.max_acceleration, kMaxVertical);
+  Move(WithinTilt(limited + kGravity * Vector3d::UnitZ()), wind, seconds);
+  Turn(yaw, seconds);
+}
+
+void Multicopter::Move(const Vector3d& wanted_thrust, const Vector3d& wind, double seconds) {
+  const double lag = 1 - std::exp(-seconds / options_.attitude_lag_s);
+  lagging_ += lag * (wanted_thrust - lagging_);
+  thrust_ += lag * (lagging_ - thrust_);
+  const Vector3d drag = options_.drag * (wind - velocity_);
+  felt_drag_ += (1 - std::exp(-seconds / kDragLag_s)) * (drag - felt_drag_);
+  const Vector3d acceleration = thrust_ + drag - kGravity * Vector3d::UnitZ();
+  position_ += seconds * (velocity_ + 0.5 * seconds * acceleration);
+  velocity_ += seconds * acceleration;
+}
+
+void Multicopter::Turn(std::optional<double> yaw, double seconds) {
+  if (!yaw) return;
+  const double most = seconds * options_.max_turn_dps * std::numbers::pi / 180;
+  heading_ += std::clamp(std::remainder(*yaw - heading_, 2 * std::numbers::pi), -most, most);
+}
+
+Vector3d Multicopter::WantedThrust(const SetPoint& command) const {
+  // Limited together: the acceleration must not bring it beyond the speed either.
+  const Vector3d velocity =
+      Limited(command.velocity + command.acceleration / options_.velocity_gain,
+              options_.max_speed_mps, options_.max_climb_mps);
+  const Vector3d wanted = Limited(options_.velocity_gain * (velocity - velocity_),
+                                  options_.max_acceleration, kMaxVertical);
+  return WithinTilt(wanted - felt_drag_ + kGravity * Vector3d::UnitZ());
+}
+
+Vector3d Multicopter::WithinTilt(const Vector3d& thrust) const {
+  const double max_tilt = options_.max_tilt_deg * std::numbers::pi / 180;
+  return Limited(thrust, std::tan(max_tilt) * thrust.z(), thrust.z());
+}
+
+RigidTransform Multicopter::world_from_body() const {
+  return {MulticopterAttitude(thrust_, heading_), position_};
+}
+
+}  // namespace kestrel

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/set_point.h"
+
+namespace kestrel {
+
+// What the simulated multicopter can do.
+struct MulticopterOptions {
+  double max_tilt_deg = 40;
+  double max_acceleration = 8;   // horizontal, m/s^2
+  double max_speed_mps = 16;     // horizontal
+  double max_climb_mps = 4;      // up and down
+  double attitude_lag_s = 0.06;  // of each of two lags in a row between command and thrust
+  double drag = 0.25;            // acceleration by the air, per m/s of speed through it
+  double velocity_gain = 4;      // of its velocity control, m/s^2 per m/s
+  double max_turn_dps = 60;      // of its nose, deg/s
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("max_tilt_deg", self.max_tilt_deg, "deg", "largest tilt");
+    visitor("max_acceleration", self.max_acceleration, "m/s^2", "largest horizontal acceleration");
+    visitor("max_speed_mps", self.max_speed_mps, "m/s", "largest horizontal speed");
+    visitor("max_climb_mps", self.max_climb_mps, "m/s", "largest speed up and down");
+    visitor("attitude_lag_s", self.attitude_lag_s, "s",
+            "of each of two lags in a row between the command and the thrust");
+    visitor("drag", self.drag, "1/s", "acceleration by the air, per m/s of speed through it");
+    visitor("velocity_gain", self.velocity_gain, "1/s", "gain of its velocity control");
+    visitor("max_turn_dps", self.max_turn_dps, "deg/s", "largest rate of turn");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// A multicopter with its autopilot: a point of mass 1 that is pushed by its thrust, gravity and the
+// air. The thrust's direction is the body's z axis; it follows the command after two lags, which is
+// what attitude control and motors make of it. The autopilot controls the velocity, which it knows
+// (that is what its inertial unit is for), and compensates the air's drag as it feels it, a moment
+// late.
+class Multicopter {
+ public:
+  // Level at 'position', looking towards 'heading' (rad, from x to y); hovers, or has a velocity.
+  Multicopter(const MulticopterOptions& options, const Eigen::Vector3d& position, double heading,
+              const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero());
+
+  // Flies on for 'seconds', a few ms, in the wind (m/s, the air's velocity).
+  void Step(const SetPoint& command, const Eigen::Vector3d& wind, double seconds);
+
+  // The same for an autopilot that controls the velocity by itself: the rotors are to give
+  // 'acceleration' (world, m/s^2) beyond what carries the weight, whatever the air does to it.
+  void StepByThrust(const Eigen::Vector3d& acceleration, std::optional<double> yaw,
+                    const Eigen::Vector3d& wind, double seconds);
+
+  RigidTransform world_from_body() const;
+  const Eigen::Vector3d& position() const { return position_; }
+  const Eigen::Vector3d& velocity() const { return velocity_; }
+
+ private:
+  Eigen::Vector3d WantedThrust(const SetPoint& command) const;
+  Eigen::Vector3d WithinTilt(const Eigen::Vector3d& thrust) const;
+  void Move(const Eigen::Vector3d& wanted_thrust, const Eigen::Vector3d& wind, double seconds);
+  void Turn(std::optional<double> yaw, double seconds);
+
+  MulticopterOptions options_;
+  Eigen::Vector3d position_;
+  Eigen::Vector3d velocity_;
+  Eigen::Vector3d thrust_;   // acceleration by the rotors
+  Eigen::Vector3d lagging_;  // the command after the first lag
+  Eigen::Vector3d felt_drag_{0, 0, 0};
+  double heading_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "kestrel/core/base/random.h"
+#include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/pose_history.h"
+#include "kestrel/simulation/scene/motion.h"
+#include "kestrel/simulation/scene/world.h"
+
+namespace kestrel {
+
+// The errors of what the UAV believes: where it is, when, and how its camera is mounted.
+struct NavigationOptions {
+  double rate_hz = 100;
+  // Where the world's origin lies in the navigation's own world and where its x axis points there,
+  // from x to y: no two navigations begin with quite the same world.
+  double origin_x_m = 0;
+  double origin_y_m = 0;
+  double world_yaw_deg = 0;
+  double position_noise_m = 0.01;    // standard deviation per axis, of every pose anew
+  double position_drift_m = 0.02;    // the same, changes over minutes
+  double position_bias_m = 0.02;     // the same, constant
+  double attitude_noise_deg = 0.15;  // standard deviation per axis, of every pose anew
+  double attitude_bias_deg = 0.2;    // the same, constant
+  double clock_offset_min_s = -0.1;  // the clock offset is drawn between these
+  double clock_offset_max_s = 0.3;
+  double mount_error_deg = 1;  // standard deviation of the camera's roll, pitch and yaw
+  double vibration_deg = 0;    // of the camera on its mount, standard deviation per axis
+  double vibration_hz = 90;    // around this frequency
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("rate_hz", self.rate_hz, "Hz", "poses per second");
+    visitor("origin_x_m", self.origin_x_m, "m", "the world's origin in the navigation's world");
+    visitor("origin_y_m", self.origin_y_m, "m", "the same, y");
+    visitor("world_yaw_deg", self.world_yaw_deg, "deg",
+            "where the world's x axis points in the navigation's world, from x to y");
+    visitor("position_noise_m", self.position_noise_m, "m", "noise of the position, per axis");
+    visitor("position_drift_m", self.position_drift_m, "m", "slow error of the position, per axis");
+    visitor("position_bias_m", self.position_bias_m, "m",
+            "constant error of the position, per axis");
+    visitor("attitude_noise_deg", self.attitude_noise_deg, "deg",
+            "noise of the attitude, per axis");
+    visitor("attitude_bias_deg", self.attitude_bias_deg, "deg", "constant error of the attitude");
+    visitor("clock_offset_min_s", self.clock_offset_min_s, "s", "least clock offset to be drawn");
+    visitor("clock_offset_max_s", self.clock_offset_max_s, "s", "largest clock offset to be drawn");
+    visitor("mount_error_deg", self.mount_error_deg, "deg",
+            "error of the mount's roll, pitch, yaw");
+    visitor("vibration_deg", self.vibration_deg, "deg", "vibration of the camera on its mount");
+    visitor("vibration_hz", self.vibration_hz, "Hz", "frequency of the vibration");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// The errors of one flight, drawn by NavigationOptions.
+struct NavigationErrors {
+  double clock_offset_s = 0;  // t_nav = t_image + offset
+  // True mount = Rz(yaw) Ry(pitch) Rx(roll) nominal mount, in the body frame.
+  double mount_roll_deg = 0;
+  double mount_pitch_deg = 0;
+  double mount_yaw_deg = 0;
+
+  RigidTransform TrueMount(const RigidTransform& nominal) const;
+};
+NavigationErrors DrawNavigationErrors(const NavigationOptions& options, Random* random);
+
+// What the navigation reports of a flight, pose by pose. Copies go on by themselves.
+class NavigationSensor {
+ public:
+  NavigationSensor(const NavigationOptions& options, const NavigationErrors& errors, Random random);
+
+  // The next pose: of 'time_s', in the time of the navigation's own clock.
+  PoseSample Report(double time_s, RigidTransform world_from_body);
+
+  // All poses from 'begin_s' on at the navigation's rate; the last is not before 'end_s'.
+  std::vector<PoseSample> ReportAll(const Motion& world_from_body, double begin_s, double end_s);
+
+ private:
+  NavigationOptions options_;
+  NavigationErrors errors_;
+  Random random_;
+  RigidTransform navigation_from_world_;
+  Eigen::Vector3d bias_;
+  Eigen::Quaterniond turn_;  // constant error of the attitude
+  std::array<std::function<double(double time_s)>, 3> drift_;
+};
+
+// Rotation of the camera on its mount (camera_from_still_camera) as a function of time.
+std::function<Eigen::Quaterniond(double time_s)> Vibration(const NavigationOptions& options,
+                                                           Random* random);
+
+}  // namespace kestrel

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kestrel/core/base/random.h"
+#include "kestrel/simulation/scene/motion.h"
+
+namespace kestrel {
+
+// The air's motion: a steady wind, whose speed and direction are drawn, with gusts.
+struct WindOptions {
+  double min_mps = 2.8;  // the steady speed is drawn between these; 10 to 20 km/h
+  double max_mps = 5.6;
+  double gusts = 0.25;  // standard deviation of the gusts per axis, as a part of the steady speed;
+                        // half of it up and down
+  double gust_period_s = 3;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("min_mps", self.min_mps, "m/s", "least steady speed to be drawn");
+    visitor("max_mps", self.max_mps, "m/s", "largest steady speed to be drawn");
+    visitor("gusts", self.gusts, "1", "spread of the gusts, as a part of the steady speed");
+    visitor("gust_period_s", self.gust_period_s, "s", "how long gusts last, about");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// Velocity of the air (m/s) as a function of time (s).
+Path MakeWind(const WindOptions& options, Random* random);
+
+}  // namespace kestrel

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/vision/landing/landing_pattern.h"
+#include "kestrel/vision/landing/pattern_view.h"
+#include "kestrel/vision/landing/print_doubts.h"
+
+namespace kestrel {
+
+// Where an image has ink and where white, against where the print has them. Light does not decide
+// that, whatever casts a shadow: white in a shadow is brighter than ink in full light, so the order
+// of gray values stays. In each direction around the print the level of its ink and the darker
+// level of its white tell what is as dark as ink.
+class InkComparison {
+ public:
+  explicit InkComparison(const LandingPattern& pattern);
+
+  // Half the side of the square that a view must cover.
+  double extent_m() const { return extent_m_; }
+
+  // What speaks against the print by its ink: fills those doubts. 'view': of the pattern's frame,
+  // x along an arm, on 'image'. Returns the share of ring and cross that the image shows. Does not
+  // allocate.
+  double Doubt(const cv::Mat& image, const PatternView& view, PrintDoubts* doubts) const;
+
+ private:
+  static constexpr int kSectors = 8;  // of 45 degrees, every second one around an arm
+  static constexpr int kArms = 4;
+  static constexpr int kLines = 5;  // between two arms, along which a spoke may lie
+  static constexpr std::size_t kMaxPlaces = 1024;
+
+  // Places that follow each other.
+  struct Range {
+    std::size_t begin = 0, end = 0;
+    std::size_t size() const { return end - begin; }
+  };
+  struct Levels;
+  struct Darkness;
+
+  void AddPlaces();
+  void AddInk();
+  void AddWhite();
+  void AddLines(int quadrant);
+  void AddPlace(double x_m, double y_m);
+  template <typename Holds>
+  Range AddGrid(const Holds& holds);
+  Levels MeasureLevels(const std::array<float, kMaxPlaces>& gray) const;
+  Darkness MeasureDarkness(const std::array<float, kMaxPlaces>& gray, const Levels& levels) const;
+
+  LandingPattern pattern_;
+  double extent_m_;
+  std::vector<float> x_m_, y_m_;
+  std::vector<std::uint8_t> sector_;
+  std::array<Range, kArms> arm_;
+  std::size_t ink_end_ = 0;  // the places before are those of arms and ring
+  // White between two arms: near to the middle of the print, then the rest.
+  std::array<Range, kArms> hub_, quadrant_;
+  std::array<Range, kSectors> board_;                                       // around the ring
+  std::array<std::array<std::vector<std::uint16_t>, kLines>, kArms> line_;  // places
+};
+
+}  // namespace kestrel

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "kestrel/vision/landing/search_plan.h"
+#include "kestrel/vision/landing/test_landing_detector.h"
+
+namespace kestrel {
+namespace {
+
+using LandingHintTest = LandingPatternDetectorTest;
+
+TEST_F(LandingHintTest, AnImageThatContradictsWhatIsUpPrevails) {
+  LandingHint hint;
+  const Eigen::Vector3d normal = pose_.rotation * Eigen::Vector3d::UnitZ();
+  hint.up_in_camera = Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitX()) * normal;  // 23 degrees off
+  const LandingReport report = Detect(image_, hint);
+  ASSERT_TRUE(report.detection) << report.reason;
+  EXPECT_LT(PoseError(report.detection->camera_from_pattern, pose_).head<3>().norm(), 0.015);
+}
+
+TEST_F(LandingHintTest, AHintFitsAPatternThatFillsTheImageOfAFisheye) {
+  // Half a metre above the board the ring spans 90 degrees: much less than its size over its
+  // distance times the focal length.
+  const CameraModel fisheye(
+      {752, 480, 250, 250, 375.5, 239.5, DistortionModel::kEquidistant, {0, 0, 0, 0}});
+  const LandingPatternDetector detector(fisheye, {});
+  for (const double distance : {0.45, 0.6, 1.0}) {
+    const RigidTransform truth = PrintPose({0.02, 0.03, distance}, 0.1, 1, 0.3);
+    const cv::Mat image = DrawPrint(fisheye, pattern_, SpokedPrint(pattern_, 4), truth);
+    LandingHint hint;
+    hint.center_in_camera = truth.translation;
+    hint.center_sigma_m = 0.1;
+    hint.altitude_m = distance + 2;  // above the ground, not above the roof
+    const LandingReport report = detector.Detect(image, hint, workspace_);
+    ASSERT_TRUE(report.detection) << distance << " m: " << report.reason;
+    EXPECT_LT(PoseError(report.detection->camera_from_pattern, truth).head<3>().norm(), 0.005);
+  }
+}
+
+// Two patterns side by side: the one that was expected is taken.
+TEST_F(LandingHintTest, AHintSaysWhereToLook) {
+  const RigidTransform left = PrintPose({-1.1, 0.1, 4}, 0.1, 1, 0.3);
+  const RigidTransform right = PrintPose({1.1, -0.1, 4}, 0.1, 1, 0.6);
+  cv::Mat image = Draw(SpokedPrint(pattern_, 4), left);
+  const cv::Rect half(image.cols / 2, 0, image.cols / 2, image.rows);
+  Draw(SpokedPrint(pattern_, 4), right)(half).copyTo(image(half));
+  for (const RigidTransform& pose : {left, right}) {
+    LandingHint hint;
+    hint.center_in_camera = pose.translation + Eigen::Vector3d(0.05, 0.05, 0.1);
+    hint.center_sigma_m = 0.1;
+    const LandingReport report = Detect(image, hint);
+    ASSERT_TRUE(report.detection) << report.reason;
+    EXPECT_LT((report.detection->camera_from_pattern.translation - pose.translation).norm(), 0.05);
+  }
+}
+
+// What is told may be wrong in any way: a pattern in plain view is found, and where it is.
+TEST_F(LandingHintTest, AWrongHintHidesNothing) {
+  struct Told {
+    const char* what;
+    LandingHint hint;
+  };
+  const auto center = [](const Eigen::Vector3d& at) {
+    LandingHint hint;
+    hint.center_in_camera = at;
+    hint.center_sigma_m = 0.1;
+    return hint;
+  };
+  const auto altitude = [](double altitude_m) {
+    LandingHint hint;
+    hint.altitude_m = altitude_m;
+    return hint;
+  };
+  const auto up = [](const Eigen::Vector3d& in_camera) {
+    LandingHint hint;
+    hint.up_in_camera = in_camera;
+    return hint;
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const double distance : {1.1, 3.0, 9.0}) {
+    const RigidTransform truth =
+        PrintPose({0.05 * distance, -0.03 * distance, distance}, 0.25, 1, 0.3);
+    const Eigen::Vector3d& at = truth.translation;
+    const Eigen::Vector3d normal = truth.rotation * Eigen::Vector3d::UnitZ();
+    Eigen::Vector3d turned_round = normal;
+    turned_round.head<2>() *= -1;
+    LandingHint all_wrong = center({-0.5 * distance, 0.1, 2 * distance});
+    all_wrong.up_in_camera = -normal;
+    all_wrong.altitude_m = distance + 500;
+    const Told wrong[] = {
+        {"altitude + 10 m", altitude(distance + 10)},
+        {"altitude + 500 m", altitude(distance + 500)},
+        {"altitude x 3", altitude(3 * distance)},
+        {"altitude negative", altitude(-20)},
+        {"altitude not a number", altitude(kNan)},
+        {"upside down", up(-normal)},
+        {"turned round", up(turned_round)},
+        {"on edge", up(normal.unitOrthogonal())},
+        {"track beside it", center(at + Eigen::Vector3d(0.5 * distance, 0, 0))},
+        {"track out of the image", center({10 * distance, 0, distance})},
+        {"track behind the camera", center(-at)},
+        {"track three times as far", center(3 * at)},
+        {"track at a third", center(at / 3)},
+        {"track not a number", center({kNan, 0, 1})},
+        {"all of it", all_wrong},
+    };
+    const cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
+    Eigen::Vector2d center_px;
+    camera_.Project(at, &center_px);
+    for (const Told& told : wrong) {
+      const LandingReport report = Detect(image, told.hint);
+      ASSERT_TRUE(report.detection) << told.what << " at " << distance << " m: " << report.reason;
+      EXPECT_LT((report.detection->center_px - center_px).norm(), 0.2)
+          << told.what << " at " << distance << " m";
+      // Where what is up is wrong the pose of the two may be that tells it better.
+      EXPECT_LT((report.detection->camera_from_pattern.translation - at).norm(), 0.1 * distance)
+          << told.what << " at " << distance << " m";
+    }
+  }
+}
+
+TEST_F(LandingHintTest, AGoodPredictionNeedsNoSearch) {
+  constexpr auto kAreas = static_cast<int>(LandingStage::kAreas);
+  for (const double distance : {1.1, 3.0, 6.0, 9.0}) {
+    const RigidTransform truth =
+        PrintPose({0.03 * distance, 0.02 * distance, distance}, 0.1, 2, 0.5);
+    const cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
+    LandingHint hint;
+    hint.up_in_camera = truth.rotation * Eigen::Vector3d::UnitZ();
+    const LandingReport searched = Detect(image, hint);
+    ASSERT_TRUE(searched.detection);
+    EXPECT_GT(searched.candidates[kAreas], 0);
+    hint.center_in_camera = truth.translation + Eigen::Vector3d(0.03, -0.02, 0.02 * distance);
+    const LandingReport predicted = Detect(image, hint);
+    ASSERT_TRUE(predicted.detection);
+    EXPECT_EQ(predicted.candidates[kAreas], 0) << distance << " m";
+    EXPECT_EQ(predicted.detection->method, searched.detection->method);
+    EXPECT_LT((predicted.detection->center_px - searched.detection->center_px).norm(), 0.05);
+    EXPECT_LT((predicted.detection->camera_from_pattern.translation -
+               searched.detection->camera_from_pattern.translation)
+                  .norm(),
+              0.002 * distance);
+    // Half a ring off: within three sigma, found by search.
+    hint.center_in_camera = truth.translation + Eigen::Vector3d(0.3, -0.2, 0);
+    hint.center_sigma_m = 0.2;
+    const LandingReport around = Detect(image, hint);
+    ASSERT_TRUE(around.detection);
+    EXPECT_GT(around.candidates[kAreas], 0);
+  }
+}
+
+TEST_F(LandingHintTest, TheQualityIsThatOfTheImageWhateverIsTold) {
+  LandingHint hint;
+  hint.altitude_m = 3;
+  const LandingReport right = Detect(image_, hint);
+  hint.altitude_m = 9;
+  const LandingReport wrong = Detect(image_, hint);
+  ASSERT_TRUE(right.detection && wrong.detection);
+  EXPECT_EQ(right.detection->quality, Detect(image_).detection->quality);
+  EXPECT_EQ(wrong.detection->quality, right.detection->quality);
+}
+
+// An image whose pattern a late step finds, searched by little and little: every frame goes on
+// where the one before stopped.
+TEST_F(LandingHintTest, ASearchThatIsOutOfTimeGoesOnInTheNextFrame) {
+  LandingPatternDetectorOptions options;
+  options.max_search_ms = 1e-6;  // one step a frame
+  const LandingPatternDetector bounded(camera_, options);
+  const RigidTransform truth = PrintPose({0.3, -0.2, 12}, 0.2, 1, 0.3);
+  const cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
+  LandingHint hint;
+  int frames = 0;
+  for (;; ++frames) {
+    ASSERT_LT(frames, static_cast<int>(kSearchSteps));
+    const LandingReport report = bounded.Detect(image, hint, workspace_);
+    if (report.detection) {
+      EXPECT_EQ(report.next_step, 0);
+      EXPECT_LT((report.detection->camera_from_pattern.translation - truth.translation).norm(),
+                0.03 * truth.translation.norm());
+      break;
+    }
+    EXPECT_GT(report.next_step, hint.first_step);
+    hint.first_step = report.next_step;
+  }
+  EXPECT_GT(frames, 1) << "the first steps look for larger rings";
+}
+
+TEST_F(LandingHintTest, ABoundedSearchOfAnEmptyImageTakesEveryStepInTurn) {
+  LandingPatternDetectorOptions options;
+  options.max_search_ms = 1e-6;
+  const LandingPatternDetector bounded(camera_, options);
+  const cv::Mat image = Draw(SpokedPrint(pattern_, 3), pose_);
+  for (const bool is_told : {false, true}) {
+    LandingHint hint;
+    if (is_told) hint.center_in_camera = pose_.translation;
+    std::set<int> steps;
+    for (int frame = 0; frame < 2 * static_cast<int>(kSearchSteps); ++frame) {
+      const LandingReport report = bounded.Detect(image, hint, workspace_);
+      EXPECT_FALSE(report.detection);
+      steps.insert(report.next_step);
+      hint.first_step = report.next_step;
+    }
+    // Where nothing is told, the likely part is the whole image: one round.
+    EXPECT_GE(steps.size(), kSearchSteps);
+    EXPECT_TRUE(steps.contains(0) || steps.contains(static_cast<int>(kSearchSteps)));
+    EXPECT_TRUE(std::all_of(steps.begin(), steps.end(), [](int step) {
+      return step >= 0 && step < 2 * static_cast<int>(kSearchSteps);
+    }));
+  }
+}
+
+TEST_F(LandingHintTest, WithoutABoundEverySearchIsWhole) {
+  LandingPatternDetectorOptions options;
+  options.max_search_ms = 1e9;
+  const LandingPatternDetector generous(camera_, options);
+  const cv::Mat far = Draw(SpokedPrint(pattern_, 4), PrintPose({0.3, -0.2, 9}, 0.2, 1, 0.3));
+  const cv::Mat other = Draw(SpokedPrint(pattern_, 3), pose_);
+  for (const cv::Mat& image : {image_, far, other}) {
+    const LandingReport whole = Detect(image);
+    EXPECT_EQ(whole.next_step, 0);
+    ExpectSame(generous.Detect(image, {}, workspace_), whole);
+    for (const int first_step : {1, 7, 23, 30, -5, 1000}) {
+      LandingHint hint;
+      hint.first_step = first_step;
+      const LandingReport report = Detect(image, hint);
+      EXPECT_EQ(report.detection.has_value(), whole.detection.has_value()) << first_step;
+      EXPECT_EQ(report.next_step, 0) << first_step;
+    }
+  }
+}
+
+TEST_F(LandingHintTest, TheAttitudeResolvesTheMirrorPose) {
+  Random random(3);
+  for (int trial = 0; trial < 6; ++trial) {
+    const RigidTransform truth =
+        PrintPose({0.2, 0.1, 7}, 0.5, random.Uniform(0, 6), random.Uniform(0, 6));
+    const Eigen::Vector3d up = truth.rotation * Eigen::Vector3d::UnitZ();
+    LandingHint hint;
+    hint.up_in_camera = up;
+    const LandingReport report =
+        Detect(AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 2, &random), hint);
+    ASSERT_TRUE(report.detection) << trial << ": " << report.reason;
+    const Eigen::Vector3d found =
+        report.detection->camera_from_pattern.rotation * Eigen::Vector3d::UnitZ();
+    EXPECT_GT(found.dot(up), 0.95) << trial;
+  }
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/landing/landing_pattern_detector.h"
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/vision/landing/landing_search.h"
+
+namespace kestrel {
+const char* ToString(CrossMethod method) {
+  switch (method) {
+    case CrossMethod::kQuadrants:
+      return "quadrants";
+    case CrossMethod::kThinning:
+      return "thinning";
+    case CrossMethod::kLines:
+      return "lines";
+    case CrossMethod::kPartial:
+      return "partial";
+  }
+  return "";
+}
+
+const char* ToString(LandingStage stage) {
+  switch (stage) {
+    case LandingStage::kBinarize:
+      return "binarize";
+    case LandingStage::kAreas:
+      return "areas";
+    case LandingStage::kRing:
+      return "ring";
+    case LandingStage::kCross:
+      return "cross";
+    case LandingStage::kMatch:
+      return "match";
+    case LandingStage::kLocate:
+      return "locate";
+    case LandingStage::kFound:
+      return "found";
+  }
+  return "";
+}
+
+std::vector<std::string> LandingPatternDetectorOptions::Validate() const {
+  std::vector<std::string> violations;
+  for (const std::string& violation : pattern.Validate()) {
+    violations.push_back("pattern." + violation);
+  }
+  if (!(min_ring_px >= 4 && min_ring_px <= 1000)) {
+    violations.push_back("min_ring_px: must be 4 to 1000");
+  }
+  if (!(min_quality >= 0 && min_quality <= 1)) {
+    violations.push_back("min_quality: must be 0 to 1");
+  }
+  if (!(level_sigma_deg > 0 && level_sigma_deg <= 90)) {
+    violations.push_back("level_sigma_deg: must be positive, 90 at most");
+  }
+  if (!(max_partial_altitude_m >= 0)) {
+    violations.push_back("max_partial_altitude_m: must not be negative");
+  }
+  if (!(max_search_ms >= 0)) violations.push_back("max_search_ms: must not be negative");
+  return violations;
+}
+
+LandingWorkspace::LandingWorkspace() : buffers_(std::make_unique<Buffers>()) {}
+LandingWorkspace::~LandingWorkspace() = default;
+LandingWorkspace::LandingWorkspace(LandingWorkspace&&) noexcept = default;
+LandingWorkspace& LandingWorkspace::operator=(LandingWorkspace&&) noexcept = default;
+
+struct LandingPatternDetector::Impl : LandingModels {
+  using LandingModels::LandingModels;
+};
+
+LandingPatternDetector::LandingPatternDetector(const CameraModel& camera,
+                                               const LandingPatternDetectorOptions& options) {
+  const std::vector<std::string> violations = options.Validate();
+  if (!violations.empty()) {
+    std::string message = "landing pattern detector: ";
+    for (std::size_t i = 0; i < violations.size(); ++i) {
+      message += (i == 0 ? "" : "; ") + violations[i];
+    }
+    throw InputError(message);
+  }
+  impl_ = std::make_unique<const Impl>(camera, options);
+}
+LandingPatternDetector::~LandingPatternDetector() = default;
+LandingPatternDetector::LandingPatternDetector(LandingPatternDetector&&) noexcept = default;
+LandingPatternDetector& LandingPatternDetector::operator=(LandingPatternDetector&&) noexcept =
+    default;
+const CameraModel& LandingPatternDetector::camera() const { return impl_->camera; }
+const LandingPatternDetectorOptions& LandingPatternDetector::options() const {
+  return impl_->options;
+}
+
+LandingReport LandingPatternDetector::Detect(const cv::Mat& image, const LandingHint& hint,
+                                             LandingWorkspace& workspace) const {
+  if (image.type() != CV_8UC1 || image.cols != camera().width_px() ||
+      image.rows != camera().height_px()) {
+    LandingReport report;
+    report.reason = "the image is not 8-bit gray or not of the camera's size";
+    return report;
+  }
+  return LandingSearch(*impl_, image, hint, workspace.buffers_.get()).Run();
+}
+
+}  // namespace kestrel

@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/landing/landing_pattern_detector.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <numeric>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/vision/landing/test_landing_detector.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::HasSubstr;
+
+// A ring of 24 px whose centre moves over the left image border: half of it is in view at 0.
+TEST_F(LandingPatternDetectorTest, FindsSmallPatternsThatTheImageBorderCutsOff) {
+  for (const double center_px : {8.0, 4.0, 0.0}) {
+    const double distance = 9;
+    const RigidTransform truth =
+        PrintPose({(center_px - 159.5) / 220 * distance, 0.4, distance}, 0.1, 2, 0.5);
+    const LandingReport report = Detect(Draw(SpokedPrint(pattern_, 4), truth));
+    ASSERT_TRUE(report.detection) << center_px << " px: " << report.reason;
+    Eigen::Vector2d center;
+    camera_.Project(truth.translation, &center);
+    EXPECT_LT((report.detection->center_px - center).norm(), 0.5) << center_px;
+  }
+}
+
+// Rings of 25 x 7 to 13 px under the shadow of something long: its edges tear their outlines.
+TEST_F(LandingPatternDetectorTest, FindsFlatPatternsUnderShadows) {
+  constexpr int kImages = 100;
+  Random random(11);
+  int found = 0;
+  for (int i = 0; i < kImages; ++i) {
+    const double tilt = random.Uniform(1, 1.25), axis = random.Uniform(0, 6);
+    const RigidTransform truth = PrintPose({0.15, -0.1, 9}, tilt, axis, random.Uniform(0, 6));
+    Eigen::Vector2d center;
+    camera_.Project(truth.translation, &center);
+    const double direction = random.Uniform(0, 6);
+    const Eigen::Vector2d across(std::cos(direction), std::sin(direction));
+    const double middle_px = across.dot(center) + random.Uniform(-8, 8);
+    const double half_width_px = random.Uniform(3, 12);
+    cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
+    for (int v = 0; v < image.rows; ++v) {
+      for (int u = 0; u < image.cols; ++u) {
+        if (std::abs(across.dot(Eigen::Vector2d(u, v)) - middle_px) > half_width_px) continue;
+        std::uint8_t& gray = image.at<std::uint8_t>(v, u);
+        gray = static_cast<std::uint8_t>(std::lround(0.4 * gray));
+      }
+    }
+    cv::GaussianBlur(image, image, {}, 0.6);
+    const LandingReport report = Detect(AddNoise(image, 2, &random));
+    if (!report.detection) continue;
+    ++found;
+    EXPECT_LT((report.detection->center_px - center).norm(), 0.8) << i;
+  }
+  EXPECT_GE(found, 86);
+}
+
+// Where about a quarter is in view, a wrong pose may agree with the print at full quality: its
+// edges hardly hold it, and the search goes on to the right one. Of 300 it was 1 and 5, in two
+// draws.
+TEST_F(LandingPatternDetectorTest, PutsPrintsThatAreCutOffWhereTheyAre) {
+  constexpr int kImages = 300;
+  Random random(3);
+  int found = 0, wrong = 0;
+  for (int i = 0; i < kImages; ++i) {
+    const double distance = random.Uniform(1, 2);
+    const double center_px = random.Uniform(-50, -10);
+    const double tilt_axis = random.Uniform(0, 6);
+    const double yaw = random.Uniform(0, 6);
+    const RigidTransform truth =
+        PrintPose({(center_px - 159.5) / 220 * distance, 0, distance}, 0.4, tilt_axis, yaw);
+    const LandingReport report =
+        Detect(AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 8, &random));
+    if (!report.detection) continue;
+    ++found;
+    const Eigen::Vector3d& position = report.detection->camera_from_pattern.translation;
+    wrong += (position - truth.translation).norm() > 0.02;
+  }
+  EXPECT_GT(found, kImages / 2);
+  EXPECT_LE(wrong, kImages / 50);
+}
+
+TEST_F(LandingPatternDetectorTest, FindsThePatternAtAllSizes) {
+  struct Case {
+    double distance;
+    CrossMethod method;
+  };
+  for (const Case& c : {Case{1.1, CrossMethod::kLines}, Case{3, CrossMethod::kThinning},
+                        Case{9, CrossMethod::kQuadrants}}) {
+    const RigidTransform truth =
+        PrintPose({0.03 * c.distance, 0.02 * c.distance, c.distance}, 0.1, 2, 0.5);
+    const LandingReport report = Detect(Draw(SpokedPrint(pattern_, 4), truth));
+    ASSERT_TRUE(report.detection) << c.distance << " m: " << report.reason;
+    EXPECT_EQ(report.reached, LandingStage::kFound);
+    EXPECT_EQ(report.reason, "");
+    const LandingDetection& detection = *report.detection;
+    EXPECT_EQ(detection.method, c.method) << ToString(detection.method);
+    EXPECT_LT(PoseError(detection.camera_from_pattern, truth).head<3>().norm(), 0.02 * c.distance);
+    Eigen::Vector2d center;
+    camera_.Project(truth.translation, &center);
+    EXPECT_LT((detection.center_px - center).norm(), 0.2);
+    EXPECT_NEAR(detection.ring_semi_major_px, 110 / c.distance, 0.08 * 110 / c.distance + 0.7);
+    EXPECT_GT(detection.quality, 0.8);
+    EXPECT_LE(detection.quality, 1);
+  }
+}
+
+TEST_F(LandingPatternDetectorTest, OtherSignsAreNotThePattern) {
+  const Print empty = [this](double x, double y) { return IsRing(pattern_, x, y); };
+  const Print cross_only = [this](double x, double y) {
+    return IsSpoke(x, y, 4, 0.05, pattern_.arm_half_length_m);
+  };
+  const Print off_center = [this](double x, double y) {
+    return IsRing(pattern_, x, y) ||
+           (std::hypot(x, y) < 0.4 && IsSpoke(x - 0.2, y, 4, 0.05, pattern_.arm_half_length_m));
+  };
+  const std::vector<Print> signs{SpokedPrint(pattern_, 2),
+                                 SpokedPrint(pattern_, 3),
+                                 SpokedPrint(pattern_, 5),
+                                 SpokedPrint(pattern_, 6),
+                                 SpokedPrint(pattern_, 8),
+                                 empty,
+                                 cross_only,
+                                 off_center};
+  int taken = 0;  // for the pattern: the score doubts it
+  const auto expect_doubtful = [&](const LandingReport& report, std::size_t sign, double distance) {
+    if (!report.detection) return;
+    ++taken;
+    EXPECT_LT(report.detection->quality, 0.8) << "sign " << sign << " at " << distance << " m";
+  };
+  for (const double distance : {1.4, 3.0, 6.0, 9.0}) {
+    for (std::size_t i = 0; i < signs.size(); ++i) {
+      const RigidTransform pose = PrintPose({0.1, 0.05, distance}, 0.2, 1, 0.4);
+      // Higher than a cross alone is looked for.
+      LandingHint hint;
+      hint.altitude_m = std::max(distance, 3.0);
+      const LandingReport report = Detect(Draw(signs[i], pose), hint);
+      expect_doubtful(report, i, distance);
+      EXPECT_NE(report.reason.empty(), !report.detection);
+      // The same where one was predicted.
+      hint.center_in_camera = pose.translation;
+      hint.up_in_camera = pose.rotation * Eigen::Vector3d::UnitZ();
+      expect_doubtful(Detect(Draw(signs[i], pose), hint), i, distance);
+    }
+  }
+  EXPECT_LE(taken, 2);
+}
+
+// Rings of 44 px that are 6 to 15 px high and blurred: too few pixels across to tell every letter
+// from a cross at sight.
+TEST_F(LandingPatternDetectorTest, LettersInFlatRingsAreNotThePattern) {
+  constexpr int kImages = 150;
+  Random random(12);
+  int found = 0;
+  for (int i = 0; i < kImages; ++i) {
+    const double tilt = random.Uniform(1.22, 1.43), axis = random.Uniform(0, 6);
+    const RigidTransform pose = PrintPose({0.15, -0.1, 5}, tilt, axis, random.Uniform(0, 6));
+    const double side = random.Uniform(0.12, 0.2), bar = random.Uniform(0.03, 0.055);
+    const auto letter_h = [=](double x, double y) {
+      return std::max(std::abs(x), std::abs(y)) < side + bar &&
+             (std::abs(std::abs(x) - side) < bar || std::abs(y) < bar);
+    };
+    const auto letter_t = [=](double x, double y) {
+      return std::abs(y) < bar || (std::abs(x) < bar && y > 0);
+    };
+    const bool is_h = random.Chance(0.5);
+    const Print sign = [&](double x, double y) {
+      return IsRing(pattern_, x, y) || (std::hypot(x, y) < pattern_.outer_radius_m() &&
+                                        (is_h ? letter_h(x, y) : letter_t(x, y)));
+    };
+    cv::Mat image = Draw(sign, pose);
+    cv::GaussianBlur(image, image, {}, random.Uniform(0.4, 1.0));
+    found += Detect(AddNoise(image, 2, &random)).detection.has_value();
+  }
+  EXPECT_LE(found, 1);
+}
+
+TEST_F(LandingPatternDetectorTest, TheSizeOfARingIsThatOfItsImage) {
+  // 85 degrees from the axis the lens stretches what it shows by half, along its rim.
+  const CameraModel fisheye(
+      {752, 752, 230, 230, 375.5, 375.5, DistortionModel::kEquidistant, {0, 0, 0, 0}});
+  const LandingPatternDetector detector(fisheye, {});
+  const double angle = 85 * std::numbers::pi / 180;
+  const Eigen::Vector3d direction(std::sin(angle), 0, std::cos(angle));
+  RigidTransform truth;
+  truth.rotation = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), -direction);
+  truth.translation = 3 * direction;
+  const cv::Mat image = DrawPrint(fisheye, pattern_, SpokedPrint(pattern_, 4), truth);
+  const LandingReport report = detector.Detect(image, {}, workspace_);
+  ASSERT_TRUE(report.detection) << report.reason;
+  const double by_angle = 230 * std::atan2(pattern_.outer_radius_m(), 3);
+  EXPECT_NEAR(report.detection->ring_semi_minor_px, by_angle, 0.03 * by_angle);
+  EXPECT_NEAR(report.detection->ring_semi_major_px, angle / std::sin(angle) * by_angle,
+              0.03 * by_angle);
+}
+
+TEST_F(LandingPatternDetectorTest, AFlatImageFallsAtTheFirstStages) {
+  const LandingReport report = Detect(cv::Mat(240, 320, CV_8UC1, cv::Scalar(100)));
+  EXPECT_FALSE(report.detection);
+  EXPECT_EQ(report.reached, LandingStage::kBinarize);
+  EXPECT_EQ(report.candidates[static_cast<int>(LandingStage::kRing)], 0);
+}
+
+TEST_F(LandingPatternDetectorTest, AnImageThatIsNotTheCamerasIsAnswered) {
+  for (const cv::Mat& image : {cv::Mat(240, 320, CV_8UC3), cv::Mat(240, 319, CV_8UC1),
+                               cv::Mat(240, 320, CV_16UC1), cv::Mat()}) {
+    const LandingReport report = Detect(image);
+    EXPECT_FALSE(report.detection);
+    EXPECT_EQ(report.reached, LandingStage::kBinarize);
+    EXPECT_THAT(std::string(report.reason), HasSubstr("not 8-bit gray"));
+  }
+}
+
+TEST_F(LandingPatternDetectorTest, SameImageSameReport) {
+  const LandingReport first = Detect(image_);
+  ASSERT_TRUE(first.detection);
+  // Whatever the workspace saw in between.
+  Random random(1);
+  Detect(AddNoise(image_, 60, &random));
+  Detect(cv::Mat(240, 320, CV_8UC1, cv::Scalar(0)));
+  ExpectSame(Detect(image_), first);
+  LandingWorkspace fresh;
+  ExpectSame(detector_.Detect(image_, {}, fresh), first);
+}
+
+TEST_F(LandingPatternDetectorTest, ThreadsShareADetector) {
+  std::vector<cv::Mat> images;
+  Random random(2);
+  for (int i = 0; i < 8; ++i) {
+    images.push_back(AddNoise(Draw(SpokedPrint(pattern_, i % 4 == 3 ? 3 : 4),
+                                   PrintPose({0.1 * i - 0.4, 0.1, 1.5 + 0.7 * i}, 0.1, i, 0.2 * i)),
+                              3, &random));
+  }
+  std::array<std::vector<LandingReport>, 3> reports;
+  const auto run = [&](std::vector<LandingReport>* into) {
+    LandingWorkspace workspace;
+    for (int round = 0; round < 3; ++round) {
+      for (const cv::Mat& image : images) {
+        into->push_back(detector_.Detect(image, {}, workspace));
+      }
+    }
+  };
+  run(&reports[0]);
+  std::thread one(run, &reports[1]), two(run, &reports[2]);
+  one.join();
+  two.join();
+  for (std::size_t i = 0; i < reports[0].size(); ++i) {
+    ExpectSame(reports[1][i], reports[0][i]);
+    ExpectSame(reports[2][i], reports[0][i]);
+  }
+}
+
+// Stricter users get less, none of it improbable.
+TEST_F(LandingPatternDetectorTest, TheQualityThatIsAskedForIsKept) {
+  const double quality = Detect(image_).detection->quality;
+  for (const double least : {0.0, 0.3, 0.9, 1.0}) {
+    LandingPatternDetectorOptions options;
+    options.min_quality = least;
+    const LandingReport report =
+        LandingPatternDetector(camera_, options).Detect(image_, {}, workspace_);
+    ASSERT_EQ(report.detection.has_value(), quality >= least) << least;
+    EXPECT_GE(report.detection ? report.detection->quality : 1, least);
+  }
+}
+
+// Far prints are as alike under both poses of their ring as their noise: which is reported is
+// mostly the right one, and the covariance knows of the other.
+TEST_F(LandingPatternDetectorTest, TheCovarianceKnowsOfTheMirrorPose) {
+  Random random(11);
+  int mirrored = 0, wrong = 0;
+  for (int i = 0; i < 60; ++i) {
+    const double distance = random.Uniform(7, 11);
+    const RigidTransform truth = PrintPose(
+        {random.Uniform(-0.4, 0.4) * distance, random.Uniform(-0.3, 0.3) * distance, distance},
+        random.Uniform(0.4, 0.7), random.Uniform(0, 6), random.Uniform(0, 6));
+    const cv::Mat image = AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 3, &random);
+    const LandingReport report = Detect(image);
+    ASSERT_TRUE(report.detection) << i << ": " << report.reason;
+    const LandingDetection& detection = *report.detection;
+    if (!detection.mirror_camera_from_pattern) continue;
+    ++mirrored;
+    const RigidTransform& mirror = *detection.mirror_camera_from_pattern;
+    const auto tilt = [&](const RigidTransform& pose) {
+      return PoseError(pose, truth).tail<3>().norm();
+    };
+    wrong += tilt(detection.camera_from_pattern) > tilt(mirror);
+    const Eigen::Vector3d away = mirror.translation - detection.camera_from_pattern.translation;
+    const Eigen::Matrix3d covariance = detection.covariance.topLeftCorner<3, 3>();
+    EXPECT_LT(std::sqrt(away.dot(covariance.ldlt().solve(away))), 5) << i << ": sigma";
+  }
+  EXPECT_GT(mirrored, 30);
+  EXPECT_LT(wrong, 0.1 * mirrored);
+}
+
+TEST_F(LandingPatternDetectorTest, StagesAreCountedAndTimed) {
+  const LandingReport report = Detect(image_);
+  ASSERT_TRUE(report.detection);
+  for (const LandingStage stage :
+       {LandingStage::kAreas, LandingStage::kRing, LandingStage::kCross, LandingStage::kMatch,
+        LandingStage::kLocate, LandingStage::kFound}) {
+    EXPECT_GT(report.candidates[static_cast<int>(stage)], 0) << ToString(stage);
+  }
+  EXPECT_GT(std::accumulate(report.stage_ns.begin(), report.stage_ns.end(), std::int64_t{0}), 0);
+}
+
+TEST(LandingPatternDetectorOptions, EveryViolationIsNamed) {
+  LandingPatternDetectorOptions options;
+  EXPECT_TRUE(options.Validate().empty());
+  options.pattern.board_size_m = 0.2;
+  options.min_ring_px = 1;
+  options.min_quality = NAN;
+  options.max_partial_altitude_m = -1;
+  options.max_search_ms = -1;
+  EXPECT_EQ(options.Validate().size(), 5u);
+  const CameraModel camera = TestPrintCamera();
+  try {
+    LandingPatternDetector detector(camera, options);
+    FAIL();
+  } catch (const InputError& error) {
+    for (const char* key : {"board_size_m", "min_ring_px", "min_quality", "max_partial_altitude_m",
+                            "max_search_ms"}) {
+      EXPECT_THAT(error.what(), HasSubstr(key));
+    }
+  }
+}
+
+TEST(LandingStage, HasANameEach) {
+  EXPECT_STREQ(ToString(LandingStage::kBinarize), "binarize");
+  EXPECT_STREQ(ToString(LandingStage::kFound), "found");
+  EXPECT_STREQ(ToString(CrossMethod::kPartial), "partial");
+  EXPECT_STREQ(ToString(CrossMethod::kQuadrants), "quadrants");
+}
+
+}  // namespace
+}  // namespace kestrel

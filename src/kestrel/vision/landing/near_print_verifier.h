@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "kestrel/vision/landing/cross.h"
+#include "kestrel/vision/landing/detection_choice.h"
+#include "kestrel/vision/landing/landing_models.h"
+#include "kestrel/vision/landing/print_alignment.h"
+#include "kestrel/vision/landing/prior_knowledge.h"
+#include "kestrel/vision/landing/ring_candidates.h"
+#include "kestrel/vision/landing/ring_memory.h"
+#include "kestrel/vision/landing/searched_image.h"
+
+namespace kestrel {
+
+// Memory of NearPrintVerifier, which does not allocate once it is reserved.
+struct NearPrintBuffers {
+  CrossLinesWorkspace cross_lines;
+  RingMemory tested;
+  RingMemory refused;  // rings whose edges were found, and that are something else
+
+  void Reserve();
+};
+
+// Tests whether a ring whose strokes have edges is that of the print, and locates it: looks for the
+// cross inside, aligns the print with the edges of the image, measures what speaks against it, and
+// finds the pose (paper, sections 2.3 to 2.5).
+class NearPrintVerifier {
+ public:
+  // The arguments must outlive the test.
+  NearPrintVerifier(const LandingModels& models, const PriorKnowledge& prior, SearchedImage* image,
+                    NearPrintBuffers* buffers, DetectionChoice* choice, SearchLog* log);
+
+  void Test(const RingCandidate& ring);
+
+  // A ring that is where it was predicted, nearly.
+  void TestPredicted(const CirclePose& ring, const Eigen::Vector2d& predicted_px);
+
+  // A print of which the cross was seen and no ring.
+  void TestCross(const RigidTransform& pose, const ImageRegion& region);
+
+ private:
+  // A print that has a cross where it should be.
+  struct Hypothesis {
+    RigidTransform camera_from_pattern;
+    CrossMethod method;
+    double contrast;  // of ring and white, gray values
+  };
+
+  std::optional<Hypothesis> FindCross(const CirclePose& ring, double diameter_px);
+  std::optional<Hypothesis> FindCrossInRefined(const RigidTransform& ring, double diameter_px);
+  std::optional<RingLocation> RefineRing(const CirclePose& ring, double reach_px, int iterations);
+  std::optional<Hypothesis> Compare(const RigidTransform& pose, CrossMethod method,
+                                    double diameter_px);
+  bool TestPrint(const Hypothesis& print, const Eigen::Vector2d& diameters_px, double reach_px,
+                 std::span<const CirclePose> rings, const PriorKnowledge::Order& order);
+  RigidTransform WithArmOf(const PrintAlignment& alignment, const CirclePose& ring) const;
+  bool Locate(const PrintAlignment& alignment, const RigidTransform& initial, PrintFinding finding);
+  void Refuse(const PrintFinding& finding, const PrintAlignment& alignment, double reach_px);
+  static void DoubtEdges(const PrintAlignment& alignment, PrintFinding* finding);
+
+  const LandingModels& models_;
+  const PriorKnowledge& prior_;
+  SearchedImage& image_;
+  NearPrintBuffers& buffers_;
+  DetectionChoice& choice_;
+  SearchLog& log_;
+};
+
+}  // namespace kestrel

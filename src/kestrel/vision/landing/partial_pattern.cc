@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/landing/partial_pattern.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+namespace kestrel {
+namespace {
+
+// In the plane at unit distance, where 1 is the height of the camera.
+constexpr double kLineTolerance = 0.02;  // of a point from its line
+constexpr double kMinLineLength = 0.12;  // of a line
+constexpr double kMaxPlaneReach = 4;     // of the plane that is looked at
+constexpr std::size_t kMaxSegments = 60;
+constexpr std::size_t kMaxBars = 16;
+constexpr std::size_t kMaxPoses = 4;
+constexpr double kParallel = 0.99;    // cosine
+constexpr double kRightAngle = 0.14;  // cosine
+
+double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+// Axes of the plane in the camera: x, y and the normal away from the ground.
+Eigen::Matrix3d PlaneAxes(const Eigen::Vector3d& up) {
+  Eigen::Matrix3d axes;
+  axes.col(2) = up;
+  axes.col(0) = up.unitOrthogonal();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return axes;
+}
+
+class Finder {
+ public:
+  Finder(const RayTable& rays, const ImageRegion& region, const LandingPattern& pattern,
+         const Eigen::Vector3d& up, PartialPatternWorkspace* workspace)
+      : rays_(rays),
+        region_(region),
+        pattern_(pattern),
+        axes_(PlaneAxes(up)),
+        workspace_(*workspace) {}
+
+  // Straight lines of a border. The camera sees the plane from above: black, on the right of a
+  // border in the image, is on its right in the plane.
+  void CollectLines(const GridPoint* points, std::size_t count) {
+    workspace_.plane.clear();
+    constexpr std::size_t kStride = 2;
+    for (std::size_t i = 0; i < count; i += kStride) {
+      const Eigen::Vector2d pixel =
+          region_.ToFull(Eigen::Vector2d(points[i].x - 0.5, points[i].y - 0.5));
+      const Eigen::Vector3d ray =
+          axes_.transpose() *
+          rays_.Ray(static_cast<float>(pixel.x()), static_cast<float>(pixel.y())).cast<double>();
+      const Eigen::Vector2d place = ray.head<2>() / std::max(-ray.z(), 1e-9);
+      if (ray.z() < 0 && place.squaredNorm() < kMaxPlaneReach * kMaxPlaneReach) {
+        workspace_.plane.push_back(place);
+      } else {
+        Cut(false);
+      }
+    }
+    Cut(workspace_.plane.size() * kStride + kStride > count);
+  }
+
+  void CollectBars() {
+    std::vector<LineSegment>& segments = workspace_.segments;
+    KeepLongest(&segments, kMaxSegments, [](const LineSegment& s) { return s.length(); });
+    for (const LineSegment& a : segments) {
+      for (const LineSegment& b : segments) {
+        // The borders of a bar run in opposite directions, each with the other on its black side.
+        const Eigen::Vector2d direction = a.direction();
+        if (direction.dot(b.direction()) > -kParallel) continue;
+        const Eigen::Vector2d across(-direction.y(), direction.x());
+        const double width = kBlackSide * across.dot(0.5 * (b.start + b.end) - a.start);
+        const double low = std::max(0.0, direction.dot(b.end - a.start));
+        const double high = std::min(a.length(), direction.dot(b.start - a.start));
+        if (width <= 0 || high - low < 0.8 * width || width > 1.5) continue;
+        workspace_.bars.push_back(
+            {a.start + 0.5 * (low + high) * direction + 0.5 * kBlackSide * width * across,
+             direction, width, high - low});
+      }
+    }
+    KeepLongest(&workspace_.bars, kMaxBars,
+                [](const PartialPatternWorkspace::Bar& bar) { return bar.length; });
+  }
+
+  void CollectCrosses() {
+    const auto& bars = workspace_.bars;
+    for (std::size_t i = 0; i < bars.size(); ++i) {
+      for (std::size_t j = i + 1; j < bars.size(); ++j) {
+        if (workspace_.poses.size() == kMaxPoses) return;
+        AddCross(bars[i], bars[j]);
+      }
+    }
+  }
+
+ private:
+  // Black lies on the right of a border line; 'across' points to its left.
+  static constexpr double kBlackSide = -1;
+
+  void Cut(bool closed) {
+    SplitAndMerge(workspace_.plane, closed, kLineTolerance, kMinLineLength, &workspace_.breaks,
+                  &workspace_.segments);
+    workspace_.plane.clear();
+  }
+
+  template <typename Items, typename Key>
+  static void KeepLongest(Items* items, std::size_t most, Key key) {
+    const std::size_t kept = std::min(items->size(), most);
+    std::partial_sort(items->begin(), items->begin() + static_cast<std::ptrdiff_t>(kept),
+                      items->end(),
+                      [&key](const auto& a, const auto& b) { return key(a) > key(b); });
+    items->resize(kept);
+  }
+
+  void AddCross(const PartialPatternWorkspace::Bar& a, const PartialPatternWorkspace::Bar& b) {
+    if (std::abs(a.direction.dot(b.direction)) > kRightAngle) return;
+    if (std::max(a.width, b.width) > 1.4 * std::min(a.width, b.width)) return;
+    // Where the axes meet, and how far from the bars: both are parts of the cross.
+    const double along = Cross(b.middle - a.middle, b.direction) / Cross(a.direction, b.direction);
+    const Eigen::Vector2d center = a.middle + along * a.direction;
+    const double width = 0.5 * (a.width + b.width);
+    const double reach = 1.2 * pattern_.arm_half_length_m / pattern_.arm_width_m * width;
+    if (std::abs(along) > reach || (center - b.middle).norm() > reach) return;
+    const double height = pattern_.arm_width_m / width;
+    RigidTransform pose;
+    Eigen::Matrix3d rotation;
+    rotation.col(0) = axes_ * Eigen::Vector3d(a.direction.x(), a.direction.y(), 0);
+    rotation.col(2) = axes_.col(2);
+    rotation.col(1) = rotation.col(2).cross(rotation.col(0));
+    pose.rotation = Eigen::Quaterniond(rotation);
+    pose.translation = axes_ * Eigen::Vector3d(height * center.x(), height * center.y(), -height);
+    workspace_.poses.push_back(pose);
+  }
+
+  const RayTable& rays_;
+  const ImageRegion& region_;
+  const LandingPattern& pattern_;
+  Eigen::Matrix3d axes_;
+  PartialPatternWorkspace& workspace_;
+};
+
+}  // namespace
+
+void PartialPatternWorkspace::Reserve(std::size_t border_points) {
+  plane.reserve(border_points);
+  breaks.reserve(border_points + 1);
+  segments.reserve(border_points);
+  bars.reserve(kMaxSegments * kMaxSegments);
+  poses.reserve(kMaxPoses);
+}
+
+void FindPartialPatterns(const BorderTracer& tracer, const RayTable& rays,
+                         const ImageRegion& region, const LandingPattern& pattern,
+                         const Eigen::Vector3d& up_in_camera, PartialPatternWorkspace* workspace) {
+  workspace->segments.clear();
+  workspace->bars.clear();
+  workspace->poses.clear();
+  Finder finder(rays, region, pattern, up_in_camera, workspace);
+  for (const Border& border : tracer.borders()) {
+    finder.CollectLines(tracer.begin(border), border.count);
+  }
+  finder.CollectBars();
+  finder.CollectCrosses();
+}
+
+}  // namespace kestrel

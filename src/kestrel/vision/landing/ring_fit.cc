@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/landing/ring_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kestrel {
+namespace {
+
+constexpr double kMinShare = 0.95;
+// Where dirt or a shadow touches a ring: a part of its border is left out, at one of so many
+// places, and fewer points are asked for.
+constexpr double kKeptShare = 0.75;
+constexpr int kPlaces = 8;
+constexpr double kMinShareWithDirt = 0.7;
+
+// Of angles, which are eq. (2) for rays: an error of a pixel counts the same on the near and on the
+// far side of a ring that is seen obliquely from close by, which it does not in the plane of the
+// ring.
+double ShareOnCone(std::span<const Eigen::Vector3d> rays, const Cone& cone, double tolerance) {
+  const auto inside = std::count_if(rays.begin(), rays.end(), [&](const Eigen::Vector3d& ray) {
+    return cone.AngleTo(ray) <= tolerance;
+  });
+  return static_cast<double>(inside) / static_cast<double>(rays.size());
+}
+
+// Squares of the angles between rays and cone, in tolerances and one at most.
+double BoundedSquares(std::span<const Eigen::Vector3d> rays, const Cone& cone, double tolerance) {
+  double sum = 0;
+  for (const Eigen::Vector3d& ray : rays) {
+    const double angle = cone.AngleTo(ray) / tolerance;
+    sum += std::min(angle * angle, 1.0);
+  }
+  return sum;
+}
+
+// The best cone (MSAC: Torr and Zisserman 2000) when a part of the border is left out of the fit;
+// nothing when too few points lie on it.
+std::optional<Cone> FitConeBesideDirt(std::span<Eigen::Vector3d> border, double tolerance) {
+  const auto kept = static_cast<std::size_t>(kKeptShare * static_cast<double>(border.size()));
+  const auto step = static_cast<std::ptrdiff_t>(border.size() / kPlaces);
+  std::optional<Cone> best;
+  double least = static_cast<double>(border.size());
+  for (int place = 0; place < kPlaces; ++place) {
+    std::rotate(border.begin(), border.begin() + step, border.end());
+    const std::optional<Cone> cone = FitCone(border.first(kept));
+    const double squares = cone ? BoundedSquares(border, *cone, tolerance) : least;
+    if (squares >= least) continue;
+    best = cone;
+    least = squares;
+  }
+  if (best && ShareOnCone(border, *best, tolerance) < kMinShareWithDirt) best.reset();
+  return best;
+}
+
+}  // namespace
+
+std::optional<RingFit> FitRing(std::span<Eigen::Vector3d> border, double radius_m,
+                               double tolerance_rad) {
+  std::optional<Cone> cone = FitCone(border);
+  if (!cone) return std::nullopt;
+  if (ShareOnCone(border, *cone, tolerance_rad) < kMinShare) {
+    cone = FitConeBesideDirt(border, tolerance_rad);
+    if (!cone) return std::nullopt;
+  }
+  Eigen::Vector3d toward = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& ray : border) toward += ray;
+  return RingFit{*cone, CirclePosesFromCone(*cone, radius_m, toward)};
+}
+
+}  // namespace kestrel

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/landing/robust_scale.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "kestrel/core/base/random.h"
+
+namespace kestrel {
+namespace {
+
+TEST(RobustScale, IsThatOfTheMedian) {
+  Random random(1);
+  for (const double sigma : {1e-3, 0.3, 1.0, 70.0}) {
+    std::vector<float> offsets;
+    for (int i = 0; i < 301; ++i) offsets.push_back(static_cast<float>(sigma * random.Normal()));
+    for (int i = 0; i < 20; ++i) offsets[i] = 1e6f;
+    const double scale = RobustScale(offsets);
+    for (float& offset : offsets) offset = std::abs(offset);
+    std::nth_element(offsets.begin(), offsets.begin() + 150, offsets.end());
+    EXPECT_NEAR(scale / (1.4826 * offsets[150]), 1, 0.005) << sigma;
+  }
+}
+
+TEST(RobustScale, OfFewIsThatOfTheMiddleOne) {
+  const std::vector<float> offsets{-5, 0.1f, -2, 100, 0.2f};
+  EXPECT_NEAR(RobustScale(offsets), 1.4826 * 2, 0.005 * 1.4826 * 2);
+  EXPECT_EQ(RobustScale({}), 0);
+}
+
+}  // namespace
+}  // namespace kestrel

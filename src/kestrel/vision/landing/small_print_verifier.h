@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "kestrel/vision/landing/detection_choice.h"
+#include "kestrel/vision/landing/landing_models.h"
+#include "kestrel/vision/landing/prior_knowledge.h"
+#include "kestrel/vision/landing/ring_candidates.h"
+#include "kestrel/vision/landing/ring_memory.h"
+#include "kestrel/vision/landing/searched_image.h"
+#include "kestrel/vision/landing/small_pattern.h"
+
+namespace kestrel {
+
+// Memory of SmallPrintVerifier, which does not allocate once it is reserved.
+struct SmallPrintBuffers {
+  SmallPatternWorkspace gray_values;
+  RingMemory tested;
+
+  void Reserve() { tested.Reserve(); }
+};
+
+// Tests whether a ring whose strokes are no wider than the blur is that of the print, and locates
+// it: fits the whole print to the gray values (docs/small_pattern.md).
+class SmallPrintVerifier {
+ public:
+  // The arguments must outlive the test.
+  SmallPrintVerifier(const LandingModels& models, const PriorKnowledge& prior, SearchedImage* image,
+                     SmallPrintBuffers* buffers, DetectionChoice* choice, SearchLog* log);
+
+  void Test(const RingCandidate& ring);
+
+  // A ring that is where it was predicted, nearly.
+  void TestPredicted(const CirclePose& ring, const Eigen::Vector2d& diameters_px);
+
+ private:
+  // What became of one of the two poses of a ring.
+  enum class Outcome { kFound, kOtherPose, kNothing };
+
+  bool IsTooSmall(const Eigen::Vector2d& diameters_px) const;
+  Outcome TestPose(const CirclePose& pose, std::span<const double> scales);
+  SmallPatternFitter::Start FindStart(const CirclePose& pose, std::span<const double> scales);
+  std::optional<double> ArmAngleByQuadrants(const CirclePose& pose);
+  std::optional<PrintFinding> FindingOf(const SmallPatternFitter::Fit& fit,
+                                        SmallPatternFitter::Light light) const;
+
+  const LandingModels& models_;
+  const PriorKnowledge& prior_;
+  SearchedImage& image_;
+  SmallPrintBuffers& buffers_;
+  DetectionChoice& choice_;
+  SearchLog& log_;
+};
+
+}  // namespace kestrel

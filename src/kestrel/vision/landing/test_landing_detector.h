@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include "kestrel/vision/landing/landing_pattern_detector.h"
+#include "kestrel/vision/landing/test_prints.h"
+
+namespace kestrel {
+
+// A detector, its camera, and prints drawn for it.
+class LandingPatternDetectorTest : public ::testing::Test {
+ protected:
+  cv::Mat Draw(const Print& print, const RigidTransform& pose) const {
+    return DrawPrint(camera_, pattern_, print, pose);
+  }
+  LandingReport Detect(const cv::Mat& image, const LandingHint& hint = {}) {
+    return detector_.Detect(image, hint, workspace_);
+  }
+
+  const LandingPattern pattern_{};
+  const CameraModel camera_ = TestPrintCamera();
+  const LandingPatternDetector detector_{camera_, {}};
+  LandingWorkspace workspace_;
+  const RigidTransform pose_ = PrintPose({0.15, -0.1, 3}, 0.25, 1, 0.3);
+  const cv::Mat image_ = DrawPrint(camera_, pattern_, SpokedPrint(pattern_, 4), pose_);
+};
+
+// What two reports of one image must share: all but the times.
+inline void ExpectSame(const LandingReport& a, const LandingReport& b) {
+  EXPECT_EQ(a.reached, b.reached);
+  EXPECT_EQ(a.reason, b.reason);
+  EXPECT_EQ(a.candidates, b.candidates);
+  ASSERT_EQ(a.detection.has_value(), b.detection.has_value());
+  if (!a.detection) return;
+  EXPECT_EQ(a.detection->center_px, b.detection->center_px);
+  EXPECT_EQ(a.detection->camera_from_pattern.translation,
+            b.detection->camera_from_pattern.translation);
+  EXPECT_EQ(a.detection->covariance, b.detection->covariance);
+  EXPECT_EQ(a.detection->quality, b.detection->quality);
+  EXPECT_EQ(a.detection->method, b.detection->method);
+}
+
+}  // namespace kestrel

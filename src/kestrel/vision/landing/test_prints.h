@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <opencv2/core.hpp>
+
+#include "kestrel/core/base/random.h"
+#include "kestrel/core/camera/camera_model.h"
+#include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/image/border_tracing.h"
+#include "kestrel/core/image/test_figures.h"
+#include "kestrel/vision/landing/landing_pattern.h"
+
+namespace kestrel {
+
+// Whether a print is black at a point of its plane, metres.
+using Print = std::function<bool(double, double)>;
+
+inline CameraModel TestPrintCamera() {
+  return CameraModel({320, 240, 220, 220, 159.5, 119.5, DistortionModel::kNone, {}});
+}
+
+// Half arms from the centre, the first along x, at equal angles.
+inline bool IsSpoke(double x, double y, int count, double half_width, double length) {
+  const double step = 2 * std::numbers::pi / count;
+  const double turn = std::remainder(std::atan2(y, x), step);
+  const double radius = std::hypot(x, y);
+  const double along = radius * std::cos(turn);
+  return along > 0 && along < length && std::abs(radius * std::sin(turn)) < half_width;
+}
+
+inline bool IsRing(const LandingPattern& pattern, double x, double y) {
+  const double radius = std::hypot(x, y);
+  return radius > pattern.inner_radius_m() && radius < pattern.outer_radius_m();
+}
+
+// Height (m) of a sheet that should be flat over a point of its plane, metres.
+using SheetHeight = std::function<double(double, double)>;
+
+// The landing pattern with another number of spokes, or the pattern itself: four.
+inline Print SpokedPrint(const LandingPattern& pattern, int spokes) {
+  return [=](double x, double y) {
+    return IsRing(pattern, x, y) ||
+           IsSpoke(x, y, spokes, 0.5 * pattern.arm_width_m, pattern.arm_half_length_m);
+  };
+}
+
+// A pose of a print that faces the camera, tilted about 'tilt_axis' (in the camera's x, y plane)
+// and turned.
+inline RigidTransform PrintPose(const Eigen::Vector3d& center, double tilt, double tilt_axis,
+                                double turn) {
+  RigidTransform pose;
+  const Eigen::Vector3d axis(std::cos(tilt_axis), std::sin(tilt_axis), 0);
+  // The face looks at the camera: z up out of the print is -z of the camera.
+  pose.rotation = Eigen::AngleAxisd(tilt, axis) *
+                  Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()) *
+                  Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ());
+  pose.translation = center;
+  return pose;
+}
+
+// The print on a white board on gray ground, each pixel the mean of 8 x 8 rays through it where its
+// corners, sides and centre do not agree. 'height': of a board that is not flat.
+inline cv::Mat DrawPrint(const CameraModel& camera, const LandingPattern& pattern,
+                         const Print& print, const RigidTransform& camera_from_pattern,
+                         const SheetHeight& height = {}) {
+  const RigidTransform pattern_from_camera = camera_from_pattern.Inverse();
+  const Eigen::Matrix3d rotation = pattern_from_camera.rotation.toRotationMatrix();
+  const Eigen::Vector3d& origin = pattern_from_camera.translation;
+  const auto gray_at = [&](double u, double v) {
+    Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
+    camera.Unproject({u, v}, &ray);
+    ray = rotation * ray;
+    const double across = ray.x() / ray.z(), down = ray.y() / ray.z();
+    double x = origin.x() - origin.z() * across;
+    double y = origin.y() - origin.z() * down;
+    // The height is that of the point that is seen: by steps towards it.
+    for (int i = 0; height && i < 6; ++i) {
+      const double lower = origin.z() - height(x, y);
+      x = origin.x() - lower * across;
+      y = origin.y() - lower * down;
+    }
+    if (std::max(std::abs(x), std::abs(y)) > 0.5 * pattern.board_size_m) return 120;
+    return print(x, y) ? 40 : 200;
+  };
+  const auto is_even = [&](int u, int v) {
+    const int gray = gray_at(u, v);
+    for (const double dv : {-0.5, 0.0, 0.5}) {
+      for (const double du : {-0.5, 0.0, 0.5}) {
+        if (gray_at(u + du, v + dv) != gray) return false;
+      }
+    }
+    return true;
+  };
+  constexpr int kRays = 8;
+  cv::Mat image(camera.height_px(), camera.width_px(), CV_8UC1);
+  for (int v = 0; v < image.rows; ++v) {
+    for (int u = 0; u < image.cols; ++u) {
+      const int rays = is_even(u, v) ? 1 : kRays;
+      double sum = 0;
+      for (int i = 0; i < rays * rays; ++i) {
+        const int column = i % rays;
+        const int row = i / rays;
+        sum += gray_at(u + (column + 0.5) / rays - 0.5, v + (row + 0.5) / rays - 0.5);
+      }
+      image.at<std::uint8_t>(v, u) = static_cast<std::uint8_t>(std::lround(sum / (rays * rays)));
+    }
+  }
+  return image;
+}
+
+// The borders of a figure in pixels, on bright ground.
+inline BorderTracer TraceFigure(const Print& is_dark, int width, int height) {
+  BorderTracer tracer;
+  tracer.Trace(DrawFigure(width, height, is_dark), cv::Rect(0, 0, width, height), BorderLimits{});
+  return tracer;
+}
+
+// A copy with normal noise of the given standard deviation, gray values.
+inline cv::Mat AddNoise(const cv::Mat& image, double sigma, Random* random) {
+  cv::Mat noisy = image.clone();
+  for (int v = 0; v < image.rows; ++v) {
+    for (int u = 0; u < image.cols; ++u) {
+      const double gray = image.at<std::uint8_t>(v, u) + sigma * random->Normal();
+      noisy.at<std::uint8_t>(v, u) =
+          static_cast<std::uint8_t>(std::lround(std::clamp(gray, 0.0, 255.0)));
+    }
+  }
+  return noisy;
+}
+
+// Error of a pose: translation and rotation vector in the camera, the latter modulo the right
+// angles under which the print looks the same.
+inline Eigen::Matrix<double, 6, 1> PoseError(const RigidTransform& found,
+                                             const RigidTransform& truth) {
+  Eigen::Matrix<double, 6, 1> best;
+  double least = 1e9;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const Eigen::Quaterniond turned =
+        truth.rotation *
+        Eigen::AngleAxisd(quarter * std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
+    const Eigen::AngleAxisd difference(found.rotation * turned.conjugate());
+    if (difference.angle() > least) continue;
+    least = difference.angle();
+    best << found.translation - truth.translation, difference.angle() * difference.axis();
+  }
+  return best;
+}
+
+}  // namespace kestrel

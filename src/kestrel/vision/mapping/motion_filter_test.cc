@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/mapping/motion_filter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <iterator>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "kestrel/vision/mapping/test_map.h"
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector3d;
+using Path = std::function<Vector3d(double time_s)>;
+
+constexpr double kPeriod_s = 0.1;
+constexpr double kSigma_m = 0.035;  // of a detection from 6 m, as the pipeline says
+constexpr int kSeeds = 20;
+
+// What sightings of one moment have in common: their error, and what the map is told of it.
+struct SharedError {
+  Path error = [](double /*time_s*/) { return Vector3d(0, 0, 0); };
+  Path clock_shift = [](double /*time_s*/) { return Vector3d(0, 0, 0); };
+};
+
+// What the filter says of a disc on 'path' after each of 'count' sightings.
+std::vector<MappedObject> Watch(const Path& path, const SharedError& shared, int count,
+                                Random* random) {
+  const ObjectMotion motion = ObjectMapOptions().motion();
+  MotionFilter filter;
+  std::vector<MappedObject> said(count);
+  for (int i = 0; i < count; ++i) {
+    const double time_s = kPeriod_s * i;
+    ObjectMeasurement seen =
+        MeasureNoisily(path(time_s) + shared.error(time_s), kYellow, kSigma_m, random);
+    seen.clock_shift = shared.clock_shift(time_s);
+    if (i == 0) {
+      filter = MotionFilter(seen, motion);
+    } else {
+      filter.Predict(kPeriod_s, motion);
+      filter.Fuse(seen, motion);
+    }
+    filter.Publish(&said[i]);
+  }
+  return said;
+}
+
+Vector3d Stand(double /*time_s*/) { return {1, -2, 0}; }
+
+Path Drive(double speed_mps, Random* random) {
+  const double course = random->Uniform(0, 2 * std::numbers::pi);
+  const Vector3d velocity = speed_mps * Vector3d(std::cos(course), std::sin(course), 0);
+  return [=](double time_s) { return Vector3d(time_s * velocity); };
+}
+
+// A navigation that is some centimetres off, over seconds and minutes.
+Path Drift(Random* random) {
+  std::vector<double> phases(6);
+  for (double& phase : phases) phase = random->Uniform(0, 2 * std::numbers::pi);
+  return [=](double time_s) {
+    const auto axis = [&](int i) {
+      return 0.03 * std::sin(time_s / 3 + phases[i]) + 0.05 * std::sin(time_s / 40 + phases[i + 3]);
+    };
+    return Vector3d(axis(0), axis(1), axis(2));
+  };
+}
+
+// Velocity of a UAV at 6 m/s, to and fro on lanes with turns.
+Path Lanes(Random* random) {
+  constexpr double kSpeed_mps = 6;
+  const double lane_s = random->Uniform(2, 8);
+  const double turn_s = random->Uniform(2, 4);
+  const double begin_s = random->Uniform(0, 20);
+  return [=](double time_s) {
+    const double half_s = lane_s + turn_s;
+    const double turns = std::floor((time_s + begin_s) / half_s);
+    const double in_lane_s = time_s + begin_s - turns * half_s;
+    const double turned = std::max(0.0, in_lane_s - lane_s) / turn_s;
+    const double course = std::numbers::pi * (turns + turned);
+    return Vector3d(kSpeed_mps * Vector3d(std::cos(course), std::sin(course), 0));
+  };
+}
+
+// The number of the first sighting after which it is said to move; 0: of none.
+int FirstSaid(const std::vector<MappedObject>& said) {
+  const auto first = std::find_if(said.begin(), said.end(), [](auto& one) { return one.moves; });
+  return first == said.end() ? 0 : 1 + static_cast<int>(first - said.begin());
+}
+
+TEST(MotionFilter, WhatStandsNeverMoves) {
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    Random random(seed);
+    const auto said = Watch(Stand, {.error = Drift(&random)}, 2000, &random);
+    EXPECT_EQ(FirstSaid(said), 0) << "seed " << seed;
+    EXPECT_EQ(said.back().velocity().norm(), 0);
+    EXPECT_LT((said.back().position() - Stand(0)).norm(), 0.15);
+  }
+}
+
+TEST(MotionFilter, AWrongClockDoesNotMoveWhatStands) {
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    Random random(seed);
+    const Path drift = Drift(&random);
+    const Path velocity = Lanes(&random);
+    const SharedError shared{
+        [&](double time_s) { return Vector3d(drift(time_s) + 0.02 * velocity(time_s)); }, velocity};
+    EXPECT_EQ(FirstSaid(Watch(Stand, shared, 2000, &random)), 0) << "seed " << seed;
+  }
+}
+
+TEST(MotionFilter, OneWrongDetectionDoesNotMoveWhatStands) {
+  Random random(1);
+  const Path jump = [](double time_s) {
+    return Vector3d(std::abs(time_s - 5) < 0.01 ? 0.5 : 0, 0, 0);
+  };
+  EXPECT_EQ(FirstSaid(Watch(Stand, {.error = jump}, 100, &random)), 0);
+}
+
+TEST(MotionFilter, WhatMovesIsSaidToMoveWithItsVelocity) {
+  struct Case {
+    double speed_mps;
+    int sightings;  // after which it is said at the latest
+  };
+  for (const Case c : {Case{0.3, 15}, Case{0.6, 10}, Case{1.4, 6}, Case{2, 6}}) {
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+      Random random(seed);
+      const Path path = Drive(c.speed_mps, &random);
+      const auto said = Watch(path, {.error = Drift(&random)}, 100, &random);
+      const int first = FirstSaid(said);
+      EXPECT_TRUE(first > 0 && first <= c.sightings) << c.speed_mps << " m/s: " << first;
+      EXPECT_TRUE(said.back().moves);
+      EXPECT_LT((said.back().velocity() - path(1)).norm(), 0.15) << c.speed_mps << " m/s";
+    }
+  }
+}
+
+TEST(MotionFilter, VelocityIsKnownAfterTenSightings) {
+  for (const double speed_mps : {0.6, 1.4, 2.0}) {
+    double squares = 0;
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+      Random random(seed);
+      const Path path = Drive(speed_mps, &random);
+      const auto said = Watch(path, {.error = Drift(&random)}, 10, &random);
+      squares += (said.back().velocity() - path(1)).squaredNorm();
+    }
+    EXPECT_LT(std::sqrt(squares / kSeeds), 0.15) << speed_mps << " m/s";
+  }
+}
+
+TEST(MotionFilter, WhatStopsStandsWhereItStopped) {
+  constexpr double kStop_s = 20;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    Random random(seed);
+    const Path whole = Drive(0.6, &random);
+    const Path path = [&](double time_s) { return whole(std::min(time_s, kStop_s)); };
+    const auto said = Watch(path, {}, 250, &random);
+    EXPECT_TRUE(said[200].moves);
+    EXPECT_FALSE(said.back().moves) << "seed " << seed;
+    EXPECT_LT((said.back().position() - whole(kStop_s)).norm(), 0.15);
+  }
+}
+
+TEST(MotionFilter, WhatBeginsToDriveIsSaidToMove) {
+  constexpr int kStands = 1000;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    Random random(seed);
+    const Path whole = Drive(0.6, &random);
+    const Path path = [&](double time_s) { return whole(std::max(0.0, time_s - 100)); };
+    const int first = FirstSaid(Watch(path, {.error = Drift(&random)}, kStands + 20, &random));
+    EXPECT_GT(first, kStands) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/mapping/object_fusion.h"
+
+#include <cstdint>
+#include <map>
+
+#include <Eigen/Cholesky>
+
+#include "kestrel/vision/mapping/assignment.h"
+
+namespace kestrel {
+namespace {
+
+// What of an object says which others it may be: little memory, as all are compared with all.
+struct Outline {
+  Eigen::Vector3d position;
+  double trace;  // of the position's covariance
+  std::size_t color;
+  ObjectShape shape;
+};
+
+std::vector<Outline> OutlinesOf(const std::vector<MappedObject>& objects) {
+  std::vector<Outline> outlines;
+  outlines.reserve(objects.size());
+  for (const MappedObject& object : objects) {
+    outlines.push_back({object.position(), object.covariance.topLeftCorner<3, 3>().trace(),
+                        object.color_index(), object.shape});
+  }
+  return outlines;
+}
+
+// Squared Mahalanobis distance.
+double SquaredDistance(const MappedObject& a, const MappedObject& b, double shared_variance) {
+  Eigen::Matrix3d covariance =
+      a.covariance.topLeftCorner<3, 3>() + b.covariance.topLeftCorner<3, 3>();
+  covariance.diagonal().array() += shared_variance;
+  const Eigen::Vector3d difference = a.position() - b.position();
+  return difference.dot(covariance.llt().solve(difference));
+}
+
+// An object and a known one that it may be.
+struct Pairing {
+  std::size_t known;
+  double cost;
+};
+
+// Of each object what it may be.
+std::vector<std::vector<Pairing>> FindPairings(const std::vector<MappedObject>& objects,
+                                               const std::vector<MappedObject>& known,
+                                               const ObjectMapOptions& options) {
+  // The navigation of each UAV has its own bias.
+  const double shared_variance = 2 * options.shared_sigma_m * options.shared_sigma_m;
+  const std::vector<Outline> outlines = OutlinesOf(objects);
+  const std::vector<Outline> known_outlines = OutlinesOf(known);
+  std::vector<std::vector<Pairing>> pairings(objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Outline& a = outlines[i];
+    for (std::size_t k = 0; k < known.size(); ++k) {
+      const Outline& b = known_outlines[k];
+      if (a.color != b.color || a.shape != b.shape) continue;
+      // No variance along any direction is above the trace: most pairs need no solver.
+      const double trace = a.trace + b.trace + 3 * shared_variance;
+      if ((a.position - b.position).squaredNorm() > options.gate * trace) continue;
+      const double cost = SquaredDistance(objects[i], known[k], shared_variance);
+      if (cost <= options.gate) pairings[i].push_back({k, cost});
+    }
+  }
+  return pairings;
+}
+
+constexpr std::size_t kNew = SIZE_MAX;
+
+// Of each of 'rows', those that have rivals, the known object that it is, or kNew: the cheapest in
+// all.
+void AssignRivals(const std::vector<std::size_t>& rows,
+                  const std::vector<std::vector<Pairing>>& pairings, double new_cost,
+                  std::vector<std::size_t>* assigned) {
+  std::map<std::size_t, Eigen::Index> column_of;
+  for (const std::size_t row : rows) {
+    for (const Pairing& pairing : pairings[row]) column_of.emplace(pairing.known, 0);
+  }
+  std::vector<std::size_t> known;
+  for (auto& [index, column] : column_of) {
+    column = std::ssize(known);
+    known.push_back(index);
+  }
+  const Eigen::Index count = std::ssize(known);
+  Eigen::MatrixXd costs =
+      Eigen::MatrixXd::Constant(std::ssize(rows), count + std::ssize(rows), kImpossibleCost);
+  for (Eigen::Index i = 0; i < std::ssize(rows); ++i) {
+    for (const Pairing& pairing : pairings[rows[i]]) {
+      costs(i, column_of[pairing.known]) = pairing.cost;
+    }
+    costs(i, count + i) = new_cost;
+  }
+  AssignmentSolver solver;
+  const std::vector<int>& columns = solver.Solve(costs);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    (*assigned)[rows[i]] = columns[i] < count ? known[columns[i]] : kNew;
+  }
+}
+
+// Of each object the known one that it is, or kNew.
+std::vector<std::size_t> Assign(const std::vector<std::vector<Pairing>>& pairings,
+                                std::size_t known, double new_cost) {
+  std::vector<int> claims(known);
+  for (const auto& row : pairings) {
+    for (const Pairing& pairing : row) ++claims[pairing.known];
+  }
+  std::vector<std::size_t> assigned(pairings.size(), kNew);
+  std::vector<std::size_t> rivals;
+  for (std::size_t i = 0; i < pairings.size(); ++i) {
+    if (pairings[i].empty()) continue;
+    const std::size_t only = pairings[i].front().known;
+    if (pairings[i].size() == 1 && claims[only] == 1) {
+      assigned[i] = only;
+    } else {
+      rivals.push_back(i);
+    }
+  }
+  if (!rivals.empty()) AssignRivals(rivals, pairings, new_cost, &assigned);
+  return assigned;
+}
+
+}  // namespace
+
+std::vector<std::size_t> FuseObjects(const std::vector<MappedObject>& objects,
+                                     const ObjectMapOptions& options,
+                                     std::vector<MappedObject>* fused) {
+  std::vector<std::size_t> indices =
+      Assign(FindPairings(objects, *fused, options), fused->size(), options.gate);
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (indices[i] == kNew) {
+      indices[i] = fused->size();
+      fused->push_back(objects[i]);
+    } else {
+      UnifyObjects(objects[i], &(*fused)[indices[i]]);
+    }
+  }
+  return indices;
+}
+
+}  // namespace kestrel

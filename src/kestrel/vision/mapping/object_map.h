@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/vision/mapping/assignment.h"
+#include "kestrel/vision/mapping/mapped_object.h"
+#include "kestrel/vision/mapping/motion_filter.h"
+
+namespace kestrel {
+
+struct ObjectMapOptions {
+  // Squared Mahalanobis distance beyond which a detection is not the object's: 16.3 is passed by
+  // one true detection in a thousand (3 degrees of freedom).
+  double gate = 16.3;
+  // How many objects that are not in the map yet lie around, 1/m^3. A detection is rather a new
+  // object than one that may be anywhere by now.
+  double new_density = 0.005;
+  // Two objects of one shape and colour cannot be nearer than this: they become one.
+  double min_separation_m = 0.2;
+  // How fast the position of a standing object becomes uncertain; how a moving one accelerates, and
+  // for how long it keeps its acceleration and its velocity.
+  double drift_noise = 0.005;
+  double acceleration_sigma_mps2 = 0.2;
+  double acceleration_time_s = 2;
+  double velocity_time_s = 30;
+  double start_speed_sigma_mps = 1.5;
+  // What looks like motion and is none: an error that the detections of a moment share and that
+  // wanders, per axis and about so fast (the navigation's), and an error of the clock offset.
+  double wander_sigma_m = 0.05;
+  double wander_time_s = 3;
+  double clock_sigma_s = 0.03;
+  // From this probability on an object is said to move.
+  double moving_probability = 0.99;
+  // Error of the position, per axis, that many detections in a row share (bias of the navigation,
+  // clock): no object is known better than this.
+  double shared_sigma_m = 0.02;
+  // How sure a detection and a miss make the map of an object: probability that an object in view
+  // is detected, and of a detection where there is none. At 'removal_probability' it is removed.
+  double detection_probability = 0.6;
+  double false_probability = 0.02;
+  double max_probability = 0.999;
+  double removal_probability = 0.05;
+  // Detections that make an object part of the map.
+  int confirm_count = 3;
+  // Objects that are kept; the least sure make room.
+  int capacity = 256;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("gate", self.gate, "1", "squared Mahalanobis distance of the furthest detection");
+    visitor("new_density", self.new_density, "1/m^3", "objects that are not in the map yet");
+    visitor("min_separation_m", self.min_separation_m, "m", "nearer ones of a kind become one");
+    visitor("drift_noise", self.drift_noise, "m/sqrt(s)", "of the position of standing objects");
+    visitor("acceleration_sigma_mps2", self.acceleration_sigma_mps2, "m/s^2",
+            "acceleration of moving objects, standard deviation per axis");
+    visitor("acceleration_time_s", self.acceleration_time_s, "s",
+            "how long an acceleration is kept, about");
+    visitor("velocity_time_s", self.velocity_time_s, "s", "how long a velocity is kept, about");
+    visitor("start_speed_sigma_mps", self.start_speed_sigma_mps, "m/s",
+            "speed of a new object that may move, standard deviation per axis");
+    visitor("wander_sigma_m", self.wander_sigma_m, "m",
+            "error that detections share and that wanders, standard deviation per axis");
+    visitor("wander_time_s", self.wander_time_s, "s", "how long that error stays, about");
+    visitor("clock_sigma_s", self.clock_sigma_s, "s", "of the clock offset, standard deviation");
+    visitor("moving_probability", self.moving_probability, "1",
+            "from which on an object is said to move");
+    visitor("shared_sigma_m", self.shared_sigma_m, "m",
+            "error that detections in a row share, per axis");
+    visitor("detection_probability", self.detection_probability, "1",
+            "that an object in view is detected");
+    visitor("false_probability", self.false_probability, "1",
+            "that something is detected where there is nothing");
+    visitor("max_probability", self.max_probability, "1", "no object is surer than this");
+    visitor("removal_probability", self.removal_probability, "1",
+            "an object that is less sure is removed");
+    visitor("confirm_count", self.confirm_count, "1", "detections that make an object");
+    visitor("capacity", self.capacity, "1", "objects that are kept");
+  }
+  std::vector<std::string> Validate() const;
+
+  ObjectMotion motion() const;
+};
+
+// Says where an object should have been seen, if it were there.
+class FieldOfView {
+ public:
+  virtual ~FieldOfView() = default;
+  virtual bool Shows(const MappedObject& object) const = 0;
+};
+
+// The objects around, from detections in the world: the paper's section 3.7 with covariances. Each
+// frame's detections are assigned to the objects together, the cheapest way in all (Mahalanobis
+// distance and how alike colours are); a Kalman filter fuses them, a MotionFilter those of what may
+// move; what should be seen and is not fades and is removed. Bounded memory and time per update.
+class ObjectMap {
+ public:
+  // Throws InputError when the options are not valid. 'model' tells what may move.
+  ObjectMap(const ObjectModel& model, const ObjectMapOptions& options);
+
+  // The detections of one frame at 'time', which must not decrease: an older frame is left out.
+  // Detections that are not finite are left out, and those beyond kMaxMeasurements.
+  void Update(Time time, std::span<const ObjectMeasurement> measurements, const FieldOfView& view);
+
+  // The objects seen often enough, by their ids, each at the time when it was last seen: where a
+  // moving one is since then nobody knows, PredictObject says where it would be.
+  std::vector<MappedObject> Confirmed() const;
+
+  // All, with those that were seen once.
+  std::vector<MappedObject> objects() const;
+
+  static constexpr std::size_t kMaxMeasurements = 64;
+
+ private:
+  // An object, and of what may move whether it does.
+  struct Entry {
+    MappedObject object;
+    MotionFilter motion;
+  };
+
+  void Predict(Time time, Entry* entry) const;
+  double Cost(const ObjectMeasurement& measurement, const Entry& entry) const;
+  void Fuse(const ObjectMeasurement& measurement, Entry* entry) const;
+  Entry Start(Time time, const ObjectMeasurement& measurement);
+  void Assign(Time time);
+  void FadeUnseen(Time time, const FieldOfView& view);
+  void UnifyNeighbors();
+  void RemoveSurplus();
+
+  ObjectModel model_;
+  ObjectMapOptions options_;
+  double hit_log_odds_;
+  double miss_log_odds_;
+  double new_cost_;  // -2 log of how likely a detection is that of a new object
+  double max_log_odds_;
+  double removal_log_odds_;
+  ObjectMotion motion_;
+  std::vector<Entry> entries_;
+  std::vector<Entry> predicted_;  // the same at the time of the update
+  std::vector<ObjectMeasurement> measurements_;
+  Eigen::MatrixXd costs_;
+  AssignmentSolver solver_;
+  std::int64_t next_id_ = 1;
+  Time last_time_ = Time::min();
+};
+
+}  // namespace kestrel

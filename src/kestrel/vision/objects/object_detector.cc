@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/objects/object_detector.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include <fmt/format.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
+#include "kestrel/vision/objects/object_examiner.h"
+
+namespace kestrel {
+namespace {
+
+// Room for the detections of a frame, so that a report seldom grows.
+constexpr std::size_t kUsualDetections = 64;
+
+const CameraModel& Checked(const CameraModel& camera) {
+  if (std::max(camera.width_px(), camera.height_px()) > kMaxImageSide) {
+    throw InputError(fmt::format("the image has {} x {} px, expected sides up to {}",
+                                 camera.width_px(), camera.height_px(), kMaxImageSide));
+  }
+  return camera;
+}
+
+}  // namespace
+
+const char* ToString(Completeness completeness) {
+  switch (completeness) {
+    case Completeness::kWhole:
+      return "whole";
+    case Completeness::kCutOff:
+      return "cut off";
+    case Completeness::kMerged:
+      return "merged";
+  }
+  return "";
+}
+
+const char* ToString(ObjectStage stage) {
+  constexpr std::array<const char*, kObjectStageCount> kNames = {
+      "segmentation", "size", "roundness", "shape", "outline or digit", "position"};
+  return kNames[static_cast<std::size_t>(stage)];
+}
+
+std::vector<std::string> ObjectDetectorOptions::Validate() const {
+  std::vector<std::string> violations;
+  const auto require = [&](bool holds, const char* rule) {
+    if (!holds) violations.emplace_back(rule);
+  };
+  require(min_pixels >= 5, "min_pixels must be at least 5");
+  require(max_roundness_error > 0, "max_roundness_error must be positive");
+  require(max_circularity_error > 0, "max_circularity_error must be positive");
+  require(outline_tolerance >= 0, "outline_tolerance must not be negative");
+  require(outline_tolerance_px > 0, "outline_tolerance_px must be positive");
+  require(min_outline_share > 0 && min_outline_share <= 1, "min_outline_share must be in 0 to 1");
+  require(max_gap >= 0 && max_gap < 1, "max_gap must be in 0 to 1");
+  require(max_cut_off_gap >= 0 && max_cut_off_gap < 1, "max_cut_off_gap must be in 0 to 1");
+  require(max_outside >= 0 && max_outside < 1, "max_outside must be in 0 to 1");
+  require(ground_tolerance > 0, "ground_tolerance must be positive");
+  require(ground_tolerance_m >= 0, "ground_tolerance_m must not be negative");
+  require(center_sigma_px > 0, "center_sigma_px must be positive");
+  require(radius_sigma_px > 0, "radius_sigma_px must be positive");
+  require(track_radius_px >= 0, "track_radius_px must not be negative");
+  return violations;
+}
+
+ObjectDetector::ObjectDetector(const CameraModel& camera, const ObjectModel& model,
+                               const ObjectDetectorOptions& options)
+    : ObjectDetector(camera, Checked(model), ColorGrid(model.colors), options) {}
+
+ObjectDetector::ObjectDetector(const CameraModel& camera, const ObjectModel& model,
+                               const ColorGrid& grid, const ObjectDetectorOptions& options)
+    : camera_(Checked(camera)),
+      rays_(camera),
+      model_(Checked(model)),
+      grid_(grid),
+      options_(Checked(options)),
+      digits_(DefaultDigitModel()),
+      focal_px_(0.5 * (camera.intrinsics().fx_px + camera.intrinsics().fy_px)),
+      search_step_(SearchStep(options.min_pixels)) {
+  for (const ObjectClass& object : model_.classes) {
+    if (object.shape == ObjectShape::kCuboid) has_digit_[object.color + 1] = true;
+  }
+}
+
+void ObjectDetector::Detect(const cv::Mat& image, const ObjectHint& hint,
+                            ObjectWorkspace& workspace, ObjectReport* report) const {
+  using Clock = std::chrono::steady_clock;
+  for (auto* detections : {&report->detections, &report->elsewhere}) {
+    detections->reserve(kUsualDetections);
+    detections->clear();
+  }
+  report->passed.fill(0);
+  report->segmentation_time = report->test_time = Duration::zero();
+  SegmentSearch search(image, grid_, &workspace.segmentation);
+  ObjectExaminer examiner(*this, image, hint, &workspace, report);
+  Segment segment;
+  Clock::time_point last = Clock::now();
+  const auto add_time = [&](Duration* time) {
+    const Clock::time_point now = Clock::now();
+    *time += now - last;
+    last = now;
+  };
+  // Counts the small ones without the clock, which would take longer than they do.
+  const auto examine = [&] {
+    if (static_cast<int>(segment.pixels.size()) < options_.min_pixels) return examiner.Run(segment);
+    if (has_digit_[segment.label]) search.JoinAmbiguous(&segment);
+    add_time(&report->segmentation_time);
+    const bool is_object = examiner.Run(segment);
+    add_time(&report->test_time);
+    return is_object;
+  };
+  if (hint.track.empty()) {
+    search.SearchAll(search_step_);
+    while (search.Next(&segment)) examine();
+  }
+  for (const TrackedObject& object : hint.track) {
+    const Eigen::Vector2i at = object.expected_px.array().round().matrix().cast<int>();
+    const auto label = static_cast<ColorLabel>(model_.classes[object.class_index].color + 1);
+    while (search.FindNear(at.x(), at.y(), options_.track_radius_px, label, &segment)) {
+      if (examine()) break;
+    }
+  }
+  add_time(&report->segmentation_time);
+}
+
+}  // namespace kestrel

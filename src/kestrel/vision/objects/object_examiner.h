@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/vision/objects/cuboid_face.h"
+#include "kestrel/vision/objects/ground_plane.h"
+#include "kestrel/vision/objects/object_detector.h"
+#include "kestrel/vision/objects/segment_shape.h"
+
+namespace kestrel {
+
+// The tests that a segment of an image goes through on its way to a detection.
+class ObjectExaminer {
+ public:
+  ObjectExaminer(const ObjectDetector& detector, const cv::Mat& image, const ObjectHint& hint,
+                 ObjectWorkspace* workspace, ObjectReport* report)
+      : detector_(detector), image_(image), hint_(hint), workspace_(workspace), report_(report) {}
+
+  // Adds a detection to the report when the segment is an object of one of the classes; true when
+  // it is where the hint has the ground.
+  bool Run(const Segment& segment);
+
+ private:
+  // What a segment is when it is tested for a class.
+  enum class Outcome {
+    kNone,
+    kElsewhere,  // the object by its shape, but not on the ground where the hint has it
+    kObject,
+  };
+
+  Outcome TestClass(const Segment& segment, const SegmentShape& shape, std::size_t class_index,
+                    ObjectDetection* detection, ObjectStage* reached);
+  Outcome TestDisc(const Segment& segment, const SegmentShape& shape, const ObjectClass& object,
+                   ObjectDetection* detection, ObjectStage* reached);
+  Outcome TestCuboid(const Segment& segment, const ObjectClass& object, ObjectDetection* detection,
+                     ObjectStage* reached);
+  // Whether a quadrilateral, right to about 2 px, is the upper face of a cuboid.
+  Outcome TestFace(const FaceCorners& found, const ObjectClass& object, ObjectDetection* detection,
+                   ObjectStage* reached);
+  // The same for the upper face of a cuboid that is fitted to the whole segment; 'up' must be
+  // known. 'camera_height_m': where it is given, the cuboid has the size that it has on the ground.
+  Outcome TestSilhouette(const Segment& segment, const ObjectClass& object,
+                         std::optional<double> camera_height_m, ObjectDetection* detection,
+                         ObjectStage* reached);
+  Outcome TestBar(const Segment& segment, const SegmentShape& shape, const ObjectClass& object,
+                  ObjectDetection* detection, ObjectStage* reached);
+  template <class RayTo>
+  double EdgeShift(const RayTo& ray_to, const Eigen::Vector2d& side, const Eigen::Vector2d& outward,
+                   double reach) const;
+  std::array<Eigen::Vector3d, 4> RectangleAround(const Segment& segment,
+                                                 const SegmentShape& shape) const;
+  // 'rays': through the corners, in the order of a walk around. Adds to the detection's misfit.
+  Outcome LocateFace(const std::array<Eigen::Vector3d, 4>& rays, const ObjectClass& object,
+                     ObjectDetection* detection) const;
+  // Whether the colour goes on beyond what surrounds the outline: a hole in something larger, like
+  // the inside of a letter on a banner.
+  bool IsHole(const Ellipse& outline, ColorLabel label) const;
+  // Label of the nearest pixel; nothing outside of the image.
+  std::optional<ColorLabel> LabelAt(const Eigen::Vector2d& pixel) const;
+  // How much of what lies within 'reach' (share of the outline) has the colour.
+  double ColoredShare(const Ellipse& outline, double reach, ColorLabel label) const;
+  double MisfitOfDisc(const DiscOutline& outline, double radius_px, const Segment& segment,
+                      const SegmentShape& shape, const Ellipse& ellipse) const;
+  // Whether the segment is discs of a class that touch each other.
+  bool TestMerged(const Segment& segment, const SegmentShape& shape, ObjectDetection* detection);
+  template <class OnPlane>
+  std::optional<double> RadiusOfDiscsIn(const Segment& segment, const OnPlane& on_plane,
+                                        double pixel);
+  // Of a disc on the ground, on the plane at unit distance below the camera; nothing when the
+  // ground is not known.
+  std::optional<double> RadiusBelow(const ObjectClass& disc) const;
+  // Of the class, given its shape and the probabilities of the colours.
+  double ClassProbability(const ObjectClass& object, const ColorProbabilities& colors) const;
+  // Whether an object at 'position' by its size is on the ground, to a share 'tolerance' of its
+  // distance; nothing when the ground is not known.
+  std::optional<bool> IsOnGround(const Eigen::Vector3d& position, const ObjectClass& object,
+                                 double tolerance) const;
+  std::optional<double> DistanceOnGround(const Eigen::Vector3d& position,
+                                         const ObjectClass& object) const;
+  // 'by_size': where the object is by its size, with 'relative_sigma' of that distance.
+  void SetLocation(const Eigen::Vector3d& by_size, const ObjectClass& object,
+                   double center_sigma_px, double relative_sigma, Outcome outcome,
+                   ObjectDetection* detection) const;
+  GroundPlane Ground() const {
+    return {hint_.up_in_camera, hint_.camera_height_m, hint_.height_sigma_m, hint_.up_sigma_rad};
+  }
+  Eigen::Vector3d RayAt(const Eigen::Vector2d& pixel) const;
+
+  const ObjectDetector& detector_;
+  const cv::Mat& image_;
+  const ObjectHint& hint_;
+  ObjectWorkspace* workspace_;
+  ObjectReport* report_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/pose_history.h"
+
+namespace kestrel {
+
+// How far after the newest pose it is predicted, and what that costs.
+struct PosePrediction {
+  Duration max_ahead = Duration::zero();
+  UnmodelledMotion unmodelled;
+};
+
+struct CameraPose {
+  RigidTransform world_from_camera;
+  PoseUncertainty uncertainty;  // by which it is less sure than a pose that was reported
+};
+
+// Where the camera was when its light was collected: the navigation's poses, the mount and the
+// clock offset.
+class CameraPoses {
+ public:
+  // 'smoothing': see PoseHistory::Smooth; none: poses as they are.
+  CameraPoses(const CameraCalibration& calibration, std::size_t capacity, Duration max_gap,
+              Duration smoothing, const PosePrediction& prediction)
+      : body_from_camera_(calibration.body_from_camera),
+        clock_offset_(calibration.clock_offset.value_or(Duration::zero())),
+        smoothing_(smoothing),
+        prediction_(prediction),
+        poses_(capacity, max_gap) {}
+
+  // A pose from the navigation, on its clock.
+  PoseStatus Add(const PoseSample& sample) { return poses_.Add(sample); }
+
+  // Whether there is a pose for an instant of the images' clock, or why not.
+  PoseLookup Check(Time image_time) const {
+    const PoseLookup lookup = poses_.Check(image_time + clock_offset_);
+    const bool is_predicted = lookup == PoseLookup::kTooNew && Predict(image_time);
+    return is_predicted ? PoseLookup::kPredicted : lookup;
+  }
+
+  // The camera at an instant of the images' clock; nothing without a mount or a pose.
+  std::optional<CameraPose> At(Time image_time) const {
+    if (!body_from_camera_) return std::nullopt;
+    if (const auto world_from_body = poses_.Smooth(image_time + clock_offset_, smoothing_)) {
+      return CameraPose{*world_from_body * *body_from_camera_, {}};
+    }
+    const auto predicted = Predict(image_time);
+    if (!predicted) return std::nullopt;
+    return CameraPose{predicted->world_from_body * *body_from_camera_, predicted->uncertainty};
+  }
+
+ private:
+  std::optional<PredictedPose> Predict(Time image_time) const {
+    return poses_.Predict(image_time + clock_offset_, prediction_.max_ahead,
+                          prediction_.unmodelled);
+  }
+
+  std::optional<RigidTransform> body_from_camera_;
+  Duration clock_offset_;
+  Duration smoothing_;
+  PosePrediction prediction_;
+  PoseHistory poses_;
+};
+
+}  // namespace kestrel

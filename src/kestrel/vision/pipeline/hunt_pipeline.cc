@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/pipeline/hunt_pipeline.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/base/violations.h"
+#include "kestrel/core/geometry/angles.h"
+#include "kestrel/vision/pipeline/object_view.h"
+
+namespace kestrel {
+namespace {
+
+// Of a flight whose attitude is not known and whose altitude somebody told: standard deviations.
+constexpr double kTilt_deg = 5;
+constexpr double kAltitudeShare = 0.05;
+
+// What heights by the size of objects have in common, like the error of the focal length: standard
+// deviation, share of the height.
+constexpr double kSizeShare = 0.02;
+
+// The ground does not speak for what contradicts it: an object whose size says where the ground is
+// must have its shape with few doubts, which a few pixels do not tell.
+constexpr double kMaxMisfit = 0.75;
+constexpr int kMinPixels = 150;
+
+bool IsClear(const ObjectDetection& detection) {
+  return detection.completeness == Completeness::kWhole && detection.misfit <= kMaxMisfit &&
+         detection.pixels >= kMinPixels;
+}
+
+}  // namespace
+
+std::vector<std::string> HuntPipelineOptions::Validate() const {
+  std::vector<std::string> violations;
+  for (const std::string& violation : detector.Validate()) {
+    violations.push_back("detector." + violation);
+  }
+  for (const std::string& violation : map.Validate()) violations.push_back("map." + violation);
+  const auto require = [&](bool holds, const char* rule) {
+    if (!holds) violations.emplace_back(rule);
+  };
+  require(readout_s >= 0 && readout_s < 1, "readout_s must be in 0 to 1");
+  require(ground_sigma_m >= 0, "ground_sigma_m must not be negative");
+  require(track_count >= 0, "track_count must not be negative");
+  require(pose_sigma_m >= 0, "pose_sigma_m must not be negative");
+  require(attitude_sigma_deg >= 0, "attitude_sigma_deg must not be negative");
+  require(pose_capacity >= 2, "pose_capacity must be at least 2");
+  require(pose_gap_s > 0 && pose_gap_s < 1e6, "pose_gap_s must be positive and below 1e6");
+  require(pose_extrapolation_s >= 0 && pose_extrapolation_s <= 1,
+          "pose_extrapolation_s must be in 0 to 1");
+  AddViolations("unmodelled", unmodelled.Validate(), &violations);
+  require(pose_smoothing_s >= 0 && pose_smoothing_s <= 1, "pose_smoothing_s must be in 0 to 1");
+  return violations;
+}
+
+HuntPipeline::HuntPipeline(const CameraCalibration& calibration, const ObjectModel& model,
+                           const HuntPipelineOptions& options)
+    : HuntPipeline(calibration, model, ColorGrid(model.colors), options) {}
+
+HuntPipeline::HuntPipeline(const CameraCalibration& calibration, const ObjectModel& model,
+                           const ColorGrid& grid, const HuntPipelineOptions& options)
+    : options_(Checked(options)),
+      detector_(CameraModel(calibration.intrinsics), model, grid, options.detector),
+      poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s),
+             DurationFromSeconds(options.pose_smoothing_s),
+             {DurationFromSeconds(options.pose_extrapolation_s), options.unmodelled}),
+      map_(model, options.map) {}
+
+void HuntPipeline::ChangeOptions(const HuntPipelineOptions& options) {
+  RequireValid(options);
+  detector_ =
+      ObjectDetector(detector_.camera(), detector_.model(), detector_.grid(), options.detector);
+  options_ = options;
+}
+
+const HuntObservation& HuntPipeline::Process(const cv::Mat& image, Time time) {
+  observation_.time = time;
+  observation_.world_from_camera.reset();
+  if (const auto camera = poses_.At(time)) {
+    observation_.world_from_camera = camera->world_from_camera;
+  }
+  Detect(image);
+  LocateInWorld();
+  UpdateMap();
+  RememberForTracking();
+  return observation_;
+}
+
+std::optional<HuntPipeline::ToldHeights> HuntPipeline::HeightsTold() const {
+  if (const auto& world_from_camera = observation_.world_from_camera) {
+    return ToldHeights{
+        world_from_camera->translation.z(),
+        {options_.ground_height_m, std::hypot(options_.pose_sigma_m, options_.ground_sigma_m)}};
+  }
+  if (!altitude_m_) return std::nullopt;
+  return ToldHeights{*altitude_m_,
+                     {0, std::hypot(kAltitudeShare * *altitude_m_, options_.ground_sigma_m)}};
+}
+
+void HuntPipeline::Detect(const cv::Mat& image) {
+  ObjectHint hint;
+  std::optional<ToldHeights> told = HeightsTold();
+  if (const auto& world_from_camera = observation_.world_from_camera) {
+    hint.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
+    hint.up_sigma_rad = Radians(options_.attitude_sigma_deg);
+    if (!options_.is_ground_flat) told.reset();
+  } else if (told) {
+    hint.up_in_camera = -Eigen::Vector3d::UnitZ();
+    hint.up_sigma_rad = Radians(kTilt_deg);
+  }
+  if (told) {
+    const GroundHeight ground = options_.still ? told->ground : ground_.Estimate(told->ground);
+    hint.camera_height_m = told->camera_m - ground.height_m;
+    hint.height_sigma_m = ground.sigma_m;
+  }
+  hint.track = track_;
+  saw_all_ = track_.empty();
+  ObjectReport& report = observation_.report;
+  const auto start = std::chrono::steady_clock::now();
+  detector_.Detect(image, hint, workspace_, &report);
+  if (report.detections.size() < track_.size()) {
+    hint.track = {};
+    saw_all_ = true;
+    detector_.Detect(image, hint, workspace_, &report);
+  }
+  observation_.detect_time = std::chrono::steady_clock::now() - start;
+  if (told) UpdateGround(*told);
+}
+
+// Objects that say together that the ground is elsewhere are right, not what is told.
+void HuntPipeline::UpdateGround(const ToldHeights& told) {
+  ObjectReport& report = observation_.report;
+  const auto ground_by = [&](const HeightBySize& height, double share) {
+    return GroundHeight{told.camera_m - height.camera_height_m,
+                        std::hypot(height.sigma_m, share * height.camera_height_m)};
+  };
+  ground_sightings_.clear();
+  for (const auto* detections : {&report.detections, &report.elsewhere}) {
+    for (const ObjectDetection& detection : *detections) {
+      if (!detection.height || !IsClear(detection)) continue;
+      ground_sightings_.push_back(ground_by(*detection.height, kSizeShare));
+    }
+  }
+  // Independent frames, and those of a flight of which only one altitude is told.
+  if (options_.still || !observation_.world_from_camera) ground_.ForgetSightings();
+  ground_.Update(told.ground, ground_sightings_);
+  const double tolerance = options_.detector.ground_tolerance / 3;
+  std::erase_if(report.elsewhere, [&](const ObjectDetection& detection) {
+    if (!ground_.Supports(ground_by(*detection.height, tolerance))) return false;
+    report.detections.push_back(detection);
+    return true;
+  });
+}
+
+void HuntPipeline::LocateInWorld() {
+  auto& in_world = observation_.in_world;
+  in_world.clear();
+  for (const ObjectDetection& detection : observation_.report.detections) {
+    in_world.emplace_back();
+    if (!detection.location) continue;
+    const auto camera = poses_.At(TimeOfRow(detection.center_px.y()));
+    if (!camera) continue;
+    const RigidTransform& world_from_camera = camera->world_from_camera;
+    const Eigen::Matrix3d rotation = world_from_camera.rotation.toRotationMatrix();
+    in_world.back() = {world_from_camera * detection.location->position,
+                       rotation * detection.location->covariance * rotation.transpose()};
+    const double swing_m = camera->uncertainty.attitude_rad * detection.location->position.norm();
+    in_world.back()->covariance.diagonal().array() +=
+        camera->uncertainty.position_m * camera->uncertainty.position_m + swing_m * swing_m;
+  }
+}
+
+void HuntPipeline::UpdateMap() {
+  if (options_.still || !observation_.world_from_camera) return;
+  measurements_.clear();
+  const auto& detections = observation_.report.detections;
+  for (std::size_t i = 0; i < detections.size(); ++i) {
+    const ObjectDetection& detection = detections[i];
+    const auto& in_world = observation_.in_world[i];
+    if (detection.completeness != Completeness::kWhole || !in_world) continue;
+    ObjectMeasurement& measurement = measurements_.emplace_back();
+    measurement.delay_s = ToSeconds(TimeOfRow(detection.center_px.y()) - observation_.time);
+    measurement.position = in_world->position;
+    const double swing_m =
+        Radians(options_.attitude_sigma_deg) * detection.location->position.norm();
+    measurement.covariance = in_world->covariance;
+    measurement.covariance.diagonal().array() +=
+        options_.pose_sigma_m * options_.pose_sigma_m + swing_m * swing_m;
+    measurement.clock_shift = ClockShift(detection);
+    measurement.shape = detector_.model().classes[detection.class_index].shape;
+    measurement.color = detection.mean_color;
+    measurement.color_probabilities = detection.color_probabilities;
+    measurement.digits = detection.digits;
+  }
+  map_.Update(
+      observation_.time, measurements_,
+      ObjectView(detector_, observation_.report, *observation_.world_from_camera, saw_all_));
+}
+
+// See ObjectMeasurement.
+Eigen::Vector3d HuntPipeline::ClockShift(const ObjectDetection& detection) const {
+  constexpr double kStep_s = 0.1;  // long enough for the noise of the poses
+  const Time time = TimeOfRow(detection.center_px.y());
+  const auto camera = poses_.At(time);
+  const auto before = poses_.At(time - DurationFromSeconds(kStep_s));
+  if (!camera || !before) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d& position = detection.location->position;
+  return (camera->world_from_camera * position - before->world_from_camera * position) / kStep_s;
+}
+
+void HuntPipeline::RememberForTracking() {
+  track_.clear();
+  if (options_.still) return;
+  for (const ObjectDetection& detection : observation_.report.detections) {
+    if (static_cast<int>(track_.size()) == options_.track_count) return;
+    if (detection.completeness != Completeness::kWhole) continue;
+    track_.push_back({detection.center_px, detection.class_index});
+  }
+  if (static_cast<int>(track_.size()) < options_.track_count) track_.clear();
+}
+
+Time HuntPipeline::TimeOfRow(double v_px) const {
+  const double share = v_px / (detector_.camera().height_px() - 1) - 0.5;
+  return observation_.time + DurationFromSeconds(options_.readout_s * share);
+}
+
+}  // namespace kestrel

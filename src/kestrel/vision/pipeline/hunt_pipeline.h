@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/vision/mapping/object_map.h"
+#include "kestrel/vision/objects/object_detector.h"
+#include "kestrel/vision/pipeline/camera_poses.h"
+#include "kestrel/vision/pipeline/ground_height.h"
+
+namespace kestrel {
+
+struct HuntPipelineOptions {
+  ObjectDetectorOptions detector;
+  ObjectMapOptions map;
+  // Frames have nothing to do with each other: no state is carried from one to the next.
+  bool still = false;
+  // Height of the ground in the world, which holds until objects that agree with each other say
+  // another one (the navigation's z may be an altitude above sea level). What is not on the ground
+  // by its size is no object.
+  double ground_height_m = 0;
+  bool is_ground_flat = true;
+  // How far from that height a piece of ground may be, standard deviation.
+  double ground_sigma_m = 0.03;
+  // Time from the first to the last row of a rolling shutter; an image's time is that of its middle
+  // row. 0 for a global shutter.
+  double readout_s = 0;
+  // More than 0: once so many objects are in view, only these are followed (the paper's mode
+  // `track`), until one is lost.
+  int track_count = 0;
+  // Standard deviations of the navigation's poses, per axis, which the map adds to those of a
+  // detection: raise them where clock offset or mount are not known.
+  double pose_sigma_m = 0.02;
+  double attitude_sigma_deg = 0.2;
+  // How many poses are kept, and the longest gap between two of them that is interpolated.
+  int pose_capacity = 1000;
+  double pose_gap_s = 0.5;
+  // A frame after the newest pose is placed by that pose and its motion, at most so far ahead, less
+  // surely the further it is. In a recording every pose is there, and 0 does.
+  double pose_extrapolation_s = 0;
+  UnmodelledMotion unmodelled;
+  // Poses are smoothed over so much before and, as far as they have come, after an instant; 0: are
+  // taken as they are.
+  double pose_smoothing_s = 0.1;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor.Group("detector", self.detector);
+    visitor.Group("map", self.map);
+    visitor("still", self.still, "", "frames have nothing to do with each other");
+    visitor("ground_height_m", self.ground_height_m, "m", "height of the ground in the world");
+    visitor("is_ground_flat", self.is_ground_flat, "",
+            "discard objects that are not on the ground, where there are poses");
+    visitor("ground_sigma_m", self.ground_sigma_m, "m", "unevenness of the ground");
+    visitor("readout_s", self.readout_s, "s",
+            "rolling shutter: time from the first row to the last, 0 for a global shutter");
+    visitor("track_count", self.track_count, "1",
+            "follow so many objects and look at nothing else, 0 to search the whole image");
+    visitor("pose_sigma_m", self.pose_sigma_m, "m", "of the navigation's position, per axis");
+    visitor("attitude_sigma_deg", self.attitude_sigma_deg, "deg",
+            "of the navigation's attitude, per axis");
+    visitor("pose_capacity", self.pose_capacity, "1", "how many poses are kept");
+    visitor("pose_gap_s", self.pose_gap_s, "s", "longest gap between poses that is interpolated");
+    visitor("pose_extrapolation_s", self.pose_extrapolation_s, "s",
+            "how far after the newest pose it is predicted, 0 for not at all");
+    visitor.Group("unmodelled", self.unmodelled);
+    visitor("pose_smoothing_s", self.pose_smoothing_s, "s",
+            "poses this long before (and after, if there) are averaged, 0 for none");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// What one frame showed.
+struct HuntObservation {
+  Time time;  // of the frame, on the clock of the images
+  ObjectReport report;
+  std::optional<RigidTransform> world_from_camera;  // when there was a pose for this time
+  // Of each detection, in their order: position and covariance in the world (ENU, m), when it has a
+  // location and there is a pose. With a rolling shutter by the pose at its own row.
+  std::vector<std::optional<ObjectLocation>> in_world;
+  Duration detect_time{};  // of ObjectDetector::Detect alone (both calls, if it took two)
+};
+
+// From an image to where the coloured objects are in the world. One thread at a time.
+class HuntPipeline {
+ public:
+  // Throws InputError when calibration, model or options are not valid.
+  HuntPipeline(const CameraCalibration& calibration, const ObjectModel& model,
+               const HuntPipelineOptions& options);
+  // With a grid that need not be the model's own.
+  HuntPipeline(const CameraCalibration& calibration, const ObjectModel& model,
+               const ColorGrid& grid, const HuntPipelineOptions& options);
+
+  // A pose from the navigation, on its clock, later than those before; it may be of a time before
+  // the last frame. A frame that comes before the pose after its time has none, or a predicted one.
+  PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
+
+  // Height (m) of the camera above the ground, for frames without a pose; nothing: not known. The
+  // camera is then taken to look straight down.
+  void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
+
+  // Goes on with other options, and keeps the map and the poses: what 'map', 'unmodelled' and the
+  // options of the poses say stays as it was. Throws InputError, and changes nothing, when they are
+  // not valid.
+  void ChangeOptions(const HuntPipelineOptions& options);
+
+  // 'image': CV_8UC3 of the camera's size; 'time' on the clock of the images. The result is valid
+  // until the next call. Does not throw, and does not allocate once it has warmed up.
+  const HuntObservation& Process(const cv::Mat& image, Time time);
+
+  const ObjectDetector& detector() const { return detector_; }
+  // The objects in the world; empty without poses, and with independent frames.
+  const ObjectMap& map() const { return map_; }
+  const HuntPipelineOptions& options() const { return options_; }
+
+  // How much higher the ground is, by the size of the objects, than what is told (the options'
+  // height with the navigation's poses, or the altitude); nothing as long as they agree.
+  std::optional<GroundHeight> ground_contradiction() const { return ground_.Contradiction(); }
+
+ private:
+  // What is told of the camera and of the ground, in the world or, with an altitude, in a world
+  // whose z = 0 is the ground.
+  struct ToldHeights {
+    double camera_m;
+    GroundHeight ground;
+  };
+  std::optional<ToldHeights> HeightsTold() const;
+
+  void Detect(const cv::Mat& image);
+  void UpdateGround(const ToldHeights& told);
+  void LocateInWorld();
+  void UpdateMap();
+  void RememberForTracking();
+  Eigen::Vector3d ClockShift(const ObjectDetection& detection) const;
+  Time TimeOfRow(double v_px) const;
+
+  HuntPipelineOptions options_;
+  ObjectDetector detector_;
+  ObjectWorkspace workspace_;
+  CameraPoses poses_;
+  std::optional<double> altitude_m_;
+  HuntObservation observation_;
+  GroundHeightEstimator ground_;
+  std::vector<GroundHeight> ground_sightings_;  // of the frame
+  std::vector<TrackedObject> track_;
+  bool saw_all_ = true;  // the last frame was searched as a whole
+  ObjectMap map_;
+  std::vector<ObjectMeasurement> measurements_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/pipeline/landing_pipeline.h"
+
+#include <chrono>
+
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/base/violations.h"
+#include "kestrel/vision/pipeline/world_location.h"
+
+namespace kestrel {
+
+std::vector<std::string> LandingPipelineOptions::Validate() const {
+  std::vector<std::string> violations;
+  for (const std::string& violation : detector.Validate()) {
+    violations.push_back("detector." + violation);
+  }
+  for (const std::string& violation : tracker.Validate()) {
+    violations.push_back("tracker." + violation);
+  }
+  for (const std::string& violation : noise.Validate()) {
+    violations.push_back("noise." + violation);
+  }
+  const auto require = [&](bool holds, const char* rule) {
+    if (!holds) violations.push_back(rule);
+  };
+  require(hint_sigma_m > 0, "hint_sigma_m must be positive");
+  require(hint_speed_mps >= 0, "hint_speed_mps must not be negative");
+  require(hint_age_s >= 0, "hint_age_s must not be negative");
+  require(pose_capacity >= 2, "pose_capacity must be at least 2");
+  require(pose_gap_s > 0 && pose_gap_s < 1e6, "pose_gap_s must be positive and below 1e6");
+  require(pose_extrapolation_s >= 0 && pose_extrapolation_s <= 1,
+          "pose_extrapolation_s must be in 0 to 1");
+  AddViolations("unmodelled", unmodelled.Validate(), &violations);
+  return violations;
+}
+
+const char* ToString(PositionMethod method) {
+  return method == PositionMethod::kSize ? "size" : "altitude";
+}
+
+LandingPipeline::LandingPipeline(const CameraCalibration& calibration,
+                                 const LandingPipelineOptions& options)
+    : options_(Checked(options)),
+      detector_(CameraModel(calibration.intrinsics), options.detector),
+      poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s),
+             Duration::zero(),
+             {DurationFromSeconds(options.pose_extrapolation_s), options.unmodelled}),
+      tracker_(options.tracker) {}
+
+void LandingPipeline::ChangeOptions(const LandingPipelineOptions& options) {
+  RequireValid(options);
+  detector_ = LandingPatternDetector(detector_.camera(), options.detector);
+  workspace_ = LandingWorkspace();
+  options_ = options;
+}
+
+LandingObservation LandingPipeline::Process(const cv::Mat& image, Time time) {
+  LandingObservation observation;
+  observation.time = time;
+  if (const auto camera = poses_.At(time)) {
+    observation.world_from_camera = camera->world_from_camera;
+    observation.pose_uncertainty = camera->uncertainty;
+  }
+  observation.pose = poses_.Check(time);
+  Detect(image, &observation);
+  LocateInWorld(&observation);
+  if (options_.still) return observation;
+  Track(&observation);
+  Remember(observation);
+  return observation;
+}
+
+void LandingPipeline::Detect(const cv::Mat& image, LandingObservation* observation) {
+  const ToldView told = WhatIsTold(*observation);
+  LandingHint hint;
+  const double excess_m = AltitudeExcess();
+  if (told.altitude_m > excess_m) hint.altitude_m = *told.altitude_m - excess_m;
+  hint.up_in_camera = told.up_in_camera;
+  if (!options_.still) {
+    AddTrack(*observation, &hint);
+    AddLastSighting(*observation, &hint);
+    hint.first_step = next_step_;
+    hint.max_search_ms = max_search_ms_;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  observation->report = detector_.Detect(image, hint, workspace_);
+  observation->detect_time = std::chrono::steady_clock::now() - start;
+  next_step_ = observation->report.next_step;
+  auto& detection = observation->report.detection;
+  if (!detection) return;
+  contradictions_.Add(told, *detection);
+  calibration_monitor_.Add(*detection);
+  if (!options_.still) AddErrorOfFocalLength(&*detection);
+}
+
+// By how much (m) the altitude is told too large, as far as the detections so far contradict it.
+double LandingPipeline::AltitudeExcess() const {
+  if (options_.still) return 0;
+  const auto excess = contradictions_.Altitude();
+  return excess ? excess->difference : 0;
+}
+
+// Where the focal length is wrong every distance is, by the same part of it. Views that contradict
+// the calibration themselves were located with a focal length of their own.
+void LandingPipeline::AddErrorOfFocalLength(LandingDetection* detection) const {
+  const auto focal = calibration_monitor_.Contradiction();
+  if (!focal || detection->calibration.contradicts) return;
+  const Eigen::Vector3d error_m = (focal->factor - 1) * detection->camera_from_pattern.translation;
+  detection->covariance.topLeftCorner<3, 3>() += error_m * error_m.transpose();
+}
+
+ToldView LandingPipeline::WhatIsTold(const LandingObservation& observation) const {
+  const auto& world_from_camera = observation.world_from_camera;
+  if (!world_from_camera) return {altitude_m_, {}};
+  ToldView told;
+  if (options_.altitude_hint) {
+    told.altitude_m = world_from_camera->translation.z() - options_.target_height_m;
+  }
+  told.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  return told;
+}
+
+void LandingPipeline::AddTrack(const LandingObservation& observation, LandingHint* hint) const {
+  const auto& world_from_camera = observation.world_from_camera;
+  if (!world_from_camera || !is_track_trusted_) return;
+  const std::optional<TargetEstimate> target = tracker_.Predict(observation.time);
+  if (!target) return;
+  const Eigen::Vector3d center = world_from_camera->Inverse() * target->motion.position();
+  const PoseUncertainty& pose = observation.pose_uncertainty;
+  hint->center_in_camera = center;
+  hint->center_sigma_m = options_.hint_sigma_m + target->position_sigma_m() + pose.position_m +
+                         pose.attitude_rad * center.norm();
+  const double altitude_m = world_from_camera->translation.z() - target->motion.position().z();
+  if (altitude_m > 0) hint->altitude_m = altitude_m;
+}
+
+void LandingPipeline::AddLastSighting(const LandingObservation& observation,
+                                      LandingHint* hint) const {
+  if (!last_ || observation.world_from_camera) return;
+  const double age_s = ToSeconds(observation.time - last_->time);
+  if (age_s < 0 || age_s > options_.hint_age_s) return;
+  hint->center_in_camera = last_->center_in_camera;
+  hint->center_sigma_m = options_.hint_sigma_m + options_.hint_speed_mps * age_s;
+}
+
+void LandingPipeline::LocateInWorld(LandingObservation* observation) const {
+  const auto& detection = observation->report.detection;
+  const auto& world_from_camera = observation->world_from_camera;
+  if (!detection || !world_from_camera) return;
+  const RigidTransform world_from_pattern = *world_from_camera * detection->camera_from_pattern;
+  observation->yaw_in_world = PatternYaw(world_from_pattern);
+  observation->center_in_world = world_from_pattern.translation;
+  if (!options_.position_by_altitude) return;
+  Eigen::Vector3d ray_in_camera;
+  if (detector_.camera().Unproject(detection->center_px, &ray_in_camera) ==
+      ProjectionStatus::kOutsideModel) {
+    return;
+  }
+  const auto by_altitude = LocateByAltitude(ray_in_camera, *world_from_camera,
+                                            options_.target_height_m + AltitudeExcess());
+  if (!by_altitude) return;
+  observation->center_in_world = by_altitude;
+  observation->position_method = PositionMethod::kAltitude;
+}
+
+TargetMeasurement LandingPipeline::MeasurementOf(const LandingObservation& observation) const {
+  const LandingDetection& detection = *observation.report.detection;
+  const Eigen::Vector3d& center = detection.camera_from_pattern.translation;
+  const Eigen::Quaterniond& rotation = observation.world_from_camera->rotation;
+  const MeasurementNoise noise = WithPose(options_.noise, observation.pose_uncertainty);
+  TargetMeasurement measurement;
+  measurement.time = observation.time;
+  measurement.position_in_world = *observation.center_in_world;
+  measurement.covariance =
+      CovarianceInWorld(detection.covariance.topLeftCorner<3, 3>(), center, rotation, noise);
+  measurement.shared_covariance = SharedCovarianceInWorld(center, rotation, noise);
+  if (!options_.track_yaw) return measurement;
+  measurement.yaw = observation.yaw_in_world;
+  measurement.yaw_variance =
+      YawVarianceInWorld(detection.covariance.bottomRightCorner<3, 3>(), rotation, noise);
+  return measurement;
+}
+
+void LandingPipeline::Track(LandingObservation* observation) {
+  if (observation->center_in_world) {
+    observation->fate = tracker_.Add(MeasurementOf(*observation));
+    is_track_trusted_ = observation->fate <= MeasurementFate::kAccepted;
+  }
+  observation->track_state = tracker_.StateAt(observation->time);
+  observation->target = tracker_.Predict(observation->time);
+}
+
+void LandingPipeline::Remember(const LandingObservation& observation) {
+  last_.reset();
+  const auto& detection = observation.report.detection;
+  if (detection) last_ = {observation.time, detection->camera_from_pattern.translation};
+}
+
+}  // namespace kestrel

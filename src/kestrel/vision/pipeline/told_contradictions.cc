@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/pipeline/told_contradictions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "kestrel/core/geometry/angles.h"
+#include "kestrel/core/geometry/rigid_transform.h"
+
+namespace kestrel {
+namespace {
+
+constexpr std::size_t kLeastDetections = 10;
+constexpr double kTolerance = 3;
+// Standard deviations of what all detections of a flight may have in common: of the altitude, of
+// the focal length and the size of the print (as a part of the distance), of attitude and mount.
+constexpr double kAltitudeSigma_m = 0.3;
+constexpr double kScaleSigma = 0.04;
+constexpr double kAttitudeSigma = Radians(2);
+// How far from level the pattern may lie.
+constexpr double kMaxSlope = Radians(15);
+// The altitude may be that above the ground on which a vehicle stands.
+constexpr double kMaxVehicleHeight_m = 3;
+
+double MedianOf(std::span<double> values) {
+  const auto middle = values.begin() + values.size() / 2;
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+// Away from the pattern's face.
+Eigen::Vector3d Normal(const RigidTransform& camera_from_pattern) {
+  return camera_from_pattern.rotation * Eigen::Vector3d::UnitZ();
+}
+
+double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+// The smaller of what both poses of a detection differ by from what is told.
+template <class DifferenceOf>
+double LeastDifference(const LandingDetection& seen, const DifferenceOf& difference_of) {
+  const double value = difference_of(seen.camera_from_pattern);
+  if (!seen.mirror_camera_from_pattern) return value;
+  const double mirrored = difference_of(*seen.mirror_camera_from_pattern);
+  return std::abs(mirrored) < std::abs(value) ? mirrored : value;
+}
+
+// Of a direction, from a covariance of rotations.
+double AngleSigma(const LandingDetection& seen) {
+  return std::sqrt(seen.covariance.bottomRightCorner<3, 3>().trace());
+}
+
+}  // namespace
+
+void ToldContradictions::Latest::Add(const Difference& difference) {
+  if (!std::isfinite(difference.value) || !std::isfinite(difference.sigma)) return;
+  differences_[added_++ % kCapacity] = difference;
+}
+
+std::optional<Contradiction> ToldContradictions::Latest::Median() const {
+  if (added_ < kLeastDetections) return std::nullopt;
+  const std::size_t count = std::min(added_, kCapacity);
+  std::array<double, kCapacity> buffer;
+  const auto median = [&](const auto& value_of) {
+    std::transform(differences_.begin(), differences_.begin() + count, buffer.begin(), value_of);
+    return MedianOf(std::span(buffer).first(count));
+  };
+  const double value = median([](const Difference& each) { return each.value; });
+  const double sigma = median([](const Difference& each) { return each.sigma; });
+  // Of a normal distribution: 1.48 times the median deviation is the standard deviation.
+  const double scatter =
+      1.48 * median([&](const Difference& each) { return std::abs(each.value - value); });
+  return Contradiction{value, std::hypot(sigma, scatter / std::sqrt(count)), count};
+}
+
+void ToldContradictions::Add(const ToldView& told, const LandingDetection& seen) {
+  // Without an attitude the pattern is taken to be level.
+  const auto up_by = [&](const RigidTransform& pose) {
+    return told.up_in_camera.value_or(Normal(pose));
+  };
+  const double up_sigma = told.up_in_camera ? kAttitudeSigma : AngleSigma(seen);
+  if (told.up_in_camera) {
+    const auto tilt = [&](const RigidTransform& pose) {
+      return AngleBetween(Normal(pose), *told.up_in_camera);
+    };
+    tilts_.Add({LeastDifference(seen, tilt), std::hypot(AngleSigma(seen), kAttitudeSigma)});
+  }
+  if (!told.altitude_m) return;
+  const auto excess_m = [&](const RigidTransform& pose) {
+    return *told.altitude_m + up_by(pose).dot(pose.translation);
+  };
+  const RigidTransform& pose = seen.camera_from_pattern;
+  const double aside_m = up_by(pose).cross(pose.translation).norm();
+  const double position_variance = seen.covariance.topLeftCorner<3, 3>().trace();
+  const double shared_m = std::hypot(kAltitudeSigma_m, kScaleSigma * pose.translation.norm());
+  altitudes_.Add({LeastDifference(seen, excess_m),
+                  std::hypot(shared_m, up_sigma * aside_m, std::sqrt(position_variance))});
+}
+
+std::optional<Contradiction> ToldContradictions::Attitude() const {
+  const std::optional<Contradiction> tilt = tilts_.Median();
+  if (!tilt || tilt->difference <= kMaxSlope + kTolerance * tilt->sigma) return std::nullopt;
+  return tilt;
+}
+
+std::optional<Contradiction> ToldContradictions::Altitude() const {
+  if (Attitude()) return std::nullopt;
+  const std::optional<Contradiction> excess = altitudes_.Median();
+  if (!excess) return std::nullopt;
+  const double most_m = tilts_.empty() ? 0 : kMaxVehicleHeight_m;
+  const double tolerance_m = kTolerance * excess->sigma;
+  const bool agrees =
+      excess->difference >= -tolerance_m && excess->difference <= most_m + tolerance_m;
+  return agrees ? std::nullopt : excess;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/pipeline/world_location.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "kestrel/core/geometry/angles.h"
+#include "kestrel/core/geometry/test_rotation.h"
+
+namespace kestrel {
+namespace {
+
+TEST(LocateByAltitude, FindsThePointThatTheRayCameFrom) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int i = 0; i < 1000; ++i) {
+    const double target_height_m = 2 * unit(random);
+    const Eigen::Vector3d target(5 * unit(random), 5 * unit(random), target_height_m);
+    const Eigen::Vector3d axis(unit(random), unit(random), unit(random) + 2);
+    const RigidTransform world_from_camera = {
+        Rotation(kPi * unit(random), axis),
+        {5 * unit(random), 5 * unit(random), target_height_m + 2 + unit(random)}};
+    const Eigen::Vector3d ray = 0.3 * (world_from_camera.Inverse() * target);
+    const auto found = LocateByAltitude(ray, world_from_camera, target_height_m);
+    ASSERT_TRUE(found);
+    EXPECT_LT((*found - target).norm(), 1e-9);
+  }
+}
+
+TEST(LocateByAltitude, StraightDownIsBelowTheCamera) {
+  const RigidTransform world_from_camera = {Rotation(kPi, Eigen::Vector3d::UnitX()), {3, -4, 10}};
+  const auto found = LocateByAltitude(Eigen::Vector3d::UnitZ(), world_from_camera, 1.5);
+  ASSERT_TRUE(found);
+  EXPECT_LT((*found - Eigen::Vector3d(3, -4, 1.5)).norm(), 1e-12);
+}
+
+TEST(LocateByAltitude, NothingWhereTheRayDoesNotMeetThePlane) {
+  const RigidTransform world_from_camera = {Eigen::Quaterniond::Identity(), {0, 0, 10}};
+  EXPECT_FALSE(LocateByAltitude(Eigen::Vector3d::UnitX(), world_from_camera, 0));
+  EXPECT_FALSE(LocateByAltitude(Eigen::Vector3d::UnitZ(), world_from_camera, 0));
+  EXPECT_FALSE(LocateByAltitude(-Eigen::Vector3d::UnitZ(), world_from_camera, 10));
+}
+
+TEST(PatternYaw, IsTheSameAfterQuarterTurnsAndLiesWithinAnEighth) {
+  for (const double yaw : {-0.7, -0.1, 0.0, 0.3, 0.78}) {
+    for (int quarter = -4; quarter <= 4; ++quarter) {
+      const RigidTransform pose = {Rotation(yaw + quarter * kPi / 2, Eigen::Vector3d::UnitZ()),
+                                   {1, 2, 3}};
+      EXPECT_NEAR(PatternYaw(pose), yaw, 1e-9) << yaw << " " << quarter;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kestrel

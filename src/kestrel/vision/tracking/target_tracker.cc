@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/tracking/target_tracker.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "kestrel/core/base/options.h"
+
+namespace kestrel {
+namespace {
+
+constexpr double kMaxCoordinate_m = 1e7;
+constexpr double kMaxVariance_m2 = 1e6;
+
+bool IsValid(const TargetMeasurement& measurement) {
+  const Eigen::Matrix3d& covariance = measurement.covariance;
+  if (!measurement.position_in_world.allFinite() || !covariance.allFinite()) return false;
+  if (measurement.position_in_world.cwiseAbs().maxCoeff() > kMaxCoordinate_m) return false;
+  if (covariance.cwiseAbs().maxCoeff() > kMaxVariance_m2) return false;
+  if (!covariance.isApprox(covariance.transpose(), 1e-6)) return false;
+  if (covariance.llt().info() != Eigen::Success) return false;
+  if (!(measurement.shared_covariance.cwiseAbs().array() <= kMaxVariance_m2).all()) return false;
+  constexpr double kMaxYawVariance = 1e3;
+  return !measurement.yaw || (std::isfinite(*measurement.yaw) && measurement.yaw_variance > 0 &&
+                              measurement.yaw_variance < kMaxYawVariance);
+}
+
+TurnState WithYaw(const TurnState& state, const TargetMeasurement& measurement) {
+  constexpr double kGate = 16;  // four standard deviations: beyond, another line was taken for it
+  if (!measurement.yaw) return state;
+  return UpdateByYaw(state, *measurement.yaw, measurement.yaw_variance, kGate);
+}
+
+double RootMeanVariance(const Eigen::Matrix3d& covariance) {
+  return std::sqrt(std::max(0.0, covariance.trace() / 3));
+}
+
+}  // namespace
+
+const char* ToString(MeasurementFate fate) {
+  switch (fate) {
+    case MeasurementFate::kStarted:
+      return "started";
+    case MeasurementFate::kAccepted:
+      return "accepted";
+    case MeasurementFate::kInvalid:
+      return "invalid";
+    case MeasurementFate::kTooOld:
+      return "too old";
+    case MeasurementFate::kFarFromTrack:
+      return "far from the track";
+  }
+  return "";
+}
+
+const char* ToString(TrackState state) {
+  switch (state) {
+    case TrackState::kSearching:
+      return "searching";
+    case TrackState::kTracking:
+      return "tracking";
+    case TrackState::kPredicting:
+      return "predicting";
+    case TrackState::kLost:
+      return "lost";
+  }
+  return "";
+}
+
+double TargetEstimate::heading() const {
+  return std::atan2(motion.velocity().y(), motion.velocity().x());
+}
+
+double TargetEstimate::speed() const { return motion.velocity().head<2>().norm(); }
+
+double TargetEstimate::position_sigma_m() const {
+  return RootMeanVariance(motion.covariance.topLeftCorner<3, 3>());
+}
+
+double TargetEstimate::velocity_sigma_mps() const {
+  return RootMeanVariance(motion.covariance.block<3, 3>(3, 3));
+}
+
+std::vector<std::string> TargetTrackerOptions::Validate() const {
+  std::vector<std::string> violations;
+  const auto require = [&](bool holds, const char* rule) {
+    if (!holds) violations.push_back(rule);
+  };
+  const auto require_positive = [&](double value, const char* rule) {
+    require(value > 0 && value < 1e6, rule);
+  };
+  require_positive(acceleration_noise, "acceleration_noise must be positive");
+  require_positive(climb_noise, "climb_noise must be positive");
+  require(turn_noise >= 0 && turn_noise < 1e3, "turn_noise must be 0 to 1000");
+  require_positive(turn_time_s, "turn_time_s must be positive");
+  require(sway_sigma_m >= 0 && sway_sigma_m < 1, "sway_sigma_m must be 0 to 1");
+  require(sway_frequency_hz > 0 && sway_frequency_hz < 100,
+          "sway_frequency_hz must be positive, below 100");
+  require(sway_damping > 0 && sway_damping < 1, "sway_damping must be between 0 and 1");
+  require_positive(start_speed_sigma_mps, "start_speed_sigma_mps must be positive");
+  require(start_turn_sigma_radps >= 0 && start_turn_sigma_radps < 1e3,
+          "start_turn_sigma_radps must be 0 to 1000");
+  require_positive(gate, "gate must be positive");
+  require(restart_count >= 1, "restart_count must be at least 1");
+  require_positive(max_speed_mps, "max_speed_mps must be positive");
+  require(confirm_count >= 1, "confirm_count must be at least 1");
+  require(predict_after_s >= 0, "predict_after_s must not be negative");
+  require(lost_after_s > predict_after_s && lost_after_s <= 60,
+          "lost_after_s must be longer than predict_after_s, 60 at most");
+  require_positive(lost_sigma_m, "lost_sigma_m must be positive");
+  require(history >= 2 && history <= 10000, "history must be 2 to 10000");
+  return violations;
+}
+
+TurnNoise TargetTrackerOptions::Noise() const {
+  return {acceleration_noise,
+          climb_noise,
+          turn_noise,
+          turn_time_s,
+          {sway_sigma_m, sway_frequency_hz, sway_damping}};
+}
+
+TargetTracker::TargetTracker(const TargetTrackerOptions& options)
+    : options_(Checked(options)), noise_(options.Noise()) {
+  entries_.reserve(options_.history + 1);
+}
+
+MeasurementFate TargetTracker::Add(const TargetMeasurement& measurement) {
+  if (!IsValid(measurement)) return MeasurementFate::kInvalid;
+  if (entries_.empty() ||
+      ToSeconds(measurement.time - entries_.back().measurement.time) > options_.lost_after_s) {
+    return Start(measurement);
+  }
+  const std::size_t index = CountUntil(measurement.time);
+  if (index == 0) return Reject(measurement, MeasurementFate::kTooOld);
+  const TurnState predicted = PredictFrom(entries_[index - 1], measurement.time);
+  const double distance =
+      SquaredDistance(predicted, measurement.position_in_world, measurement.covariance);
+  if (!(distance <= options_.gate)) return Reject(measurement, MeasurementFate::kFarFromTrack);
+  Insert(index, measurement);
+  return FilterFrom(index) ? MeasurementFate::kAccepted : Start(measurement);
+}
+
+MeasurementFate TargetTracker::Start(const TargetMeasurement& measurement) {
+  constexpr double kSteepest = 0.1;  // of roads
+  const double speed = options_.start_speed_sigma_mps;
+  const TurnState state =
+      StartState(measurement.position_in_world, measurement.covariance,
+                 {speed, speed, kSteepest * speed}, options_.start_turn_sigma_radps, noise_);
+  entries_.clear();
+  entries_.push_back({measurement, WithYaw(state, measurement)});
+  accepted_ = 1;
+  outlier_.reset();
+  outliers_ = 0;
+  return MeasurementFate::kStarted;
+}
+
+MeasurementFate TargetTracker::Reject(const TargetMeasurement& measurement, MeasurementFate fate) {
+  constexpr double kSigmas = 3;
+  const auto agree = [&](const TargetMeasurement& a, const TargetMeasurement& b) {
+    const double seconds = std::abs(ToSeconds(b.time - a.time));
+    if (seconds > options_.lost_after_s) return false;
+    const double noise_m = RootMeanVariance(a.covariance) + RootMeanVariance(b.covariance);
+    return (b.position_in_world - a.position_in_world).norm() <=
+           options_.max_speed_mps * seconds + kSigmas * noise_m;
+  };
+  outliers_ = outlier_ && agree(*outlier_, measurement) ? outliers_ + 1 : 1;
+  outlier_ = measurement;
+  return outliers_ >= options_.restart_count ? Start(measurement) : fate;
+}
+
+void TargetTracker::Insert(std::size_t index, const TargetMeasurement& measurement) {
+  entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(index), {measurement, {}});
+  accepted_ = std::min(accepted_ + 1, options_.confirm_count);
+  outlier_.reset();
+  outliers_ = 0;
+}
+
+// Filters the entries from 'index' on, each from the one before; false when one is not finite.
+bool TargetTracker::FilterFrom(std::size_t index) {
+  for (std::size_t i = index; i < entries_.size(); ++i) {
+    const TargetMeasurement& measurement = entries_[i].measurement;
+    const TurnState predicted = PredictFrom(entries_[i - 1], measurement.time);
+    entries_[i].filtered =
+        WithYaw(UpdateByPosition(predicted, measurement.position_in_world, measurement.covariance),
+                measurement);
+    if (!entries_[i].filtered.mean.allFinite() || !entries_[i].filtered.covariance.allFinite()) {
+      return false;
+    }
+  }
+  if (entries_.size() > static_cast<std::size_t>(options_.history)) {
+    entries_.erase(entries_.begin());
+  }
+  return true;
+}
+
+std::size_t TargetTracker::CountUntil(Time time) const {
+  const auto after =
+      std::upper_bound(entries_.begin(), entries_.end(), time,
+                       [](Time t, const Entry& entry) { return t < entry.measurement.time; });
+  return static_cast<std::size_t>(after - entries_.begin());
+}
+
+TurnState TargetTracker::PredictFrom(const Entry& entry, Time time) const {
+  return Propagate(entry.filtered, ToSeconds(time - entry.measurement.time), noise_);
+}
+
+TrackState TargetTracker::StateAt(Time time) const {
+  const std::size_t count = CountUntil(time);
+  if (count == 0) return TrackState::kSearching;
+  if (!Predict(time)) return TrackState::kLost;
+  if (accepted_ < options_.confirm_count) return TrackState::kSearching;
+  const double age_s = ToSeconds(time - entries_[count - 1].measurement.time);
+  return age_s <= options_.predict_after_s ? TrackState::kTracking : TrackState::kPredicting;
+}
+
+std::optional<TargetEstimate> TargetTracker::Predict(Time time) const {
+  const std::size_t count = CountUntil(time);
+  if (count == 0) return std::nullopt;
+  const Entry& entry = entries_[count - 1];
+  if (ToSeconds(time - entry.measurement.time) > options_.lost_after_s) return std::nullopt;
+  TargetEstimate estimate{time, PredictFrom(entry, time)};
+  estimate.motion.covariance.topLeftCorner<3, 3>() += entry.measurement.shared_covariance;
+  const bool is_known =
+      estimate.motion.mean.allFinite() && estimate.position_sigma_m() <= options_.lost_sigma_m;
+  return is_known ? std::optional(estimate) : std::nullopt;
+}
+
+}  // namespace kestrel
