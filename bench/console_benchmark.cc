@@ -70,7 +70,8 @@ class Vision {
     const Frame frame{"", Now(), image_.clone()};  // each has pixels of its own, as of a camera
     const double cpu_begin = ThreadTime_ms();
     const Time start = Now();
-    console_->See(frame, pipeline_.Process(frame.image, frame.time));
+    const LandingObservation seen = pipeline_.Process(frame.image, frame.time);
+    if (console_->IsWanted()) console_->Take(Observation{frame, seen, Now() - frame.time});
     times->cpu_ms.push_back(ThreadTime_ms() - cpu_begin);
     times->wall_ms.push_back(1e3 * ToSeconds(Now() - start));
   }

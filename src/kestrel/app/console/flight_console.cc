@@ -158,7 +158,7 @@ void FlightConsole::TeachColors(const FlightColors& colors, const FlightView& vi
       &feed_);
 }
 
-FlightConsole::~FlightConsole() {
+void FlightConsole::Finish() {
   is_over_ = true;
   if (answering_thread_.joinable()) answering_thread_.join();
 }

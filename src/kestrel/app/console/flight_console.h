@@ -51,7 +51,7 @@ class FlightConsole : public ObservationSink {
   FlightConsole(const ConsoleOptions& options, const std::string& title, FlightView view,
                 FlightExamination examination, ChannelFeed* channels = nullptr,
                 std::optional<FlightColors> colors = std::nullopt);
-  ~FlightConsole() override;
+  ~FlightConsole() override { Finish(); }
   FlightConsole(const FlightConsole&) = delete;
   FlightConsole& operator=(const FlightConsole&) = delete;
 
@@ -61,7 +61,7 @@ class FlightConsole : public ObservationSink {
   std::string viewer_url() const { return server_.viewer_url(); }
 
   // Answers requests from now on, by a thread of its own: until then what the users ask waits. Once
-  // only; what is asked of outlives the console.
+  // only; what is asked of is there until Finish.
   void Answer(FlightRequests requests);
 
   bool IsWanted() const override { return feed_.IsWatched(); }
@@ -69,6 +69,8 @@ class FlightConsole : public ObservationSink {
   void Take(const FlightReport& report) override { pictures_.Take(report); }
   void Take(const TeamReport& report) override { pictures_.Take(report); }
   void Take(const SessionEvent& event) override { feed_.Add(event); }
+  // Answers no more requests; the page stays.
+  void Finish() override;
 
  private:
   struct Image {

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A camera of one's own and a sink of one's own in a LiveSession: finds the landing pattern in the
+// camera's images and writes a line of JSON for each. With an argument, as
+// "serial:///dev/ttyAMA0:921600", it tells an autopilot where the pattern is.
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <thread>
+#include <variant>
+
+#include <opencv2/imgproc.hpp>
+
+#include "kestrel/flight/onboard/live_session.h"
+
+namespace {
+
+using namespace std::chrono_literals;
+
+// Draws the pattern as seen from 3 m above it, 20 times a second for 2 s. Yours gets images here.
+class DrawnCamera : public kestrel::LiveSource {
+ public:
+  std::optional<kestrel::Event> Next(kestrel::Duration /*timeout*/) override {
+    if (captured_ == 40) return kestrel::EndOfStream();
+    std::this_thread::sleep_for(50ms);
+    cv::Mat image(480, 640, CV_8UC1, cv::Scalar(120));
+    const cv::Point center(320, 240);
+    cv::rectangle(image, center - cv::Point(100, 100), center + cv::Point(100, 100), 220,
+                  cv::FILLED);
+    cv::circle(image, center, 67, 30, cv::FILLED, cv::LINE_AA);
+    cv::circle(image, center, 53, 220, cv::FILLED, cv::LINE_AA);
+    cv::rectangle(image, center - cv::Point(51, 7), center + cv::Point(51, 7), 30, cv::FILLED);
+    cv::rectangle(image, center - cv::Point(7, 51), center + cv::Point(7, 51), 30, cv::FILLED);
+    cv::GaussianBlur(image, image, cv::Size(), 0.6);
+    return kestrel::Frame{std::to_string(captured_++), kestrel::Now(), image};
+  }
+
+  kestrel::CaptureCounters counters() const override { return {.captured = captured_}; }
+
+ private:
+  std::uint64_t captured_ = 0;
+};
+
+// Writes each frame as a line of JSON.
+class JsonLines : public kestrel::ObservationSink {
+ public:
+  void Take(const kestrel::Observation& observation) override {
+    const auto& seen = std::get<kestrel::LandingObservation>(observation.seen);
+    std::cout << R"({"frame": ")" << observation.frame.name << R"(", "detected": )"
+              << (seen.report.detection ? "true" : "false");
+    if (seen.report.detection) {
+      const Eigen::Vector3d& p = seen.report.detection->camera_from_pattern.translation;
+      std::cout << R"(, "position_m": [)" << p.x() << ", " << p.y() << ", " << p.z() << "]";
+      ++found;
+    }
+    std::cout << "}" << std::endl;
+  }
+
+  int found = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  kestrel::LiveSessionParts parts;
+  DrawnCamera camera;
+  parts.source = &camera;
+  parts.calibration.intrinsics = {
+      .width_px = 640, .height_px = 480, .fx_px = 400, .fy_px = 400, .cx_px = 320, .cy_px = 240};
+  JsonLines lines;
+  parts.sink = &lines;
+  if (argc > 1) parts.autopilot = argv[1];
+  kestrel::LiveSession session(parts, {});
+  session.Run([] { return false; });
+  std::cerr << session.Summary();
+  return lines.found > 30 ? 0 : 1;
+}

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/onboard/live_session.h"
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/flight/onboard/landing_vision.h"
+
+namespace kestrel {
+namespace {
+
+EventLevel LevelOf(std::uint8_t severity) {
+  if (severity <= mavlink::kSeverityError) return EventLevel::kError;
+  return severity <= mavlink::kSeverityWarning ? EventLevel::kWarning : EventLevel::kInfo;
+}
+
+// Records every exposure that the camera is set to.
+class RecordedActuator : public ExposureActuator {
+ public:
+  RecordedActuator(ExposureActuator* camera, const RecordingSwitch* recording)
+      : camera_(camera), recording_(recording) {}
+
+  bool SetExposure(double exposure_s) override {
+    if (!camera_->SetExposure(exposure_s)) return false;
+    if (const auto recorder = recording_->Get()) recorder->AddExposure(Now(), exposure_s);
+    return true;
+  }
+
+ private:
+  ExposureActuator* camera_;
+  const RecordingSwitch* recording_;
+};
+
+}  // namespace
+
+LiveSession::LiveSession(LiveSessionParts parts, LiveSessionOptions options)
+    : parts_(std::move(parts)),
+      options_(std::move(options)),
+      recording_([this](const std::filesystem::path& folder, bool replace) {
+        return OpenRecorder(folder, replace);
+      }) {
+  if (!parts_.record.empty()) recording_.Start(parts_.record, parts_.replace);
+  OpenVision();
+  if (!parts_.autopilot.empty()) OpenAutopilot();
+  program_.emplace(options_.flight, options_.landing.tracker, ProgramParts(),
+                   [this](const std::string& text) { Say(text); });
+}
+
+// What is recorded may still say something to the sink.
+LiveSession::~LiveSession() { recording_.Close(); }
+
+FlightEnd LiveSession::Run(const std::function<bool()>& is_stopped) {
+  const FlightEnd end = program_->Run(is_stopped);
+  recording_.Close();
+  if (hunt_ != nullptr && output_) hunt_->WriteMap(*output_);
+  return end;
+}
+
+void LiveSession::Say(const std::string& text, EventLevel level) {
+  if (parts_.sink != nullptr) parts_.sink->Take(SessionEvent{Now(), level, text});
+}
+
+void LiveSession::OpenVision() {
+  if (!parts_.output.empty()) output_.emplace(parts_.output, parts_.replace);
+  if (parts_.objects) {
+    auto hunt =
+        std::make_unique<HuntVision>(parts_.calibration, *parts_.objects, options_.hunt, output());
+    hunt_ = hunt.get();
+    vision_ = std::move(hunt);
+    return;
+  }
+  vision_ =
+      std::make_unique<LandingVision>(parts_.calibration, options_.landing, output(), Exposure());
+}
+
+std::optional<ExposureDrive> LiveSession::Exposure() {
+  if (!options_.exposure) return std::nullopt;
+  if (parts_.camera == nullptr) {
+    throw InputError("fly.control_exposure: the source is no camera whose exposure can be set");
+  }
+  actuator_ = std::make_unique<RecordedActuator>(parts_.camera, &recording_);
+  return ExposureDrive(*options_.exposure, options_.exposure->max_exposure_s, actuator_.get());
+}
+
+std::unique_ptr<FlightRecorder> LiveSession::OpenRecorder(const std::filesystem::path& folder,
+                                                          bool replace) {
+  return std::make_unique<FlightRecorder>(folder, replace, parts_.calibration, parts_.rate_hz,
+                                          options_.recorder,
+                                          [this](const std::string& text) { Say(text); });
+}
+
+void LiveSession::OpenAutopilot() {
+  const Connection::Tap tap = [this](std::span<const std::uint8_t> frame, Time time) {
+    if (const auto recorder = recording_.Get()) recorder->AddPacket(time, frame);
+  };
+  connection_.emplace(parts_.autopilot, options_.link, tap);
+  autopilot_.emplace(options_.autopilot, &*connection_,
+                     AutopilotListener{
+                         .pose = [this](const PoseSample& pose) { TakePose(pose); },
+                         .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
+                         .event = [this](const AutopilotEvent& e) { Say(e.text); },
+                         .text =
+                             [this](std::uint8_t severity, std::string_view text) {
+                               Say(fmt::format("autopilot: {}", text), LevelOf(severity));
+                             },
+                     });
+}
+
+FlightParts LiveSession::ProgramParts() {
+  return {.source = parts_.source,
+          .vision = vision_.get(),
+          .connection = connection_ ? &*connection_ : nullptr,
+          .autopilot = autopilot_ ? &*autopilot_ : nullptr,
+          .recording = &recording_,
+          .sink = parts_.sink,
+          .guides = parts_.guides,
+          .source_has_poses = parts_.has_poses,
+          .profile = parts_.profile,
+          .truth = parts_.truth,
+          .pattern_size_m = options_.landing.detector.pattern.outer_diameter_m};
+}
+
+void LiveSession::TakePose(const PoseSample& pose) {
+  program_->TakeAutopilotPose(pose);
+  if (parts_.pose) parts_.pose(pose);
+}
+
+void LiveSession::TakeTruePose(const PoseSample& pose) {
+  if (parts_.true_pose) parts_.true_pose(pose);
+  if (const auto recorder = recording_.Get()) recorder->AddTruePose(pose);
+}
+
+}  // namespace kestrel
