@@ -16,14 +16,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Draws the pattern as seen from 3 m above it, 20 times a second for 2 s. Yours gets images here.
+// Draws the pattern as it drives by 3 m below, 20 times a second for 2 s. Yours gets images here.
 class DrawnCamera : public kestrel::LiveSource {
  public:
   std::optional<kestrel::Event> Next(kestrel::Duration /*timeout*/) override {
     if (captured_ == 40) return kestrel::EndOfStream();
     std::this_thread::sleep_for(50ms);
     cv::Mat image(480, 640, CV_8UC1, cv::Scalar(120));
-    const cv::Point center(320, 240);
+    const cv::Point center(300 + static_cast<int>(captured_), 240);
     cv::rectangle(image, center - cv::Point(100, 100), center + cv::Point(100, 100), 220,
                   cv::FILLED);
     cv::circle(image, center, 67, 30, cv::FILLED, cv::LINE_AA);

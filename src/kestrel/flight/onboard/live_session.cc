@@ -45,6 +45,8 @@ LiveSession::LiveSession(LiveSessionParts parts, LiveSessionOptions options)
       recording_([this](const std::filesystem::path& folder, bool replace) {
         return OpenRecorder(folder, replace);
       }) {
+  // Where no poses come, no frame waits for one.
+  if (parts_.autopilot.empty() && !parts_.has_poses) options_.flight.events.pose_wait_s = 0;
   if (!parts_.record.empty()) recording_.Start(parts_.record, parts_.replace);
   OpenVision();
   if (!parts_.autopilot.empty()) OpenAutopilot();
