@@ -15,7 +15,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Rows that are summed up at once: whole vectors of at most so many lanes, filled up with zeros.
+// Rows that are summed at once: whole vectors of at most kMostLanes lanes, padded with zeros.
 constexpr std::size_t kMostLanes = 8;
 constexpr std::size_t kBlockRows = 10 * kMostLanes;
 using Block = double[kMostColumns][kBlockRows];

@@ -8,8 +8,9 @@ namespace kestrel {
 
 inline constexpr std::size_t kMostColumns = 24;
 
-// Sums over 'count' rows of the products of any two of at most so many columns, in double precision
-// and with the best instructions of the machine at run time: writes columns.size() squared of them.
+// Writes the sums over 'count' rows of the products of every two columns, columns.size() squared
+// values, to 'products'. At most kMostColumns columns. Sums in double precision, with the best
+// vector instructions of the machine, chosen at run time.
 void SumProducts(std::span<const float* const> columns, std::size_t count, double* products);
 
 }  // namespace kestrel

@@ -17,47 +17,47 @@
 
 namespace kestrel {
 
-// What verifies a cross inside of a ring (paper, section 2.4): one function for each size of the
-// ring. All work on the inside of the ring rectified to a square; the corners of the square lie
-// under the ring and are not looked at.
+// A verified cross inside of a ring (paper, section 2.4). There is one function for each size of
+// the ring. All of them work on the inside of the ring, rectified to a square. The corners of the
+// square lie under the ring and are ignored.
 struct Cross {
-  double arm_angle = 0;  // rad, of one arm in the plane of the view; modulo pi / 2
+  double arm_angle = 0;  // rad, direction of one arm in the plane of the view; modulo pi / 2
 };
 
-// The rectified inside of a ring, of 'size' pixels across the inner diameter: which pixels are
-// dark, by a local threshold.
+// The rectified inside of a ring, 'size' pixels across the inner diameter, with its dark pixels by
+// a local threshold.
 struct RingInside {
   SmallMask dark;
-  SmallMask disc;  // pixels within the inner radius that the image shows
-  double seen;     // share of the disc that the image shows
+  SmallMask disc;  // pixels within the inner radius that are in view
+  double seen;     // share of the disc in view, 0 to 1
 
   // Plane coordinates (unit: inner radii) of a pixel.
   double Coordinate(double index) const { return (2 * index + 1) / dark.size() - 1; }
 };
 
-// Samples 'image' over the inside of the ring. Nothing when the image shows less than a fifth of it
-// or it has less contrast than 'min_contrast' gray values.
+// Samples 'image' over the inside of the ring. Returns nothing when less than a fifth of it is in
+// view, or when its contrast is less than 'min_contrast' gray values.
 std::optional<RingInside> RectifyInside(const cv::Mat& image, const PatternView& view,
                                         const LandingPattern& pattern, int size,
                                         double min_contrast);
 
-// Rings of less than 30 px: the cross divides the disc into exactly four bright areas of similar
-// size, after closing the dark ones.
+// For rings of less than 30 px. The dark pixels are closed; the cross must then divide the disc
+// into exactly four bright areas of similar size.
 std::optional<Cross> FindCrossByQuadrants(const RingInside& inside);
 
-// Rings of 30 to 150 px: thinned by Guo and Hall's method, the dark pixels leave two lines that
-// cross near the centre at right angles. Where the image shows only a part of the disc, the half
-// arms that it shows are asked for, at least one.
+// For rings of 30 to 150 px. After thinning (Guo and Hall 1989) the dark pixels must form two lines
+// that cross near the centre at right angles. Where only a part of the disc is in view, the half
+// arms in view are required, at least one.
 std::optional<Cross> FindCrossByThinning(const RingInside& inside);
 
-// Where a cross is cut off by the image border or crossed by a shadow: the direction, modulo a
-// right angle, along which the image is darkest beside what lies next to it, by the half arms that
-// it shows. Nothing when no direction is darker by 'min_contrast' gray values. A proposal: it does
-// not say that nothing else is in the ring.
+// For a cross that the image border cuts off or a shadow crosses. Finds the direction, modulo a
+// right angle, that is darkest against what lies beside it, over the half arms in view. Returns
+// nothing when no direction is darker by 'min_contrast' gray values. The result is a proposal only:
+// it does not exclude another figure in the ring.
 std::optional<Cross> FindCrossByProfile(const cv::Mat& image, const PatternView& view,
                                         const LandingPattern& pattern, double min_contrast);
 
-// Memory of FindCrossByLines, which does not allocate once it is reserved.
+// Memory of FindCrossByLines. Does not allocate once it is reserved.
 struct CrossLinesWorkspace {
   BinaryImage binary;
   BorderTracer tracer;
@@ -68,8 +68,8 @@ struct CrossLinesWorkspace {
   void Reserve();
 };
 
-// Rings of more than 150 px: the border of the dark area, split and merged into straight lines, has
-// two pairs of parallels at right angles, each an arm's width apart.
+// For rings of more than 150 px. The borders of the dark pixels, split and merged into straight
+// lines, must contain two pairs of parallel lines at right angles, each pair an arm's width apart.
 std::optional<Cross> FindCrossByLines(const RingInside& inside, const LandingPattern& pattern,
                                       CrossLinesWorkspace* workspace);
 

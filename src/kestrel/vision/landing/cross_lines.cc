@@ -8,19 +8,20 @@
 namespace kestrel {
 namespace {
 
-// All in inner radii.
-constexpr double kTolerance = 0.05;     // of a point from its line
-constexpr double kMinLength = 0.25;     // of a line
-constexpr double kMinSideLength = 0.5;  // of all lines along one side of an arm and its opposite
+// All lengths in inner radii.
+constexpr double kTolerance = 0.05;     // distance of a point from its line
+constexpr double kMinLength = 0.25;     // length of a line
+constexpr double kMinSideLength = 0.5;  // total length of the lines along each side of an arm and
+                                        // its opposite
 
-// Straight pieces of all borders of the dark pixels.
+// Fills workspace->segments with the straight pieces of all borders of the dark pixels.
 void CollectSegments(const RingInside& inside, CrossLinesWorkspace* workspace) {
   const int size = inside.dark.size();
   BinaryImage& binary = workspace->binary;
   binary.dark.Reset(size, size);
   binary.bright.Reset(size, size);
   for (int y = 0; y < size; ++y) *binary.dark.row(y) = inside.dark.row(y);
-  // Every border is of interest here: all that is above one counts as bright.
+  // Every border is needed here, so the rows above every pixel count as bright.
   for (int y = -1; y < size; ++y) *binary.bright.row(y) = ~std::uint64_t{0};
   workspace->tracer.Trace(binary, cv::Rect(0, 0, size, size), BorderLimits{});
   workspace->segments.clear();

@@ -11,9 +11,9 @@ namespace {
 
 constexpr int kRingDirections = 96;               // around the ring
 constexpr int kPerQuarter = kRingDirections / 4;  // over a right angle
-constexpr int kBeside = kPerQuarter * 28 / 90;    // from the middle of an arm to the white beside
+constexpr int kBeside = kPerQuarter * 28 / 90;  // from the middle of an arm to the white beside it
 constexpr std::array<double, 5> kRadii{0.34, 0.46, 0.58, 0.7, 0.82};  // inner radii of the ring
-constexpr int kMinSeen = 2;  // contrasts without which nothing is said
+constexpr int kMinSeen = 2;  // contrasts seen; with fewer a direction is not judged
 
 using DirectionTable = std::array<Eigen::Vector2f, kRingDirections>;
 const DirectionTable& Directions() {
@@ -32,8 +32,8 @@ const DirectionTable& Directions() {
 
 std::optional<Cross> FindCrossByProfile(const cv::Mat& image, const PatternView& view,
                                         const LandingPattern& pattern, double min_contrast) {
-  // For each direction modulo a right angle, how much darker it is than what lies beside it: the
-  // mean over the half arms and radii that the image shows.
+  // For each direction modulo a right angle: how much darker it is than the image beside it, as the
+  // mean over the half arms and radii in view.
   std::array<float, kPerQuarter> sum{};
   std::array<int, kPerQuarter> seen{};
   std::array<float, kRingDirections> x, y, gray;

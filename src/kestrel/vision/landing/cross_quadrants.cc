@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-// Neighbourhood of a pixel: itself and the four that share an edge with it.
+// Dilates by the neighbourhood of a pixel: itself and the four that share an edge with it.
 void Dilate(SmallMask* mask) {
   std::uint64_t above = 0;
   for (int y = 0; y < mask->size(); ++y) {
@@ -20,7 +20,7 @@ void Dilate(SmallMask* mask) {
   }
 }
 
-// As Dilate for the clear pixels; what lies outside of the mask is taken as set.
+// Erodes by the same neighbourhood. Pixels outside of the mask count as set.
 void Erode(SmallMask* mask) {
   const std::uint64_t columns = mask->columns();
   std::uint64_t above = columns;
@@ -40,7 +40,7 @@ struct Area {
   double y = 0;
 };
 
-// Takes the 4-connected area around a pixel out of 'mask'.
+// Returns the 4-connected area around a pixel and clears it in 'mask'.
 Area TakeArea(const RingInside& inside, int x, int y, SmallMask* mask) {
   std::array<std::pair<std::int8_t, std::int8_t>, SmallMask::kMaxSize * SmallMask::kMaxSize> stack;
   std::size_t depth = 0;

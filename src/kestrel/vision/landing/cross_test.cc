@@ -19,7 +19,7 @@ const LandingPattern kPattern{};
 const double kHalfWidth = 0.5 * kPattern.arm_width_m / kPattern.inner_radius_m();
 const double kLength = kPattern.arm_half_length_m / kPattern.inner_radius_m();
 
-// The rectified inside of a ring that holds 'print', turned by 'angle', its centre moved.
+// Draws the rectified inside of a ring with 'print' in it, turned by 'angle', the centre displaced.
 RingInside Draw(int size, const Print& print, double angle, double dx = 0) {
   RingInside inside{SmallMask(size), SmallMask(size), 1};
   for (int y = 0; y < size; ++y) {
@@ -108,7 +108,7 @@ TEST(FindCrossByQuadrants, CountsToFour) {
 }
 
 TEST(FindCrossByQuadrants, ClosesGaps) {
-  // An arm with a gap of one pixel: open, two quadrants would be one.
+  // An arm has a gap of one pixel. Without closing it, two quadrants would be one.
   RingInside inside = Draw(24, Spokes(4), 0);
   for (int y = 0; y < 24; ++y) inside.dark.Clear(16, y);
   EXPECT_TRUE(FindCrossByQuadrants(inside));
@@ -145,7 +145,7 @@ TEST(RectifyInside, ShowsTheCrossOfAnImage) {
       const double u = inside->Coordinate(x), v = inside->Coordinate(y);
       EXPECT_EQ(inside->disc.at(x, y), std::hypot(u, v) < 0.9);
       if (std::hypot(u, v) > 0.85) continue;
-      // Where black and white meet, the threshold decides.
+      // Near the boundary of black and white, the threshold decides.
       int dark = 0;
       for (const double dv : {-0.06, 0.0, 0.06}) {
         for (const double du : {-0.06, 0.0, 0.06}) {
@@ -171,8 +171,8 @@ TEST(RectifyInside, SaysNothingWithoutContrastOrOutOfView) {
 
 class CrossProfileTest : public ::testing::Test {
  protected:
-  // The direction found in a print that is seen from straight above, in the view of its ring;
-  // columns from 'first_column' on are in the image.
+  // Finds the direction in a print seen from straight above, in the view of its ring. The image
+  // shows the columns from 'first_column' on.
   std::optional<Cross> Find(const Print& print, double angle, int first_column = 0,
                             int shadow_column = 0) const {
     const RigidTransform pose = PrintPose({0, 0, 1.2}, 0, 0, 0);

@@ -13,8 +13,9 @@
 namespace kestrel {
 namespace {
 
-constexpr int kBins = 36;       // of the direction, over a right angle
-constexpr double kNear = 0.15;  // inner radii: where the two lines cannot be told apart
+constexpr int kBins = 36;       // bins of the histogram of directions, over a right angle
+constexpr double kNear = 0.15;  // inner radii; nearer to the centre the two lines cannot be told
+                                // apart
 
 // Line through the points of one arm and its opposite, by total least squares.
 struct ArmLine {
@@ -39,7 +40,7 @@ struct ArmLine {
   }
 };
 
-// The direction modulo a right angle towards which most pixels lie, seen from the centre.
+// Returns the direction, modulo a right angle, in which most pixels lie as seen from the centre.
 std::optional<double> DominantDirection(const RingInside& inside, const SmallMask& lines) {
   std::array<int, kBins> histogram{};
   for (int y = 0; y < lines.size(); ++y) {
@@ -64,7 +65,7 @@ std::optional<double> DominantDirection(const RingInside& inside, const SmallMas
   return (best + 0.5) / kBins * 0.5 * std::numbers::pi;
 }
 
-// Share of a half arm that the image shows.
+// Returns the share of a half arm that is in view, 0 to 1.
 double HalfArmSeen(const RingInside& inside, double angle) {
   constexpr int kSamples = 10;
   int seen = 0;
@@ -101,7 +102,7 @@ std::optional<Cross> FindCrossByThinning(const RingInside& inside) {
   }
   // A half arm that the image shows leaves about 0.6 inner radii of pixels.
   const double full = std::max(3.0, lines.size() / 8.0);
-  std::array<int, 2> sides{};  // of each arm, that are in view
+  std::array<int, 2> sides{};  // per arm, number of half arms in view
   for (int arm = 0; arm < 2; ++arm) {
     for (int side = 0; side < 2; ++side) {
       const double seen =

@@ -12,7 +12,7 @@
 namespace kestrel {
 namespace {
 
-// What a small ring that has grown together with something beside it still has.
+// Least ellipticity of a small ring that has grown together with something beside it.
 constexpr double kLeastEllipticity = 0.6;
 constexpr double kMinAxisRatio = 0.15;
 
@@ -20,7 +20,7 @@ ConvexHull::Points PointsOf(const BorderTracer& tracer, const Border& border) {
   return {tracer.begin(border), border.count};
 }
 
-// Gray values of an image at places of an outline: directions are those of a circle.
+// Samples an image along an outline. The directions are those of a circle.
 class OutlineSampler {
  public:
   static constexpr int kDirections = 24;
@@ -31,7 +31,7 @@ class OutlineSampler {
         major_((outline.semi_major * outline.major_axis()).cast<float>()),
         minor_((outline.semi_minor * outline.minor_axis()).cast<float>()) {}
 
-  // 'scale': of the outline about its centre. Negative outside of the image.
+  // 'scale': scale of the outline about its centre. Returns a negative value outside of the image.
   float Gray(int direction, double scale) const {
     static const std::array<Eigen::Vector2f, kDirections> kUnit = [] {
       std::array<Eigen::Vector2f, kDirections> unit;
@@ -86,7 +86,7 @@ std::size_t OutlineInView(const BorderTracer& tracer, const Border& border,
                           std::span<Eigen::Vector2d> outline) {
   const ConvexHull hull(PointsOf(tracer, border));
   const std::span<const Eigen::Vector2d> corners = hull.corners();
-  // Within the outermost pixels the outline already turns along the image border.
+  // Beyond the centres of the outermost pixels the outline already turns along the image border.
   const Eigen::Array2d last(tracer.image_size().width - 1, tracer.image_size().height - 1);
   const auto at_image_border = [&](const Eigen::Vector2d& point) {
     return (point.array() <= 0).any() || (point.array() >= last).any();
@@ -124,7 +124,7 @@ double RingContrast(const cv::Mat& image, const Ellipse& outer_edge,
     if (dark < 0 || bright < 0 || center < 0) continue;
     contrast[seen] = bright - dark;
     inner_contrast[seen++] = center - dark;
-    // The quarter of the directions with the least contrast may show anything.
+    // A quarter of the directions may show anything, so the least contrast among the others counts.
     without += bright - dark < kLeast;
     if (4 * without > kDirections) return 0;
   }

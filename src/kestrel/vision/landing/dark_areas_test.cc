@@ -14,7 +14,7 @@
 namespace kestrel {
 namespace {
 
-// The borders of a figure of 100 x 100 pixels.
+// Traces the borders of a figure of 100 x 100 pixels.
 BorderTracer TraceSmallFigure(const Print& is_dark) {
   BinaryImage binary;
   binary.dark.Reset(100, 100);
@@ -30,7 +30,7 @@ BorderTracer TraceSmallFigure(const Print& is_dark) {
   return tracer;
 }
 
-// The areas that they pass for.
+// Returns the areas that the borders of a figure are taken for.
 std::vector<DarkArea> Areas(const Print& is_dark, double min_minor_px = 8,
                             int max_hull_extent = 0) {
   const BorderTracer tracer = TraceSmallFigure(is_dark);
@@ -89,7 +89,8 @@ TEST(TestDarkArea, AnOpenSmallRingIsItsHull) {
 }
 
 TEST(OutlineInView, IsThatOfTheRingWithoutTheImageBorder) {
-  const Eigen::Vector2d center(85, 40);  // of a ring that the right side of the image cuts off
+  const Eigen::Vector2d center(85, 40);  // centre of a ring that the right side of the image cuts
+                                         // off
   const BorderTracer tracer = TraceSmallFigure([&](double x, double y) {
     const double r = (Eigen::Vector2d(x, y) - center + Eigen::Vector2d(50, 50)).norm();
     return std::abs(r - 24) < 2;

@@ -9,30 +9,31 @@
 namespace kestrel {
 namespace {
 
-// Largest standard deviation of the position of a part of a print that ends the search, share of
-// the distance: a wrong pose of little of a print bends until the edges scatter little, but then
-// they hardly hold it.
+// Largest standard deviation of the position of a partial print that ends the search, as a share of
+// the distance. A wrong pose of a small part of a print can bend until its edges scatter little,
+// but then they hardly determine it.
 constexpr double kMaxSureSigma = 0.01;
-// How often the mirror pose is the right one although it explains the image less well: measured on
-// rendered stills, docs/location.md.
+// Frequency with which the mirror pose is the right one although it explains the image less well.
+// Measured on rendered stills, docs/location.md.
 constexpr double kMirrorIsRight = 0.05;
 
 Eigen::Vector3d NormalOf(const PrintFinding& finding) {
   return finding.location.camera_from_pattern.rotation * Eigen::Vector3d::UnitZ();
 }
 
-// Whether two findings are the two poses of one ring, between which the image does not decide.
+// True when two findings are the two poses of one ring and the image does not decide between them.
 bool AreMirrorPoses(const PrintFinding& a, const PrintFinding& b) {
   constexpr double kSameCenterPx = 2;
   constexpr double kOtherNormal = 0.99;  // cosine between the normals
-  constexpr double kAlike = 4;           // log odds: the wrong one bends the print out of its place
+  constexpr double kAlike = 4;  // difference in log odds; a clearly wrong pose bends the print out
+                                // of its place by more
   return std::abs(a.log_odds - b.log_odds) < kAlike &&
          (a.center_px - b.center_px).norm() < kSameCenterPx &&
          NormalOf(a).dot(NormalOf(b)) < kOtherNormal;
 }
 
-// Of the two poses of one ring the one is right that leaves less: what is in its place is there
-// under both, how near to it is not.
+// Of two mirror poses, the one with the smaller residuals is better: both show the same parts of
+// the print in place, but not equally near to their place.
 bool IsBetterMirror(const PrintFinding& a, const PrintFinding& b) {
   const PatternLocation& one = a.location;
   const PatternLocation& other = b.location;
@@ -41,7 +42,7 @@ bool IsBetterMirror(const PrintFinding& a, const PrintFinding& b) {
   return a.log_odds > b.log_odds;
 }
 
-// From one pose to the other: translation, then rotation vector, in the camera frame.
+// Difference between two poses: translation, then rotation vector, in the camera frame.
 Eigen::Matrix<double, 6, 1> Difference(const RigidTransform& from, const RigidTransform& to) {
   Eigen::Matrix<double, 6, 1> difference;
   difference << to.translation - from.translation,
@@ -49,7 +50,7 @@ Eigen::Matrix<double, 6, 1> Difference(const RigidTransform& from, const RigidTr
   return difference;
 }
 
-// Edges scatter, and a sheet is not quite flat.
+// The bound allows for the scatter of edges and for a sheet that is not quite flat.
 double MisfitBoundPx(const PrintFinding& finding) {
   constexpr double kSigmas = 3;
   if (!finding.seen) return 0;
@@ -78,13 +79,14 @@ bool DetectionChoice::Add(const PrintFinding& finding) {
   }
   log_.Reach(LandingStage::kFound, {});
   if (!Replaces(finding)) return true;
-  // What contradicts the hint ends the search only when it is beyond doubt.
+  // A finding that contradicts the hint ends the search only when it is beyond doubt.
   is_sure_ = finding.log_odds + finding.told >= least_log_odds_ &&
              (!finding.is_part() || finding.relative_sigma() <= kMaxSureSigma);
   return true;
 }
 
-// Makes the finding the best, or the best's mirror, where it is that; whether it is the best.
+// Makes the finding the best one or the mirror pose of the best one, as appropriate. True when it
+// became the best.
 bool DetectionChoice::Replaces(const PrintFinding& finding) {
   if (best_ && AreMirrorPoses(*best_, finding)) {
     const bool is_better = IsBetterMirror(finding, *best_);

@@ -10,32 +10,33 @@
 
 namespace kestrel {
 
-// Sees every finding of a search before it is judged.
+// Called with every finding of a search, before it is judged.
 using FindingObserver = std::function<void(const PrintFinding&)>;
 
-// Of the findings of an image the one that is the pattern most probably, if any is probable enough.
+// Chooses the finding of an image that is most probably the pattern, if any is probable enough.
 class DetectionChoice {
  public:
-  // 'min_quality': least probability. 'observer' may be null; it and the log must outlive this.
+  // 'min_quality': least accepted probability, 0 to 1. 'observer' may be null. Observer and log
+  // must outlive this.
   DetectionChoice(double min_quality, const FindingObserver* observer, SearchLog* log);
 
-  // Whether a finding is probable enough to be the pattern.
+  // True when a finding is probable enough to be the pattern.
   bool Accepts(const PrintFinding& finding) const { return finding.log_odds >= least_log_odds_; }
 
-  // Whether it still can be when some of its doubts are not known yet: they only make it less
-  // probable.
+  // True when a finding may still be accepted although only the doubts in 'known' are measured.
+  // Further doubts can only lower the probability. Always true with an observer.
   bool MayAccept(PrintKind kind, const PrintDoubts& known) const {
     return observer_ || PrintLogOdds(kind, known) >= least_log_odds_;
   }
 
-  // Notes a finding; whether it is accepted.
+  // Adds a finding. True when it is accepted.
   bool Add(const PrintFinding& finding);
 
-  // Whether the best so far needs no further search.
+  // True when the best finding so far needs no further search.
   bool IsSure() const { return is_sure_; }
 
-  // The best as it is told. Where the image supports two poses of the same ring alike, the other is
-  // told as well, and the covariance is that of both together.
+  // Returns the best finding as a detection. When the image supports both mirror poses of one ring,
+  // it includes the other pose too, and the covariance covers both.
   std::optional<LandingDetection> Detection() const;
 
  private:
@@ -45,7 +46,7 @@ class DetectionChoice {
   const FindingObserver* observer_;
   SearchLog& log_;
   std::optional<PrintFinding> best_;
-  std::optional<PrintFinding> mirror_;  // of the best, where it was found too
+  std::optional<PrintFinding> mirror_;  // of the best finding, when it was found too
   bool is_sure_ = false;
 };
 

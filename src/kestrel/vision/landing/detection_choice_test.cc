@@ -46,8 +46,8 @@ PrintDoubts RandomDoubts(Random* random) {
   return doubts;
 }
 
-// The gate on what is known so far: nothing that would be accepted in the end falls at it, however
-// few of the doubts are known and whatever the prior takes.
+// MayAccept never rejects a finding that would be accepted in the end, no matter how few of the
+// doubts are known and how much the prior takes.
 TEST_F(DetectionChoiceTest, AnEarlyLookLosesNothing) {
   Random random(1);
   int refused_early = 0, accepted = 0;
@@ -131,8 +131,8 @@ TEST_F(DetectionChoiceTest, TheBoundsOfTheQualityAreReached) {
   EXPECT_FALSE(none.Add(FindingAt({0, 0}, 50)));
 }
 
-// The two poses of one ring: the one that leaves less is told, the other one beside it, and the
-// covariance reaches as far.
+// Of the two poses of one ring, the one with the smaller residuals is reported, and the other one
+// as its mirror. The covariance reaches the other one.
 TEST_F(DetectionChoiceTest, TheOtherPoseOfTheRingIsTold) {
   PrintFinding right = FindingAt({100, 100}, 3);
   PrintFinding mirror = FindingAt({100.5, 100}, 3.5);
@@ -170,7 +170,7 @@ TEST_F(DetectionChoiceTest, APoseThatIsMuchWorseIsNoMirror) {
   EXPECT_FALSE(choice.Detection()->mirror_camera_from_pattern);
 }
 
-// The search ends at a whole print, and at a part only where that fixes the pose.
+// The search ends at a whole print, and at a partial one only where it determines the pose.
 TEST_F(DetectionChoiceTest, APartThatHardlyFixesThePoseIsNotSure) {
   DetectionChoice whole = Choice(0.5);
   whole.Add(FindingAt({0, 0}, 2));

@@ -7,7 +7,7 @@
 namespace kestrel {
 namespace {
 
-constexpr double kLeastLacking = 1e-3;  // of a correlation of 1
+constexpr double kLeastLacking = 1e-3;  // least value of (1 - correlation)
 constexpr double kLeastSigma = 1e-4;
 
 }  // namespace

@@ -8,14 +8,14 @@
 
 namespace kestrel {
 
-// Logarithm of what a correlation lacks of 1.
+// Returns the natural logarithm of (1 - correlation), bounded from below.
 double LogLacking(double correlation);
 
-// What the gray values of a print that was fitted as a whole are not.
+// Sets the doubts of a print that was fitted as a whole, by its gray values.
 void DoubtGrayValues(const SmallPatternFitter::Fit& fit, PrintDoubts* doubts);
 
-// How little is seen of it: 'diameters_px' of its ring, standard deviation of its position as a
-// share of the distance.
+// Sets the doubts by the view: size and axis ratio of the ring, 'diameters_px' with the longer axis
+// first, and 'relative_sigma', the standard deviation of the position as a share of the distance.
 void DoubtView(const Eigen::Vector2d& diameters_px, double relative_sigma, PrintDoubts* doubts);
 
 }  // namespace kestrel

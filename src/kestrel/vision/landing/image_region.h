@@ -8,7 +8,7 @@ namespace kestrel {
 
 // A part of the camera's image at 1 / 2^level of its resolution.
 struct ImageRegion {
-  cv::Point offset{0, 0};  // of its first pixel, at full resolution
+  cv::Point offset{0, 0};  // its first pixel, at full resolution
   int level = 0;
 
   double scale() const { return 1 << level; }

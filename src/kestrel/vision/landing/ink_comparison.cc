@@ -14,22 +14,23 @@
 namespace kestrel {
 namespace {
 
-constexpr int kSide = 46;  // places along a side of the square: strokes are three of them wide
-constexpr double kOffAxis = 0.15;  // of places on a stroke, of its width
-// What is left out along the edges of the print, of a stroke's width: blur reaches so far.
+constexpr int kSide = 46;  // places along a side of the square; a stroke is three places wide
+constexpr double kOffAxis = 0.15;  // distance of places from the middle of a stroke, share of its
+                                   // width
+// Margins along the edges of the print, as far as blur reaches; shares of a stroke's width.
 constexpr double kBesideRing = 0.35;
 constexpr double kBesideArm = 0.3;
-constexpr double kArmReach = 0.88;    // of the arm's half length, which varies
-constexpr double kArmStart = 0.6;     // arm widths from the middle
-constexpr double kHub = 2;            // the same, radius of the hub
-constexpr double kSpokeStart = 1.5;   // the same, of a line between the arms
-constexpr double kLineHalf = 0.22;    // half the width of such a line, arm widths
+constexpr double kArmReach = 0.88;   // share of the arm's half length, which varies between prints
+constexpr double kArmStart = 0.6;    // arm widths from the middle
+constexpr double kHub = 2;           // radius of the hub, arm widths
+constexpr double kSpokeStart = 1.5;  // start of a line between the arms, arm widths from the middle
+constexpr double kLineHalf = 0.22;   // half the width of such a line, arm widths
 constexpr double kInSector = 0.9239;  // cosine of half a sector
-constexpr double kBoardReach = 0.55;  // of the white around the ring
-// Quantiles of the gray values around a direction: ink; white in its shadows; white in the light.
+constexpr double kBoardReach = 0.55;  // share of the white margin around the ring
+// Quantiles of the gray values around a direction: ink, white in its shadows, white in the light.
 constexpr double kInk = 0.5, kDarkerWhite = 0.25, kLitWhite = 0.8;
-// Darkness, 0 white to 1 ink: where ink begins and where it is sure; the same of what is no white,
-// and of what no shadow makes so dark.
+// Darkness runs from 0 (white) to 1 (ink). A ramp is 0 up to 'from' and 1 beyond 'to'. kIsInk: dark
+// as ink; kIsDark: too dark for white; kIsInkOnly: darker than any shadow makes white.
 struct Ramp {
   float from, to;
   float operator()(float darkness) const {
@@ -37,14 +38,15 @@ struct Ramp {
   }
 };
 constexpr Ramp kIsInk{0.2f, 0.6f}, kIsDark{0.35f, 0.85f}, kIsInkOnly{0.7f, 0.95f};
-constexpr float kBeyondWhite = 0.15f;  // beyond lit white, of the contrast: a highlight hides ink
+constexpr float kBeyondWhite = 0.15f;  // share of the contrast above lit white, where a highlight
+                                       // hides ink
 constexpr float kLeastContrast = 2;    // gray values
-constexpr float kLeastOfContrast = 0.25;  // of the whole print's, in any direction
-constexpr double kEnoughSeen = 0.25;      // share of places by which a part can be judged
+constexpr float kLeastOfContrast = 0.25;  // share of the whole print's contrast, in any direction
+constexpr double kEnoughSeen = 0.25;      // least share of places in view by which a part is judged
 
 using Histogram = std::array<std::uint16_t, 256>;
 
-// The gray value below which 'share' of a histogram lies; nothing where it is empty.
+// Returns the gray value below which 'share' of a histogram lies; nothing for an empty one.
 std::optional<float> Quantile(const Histogram& histogram, double share) {
   const int count = std::accumulate(histogram.begin(), histogram.end(), 0);
   if (count == 0) return std::nullopt;
@@ -57,7 +59,7 @@ std::optional<float> Quantile(const Histogram& histogram, double share) {
   return std::nullopt;
 }
 
-// Values in order; those that are not known, negative, come first.
+// Sorted values. Unknown values are negative and come first.
 template <std::size_t kCount>
 class KnownValues {
  public:
@@ -68,7 +70,7 @@ class KnownValues {
         values_.begin());
   }
   bool empty() const { return first_ == kCount; }
-  // 0 where there are none, or not so many.
+  // Each returns 0 where there are no known values, or too few.
   double Least() const { return empty() ? 0 : values_[first_]; }
   double Median() const { return empty() ? 0 : values_[(first_ + kCount) / 2]; }
   double FromTop(std::size_t rank) const { return std::max(0.0, values_[kCount - 1 - rank]); }
@@ -78,7 +80,7 @@ class KnownValues {
   std::size_t first_;
 };
 
-// Correlation of a series with whether a place is of ink.
+// Correlation of a series with the ink of the print (1 where a place has ink, else 0).
 class InkCorrelation {
  public:
   void Add(double darkness, bool is_ink) {
@@ -99,17 +101,17 @@ class InkCorrelation {
 
 }  // namespace
 
-// Gray values around each direction.
+// Gray levels by sector.
 struct InkComparison::Levels {
-  std::array<float, kSectors> white;      // in the shadows that are there
+  std::array<float, kSectors> white;      // level of white, in the shadows that are there
   std::array<float, kSectors> per_gray;   // 1 / (white - ink)
-  std::array<float, kSectors> highlight;  // from where a highlight hides ink
+  std::array<float, kSectors> highlight;  // gray value from which on a highlight hides ink
   bool has_contrast = false;
 };
 
-// How dark the places are.
+// Darkness of the places, 0 white to 1 ink (not clamped).
 struct InkComparison::Darkness {
-  // Mean of a ramp over the places of a range that are seen; negative where these are too few.
+  // Mean of a ramp over the places of a range that are in view; negative where these are too few.
   double Mean(const Range& range, const Ramp& ramp) const {
     double sum = 0;
     int seen = 0;
@@ -184,7 +186,7 @@ void InkComparison::AddInk() {
   ink_end_ = x_m_.size();
 }
 
-// The places of a regular grid for which 'holds' of: place, its distance from the middle, sector.
+// Adds the places (x, y) of a regular grid for which 'holds' returns true.
 template <typename Holds>
 InkComparison::Range InkComparison::AddGrid(const Holds& holds) {
   const std::size_t begin = x_m_.size();
@@ -218,7 +220,7 @@ void InkComparison::AddWhite() {
   }
   for (int s = 0; s < kSectors; ++s) {
     const double middle = s * 2 * std::numbers::pi / kSectors;
-    bool is_odd = false;  // every second place will do
+    bool is_odd = false;  // takes every second place
     board_[s] = AddGrid([&](double x, double y) {
       const double radius = std::hypot(x, y);
       const bool is_board =
@@ -228,7 +230,7 @@ void InkComparison::AddWhite() {
   }
 }
 
-// The lines on which another spoke may lie, of places between two arms.
+// Collects, from the places between two arms, those on lines along which another spoke may lie.
 void InkComparison::AddLines(int quadrant) {
   const double arm = pattern_.arm_width_m;
   for (int i = 0; i < kLines; ++i) {
@@ -251,7 +253,7 @@ InkComparison::Levels InkComparison::MeasureLevels(
     Histogram& histogram = (i < ink_end_ ? ink : white)[sector_[i]];
     ++histogram[static_cast<std::size_t>(std::lround(gray[i]))];
   }
-  // Of a sector and its neighbours, where these show any, else of all.
+  // Sum over a sector and its neighbours; over all sectors where these show no ink or no white.
   const auto around = [](const std::array<Histogram, kSectors>& of_sectors, int sector, int reach) {
     Histogram sum{};
     for (int s = sector - reach; s <= sector + reach; ++s) {

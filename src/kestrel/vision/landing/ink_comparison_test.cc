@@ -39,7 +39,7 @@ class InkComparisonTest : public ::testing::Test {
   Compared Compare(const Print& print) const { return Compare(Draw(print)); }
   cv::Mat Draw(const Print& print) const { return DrawPrint(camera_, pattern_, print, pose_); }
 
-  // 'transmission': share of the light that is left where 'is_shaded', in the plane of the print.
+  // 'transmission': share of the light that remains where 'is_shaded', in the plane of the print.
   cv::Mat Shade(const cv::Mat& image, double transmission, const Print& is_shaded) const {
     cv::Mat shaded = image.clone();
     const RigidTransform pattern_from_camera = pose_.Inverse();
@@ -72,7 +72,7 @@ TEST_F(InkComparisonTest, NothingSpeaksAgainstThePrint) {
   EXPECT_LT(compared[PrintDoubt::kUnlike], std::log(0.05));
 }
 
-// Of a body, arms and turning rotors, anywhere; of an edge; and of a fence.
+// Shadows of a body, arms and turning rotors at any place; of an edge; and of a fence.
 TEST_F(InkComparisonTest, ShadowsSpeakAgainstNothing) {
   const cv::Mat even = Draw(print_);
   const auto uav = [](double turn, double at) {
@@ -129,7 +129,8 @@ TEST_F(InkComparisonTest, AFlatImageIsUnlikeThePrint) {
   EXPECT_EQ(compared[PrintDoubt::kUnlike], 0);
 }
 
-// A highlight that saturates the image hides the ink of an arm; it does not speak against it.
+// A highlight that saturates the image hides the ink of an arm. It does not speak against the
+// print.
 TEST_F(InkComparisonTest, AHighlightHidesAnArm) {
   cv::Mat image = Draw(print_);
   Eigen::Vector2d pixel;

@@ -25,8 +25,8 @@ TEST_F(LandingHintTest, AnImageThatContradictsWhatIsUpPrevails) {
 }
 
 TEST_F(LandingHintTest, AHintFitsAPatternThatFillsTheImageOfAFisheye) {
-  // Half a metre above the board the ring spans 90 degrees: much less than its size over its
-  // distance times the focal length.
+  // Half a metre above the board the ring spans 90 degrees, much less than its size divided by its
+  // distance.
   const CameraModel fisheye(
       {752, 480, 250, 250, 375.5, 239.5, DistortionModel::kEquidistant, {0, 0, 0, 0}});
   const LandingPatternDetector detector(fisheye, {});
@@ -36,14 +36,14 @@ TEST_F(LandingHintTest, AHintFitsAPatternThatFillsTheImageOfAFisheye) {
     LandingHint hint;
     hint.center_in_camera = truth.translation;
     hint.center_sigma_m = 0.1;
-    hint.altitude_m = distance + 2;  // above the ground, not above the roof
+    hint.altitude_m = distance + 2;  // above the ground, while the print is on a roof
     const LandingReport report = detector.Detect(image, hint, workspace_);
     ASSERT_TRUE(report.detection) << distance << " m: " << report.reason;
     EXPECT_LT(PoseError(report.detection->camera_from_pattern, truth).head<3>().norm(), 0.005);
   }
 }
 
-// Two patterns side by side: the one that was expected is taken.
+// With two patterns side by side, the expected one is chosen.
 TEST_F(LandingHintTest, AHintSaysWhereToLook) {
   const RigidTransform left = PrintPose({-1.1, 0.1, 4}, 0.1, 1, 0.3);
   const RigidTransform right = PrintPose({1.1, -0.1, 4}, 0.1, 1, 0.6);
@@ -60,7 +60,7 @@ TEST_F(LandingHintTest, AHintSaysWhereToLook) {
   }
 }
 
-// What is told may be wrong in any way: a pattern in plain view is found, and where it is.
+// However wrong the hint is, a pattern in plain view is found and located.
 TEST_F(LandingHintTest, AWrongHintHidesNothing) {
   struct Told {
     const char* what;
@@ -118,7 +118,7 @@ TEST_F(LandingHintTest, AWrongHintHidesNothing) {
       ASSERT_TRUE(report.detection) << told.what << " at " << distance << " m: " << report.reason;
       EXPECT_LT((report.detection->center_px - center_px).norm(), 0.2)
           << told.what << " at " << distance << " m";
-      // Where what is up is wrong the pose of the two may be that tells it better.
+      // Where 'up' is wrong, the reported pose may be the mirror pose that agrees better with it.
       EXPECT_LT((report.detection->camera_from_pattern.translation - at).norm(), 0.1 * distance)
           << told.what << " at " << distance << " m";
     }
@@ -146,7 +146,7 @@ TEST_F(LandingHintTest, AGoodPredictionNeedsNoSearch) {
                searched.detection->camera_from_pattern.translation)
                   .norm(),
               0.002 * distance);
-    // Half a ring off: within three sigma, found by search.
+    // Half a ring off: within three sigma, so the search finds it.
     hint.center_in_camera = truth.translation + Eigen::Vector3d(0.3, -0.2, 0);
     hint.center_sigma_m = 0.2;
     const LandingReport around = Detect(image, hint);
@@ -166,8 +166,7 @@ TEST_F(LandingHintTest, TheQualityIsThatOfTheImageWhateverIsTold) {
   EXPECT_EQ(wrong.detection->quality, right.detection->quality);
 }
 
-// An image whose pattern a late step finds, searched by little and little: every frame goes on
-// where the one before stopped.
+// A pattern that only a late step finds: the search goes on in the next frame where it stopped.
 TEST_F(LandingHintTest, ASearchThatIsOutOfTimeGoesOnInTheNextFrame) {
   LandingPatternDetectorOptions options;
   options.max_search_ms = 1e-6;  // one step a frame
@@ -206,7 +205,7 @@ TEST_F(LandingHintTest, ABoundedSearchOfAnEmptyImageTakesEveryStepInTurn) {
       steps.insert(report.next_step);
       hint.first_step = report.next_step;
     }
-    // Where nothing is told, the likely part is the whole image: one round.
+    // Without a hint, the likely part is the whole image, so there is only one round.
     EXPECT_GE(steps.size(), kSearchSteps);
     EXPECT_TRUE(steps.contains(0) || steps.contains(static_cast<int>(kSearchSteps)));
     EXPECT_TRUE(std::all_of(steps.begin(), steps.end(), [](int step) {

@@ -11,7 +11,7 @@
 
 namespace kestrel {
 
-// What the detector computed once for its camera and pattern.
+// The models that the detector computes once for its camera and pattern.
 struct LandingModels {
   LandingModels(const CameraModel& camera_model, const LandingPatternDetectorOptions& all_options)
       : camera(camera_model),
@@ -21,7 +21,7 @@ struct LandingModels {
         locator(camera, options.pattern),
         ink(options.pattern),
         small(camera, rays, options.pattern) {}
-  // The parts refer to each other.
+  // Not copyable: the parts refer to each other.
   LandingModels(const LandingModels&) = delete;
   LandingModels& operator=(const LandingModels&) = delete;
 

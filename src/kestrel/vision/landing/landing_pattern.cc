@@ -16,7 +16,7 @@ std::vector<std::string> LandingPattern::Validate() const {
   };
   require(outer_diameter_m > 0 && std::isfinite(outer_diameter_m), "outer_diameter_m",
           outer_diameter_m, "a positive length");
-  if (!violations.empty()) return violations;  // all other limits follow from the diameter
+  if (!violations.empty()) return violations;  // all other limits depend on the diameter
 
   require(ring_width_m > 0 && ring_width_m < outer_radius_m(), "ring_width_m", ring_width_m,
           fmt::format("more than 0 and less than the outer radius, {}", outer_radius_m()));

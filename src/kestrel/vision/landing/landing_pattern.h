@@ -6,17 +6,17 @@
 
 namespace kestrel {
 
-// Dimensions of the landing pattern: a black ring and, inside of it, a black X of two arms at right
-// angles, on a white board. Defaults: the MBZIRC 2017 board. Metres.
+// Dimensions of the landing pattern, in metres: a black ring and, inside of it, a black X of two
+// arms at right angles, on a white board. The defaults are the MBZIRC 2017 board.
 //
 // Frame P: origin where the arms meet, x along one arm, z up out of the printed face.
 struct LandingPattern {
-  double outer_diameter_m = 1.0;    // of the ring
-  double ring_width_m = 0.1;        // outer minus inner radius
+  double outer_diameter_m = 1.0;    // outer diameter of the ring
+  double ring_width_m = 0.1;        // outer minus inner radius of the ring
   double arm_width_m = 0.1;         // across the arm
   double arm_half_length_m = 0.38;  // from the centre to the end of an arm; at least the inner
                                     // radius when the arms touch the ring
-  double board_size_m = 1.5;        // side of the white square around the ring
+  double board_size_m = 1.5;        // side of the white square board around the ring
 
   double outer_radius_m() const { return 0.5 * outer_diameter_m; }
   double inner_radius_m() const { return outer_radius_m() - ring_width_m; }
@@ -31,7 +31,7 @@ struct LandingPattern {
         "from the centre to the end of an arm; the inner radius or more if it touches the ring");
     visitor("board_size_m", self.board_size_m, "m", "side of the white board");
   }
-  // Every violation in words; empty when the pattern can exist.
+  // Returns every violation in words; empty when the dimensions are consistent.
   std::vector<std::string> Validate() const;
 };
 

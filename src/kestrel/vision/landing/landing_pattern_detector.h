@@ -20,14 +20,14 @@
 
 namespace kestrel {
 
-// How the cross was verified, by the size of the ring in the image (paper, section 2.4).
+// The method that verified the cross; it depends on the size of the ring (paper, section 2.4).
 enum class CrossMethod { kQuadrants, kThinning, kLines, kPartial };
 const char* ToString(CrossMethod method);  // "quadrants", "thinning", "lines", "partial"
 
-// The stage at which the best candidate of a frame fell.
+// The stages of a search, in order. A report names the last one that a candidate reached.
 enum class LandingStage {
-  kBinarize,  // the image has no contrast, or none where the hint points
-  kAreas,     // no dark area or arc of an edge that a ring could have
+  kBinarize,  // the image has no contrast in the part that was searched
+  kAreas,     // no dark area and no arc of an edge that a ring could have
   kRing,      // no candidate's border lies on the image of a circle
   kCross,     // a ring, but no cross inside
   kMatch,     // ring and cross, but the image does not look like the pattern
@@ -37,74 +37,77 @@ enum class LandingStage {
 inline constexpr int kLandingStageCount = 7;
 const char* ToString(LandingStage stage);  // "binarize", "areas", ... "found"
 
-// What is known before a frame is looked at, from a tracker or from the navigation. Everything is
-// optional; without any of it the whole image is searched.
+// Prior knowledge about a frame, from a tracker or from the navigation. Everything is optional.
+// Without a hint the whole image is searched.
 struct LandingHint {
-  // Where the centre of the pattern should be, and the standard deviation of that per axis.
+  // Expected centre of the pattern (m), and its standard deviation per axis.
   std::optional<Eigen::Vector3d> center_in_camera;
   double center_sigma_m = 0.5;
-  // Height of the camera above the pattern.
+  // Height of the camera above the pattern, m.
   std::optional<double> altitude_m;
-  // Unit vector away from the ground, in the camera frame: resolves the mirror pose of a circle and
-  // helps with the tilt of a far one.
+  // Unit vector away from the ground, in the camera frame. Resolves the mirror pose of a circle and
+  // steadies the tilt of a far one.
   std::optional<Eigen::Vector3d> up_in_camera;
-  // Where the search of this frame begins: LandingReport::next_step of the frame before.
+  // Step at which the search begins: LandingReport::next_step of the frame before.
   int first_step = 0;
-  // Time (ms) that this frame may take where the options say none; 0: any.
+  // Time limit (ms) of this frame where the options set none; 0: no limit.
   double max_search_ms = 0;
 };
 
 struct LandingDetection {
-  Eigen::Vector2d center_px;           // where the arms meet; may lie outside of the image
+  Eigen::Vector2d center_px;  // image of the point where the arms meet; may lie outside of the
+                              // image
   RigidTransform camera_from_pattern;  // pose of the pattern (frame P) in the camera
-  // Of the pose error: rows 0 to 2 translation in the camera frame (m^2), 3 to 5 rotation vector in
-  // the camera frame (rad^2).
+  // Covariance of the pose error: rows 0 to 2 translation in the camera frame (m^2), 3 to 5
+  // rotation vector in the camera frame (rad^2).
   Eigen::Matrix<double, 6, 6> covariance;
   CrossMethod method;
-  // Probability that this is the pattern, 0 to 1, by what speaks against it (docs/score.md).
+  // Probability that this is the pattern, 0 to 1 (docs/score.md).
   double quality;
   double ring_semi_major_px;
   double ring_semi_minor_px;
-  // How far the edges are from where pose and lens have them, root mean square, pixels; and the
-  // most that it should be, where print and lens are as they are said to be. 0 where there were no
-  // edges to use.
+  // Root mean square distance (px) of the edges from where pose and lens predict them, and the
+  // largest value that agrees with print and lens as they are described. 0 where the detection used
+  // no edges.
   double misfit_px = 0;
   double misfit_bound_px = 0;
-  std::optional<SeenPrint> seen;    // where the edges are
-  CalibrationEvidence calibration;  // what they say of it
+  std::optional<SeenPrint> seen;    // where the image shows the print's outlines
+  CalibrationEvidence calibration;  // evidence of the edges about the calibration
   // The other pose under which the ring looks the same, when the image cannot tell the two apart.
   std::optional<RigidTransform> mirror_camera_from_pattern;
 
-  // Lens or print are not what they are said to be: pose and lens do not show the print where it
-  // is.
+  // True when lens or print are not as described: pose and lens predict the print elsewhere than
+  // the image shows it.
   bool is_misfit() const { return misfit_px > misfit_bound_px; }
 };
 
 struct LandingReport {
   std::optional<LandingDetection> detection;
-  LandingStage reached = LandingStage::kBinarize;  // kFound, or where the best candidate fell
-  std::string_view reason;                         // why it fell, static text; empty when found
-  std::array<std::int32_t, kLandingStageCount> candidates{};  // how many entered each stage
+  LandingStage reached = LandingStage::kBinarize;  // kFound, or the stage at which the best
+                                                   // candidate failed
+  std::string_view reason;                         // why it failed, static text; empty when found
+  std::array<std::int32_t, kLandingStageCount> candidates{};  // number that entered each stage
   std::array<std::int64_t, kLandingStageCount> stage_ns{};    // time spent in each stage
-  // Where the search was given up for want of time, for the hint of the next frame; 0: it was not.
+  // Step at which the search ran out of time, for the hint of the next frame; 0 when it did not.
   int next_step = 0;
 };
 
 struct LandingPatternDetectorOptions {
   LandingPattern pattern;
-  // Smallest minor axis (diameter) of a ring that is searched for, in pixels; smaller is slower and
-  // raises the danger of look-alikes.
+  // Smallest minor axis (diameter) of a ring that is searched for, px. Smaller values are slower
+  // and raise the danger of look-alikes.
   double min_ring_px = 6;
-  // Smallest quality that is accepted, 0 to 1: the probability that it is the pattern.
+  // Smallest accepted quality, 0 to 1: the probability that it is the pattern.
   double min_quality = 0.7;
-  // How far from level the pattern may lie, standard deviation per axis: of a far one the image
-  // hardly tells the tilt, on which its distance hangs. Used where the hint says what is up; larger
-  // for a deck that rolls, smaller for a floor.
+  // Standard deviation per axis of the pattern's tilt from level. The image hardly shows the tilt
+  // of a far pattern, and its distance depends on the tilt. Used where the hint has up_in_camera.
+  // Larger for a deck that rolls, smaller for a floor.
   double level_sigma_deg = 3;
-  // Height of the camera (m) up to which a partial pattern is searched for, when it is known.
+  // Height of the camera (m) up to which a partial pattern is searched for, where the height is
+  // known.
   double max_partial_altitude_m = 2.5;
-  // Time (ms) after which the search of a frame is given up, to be continued in the next one; 0: as
-  // the hint says.
+  // Time (ms) after which the search of a frame stops, to continue in the next one; 0: the hint's
+  // limit.
   double max_search_ms = 0;
 
   template <class Self, class Visitor>
@@ -124,7 +127,7 @@ struct LandingPatternDetectorOptions {
   std::vector<std::string> Validate() const;
 };
 
-// The memory of one thread's detections: everything grows in the first frames and is kept.
+// Memory of one thread's detections. It grows in the first frames and is kept.
 class LandingWorkspace {
  public:
   LandingWorkspace();
@@ -132,7 +135,7 @@ class LandingWorkspace {
   LandingWorkspace(LandingWorkspace&&) noexcept;
   LandingWorkspace& operator=(LandingWorkspace&&) noexcept;
 
-  struct Buffers;  // of the search
+  struct Buffers;  // of LandingSearch
 
  private:
   friend class LandingPatternDetector;
@@ -148,9 +151,9 @@ class LandingPatternDetector {
   LandingPatternDetector(LandingPatternDetector&&) noexcept;
   LandingPatternDetector& operator=(LandingPatternDetector&&) noexcept;
 
-  // 'image': CV_8UC1 of the camera's size (anything else is a programming error: the report says
-  // kBinarize and why). Thread-safe as long as each thread has its own workspace; does not throw,
-  // and does not allocate once the workspace has warmed up.
+  // Searches one image. 'image': CV_8UC1 of the camera's size (anything else is a programming
+  // error: the report says kBinarize and why). Thread-safe as long as each thread has its own
+  // workspace. Does not throw, and does not allocate once the workspace has warmed up.
   LandingReport Detect(const cv::Mat& image, const LandingHint& hint,
                        LandingWorkspace& workspace) const;
 

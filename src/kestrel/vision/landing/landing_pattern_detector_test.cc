@@ -37,7 +37,7 @@ TEST_F(LandingPatternDetectorTest, FindsSmallPatternsThatTheImageBorderCutsOff) 
   }
 }
 
-// Rings of 25 x 7 to 13 px under the shadow of something long: its edges tear their outlines.
+// Rings of 25 x 7 to 13 px under the shadow of something long, whose edges break their outlines.
 TEST_F(LandingPatternDetectorTest, FindsFlatPatternsUnderShadows) {
   constexpr int kImages = 100;
   Random random(11);
@@ -68,9 +68,9 @@ TEST_F(LandingPatternDetectorTest, FindsFlatPatternsUnderShadows) {
   EXPECT_GE(found, 86);
 }
 
-// Where about a quarter is in view, a wrong pose may agree with the print at full quality: its
-// edges hardly hold it, and the search goes on to the right one. Of 300 it was 1 and 5, in two
-// draws.
+// With about a quarter in view, a wrong pose may agree with the print at full quality. Its edges
+// hardly determine it, so the search goes on to the right pose. Of 300 images, 1 and 5 were wrong
+// in two draws.
 TEST_F(LandingPatternDetectorTest, PutsPrintsThatAreCutOffWhereTheyAre) {
   constexpr int kImages = 300;
   Random random(3);
@@ -135,7 +135,7 @@ TEST_F(LandingPatternDetectorTest, OtherSignsAreNotThePattern) {
                                  empty,
                                  cross_only,
                                  off_center};
-  int taken = 0;  // for the pattern: the score doubts it
+  int taken = 0;  // taken for the pattern, with a doubtful score
   const auto expect_doubtful = [&](const LandingReport& report, std::size_t sign, double distance) {
     if (!report.detection) return;
     ++taken;
@@ -144,13 +144,13 @@ TEST_F(LandingPatternDetectorTest, OtherSignsAreNotThePattern) {
   for (const double distance : {1.4, 3.0, 6.0, 9.0}) {
     for (std::size_t i = 0; i < signs.size(); ++i) {
       const RigidTransform pose = PrintPose({0.1, 0.05, distance}, 0.2, 1, 0.4);
-      // Higher than a cross alone is looked for.
+      // Too high for the search of a cross alone.
       LandingHint hint;
       hint.altitude_m = std::max(distance, 3.0);
       const LandingReport report = Detect(Draw(signs[i], pose), hint);
       expect_doubtful(report, i, distance);
       EXPECT_NE(report.reason.empty(), !report.detection);
-      // The same where one was predicted.
+      // The same with a prediction at the sign.
       hint.center_in_camera = pose.translation;
       hint.up_in_camera = pose.rotation * Eigen::Vector3d::UnitZ();
       expect_doubtful(Detect(Draw(signs[i], pose), hint), i, distance);
@@ -159,8 +159,8 @@ TEST_F(LandingPatternDetectorTest, OtherSignsAreNotThePattern) {
   EXPECT_LE(taken, 2);
 }
 
-// Rings of 44 px that are 6 to 15 px high and blurred: too few pixels across to tell every letter
-// from a cross at sight.
+// Rings of 44 px, 6 to 15 px high and blurred: too few pixels across to tell every letter from a
+// cross.
 TEST_F(LandingPatternDetectorTest, LettersInFlatRingsAreNotThePattern) {
   constexpr int kImages = 150;
   Random random(12);
@@ -189,7 +189,7 @@ TEST_F(LandingPatternDetectorTest, LettersInFlatRingsAreNotThePattern) {
 }
 
 TEST_F(LandingPatternDetectorTest, TheSizeOfARingIsThatOfItsImage) {
-  // 85 degrees from the axis the lens stretches what it shows by half, along its rim.
+  // 85 degrees from its axis, the lens stretches its image by half along the rim.
   const CameraModel fisheye(
       {752, 752, 230, 230, 375.5, 375.5, DistortionModel::kEquidistant, {0, 0, 0, 0}});
   const LandingPatternDetector detector(fisheye, {});
@@ -227,7 +227,7 @@ TEST_F(LandingPatternDetectorTest, AnImageThatIsNotTheCamerasIsAnswered) {
 TEST_F(LandingPatternDetectorTest, SameImageSameReport) {
   const LandingReport first = Detect(image_);
   ASSERT_TRUE(first.detection);
-  // Whatever the workspace saw in between.
+  // Other images in between.
   Random random(1);
   Detect(AddNoise(image_, 60, &random));
   Detect(cv::Mat(240, 320, CV_8UC1, cv::Scalar(0)));
@@ -263,7 +263,7 @@ TEST_F(LandingPatternDetectorTest, ThreadsShareADetector) {
   }
 }
 
-// Stricter users get less, none of it improbable.
+// A higher min_quality gives fewer detections, none of them improbable.
 TEST_F(LandingPatternDetectorTest, TheQualityThatIsAskedForIsKept) {
   const double quality = Detect(image_).detection->quality;
   for (const double least : {0.0, 0.3, 0.9, 1.0}) {
@@ -276,8 +276,8 @@ TEST_F(LandingPatternDetectorTest, TheQualityThatIsAskedForIsKept) {
   }
 }
 
-// Far prints are as alike under both poses of their ring as their noise: which is reported is
-// mostly the right one, and the covariance knows of the other.
+// For far prints, the two poses of a ring differ by less than the noise. Mostly the right one is
+// reported, and the covariance covers the other one.
 TEST_F(LandingPatternDetectorTest, TheCovarianceKnowsOfTheMirrorPose) {
   Random random(11);
   int mirrored = 0, wrong = 0;

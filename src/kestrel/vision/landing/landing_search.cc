@@ -6,8 +6,8 @@
 namespace kestrel {
 namespace {
 
-// Times which a predicted ring is large enough for its edges, which tell more than its fit as a
-// whole: areas seem larger by as much.
+// A predicted ring up to this factor below the limit of small rings is still tested by its edges
+// first, which tell more than the fit as a whole. Areas seem larger by this factor.
 constexpr double kNearlyLarge = 1.1;
 
 cv::Rect AllOf(const cv::Mat& image) { return {0, 0, image.cols, image.rows}; }
@@ -51,8 +51,8 @@ LandingReport LandingSearch::Run() {
   return report_;
 }
 
-// Where a good prediction says that the ring is, it is found without a search. A wrong one shows
-// no ring there, and costs little.
+// A good prediction finds the ring without a search. A wrong one finds no ring there and costs
+// little.
 void LandingSearch::TestPrediction() {
   const std::optional<CirclePose> ring = prior_.PredictedRing();
   const std::optional<cv::Rect> part = prior_.PartOfImage(0);
@@ -66,7 +66,7 @@ void LandingSearch::TestPrediction() {
   }
 }
 
-// The likely steps in the likely part of the image, then all others.
+// Takes the likely steps in the likely part of the image, then all others.
 void LandingSearch::TakeSteps() {
   const cv::Rect all = AllOf(image_.whole());
   const cv::Rect likely = prior_.PartOfImage(hint_.center_sigma_m).value_or(all);
@@ -104,7 +104,7 @@ void LandingSearch::Take(const SearchStep& step) {
   }
 }
 
-// The cross alone, where the camera is so low that no ring is in view.
+// Tests the cross alone: low above the pattern no ring is in view.
 void LandingSearch::TestCrosses(std::size_t pass) {
   const ImageRegion region = image_.RegionAt(kPasses[pass].image_level);
   const BorderTracer& tracer = image_.Borders(pass);

@@ -26,14 +26,14 @@ struct LandingWorkspace::Buffers {
   NearPrintBuffers near_prints;
   SmallPrintBuffers small_prints;
 
-  // Makes room for all that a search of an image of this size may need.
+  // Reserves all memory that a search of an image of this size may need.
   void Reserve(const cv::Mat& image_of_that_size);
 };
 
-// The search of one image: where the ring is predicted, then where it is likely, then everywhere.
+// Searches one image: first where the ring is predicted, then where it is likely, then everywhere.
 class LandingSearch {
  public:
-  // 'observer' may be null, see DetectionChoice. The arguments must outlive the search.
+  // 'observer' may be null (see DetectionChoice). The arguments must outlive the search.
   LandingSearch(const LandingModels& models, const cv::Mat& image, const LandingHint& hint,
                 LandingWorkspace::Buffers* buffers, const FindingObserver* observer = nullptr);
 

@@ -14,7 +14,7 @@ namespace {
 
 class LandingSearchTest : public ::testing::Test {
  protected:
-  // All that a search found, accepted or not.
+  // Returns all findings of a search, accepted or not.
   std::vector<PrintFinding> Findings(const Print& print, const RigidTransform& pose) {
     std::vector<PrintFinding> findings;
     const FindingObserver observer = [&](const PrintFinding& f) { findings.push_back(f); };
@@ -34,7 +34,7 @@ class LandingSearchTest : public ::testing::Test {
   LandingWorkspace::Buffers buffers_;
 };
 
-// An ideal print raises no doubt, but for those that its size raises.
+// An ideal print raises no doubts except those that its size raises.
 TEST_F(LandingSearchTest, NothingSpeaksAgainstAnIdealPrint) {
   for (const double distance : {1.1, 1.7, 3.0, 5.5, 7.5}) {
     const auto findings =
@@ -62,13 +62,13 @@ TEST_F(LandingSearchTest, NothingSpeaksAgainstAnIdealPrint) {
   }
 }
 
-// Each of them is what it is called.
+// Each defect raises the doubt of its name.
 TEST_F(LandingSearchTest, WhatIsMissingOrTooMuchIsDoubted) {
   const Print three_arms = [this](double x, double y) {
     return SpokedPrint(pattern_, 4)(x, y) && !(x > 0.06 && std::abs(y) < 0.06 && x < 0.39);
   };
   const Print frame = [this](double x, double y) {
-    const double sum = std::abs(x) + std::abs(y);  // its corners beyond the ends of the arms
+    const double sum = std::abs(x) + std::abs(y);  // corners beyond the ends of the arms
     return (sum > 0.5 && sum < 0.62) || SpokedPrint(pattern_, 4)(x, y);
   };
   const Print dark_board = [this](double x, double y) {
@@ -89,7 +89,7 @@ TEST_F(LandingSearchTest, WhatIsMissingOrTooMuchIsDoubted) {
     const double ideal = Best(Findings(SpokedPrint(pattern_, 4), pose)).log_odds;
     for (const Case& c : cases) {
       const auto findings = Findings(c.print, pose);
-      if (findings.empty()) continue;  // fell before its pose was known
+      if (findings.empty()) continue;  // rejected before its pose was known
       const PrintFinding& best = Best(findings);
       EXPECT_GT(best.doubts[c.doubt], c.least)
           << "doubt " << static_cast<int>(c.doubt) << " at " << distance << " m";

@@ -12,36 +12,37 @@ namespace {
 
 constexpr double kMinRingContrast = 5;    // gray values
 constexpr double kMinInsideContrast = 6;  // gray values
-constexpr double kLinesRingPx = 150;      // larger than that is looked at by lines first (2.4)
-// Agreement from which a pose is worth locating: one that lies beside the print may miss an arm,
-// and be brought to it by the edges.
+constexpr double kLinesRingPx = 150;      // diameter from which on lines are tried first (paper,
+                                          // section 2.4)
+// Least agreement of a pose that is located. A pose beside the print may miss an arm, and the edges
+// may still bring it into place.
 constexpr double kWorthLocating = 0.4;
-// How near the centres of two rings are that are the same, of the shorter axis: where one was
-// tested, and where one was seen to be something else.
+// Distance of the centres of two rings that count as the same, as a share of the shorter axis:
+// where one was tested, and where one was seen to be something else.
 constexpr double kSameStart = 0.05;
 constexpr double kSameSign = 0.12;
-// How far from where a ring was seen its edges are looked for when there is no cross in it: where
-// much of it is cut off or hidden, the rest tells little of its far side. Times the usual reach.
+// Search reach for the edges of a ring without a cross, times the usual reach. Where much of the
+// ring is cut off or hidden, the rest tells little about its far side.
 constexpr std::array<double, 2> kRefinedReaches{1.5, 2.5};
 constexpr int kRefinements = 4;
-constexpr double kPredictedReach = 0.12;  // of the diameter, of a predicted ring
-constexpr double kSureReach = 0.02;       // the same of one whose edges are in place
-constexpr double kCrossReach = 0.03;      // the same of a ring that the cross says
+constexpr double kPredictedReach = 0.12;  // share of the diameter, for a predicted ring
+constexpr double kSureReach = 0.02;       // the same, for a ring whose edges are in place
+constexpr double kCrossReach = 0.03;      // the same, for a ring that follows from the cross
 constexpr double kLeastReachPx = 2;
-constexpr double kMinStep = 0.12;  // of an edge, of the print's contrast per pixel
+constexpr double kMinStep = 0.12;  // least step of an edge, share of the print's contrast per pixel
 constexpr double kLeastStep = 2;   // the same, gray values per pixel
-constexpr double kWhole = 0.75;    // share of the print in view that is no part
-// The middle of a print is where the edges around it have it, where the pose has it elsewhere by
-// more than chance: standard deviations.
+constexpr double kWhole = 0.75;  // least share of the print in view for a print that is not partial
+// The middle of a print follows the edges around it only as far as they deviate from the pose by
+// more than this many standard deviations.
 constexpr double kSureCenter = 4;
 
-// Level of the pyramid at which a ring has about 40 to 80 pixels.
+// Returns the level of the pyramid at which a ring is about 40 to 80 pixels wide.
 int ViewLevel(double diameter_px) {
   return std::clamp(static_cast<int>(std::floor(std::log2(diameter_px / 40))), 0, 4);
 }
 
-// Where the image has the middle of the print: where the pose has it and, as far as that is more
-// than chance (James and Stein's estimate), where the edges around it do.
+// Returns the image of the middle of the print: where the pose has it, moved towards where the
+// edges around it have it as far as the difference exceeds chance (James-Stein estimator).
 Eigen::Vector2d CenterPx(const PatternLocation& location, const PrintAlignment& alignment) {
   Eigen::Vector2d by_edges;
   if (!alignment.warp.Project(Eigen::Vector2d::Zero(), &by_edges)) return location.center_px;
@@ -106,7 +107,7 @@ void NearPrintVerifier::Test(const RingCandidate& ring) {
       has_cross |= print.has_value();
       if (print && TestPrint(*print, ring.diameters_px, ring.reach_px, ring.poses, order)) return;
     }
-    // Once all of a ring is in its place and shows no cross, nothing else shows one.
+    // When nearly the whole ring is in place and shows no cross, a wider search shows none either.
     if (is_whole && !has_cross) {
       place.reach_px *= kRefinedReaches.back();
       buffers_.refused.Note(place);
@@ -144,7 +145,8 @@ void NearPrintVerifier::TestCross(const RigidTransform& pose, const ImageRegion&
   TestPrint(*print, Eigen::Vector2d::Constant(diameter_px), reach_px, {&ring, 1}, {});
 }
 
-// The print whose ring lies as 'ring', turned by the cross inside; not compared with the image yet.
+// Returns the print whose ring lies as 'ring', turned as the cross inside. Not yet compared with
+// the image.
 std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCross(const CirclePose& ring,
                                                                           double diameter_px) {
   constexpr int kThinningSize = 32, kLinesSize = 64;
@@ -159,8 +161,8 @@ std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCross(const 
   const auto print = [&](const Cross& cross, CrossMethod method) {
     return Hypothesis{PatternPose(ring, cross.arm_angle), method, contrast};
   };
-  // Where the lines of a large cross are broken, thinning stands in: on the rectified inside it is
-  // not slow at any size.
+  // Where the lines of a large cross are broken, thinning is tried. On the rectified inside it is
+  // fast at any size.
   if (diameter_px > kLinesRingPx) {
     const auto inside = RectifyInside(image, view, pattern, kLinesSize, kMinInsideContrast);
     const auto cross =
@@ -173,8 +175,8 @@ std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCross(const 
   return std::nullopt;
 }
 
-// Where the ring is cut off or broken, what is known of it says little about its far side: the
-// edges of both of its circles bring it into place before its inside is looked at.
+// Fits a ring to the edges of both of its circles before its inside is examined: where the ring is
+// cut off or broken, its first estimate says little about the far side.
 std::optional<RingLocation> NearPrintVerifier::RefineRing(const CirclePose& ring, double reach_px,
                                                           int iterations) {
   const SearchLog::Timer timer = log_.Time(LandingStage::kRing);
@@ -201,7 +203,7 @@ std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCrossInRefin
   return Compare(turned, CrossMethod::kThinning, diameter_px);
 }
 
-// What is not at all like the print is not worth locating.
+// Returns nothing for a pose under which the image does not resemble the print at all.
 std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::Compare(const RigidTransform& pose,
                                                                         CrossMethod method,
                                                                         double diameter_px) {
@@ -215,8 +217,8 @@ std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::Compare(const Ri
   return Hypothesis{pose, method, match.contrast};
 }
 
-// Whether the print is the pattern: whether it looks so is a question to the image, where it is one
-// to the lens.
+// True when the print is accepted as the pattern. Whether it looks like the pattern is decided by
+// the image alone; the lens decides only where it is.
 bool NearPrintVerifier::TestPrint(const Hypothesis& print, const Eigen::Vector2d& diameters_px,
                                   double reach_px, std::span<const CirclePose> rings,
                                   const PriorKnowledge::Order& order) {
@@ -252,7 +254,7 @@ bool NearPrintVerifier::TestPrint(const Hypothesis& print, const Eigen::Vector2d
   return is_found;
 }
 
-// The print whose ring lies as 'ring', turned as it is in the image.
+// Returns the print whose ring lies as 'ring', turned so that its arm points as in the image.
 RigidTransform NearPrintVerifier::WithArmOf(const PrintAlignment& alignment,
                                             const CirclePose& ring) const {
   RigidTransform pose = PatternPose(ring, 0);
@@ -267,7 +269,7 @@ RigidTransform NearPrintVerifier::WithArmOf(const PrintAlignment& alignment,
   return PatternPose(ring, std::atan2(arm.y(), arm.x()));
 }
 
-// Whether the print, located near 'initial', is the pattern.
+// Locates the print near 'initial'. True when it is accepted as the pattern.
 bool NearPrintVerifier::Locate(const PrintAlignment& alignment, const RigidTransform& initial,
                                PrintFinding finding) {
   const Eigen::Vector3d normal = initial.rotation * Eigen::Vector3d::UnitZ();
@@ -285,7 +287,7 @@ bool NearPrintVerifier::Locate(const PrintAlignment& alignment, const RigidTrans
   return choice_.Add(finding);
 }
 
-// Notes that a ring whose edges were found is something else.
+// Records that a ring whose edges were found is something else.
 void NearPrintVerifier::Refuse(const PrintFinding& finding, const PrintAlignment& alignment,
                                double reach_px) {
   log_.Reach(LandingStage::kLocate, MainDoubt(finding.kind, finding.doubts));

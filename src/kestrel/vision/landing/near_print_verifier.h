@@ -15,34 +15,34 @@
 
 namespace kestrel {
 
-// Memory of NearPrintVerifier, which does not allocate once it is reserved.
+// Memory of NearPrintVerifier. Does not allocate once it is reserved.
 struct NearPrintBuffers {
   CrossLinesWorkspace cross_lines;
   RingMemory tested;
-  RingMemory refused;  // rings whose edges were found, and that are something else
+  RingMemory refused;  // rings whose edges were found and that are something else
 
   void Reserve();
 };
 
-// Tests whether a ring whose strokes have edges is that of the print, and locates it: looks for the
-// cross inside, aligns the print with the edges of the image, measures what speaks against it, and
-// finds the pose (paper, sections 2.3 to 2.5).
+// Tests whether a ring whose strokes are wide enough to have edges is that of the print, and
+// locates it: looks for the cross inside, aligns the print with the edges of the image, measures
+// the doubts and finds the pose (paper, sections 2.3 to 2.5).
 class NearPrintVerifier {
  public:
-  // The arguments must outlive the test.
+  // The arguments must outlive the verifier.
   NearPrintVerifier(const LandingModels& models, const PriorKnowledge& prior, SearchedImage* image,
                     NearPrintBuffers* buffers, DetectionChoice* choice, SearchLog* log);
 
   void Test(const RingCandidate& ring);
 
-  // A ring that is where it was predicted, nearly.
+  // Tests a ring near its predicted pose. 'predicted_px': diameters, the longer one first.
   void TestPredicted(const CirclePose& ring, const Eigen::Vector2d& predicted_px);
 
-  // A print of which the cross was seen and no ring.
+  // Tests a print whose cross was seen without a ring. 'region': of the image in which it was seen.
   void TestCross(const RigidTransform& pose, const ImageRegion& region);
 
  private:
-  // A print that has a cross where it should be.
+  // A possible print: a ring with a cross inside, or a cross alone.
   struct Hypothesis {
     RigidTransform camera_from_pattern;
     CrossMethod method;

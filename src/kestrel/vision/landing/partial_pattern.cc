@@ -11,10 +11,10 @@
 namespace kestrel {
 namespace {
 
-// In the plane at unit distance, where 1 is the height of the camera.
-constexpr double kLineTolerance = 0.02;  // of a point from its line
-constexpr double kMinLineLength = 0.12;  // of a line
-constexpr double kMaxPlaneReach = 4;     // of the plane that is looked at
+// In the plane at unit distance, where the unit is the height of the camera.
+constexpr double kLineTolerance = 0.02;  // distance of a point from its line
+constexpr double kMinLineLength = 0.12;  // length of a line
+constexpr double kMaxPlaneReach = 4;     // radius of the part of the plane that is used
 constexpr std::size_t kMaxSegments = 60;
 constexpr std::size_t kMaxBars = 16;
 constexpr std::size_t kMaxPoses = 4;
@@ -25,7 +25,7 @@ double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-// Axes of the plane in the camera: x, y and the normal away from the ground.
+// Columns: x, y and the normal (away from the ground) of the plane, in the camera frame.
 Eigen::Matrix3d PlaneAxes(const Eigen::Vector3d& up) {
   Eigen::Matrix3d axes;
   axes.col(2) = up;
@@ -44,8 +44,8 @@ class Finder {
         axes_(PlaneAxes(up)),
         workspace_(*workspace) {}
 
-  // Straight lines of a border. The camera sees the plane from above: black, on the right of a
-  // border in the image, is on its right in the plane.
+  // Cuts a border into straight lines. The camera sees the plane from above, so black lies on the
+  // right of a border both in the image and in the plane.
   void CollectLines(const GridPoint* points, std::size_t count) {
     workspace_.plane.clear();
     constexpr std::size_t kStride = 2;
@@ -70,7 +70,7 @@ class Finder {
     KeepLongest(&segments, kMaxSegments, [](const LineSegment& s) { return s.length(); });
     for (const LineSegment& a : segments) {
       for (const LineSegment& b : segments) {
-        // The borders of a bar run in opposite directions, each with the other on its black side.
+        // The two borders of a bar run in opposite directions, each on the black side of the other.
         const Eigen::Vector2d direction = a.direction();
         if (direction.dot(b.direction()) > -kParallel) continue;
         const Eigen::Vector2d across(-direction.y(), direction.x());
@@ -98,7 +98,7 @@ class Finder {
   }
 
  private:
-  // Black lies on the right of a border line; 'across' points to its left.
+  // Black lies on the right of a border line, 'across' points to its left.
   static constexpr double kBlackSide = -1;
 
   void Cut(bool closed) {
@@ -119,7 +119,8 @@ class Finder {
   void AddCross(const PartialPatternWorkspace::Bar& a, const PartialPatternWorkspace::Bar& b) {
     if (std::abs(a.direction.dot(b.direction)) > kRightAngle) return;
     if (std::max(a.width, b.width) > 1.4 * std::min(a.width, b.width)) return;
-    // Where the axes meet, and how far from the bars: both are parts of the cross.
+    // The point where the axes meet, and its distance from the bars: both bars must be parts of one
+    // cross.
     const double along = Cross(b.middle - a.middle, b.direction) / Cross(a.direction, b.direction);
     const Eigen::Vector2d center = a.middle + along * a.direction;
     const double width = 0.5 * (a.width + b.width);

@@ -15,13 +15,13 @@
 
 namespace kestrel {
 
-// Memory of FindPartialPatterns, which does not allocate for borders of as many points as are
+// Memory of FindPartialPatterns. Does not allocate for borders of at most as many points as are
 // reserved.
 struct PartialPatternWorkspace {
   std::vector<Eigen::Vector2d> plane;  // one border, in the plane
   std::vector<std::size_t> breaks;
   std::vector<LineSegment> segments;
-  // Two parallel border lines with black between them: an arm, or a part of one.
+  // Two parallel border lines with black between them: an arm or a part of one.
   struct Bar {
     Eigen::Vector2d middle;
     Eigen::Vector2d direction;  // unit vector
@@ -34,12 +34,13 @@ struct PartialPatternWorkspace {
   void Reserve(std::size_t border_points);
 };
 
-// The cross of a pattern of which no ring is in view (paper, section 2.4: at least four border
-// lines of the cross): the borders are laid on the plane at unit distance below the camera, where
-// lines are straight and right angles right whatever the lens, and cut into lines; pairs of
-// parallel lines make bars, and two bars of the same width at right angles make a cross, whose
-// centre is where their axes meet, be it in the image or not. Fills workspace->poses, the longest
-// first. 'up_in_camera': unit vector away from the ground, the normal of the plane.
+// Finds crosses of patterns whose ring is not in view (paper, section 2.4: at least four border
+// lines of the cross). The borders are projected onto the plane at unit distance below the camera;
+// there, straight lines and right angles of the print stay so under any lens. The borders are cut
+// into lines. Pairs of parallel lines make bars, and two bars of one width at right angles make a
+// cross. Its centre is where the axes meet, inside or outside of the image. Fills workspace->poses,
+// the longest bars first. 'up_in_camera': unit vector away from the ground, the normal of the
+// plane.
 void FindPartialPatterns(const BorderTracer& tracer, const RayTable& rays,
                          const ImageRegion& region, const LandingPattern& pattern,
                          const Eigen::Vector3d& up_in_camera, PartialPatternWorkspace* workspace);

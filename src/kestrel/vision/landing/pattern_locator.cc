@@ -18,16 +18,16 @@ namespace kestrel {
 namespace {
 
 // The unknowns: pose (translation, then rotation vector), spread of the black, logarithm of the
-// focal length's factor, shift of the principal point, distortion: what the cube of the distance
-// from the principal point adds to it, in focal lengths. A single view tells too little of the
-// distortion to be solved for it; what it says is told all the same.
+// focal length's factor, shift of the principal point, and distortion (added to the distance from
+// the principal point: distortion times its cube, in focal lengths). A single view determines the
+// distortion too poorly to solve for it, but its information is reported.
 constexpr int kPoseUnknowns = 6;
 constexpr int kSpread = 6;
 constexpr int kFocal = 7;
 constexpr int kDistortion = 10;
 constexpr int kCalibrationUnknowns = 4;
 constexpr int kUnknowns = 11;
-// Columns behind those of the unknowns: the offsets, and their derivatives by the blur's square.
+// Further columns: the offsets, and their derivatives by the square of the blur.
 constexpr int kOffset = 11;
 constexpr int kBlur = 12;
 constexpr int kEdgeColumns = 13;
@@ -36,56 +36,60 @@ using PoseVector = Eigen::Matrix<double, kPoseUnknowns, 1>;
 using Vector = Eigen::Matrix<double, kUnknowns, 1>;
 using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
-constexpr std::size_t kMinEdges = 12;  // too few of those for a pose
+constexpr std::size_t kMinEdges = 12;  // least number of edges for a pose
 constexpr int kMaxSteps = 8;
 constexpr int kLeastSteps = 3;
-constexpr double kHeld = 1e6;  // weight, in edges, of what is not to move
-// Edges per edge that all steps but the last few look at, and too few of those.
+constexpr double kHeld = 1e6;  // weight, in edges, that holds an unknown in place
+// All steps but the last few use every kCoarseEdges-th edge, if there are kFewEdges of those.
 constexpr std::size_t kCoarseEdges = 3;
 constexpr std::size_t kFewEdges = 36;
-constexpr double kFarScalePx = 1000;  // of the edges in the first step
+constexpr double kFarScalePx = 1000;  // scale of the offsets in the first step
 constexpr double kLeastScalePx = 0.25;
-constexpr double kSettledPx = 0.08;      // outlines that move by less stay where they are
-constexpr double kMaxCorrelation = 0.9;  // of neighbouring residuals
-constexpr double kBlurSpreadPx2 = 0.3;   // of the blur's square, over lenses: 0.45 to 0.9 px
-// Bright white spreads over the black where the image is overexposed, and ink runs: least spread
-// that is believed, and the same in its standard deviations. Less is as likely noise, or what
-// narrow strokes do to each other's edges.
+constexpr double kSettledPx = 0.08;      // outlines that move by less have settled
+constexpr double kMaxCorrelation = 0.9;  // largest correlation of neighbouring residuals
+constexpr double kBlurSpreadPx2 = 0.3;   // spread of the blur's square over lenses: 0.45 to 0.9 px
+                                         // of blur
+// Bright white spreads over the black in overexposed images, and ink runs. Least spread that is
+// accepted, in pixels and in its standard deviations. A smaller one may be noise, or the effect of
+// a narrow stroke's edges on each other.
 constexpr double kLeastSpreadPx = 0.12;
 constexpr double kSureSpread = 2;
-// A wrong calibration, standard deviations: of the logarithm of the focal length, and of the
-// principal point in focal lengths. It is believed when right ones are as far from what the edges
-// say, squared and in their covariance, in one of a million views.
+// Prior standard deviations of the calibration: logarithm of the focal length, and principal point
+// in focal lengths. Another calibration is accepted above a squared Mahalanobis distance that right
+// calibrations exceed in one of a million views.
 constexpr double kFocalSigma = 0.25;
 constexpr double kPrincipalSigma = 0.1;
 constexpr double kSureCalibration = 30;
-constexpr double kDoubtfulCalibration = 8;  // from where it is worth to find out
-// Size of a ring, in focal lengths, over which the lens may bend otherwise than one number says.
+constexpr double kDoubtfulCalibration = 8;  // above this the calibration is solved for
+// Width of a ring, in focal lengths, over which one number no longer describes the lens's
+// distortion.
 constexpr double kWideRing = 0.6;
 
-// Of rings that are to be located yet.
-constexpr std::size_t kCoarseStride = 3;  // places per place that is looked at first
-constexpr double kWholeRing = 0.75;       // share of the places that have an edge
+// For LocateRing.
+constexpr std::size_t kCoarseStride = 3;  // the first measurement uses every kCoarseStride-th place
+constexpr double kWholeRing = 0.75;  // least share of the places with an edge, for a whole ring
 constexpr double kRingSettledPx = 0.2;
 constexpr double kMaxRingScatterPx = 1.5;  // standard deviation, after two iterations
-constexpr double kGathering = 0.6;         // of edges that gather still, from step to step
+constexpr double kGathering = 0.6;  // ratio of scatter to that of the step before, below which
+                                    // edges still gather
 
 }  // namespace
 
-// Where the outlines are in the image.
+// Predicts where the outlines are in the image.
 struct PatternLocator::State {
   RigidTransform pose;
-  double spread_px = 0;  // of the black over the white: how far each edge is off its outline
+  double spread_px = 0;  // spread of the black over the white: offset of every edge from its
+                         // outline
   double log_focal = 0;
   Eigen::Vector2d principal_px = Eigen::Vector2d::Zero();
 
-  // Where a lens with the state's calibration shows what the camera's shows at 'pixel'.
+  // Converts a pixel of the camera's own lens to the pixel under the state's calibration.
   Eigen::Vector2d Recalibrated(const Eigen::Vector2d& pixel,
                                const Eigen::Vector2d& principal) const {
     return principal + principal_px + std::exp(log_focal) * (pixel - principal);
   }
 
-  // Changes the unknowns by a step; false when that is no small change.
+  // Changes the unknowns by a step; false when the step is too large.
   bool Move(const Vector& step) {
     const Eigen::Vector3d turn = step.segment<3>(3);
     if (!step.allFinite() || turn.norm() > 1) return false;
@@ -102,12 +106,12 @@ struct PatternLocator::Equations {
   Matrix h = Matrix::Zero();
   Vector g = Vector::Zero();
 
-  // Adds that an unknown should be 0, where it is 'value' now.
+  // Adds a prior that an unknown, now 'value', is 0.
   void PullToZero(int unknown, double value, double weight) {
     h(unknown, unknown) += weight;
     g(unknown) -= weight * value;
   }
-  // Step of the pose alone.
+  // Returns the step of the pose alone.
   Vector PoseStep() const {
     Vector step = Vector::Zero();
     step.head<kPoseUnknowns>() =
@@ -122,7 +126,7 @@ struct PatternLocator::Equations {
   }
 };
 
-// Every so many edges, by columns.
+// Every stride-th edge, by columns.
 struct PatternLocator::EdgeColumns {
   EdgeColumns() = default;
   EdgeColumns(const PrintEdges& found, std::size_t stride) {
@@ -143,18 +147,18 @@ struct PatternLocator::EdgeColumns {
 
   std::size_t count = 0;
   Column x_m, y_m;            // place on the print
-  Column across_x, across_y;  // normal in the image
+  Column across_x, across_y;  // normal of the outline in the image
   Column x_px, y_px;
   Column bend;
-  std::array<int, PrintOutline::kMaxPlaces> stretch;  // by part and side
+  std::array<int, PrintOutline::kMaxPlaces> stretch;  // index of the part and side
   std::array<bool, PrintOutline::kMaxPlaces> follows;
 };
 
-// The edges as a state has them, and the equations that they make.
+// The edges relative to a state, and the normal equations of a step.
 struct PatternLocator::Linearized {
   explicit Linearized(const EdgeColumns& of) : edges(of) {}
 
-  // The equations of the first 'unknowns', and what else the columns sum up to.
+  // Sums the columns to the normal equations of the first 'unknowns'.
   void Sum(int unknowns) {
     std::array<int, kEdgeColumns> which;
     std::array<const float*, kEdgeColumns> pointers;
@@ -178,7 +182,7 @@ struct PatternLocator::Linearized {
     weights = products(kSpread, kSpread);
   }
 
-  // Standard deviation of the offsets by the median of their magnitudes.
+  // Standard deviation of the offsets from the median of their magnitudes.
   double RobustScale() const {
     Column magnitudes{};
     std::size_t found = 0;
@@ -192,31 +196,31 @@ struct PatternLocator::Linearized {
     return 1.4826 * static_cast<double>(*middle);
   }
 
-  // Scale of the offsets in the next step, where it is 'scale_px' in this one.
+  // Returns the scale of the offsets for the next step, given 'scale_px' of this one.
   double NextScale(double scale_px) const {
     const double scale = std::clamp(RobustScale(), kLeastScalePx, scale_px);
     return scale_px == kFarScalePx ? std::max(scale, 1.0) : scale;
   }
 
-  // By how much (px, root mean square) 'step' moves the outlines in the image.
+  // Returns the motion of the outlines in the image by 'step' (px, root mean square).
   double Movement(const Vector& step) const {
     return std::sqrt(std::max(0.0, step.dot(equations.h * step)) / weights);
   }
 
-  static constexpr float kOutsideModelPx = 1e6f;  // offset of what the lens does not show
+  static constexpr float kOutsideModelPx = 1e6f;  // offset of points that the lens does not show
 
   const EdgeColumns& edges;
-  Column offsets;  // px, from where the state has the edges
-  Column shifts;   // px, of that from where the camera's own lens has them
+  Column offsets;  // px, offset of each edge from its prediction by the state
+  Column shifts;   // px, offset of that prediction from the one by the camera's own lens
   std::array<Column, kEdgeColumns>
       columns;           // times the root of the weight, which is that of the spread
-  std::size_t used = 0;  // of the edges: those that have a weight
+  std::size_t used = 0;  // number of edges with a positive weight
   Equations equations;
-  Vector by_blur;  // derivative of their right side
+  Vector by_blur;  // derivative of the right side by the square of the blur
   double weights;
 };
 
-// What the edges are off the state once it has moved by a step.
+// Residuals of the edges after the state has moved by a step.
 struct PatternLocator::Residuals {
   Residuals(const Linearized& linearized, const Vector& step, int unknowns)
       : used(static_cast<double>(linearized.used)), weights(linearized.weights) {
@@ -251,11 +255,11 @@ struct PatternLocator::Residuals {
   }
 
   double MeanSquare() const { return weighted_squares / weights; }
-  // The same of what they are off where the camera's own lens has them.
+  // The same for residuals against the camera's own lens.
   double CameraMeanSquare() const { return camera_squares / weights; }
 
-  // Variance of an edge as the pose sees it: what neighbours have in common does not average out,
-  // and what whole stretches of an outline have in common shows in how their means differ.
+  // Variance of an edge as the pose sees it. Errors that neighbours share do not average out, and
+  // errors that whole stretches of an outline share show in the differences of their means.
   double EdgeVariance() const {
     constexpr double kStretchEdges = 3;
     const double freedom = std::max(1.0, used - kPoseUnknowns) / used;
@@ -269,7 +273,7 @@ struct PatternLocator::Residuals {
     }
     const double of_stretches_freedom = stretches - kPoseUnknowns;
     if (of_stretches_freedom < 1) return of_edges;
-    // By so much such means differ by chance in one of twenty prints (F distribution).
+    // Ratio that such means exceed by chance in one of twenty prints (F distribution).
     constexpr double kByChance = 1.9;
     const double of_stretches = squares / of_stretches_freedom;
     return of_stretches > kByChance * of_edges ? of_stretches : of_edges;
@@ -294,8 +298,8 @@ Eigen::Vector2d PatternLocator::Principal() const {
   return {camera_.intrinsics().cx_px, camera_.intrinsics().cy_px};
 }
 
-// What the edges say of the state, weighted by Tukey's function of their offsets with the given
-// scale: of its first 'unknowns'.
+// Linearizes the edges about a state, with Tukey's weights at the scale 'scale_px', for its first
+// 'unknowns'.
 void PatternLocator::Linearize(const State& state, double scale_px, int unknowns,
                                Linearized* linearized) const {
   const EdgeColumns& edges = linearized->edges;
@@ -369,8 +373,8 @@ void PatternLocator::Linearize(const State& state, double scale_px, int unknowns
   linearized->Sum(unknowns);
 }
 
-// What equations say of the first of their unknowns, where the others stay as they are.
-// 'more_variance': of an edge, px^2, beside what the residuals show.
+// Solution of the equations for their first kCount unknowns; the others stay as they are.
+// 'more_variance': variance of an edge, px^2, beyond what the residuals show.
 struct PatternLocator::Solution {
   template <int kCount>
   static Solution Of(const Linearized& linearized, const Equations& equations,
@@ -393,13 +397,13 @@ struct PatternLocator::Solution {
 
   Matrix inverse = Matrix::Zero();  // of the equations
   Vector step = Vector::Zero();
-  double mean_square;         // of what the step leaves of the offsets
-  double camera_mean_square;  // the same of those from where the camera's own lens has the edges
-  double scatter_variance;    // of an edge, px^2, by the residuals
-  double edge_variance;       // the same and what else is known of it
+  double mean_square;         // mean square of the offsets after the step
+  double camera_mean_square;  // the same against the camera's own lens
+  double scatter_variance;    // variance of an edge, px^2, from the residuals
+  double edge_variance;       // the same plus the additional variance
 };
 
-// The equations with what is known of the plane, which counts by the variance of the edges.
+// Adds the prior of the plane, weighted by the variance of the edges.
 PatternLocator::Equations PatternLocator::WithPrior(const Linearized& linearized,
                                                     const State& state,
                                                     const std::optional<NormalPrior>& prior) {
@@ -411,9 +415,9 @@ PatternLocator::Equations PatternLocator::WithPrior(const Linearized& linearized
   return equations;
 }
 
-// The step of a state whose calibration stays as it is. The spread is held at none unless the edges
-// leave no doubt: to ask for it always would cost a sixth of the accuracy where there is none, and
-// a part of a print bends to what is beside it.
+// Returns the step of a state with a fixed calibration. The spread is held at 0 unless the edges
+// leave no doubt: to estimate it always would cost a sixth of the accuracy where there is none. For
+// a partial print the spread is not estimated, because it would fit whatever lies beside the print.
 PatternLocator::Solution PatternLocator::SolvePose(const Linearized& linearized, const State& state,
                                                    const std::optional<NormalPrior>& prior,
                                                    bool has_spread) {
@@ -428,8 +432,8 @@ PatternLocator::Solution PatternLocator::SolvePose(const Linearized& linearized,
   return Solution::Of<kPoseUnknowns + 1>(linearized, equations);
 }
 
-// The step of a state of which everything is asked. A print that is not quite flat seems to be seen
-// through another lens.
+// Returns the step for all unknowns. The edges have additional variance, because a print that is
+// not quite flat looks like one seen through another lens.
 PatternLocator::Solution PatternLocator::SolveCalibration(
     const Linearized& linearized, const State& state,
     const std::optional<NormalPrior>& prior) const {
@@ -444,13 +448,13 @@ PatternLocator::Solution PatternLocator::SolveCalibration(
                               variance / (principal_sigma_px * principal_sigma_px));
     return Solution::Of<kUnknowns>(linearized, equations, unflat);
   };
-  // What the step explains of the offsets is no variance of the edges.
+  // The part of the offsets that the step explains does not count as variance of the edges.
   const double before = Residuals(linearized, Vector::Zero(), 0).EdgeVariance() + unflat;
   return solve(solve(before).edge_variance);
 }
 
-// What the edges alone say of the calibration, whatever the pose: nothing that was known before is
-// in it, for all views have that in common.
+// Sets the evidence of the edges alone about the calibration, whatever the pose. It contains no
+// prior, because all views share the same prior.
 void PatternLocator::AddInformation(const Linearized& linearized, const Solution& solution,
                                     const State& state, CalibrationEvidence* evidence) const {
   using OfPose = Eigen::Matrix<double, kFocal, kFocal>;
@@ -490,7 +494,7 @@ CalibrationEvidence PatternLocator::Judge(const Linearized& linearized, const So
   return evidence;
 }
 
-// What a solution leaves of the offsets makes the covariance of the pose.
+// Sets covariance and residuals of the location from a solution.
 void PatternLocator::Describe(const Linearized& linearized, const Solution& solution,
                               PatternLocation* location) {
   const Vector blur = kBlurSpreadPx2 * solution.inverse * linearized.by_blur;
@@ -499,8 +503,8 @@ void PatternLocator::Describe(const Linearized& linearized, const Solution& solu
   location->misfit_px = std::sqrt(solution.camera_mean_square);
 }
 
-// Where the calibration may be wrong the pose is as uncertain as without it, and by as much as it
-// would move.
+// Where the calibration may be wrong, adds to the covariance the uncertainty of the pose under a
+// free calibration and the distance by which that pose would move.
 void PatternLocator::DoubtCalibration(const Solution& held, const Solution& free,
                                       PatternLocation* location) {
   const PoseVector moved = (free.step - held.step).head<kPoseUnknowns>();
@@ -525,19 +529,19 @@ std::optional<PatternLocation> PatternLocator::Locate(
     if (linearized.used < kMinEdges) return std::nullopt;
     const bool near = i >= least_steps;
     const Solution solution = SolvePose(linearized, state, prior, near && !is_part);
-    // The tilt of a pattern that is seen from straight above moves the edges by its square only:
-    // there the steps are short of the goal.
+    // The tilt of a pattern seen from straight above moves the edges only by its square, so the
+    // steps fall short and more of them are needed.
     const bool is_last =
         i == kMaxSteps || (near && linearized.Movement(solution.step) < kSettledPx);
     if (is_last) {
       Describe(linearized, solution, &location);
       const Solution free = SolveCalibration(linearized, state, prior);
       const CalibrationEvidence evidence = Judge(linearized, free, state);
-      // A print that is not flat misleads the pose as a wrong lens does.
+      // A print that is not flat misleads the pose like a wrong lens.
       if (evidence.surprise * free.edge_variance > kDoubtfulCalibration * free.scatter_variance) {
         DoubtCalibration(solution, free, &location);
       }
-      // A part of a print bends to any calibration.
+      // A partial print can be fitted under any calibration.
       if (!is_part) location.calibration = evidence;
     }
     if (!state.Move(solution.step)) return std::nullopt;
@@ -557,7 +561,7 @@ std::optional<PatternLocation> PatternLocator::Locate(
   return location;
 }
 
-// Brings the state near to some of the edges; false when they do not fix it.
+// Moves the state near to the edges in 'edges', a part of all; false when they do not determine it.
 bool PatternLocator::Approach(const EdgeColumns& edges, const std::optional<NormalPrior>& prior,
                               State* state, double* scale_px) const {
   Linearized linearized(edges);
@@ -572,8 +576,8 @@ bool PatternLocator::Approach(const EdgeColumns& edges, const std::optional<Norm
   return true;
 }
 
-// Asks the edges for the calibration too; changes state and location where they contradict the
-// camera's.
+// Solves for the calibration too. Changes state and location where the edges contradict the
+// camera's calibration.
 void PatternLocator::Recalibrate(const EdgeColumns& edges, const std::optional<NormalPrior>& prior,
                                  State* state, PatternLocation* location) const {
   location->calibration = {};
@@ -623,7 +627,7 @@ std::optional<RingLocation> PatternLocator::LocateRing(
       is_whole = linearized.used >= kCoarseStride * whole;
     }
     if (linearized.used < kMinEdges) return std::nullopt;
-    // A ring says nothing about turns in its plane, and a short arc little about its far side.
+    // A ring does not determine the turn in its plane, and a short arc hardly its far side.
     Matrix& h = linearized.equations.h;
     h.diagonal() *= 1 + 1e-4;
     const double weight = 1e-6 * h.diagonal().segment<3>(3).maxCoeff();
@@ -633,7 +637,7 @@ std::optional<RingLocation> PatternLocator::LocateRing(
     const double before =
         std::exchange(scale, std::clamp(linearized.RobustScale(), kLeastScalePx, scale));
     reach = std::clamp(3 * scale, 1.5, reach);
-    // The edges of anything but a ring stay scattered.
+    // Edges of anything but a ring stay scattered.
     const bool gathers = scale < kGathering * before && i + 1 < iterations;
     if (i > 0 && scale > kMaxRingScatterPx && !gathers) return std::nullopt;
     if (i > 0 && linearized.Movement(step) < kRingSettledPx) break;

@@ -15,34 +15,34 @@
 
 namespace kestrel {
 
-// Pose of the pattern that explains the image.
+// Pose of the pattern that explains the image best.
 struct PatternLocation {
   RigidTransform camera_from_pattern;
-  // Of the pose error: translation in the camera frame (m), then rotation vector in the camera
-  // frame about the pattern's centre (rad).
+  // Covariance of the pose error: translation in the camera frame (m), then rotation vector in the
+  // camera frame about the pattern's centre (rad).
   Eigen::Matrix<double, 6, 6> covariance;
-  // Root mean square of what the pose leaves unexplained: pixels, of edges; gray values, of a print
+  // Root mean square of the residuals: 'edge_rms_px' of edges, 'gray_rms' (gray values) of a print
   // that was fitted as a whole. The other one is 0.
   double edge_rms_px = 0;
   double gray_rms = 0;
-  // Of edges: root mean square of how far they are from where the pose and the camera's own lens
-  // have them; the same as edge_rms_px unless the calibration is contradicted.
+  // Edges only: root mean square distance of the edges from where the pose and the camera's own
+  // lens predict them. Equal to edge_rms_px unless the edges contradict the calibration.
   double misfit_px = 0;
-  // Of edges: where the lens shows the pattern's centre, by what the calibration has to be; and
-  // what that is.
+  // Edges only: image of the pattern's centre through the lens that the edges support, and the
+  // evidence about that lens.
   Eigen::Vector2d center_px = Eigen::Vector2d::Zero();
   CalibrationEvidence calibration;
 };
 
-// What is known of the pattern's plane before the image is looked at. The attitude that tells it
-// may be late, or the plane no level one: a direction that is far from it counts less (Cauchy's
-// weight), so that an image that contradicts the prior prevails.
+// Prior of the pattern's normal. It comes from the attitude, which may be late, and from the
+// assumption of a level plane, which may be wrong. Its weight therefore falls with the distance
+// from the current normal (Cauchy's weight), so that an image that contradicts the prior prevails.
 struct NormalPrior {
-  Eigen::Vector3d normal_in_camera;  // unit vector, out of the print
-  double sigma;                      // standard deviation of its direction per axis, rad
+  Eigen::Vector3d normal_in_camera;  // unit vector, out of the printed face
+  double sigma;                      // standard deviation of the direction per axis, rad
 
-  // Adds it to the normal equations of a pose (translation, then rotation about the centre) whose
-  // residuals have the given variance.
+  // Adds the prior to the normal equations of a pose (translation, then rotation about the centre)
+  // whose residuals have the variance 'variance'.
   template <class Matrix, class Vector>
   void AddTo(const Eigen::Quaterniond& camera_from_pattern, double variance, Matrix* h,
              Vector* g) const {
@@ -56,32 +56,32 @@ struct NormalPrior {
   }
 };
 
-// Where a ring is seen.
+// Location of a ring in the image.
 struct RingLocation {
-  RigidTransform camera_from_pattern;  // however the cross is turned
-  bool is_whole;                       // nearly all of it has its edges in the image
+  RigidTransform camera_from_pattern;  // the turn about the ring's centre is arbitrary
+  bool is_whole;                       // nearly all of the ring has edges in the image
 };
 
 // Finds the pose from the edges (model-based pose estimation, after Drummond and Cipolla 2002): the
-// one under which the lens shows the outlines of ring and arms nearest to them, by Gauss-Newton
-// with robust weights. What is usually not so is found as well where the edges leave no doubt:
-// white that has spread over the black (overexposure), or black over the white; a focal length and
-// a principal point that are not the calibration's.
+// pose under which the lens projects the outlines of ring and arms nearest to the edges, by
+// Gauss-Newton with robust weights. Where the edges leave no doubt it also estimates a spread of
+// white over black (overexposure) or of black over white, and another focal length and principal
+// point than the calibration's.
 class PatternLocator {
  public:
   PatternLocator(const CameraModel& camera, const LandingPattern& pattern);
 
   const PrintOutline& outline() const { return outline_; }
 
-  // The pose near 'initial' that explains 'edges'. 'prior': what tells the tilt where the image
-  // hardly does, of small prints. Nothing when too few edges are near to fix the six parameters.
-  // Does not allocate.
+  // Returns the pose near 'initial' that explains 'edges'. 'prior': determines the tilt of small
+  // prints, which the image hardly does. Returns nothing when too few edges are near to determine
+  // the six parameters. Does not allocate.
   std::optional<PatternLocation> Locate(const PrintEdges& edges, const RigidTransform& initial,
                                         const std::optional<NormalPrior>& prior = {}) const;
 
-  // The pose of the ring near 'initial' by its edges alone, however the cross is turned about its
-  // centre: within 'reach_px' the edge nearest to each point of the outline is looked for along the
-  // normal, again and again. 'min_step': as in EdgeSearch. Does not allocate.
+  // Returns the pose of the ring near 'initial' by its edges alone; the turn about its centre stays
+  // arbitrary. Repeatedly searches the edge nearest to each point of the outline along the normal,
+  // within 'reach_px'. 'min_step': as in EdgeSearch. Does not allocate.
   std::optional<RingLocation> LocateRing(const cv::Mat& image, const RigidTransform& initial,
                                          double reach_px, double min_step, int iterations,
                                          const std::optional<NormalPrior>& prior = {}) const;

@@ -24,7 +24,8 @@ class PatternLocatorTest : public ::testing::Test {
     camera_.Project(pose.translation, &pixel);
     return pixel;
   }
-  // Looks for the edges within 'reach_px' of where 'start' has them, and locates the print by them.
+  // Finds the edges within 'reach_px' of their prediction by 'start', and locates the print by
+  // them.
   std::optional<PatternLocation> Locate(const cv::Mat& image, const RigidTransform& start,
                                         double reach_px, double min_step,
                                         const std::optional<NormalPrior>& prior = {}) const {
@@ -34,7 +35,7 @@ class PatternLocatorTest : public ::testing::Test {
     }
     return locator_.Locate(alignment.edges, start, prior);
   }
-  // A pose some pixels away.
+  // Returns a pose some pixels away.
   RigidTransform Disturb(const RigidTransform& pose, Random* random) const {
     RigidTransform disturbed = pose;
     for (int k = 0; k < 3; ++k) disturbed.translation(k) += 0.01 * random->Uniform(-1, 1);
@@ -66,7 +67,7 @@ TEST_F(PatternLocatorTest, RecoversThePose) {
   }
 }
 
-// White that the image cuts off spreads over the black: here by half a pixel and more.
+// White spreads over the black in a saturated image, here by half a pixel and more.
 TEST_F(PatternLocatorTest, OverexposureDoesNotMoveIt) {
   Random random(5);
   for (int trial = 0; trial < 12; ++trial) {
@@ -104,7 +105,7 @@ TEST_F(PatternLocatorTest, TheCovarianceIsThatOfTheErrors) {
   }
 }
 
-// The tilt moves the outlines of a print that is seen from straight above by its square only.
+// The tilt moves the outlines of a print seen from straight above only by its square.
 TEST_F(PatternLocatorTest, FromStraightAboveItSettles) {
   for (const double distance : {3.0, 4.0}) {
     const RigidTransform truth = PrintPose({0.1, 0.2, distance}, 0.02, 0.5, 0.4);
@@ -172,7 +173,8 @@ TEST_F(PatternLocatorTest, NothingIsLocatedOnAnEvenImage) {
   EXPECT_FALSE(locator_.LocateRing(even, PrintPose({0, 0, 2}, 0.2, 0, 0), 5, 10, 4));
 }
 
-// What views of a print say about a calibration whose focal length is 'factor' times the camera's.
+// Evidence of views of a print about a calibration whose focal length is 'factor' times the
+// camera's.
 class CalibrationEvidenceTest : public PatternLocatorTest {
  protected:
   std::optional<PatternLocation> LocateWith(double factor, const RigidTransform& truth,
@@ -191,7 +193,7 @@ class CalibrationEvidenceTest : public PatternLocatorTest {
     }
     return locator.Locate(alignment.edges, start);
   }
-  // Near enough that the perspective tells the distance, and at an angle.
+  // A pose near enough for the perspective to show the distance, and at an angle.
   static RigidTransform NearPose(Random* random) {
     return PrintPose(
         {random->Uniform(-0.05, 0.05), random->Uniform(-0.05, 0.05), random->Uniform(1.1, 1.3)},
@@ -228,7 +230,7 @@ TEST_F(CalibrationEvidenceTest, AWrongFocalLengthIsSaidWithinItsSigma) {
       squares += error * error;
     }
     const double ratio = std::sqrt(squares / kTrials);  // of errors and standard deviations
-    // The principal point is where it is said to be, which the standard deviation does not know.
+    // The true principal point is exactly the calibrated one, which the standard deviation ignores.
     EXPECT_LT(ratio, 1.8) << factor;
   }
 }
@@ -259,19 +261,20 @@ TEST_F(CalibrationEvidenceTest, TheMisfitIsThatOfTheCamerasOwnLens) {
   EXPECT_NEAR(right->misfit_px, right->edge_rms_px, 1e-4);
   ASSERT_TRUE(wrong->calibration.contradicts);
   EXPECT_LT(wrong->edge_rms_px, 0.4);
-  // The centre, 57 px from the principal point, is moved by about a quarter of that, and by what
-  // the principal point is believed to be off.
+  // The centre is 57 px from the principal point. It moves by about a quarter of that, and by the
+  // estimated error of the principal point.
   EXPECT_GT(wrong->misfit_px, 4);
 }
 
-// A view leaves something open; from several sides there is but one focal length.
+// One view leaves something open; views from several sides determine one focal length.
 TEST_F(CalibrationEvidenceTest, ViewsAddUpToTheFocalLength) {
   Random random(17);
   for (const double factor : {0.8, 1.0, 1.25}) {
     Eigen::Matrix4d information = Eigen::Vector4d(4, 400, 400, 100).asDiagonal();
     Eigen::Vector4d pull = Eigen::Vector4d::Zero();
     for (int trial = 0; trial < 20; ++trial) {
-      // Near enough to tell, and not so near that the ring takes much of a wide lens.
+      // Near enough to show the perspective, but not so near that the ring spans much of a wide
+      // lens.
       const RigidTransform pose =
           PrintPose({0.05, -0.05, random.Uniform(1.75, 2.1)}, random.Uniform(0.5, 0.7),
                     random.Uniform(0, 6), random.Uniform(0, 6));
@@ -287,7 +290,7 @@ TEST_F(CalibrationEvidenceTest, ViewsAddUpToTheFocalLength) {
   }
 }
 
-// A far print that faces the camera is as large under any focal length.
+// A far print that faces the camera has the same size under any focal length.
 TEST_F(CalibrationEvidenceTest, AFarViewSaysLittle) {
   Random random(14);
   for (int trial = 0; trial < 10; ++trial) {

@@ -16,28 +16,29 @@ constexpr int kRingPlaces = 48;
 constexpr std::size_t kMaxPlaces = 400;
 // A contrast counts when it has at least this share of the print's contrast in its quarter.
 constexpr double kShare = 0.35;
-// Directions of the places in a quadrant, degrees from the arm before it, and their radii, inner
-// radii of the ring.
+// Directions of the places in a quadrant, in degrees from the arm before it, and their radii, in
+// inner radii of the ring.
 constexpr int kQuadrantTurns = 7;
 constexpr std::array<double, kQuadrantTurns> kQuadrantAngles{27, 33, 39, 45, 51, 57, 63};
 constexpr std::array<double, 3> kQuadrantRadii{0.45, 0.6, 0.75};
 constexpr float kUnseen = -1e9f;
-constexpr double kInsideRadius = 0.65;  // of places inside of the ring, inner radii
-constexpr double kLeastInside = 0.2;    // white there, against the contrast of ring and white
-// In a shadow a contrast counts by its share of the brightness, relative to that of the print, or
-// when the other side of it, relative to the print's contrast, is in the light; and when it is no
-// noise: gray values, and relative to the print's contrast.
+constexpr double kInsideRadius = 0.65;  // radius of the places inside of the ring, inner radii
+constexpr double kLeastInside = 0.2;    // least contrast of the white inside, share of the contrast
+                                        // of ring and white
+// A contrast in a shadow counts when its share of the brightness is at least kRatioShare times the
+// print's, or when its brighter side has at least kShareInLight of the print's contrast. It must
+// also exceed noise: kLeastInShadow gray values and kShareInShadow of the print's contrast.
 constexpr double kRatioShare = 0.6;
 constexpr double kShareInLight = 0.7;
 constexpr double kLeastInShadow = 4;
 constexpr double kShareInShadow = 0.1;
-// By how much a highlight is brighter than the white of the board, and one that saturates the image
-// at least: of the print's contrast.
+// Least brightness of a highlight above the white of the board, shares of the print's contrast: in
+// general, and for one that saturates the image.
 constexpr double kHighlight = 0.4;
 constexpr double kSaturatedHighlight = 0.15;
 
-// A contrast: white minus black on the darker and on the brighter side, gray values; the former
-// relative to the white.
+// A seen contrast: white minus black on the darker side and on the brighter side (gray values), and
+// the former divided by the white.
 struct Seen {
   float difference;
   float brighter_difference;
@@ -47,13 +48,13 @@ struct Seen {
 constexpr Seen kNotSeen{kUnseen, kUnseen, kUnseen};
 
 struct Tally {
-  static constexpr int kSeenOf = 5;  // at least one in so many
+  static constexpr int kSeenOf = 5;  // one in kSeenOf must be in view
   int agreed = 0;
   int in_highlight = 0;
   int seen = 0;
   int all = 0;
 
-  // Negative where too little is seen, and where a half or more lies in a highlight.
+  // Negative where too little is in view, and where half or more lies in a highlight.
   double Share() const {
     if (kSeenOf * seen < all || (in_highlight > 0 && 2 * in_highlight >= seen)) return -1;
     return static_cast<double>(agreed) / std::max(seen, 1);
@@ -67,8 +68,8 @@ double Median(Values* values, std::size_t count) {
   return (*values)[count / 2];
 }
 
-// The least gray value that nothing of the print has beside such white of the board, of which there
-// may be none in view.
+// Returns the least gray value that no part of the print reaches beside the given white of the
+// board; infinity where no white is in view.
 double HighlightGray(double white, double contrast) {
   if (white <= 0) return std::numeric_limits<double>::infinity();
   const double gray = white + kHighlight * contrast;
@@ -76,7 +77,7 @@ double HighlightGray(double white, double contrast) {
   return saturates ? std::min<double>(gray, kSaturatedGray) : gray;
 }
 
-// The shares of the quarters that can be seen.
+// Statistics of the shares of the quarters that are in view.
 struct KnownShares {
   explicit KnownShares(const std::array<double, 4>& shares) {
     for (const double share : shares) {
@@ -122,7 +123,7 @@ PatternMatcher::PatternMatcher(const LandingPattern& pattern) {
   const auto at = [this](double radius, double angle) {
     return AddPlace(radius * std::cos(angle), radius * std::sin(angle));
   };
-  // In the frame of an arm: along it and across.
+  // In the frame of an arm: distance along it and across it, m.
   const auto beside = [this](int quarter, double along, double across) {
     const double angle = quarter * std::numbers::pi / 2;
     return AddPlace(along * std::cos(angle) - across * std::sin(angle),
@@ -198,7 +199,7 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
   std::array<Tally, 4> arm, quadrant, ring;
   std::array<float, kMaxPlaces> gray;
   view.Sample(image, x_m_.data(), y_m_.data(), x_m_.size(), gray.data());
-  // The darker and the brighter gray value of two places, which may be one.
+  // Returns the darker and the brighter gray value of two places, which may be equal.
   const auto sample = [&](const std::array<std::size_t, 2>& places) -> std::pair<float, float> {
     const float first = gray[places[0]];
     const float second = gray[places[1]];
@@ -213,9 +214,9 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
     return {bright - dark, brighter - dark, (bright - dark) / std::max(bright, 1.0f)};
   };
 
-  // The print's contrast in each quarter, which shadow and haze may make different, is that of the
-  // ring; but not less than a third of what it is over the whole ring. Where the ring is out of
-  // view it is that of the arms.
+  // The contrast of the print in each quarter, which shadow and haze may change, is that of the
+  // ring there, but at least a third of that of the whole ring. Where the ring is out of view, the
+  // arms serve instead.
   std::array<Seen, kRingPlaces> of_ring;
   std::array<float, kRingPlaces> known, known_ratio, ink;
   std::size_t count = 0, ink_count = 0;
@@ -243,8 +244,8 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
   }
   match.contrast = Median(&known, count);
   if (match.contrast < 2) return match;
-  // Where light and shadow meet within a quarter, black is as dark as it is beside white; where
-  // they meet along an arm, it is on one side.
+  // In a quarter with light and shadow, black is in the same proportion to the white beside it.
+  // Along an arm at the edge of a shadow, one side is in the light.
   const double least_in_light = kShareInLight * match.contrast;
   const double least_ratio = kRatioShare * Median(&known_ratio, count);
   const double least_in_shadow = std::max(kLeastInShadow, kShareInShadow * match.contrast);
@@ -260,8 +261,8 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
            (value.difference >= least_in_shadow &&
             (value.ratio >= least_ratio || value.brighter_difference >= least_in_light));
   };
-  // What is nearer to black than to the white inside of the ring, on an arm and beside it, hides
-  // the arm, as a landing leg does: where there is no arm at all there is that white.
+  // An arm is hidden, for instance by a landing leg, where both the arm and its side are nearer to
+  // black than to the white inside of the ring. A missing arm would leave that white.
   std::array<float, kMaxPlaces> white;
   std::size_t white_count = 0;
   for (const Contrast& contrast : quadrants_) {
@@ -274,7 +275,7 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
     return ink_count > 0 && sample(contrast.dark).first < middle &&
            sample(contrast.bright).first < middle;
   };
-  // A highlight hides an arm too.
+  // Highlights hide arms too.
   std::array<double, 4> highlight;
   for (int q = 0; q < 4; ++q) {
     const double white_outside = Median(&board[q], quarter_count[q]);

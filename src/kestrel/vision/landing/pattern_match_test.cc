@@ -10,10 +10,10 @@
 namespace kestrel {
 namespace {
 
-// Share below which a part of the print is not in its place.
+// Least share of a part of the print that counts as in place.
 constexpr double kInPlace = 0.65;
 
-// Whether a match speaks for the print in all that it measures.
+// True when all parts of a match speak for the print.
 bool AgreesInAll(const PatternMatch& match) {
   return match.Agreement() > kInPlace && match.shares.MeansInView().worst_arm > kInPlace;
 }
@@ -71,8 +71,8 @@ TEST_F(PatternMatcherTest, AMissingArmIsSeen) {
   EXPECT_FALSE(AgreesInAll(match));
 }
 
-// A sign with one bar whose inside is nearer to black than to the white around it: what hides an
-// arm must be darker than the inside.
+// A sign with one bar, whose inside is nearer to black than to the white around it: something that
+// hides an arm must be darker than the inside.
 TEST_F(PatternMatcherTest, AGrayInsideHidesNoArm) {
   const Print disc = [this](double x, double y) {
     return std::hypot(x, y) < pattern_.inner_radius_m();
@@ -103,8 +103,7 @@ TEST_F(PatternMatcherTest, AnArmBehindALandingLegIsNotMissing) {
   EXPECT_TRUE(AgreesInAll(match));
 }
 
-// A highlight is brighter than any white of the print; an arm that is not there is as bright as
-// that.
+// A highlight is brighter than any white of the print. A missing arm is only as bright as white.
 TEST_F(PatternMatcherTest, AnArmInAHighlightIsNotMissing) {
   const Print spot = [](double x, double y) { return std::hypot(x - 0.22, y) < 0.18; };
   const cv::Mat in_spot = Draw(spot) == 40;
@@ -119,7 +118,7 @@ TEST_F(PatternMatcherTest, AnArmInAHighlightIsNotMissing) {
 }
 
 TEST_F(PatternMatcherTest, AnArmAlongTheImageBorderIsSeenByItsInnerSide) {
-  // The centre 5 px from the border: of the arms along it only one side is in view.
+  // The centre is 5 px from the border, so only one side of the arms along it is in view.
   const RigidTransform pose = PrintPose({-154.5 / 220, 0, 1}, 0, 0, 0);
   const PatternMatch match =
       Match(DrawPrint(camera_, pattern_, SpokedPrint(pattern_, 4), pose), pose);
@@ -179,11 +178,11 @@ TEST(PatternMatch, AgreementIsThatOfTheWorstKind) {
   PatternMatch match;
   match.shares.arm = {1, 1, 1, 1};
   match.shares.quadrant = {0.5, 0.5, 0.5, 0.5};
-  match.shares.ring = {1, 1, 1, 0};  // one quarter of the ring may be lost
+  match.shares.ring = {1, 1, 1, 0};  // a quarter of the ring may be lost
   EXPECT_DOUBLE_EQ(match.Agreement(), 0.5);
   match.shares.quadrant = {1, 1, 1, 1};
   EXPECT_DOUBLE_EQ(match.Agreement(), 1);
-  match.shares.arm = {1, 1, 1, 0};  // an arm may not
+  match.shares.arm = {1, 1, 1, 0};  // an arm must not be lost
   EXPECT_DOUBLE_EQ(match.Agreement(), 0.75);
   match.shares.arm = {-1, -1, -1, -1};
   EXPECT_EQ(match.Agreement(), 0);

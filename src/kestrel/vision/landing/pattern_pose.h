@@ -9,8 +9,8 @@
 
 namespace kestrel {
 
-// camera_from_pattern of the pattern whose ring lies as 'circle', one arm turned by 'arm_angle'
-// (rad) from an arbitrary but fixed axis of the ring's plane.
+// Returns camera_from_pattern for a pattern whose ring lies as 'circle', with one arm turned by
+// 'arm_angle' (rad) from an arbitrary but fixed axis of the ring's plane.
 inline RigidTransform PatternPose(const CirclePose& circle, double arm_angle) {
   Eigen::Matrix3d rotation;
   rotation.col(2) = circle.normal;

@@ -13,24 +13,24 @@
 
 namespace kestrel {
 
-// The plane of the pattern as an image shows it under an assumed pose: pattern coordinates to
-// pixels.
+// Maps the plane of the pattern to the pixels of an image under an assumed pose.
 class PatternView {
  public:
-  // Covers |x|, |y| <= 'extent_m' of the plane. Pixels are those of 'region'.
+  // Covers |x|, |y| <= 'extent_m' (m) of the plane. Pixels are those of 'region'.
   PatternView(const CameraModel& camera, const RigidTransform& camera_from_pattern, double extent_m,
               const ImageRegion& region);
   PatternView(const PlaneWarp& warp, double extent_m, const ImageRegion& region);
 
-  // False when the lens model does not show the whole extent.
+  // False when the lens model does not cover the whole extent.
   bool valid() const { return valid_; }
 
-  // Gray values at 'count' points of the plane (m), which must lie within the extent; negative
-  // where the image, that of the region, does not show them. The arrays must not overlap.
+  // Writes the gray values at 'count' points of the plane (m), which must lie within the extent;
+  // negative where a point is outside of 'image', which shows the region. The arrays must not
+  // overlap.
   void Sample(const cv::Mat& image, const float* x_m, const float* y_m, std::size_t count,
               float* gray) const;
 
-  // Pixels of the same points.
+  // Writes the pixels of such points.
   void Project(const float* x_m, const float* y_m, std::size_t count, float* x_px,
                float* y_px) const;
 

@@ -54,7 +54,7 @@ TEST(PatternView, SamplesTheImageWhereItsPointsAre) {
       image.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(random.Uniform(0, 256));
     }
   }
-  // Half out of the image; more points than are looked at at once.
+  // Half out of the image, and with more points than are processed at once.
   const PatternView view(camera, PrintPose({1.4, 0, 2}, 0.2, 0.3, 0.4), 0.6, {});
   ASSERT_TRUE(view.valid());
   constexpr std::size_t kPoints = 151;

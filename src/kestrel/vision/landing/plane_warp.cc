@@ -20,7 +20,7 @@ struct WarpKernel {
   std::array<std::array<float, PlaneWarp::kTerms>, 2> displacement;  // by x and y
 };
 
-// What the lens shows of as many points as are projected at once.
+// Projections of as many points as are processed at once.
 struct ShownPoints {
   static constexpr std::size_t kMost = 64;
   using Column = std::array<float, kMost>;

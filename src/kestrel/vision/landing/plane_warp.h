@@ -11,8 +11,9 @@
 
 namespace kestrel {
 
-// Where an image shows the plane of a print: as the lens shows it under a pose, displaced by what
-// the calibration, the flatness of the sheet and the shutter are off: a polynomial of low order.
+// Maps the plane of a print to the image: the projection through the lens under a pose, plus a
+// displacement, a polynomial of low order. The displacement absorbs the errors of calibration,
+// flatness of the sheet and shutter.
 class PlaneWarp {
  public:
   static constexpr int kDegree = 3;
@@ -20,24 +21,25 @@ class PlaneWarp {
   using Terms = Eigen::Matrix<double, kTerms, 1>;
   using Coefficients = Eigen::Matrix<double, 2, kTerms>;  // px
 
-  // No displacement. 'radius_m': of what the polynomial is for, its unit of length. 'camera' must
-  // outlive it.
+  // Starts without a displacement. 'radius_m': unit of length of the polynomial, the radius of the
+  // area it is used for. 'camera' must outlive this.
   PlaneWarp(const CameraModel& camera, const RigidTransform& camera_from_pattern, double radius_m)
       : camera_(camera),
         pose_(camera_from_pattern),
         plane_(camera_from_pattern.rotation.toRotationMatrix().leftCols<2>()),
         radius_m_(radius_m) {}
 
-  // Pixel of a point (m) of the plane and its derivative; false when the lens does not show it.
+  // Projects a point of the plane (m) to its pixel and the derivative; false when the lens does not
+  // show it.
   bool Project(const Eigen::Vector2d& point, Eigen::Vector2d* pixel,
                Eigen::Matrix2d* d_pixel_d_point = nullptr) const;
 
-  // The same for 'count' points at once, in single precision: NaN where the lens does not show
-  // them. 'd_pixel_d_point': columns, row by row. Outputs must not overlap the points.
+  // The same for 'count' points at once, in single precision; NaN where the lens does not show a
+  // point. 'd_pixel_d_point': columns, row by row. Outputs must not overlap the points.
   void ProjectMany(const float* x_m, const float* y_m, std::size_t count, float* x_px, float* y_px,
                    const std::array<float*, 4>* d_pixel_d_point = nullptr) const;
 
-  // The monomials at a point, by rising degree.
+  // Returns the monomials at a point (m), by rising degree.
   Terms TermsAt(const Eigen::Vector2d& point) const;
   static int DegreeOf(int term);
 
@@ -46,7 +48,7 @@ class PlaneWarp {
   const Coefficients& displacement() const { return displacement_; }
   void Displace(const Coefficients& more) { displacement_ += more; }
 
-  // The polynomial of such coefficients at a point in units of the radius.
+  // Evaluates the polynomial with coefficients 'c' at a point in units of the radius; px.
   static float Displacement(const std::array<float, kTerms>& c, float x, float y) {
     return c[0] + x * (c[1] + c[3] * x + c[4] * y) + y * (c[2] + c[5] * y) +
            (x * x + y * y) * (c[6] * x + c[7] * y);

@@ -98,8 +98,8 @@ TEST(PlaneWarp, TermsRiseByDegree) {
   EXPECT_EQ(PlaneWarp::DegreeOf(PlaneWarp::kTerms - 1), PlaneWarp::kDegree);
 }
 
-// Root mean square (px) of what is left of the way from where 'camera' shows the flat print to
-// where 'shown' has it, when the warp is fitted to it.
+// Fits the warp to the displacement between the image of the flat print through 'camera' and the
+// image given by 'shown'. Returns the root mean square residual, px.
 template <class Shown>
 double LeftByFit(const CameraModel& camera, const RigidTransform& pose, const Shown& shown) {
   const PlaneWarp warp(camera, pose, kRadius);
@@ -117,8 +117,8 @@ double LeftByFit(const CameraModel& camera, const RigidTransform& pose, const Sh
   return left.norm() / std::sqrt(static_cast<double>(points.size()));
 }
 
-// What makes prints no flat ones, and calibrations no right ones, of a ring of 220 px: the warp
-// explains it to a fraction of a pixel where it moves the print by several.
+// Boards that are not flat and calibrations that are wrong, for a ring of 220 px. The warp explains
+// them to a fraction of a pixel where they move the print by several pixels.
 TEST(PlaneWarp, HoldsWhatBoardsAndLensesDo) {
   const CameraModel camera = TestPrintCamera();
   const RigidTransform pose = PrintPose({0.1, -0.05, 1}, 0.35, 0.8, 0.3);

@@ -5,10 +5,10 @@
 
 namespace kestrel {
 
-// Solves h x = b for every column of 'b' by elimination without pivoting: 'h' is symmetric and
-// positive definite, of which what lies above the diagonal is not read. Where it is not, the
-// solution is huge or not finite. For the few unknowns of a pose several times as fast as Eigen's
-// decompositions, which are made for large matrices.
+// Solves h x = b for every column of 'b' by elimination without pivoting. 'h' must be symmetric and
+// positive definite; only its diagonal and what lies below are read. Where it is not positive
+// definite, the solution is huge or not finite. For the few unknowns of a pose this is several
+// times as fast as Eigen's decompositions, which are made for large matrices.
 template <int kSize, int kSides>
 Eigen::Matrix<double, kSize, kSides> SolvePositive(Eigen::Matrix<double, kSize, kSize> h,
                                                    Eigen::Matrix<double, kSize, kSides> b) {

@@ -14,20 +14,20 @@ namespace {
 
 constexpr int kTerms = PlaneWarp::kTerms;
 constexpr std::size_t kMinEdges = 12;
-// Standard deviations of the displacement before the image is looked at, by degree: shares of the
-// ring's mean radius in the image.
+// Prior standard deviations of the displacement by degree, as shares of the ring's mean radius in
+// the image.
 constexpr std::array<double, PlaneWarp::kDegree + 1> kPriorShare{0.5, 0.3, 0.12, 0.06};
 constexpr double kLeastScalePx = 0.25;
-constexpr double kInPlacePx = 1;  // offset of an edge that is the outline's own
+constexpr double kInPlacePx = 1;  // largest offset of an edge in its place
 constexpr double kLeastReachPx = 1.5;
-constexpr double kFarReachPx = 6;  // at least, pixels of the view
+constexpr double kFarReachPx = 6;  // least reach of the first steps, pixels of the view
 constexpr double kLeastRmsPx = 0.05;
-constexpr double kSpreadSigmaPx = 0.3;  // before the image is looked at
-constexpr int kFarSteps = 2;            // at most, on the view
-constexpr int kNearSteps = 3;           // the same on the image
-constexpr double kSettledPx = 0.1;  // outlines that move by less are in place but for the last step
-// Places per place that all steps but the last look at: odd, so that both sides of the arms have
-// some; and too few edges of those.
+constexpr double kSpreadSigmaPx = 0.3;  // prior standard deviation of the spread
+constexpr int kFarSteps = 2;            // most steps on the view
+constexpr int kNearSteps = 3;           // most steps on the image
+constexpr double kSettledPx = 0.1;      // outlines that move by less have settled
+// All steps but the last use every kCoarseStride-th place, when these have at least kFewEdges
+// edges. The stride is odd so that both sides of the arms are used.
 constexpr std::size_t kCoarseStride = 3;
 constexpr std::size_t kFewEdges = 36;
 
@@ -98,7 +98,7 @@ class Columns {
     edges->spread_px += spread_px;
   }
 
-  // Root mean square of the offsets, weighted, and their standard deviation by the median.
+  // Weighted root mean square of the offsets, and their standard deviation from the median.
   double Rms() const {
     double squares = 0, sum = 0;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -119,23 +119,23 @@ class Columns {
   Column root_;       // of the weight
 };
 
-// What a step of least squares did.
+// Result of a least-squares step.
 struct Step {
-  double moved_px;  // by how much it moved the outlines, root mean square
-  double scale_px;  // standard deviation of what is left of the offsets
+  double moved_px;  // motion of the outlines, root mean square
+  double scale_px;  // standard deviation of the remaining offsets
 };
 
-// Makes a step and leaves of the offsets what it does not explain.
+// Makes a step. The offsets become the residuals.
 Step MakeStep(double scale_px, double ring_radius_px, PrintAlignment* alignment) {
   Columns columns(*alignment, scale_px);
   const Products products = columns.Sum();
   Matrix h = products.topLeftCorner<kUnknowns, kUnknowns>();
-  // The step, and where a push of the print's middle along each axis would bring it.
+  // Right sides: the step, and a unit push of the print's middle along each axis, for its variance.
   constexpr int kSides = 3;
   Eigen::Matrix<double, kUnknowns, kSides> sides;
   sides << products.topRightCorner<kUnknowns, 1>(), Vector::Unit(0), Vector::Unit(kTerms);
   const double weights = h(kSpread, kSpread);
-  // Displacements should be small, by their degrees, and the spread too.
+  // Priors: small displacements, by degree, and a small spread.
   const auto pull = [&](int unknown, double value, double sigma) {
     const double weight = Squared(scale_px / sigma);
     h(unknown, unknown) += weight;
@@ -191,7 +191,7 @@ bool AlignPrint(const cv::Mat& image, const cv::Mat& view, const ImageRegion& re
   double reach = reach_px;
   bool settled = false;
   const auto make_step = [&](const ImageRegion& seen, bool is_last) {
-    // What is far off is looked for where a pixel is large.
+    // Large offsets are searched for at low resolution, where a pixel is large.
     const bool far = &seen == &region;
     EdgeSearch search{reach / seen.scale(), min_step, is_last ? 1 : kCoarseStride};
     if (far) search.reach_px = std::max(kFarReachPx, search.reach_px);

@@ -13,22 +13,22 @@
 
 namespace kestrel {
 
-// Where an image shows a print, by its edges and whatever else is true of the lens and the sheet.
+// Location of a print in an image by its edges, independent of errors of lens and sheet.
 struct PrintAlignment {
   PlaneWarp warp;
-  PrintEdges edges;            // where the warp has them, and how far off they are
-  double edge_rms_px = 0;      // of that, weighted
-  double center_sigma_px = 0;  // of where the warp has the middle of the print, per axis
+  PrintEdges edges;            // expected where the warp has the outlines
+  double edge_rms_px = 0;      // weighted root mean square of their offsets
+  double center_sigma_px = 0;  // standard deviation of the warped middle of the print, per axis
 
-  // Of arms and ring, of their places in view those that have an edge in its place. Not in view is
-  // what the image shows less than a quarter of.
+  // Returns for arms and ring the share of places in view with an edge in its place. Negative where
+  // less than a quarter of a part's places is in view.
   PartShares EdgeShares() const;
 };
 
-// Brings the displacement of 'warp' to where the edges of the print are in the image: robust least
-// squares over a polynomial whose higher orders are held small by priors. 'view' shows 'region';
-// steps that come from far away are made on it. 'reach_px', 'min_step': as in EdgeSearch, the
-// former at full resolution. False when there are too few edges. Does not allocate.
+// Fits the displacement of 'warp' to the edges of the print in the image: robust least squares over
+// a polynomial, with priors that keep its higher orders small. 'view' shows 'region'; the first
+// steps, which search far, use it. 'reach_px' (at full resolution) and 'min_step': as in
+// EdgeSearch. False when there are too few edges. Does not allocate.
 bool AlignPrint(const cv::Mat& image, const cv::Mat& view, const ImageRegion& region,
                 std::span<const PrintOutline::Place> places, double reach_px, double min_step,
                 PrintAlignment* alignment);

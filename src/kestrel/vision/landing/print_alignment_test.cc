@@ -17,7 +17,7 @@ namespace {
 constexpr double kReachPx = 6;
 constexpr double kMinStep = 10;
 
-// How far (px) an alignment is from where the print is in the image.
+// Error (px) of an alignment against the image of the print.
 struct AlignmentError {
   double center_px = 0;
   double edges_px = 0;  // across the outlines, root mean square along them
@@ -32,7 +32,7 @@ class PrintAlignmentTest : public ::testing::Test {
   bool Align(const cv::Mat& image, PrintAlignment* alignment, double reach_px = kReachPx) const {
     return AlignPrint(image, image, {}, outline_.all(), reach_px, kMinStep, alignment);
   }
-  // Of a print that 'camera' sees under 'truth', 'height' over its plane.
+  // Error for a print that 'camera' sees under 'truth', with 'height' over its plane.
   AlignmentError ErrorOf(const PrintAlignment& alignment, const CameraModel& camera,
                          const RigidTransform& truth, const SheetHeight& height) const {
     const auto off = [&](const Eigen::Vector2d& p) -> Eigen::Vector2d {
@@ -52,7 +52,7 @@ class PrintAlignmentTest : public ::testing::Test {
     error.edges_px = std::sqrt(error.edges_px);
     return error;
   }
-  // Aligns prints that 'camera' shows as if 'assumed' did, from the pose that its ring would have.
+  // Aligns prints seen through 'camera' with the model 'assumed', from the pose of their ring.
   void ExpectAligned(const std::string& what, const CameraModel& camera, const CameraModel& assumed,
                      const SheetHeight& height = {}) const {
     Random random(1);
@@ -67,7 +67,7 @@ class PrintAlignmentTest : public ::testing::Test {
         const cv::Mat image =
             AddNoise(DrawPrint(camera, pattern_, print, truth, height), 2, &random);
         PrintAlignment alignment = AlignmentAt(assumed, start);
-        // The farther the nearer: as the detector looks, by the diameter.
+        // The reach follows from the diameter, as in the detector.
         ASSERT_TRUE(Align(image, &alignment, 2 + 0.03 * 220 / distance))
             << what << " at " << distance << " m";
         const AlignmentError error = ErrorOf(alignment, camera, truth, height);
@@ -136,7 +136,7 @@ TEST_F(PrintAlignmentTest, TheCenterIsAsSureAsItSays) {
   EXPECT_LT(std::sqrt(squares / kTrials), 1.6);
 }
 
-// What is no print of this kind is not bent until it is one.
+// Other figures are not bent until they match the print.
 TEST_F(PrintAlignmentTest, OtherFiguresAreNotBentToThePrint) {
   const RigidTransform pose = PrintPose({0.1, -0.05, 1.6}, 0.3, 1, 0.3);
   const Print rings = [this](double x, double y) {
@@ -172,7 +172,7 @@ TEST_F(PrintAlignmentTest, AQuarterOutOfViewSaysNothing) {
   EXPECT_GT(shares.ring[2], 0.8);
 }
 
-// Where the start is far off the way to the print is found on an image of half the resolution.
+// From a start that is far off, the print is found on an image of half the resolution.
 TEST_F(PrintAlignmentTest, ASmallerImageBringsItNear) {
   const RigidTransform truth = PrintPose({0.02, -0.02, 0.9}, 0.2, 1, 0.3);
   RigidTransform start = truth;

@@ -8,47 +8,48 @@
 
 namespace kestrel {
 
-// How a print was looked at: by its edges, all or a part of it; or as a whole where its strokes are
-// no wider than the blur.
+// How a print was examined: by its edges, whole (kByEdges) or cut off (kPart); or fitted as a whole
+// (kAsAWhole) because its strokes are no wider than the blur.
 enum class PrintKind { kByEdges, kPart, kAsAWhole };
 inline constexpr std::size_t kPrintKinds = 3;
 
-// What may speak against a print that was located. The larger a number, the less it looks like the
-// pattern. What was not measured counts nothing.
+// Doubts: numbers that speak against a located print. The larger a number, the less the print looks
+// like the pattern. A doubt that was not measured does not count.
 enum class PrintDoubt {
-  // By ink and white, see InkComparison. Shares of places, 0 to 1.
-  kInklessArm,     // not as dark as ink, of the worst arm
-  kDarkQuadrants,  // too dark for white between the arms, where it is best
-  kInkOnWhite,     // the same, as dark as ink
-  kDarkHub,        // too dark for white near the middle of the print, second worst of four
-  kOtherSpoke,     // as dark as ink on a line between the arms, the worst
-  kOtherSpokes,    // the same, of the second worst
-  kDarkBoard,      // too dark for white around the ring, median of the directions
-  kDarkCorners,    // the same beyond the ends of the arms, more than between them
-  kUnlike,         // logarithm of what the correlation with the print lacks of 1
-  // By edges
-  kArmEdges,       // share of the edges of the arms that are not in their place
-  kWorstArmEdges,  // the same, of the worst arm alone
-  kScatter,        // logarithm of the scatter of the edges, of the ring's mean diameter
-  kMisfit,         // logarithm of the edges' distance from a flat print seen through the lens
-  // By the fit of the print as a whole
+  // Ink and white (InkComparison). Shares of places, 0 to 1.
+  kInklessArm,     // places of the worst arm that are not as dark as ink
+  kDarkQuadrants,  // places between the arms too dark for white, in the best quadrant
+  kInkOnWhite,     // places between the arms as dark as ink, in the best quadrant
+  kDarkHub,        // places near the middle too dark for white, second worst of four quadrants
+  kOtherSpoke,     // places as dark as ink on a line between the arms, the worst quadrant
+  kOtherSpokes,    // the same, the second worst quadrant
+  kDarkBoard,      // places around the ring too dark for white, median of the directions
+  kDarkCorners,    // the same: mean beyond the ends of the arms minus mean between them
+  kUnlike,         // logarithm of (1 - correlation with the print)
+  // Edges.
+  kArmEdges,       // share of the arms' edges that are not in their place
+  kWorstArmEdges,  // the same, of the worst arm
+  kScatter,        // logarithm of the scatter of the edges, as a share of the ring's mean diameter
+  kMisfit,         // the same of their distance from a flat print seen through the lens
+  // Fit of the print as a whole.
   kFaintArm,      // share of the contrast that the worst arm lacks
-  kBrokenRing,    // share of the contrast that the ring lacks, mean but for the worst quarter
-  kFrameCorners,  // darkness beyond the ends of the arms, against between them
-  kOtherFigure,   // logarithm of what the correlation inside of the ring lacks of 1
-  kInside,        // residuals inside of the ring more than on it, shares of the contrast
-  kShadows,       // 1 where shadows had to be taken out to see it
-  // By how little is seen of it
-  kUncertain,  // logarithm of the position's standard deviation, of the distance
-  kSmall,      // logarithm of the ring's shorter diameter in pixels, negative
-  kFlat,       // logarithm of its axis ratio, negative
-  kHidden,     // share of the print that is not in view
+  kBrokenRing,    // share of the contrast that the ring lacks, mean without the worst quarter
+  kFrameCorners,  // how much darker it is beyond the ends of the arms than between them, shares of
+                  // the contrast
+  kOtherFigure,   // logarithm of (1 - correlation inside of the ring)
+  kInside,        // residuals inside of the ring minus those on it, shares of the contrast
+  kShadows,       // 1 where shadows were removed first, else 0
+  // View of the print.
+  kUncertain,  // logarithm of the position's standard deviation as a share of the distance
+  kSmall,      // minus the logarithm of the ring's shorter diameter in pixels
+  kFlat,       // minus the logarithm of the ring's axis ratio
+  kHidden,     // share of ring and arms that is not in view
 };
 inline constexpr std::size_t kPrintDoubts = 23;
 
 class PrintDoubts {
  public:
-  // None of them, as long as nothing is known.
+  // Initially none is measured.
   PrintDoubts() { values_.fill(-std::numeric_limits<double>::infinity()); }
   double& operator[](PrintDoubt doubt) { return values_[static_cast<std::size_t>(doubt)]; }
   double operator[](PrintDoubt doubt) const { return values_[static_cast<std::size_t>(doubt)]; }
@@ -57,29 +58,30 @@ class PrintDoubts {
   std::array<double, kPrintDoubts> values_;
 };
 
-// How much a doubt counts: nothing below a knot, so much per unit beyond it.
+// Weight of a doubt: a piecewise linear function. Each knot adds its slope beyond it.
 struct DoubtWeight {
   std::array<double, 3> knots;
   std::array<double, 3> slopes;
 };
 
-// The same of all doubts.
+// The weights of all doubts.
 struct PrintWeights {
   double certain;  // log odds of a print without any doubt
   std::array<DoubtWeight, kPrintDoubts> doubts;
 };
 
-// Logarithm of the odds that a print is the landing pattern, and how much of it a doubt takes: an
-// additive model that falls with every doubt (logistic regression with weights that are not
-// negative, bench/train_print_score; the table is in print_score_weights.h).
+// Natural logarithm of the odds that a print is the landing pattern, and the part of it that one
+// doubt takes away. The model is additive and falls with every doubt (logistic regression with
+// weights that are not negative, trained by bench/train_print_score; the table is in
+// print_score_weights.h).
 double PrintLogOdds(const PrintWeights& weights, const PrintDoubts& doubts);
 double PrintLogOdds(PrintKind kind, const PrintDoubts& doubts);
 double LogOddsTakenBy(PrintKind kind, const PrintDoubts& doubts, PrintDoubt doubt);
 
-// Probability of such odds, 0 to 1.
+// Returns the probability, 0 to 1, of the given logarithm of the odds.
 double ProbabilityOf(double log_odds);
 
-// What speaks against the print most, in words.
+// Returns the doubt that takes the most log odds, in words.
 std::string_view MainDoubt(PrintKind kind, const PrintDoubts& doubts);
 
 }  // namespace kestrel

@@ -58,7 +58,7 @@ TEST(PrintDoubts, TheOddsAreWhatTheDoubtsLeave) {
   }
 }
 
-// A whole print and one by its edges: every doubt that can be measured of it counts, somewhere.
+// For every kind of print, every doubt that can be measured has weight somewhere.
 TEST(PrintDoubts, NothingLooksLikeThePrintInSpiteOfEverything) {
   for (const PrintKind kind : kKinds) {
     PrintDoubts all;
@@ -72,9 +72,9 @@ TEST(PrintDoubts, TheMainDoubtIsTheOneThatTakesMost) {
     for (std::size_t i = 0; i < kPrintDoubts; ++i) {
       PrintDoubts doubts;
       doubts[DoubtAt(i)] = 5;
-      if (LogOddsTakenBy(kind, doubts, DoubtAt(i)) == 0) continue;  // of no weight for this kind
+      if (LogOddsTakenBy(kind, doubts, DoubtAt(i)) == 0) continue;  // without weight for this kind
       const std::string reason(MainDoubt(kind, doubts));
-      // Whatever less is added, the reason stays.
+      // Smaller doubts do not change the reason.
       for (std::size_t other = 0; other < kPrintDoubts; ++other) {
         if (other == i) continue;
         PrintDoubts more = doubts;

@@ -18,9 +18,10 @@ namespace HWY_NAMESPACE {
 using Floats = hn::CappedTag<float, 16>;
 using Vector = hn::Vec<Floats>;
 
-constexpr float kLeastEdgeStep = 2;    // of an edge, gray values per pixel
-constexpr float kStepInShadow = 0.3f;  // the same against the gray value on its bright side
-constexpr float kLeastShare = 0.12f;   // of the steepest rise, that its neighbours have
+constexpr float kLeastEdgeStep = 2;    // least rise of an edge, gray values per pixel
+constexpr float kStepInShadow = 0.3f;  // least rise in a shadow, share of the gray value on its
+                                       // bright side
+constexpr float kLeastShare = 0.12f;   // least rise of the neighbours, share of the steepest rise
 
 HWY_INLINE Vector Of(float value) { return hn::Set(Floats(), value); }
 HWY_INLINE Vector At(const PlaceColumns::Column& column, std::size_t i) {
@@ -30,13 +31,13 @@ HWY_INLINE void Put(Vector values, PlaceColumns::Column* column, std::size_t i) 
   hn::StoreU(values, Floats(), column->data() + i);
 }
 
-// Columns are as long as whole vectors: what lies behind 'count' is computed and not used.
+// Columns are as long as whole vectors; values beyond 'count' are computed and not used.
 void TurnNormals(std::size_t count, PlaceColumns* places) {
   for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) {
     const Vector x_by_x = At(places->by_place[0], i), x_by_y = At(places->by_place[1], i);
     const Vector y_by_x = At(places->by_place[2], i), y_by_y = At(places->by_place[3], i);
     const Vector normal_x = At(places->normal_x, i), normal_y = At(places->normal_y, i);
-    // At right angles to the image of the tangent, on the side of the normal's.
+    // At right angles to the image of the tangent, on the side of the plane's normal.
     const Vector tangent_x = hn::MulSub(x_by_y, normal_x, hn::Mul(x_by_x, normal_y));
     const Vector tangent_y = hn::MulSub(y_by_y, normal_x, hn::Mul(y_by_x, normal_y));
     const Vector determinant = hn::MulSub(x_by_x, y_by_y, hn::Mul(x_by_y, y_by_x));
@@ -51,7 +52,7 @@ void TurnNormals(std::size_t count, PlaceColumns* places) {
   }
 }
 
-// Binary logarithm of a positive normal number, to 0.01: exponent, and mantissa by a parabola.
+// Binary logarithm of a positive normal number, to 0.01: exponent plus a parabola in the mantissa.
 HWY_INLINE Vector Log2(Vector value) {
   constexpr int kMantissaBits = 23;
   const Floats d;
@@ -63,8 +64,9 @@ HWY_INLINE Vector Log2(Vector value) {
   return hn::MulAdd(t, hn::NegMulAdd(Of(0.3465f), t, Of(1.3465f)), hn::ConvertTo(d, exponent));
 }
 
-// The rise across a blurred edge is a Gaussian, its logarithm a parabola: a parabola through the
-// rises themselves would stay short of the edge by a third.
+// Returns the offset of the peak of three rises. The rise across a blurred edge is a Gaussian, so
+// its logarithm is a parabola. A parabola through the rises themselves would fall short of the edge
+// by a third.
 HWY_INLINE Vector PeakOf(Vector before, Vector here, Vector after) {
   const Vector least = hn::Mul(Of(kLeastShare), here);
   const Vector log_before = Log2(hn::Max(before, least));
@@ -84,7 +86,7 @@ HWY_INLINE Vector SearchVector(const cv::Mat& image, int reach, float min_step, 
     return SampleVector(d, image, hn::MulAdd(Of(away), across_x, x),
                         hn::MulAdd(Of(away), across_y, y));
   };
-  // Gray values from half a pixel more than a step before the reach to as far behind it.
+  // Gray values from a pixel and a half before the window's reach onwards, in steps of a pixel.
   const float first = -static_cast<float>(reach) - 1.5f;
   const Vector gray = sample(first);
   Vector current = sample(first + 1);

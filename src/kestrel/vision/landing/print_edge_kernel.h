@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// The search for edges at many places of an outline at once, with the best instructions of the
-// machine at run time.
+// Searches for edges at many places of an outline at once, with the best vector instructions of the
+// machine, chosen at run time.
 
 #include <array>
 #include <cstddef>
@@ -17,30 +17,30 @@ namespace kestrel {
 struct PlaceColumns {
   using Column = std::array<float, PrintOutline::kMaxPlaces>;
 
-  Column x_m, y_m;            // in the plane
-  Column normal_x, normal_y;  // the same, unit vector from black to white
-  // Where an image shows the places; NaN where the lens does not. Derivative by the place, px/m.
+  Column x_m, y_m;            // in the plane of the print
+  Column normal_x, normal_y;  // unit vector in the plane, from black to white
+  // Image of the places, px; NaN where the lens does not show them. Derivative by the place, px/m.
   Column x_px, y_px;
   std::array<Column, 4> by_place;  // row by row
 
   Column across_x, across_y;  // unit normal of the outline in the image
-  Column px_per_m;            // along it
-  Column bend;       // half of an outline's curvature in the image over that in the plane, m/px
-  Column offset_px;  // of the edge along it; see SearchEdges
+  Column px_per_m;            // scale along that normal
+  Column bend;  // half of (curvature of an outline in the image / its curvature in the plane), m/px
+  Column offset_px;  // offset of the edge along the normal; see SearchEdges
 };
 
-// Turns the outline's normals into those of the image.
+// Computes the outline's normals in the image from those in the plane.
 void TurnNormals(std::size_t count, PlaceColumns* places);
 
-// Where an edge is looked for, pixels of the image.
+// The search window of an edge, in pixels of the image.
 struct EdgeWindow {
   float offset_x, offset_y, scale;  // pixel of the image = offset + scale * pixel of a place
   int reach;
   float min_step;  // gray values per pixel
 };
 
-// How far along its normal each place has the steepest rise of brightness, pixels of the image: NaN
-// where that does not show all that is looked at, infinity where there is no edge.
+// Writes for each place the offset along its normal of the steepest rise of brightness, in pixels
+// of the image: NaN where a part of the window is out of view, infinity where there is no edge.
 void SearchEdges(const cv::Mat& image, const EdgeWindow& window, std::size_t count,
                  PlaceColumns* places);
 

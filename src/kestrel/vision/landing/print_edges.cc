@@ -13,10 +13,11 @@ namespace {
 
 constexpr int kMaxReach = 12;  // px
 
-// By how far (px) the two edges of a stroke seem too far apart, each: the blurred other edge takes
-// from the rise on the stroke's side, and the parabola through the three leans the other way.
+// Returns the error (px) by which each edge of a stroke seems too far outside. The blurred other
+// edge reduces the rise on the stroke's side, so the parabola through the three rises leans
+// outwards.
 double ComputeStrokeShift(double width_px) {
-  // Interpolation and differences blur once more.
+  // Interpolation and differences add blur.
   constexpr double kVariance = kLensBlurPx * kLensBlurPx + 1.0 / 6 + 1.0 / 12;
   const double away = width_px - 1;
   const double taken = std::exp(-away * away / (2 * kVariance));
@@ -25,9 +26,9 @@ double ComputeStrokeShift(double width_px) {
   return 0.5 * taken / (2 * fall + taken);
 }
 
-// The same from a table.
+// ComputeStrokeShift from a table.
 double StrokeShift(double width_px) {
-  constexpr double kFar = 6;  // from where the other edge does not reach here
+  constexpr double kFar = 6;  // beyond this width the other edge has no effect
   constexpr int kPerPixel = 32;
   static const auto kTable = [] {
     std::array<double, static_cast<std::size_t>(kFar) * kPerPixel + 1> table;
@@ -40,7 +41,7 @@ double StrokeShift(double width_px) {
   return kTable[static_cast<std::size_t>(std::max(width_px, 0.0) * kPerPixel)];
 }
 
-// Looks for the edges of every so many places; returns of how many.
+// Searches the edge of every stride-th place. Returns the number of places.
 std::size_t LookFor(const cv::Mat& image, const ImageRegion& region, const PlaneWarp& warp,
                     std::span<const PrintOutline::Place> places, const EdgeSearch& search,
                     PlaceColumns* columns) {
@@ -94,7 +95,7 @@ void FindPrintEdges(const cv::Mat& image, const ImageRegion& region, const Plane
     ++found->in_image;
     ++found->part_in_image[place.part];
     if (std::isinf(offset)) continue;
-    // Blur moves a bent edge towards the middle of the bend.
+    // Blur moves a curved edge towards the middle of its bend.
     const double bend = place.curvature * columns.bend[i];
     const double width_px = place.width * columns.px_per_m[i];
     PrintEdge& edge = found->edges[found->count++];

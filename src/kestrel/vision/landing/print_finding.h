@@ -12,21 +12,21 @@
 
 namespace kestrel {
 
-// A print that was located, whether it is the pattern or not.
+// A finding: a print that was located, whether it is the pattern or not.
 struct PrintFinding {
   PrintKind kind;
   CrossMethod method;
   PatternLocation location;
-  std::optional<SeenPrint> seen;  // by its edges
-  double seen_rms_px = 0;         // root mean square of how far these are from there
-  Eigen::Vector2d center_px;      // where the image has the middle of the print
+  std::optional<SeenPrint> seen;  // location in the image by its edges
+  double seen_rms_px = 0;         // root mean square offset of the edges from 'seen'
+  Eigen::Vector2d center_px;      // image of the middle of the print
   Eigen::Vector2d diameters_px;   // of the ring, the longer one first
   PrintDoubts doubts;
-  double log_odds = 0;  // that it is the pattern, by the doubts
-  double told = 0;      // what the hint adds to that; 0 at most
+  double log_odds = 0;  // that it is the pattern, by the doubts alone
+  double told = 0;      // log odds that the hint adds to that; at most 0
 
   bool is_part() const { return method == CrossMethod::kPartial; }
-  // Standard deviation of the position, share of the distance.
+  // Standard deviation of the position, as a share of the distance.
   double relative_sigma() const;
 };
 

@@ -14,8 +14,8 @@ PrintOutline::PrintOutline(const LandingPattern& pattern) {
   AddArms(pattern);
 }
 
-// 'sign': 1 when the white lies outside. Points nearer than 'arm_clearance' to the axis of an arm
-// are left out: there the outline may be broken.
+// 'sign': 1 when the white lies outside of the circle, -1 when inside. Points nearer than
+// 'arm_clearance' (m) to the axis of an arm are left out, because the outline may be broken there.
 void PrintOutline::AddCircle(const LandingPattern& pattern, double radius, double sign, int count,
                              double arm_clearance) {
   for (int i = 0; i < count; ++i) {

@@ -11,10 +11,10 @@
 
 namespace kestrel {
 
-// Points along the outlines of the print, where its edges are: of ring and arms.
+// Points along the outlines of ring and arms, where the edges of the print are.
 class PrintOutline {
  public:
-  // Parts of the print: arm k, and the quarter of the ring around it.
+  // Parts of the print: 0 to 3 are the arms, 4 to 7 the quarters of the ring around them.
   static constexpr int kArms = 4;
   static constexpr int kParts = 2 * kArms;
   static constexpr std::size_t kMaxPlaces = 160;
@@ -22,21 +22,21 @@ class PrintOutline {
   struct Place {
     Eigen::Vector2d point;   // of the plane, m
     Eigen::Vector2d normal;  // unit vector, from black to white
-    int part;                // 0 to 3: arm, 4 to 7: ring around it
-    int side;                // 0 or 1: of the arm, or the inside and outside of the ring
-    double width;            // of the stroke whose edge it is, m
+    int part;                // 0 to 3: arm, 4 to 7: quarter of the ring
+    int side;                // 0 or 1: side of the arm, or inside and outside of the ring
+    double width;            // width of the stroke, m
     double curvature;        // 1/m; positive where the outline bends around the black side
   };
 
   explicit PrintOutline(const LandingPattern& pattern);
 
-  // All places, those of the ring first, in their order along each outline.
+  // All places, those of the ring first, in order along each outline.
   std::span<const Place> all() const { return places_; }
   std::span<const Place> ring() const { return std::span(places_).first(ring_places_); }
 
-  double radius_m() const { return places_.front().point.norm(); }  // of the ring
+  double radius_m() const { return places_.front().point.norm(); }  // outer radius of the ring
 
-  // Whether two places follow each other on a circle or on a side of an arm.
+  // True when two places lie on the same circle or on the same side of an arm.
   static bool AreOnOneOutline(const Place& a, const Place& b) {
     return a.curvature == b.curvature && a.side == b.side && (a.curvature != 0 || a.part == b.part);
   }

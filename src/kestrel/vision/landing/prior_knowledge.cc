@@ -9,12 +9,12 @@
 namespace kestrel {
 namespace {
 
-// Cosine between up and the normal of a ring beyond which it is rather the attitude that is wrong
-// than the pattern that stands on edge.
+// Least cosine between up and the normal of a ring. Below it, a wrong attitude is more likely than
+// a pattern on edge.
 constexpr double kCredibleTilt = 0.7;
-// Difference of two such cosines below which both poses are as level as the other.
+// Difference of two such cosines below which both poses count as equally level.
 constexpr double kAlikeTilt = 0.05;
-// How much less probable is what is not as far away as the hint says.
+// Log odds of a pattern at another distance than the hint says.
 constexpr double kWrongDistance = -2;
 
 }  // namespace
@@ -50,10 +50,10 @@ std::optional<cv::Rect> PriorKnowledge::PartOfImage(double sigma_m) const {
     return std::nullopt;
   }
   const double px_per_m = camera_.intrinsics().fx_px / hint_.center_in_camera->norm();
-  // The board, and three standard deviations of where its centre may be.
+  // Half the width of the board, plus three standard deviations of its centre.
   const double reach = 1.2 * expected_ring_px_ + 3 * sigma_m * px_per_m + 8;
   if (!(reach < 1e6 && pixel.norm() < 1e6)) return std::nullopt;
-  // Whole tiles of the coarsest pass that may be used, so that a part is seen as the image is.
+  // Whole tiles of the coarsest pass, so that the part is thresholded as in the whole image.
   constexpr int kAlign = 32;
   const auto align = [](double value) {
     return static_cast<int>(std::floor(value / kAlign)) * kAlign;
@@ -69,14 +69,14 @@ std::optional<cv::Rect> PriorKnowledge::PartOfImage(double sigma_m) const {
 std::optional<CirclePose> PriorKnowledge::PredictedRing() const {
   if (!hint_.center_in_camera || !hint_.up_in_camera) return std::nullopt;
   const CirclePose ring{*hint_.center_in_camera, *hint_.up_in_camera};
-  // Not from below, and no NaN.
+  // Excludes a view from below, and NaN.
   if (!(ring.center.dot(ring.normal) < 0)) return std::nullopt;
   return ring;
 }
 
 bool PriorKnowledge::Suits(const SearchStep& step) const {
   const SearchPass& pass = kPasses[step.pass];
-  // The coarsest passes see rings too small.
+  // In the coarsest passes rings seem too small.
   if (expected_ring_px_ > 0 &&
       (1.5 * pass.min_ring_px > expected_ring_px_ || expected_ring_px_ > 1.2 * pass.max_ring_px)) {
     return false;
@@ -93,7 +93,7 @@ double PriorKnowledge::LogOddsOfDistance(const Eigen::Vector3d& center) const {
     if (!(std::abs(distance - expected) <= tolerance)) return kWrongDistance;
   }
   if (!hint_.altitude_m) return 0;
-  // The altitude may be that above the ground on which a vehicle stands.
+  // The altitude may be above the ground, while the pattern is on a vehicle.
   constexpr double kMaxVehicleHeight = 3;
   const double below = hint_.up_in_camera ? -hint_.up_in_camera->dot(center) : distance;
   const bool near_enough = !hint_.up_in_camera || below <= 1.4 * *hint_.altitude_m + 1;

@@ -14,39 +14,45 @@
 
 namespace kestrel {
 
-// What the hint says. It tells where to look first, which of two poses is right and what is less
-// probable; it may be wrong, and what is in plain view is found all the same.
+// The knowledge in the hint: where to look first, which of two poses is right, and which findings
+// are less probable. The hint may be wrong; a pattern in plain view is found all the same.
 class PriorKnowledge {
  public:
-  // 'hint' must outlive it.
+  // 'hint' must outlive this.
   PriorKnowledge(const LandingHint& hint, const LandingPatternDetectorOptions& options,
                  const CameraModel& camera);
 
-  // The part of the image that the board may take when the centre has this standard deviation;
-  // nothing without a centre, or when that is out of the image.
+  // Returns the part of the image that the board may take when the centre has the standard
+  // deviation 'sigma_m' per axis. Nothing without a centre in the hint, or when it is out of the
+  // image.
   std::optional<cv::Rect> PartOfImage(double sigma_m) const;
 
-  // The ring as it is predicted, where the hint has a centre and an up that it can have.
+  // Returns the predicted ring. Nothing when the hint lacks centre or up, or shows the ring from
+  // below.
   std::optional<CirclePose> PredictedRing() const;
 
-  // Whether a step may find a ring of the size that the hint says.
+  // True when a step may find a ring of the expected size.
   bool Suits(const SearchStep& step) const;
 
-  // Logarithm of the odds that a pattern so far away takes or gives.
+  // Returns the change in log odds due to the distance of a pattern: 0, or negative where it
+  // contradicts the hint.
   double LogOddsOfDistance(const Eigen::Vector3d& center_in_camera) const;
 
-  // The poses of a ring in the order in which they are tested: the one that is level first. The
-  // other one is the wrong one, unless the hint is: it is tested where the first fails.
+  // The order in which the two poses of a ring are tested: the more level one first.
+  // 'one_is_right': the hint tells the poses apart, so the second one is tested only where the
+  // first one fails.
   struct Order {
     std::array<int, 2> poses{0, 1};
     bool one_is_right = false;
   };
   Order OrderOf(const std::array<CirclePose, 2>& poses) const;
 
-  // What is known of the pattern's plane; nothing where the ring that is seen contradicts it.
+  // Returns the prior of the pattern's normal; nothing where 'normal', that of the ring seen,
+  // contradicts the hint.
   std::optional<NormalPrior> LevelPrior(const Eigen::Vector3d& normal) const;
 
-  // Away from the ground: without an attitude the camera is taken to look straight down.
+  // Returns the direction away from the ground. Without an attitude the camera is assumed to look
+  // straight down.
   Eigen::Vector3d Up() const;
 
  private:

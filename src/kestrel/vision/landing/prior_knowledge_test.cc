@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// The normal of a level plane that the camera sees from above, tilted by so much about x.
+// Normal of a level plane that the camera sees from above, tilted by 'angle' (rad) about x.
 Vector3d UpTilted(double angle) {
   return Eigen::AngleAxisd(angle, Vector3d::UnitX()) * Vector3d(0, 0, -1);
 }
@@ -139,7 +139,7 @@ TEST_F(PriorKnowledgeTest, WhatIsNotAsFarAsToldIsLessProbableAndNothingIsMore) {
   altitude.up_in_camera = UpTilted(0.5);
   EXPECT_EQ(Of(altitude).LogOddsOfDistance(-6 * UpTilted(0.5)), 0);
   EXPECT_LT(Of(altitude).LogOddsOfDistance(-20 * UpTilted(0.5)), -1);
-  // What is known is bounded: the image can say more.
+  // The effect of the hint is bounded, so the image can outweigh it.
   Random random(2);
   for (int trial = 0; trial < 300; ++trial) {
     LandingHint any =
@@ -176,7 +176,7 @@ TEST_F(PriorKnowledgeTest, BothPosesStayWhereTheAttitudeDoesNotDecide) {
   LandingHint upside_down;
   upside_down.up_in_camera = -UpTilted(0.3);
   EXPECT_FALSE(Of(upside_down).OrderOf({a, b}).one_is_right) << "neither is level";
-  // Whatever is told, both are in the order.
+  // For any hint, the order contains both poses.
   Random random(3);
   for (int trial = 0; trial < 100; ++trial) {
     LandingHint any;

@@ -14,19 +14,20 @@ namespace kestrel {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::size_t kStride = 3;          // border points per smoothed point
-constexpr std::size_t kChord = 2;           // smoothed points over which a direction is taken
-constexpr double kCorner = 45 * kDegree;    // turn from one direction to the next: a corner,
-constexpr double kSharpness = 3;            // if it is so many times that before and after it
-constexpr std::size_t kApart = 3;           // smoothed points from a corner to what is beside it
-constexpr double kAgainst = -14 * kDegree;  // turn against the bend: its end
+constexpr std::size_t kStride = 3;        // border points per smoothed point
+constexpr std::size_t kChord = 2;         // smoothed points over which a direction is taken
+constexpr double kCorner = 45 * kDegree;  // turn from one direction to the next that makes a corner
+constexpr double kSharpness = 3;          // if it is so many times the turn before and after it
+constexpr std::size_t kApart = 3;  // smoothed points between a corner and the turns it is compared
+                                   // with
+constexpr double kAgainst = -14 * kDegree;  // turn against the bend that ends an arc
 constexpr double kMinTurning = 45 * kDegree;
 constexpr std::size_t kMinPoints = 6;
-constexpr std::size_t kMaxArcs = 40;  // the longest are kept
+constexpr std::size_t kMaxArcs = 40;  // those that are longest and bend most are kept
 constexpr std::size_t kMaxSeeds = 6;
 constexpr std::size_t kMaxRings = 4;
 
-// Every kStride-th border point, averaged over a window that evens out the steps of the pixels.
+// Averages the border over a window that evens out the steps of pixels, at every kStride-th point.
 void SmoothBorder(const GridPoint* points, std::size_t count,
                   std::vector<Eigen::Vector2f>* smooth) {
   smooth->clear();
@@ -51,7 +52,7 @@ void SmoothBorder(const GridPoint* points, std::size_t count,
   }
 }
 
-// Angle (rad) from one direction to another, to 0.3 degrees.
+// Returns the angle (rad) from one direction to another, to 0.3 degrees.
 float Turn(const Eigen::Vector2f& from, const Eigen::Vector2f& to) {
   const float degrees = cv::fastAtan2(from.x() * to.y() - from.y() * to.x(), from.dot(to));
   return static_cast<float>(kDegree) * (degrees > 180 ? degrees - 360 : degrees);
@@ -67,7 +68,7 @@ class ArcCutter {
     if (n < kMinPoints + kChord) return;
     workspace_.turns.resize(n);
     for (std::size_t i = 0; i < n; ++i) workspace_.turns[i] = TurnAt(i);
-    // Once around and on until the arc that crosses the start has ended.
+    // Goes once around, and on until the arc that crosses the start has ended.
     std::size_t start = 0;
     double turning = 0;
     bool wrapped = false;
@@ -88,10 +89,10 @@ class ArcCutter {
   }
 
  private:
-  // Index of a closed curve of n points, for i < 2 n.
+  // Index in a closed curve of n points, for i < 2 n.
   static std::size_t Wrap(std::size_t i, std::size_t n) { return i < n ? i : i - n; }
 
-  // Turn (rad) around the point kChord after 'i', i < n.
+  // Turn (rad) at the point kChord after 'i', i < n.
   float TurnAt(std::size_t i) const {
     const std::vector<Eigen::Vector2f>& curve = workspace_.smooth;
     const std::size_t n = curve.size();
@@ -101,7 +102,7 @@ class ArcCutter {
     return Turn(b - a, c - b);
   }
 
-  // The end of a narrow ellipse turns as fast as a corner, but not at once.
+  // True at a corner. The end of a narrow ellipse may turn as fast, but not all at once.
   bool IsCorner(std::size_t i) const {
     const std::vector<float>& turns = workspace_.turns;
     const std::size_t n = turns.size();
@@ -113,7 +114,7 @@ class ArcCutter {
     return sharper_than(turns[(i + n - kApart) % n]) && sharper_than(turns[(i + kApart) % n]);
   }
 
-  // Where a dark area is cut off by the image border, its border is no edge of anything.
+  // True where the image border cuts off a dark area: there its border is not an edge of anything.
   bool IsAtImageBorder(std::size_t i) const {
     const Eigen::Vector2f& point = workspace_.smooth[i % workspace_.smooth.size()];
     constexpr float kMargin = 1;
@@ -122,7 +123,7 @@ class ArcCutter {
            point.y() > static_cast<float>(size_.height) - 0.5f - kMargin;
   }
 
-  // Keeps the points of the directions 'first' to 'last' when they bend enough.
+  // Adds the arc of the directions 'first' to 'last' when it bends enough.
   void Keep(std::size_t first, std::size_t last, double turning) {
     const std::vector<Eigen::Vector2f>& curve = workspace_.smooth;
     const std::size_t n = curve.size();
@@ -148,7 +149,7 @@ class ArcCutter {
     workspace_.arcs.push_back(arc);
   }
 
-  cv::Size size_;  // of the image whose borders are cut
+  cv::Size size_;  // size of the image in which the borders were traced
   RingArcsWorkspace& workspace_;
 };
 
@@ -163,8 +164,8 @@ class ArcGrouper {
   ArcGrouper(double tolerance, RingArcsWorkspace* workspace)
       : tolerance_(tolerance), workspace_(*workspace) {}
 
-  // The ring that grows from an arc: with the partner that makes the longest arc that still fits,
-  // then with all that lie on the same cone.
+  // Grows a ring from an arc: adds the partner that makes the longest pair on one cone, then all
+  // arcs on that cone.
   void Grow(std::size_t seed, double min_coverage) {
     const RingArc& arc = workspace_.arcs[seed];
     std::optional<Cone> best = Fit({seed, seed});
@@ -202,7 +203,7 @@ class ArcGrouper {
     return {workspace_.rays.data() + arc.first, arc.count};
   }
 
-  // Each lies on the inner side of the other's chord, and not many lengths away.
+  // True when each arc lies on the inner side of the other's chord, not many lengths away.
   static bool FaceEachOther(const RingArc& a, const RingArc& b) {
     const Eigen::Vector2f between = b.middle - a.middle;
     const float longest = std::max(a.length, b.length);
@@ -225,7 +226,7 @@ class ArcGrouper {
     return arc.edge == edge && ShareNearCone(cone, RaysOf(arc), 1.5 * tolerance_) > 0.6;
   }
 
-  // The rays near 'cone' of the arcs that lie on it.
+  // Selects the rays near 'cone' of all arcs that lie on it.
   void Collect(const Cone& cone, RingEdge edge) {
     workspace_.selected.clear();
     for (const RingArc& arc : workspace_.arcs) {
@@ -242,7 +243,7 @@ class ArcGrouper {
     }
   }
 
-  // Share of 32 directions around the axis of the cone in which a selected ray lies.
+  // Returns the share of 32 directions around the cone's axis that have a selected ray.
   double Coverage(const ArcRing& ring) const {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(ring.cone.matrix);
     const Eigen::Vector3d wide = solver.eigenvectors().col(1) / std::sqrt(solver.eigenvalues()(1));
@@ -269,7 +270,7 @@ void RingArcsWorkspace::Reserve(std::size_t border_points) {
   const std::size_t count = border_points / kStride + 1;
   smooth.reserve(count);
   turns.reserve(count);
-  // Neighbouring arcs share the points where one ends and the other begins.
+  // Neighbouring arcs share points where one ends and the other begins.
   points.reserve(2 * count);
   rays.reserve(2 * count);
   selected.reserve(2 * count);

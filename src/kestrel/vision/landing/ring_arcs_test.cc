@@ -99,7 +99,8 @@ TEST_F(FindArcRingsTest, StraightLinesHaveNoArcs) {
 }
 
 TEST_F(FindArcRingsTest, TheImageBorderIsNoEdge) {
-  // Cut off above and on the left. The direct fit to an arc of a quarter is known to be too small.
+  // Cut off at the top and on the left. A direct fit to a quarter of an arc is known to be too
+  // small.
   const auto& rings = Find([](double x, double y) {
     return std::hypot(x - 40, y - 30) < 60 && OnRing(x + 110, y + 80);
   });

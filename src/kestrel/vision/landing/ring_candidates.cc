@@ -11,25 +11,26 @@ namespace kestrel {
 namespace {
 
 constexpr double kToleranceRingPx = 3.5;  // paper, section 2.3
-// Axes (diameters) below which a stroke is hardly wider than the blur, everywhere or somewhere.
+// Axes (diameters) below which strokes are hardly wider than the blur, everywhere or in places.
 constexpr double kSmallRingPx = 30;
 constexpr double kThinRingPx = 13;
-constexpr double kMaxBoardRingPx = 50;  // major axis of a ring that the board shows
+constexpr double kMaxBoardRingPx = 50;  // largest major axis of a ring that is found by its board
 constexpr std::size_t kMaxCollected = 512;
-// Outlines of a pass that are looked at, those of the highest contrast, and pieces of cut-off ones
-// and borders that are cut into arcs: bounds of the time that a frame full of texture costs.
+// Bounds on the time for a frame full of texture: number of outlines of a pass (those of the
+// highest contrast), of pieces of cut-off areas, and of borders that are cut into arcs.
 constexpr std::size_t kMaxOutlines = 4;
 constexpr int kMaxCutFits = 16;
 constexpr std::size_t kMaxArcBorders = 8;
-constexpr int kMaxHullExtent = 62;       // px, of borders that need not be convex
+constexpr int kMaxHullExtent = 62;  // px, largest width and height of a border that need not be
+                                    // convex
 constexpr double kMinSmallContrast = 5;  // gray values
 constexpr std::array<double, 1> kOneScale{1.0};
-// An outline that grew together with what is beside it is larger than the ring.
+// An outline that has grown together with something beside it is larger than the ring.
 constexpr std::array<double, 2> kAreaScales{1.0, 1.12};
 // A print with a dark border shows less white than the board's size.
 constexpr std::array<double, 3> kBoardScales{1.0, 1.08, 1.17};
-// How far from an outline the edges of the ring may be, of its diameter. Dirt around the ring on
-// which no circle lies makes it less sure.
+// Search reach for the edges of the ring around an outline, as a share of its diameter. Where dirt
+// around the ring prevents the fit of a circle, the outline is less certain.
 constexpr double kSure = 0.02;
 constexpr double kUnsure = 0.1;
 constexpr double kOfBoard = 0.06;
@@ -64,7 +65,7 @@ Eigen::Vector2d RingDiametersPx(const CameraModel& camera, double radius_m,
   const Eigen::Matrix2d moments = pixels * pixels.transpose() / kPoints;
   const double mean = 0.5 * moments.trace();
   const double spread = std::sqrt(std::max(0.0, mean * mean - moments.determinant()));
-  // The second moment of a circle along its diameter is half of its squared radius.
+  // The second moment of a circle (its outline) along a diameter is half of the squared radius.
   return 2 * std::numbers::sqrt2 *
          Eigen::Vector2d(std::sqrt(mean + spread), std::sqrt(std::max(0.0, mean - spread)));
 }
@@ -100,7 +101,7 @@ std::span<const RingCandidate> RingFinder::FindInAreas(SearchedImage* image, std
   return buffers_.candidates;
 }
 
-// The outlines that may be a ring, those of the highest contrast first.
+// Collects the outlines that may be a ring, those of the highest contrast first.
 void RingFinder::CollectOutlines(const cv::Mat& image, const BorderTracer& tracer,
                                  const SearchPass& pass) {
   const SearchLog::Timer timer = log_.Time(LandingStage::kAreas);
@@ -127,7 +128,7 @@ void RingFinder::CollectOutlines(const cv::Mat& image, const BorderTracer& trace
     if (ring.contrast > 0 && (small || is_elliptic)) outlines.push_back(ring);
 
     if (pass.image_level > 1 || area->edge == RingEdge::kOuter || !is_elliptic) continue;
-    // The second moments of a square are those of a circle of 1 / sqrt(3) times its side.
+    // A square has the second moments of a circle of 1 / sqrt(3) times its side as radius.
     Outline board{area->outline, area->edge, /*board=*/true, i};
     board.outer_edge.Scale(pattern.outer_radius_m() * std::sqrt(3.0) / pattern.board_size_m);
     if (2 * board.outer_edge.semi_major * scale > kMaxBoardRingPx ||
@@ -174,7 +175,7 @@ void RingFinder::AddOutline(const Outline& outline, const BorderTracer& tracer,
   }
 }
 
-// Adds the ray of a pixel to those that a ring is fitted to; false when the lens has none there.
+// Adds the ray of a pixel to those that a ring is fitted to; false when the lens has no ray there.
 bool RingFinder::AddRay(const Eigen::Vector2d& pixel) {
   const Eigen::Vector3f ray =
       models_.rays.Ray(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
@@ -202,7 +203,8 @@ std::optional<RingFit> RingFinder::FitToBorder(const Outline& outline, const Bor
   return FitRing(buffers_.rays, radius_m, tolerance_px / focal_px_);
 }
 
-// The ring that the moments of an outline say: for outlines of few pixels, and for the board.
+// Fits a ring to the ellipse of an outline's moments: for outlines of few pixels, and for the
+// board.
 std::optional<RingFit> RingFinder::FitToOutline(const Outline& outline, const ImageRegion& region) {
   constexpr int kRays = 16;
   buffers_.rays.clear();
@@ -213,10 +215,10 @@ std::optional<RingFit> RingFinder::FitToOutline(const Outline& outline, const Im
   return FitRing(buffers_.rays, models_.options.pattern.outer_radius_m(), 1 / focal_px_);
 }
 
-// Small rings that the image border cuts off: their moments say nothing, and their arcs are too
-// short to stand out from those of everything else in the image.
+// Finds small rings that the image border cuts off. Their moments are useless, and their arcs are
+// too short to stand out from others in the image.
 std::span<const RingCandidate> RingFinder::FindInCutAreas(SearchedImage* image, std::size_t pass) {
-  constexpr double kTolerancePx = 0.8;  // of an outline that ends in corners of pixels
+  constexpr double kTolerancePx = 0.8;  // tolerance of an outline that ends in corners of pixels
   buffers_.candidates.clear();
   const ImageRegion region = image->RegionAt(kPasses[pass].image_level);
   const double radius_m = models_.options.pattern.outer_radius_m();
@@ -247,14 +249,14 @@ std::span<const RingCandidate> RingFinder::FindInCutAreas(SearchedImage* image, 
 
 std::span<const RingCandidate> RingFinder::FindInArcs(SearchedImage* image, std::size_t pass) {
   constexpr double kMinCoverage = 0.25;
-  constexpr double kTolerancePx = 0.7;  // of an arc from its circle, pixels of the pass
+  constexpr double kTolerancePx = 0.7;  // distance of an arc from its circle, pixels of the pass
   buffers_.candidates.clear();
   const ImageRegion region = image->RegionAt(kPasses[pass].image_level);
   const LandingPattern& pattern = models_.options.pattern;
   const BorderTracer& tracer = image->Borders(pass);
   const SearchLog::Timer timer = log_.Time(LandingStage::kRing);
   std::span<const Border> borders = tracer.borders();
-  // Of texture that is as fine as the pixels any number bend like rings.
+  // At full resolution, texture as fine as the pixels contains many arcs like those of rings.
   if (region.level == 0) borders = borders.first(std::min(borders.size(), kMaxArcBorders));
   FindArcRings(tracer, borders, models_.rays, region, kTolerancePx * region.scale() / focal_px_,
                kMinCoverage, &buffers_.arcs);
@@ -273,7 +275,7 @@ std::span<const RingCandidate> RingFinder::FindInArcs(SearchedImage* image, std:
   return buffers_.candidates;
 }
 
-// Whether a small ring is darker than what is around it.
+// True when a small ring is darker than its surroundings.
 bool RingFinder::StandsOut(const SearchedImage& image, const CirclePose& ring) const {
   const PatternView view(models_.camera, PatternPose(ring, 0), models_.matcher.extent_m(),
                          image.RegionAt(0));

@@ -19,35 +19,36 @@
 
 namespace kestrel {
 
-// Axes (diameters, px, the longer one first) of the image of the ring whose circle lies so: near
-// its rim a fisheye lens stretches what it shows. By its angles where it leaves the lens.
+// Returns the axes (diameters, px, the longer one first) of the image of a ring. They are those of
+// its projection, because a fisheye lens stretches near its rim. Where the lens does not show the
+// ring, they follow from its angles.
 Eigen::Vector2d RingDiametersPx(const CameraModel& camera, double radius_m, const CirclePose& ring);
 
-// Whether the strokes of a ring with such diameters are hardly wider than the blur, everywhere or
-// somewhere: then the print is looked at as a whole, else by its edges.
+// True when the strokes of a ring with these diameters are hardly wider than the blur, everywhere
+// or in places. Such a print is fitted as a whole, a larger one is examined by its edges.
 bool IsSmallRing(const Eigen::Vector2d& diameters_px);
 
-// Something in the image that may be the ring.
+// A candidate: a part of the image that may be the ring.
 struct RingCandidate {
-  std::array<CirclePose, 2> poses;  // of the circle that looks so, mirror images of each other
+  std::array<CirclePose, 2> poses;  // the two mirror poses of its circle
   Eigen::Vector2d diameters_px;
   bool is_small;    // see IsSmallRing
-  double reach_px;  // within which its edges are
-  // How many times smaller it may be than it seems, as an outline that has grown together with
-  // something is.
+  double reach_px;  // its edges are within this distance
+  // Factors by which the ring may be smaller than it seems, for an outline that has grown together
+  // with something beside it.
   std::span<const double> scales;
 };
 
-// Memory of RingFinder, which does not allocate once it is reserved.
+// Memory of RingFinder. Does not allocate once it is reserved.
 struct RingFinderBuffers {
-  static constexpr std::size_t kMaxRays = 48;  // of a border
+  static constexpr std::size_t kMaxRays = 48;  // of one border
 
   struct Outline {
-    Ellipse outer_edge;                // of the ring, pixels of the image of the pass
-    RingEdge edge = RingEdge::kOuter;  // which edge of it was seen
-    bool board = false;                // seen was the white board around it
-    std::size_t border = 0;            // in the tracer of the pass
-    double contrast = 0;               // of ring and white, gray values
+    Ellipse outer_edge;                // outer edge of the ring, pixels of the image of the pass
+    RingEdge edge = RingEdge::kOuter;  // the edge of the ring that was seen
+    bool board = false;      // true when the white board around the ring was seen, not the ring
+    std::size_t border = 0;  // index in the tracer of the pass
+    double contrast = 0;     // contrast of ring and white, gray values
   };
   std::vector<Outline> outlines;
   std::vector<Eigen::Vector3d> rays;
@@ -57,13 +58,14 @@ struct RingFinderBuffers {
   void Reserve(std::size_t most_border_points);
 };
 
-// Finds what may be the ring among the borders of a pass (paper, sections 2.1 to 2.3).
+// Finds ring candidates among the borders of a pass (paper, sections 2.1 to 2.3).
 class RingFinder {
  public:
   // The arguments must outlive the finder.
   RingFinder(const LandingModels& models, RingFinderBuffers* buffers, SearchLog* log);
 
-  // What stands out most first; good until the next call.
+  // Each returns candidates, valid until the next call. In areas, those of the highest contrast
+  // come first.
   std::span<const RingCandidate> FindInAreas(SearchedImage* image, std::size_t pass);
   std::span<const RingCandidate> FindInCutAreas(SearchedImage* image, std::size_t pass);
   std::span<const RingCandidate> FindInArcs(SearchedImage* image, std::size_t pass);

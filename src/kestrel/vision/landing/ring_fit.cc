@@ -8,15 +8,14 @@ namespace kestrel {
 namespace {
 
 constexpr double kMinShare = 0.95;
-// Where dirt or a shadow touches a ring: a part of its border is left out, at one of so many
-// places, and fewer points are asked for.
+// For dirt or a shadow that touches a ring: the share of the border that is kept, the number of
+// places at which the rest is left out, and the smaller share of points that must lie on the cone.
 constexpr double kKeptShare = 0.75;
 constexpr int kPlaces = 8;
 constexpr double kMinShareWithDirt = 0.7;
 
-// Of angles, which are eq. (2) for rays: an error of a pixel counts the same on the near and on the
-// far side of a ring that is seen obliquely from close by, which it does not in the plane of the
-// ring.
+// Uses angles, which are eq. (2) for rays. A pixel of error then counts the same on the near and on
+// the far side of a ring seen obliquely from close by; in the plane of the ring it would not.
 double ShareOnCone(std::span<const Eigen::Vector3d> rays, const Cone& cone, double tolerance) {
   const auto inside = std::count_if(rays.begin(), rays.end(), [&](const Eigen::Vector3d& ray) {
     return cone.AngleTo(ray) <= tolerance;
@@ -24,7 +23,7 @@ double ShareOnCone(std::span<const Eigen::Vector3d> rays, const Cone& cone, doub
   return static_cast<double>(inside) / static_cast<double>(rays.size());
 }
 
-// Squares of the angles between rays and cone, in tolerances and one at most.
+// Sum of the squared angles between rays and cone, in tolerances, each at most 1.
 double BoundedSquares(std::span<const Eigen::Vector3d> rays, const Cone& cone, double tolerance) {
   double sum = 0;
   for (const Eigen::Vector3d& ray : rays) {
@@ -34,8 +33,8 @@ double BoundedSquares(std::span<const Eigen::Vector3d> rays, const Cone& cone, d
   return sum;
 }
 
-// The best cone (MSAC: Torr and Zisserman 2000) when a part of the border is left out of the fit;
-// nothing when too few points lie on it.
+// Returns the best cone (MSAC: Torr and Zisserman 2000) with a part of the border left out of the
+// fit; nothing when too few points lie on it.
 std::optional<Cone> FitConeBesideDirt(std::span<Eigen::Vector3d> border, double tolerance) {
   const auto kept = static_cast<std::size_t>(kKeptShare * static_cast<double>(border.size()));
   const auto step = static_cast<std::ptrdiff_t>(border.size() / kPlaces);

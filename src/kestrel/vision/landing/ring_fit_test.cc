@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kTolerance = 0.01;  // rad
 
-// Rays to the outline of radius(t), in the plane of a pose.
+// Rays to the outline radius(t) (m), in the plane of a pose.
 template <class Radius>
 std::vector<Eigen::Vector3d> Outline(const RigidTransform& pose, const Radius& radius) {
   std::vector<Eigen::Vector3d> rays;
@@ -30,7 +30,7 @@ std::vector<Eigen::Vector3d> Outline(const RigidTransform& pose, const Radius& r
 
 double Square(double t) { return 0.45 / std::max(std::abs(std::cos(t)), std::abs(std::sin(t))); }
 
-// Moves 'count' neighbouring rays from 'first' on away from the middle of the ring.
+// Moves 'count' neighbouring rays, from 'first' on, away from the middle of the ring.
 std::vector<Eigen::Vector3d> WithBulge(std::vector<Eigen::Vector3d> rays,
                                        const RigidTransform& pose, int first, int count,
                                        double offset) {
@@ -45,7 +45,7 @@ std::optional<RingFit> Fit(std::vector<Eigen::Vector3d> rays) {
   return FitRing(rays, 0.5, kTolerance);
 }
 
-// Of the nearer of the two poses, m.
+// Error of the better of the two poses, m.
 double PoseError(const RingFit& ring, const RigidTransform& pose) {
   const Eigen::Vector3d normal = pose.rotation * Eigen::Vector3d::UnitZ();
   const auto error = [&](const CirclePose& found) {

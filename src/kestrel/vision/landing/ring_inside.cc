@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMax = SmallMask::kMaxSize;
 
-// Sums of gray values and counts of known pixels over rectangles of a small image.
+// Integral images of gray values and of known pixels of a small image.
 class SmallIntegral {
  public:
   explicit SmallIntegral(int size) : size_(size) {
@@ -33,7 +33,7 @@ class SmallIntegral {
       counts_[row + x + 1] = counts_[row - (kMax + 1) + x + 1] + count;
     }
   }
-  // Whether a gray value is below the mean of the known pixels in a square around (x, y).
+  // True when a gray value is below the mean of the known pixels in the square around (x, y).
   bool IsBelowMean(float gray, int x, int y, int radius) const {
     const int x0 = std::max(x - radius, 0), x1 = std::min(x + radius + 1, size_);
     const int y0 = std::max(y - radius, 0) * (kMax + 1);
@@ -66,7 +66,7 @@ std::optional<RingInside> RectifyInside(const cv::Mat& image, const PatternView&
     float* const values = &gray[y * kMax];
     std::fill_n(values, size, -1.0f);
     std::fill_n(y_m.begin(), size, x_m[y]);
-    // A tenth of the radius is left to the ring's inner edge.
+    // The disc ends at 0.9 inner radii, short of the ring's inner edge.
     const double v = inside.Coordinate(y);
     const double half = 0.5 * size * std::sqrt(std::max(0.0, 0.81 - v * v));
     const int count = 2 * static_cast<int>(std::lround(half));

@@ -9,15 +9,15 @@
 
 namespace kestrel {
 
-// Where a ring was seen in the image, pixels at full resolution.
+// Location of a tested ring, pixels at full resolution.
 struct RingPlace {
   Eigen::Vector2d center_px;
   Eigen::Vector2d diameters_px;
-  double reach_px = 0;  // within which its edges were looked for
+  double reach_px = 0;  // its edges were searched within this distance
 };
 
-// The rings of an image that were tested: another pass sees the same ring again. Does not allocate
-// once it is reserved; what there is no room for is forgotten.
+// Remembers the rings of an image that were tested, because another pass sees the same ring again.
+// Does not allocate once it is reserved; further rings are not remembered.
 class RingMemory {
  public:
   void Reserve() { places_.reserve(kMaxPlaces); }
@@ -26,8 +26,8 @@ class RingMemory {
     if (places_.size() < places_.capacity()) places_.push_back(place);
   }
 
-  // Whether nearly the same ring is there: its centre within a share of its shorter axis, and its
-  // edges within what was looked at there.
+  // True when nearly the same ring was tested: the centres are within 'same_center' times the
+  // shorter axis, the diameters agree to 10 %, and its edges were searched at least as far away.
   bool Holds(const RingPlace& place, double same_center) const {
     constexpr double kSameSize = 0.1;
     return std::any_of(places_.begin(), places_.end(), [&](const RingPlace& other) {

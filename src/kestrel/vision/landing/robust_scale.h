@@ -8,9 +8,9 @@
 
 namespace kestrel {
 
-// Standard deviation of offsets by the median of their magnitudes, to half a percent; 0 of none.
-// Counts instead of sorting: it bisects the bits of the median, as positive floats are in the order
-// of their bits.
+// Standard deviation of 'offsets' from the median of their magnitudes, to half a percent; 0 for
+// none. Does not sort but bisects the bits of the median, because positive floats have the order of
+// their bits.
 inline double RobustScale(std::span<const float> offsets) {
   constexpr std::uint32_t kLeastBit = 1u << 15;  // of seven bits of the mantissa
   std::uint32_t median = 0;

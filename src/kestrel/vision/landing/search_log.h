@@ -8,13 +8,13 @@
 
 namespace kestrel {
 
-// What becomes of the candidates of one image, and the time that each stage takes.
+// Records the progress of the candidates of one image and the time that each stage takes.
 class SearchLog {
  public:
   explicit SearchLog(LandingReport* report) : report_(*report) {}
 
-  // Counts a candidate that enters a stage, and notes why it will have fallen if no other one comes
-  // farther.
+  // Counts a candidate that enters a stage. 'reason_if_it_ends_here' becomes the report's reason
+  // unless a candidate comes farther.
   void Reach(LandingStage stage, std::string_view reason_if_it_ends_here) {
     ++report_.candidates[static_cast<int>(stage)];
     if (stage < report_.reached) return;
@@ -22,7 +22,7 @@ class SearchLog {
     report_.reason = reason_if_it_ends_here;
   }
 
-  // Adds the time of its life to a stage.
+  // Adds its lifetime to the time of a stage.
   class Timer {
    public:
     explicit Timer(std::int64_t* total_ns)

@@ -6,21 +6,21 @@
 
 namespace kestrel {
 
-// One look at the image: at a resolution, and with what taken for dark, that suit rings of some
-// sizes.
+// A pass: one look at the image at one resolution, with one definition of dark, suited to a range
+// of ring sizes.
 struct SearchPass {
   int image_level;          // the image at 1 / 2^level
-  int tile_level;           // tiles of the threshold's box
+  int tile_level;           // tiles of 2^level pixels make the threshold's box
   double min_ring_px;       // minor axis, full resolution
   double max_ring_px;       // major axis, full resolution
-  bool black = false;       // dark is what is black: not what lies in a shadow
-  bool top_hat = false;     // dark is what is narrow: not what lies in a shadow beside light
-  bool closing = false;     // close gaps of the dark areas first
-  bool not_bright = false;  // dark is all that is not bright
-  bool narrow = false;      // borders beside narrow strokes of white as well
+  bool black = false;       // dark is only what is black, not what lies in a shadow
+  bool top_hat = false;     // dark is only what is narrow, not what lies in a shadow beside light
+  bool closing = false;     // closes gaps of the dark areas first
+  bool not_bright = false;  // dark is everything that is not bright
+  bool narrow = false;      // also follows borders beside narrow strokes of white
 };
 
-// What is looked for among the borders of a pass.
+// The kind of figure that is searched among the borders of a pass.
 enum class SearchMethod {
   kAreas,     // closed dark areas, and the white board around them
   kCutAreas,  // dark areas that the image border cuts off
@@ -36,9 +36,9 @@ struct SearchStep {
 inline constexpr std::size_t kSearchPasses = 10;
 extern const std::array<SearchPass, kSearchPasses> kPasses;
 
-// All that is done to an image in which the pattern is not found, in this order: near patterns
-// first, for they are found at a sixteenth of the cost and matter most; closed areas, the cheaper
-// way to a ring, before arcs, the surer one.
+// All steps of a search, in order. Near patterns come first: finding them costs a sixteenth, and
+// they matter most. Closed areas, the cheaper way to a ring, come before arcs, the more reliable
+// one.
 inline constexpr std::size_t kSearchSteps = 21;
 extern const std::array<SearchStep, kSearchSteps> kSteps;
 

@@ -36,7 +36,7 @@ TEST(SearchPlan, RingsOfAllSizesAreLookedForInEveryWay) {
   }
 }
 
-// At the level of a pass the smallest ring that it looks for still has strokes.
+// At the resolution of a pass, the smallest ring it searches for still has visible strokes.
 TEST(SearchPlan, PassesSeeTheirSmallestRing) {
   for (const SearchPass& pass : kPasses) {
     EXPECT_GE(pass.min_ring_px / std::exp2(pass.image_level), 6);

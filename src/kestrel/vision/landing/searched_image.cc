@@ -7,8 +7,8 @@
 namespace kestrel {
 namespace {
 
-// Of a pass the borders of the highest contrast are looked at, so many: black on white stands out
-// of texture, of which there may be any amount.
+// Number of borders of a pass that are examined, those of the highest contrast: black on white
+// stands out of texture, which may be unlimited.
 constexpr std::size_t kMinBorders = 24;
 constexpr std::size_t kPixelsPerBorder = 8192;
 
@@ -43,7 +43,7 @@ bool SearchedImageBuffers::Reserve(const cv::Mat& image) {
   if (width_px == image.cols && height_px == image.rows) return false;
   width_px = image.cols;
   height_px = image.rows;
-  // What depends on the size alone is run, what depends on what is in the image is reserved.
+  // Runs the parts that depend on the size alone; reserves for those that depend on the content.
   pyramid.Build(image);
   for (std::size_t i = 0; i < kPasses.size(); ++i) {
     const cv::Mat at_level = pyramid.ImageAt(kPasses[i].image_level);

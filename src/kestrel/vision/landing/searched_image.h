@@ -16,7 +16,7 @@
 
 namespace kestrel {
 
-// Memory of SearchedImage, which does not allocate for images of the size that it was reserved for.
+// Memory of SearchedImage. Does not allocate for images of the size that it was reserved for.
 struct SearchedImageBuffers {
   int width_px = 0;
   int height_px = 0;
@@ -25,36 +25,37 @@ struct SearchedImageBuffers {
   BlackTopHat top_hat;
   BinaryImage binary;
   BitImage scratch;
-  std::array<BorderTracer, kSearchPasses> tracers;  // of each pass
+  std::array<BorderTracer, kSearchPasses> tracers;  // one per pass
 
-  // Makes room for images of this one's size; true when there was none.
+  // Reserves memory for images of the size of 'image'; true when the size is new.
   bool Reserve(const cv::Mat& image);
-  std::size_t most_points() const;  // of the borders of a pass that are cut into arcs
+  std::size_t most_points() const;  // largest number of border points in a pass whose borders are
+                                    // cut into arcs
 };
 
-// Decides in 'buffers.binary' what a pass takes for dark and for bright, in the image of which
-// 'buffers.pyramid' is made up to the pass's 'tile_level' + 2.
+// Writes the dark and bright pixels of a pass to 'buffers->binary'. Needs 'buffers->pyramid' up to
+// the pass's 'tile_level' + 2.
 void Binarize(const SearchPass& pass, SearchedImageBuffers* buffers);
 
-// The part of an image that is searched: at all resolutions, and the borders of dark areas in it.
+// The part of an image that is searched: its pyramid of resolutions and the borders of its dark
+// areas.
 class SearchedImage {
  public:
-  // 'image': CV_8UC1; it, the buffers and the log must outlive this.
+  // 'image': CV_8UC1. Image, buffers and log must outlive this.
   SearchedImage(const cv::Mat& image, SearchedImageBuffers* buffers, SearchLog* log);
 
-  // Searches this part from now on. Its resolutions are made by Prepare, up to 'last_level'.
+  // Selects the part to search. Prepare builds its pyramid up to 'last_level'.
   void Choose(const cv::Rect& part);
   void Prepare(int last_level = TilePyramid::kLevels - 1);
 
   const cv::Mat& whole() const { return image_; }
   const cv::Rect& part() const { return part_; }
 
-  // The part at 1 / 2^level of the resolution, and where it lies in the image.
+  // The part at 1 / 2^level of the resolution, and its location in the image.
   cv::Mat At(int level) const { return buffers_.pyramid.ImageAt(level); }
   ImageRegion RegionAt(int level) const { return {part_.tl(), level}; }
 
-  // The borders of a pass, those of the highest contrast first; traced when they are first asked
-  // for.
+  // Returns the borders of a pass, those of the highest contrast first. Traced at the first call.
   const BorderTracer& Borders(std::size_t pass);
 
  private:

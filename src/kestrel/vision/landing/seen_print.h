@@ -6,12 +6,13 @@
 
 namespace kestrel {
 
-// Where the image shows a print, whatever lens and sheet are: what a PlaneWarp is made of.
+// Location of a print in the image, independent of errors of lens and sheet: the parts of a
+// PlaneWarp.
 struct SeenPrint {
-  RigidTransform near_pose;  // that the displacement is from
+  RigidTransform near_pose;  // pose to which the displacement is added
   PlaneWarp::Coefficients displacement_px;
 
-  // 'camera': as the detector's; 'radius_m': the ring's outer radius. 'camera' must outlive it.
+  // 'camera': the detector's, which must outlive the result. 'radius_m': outer radius of the ring.
   PlaneWarp Warp(const CameraModel& camera, double radius_m) const {
     PlaneWarp warp(camera, near_pose, radius_m);
     warp.Displace(displacement_px);

@@ -18,23 +18,24 @@ namespace {
 
 constexpr double kMinBlurPx = 0.4;
 constexpr double kMaxBlurPx = 1.2;
-// Pose, blur, white, contrast, two slopes of the light.
+// Unknowns: pose, blur, white, contrast, and two slopes of the light.
 constexpr int kUnknowns = SmallPatternWorkspace::kUnknowns;
-constexpr double kBlurSpread = 0.35;  // of the blur's logarithm over lenses
+constexpr double kBlurSpread = 0.35;  // standard deviation of the blur's logarithm over lenses
 constexpr double kMaxWhite = 600;     // gray value of white under the strongest overexposure
-// Standard deviations of the residuals beyond which one is an outlier, and the least of these,
-// share of the contrast: no print is perfect.
+// Outliers are residuals beyond kOutlier standard deviations. The standard deviation is at least
+// kLeastNoise of the contrast, because no print is perfect.
 constexpr double kOutlier = 2.5;
 constexpr double kLeastNoise = 0.05;
-// What looks so little like the print after so many steps never will.
+// A fit that correlates so little after so many steps is given up.
 constexpr int kLateStart = 3;
 constexpr double kMinLateCorrelation = 0.6;
-constexpr double kMaxHighlight = 0.25;  // share of the print around an arm that leaves it visible
+constexpr double kMaxHighlight = 0.25;  // largest share of an arm's surroundings in a highlight
+                                        // that leaves the arm visible
 constexpr std::size_t kMinPixels = 30;
-constexpr int kMaxSide = 256;  // of the box around the print, pixels
+constexpr int kMaxSide = 256;  // largest side of the box around the print, pixels
 
-// By how much the variance of a pixel is larger as the pose sees it: what neighbours in a row have
-// in common does not average out along the strokes.
+// Factor by which the variance of a pixel is larger as the pose sees it: errors that neighbours in
+// a row share do not average out along the strokes.
 double Redundancy(const SmallPatternWorkspace& workspace, double limit) {
   constexpr double kMaxCorrelation = 0.7;
   NeighborCorrelation neighbors;
@@ -47,8 +48,8 @@ double Redundancy(const SmallPatternWorkspace& workspace, double limit) {
   return neighbors.Redundancy(kMaxCorrelation);
 }
 
-// Variance of the noise of the image, by the median of how much neighbours in a row differ in what
-// the print leaves: dirt and other figures are wider than a pixel.
+// Variance of the image's noise, from the median difference of neighbours' residuals in a row: dirt
+// and other figures are wider than a pixel.
 double NoiseVariance(SmallPatternWorkspace* workspace) {
   const SmallPatternWorkspace::Points& points = workspace->points;
   std::size_t count = 0;
@@ -64,7 +65,7 @@ double NoiseVariance(SmallPatternWorkspace* workspace) {
   return 0.5 * difference * difference;
 }
 
-// Standard deviation of the residuals by their median.
+// Standard deviation of the residuals from the median of their magnitudes.
 double RobustScale(SmallPatternWorkspace* workspace) {
   std::transform(workspace->points.residual.begin(),
                  workspace->points.residual.begin() + static_cast<std::ptrdiff_t>(workspace->count),
@@ -72,7 +73,7 @@ double RobustScale(SmallPatternWorkspace* workspace) {
   return 1.4826 * Quantile(0.5, workspace->count, &workspace->magnitudes);
 }
 
-// Residuals by where they are, outliers bounded, without what is noise.
+// Residuals by zone of the print, outliers bounded, corrected for noise.
 struct Zones {
   Zones(const LandingPattern& pattern, const SmallPatternWorkspace& workspace, double limit,
         double noise_variance) {
@@ -95,7 +96,7 @@ struct Zones {
     int count = 0;
     double Rms() const { return std::sqrt(std::max(0.0, squares / std::max(1, count))); }
   };
-  // Of the inside but the worst quadrant: dirt or a highlight may spoil one.
+  // Of the inside without the worst quadrant, which dirt or a highlight may spoil.
   double InsideRms() const {
     const auto worst = std::max_element(
         quadrants.begin(), quadrants.end(),
@@ -109,7 +110,7 @@ struct Zones {
     return others.Rms();
   }
 
-  std::array<Zone, 4> quadrants;  // of the inside of the ring
+  std::array<Zone, 4> quadrants;  // quadrants of the inside of the ring
   Zone ring;
 };
 
@@ -124,7 +125,8 @@ SmallPatternFitter::SmallPatternFitter(const CameraModel& camera, const RayTable
 
 SmallPatternWorkspace::SmallPatternWorkspace() {
   constexpr std::size_t kVector = 64;                                 // at most, floats
-  constexpr std::size_t kMost = kEnoughToTellInk + 2 * kMaxSide + 1;  // of a box and its border
+  constexpr std::size_t kMost = kEnoughToTellInk + 2 * kMaxSide + 1;  // pixels of a box and its
+                                                                      // border
   const auto make_room = [](auto&... columns) { (columns.resize(kMost + kVector), ...); };
   for (auto* rays : {&pixels.ray, &pixels.ray_by_u, &pixels.ray_by_v}) {
     for (Column& column : *rays) make_room(column);
@@ -139,8 +141,9 @@ SmallPatternWorkspace::SmallPatternWorkspace() {
   for (Column& column : jacobian) make_room(column);
 }
 
-// Collects the pixels that show the disc of the print and the white around it under 'pose': every
-// second, third, ... of every such row where a box around them has more than 'enough_pixels'.
+// Collects the pixels that show the disc of the print and the white around it under 'pose'. Where
+// their box has more than 'enough_pixels', takes only every second, third, ... pixel of every such
+// row.
 bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose, int enough_pixels,
                                 SmallPatternWorkspace* workspace) const {
   workspace->count = 0;
@@ -148,7 +151,7 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
   Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
   for (int i = 0; i < 8; ++i) {
     const double angle = i * 0.7853981633974483;
-    // The corners of an octagon around the circle.
+    // Corners of an octagon around the circle.
     const double reach = extent_m_ * 1.0823922;
     Eigen::Vector2d pixel;
     if (camera_.Project(pose.translation + reach * (std::cos(angle) * rotation.col(0) +
@@ -184,7 +187,7 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
                (*columns)[1].data(), (*columns)[2].data());
   };
   rays(in_box, &pixels.ray);
-  // Those that meet the disc.
+  // Keeps the pixels whose rays meet the disc.
   const Eigen::Matrix3f plane_from_ray = PlaneFromRay(pose).cast<float>();
   const auto extent = static_cast<float>(extent_m_ * extent_m_);
   std::size_t count = 0;
@@ -199,7 +202,7 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
     workspace->v[count++] = workspace->v[i];
   }
   workspace->count = count;
-  // To one side only: they tell how far the blur reaches, half a pixel beside is near enough.
+  // One-sided differences suffice: they only say how far the blur reaches.
   const auto differences = [&](SmallPatternWorkspace::Column* place,
                                std::array<SmallPatternWorkspace::Column, 3>* columns) {
     for (std::size_t i = 0; i < count; ++i) (*place)[i] += 1;
@@ -219,13 +222,13 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
 struct SmallPatternFitter::System {
   Eigen::Matrix<double, kUnknowns, kUnknowns> h;
   Eigen::Matrix<double, kUnknowns, 1> b;
-  double count;  // of the pixels, weighted
+  double count;  // weighted number of pixels
   double sum;    // of the gray values, without highlights
   double sum_squares;
   double squares;  // of the residuals, without highlights
 
   double variance() const { return squares / std::max(1.0, count - kUnknowns); }
-  // Share of the variance of the image, without that of its noise, that the print does not explain.
+  // Share of the image's variance, without its noise, that the print does not explain.
   double unexplained(double noise_variance) const {
     const double noise = noise_variance * count;
     const double about_mean = sum_squares - sum * sum / count - noise;
@@ -234,7 +237,8 @@ struct SmallPatternFitter::System {
   double correlation(double noise_variance) const {
     return std::sqrt(1 - unexplained(noise_variance));
   }
-  // Adjusted R^2. Neighbouring pixels share their blur: of so many, one tells something new.
+  // Adjusted R^2. Neighbouring pixels share their blur, so kPixelsPerSample pixels count as one
+  // sample.
   double explained(double noise_variance) const {
     constexpr double kPixelsPerSample = 4;
     const double samples = count / kPixelsPerSample;
@@ -242,13 +246,13 @@ struct SmallPatternFitter::System {
   }
 };
 
-// Where the pixels lie on the print and how dark it is there: fills the points of the workspace.
+// Fills the points of the workspace: where each pixel lies on the print and how dark it is there.
 void SmallPatternFitter::Predict(const RigidTransform& pose, double blur_px,
                                  SmallPatternWorkspace* workspace) const {
   EvaluatePrint(ModelOf(pattern_, pose, blur_px), workspace);
 }
 
-// The gray values of black and white where the print is predicted, by linear regression.
+// Fits the gray values of black and white to the predicted print, by linear regression.
 void SmallPatternFitter::MeasureLevels(const SmallPatternWorkspace& workspace, State* state) const {
   double n = 0, g = 0, d = 0, dd = 0, gd = 0;
   for (std::size_t i = 0; i < workspace.count; ++i) {
@@ -265,7 +269,8 @@ void SmallPatternFitter::MeasureLevels(const SmallPatternWorkspace& workspace, S
   state->white = (g + state->contrast * d) / n;
 }
 
-// Residuals beyond 'limit' (gray values) count less, by Huber's function: highlights and dirt.
+// Linearizes about a state. Residuals beyond 'limit' (gray values), as by highlights and dirt,
+// count less (Huber's function).
 SmallPatternFitter::System SmallPatternFitter::Linearize(const State& state, double limit,
                                                          SmallPatternWorkspace* workspace) const {
   Predict(state.pose, state.blur_px, workspace);
@@ -297,13 +302,13 @@ SmallPatternFitter::System SmallPatternFitter::Linearize(const State& state, dou
   return system;
 }
 
-// One Gauss-Newton step; false when it leads nowhere.
+// Makes one Gauss-Newton step; false when the result is invalid.
 bool SmallPatternFitter::Improve(const System& system, const std::optional<NormalPrior>& prior,
                                  const SmallPatternWorkspace& workspace, double limit,
                                  State* state) const {
-  // The blur of a lens is known to some extent, white hardly where the image cuts it off, and the
-  // direction of a small plane hardly at all: priors keep them from taking what the other
-  // parameters explain.
+  // Priors keep weakly determined unknowns from taking what others explain: the blur of a lens is
+  // roughly known, white is poorly determined where the image saturates, and so is the direction of
+  // a small plane.
   Eigen::Matrix<double, kUnknowns, kUnknowns> h = system.h;
   Eigen::Matrix<double, kUnknowns, 1> b = system.b;
   const double blur_weight = system.variance() / (kBlurSpread * kBlurSpread);
@@ -343,7 +348,7 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   MeasureLevels(*workspace, &state);
   if (state.contrast < kMinContrast) return std::nullopt;
   if (light == Light::kShadows && !EvenOut(workspace, &state)) return std::nullopt;
-  // The first steps come from far away: then nothing is an outlier.
+  // The first steps start far away, so nothing counts as an outlier.
   double limit = kMaxWhite;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     const System system = Linearize(state, limit, workspace);
@@ -376,8 +381,8 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   return fit;
 }
 
-// Fits an amplitude to the ring's quarters, to each half arm and to the white of each quadrant, on
-// top of white that may change evenly over the print, and compares them with the print's contrast.
+// Fits amplitudes to the ring's quarters, to each half arm and to the white of each quadrant, on
+// top of white that may vary linearly over the print, and compares them with the print's contrast.
 void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, const State& state,
                                       PatternMatch* match) const {
   constexpr int kParts = 15;  // 4 of the ring, 4 half arms, 4 quadrants, white and its slopes
@@ -385,8 +390,8 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
   using Matrix = Eigen::Matrix<double, kParts, kParts>;
   Matrix h = Matrix::Zero();
   Vector b = Vector::Zero();
-  std::array<int, 4> highlight{}, inside{};  // pixels of each quarter
-  std::array<double, 12> area{};             // of the print's parts in the image, m^2
+  std::array<int, 4> highlight{}, inside{};  // pixels per quarter
+  std::array<double, 12> area{};             // area of the print's parts in view, m^2
   const double inner = pattern_.inner_radius_m();
   const SmallPatternWorkspace::Points& points = workspace.points;
   for (std::size_t i = 0; i < workspace.count; ++i) {
@@ -398,11 +403,11 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
       ++inside[quarter];
       highlight[quarter] += gray > state.White(x, y) + state.Highlight();
     }
-    // Cut off where the print should be darker than that: it is as good as white.
+    // A saturated pixel where the print should be darker is taken for white.
     const double seen = gray < kSaturatedGray ? gray
                         : expected <= gray    ? std::max(state.white, gray)
                                               : expected;
-    // What a pixel belongs to, in the order of the parts.
+    // The parts that a pixel belongs to, in their order.
     const std::array<int, 6> part{quarter, 4 + quarter, 8 + QuadrantOf(x, y), 12, 13, 14};
     const std::array<double, 6> share{ring,
                                       std::max(points.arm_x[i], points.arm_y[i]) * (1 - ring),
@@ -420,15 +425,16 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
       }
     }
   }
-  // Parts that the image does not show get no amplitude instead of a wild one.
+  // Regularization: a part out of view gets no amplitude instead of a wild one.
   for (int i = 0; i < kParts; ++i) h(i, i) += 1e-3 + 0.002 * h(i, i);
   const Vector amplitude = h.selfadjointView<Eigen::Lower>().ldlt().solve(b);
   const auto share = [&](double value) { return std::clamp(value / match->contrast, 0.0, 1.0); };
-  // A part of which the image shows less than a third of what it shows of its like is not seen.
+  // A part with less than a third of the area in view of the best-seen one of its kind is not
+  // judged.
   const auto seen = [&](int first, int k) {
     return 3 * area[first + k] >= *std::max_element(&area[first], &area[first] + 4);
   };
-  // Nor is an arm in a highlight: one that is missing is white, not brighter than that.
+  // Nor is an arm in a highlight: a missing arm is white, and not brighter than that.
   const auto arm_seen = [&](int k) {
     return seen(4, k) && highlight[k] <= kMaxHighlight * inside[k];
   };

@@ -20,40 +20,40 @@
 
 namespace kestrel {
 
-// Memory of SmallPatternFitter, which does not allocate. Columns of one value a pixel of the print,
-// so that many are computed at once.
+// Memory of SmallPatternFitter, which does not allocate. Holds one column per quantity with one
+// value per pixel of the print, so that vector instructions compute many pixels at once.
 struct SmallPatternWorkspace {
   static constexpr std::size_t kUnknowns = 11;
   using Column = std::vector<float>;
 
   struct Pixels {
     std::array<Column, 3> ray;       // unit vector
-    std::array<Column, 3> ray_by_u;  // its change over a pixel
+    std::array<Column, 3> ray_by_u;  // change of the ray over one pixel
     std::array<Column, 3> ray_by_v;
     Column gray;
   };
   struct Points {
-    Column x, y;                            // where the ray meets the plane of a pose, m
+    Column x, y;                            // intersection of the ray with the plane of a pose, m
     Column x_by_u, x_by_v, y_by_u, y_by_v;  // m per pixel
     Column dark;                            // 0 white to 1 black
-    Column ring, arm_x, arm_y;              // the same of parts
-    Column dark_by_x, dark_by_y;            // per metre
+    Column ring, arm_x, arm_y;              // the same of the parts
+    Column dark_by_x, dark_by_y;            // derivatives per metre
     Column dark_by_log_blur;
-    Column expected;     // gray value by the print
-    Column seen;         // in the image, without highlights and as expected where it is cut off
-    Column residual;     // of the image, highlights in it
-    Column weight;       // of that, 0 to 1
-    Column root_weight;  // root of that, 0 where the image is cut off
+    Column expected;  // gray value that the print predicts
+    Column seen;      // gray value of the image, without highlights; as expected where it saturates
+    Column residual;  // of the image, with highlights
+    Column weight;    // of the residual, 0 to 1
+    Column root_weight;  // root of that; 0 where the image saturates
   };
 
-  // The pixels of the box around a print, in rows: every 'stride'-th of every such row.
+  // The pixels of a box around a print: every stride-th pixel of every stride-th row.
   struct Patch {
-    int left = 0, top = 0;  // of its first pixel in the image
+    int left = 0, top = 0;  // first pixel in the image
     int stride = 1;
     int width = 0, height = 0;
-    std::vector<std::uint8_t> is_print;  // whether a pixel is one of the print's
+    std::vector<std::uint8_t> is_print;  // true for the pixels of the print
     Column gray;
-    Column print;  // the same in even light, white 1
+    Column print;  // the print in even light, white 1
     Column dilated;
 
     std::size_t IndexOf(float x, float y) const {
@@ -63,23 +63,23 @@ struct SmallPatternWorkspace {
     }
   };
 
-  std::size_t count = 0;  // of the pixels
+  std::size_t count = 0;  // number of pixels
   Pixels pixels;
   Points points;
   Patch patch;
-  Column light;  // on the pixels
+  Column light;  // light on each pixel
   std::array<Column, kUnknowns + 1>
-      jacobian;       // and the residual, both times the root of the weight
-  Column u, v;        // of the pixels that are gathered
-  Column magnitudes;  // of the residuals
+      jacobian;       // derivatives and the residual, all times the root of the weight
+  Column u, v;        // positions of the gathered pixels
+  Column magnitudes;  // magnitudes of the residuals
 
   SmallPatternWorkspace();
 };
 
 // Verifies and locates a pattern whose strokes are no wider than the blur of the image, so that
-// their edges cannot be found one by one: fits the blurred print itself to the gray values (direct
-// alignment, after Lucas and Kanade 1981). Unknowns are the pose, the blur, and the gray values of
-// black and white.
+// single edges cannot be found. Fits the blurred print itself to the gray values (direct alignment,
+// after Lucas and Kanade 1981). Unknowns are the pose, the blur, the gray values of black and
+// white, and the slope of the light.
 class SmallPatternFitter {
  public:
   // 'camera' must outlive the fitter.
@@ -88,42 +88,44 @@ class SmallPatternFitter {
 
   struct Fit {
     PatternLocation location;  // without edges
-    PatternMatch match;        // amplitudes of arms, white quadrants and ring instead of shares
-    // Of the image with the fitted print, noise left aside; 0 to 1.
+    PatternMatch match;        // its shares are amplitudes of arms, white quadrants and ring
+    // Correlation of the image with the fitted print, corrected for noise; 0 to 1.
     double correlation;
-    // Share of the image's variance that the print explains beyond what so many unknowns explain
-    // of noise (adjusted R^2): low where few pixels are fitted well, by chance.
+    // Share of the image's variance that the print explains beyond what so many unknowns explain of
+    // noise (adjusted R^2). Low where few pixels fit well by chance.
     double explained;
-    // Residuals (root of their mean square, outliers bounded; share of the contrast) inside of the
-    // ring but for the worst quadrant, and on the ring.
+    // Residuals inside of the ring, without the worst quadrant, and on the ring (root mean square,
+    // outliers bounded; share of the contrast).
     double inside_residual;
     double ring_residual;
-    double frame_corners;      // darkness beyond the ends of the arms, against between them
-    double cross_correlation;  // of image and print inside of the ring, noise left aside: low for
-                               // a blot
+    double frame_corners;  // darkness beyond the ends of the arms minus that between them, share of
+                           // the contrast
+    double cross_correlation;  // of image and print inside of the ring, corrected for noise; low
+                               // for a blot
   };
 
   struct Start {
     RigidTransform camera_from_pattern;
-    double correlation;  // -1 to 1, of the image with the print blurred by a good lens
+    double correlation;  // of the image with the print under a good lens's blur, -1 to 1
   };
-  // The size at which ring and white fit the image best: the ring lies as 'ring' in all of them,
-  // and is 'scales' times smaller. Nothing when they fit at none. Does not allocate.
+  // Returns the element of 'scales' at which ring and white fit the image best. The ring lies as
+  // 'ring', that many times smaller. Nothing when none fits. Does not allocate.
   std::optional<double> FindScale(const cv::Mat& image, const CirclePose& ring,
                                   std::span<const double> scales,
                                   SmallPatternWorkspace* workspace) const;
 
-  // The best start for Refine among the directions of an arm (as for PatternPose), of a ring at the
-  // scale that FindScale said last. Does not allocate.
+  // Returns the best start for Refine among the directions of an arm (as in PatternPose), for a
+  // ring of the scale that FindScale returned last. Does not allocate.
   Start FindStart(const CirclePose& ring, double scale, std::span<const double> arm_angles,
                   SmallPatternWorkspace* workspace) const;
 
-  // The light on a print: even but for a slope, or with shadows on it, which are taken out of the
-  // image first.
+  // The light on a print: even but for a slope, or with shadows, which are removed from the image
+  // first.
   enum class Light { kEven, kShadows };
 
-  // Refines 'initial', which must be within about a stroke's width. Nothing when the image shows
-  // too little of the print, the fit does not converge or there are no shadows. Does not allocate.
+  // Refines 'initial', which must be right to about a stroke's width. Returns nothing when too
+  // little of the print is in view, when the fit does not converge, or, with kShadows, when there
+  // are no shadows. Does not allocate.
   std::optional<Fit> Refine(const cv::Mat& image, const RigidTransform& initial, Light light,
                             int iterations, SmallPatternWorkspace* workspace,
                             const std::optional<NormalPrior>& prior = {}) const;
@@ -147,7 +149,7 @@ class SmallPatternFitter {
   const CameraModel& camera_;
   const RayTable& rays_;
   LandingPattern pattern_;
-  double extent_m_;  // radius of what is fitted
+  double extent_m_;  // radius of the area that is fitted
 };
 
 }  // namespace kestrel

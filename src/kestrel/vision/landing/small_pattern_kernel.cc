@@ -26,8 +26,8 @@ HWY_INLINE Vector Dot(Vector a, Vector b, Vector c, const float* weights) {
 }
 HWY_INLINE Vector Length(Vector a, Vector b) { return hn::Sqrt(hn::MulAdd(a, a, hn::Mul(b, b))); }
 
-// Blurred step from 0 to 1 over a distance in units of the blur's standard deviation: the integral
-// of the biweight kernel of variance one, which is near to a Gaussian and ends at sqrt(7).
+// Blurred step from 0 to 1 over a distance in standard deviations of the blur: the integral of the
+// biweight kernel of variance one, which is near to a Gaussian and ends at sqrt(7).
 struct Step {
   Vector value;
   Vector slope;
@@ -43,7 +43,7 @@ HWY_INLINE Step BlurredStep(Vector z) {
   return {hn::MulAdd(t, outer, Of(0.5f)), hn::Mul(hn::Mul(rest, rest), Of(15.0f / 16 / kReach))};
 }
 
-// A blurred stroke: where a distance lies between two limits.
+// A blurred stroke: 1 where a distance lies between two limits.
 struct Stroke {
   Vector value;
   Vector by_distance;
@@ -90,9 +90,9 @@ void EvaluatePrint(const PrintModel& model, SmallPatternWorkspace* workspace) {
     const Vector r_by_v = hn::MulAdd(cosine, x_by_v, hn::Mul(sine, y_by_v));
     const Vector t_by_u = hn::MulSub(cosine, y_by_u, hn::Mul(sine, x_by_u));
     const Vector t_by_v = hn::MulSub(cosine, y_by_v, hn::Mul(sine, x_by_v));
-    // What the blur mixes in from along the ring lies farther from its centre: to second order the
-    // blurred ring is narrower by half of this. Left out, small prints seem farther away than they
-    // are, by half a percent.
+    // Blur along the ring mixes in points farther from its centre; to second order the blurred ring
+    // is narrower by half of this. Without this term small prints seem farther away by half a
+    // percent.
     const Vector bend = hn::Mul(hn::Mul(Of(0.5f * model.blur_px * model.blur_px), inverse_radius),
                                 hn::MulAdd(t_by_u, t_by_u, hn::Mul(t_by_v, t_by_v)));
     const Vector sharpness_r = InverseBlur(model.blur_px, Length(r_by_u, r_by_v));
@@ -155,7 +155,7 @@ void CompareGrays(const PrintLight& light, float limit, SmallPatternWorkspace* w
         hn::MulAdd(At(points.x, i), Of(light.slope_x),
                    hn::MulAdd(At(points.y, i), Of(light.slope_y), Of(light.white)));
     const Vector expected = hn::NegMulAdd(Of(light.contrast), At(points.dark, i), white);
-    // Where the image cuts off what is brighter it shows what is expected.
+    // Where the image saturates and more is expected, it counts as showing what is expected.
     const auto cut_off = hn::And(hn::Ge(gray, Of(light.saturated)), hn::Gt(expected, gray));
     const Vector seen = hn::IfThenElse(cut_off, expected, gray);
     const Vector residual = hn::Sub(seen, expected);
@@ -165,7 +165,7 @@ void CompareGrays(const PrintLight& light, float limit, SmallPatternWorkspace* w
     Put(residual, &points.residual, i);
     const Vector weight = hn::Min(Of(1), hn::Div(Of(limit), magnitude));
     Put(weight, &points.weight, i);
-    // What is cut off says nothing about small changes.
+    // A saturated pixel does not count for small changes.
     Put(hn::IfThenZeroElse(cut_off, hn::Sqrt(weight)), &points.root_weight, i);
   }
 }
@@ -176,7 +176,7 @@ void Differentiate(const PrintAxes& axes, float contrast, SmallPatternWorkspace*
   auto& jacobian = workspace->jacobian;
   for (std::size_t i = 0; i < workspace->count; i += hn::Lanes(Floats())) {
     const Vector root = At(points.root_weight, i);
-    // A moved point of the plane stays on the ray of its pixel: what is left of the motion within
+    // A moved point of the plane stays on the ray of its pixel. The component of the motion within
     // the plane, along the ray, moves the print under the pixel the other way.
     const Vector ray_x = At(pixels.ray[0], i);
     const Vector ray_y = At(pixels.ray[1], i);

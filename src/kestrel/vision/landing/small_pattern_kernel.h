@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// The arithmetic of SmallPatternFitter over all pixels of a print, with the best instructions of
-// the machine at run time.
+// The arithmetic of SmallPatternFitter over all pixels of a print, with the best vector
+// instructions of the machine, chosen at run time.
 
 #include <array>
 #include <cstddef>
@@ -21,26 +21,26 @@ struct PrintModel {
   float arm_half_length_m;
 };
 
-// Where the pixels lie on the print and how dark it is there: fills the points.
+// Fills the points of the workspace: where each pixel lies on the print and how dark it is there.
 void EvaluatePrint(const PrintModel& model, SmallPatternWorkspace* workspace);
 
-// The light on a print, gray values: white with slopes per metre, and white minus black.
+// The light on a print, gray values: level of white, its slopes per metre, and white minus black.
 struct PrintLight {
   float white;
   float slope_x;
   float slope_y;
   float contrast;
-  float highlight;  // what exceeds white by more is no white
-  float saturated;  // gray value from which on the image cuts off what is brighter
+  float highlight;  // gray values above white beyond which a pixel is a highlight
+  float saturated;  // gray value from which on the image saturates
 };
 
-// What is expected and seen of evaluated points: fills 'expected', 'seen', 'residual', and the
-// weights, which are less than 1 (Huber's function) for residuals beyond 'limit'.
+// Fills 'expected', 'seen', 'residual' and the weights of evaluated points. Residuals beyond
+// 'limit' have a weight of less than 1 (Huber's function).
 void CompareGrays(const PrintLight& light, float limit, SmallPatternWorkspace* workspace);
 
-// Derivatives of the expected gray values, and the residuals, both times the root of their weight:
-// fills the columns of 'jacobian' by SmallPatternWorkspace::kUnknowns and the residual. Axes of the
-// print in the camera frame.
+// Fills the columns of 'jacobian': derivatives of the expected gray values by the
+// SmallPatternWorkspace::kUnknowns unknowns, then the residual, both times the root of their
+// weight. PrintAxes: axes of the print in the camera frame.
 struct PrintAxes {
   std::array<float, 3> x;
   std::array<float, 3> y;

@@ -16,8 +16,8 @@
 namespace kestrel {
 namespace {
 
-// Pixels of a camera of focal length 'kFocalPx' on a grid around the axis; a number that fills no
-// whole vectors.
+// Pixels of a camera of focal length 'kFocalPx', on a grid around the axis. Their number is not a
+// multiple of the vector length.
 constexpr double kFocalPx = 220;
 constexpr int kSide = 23;
 void FillPixels(SmallPatternWorkspace* workspace) {
@@ -59,7 +59,7 @@ TEST_F(SmallPatternKernelTest, APrintIsDarkWhereItsStrokesAre) {
     int dark = 0, compared = 0;
     for (std::size_t i = 0; i < workspace_.count; ++i) {
       const double x = points.x[i], y = points.y[i];
-      // Only where the print is the same all around.
+      // Compares only where the print is uniform all around.
       constexpr double kStep = 0.02;
       const bool is_dark = print(x, y);
       bool is_even = true;
@@ -110,7 +110,7 @@ TEST_F(SmallPatternKernelTest, DerivativesAreThoseOfTheGrayValues) {
         differences += std::pow(workspace_.jacobian[k][i] - numeric, 2);
       }
       EXPECT_GT(squares, 0) << k;
-      // How the width of the blur in the plane changes with the pose is left out.
+      // The derivative ignores the change of the blur's width in the plane with the pose.
       EXPECT_LT(std::sqrt(differences / squares), k < 6 ? 0.2 : 0.01) << k;
     }
   });
@@ -125,7 +125,7 @@ TEST_F(SmallPatternKernelTest, OutliersAndWhatIsCutOffCountLess) {
                            .contrast = 120,
                            .highlight = 12,
                            .saturated = 254};
-    workspace_.pixels.gray[0] = 255;  // cut off: white is expected to be brighter
+    workspace_.pixels.gray[0] = 255;  // saturated: white is expected to be brighter
     workspace_.pixels.gray[1] = 240;  // 60 darker than white
     CompareGrays(light, 30, &workspace_);
     EXPECT_EQ(workspace_.points.residual[0], 0);

@@ -12,13 +12,15 @@
 namespace kestrel {
 namespace {
 
-// What is narrower is ink, what is wider is light: times the width of a stroke. Where two strokes
-// cross there is room for a disc of 1.41 times their width.
+// Widest ink, times the width of a stroke; anything wider is light. Where two strokes cross there
+// is room for a disc of 1.41 times their width.
 constexpr double kWidestInk = 1.5;
-constexpr double kBlurReachPx = 1;     // by which the blur widens ink on either side
-constexpr double kLeastLight = 0.2;    // in a shadow, share of the light beside it
-constexpr double kMaxRemaining = 0.5;  // of what the print does not explain, without its shadows
-constexpr double kBrightest = 0.9;     // quantile of the light that is that beside the shadows
+constexpr double kBlurReachPx = 1;     // widening of ink by blur, on either side
+constexpr double kLeastLight = 0.2;    // least light in a shadow, share of the light beside it
+constexpr double kMaxRemaining = 0.5;  // largest remaining share of the unexplained variance, once
+                                       // the shadows are removed
+constexpr double kBrightest = 0.9;     // quantile of the light that counts as the light beside the
+                                       // shadows
 
 struct Offset {
   int x, y;
@@ -27,7 +29,7 @@ struct Offset {
 // A disc of the plane as the image shows it, in pixels of a patch: a structuring element.
 class Disc {
  public:
-  // 'radius_m' wide on the plane of the points and 'radius_px' on top of that.
+  // Radius: 'radius_m' on the plane of the points plus 'radius_px'.
   Disc(const SmallPatternWorkspace& workspace, double radius_m, double radius_px) {
     const Eigen::Matrix2d metres_per_px = MeanDerivative(workspace);
     const int stride = workspace.patch.stride;
@@ -61,7 +63,7 @@ class Disc {
   std::size_t count_ = 0;
 };
 
-// Gives the pixels of a patch that are none of the print's a value.
+// Sets the pixels of a patch that do not belong to the print to 'value'.
 void SetOutside(const SmallPatternWorkspace::Patch& patch, float value,
                 SmallPatternWorkspace::Column* values) {
   for (int at = 0; at < patch.width * patch.height; ++at) {
@@ -69,8 +71,9 @@ void SetOutside(const SmallPatternWorkspace::Patch& patch, float value,
   }
 }
 
-// The best by 'better' of the values within a disc around each pixel of a patch, of which 'worst'
-// is none. Row by row for each place of the disc, which compilers turn into vector instructions.
+// Writes for each pixel of a patch the best value within the disc around it according to 'better';
+// 'worst' where there is none. Goes row by row for each place of the disc, which compilers
+// vectorize.
 template <typename Better>
 void Filter(const SmallPatternWorkspace::Patch& patch, std::span<const Offset> disc, float worst,
             const SmallPatternWorkspace::Column& from, const Better& better,
@@ -100,7 +103,7 @@ void Close(std::span<const Offset> disc, SmallPatternWorkspace::Patch* patch,
   Filter(*patch, disc, kMost, patch->dilated, darker, values);
 }
 
-// Share of the variance of the gray values that the print does not explain.
+// Returns the share of the gray values' variance that the print does not explain.
 double Unexplained(const SmallPatternWorkspace& workspace) {
   const double correlation = CorrelatePrint(workspace);
   return 1 - correlation * correlation;
@@ -108,12 +111,13 @@ double Unexplained(const SmallPatternWorkspace& workspace) {
 
 }  // namespace
 
-// The light on the pixels: closing takes the ink out of the image, because ink is narrow; what the
-// blur leaves of narrow white is compared with what it leaves of it in the print.
+// Measures the light on the pixels. Closing removes the ink from the image, because ink is narrow.
+// Division by the closing of the print in even light corrects for the effect of blur on narrow
+// white.
 void SmallPatternFitter::MeasureLight(const State& state, SmallPatternWorkspace* workspace) const {
   SmallPatternWorkspace::Patch& patch = workspace->patch;
   const Disc disc(*workspace, 0.5 * kWidestInk * pattern_.ring_width_m, kBlurReachPx);
-  // What black reflects of the light that white does.
+  // Black reflects 1 - blackness times the light that white does.
   const double blackness = std::clamp(state.contrast / state.white, 0.3, 0.95);
   std::fill_n(patch.is_print.begin(), patch.width * patch.height, false);
   for (std::size_t i = 0; i < workspace->count; ++i) {
@@ -130,8 +134,8 @@ void SmallPatternFitter::MeasureLight(const State& state, SmallPatternWorkspace*
   }
 }
 
-// Takes the shadows out of the gray values of the workspace. False when there are none that explain
-// what the print does not.
+// Removes the shadows from the gray values of the workspace. False when no shadows explain what the
+// print does not.
 bool SmallPatternFitter::EvenOut(SmallPatternWorkspace* workspace, State* state) const {
   const double before = Unexplained(*workspace);
   MeasureLight(*state, workspace);

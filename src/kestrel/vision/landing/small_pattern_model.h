@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// The model of a small print that its fit and its tests share; nothing that others need.
+// The model of a small print, shared by its fit and its tests only.
 
 #include <algorithm>
 #include <array>
@@ -18,14 +18,14 @@
 
 namespace kestrel {
 
-inline constexpr double kGoodLensBlurPx = 0.7;  // of optics and pixels, standard deviation
+inline constexpr double kGoodLensBlurPx = 0.7;  // blur of optics and pixels, standard deviation
 inline constexpr double kMinContrast = 2;       // gray values
-// Pixels of a box around a print beyond which some may be left out.
+// Largest numbers of pixels of a box around a print for which every pixel is used.
 inline constexpr int kEnoughToFit = 1200;
 inline constexpr int kEnoughToStart = 600;
-inline constexpr int kEnoughToTellInk = 2400;  // from light, by its width
+inline constexpr int kEnoughToTellInk = 2400;  // to tell ink from light by its width
 
-// Ray to homogeneous coordinates of the plane of a pose.
+// Returns the matrix from rays to homogeneous coordinates of the plane of a pose.
 inline Eigen::Matrix3d PlaneFromRay(const RigidTransform& camera_from_pattern) {
   const Eigen::Matrix3d rotation = camera_from_pattern.rotation.toRotationMatrix();
   Eigen::Matrix3d basis;
@@ -47,10 +47,10 @@ inline PrintModel ModelOf(const LandingPattern& pattern, const RigidTransform& p
   return model;
 }
 
-// Quadrant between the arms, from x to y.
+// Returns the quadrant between the arms, counted from x to y.
 inline int QuadrantOf(double x, double y) { return x > 0 ? (y > 0 ? 0 : 3) : (y > 0 ? 1 : 2); }
 
-// Correlation of two series, -1 to 1; 0 where one of them does not change.
+// Correlation of two series, -1 to 1; 0 where one of them is constant.
 class Correlation {
  public:
   void Add(double a, double b) {
@@ -61,7 +61,7 @@ class Correlation {
     bb_ += b * b;
     ab_ += a * b;
   }
-  // 'noise_variance': of the first series, which is not correlated with anything.
+  // 'noise_variance': variance of uncorrelated noise in the first series.
   double value(double noise_variance = 0) const {
     const double of_a = aa_ - a_ * a_ / n_ - n_ * noise_variance;
     const double variances = of_a * (bb_ - b_ * b_ / n_);
@@ -73,7 +73,8 @@ class Correlation {
   double n_ = 0, a_ = 0, aa_ = 0, b_ = 0, bb_ = 0, ab_ = 0;
 };
 
-// The value below which 'share', 0 to 1, of the first 'count' >= 1 values lie; changes their order.
+// Returns the value below which 'share', 0 to 1, of the first 'count' >= 1 values lie. Changes
+// their order.
 inline float Quantile(double share, std::size_t count, SmallPatternWorkspace::Column* values) {
   const auto quantile =
       values->begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(count));
@@ -81,7 +82,7 @@ inline float Quantile(double share, std::size_t count, SmallPatternWorkspace::Co
   return *quantile;
 }
 
-// Correlation of the image with the whole print that is predicted.
+// Returns the correlation of the image with the predicted print, -1 to 1.
 inline double CorrelatePrint(const SmallPatternWorkspace& workspace) {
   Correlation with_dark;
   for (std::size_t i = 0; i < workspace.count; ++i) {
@@ -94,15 +95,15 @@ inline double CorrelatePrint(const SmallPatternWorkspace& workspace) {
 struct SmallPatternFitter::State {
   RigidTransform pose;
   double blur_px = kGoodLensBlurPx;
-  double white = 255;   // gray value, which the image may cut off
+  double white = 255;   // gray value; the image may saturate below it
   double contrast = 0;  // white minus black
   double noise_variance = 0;
 
-  Eigen::Vector2d slope{0, 0};  // of the light over the print, gray values per metre
+  Eigen::Vector2d slope{0, 0};  // slope of the light over the print, gray values per metre
   double White(double x, double y) const { return white + slope.x() * x + slope.y() * y; }
-  // What exceeds white by more is a highlight: the print cannot be so bright.
+  // Gray values above white from which on a pixel is a highlight: the print cannot be so bright.
   double Highlight() const {
-    constexpr double kMargin = 0.1;  // of the contrast
+    constexpr double kMargin = 0.1;  // share of the contrast
     return kMargin * contrast;
   }
   PrintLight Light() const {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What tells other signs from a small print.
+// Signs that distinguish other figures from a small print.
 #include <algorithm>
 
 #include "kestrel/vision/landing/small_pattern_model.h"
 
 namespace kestrel {
 
-// How much darker the white is beyond the ends of the arms than between them.
+// Returns how much darker the white is beyond the ends of the arms than between them, in contrasts.
 double SmallPatternFitter::FrameCorners(const SmallPatternWorkspace& workspace,
                                         const State& state) const {
   double n = 0, s = 0, ss = 0, e = 0, se = 0;

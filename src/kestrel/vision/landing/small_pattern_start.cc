@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the fit of a small print starts: its size, then the direction of its arms.
+// The start of the fit of a small print: its size, then the direction of its arms.
 #include <algorithm>
 #include <cmath>
 
@@ -13,13 +13,13 @@ namespace {
 
 constexpr double kMinRingCorrelation = 0.2;  // of a start, ring and white alone
 
-// The ring 'scale' times smaller: that much farther away.
+// The ring 'scale' times smaller, hence that much farther away.
 CirclePose Shrunk(const CirclePose& ring, double scale) {
   return {ring.center / scale, ring.normal};
 }
 
-// Correlation of the image with the ring that is predicted, and the white around it. The ring looks
-// the same however it is turned.
+// Returns the correlation of the image with the predicted ring and the white around it, which do
+// not depend on the turn of the pattern.
 double CorrelateRing(const LandingPattern& pattern, const SmallPatternWorkspace& workspace) {
   const auto inner = static_cast<float>(pattern.inner_radius_m());
   const SmallPatternWorkspace::Points& points = workspace.points;

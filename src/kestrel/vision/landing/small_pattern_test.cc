@@ -25,7 +25,7 @@ class SmallPatternTest : public ::testing::Test {
   }
   using Light = SmallPatternFitter::Light;
 
-  // Fits from the ring of 'truth', its distance off by 3 %.
+  // Fits from the ring of 'truth' with an error of 3 % in distance.
   std::optional<SmallPatternFitter::Fit> Fit(const cv::Mat& image, const RigidTransform& truth) {
     const CirclePose ring{1.03 * truth.translation, truth.rotation * Eigen::Vector3d::UnitZ()};
     constexpr std::array<double, 1> kOneScale{1.0};
@@ -34,19 +34,19 @@ class SmallPatternTest : public ::testing::Test {
     const auto start = fitter_.FindStart(ring, 1, kTurns, &workspace_);
     return fitter_.Refine(image, start.camera_from_pattern, Light::kEven, 8, &workspace_);
   }
-  // Fits a print whose place is known: the light and the blur only move a little.
+  // Fits a print at its true pose, so that light and blur change little.
   std::optional<SmallPatternFitter::Fit> FitInPlace(const cv::Mat& image,
                                                     const RigidTransform& truth, Light light) {
     return fitter_.Refine(image, truth, light, 3, &workspace_);
   }
-  // Amplitude of the part that is least like the print's.
+  // Amplitude of the part that is least like that of the print.
   static double LeastPart(const SmallPatternFitter::Fit& fit) {
     return std::min(fit.match.Agreement(), fit.match.shares.MeansInView().worst_arm);
   }
   cv::Mat Draw(const Print& print, const RigidTransform& pose) const {
     return DrawPrint(camera_, pattern_, print, pose);
   }
-  // The image with less light where 'shadow' says so of points of the plane of 'pose'.
+  // Returns the image with less light where 'shadow' is true in the plane of 'pose'.
   cv::Mat Shade(const cv::Mat& image, const RigidTransform& pose,
                 const std::function<bool(double, double)>& shadow) const {
     constexpr double kLight = 0.45;
@@ -127,7 +127,7 @@ TEST_F(SmallPatternTest, OverexposureDoesNotMoveIt) {
   Random random(4);
   const RigidTransform truth = PoseOf(24, &random);
   cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
-  image.convertTo(image, CV_8UC1, 1.9, 0);  // white at 380, cut off
+  image.convertTo(image, CV_8UC1, 1.9, 0);  // white at 380, saturated
   const auto fit = Fit(image, truth);
   ASSERT_TRUE(fit);
   EXPECT_NEAR(fit->location.camera_from_pattern.translation.norm() / truth.translation.norm(), 1,
@@ -147,7 +147,7 @@ TEST_F(SmallPatternTest, OtherSignsShowWhatThePrintHasNot) {
   };
   const double outer = pattern_.outer_radius_m();
   const Print frame = [&](double x, double y) {
-    const double sum = std::abs(x) + std::abs(y);  // its corners at the ends of the arms
+    const double sum = std::abs(x) + std::abs(y);  // corners at the ends of the arms
     return (sum > 1.0 * outer && sum < 1.25 * outer) || SpokedPrint(pattern_, 4)(x, y);
   };
   const Print blot = [&](double x, double y) { return std::hypot(x, y) < outer; };
@@ -162,7 +162,7 @@ TEST_F(SmallPatternTest, OtherSignsShowWhatThePrintHasNot) {
   }
 }
 
-// Behind a straight edge, and under the body and the four rotors of a UAV.
+// Shadows of a straight edge, and of the body and the four rotors of a UAV.
 TEST_F(SmallPatternTest, ShadowsAreTakenOut) {
   Random random(6);
   const auto edge = [](double x, double y) { return 0.6 * x + 0.8 * y > 0.1; };
@@ -189,7 +189,7 @@ TEST_F(SmallPatternTest, ShadowsAreTakenOut) {
       EXPECT_GT(fit->correlation, 0.93) << diameter_px;
       EXPECT_GT(fit->match.Agreement(), 0.85) << diameter_px;
       EXPECT_FALSE(FitInPlace(even, truth, Light::kShadows)) << "there are none";
-      // A straight edge through the print is nearly a slope of the light, which is fitted anyway.
+      // A straight edge through the print is nearly a slope of the light, which every fit includes.
       if (is_edge) continue;
       const auto lit = FitInPlace(shaded, truth, Light::kEven);
       EXPECT_GT(evened->cross_correlation, (lit ? lit->cross_correlation : 0) + 0.05)
@@ -198,7 +198,7 @@ TEST_F(SmallPatternTest, ShadowsAreTakenOut) {
   }
 }
 
-// Their lines are as narrow as those of the print: no shadows explain them.
+// The lines of other signs are as narrow as those of the print, so no shadows explain them.
 TEST_F(SmallPatternTest, ShadowsDoNotExplainOtherSigns) {
   Random random(9);
   const Print frame = [](double x, double y) {
@@ -249,13 +249,13 @@ TEST_F(SmallPatternTest, AHighlightInAQuadrantIsNoSign) {
   Random random(6);
   for (const int diameter_px : {18, 24}) {
     const RigidTransform truth = PoseOf(diameter_px, &random);
-    // Half as bright, so that the highlight is not cut off by the image.
+    // Half as bright, so that the image does not saturate in the highlight.
     cv::Mat image = 0.5 * AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 2, &random);
     Eigen::Vector2d spot;
     camera_.Project(truth * Eigen::Vector3d(0.2, 0.2, 0), &spot);
     const auto x = static_cast<int>(std::lround(spot.x()));
     const auto y = static_cast<int>(std::lround(spot.y()));
-    image(cv::Rect(x - 1, y - 1, 3, 3)) = 240;  // of a white of 100
+    image(cv::Rect(x - 1, y - 1, 3, 3)) = 240;  // where white is 100
     const auto fit = Fit(image, truth);
     ASSERT_TRUE(fit) << diameter_px;
     EXPECT_GT(fit->cross_correlation, 0.93) << diameter_px;
@@ -285,7 +285,7 @@ TEST_F(SmallPatternTest, AnArmInAHighlightIsNotMissing) {
   EXPECT_GT(fit->match.Agreement(), 0.8);
 }
 
-// Noise of which a pixel says nothing about the next one lowers no correlation, however strong.
+// Noise that is uncorrelated between pixels does not lower the correlation, however strong it is.
 TEST_F(SmallPatternTest, NoiseIsTakenOutOfTheCorrelation) {
   Random random(10);
   const RigidTransform truth = PoseOf(26, &random);

@@ -15,22 +15,24 @@ namespace {
 
 using Light = SmallPatternFitter::Light;
 
-constexpr double kMinMajorPx = 9;       // of the smallest ring
-constexpr double kMinAxisRatio = 0.08;  // of the flattest one
-constexpr double kSmallest = 0.7;       // of the least ring that is searched for: outlines are thin
+constexpr double kMinMajorPx = 9;       // longer diameter of the smallest ring
+constexpr double kMinAxisRatio = 0.08;  // axis ratio of the flattest ring
+constexpr double kSmallest = 0.7;  // times the smallest ring searched for: outlines may be too thin
 constexpr double kMinInsideContrast = 6;         // gray values
-constexpr double kMinCorrelation = 0.35;         // of a start
-constexpr double kSureCorrelation = 0.6;         // of a start that quadrants give
-constexpr double kMinCorrelationOfEither = 0.7;  // of the poses of a ring
-constexpr double kSameStart = 0.05;  // distance of the centres of two rings that are the same
-constexpr double kWhole = 0.75;      // share of the print in view that is no part
-// Share of the variance below which shadows are looked for on a print that is found in even light
-// as well: they bend the pose.
+constexpr double kMinCorrelation = 0.35;         // of a start with the image
+constexpr double kSureCorrelation = 0.6;         // of a start by the quadrants
+constexpr double kMinCorrelationOfEither = 0.7;  // least correlation of a fit for which the other
+                                                 // mirror pose is tested
+constexpr double kSameStart = 0.05;  // distance of the centres of two rings that count as the same,
+                                     // share of the shorter axis
+constexpr double kWhole = 0.75;  // least share of the print in view for a print that is not partial
+// Explained share of the variance below which shadows are searched for even on a print that is
+// found in even light: they bend the pose.
 constexpr double kWellExplained = 0.85;
 constexpr int kFitIterations = 8;
 constexpr std::array<double, 1> kOneScale{1.0};
 
-// Whether a fitted pose is still that of the ring it started from.
+// True when a fitted pose still belongs to the ring it started from.
 bool Agrees(const RigidTransform& start, const RigidTransform& fitted, double radius_m) {
   const double distance = start.translation.norm();
   return std::abs(fitted.translation.norm() - distance) < 0.25 * distance &&
@@ -76,7 +78,7 @@ void SmallPrintVerifier::TestPredicted(const CirclePose& ring,
   TestPose(ring, kOneScale);
 }
 
-// Whether too little is left of a ring, or it is seen along its plane.
+// True when a ring is too small or seen almost edge-on.
 bool SmallPrintVerifier::IsTooSmall(const Eigen::Vector2d& diameters_px) const {
   return diameters_px.x() < kMinMajorPx ||
          diameters_px.y() < kSmallest * models_.options.min_ring_px ||
@@ -86,7 +88,8 @@ bool SmallPrintVerifier::IsTooSmall(const Eigen::Vector2d& diameters_px) const {
 SmallPrintVerifier::Outcome SmallPrintVerifier::TestPose(const CirclePose& pose,
                                                          std::span<const double> scales) {
   const SmallPatternFitter::Start start = FindStart(pose, scales);
-  // The two poses of a small ring look much the same: what does not fit one fits neither.
+  // The two poses of a small ring look much the same: when one does not fit, neither does the
+  // other.
   if (start.correlation < kMinCorrelation) return Outcome::kNothing;
   log_.Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
   const std::optional<NormalPrior> level = prior_.LevelPrior(pose.normal);
@@ -110,10 +113,10 @@ SmallPrintVerifier::Outcome SmallPrintVerifier::TestPose(const CirclePose& pose,
   return finding && choice_.Add(*finding) ? Outcome::kFound : Outcome::kOtherPose;
 }
 
-// Nothing of a print that is smaller than what is searched for.
+// Returns nothing for a print smaller than the smallest searched for.
 std::optional<PrintFinding> SmallPrintVerifier::FindingOf(const SmallPatternFitter::Fit& fit,
                                                           Light light) const {
-  constexpr double kTolerance = 0.75;  // of the size, which so few pixels hardly tell
+  constexpr double kTolerance = 0.75;  // of the size, which so few pixels hardly determine
   const RigidTransform& pose = fit.location.camera_from_pattern;
   PrintFinding finding;
   finding.kind = PrintKind::kAsAWhole;
@@ -139,8 +142,8 @@ std::optional<PrintFinding> SmallPrintVerifier::FindingOf(const SmallPatternFitt
   return finding;
 }
 
-// The best start for a small pattern whose ring lies as 'pose'; its correlation is -1 when there is
-// none.
+// Returns the best start for a small pattern whose ring lies as 'pose'; its correlation is -1 when
+// there is none.
 SmallPatternFitter::Start SmallPrintVerifier::FindStart(const CirclePose& pose,
                                                         std::span<const double> scales) {
   const std::optional<double> scale =
@@ -150,13 +153,13 @@ SmallPatternFitter::Start SmallPrintVerifier::FindStart(const CirclePose& pose,
     auto start = models_.small.FindStart(pose, *scale, {&*angle, 1}, &buffers_.gray_values);
     if (start.correlation >= kSureCorrelation) return start;
   }
-  // Within 7.5 degrees of every direction.
+  // At most 7.5 degrees from any direction.
   constexpr double kStep = std::numbers::pi / 12;
   constexpr std::array<double, 6> kTurns{0, kStep, 2 * kStep, 3 * kStep, 4 * kStep, 5 * kStep};
   return models_.small.FindStart(pose, *scale, kTurns, &buffers_.gray_values);
 }
 
-// Direction of an arm of a small cross by its quadrants.
+// Returns the direction of an arm of a small cross from its quadrants.
 std::optional<double> SmallPrintVerifier::ArmAngleByQuadrants(const CirclePose& pose) {
   constexpr int kSize = 24;
   const PatternView view(models_.camera, PatternPose(pose, 0), models_.matcher.extent_m(), {});

@@ -14,7 +14,7 @@
 
 namespace kestrel {
 
-// Memory of SmallPrintVerifier, which does not allocate once it is reserved.
+// Memory of SmallPrintVerifier. Does not allocate once it is reserved.
 struct SmallPrintBuffers {
   SmallPatternWorkspace gray_values;
   RingMemory tested;
@@ -23,20 +23,20 @@ struct SmallPrintBuffers {
 };
 
 // Tests whether a ring whose strokes are no wider than the blur is that of the print, and locates
-// it: fits the whole print to the gray values (docs/small_pattern.md).
+// it, by fitting the whole print to the gray values (docs/small_pattern.md).
 class SmallPrintVerifier {
  public:
-  // The arguments must outlive the test.
+  // The arguments must outlive the verifier.
   SmallPrintVerifier(const LandingModels& models, const PriorKnowledge& prior, SearchedImage* image,
                      SmallPrintBuffers* buffers, DetectionChoice* choice, SearchLog* log);
 
   void Test(const RingCandidate& ring);
 
-  // A ring that is where it was predicted, nearly.
+  // Tests a ring near its predicted pose. 'diameters_px': the longer one first.
   void TestPredicted(const CirclePose& ring, const Eigen::Vector2d& diameters_px);
 
  private:
-  // What became of one of the two poses of a ring.
+  // Result of testing one pose of a ring: kOtherPose means the other pose may still fit.
   enum class Outcome { kFound, kOtherPose, kNothing };
 
   bool IsTooSmall(const Eigen::Vector2d& diameters_px) const;

@@ -9,7 +9,7 @@
 
 namespace kestrel {
 
-// A detector, its camera, and prints drawn for it.
+// Fixture: a detector, its camera, and prints drawn for it.
 class LandingPatternDetectorTest : public ::testing::Test {
  protected:
   cv::Mat Draw(const Print& print, const RigidTransform& pose) const {
@@ -27,7 +27,7 @@ class LandingPatternDetectorTest : public ::testing::Test {
   const cv::Mat image_ = DrawPrint(camera_, pattern_, SpokedPrint(pattern_, 4), pose_);
 };
 
-// What two reports of one image must share: all but the times.
+// Expects two reports of one image to be equal except for the times.
 inline void ExpectSame(const LandingReport& a, const LandingReport& b) {
   EXPECT_EQ(a.reached, b.reached);
   EXPECT_EQ(a.reason, b.reason);

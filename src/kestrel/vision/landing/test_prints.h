@@ -20,14 +20,14 @@
 
 namespace kestrel {
 
-// Whether a print is black at a point of its plane, metres.
+// A print: true where it is black at a point (x, y) of its plane, metres.
 using Print = std::function<bool(double, double)>;
 
 inline CameraModel TestPrintCamera() {
   return CameraModel({320, 240, 220, 220, 159.5, 119.5, DistortionModel::kNone, {}});
 }
 
-// Half arms from the centre, the first along x, at equal angles.
+// True on one of 'count' half arms from the centre, at equal angles, the first along x.
 inline bool IsSpoke(double x, double y, int count, double half_width, double length) {
   const double step = 2 * std::numbers::pi / count;
   const double turn = std::remainder(std::atan2(y, x), step);
@@ -41,10 +41,10 @@ inline bool IsRing(const LandingPattern& pattern, double x, double y) {
   return radius > pattern.inner_radius_m() && radius < pattern.outer_radius_m();
 }
 
-// Height (m) of a sheet that should be flat over a point of its plane, metres.
+// Height (m) of a sheet that is not flat, over a point of its plane, metres.
 using SheetHeight = std::function<double(double, double)>;
 
-// The landing pattern with another number of spokes, or the pattern itself: four.
+// The landing pattern with 'spokes' spokes; with four it is the pattern itself.
 inline Print SpokedPrint(const LandingPattern& pattern, int spokes) {
   return [=](double x, double y) {
     return IsRing(pattern, x, y) ||
@@ -52,8 +52,8 @@ inline Print SpokedPrint(const LandingPattern& pattern, int spokes) {
   };
 }
 
-// A pose of a print that faces the camera, tilted about 'tilt_axis' (in the camera's x, y plane)
-// and turned.
+// Pose of a print that faces the camera, tilted about 'tilt_axis' (rad, direction in the camera's
+// x, y plane) and turned.
 inline RigidTransform PrintPose(const Eigen::Vector3d& center, double tilt, double tilt_axis,
                                 double turn) {
   RigidTransform pose;
@@ -66,8 +66,8 @@ inline RigidTransform PrintPose(const Eigen::Vector3d& center, double tilt, doub
   return pose;
 }
 
-// The print on a white board on gray ground, each pixel the mean of 8 x 8 rays through it where its
-// corners, sides and centre do not agree. 'height': of a board that is not flat.
+// Draws the print on a white board on gray ground. A pixel is the mean of 8 x 8 rays where its
+// corners, sides and centre differ. 'height': of a board that is not flat.
 inline cv::Mat DrawPrint(const CameraModel& camera, const LandingPattern& pattern,
                          const Print& print, const RigidTransform& camera_from_pattern,
                          const SheetHeight& height = {}) {
@@ -81,7 +81,7 @@ inline cv::Mat DrawPrint(const CameraModel& camera, const LandingPattern& patter
     const double across = ray.x() / ray.z(), down = ray.y() / ray.z();
     double x = origin.x() - origin.z() * across;
     double y = origin.y() - origin.z() * down;
-    // The height is that of the point that is seen: by steps towards it.
+    // The height is taken at the point that is seen, found by iteration.
     for (int i = 0; height && i < 6; ++i) {
       const double lower = origin.z() - height(x, y);
       x = origin.x() - lower * across;
@@ -116,14 +116,14 @@ inline cv::Mat DrawPrint(const CameraModel& camera, const LandingPattern& patter
   return image;
 }
 
-// The borders of a figure in pixels, on bright ground.
+// Traces the borders of a figure, given in pixels, on bright ground.
 inline BorderTracer TraceFigure(const Print& is_dark, int width, int height) {
   BorderTracer tracer;
   tracer.Trace(DrawFigure(width, height, is_dark), cv::Rect(0, 0, width, height), BorderLimits{});
   return tracer;
 }
 
-// A copy with normal noise of the given standard deviation, gray values.
+// Returns a copy with normal noise of standard deviation 'sigma', gray values.
 inline cv::Mat AddNoise(const cv::Mat& image, double sigma, Random* random) {
   cv::Mat noisy = image.clone();
   for (int v = 0; v < image.rows; ++v) {
@@ -136,8 +136,8 @@ inline cv::Mat AddNoise(const cv::Mat& image, double sigma, Random* random) {
   return noisy;
 }
 
-// Error of a pose: translation and rotation vector in the camera, the latter modulo the right
-// angles under which the print looks the same.
+// Error of a pose: translation and rotation vector in the camera frame, the rotation modulo the
+// right angles under which the print looks the same.
 inline Eigen::Matrix<double, 6, 1> PoseError(const RigidTransform& found,
                                              const RigidTransform& truth) {
   Eigen::Matrix<double, 6, 1> best;

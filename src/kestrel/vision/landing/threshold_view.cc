@@ -14,7 +14,7 @@ constexpr std::uint8_t kDark = 0, kUndecided = 128, kBright = 255;
 
 const SearchPass& FirstPass(int level) {
   return *std::find_if(kPasses.begin(), kPasses.end(), [&](const SearchPass& pass) {
-    // Of what stands for "dark" in other ways a picture would say less of the threshold.
+    // A pass with another definition of dark would say less about the threshold.
     const bool is_plain = !pass.black && !pass.top_hat && !pass.closing && !pass.not_bright;
     return pass.image_level == level && is_plain;
   });
@@ -31,7 +31,7 @@ cv::Mat ThresholdView::Draw(const cv::Mat& image, int level) {
   Binarize(FirstPass(level), buffers_.get());
   const BitImage& dark = buffers_->binary.dark;
   const BitImage& bright = buffers_->binary.bright;
-  // The pixels that the lower resolution has none of, at the right and below, are undecided.
+  // Pixels at the right and lower border that the lower resolution lacks stay undecided.
   cv::Mat view(image.size(), CV_8UC1, cv::Scalar(kUndecided));
   for (int v = 0; v < view.rows && v >> level < dark.height(); ++v) {
     auto* const pixel = view.ptr<std::uint8_t>(v);

@@ -9,17 +9,16 @@ namespace kestrel {
 
 struct SearchedImageBuffers;
 
-// What the search for the landing pattern takes for dark and what for bright, as a picture. The
-// whole image is looked at, as the search does when nothing tells it where the pattern is. By one
-// thread.
+// Draws what the search for the landing pattern takes for dark and for bright. Looks at the whole
+// image, as a search without a hint does. For use by one thread.
 class ThresholdView {
  public:
   ThresholdView();
   ~ThresholdView();
 
-  // As large as 'image' (CV_8UC1), of that type: 0 dark, 255 bright, 128 undecided; by the first
-  // pass of the search that looks at 1 / 2^level of the resolution, 'level' 0 to 3. Empty for any
-  // other image.
+  // Returns an image of the size and type (CV_8UC1) of 'image': 0 dark, 255 bright, 128 undecided,
+  // by the first pass of the search with a plain threshold at 1 / 2^level of the resolution,
+  // 'level' 0 to 3. Empty for an image of another type.
   cv::Mat Draw(const cv::Mat& image, int level);
 
  private:

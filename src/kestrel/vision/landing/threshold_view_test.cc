@@ -24,7 +24,7 @@ TEST(ThresholdViewTest, PaintIsDarkAndTheBoardBrightAtEveryResolution) {
     ASSERT_EQ(drawn.type(), CV_8UC1);
     EXPECT_EQ(drawn.at<uchar>(125, 125), 0) << "on the ring, 1 / 2^" << level;
     EXPECT_EQ(drawn.at<uchar>(65, 115), 255) << "on the board, 1 / 2^" << level;
-    // As there is no eighth of the last six columns.
+    // The last six columns have no pixel at an eighth of the resolution.
     EXPECT_EQ(drawn.at<uchar>(20, 389), 128);
   }
 }
