@@ -15,10 +15,10 @@ constexpr int kSamples = 2 * kReach + 1;
 
 using Profile = std::array<Eigen::Vector3f, kSamples>;
 
-// What a channel's values are worth where colours mix. The optics mix light, which is about the
-// square of a value; the camera's compression mixes the values themselves, and blurs the colour
-// more than the optics do. The power between both leaves an edge where it is on ground of any
-// brightness: with 2 it moves towards bright ground, with 1 towards dark one.
+// Converts the values of a channel to a scale on which colours mix linearly. The optics mix light,
+// which is about the square of a value; the camera's compression mixes the values themselves, and
+// blurs colour more than the optics do. An exponent between both keeps the edge in place on ground
+// of any brightness: 2 would move it towards bright ground, 1 towards dark ground.
 const std::array<float, 256>& LightTable() {
   constexpr float kPower = 1.5F;
   static const std::array<float, 256> table = [] {
@@ -51,7 +51,7 @@ bool ReadProfile(const cv::Mat& image, const Eigen::Vector2d& start, const Eigen
   return true;
 }
 
-// The colour at a fraction of an index; that of the nearest end outside of the profile.
+// Returns the colour at a fractional index, clamped to the ends of the profile.
 Eigen::Vector3f ColorAt(const Profile& profile, double index) {
   const double inside = std::clamp<double>(index, 0, kSamples - 1);
   const int i = std::min(static_cast<int>(inside), kSamples - 2);
@@ -59,9 +59,9 @@ Eigen::Vector3f ColorAt(const Profile& profile, double index) {
   return (1 - part) * profile[i] + part * profile[i + 1];
 }
 
-// The direction in the space of colours that tells 'inside' from 'outside' best. What the outside
-// would be in a shadow or in more light has no part in it, as far as the two differ by more than
-// their brightness: a disc that lies on the ground has its own shadow around a half of its edge.
+// Returns the direction in colour space that best separates 'inside' from 'outside'. The direction
+// of the outside colour, along which shadow and light move it, is excluded where the two colours
+// differ by more than brightness: a disc on the ground has its own shadow around half of its edge.
 Eigen::Vector3f AxisBetween(const Eigen::Vector3f& inside, const Eigen::Vector3f& outside) {
   constexpr float kMinShare = 0.4F;
   const Eigen::Vector3f difference = inside - outside;
@@ -71,11 +71,11 @@ Eigen::Vector3f AxisBetween(const Eigen::Vector3f& inside, const Eigen::Vector3f
 }
 
 struct Crossing {
-  double index;  // with its fraction
+  double index;  // of the share of the inside, per sample; positive
   float slope;   // of the share of the inside, per sample, positive
 };
 
-// Where the profile first passes from the half of 'inside' to that of 'outside' after 'first'.
+// Finds where the profile, after 'first', first passes half-way from 'inside' to 'outside'.
 std::optional<Crossing> FindCrossing(const Profile& profile, const Eigen::Vector3f& inside,
                                      const Eigen::Vector3f& outside, int first) {
   constexpr float kMinContrast = 0.02F;
@@ -105,12 +105,12 @@ bool ShowsColorEdge(const cv::Size& image, const Eigen::Vector2d& start,
 
 std::optional<ColorEdge> FindColorEdge(const cv::Mat& image, const Eigen::Vector2d& start,
                                        const Eigen::Vector2d& outward) {
-  constexpr double kBeside = 3;  // from the edge to where a blurred profile is flat again
+  constexpr double kBeside = 3;  // distance from the edge at which a blurred profile is flat again
   Profile profile;
   if (!ReadProfile(image, start, outward, &profile)) return std::nullopt;
   std::optional<Crossing> edge =
       FindCrossing(profile, 0.5F * (profile[1] + profile[2]), profile[kSamples - 2], /*first=*/1);
-  // Once more with the colours beside the edge, as far from it on both sides wherever it is.
+  // Repeats with the colours at equal distances on both sides of the edge.
   if (!edge) return std::nullopt;
   const double first = std::max(0.0, edge->index - kBeside);
   edge = FindCrossing(profile, ColorAt(profile, edge->index - kBeside),

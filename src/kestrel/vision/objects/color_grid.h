@@ -10,14 +10,14 @@
 
 namespace kestrel {
 
-// What a cell of the grid says: 0 background, 1 ... the colours in the order of their model.
+// Label of a cell of the grid: 0 background, then 1, 2, ... for the colours in the model's order.
 using ColorLabel = std::uint8_t;
 inline constexpr ColorLabel kBackgroundLabel = 0;
-// Joins a segment when the pixels around it do.
+// A pixel with this label joins a segment when the pixels around it belong to the segment.
 inline constexpr ColorLabel kAmbiguousLabel = 255;
 
-// A part of the hue-saturation plane, for every value: hues from 'min_hue_deg' upwards around the
-// circle to 'max_hue_deg', both 0 to 360 (350 to 10 is red), saturations 0 to 1.
+// A part of the hue-saturation plane, at every value. Hues run from 'min_hue_deg' upwards around
+// the circle to 'max_hue_deg', both 0 to 360 (350 to 10 is red); saturations are 0 to 1.
 struct HueSaturationRegion {
   double min_hue_deg = 0;
   double max_hue_deg = 360;
@@ -27,8 +27,8 @@ struct HueSaturationRegion {
   bool Contains(const Hsv& color) const;
 };
 
-// The RGB cube in 64^3 cells with a label each (paper, section 3.2): whatever the model, a pixel is
-// labelled by one look-up.
+// The RGB cube in 64^3 cells with one label each (paper, section 3.2). Labelling a pixel takes one
+// look-up, whatever the model.
 class ColorGrid {
  public:
   static constexpr int kCellsPerChannel = 64;
@@ -37,28 +37,28 @@ class ColorGrid {
   ColorGrid() : labels_(kCells, kBackgroundLabel) {}  // all background
   explicit ColorGrid(const ColorModel& model);
 
-  // From the bytes of a file, one a cell, red changing slowest and blue fastest: what Save writes
-  // and the authors' programs too (raw, without a header). Throws InputError when there are not
-  // 262,144 of them or one is neither ambiguous nor at most 'color_count'; 'file' is for messages.
+  // Reads the bytes of a file: one per cell, red changing slowest and blue fastest, raw and without
+  // a header. Save and the authors' programs write such files. Throws InputError when there are not
+  // 262,144 bytes or one is neither ambiguous nor at most 'color_count'. 'file' is for messages.
   static ColorGrid Parse(const std::string& bytes, std::size_t color_count,
                          const std::string& file);
   static ColorGrid Load(const std::string& path, std::size_t color_count);
-  // Replaces the file atomically; throws InputError when it cannot be written.
+  // Replaces the file atomically. Throws InputError when it cannot be written.
   void Save(const std::string& path) const;
 
   ColorLabel At(std::uint8_t b, std::uint8_t g, std::uint8_t r) const {
     return labels_[(r >> 2) << 12 | (g >> 2) << 6 | b >> 2];
   }
-  // Of an 8-bit BGR pixel.
+  // Label of an 8-bit BGR pixel.
   ColorLabel At(const std::uint8_t* bgr) const { return At(bgr[0], bgr[1], bgr[2]); }
 
-  // Labels all cells whose centre lies in the region; returns how many that are.
+  // Labels all cells whose centre lies in the region. Returns their number.
   std::size_t SetRegion(const HueSaturationRegion& region, ColorLabel label);
-  // Back to background, of the cells in the region only those that have 'label'.
+  // Resets the cells in the region that have 'label' to background. Returns their number.
   std::size_t ClearRegion(const HueSaturationRegion& region, ColorLabel label);
 
   const std::vector<ColorLabel>& labels() const { return labels_; }
-  // Colour in the middle of a cell.
+  // Colour at the middle of a cell.
   static Hsv CellColor(std::size_t cell);
 
  private:

@@ -46,17 +46,17 @@ void ValidateMixture(const ColorMixture& mixture, std::vector<std::string>* viol
   }
 }
 
-// Standard deviations that the camera's noise gives to one colour.
+// Standard deviations of one colour due to the camera's noise.
 constexpr Hsv kNoise{4, 0.04F, 0.05F};
 
-// From 'mean' to 'color' in standard deviations of the noise: hue, saturation, value.
+// Offset of 'color' from 'mean' in standard deviations of the noise: hue, saturation, value.
 Eigen::Vector3d Offset(const Hsv& color, const Hsv& mean) {
   return {HueDifference(color.hue_deg, mean.hue_deg) / kNoise.hue_deg,
           (color.saturation - mean.saturation) / kNoise.saturation,
           (color.value - mean.value) / kNoise.value};
 }
 
-// Of samples with weights; the hue's mean is that of its unit vectors.
+// Moments of weighted samples. The mean hue is the direction of the mean unit vector.
 struct Moments {
   double weight = 0;  // mean
   Hsv mean;
@@ -88,7 +88,7 @@ Moments WeightedMoments(std::span<const Hsv> samples, std::span<const double> we
   return moments;
 }
 
-// With at least the noise's deviation along every direction.
+// Makes a component with at least the noise's deviation in every direction.
 ColorComponent ComponentOf(const Moments& moments) {
   const Eigen::Matrix2d plane = moments.covariance.topLeftCorner<2, 2>();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(plane);
@@ -107,7 +107,7 @@ ColorComponent ComponentOf(const Moments& moments) {
   return component;
 }
 
-// Components in a row along the direction in which the samples spread most.
+// Places the start components along the direction in which the samples spread most.
 std::vector<ColorComponent> SplitStart(std::span<const Hsv> samples, int count) {
   const std::vector<double> ones(samples.size(), 1.0);
   const Moments whole = WeightedMoments(samples, ones);

@@ -79,7 +79,7 @@ TEST(FitColorMixture, SeparatesSunFromShade) {
   EXPECT_GT(mixture.Mahalanobis({100, 0.6F, 0.6F}), 3);
 }
 
-// Paint that fades in the sun turns its hue as it loses saturation.
+// Paint that fades in the sun changes its hue as it loses saturation.
 std::vector<Hsv> FadingRed(int count) {
   Random random(5);
   std::vector<Hsv> samples;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kBin_deg = 360.0 / HueSaturationHistogram::kHues;
 
-// Of all components, up to a factor that no mixture changes.
+// Log-likelihood over all components, up to a constant that is the same for every mixture.
 double LogLikelihood(const ColorMixture& mixture, std::span<const Hsv> samples) {
   double sum = 0;
   for (const Hsv& sample : samples) {
@@ -25,7 +25,7 @@ double LogLikelihood(const ColorMixture& mixture, std::span<const Hsv> samples) 
 }
 
 double Criterion(const ColorMixture& mixture, std::span<const Hsv> samples) {
-  // Three means, three deviations and a correlation each; the weights have a fixed sum.
+  // Three means, three deviations and one correlation per component; the weights sum to a constant.
   const double parameters = 8.0 * mixture.components.size() - 1;
   return parameters * std::log(samples.size()) - 2 * LogLikelihood(mixture, samples);
 }

@@ -12,7 +12,7 @@
 
 namespace kestrel {
 
-// How many samples have which hue and saturation (paper, section 3.2). The hue is a circle: the
+// Histogram of the samples' hues and saturations (paper, section 3.2). The hue is a circle: the
 // first bin is the neighbour of the last.
 class HueSaturationHistogram {
  public:
@@ -21,34 +21,34 @@ class HueSaturationHistogram {
 
   void Add(const Hsv& color);
   std::uint32_t At(int hue, int saturation) const { return counts_[saturation * kHues + hue]; }
-  // Row by row, from the lowest saturation.
+  // Counts row by row, from the lowest saturation.
   std::span<const std::uint32_t> counts() const { return counts_; }
 
-  // Hue, degrees, at the edge of bins furthest from all samples: a strip of hues that begins there
-  // does not cut what belongs together. 0 when there are no samples.
+  // Returns the hue, degrees, at the edge of bins farthest from all samples. A strip of hues that
+  // begins there does not separate neighbouring samples. 0 when there are no samples.
   double CutHue_deg() const;
 
  private:
   std::array<std::uint32_t, kHues * kSaturations> counts_{};
 };
 
-// What is wrong with samples that a colour is to be learnt from, a sentence each: few of them, hues
-// that are mostly noise for want of saturation, values at the camera's limit.
+// Returns the problems of samples from which a colour is to be learnt, one sentence each: few
+// samples, hues that are mostly noise because the saturation is low, values at the camera's limits.
 std::vector<std::string> SampleWarnings(std::span<const Hsv> samples);
 
-// The samples, or 'count' of them, evenly taken, when they are more.
+// Returns the samples, or an evenly spaced subset of 'count' of them when there are more.
 std::vector<Hsv> EvenlyTaken(std::span<const Hsv> samples, std::size_t count);
 
-// A mixture and why it has so many components.
+// A mixture and the criteria for its number of components.
 struct MixtureChoice {
   ColorMixture mixture;
-  // Bayesian information criterion of 1, 2, ... components, the lower the better.
+  // Bayesian information criterion for 1, 2, ... components; lower is better.
   std::vector<double> criteria;
 };
 
-// FitColorMixture with the number of components, up to 'max_components', for which the Bayesian
-// information criterion is the lowest. Neighbouring pixels say much the same, so that the criterion
-// is of at most 2000 samples, evenly taken. Throws InputError for fewer than ten samples.
+// Runs FitColorMixture with the number of components, up to 'max_components', that has the lowest
+// Bayesian information criterion. Neighbouring pixels are much alike, so the criterion uses at most
+// 2000 evenly spaced samples. Throws InputError for fewer than ten samples.
 MixtureChoice ChooseColorMixture(const std::string& name, std::span<const Hsv> samples,
                                  int max_components);
 

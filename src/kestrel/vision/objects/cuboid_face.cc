@@ -15,7 +15,7 @@
 namespace kestrel {
 namespace {
 
-// What a pixel of the segment's bounding box is.
+// The kinds of pixels in a segment's bounding box.
 enum Mark : std::uint8_t { kOutside, kColored, kDigit };
 
 // The bounding box with a margin of one pixel.
@@ -29,7 +29,7 @@ struct Box {
   std::size_t Index(const PixelPosition& at) const {
     return static_cast<std::size_t>(at.v - top) * width + (at.u - left);
   }
-  // Visits the indices of all pixels but those of the margin.
+  // Visits the indices of all pixels except the margin.
   template <class Visit>
   void ForEachInside(const Visit& visit) const {
     for (int v = 1; v + 1 < height; ++v) {
@@ -62,7 +62,7 @@ void MarkPixels(const cv::Mat& image, const Segment& segment, const Box& box,
     if (i >= colored) workspace->digit.push_back(index);
     workspace->values[index] = ValueAt(image, segment.pixels[i]);
   }
-  // Mean of the coloured pixels of 3 x 3, against noise.
+  // Mean of the coloured pixels in 3 x 3, to reduce noise.
   workspace->smooth.assign(size, 0);
   box.ForEachInside([&](std::size_t i) {
     if (workspace->mask[i] != kColored) return;
@@ -77,7 +77,7 @@ void MarkPixels(const cv::Mat& image, const Segment& segment, const Box& box,
   });
 }
 
-// Median value of the coloured pixels around the digit: past the blur, still on its face.
+// Median value of the coloured pixels around the digit, beyond the blur but on the same face.
 std::optional<int> ValueAroundDigit(const Box& box, const CuboidFaceWorkspace& workspace) {
   constexpr int kDistance = 3;
   Histogram histogram{};
@@ -100,8 +100,8 @@ std::optional<int> ValueAroundDigit(const Box& box, const CuboidFaceWorkspace& w
   return std::nullopt;
 }
 
-// The values from 'start' in the direction of 'step' that belong to the same hill of the histogram:
-// down to a valley of less than a third of its top, or to nothing.
+// Returns the last value from 'start' in the direction of 'step' that belongs to the same peak of
+// the histogram. A peak ends at a valley of less than a third of its height, or at zero.
 int EndOfHill(const std::array<int, 256>& histogram, int start, int step) {
   constexpr int kWindow = 2;  // the histogram of a small face has holes
   const auto height = [&](int value) {
@@ -123,7 +123,7 @@ int EndOfHill(const std::array<int, 256>& histogram, int start, int step) {
   return value;
 }
 
-// Leaves 1 for the pixels of the face that the digit is on, 0 for all else.
+// Sets the mask to 1 for the pixels of the face with the digit and to 0 for all others.
 bool MarkFace(const Box& box, CuboidFaceWorkspace* workspace) {
   const std::optional<int> face_value = ValueAroundDigit(box, *workspace);
   if (!face_value) return false;
@@ -152,8 +152,8 @@ void FilterMask(const Box& box, const std::vector<std::uint8_t>& mask,
   });
 }
 
-// Leaves what hangs together with the digit: not by a thread, but by pixels all of whose neighbours
-// belong to it.
+// Keeps the part that is connected to the digit through pixels whose neighbours all belong to it,
+// so that thin bridges do not connect.
 void KeepDigitsPart(const Box& box, CuboidFaceWorkspace* workspace) {
   constexpr int kMinNeighbors = 8;
   constexpr std::uint8_t kKept = 2;
@@ -182,7 +182,7 @@ double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-// Takes back the last points while they make no left turn to 'point', then adds it.
+// Removes the last points as long as they make no left turn to 'point', then adds it.
 void ExtendChain(const Eigen::Vector2d& point, std::size_t chain_start,
                  std::vector<Eigen::Vector2d>* hull) {
   while (hull->size() >= chain_start + 2) {
@@ -222,8 +222,8 @@ std::optional<Eigen::Vector2d> Intersection(const Eigen::Vector2d& a, const Eige
   return a + Cross(b - a, other) / turn * along;
 }
 
-// Takes sides away from the polygon, each time the one whose neighbours, made longer until they
-// meet, add the least area, until there are four.
+// Removes sides until four are left. Each time it removes the side for which extending its
+// neighbours until they meet adds the least area.
 bool ReduceToFour(std::vector<Eigen::Vector2d>* polygon) {
   while (polygon->size() > 4) {
     const std::size_t n = polygon->size();
@@ -255,8 +255,8 @@ struct Line {
   Eigen::Vector2d direction;
 };
 
-// The line through the sub-pixel edges along the side from 'a' to 'b'; the side itself when too few
-// are seen. 'center' is inside of the face.
+// Fits a line through the sub-pixel edges along the side from 'a' to 'b'. Returns the side itself
+// when too few edges are visible. 'center' is inside of the face.
 Line FitSide(const cv::Mat& image, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
              const Eigen::Vector2d& center) {
   constexpr int kPoints = 13;
@@ -266,7 +266,7 @@ Line FitSide(const cv::Mat& image, const Eigen::Vector2d& a, const Eigen::Vector
   std::array<Eigen::Vector2d, kPoints> points;
   int count = 0;
   for (int i = 0; i < kPoints; ++i) {
-    // Not at the corners, where the profile sees two edges.
+    // Avoids the corners, where the profile crosses two edges.
     const double t = 0.15 + 0.7 * i / (kPoints - 1);
     const Eigen::Vector2d start = a + t * (b - a);
     if (const auto edge = FindColorEdge(image, start, outward)) {
@@ -274,7 +274,7 @@ Line FitSide(const cv::Mat& image, const Eigen::Vector2d& a, const Eigen::Vector
     }
   }
   if (count < kPoints / 2) return side;
-  // Least squares, then once more without those that are far off.
+  // Least squares, then again without outliers.
   Line line = side;
   for (const double limit_px : {1e9, 0.7}) {
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
@@ -346,7 +346,7 @@ std::optional<FaceCorners> FindCuboidFace(const cv::Mat& image, const Segment& s
   FilterMask(box, workspace->mask, &workspace->filtered);
   KeepDigitsPart(box, workspace);
   FindHull(box, workspace->filtered, &workspace->hull);
-  // Andrew's chain ends where it began.
+  // Andrew's chain repeats its first point at the end.
   if (workspace->hull.size() > 1 && workspace->hull.front() == workspace->hull.back()) {
     workspace->hull.pop_back();
   }

@@ -12,7 +12,7 @@ namespace kestrel {
 namespace {
 
 constexpr int kExtents = 32;
-constexpr int kResiduals = kExtents + 3;  // and the digit's place and the size
+constexpr int kResiduals = kExtents + 3;  // also the digit's position and the size
 using Residuals = Eigen::Matrix<double, kResiduals, 1>;
 using Parameters = Eigen::Vector4d;  // centre, yaw, logarithm of half a side
 using Corners = std::array<Eigen::Vector2d, 4>;
@@ -38,7 +38,7 @@ Corners CornersOf(const Parameters& p) {
   return {center + x + y, center - x + y, center - x - y, center + x - y};
 }
 
-// A side face is seen from the outer side of its edge: the origin must lie there.
+// A side face is visible when the origin lies on the outer side of its edge.
 SideFaces VisibleSides(const Corners& corners) {
   const Eigen::Vector2d center = 0.5 * (corners[0] + corners[2]);
   SideFaces visible{};
@@ -49,7 +49,7 @@ SideFaces VisibleSides(const Corners& corners) {
   return visible;
 }
 
-// How far the points reach in a direction.
+// Returns the extent of the points in a direction.
 double Extent(std::span<const Eigen::Vector2d> points, const Eigen::Vector2d& direction) {
   double extent = -std::numeric_limits<double>::infinity();
   for (const Eigen::Vector2d& point : points) extent = std::max(extent, direction.dot(point));
@@ -67,7 +67,7 @@ class SilhouetteFit {
 
   int SeenDirections() const { return static_cast<int>(std::ranges::count(is_seen_, true)); }
 
-  // How far the silhouette reaches from the digit, on the average of the directions.
+  // Mean extent of the silhouette from the digit, over the directions in view.
   double MeanReach() const {
     double sum = 0;
     for (int i = 0; i < kExtents; ++i) {
@@ -76,8 +76,8 @@ class SilhouetteFit {
     return sum / SeenDirections();
   }
 
-  // How far the silhouette reaches beyond the cuboid's in all directions, then how far the digit is
-  // from the middle and the size from what it should be, with their weights.
+  // Weighted residuals: the difference in extent between silhouette and cuboid in all directions,
+  // then the offsets of the digit from the middle and of the size from the expected one.
   Residuals ResidualsOf(const Parameters& p, const SideFaces& sides) const {
     constexpr double kDigitWeight = 0.3;
     constexpr double kSizeWeight = 0.6;
@@ -100,7 +100,7 @@ class SilhouetteFit {
     return residuals;
   }
 
-  // Gauss and Newton's steps, as long as they make it better; the sum of squares.
+  // Gauss-Newton steps while they reduce the sum of squares. Returns that sum.
   double Refine(const SideFaces& sides, Parameters* p) const {
     constexpr int kMaxSteps = 8;
     constexpr double kStep = 1e-4;
@@ -137,7 +137,7 @@ std::optional<CuboidFit> FitCuboid(const CuboidSilhouette& silhouette) {
   if (seen < kExtents / 2) return std::nullopt;
   const double half = silhouette.half_side.value_or(0.7 * fit.MeanReach());
   if (!(half > 0)) return std::nullopt;
-  // Of every choice of the side faces that can be seen the best direction is refined.
+  // For each set of coloured side faces that can be visible, refines the best start direction.
   double best_sum = std::numeric_limits<double>::infinity();
   Parameters best = Parameters::Zero();
   for (int choice = 0; choice < 16; ++choice) {

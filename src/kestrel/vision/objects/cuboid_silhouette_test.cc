@@ -11,7 +11,8 @@ namespace kestrel {
 namespace {
 
 constexpr double kHalf = 0.02;
-constexpr double kShrinking = 1 / (1 + 2 * kHalf);  // of the lower face: as high as wide
+constexpr double kShrinking = 1 / (1 + 2 * kHalf);  // of the lower face; the cuboid is as high as
+                                                    // wide
 const Eigen::Vector2d kTopCenter(0.5, -0.3);
 
 std::vector<Eigen::Vector2d> UpperFace(double yaw) {
@@ -29,7 +30,7 @@ std::vector<Eigen::Vector2d> WithLowerFace(std::vector<Eigen::Vector2d> corners)
   return corners;
 }
 
-// The largest distance of a corner from the nearest of the fit, in half sides.
+// Largest distance of a corner from the nearest fitted corner, in half sides.
 double CornerError(const CuboidFit& fit, double yaw) {
   double largest = 0;
   for (const Eigen::Vector2d& corner : UpperFace(yaw)) {

@@ -117,7 +117,7 @@ double DigitClassifier::LogLikelihood(const DigitImage& image, int figure) const
 }
 
 DigitLikelihoods DigitClassifier::Classify(const DigitViews& views) const {
-  // Neighbouring pixels say the same: about ten of them are worth one.
+  // Neighbouring pixels are correlated: ten count as one.
   constexpr double kIndependentShare = 0.1;
   DigitLikelihoods log_likelihoods;
   log_likelihoods.fill(-std::numeric_limits<double>::infinity());
@@ -127,7 +127,8 @@ DigitLikelihoods DigitClassifier::Classify(const DigitViews& views) const {
       best = std::max(best, kIndependentShare * LogLikelihood(view, figure));
     }
   }
-  // What tells one from the other in a few pixels is chance, which would add up in a map.
+  // A few pixels that differ between 6 and 9 differ by chance. In a map such chance would
+  // accumulate.
   log_likelihoods[6] = log_likelihoods[9] = std::max(log_likelihoods[6], log_likelihoods[9]);
   const double best = *std::max_element(log_likelihoods.begin(), log_likelihoods.end());
   double total = 0;
@@ -138,7 +139,7 @@ DigitLikelihoods DigitClassifier::Classify(const DigitViews& views) const {
 
 DigitModel DigitTrainer::Model() const {
   constexpr int kRounds = 20;
-  std::array<std::vector<int>, kDigitCount> figures;  // of the images
+  std::array<std::vector<int>, kDigitCount> figures;  // index of each image's figure
   for (int digit = 0; digit < kDigitCount; ++digit) {
     const std::size_t count = images_[digit].size();
     for (std::size_t i = 0; i < count; ++i) {

@@ -12,7 +12,7 @@ namespace kestrel {
 namespace {
 
 constexpr int kFaceSide = 48;
-constexpr int kMargin = 4;  // where the ground shines in
+constexpr int kMargin = 4;  // where the ground may shine in
 using FaceImage = std::array<std::uint8_t, kFaceSide * kFaceSide>;
 
 // Maps (0, 0), (1, 0), (1, 1), (0, 1) to the corners.
@@ -60,7 +60,7 @@ FaceImage MapFace(const cv::Mat& image, const FaceCorners& corners) {
   return face;
 }
 
-// The bright pixels: what tells them from the paint, their middle and their covariance.
+// The bright pixels: threshold and contrast against the paint, centroid and covariance.
 struct Figure {
   double threshold;
   double contrast;
@@ -100,7 +100,7 @@ std::optional<Figure> FindFigure(const FaceImage& face) {
                 squares / count - middle * middle.transpose()};
 }
 
-// How much of the figure there is at a point of the face, 0 to 1.
+// Returns the share of the figure in a point of the face, 0 to 1.
 float ShareAt(const FaceImage& face, const Figure& figure, const Eigen::Vector2d& at) {
   const double edge = 0.5 * kMargin;
   if (at.minCoeff() < edge || at.maxCoeff() >= kFaceSide - 1 - edge) return 0;
@@ -116,9 +116,9 @@ float ShareAt(const FaceImage& face, const Figure& figure, const Eigen::Vector2d
   return static_cast<float>(std::clamp(share, 0.0, 1.0));
 }
 
-// The figure with its foot where 'down' points to.
+// Returns the figure with its foot in the direction of 'down'.
 DigitImage ViewFigure(const FaceImage& face, const Figure& figure, const Eigen::Vector2d& down) {
-  // The image reaches this many radii from the figure's middle: a digit fits in.
+  // Half the side of the image, in radii of the figure: a digit fits in.
   constexpr double kRadiiShown = 1.8;
   constexpr double kMaxSlant = 0.5;
   constexpr double kMinVariance = 0.5;
@@ -128,7 +128,7 @@ DigitImage ViewFigure(const FaceImage& face, const Figure& figure, const Eigen::
   const double slant = std::clamp(lean / height, -kMaxSlant, kMaxSlant);
   const double width = std::max(
       kMinVariance, right.dot(figure.covariance * right) - slant * (2 * lean - slant * height));
-  // As wide as high, for fonts are narrow and wide.
+  // As wide as high, because fonts are narrow or wide.
   const double step = 2 * kRadiiShown * std::sqrt(width + height) / kDigitSide;
   const double stretch = std::pow(width / height, 0.25);
   DigitImage digit;

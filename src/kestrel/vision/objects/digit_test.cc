@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From a painted cuboid to its digit: cuboid_face, digit_image, digit_classifier, otsu.
+// From a painted cuboid to its digit: tests of cuboid_face, digit_image, digit_classifier and otsu.
 #include <algorithm>
 #include <cmath>
 
@@ -100,7 +100,7 @@ TEST(Digits, AreReadInEveryOrientation) {
       const DigitLikelihoods likelihoods = classifier.Classify(*image);
       const auto best = std::max_element(likelihoods.begin(), likelihoods.end());
       const int found = static_cast<int>(best - likelihoods.begin());
-      // A 6 that is upside down is a 9.
+      // A 6 upside down is a 9.
       EXPECT_EQ(found == 9 ? 6 : found, digit == 9 ? 6 : digit) << quarter;
     }
   }
@@ -108,7 +108,7 @@ TEST(Digits, AreReadInEveryOrientation) {
 
 TEST(CutOutDigit, ItalicsStandUpright) {
   const CuboidView view = DrawCuboid("4", 0.2);
-  CuboidView slanted = view;  // a face that is a parallelogram shows what is slanted on a square
+  CuboidView slanted = view;  // a square figure appears slanted on a face that is a parallelogram
   const cv::Matx23d shear(1, -0.25, 0.25 * 55, 0, 1, 0);
   cv::warpAffine(view.image, slanted.image, shear, view.image.size());
   const auto upright = CutOutDigit(view.image, view.corners);

@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-// Length of the chord that the cone cuts out of the line ray + t * direction.
+// Length of the chord that the cone cuts from the line ray + t * direction.
 double ChordLength(const Cone& cone, const Eigen::Vector3d& ray, const Eigen::Vector3d& direction) {
   const double a = direction.dot(cone.matrix * direction);
   const double b = direction.dot(cone.matrix * ray);

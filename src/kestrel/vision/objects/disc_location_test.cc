@@ -14,8 +14,8 @@ const Eigen::Vector3d kCenter(0.8, -0.4, 5);
 const Eigen::Vector3d kUp = Eigen::Vector3d(0.2, 0.1, -1).normalized();
 const Eigen::Vector3d kAlongRow = Eigen::Vector3d::UnitX();
 
-// The cone of the disc's image after a shear along the rows and a stretch of the columns, as a
-// rolling shutter makes them: rays (x, y, 1) become (x + shear y, stretch y, 1).
+// Cone of the disc's image after a shear along the rows and a stretch of the columns, as by a
+// rolling shutter: rays (x, y, 1) become (x + shear y, stretch y, 1).
 Cone Distorted(const Cone& cone, double shear, double stretch) {
   Eigen::Matrix3d undo = Eigen::Matrix3d::Identity();
   undo(0, 1) = -shear / stretch;

@@ -14,7 +14,7 @@
 namespace kestrel {
 namespace {
 
-constexpr int kEdgeDirections = 32;  // in which the edge is looked for
+constexpr int kEdgeDirections = 32;  // directions in which the edge is searched
 
 // Angle between a ray and the cone, to first order (Sampson's distance), rad; negative inside.
 double DistanceToCone(const Cone& cone, const Eigen::Vector3d& ray) {
@@ -39,9 +39,9 @@ double MedianDistance(DiscOutlineWorkspace* workspace) {
   return *middle;
 }
 
-// Takes out the rays that are further than the limit from the cone; true when there were any. What
-// hides a part of a disc leaves an edge inside of its outline, which also draws the fit inwards:
-// what is outside is forgiven more.
+// Removes the rays farther than the limit from the cone. True when there were any. An object that
+// hides a part of a disc makes an edge inside of its outline, which also draws the fit inwards; the
+// limit is therefore larger outside.
 bool DropOutliers(double limit_px, DiscOutlineWorkspace* workspace) {
   auto& rays = workspace->rays;
   auto& points = workspace->points;
@@ -60,15 +60,16 @@ bool DropOutliers(double limit_px, DiscOutlineWorkspace* workspace) {
   return dropped;
 }
 
-// Blur of deviation s moves the place of half the light of a disc of radius r inwards, by
-// s^2 / (2 r): more of the disc's surroundings than of the disc lies around a point of its edge.
+// Blur of standard deviation s moves the half-way point of the light of a disc of radius r inwards
+// by s^2 / (2 r), because more of the surroundings than of the disc lies around a point of its
+// edge.
 double CurvatureShift(double blur_px, double radius_px) {
   constexpr double kMaxBlurPx = 2;
   const double blur = std::min(blur_px, kMaxBlurPx);
   return blur * blur / (2 * radius_px);
 }
 
-// The ellipse that a cone cuts out of the plane z = 1.
+// Returns the ellipse in which a cone meets the plane z = 1.
 std::optional<Ellipse> CutWithPlane(const Eigen::Matrix3d& conic) {
   const Eigen::Matrix2d a = conic.topLeftCorner<2, 2>();
   if (!(a.determinant() > 0)) return std::nullopt;
@@ -82,11 +83,11 @@ std::optional<Ellipse> CutWithPlane(const Eigen::Matrix3d& conic) {
   return EllipseFromMoments(moments);
 }
 
-// What became of a direction in which the edge was looked for.
+// Result of the edge search in one direction.
 enum class Direction { kHidden, kOutside, kFits };
 using EdgeDirections = std::array<Direction, kEdgeDirections>;
 
-// The longest row of hidden directions around the circle.
+// Returns the length of the longest run of hidden directions around the circle.
 int LargestGap(const EdgeDirections& directions) {
   int largest = 0;
   int run = 0;
@@ -101,7 +102,7 @@ std::optional<DiscOutline> FitOnce(const cv::Mat& image, const RayTable& rays, d
                                    const Ellipse& start, DiscOutlineWorkspace* workspace) {
   constexpr int kMaxRounds = 6;
   constexpr double kMinLimitPx = 0.5;
-  constexpr double kMinLimitShare = 0.015;  // of the radius: no disc is cut to perfection
+  constexpr double kMinLimitShare = 0.015;  // of the radius; no disc is cut perfectly
   const double radius_px = std::sqrt(start.semi_major * start.semi_minor);
   workspace->rays.clear();
   workspace->points.clear();
@@ -151,7 +152,7 @@ std::optional<DiscOutline> FitDiscOutline(const cv::Mat& image, const RayTable& 
                                           double focal_px, const Ellipse& start,
                                           DiscOutlineWorkspace* workspace) {
   std::optional<DiscOutline> outline = FitOnce(image, rays, focal_px, start, workspace);
-  // Of a disc that is not seen as a whole the start was not right: once more from the fit.
+  // For a disc not entirely in view the start was inaccurate: fits again from the result.
   if (!outline || outline->gap + outline->outside == 0) return outline;
   const std::optional<Ellipse> better = EllipseThrough(workspace->points);
   if (!better) return outline;
@@ -160,7 +161,7 @@ std::optional<DiscOutline> FitDiscOutline(const cv::Mat& image, const RayTable& 
 }
 
 std::optional<Ellipse> EllipseThrough(std::span<const Eigen::Vector2d> points) {
-  // A plane of pixels, as if a camera saw it: FitCone fits in such a plane.
+  // A plane of pixels as if seen by a camera, because FitCone works on rays.
   constexpr std::size_t kMaxPoints = 512;
   if (points.empty()) return std::nullopt;
   Eigen::Vector2d min = points.front();

@@ -10,33 +10,34 @@
 
 namespace kestrel {
 
-// The ground as the camera sees it, as far as attitude and height are known (paper, section 3.5.3:
+// The ground in the camera frame, as far as attitude and height are known (paper, section 3.5.3:
 // "objects that are not close to the ground are discarded").
 struct GroundPlane {
   std::optional<Eigen::Vector3d> up_in_camera;
   std::optional<double> camera_height_m;
-  double height_sigma_m = 0;  // standard deviations of both, and of the ground's flatness
+  double height_sigma_m = 0;  // standard deviation of the height, with the ground's unevenness
   double up_sigma_rad = 0;
 
   bool is_known() const { return up_in_camera && camera_height_m; }
 
-  // The distance, nearest to 'distance', at which a point 'min_height' to 'max_height' above the
-  // ground lies on the line of sight 'ray' (unit). Nothing when the ground is not known, or the ray
-  // does not meet it.
+  // Returns the distance nearest to 'distance' at which a point 'min_height' to 'max_height' (m)
+  // above the ground lies on the line of sight 'ray' (unit vector). Nothing when the ground is not
+  // known or the ray does not meet it.
   std::optional<double> DistanceNear(const Eigen::Vector3d& ray, double distance, double min_height,
                                      double max_height) const;
 
-  // Standard deviation of such a distance, m.
+  // Returns the standard deviation of such a distance, m.
   double DistanceSigma(const Eigen::Vector3d& ray, double distance) const;
 };
 
-// Coordinates on the horizontal plane at unit distance below the camera: the origin is right below
-// it, and seen from above x turns to y as in an image.
+// Coordinates on the horizontal plane at unit distance below the camera. The origin is directly
+// below the camera. Seen from above, x turns to y as in an image.
 class PlaneBelow {
  public:
   explicit PlaneBelow(const Eigen::Vector3d& up);
 
-  // Where a ray meets the plane; rays that descend by less than 3 degrees are taken to do so.
+  // Intersection of a ray with the plane. A ray that descends by less than 3 degrees is treated as
+  // if it descended by 3 degrees.
   Eigen::Vector2d PointOf(const Eigen::Vector3d& ray) const;
   Eigen::Vector3d RayTo(const Eigen::Vector2d& point) const;  // not a unit vector
 
@@ -46,21 +47,22 @@ class PlaneBelow {
   Eigen::Vector3d y_axis_;
 };
 
-// Whether 'cone' may be the image of a horizontal disc at 'distance' along 'ray': both opening
-// angles within the tolerance (share) and 'slack' (rad).
+// True when 'cone' may be the image of a horizontal disc at 'distance' along 'ray': both opening
+// angles agree within the tolerance (a share) plus 'slack' (rad).
 bool LooksLikeDisc(const Cone& cone, const Eigen::Vector3d& ray, double distance,
                    const Eigen::Vector3d& up, double radius, double tolerance, double slack);
 
-// A rectangle on a plane, scaled to be at unit distance from the camera: centre, and the lengths of
-// its sides 0-1 and 1-2 (means of both pairs).
+// A rectangle on a plane at unit distance from the camera: its centre, and the lengths of its sides
+// 0-1 and 1-2 (means of both opposite sides).
 struct PlaneRectangle {
   Eigen::Vector3d center;
   Eigen::Vector2d sides;
-  double skew;  // difference of the diagonals by their mean
+  double skew;  // difference of the diagonals divided by their mean
 };
 
-// Where the rays through four corners, in the order of a walk around, meet the plane with the unit
-// normal 'up' at unit distance below the camera. Nothing when one does not.
+// Intersects the rays through four corners, in order around the rectangle, with the plane at unit
+// distance below the camera that has the unit normal 'up'. Returns nothing when a ray does not meet
+// it.
 std::optional<PlaneRectangle> RectangleOnPlane(const std::array<Eigen::Vector3d, 4>& rays,
                                                const Eigen::Vector3d& up);
 

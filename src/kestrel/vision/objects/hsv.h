@@ -13,7 +13,7 @@ struct Hsv {
   float value = 0;
 };
 
-// From 8-bit channels, which need not be whole; gray has the hue 0.
+// Converts 8-bit channels, which need not be integers. Gray has the hue 0.
 inline Hsv HsvFromBgr(float b, float g, float r) {
   const float max = std::max({b, g, r});
   const float range = max - std::min({b, g, r});
@@ -30,7 +30,7 @@ inline Hsv HsvFromBgr(float b, float g, float r) {
   return hsv;
 }
 
-// The shorter way around the circle from 'to' to 'from', degrees, -180 to 180.
+// Returns 'from' minus 'to' the shorter way around the circle, degrees, -180 to 180.
 inline float HueDifference(float from, float to) { return std::remainder(from - to, 360.0F); }
 
 }  // namespace kestrel

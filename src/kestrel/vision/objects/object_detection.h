@@ -19,15 +19,15 @@ namespace kestrel {
 
 enum class Completeness {
   kWhole,
-  kCutOff,  // by the image's border: a disc of which at least a half is in view
+  kCutOff,  // by the image border; a disc of which at least half is in view
   kMerged,  // discs of one colour that touch each other
 };
 const char* ToString(Completeness completeness);  // "whole", "cut off", "merged"
 
-// Probability of each of the model's colours, in their order; the rest to 1 is background.
+// Probability of each of the model's colours, in their order. The rest to 1 is background.
 using ColorProbabilities = std::array<double, ColorModel::kMaxColors>;
 
-// How high the camera is above the ground, by nothing but the size of an object that lies on it.
+// Height of the camera above the ground, from the size of an object on it alone.
 struct HeightBySize {
   double camera_height_m = 0;
   double sigma_m = 0;  // standard deviation
@@ -35,41 +35,41 @@ struct HeightBySize {
 
 // One object in one image.
 struct ObjectDetection {
-  std::size_t class_index = 0;  // in the model's classes
+  std::size_t class_index = 0;  // index in the model's classes
   Completeness completeness = Completeness::kWhole;
-  // Where the object's origin appears: the centre of a disc or of the upper face (px). Of merged
-  // discs the centroid of what is seen.
+  // Image of the object's origin: the centre of a disc or of an upper face (px). For merged discs,
+  // the centroid of the segment.
   Eigen::Vector2d center_px = Eigen::Vector2d::Zero();
   Eigen::Vector3d bearing = Eigen::Vector3d::UnitZ();  // unit ray through it, camera frame
-  Ellipse ellipse;                                     // by the pixels' moments
+  Ellipse ellipse;                                     // from the pixels' moments
   double roundness = 0;                                // see SegmentShape
   double circularity = 0;
   int pixels = 0;
-  // The shares of the tolerances of its shape that it uses up, squared and added: 0 is perfect, 98
-  // of 100 objects have less than 0.5. The size has no part in it.
+  // Sum of the squared shares of its shape's tolerances that the object uses up. 0 is perfect; 98
+  // of 100 objects have less than 0.5. The size does not count.
   double misfit = 0;
   Hsv mean_color;
   ColorProbabilities color_probabilities{};
-  double class_probability = 0;            // of the class, given the colour and the shape
-  std::optional<DigitLikelihoods> digits;  // of cuboids
+  double class_probability = 0;            // of the class, given colour and shape
+  std::optional<DigitLikelihoods> digits;  // of cuboids only
   std::optional<ObjectLocation> location;  // camera frame; not of merged discs
   std::optional<HeightBySize> height;      // where the attitude is known; not of merged discs
 };
 
-// Tests that a segment passes one after the other, and that are counted (paper, Table 3).
+// The tests of a segment, in order, for which the report counts passes (paper, Table 3).
 enum class ObjectStage { kSegmented, kSize, kRoundness, kShape, kOutline, kPosition };
 inline constexpr std::size_t kObjectStageCount = 6;
 const char* ToString(ObjectStage stage);
 
-// What one image showed.
+// The result of one image.
 struct ObjectReport {
   std::vector<ObjectDetection> detections;
-  // What has the shape of an object but by its size is not on the ground where the hint has it,
-  // located by its size alone: it is no object, or the ground is elsewhere.
+  // Objects by their shape that, by their size, are not on the ground as the hint describes it;
+  // located by their size alone. Either they are no objects, or the ground is elsewhere.
   std::vector<ObjectDetection> elsewhere;
-  // How many segments passed each stage; kSegmented counts them all.
+  // Number of segments that passed each stage; kSegmented counts all segments.
   std::array<int, kObjectStageCount> passed{};
-  // Time of the search and flood fill, and of the tests of shape, outline, digit and position.
+  // Time of search and flood fill, and time of the tests of shape, outline, digit and position.
   Duration segmentation_time{};
   Duration test_time{};
 };

@@ -13,7 +13,7 @@
 namespace kestrel {
 namespace {
 
-// Room for the detections of a frame, so that a report seldom grows.
+// Initial room for a frame's detections, so that a report seldom grows.
 constexpr std::size_t kUsualDetections = 64;
 
 const CameraModel& Checked(const CameraModel& camera) {
@@ -103,7 +103,7 @@ void ObjectDetector::Detect(const cv::Mat& image, const ObjectHint& hint,
     *time += now - last;
     last = now;
   };
-  // Counts the small ones without the clock, which would take longer than they do.
+  // Small segments are counted without reading the clock, which would take longer than the count.
   const auto examine = [&] {
     if (static_cast<int>(segment.pixels.size()) < options_.min_pixels) return examiner.Run(segment);
     if (has_digit_[segment.label]) search.JoinAmbiguous(&segment);

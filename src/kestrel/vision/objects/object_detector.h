@@ -23,32 +23,34 @@
 namespace kestrel {
 
 struct ObjectDetectorOptions {
-  // Segments of fewer pixels are noise. Sets how closely the image is searched, see SearchStep.
+  // Segments of fewer pixels are noise. Also determines the step of the search, see SearchStep.
   int min_pixels = 30;
-  // Largest |roundness - 1| (paper, eq. 7). An ellipse of axes 3 : 1 that lies oblique has 0.7.
+  // Largest |roundness - 1| (paper, eq. 7). An oblique ellipse with axes 3 : 1 has 0.7.
   double max_roundness_error = 1.2;
-  // Largest |circularity - 1| of a disc (paper, eq. 12). A square has 0.05, but a disc of 50 px,
-  // half of it in a shadow, has as much: squares are told apart by their outline.
+  // Largest |circularity - 1| of a disc (paper, eq. 12). A square has 0.05, and so does a disc of
+  // 50 px half in a shadow. Squares are therefore distinguished by their outline.
   double max_circularity_error = 0.07;
-  // How far the edge points of a disc may lie from their cone (root of the mean square): share of
-  // the shorter semi-axis, and what blur and noise add. Those of a square lie 0.075 of it away.
+  // Largest root mean square distance of a disc's edge points from their cone: a share of the
+  // shorter semi-axis, plus an allowance for blur and noise. The points of a square lie 0.075 of it
+  // away.
   double outline_tolerance = 0.03;
   double outline_tolerance_px = 0.3;
-  // Longest part of a disc's outline that something may hide, of a whole disc and of one that the
-  // image's border cuts off, the share that may lie outside of the image, and the share of the rest
-  // that must fit. A polygon does not fit at its corners, which are all around.
+  // Largest share of a disc's outline that one object may hide, for a whole disc and for one that
+  // the image border cuts off; largest share that may be out of view; least share of the rest that
+  // must fit. A polygon does not fit at its corners, which lie all around.
   double max_gap = 0.35;
   double max_cut_off_gap = 0.1;
   double max_outside = 0.5;
   double min_outline_share = 0.7;
-  // With known attitude and height: how far an object's distance, and the axes of its image, may be
-  // from those of an object on the ground. Shares, and metres that are always forgiven.
+  // With known attitude and height: tolerance of an object's distance, and of the axes of its
+  // image, against those of an object on the ground. A share plus a constant in metres.
   double ground_tolerance = 0.22;
   double ground_tolerance_m = 0.15;
-  // Standard deviations of a location: across the line of sight (px), and of the radius seen (px).
+  // Standard deviations of a location: across the line of sight (px), and of the radius in the
+  // image (px).
   double center_sigma_px = 0.3;
   double radius_sigma_px = 0.15;
-  // Mode `track`: how far from its last place an object is looked for.
+  // Mode `track`: radius of the search around an object's expected position.
   int track_radius_px = 60;
 
   template <class Self, class Visitor>
@@ -77,47 +79,47 @@ struct ObjectDetectorOptions {
   std::vector<std::string> Validate() const;
 };
 
-// An object to be followed: where it should be in the image.
+// An object to be followed, with its expected position in the image.
 struct TrackedObject {
   Eigen::Vector2d expected_px = Eigen::Vector2d::Zero();
   std::size_t class_index = 0;
 };
 
-// What is known before the image is looked at. Nothing of it is needed. An object whose size says
-// that it is not on the ground is reported apart, see ObjectReport::elsewhere.
+// Prior knowledge about an image. Everything is optional. An object whose size contradicts its
+// position on the ground is reported in ObjectReport::elsewhere.
 struct ObjectHint {
-  // Mode `track` when there are any: only these are looked for, around where they should be.
+  // If not empty, mode `track`: only these objects are searched, around their expected positions.
   std::span<const TrackedObject> track;
   std::optional<Eigen::Vector3d> up_in_camera;  // unit vector, upwards
-  std::optional<double> camera_height_m;        // above the ground; used together with 'up'
-  // Standard deviations of 'up' (rad) and of the height with the ground's own unevenness (m): what
-  // the height says of an object's distance is weighed against what its size says.
+  std::optional<double> camera_height_m;  // above the ground, m; used together with 'up_in_camera'
+  // Standard deviations of 'up_in_camera' (rad) and of the height including the ground's unevenness
+  // (m). They weigh the distance by height against the distance by size.
   double up_sigma_rad = 0.02;
   double height_sigma_m = 0.1;
 };
 
-// Memory of ObjectDetector::Detect; keeps its size from frame to frame.
+// Memory of ObjectDetector::Detect. It keeps its size from frame to frame.
 struct ObjectWorkspace {
   SegmentationWorkspace segmentation;
   DiscOutlineWorkspace outline;
   CuboidFaceWorkspace face;
   SegmentBorder border;
-  std::vector<Eigen::Vector2d> inside;  // of the segment's pixels, on the ground
+  std::vector<Eigen::Vector2d> inside;  // pixels of the segment, on the ground
 };
 
 // Finds the configured objects in a colour image of a camera that looks down (paper, section 3).
-// Immutable and thread-safe, with a workspace and a report for every thread.
+// Immutable and thread-safe, with a workspace and a report for each thread.
 class ObjectDetector {
  public:
-  // Throws InputError when the model or the options are not valid, or the image is too large.
+  // Throws InputError when the model or the options are invalid, or the image is too large.
   ObjectDetector(const CameraModel& camera, const ObjectModel& model,
                  const ObjectDetectorOptions& options = {});
-  // With a grid that need not be the model's own (edited, or the authors').
+  // Uses a grid that may differ from the model's own (edited, or from the authors).
   ObjectDetector(const CameraModel& camera, const ObjectModel& model, const ColorGrid& grid,
                  const ObjectDetectorOptions& options = {});
 
-  // 'image': CV_8UC3 of the camera's size. Overwrites the report; neither throws nor, once
-  // workspace and report have their size, allocates.
+  // Searches one image. 'image': CV_8UC3 of the camera's size. Overwrites the report. Does not
+  // throw, and does not allocate once workspace and report have their size.
   void Detect(const cv::Mat& image, const ObjectHint& hint, ObjectWorkspace& workspace,
               ObjectReport* report) const;
 
@@ -137,7 +139,7 @@ class ObjectDetector {
   DigitClassifier digits_;
   double focal_px_;
   int search_step_;
-  // By label: whether a class of this colour is a cuboid, whose digit is white.
+  // By label: true when a class of this colour is a cuboid, which has a white digit.
   std::array<bool, 256> has_digit_{};
 };
 

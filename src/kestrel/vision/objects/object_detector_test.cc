@@ -23,7 +23,7 @@ class ObjectDetectorTest : public ::testing::Test {
   std::vector<ObjectDetection> DetectOnGround(const ObjectScene& scene) {
     return Detect(scene, {{}, scene.up(), scene.height_m()});
   }
-  // Without those that may be several discs.
+  // Detections without merged discs.
   std::vector<ObjectDetection> DetectSingle(const ObjectScene& scene, const ObjectHint& hint) {
     std::vector<ObjectDetection> detections = Detect(scene, hint);
     std::erase_if(detections, [](const ObjectDetection& detection) {
@@ -96,7 +96,7 @@ TEST_F(ObjectDetectorTest, InsideOfALetterOnABannerIsNoDisc) {
   ObjectScene banner;
   banner.DrawRectangle(banner.PointUnder({400, 240}, 0), 8, 0.8, 0, kBluePaint);
   draw_letter({150, 240}, &banner);
-  draw_letter({634, 240}, &banner);  // half of it in view
+  draw_letter({634, 240}, &banner);  // half in view
   EXPECT_THAT(DetectSingle(banner, {{}, banner.up(), banner.height_m()}), IsEmpty());
   ObjectScene ground;
   draw_letter({150, 240}, &ground);

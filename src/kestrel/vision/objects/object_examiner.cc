@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-// What a colour that is none of the model's would have as its density: even over the colours.
+// Log density of a colour that is none of the model's: uniform over the colours.
 constexpr double kBackgroundLogDensity = -8;
 
 // Naive Bayes with equal priors (paper, section 3.6 for scores, 3.2 for colours).
@@ -29,7 +29,7 @@ ColorProbabilities ProbabilitiesOf(const ColorModel& model, const Hsv& color) {
   return probabilities;
 }
 
-// Share of the ellipse's pixels in the image that are the segment's.
+// Returns the share of the ellipse's pixels in the image that belong to the segment.
 double FilledShare(const Segment& segment, const Ellipse& ellipse, const cv::Size& image) {
   const Eigen::Vector2d along = ellipse.major_axis() / ellipse.semi_major;
   const Eigen::Vector2d across = ellipse.minor_axis() / ellipse.semi_minor;
@@ -150,10 +150,10 @@ ObjectExaminer::Outcome ObjectExaminer::TestDisc(const Segment& segment, const S
   }
   const auto ellipse = EllipseThrough(workspace_->outline.points);
   if (!ellipse || IsHole(*ellipse, segment.label)) return Outcome::kNone;
-  // A ring: gray is ambiguous for the sake of digits, its hole may be part of the segment.
+  // A ring: gray is ambiguous for the sake of digits, so its hole may be part of the segment.
   if (ColoredShare(*ellipse, 0.4, segment.label) < 0.5) return Outcome::kNone;
   if (segment.touches_border) {
-    // What circularity says of a whole disc.
+    // Replaces the test of circularity of a whole disc.
     constexpr double kMinFill = 0.8;
     if (FilledShare(segment, *ellipse, image_.size()) < kMinFill) return Outcome::kNone;
   }
@@ -165,11 +165,12 @@ ObjectExaminer::Outcome ObjectExaminer::TestDisc(const Segment& segment, const S
   const double distance = position.norm();
   if (!std::isfinite(distance) || !(distance > 0)) return Outcome::kNone;
   detection->misfit = MisfitOfDisc(*outline, radius_px, segment, shape, *ellipse);
-  // A part must look the more like a disc: the corner of a triangle may have an ellipse through it.
+  // A partial disc must look more like a disc: the corner of a triangle may have an ellipse through
+  // it.
   constexpr double kMaxMisfitOfPart = 0.6;
   if (segment.touches_border && detection->misfit > kMaxMisfitOfPart) return Outcome::kNone;
   Outcome outcome = Outcome::kObject;
-  // A part of an outline says less of the distance, and its shape must say more.
+  // A partial outline determines the distance less well, and its shape must fit better.
   const double tolerance = (segment.touches_border ? 0.7 : 1) * options.ground_tolerance;
   const double distance_tolerance = (segment.touches_border ? 1.4 : 1) * options.ground_tolerance;
   if (const auto is_on_ground = IsOnGround(position, object, distance_tolerance)) {
@@ -185,10 +186,10 @@ ObjectExaminer::Outcome ObjectExaminer::TestDisc(const Segment& segment, const S
   }
   if (outcome == Outcome::kObject) *reached = ObjectStage::kPosition;
   if (!hint_.up_in_camera) {
-    // Which way the disc is tilted is not known: its centre is taken for that of the ellipse.
+    // The tilt of the disc is unknown: the centre of the ellipse is taken for that of the disc.
     position = distance * RayAt(ellipse->center);
   }
-  // The less of the outline is seen, the less it says.
+  // The uncertainty grows as less of the outline is seen.
   const double seen = 1 - outline->gap - outline->outside;
   const double less = 1 / (seen * seen);
   SetLocation(position, object, less * options.center_sigma_px,
@@ -204,13 +205,13 @@ std::optional<ColorLabel> ObjectExaminer::LabelAt(const Eigen::Vector2d& pixel) 
 
 bool ObjectExaminer::IsHole(const Ellipse& outline, ColorLabel label) const {
   constexpr int kDirections = 16;
-  // Times the outline: from beyond its blur to beyond the strokes of a letter, and how broad what
-  // has the colour must be. A line is not.
+  // In radii of the outline: search from beyond its blur to beyond the strokes of a letter, and
+  // least width of the coloured area. A line is thinner.
   constexpr double kFirst = 1.3;
   constexpr double kLast = 4;
   constexpr double kMinWidth = 0.3;
   constexpr double kMinWidthPx = 3;
-  constexpr double kMaxShare = 0.5;  // other discs lie around, but not on all sides
+  constexpr double kMaxShare = 0.5;  // other discs may lie around, but not on all sides
   int shown = 0;
   int same = 0;
   for (int i = 0; i < kDirections; ++i) {
@@ -269,7 +270,7 @@ double ObjectExaminer::MisfitOfDisc(const DiscOutline& outline, double radius_px
 
 double ObjectExaminer::ClassProbability(const ObjectClass& object,
                                         const ColorProbabilities& colors) const {
-  double all = 1;  // with what is none of the colours
+  double all = 1;  // including the probability of background
   for (std::size_t i = 0; i < detector_.model_.colors.colors.size(); ++i) {
     const bool has_class = std::ranges::any_of(
         detector_.model_.classes,

@@ -13,22 +13,22 @@
 
 namespace kestrel {
 
-// The tests that a segment of an image goes through on its way to a detection.
+// Runs the tests that turn a segment of an image into a detection.
 class ObjectExaminer {
  public:
   ObjectExaminer(const ObjectDetector& detector, const cv::Mat& image, const ObjectHint& hint,
                  ObjectWorkspace* workspace, ObjectReport* report)
       : detector_(detector), image_(image), hint_(hint), workspace_(workspace), report_(report) {}
 
-  // Adds a detection to the report when the segment is an object of one of the classes; true when
-  // it is where the hint has the ground.
+  // Adds a detection to the report when the segment is an object of one of the classes. True when
+  // the object is on the ground as the hint describes it.
   bool Run(const Segment& segment);
 
  private:
-  // What a segment is when it is tested for a class.
+  // Result of testing a segment for a class.
   enum class Outcome {
     kNone,
-    kElsewhere,  // the object by its shape, but not on the ground where the hint has it
+    kElsewhere,  // an object by its shape, but not on the ground as the hint describes it
     kObject,
   };
 
@@ -38,11 +38,11 @@ class ObjectExaminer {
                    ObjectDetection* detection, ObjectStage* reached);
   Outcome TestCuboid(const Segment& segment, const ObjectClass& object, ObjectDetection* detection,
                      ObjectStage* reached);
-  // Whether a quadrilateral, right to about 2 px, is the upper face of a cuboid.
+  // Tests whether a quadrilateral, right to about 2 px, is the upper face of a cuboid.
   Outcome TestFace(const FaceCorners& found, const ObjectClass& object, ObjectDetection* detection,
                    ObjectStage* reached);
-  // The same for the upper face of a cuboid that is fitted to the whole segment; 'up' must be
-  // known. 'camera_height_m': where it is given, the cuboid has the size that it has on the ground.
+  // The same for the upper face of a cuboid that is fitted to the whole segment. 'up' must be
+  // known. With 'camera_height_m' the cuboid is fitted at its size on the ground.
   Outcome TestSilhouette(const Segment& segment, const ObjectClass& object,
                          std::optional<double> camera_height_m, ObjectDetection* detection,
                          ObjectStage* reached);
@@ -53,35 +53,35 @@ class ObjectExaminer {
                    double reach) const;
   std::array<Eigen::Vector3d, 4> RectangleAround(const Segment& segment,
                                                  const SegmentShape& shape) const;
-  // 'rays': through the corners, in the order of a walk around. Adds to the detection's misfit.
+  // 'rays': through the corners, in order around the face. Adds to the detection's misfit.
   Outcome LocateFace(const std::array<Eigen::Vector3d, 4>& rays, const ObjectClass& object,
                      ObjectDetection* detection) const;
-  // Whether the colour goes on beyond what surrounds the outline: a hole in something larger, like
-  // the inside of a letter on a banner.
+  // True when the colour continues beyond the surroundings of the outline: a hole in something
+  // larger, like the inside of a letter on a banner.
   bool IsHole(const Ellipse& outline, ColorLabel label) const;
   // Label of the nearest pixel; nothing outside of the image.
   std::optional<ColorLabel> LabelAt(const Eigen::Vector2d& pixel) const;
-  // How much of what lies within 'reach' (share of the outline) has the colour.
+  // Share of the pixels within 'reach' (share of the outline) that have the label.
   double ColoredShare(const Ellipse& outline, double reach, ColorLabel label) const;
   double MisfitOfDisc(const DiscOutline& outline, double radius_px, const Segment& segment,
                       const SegmentShape& shape, const Ellipse& ellipse) const;
-  // Whether the segment is discs of a class that touch each other.
+  // Tests whether the segment consists of touching discs of one class.
   bool TestMerged(const Segment& segment, const SegmentShape& shape, ObjectDetection* detection);
   template <class OnPlane>
   std::optional<double> RadiusOfDiscsIn(const Segment& segment, const OnPlane& on_plane,
                                         double pixel);
-  // Of a disc on the ground, on the plane at unit distance below the camera; nothing when the
-  // ground is not known.
+  // Radius of a disc on the ground, on the plane at unit distance below the camera. Nothing when
+  // the ground is not known.
   std::optional<double> RadiusBelow(const ObjectClass& disc) const;
-  // Of the class, given its shape and the probabilities of the colours.
+  // Probability of the class, given its shape and the probabilities of the colours.
   double ClassProbability(const ObjectClass& object, const ColorProbabilities& colors) const;
-  // Whether an object at 'position' by its size is on the ground, to a share 'tolerance' of its
-  // distance; nothing when the ground is not known.
+  // True when an object located by its size at 'position' is on the ground, to a share 'tolerance'
+  // of the distance. Nothing when the ground is not known.
   std::optional<bool> IsOnGround(const Eigen::Vector3d& position, const ObjectClass& object,
                                  double tolerance) const;
   std::optional<double> DistanceOnGround(const Eigen::Vector3d& position,
                                          const ObjectClass& object) const;
-  // 'by_size': where the object is by its size, with 'relative_sigma' of that distance.
+  // 'by_size': location from the object's size, with 'relative_sigma' of its distance.
   void SetLocation(const Eigen::Vector3d& by_size, const ObjectClass& object,
                    double center_sigma_px, double relative_sigma, Outcome outcome,
                    ObjectDetection* detection) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What has corners: cuboids, by their upper face, and bars.
+// Objects with corners: cuboids, by their upper face, and bars.
 #include <algorithm>
 #include <cmath>
 
@@ -22,8 +22,8 @@ ObjectExaminer::Outcome ObjectExaminer::TestCuboid(const Segment& segment,
                                                    const ObjectClass& object,
                                                    ObjectDetection* detection,
                                                    ObjectStage* reached) {
-  // What is white, of all that is seen of a cuboid: its digit, a fiftieth to a third; more where
-  // the paint is bleached.
+  // Share of white pixels in a visible cuboid, those of its digit: a fiftieth to a third, more
+  // where the paint is bleached.
   constexpr double kMinDigitShare = 0.015;
   constexpr double kMaxDigitShare = 0.7;
   const auto pixels = static_cast<double>(segment.pixels.size());
@@ -37,7 +37,7 @@ ObjectExaminer::Outcome ObjectExaminer::TestCuboid(const Segment& segment,
   const Outcome outcome =
       TestSilhouette(segment, object, hint_.camera_height_m, detection, reached);
   if (outcome == Outcome::kObject || !hint_.camera_height_m) return outcome;
-  // The height may be wrong: a cuboid of another size may fit, but then not of the right one.
+  // The told height may be wrong. A cuboid of another size may fit, but it is not on that ground.
   *detection = before;
   const Outcome of_any_size = TestSilhouette(segment, object, std::nullopt, detection, reached);
   return of_any_size == Outcome::kElsewhere ? of_any_size : Outcome::kNone;
@@ -78,7 +78,7 @@ ObjectExaminer::Outcome ObjectExaminer::TestSilhouette(const Segment& segment,
 ObjectExaminer::Outcome ObjectExaminer::TestFace(const FaceCorners& found,
                                                  const ObjectClass& object,
                                                  ObjectDetection* detection, ObjectStage* reached) {
-  // Where the image is blurred the sides' edges may be no square's: the silhouette still is right.
+  // In a blurred image the refined sides may not form a square; the silhouette may still be right.
   Outcome outcome = Outcome::kNone;
   const ObjectDetection before = *detection;
   const std::optional<FaceCorners> refined = RefineCorners(image_, found);
@@ -96,7 +96,7 @@ ObjectExaminer::Outcome ObjectExaminer::TestFace(const FaceCorners& found,
     outcome = located;
     *detection = candidate;
     detection->digits = detector_.digits_.Classify(*digit);
-    detection->completeness = Completeness::kWhole;  // its upper face is
+    detection->completeness = Completeness::kWhole;  // the upper face is whole
     if (outcome == Outcome::kObject) break;
   }
   if (outcome == Outcome::kObject) *reached = ObjectStage::kPosition;
@@ -108,7 +108,7 @@ ObjectExaminer::Outcome ObjectExaminer::TestBar(const Segment& segment, const Se
                                                 ObjectDetection* detection, ObjectStage* reached) {
   constexpr double kMinFill = 0.75;
   constexpr double kMaxAspectFactor = 2;
-  // Of a part of a bar nobody can say where its middle is.
+  // The middle of a partial bar is unknown.
   if (segment.touches_border) return Outcome::kNone;
   const Ellipse& ellipse = shape.ellipse;
   const double box_px = 3 * ellipse.semi_major * ellipse.semi_minor;
@@ -121,12 +121,12 @@ ObjectExaminer::Outcome ObjectExaminer::TestBar(const Segment& segment, const Se
   return outcome;
 }
 
-// How far from 'side', a point on the ground, the colour ends in the direction 'outward', on the
-// average of places up to 'reach' beside it; 0 where no edge is clear.
+// Returns the distance from 'side', a point on the ground, to the end of the colour in the
+// direction 'outward': the mean over places up to 'reach' beside it; 0 where no edge is clear.
 template <class RayTo>
 double ObjectExaminer::EdgeShift(const RayTo& ray_to, const Eigen::Vector2d& side,
                                  const Eigen::Vector2d& outward, double reach) const {
-  constexpr int kPlaces = 4;  // on either hand
+  constexpr int kPlaces = 4;  // on either side
   double sum = 0;
   int count = 0;
   for (int i = -kPlaces; i <= kPlaces; ++i) {
@@ -149,8 +149,8 @@ double ObjectExaminer::EdgeShift(const RayTo& ray_to, const Eigen::Vector2d& sid
   return count > 0 ? sum / count : 0;
 }
 
-// The rectangle around the segment, as it lies on the ground where the attitude is known: the
-// nearer half of a long object is larger in the image, and its centroid is not its middle.
+// Returns the rectangle around the segment, on the ground where the attitude is known: the nearer
+// half of a long object is larger in the image, so its centroid is not its middle.
 std::array<Eigen::Vector3d, 4> ObjectExaminer::RectangleAround(const Segment& segment,
                                                                const SegmentShape& shape) const {
   constexpr double kMinDescent = 0.05;
@@ -175,7 +175,8 @@ std::array<Eigen::Vector3d, 4> ObjectExaminer::RectangleAround(const Segment& se
     at = place(at);
     extent.extend(at);
   }
-  // A shaking camera's rows bend what is long: its middle is where its middle part is.
+  // A shaking camera with a rolling shutter bends long objects, so the middle part gives the
+  // middle.
   const double middle = extent.center().x();
   const double reach = kMiddlePart / 2 * extent.sizes().x();
   Eigen::AlignedBox2d middle_part;
@@ -220,7 +221,7 @@ ObjectExaminer::Outcome ObjectExaminer::LocateFace(const std::array<Eigen::Vecto
   const auto face = RectangleOnPlane(rays, up);
   if (!face || !(face->sides.minCoeff() > 0)) return Outcome::kNone;
   const double side_ratio = face->sides.maxCoeff() / face->sides.minCoeff();
-  // Not seen from above, a square may be any parallelogram.
+  // Without the attitude a square may appear as any parallelogram.
   if (!is_bar && hint_.up_in_camera && (face->skew > kMaxSkew || side_ratio > kMaxSideRatio)) {
     return Outcome::kNone;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Discs of one colour that touch each other: one segment, and several objects.
+// Touching discs of one colour: one segment, several objects.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,7 +15,7 @@ bool ObjectExaminer::TestMerged(const Segment& segment, const SegmentShape& shap
                                 ObjectDetection* detection) {
   constexpr double kMaxCircularityError = 0.4;  // three discs in a row have 0.35
   constexpr double kMaxAspect = 4;              // three discs in a row have 3
-  constexpr double kMinCount = 1.5;             // two that seem to overlap
+  constexpr double kMinCount = 1.5;             // two discs that seem to overlap
   constexpr double kMaxCount = 9;
   if (segment.touches_border || std::abs(shape.circularity - 1) > kMaxCircularityError ||
       shape.ellipse.semi_major > kMaxAspect * shape.ellipse.semi_minor) {

@@ -14,7 +14,7 @@ void Extend(int x, Eigen::Vector2i* extent) {
   *extent = {std::min(extent->x(), x), std::max(extent->y(), x)};
 }
 
-// Calls 'visit' with the outermost pixels of the rows and of the columns, and which way is outward.
+// Calls 'visit' with the outermost pixels of each row and column and the outward direction.
 template <class Visit>
 void VisitEnds(const Segment& segment, std::vector<Eigen::Vector2i>* extents, const Visit& visit) {
   const int height = segment.height();
@@ -60,7 +60,8 @@ void FindBorderPixels(const Segment& segment, SegmentBorder* border) {
 }
 
 void AddDiagonalEnds(const Segment& segment, SegmentBorder* border) {
-  // Along a falling diagonal u - v stays and u + v grows, along a rising one the other way round.
+  // Along a falling diagonal u - v is constant and u + v grows; along a rising one it is the
+  // reverse.
   const int count = segment.width() + segment.height();
   const int first_sum = segment.min_u + segment.min_v;
   const int first_difference = segment.min_u - segment.max_v;

@@ -10,22 +10,22 @@
 
 namespace kestrel {
 
-// Points on the border of a segment (px): of each row and column the outermost pixels, half a pixel
-// further out.
+// Points on the border of a segment (px): the outermost pixels of each row and column, moved
+// outwards by half a pixel.
 struct SegmentBorder {
   std::vector<Eigen::Vector2d> points;
-  std::vector<Eigen::Vector2d> cut;  // where it is the border of the image that ends the segment
-  std::vector<Eigen::Vector2i> extents;  // memory: first and last of the rows, then of the columns
+  std::vector<Eigen::Vector2d> cut;      // points where the image border ends the segment
+  std::vector<Eigen::Vector2i> extents;  // memory: first and last of each row, then of each column
 };
 
-// Overwrites 'border'; allocates only for segments that are larger than any before.
+// Overwrites 'border'. Allocates only for segments larger than any before.
 void FindBorder(const Segment& segment, const cv::Size& image_size, SegmentBorder* border);
 
-// The same, but the pixels themselves, and all in 'points'.
+// The same for the centres of the border pixels, with all of them in 'points'.
 void FindBorderPixels(const Segment& segment, SegmentBorder* border);
 
-// Adds the ends of the diagonals to 'points': what rows and columns do not see into, like the notch
-// between two discs one of which is up and to the right of the other.
+// Adds the ends of the diagonals to 'points'. Rows and columns miss some notches, like that between
+// two discs of which one is up and to the right of the other.
 void AddDiagonalEnds(const Segment& segment, SegmentBorder* border);
 
 }  // namespace kestrel

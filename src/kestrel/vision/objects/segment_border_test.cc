@@ -41,7 +41,7 @@ TEST(FindBorder, GivesTheEndsOfRowsAndColumnsHalfAPixelFurtherOut) {
 
 TEST(FindBorder, TellsTheImagesBorderApart) {
   const SegmentBorder border = BorderOfRectangle(0, 12, 4, 14);
-  EXPECT_EQ(border.cut.size(), 3 + 2 * 2);  // left ends, and the columns beside the border
+  EXPECT_EQ(border.cut.size(), 3 + 2 * 2);  // left ends, and the columns at the border
   for (const Eigen::Vector2d& point : border.points) EXPECT_GT(point.x(), 1);
 }
 

@@ -22,7 +22,7 @@ SegmentShape MeasureShape(const cv::Mat& image, const Segment& segment) {
   const std::size_t colored = segment.pixels.size() - segment.ambiguous_pixels;
   for (std::size_t i = 0; i < segment.pixels.size(); ++i) {
     const PixelPosition& at = segment.pixels[i];
-    // From the corner of the bounding box, or the squares lose the last digits.
+    // Relative to the corner of the bounding box, to keep the precision of the squares.
     const std::int64_t u = at.u - segment.min_u;
     const std::int64_t v = at.v - segment.min_v;
     u_sum += u;

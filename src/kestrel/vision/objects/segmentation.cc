@@ -85,8 +85,8 @@ void SegmentSearch::Push(int u, int v, ColorLabel label, int* end) {
   workspace_->queue_[(*end)++] = {static_cast<std::int16_t>(u), static_cast<std::int16_t>(v)};
 }
 
-// Algorithm 3: a queue with two pointers; what is between them is still to be looked around from,
-// and at the end all of it is the segment.
+// Algorithm 3: a queue with two pointers. The pixels between them still need a visit; at the end
+// the whole queue is the segment.
 void SegmentSearch::FloodFill(int u, int v, ColorLabel label, Segment* segment) {
   *segment = Segment();
   segment->label = label;

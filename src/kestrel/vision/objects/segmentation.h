@@ -17,29 +17,29 @@ struct PixelPosition {
   std::int16_t v;
 };
 
-// A connected (4 neighbours) area of one colour.
+// A connected area (4 neighbours) of one colour.
 struct Segment {
   ColorLabel label = kBackgroundLabel;
-  std::span<const PixelPosition> pixels;  // in the workspace, until its next segment
-  int ambiguous_pixels = 0;               // the last so many of 'pixels' have the ambiguous label
-  int min_u = 0, max_u = 0, min_v = 0, max_v = 0;  // bounding box, both ends included
-  bool touches_border = false;                     // of the image
+  std::span<const PixelPosition> pixels;  // in the workspace, valid until the next segment
+  int ambiguous_pixels = 0;  // number of pixels with the ambiguous label, last in 'pixels'
+  int min_u = 0, max_u = 0, min_v = 0, max_v = 0;  // bounding box, inclusive
+  bool touches_border = false;                     // touches the image border
 
   int width() const { return max_u - min_u + 1; }
   int height() const { return max_v - min_v + 1; }
 };
 
-// Memory of a search; keeps its size from frame to frame.
+// Memory of a search. It keeps its size from frame to frame.
 class SegmentationWorkspace {
  public:
-  // Forgets what the last frame's pixels were: a new stamp, not a new buffer.
+  // Starts a new frame: a new stamp marks all pixels as unused without clearing a buffer.
   void Start(const cv::Size& size);
 
  private:
   friend class SegmentSearch;
 
   cv::Size size_;
-  std::vector<std::uint16_t> stamps_;  // equal to 'stamp_': the pixel belongs to a segment
+  std::vector<std::uint16_t> stamps_;  // equal to 'stamp_' where the pixel belongs to a segment
   std::uint16_t stamp_ = 0;
   std::vector<PixelPosition> queue_;
   struct Extent {
@@ -50,32 +50,32 @@ class SegmentationWorkspace {
   std::vector<Extent> columns_;
 };
 
-// Largest side of an image: positions are 16 bits.
+// Largest side of an image, because positions have 16 bits.
 inline constexpr int kMaxImageSide = 32767;
 
-// Finds the segments of one image (paper, Algorithms 3 and 4). Pixels are labelled when they are
-// looked at, by the grid; no image of labels is made.
+// Finds the segments of one image (paper, Algorithms 3 and 4). The grid labels pixels when they are
+// visited; no image of labels is made.
 class SegmentSearch {
  public:
-  // 'image' CV_8UC3 (BGR), sides up to kMaxImageSide. All three must outlive the search; one search
-  // at a time per workspace.
+  // 'image': CV_8UC3 (BGR), sides up to kMaxImageSide. All three must outlive the search. One
+  // search at a time per workspace.
   SegmentSearch(const cv::Mat& image, const ColorGrid& grid, SegmentationWorkspace* workspace);
 
-  // Starts the complete search: every 'step'-th pixel of every 'step'-th row is looked at, every
-  // second row shifted by half a step. A segment that holds none of these pixels is not found, see
-  // SearchStep; with 1 this is Algorithm 4 as printed.
+  // Starts the complete search. It visits every 'step'-th pixel of every 'step'-th row, with every
+  // second row shifted by half a step. Segments without any of these pixels are not found, see
+  // SearchStep. With step 1 this is Algorithm 4 as printed.
   void SearchAll(int step);
 
-  // The next segment of the complete search, in the order of rows; false at the end.
+  // Gives the next segment of the complete search, in the order of rows; false at the end.
   bool Next(Segment* segment);
 
-  // The segment nearest to a pixel, looked for up to 'radius_px' from it and nowhere else (the
-  // paper's mode 'track'); false when there is none that was not given out before. 'label': of this
-  // colour only, when it is given.
+  // Gives the segment nearest to a pixel, searched only up to 'radius_px' around it (the paper's
+  // mode 'track'). False when there is none that was not given before. 'label': searches this
+  // colour only.
   bool FindNear(int u, int v, int radius_px, std::optional<ColorLabel> label, Segment* segment);
 
-  // Adds the ambiguous pixels that the segment encloses: those that have pixels of it on both sides
-  // in their row and in their column.
+  // Adds the ambiguous pixels that the segment encloses: those with pixels of it on both sides in
+  // their row and in their column.
   void JoinAmbiguous(Segment* segment);
 
  private:
@@ -95,9 +95,9 @@ class SegmentSearch {
   int v_ = 0;
 };
 
-// The largest step of SearchAll with which no filled ellipse of at least 'min_pixels' pixels and of
-// axes up to 2 : 1 is missed. Its shorter axis is d = sqrt(2 min_pixels / pi) long; the pixels
-// looked at lie on a lattice whose widest empty circle is at most 1.3 steps across.
+// Returns the largest step for which SearchAll finds every filled ellipse of at least 'min_pixels'
+// pixels and axes up to 2 : 1. Its shorter axis is d = sqrt(2 min_pixels / pi) long. The largest
+// empty circle of the lattice of visited pixels has a diameter of at most 1.3 steps.
 int SearchStep(int min_pixels);
 
 }  // namespace kestrel

@@ -40,7 +40,7 @@ std::set<Key> FindAll(const cv::Mat& image, int step, std::size_t min_pixels) {
   return found;
 }
 
-// Ellipses of all sizes, colours and directions, axes up to 2 : 1, with single pixels as noise.
+// Ellipses of all sizes, colours and directions, axes up to 2 : 1, with single-pixel noise.
 cv::Mat RandomScene(std::uint64_t seed) {
   Random random(seed);
   cv::Mat image(480, 640, CV_8UC3, kAsphalt);

@@ -18,7 +18,8 @@ inline CameraModel ObjectCamera() {
   return CameraModel({640, 480, 500, 500, 319.5, 239.5, DistortionModel::kNone, {}});
 }
 
-// A camera above flat ground that looks nearly straight down, and what it sees of flat paint.
+// A camera above flat ground that looks nearly straight down, and flat painted figures in its
+// image.
 class ObjectScene {
  public:
   explicit ObjectScene(double height_m = 4, double tilt = 0.2)
@@ -27,7 +28,8 @@ class ObjectScene {
         up_(Eigen::Vector3d(std::sin(tilt), 0, -std::cos(tilt))),
         image_(480 * kFine, 640 * kFine, CV_8UC3, cv::Scalar(95, 100, 105)) {}
 
-  // Where the ray through a pixel meets the plane 'above' the ground; and back.
+  // Intersection of the ray through a pixel with the plane 'above_m' above the ground, camera
+  // frame, m.
   Eigen::Vector3d PointUnder(const Eigen::Vector2d& pixel, double above_m) const {
     Eigen::Vector3d ray;
     camera_.Unproject(pixel, &ray);
@@ -43,7 +45,7 @@ class ObjectScene {
     Fill(outline, color);
   }
 
-  // A horizontal rectangle.
+  // Draws a horizontal rectangle.
   void DrawRectangle(const Eigen::Vector3d& center, double length_m, double width_m, double yaw,
                      const cv::Scalar& color) {
     const Eigen::Vector3d along = std::cos(yaw) * East() + std::sin(yaw) * North();
@@ -72,8 +74,8 @@ class ObjectScene {
   Eigen::Vector3d East() const { return up_.cross(Eigen::Vector3d::UnitY()).normalized(); }
   Eigen::Vector3d North() const { return up_.cross(East()); }
 
-  // Paints the pixels whose centres are inside of a convex outline; cv::fillPoly also paints those
-  // that the outline passes, which makes a disc an eighth of a pixel larger.
+  // Paints the pixels whose centres are inside of a convex outline. cv::fillPoly also paints those
+  // that the outline crosses, which makes a disc an eighth of a pixel larger.
   void Fill(const std::vector<Eigen::Vector3d>& outline, const cv::Scalar& color) {
     Eigen::Matrix2Xd corners(2, outline.size());
     for (Eigen::Index i = 0; i < corners.cols(); ++i) {
@@ -91,7 +93,7 @@ class ObjectScene {
     }
   }
 
-  // The least and the largest u where a convex outline passes the row.
+  // Least and largest u at which a convex outline crosses the row.
   static Eigen::Vector2d Crossings(const Eigen::Matrix2Xd& corners, double v) {
     Eigen::AlignedBox1d extent;
     Eigen::Vector2d a = corners.col(corners.cols() - 1);

@@ -14,8 +14,8 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kMaxDiscs = 8;
-// Distance of the centres of neighbours, in radii. Where the image is blurred discs seem to touch
-// that are a little apart, and what is between them is filled.
+// Distance of the centres of neighbours, in radii. In a blurred image discs that are slightly apart
+// seem to touch, and the gap between them is filled.
 constexpr double kMinSpacing = 1.6;
 constexpr double kMaxSpacing = 2.3;
 
@@ -41,10 +41,10 @@ double DepthOf(const Eigen::Vector2d& point, std::span<const Eigen::Vector2d> bo
   return std::sqrt(squared);
 }
 
-// The deepest points that are far enough from each other, as long as they are about as deep.
+// Returns the deepest points that are far enough from each other and about equally deep.
 Discs FindCenters(std::span<const Eigen::Vector2d> inside,
                   std::span<const Eigen::Vector2d> border) {
-  constexpr double kMinDepth = 0.7;  // of points near a centre, more than in a neck
+  constexpr double kMinDepth = 0.7;  // of points near a centre; larger than in a neck
   std::array<double, 2 * kTouchingDiscsPoints> depths;
   const std::size_t size = std::min(inside.size(), depths.size());
   for (std::size_t i = 0; i < size; ++i) depths[i] = DepthOf(inside[i], border);
@@ -62,9 +62,9 @@ Discs FindCenters(std::span<const Eigen::Vector2d> inside,
   return discs;
 }
 
-// Moves the centres and changes the radius such that the border fits (a step of Gauss and Newton).
+// Fits the centres and the radius to the border (one Gauss-Newton step).
 void Refine(std::span<const Eigen::Vector2d> border, Discs* discs) {
-  constexpr double kBorderReach = 0.25;  // border points further from a circle are not its own
+  constexpr double kBorderReach = 0.25;  // border points farther from a circle do not belong to it
   std::array<Eigen::Matrix2d, kMaxDiscs> normal;
   std::array<Eigen::Vector2d, kMaxDiscs> right;
   normal.fill(1e-9 * Eigen::Matrix2d::Identity());
@@ -90,7 +90,7 @@ void Refine(std::span<const Eigen::Vector2d> border, Discs* discs) {
   discs->radius += sum / count;
 }
 
-// Whether the border is on the circles and takes enough of each, all around the others.
+// True when the border lies on the circles and covers enough of each, all around the others.
 bool IsBorderOf(const Discs& discs, std::span<const Eigen::Vector2d> border, double pixel) {
   constexpr double kTolerance = 0.05;
   constexpr double kMinShare = 0.96;
@@ -113,7 +113,7 @@ bool IsBorderOf(const Discs& discs, std::span<const Eigen::Vector2d> border, dou
   return true;
 }
 
-// Whether the figure is narrow between each disc and the one beside it.
+// True when the figure is narrow between each disc and its nearest neighbour.
 bool AreNeighbors(const Discs& discs, std::span<const Eigen::Vector2d> border, double pixel) {
   constexpr double kMaxNeck = 0.6;
   for (std::size_t i = 0; i < discs.count; ++i) {
@@ -137,7 +137,7 @@ bool AreNeighbors(const Discs& discs, std::span<const Eigen::Vector2d> border, d
 
 std::optional<double> RadiusOfTouchingDiscs(std::span<const Eigen::Vector2d> inside,
                                             std::span<const Eigen::Vector2d> border, double pixel) {
-  constexpr double kMinRadius_px = 4;  // below this a disc is as good as a square
+  constexpr double kMinRadius_px = 4;  // below this a disc looks like a square
   constexpr int kRounds = 5;
   if (inside.empty() || border.empty()) return std::nullopt;
   Discs discs = FindCenters(inside, border);

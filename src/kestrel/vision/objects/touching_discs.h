@@ -9,16 +9,16 @@
 
 namespace kestrel {
 
-// As many points inside of a figure are enough for RadiusOfTouchingDiscs.
+// Number of points inside of a figure that suffices for RadiusOfTouchingDiscs.
 inline constexpr std::size_t kTouchingDiscsPoints = 150;
 
-// The radius of the discs when a figure on a plane is two to eight discs of one size that touch
-// each other: every one lies beside another, and the border is made of arcs of their circles.
-// Nothing when it is any other figure, like a single disc, a cross or a bar.
+// Returns the radius of the discs when a figure on a plane consists of two to eight touching discs
+// of one size: each disc lies beside another, and the border consists of arcs of their circles.
+// Nothing for any other figure, such as a single disc, a cross or a bar.
 //
-// 'inside': points all over the figure; 'border': points all along its border; 'pixel': length on
-// the plane that the image resolves. The centre of a disc is where the figure is as deep as
-// anywhere, and between two centres it is narrow.
+// 'inside': points distributed over the figure; 'border': points along its border; 'pixel':
+// resolution of the image on the plane. The centres of the discs are the deepest points of the
+// figure, and between two centres the figure is narrow.
 std::optional<double> RadiusOfTouchingDiscs(std::span<const Eigen::Vector2d> inside,
                                             std::span<const Eigen::Vector2d> border, double pixel);
 

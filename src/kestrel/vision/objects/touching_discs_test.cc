@@ -16,7 +16,7 @@ namespace {
 
 using Figure = std::function<bool(const Eigen::Vector2d&)>;
 
-// What an image of a figure around the origin says, which may be turned.
+// Returns the radius found in an image of a figure around the origin, turned by 'turn' (rad).
 std::optional<double> RadiusIn(const Figure& figure, double turn) {
   constexpr int kSize = 160;
   const Eigen::Rotation2Dd rotation(turn);
@@ -57,7 +57,7 @@ Figure Box(double half_width, double half_height) {
   };
 }
 
-// Round with 'lobes' bulges.
+// A round figure with 'lobes' bulges.
 Figure Lobes(int lobes, double radius, double depth) {
   return [=](const Eigen::Vector2d& at) {
     return at.norm() <= radius * (1 + depth * std::cos(lobes * std::atan2(at.y(), at.x())));
@@ -68,7 +68,7 @@ Figure Star(int tips, double radius) {
   return [=](const Eigen::Vector2d& at) {
     const double step = 2 * std::numbers::pi / tips;
     const double turn = std::abs(std::remainder(std::atan2(at.y(), at.x()), step));
-    // The edge from a tip to the notch at 0.4 of its distance.
+    // The edge from a tip to the notch, which is at 0.4 of the tip's radius.
     const Eigen::Vector2d notch = 0.4 * Eigen::Vector2d(std::cos(step / 2), std::sin(step / 2));
     const Eigen::Vector2d edge = notch - Eigen::Vector2d(1, 0);
     const Eigen::Vector2d to =
