@@ -14,22 +14,23 @@ namespace {
 
 constexpr std::size_t kMinViews = 6;
 constexpr std::size_t kMinSides = 4;
-constexpr double kSureSigmas = 3.5;  // it is asked after every view
+constexpr double kSureSigmas = 3.5;  // the contradiction is tested after every view
 constexpr double kLeastContradiction = 0.015;
-// Of calibrations: the logarithm of the focal length, the principal point in focal lengths, and the
-// distortion (of the cube of the distance from the principal point in focal lengths).
+// Prior of the calibration: the logarithm of the focal length, the principal point in focal
+// lengths, and the distortion (factor of the cube of the distance from the principal point, in
+// focal lengths).
 constexpr std::array<double, 4> kPriorSigma{0.5, 0.05, 0.05, 0.1};
-// How large a part of a turn or of the image counts as one side, rad and focal lengths.
+// Width of a side, in direction (rad) and in position in the image (focal lengths).
 constexpr double kSideWidth = 0.1;
-// Of the edges of a print that is not quite flat, share of the ring's diameter: what views from one
-// side have in common.
+// Edge error that views from one side share, because a print is not quite flat; share of the ring's
+// diameter.
 constexpr double kSharedShare = 0.001;
-// Standard deviations of the logarithm of the focal length that all views share: what a sheet is
-// off, and what the square of a large error adds to equations that are linear.
+// Standard deviations of the logarithm of the focal length that all views share: from errors of the
+// sheet, and from the square of a large error, which linear equations ignore (as a factor of it).
 constexpr double kSharedSigma = 0.003;
 constexpr double kOfSquare = 0.1;
-constexpr double kFarSurprise = 4;  // a side that is so surprising counts half (Cauchy)
-constexpr int kRounds = 2;          // of weights, a view: they settle from view to view
+constexpr double kFarSurprise = 4;  // a side with this surprise has half the weight (Cauchy)
+constexpr int kRounds = 2;          // of weights, per view; they converge over the views
 
 Eigen::Vector4d PriorInformation() {
   return Eigen::Vector4d(kPriorSigma.data()).cwiseAbs2().cwiseInverse();
@@ -63,7 +64,7 @@ void CalibrationMonitor::Add(const LandingDetection& detection) {
   AddEvidence(detection);
 }
 
-// Views that say nothing are left out.
+// Views without evidence are ignored.
 void CalibrationMonitor::AddEvidence(const LandingDetection& detection) {
   const CalibrationEvidence& evidence = detection.calibration;
   if (!(evidence.edge_variance > 0) || !evidence.information.allFinite()) return;
@@ -73,7 +74,7 @@ void CalibrationMonitor::AddEvidence(const LandingDetection& detection) {
   side->pull += evidence.pull;
   const double shared_px = kSharedShare * 2 * detection.ring_semi_major_px;
   side->shared += shared_px * shared_px / evidence.edge_variance;
-  // What it says least of is not to be divided by next to nothing.
+  // Regularization of the directions that the side hardly determines.
   constexpr double kWeak = 1e-3;
   Eigen::Matrix4d h = side->information;
   h.diagonal() += kWeak * PriorInformation();
@@ -82,10 +83,10 @@ void CalibrationMonitor::AddEvidence(const LandingDetection& detection) {
   Weigh();
 }
 
-// Robust least squares: sides that do not agree with the others count less, and make the result
-// less sure.
+// Robust least squares: sides that contradict the others have less weight and increase the standard
+// deviation.
 void CalibrationMonitor::Weigh() {
-  constexpr double kKnownBySide = 2;  // numbers: a side leaves the others open
+  constexpr double kKnownBySide = 2;  // numbers that a side determines; it leaves the others open
   constexpr double kAsked = 4;
   const Eigen::Vector4d prior = PriorInformation();
   for (int round = 0; round < kRounds; ++round) {

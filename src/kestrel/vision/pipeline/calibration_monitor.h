@@ -12,46 +12,47 @@
 
 namespace kestrel {
 
-// The focal length as a factor of the calibration's.
+// Estimated focal length, as a factor of the calibrated one.
 struct FocalFactor {
   double factor;
   double sigma;            // standard deviation
-  std::size_t detections;  // how many say so
+  std::size_t detections;  // number of detections it is estimated from
 };
 
-// In how many detections the pattern is not where pose and calibration have it.
+// Number of detections whose pattern is not where pose and calibration predict it.
 struct MisfitCount {
   std::size_t misfits;
-  std::size_t detections;  // that have edges
+  std::size_t detections;  // detections with edges
 };
 
-// Adds up what the detections of a run say about the calibration: an information filter. One view
-// leaves a line of focal lengths and principal points open; views from several sides have one point
-// in common. The distortion is asked for too: one that is wrong would pass for another focal
-// length. Does not allocate, however long the run is.
+// Combines the evidence of a run's detections about the calibration (an information filter). One
+// view leaves a line of focal lengths and principal points open; views from several sides have one
+// point in common. The distortion is estimated too, because a wrong one would pass for another
+// focal length. Does not allocate, however long the run is.
 class CalibrationMonitor {
  public:
   void Add(const LandingDetection& detection);
 
-  // What the detections say together; nothing where there are too few of them.
+  // Returns the estimate from all detections; nothing when there are too few of them.
   std::optional<FocalFactor> Focal() const;
 
-  // The same, where it contradicts the calibration.
+  // Returns the same estimate where it contradicts the calibration.
   std::optional<FocalFactor> Contradiction() const;
 
-  // How many misfits there are, where they are more than a print here and there that is not flat.
+  // Returns the misfits where there are more than isolated prints that are not flat would cause.
   std::optional<MisfitCount> Misfits() const;
 
  private:
-  // The views from one side: they share what the print is off, and count as one that has no noise.
+  // The views from one side. They share the errors of the print, and count as one view without
+  // noise.
   struct Side {
-    std::array<int, 4> key;  // from where the print is seen, and where in the image
+    std::array<int, 4> key;  // viewing direction in the print and in the image, quantized
     Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
     Eigen::Vector4d pull = Eigen::Vector4d::Zero();
-    double shared = 0;      // variance that its views have in common, of that of their mean
-    double surprise_0 = 0;  // of the calibration as it is
+    double shared = 0;      // variance that its views share, divided by the variance of their mean
+    double surprise_0 = 0;  // squared Mahalanobis distance of the calibration as it is
 
-    // Square of how far 'error' is from what the views say, in their covariance.
+    // Squared Mahalanobis distance of 'error' from the evidence of its views, weighted by Trust.
     double Surprise(const Eigen::Vector4d& error) const;
     double Trust() const { return 1 / (1 + shared); }
   };
@@ -64,12 +65,12 @@ class CalibrationMonitor {
   std::array<Side, kMostSides> sides_{};
   std::size_t side_count_ = 0;
   std::size_t views_ = 0;
-  Eigen::Vector4d error_ = Eigen::Vector4d::Zero();  // of the calibration, by all views
+  Eigen::Vector4d error_ = Eigen::Vector4d::Zero();  // estimated error of the calibration
   double log_focal_sigma_ = 0;
   MisfitCount misfits_{};
 };
 
-// The line that says how the detections contradict the calibration, whose focal length is
+// Returns a line that says how the detections contradict the calibration, whose focal length is
 // 'focal_px', and what to do; empty where they do not.
 std::string LensWarning(const CalibrationMonitor& monitor, double focal_px);
 

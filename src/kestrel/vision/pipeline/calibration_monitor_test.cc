@@ -13,11 +13,11 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Views of a lens, each from a side of its own unless 'turn' is 0. A view tells two numbers of
-// four: each is the focal length with something of the principal point and the distortion in it.
+// Views through a lens, each from its own side unless 'turn' is 0. A view determines two of four
+// numbers: each combines the focal length with a part of the principal point and the distortion.
 struct Views {
   Eigen::Vector4d error = Eigen::Vector4d::Zero();  // of the calibration
-  double outliers = 0;                              // share of the views of which nothing is right
+  double outliers = 0;                              // share of the views that are completely wrong
   double turn = 0.4;                                // rad
 
   LandingDetection Next(Random* random) const {
@@ -94,7 +94,7 @@ TEST(CalibrationMonitor, IsSilentAboutLessThanOneAndAHalfPercent) {
   EXPECT_FALSE((Views{{0.012, 0, 0, 0}}.Watch(20000, 1).Contradiction()));
 }
 
-// What a print is off looks the same in all of them.
+// Views from one side share the errors of the print.
 TEST(CalibrationMonitor, ViewsFromOneSideAreNotEnough) {
   Views views{{std::log(0.7), 0, 0, 0}};
   views.turn = 0;

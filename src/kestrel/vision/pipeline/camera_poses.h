@@ -11,7 +11,7 @@
 
 namespace kestrel {
 
-// How far after the newest pose it is predicted, and what that costs.
+// How far beyond the newest pose the motion is predicted, and the error that this adds.
 struct PosePrediction {
   Duration max_ahead = Duration::zero();
   UnmodelledMotion unmodelled;
@@ -19,14 +19,14 @@ struct PosePrediction {
 
 struct CameraPose {
   RigidTransform world_from_camera;
-  PoseUncertainty uncertainty;  // by which it is less sure than a pose that was reported
+  PoseUncertainty uncertainty;  // in addition to that of a reported pose
 };
 
-// Where the camera was when its light was collected: the navigation's poses, the mount and the
+// Poses of the camera at the times of its images, from the navigation's poses, the mount and the
 // clock offset.
 class CameraPoses {
  public:
-  // 'smoothing': see PoseHistory::Smooth; none: poses as they are.
+  // 'smoothing': see PoseHistory::Smooth; zero leaves the poses as they are.
   CameraPoses(const CameraCalibration& calibration, std::size_t capacity, Duration max_gap,
               Duration smoothing, const PosePrediction& prediction)
       : body_from_camera_(calibration.body_from_camera),
@@ -35,17 +35,17 @@ class CameraPoses {
         prediction_(prediction),
         poses_(capacity, max_gap) {}
 
-  // A pose from the navigation, on its clock.
+  // Adds a pose from the navigation, on its clock.
   PoseStatus Add(const PoseSample& sample) { return poses_.Add(sample); }
 
-  // Whether there is a pose for an instant of the images' clock, or why not.
+  // Returns whether there is a pose for a time on the images' clock, or why not.
   PoseLookup Check(Time image_time) const {
     const PoseLookup lookup = poses_.Check(image_time + clock_offset_);
     const bool is_predicted = lookup == PoseLookup::kTooNew && Predict(image_time);
     return is_predicted ? PoseLookup::kPredicted : lookup;
   }
 
-  // The camera at an instant of the images' clock; nothing without a mount or a pose.
+  // Returns the camera's pose at a time on the images' clock; nothing without a mount or a pose.
   std::optional<CameraPose> At(Time image_time) const {
     if (!body_from_camera_) return std::nullopt;
     if (const auto world_from_body = poses_.Smooth(image_time + clock_offset_, smoothing_)) {

@@ -7,7 +7,7 @@
 namespace kestrel {
 namespace {
 
-// Three standard deviations: one of 370 is further off.
+// Within three standard deviations, which one of 370 exceeds.
 bool Agree(const GroundHeight& a, const GroundHeight& b) {
   return std::abs(a.height_m - b.height_m) <= 3 * std::hypot(a.sigma_m, b.sigma_m);
 }

@@ -12,16 +12,16 @@
 namespace kestrel {
 namespace {
 
-// Of a flight whose attitude is not known and whose altitude somebody told: standard deviations.
+// Standard deviations for a flight with a told altitude and without an attitude.
 constexpr double kTilt_deg = 5;
 constexpr double kAltitudeShare = 0.05;
 
-// What heights by the size of objects have in common, like the error of the focal length: standard
+// Error that heights by the size of objects share, like that of the focal length: standard
 // deviation, share of the height.
 constexpr double kSizeShare = 0.02;
 
-// The ground does not speak for what contradicts it: an object whose size says where the ground is
-// must have its shape with few doubts, which a few pixels do not tell.
+// The told ground is no evidence against objects that contradict it. An object that shows where the
+// ground is must therefore have a clear shape and enough pixels.
 constexpr double kMaxMisfit = 0.75;
 constexpr int kMinPixels = 150;
 
@@ -129,7 +129,7 @@ void HuntPipeline::Detect(const cv::Mat& image) {
   if (told) UpdateGround(*told);
 }
 
-// Objects that say together that the ground is elsewhere are right, not what is told.
+// Objects that agree on another height of the ground overrule the told height.
 void HuntPipeline::UpdateGround(const ToldHeights& told) {
   ObjectReport& report = observation_.report;
   const auto ground_by = [&](const HeightBySize& height, double share) {
@@ -143,7 +143,7 @@ void HuntPipeline::UpdateGround(const ToldHeights& told) {
       ground_sightings_.push_back(ground_by(*detection.height, kSizeShare));
     }
   }
-  // Independent frames, and those of a flight of which only one altitude is told.
+  // For independent frames and for a flight with only a told altitude.
   if (options_.still || !observation_.world_from_camera) ground_.ForgetSightings();
   ground_.Update(told.ground, ground_sightings_);
   const double tolerance = options_.detector.ground_tolerance / 3;

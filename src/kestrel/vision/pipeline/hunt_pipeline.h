@@ -21,34 +21,34 @@ namespace kestrel {
 struct HuntPipelineOptions {
   ObjectDetectorOptions detector;
   ObjectMapOptions map;
-  // Frames have nothing to do with each other: no state is carried from one to the next.
+  // Independent frames: no state is carried from one to the next.
   bool still = false;
-  // Height of the ground in the world, which holds until objects that agree with each other say
-  // another one (the navigation's z may be an altitude above sea level). What is not on the ground
-  // by its size is no object.
+  // Height of the ground in the world. It holds until objects that agree with each other show
+  // another one (the navigation's z may be an altitude above sea level). An object that, by its
+  // size, is not on the ground is rejected.
   double ground_height_m = 0;
   bool is_ground_flat = true;
-  // How far from that height a piece of ground may be, standard deviation.
+  // Unevenness of the ground, standard deviation.
   double ground_sigma_m = 0.03;
-  // Time from the first to the last row of a rolling shutter; an image's time is that of its middle
-  // row. 0 for a global shutter.
+  // Time from the first to the last row of a rolling shutter; 0 for a global shutter. The time of
+  // an image is that of its middle row.
   double readout_s = 0;
   // More than 0: once so many objects are in view, only these are followed (the paper's mode
   // `track`), until one is lost.
   int track_count = 0;
   // Standard deviations of the navigation's poses, per axis, which the map adds to those of a
-  // detection: raise them where clock offset or mount are not known.
+  // detection. Increase them where clock offset or mount are not known.
   double pose_sigma_m = 0.02;
   double attitude_sigma_deg = 0.2;
-  // How many poses are kept, and the longest gap between two of them that is interpolated.
+  // Number of poses that are kept, and longest gap between two poses that is interpolated.
   int pose_capacity = 1000;
   double pose_gap_s = 0.5;
-  // A frame after the newest pose is placed by that pose and its motion, at most so far ahead, less
-  // surely the further it is. In a recording every pose is there, and 0 does.
+  // Longest time beyond the newest pose for which a frame's pose is predicted from the motion; the
+  // uncertainty grows with it. A recording contains every pose, so 0 suffices.
   double pose_extrapolation_s = 0;
   UnmodelledMotion unmodelled;
-  // Poses are smoothed over so much before and, as far as they have come, after an instant; 0: are
-  // taken as they are.
+  // Poses are smoothed over this time before and, as far as poses have arrived, after an instant;
+  // 0: no smoothing.
   double pose_smoothing_s = 0.1;
 
   template <class Self, class Visitor>
@@ -78,56 +78,58 @@ struct HuntPipelineOptions {
   std::vector<std::string> Validate() const;
 };
 
-// What one frame showed.
+// The result of one frame.
 struct HuntObservation {
-  Time time;  // of the frame, on the clock of the images
+  Time time;  // of the frame, on the images' clock
   ObjectReport report;
-  std::optional<RigidTransform> world_from_camera;  // when there was a pose for this time
-  // Of each detection, in their order: position and covariance in the world (ENU, m), when it has a
-  // location and there is a pose. With a rolling shutter by the pose at its own row.
+  std::optional<RigidTransform> world_from_camera;  // when there is a pose for this time
+  // For each detection, in order: position and covariance in the world (ENU, m), when it has a
+  // location and there is a pose. With a rolling shutter, the pose is that of its row.
   std::vector<std::optional<ObjectLocation>> in_world;
-  Duration detect_time{};  // of ObjectDetector::Detect alone (both calls, if it took two)
+  Duration detect_time{};  // of ObjectDetector::Detect alone, both calls if there were two
 };
 
-// From an image to where the coloured objects are in the world. One thread at a time.
+// Locates the coloured objects of an image in the world. For use by one thread at a time.
 class HuntPipeline {
  public:
-  // Throws InputError when calibration, model or options are not valid.
+  // Throws InputError when calibration, model or options are invalid.
   HuntPipeline(const CameraCalibration& calibration, const ObjectModel& model,
                const HuntPipelineOptions& options);
-  // With a grid that need not be the model's own.
+  // Uses a grid that may differ from the model's own.
   HuntPipeline(const CameraCalibration& calibration, const ObjectModel& model,
                const ColorGrid& grid, const HuntPipelineOptions& options);
 
-  // A pose from the navigation, on its clock, later than those before; it may be of a time before
-  // the last frame. A frame that comes before the pose after its time has none, or a predicted one.
+  // Adds a pose from the navigation, on its clock, later than those before. It may be earlier than
+  // the last frame. A frame that arrives before the pose after its time has none, or a predicted
+  // one.
   PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
 
-  // Height (m) of the camera above the ground, for frames without a pose; nothing: not known. The
-  // camera is then taken to look straight down.
+  // Sets the height (m) of the camera above the ground for frames without a pose; nothing when not
+  // known. The camera is then assumed to look straight down.
   void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
 
-  // Goes on with other options, and keeps the map and the poses: what 'map', 'unmodelled' and the
-  // options of the poses say stays as it was. Throws InputError, and changes nothing, when they are
-  // not valid.
+  // Changes the options and keeps the map and the poses. The options in 'map' and 'unmodelled' and
+  // those of the poses keep their old effect. Throws InputError and changes nothing when the
+  // options are invalid.
   void ChangeOptions(const HuntPipelineOptions& options);
 
-  // 'image': CV_8UC3 of the camera's size; 'time' on the clock of the images. The result is valid
-  // until the next call. Does not throw, and does not allocate once it has warmed up.
+  // Processes one frame. 'image': CV_8UC3 of the camera's size; 'time': on the images' clock. The
+  // result is valid until the next call. Does not throw, and does not allocate once it has warmed
+  // up.
   const HuntObservation& Process(const cv::Mat& image, Time time);
 
   const ObjectDetector& detector() const { return detector_; }
-  // The objects in the world; empty without poses, and with independent frames.
+  // The objects in the world; empty without poses and with independent frames.
   const ObjectMap& map() const { return map_; }
   const HuntPipelineOptions& options() const { return options_; }
 
-  // How much higher the ground is, by the size of the objects, than what is told (the options'
-  // height with the navigation's poses, or the altitude); nothing as long as they agree.
+  // Returns how much higher the ground is, by the size of the objects, than told (by the options'
+  // height with the navigation's poses, or by the altitude); nothing as long as they agree.
   std::optional<GroundHeight> ground_contradiction() const { return ground_.Contradiction(); }
 
  private:
-  // What is told of the camera and of the ground, in the world or, with an altitude, in a world
-  // whose z = 0 is the ground.
+  // The told heights of camera and ground, in the world or, with an altitude, in a world whose z =
+  // 0 is the ground.
   struct ToldHeights {
     double camera_m;
     GroundHeight ground;
@@ -149,9 +151,9 @@ class HuntPipeline {
   std::optional<double> altitude_m_;
   HuntObservation observation_;
   GroundHeightEstimator ground_;
-  std::vector<GroundHeight> ground_sightings_;  // of the frame
+  std::vector<GroundHeight> ground_sightings_;  // of the current frame
   std::vector<TrackedObject> track_;
-  bool saw_all_ = true;  // the last frame was searched as a whole
+  bool saw_all_ = true;  // the last frame was searched completely
   ObjectMap map_;
   std::vector<ObjectMeasurement> measurements_;
 };

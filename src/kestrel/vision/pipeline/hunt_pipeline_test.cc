@@ -30,7 +30,7 @@ CameraCalibration Calibration() {
 
 Time At(double seconds) { return Time(DurationFromSeconds(seconds)); }
 
-// Red discs on the ground around a camera that looks straight down from 4 m.
+// Draws red discs on the ground below a camera that looks straight down from 4 m.
 cv::Mat DrawDiscs(const std::vector<Eigen::Vector2d>& pixels) {
   ObjectScene scene(kHeight_m, /*tilt=*/0);
   for (const Eigen::Vector2d& pixel : pixels) {
@@ -51,7 +51,7 @@ TEST(HuntPipeline, ObjectsAreWhereTheyAreInTheWorld) {
     const HuntObservation& seen = pipeline.Process(image, At(i));
     ASSERT_THAT(seen.report.detections, SizeIs(1));
     ASSERT_TRUE(seen.in_world[0]);
-    // 100.5 px right and 99.5 px up, of 500 at 4 m.
+    // 100.5 px right and 99.5 px up, at a focal length of 500 px and a distance of 4 m.
     const Eigen::Vector3d expected(10 + 100.5 / 500 * 3.988, 20 + 99.5 / 500 * 3.988, 0.012);
     // A thirtieth of a pixel in the radius is 1 cm of distance.
     EXPECT_LT((seen.in_world[0]->position - expected).norm(), 0.01);
@@ -141,8 +141,8 @@ TEST(HuntPipeline, ClockOffsetIsAppliedToThePoses) {
   EXPECT_NEAR(seen.in_world[0]->position.x(), 3 * 0.7, 0.02);
 }
 
-// Whether a yellow disc at the origin, over which the UAV flies to and fro, was ever said to move:
-// with a clock offset that is wrong by 60 ms.
+// True when a yellow disc at the origin, over which the UAV flies to and fro, was ever reported as
+// moving although only the clock offset is wrong, by 60 ms.
 bool IsSaidToMove(const HuntPipelineOptions& options) {
   constexpr double kTop_m = 0.14;
   constexpr double kClockError_s = 0.06;

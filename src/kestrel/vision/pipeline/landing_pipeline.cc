@@ -93,15 +93,15 @@ void LandingPipeline::Detect(const cv::Mat& image, LandingObservation* observati
   if (!options_.still) AddErrorOfFocalLength(&*detection);
 }
 
-// By how much (m) the altitude is told too large, as far as the detections so far contradict it.
+// Returns by how much (m) the told altitude is too large, as far as the detections contradict it.
 double LandingPipeline::AltitudeExcess() const {
   if (options_.still) return 0;
   const auto excess = contradictions_.Altitude();
   return excess ? excess->difference : 0;
 }
 
-// Where the focal length is wrong every distance is, by the same part of it. Views that contradict
-// the calibration themselves were located with a focal length of their own.
+// A wrong focal length makes every distance wrong by the same share. Views that contradict the
+// calibration themselves were located with their own focal length and are left alone.
 void LandingPipeline::AddErrorOfFocalLength(LandingDetection* detection) const {
   const auto focal = calibration_monitor_.Contradiction();
   if (!focal || detection->calibration.contradicts) return;

@@ -23,35 +23,35 @@ namespace kestrel {
 struct LandingPipelineOptions {
   LandingPatternDetectorOptions detector;
   TargetTrackerOptions tracker;
-  MeasurementNoise noise;  // of what the tracker gets, besides the detector's own
-  // Frames have nothing to do with each other: no state is carried from one to the next.
+  MeasurementNoise noise;  // of the tracker's measurements, besides the detector's own
+  // Independent frames: no state is carried from one to the next.
   bool still = false;
-  // The world position from the camera's altitude (paper, eq. 3) instead of from the pattern's size
-  // in the image. Better only where the altitude is known to a few cm and the pattern is small.
+  // Takes the world position from the camera's altitude (paper, eq. 3) instead of from the
+  // pattern's size in the image. Better only where the altitude is known to a few cm and the
+  // pattern is small.
   bool position_by_altitude = false;
-  // Height of the pattern's face above the world's z = 0. With it the navigation's z becomes the
+  // Height of the pattern's face above the world's z = 0. It converts the navigation's z to the
   // height above the pattern, for the hint and for position_by_altitude. It holds until the
   // detections contradict it: the navigation's z may be an altitude above sea level.
   double target_height_m = 0;
-  // The pattern turns with the vehicle: its yaw tells the tracker how the path bends. Switch off
-  // where it lies on something that turns by itself.
+  // The pattern turns with the vehicle, so its yaw tells the tracker how the path bends. Switch off
+  // where the pattern turns by itself.
   bool track_yaw = true;
-  // Tell the detector the height above the pattern that the navigation reports. Switch off where
-  // the world's z is no height above ground.
+  // Gives the detector the height above the pattern that the navigation reports. Switch off where
+  // the world's z is not a height above ground.
   bool altitude_hint = true;
-  // Where the pattern is searched for first: within hint_sigma_m (standard deviation per axis, to
-  // which the track's own is added) of where the track says that it is. Without poses there is no
-  // track: the last position in the camera serves, with an uncertainty that grows by
-  // hint_speed_mps, for hint_age_s. Where the pattern is not found there, the whole image is
-  // searched.
+  // The pattern is searched first around its predicted position, with a standard deviation per axis
+  // of hint_sigma_m plus that of the track. Without poses there is no track: the last position in
+  // the camera serves for hint_age_s, with an uncertainty that grows by hint_speed_mps. Where the
+  // pattern is not found there, the whole image is searched.
   double hint_sigma_m = 0.2;
   double hint_speed_mps = 5;
   double hint_age_s = 0.5;
-  // How many poses are kept, and the longest gap between two of them that is interpolated.
+  // Number of poses that are kept, and longest gap between two poses that is interpolated.
   int pose_capacity = 1000;
   double pose_gap_s = 0.5;
-  // A frame after the newest pose is placed by that pose and its motion, at most so far ahead, less
-  // surely the further it is. In a recording every pose is there, and 0 does.
+  // Longest time beyond the newest pose for which a frame's pose is predicted from the motion; the
+  // uncertainty grows with it. A recording contains every pose, so 0 suffices.
   double pose_extrapolation_s = 0;
   UnmodelledMotion unmodelled;
 
@@ -84,69 +84,72 @@ struct LandingPipelineOptions {
   std::vector<std::string> Validate() const;
 };
 
-// How a position in the world was found (paper, section 2.5).
+// Method by which a position in the world was found (paper, section 2.5).
 enum class PositionMethod { kSize, kAltitude };
 const char* ToString(PositionMethod method);  // "size", "altitude"
 
-// What one frame said.
+// The result of one frame.
 struct LandingObservation {
-  Time time;                                        // of the frame, on the clock of the images
-  LandingReport report;                             // the detection in the camera frame, or why not
-  std::optional<RigidTransform> world_from_camera;  // when there was a pose for this time
-  PoseLookup pose = PoseLookup::kEmpty;             // or why there was none
+  Time time;             // of the frame, on the images' clock
+  LandingReport report;  // the detection in the camera frame, or the reason of a miss
+  std::optional<RigidTransform> world_from_camera;  // when there is a pose for this time
+  PoseLookup pose = PoseLookup::kEmpty;             // whether there is a pose, or why not
   PoseUncertainty pose_uncertainty;                 // of a predicted pose
-  // With a detection and a pose: the pattern's centre in the world (ENU, m), by what it was found,
-  // and the yaw of the pattern, see PatternYaw.
+  // With a detection and a pose: the pattern's centre in the world (ENU, m), the method, and the
+  // yaw of the pattern, see PatternYaw.
   std::optional<Eigen::Vector3d> center_in_world;
   PositionMethod position_method = PositionMethod::kSize;
   std::optional<double> yaw_in_world;
-  // The track, unless every frame is for itself: what became of the detection, and the target at
-  // the time of the frame, when that is known.
+  // The track, unless frames are independent: what became of the detection, and the target at the
+  // time of the frame, when it is known.
   std::optional<MeasurementFate> fate;
   TrackState track_state = TrackState::kSearching;
   std::optional<TargetEstimate> target;
   Duration detect_time{};  // of LandingPatternDetector::Detect alone
 };
 
-// From an image to where the landing pattern is in the world and will be: pose history, mount and
-// clock offset, detector, tracker, whose prediction is the next frame's hint. One thread at a time.
+// Locates the landing pattern of an image in the world and predicts it: pose history, mount and
+// clock offset, detector, and tracker, whose prediction is the next frame's hint. For use by one
+// thread at a time.
 class LandingPipeline {
  public:
-  // Throws InputError when the calibration or the options are not valid.
+  // Throws InputError when calibration or options are invalid.
   LandingPipeline(const CameraCalibration& calibration, const LandingPipelineOptions& options);
 
-  // A pose from the navigation, on its clock, later than those before; it may be of a time before
-  // the last frame. A frame that comes before the pose after its time has none, or a predicted one.
+  // Adds a pose from the navigation, on its clock, later than those before. It may be earlier than
+  // the last frame. A frame that arrives before the pose after its time has none, or a predicted
+  // one.
   PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
 
-  // Height (m) of the camera above the pattern, for frames without a pose; nothing: not known.
+  // Sets the height (m) of the camera above the pattern for frames without a pose; nothing when not
+  // known.
   void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
 
-  // Time (ms) that the search of a frame may take where the options say none; 0: any.
+  // Sets the time limit (ms) of a frame's search where the options set none; 0: no limit.
   void LimitSearch(double max_search_ms) { max_search_ms_ = max_search_ms; }
 
-  // Goes on with other options, and keeps the track and the poses: what 'tracker', 'unmodelled' and
-  // the options of the poses say stays as it was. Throws InputError, and changes nothing, when they
-  // are not valid.
+  // Changes the options and keeps the track and the poses. The options in 'tracker' and
+  // 'unmodelled' and those of the poses keep their old effect. Throws InputError and changes
+  // nothing when the options are invalid.
   void ChangeOptions(const LandingPipelineOptions& options);
 
-  // 'image': CV_8UC1 of the camera's size; 'time' on the clock of the images. Does not throw, and
-  // does not allocate once it has warmed up.
+  // Processes one frame. 'image': CV_8UC1 of the camera's size; 'time': on the images' clock. Does
+  // not throw, and does not allocate once it has warmed up.
   LandingObservation Process(const cv::Mat& image, Time time);
 
-  // How what is told of height and attitude contradicts what the detections show.
+  // Contradictions between the told height and attitude and the detections.
   const ToldContradictions& contradictions() const { return contradictions_; }
 
-  // What the detections say about the calibration.
+  // Evidence of the detections about the calibration.
   const CalibrationMonitor& calibration_monitor() const { return calibration_monitor_; }
 
-  // The track; its times are those of the frames.
+  // The track. Its times are those of the frames.
   const TargetTracker& tracker() const { return tracker_; }
   const LandingPatternDetector& detector() const { return detector_; }
   const LandingPipelineOptions& options() const { return options_; }
 
  private:
-  // Where the pattern was seen last, in the camera.
+  // Last position of the pattern in the camera.
   struct Sighting {
     Time time;
     Eigen::Vector3d center_in_camera;
@@ -169,9 +172,9 @@ class LandingPipeline {
   CameraPoses poses_;
   std::optional<double> altitude_m_;
   TargetTracker tracker_;
-  bool is_track_trusted_ = true;  // the last detection was where the track expected it
+  bool is_track_trusted_ = true;  // the last detection was where the track predicted it
   std::optional<Sighting> last_;
-  int next_step_ = 0;  // where the search of the last frame was given up
+  int next_step_ = 0;  // step at which the search of the last frame ran out of time
   double max_search_ms_ = 0;
   ToldContradictions contradictions_;
   CalibrationMonitor calibration_monitor_;

@@ -21,7 +21,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-// A camera that looks down, a little tilted, from a UAV above a pattern on the ground.
+// A camera that looks down, slightly tilted, from a UAV above a pattern on the ground.
 class LandingPipelineTest : public ::testing::Test {
  protected:
   LandingPipelineTest() {
@@ -139,7 +139,7 @@ TEST_F(LandingPipelineTest, FollowsAndPredictsThePattern) {
   EXPECT_NEAR(ahead->motion.position().x(), 9.5 + 0.2 * 7 + 1, 0.15);
 }
 
-// The pose before the frame's time moves; the one after it comes when the frame is done.
+// The pose before the frame's time moves. The pose after it arrives after the frame was processed.
 TEST_F(LandingPipelineTest, PredictsAPoseThatIsLateAndTakesItWhenItComes) {
   const BodyMotion motion{{2, 0, 0}, {0, 0, 0}};
   RigidTransform before = world_from_body_;
@@ -162,7 +162,7 @@ TEST_F(LandingPipelineTest, PredictsAPoseThatIsLateAndTakesItWhenItComes) {
             late.target->position_sigma_m());
 }
 
-// The pattern turns where it stands, at 0.4 rad/s.
+// The pattern turns in place at 0.4 rad/s.
 TEST_F(LandingPipelineTest, SeesThePatternTurnUnlessItIsToldNotTo) {
   for (const bool track_yaw : {true, false}) {
     options_.track_yaw = track_yaw;
@@ -196,7 +196,7 @@ TEST_F(LandingPipelineTest, AWrongTrackDoesNotHideThePattern) {
   }
 }
 
-// A pattern that stands, 12 frames, of which everything else is told than is seen.
+// A standing pattern in 12 frames, with a told altitude that contradicts the view.
 TEST_F(LandingPipelineTest, AWrongAltitudeOfTheNavigationHidesNothingAndIsSaid) {
   options_.target_height_m = 0.5;
   for (const double excess_m : {0.0, 10.0, 500.0, -10.0}) {
@@ -263,8 +263,8 @@ TEST_F(LandingPipelineTest, LocatesByAltitudeWhateverTheWorldsZeroIs) {
   EXPECT_LT((*observation.center_in_world - expected).norm(), 0.1);
 }
 
-// Near and tilted views from all sides say that the focal length is wrong; of a far one the
-// distance is then not sure, but its direction is.
+// Near and tilted views from all sides show that the focal length is wrong. The distance of a far
+// view is then uncertain, but its direction is not.
 TEST_F(LandingPipelineTest, AWrongFocalLengthMakesDistancesUnsure) {
   const CameraModel camera(calibration_.intrinsics);
   calibration_.intrinsics.fx_px = calibration_.intrinsics.fy_px = 1.15 * 400;
@@ -292,7 +292,7 @@ TEST_F(LandingPipelineTest, AWrongFocalLengthMakesDistancesUnsure) {
   EXPECT_LT(std::sqrt(after(0, 0)), 0.02);
 }
 
-// A lens of 370 px. Its own calibration is never contradicted; another one's is, within 30 frames.
+// A lens of 370 px. The right calibration is never contradicted; a wrong one is, within 30 frames.
 TEST_F(LandingPipelineTest, AnotherLensIsSaidWithinThirtyFrames) {
   constexpr double kFocal_px = 370;
   options_.still = true;
@@ -333,7 +333,7 @@ TEST_F(LandingPipelineTest, AnotherLensIsSaidWithinThirtyFrames) {
   }
 }
 
-// Each frame has time for one step only.
+// The time limit allows one step per frame.
 TEST_F(LandingPipelineTest, ASearchOutOfTimeGoesOnInTheNextFrame) {
   constexpr double kOneStep_ms = 1e-6;
   world_from_body_.translation.z() = 12.5;  // small: none of the first steps finds it

@@ -8,8 +8,8 @@
 namespace kestrel {
 namespace {
 
-// Of a position at 'center' by errors of the attitude (rad per axis) and of the scale, both in the
-// camera's axes.
+// Covariance of a position at 'center' due to errors of the attitude (degrees per axis) and of the
+// scale (relative), in the camera's axes.
 Eigen::Matrix3d SwingAndScale(const Eigen::Vector3d& center, double attitude_deg, double scale) {
   const double attitude = Radians(attitude_deg);
   const Eigen::Matrix3d along = center * center.transpose();

@@ -11,14 +11,14 @@
 
 namespace kestrel {
 
-// What is wrong with a position in the world besides the detector's error in the image: standard
-// deviations of what differs from frame to frame, and of what a whole flight has in common.
+// Errors of a position in the world besides the detector's error in the image, as standard
+// deviations: those that differ from frame to frame, and those that a whole flight shares.
 struct MeasurementNoise {
   double pose_sigma_m = 0.01;        // of the UAV's position, per axis
-  double attitude_sigma_deg = 0.15;  // of its attitude, per axis
-  double pose_bias_m = 0.03;         // of its position, per axis, in all frames alike
-  double attitude_bias_deg = 0.2;    // of its attitude and the camera's mount, per axis
-  double scale_bias = 0.002;  // of the pattern's size and the focal length, as a part of them
+  double attitude_sigma_deg = 0.15;  // of the UAV's attitude, per axis
+  double pose_bias_m = 0.03;         // of the UAV's position, per axis, the same in all frames
+  double attitude_bias_deg = 0.2;    // of the UAV's attitude and the camera's mount, per axis
+  double scale_bias = 0.002;         // of the pattern's size and the focal length, relative
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -35,23 +35,23 @@ struct MeasurementNoise {
   std::vector<std::string> Validate() const;
 };
 
-// The noise of a frame whose pose is less sure than others.
+// Returns the noise of a frame whose pose is less certain than that of others.
 MeasurementNoise WithPose(const MeasurementNoise& noise, const PoseUncertainty& pose);
 
-// Covariance (m^2) of what differs from frame to frame in a position in the world that was seen at
-// 'center_in_camera' with 'covariance_in_camera'.
+// Returns the covariance (m^2) of the errors that differ from frame to frame, for a position in the
+// world seen at 'center_in_camera' with 'covariance_in_camera'.
 Eigen::Matrix3d CovarianceInWorld(const Eigen::Matrix3d& covariance_in_camera,
                                   const Eigen::Vector3d& center_in_camera,
                                   const Eigen::Quaterniond& world_from_camera,
                                   const MeasurementNoise& noise);
 
-// Variance (rad^2) of a yaw in the world, of a pose whose rotation has the given covariance in the
-// camera frame (rad^2).
+// Returns the variance (rad^2) of a yaw in the world, for a pose whose rotation has the given
+// covariance in the camera frame (rad^2).
 double YawVarianceInWorld(const Eigen::Matrix3d& covariance_in_camera,
                           const Eigen::Quaterniond& world_from_camera,
                           const MeasurementNoise& noise);
 
-// Covariance (m^2) of what the positions of a flight have in common, for one seen at
+// Returns the covariance (m^2) of the errors that the positions of a flight share, for one seen at
 // 'center_in_camera'.
 Eigen::Matrix3d SharedCovarianceInWorld(const Eigen::Vector3d& center_in_camera,
                                         const Eigen::Quaterniond& world_from_camera,

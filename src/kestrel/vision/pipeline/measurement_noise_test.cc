@@ -14,7 +14,7 @@ const MeasurementNoise kNoise = {.pose_sigma_m = 0.3,
                                  .pose_bias_m = 0.1,
                                  .attitude_bias_deg = 0.03 * kDegrees,
                                  .scale_bias = 0.05};
-// Straight ahead of the camera is the world's x.
+// The camera's optical axis is the world's x axis.
 const Eigen::Quaterniond kWorldFromCamera(Eigen::AngleAxisd(std::numbers::pi / 2,
                                                             Eigen::Vector3d::UnitY()));
 

@@ -9,7 +9,7 @@ namespace kestrel {
 bool ObjectView::Shows(const MappedObject& object) const {
   constexpr double kMaxSigma_m = 0.5;
   constexpr double kMarginPx = 10;
-  constexpr double kAreaFactor = 3;  // well above the smallest that is found
+  constexpr double kAreaFactor = 3;  // well above the smallest size that is found
   if (!saw_all_ || object.sigma_m() > kMaxSigma_m) return false;
   const auto class_index = ClassOf(object, detector_.model());
   if (!class_index) return false;
@@ -21,7 +21,7 @@ bool ObjectView::Shows(const MappedObject& object) const {
   }
   const double size_m = detector_.model().classes[*class_index].size_m;
   const double radius_px = 0.5 * size_m * camera.intrinsics().fx_px / in_camera.norm();
-  // Seen obliquely it is smaller.
+  // Foreshortening reduces its area.
   const Eigen::Vector3d up = camera_from_world_.rotation * Eigen::Vector3d::UnitZ();
   const double foreshortening = -up.dot(in_camera.normalized());
   const double area_px = std::numbers::pi * radius_px * radius_px * foreshortening;

@@ -7,12 +7,12 @@
 
 namespace kestrel {
 
-// Says of an object in the map whether a frame should have shown it: it lies well inside of the
-// image and is large enough there, its place is known, and nothing was found where it should be
-// that may hide it (what is cut off or merged is no proof that it is gone).
+// Decides whether a frame should have shown an object of the map: the object lies well inside of
+// the image and is large enough there, its position is known, and no detection at its position may
+// hide it (a cut-off or merged object does not prove that it is gone).
 class ObjectView : public FieldOfView {
  public:
-  // All must outlive the view. 'saw_all': the frame was searched as a whole.
+  // All must outlive the view. 'saw_all': the frame was searched completely.
   ObjectView(const ObjectDetector& detector, const ObjectReport& report,
              const RigidTransform& world_from_camera, bool saw_all)
       : detector_(detector),

@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-// A camera 4 m above the origin that looks straight down, and a map's red disc.
+// A camera 4 m above the origin that looks straight down, and a red disc of a map.
 class ObjectViewTest : public ::testing::Test {
  protected:
   bool Shows(const Eigen::Vector3d& position, bool saw_all = true) const {

@@ -9,8 +9,8 @@
 
 namespace kestrel {
 
-// Where the image has the pattern, for exposure control: the rectangle around its ring, cut off at
-// the image's border. Empty where nothing of it is in the image.
+// Returns the rectangle around the pattern's ring in the image, for exposure control, clipped at
+// the image border. Empty where no part of it is in view.
 cv::Rect PatternArea(const LandingDetection& detection, const LandingPattern& pattern,
                      const CameraModel& camera);
 

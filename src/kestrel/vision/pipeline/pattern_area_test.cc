@@ -23,7 +23,7 @@ CameraModel Pinhole() {
                       .distortion = {}});
 }
 
-// The pattern (1 m) straight ahead, its face to the camera.
+// A detection of the pattern (1 m) straight ahead, facing the camera.
 LandingDetection At(const Vector3d& center_in_camera) {
   LandingDetection detection{};
   detection.camera_from_pattern = {

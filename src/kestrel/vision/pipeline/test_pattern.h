@@ -15,7 +15,8 @@
 
 namespace kestrel {
 
-// Gray of the board at a point of the plane z = 0 of the pattern's frame; gray ground around it.
+// Gray value at a point (m) of the plane z = 0 of the pattern's frame; the ground around it is
+// gray.
 inline double PatternGray(const LandingPattern& pattern, double x, double y) {
   const double radius = std::hypot(x, y);
   const auto is_arm = [&](double along, double across) {
@@ -27,7 +28,7 @@ inline double PatternGray(const LandingPattern& pattern, double x, double y) {
   return std::max(std::abs(x), std::abs(y)) < pattern.board_size_m / 2 ? 220 : 120;
 }
 
-// The pattern as the camera sees it: 3 x 3 rays a pixel, then a little blur as of a lens.
+// Draws the pattern as the camera sees it: 3 x 3 rays per pixel, then a slight blur as of a lens.
 inline cv::Mat DrawPattern(const CameraModel& camera, const LandingPattern& pattern,
                            const RigidTransform& camera_from_pattern) {
   constexpr int kRays = 3;
@@ -53,8 +54,8 @@ inline cv::Mat DrawPattern(const CameraModel& camera, const LandingPattern& patt
   return image;
 }
 
-// The pattern all of which a camera sees, 2 to 5 m away, anywhere in the image, tilted by up to 45
-// degrees to any side; with noise.
+// Draws the whole pattern 2 to 5 m away, anywhere in the image, tilted by up to 45 degrees in any
+// direction, with noise.
 inline cv::Mat DrawRandomView(const CameraModel& camera, const LandingPattern& pattern,
                               Random* random) {
   const double angle = random->Uniform(0, 2 * M_PI);

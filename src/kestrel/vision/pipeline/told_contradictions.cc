@@ -13,14 +13,14 @@ namespace {
 
 constexpr std::size_t kLeastDetections = 10;
 constexpr double kTolerance = 3;
-// Standard deviations of what all detections of a flight may have in common: of the altitude, of
-// the focal length and the size of the print (as a part of the distance), of attitude and mount.
+// Standard deviations of the errors that all detections of a flight may share: of the altitude, of
+// the focal length and the size of the print (relative to the distance), of attitude and mount.
 constexpr double kAltitudeSigma_m = 0.3;
 constexpr double kScaleSigma = 0.04;
 constexpr double kAttitudeSigma = Radians(2);
-// How far from level the pattern may lie.
+// Largest plausible tilt of the pattern from level.
 constexpr double kMaxSlope = Radians(15);
-// The altitude may be that above the ground on which a vehicle stands.
+// The altitude may be above the ground, while the pattern is on a vehicle.
 constexpr double kMaxVehicleHeight_m = 3;
 
 double MedianOf(std::span<double> values) {
@@ -29,7 +29,7 @@ double MedianOf(std::span<double> values) {
   return *middle;
 }
 
-// Away from the pattern's face.
+// Direction out of the pattern's face, in the camera frame.
 Eigen::Vector3d Normal(const RigidTransform& camera_from_pattern) {
   return camera_from_pattern.rotation * Eigen::Vector3d::UnitZ();
 }
@@ -38,7 +38,7 @@ double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// The smaller of what both poses of a detection differ by from what is told.
+// Returns the smaller of the differences of both mirror poses from what is told.
 template <class DifferenceOf>
 double LeastDifference(const LandingDetection& seen, const DifferenceOf& difference_of) {
   const double value = difference_of(seen.camera_from_pattern);
@@ -47,7 +47,7 @@ double LeastDifference(const LandingDetection& seen, const DifferenceOf& differe
   return std::abs(mirrored) < std::abs(value) ? mirrored : value;
 }
 
-// Of a direction, from a covariance of rotations.
+// Standard deviation of a direction, from the covariance of the rotation.
 double AngleSigma(const LandingDetection& seen) {
   return std::sqrt(seen.covariance.bottomRightCorner<3, 3>().trace());
 }
@@ -69,14 +69,14 @@ std::optional<Contradiction> ToldContradictions::Latest::Median() const {
   };
   const double value = median([](const Difference& each) { return each.value; });
   const double sigma = median([](const Difference& each) { return each.sigma; });
-  // Of a normal distribution: 1.48 times the median deviation is the standard deviation.
+  // For a normal distribution, the standard deviation is 1.48 times the median deviation.
   const double scatter =
       1.48 * median([&](const Difference& each) { return std::abs(each.value - value); });
   return Contradiction{value, std::hypot(sigma, scatter / std::sqrt(count)), count};
 }
 
 void ToldContradictions::Add(const ToldView& told, const LandingDetection& seen) {
-  // Without an attitude the pattern is taken to be level.
+  // Without an attitude the pattern is assumed to be level.
   const auto up_by = [&](const RigidTransform& pose) {
     return told.up_in_camera.value_or(Normal(pose));
   };

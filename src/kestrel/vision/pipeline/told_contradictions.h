@@ -11,32 +11,32 @@
 
 namespace kestrel {
 
-// What is told of a view of the pattern, by the navigation or by the user.
+// Told knowledge about a view of the pattern, from the navigation or from the user.
 struct ToldView {
   std::optional<double> altitude_m;             // of the camera above the pattern
   std::optional<Eigen::Vector3d> up_in_camera;  // unit vector away from the ground
 };
 
-// By how much what is told contradicts what is seen.
+// A difference between what is told and what is seen.
 struct Contradiction {
   double difference;       // median over the detections
-  double sigma;            // standard deviation of that
-  std::size_t detections;  // how many it is the median of
+  double sigma;            // standard deviation of the median
+  std::size_t detections;  // number of detections
 };
 
-// Compares what is told of the pattern with what its latest detections show. Both poses of a
-// detection count: what agrees with one of them is no contradiction.
+// Compares what is told of the pattern with its latest detections. Both mirror poses of a detection
+// count: agreement with one of them is no contradiction.
 class ToldContradictions {
  public:
   void Add(const ToldView& told, const LandingDetection& seen);
 
-  // How much larger (m) the altitude is told than seen; nothing where they agree, where too little
-  // was seen, or where the attitude is wrong, on which the altitude hangs. With an attitude the
-  // pattern may lie on a vehicle, less deep below the camera than told.
+  // Returns how much larger (m) the altitude is told than seen. Nothing where they agree, where too
+  // little was seen, or where the attitude is wrong, because the altitude depends on it. With an
+  // attitude the pattern may lie on a vehicle, so its depth below the camera may be less than told.
   std::optional<Contradiction> Altitude() const;
 
-  // How far from level (rad) the pattern would lie if the attitude were right; nothing where it may
-  // lie so, or too little was seen.
+  // Returns the tilt (rad) of the pattern from level if the attitude were right. Nothing where that
+  // tilt is plausible or too little was seen.
   std::optional<Contradiction> Attitude() const;
 
  private:
@@ -45,12 +45,12 @@ class ToldContradictions {
     double sigma;
   };
 
-  // The latest differences.
+  // The latest differences, in a ring buffer.
   class Latest {
    public:
     void Add(const Difference& difference);
     bool empty() const { return added_ == 0; }
-    // Nothing when there are too few.
+    // Returns nothing when there are too few.
     std::optional<Contradiction> Median() const;
 
    private:

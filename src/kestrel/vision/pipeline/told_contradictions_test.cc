@@ -34,7 +34,7 @@ class ToldContradictionsTest : public ::testing::Test {
     return view;
   }
 
-  // What is said after 'views' with an altitude that is 'excess_m' too large.
+  // Returns the contradictions after 'views' views with an altitude that is 'excess_m' too large.
   ToldContradictions Fly(int views, double excess_m, const Eigen::Quaterniond& mount_error) {
     ToldContradictions contradictions;
     for (int i = 0; i < views; ++i) {
@@ -104,7 +104,8 @@ TEST_F(ToldContradictionsTest, AnAltitudeWithoutAttitudeIsThatAboveThePattern) {
 TEST_F(ToldContradictionsTest, AMountUpsideDownIsSaidAndNothingOfTheAltitude) {
   const ToldContradictions contradictions = Fly(20, 10, Rotation(kPi, Eigen::Vector3d::UnitX()));
   ASSERT_TRUE(contradictions.Attitude());
-  // Up is reflected by the mount's axis, the camera tilted by up to 20 degrees: 140 and more.
+  // The mount error turns 'up' over by half a turn, and the camera is tilted by up to 20 degrees:
+  // at least 140 degrees.
   EXPECT_GT(contradictions.Attitude()->difference, 140 * kPi / 180);
   EXPECT_FALSE(contradictions.Altitude());
 }

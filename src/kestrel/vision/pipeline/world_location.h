@@ -9,10 +9,10 @@
 
 namespace kestrel {
 
-// Where the line of sight along 'ray_in_camera' (any length) meets the horizontal plane at
-// 'target_height_m' in the world (z up, m): the position from the camera's altitude (paper,
-// section 2.5, eq. 3). Nothing when the line is less than 1 degree from the horizontal or the plane
-// is not in front of the camera.
+// Returns the intersection of the line of sight along 'ray_in_camera' (any length) with the
+// horizontal plane at 'target_height_m' in the world (z up, m): the position from the camera's
+// altitude (paper, section 2.5, eq. 3). Nothing when the line is less than 1 degree from the
+// horizontal or the plane is not in front of the camera.
 //
 // With u the camera's position, r = R_WC x the ray in the world and t_z the target's height, the
 // pattern is at g = u + d r, and g_z = t_z gives d = (t_z - u_z) / r_z. The paper prints
@@ -21,8 +21,8 @@ std::optional<Eigen::Vector3d> LocateByAltitude(const Eigen::Vector3d& ray_in_ca
                                                 const RigidTransform& world_from_camera,
                                                 double target_height_m);
 
-// Yaw of the pattern's x axis in the world (rad), in (-pi/4, pi/4]: the pattern looks the same
-// after a quarter turn, so that its yaw is known up to multiples of pi/2.
+// Returns the yaw of the pattern's x axis in the world (rad), in (-pi/4, pi/4]. The pattern looks
+// the same after a quarter turn, so its yaw is known only up to multiples of pi/2.
 double PatternYaw(const RigidTransform& world_from_pattern);
 
 }  // namespace kestrel
