@@ -8,7 +8,7 @@ namespace kestrel {
 const std::vector<int>& AssignmentSolver::Solve(const Eigen::Ref<const Eigen::MatrixXd>& costs) {
   const auto rows = static_cast<int>(costs.rows());
   const auto columns = static_cast<int>(costs.cols());
-  // Rows and columns count from 1: 0 stands for none.
+  // Rows and columns count from 1; 0 stands for none.
   row_potential_.assign(rows + 1, 0);
   column_potential_.assign(columns + 1, 0);
   row_of_column_.assign(columns + 1, 0);

@@ -7,15 +7,15 @@
 
 namespace kestrel {
 
-// Cost of what cannot be; far above all that can.
+// Cost of an impossible pair, far above that of all possible ones.
 inline constexpr double kImpossibleCost = 1e9;
 
-// The assignment of every row to a column of its own that costs least in all (Hungarian method,
-// Kuhn 1955, in the O(rows^2 columns) form with potentials). Keeps its memory between calls.
+// Assigns every row to a column of its own at the least total cost (Hungarian method, Kuhn 1955, in
+// the O(rows^2 columns) form with potentials). Keeps its memory between calls.
 class AssignmentSolver {
  public:
-  // 'costs': rows x columns, finite, not more rows than columns. The column of each row; valid
-  // until the next call.
+  // Returns the column of each row, valid until the next call. 'costs': rows x columns, finite, not
+  // more rows than columns.
   const std::vector<int>& Solve(const Eigen::Ref<const Eigen::MatrixXd>& costs);
 
  private:

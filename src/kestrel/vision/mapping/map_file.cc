@@ -87,7 +87,7 @@ MappedObject ParseObject(const YamlReader& reader) {
   return object;
 }
 
-// A word of the model as a JSON string.
+// Returns a text as a JSON string.
 std::string Quoted(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {

@@ -73,7 +73,7 @@ TEST(MapFile, FailedSaveKeepsTheOldFile) {
   const std::string path = folder / "map.json";
   SaveObjects(path, SomeObjects());
   const std::string before = ReadFile(path);
-  std::filesystem::create_directory(path + ".part");  // where the draft would go
+  std::filesystem::create_directory(path + ".part");  // where the draft would be written
   EXPECT_THROW(SaveObjects(path, {}), InputError);
   EXPECT_EQ(ReadFile(path), before);
   EXPECT_EQ(LoadObjects(path).size(), 2U);

@@ -9,15 +9,15 @@
 namespace kestrel {
 namespace {
 
-// How position, velocity and acceleration along one axis go on.
+// Motion of position, velocity and acceleration along one axis over a step.
 struct AxisMotion {
   Eigen::Matrix3d transition;
   Eigen::Matrix3d noise;
 };
 
-// An acceleration that is forgotten with time (Singer, 1970), and a velocity that is too: nothing
-// drives on for long as it does now, nor ever faster. The process over a short step, doubled until
-// it is as long as 'dt' (s).
+// An acceleration that decays (Singer 1970) and a velocity that decays too, because nothing keeps
+// its motion or accelerates for long. Computes a short step and doubles it until it is 'dt' (s)
+// long.
 AxisMotion PredictAxis(double dt, const ObjectMotion& motion) {
   constexpr double kShort_s = 1e-3;
   const int doublings = std::max(0, static_cast<int>(std::ceil(std::log2(dt / kShort_s))));
@@ -29,7 +29,7 @@ AxisMotion PredictAxis(double dt, const ObjectMotion& motion) {
   const Eigen::Matrix3d change = step * rates;
   AxisMotion axis{Eigen::Matrix3d::Identity() + change + 0.5 * change * change,
                   Eigen::Matrix3d::Zero()};
-  // Keeps the variance of the acceleration.
+  // This noise keeps the variance of the acceleration constant.
   axis.noise(2, 2) =
       std::pow(motion.acceleration_sigma_mps2, 2) * (1 - std::pow(axis.transition(2, 2), 2));
   for (int i = 0; i < doublings; ++i) {
@@ -39,7 +39,7 @@ AxisMotion PredictAxis(double dt, const ObjectMotion& motion) {
   return axis;
 }
 
-// The first 'kSize' numbers of two states, weighted by the inverse of their covariances.
+// Merges the first kSize numbers of two states, weighted by the inverse of their covariances.
 template <int kSize>
 void UnifyStates(const MappedObject& other, MappedObject* kept) {
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
@@ -64,7 +64,8 @@ void UnifyMotions(const MappedObject& other, MappedObject* kept) {
       kept->moves = other.moves;
     }
   } else if (kept->may_move || other.may_move) {
-    // A standing object's velocity has no covariance, hence a solver for what is singular.
+    // The velocity of a standing object has no covariance, so the solver must accept singular
+    // matrices.
     UnifyStates<MappedObject::kStateSize>(other, kept);
   } else {
     UnifyStates<3>(other, kept);

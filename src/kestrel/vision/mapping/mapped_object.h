@@ -13,15 +13,15 @@
 
 namespace kestrel {
 
-// A detection with its place in the world.
+// A detection with its position in the world.
 struct ObjectMeasurement {
-  // After the time of the frame (s), before it if negative: a rolling shutter sees each row at a
-  // time of its own.
+  // Time of the measurement relative to the frame's (s), negative if before it: a rolling shutter
+  // sees each row at its own time.
   double delay_s = 0;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();    // m
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // m^2, positive definite
-  // By how much the position is wrong for each second by which the clock offset is (m/s): how fast
-  // the place sweeps over the world that the camera sees where it saw the object. Zero: not known.
+  // Error of the position per error of the clock offset (m/s): the speed at which the point of the
+  // world at this place in the image moves. Zero: not known.
   Eigen::Vector3d clock_shift = Eigen::Vector3d::Zero();
   ObjectShape shape = ObjectShape::kDisc;
   Hsv color;
@@ -29,50 +29,50 @@ struct ObjectMeasurement {
   std::optional<DigitLikelihoods> digits;
 };
 
-// Where a detection is expected in the world (m), and the covariance of that (m^2).
+// Expected position of a detection in the world (m), and its covariance (m^2).
 struct ExpectedPosition {
   Eigen::Vector3d position;
   Eigen::Matrix3d covariance;
 };
 
-// What the map knows of an object. Likelihoods are kept, not a choice: the next detection may
-// change it.
+// The map's knowledge of an object. It keeps likelihoods instead of a choice, because the next
+// detection may change it.
 struct MappedObject {
   static constexpr int kStateSize = 9;
   using State = Eigen::Matrix<double, kStateSize, 1>;
   using Covariance = Eigen::Matrix<double, kStateSize, kStateSize>;
 
-  std::int64_t id = 0;  // within its map
+  std::int64_t id = 0;  // unique within its map
   ObjectShape shape = ObjectShape::kDisc;
   Time first_seen;
   Time last_seen;
   Time time;  // of the state
-  // Position (m), velocity (m/s) and acceleration (m/s^2) in the world; what stands, or rather
-  // stands than moves by what is known, has no motion.
+  // Position (m), velocity (m/s) and acceleration (m/s^2) in the world. An object that stands, or
+  // more likely stands than moves, has no motion.
   State state = State::Zero();
   Covariance covariance = Covariance::Zero();
-  bool may_move = false;     // by its class
-  double move_log_odds = 0;  // that it moves; of what may
-  bool moves = false;        // beyond doubt; false again when it rather stands
+  bool may_move = false;     // according to its class
+  double move_log_odds = 0;  // log odds that it moves, if it may
+  bool moves = false;        // true once beyond doubt; false again when it more likely stands
   int detections = 0;
-  double log_odds = 0;  // that it is there
-  Hsv color;            // of the last detection
+  double log_odds = 0;  // log odds that it exists
+  Hsv color;            // mean colour of the last detection
   ColorProbabilities color_log_likelihoods{};
   DigitLikelihoods digit_log_likelihoods{};
 
   auto position() const { return state.head<3>(); }
   auto velocity() const { return state.segment<3>(3); }
-  // Standard deviation of the position per axis: root of the mean of the three variances.
+  // Standard deviation of the position per axis: root of the mean of the three variances, m.
   double sigma_m() const;
-  std::size_t color_index() const;  // the most likely
-  // The likeliest digit of a cuboid; nothing where none was read.
+  std::size_t color_index() const;  // index of the most likely colour
+  // The likeliest digit of a cuboid; nothing when none was read.
   std::optional<LikelyDigit> digit() const;
 };
 
-// Objects that move drive: their speed and acceleration upwards is this share of that sideways.
+// Moving objects drive: vertical speed and acceleration are this share of the horizontal ones.
 inline constexpr double kClimb = 0.02;
 
-// How objects move, and what error their detections share: see ObjectMapOptions.
+// Motion of objects and errors that their detections share: see ObjectMapOptions.
 struct ObjectMotion {
   double drift_noise;
   double acceleration_sigma_mps2;
@@ -85,29 +85,29 @@ struct ObjectMotion {
   double sure_log_odds;
 };
 
-// What becomes of a state: x = transition x, with the covariance 'noise' added.
+// One prediction step: x = transition x, with the covariance 'noise' added.
 struct MotionStep {
   MappedObject::Covariance transition;
   MappedObject::Covariance noise;
 };
 
-// Of an object that drives, or stands, over 'dt' > 0 seconds.
+// Steps of 'dt' > 0 seconds for an object that drives and for one that stands.
 MotionStep DrivingStep(double dt, const ObjectMotion& motion);
 MotionStep StandingStep(double dt, const ObjectMotion& motion);
 
-// The object at a later time (an earlier one changes nothing): where it stands, or by its velocity.
+// Predicts an object to a later time, standing or by its velocity. An earlier time changes nothing.
 void PredictObject(Time time, const ObjectMotion& motion, MappedObject* object);
 
-// Makes 'kept' what both say together, when they are the same object at the same time: states
-// weighted by the inverse of their covariances, likelihoods multiplied, detections added. Of one
-// that moves and one that does not, the state is that of the surer one, or else of the later one.
+// Merges 'other' into 'kept', the same object at the same time: states are weighted by the inverse
+// of their covariances, likelihoods multiplied, detections added. When only one of them moves, the
+// state is that of the more certain one, or else that of the later one.
 void UnifyObjects(const MappedObject& other, MappedObject* kept);
 
-// Index of the class that the object most likely is; nothing when the model has none of its shape
-// and colour.
+// Returns the index of the most likely class of an object; nothing when the model has no class of
+// its shape and colour.
 std::optional<std::size_t> ClassOf(const MappedObject& object, const ObjectModel& model);
 
-// What the object is worth: its digit, or its class's score.
+// Returns the score of an object: its digit, or its class's score.
 double ScoreOf(const MappedObject& object, const ObjectModel& model);
 
 }  // namespace kestrel

@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-// Velocity and acceleration within the state.
+// Indices of velocity and acceleration in the state.
 constexpr int kMotion = 3;
 constexpr int kMotionSize = MappedObject::kStateSize - kMotion;
 
@@ -17,8 +17,8 @@ constexpr int kMotionSize = MappedObject::kStateSize - kMotion;
 
 MotionFilter::MotionFilter(const ObjectMeasurement& measurement, const ObjectMotion& motion) {
   standing_.state.head<3>() = measurement.position;
-  // The object is where it was seen, less the errors; as fast as it may be, it was as far from
-  // there at the time of the frame.
+  // The position at the time of the frame is the measured one minus the errors and minus the motion
+  // during the delay.
   Covariance back = Covariance::Identity();
   back.topRows<3>() = -ObservationOf(measurement);
   back.topLeftCorner<3, 3>().setIdentity();
@@ -47,7 +47,7 @@ ExpectedPosition MotionFilter::Expect(const ObjectMeasurement& measurement) cons
 }
 
 void MotionFilter::Fuse(const ObjectMeasurement& measurement, const ObjectMotion& motion) {
-  // One detection alone may be wrong.
+  // Bounds the evidence of one detection, which may be wrong.
   constexpr double kMaxEvidence = 2;
   const double of_driving = driving_.Fuse(measurement);
   const double evidence = of_driving - standing_.Fuse(measurement);
@@ -57,7 +57,7 @@ void MotionFilter::Fuse(const ObjectMeasurement& measurement, const ObjectMotion
   if (log_odds_ > motion.sure_log_odds) moves_ = true;
   if (log_odds_ < 0) moves_ = false;
   if (log_odds_ == most) {
-    // If it stops, it stands here, not where it was first seen.
+    // If the object stops, it stands here and not where it was first seen.
     standing_ = driving_;
     standing_.Stop();
   }
@@ -102,7 +102,7 @@ double MotionFilter::Hypothesis::Fuse(const ObjectMeasurement& measurement) {
   const Eigen::Vector3d difference = measurement.position - observation * state;
   const Eigen::Matrix<double, kSize, 3> gain = innovation.solve(seen).transpose();
   state += gain * difference;
-  // Joseph's form stays symmetric and positive.
+  // Joseph's form keeps the covariance symmetric and positive.
   const Covariance rest = Covariance::Identity() - gain * observation;
   covariance =
       (rest * covariance * rest.transpose() + gain * measurement.covariance * gain.transpose())

@@ -20,16 +20,16 @@ using Eigen::Vector3d;
 using Path = std::function<Vector3d(double time_s)>;
 
 constexpr double kPeriod_s = 0.1;
-constexpr double kSigma_m = 0.035;  // of a detection from 6 m, as the pipeline says
+constexpr double kSigma_m = 0.035;  // of a detection from 6 m, as estimated by the pipeline
 constexpr int kSeeds = 20;
 
-// What sightings of one moment have in common: their error, and what the map is told of it.
+// Errors that sightings at one time share, and the clock shift that the map is told.
 struct SharedError {
   Path error = [](double /*time_s*/) { return Vector3d(0, 0, 0); };
   Path clock_shift = [](double /*time_s*/) { return Vector3d(0, 0, 0); };
 };
 
-// What the filter says of a disc on 'path' after each of 'count' sightings.
+// Returns the filter's estimates of a disc on 'path' after each of 'count' sightings.
 std::vector<MappedObject> Watch(const Path& path, const SharedError& shared, int count,
                                 Random* random) {
   const ObjectMotion motion = ObjectMapOptions().motion();
@@ -59,7 +59,7 @@ Path Drive(double speed_mps, Random* random) {
   return [=](double time_s) { return Vector3d(time_s * velocity); };
 }
 
-// A navigation that is some centimetres off, over seconds and minutes.
+// Error of a navigation: some centimetres, over seconds and minutes.
 Path Drift(Random* random) {
   std::vector<double> phases(6);
   for (double& phase : phases) phase = random->Uniform(0, 2 * std::numbers::pi);
@@ -71,7 +71,7 @@ Path Drift(Random* random) {
   };
 }
 
-// Velocity of a UAV at 6 m/s, to and fro on lanes with turns.
+// Velocity of a UAV that flies at 6 m/s to and fro on lanes with turns.
 Path Lanes(Random* random) {
   constexpr double kSpeed_mps = 6;
   const double lane_s = random->Uniform(2, 8);
@@ -87,7 +87,7 @@ Path Lanes(Random* random) {
   };
 }
 
-// The number of the first sighting after which it is said to move; 0: of none.
+// Number of the first sighting after which the disc is reported as moving; 0: never.
 int FirstSaid(const std::vector<MappedObject>& said) {
   const auto first = std::find_if(said.begin(), said.end(), [](auto& one) { return one.moves; });
   return first == said.end() ? 0 : 1 + static_cast<int>(first - said.begin());
@@ -125,7 +125,7 @@ TEST(MotionFilter, OneWrongDetectionDoesNotMoveWhatStands) {
 TEST(MotionFilter, WhatMovesIsSaidToMoveWithItsVelocity) {
   struct Case {
     double speed_mps;
-    int sightings;  // after which it is said at the latest
+    int sightings;  // latest sighting at which it must be reported as moving
   };
   for (const Case c : {Case{0.3, 15}, Case{0.6, 10}, Case{1.4, 6}, Case{2, 6}}) {
     for (int seed = 1; seed <= kSeeds; ++seed) {

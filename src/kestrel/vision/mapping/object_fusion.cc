@@ -11,10 +11,10 @@
 namespace kestrel {
 namespace {
 
-// What of an object says which others it may be: little memory, as all are compared with all.
+// The part of an object that excludes most pairs. It is small, because all are compared with all.
 struct Outline {
   Eigen::Vector3d position;
-  double trace;  // of the position's covariance
+  double trace;  // trace of the position's covariance
   std::size_t color;
   ObjectShape shape;
 };
@@ -38,17 +38,17 @@ double SquaredDistance(const MappedObject& a, const MappedObject& b, double shar
   return difference.dot(covariance.llt().solve(difference));
 }
 
-// An object and a known one that it may be.
+// A known object that an object may be.
 struct Pairing {
   std::size_t known;
   double cost;
 };
 
-// Of each object what it may be.
+// Returns for each object the known ones that it may be.
 std::vector<std::vector<Pairing>> FindPairings(const std::vector<MappedObject>& objects,
                                                const std::vector<MappedObject>& known,
                                                const ObjectMapOptions& options) {
-  // The navigation of each UAV has its own bias.
+  // Each UAV's navigation has its own bias.
   const double shared_variance = 2 * options.shared_sigma_m * options.shared_sigma_m;
   const std::vector<Outline> outlines = OutlinesOf(objects);
   const std::vector<Outline> known_outlines = OutlinesOf(known);
@@ -58,7 +58,7 @@ std::vector<std::vector<Pairing>> FindPairings(const std::vector<MappedObject>& 
     for (std::size_t k = 0; k < known.size(); ++k) {
       const Outline& b = known_outlines[k];
       if (a.color != b.color || a.shape != b.shape) continue;
-      // No variance along any direction is above the trace: most pairs need no solver.
+      // The variance along any direction is at most the trace, so most pairs need no solver.
       const double trace = a.trace + b.trace + 3 * shared_variance;
       if ((a.position - b.position).squaredNorm() > options.gate * trace) continue;
       const double cost = SquaredDistance(objects[i], known[k], shared_variance);
@@ -70,8 +70,7 @@ std::vector<std::vector<Pairing>> FindPairings(const std::vector<MappedObject>& 
 
 constexpr std::size_t kNew = SIZE_MAX;
 
-// Of each of 'rows', those that have rivals, the known object that it is, or kNew: the cheapest in
-// all.
+// Assigns each of 'rows', which have rivals, its known object or kNew, at the least total cost.
 void AssignRivals(const std::vector<std::size_t>& rows,
                   const std::vector<std::vector<Pairing>>& pairings, double new_cost,
                   std::vector<std::size_t>* assigned) {
@@ -100,7 +99,7 @@ void AssignRivals(const std::vector<std::size_t>& rows,
   }
 }
 
-// Of each object the known one that it is, or kNew.
+// Returns for each object its known object, or kNew.
 std::vector<std::size_t> Assign(const std::vector<std::vector<Pairing>>& pairings,
                                 std::size_t known, double new_cost) {
   std::vector<int> claims(known);

@@ -9,9 +9,10 @@
 
 namespace kestrel {
 
-// Puts the objects of one map to those of others, all of one world and one time: two of one shape
-// and colour that are as near to each other as their covariances allow are one, and the assignment
-// is the cheapest in all. Those of one map stay apart. The index in 'fused' of each of 'objects'.
+// Merges the objects of one map into 'fused', all of one world and at one time. Two objects of one
+// shape and colour that are as near as their covariances allow are one; the assignment has the
+// least total cost. Objects of one map stay apart. Returns the index in 'fused' of each of
+// 'objects'.
 std::vector<std::size_t> FuseObjects(const std::vector<MappedObject>& objects,
                                      const ObjectMapOptions& options,
                                      std::vector<MappedObject>* fused);

@@ -12,7 +12,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::SizeIs;
 
-// A standing disc at (1, 2), and one at (x, 2), seen five times.
+// A map of a standing disc at (1, 2) and one at (x, 2), seen five times.
 std::vector<MappedObject> MapOfTwo(double x, Random* random) {
   ObjectMap map(DefaultObjectModel(), {});
   for (int i = 0; i < 5; ++i) {
@@ -45,7 +45,7 @@ TEST(FuseObjects, ThoseOfOneMapStayApart) {
   EXPECT_THAT(fused, SizeIs(2));
 }
 
-// A yellow disc that one map says to move, or to stand, at x = 'x'.
+// A yellow disc at x = 'x' that one map reports as moving or standing.
 MappedObject Yellow(double x, double move_log_odds) {
   MappedObject object;
   object.may_move = true;

@@ -13,7 +13,7 @@
 namespace kestrel {
 namespace {
 
-// A pair that cannot be: dearer than any sum of possible ones.
+// Least probability, which bounds logarithms.
 constexpr double kMinProbability = 1e-6;
 
 double LogOdds(double probability) { return std::log(probability / (1 - probability)); }
@@ -24,7 +24,7 @@ bool IsUsable(const ObjectMeasurement& measurement) {
          measurement.covariance.llt().info() == Eigen::Success;
 }
 
-// Adds the logarithms of 'probabilities', and keeps the greatest sum at 0.
+// Adds the logarithms of 'probabilities', and shifts the sums so that the greatest is 0.
 template <class Array>
 void AddLogarithms(const Array& probabilities, Array* sums) {
   for (std::size_t i = 0; i < sums->size(); ++i) {
@@ -38,19 +38,19 @@ Eigen::Matrix3d PositionCovariance(const MappedObject& object) {
   return object.covariance.topLeftCorner<3, 3>();
 }
 
-// A Kalman filter's update of a position alone.
+// Kalman update of a position alone.
 void FuseStanding(const ObjectMeasurement& measurement, MappedObject* object) {
   const Eigen::Matrix3d covariance = PositionCovariance(*object);
   const Eigen::Matrix3d innovation = covariance + measurement.covariance;
   const Eigen::Matrix3d gain = innovation.llt().solve(covariance).transpose();
   object->state.head<3>() += (gain * (measurement.position - object->position())).eval();
-  // Joseph's form stays symmetric and positive.
+  // Joseph's form keeps the covariance symmetric and positive.
   const Eigen::Matrix3d rest = Eigen::Matrix3d::Identity() - gain;
   object->covariance.topLeftCorner<3, 3>() =
       rest * covariance * rest.transpose() + gain * measurement.covariance * gain.transpose();
 }
 
-// How likely both have the same colour: -log of the sum of products of probabilities.
+// Returns -log of the probability that both have the same colour: the sum of products.
 double ColorCost(const ColorProbabilities& probabilities, const ColorProbabilities& logs) {
   double same = 0;
   double total = 0;
@@ -217,7 +217,7 @@ void ObjectMap::Assign(Time time) {
   const auto rows = static_cast<Eigen::Index>(measurements_.size());
   const auto known = static_cast<Eigen::Index>(entries_.size());
   if (rows == 0) return;
-  // One column for each object, and one of its own for each detection that is of none.
+  // One column for each object, and one for each detection that belongs to no object.
   auto costs = costs_.topLeftCorner(rows, known + rows);
   costs.rightCols(rows).setConstant(kImpossibleCost);
   for (Eigen::Index i = 0; i < rows; ++i) {

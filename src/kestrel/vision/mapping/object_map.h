@@ -16,40 +16,40 @@
 namespace kestrel {
 
 struct ObjectMapOptions {
-  // Squared Mahalanobis distance beyond which a detection is not the object's: 16.3 is passed by
-  // one true detection in a thousand (3 degrees of freedom).
+  // Squared Mahalanobis distance beyond which a detection does not belong to an object. One true
+  // detection in a thousand exceeds 16.3 (3 degrees of freedom).
   double gate = 16.3;
-  // How many objects that are not in the map yet lie around, 1/m^3. A detection is rather a new
-  // object than one that may be anywhere by now.
+  // Density of objects that are not in the map yet, 1/m^3. It makes a detection rather a new object
+  // than an old one whose position is no longer known.
   double new_density = 0.005;
-  // Two objects of one shape and colour cannot be nearer than this: they become one.
+  // Two objects of one shape and colour cannot be nearer than this; they are merged.
   double min_separation_m = 0.2;
-  // How fast the position of a standing object becomes uncertain; how a moving one accelerates, and
-  // for how long it keeps its acceleration and its velocity.
+  // Growth of a standing object's position error; acceleration of a moving object, and the times
+  // for which it keeps its acceleration and its velocity.
   double drift_noise = 0.005;
   double acceleration_sigma_mps2 = 0.2;
   double acceleration_time_s = 2;
   double velocity_time_s = 30;
   double start_speed_sigma_mps = 1.5;
-  // What looks like motion and is none: an error that the detections of a moment share and that
-  // wanders, per axis and about so fast (the navigation's), and an error of the clock offset.
+  // Errors that look like motion: an error (per axis) that detections at one time share and that
+  // wanders over wander_time_s (the navigation's), and an error of the clock offset.
   double wander_sigma_m = 0.05;
   double wander_time_s = 3;
   double clock_sigma_s = 0.03;
-  // From this probability on an object is said to move.
+  // Probability from which on an object is reported as moving.
   double moving_probability = 0.99;
-  // Error of the position, per axis, that many detections in a row share (bias of the navigation,
-  // clock): no object is known better than this.
+  // Position error per axis that many detections in a row share (bias of the navigation, clock): no
+  // object is known better than this.
   double shared_sigma_m = 0.02;
-  // How sure a detection and a miss make the map of an object: probability that an object in view
-  // is detected, and of a detection where there is none. At 'removal_probability' it is removed.
+  // Evidence of a detection and of a miss: the probability that an object in view is detected, and
+  // that of a detection without an object. An object is removed at 'removal_probability'.
   double detection_probability = 0.6;
   double false_probability = 0.02;
   double max_probability = 0.999;
   double removal_probability = 0.05;
-  // Detections that make an object part of the map.
+  // Number of detections after which an object is part of the map.
   int confirm_count = 3;
-  // Objects that are kept; the least sure make room.
+  // Largest number of objects; the least certain are removed.
   int capacity = 256;
 
   template <class Self, class Visitor>
@@ -88,37 +88,38 @@ struct ObjectMapOptions {
   ObjectMotion motion() const;
 };
 
-// Says where an object should have been seen, if it were there.
+// Decides whether an object should have been seen.
 class FieldOfView {
  public:
   virtual ~FieldOfView() = default;
   virtual bool Shows(const MappedObject& object) const = 0;
 };
 
-// The objects around, from detections in the world: the paper's section 3.7 with covariances. Each
-// frame's detections are assigned to the objects together, the cheapest way in all (Mahalanobis
-// distance and how alike colours are); a Kalman filter fuses them, a MotionFilter those of what may
-// move; what should be seen and is not fades and is removed. Bounded memory and time per update.
+// Maps the objects from their detections in the world: the paper's section 3.7 with covariances.
+// The detections of a frame are assigned to the objects together, at the least total cost
+// (Mahalanobis distance and similarity of colours). A Kalman filter fuses them, a MotionFilter for
+// objects that may move. An object that should be seen and is not becomes less certain and is
+// finally removed. Bounded memory and time per update.
 class ObjectMap {
  public:
-  // Throws InputError when the options are not valid. 'model' tells what may move.
+  // Throws InputError when the options are invalid. 'model' says which objects may move.
   ObjectMap(const ObjectModel& model, const ObjectMapOptions& options);
 
-  // The detections of one frame at 'time', which must not decrease: an older frame is left out.
-  // Detections that are not finite are left out, and those beyond kMaxMeasurements.
+  // Adds the detections of one frame at 'time'. Times must not decrease: an older frame is ignored.
+  // Detections that are not finite are ignored, and so are those beyond kMaxMeasurements.
   void Update(Time time, std::span<const ObjectMeasurement> measurements, const FieldOfView& view);
 
-  // The objects seen often enough, by their ids, each at the time when it was last seen: where a
-  // moving one is since then nobody knows, PredictObject says where it would be.
+  // Returns the objects that were seen often enough, ordered by id, each at the time when it was
+  // last seen. PredictObject predicts where a moving object is since then.
   std::vector<MappedObject> Confirmed() const;
 
-  // All, with those that were seen once.
+  // Returns all objects, including those that were seen only once.
   std::vector<MappedObject> objects() const;
 
   static constexpr std::size_t kMaxMeasurements = 64;
 
  private:
-  // An object, and of what may move whether it does.
+  // An object and, if it may move, its motion filter.
   struct Entry {
     MappedObject object;
     MotionFilter motion;
@@ -137,12 +138,12 @@ class ObjectMap {
   ObjectMapOptions options_;
   double hit_log_odds_;
   double miss_log_odds_;
-  double new_cost_;  // -2 log of how likely a detection is that of a new object
+  double new_cost_;  // -2 log of the likelihood that a detection is of a new object
   double max_log_odds_;
   double removal_log_odds_;
   ObjectMotion motion_;
   std::vector<Entry> entries_;
-  std::vector<Entry> predicted_;  // the same at the time of the update
+  std::vector<Entry> predicted_;  // the entries at the time of the update
   std::vector<ObjectMeasurement> measurements_;
   Eigen::MatrixXd costs_;
   AssignmentSolver solver_;

@@ -38,7 +38,8 @@ TEST(ObjectMap, ObjectIsConfirmedAndItsPositionIsFused) {
 TEST(ObjectMap, NeighboursAreToldApartTogether) {
   ObjectMap map(DefaultObjectModel(), {});
   Random random(2);
-  // Nearer to each other than detections scatter: the nearest object alone would mix them up.
+  // Nearer to each other than detections scatter: assignment to the nearest object would confuse
+  // them.
   for (int i = 0; i < 60; ++i) {
     map.Update(At(0.1 * i),
                std::vector{MeasureNoisily({0, 0, 0}, kRed, 0.1, &random),
@@ -76,7 +77,7 @@ TEST(ObjectMap, RowsOfARollingShutterHaveTimesOfTheirOwn) {
   ObjectMap map(DefaultObjectModel(), {});
   Random random(7);
   const Eigen::Vector3d velocity(1, 0.5, 0);
-  // Through the image from the first row to the last: as if it took the readout's time longer.
+  // The disc passes through the image from the first row to the last, so that the delay grows.
   constexpr double kReadout_s = 0.1;
   for (int i = 0; i <= 20; ++i) {
     const double t = 0.1 * i;
@@ -98,7 +99,7 @@ TEST(ObjectMap, VelocityFollowsCurves) {
   for (int seed = 0; seed < kSeeds; ++seed) {
     ObjectMap map(DefaultObjectModel(), {});
     Random random(static_cast<std::uint64_t>(seed));
-    // To and fro at up to 0.7 m/s, speeding up and down by up to 0.4 m/s^2.
+    // To and fro at up to 0.7 m/s, with accelerations of up to 0.4 m/s^2.
     const double rate = random.Uniform(0.4, 0.6);
     const double phase = random.Uniform(0, 6);
     const auto along = [&](double t) { return 0.7 / rate * std::sin(rate * t + phase); };

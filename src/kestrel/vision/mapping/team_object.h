@@ -11,8 +11,8 @@ namespace kestrel {
 // An object of the map that a team of UAVs shares.
 struct TeamObject {
   MappedObject object;
-  std::vector<std::string> uavs;  // that have it in their maps, by name
-  std::string holder;             // the one that goes for it; empty: none
+  std::vector<std::string> uavs;  // names of the UAVs that have it in their maps
+  std::string holder;             // name of the UAV that goes for it; empty: none
 };
 
 }  // namespace kestrel

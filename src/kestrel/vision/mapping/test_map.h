@@ -6,13 +6,14 @@
 
 namespace kestrel {
 
-// Colours of the model.
+// Indices of colours in the model.
 inline constexpr std::size_t kRed = 0;
 inline constexpr std::size_t kYellow = 2;
 
 inline Time At(double seconds) { return Time(DurationFromSeconds(seconds)); }
 
-// A disc of the model's colour 'color' seen at 'position', with this deviation per axis.
+// A detection of a disc of the model's colour 'color' at 'position', with standard deviation
+// 'sigma_m' per axis.
 inline ObjectMeasurement MeasureDisc(const Eigen::Vector3d& position, std::size_t color,
                                      double sigma_m = 0.05) {
   ObjectMeasurement measurement;
