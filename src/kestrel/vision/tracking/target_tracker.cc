@@ -29,7 +29,8 @@ bool IsValid(const TargetMeasurement& measurement) {
 }
 
 TurnState WithYaw(const TurnState& state, const TargetMeasurement& measurement) {
-  constexpr double kGate = 16;  // four standard deviations: beyond, another line was taken for it
+  constexpr double kGate = 16;  // four standard deviations; beyond that, another line was taken for
+                                // the arm
   if (!measurement.yaw) return state;
   return UpdateByYaw(state, *measurement.yaw, measurement.yaw_variance, kGate);
 }
@@ -145,7 +146,7 @@ MeasurementFate TargetTracker::Add(const TargetMeasurement& measurement) {
 }
 
 MeasurementFate TargetTracker::Start(const TargetMeasurement& measurement) {
-  constexpr double kSteepest = 0.1;  // of roads
+  constexpr double kSteepest = 0.1;  // slope of roads
   const double speed = options_.start_speed_sigma_mps;
   const TurnState state =
       StartState(measurement.position_in_world, measurement.covariance,
@@ -179,7 +180,7 @@ void TargetTracker::Insert(std::size_t index, const TargetMeasurement& measureme
   outliers_ = 0;
 }
 
-// Filters the entries from 'index' on, each from the one before; false when one is not finite.
+// Filters the entries from 'index' on, each from the one before. False when a result is not finite.
 bool TargetTracker::FilterFrom(std::size_t index) {
   for (std::size_t i = index; i < entries_.size(); ++i) {
     const TargetMeasurement& measurement = entries_[i].measurement;

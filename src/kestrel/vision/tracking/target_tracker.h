@@ -12,79 +12,78 @@
 
 namespace kestrel {
 
-// Where the target was when the light of an image fell on it.
+// A measured position of the target at the time of an image's exposure.
 struct TargetMeasurement {
   Time time;
   Eigen::Vector3d position_in_world;
-  Eigen::Matrix3d covariance;  // of the position's own error, m^2
-  // Of the error that all measurements share, as the bias of the navigation, m^2: it is not
-  // filtered away, but in the covariance of every estimate.
+  Eigen::Matrix3d covariance;  // of the error of this position alone, m^2
+  // Covariance of the error that all measurements share, like the navigation's bias, m^2. It is not
+  // filtered, but included in the covariance of every estimate.
   Eigen::Matrix3d shared_covariance = Eigen::Matrix3d::Zero();
-  // How the target is turned about the vertical, up to quarter turns (rad), and the variance of
-  // that (rad^2): where it is seen to turn, the track knows the curve.
+  // Yaw of the target (rad), modulo quarter turns, and its variance (rad^2). Where the target is
+  // seen to turn, the track knows the curve.
   std::optional<double> yaw = std::nullopt;
   double yaw_variance = 0;
 };
 
-// What became of a measurement.
+// Result of adding a measurement.
 enum class MeasurementFate {
-  kStarted,      // there was no track, or it was lost: a new one begins here
-  kAccepted,     // it is in the track, at its time
-  kInvalid,      // not finite, or its covariance is none
-  kTooOld,       // older than all that the track remembers
-  kFarFromTrack  // not where the target can be; several in a row that agree start a new track
+  kStarted,      // there was no track, or it was lost; a new one begins here
+  kAccepted,     // in the track, at its time
+  kInvalid,      // not finite, or not a valid covariance
+  kTooOld,       // older than all measurements remembered
+  kFarFromTrack  // where the target cannot be; several in a row that agree start a new track
 };
 const char* ToString(MeasurementFate fate);  // "started", "accepted", "invalid", ...
 
 enum class TrackState {
-  kSearching,   // nothing seen yet, or too little to trust it
+  kSearching,   // not seen yet, or not often enough
   kTracking,    // seen just now
-  kPredicting,  // not seen for a moment
-  kLost,        // not seen for so long that nobody knows where it is
+  kPredicting,  // not seen for a short time
+  kLost,        // not seen for so long that its position is unknown
 };
 const char* ToString(TrackState state);  // "searching", "tracking", "predicting", "lost"
 
-// The target at an instant, in the world.
+// The target at one time, in the world.
 struct TargetEstimate {
   Time time;
   TurnState motion;
 
   double heading() const;  // of the velocity, rad from x (east) to y
   double speed() const;    // horizontal, m/s
-  // Standard deviation per axis: root of the mean of the three variances.
+  // Standard deviations per axis: root of the mean of the three variances.
   double position_sigma_m() const;
   double velocity_sigma_mps() const;
 };
 
 struct TargetTrackerOptions {
-  // How the target moves: see TurnNoise. The defaults suit a car of up to 40 km/h on curves.
+  // Motion of the target: see TurnNoise. The defaults suit a car at up to 40 km/h on curves.
   double acceleration_noise = 0.1;
   double climb_noise = 0.1;
   double turn_noise = 0.1;
   double turn_time_s = 5;
-  // How the board sways on the vehicle's springs: see SwayMotion. A body rolls and pitches at 1 to
-  // 2 Hz, by some tenths of a degree.
+  // Sway of the board on the vehicle's springs: see SwayMotion. A body rolls and pitches at 1 to 2
+  // Hz by some tenths of a degree.
   double sway_sigma_m = 0.01;
   double sway_frequency_hz = 1.4;
   double sway_damping = 0.3;
-  // What a new track does not know: standard deviations of speed, turn rate and, per second, its
-  // change.
+  // Standard deviations of a new track: speed, turn rate and its change per second.
   double start_speed_sigma_mps = 6;
   double start_turn_sigma_radps = 0.3;
-  // Squared Mahalanobis distance beyond which a measurement is not the target's: 16.3 is passed by
-  // one true measurement in a thousand.
+  // Squared Mahalanobis distance beyond which a measurement is not of the target. One true
+  // measurement in a thousand exceeds 16.3.
   double gate = 16.3;
-  // Measurements in a row, outside of the gate and none further from the one before than the
-  // fastest target gets, after which the track was wrong and a new one begins.
+  // Number of measurements in a row outside of the gate, each within reach of the one before at
+  // max_speed_mps, after which the track is considered wrong and a new one begins.
   int restart_count = 5;
   double max_speed_mps = 15;
-  // Measurements that make a track; time without one after which it is predicted, then lost; and
-  // standard deviation of the position at which it is lost.
+  // Number of measurements that confirm a track; times without a measurement after which it is
+  // predicted, then lost; standard deviation of the position at which it is lost.
   int confirm_count = 5;
   double predict_after_s = 0.15;
   double lost_after_s = 3;
   double lost_sigma_m = 3;
-  // How many measurements are remembered, for those that come late.
+  // Number of measurements that are remembered, so that late ones can be inserted.
   int history = 64;
 
   template <class Self, class Visitor>
@@ -119,28 +118,27 @@ struct TargetTrackerOptions {
   TurnNoise Noise() const;  // of the motion
 };
 
-// Follows one ground vehicle by measured positions and, where it is known, the yaw of what it
-// carries (title and sections 1 and 5 of the paper).
-// Measurements may be late and out of order: each is put in at its time and those after it are
-// filtered again. Bounded memory and time; allocates at construction only, never throws afterwards,
-// never returns what is not finite.
+// Tracks one ground vehicle from measured positions and, where known, the yaw of its load (title
+// and sections 1 and 5 of the paper). Measurements may be late and out of order: each is inserted
+// at its time, and those after it are filtered again. Bounded memory and time. Allocates at
+// construction only, never throws afterwards, and never returns values that are not finite.
 class TargetTracker {
  public:
-  // Throws InputError when the options are not valid.
+  // Throws InputError when the options are invalid.
   explicit TargetTracker(const TargetTrackerOptions& options);
 
   MeasurementFate Add(const TargetMeasurement& measurement);
 
   TrackState StateAt(Time time) const;
 
-  // The target at 'time', from the measurements up to then: filtered, or predicted for times after
-  // the newest. Nothing before the oldest measurement remembered, and where the target is lost.
+  // Returns the target at 'time' from the measurements up to then: filtered, or predicted for times
+  // after the newest. Nothing before the oldest measurement remembered and when the target is lost.
   std::optional<TargetEstimate> Predict(Time time) const;
 
  private:
   struct Entry {
     TargetMeasurement measurement;
-    TurnState filtered;  // with all measurements up to this one
+    TurnState filtered;  // state with all measurements up to this one
   };
 
   MeasurementFate Start(const TargetMeasurement& measurement);
@@ -152,10 +150,10 @@ class TargetTracker {
 
   TargetTrackerOptions options_;
   TurnNoise noise_;
-  std::vector<Entry> entries_;  // in order of time; never more than the capacity reserved
-  int accepted_ = 0;            // measurements of this track, up to confirm_count
-  std::optional<TargetMeasurement> outlier_;  // the newest that was rejected
-  int outliers_ = 0;                          // how many in a row that agree
+  std::vector<Entry> entries_;                // in order of time; at most the reserved capacity
+  int accepted_ = 0;                          // measurements of this track, up to confirm_count
+  std::optional<TargetMeasurement> outlier_;  // the newest rejected measurement
+  int outliers_ = 0;                          // number of rejected measurements in a row that agree
 };
 
 }  // namespace kestrel

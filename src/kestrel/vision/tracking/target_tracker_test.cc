@@ -32,7 +32,7 @@ Eigen::Vector3d Circle(double t) {
   const double angle = kSpeed / radius * t;
   return {radius * std::cos(angle), radius * std::sin(angle), 1.5};
 }
-// Lemniscate of Bernoulli, 30 m long, at about constant speed.
+// Lemniscate of Bernoulli, 30 m long, at roughly constant speed.
 Eigen::Vector3d FigureOfEight(double t) {
   const double half_length = 15;
   const double even = 2 * std::numbers::pi * kSpeed / (5.2441 * half_length) * t;
@@ -61,7 +61,7 @@ class Sensor {
             .position_in_world = path_(t) + sigma_m_ * noise,
             .covariance = sigma_m_ * sigma_m_ * Eigen::Matrix3d::Identity()};
   }
-  // With the yaw of a board that was mounted somehow.
+  // Includes the yaw of a board with an arbitrary mounting angle.
   TargetMeasurement MeasureWithYaw(double t) {
     constexpr double kMounted = 0.3;
     constexpr double kYawSigma = 0.01;
@@ -79,7 +79,7 @@ class Sensor {
   Random random_;
 };
 
-// Errors after each measurement, once the track has settled.
+// Errors after each measurement once the track has settled.
 struct Errors {
   std::vector<double> position, velocity, half_second, second, nees;
   int rejected = 0;
@@ -123,7 +123,7 @@ TargetTrackerOptions ConstantVelocity() {
   TargetTrackerOptions options;
   options.turn_noise = 0;
   options.start_turn_sigma_radps = 0;
-  options.acceleration_noise = 0.8;  // has to explain the curves
+  options.acceleration_noise = 0.8;  // must account for the curves
   return options;
 }
 
@@ -149,7 +149,7 @@ TEST(TargetTracker, OnCurvesItPredictsTwiceAsWellAsConstantVelocity) {
 
 TEST(TargetTracker, ItsCovarianceIsNotTooSmall) {
   for (const auto& path : {Standing, Straight, Circle, FigureOfEight, Swaying}) {
-    EXPECT_LT(Rms(Follow(path, {}).nees), 6);  // of a chi-square of 3: 3.9
+    EXPECT_LT(Rms(Follow(path, {}).nees), 6);  // 3.9 for a chi-square of 3 degrees of freedom
   }
 }
 
@@ -163,7 +163,7 @@ TEST(TargetTracker, TheSwayOfTheBoardIsNotTheVehiclesSpeed) {
   EXPECT_LT(Percentile95(sways.second), 0.7 * Percentile95(stiff.second));
 }
 
-// Positions (m) that it predicts a second ahead are off by, half a second to 1.5 s after its start.
+// Errors (m) of predictions a second ahead, from half a second to 1.5 s after the track's start.
 double ErrorAtTheStart(bool with_yaw) {
   TargetTracker tracker({});
   Sensor sensor(FigureOfEight);

@@ -20,7 +20,7 @@ double Sinc(double x) { return std::abs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) 
 
 Eigen::Matrix2d Turn(double angle) { return Eigen::Rotation2Dd(angle).toRotationMatrix(); }
 
-// Sway and its velocity after 't' seconds, per those of now (the exact solution).
+// Transition of the sway and its velocity over 't' seconds (exact solution).
 Eigen::Matrix2d SwayTransition(const SwayMotion& sway, double t) {
   const double rate = sway.rate();
   const double damping = sway.damping * rate;
@@ -32,15 +32,15 @@ Eigen::Matrix2d SwayTransition(const SwayMotion& sway, double t) {
   return std::exp(-damping * t) * transition;
 }
 
-// Variances of the sway and its velocity while noise keeps them up.
+// Steady-state variances of the sway and its velocity under noise.
 Eigen::Matrix2d SwayCovariance(const SwayMotion& sway) {
   const double variance = sway.sigma * sway.sigma;
   return Eigen::Vector2d(variance, sway.rate() * sway.rate() * variance).asDiagonal();
 }
 
-// The Jacobian of a step of 't' seconds, with the turn rate of half time. A step of an arc is its
-// chord, which has the direction of the velocity at half time; the change of the chord's length
-// with the turn rate is left out. Position and velocity include the sway, which does not turn.
+// Jacobian of a step of 't' seconds, with the turn rate at half time. A step along an arc is its
+// chord, which has the direction of the velocity at half time. The change of the chord's length
+// with the turn rate is neglected. Position and velocity include the sway, which does not turn.
 StateMatrix StepJacobian(const TurnState& state, double t, const TurnNoise& noise) {
   const double angle = t * (state.mean(6) + state.mean(7) * t / 2);
   const double chord = t * Sinc(angle / 2);
@@ -69,8 +69,8 @@ StateMatrix StepJacobian(const TurnState& state, double t, const TurnNoise& nois
   return jacobian;
 }
 
-// White noise of root density 'noise' on the derivative of entry 'rate', whose integral is entry
-// 'value', for 't' seconds.
+// Adds the covariance of white noise of root density 'noise' on the derivative of entry 'rate',
+// whose integral is entry 'value', over 't' seconds.
 void AddNoise(double noise, double t, int value, int rate, StateMatrix* covariance) {
   const double q = noise * noise;
   (*covariance)(value, value) += q * t * t * t / 3;
@@ -79,7 +79,7 @@ void AddNoise(double noise, double t, int value, int rate, StateMatrix* covarian
   (*covariance)(rate, rate) += q * t;
 }
 
-// What keeps the sway up: as much as a step takes away of it.
+// Adds the noise that sustains the sway: as much as a step damps away.
 void AddSwayNoise(const SwayMotion& sway, double t, StateMatrix* covariance) {
   const Eigen::Matrix2d transition = SwayTransition(sway, t);
   const Eigen::Matrix2d steady = SwayCovariance(sway);
@@ -101,7 +101,7 @@ void Step(double t, const TurnNoise& noise, TurnState* state) {
   AddNoise(noise.climb, t, 2, 5, &covariance);
   AddNoise(noise.turn, t, 6, 7, &covariance);
   AddSwayNoise(noise.sway, t, &covariance);
-  // Of the turn rate the path is no linear function: the Jacobian's matrices turn it already.
+  // The path is not a linear function of the turn rate; the Jacobian's matrices already include it.
   const StateMatrix& by = jacobian;
   const TurnState::Vector now = state->mean;
   TurnState::Vector straight = now;
@@ -124,8 +124,8 @@ TurnState StartState(const Eigen::Vector3d& position, const Eigen::Matrix3d& cov
   state.covariance.diagonal().segment<3>(3) = velocity_sigmas.cwiseAbs2();
   state.covariance.diagonal().segment<2>(6).setConstant(turn_sigma * turn_sigma);
   state.covariance(kYaw, kYaw) = std::numbers::pi * std::numbers::pi / 4;
-  // What was measured has the sway in it, so it says nothing of how much of it there is; the
-  // velocity is that of the vehicle and of the sway.
+  // The measurement includes the sway, so it says nothing about the sway's size. The velocity is
+  // that of the vehicle plus that of the sway.
   const Eigen::Matrix2d sway = SwayCovariance(noise.sway);
   state.covariance.diagonal().segment<2>(8).setConstant(sway(0, 0));
   for (int axis = 0; axis < 2; ++axis) {

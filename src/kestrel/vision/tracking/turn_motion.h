@@ -5,12 +5,12 @@
 
 namespace kestrel {
 
-// How what a ground vehicle carries moves. The vehicle: at constant speed along a curve whose turn
-// rate changes steadily, as in a road or a figure of eight, all disturbed by noise (a coordinated
-// turn with one derivative more: docs/tracking.md has the comparison). The state has the velocity
-// by its components, so that a standing target, which has no heading, is like any other (X. R. Li
+// Motion model of a ground vehicle's load. The vehicle drives at constant speed along a curve whose
+// turn rate changes steadily, as on a road or a figure of eight, disturbed by noise (a coordinated
+// turn with one more derivative; docs/tracking.md has a comparison). The state has the components
+// of the velocity, so that a standing target, which has no heading, is no special case (X. R. Li
 // and V. P. Jilkov, Survey of maneuvering target tracking I, 2003, section V). The load sways on
-// the vehicle's springs: a damped oscillator driven by noise in either horizontal axis. It turns
+// the vehicle's springs: a damped oscillator driven by noise along each horizontal axis. It turns
 // with the vehicle. World frame, z up; m, s, rad.
 inline constexpr int kTurnStateSize = 13;
 
@@ -18,8 +18,8 @@ struct TurnState {
   using Vector = Eigen::Matrix<double, kTurnStateSize, 1>;
   using Matrix = Eigen::Matrix<double, kTurnStateSize, kTurnStateSize>;
 
-  // Position (3), velocity (3), turn rate of the vehicle about z and its derivative; of position
-  // and velocity what is sway (2 and 2, horizontal); yaw of the load.
+  // Position (3), velocity (3), turn rate of the vehicle about z and its derivative; the sway's
+  // part of position and velocity (2 and 2, horizontal); yaw of the load.
   Vector mean = Vector::Zero();
   Matrix covariance = Matrix::Zero();
 
@@ -29,7 +29,7 @@ struct TurnState {
   double turn_change() const { return mean(7); }  // derivative of the turn rate
 };
 
-// The swaying left alone: standard deviation (m; 0: none), frequency and damping ratio (0 to 1,
+// Undisturbed sway: standard deviation (m; 0: none), frequency and damping ratio (0 to 1,
 // exclusive).
 struct SwayMotion {
   double sigma;
@@ -39,36 +39,37 @@ struct SwayMotion {
   double rate() const;  // rad/s
 };
 
-// Root spectral densities of the white noises that disturb the motion, and the sway.
+// Root spectral densities of the white noises that disturb motion and sway.
 struct TurnNoise {
   double acceleration;  // horizontal, m/s^2 per root of Hz
   double climb;         // vertical acceleration, m/s^2 per root of Hz
-  double turn;          // of the turn rate's second derivative, rad/s^3 per root of Hz
-  double turn_time_s;   // after which a change of the turn rate, left alone, ends (to 1/e)
+  double turn;          // second derivative of the turn rate, rad/s^3 per root of Hz
+  double turn_time_s;  // time constant with which an undisturbed change of the turn rate decays (to
+                       // 1/e)
   SwayMotion sway;
 };
 
-// What is known before anything was seen to move: standard deviations of the vehicle's velocity
-// per axis, of its turn rate and of the derivative of that; the sway is that of 'noise', and of the
-// yaw nothing is known.
+// Returns the state before any motion was seen. Standard deviations: the vehicle's velocity per
+// axis, its turn rate and the derivative of that. The sway is that of 'noise', and the yaw is
+// unknown.
 TurnState StartState(const Eigen::Vector3d& position, const Eigen::Matrix3d& covariance,
                      const Eigen::Vector3d& velocity_sigmas, double turn_sigma,
                      const TurnNoise& noise);
 
-// The state 'seconds' later (at least 0). In steps short enough for the turn
-// rate to be constant, the covariance by the model's Jacobian.
+// Returns the state 'seconds' (at least 0) later. Uses steps short enough for a constant turn rate;
+// the covariance follows from the model's Jacobian.
 TurnState Propagate(const TurnState& state, double seconds, const TurnNoise& noise);
 
-// The state given a measured position (Kalman filter, Joseph's form).
+// Returns the state updated by a measured position (Kalman filter, Joseph's form).
 TurnState UpdateByPosition(const TurnState& state, const Eigen::Vector3d& position,
                            const Eigen::Matrix3d& covariance);
 
-// The state given a measured yaw (rad) of a load that looks the same after a quarter turn, unless
-// that is further than 'gate' (squared, in variances) from where it should be.
+// Returns the state updated by a measured yaw (rad) of a load that looks the same after a quarter
+// turn. Ignores a yaw farther than 'gate' (squared, in variances) from the expected one.
 TurnState UpdateByYaw(const TurnState& state, double yaw, double variance, double gate);
 
-// Squared Mahalanobis distance of a measured position from the state's: chi-square with 3 degrees
-// of freedom when both covariances are right.
+// Returns the squared Mahalanobis distance of a measured position from the state's: chi-square with
+// 3 degrees of freedom when both covariances are right.
 double SquaredDistance(const TurnState& state, const Eigen::Vector3d& position,
                        const Eigen::Matrix3d& covariance);
 
