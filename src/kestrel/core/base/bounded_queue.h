@@ -13,18 +13,18 @@
 
 namespace kestrel {
 
-// A hand-over between threads that never makes the giver wait: when it is full the oldest value
-// goes, so that with a capacity of 1 the newest wins. Values are moved in and out while the lock is
-// held, and destroyed without it. Allocates at construction only, as far as moving a T does not.
-// Any number of threads may call each function.
+// A bounded queue between threads whose Push never blocks: when it is full, the oldest value is
+// dropped. With a capacity of 1 it holds the newest value. Values are moved in and out under the
+// lock and destroyed outside of it. Allocates at construction only, as far as moving a T does not
+// allocate. All functions are thread-safe.
 template <class T>
 class BoundedQueue {
  public:
   // 'capacity': at least 1.
   explicit BoundedQueue(std::size_t capacity) : ring_(std::max<std::size_t>(capacity, 1)) {}
 
-  // Appends a value, unless the queue is closed. Returns what had to make room for it, or 'value'
-  // itself when the queue is closed.
+  // Appends a value, unless the queue is closed. Returns the value that was dropped to make room,
+  // or 'value' itself when the queue is closed.
   std::optional<T> Push(T value) {
     std::optional<T> dropped;
     {
@@ -40,20 +40,21 @@ class BoundedQueue {
     return dropped;
   }
 
-  // The oldest value, if there is one.
+  // Removes and returns the oldest value, if there is one.
   std::optional<T> TryPop() {
     const std::lock_guard lock(mutex_);
     return TakeFirst();
   }
 
-  // The same, for which it waits up to 'timeout', and no longer than until Close.
+  // The same, but waits for a value up to 'timeout', or until Close.
   std::optional<T> Pop(Duration timeout) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, timeout, [this] { return size_ > 0 || is_closed_; });
     return TakeFirst();
   }
 
-  // Nothing goes in any more; what is inside can still be taken out. Nobody waits any longer.
+  // Closes the queue: no more values are accepted, those inside can still be taken, and waiting
+  // ends.
   void Close() {
     {
       const std::lock_guard lock(mutex_);
@@ -66,7 +67,7 @@ class BoundedQueue {
     const std::lock_guard lock(mutex_);
     return size_;
   }
-  // How many values made room for others.
+  // Number of values that were dropped.
   std::size_t dropped() const {
     const std::lock_guard lock(mutex_);
     return dropped_;

@@ -46,7 +46,7 @@ TEST(BoundedQueue, ClosedItGivesWhatIsLeftAndTakesNothing) {
 TEST(BoundedQueue, DestroysWhatItDroppedWithoutItsLock) {
   struct Asks {
     explicit Asks(BoundedQueue<std::unique_ptr<Asks>>* asked) : queue(asked) {}
-    ~Asks() { queue->size(); }  // would wait for ever
+    ~Asks() { queue->size(); }  // would deadlock under the lock
     BoundedQueue<std::unique_ptr<Asks>>* queue;
   };
   BoundedQueue<std::unique_ptr<Asks>> queue(1);

@@ -5,11 +5,11 @@
 
 namespace kestrel {
 
-// Keeps other programs that ask for it from writing into a folder, as long as this lives and the
-// program does: what is killed leaves no lock behind.
+// Keeps other programs that use FolderLock from writing into a folder, for the lifetime of this
+// object and of the program. A killed program leaves no lock behind.
 class FolderLock {
  public:
-  // Throws InputError when another holds the lock, or the folder cannot be opened.
+  // Throws InputError when another program holds the lock or the folder cannot be opened.
   explicit FolderLock(const std::string& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;

@@ -6,19 +6,19 @@
 
 namespace kestrel {
 
-// The newest value that one thread hands to one other, neither of which ever waits: of three slots
-// the writer has one, the reader one, and the third goes to and fro.
+// Hands the newest value from one thread to another; neither ever waits. There are three slots: the
+// writer has one, the reader one, and the third is exchanged between them.
 template <class T>
 class LatestValue {
  public:
-  // By the writing thread.
+  // Called by the writing thread only.
   void Set(const T& value) {
     slots_[writing_] = value;
     writing_ = between_.exchange(writing_ | kIsNew, std::memory_order_acq_rel) & kSlot;
   }
 
-  // By the reading thread: the newest value, a default one before the first. Valid until the next
-  // call.
+  // Called by the reading thread only. Returns the newest value, a default one before the first.
+  // Valid until the next call.
   const T& Get() {
     if (between_.load(std::memory_order_relaxed) & kIsNew) {
       reading_ = between_.exchange(reading_, std::memory_order_acq_rel) & kSlot;

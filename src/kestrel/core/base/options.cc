@@ -77,14 +77,14 @@ std::pair<std::string_view, std::string_view> SplitLast(std::string_view key) {
   return {key.substr(0, dot), key.substr(dot + 1)};
 }
 
-// A misspelt name counts more than the right name in the wrong group.
+// A misspelt name weighs more than the right name in the wrong group.
 int KeyDistance(std::string_view a, std::string_view b) {
   const auto [group_a, name_a] = SplitLast(a);
   const auto [group_b, name_b] = SplitLast(b);
   return 2 * EditDistance(name_a, name_b) + (group_a == group_b ? 0 : 1);
 }
 
-// The keys of all fields and of the groups that they are in.
+// Returns the keys of all fields and of the groups that contain them.
 std::set<std::string> AllKeys(const OptionFields& fields) {
   std::set<std::string> keys;
   for (const OptionField& field : fields) {
@@ -150,7 +150,7 @@ struct ValuePrinter {
   std::string operator()(const bool* value) const { return *value ? "true" : "false"; }
   std::string operator()(const int* value) const { return fmt::to_string(*value); }
   std::string operator()(const double* value) const { return fmt::to_string(*value); }
-  // Without quotes nothing at all would be read back as no value.
+  // An empty text needs quotes; without them it would be read as no value.
   std::string operator()(const std::string* value) const {
     return value->empty() ? "\"\"" : *value;
   }
@@ -190,7 +190,7 @@ void SetOptionField(const std::string& assignment, const OptionFields& fields) {
 
 std::string PrintOptionFields(const OptionFields& fields) {
   std::string text;
-  std::vector<std::string> open;  // the groups that the last field was in
+  std::vector<std::string> open;  // the groups that the last field is in
   for (const OptionField& field : fields) {
     std::vector<std::string> names = SplitKey(field.key);
     const std::string name = names.back();

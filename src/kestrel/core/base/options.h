@@ -20,24 +20,24 @@ namespace kestrel {
 //   }
 //   std::vector<std::string> Validate() const;
 //
-// From this the functions below read and print them. A key is the path of names: "pattern.size_m".
+// The functions below read and print such structs. A key is the path of names: "pattern.size_m".
 
 // One field of an options struct; 'value' points into the struct.
 struct OptionField {
   std::string key;
   std::variant<bool*, int*, double*, std::string*> value;
-  std::string_view unit;  // "1" for a pure number, empty where a unit makes no sense
+  std::string_view unit;  // "1" for a pure number, empty where there is no unit
   std::string_view meaning;
 };
 using OptionFields = std::vector<OptionField>;
 
-// The untyped functions behind those below.
+// The untyped implementations of the functions below.
 void ReadOptionFields(const std::string& yaml, const std::string& file, const OptionFields& fields);
 void SetOptionField(const std::string& assignment, const OptionFields& fields);
 std::string PrintOptionFields(const OptionFields& fields);
 void ThrowIfAny(const std::vector<std::string>& violations);
 
-// Visitor that lists the fields of an options struct with their keys.
+// A visitor that collects the fields of an options struct with their keys.
 class OptionFieldCollector {
  public:
   explicit OptionFieldCollector(OptionFields* fields, std::string prefix = "")
@@ -57,7 +57,7 @@ class OptionFieldCollector {
   std::string prefix_;
 };
 
-// All fields of 'options', in the order of Visit; they point into 'options'.
+// Returns all fields of 'options', in the order of Visit. They point into 'options'.
 template <class Options>
 OptionFields FieldsOf(Options& options) {
   static_assert(!std::is_const_v<Options>);
@@ -66,8 +66,9 @@ OptionFields FieldsOf(Options& options) {
   return fields;
 }
 
-// Sets the fields that the YAML file names, leaves the others. Throws InputError with file and line
-// for an unknown key (names the nearest one), a key given twice, or a value of the wrong type.
+// Sets the fields that the YAML file names and leaves the others. Throws InputError with file and
+// line for an unknown key (and names the nearest one), a duplicate key, or a value of the wrong
+// type.
 template <class Options>
 void ReadOptions(const std::string& path, Options* options) {
   ReadOptionFields(ReadFile(path), path, FieldsOf(*options));
@@ -79,20 +80,20 @@ void SetOption(const std::string& assignment, Options* options) {
   SetOptionField(assignment, FieldsOf(*options));
 }
 
-// YAML with the unit and the meaning of every field as a comment; ReadOptions gets the same values
-// from it, to the last bit.
+// Returns YAML with the unit and the meaning of every field as a comment. ReadOptions reads the
+// same values from it, to the last bit.
 template <class Options>
 std::string PrintOptions(Options options) {
   return PrintOptionFields(FieldsOf(options));
 }
 
-// Throws InputError with everything that Validate() finds.
+// Throws InputError with all violations that Validate() reports.
 template <class Options>
 void RequireValid(const Options& options) {
   ThrowIfAny(options.Validate());
 }
 
-// The same, for the initializers of a constructor: returns the options.
+// The same for initializers of a constructor: returns the options.
 template <class Options>
 const Options& Checked(const Options& options) {
   RequireValid(options);

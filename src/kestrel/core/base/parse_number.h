@@ -9,9 +9,9 @@
 
 namespace kestrel {
 
-// The number that 'text' is as a whole (blanks around it are ignored, the locale has no say), or
-// nothing: when there is anything else in it, when it does not fit into Number, when it is NaN or
-// infinite.
+// Parses 'text' as a single number. Blanks around it are ignored, and the locale has no effect.
+// Returns nothing when there is any other text, when the number does not fit into Number, or when
+// it is NaN or infinite.
 template <class Number>
 std::optional<Number> ParseNumber(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r";

@@ -8,13 +8,13 @@
 
 namespace kestrel {
 
-// Random numbers that are the same with every standard library: only the engine is the standard's,
-// whose sequence the standard fixes; its distributions are not.
+// Random numbers that are the same with every standard library. Only the engine is the standard's,
+// because its sequence is specified; that of the standard distributions is not.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
 
-  // 64 random bits, good as the seed of another Random.
+  // Returns 64 random bits, suitable as the seed of another Random.
   std::uint64_t Bits() { return engine_(); }
 
   // Uniform in [0, 1).

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kDraws = 100000;
 
-// The C++ standard fixes the 10000th number of the engine with its default seed.
+// The C++ standard specifies the 10000th number of the engine with its default seed.
 TEST(RandomTest, IsTheEngineOfTheStandard) {
   Random random(5489);
   for (int i = 0; i < 9999; ++i) random.Bits();

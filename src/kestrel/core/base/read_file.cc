@@ -12,7 +12,7 @@ namespace kestrel {
 std::string ReadFile(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) throw InputError(path + ": no such file");
-  // Linux opens a folder without complaint.
+  // On Linux, opening a folder succeeds.
   if (std::filesystem::is_directory(path, ignored)) {
     throw InputError(path + ": is a folder, expected a file");
   }

@@ -5,8 +5,8 @@
 
 namespace kestrel {
 
-// All bytes of a file. Throws InputError when there is no such file, when it is a folder, or when
-// it cannot be read.
+// Returns all bytes of a file. Throws InputError when the file does not exist, is a folder, or
+// cannot be read.
 std::string ReadFile(const std::string& path);
 
 }  // namespace kestrel

@@ -9,7 +9,7 @@
 
 namespace kestrel {
 
-// Text of a file as a message can show it: on one line, and not longer than 'max_length'.
+// Makes text of a file fit for a message: one line of at most 'max_length' characters, then "...".
 inline std::string Shown(std::string_view text, std::size_t max_length = 60) {
   std::string shown(text.substr(0, max_length));
   if (text.size() > max_length) shown += "...";

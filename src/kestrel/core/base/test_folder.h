@@ -12,7 +12,7 @@
 
 namespace kestrel {
 
-// A folder of one test's own; it and what is in it go away with the test.
+// A folder for one test. It is removed with its content at the end of the test.
 class TestFolder {
  public:
   TestFolder() {
@@ -32,13 +32,13 @@ class TestFolder {
   std::string path() const { return path_.string(); }
   std::string operator/(const std::string& name) const { return (path_ / name).string(); }
 
-  // Makes the folders that lead to 'name' as well; returns the file's path.
+  // Creates the parent folders of 'name' too. Returns the file's path.
   std::string Write(const std::string& name, const std::string& text) const {
     std::filesystem::create_directories((path_ / name).parent_path());
     std::ofstream(path_ / name, std::ios::binary) << text;
     return *this / name;
   }
-  // Leaves only the first 'part' of the file.
+  // Truncates the file to its first 'part', 0 to 1.
   static void CutOff(const std::string& file, double part) {
     const auto size = static_cast<double>(std::filesystem::file_size(file));
     std::filesystem::resize_file(file, static_cast<std::uintmax_t>(part * size));
@@ -48,7 +48,7 @@ class TestFolder {
   std::filesystem::path path_;
 };
 
-// What an InputError thrown by 'action' says; empty when it throws none.
+// Returns the message of an InputError thrown by 'action'; empty when it throws none.
 template <class Action>
 std::string InputErrorOf(const Action& action) {
   try {

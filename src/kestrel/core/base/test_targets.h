@@ -8,8 +8,8 @@
 
 namespace kestrel {
 
-// Runs a test with every instruction set that this processor has, not only with the one that would
-// be chosen.
+// Runs a test with every instruction set of this processor, not only with the one that would be
+// chosen.
 template <class Test>
 void ForEveryTarget(const Test& test) {
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {

@@ -10,7 +10,7 @@ namespace kestrel {
 // Signed span of time, integer nanoseconds.
 using Duration = std::chrono::nanoseconds;
 
-// The clock of a recording or of a sensor: its epoch is whatever the source counts from.
+// The clock of a recording or of a sensor. Its epoch is that of the source.
 struct SensorClock {
   using rep = std::int64_t;
   using period = std::nano;
@@ -19,8 +19,8 @@ struct SensorClock {
   static constexpr bool is_steady = false;
 };
 
-// Instant on a SensorClock, integer nanoseconds. The time of a frame is when its light was
-// collected (middle of the exposure), never when it arrived.
+// Instant on a SensorClock, integer nanoseconds. The time of a frame is the middle of its exposure,
+// never its arrival.
 using Time = SensorClock::time_point;
 
 inline constexpr Time TimeFromNanoseconds(std::int64_t ns) { return Time(Duration(ns)); }
@@ -32,8 +32,8 @@ inline Duration DurationFromSeconds(double seconds) {
 }
 inline constexpr double ToSeconds(Duration duration) { return 1e-9 * duration.count(); }
 
-// The clock of this computer, which everything live is timed by: Linux' CLOCK_MONOTONIC, since
-// boot. It never jumps, and GStreamer's cameras use the same one.
+// The clock of this computer, which times everything live: Linux' CLOCK_MONOTONIC, since boot. It
+// never jumps, and GStreamer's cameras use the same clock.
 inline Time Now() {
   return Time(
       std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now().time_since_epoch()));

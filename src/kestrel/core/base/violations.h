@@ -9,8 +9,8 @@
 
 namespace kestrel {
 
-// Checks that Validate() of options is made of: each adds one sentence when 'value' is not as
-// wanted. NaN is never as wanted.
+// Checks for the Validate() of options. Each adds one sentence when 'value' is invalid. NaN is
+// always invalid.
 
 inline void RequireIn(double value, double low, double high, const std::string& key,
                       std::vector<std::string>* violations) {
@@ -38,7 +38,7 @@ inline void RequireFinite(double value, const std::string& key,
   if (!std::isfinite(value)) violations->push_back(key + " is not finite");
 }
 
-// The violations of a part, with its name before each.
+// Adds the violations of a part, each with the part's name before it.
 inline void AddViolations(const std::string& part, const std::vector<std::string>& of_part,
                           std::vector<std::string>* violations) {
   for (const std::string& violation : of_part) {

@@ -9,7 +9,7 @@
 namespace kestrel {
 
 void WriteFile(const std::string& path, std::string_view bytes) {
-  // In the same folder, for a file is renamed atomically only within its file system.
+  // In the same folder, because rename is atomic only within one file system.
   const std::string draft = path + ".part";
   std::ofstream file(draft, std::ios::binary | std::ios::trunc);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));

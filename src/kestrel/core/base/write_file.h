@@ -6,9 +6,9 @@
 
 namespace kestrel {
 
-// Replaces the file at 'path' by one with these bytes, atomically: whoever reads it, and whatever
-// happens meanwhile, finds the old file or the new one as a whole. Throws InputError when it cannot
-// be written; the old file is then as it was.
+// Atomically replaces the file at 'path' by one with these bytes: at any time, readers find either
+// the complete old file or the complete new one. Throws InputError when it cannot be written; the
+// old file then stays unchanged.
 void WriteFile(const std::string& path, std::string_view bytes);
 
 }  // namespace kestrel

@@ -39,7 +39,7 @@ TEST_F(WriteFileTest, WhatCannotBeWrittenIsSaid) {
 }
 
 TEST_F(WriteFileTest, OldFileStaysWhenTheNewOneCannotTakeItsPlace) {
-  fs::create_directories(folder_ / "a" / "b");  // no file takes the place of a folder
+  fs::create_directories(folder_ / "a" / "b");  // a file cannot replace a folder
   EXPECT_THROW(WriteFile(Path("a"), "text"), InputError);
   EXPECT_TRUE(fs::is_directory(folder_ / "a" / "b"));
   EXPECT_EQ(FileCount(), 1);

@@ -14,19 +14,20 @@ class Node;
 
 namespace kestrel {
 
-// A value of a YAML (or JSON) text, for files that are no options: every error is an InputError
+// A value of a YAML (or JSON) text, for files that are not options. Every error is an InputError
 // that names file, line and key.
 class YamlReader {
  public:
-  // The text as a whole. Throws InputError when it is not YAML; 'file' is for messages.
+  // Reads a whole text. Throws InputError when it is not YAML. 'file' is for messages.
   YamlReader(const std::string& text, const std::string& file);
 
   [[noreturn]] void Fail(const std::string& message) const;
 
-  // The value of 'name' in a map; required.
+  // Returns the value of 'name' in a map; required.
   YamlReader operator[](const std::string& name) const;
   bool Has(const std::string& name) const;
-  // Refuses what is no map, keys that are not in 'names' and keys that are given twice.
+  // Throws InputError for a value that is not a map, for keys not in 'names', and for duplicate
+  // keys.
   void RequireKeys(const std::set<std::string>& names) const;
 
   std::vector<YamlReader> Items() const;  // of a list
@@ -34,7 +35,7 @@ class YamlReader {
   double Number() const;                  // finite
   std::int64_t Integer() const;
   bool Bool() const;
-  // A list of 'count' numbers.
+  // Returns a list of 'count' numbers.
   std::vector<double> Numbers(std::size_t count) const;
 
  private:
@@ -42,7 +43,7 @@ class YamlReader {
 
   std::shared_ptr<YAML::Node> node_;
   std::string file_;
-  std::string key_;  // the path of names that led here
+  std::string key_;  // path of names to this value
 };
 
 }  // namespace kestrel
