@@ -13,7 +13,7 @@
 namespace kestrel {
 namespace {
 
-// Rotation whose rows are an orthonormal base with 'axis' as the third.
+// Returns a rotation whose rows are an orthonormal base with 'axis' as the third.
 Eigen::Matrix3d BaseAround(const Eigen::Vector3d& axis) {
   Eigen::Matrix3d base;
   base.row(2) = axis.normalized();
@@ -45,7 +45,7 @@ struct PlaneMoments {
       for (int j = 0; i + j <= 4; ++j, power *= scale) sum[i][j] *= power;
     }
   }
-  // The part of the scatter of the design matrix that belongs to these terms.
+  // Returns the block of the design matrix's scatter for these terms.
   Eigen::Matrix3d Scatter(const Terms& rows, const Terms& columns) const {
     Eigen::Matrix3d scatter;
     for (int r = 0; r < 3; ++r) {
@@ -57,11 +57,11 @@ struct PlaneMoments {
   }
 };
 
-// The quadratic coefficients (a, b, c) of the ellipse, 4 a c - b^2 = 1, for which v^T m v is least;
-// 'm' is symmetric and has no negative eigenvalues. With m = l l^T, m v = lambda c v becomes a
+// Returns the quadratic coefficients (a, b, c) of the ellipse, 4 a c - b^2 = 1, that minimize v^T m
+// v. 'm' is symmetric without negative eigenvalues. With m = l l^T, m v = lambda c v becomes a
 // symmetric problem in w = l^T v, which has one positive eigenvalue, 1 / lambda.
 std::optional<Eigen::Vector3d> LeastEllipse(Eigen::Matrix3d m) {
-  m.diagonal().array() += 1e-14 * m.trace();  // points on an ellipse leave nothing
+  m.diagonal().array() += 1e-14 * m.trace();  // for points exactly on an ellipse, m is singular
   const Eigen::LLT<Eigen::Matrix3d> factor(m);
   if (factor.info() != Eigen::Success) return std::nullopt;
   Eigen::Matrix3d constraint;
@@ -96,7 +96,7 @@ std::optional<Cone> FitCone(std::span<const Eigen::Vector3d> rays) {
     if (p.z() < 0.05) return std::nullopt;
     moments.Add(p.x() / p.z(), p.y() / p.z());
   }
-  // The plane is scaled so that the points are of the order of one.
+  // Scales the plane so that the points are of the order of one.
   const double spread = moments.sum[2][0] + moments.sum[0][2];
   const double scale = std::sqrt(static_cast<double>(rays.size()) / std::max(spread, 1e-18));
   moments.Scale(scale);

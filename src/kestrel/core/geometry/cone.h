@@ -11,13 +11,13 @@
 
 namespace kestrel {
 
-// A circle seen through a camera is a cone of rays with its apex in the camera: the rays r with
-// r^T Q r = 0, Q symmetric with two positive eigenvalues and a negative one. The image of the same
-// circle under a wide lens is no ellipse, its cone always is one (paper, section 3.5.2).
+// The rays through a circle form a cone with its apex in the camera: the rays r with r^T Q r = 0, Q
+// symmetric with two positive eigenvalues and a negative one. Under a wide lens the image of the
+// circle is not an ellipse, but the cone is always elliptic (paper, section 3.5.2).
 struct Cone {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
 
-  // Half of the widest and of the narrowest opening angle, rad.
+  // Halves of the widest and of the narrowest opening angle, rad.
   Eigen::Vector2d HalfAngles() const;
 
   // Angle (rad) between a unit ray and the cone, to first order (Sampson's distance).
@@ -29,22 +29,22 @@ struct Cone {
   }
 };
 
-// Position and orientation of a circle in the frame of its cone. 'normal' is a unit vector and
-// points to the side from which the apex sees the circle.
+// Position and orientation of a circle in the frame of its cone. 'normal' is a unit vector towards
+// the side from which the apex sees the circle.
 struct CirclePose {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 };
 
-// The elliptic cone nearest to at least six unit rays that span less than a hemisphere (direct
+// Fits the elliptic cone nearest to at least six unit rays that span less than a hemisphere (direct
 // least squares fit of an ellipse in the plane tangent to their mean: Fitzgibbon, Pilu and Fisher
-// 1999, in the numerically stable form of Halir and Flusser 1998). Nothing when the rays do not
-// determine an ellipse.
+// 1999, in the numerically stable form of Halir and Flusser 1998). Returns nothing when the rays do
+// not determine an ellipse.
 std::optional<Cone> FitCone(std::span<const Eigen::Vector3d> rays);
 
-// The two poses of a circle of the given radius that look like 'cone' (paper, section 3.5.2); they
-// coincide when the circle is seen along its axis. The centre lies in front of the apex, along the
-// axis of the cone that 'toward' points to.
+// Returns the two poses of a circle of the given radius whose cone is 'cone' (paper, section
+// 3.5.2). They coincide when the circle is seen along its axis. The centre lies in front of the
+// apex, along the axis of the cone that 'toward' points to.
 std::array<CirclePose, 2> CirclePosesFromCone(const Cone& cone, double radius,
                                               const Eigen::Vector3d& toward);
 

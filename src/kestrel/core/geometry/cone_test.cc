@@ -70,7 +70,7 @@ TEST(FitCone, RecoversRandomCirclesInAllDirections) {
       return (pose.center - truth.center).norm() / truth.center.norm() +
              (pose.normal - truth.normal).norm();
     };
-    // Near the line of sight the normal goes with the square root of the cone's error.
+    // Near the line of sight the error of the normal is the square root of the cone's error.
     EXPECT_LT(std::min(error(poses[0]), error(poses[1])), 2e-4) << "trial " << trial;
   }
 }
@@ -145,7 +145,7 @@ TEST(FitCone, SaysNothingWithoutAnEllipse) {
   for (Eigen::Vector3d& ray : straight) ray.normalize();
   EXPECT_FALSE(FitCone(straight));
 
-  std::vector<Eigen::Vector3d> around;  // the whole horizon: they cancel
+  std::vector<Eigen::Vector3d> around;  // the whole horizon: the rays cancel
   for (int i = 0; i < 20; ++i) {
     around.emplace_back(std::cos(0.1 * i * std::numbers::pi), std::sin(0.1 * i * std::numbers::pi),
                         0);
@@ -185,7 +185,7 @@ TEST(CirclePosesFromCone, TheAxisIsChosenByToward) {
       std::min((there[0].center - truth.center).norm(), (there[1].center - truth.center).norm()),
       1e-6);
   EXPECT_LT(opposite[0].center.dot(truth.center), 0);
-  // The distance goes with the radius.
+  // The distance is proportional to the radius.
   const auto doubled = CirclePosesFromCone(*cone, 1.0, truth.center);
   EXPECT_LT((doubled[0].center - 2 * there[0].center).norm(), 1e-9);
 }

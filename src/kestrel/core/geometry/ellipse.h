@@ -10,7 +10,7 @@
 
 namespace kestrel {
 
-// Ellipse in a plane; the unit is that of the plane. 'angle' (rad) of the major axis from x to y.
+// An ellipse in a plane, in the plane's unit. 'angle' (rad): of the major axis, from x to y.
 struct Ellipse {
   Eigen::Vector2d center = Eigen::Vector2d::Zero();
   double semi_major = 0;
@@ -20,13 +20,14 @@ struct Ellipse {
   Eigen::Vector2d major_axis() const { return {std::cos(angle), std::sin(angle)}; }
   Eigen::Vector2d minor_axis() const { return {-std::sin(angle), std::cos(angle)}; }
 
-  // Grows both axes.
+  // Scales both axes.
   void Scale(double factor) {
     semi_major *= factor;
     semi_minor *= factor;
   }
 
-  // Point of the ellipse scaled by 'scale' about its centre, at the eccentric anomaly 't'.
+  // Returns the point at the eccentric anomaly 't' of the ellipse scaled by 'scale' about its
+  // centre.
   Eigen::Vector2d At(double t, double scale = 1.0) const {
     return center + scale * (semi_major * std::cos(t) * major_axis() +
                              semi_minor * std::sin(t) * minor_axis());
@@ -46,7 +47,7 @@ struct RegionMoments {
   }
 };
 
-// The ellipse whose interior has these moments.
+// Returns the ellipse whose interior has these moments.
 Ellipse EllipseFromMoments(const RegionMoments& moments);
 
 }  // namespace kestrel

@@ -26,28 +26,28 @@ struct RigidTransform {
   }
 };
 
-// Where the x axis of a frame that 'rotation' turns into the world points, about the world's z
-// axis: rad from x to y.
+// Returns the direction, about the world's z axis, of the x axis of a frame that 'rotation' maps to
+// the world: rad from x to y.
 inline double HeadingOf(const Eigen::Quaterniond& rotation) {
   const Eigen::Vector3d forward = rotation * Eigen::Vector3d::UnitX();
   return std::atan2(forward.y(), forward.x());
 }
 
-// The rotation by a rotation vector: about its direction by its length, rad.
+// Returns the rotation for a rotation vector: about its direction, by its length in rad.
 inline Eigen::Quaterniond RotationBy(const Eigen::Vector3d& turn) {
   const double angle = turn.norm();
   if (!(angle > 0)) return Eigen::Quaterniond::Identity();
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle));
 }
 
-// Its inverse: the rotation vector of 'rotation', no longer than pi.
+// The inverse of RotationBy: returns the rotation vector of 'rotation', no longer than pi.
 inline Eigen::Vector3d RotationVector(const Eigen::Quaterniond& rotation) {
   const Eigen::AngleAxisd turn(rotation);
   return turn.angle() * turn.axis();
 }
 
-// 'pose' moved by a translation and turned about its own origin by a rotation vector (rad), both in
-// the frame that it maps to.
+// Returns 'pose' moved by a translation and turned about its own origin by a rotation vector (rad),
+// both in the frame that it maps to.
 inline RigidTransform Moved(const RigidTransform& pose, const Eigen::Vector3d& translation,
                             const Eigen::Vector3d& turn) {
   return {(RotationBy(turn) * pose.rotation).normalized(), pose.translation + translation};

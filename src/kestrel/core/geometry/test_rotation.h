@@ -5,7 +5,7 @@
 
 namespace kestrel {
 
-// By 'angle' (rad) about an axis of any length.
+// Returns the rotation by 'angle' (rad) about an axis of any length.
 inline Eigen::Quaterniond Rotation(double angle, const Eigen::Vector3d& axis) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized()));
 }
