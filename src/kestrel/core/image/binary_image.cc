@@ -79,7 +79,7 @@ void BinarizeRow(const std::uint8_t* pixels, int width, const Thresholds& thresh
   const int rest = width - kWordPx * words;
   if (words > 0) compare(pixels, 0, words);
   if (rest == 0) return;
-  // A copy, so that nothing is read beyond the row.
+  // Copies the rest, so that nothing is read beyond the row.
   std::array<std::uint8_t, kWordPx> tail{};
   std::memcpy(tail.data(), pixels + width - rest, rest);
   compare(tail.data(), words, 1);

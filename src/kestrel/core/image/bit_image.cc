@@ -8,8 +8,8 @@ void CloseBits(BitImage* image, BitImage* scratch) {
   const int words = image->words_per_row();
   const int last_bits = image->width() % 64;
   const std::uint64_t last_mask = (std::uint64_t{1} << last_bits) - 1;
-  // The word left of a row's first and the bits right of the image are clear, so that neighbouring
-  // words can be read without a test.
+  // The word before a row's first word and the bits right of the image are clear, so that
+  // neighbouring words can be read without a test.
   for (int y = 0; y < image->height(); ++y) {
     const std::uint64_t* here = image->row(y);
     const std::uint64_t* above = image->row(y - 1);
@@ -32,7 +32,7 @@ void CloseBits(BitImage* image, BitImage* scratch) {
       const std::uint64_t next = i + 1 < words ? here[i + 1] : 0;
       const std::uint64_t left = here[i] << 1 | here[i - 1] >> 63;
       const std::uint64_t right = here[i] >> 1 | next << 63;
-      // Pixels of the original are never lost, not even at the image border.
+      // Original pixels are never lost, not even at the image border.
       out[i] |= here[i] & left & right & above[i] & below[i];
     }
   }

@@ -8,11 +8,11 @@
 
 namespace kestrel {
 
-// Binary image of one bit per pixel. At least one clear bit stands left, right, above and below of
-// the image, so that the neighbours of every pixel can be read without a test.
+// Binary image with one bit per pixel. At least one clear bit surrounds the image on all sides, so
+// that the neighbours of every pixel can be read without a test.
 class BitImage {
  public:
-  // Makes room for an image and clears it; keeps its memory when it is large enough.
+  // Resizes and clears the image. Keeps its memory when that is large enough.
   void Reset(int width, int height) {
     width_ = width;
     height_ = height;
@@ -25,7 +25,7 @@ class BitImage {
   int height() const { return height_; }
   int words_per_row() const { return words_per_row_; }
 
-  // Words of row 'y', -1 to height(); bit x % 64 of word x / 64 is pixel x. All bits right of the
+  // Words of row 'y', -1 to height(). Bit x % 64 of word x / 64 is pixel x. All bits right of the
   // image are clear, and so is the word before the row.
   std::uint64_t* row(int y) {
     return words_.data() + 1 + static_cast<std::size_t>(y + 1) * words_per_row_;
@@ -45,11 +45,11 @@ class BitImage {
   std::vector<std::uint64_t> words_;
 };
 
-// Sets in 'inverse' the pixels that are clear in 'image', and clears the others.
+// Writes the complement of 'image' to 'inverse'.
 void InvertBits(const BitImage& image, BitImage* inverse);
 
 // Morphological closing with the cross of five pixels: fills gaps and notches of one or two pixels.
-// What lies outside of the image is clear, and stays so. 'scratch' is overwritten.
+// Pixels outside of the image are clear. 'scratch' is overwritten.
 void CloseBits(BitImage* image, BitImage* scratch);
 
 }  // namespace kestrel

@@ -58,7 +58,8 @@ TEST(CloseBits, AgreesWithOpenCv) {
       for (int x = -1; x <= width; ++x) {
         const bool outside = x < 0 || y < 0 || x >= width || y >= height;
         const bool at_border = x == 0 || y == 0 || x == width - 1 || y == height - 1;
-        // OpenCV takes for set what lies outside; here it is clear, and the border as it was.
+        // OpenCV treats pixels outside as set; here they are clear, and border pixels stay
+        // unchanged.
         const bool expected = !outside && (at_border ? image : closed).at<std::uint8_t>(y, x) != 0;
         ASSERT_EQ(bits.at(x, y), expected) << width << "x" << height << " at " << x << ", " << y;
       }

@@ -64,7 +64,7 @@ HWY_EXPORT(StrokeThresholds);
 
 }  // namespace
 
-// Largest or smallest of the square around each pixel of the middle row.
+// Computes the largest or smallest value of the square around each pixel of the middle row.
 void BlackTopHat::FilterRow(const Rows& rows, int width, bool largest, std::uint8_t* out) {
   std::uint8_t* const column = column_.data() + kReach;
   HWY_DYNAMIC_DISPATCH(ExtremeOfFive)(rows.data(), width, largest, column);
@@ -87,7 +87,7 @@ void BlackTopHat::Binarize(const cv::Mat& image, int min_contrast, BinaryImage* 
   column_.resize(stride + 2 * kReach);
   light_.resize(stride);
   row_.ResetRow(width);
-  // The rows around 'y', the first and the last one repeated.
+  // Returns the rows around 'y'; the first and the last row are repeated.
   const auto rows_around = [height](int y, const auto& row) {
     Rows rows;
     for (int i = 0; i < kSquarePx; ++i) rows[i] = row(std::clamp(y + i - kReach, 0, height - 1));

@@ -12,7 +12,7 @@
 namespace kestrel {
 namespace {
 
-// Largest or smallest gray value of the square around each pixel, the border repeated.
+// Largest or smallest gray value of the square around each pixel. The border is repeated.
 cv::Mat Filter(const cv::Mat& image, bool largest) {
   constexpr int kReach = BlackTopHat::kSquarePx / 2;
   cv::Mat filtered(image.size(), CV_8UC1);
@@ -80,7 +80,7 @@ TEST(BlackTopHat, SeesStrokesInSunAndShadowAndNoShadow) {
   image.colRange(20, 22) = 20;  // in the sun
   image.colRange(32, 64) = 60;  // in a shadow
   image.colRange(33, 36) = 6;   // at its edge
-  image.colRange(50, 64) = 30;  // dark ground, as wide as the square and wider
+  image.colRange(50, 64) = 30;  // dark ground, wider than the square
   BinaryImage binary;
   BlackTopHat().Binarize(image, 20, &binary);
   for (int x = 0; x < 64; ++x) {

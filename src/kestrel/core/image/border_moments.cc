@@ -15,8 +15,8 @@ double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 }  // namespace
 
 RegionMoments ComputeBorderMoments(const GridPoint* points, std::size_t count) {
-  // Steps are axis-parallel and of length one, so that only those along y contribute: the sums are
-  // of integers, relative to the first point.
+  // Steps are axis-parallel and of length one, so only those along y contribute. The sums are
+  // integers, relative to the first point.
   std::int64_t area = 0;
   std::int64_t x1 = 0, y1 = 0;             // twice the first moments
   std::int64_t xx3 = 0, xy4 = 0, yy3 = 0;  // 3, 4 and 3 times the second moments
@@ -56,7 +56,7 @@ RegionMoments ComputeBorderMoments(const GridPoint* points, std::size_t count) {
 
 RegionMoments ComputeHullMoments(const ConvexHull& hull) {
   const std::span<const Eigen::Vector2d> corners = hull.corners();
-  // Relative to a corner, so that large coordinates cost no digits.
+  // Relative to a corner, so that large coordinates lose no precision.
   const Eigen::Vector2d& origin = corners.front();
   double twice_area = 0;
   Eigen::Vector2d first = Eigen::Vector2d::Zero();  // moments

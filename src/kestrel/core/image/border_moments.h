@@ -7,11 +7,11 @@
 
 namespace kestrel {
 
-// Area, centroid and second moments of what a border encloses, by Green's theorem; in pixels,
-// integer = centre of a pixel. The area is positive for holes as well.
+// Area, centroid and second moments of the area within a border, by Green's theorem; in pixels,
+// integer = centre of a pixel. The area is positive for holes too.
 RegionMoments ComputeBorderMoments(const GridPoint* points, std::size_t count);
 
-// The same of what a convex hull encloses.
+// The same for a convex hull.
 RegionMoments ComputeHullMoments(const ConvexHull& hull);
 
 }  // namespace kestrel

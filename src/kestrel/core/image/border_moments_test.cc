@@ -30,7 +30,7 @@ void ExpectSame(const RegionMoments& actual, const RegionMoments& expected) {
   EXPECT_LT((actual.covariance - expected.covariance).norm(), 1e-6);
 }
 
-// A column of rows that each overlap the one before: an area without holes.
+// Rows that each overlap the one before: an area without holes.
 std::vector<Eigen::Vector2d> RandomArea(Random* random) {
   std::vector<Eigen::Vector2d> pixels;
   int left = random->Integer(20, 100), right = random->Integer(100, 180);
@@ -48,7 +48,7 @@ TEST(ComputeBorderMoments, AgreesWithTheSumOfPixels) {
   Random random(1);
   for (int trial = 0; trial < 100; ++trial) {
     const auto pixels = RandomArea(&random);
-    // Once as an area and once as a hole in a dark image.
+    // First as an area, then as a hole in a dark image.
     for (const bool hole : {false, true}) {
       BinaryImage binary;
       binary.dark.Reset(200, 100);

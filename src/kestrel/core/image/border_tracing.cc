@@ -25,8 +25,8 @@ constexpr int kLeftY[4] = {-1, 0, 0, -1};
 constexpr int kRightX[4] = {0, -1, -1, 0};
 constexpr int kRightY[4] = {0, 0, -1, -1};
 
-// The pixels of a word beside which the left and the right pixel are bright, with 'narrow' one of
-// them.
+// Returns the pixels of a word whose left and right neighbours are bright; with 'narrow' one of
+// them suffices.
 std::uint64_t BesideBright(const std::uint64_t* bright, int word, int words, bool narrow) {
   const std::uint64_t next = word + 1 < words ? bright[word + 1] : 0;
   const std::uint64_t left = bright[word] << 1 | bright[word - 1] >> 63;
@@ -34,7 +34,7 @@ std::uint64_t BesideBright(const std::uint64_t* bright, int word, int words, boo
   return narrow ? left | right : left & right;
 }
 
-// After how many steps of a walk the size of its border is compared with the limit.
+// Number of steps of a walk between comparisons of its border's size with the limit.
 constexpr std::size_t kCheckInterval = 32;
 
 // Bounding box of points.
@@ -53,16 +53,16 @@ struct Extent {
   int Shorter() const { return std::min(max.x - min.x, max.y - min.y); }
 };
 
-// What decides how a walk goes on, in one number: the four pixels around a vertex, row by row, and
-// the direction in which the walk came there.
+// The state that determines the next step of a walk, in one number: the four pixels around a
+// vertex, row by row, and the direction of arrival.
 constexpr unsigned kSituations = 16 * 4;
 constexpr unsigned Situation(unsigned upper_pair, unsigned lower_pair, unsigned direction) {
   return 16 * lower_pair + 4 * upper_pair + direction;
 }
 
-// Forth is with the dark pixels on the right. Dark areas are 8-connected: a dark pixel on the left
-// turns left, even where it touches the one on the right at the vertex only; without either the
-// border turns right. Back is the mirror image.
+// kForth walks with the dark pixels on the right. Dark areas are 8-connected: a dark pixel ahead on
+// the left turns the walk left, even where it touches the right one only at the vertex; with none
+// on either side the walk turns right. kBack is the mirror image.
 enum class Sense { kForth, kBack };
 constexpr unsigned NextDirection(unsigned situation, Sense sense) {
   const unsigned direction = situation % 4;
@@ -83,8 +83,8 @@ constexpr std::array<std::uint8_t, kSituations> NextDirections(Sense sense) {
   return next;
 }
 
-// A vertex (above bit 32) and the number of the bit of its pixel: one number, so that a step is one
-// addition.
+// A vertex (from bit 32 on) and the bit number of its pixel, in one number, so that a step is a
+// single addition.
 std::uint64_t Place(int x, int y, std::ptrdiff_t stride) {
   return (static_cast<std::uint64_t>(y * 65536 + x) << 32) +
          static_cast<std::uint64_t>(y * stride + x);
@@ -103,8 +103,8 @@ std::int32_t SignedArea(std::span<const GridPoint> points) {
   return area + points.back().x * (points.front().y - points.back().y);
 }
 
-// Median over places along a border of how much brighter the second pixel on its left is than the
-// first on its right.
+// Returns the median over places along a border of the gray value of the second pixel on its left
+// minus that of the first on its right.
 int ContrastAcross(const cv::Mat& image, const GridPoint* points, std::size_t count) {
   constexpr std::size_t kPlaces = 8;
   std::array<int, kPlaces> contrast;
@@ -140,20 +140,21 @@ class BorderWalks {
         forth_(MakeTurns(Sense::kForth, stride_)),
         back_(MakeTurns(Sense::kBack, stride_)) {}
 
-  // Walks around the border that has the upper edge of pixel (x, y), and returns how many points it
-  // has put at the front of 'room'; 0 if it gave up, as the border is too large for 'max_extent' or
-  // the room, or was given up before. May return a border that is slightly too large.
+  // Walks around the border that contains the upper edge of pixel (x, y). Returns the number of
+  // points that it wrote to the front of 'room'; 0 if it gave up because the border is too large
+  // for 'max_extent' or the room, or was given up before. May return a border that is slightly too
+  // large.
   std::size_t WalkAround(int x, int y, int max_extent, std::span<GridPoint> room) const;
 
  private:
-  // Where a walk stands, and the step that it takes next.
+  // Position of a walk and its next step.
   struct Walk {
     std::uint64_t place;
     std::uint64_t step;
     unsigned direction;
   };
 
-  // The step after the last one, of walks of one sense.
+  // The next step after the last one, for walks of one sense.
   struct Turns {
     std::array<std::uint8_t, kSituations> direction;
     std::array<std::uint64_t, kSituations> step;
@@ -169,22 +170,22 @@ class BorderWalks {
     return turns;
   }
 
-  // The images that a walk reads and marks, addressed by bytes: two pixels that stand in two words
-  // are read as easily as in one, and a mark seldom waits for the one made just before.
+  // The images that a walk reads and marks, addressed by bytes. Two pixels in two words are then as
+  // easy to read as in one, and a mark seldom waits for the previous one.
   static_assert(std::endian::native == std::endian::little);
   struct WalkedImages {
     const std::uint8_t* above;  // dark pixels, from the row above the first
     const std::uint8_t* below;  // the same from the first row
     std::uint8_t* traced;
 
-    // Pixel 'right' and the one before.
+    // Returns pixel 'right' and the one before it.
     static unsigned Pair(const std::uint8_t* pixels, std::uint32_t right) {
       std::uint16_t bits;
       std::memcpy(&bits, pixels + right / 8 - 1, sizeof(bits));
       return (unsigned{bits} >> (right % 8 + 7)) & 3;
     }
 
-    // Chooses the next step of a walk that has just taken one.
+    // Chooses the next step after a walk has taken one.
     void Turn(const Turns& turns, Walk* walk) const {
       const std::uint32_t bit = BitOf(walk->place);
       const unsigned now = Situation(Pair(above, bit), Pair(below, bit), walk->direction);
@@ -192,9 +193,8 @@ class BorderWalks {
       walk->step = turns.step[now];
     }
 
-    // Marks the upper edge of the pixel at 'place' if it 'is_walked', and returns whether it was
-    // marked before then. Computed instead of branched on, as in texture every second turn would be
-    // predicted wrong.
+    // Marks the upper edge of the pixel at 'place' if 'is_walked'. Returns whether it was marked
+    // before. Branch-free, because in texture every second branch would be mispredicted.
     bool Mark(std::uint64_t place, bool is_walked) const {
       const unsigned mark = unsigned{is_walked} << (BitOf(place) % 8);
       std::uint8_t& marks = traced[BitOf(place) / 8];
@@ -210,11 +210,12 @@ class BorderWalks {
   Turns back_;
 };
 
-// A border is walked both ways at once: a step has to wait for the one before it, but not for the
-// other walk's. As a closed walk on a grid has an even number of steps, both meet after half of
-// them. The way back fills the room from its end.
+// Walks a border in both directions at once: a step waits for the one before it, but not for the
+// other walk. A closed walk on a grid has an even number of steps, so both meet after half of them.
+// The backward walk fills the room from its end.
 std::size_t BorderWalks::WalkAround(int x, int y, int max_extent, std::span<GridPoint> room) const {
-  const WalkedImages images = images_;  // a copy, which no mark can change for the compiler
+  const WalkedImages images = images_;  // a copy, so that the compiler knows that marks do not
+                                        // change it
   const std::uint64_t start = Place(x, y, stride_);
   Walk forth{.place = start, .step = Place(1, 0, stride_), .direction = kRight};
   Walk back{.place = start, .step = 0, .direction = kLeft};
@@ -224,10 +225,10 @@ std::size_t BorderWalks::WalkAround(int x, int y, int max_extent, std::span<Grid
   GridPoint* tail = end;
   Extent seen;
   for (bool met = false; !met;) {
-    // The limits are looked at after some steps at a time: a step is short.
+    // Checks the limits only after several steps, because a step is short.
     const std::size_t steps = std::min<std::size_t>(kCheckInterval, (tail - front) / 2);
     GridPoint* const last = front + steps;
-    bool walked = steps == 0;  // no room, or where a border that was given up was walked
+    bool walked = steps == 0;  // no room, or on a border that was given up before
     while (front < last && !met && !walked) {
       *front++ = VertexOf(forth.place);
       walked = images.Mark(forth.place, forth.direction == kRight);
@@ -275,7 +276,7 @@ void BorderTracer::Trace(const BinaryImage& binary, const cv::Rect& region,
       std::uint64_t candidates = here[word] & ~above[word] & bright[word];
       if (candidates == 0) continue;
       candidates &= BesideBright(bright, word, dark.words_per_row(), limits.narrow);
-      // Of a run of neighbouring candidates one is enough.
+      // One of a run of neighbouring candidates suffices.
       std::uint64_t starts = candidates & ~(candidates << 1);
       while ((starts &= ~traced[word]) != 0) {
         TraceFrom(walks, 64 * word + std::countr_zero(starts), y, limits);
@@ -298,7 +299,7 @@ void BorderTracer::KeepStrongest(const cv::Mat& image, std::size_t most) {
   for (std::size_t i = 0; i < kept; ++i) borders_[i] = strengths_[i].border;
 }
 
-// Room for the points of one more border; empty when there is none.
+// Returns the room for the points of one more border; empty when there is none.
 std::span<GridPoint> BorderTracer::Room() {
   if (borders_.size() == borders_.capacity()) return {};
   return std::span(points_).subspan(used_);

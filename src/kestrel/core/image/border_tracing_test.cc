@@ -28,8 +28,8 @@ bool InDisc(int x, int y, double cx, double cy, double radius) {
   return std::hypot(x - cx, y - cy) <= radius;
 }
 
-// Areas of one value, connected by edges only or by corners as well. The image is taken with a
-// frame of clear pixels around it.
+// Counts areas of one value, connected by edges only or by corners too. The image has a frame of
+// clear pixels around it.
 int CountAreas(const BitImage& image, bool value, bool by_corners) {
   const int width = image.width() + 2;
   const int height = image.height() + 2;
@@ -68,7 +68,7 @@ int CountPixels(const BitImage& image) {
   return count;
 }
 
-// Edges between pixels of different value.
+// Counts edges between pixels of different values.
 std::size_t CountCracks(const BitImage& image) {
   std::size_t cracks = 0;
   for (int y = -1; y < image.height(); ++y) {
@@ -105,7 +105,7 @@ TEST(BorderTracer, WalksInUnitStepsWithTheDarkOnItsRight) {
       const GridPoint& b = points[(i + 1) % border.count];
       const int dx = b.x - a.x, dy = b.y - a.y;
       ASSERT_EQ(std::abs(dx) + std::abs(dy), 1);
-      // The two pixels that share the step: right of it dark, left of it not.
+      // The two pixels at the step: dark on its right, not dark on its left.
       const int middle_x = a.x + b.x, middle_y = a.y + b.y;  // twice the middle of the step
       const auto pixel = [](int doubled) { return static_cast<int>(std::floor(doubled / 2.0)); };
       ASSERT_TRUE(binary.dark.at(pixel(middle_x - dy), pixel(middle_y + dx)));
@@ -119,7 +119,8 @@ TEST(BorderTracer, ABorderBeginsWithItsUppermostUpperEdge) {
       40, 40, [](int x, int y) { return InDisc(x, y, 20, 20, 14) && !InDisc(x, y, 20, 20, 6); });
   const BorderTracer tracer = TraceAll(binary);
   ASSERT_EQ(tracer.borders().size(), 2u);
-  // The topmost of the disc, and of those below the hole the topmost and leftmost.
+  // Borders start at the topmost pixel of the disc, and at the topmost, leftmost pixel below the
+  // hole.
   const auto begins_at = [&](std::size_t border, int x, int y) {
     const GridPoint* points = tracer.begin(tracer.borders()[border]);
     return points[0].x == x && points[0].y == y && points[1].x == x + 1 && points[1].y == y;
@@ -161,7 +162,7 @@ TEST(BorderTracer, FindsEveryBorderOfRandomImagesOnce) {
     const int width = random.Integer(5, 200);
     const int height = random.Integer(5, 50);
     const double share = random.Uniform(0.05, 0.95);
-    // Where the first two columns and rows are clear, the bright mask allows every start.
+    // The first two columns and rows are clear, so the bright mask allows every start.
     const BinaryImage binary = DrawFigure(width, height, [&](int x, int y) {
       const bool dark = random.Chance(share);
       return dark && x >= 2 && y >= 2 && x < width - 2;
@@ -206,7 +207,7 @@ TEST(BorderTracer, KeepsWhatIsWithinTheLimits) {
 }
 
 TEST(BorderTracer, ABorderThatWasGivenUpIsNotFollowedAgain) {
-  // A comb whose teeth each offer a start; it is larger than allowed.
+  // A comb that is larger than allowed. Each of its teeth offers a start.
   const BinaryImage binary = DrawFigure(200, 40, [](int x, int y) {
     return x >= 4 && x < 196 && y >= (x % 8 < 4 ? 10 : 20) && y < 30;
   });
@@ -218,7 +219,7 @@ TEST(BorderTracer, StartsOnlyBelowBright) {
   BinaryImage binary = DrawFigure(40, 40, [](int x, int y) { return InDisc(x, y, 20, 20, 10); });
   binary.bright.Reset(40, 40);
   EXPECT_TRUE(TraceAll(binary).borders().empty());
-  // Three bright pixels two above an upper edge are enough; two are not.
+  // Three bright pixels two above an upper edge suffice; two do not.
   binary.bright.Set(19, 8);
   binary.bright.Set(20, 8);
   EXPECT_TRUE(TraceAll(binary).borders().empty());
@@ -240,7 +241,7 @@ TEST(BorderTracer, StartsBelowANarrowBrightStrokeWhereThatIsAskedFor) {
 }
 
 TEST(BorderTracer, GivesUpWhatThereIsNoRoomFor) {
-  // Single pixels, many more than there is room for.
+  // Single pixels, many more than fit.
   const BinaryImage binary =
       DrawFigure(400, 400, [](int x, int y) { return x % 2 == 0 && y % 2 == 0 && x > 1 && y > 1; });
   BorderTracer tracer;

@@ -6,7 +6,7 @@
 namespace kestrel {
 
 ConvexHull::ConvexHull(Points points) {
-  // The ends of every row hold the hull; one side of it is walked down, the other one up.
+  // The ends of the rows contain the hull. One side is followed down, the other one up.
   struct Row {
     int left = 1 << 16;
     int right = -1;
@@ -23,15 +23,15 @@ ConvexHull::ConvexHull(Points points) {
     row.left = std::min<int>(row.left, point.x);
     row.right = std::max<int>(row.right, point.x);
   }
-  // A border is connected: it has points in every row.
+  // A border is connected, so it has points in every row.
   const auto corner = [&](int x, int row) { return Eigen::Vector2d(x - 0.5, top + row - 0.5); };
   for (int row = 0; row <= last; ++row) Append(corner(rows[row].right, row), 0);
   const std::size_t turn = count_;
   for (int row = last; row >= 0; --row) Append(corner(rows[row].left, row), turn);
 }
 
-// Appends a point to the convex chain that starts at corner 'first'; corners that would be dents
-// go.
+// Appends a point to the convex chain that starts at corner 'first' and removes corners that would
+// be dents.
 void ConvexHull::Append(const Eigen::Vector2d& point, std::size_t first) {
   const auto is_dent = [&] {
     const Eigen::Vector2d before = corners_[count_ - 1] - corners_[count_ - 2];

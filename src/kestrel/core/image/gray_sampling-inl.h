@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
-// SampleGray for a vector of places: included once for every instruction set, by sources that
+// SampleGray for a vector of places. Included once for every instruction set, by sources that
 // include hwy/foreach_target.h.
 #if defined(KESTREL_IMAGE_GRAY_SAMPLING_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef KESTREL_IMAGE_GRAY_SAMPLING_INL_H_
@@ -20,21 +20,21 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The two bytes at and behind each offset, as floats.
+// The bytes at each offset and at the next one, as floats.
 template <class D>
 struct BytePairs {
   hn::Vec<D> first;
   hn::Vec<D> second;
 };
 
-// Instruction sets that read many places of memory at once.
+// Instruction sets with a gather instruction.
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
 template <class D>
 HWY_INLINE BytePairs<D> ReadPairs(D d, const cv::Mat& image,
                                   hn::Vec<hn::RebindToSigned<D>> offset) {
   const hn::RebindToSigned<D> di;
   const hn::RebindToUnsigned<D> du;
-  // Four bytes are read at once: at the end of the image those before it, and shifted.
+  // Reads four bytes at once. At the end of the image it reads earlier bytes and shifts them.
   const std::size_t size = image.step[0] * (image.rows - 1) + image.cols;
   const auto start = hn::Min(offset, hn::Set(di, static_cast<std::int32_t>(size) - 4));
   const auto word = hn::GatherOffset(di, reinterpret_cast<const std::int32_t*>(image.data), start);
@@ -59,8 +59,8 @@ HWY_INLINE BytePairs<D> ReadPairs(D d, const cv::Mat& image,
 }
 #endif
 
-// As SampleGray: negative outside of the image, which has at least 2 x 2 pixels and less than 2 GB,
-// and for NaN.
+// Vector version of SampleGray: negative outside of the image and for NaN. The image has at least 2
+// x 2 pixels and less than 2 GB.
 template <class D>
 HWY_INLINE hn::Vec<D> SampleVector(D d, const cv::Mat& image, hn::Vec<D> x_px, hn::Vec<D> y_px) {
   const hn::RebindToSigned<D> di;

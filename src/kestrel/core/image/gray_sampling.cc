@@ -25,7 +25,7 @@ void SampleGrays(const cv::Mat& image, const float* x, const float* y, std::size
     return;
   }
   for (std::size_t i = 0; i + lanes <= count; i += lanes) sample(i);
-  // The last vector overlaps the one before it: some places are looked at twice.
+  // The last vector overlaps the one before: some places are sampled twice.
   sample(count - lanes);
 }
 

@@ -9,11 +9,11 @@
 
 namespace kestrel {
 
-// From which on a gray value tells no more than that it was brighter.
+// From this gray value on, a pixel is saturated: it may have been brighter.
 inline constexpr float kSaturatedGray = 254;
 
-// Gray value of a CV_8UC1 image of at least 2 x 2 pixels between its pixels, bilinear; negative
-// outside of the image and for NaN.
+// Returns the bilinear gray value of a CV_8UC1 image of at least 2 x 2 pixels; negative outside of
+// the image and for NaN.
 inline float SampleGray(const cv::Mat& image, float x, float y) {
   const bool inside = x >= 0 && y >= 0 && x <= static_cast<float>(image.cols - 1) &&
                       y <= static_cast<float>(image.rows - 1);
@@ -29,8 +29,8 @@ inline float SampleGray(const cv::Mat& image, float x, float y) {
   return top + fy * (bottom - top);
 }
 
-// The same at 'count' places, with the best instructions of the machine at run time. The image has
-// less than 2 GB. The arrays must not overlap.
+// The same at 'count' places, with the best vector instructions of the machine, chosen at run time.
+// The image must have less than 2 GB. The arrays must not overlap.
 void SampleGrays(const cv::Mat& image, const float* x, const float* y, std::size_t count,
                  float* gray);
 

@@ -44,7 +44,7 @@ cv::Mat NoiseImage(int width, int height, Random* random) {
 void ExpectSamplesOfOneAfterTheOther() {
   Random random(1);
   const cv::Mat whole = NoiseImage(23, 17, &random);
-  // The last rows of the whole image end where its memory does.
+  // The last rows of the whole image end at the end of its memory.
   for (const cv::Mat& image : {whole, whole(cv::Rect(3, 2, 9, 15)), NoiseImage(2, 2, &random)}) {
     for (const std::size_t count : {0u, 1u, 7u, 8u, 9u, 16u, 61u}) {
       std::vector<float> x(count), y(count), gray(count);

@@ -43,7 +43,7 @@ struct Larger {
   }
 };
 
-// Rounds up over the rows and down over the columns, so that the mean is not biased.
+// Rounds up over the rows and down over the columns, so that the mean has no bias.
 struct Average {
   template <class V>
   static V Apply(V a, V b) {
@@ -112,7 +112,7 @@ void CombineRows(const std::uint8_t* HWY_RESTRICT a, const std::uint8_t* HWY_RES
   }
 }
 
-// Mean of three rows of sums over three rows.
+// Sums of three values over three rows, and the mean of nine from three such sums.
 void SumRows(const std::uint8_t* HWY_RESTRICT a, const std::uint8_t* HWY_RESTRICT b,
              const std::uint8_t* HWY_RESTRICT c, std::size_t count,
              std::uint16_t* HWY_RESTRICT out) {
@@ -122,12 +122,13 @@ void MeanOfSums(const std::uint16_t* HWY_RESTRICT a, const std::uint16_t* HWY_RE
                 const std::uint16_t* HWY_RESTRICT c, std::size_t count,
                 std::uint8_t* HWY_RESTRICT out) {
   for (std::size_t i = 0; i < count; ++i) {
-    // 7282 / 65536 is 1 / 9, right for all sums of nine bytes.
+    // 7282 / 65536 is 1 / 9, exact for all sums of nine bytes.
     out[i] = static_cast<std::uint8_t>((std::uint32_t{a[i]} + b[i] + c[i]) * 7282u >> 16);
   }
 }
 
-// Thresholds from the statistics of the boxes; those of a box of too little contrast are replaced.
+// Computes thresholds from the statistics of the boxes. Those of boxes with too little contrast are
+// replaced.
 void ThresholdRow(const std::uint8_t* HWY_RESTRICT minimum,
                   const std::uint8_t* HWY_RESTRICT maximum, const std::uint8_t* HWY_RESTRICT mean,
                   const std::uint8_t* HWY_RESTRICT dark_instead,
@@ -162,7 +163,7 @@ HWY_EXPORT(SumRows);
 HWY_EXPORT(MeanOfSums);
 HWY_EXPORT(ThresholdRow);
 
-// How much larger the tiles of the coarse box are: two levels of the pyramid.
+// Pyramid levels between the tiles of the fine and of the coarse box.
 constexpr int kCoarseLevels = 2;
 
 void HalveRows(const std::uint8_t* const upper[3], const std::uint8_t* const lower[3],
@@ -194,7 +195,7 @@ void Halve(const TileImage& in, TileImage* out) {
   }
 }
 
-// Writes each of 'count' bytes as many times as the word has bytes.
+// Repeats each of 'count' bytes as many times as the word has bytes.
 template <typename Word>
 void RepeatBytes(const std::uint8_t* in, std::size_t count, std::uint8_t* out) {
   constexpr Word kOnes = static_cast<Word>(0x0101010101010101u);
@@ -210,10 +211,11 @@ void Repeat(const std::uint8_t* in, std::size_t count, int times, std::uint8_t* 
   if (times == 8) RepeatBytes<std::uint64_t>(in, count, out);
 }
 
-// Columns of a box row that are combined at a time, to keep the intermediate rows on the stack.
+// Number of columns of a box row that are combined at a time, to keep intermediate rows on the
+// stack.
 constexpr int kBlock = 512;
 
-// Rows of a block and one column to its left and right, where the image repeats its border.
+// A block of a row with one column on its left and right, where the image border is repeated.
 template <typename T>
 struct BlockRow {
   std::array<T, kBlock + 2> values;
@@ -224,7 +226,7 @@ struct BlockRow {
   }
 };
 
-// Statistics over 3 x 3 tiles; tiles beyond the border repeat it.
+// Computes the statistics over 3 x 3 tiles. The border tiles are repeated.
 void Box(const TileImage& in, TileImage* out) {
   out->Reset(in.columns, in.rows);
   BlockRow<std::uint8_t> low;
@@ -298,7 +300,7 @@ void LocalThreshold::Measure(const TilePyramid& pyramid, int image_level, int ti
 }
 
 int LocalThreshold::ContrastQuantile(double share) const {
-  // Boxes overlap their neighbours: those of every second row tell as much.
+  // Boxes overlap their neighbours, so every second row suffices.
   std::array<int, 256> histogram{};
   std::size_t count = 0;
   for (int y = 0; y < fine_box_.rows; y += 2) {
@@ -316,7 +318,7 @@ int LocalThreshold::ContrastQuantile(double share) const {
 void LocalThreshold::ChooseThresholds(int min_contrast, Dark what) {
   const bool black = what == Dark::kBlack;
   const std::size_t columns = fine_box_.columns;
-  // A row of coarse thresholds, per fine tile; first what stands where nothing decides.
+  // A row of coarse thresholds per fine tile. The initial values leave pixels undecided.
   row_.Resize(3 * columns);
   std::uint8_t* const dark_row = row_.dark.data();
   std::uint8_t* const bright_row = row_.bright.data();
@@ -350,7 +352,7 @@ void LocalThreshold::ChooseThresholds(int min_contrast, Dark what) {
   }
 }
 
-// Thresholds of a row of tiles, one value per pixel; the columns right of the last tile repeat it.
+// Expands the thresholds of a row of tiles to pixels. Columns right of the last tile repeat it.
 void LocalThreshold::ExpandRow(int tile_row, int width) {
   const std::size_t columns = fine_box_.columns;
   const std::size_t at = static_cast<std::size_t>(tile_row) * columns;

@@ -19,26 +19,26 @@ struct TileImage {
   std::vector<std::uint8_t> maximum;
   std::vector<std::uint8_t> mean;
 
-  // Makes room for columns x rows tiles, none when either is 0; keeps its memory when it is large
+  // Resizes to columns x rows tiles, to none when either is 0. Keeps its memory when that is large
   // enough.
   void Reset(int columns, int rows);
 };
 
-// Level k holds the tiles of 2^k pixels, made from those of level k - 1; tiles that the right or
-// lower border of the image cuts off are left out. The means of a level are the image at a lower
-// resolution: ImageAt. Does not allocate once it has seen an image of the same size.
+// Level k holds the tiles of 2^k pixels, computed from those of level k - 1. Tiles that the right
+// or lower image border cuts off are left out. The means of a level are the image at a lower
+// resolution: ImageAt. Does not allocate once it has seen an image of this size.
 class TilePyramid {
  public:
   static constexpr int kLevels = 8;
 
-  // 'image': CV_8UC1, kept by reference until the next Build. Levels above 'last_level' are made
-  // by the next Build that asks for them: until then they must not be read.
+  // 'image': CV_8UC1, kept by reference until the next Build. Levels above 'last_level' are
+  // computed by the next Build that includes them; they must not be read before.
   void Build(const cv::Mat& image, int last_level = kLevels - 1);
 
-  // 'level' from 1 to kLevels - 1; without a single tile where the image is too small for one.
+  // 'level': 1 to kLevels - 1. Has no tiles where the image is too small for one.
   const TileImage& level(int level) const { return levels_[level]; }
 
-  // The image at 1 / 2^level of its size, 'level' from 0; a view, nothing is copied.
+  // The image at 1 / 2^level of its size, 'level' from 0. A view, without a copy.
   cv::Mat ImageAt(int level) const;
 
  private:
@@ -46,26 +46,27 @@ class TilePyramid {
   std::array<TileImage, kLevels> levels_;
 };
 
-// The adaptive threshold of the paper (section 2.1), decided per tile instead of per pixel: a pixel
+// The adaptive threshold of the paper (section 2.1), decided per tile instead of per pixel. A pixel
 // is dark when it is below the mean of the box of 3 x 3 tiles around its own tile, and bright when
 // it is nearer to the brightest pixel of the box than to its mean. Where the box has too little
-// contrast to say, a box four times as large decides, so that the inside of a broad dark stroke is
-// dark; where that has too little as well, a pixel is neither.
+// contrast, a box four times as large decides, so that the inside of a broad dark stroke is dark.
+// Where that has too little contrast too, a pixel is undecided.
 class LocalThreshold {
  public:
-  // What is dark: as above, or only what is within a quarter of the contrast of the darkest pixel
-  // of the box: black paint, but no shadow on white.
+  // Definition of dark: as above, or only within a quarter of the contrast above the darkest pixel
+  // of the box, which includes black paint but no shadow on white.
   enum class Dark { kBelowMean, kBlack };
 
-  // Computes the boxes for the image at 'image_level' of the pyramid, of tiles of level
-  // 'tile_level' > image_level: a box has 3 * 2^(tile_level - image_level) pixels of that image.
-  // Does not allocate once it has seen an image of this size; Binarize neither.
+  // Computes the boxes for the image at 'image_level' of the pyramid, from tiles of 'tile_level' >
+  // image_level. A box is 3 * 2^(tile_level - image_level) pixels of that image wide. Measure and
+  // Binarize do not allocate once they have seen an image of this size.
   void Measure(const TilePyramid& pyramid, int image_level, int tile_level);
 
-  // Contrast (largest minus smallest gray value) below which 'share', 0 to 1, of the boxes lie.
+  // Returns the contrast (largest minus smallest gray value) below which 'share', 0 to 1, of the
+  // boxes lie.
   int ContrastQuantile(double share) const;
 
-  // Decides all pixels. 'min_contrast' >= 1: smallest contrast of a box that decides.
+  // Decides all pixels. 'min_contrast' >= 1: least contrast of a box that decides.
   void Binarize(const cv::Mat& image, int min_contrast, BinaryImage* binary,
                 Dark what = Dark::kBelowMean);
 

@@ -20,7 +20,7 @@ struct Statistics {
   int mean = 0;
 };
 
-// Of the tile (x, y) of 'level', from the pixels.
+// Statistics of the tile (x, y) of 'level', computed from the pixels.
 Statistics TileOf(const cv::Mat& image, int level, int x, int y) {
   if (level == 0) {
     const int gray = image.at<std::uint8_t>(y, x);
@@ -35,7 +35,7 @@ Statistics TileOf(const cv::Mat& image, int level, int x, int y) {
           ((a.mean + c.mean + 1) / 2 + (b.mean + d.mean + 1) / 2) / 2};
 }
 
-// Over the 3 x 3 tiles around (x, y), the border repeated.
+// Statistics over the 3 x 3 tiles around (x, y). The border is repeated.
 Statistics BoxOf(const TileImage& tiles, int x, int y) {
   Statistics box;
   int sum = 0;
@@ -54,7 +54,7 @@ Statistics BoxOf(const TileImage& tiles, int x, int y) {
 
 enum Decision { kDark, kBright, kNeither };
 
-// What the header says of one pixel of the image at 'image_level'.
+// Decides one pixel of the image at 'image_level' as the header specifies.
 Decision Decide(const TilePyramid& pyramid, int gray, int image_level, int tile_level, int x, int y,
                 int min_contrast) {
   const int tile_px = 1 << (tile_level - image_level);
@@ -62,7 +62,7 @@ Decision Decide(const TilePyramid& pyramid, int gray, int image_level, int tile_
     const TileImage& tiles = pyramid.level(tile_level + coarser);
     const TileImage& fine = pyramid.level(tile_level);
     if (tiles.columns == 0) continue;
-    // The last whole tile serves what lies right of it and below.
+    // The last whole tile applies to the pixels right of it and below.
     const int fine_x = std::min(x / tile_px, fine.columns - 1);
     const int fine_y = std::min(y / tile_px, fine.rows - 1);
     const Statistics box = BoxOf(tiles, std::min(fine_x >> coarser, tiles.columns - 1),
@@ -147,7 +147,7 @@ TEST(TilePyramid, MeansAreTheImageAtALowerResolution) {
 }
 
 TEST(TilePyramid, TheMeanIsNotBiased) {
-  // Gray values of which half the pixels have one and half the next.
+  // Half of the pixels have one gray value, the other half the next.
   cv::Mat image(512, 512, CV_8UC1);
   Random random(3);
   for (int y = 0; y < 512; ++y) {
@@ -196,8 +196,8 @@ TEST(LocalThreshold, TakesOnePixel) {
 }
 
 TEST(LocalThreshold, TheInsideOfABroadStrokeIsDark) {
-  // A stroke of 10 px is wider than a box of 3 tiles of 2 px: its middle has no contrast of its
-  // own and needs the coarse box.
+  // A stroke of 10 px is wider than a box of 3 tiles of 2 px. Its middle has no contrast of its own
+  // and needs the coarse box.
   cv::Mat image(64, 64, CV_8UC1, cv::Scalar(200));
   image.colRange(24, 34) = 40;
   TilePyramid pyramid;
@@ -210,7 +210,7 @@ TEST(LocalThreshold, TheInsideOfABroadStrokeIsDark) {
 }
 
 TEST(LocalThreshold, QuantileOfTheContrasts) {
-  // Left half flat, right half of contrast 100: between them boxes that see both.
+  // The left half is flat, the right half has a contrast of 100; boxes between them contain both.
   cv::Mat image(128, 128, CV_8UC1, cv::Scalar(50));
   for (int y = 0; y < 128; ++y) {
     for (int x = 64; x < 128; ++x) image.at<std::uint8_t>(y, x) = (x + y) % 2 == 0 ? 50 : 150;

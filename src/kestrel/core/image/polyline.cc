@@ -22,7 +22,8 @@ class Curve {
   std::size_t offset_;
 };
 
-// Index strictly between 'first' and 'last' of the point farthest from their chord, and how far.
+// Returns the index strictly between 'first' and 'last' of the point farthest from their chord, and
+// its distance.
 std::size_t Farthest(const Curve& curve, std::size_t first, std::size_t last, double* distance) {
   const Eigen::Vector2d chord = curve[last] - curve[first];
   const double norm = chord.norm();
@@ -40,7 +41,7 @@ std::size_t Farthest(const Curve& curve, std::size_t first, std::size_t last, do
   return farthest;
 }
 
-// Line fitted to the points from 'first' to 'last' by total least squares, cut at the end points.
+// Fits a line to the points from 'first' to 'last' by total least squares, cut at the end points.
 LineSegment FitSegment(const Curve& curve, std::size_t first, std::size_t last) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (std::size_t i = first; i <= last; ++i) mean += curve[i];
@@ -64,7 +65,7 @@ void SplitAndMerge(std::span<const Eigen::Vector2d> points, bool closed, double 
                    double min_length, std::vector<std::size_t>* breaks,
                    std::vector<LineSegment>* segments) {
   if (points.size() < 3) return;
-  // A closed curve is opened at the point farthest from its first one: surely a corner.
+  // A closed curve is opened at the point farthest from its first one, which is surely a corner.
   std::size_t offset = 0;
   if (closed) {
     for (std::size_t i = 1; i < points.size(); ++i) {
@@ -76,7 +77,7 @@ void SplitAndMerge(std::span<const Eigen::Vector2d> points, bool closed, double 
   const Curve curve(points, offset);
   const std::size_t end = closed ? points.size() : points.size() - 1;
 
-  // Split: 'breaks' is a stack of the ends that are still to be looked at, then reused in place.
+  // Split: 'breaks' is a stack of the ends that still need a test, then it is reused in place.
   breaks->clear();
   breaks->push_back(0);
   breaks->push_back(end);
@@ -89,7 +90,6 @@ void SplitAndMerge(std::span<const Eigen::Vector2d> points, bool closed, double 
       ++piece;
     }
   }
-  // Merge.
   for (std::size_t i = 1; i + 1 < breaks->size();) {
     double distance;
     Farthest(curve, (*breaks)[i - 1], (*breaks)[i + 1], &distance);

@@ -9,7 +9,7 @@
 
 namespace kestrel {
 
-// A straight piece of a polyline: its end points on the line fitted to all points of the piece.
+// A straight piece of a polyline. Its end points lie on the line fitted to all points of the piece.
 struct LineSegment {
   Eigen::Vector2d start;
   Eigen::Vector2d end;
@@ -18,11 +18,10 @@ struct LineSegment {
   Eigen::Vector2d direction() const { return (end - start).normalized(); }
 };
 
-// Breaks a curve into straight pieces (split and merge; Ramer 1972, Pavlidis and Horowitz 1974):
+// Divides a curve into straight pieces (split and merge; Ramer 1972, Pavlidis and Horowitz 1974):
 // splits where a point is farther than 'tolerance' from the chord, then merges neighbours that one
-// line explains within the tolerance. Keeps those of at least 'min_length'. The curve is taken as
-// closed when 'closed'. Appends to 'segments'; 'breaks' is scratch memory. Unit: that of the
-// points.
+// line fits within the tolerance. Keeps pieces of at least 'min_length'. 'closed': the curve is
+// closed. Appends to 'segments'; 'breaks' is scratch memory. The unit is that of the points.
 void SplitAndMerge(std::span<const Eigen::Vector2d> points, bool closed, double tolerance,
                    double min_length, std::vector<std::size_t>* breaks,
                    std::vector<LineSegment>* segments);

@@ -18,7 +18,7 @@ void AddLine(const Eigen::Vector2d& from, const Eigen::Vector2d& to, int count, 
   for (int i = 0; i < count; ++i) points->push_back(from + (to - from) * i / count);
 }
 
-// A rectangle of 60 x 30 around the origin, turned, the walk begun in the middle of a side.
+// A rectangle of 60 x 30 around the origin, turned; the walk begins in the middle of a side.
 Points Rectangle(double angle) {
   Points points;
   AddLine({0, -15}, {30, -15}, 30, &points);
@@ -50,9 +50,9 @@ void ExpectRectangle(const std::vector<LineSegment>& segments, double angle, dou
     const bool is_long = cosine > 0.5;
     along += is_long;
     EXPECT_NEAR(cosine, is_long ? 1 : 0, 0.03 * tolerance);
-    // A corner may be cut where the tolerance hides it.
+    // A corner may be cut within the tolerance.
     EXPECT_NEAR(segment.length(), is_long ? 60 : 30, 5 * tolerance);
-    // Both ends as far from the centre as the side is.
+    // Both ends are as far from the centre as the side.
     const Eigen::Vector2d normal(-segment.direction().y(), segment.direction().x());
     EXPECT_NEAR(std::abs(normal.dot(0.5 * (segment.start + segment.end))), is_long ? 15 : 30,
                 tolerance);

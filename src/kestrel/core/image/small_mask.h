@@ -6,8 +6,8 @@
 
 namespace kestrel {
 
-// Square binary image of at most 64 x 64 pixels, one word per row (bit x is pixel x): what a
-// candidate's inside is rectified to. A value type without heap memory.
+// Square binary image of at most 64 x 64 pixels, one word per row (bit x is pixel x), for the
+// rectified inside of a candidate. A value type without heap memory.
 class SmallMask {
  public:
   static constexpr int kMaxSize = 64;
@@ -21,7 +21,7 @@ class SmallMask {
   }
   void Set(int x, int y) { rows_[y] |= std::uint64_t{1} << x; }
   void Clear(int x, int y) { rows_[y] &= ~(std::uint64_t{1} << x); }
-  // Row 'y', which may lie outside of the mask (then it is empty).
+  // Returns row 'y'; empty outside of the mask.
   std::uint64_t row(int y) const { return y < 0 || y >= size_ ? 0 : rows_[y]; }
   void SetRow(int y, std::uint64_t bits) { rows_[y] = bits & columns(); }
   // The bits of all columns.

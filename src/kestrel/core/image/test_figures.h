@@ -7,7 +7,7 @@
 
 namespace kestrel {
 
-// A figure for tests: dark where 'is_dark' says so, bright everywhere, so that every border may
+// A figure for tests: dark where 'is_dark' is true, and bright everywhere, so that every border can
 // start.
 inline BinaryImage DrawFigure(int width, int height, const std::function<bool(int, int)>& is_dark) {
   BinaryImage binary;

@@ -13,8 +13,8 @@
 
 namespace kestrel {
 
-// An image in memory of its own, of exactly the bytes that it has: a sanitizer sees every read
-// beyond them. 'stride' in bytes; the last row ends with its last pixel.
+// An image in its own memory of exactly its bytes, so that a sanitizer detects every read beyond
+// them. 'stride' in bytes; the memory ends with the last pixel of the last row.
 struct ExactImage {
   ExactImage(int width, int height, int stride)
       : bytes(new std::uint8_t[static_cast<std::size_t>(stride) * (height - 1) + width]),
@@ -23,7 +23,7 @@ struct ExactImage {
   cv::Mat image;
 };
 
-// Blobs and noise of all contrasts, black and white included.
+// Blobs and noise of all contrasts, including black and white.
 inline ExactImage RandomImage(int width, int height, int stride, Random* random) {
   ExactImage exact(width, height, stride);
   std::array<int, 4> level;

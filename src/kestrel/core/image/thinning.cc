@@ -6,8 +6,8 @@
 namespace kestrel {
 namespace {
 
-// Bits of the pixels of a row that one sub-iteration deletes, all columns at once. The neighbours
-// are numbered as in the reference: p2 above, then clockwise to p9 at the upper left.
+// Returns the pixels of a row that one sub-iteration deletes, for all columns at once. The
+// neighbours are numbered as in the reference: p2 above, then clockwise to p9 at the upper left.
 std::uint64_t Deletable(std::uint64_t above, std::uint64_t here, std::uint64_t below, bool odd) {
   const std::uint64_t p2 = above, p3 = above >> 1, p4 = here >> 1, p5 = below >> 1;
   const std::uint64_t p6 = below, p7 = below << 1, p8 = here << 1, p9 = above << 1;
@@ -19,7 +19,7 @@ std::uint64_t Deletable(std::uint64_t above, std::uint64_t here, std::uint64_t b
   const std::uint64_t more = (c1 & c2) | (c3 & c4) | ((c1 | c2) & (c3 | c4));
   const std::uint64_t single = one & ~more;
 
-  // 2 <= N <= 3, N the smaller of the two counts of set neighbour pairs.
+  // 2 <= N <= 3, where N is the smaller of the two counts of set neighbour pairs.
   const auto count = [](std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d,
                         std::uint64_t* at_least_2, std::uint64_t* all) {
     *at_least_2 = (a & b) | (c & d) | ((a | b) & (c | d));
@@ -36,7 +36,7 @@ std::uint64_t Deletable(std::uint64_t above, std::uint64_t here, std::uint64_t b
 
 bool SubIteration(SmallMask* mask, bool odd) {
   bool changed = false;
-  std::uint64_t above = 0;  // as it was before this sub-iteration
+  std::uint64_t above = 0;  // before this sub-iteration
   for (int y = 0; y < mask->size(); ++y) {
     const std::uint64_t here = mask->row(y);
     const std::uint64_t deleted = Deletable(above, here, mask->row(y + 1), odd);

@@ -7,7 +7,7 @@ namespace kestrel {
 
 // Thins the set pixels to lines of one pixel that keep their connections (Guo and Hall, "Parallel
 // thinning with two-subiteration algorithms", CACM 32(3), 1989, algorithm A1; paper, section 2.4).
-// 'max_iterations': pairs of sub-iterations after which it stops, converged or not.
+// 'max_iterations': largest number of pairs of sub-iterations, converged or not.
 void ThinGuoHall(SmallMask* mask, int max_iterations);
 
 }  // namespace kestrel

@@ -13,7 +13,7 @@
 namespace kestrel {
 namespace {
 
-// The method of the paper cited in the header, pixel by pixel.
+// The method of the reference in the header, pixel by pixel.
 bool IsDeletable(const SmallMask& mask, int x, int y, bool odd) {
   const bool p2 = mask.at(x, y - 1), p3 = mask.at(x + 1, y - 1), p4 = mask.at(x + 1, y);
   const bool p5 = mask.at(x + 1, y + 1), p6 = mask.at(x, y + 1), p7 = mask.at(x - 1, y + 1);
@@ -45,7 +45,7 @@ bool Same(const SmallMask& a, const SmallMask& b) {
   return true;
 }
 
-// Areas connected by edges or corners.
+// Counts areas connected by edges or corners.
 int CountAreas(SmallMask mask) {
   int areas = 0;
   std::vector<std::pair<int, int>> stack;
