@@ -11,17 +11,17 @@ namespace {
 
 constexpr std::size_t kFileHead = 14;
 constexpr std::size_t kMinHead = kFileHead + 40;
-constexpr std::size_t kMasks = kMinHead;  // of a head with bit fields
-constexpr std::size_t kPaletteEntry = 4;  // BGR and a byte without meaning
+constexpr std::size_t kMasks = kMinHead;  // position of the masks in a header with bit fields
+constexpr std::size_t kPaletteEntry = 4;  // BGR and an unused byte
 
 struct BmpHead {
-  std::uint32_t pixels;   // where they begin
-  std::uint32_t palette;  // where it begins
+  std::uint32_t pixels;   // offset of the pixels
+  std::uint32_t palette;  // offset of the palette
   std::int32_t width;
-  std::int32_t height;  // negative: the upper row first
-  std::uint32_t bits;   // a pixel
+  std::int32_t height;  // negative: the upper row comes first
+  std::uint32_t bits;   // per pixel
   std::uint32_t compression;
-  std::uint32_t colors;  // of the palette
+  std::uint32_t colors;  // number of colours in the palette
 };
 
 std::uint32_t LittleEndian32(const EncodedImage& image, std::size_t at) {
@@ -60,7 +60,7 @@ BmpHead ReadHead(const EncodedImage& image) {
   return head;
 }
 
-// Colours that the file does not have are black.
+// Colours missing in the file are black.
 class Palette {
  public:
   Palette(const EncodedImage& image, const BmpHead& head) {

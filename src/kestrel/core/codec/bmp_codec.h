@@ -11,8 +11,8 @@ namespace kestrel {
 
 bool IsBmp(std::string_view bytes);
 
-// See DecodeImage. Of 8 bits with a palette (gray where it has only grays), 24 or 32 bits, not
-// compressed; BGR, as the fourth byte of a pixel has no meaning that all writers share.
+// See DecodeImage. Accepts uncompressed files of 8 bits with a palette (gray where it has only
+// grays), 24 or 32 bits. Returns gray or BGR: the fourth byte of a pixel has no agreed meaning.
 cv::Mat DecodeBmp(const EncodedImage& image);
 
 }  // namespace kestrel

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The images in KESTREL_IMAGES_DIR were written by other encoders (OpenCV's, and bytes by hand);
-// most of them have ValueAt(), and those of a photograph have beside them what OpenCV reads of
-// them.
+// The images in KESTREL_IMAGES_DIR were written by other encoders (OpenCV's, and bytes by hand).
+// Most of them contain ValueAt(). Those of a photograph have OpenCV's decoding beside them.
 #include "kestrel/core/codec/image_codec.h"
 
 #include <filesystem>
@@ -145,7 +144,7 @@ TEST(DecodeImage, WhatIsCutOffIsNeverAnImage) {
   }
 }
 
-// Whatever becomes of it, it is one line, and the test ends.
+// Corrupt files are either read or refused in one line, and the test ends.
 TEST(DecodeImage, WhatIsBrokenIsReadOrRefused) {
   cv::RNG random(7);
   for (const auto& entry : std::filesystem::directory_iterator(KESTREL_IMAGES_DIR)) {

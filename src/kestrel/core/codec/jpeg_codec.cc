@@ -16,9 +16,9 @@ struct HandleCloser {
 };
 using Handle = std::unique_ptr<void, HandleCloser>;
 
-// A JPEG ends with the marker EOI. Only behind the last start of a scan (SOS) it is the image's
-// own and not that of a thumbnail; within a scan the byte pair cannot occur. The decoder would fill
-// what is missing with gray: a frame that would pass for a real one.
+// A JPEG ends with the marker EOI. Only after the last start of a scan (SOS) is it the image's own
+// and not that of a thumbnail; within a scan the byte pair cannot occur. The decoder would fill
+// missing parts with gray, and such a frame would be taken for a real one.
 bool IsComplete(std::string_view bytes) {
   const std::size_t scan = bytes.rfind("\xff\xda");
   return scan != std::string_view::npos && bytes.find("\xff\xd9", scan) != std::string_view::npos;
@@ -40,7 +40,7 @@ cv::Mat DecodeJpeg(const EncodedImage& image) {
   int width = 0, height = 0, sampling = 0, colors = -1;
   const int error = tjDecompressHeader3(handle.get(), bytes, image.bytes.size(), &width, &height,
                                         &sampling, &colors);
-  // A sampling that TurboJPEG has no name for is an error, but not for what follows.
+  // An unnamed sampling is an error of TurboJPEG here, but not for the steps that follow.
   if (error != 0 && width == 0) Fail(image, handle.get());
   if (colors == TJCS_CMYK || colors == TJCS_YCCK) {
     FailToDecode(image, "is a JPEG in the colours of a printer, expected gray or RGB");

@@ -15,17 +15,17 @@ bool IsJpeg(std::string_view bytes);
 // See DecodeImage. Gray or BGR.
 cv::Mat DecodeJpeg(const EncodedImage& image);
 
-// Images to JPEG, with memory that is used again. By one thread.
+// Encodes images as JPEG and reuses its memory. For use by one thread.
 class JpegEncoder {
  public:
-  // 'quality': 1 to 100. Throws InputError when the library has no memory.
+  // 'quality': 1 to 100. Throws InputError when memory is exhausted.
   explicit JpegEncoder(int quality);
   ~JpegEncoder();
   JpegEncoder(const JpegEncoder&) = delete;
   JpegEncoder& operator=(const JpegEncoder&) = delete;
 
-  // Appends the JPEG (colours at half the resolution) of an 8-bit gray or BGR image; false, and
-  // nothing, for any other.
+  // Appends the JPEG (colours at half the resolution) of an 8-bit gray or BGR image. Returns false
+  // and appends nothing for any other image.
   bool Append(const cv::Mat& image, std::string* output);
 
  private:
@@ -34,7 +34,7 @@ class JpegEncoder {
   std::string memory_;
 };
 
-// The same of one image. Throws InputError where Append is false.
+// Encodes one image. Throws InputError where Append returns false.
 std::string EncodeJpeg(const cv::Mat& image, int quality);
 
 }  // namespace kestrel

@@ -21,8 +21,8 @@ constexpr int kDeepBits = 16;
 constexpr const char kCutOff[] = "cut off";
 using Fault = std::array<char, 128>;
 
-// libpng leaves its functions by longjmp: nothing that has a destructor may be between one of these
-// and the setjmp of who called libpng.
+// libpng leaves its functions by longjmp. No object with a destructor may be on the stack between
+// such a function and the setjmp of libpng's caller.
 [[noreturn]] void Fail(png_structp png, png_const_charp message) {
   auto* fault = static_cast<Fault*>(png_get_error_ptr(png));
   std::snprintf(fault->data(), fault->size(), "%s", message);
@@ -49,7 +49,7 @@ std::vector<png_bytep> RowsOf(const cv::Mat& image) {
   return rows;
 }
 
-// A file that is read. Read* are false at a fault.
+// Reads a file. The Read functions return false on a fault.
 class PngReader {
  public:
   explicit PngReader(std::string_view bytes)
@@ -72,7 +72,7 @@ class PngReader {
     SetConversions();
     if (png_get_rowbytes(png_, info_) != row_bytes) png_error(png_, "rows of another size");
     png_read_image(png_, rows);
-    png_read_end(png_, nullptr);  // to the last chunk: a file that is cut off has none
+    png_read_end(png_, nullptr);  // reads to the last chunk, which a truncated file lacks
     return true;
   }
 
@@ -122,7 +122,7 @@ class PngWriter {
   PngWriter(const PngWriter&) = delete;
   PngWriter& operator=(const PngWriter&) = delete;
 
-  // False at a fault.
+  // Returns false on a fault.
   bool Write(const cv::Mat& image, int level, png_bytepp rows) {
     if (info_ == nullptr || setjmp(png_jmpbuf(png_)) != 0) return false;
     constexpr std::array kColorTypes{PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGBA};
@@ -141,7 +141,7 @@ class PngWriter {
   const char* fault() const { return fault_.data(); }
 
  private:
-  // Runs of one byte are what the differences of an image's neighbours have.
+  // The differences of neighbouring pixels contain runs of equal bytes.
   void SetCompression(int level) {
     constexpr int kFastest = 1, kDefaultStrategy = 0, kRunLengths = 3;  // zlib's
     if (level == kFastPng) png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);

@@ -14,7 +14,7 @@ constexpr std::uint32_t kMaxValue = 65535;
 bool IsSpace(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
 bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-// Numbers as text, with blanks and comments (from # to the end of the line) between them.
+// Reads numbers as text, separated by blanks and comments (from # to the end of the line).
 class PnmText {
  public:
   explicit PnmText(const EncodedImage& image) : image_(image), rest_(image.bytes.substr(2)) {}
@@ -35,7 +35,7 @@ class PnmText {
     rest_.remove_prefix(digits);
     return static_cast<std::uint32_t>(number);
   }
-  // What comes behind the one blank after the last number.
+  // The bytes after the single blank that follows the last number.
   std::string_view Binary() const { return rest_.substr(std::min<std::size_t>(1, rest_.size())); }
 
  private:
@@ -49,7 +49,7 @@ class PnmText {
   std::string_view rest_;
 };
 
-// RGB to BGR.
+// Converts RGB to BGR.
 template <class Value>
 void TurnColors(cv::Mat* pixels) {
   pixels->forEach<cv::Vec<Value, 3>>(
@@ -63,7 +63,7 @@ void ReadText(PnmText* text, std::uint32_t max, cv::Mat* pixels) {
   for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<Value>(text->Number(max));
 }
 
-// Big endian.
+// Reads big-endian values.
 template <class Value>
 void ReadBinary(std::string_view bytes, cv::Mat* pixels) {
   auto* values = pixels->ptr<Value>();

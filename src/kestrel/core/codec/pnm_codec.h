@@ -9,10 +9,10 @@
 
 namespace kestrel {
 
-// PGM and PPM, in binary (P5, P6) or as text (P2, P3).
+// True for PGM and PPM, in binary (P5, P6) or as text (P2, P3).
 bool IsPnm(std::string_view bytes);
 
-// See DecodeImage. The values are those of the file, of which the largest may be less than 255.
+// See DecodeImage. The values are those of the file, whose maximum may be less than 255.
 cv::Mat DecodePnm(const EncodedImage& image);
 
 }  // namespace kestrel

@@ -15,7 +15,7 @@
 namespace kestrel {
 namespace {
 
-// The file that libtiff reads, and the first fault that it found.
+// The file that libtiff reads, and the first fault.
 struct TiffFile {
   std::string_view bytes;
   toff_t position = 0;
@@ -44,7 +44,7 @@ int Close(thandle_t /*handle*/) { return 0; }
 
 toff_t Size(thandle_t handle) { return static_cast<TiffFile*>(handle)->bytes.size(); }
 
-// 1: the fault is dealt with, and not printed.
+// Returns 1: the fault is handled and not printed.
 int KeepFault(TIFF* /*tiff*/, void* file, const char* /*module*/, const char* format,
               va_list arguments) {
   auto& fault = static_cast<TiffFile*>(file)->fault;
@@ -108,7 +108,7 @@ cv::Mat DecodeTiff(const EncodedImage& image) {
   TIFFGetField(tiff.get(), TIFFTAG_IMAGEWIDTH, &width);
   TIFFGetField(tiff.get(), TIFFTAG_IMAGELENGTH, &height);
   cv::Mat rgba = NewPixels(image, width, height, CV_8UC4);
-  // The orientation that the file has: nothing is turned.
+  // Uses the file's own orientation, so that nothing is rotated.
   if (TIFFReadRGBAImageOriented(tiff.get(), width, height, rgba.ptr<std::uint32_t>(),
                                 NumberOf(tiff.get(), TIFFTAG_ORIENTATION),
                                 /*stopOnError=*/1) == 0) {

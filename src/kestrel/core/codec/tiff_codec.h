@@ -11,8 +11,8 @@ namespace kestrel {
 
 bool IsTiff(std::string_view bytes);
 
-// See DecodeImage. The first image of the file, gray or BGR; throws InputError where it has more
-// than 8 bits a channel.
+// See DecodeImage. Returns the first image of the file, gray or BGR. Throws InputError when it has
+// more than 8 bits per channel.
 cv::Mat DecodeTiff(const EncodedImage& image);
 
 }  // namespace kestrel

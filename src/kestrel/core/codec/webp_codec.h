@@ -11,7 +11,7 @@ namespace kestrel {
 
 bool IsWebp(std::string_view bytes);
 
-// See DecodeImage. BGR, or BGRA where there is alpha.
+// See DecodeImage. Returns BGR, or BGRA where there is alpha.
 cv::Mat DecodeWebp(const EncodedImage& image);
 
 }  // namespace kestrel
