@@ -10,7 +10,7 @@
 
 namespace kestrel {
 
-// All that a calibration file says of a camera. What it does not say is empty, never a default.
+// The content of a camera's calibration file. Missing entries are empty, never defaults.
 struct CameraCalibration {
   CameraIntrinsics intrinsics;
   std::optional<RigidTransform> body_from_camera;  // the mount

@@ -25,12 +25,12 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kMaxBytes = 1 << 20;   // a calibration has a few kilobytes
-constexpr double kMaxClockOffset_s = 4e9;    // fits into a Duration, and spans two epochs
+constexpr double kMaxClockOffset_s = 4e9;    // fits into a Duration and spans two epochs
 constexpr double kRotationTolerance = 1e-3;  // of matrices typed with four digits
 
 using Names = std::initializer_list<const char*>;
 
-// A value of the file with the key that leads to it, so that every message can name both.
+// A value of the file with the path of its key, so that every message can name both.
 class Entry {
  public:
   Entry(const std::string* file, const YAML::Node& node, std::string key)
@@ -47,7 +47,7 @@ class Entry {
     throw InputError(fmt::format("{}:{} {} {}", *file_, line, subject, what));
   }
 
-  // The first of 'names' that this map has.
+  // Returns the first of 'names' that this map has.
   std::optional<Entry> Find(Names names) const {
     if (!node_.IsMap()) Fail("is not a map of keys, expected one");
     for (const char* name : names) {
@@ -75,7 +75,7 @@ class Entry {
     if (!number) Fail("is not an integer, expected one");
     return *number;
   }
-  // A list, a list of rows, or a matrix with rows, cols and data: row by row.
+  // Reads a list, a list of rows, or a matrix with rows, cols and data: row by row.
   std::vector<double> Numbers() const {
     if (node_.IsMap()) return MatrixNumbers();
     if (!node_.IsSequence()) Fail("is not a list of numbers, expected one");
@@ -127,7 +127,7 @@ constexpr const char* kSupportedModels =
     "equidistant (fisheye, kannala_brandt, kb4), radial-tangential (radtan, plumb_bob, "
     "rational_polynomial) or none (pinhole)";
 
-// The lens that a name stands for in any of the tools.
+// Returns the lens for a name in any of the tools.
 DistortionModel ModelOf(const Entry& entry) {
   static constexpr std::array<std::pair<const char*, DistortionModel>, 15> kNames{{
       {"equidistant", DistortionModel::kEquidistant},
@@ -157,8 +157,8 @@ DistortionModel ModelOf(const Entry& entry) {
 
 bool IsZero(double number) { return number == 0; }
 
-// Coefficients as the model wants them: none for a pinhole that lists zeros, at most 8 for OpenCV's
-// 12 and 14 when those of the prism and of the tilted sensor are zero.
+// Trims the coefficients to those of the model: none for a pinhole with zeros, at most 8 for
+// OpenCV's 12 and 14 when those of the prism and of the tilted sensor are zero.
 std::vector<double> TrimDistortion(DistortionModel model, std::vector<double> distortion) {
   const std::size_t used = model == DistortionModel::kNone ? 0 : 8;
   if (distortion.size() > used &&
@@ -221,7 +221,7 @@ void SetMount(const Entry& camera, CameraCalibration* calibration) {
 }
 
 int PixelCount(const Entry& entry, double number) {
-  // Validate() has the limits of an image; this one keeps the conversion defined.
+  // Validate() checks the limits of an image; this one only keeps the conversion defined.
   if (number != std::floor(number) || std::abs(number) > 1e9) {
     entry.Fail(fmt::format("holds {}, expected whole pixels", number));
   }
@@ -240,7 +240,7 @@ void RequireCalibrated(const Entry& entry, const CameraIntrinsics& intrinsics) {
   }
 }
 
-// EuRoC's and Kalibr's way: a list of four intrinsics.
+// The form of EuRoC and Kalibr: a list of four intrinsics.
 CameraCalibration ReadListForm(const Entry& camera) {
   if (const std::optional<Entry> model = camera.Find({"camera_model"})) {
     if (model->Text() != "pinhole") {
@@ -269,8 +269,8 @@ CameraCalibration ReadListForm(const Entry& camera) {
   return calibration;
 }
 
-// The lens of a file that has a camera matrix: by name, by OpenCV's flag, else by the number of
-// coefficients where that is enough.
+// Returns the lens of a file with a camera matrix: by name, by OpenCV's flag, or by the number of
+// coefficients where that suffices.
 DistortionModel MatrixFormModel(const Entry& camera, const Entry& coefficients) {
   if (const std::optional<Entry> flag = camera.Find({"fisheye_model"})) {
     const std::string text = flag->Text();
@@ -309,7 +309,7 @@ const Names kMatrixNames{"camera_matrix", "Camera_Matrix", "cameraMatrix", "K", 
 const Names kCoefficientNames{
     "distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "dist_coeffs", "D", "d"};
 
-// ROS's and OpenCV's way: a 3x3 camera matrix.
+// The form of ROS and OpenCV: a 3x3 camera matrix.
 CameraCalibration ReadMatrixForm(const Entry& camera) {
   CameraCalibration calibration;
   CameraIntrinsics& intrinsics = calibration.intrinsics;
@@ -338,7 +338,7 @@ bool IsCameraKey(const std::string& key) {
          std::all_of(key.begin() + 3, key.end(), [](unsigned char c) { return std::isdigit(c); });
 }
 
-// Names of a Kalibr chain's cameras, in the order of the file.
+// Returns the names of a Kalibr chain's cameras, in the order of the file.
 std::vector<std::string> ChainCameras(const Entry& root) {
   std::vector<std::string> names;
   for (const auto& item : root.node()) {
@@ -376,8 +376,8 @@ CameraCalibration ReadRoot(const Entry& root, const std::string& camera) {
       "one of them");
 }
 
-// OpenCV heads its files with "%YAML:1.0", which is not the directive that YAML knows. The line
-// stays, empty, so that the lines of messages are right.
+// OpenCV starts its files with "%YAML:1.0", which is not the directive that YAML defines. An empty
+// line replaces it, so that the line numbers of messages stay right.
 std::string WithoutDirective(std::string_view text) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());

@@ -114,7 +114,7 @@ std::string Replaced(std::string text, const std::string& from, const std::strin
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-// The message with which a text is refused.
+// Returns the message with which a text is refused.
 std::string Refusal(const std::string& text, const std::string& camera = "") {
   try {
     ParseCalibration(text, "lens.yaml", camera);
@@ -139,7 +139,7 @@ TEST(CalibrationReader, ReadsEuroc) {
   EXPECT_EQ(c.distortion_model, DistortionModel::kRadialTangential);
   EXPECT_THAT(c.distortion, ElementsAre(-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05));
   ASSERT_TRUE(read.body_from_camera);
-  // The optical axis looks down, and the top of the image is the front of the body.
+  // The optical axis points down, and the top of the image is the front of the body.
   EXPECT_TRUE((read.body_from_camera->rotation * Eigen::Vector3d::UnitZ())
                   .isApprox(-Eigen::Vector3d::UnitZ(), 1e-12));
   EXPECT_TRUE((*read.body_from_camera * Eigen::Vector3d(0, -1, 0))
@@ -197,7 +197,7 @@ TEST(CalibrationReader, ReadsOpenCv) {
   EXPECT_THAT(read.intrinsics.distortion, ElementsAre(-0.0448, 0.0686053, -0.072277, 0.027011955));
 }
 
-// What OpenCV itself writes, with the rational model's 14 coefficients of which 8 are used.
+// The output of OpenCV itself, with the rational model's 14 coefficients of which 8 are used.
 TEST(CalibrationReader, ReadsWhatOpenCvWrites) {
   cv::FileStorage storage("lens.yml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
   const cv::Mat matrix = (cv::Mat_<double>(3, 3) << 607.6, 0, 637.1, 0, 607.4, 366.9, 0, 0, 1);
@@ -351,7 +351,7 @@ TEST(CalibrationReader, WhatIsNotACalibrationIsRefused) {
   EXPECT_THAT(Refusal(std::string(2 << 20, ' ')), HasSubstr("has 2097152 bytes, expected"));
 }
 
-// A calibration that ends early is refused wherever it ends, and never crashes.
+// A truncated calibration is refused wherever it ends, and never crashes the reader.
 TEST(CalibrationReader, TruncatedFilesAreRefused) {
   for (const std::string text : {kEuroc, kRos, kOpenCv}) {
     const std::size_t last_number = text.find_last_of("0123456789");

@@ -18,7 +18,7 @@ namespace {
 using Coefficients = std::array<double, 8>;
 using Polynomial = std::vector<double>;  // coefficients, constant term first
 
-// Beyond this tangent a pinhole's pixel is a thousand focal lengths away: no image reaches it.
+// Beyond this tangent a pinhole's pixel is a thousand focal lengths away, outside of any image.
 constexpr double kMaxTangent = 1000;
 constexpr int kMaxImageSide = 65535;
 constexpr double kMaxCoefficient = 1e4;
@@ -29,7 +29,7 @@ struct Slope {
   double derivative;
 };
 
-// Distorted radius over the angle to the axis, theta_d(theta) = theta (1 + k1 theta^2 + ...).
+// Distorted radius as a function of the angle: theta_d(theta) = theta (1 + k1 theta^2 + ...).
 Slope EquidistantRadius(const Coefficients& k, double theta) {
   const double s = theta * theta;
   const double value = theta * (1 + s * (k[0] + s * (k[1] + s * (k[2] + s * k[3]))));
@@ -37,8 +37,8 @@ Slope EquidistantRadius(const Coefficients& k, double theta) {
   return {value, derivative};
 }
 
-// Radial factor g over the squared undistorted radius s, (1 + k1 s + k2 s^2 + k3 s^3) over
-// (1 + k4 s + k5 s^2 + k6 s^3).
+// Radial factor g as a function of the squared undistorted radius s: (1 + k1 s + k2 s^2 + k3 s^3)
+// divided by (1 + k4 s + k5 s^2 + k6 s^3).
 Slope RadialFactor(const Coefficients& k, double s) {
   const double numerator = 1 + s * (k[0] + s * (k[1] + s * k[4]));
   const double denominator = 1 + s * (k[5] + s * (k[6] + s * k[7]));
@@ -48,7 +48,7 @@ Slope RadialFactor(const Coefficients& k, double s) {
   return {value, (d_numerator - value * d_denominator) / denominator};
 }
 
-// Distorted radius over the tangent t of the angle to the axis, without the tangential part.
+// Distorted radius as a function of the tangent t of the angle, without the tangential part.
 Slope RadialRadius(const Coefficients& k, double t) {
   const Slope factor = RadialFactor(k, t * t);
   return {t * factor.value, factor.value + 2 * t * t * factor.derivative};
@@ -108,8 +108,8 @@ double BisectSignChange(const Polynomial& polynomial, double low, double high) {
   }
 }
 
-// Where the polynomial changes its sign between 0 and 'upper', ascending. The sign changes of the
-// derivative cut the range into monotonic pieces, so that none can be missed.
+// Returns the sign changes of the polynomial between 0 and 'upper', ascending. The sign changes of
+// the derivative divide the range into monotonic pieces, so that none is missed.
 std::vector<double> SignChanges(const Polynomial& polynomial, double upper) {
   if (polynomial.size() < 2) return {};
   std::vector<double> knots = SignChanges(Derivative(polynomial), upper);
@@ -136,8 +136,8 @@ double EquidistantLimit(const Coefficients& k) {
   return std::sqrt(FirstSignChange(slope, pi * pi));
 }
 
-// First tangent at which the radial part has a pole or stops growing. With N and D the numerator
-// and denominator of the radial factor over s = t^2, the slope of t N / D has the sign of
+// Returns the first tangent at which the radial part has a pole or stops growing. With N and D the
+// numerator and denominator of the radial factor over s = t^2, the slope of t N / D has the sign of
 // (N + 2 s N') D - 2 s N D'.
 double RadialLimit(const Coefficients& k) {
   const Polynomial numerator{1, k[0], k[1], k[4]};
@@ -151,8 +151,8 @@ double RadialLimit(const Coefficients& k) {
   return std::sqrt(std::min(FirstSignChange(slope, upper), FirstSignChange(denominator, upper)));
 }
 
-// The angle up to which the Jacobian of the whole distortion is positive definite in every
-// direction. The Jacobian is symmetric, so inside of that disc the distortion is the gradient of a
+// Returns the angle up to which the Jacobian of the whole distortion is positive definite in every
+// direction. The Jacobian is symmetric, so within that disc the distortion is the gradient of a
 // strictly convex function: no two points share a pixel, and Newton's method finds each.
 double TangentialLimit(const Coefficients& k, double radial_limit_angle) {
   constexpr int kDirections = 72;
@@ -175,7 +175,7 @@ double PinholeLimit(const Coefficients& k) {
   return HasTangentialPart(k) ? TangentialLimit(k, angle) : angle;
 }
 
-// Solves function(x) = target for a function that grows from 0 to 'upper': Newton's method, with
+// Solves function(x) = target for a function that grows from 0 to 'upper', by Newton's method with
 // bisection where it would leave the bracket.
 template <class Function>
 double InvertMonotonic(const Function& function, double target, double upper) {
@@ -195,7 +195,7 @@ double InvertMonotonic(const Function& function, double target, double upper) {
   return x;
 }
 
-// Newton's method in the plane from 'guess'; halves a step that leaves the disc or does not bring
+// Newton's method in the plane from 'guess'. Halves a step that leaves the disc or does not bring
 // the distorted point nearer. False when 'target' is not the image of a point in the disc.
 bool InvertRadialTangential(const Coefficients& k, const Eigen::Vector2d& target,
                             double max_tangent, Eigen::Vector2d* point) {
@@ -290,7 +290,7 @@ void CheckDistortion(const CameraIntrinsics& camera, Violations* violations) {
   }
 }
 
-// A distortion that folds back almost at once is a mistyped one.
+// A distortion that folds back near the centre is probably mistyped.
 void CheckReach(const CameraIntrinsics& camera, Violations* violations) {
   const Coefficients k = Padded(camera.distortion);
   const double angle = MaxAngle(camera.distortion_model, k);
@@ -386,11 +386,13 @@ ProjectionStatus CameraModel::ProjectEquidistant(const Eigen::Vector3d& point,
 
   const Slope radius = EquidistantRadius(k_, theta);
   const bool on_axis = rho == 0;
-  const double across = on_axis ? 1 / z : radius.value / rho;  // d radius, around the axis
+  const double across = on_axis ? 1 / z : radius.value / rho;  // distorted radius per radius,
+                                                               // around the axis
   *pixel << intrinsics_.fx_px * across * point.x() + intrinsics_.cx_px,
       intrinsics_.fy_px * across * point.y() + intrinsics_.cy_px;
   if (jacobian != nullptr) {
-    const double along = radius.derivative * z / squared_norm;  // d radius, away from the axis
+    const double along = radius.derivative * z / squared_norm;  // derivative of the distorted
+                                                                // radius, away from the axis
     const double cosine = on_axis ? 1 : point.x() / rho;
     const double sine = on_axis ? 0 : point.y() / rho;
     const double d_depth = -radius.derivative * rho / squared_norm;

@@ -28,7 +28,7 @@ class EveryCamera : public ::testing::TestWithParam<TestCamera> {
 INSTANTIATE_TEST_SUITE_P(, EveryCamera, ::testing::ValuesIn(TestCameras()),
                          [](const auto& info) { return info.param.name; });
 
-// Angles that cover a lens to its limit, and a last one so near to it that little is left.
+// Angles that cover a lens up to its limit, with the last one very near to it.
 std::vector<double> AnglesTo(double limit) {
   std::vector<double> angles;
   for (int i = 0; i <= 200; ++i) angles.push_back(limit * 0.999 * i / 200);
@@ -58,7 +58,7 @@ TEST_P(EveryCamera, JacobianIsTheDerivative) {
     Eigen::Vector2d pixel;
     Eigen::Matrix<double, 2, 3> jacobian;
     ASSERT_NE(camera_.Project(point, &pixel, &jacobian), ProjectionStatus::kOutsideModel);
-    // A finite difference is only good where the image does not move by thousands of pixels.
+    // Finite differences are accurate only where the image does not move by thousands of pixels.
     if (jacobian.norm() > 1e5) continue;
     constexpr double kStep = 1e-5;
     for (int axis = 0; axis < 3; ++axis) {
@@ -153,7 +153,7 @@ TEST(CameraModel, LimitIsWhereThePolynomialTurns) {
   EXPECT_NEAR(CameraModel(radial).max_angle(), kPi / 4, 1e-12);
 }
 
-// Two turns in a narrow range of angles, that a coarse search would step over.
+// Two turning points in a narrow range of angles, which a coarse search would miss.
 TEST(CameraModel, LimitIsFoundBetweenTwoNearTurns) {
   CameraIntrinsics fisheye = PaperCamera();
   const double a = 1.50, b = 1.501;  // theta^2 of the turns: slope (1 - s / a) (1 - s / b)
@@ -257,8 +257,8 @@ TEST(CameraIntrinsics, AllViolationsAreInTheError) {
   }
 }
 
-// Whatever passes Validate() can be used: no coefficient makes the construction or an inverse hang,
-// and what is unprojected is a unit vector that projects back.
+// Every lens that passes Validate() is usable: construction and inverses end for all coefficients,
+// and unprojected rays are unit vectors that project back.
 TEST(CameraModel, RandomLensesInvertOrRefuse) {
   std::mt19937 generator(11);
   std::uniform_real_distribution<double> mantissa(-1, 1);

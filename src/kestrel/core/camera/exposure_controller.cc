@@ -19,7 +19,7 @@ constexpr int kMeterSamples = 5000;  // enough for a share of a hundredth
 // The gray value before the camera's curve.
 double BeforeGamma(double gray, double gamma) { return 255 * std::pow(gray / 255, 1 / gamma); }
 
-// Counts the gray values of about kMeterSamples pixels, all over the image. Returns how many.
+// Counts the gray values of about kMeterSamples pixels across the image. Returns their number.
 int CountGrays(const cv::Mat& image, std::array<int, 256>* histogram) {
   histogram->fill(0);
   const int step =
@@ -35,7 +35,7 @@ int CountGrays(const cv::Mat& image, std::array<int, 256>* histogram) {
   return samples;
 }
 
-// The gray value that 'count' samples reach or exceed.
+// Returns the gray value that 'count' samples reach or exceed.
 int BrightGray(const std::array<int, 256>& histogram, int count) {
   int gray = 255;
   for (int brighter = histogram[gray]; gray > 0 && brighter < count; brighter += histogram[gray]) {
@@ -97,8 +97,8 @@ double ExposureController::Linear(double gray) const {
   return BeforeGamma(gray, options_.gamma) - options_.black_gray;
 }
 
-// The factor by which the exposure should change. How far a saturated image is from what it should
-// be nobody knows: the more of it is saturated, the further.
+// Returns the factor of the change of exposure. A saturated image does not show how far it is off;
+// the more of it is saturated, the larger the step.
 double ExposureController::StepFor(int bright_gray, int samples) const {
   constexpr double kLeastStep = 1.5;
   if (bright_gray >= kSaturatedGray) {

@@ -10,25 +10,25 @@
 namespace kestrel {
 
 struct ExposureOptions {
-  // Gray values between which the brightest part of the image is kept (paper, section 2.1). In
-  // between nothing is changed; outside of it the exposure aims at the middle.
+  // Gray values between which the brightest part of the image is kept (paper, section 2.1). Within
+  // them the exposure stays; outside of them it aims at the middle.
   double low_gray = 200;
   double high_gray = 240;
   // Share of the pixels that may be brighter, 0 to 1: of an image, so that a glint or the sun does
-  // not darken all the rest, and of the pattern's area, where a good part is white.
+  // not darken everything else, and of the pattern's area, much of which is white.
   double image_share = 0.01;
   double area_share = 0.1;
-  // The camera's curve: gray = 255 (linear / 255)^gamma, where 'black_gray' (linear) is without
+  // The camera's curve: gray = 255 (linear / 255)^gamma. 'black_gray' is the linear value without
   // light.
   double gamma = 1;
   double black_gray = 4;
-  // Images after a change that may still have an older exposure. Too many only make it slower; with
-  // too few it oscillates.
+  // Number of images after a change that may still have an older exposure. Too high a number only
+  // slows the control; too low a number makes it oscillate.
   int delay_frames = 2;
-  // What the camera can do, and at most as much as motion blur allows.
+  // Limits of the camera; the upper one also limits motion blur.
   double min_exposure_s = 2e-5;
   double max_exposure_s = 0.01;
-  // Largest factor by which the exposure changes at once, above 1.
+  // Largest factor of one change, above 1.
   double largest_step = 8;
 
   template <class Self, class Visitor>
@@ -48,22 +48,22 @@ struct ExposureOptions {
   std::vector<std::string> Validate() const;
 };
 
-// Controls the exposure so that the brightest part of the image keeps its brightness whatever the
-// light (paper, section 2.1: "the brightest point in the image is in the range 200 to 240").
+// Controls the exposure so that the brightest part of the image keeps its brightness in any light
+// (paper, section 2.1: "the brightest point in the image is in the range 200 to 240").
 //
-// Light is proportional to exposure: one image tells the right exposure, unless it is saturated or
-// black. After each change it waits until the change must show: an image taken with an older
-// exposure is never mistaken for the effect of the new one, hence no oscillation. Allocates
-// nothing.
+// Light is proportional to exposure, so one image determines the right exposure, unless it is
+// saturated or black. After each change the controller waits until the change must be visible. An
+// image with an older exposure is thus never taken for the effect of the new one, which prevents
+// oscillation. Does not allocate.
 class ExposureController {
  public:
-  // Begins with 'exposure_s', brought into the camera's range. Throws InputError when the options
-  // are not valid.
+  // Starts with 'exposure_s', clamped to the camera's range. Throws InputError when the options are
+  // invalid.
   ExposureController(const ExposureOptions& options, double exposure_s);
 
-  // The exposure (s) for the images to come. 'image': CV_8UC1, every one that the camera takes, in
-  // order; 'area': where the pattern is in it, whose white then counts; empty: the whole image
-  // does.
+  // Returns the exposure (s) for the following images. 'image': CV_8UC1, every image of the camera,
+  // in order. 'area': the pattern's area in it, whose white is then measured; empty: the whole
+  // image is measured.
   double Update(const cv::Mat& image, const cv::Rect& area = {});
 
   double exposure_s() const { return exposure_s_; }

@@ -17,8 +17,8 @@ using ::testing::HasSubstr;
 
 constexpr double kFullLight_s = 0.001;  // exposure at which white in full light has gray 220
 
-// A camera before a scene of all brightnesses; 'delay' images after a new exposure still have the
-// old one.
+// A camera in front of a scene with all brightnesses. The first 'delay' images after a new exposure
+// still have the old one.
 class DelayedCamera {
  public:
   DelayedCamera(double exposure_s, int delay, double gamma = 1)
@@ -51,7 +51,7 @@ int Brightest(const cv::Mat& image) {
   return static_cast<int>(brightest);
 }
 
-// Images until the brightest part is where it should be and stays there for 30 more; 1000 if never.
+// Number of images until the brightest part is in range and stays there for 30 more; 1000 if never.
 int FramesToSettle(ExposureController* controller, DelayedCamera* camera) {
   constexpr int kLongest = 60;
   constexpr int kStays = 30;

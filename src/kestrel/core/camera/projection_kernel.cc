@@ -29,7 +29,7 @@ struct VectorPoint {
   hn::Vec<D> x, y, z;
 };
 
-// The polynomial of so many coefficients.
+// Evaluates the polynomial with the given coefficients.
 template <class D, std::size_t kCount>
 HWY_INLINE hn::Vec<D> Polynomial(D d, hn::Vec<D> s, const std::array<float, kCount>& coefficients) {
   hn::Vec<D> value = hn::Set(d, coefficients.back());
@@ -58,9 +58,9 @@ HWY_INLINE DistortedPoints<D> DistortEquidistant(D d, const ProjectionKernel& le
   const auto rho2 = hn::MulAdd(p.x, p.x, hn::Mul(p.y, p.y));
   const auto norm2 = hn::MulAdd(p.z, p.z, rho2);
   const auto norm = hn::Sqrt(norm2);
-  // On the axis as close beside it.
+  // Points on the axis are treated as close beside it.
   const auto rho = hn::Max(hn::Sqrt(rho2), hn::Mul(norm, hn::Set(d, 1e-9f)));
-  // Half the angle to the nearer side of the axis is exact everywhere.
+  // Half the angle to the nearer end of the axis is accurate everywhere.
   const auto half = Atan(d, hn::Div(rho, hn::Add(norm, hn::Abs(p.z))));
   const auto acute = hn::Add(half, half);
   const auto is_behind = hn::Lt(p.z, hn::Zero(d));
@@ -170,7 +170,7 @@ void ProjectPoints(const ProjectionKernel& lens, const std::array<const float*, 
   for (std::size_t i = 0; i + lanes <= count; i += lanes) {
     ProjectVector(d, lens, points, i, x_px, y_px, d_pixel_d_point);
   }
-  // The last vector overlaps the one before it: some points are computed twice.
+  // The last vector overlaps the one before: some points are computed twice.
   ProjectVector(d, lens, points, count - lanes, x_px, y_px, d_pixel_d_point);
 }
 

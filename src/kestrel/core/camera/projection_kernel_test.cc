@@ -14,8 +14,8 @@
 namespace kestrel {
 namespace {
 
-// Points at many angles to the axis, on it and behind, near and far; a number that fills no whole
-// vectors.
+// Points at many angles to the axis, on it and behind, near and far. Their number is not a multiple
+// of the vector length.
 std::vector<Eigen::Vector3d> TestPoints() {
   std::vector<Eigen::Vector3d> points{{0, 0, 2}, {0, 0, -2}, {0, 0, 0}, {1e-7, 0, 1}};
   for (int i = 0; i < 180; ++i) {
@@ -68,7 +68,7 @@ TEST_P(ProjectionKernelTest, AgreesWithTheModel) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Eigen::Vector3d point = points[i].cast<double>();
       const double angle = std::atan2(point.head<2>().norm(), point.z());
-      if (std::abs(angle - camera.max_angle()) < 1e-5) continue;  // either will do
+      if (std::abs(angle - camera.max_angle()) < 1e-5) continue;  // either result is right
       Eigen::Vector2d pixel;
       Eigen::Matrix<double, 2, 3> derivative;
       const ProjectionStatus status = camera.Project(point, &pixel, &derivative);

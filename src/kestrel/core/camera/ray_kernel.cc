@@ -21,7 +21,7 @@ struct Lookup {
   hn::Mask<Floats> in_table;
 };
 
-// T at the squared radius of (x, y), linear between the knots; the first knot outside of the table.
+// T at the squared radius of (x, y), linear between the knots; the first knot where it is outside.
 HWY_INLINE Lookup LookUp(const RayKernel& kernel, Vector x, Vector y) {
   const Floats d;
   const hn::RebindToSigned<Floats> di;
@@ -89,7 +89,7 @@ void ComputeRays(const RayKernel& kernel, const float* u_px, const float* v_px, 
   for (std::size_t i = 0; i + lanes <= count; i += lanes) {
     RaysOfOneVector(kernel, u_px + i, v_px + i, x + i, y + i, z + i);
   }
-  // The last vector overlaps the one before it: some points are computed twice.
+  // The last vector overlaps the one before: some points are computed twice.
   const std::size_t last = count - lanes;
   RaysOfOneVector(kernel, u_px + last, v_px + last, x + last, y + last, z + last);
 }

@@ -18,7 +18,7 @@ struct RayKernel {
   float cx_px, cy_px;
   float inverse_fx, inverse_fy;
   float p1, p2;     // tangential part
-  int corrections;  // how often the tangential part is taken away
+  int corrections;  // number of iterations that remove the tangential part
 };
 
 // Scalar twin of ComputeRays. Writes zeros for a pixel that is NaN or outside of the model.
@@ -54,7 +54,7 @@ inline void ComputeRay(const RayKernel& kernel, float u_px, float v_px, float* r
   }
 }
 
-// ComputeRay for 'count' pixels, with the best instructions of the machine at run time.
+// ComputeRay for 'count' pixels, with the best vector instructions, chosen at run time.
 void ComputeRays(const RayKernel& kernel, const float* u_px, const float* v_px, std::size_t count,
                  float* x, float* y, float* z);
 

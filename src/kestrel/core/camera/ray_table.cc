@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kCells = 4096;
 constexpr double kMaxTableAngle = 170.0 / 180.0 * std::numbers::pi;
-constexpr double kReach = 1.5;  // of the farthest corner's radius
+constexpr double kReach = 1.5;  // times the radius of the farthest corner
 constexpr double kCorrectionTolerancePx = 0.002;
 constexpr int kMaxCorrections = 8;
 
@@ -34,7 +34,7 @@ double CornerRadius(const CameraIntrinsics& camera) {
   return std::hypot(x / camera.fx_px, y / camera.fy_px);
 }
 
-// Distorted radius (in focal lengths) at which a camera without tangential part ends.
+// Distorted radius (in focal lengths) at which the model of a camera without tangential part ends.
 double ModelRadius(const CameraModel& radial) {
   const double angle = std::min(radial.max_angle() * (1 - 1e-12), kMaxTableAngle);
   Eigen::Vector2d pixel;
@@ -58,11 +58,11 @@ RayTable::RayTable(const CameraModel& camera) : table_(kCells + 2) {
   const CameraModel radial(WithoutTangentialPart(intrinsics));
   const double end_radius = std::min(ModelRadius(radial), kReach * CornerRadius(intrinsics));
   for (int i = 0; i <= kCells; ++i) {
-    // At the very centre the quotient has no value, but a limit.
+    // At the centre the quotient is undefined, but has a limit.
     const double radius = end_radius * std::max(std::sqrt(1.0 * i / kCells), 1e-6);
     table_[i] = static_cast<float>(HalfTangentOverRadius(radial, radius));
   }
-  table_[kCells + 1] = table_[kCells];  // read when rounding carries the last cell to its end
+  table_[kCells + 1] = table_[kCells];  // read when rounding moves the last cell to its end
 
   kernel_.cells_per_q = static_cast<float>(kCells / (end_radius * end_radius));
   kernel_.end_q = static_cast<float>(end_radius * end_radius);
@@ -80,8 +80,7 @@ RayTable::RayTable(const CameraModel& camera) : table_(kCells + 2) {
   }
 }
 
-// Largest difference to the exact inverse on a grid over the image, as an angle times the focal
-// length.
+// Largest difference from the exact inverse on a grid over the image: angle times focal length.
 double RayTable::MaxErrorPx(const CameraModel& camera) const {
   constexpr int kSamples = 24;
   double max_angle = 0;

@@ -11,34 +11,34 @@
 
 namespace kestrel {
 
-// Pixel to unit ray by a precomputed table: what replaces the undistorted pixels of the paper's
-// Algorithm 2, because a ray exists past 90 degrees and an undistorted pixel does not.
-// Immutable, thread-safe, copyable; Ray and Rays neither allocate nor throw.
+// Converts pixels to unit rays by a precomputed table. It replaces the undistorted pixels of the
+// paper's Algorithm 2, because rays exist past 90 degrees and undistorted pixels do not. Immutable,
+// thread-safe, copyable. Ray and Rays neither allocate nor throw.
 //
 // The table reaches to 1.5 times the distance of the image's farthest corner from the principal
 // point, and to 170 degrees from the axis. Inside of the image it is within 0.01 px of
-// CameraModel::Unproject, except in the last tenth of a pixel before the radius where a lens model
-// folds back: 0.02 px (docs/camera.md).
+// CameraModel::Unproject, except in the last tenth of a pixel before the radius at which a lens
+// model folds back: 0.02 px (docs/camera.md).
 class RayTable {
  public:
   explicit RayTable(const CameraModel& camera);
 
-  // Unit ray through a pixel; the zero vector where the lens model says nothing, where the table
-  // ends, and for NaN.
+  // Returns the unit ray through a pixel; the zero vector outside of the lens model, outside of the
+  // table, and for NaN.
   Eigen::Vector3f Ray(float u_px, float v_px) const {
     Eigen::Vector3f ray;
     ComputeRay(Kernel(), u_px, v_px, ray.data());
     return ray;
   }
 
-  // The same for 'count' pixels, vectorised. The arrays must not overlap.
+  // The same for 'count' pixels, vectorized. The arrays must not overlap.
   void Rays(const float* u_px, const float* v_px, std::size_t count, float* x, float* y,
             float* z) const {
     ComputeRays(Kernel(), u_px, v_px, count, x, y, z);
   }
 
  private:
-  // The kernel with its pointer to this object's table: a copy has a table of its own.
+  // Returns the kernel with a pointer to this object's table, because a copy has its own table.
   RayKernel Kernel() const {
     RayKernel kernel = kernel_;
     kernel.table = table_.data();

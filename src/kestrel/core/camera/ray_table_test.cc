@@ -23,7 +23,7 @@ class EveryRayTable : public ::testing::TestWithParam<TestCamera> {
 INSTANTIATE_TEST_SUITE_P(, EveryRayTable, ::testing::ValuesIn(TestCameras()),
                          [](const auto& info) { return info.param.name; });
 
-// Largest distance, in the image, between a pixel and where the table's ray through it projects,
+// Largest distance in the image between a pixel and the projection of the table's ray through it,
 // for angles in (low, high].
 double MaxErrorPx(const CameraModel& camera, const RayTable& table, double low, double high) {
   double max_error_px = 0;

@@ -35,7 +35,7 @@ inline CameraIntrinsics EurocCamera() {
           {-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05}};
 }
 
-// Parameters of every model: mostly of real cameras, and one lens of each kind that folds back.
+// Cameras with every model: mostly real ones, and one lens of each kind that folds back.
 inline std::vector<TestCamera> TestCameras() {
   using Model = DistortionModel;
   return {
@@ -83,7 +83,7 @@ inline Eigen::Vector3d RayAt(double angle, double azimuth) {
           std::cos(angle)};
 }
 
-// Angle (rad) between two unit vectors, exact for small angles as well.
+// Angle (rad) between two unit vectors, exact for small angles too.
 inline double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return 2 * std::atan2((a - b).norm(), (a + b).norm());
 }
