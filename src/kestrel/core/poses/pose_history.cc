@@ -21,8 +21,8 @@ RigidTransform Interpolate(const RigidTransform& from, const RigidTransform& to,
           from.translation + part * (to.translation - from.translation)};
 }
 
-// Standard deviation of what changes within 'ahead' at a rate and an acceleration that are not
-// known; the rate is already 'age' old.
+// Standard deviation of the change within 'ahead' due to the errors of a rate and an unknown
+// acceleration. The rate is 'age' old.
 double Growth(double rate_sigma, double acceleration, double ahead, double age) {
   return std::hypot(rate_sigma * ahead, acceleration * ahead * (0.5 * ahead + age));
 }
@@ -73,7 +73,7 @@ PoseStatus PoseHistory::Add(const PoseSample& sample) {
   return PoseStatus::kOk;
 }
 
-// Index of the first sample that is not before 'time', by bisection; size_ when all are.
+// Index of the first sample not before 'time', by bisection; size_ when there is none.
 std::size_t PoseHistory::FirstNotBefore(Time time) const {
   std::size_t begin = 0;
   for (std::size_t end = size_; begin < end;) {

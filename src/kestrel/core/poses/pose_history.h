@@ -13,26 +13,26 @@
 
 namespace kestrel {
 
-// How the body moves.
+// Motion of the body.
 struct BodyMotion {
   Eigen::Vector3d velocity_in_world{0, 0, 0};  // m/s
   Eigen::Vector3d rate_in_body{0, 0, 0};       // angular velocity, rad/s
 };
 
-// Where the body (FLU) was in the world (ENU) at an instant of the navigation's clock.
+// Pose of the body (FLU) in the world (ENU) at an instant of the navigation's clock.
 struct PoseSample {
   Time time;
   RigidTransform world_from_body;
-  std::optional<BodyMotion> motion = std::nullopt;  // where the navigation tells it
+  std::optional<BodyMotion> motion = std::nullopt;  // where the navigation reports it
 };
 
-// How the motion that a sample tells may change before the next one: what a pose ahead of the
-// samples costs. Standard deviations per axis.
+// Changes of the motion that no sample reports, which make a prediction beyond the samples
+// uncertain. Standard deviations per axis.
 struct UnmodelledMotion {
-  double acceleration_mps2 = 3;            // of a multicopter that holds its place in gusts
-  double angular_acceleration_radps2 = 5;  // more for small, agile ones
-  double velocity_sigma_mps = 0.1;         // of the velocity that is told
-  double rate_sigma_radps = 0.02;          // of the angular velocity that is told
+  double acceleration_mps2 = 3;            // of a multicopter that hovers in gusts
+  double angular_acceleration_radps2 = 5;  // higher for small, agile ones
+  double velocity_sigma_mps = 0.1;         // of the reported velocity
+  double rate_sigma_radps = 0.02;          // of the reported angular velocity
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -47,7 +47,7 @@ struct UnmodelledMotion {
   std::vector<std::string> Validate() const;
 };
 
-// Standard deviations per axis by which a pose is less sure than a sample.
+// Standard deviations per axis that a pose has in addition to those of a sample.
 struct PoseUncertainty {
   double position_m = 0;
   double attitude_rad = 0;
@@ -56,16 +56,16 @@ struct PoseUncertainty {
 struct PredictedPose {
   RigidTransform world_from_body;
   PoseUncertainty uncertainty;  // 0 between the samples
-  BodyMotion motion;            // at the newest sample; 0 where it is not known
+  BodyMotion motion;            // at the newest sample; 0 where it is unknown
 };
 
 enum class PoseStatus {
   kOk,
   kOutOfOrder,  // not later than the newest sample
-  kInvalid,     // not finite, or the rotation is no unit quaternion (to 1 %)
+  kInvalid,     // not finite, or the rotation is not a unit quaternion (to 1 %)
 };
 
-// Whether there is a pose for an instant, or why not.
+// Result of looking up the pose of an instant.
 enum class PoseLookup {
   kFound,
   kEmpty,      // there are no samples at all
@@ -77,34 +77,35 @@ enum class PoseLookup {
 // "found", "no poses", "too old", "too new", "gap", "predicted"
 const char* ToString(PoseLookup lookup);
 
-// The last poses of the UAV, in order of time, and where it was between them. Bounded: the oldest
-// sample makes room for the newest. Allocates at construction only; never throws afterwards.
+// The latest poses of the UAV, in order of time, with interpolation. Bounded: the newest sample
+// replaces the oldest. Allocates at construction only and never throws afterwards.
 class PoseHistory {
  public:
-  // Keeps up to 'capacity' samples (at least 1). Between two samples that are further apart than
-  // 'max_gap' there is no pose: the navigation was away, and a guess would pass for a measurement.
+  // Keeps up to 'capacity' samples (at least 1). Between two samples farther apart than 'max_gap'
+  // there is no pose: the navigation was interrupted, and a guess would be taken for a measurement.
   PoseHistory(std::size_t capacity, Duration max_gap);
 
-  // A sample that is refused leaves the history as it was.
+  // A rejected sample leaves the history unchanged.
   PoseStatus Add(const PoseSample& sample);
 
-  // Whether Lookup has an answer, or why not.
+  // Returns whether Lookup has a result, or why not.
   PoseLookup Check(Time time) const;
   bool Has(Time time) const { return Check(time) == PoseLookup::kFound; }
 
-  // 'world_from_body' at 'time': the sample itself, or between its neighbours the translation by
-  // straight line and the rotation by the shortest arc (slerp). Nothing outside of the samples.
+  // Returns 'world_from_body' at 'time': the sample itself, or an interpolation between its
+  // neighbours, linear for the translation and along the shortest arc (slerp) for the rotation.
+  // Nothing outside of the samples.
   std::optional<RigidTransform> Lookup(Time time) const;
 
-  // The same with less noise: the value at 'time' of the lines, of position and of rotation vector,
-  // that fit the samples up to 'half_window' before and after it best. In flight those after it are
-  // still to come, and the lines end there. Motion that bends within the window is flattened. As
-  // Lookup where fewer than four samples are around.
+  // The same with less noise: fits lines of position and of rotation vector to the samples up to
+  // 'half_window' before and after 'time', and returns their value at 'time'. In flight the samples
+  // after it have not arrived, and the lines end there. Curved motion within the window is
+  // flattened. Same as Lookup where fewer than four samples are near.
   std::optional<RigidTransform> Smooth(Time time, Duration half_window) const;
 
-  // As Lookup, and up to 'max_ahead' after the newest sample the pose that its motion leads to,
-  // with what 'unmodelled' may have changed meanwhile. Without a motion in the newest sample it is
-  // the mean one of the samples of the last 50 ms. Nothing when no motion is known.
+  // Same as Lookup, and up to 'max_ahead' after the newest sample it extrapolates the motion of
+  // that sample, with the uncertainty due to 'unmodelled'. When the newest sample has no motion, it
+  // uses the mean motion over the last 50 ms. Nothing when no motion is known.
   std::optional<PredictedPose> Predict(Time time, Duration max_ahead,
                                        const UnmodelledMotion& unmodelled) const;
 
@@ -115,7 +116,7 @@ class PoseHistory {
   const PoseSample& At(std::size_t i) const { return ring_[(first_ + i) % ring_.size()]; }
   std::size_t FirstNotBefore(Time time) const;
 
-  // How the body moves at the newest sample, as it was some time ago on the average.
+  // Mean motion at the newest sample, and the age of that mean.
   struct NewestMotion {
     BodyMotion motion;
     Duration age;

@@ -41,7 +41,7 @@ TEST(PoseHistory, InterpolatesLineAndShortestArc) {
   PoseHistory history(4, kMaxGap);
   PoseSample from = Sample(0, 10, -0.2);
   PoseSample to = Sample(1, 14, 0.6);
-  to.world_from_body.rotation.coeffs() *= -1;  // the same rotation, the other quaternion
+  to.world_from_body.rotation.coeffs() *= -1;  // the same rotation by the opposite quaternion
   history.Add(from);
   history.Add(to);
   const auto pose = history.Lookup(At(0.25));
@@ -114,7 +114,7 @@ TEST(PoseHistory, SmoothPosesHaveLessNoiseAndNoDelay) {
   PoseHistory history(2000, kMaxGap);
   double lookup = 0;
   double smooth = 0;
-  // 3 m/s and 0.5 rad/s at 100 Hz, each pose as it comes.
+  // 3 m/s and 0.5 rad/s at 100 Hz; each pose is used as it arrives.
   for (int i = 0; i < 1000; ++i) {
     const double t = 0.01 * i;
     history.Add(Sample(t, 3 * t + 0.01 * random.Normal(), 0.5 * t + 0.003 * random.Normal()));

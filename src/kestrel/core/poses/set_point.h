@@ -7,9 +7,9 @@
 
 namespace kestrel {
 
-// What an autopilot that is guided from outside is told, in the world (ENU): a velocity (m/s), the
-// acceleration (m/s^2) that will be needed to keep up with it, and where the nose points (rad from
-// east to north; nothing: where it points now).
+// Command for an autopilot under external guidance, in the world (ENU): a velocity (m/s), the
+// acceleration (m/s^2) needed to follow it, and the yaw of the nose (rad from east to north;
+// nothing: the current yaw).
 struct SetPoint {
   Eigen::Vector3d velocity{0, 0, 0};
   Eigen::Vector3d acceleration{0, 0, 0};
