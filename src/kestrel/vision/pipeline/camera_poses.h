@@ -11,7 +11,7 @@
 
 namespace kestrel {
 
-// How far beyond the newest pose the motion is predicted, and the error that this adds.
+// Longest prediction of a pose beyond the newest one, and the motion that may change meanwhile.
 struct PosePrediction {
   Duration max_ahead = Duration::zero();
   UnmodelledMotion unmodelled;
