@@ -15,8 +15,7 @@ struct CalibrationEvidence {
   // Where the view says nothing, the deviation is that of the prior on any calibration.
   double log_focal = 0;
   double log_focal_sigma = 0.25;
-  Eigen::Vector2d principal_px = Eigen::Vector2d::Zero();  // error of the calibrated principal
-                                                           // point
+  Eigen::Vector2d principal_px = Eigen::Vector2d::Zero();  // its error in the calibration
   // Squared Mahalanobis distance between these estimates and the calibration: 3 on average where
   // the calibration is right.
   double surprise = 0;

@@ -11,8 +11,7 @@ namespace {
 // All lengths in inner radii.
 constexpr double kTolerance = 0.05;     // distance of a point from its line
 constexpr double kMinLength = 0.25;     // length of a line
-constexpr double kMinSideLength = 0.5;  // total length of the lines along each side of an arm and
-                                        // its opposite
+constexpr double kMinSideLength = 0.5;  // total, along each side of both half arms
 
 // Fills workspace->segments with the straight pieces of all borders of the dark pixels.
 void CollectSegments(const RingInside& inside, CrossLinesWorkspace* workspace) {

@@ -14,8 +14,7 @@ namespace kestrel {
 namespace {
 
 constexpr int kBins = 36;       // bins of the histogram of directions, over a right angle
-constexpr double kNear = 0.15;  // inner radii; nearer to the centre the two lines cannot be told
-                                // apart
+constexpr double kNear = 0.15;  // inner radii; the two lines are not separate there
 
 // Line through the points of one arm and its opposite, by total least squares.
 struct ArmLine {

@@ -89,8 +89,7 @@ TEST(TestDarkArea, AnOpenSmallRingIsItsHull) {
 }
 
 TEST(OutlineInView, IsThatOfTheRingWithoutTheImageBorder) {
-  const Eigen::Vector2d center(85, 40);  // centre of a ring that the right side of the image cuts
-                                         // off
+  const Eigen::Vector2d center(85, 40);  // ring cut off on the right
   const BorderTracer tracer = TraceSmallFigure([&](double x, double y) {
     const double r = (Eigen::Vector2d(x, y) - center + Eigen::Vector2d(50, 50)).norm();
     return std::abs(r - 24) < 2;

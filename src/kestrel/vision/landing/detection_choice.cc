@@ -25,8 +25,7 @@ Eigen::Vector3d NormalOf(const PrintFinding& finding) {
 bool AreMirrorPoses(const PrintFinding& a, const PrintFinding& b) {
   constexpr double kSameCenterPx = 2;
   constexpr double kOtherNormal = 0.99;  // cosine between the normals
-  constexpr double kAlike = 4;  // difference in log odds; a clearly wrong pose bends the print out
-                                // of its place by more
+  constexpr double kAlike = 4;           // log odds; a clearly wrong pose differs by more
   return std::abs(a.log_odds - b.log_odds) < kAlike &&
          (a.center_px - b.center_px).norm() < kSameCenterPx &&
          NormalOf(a).dot(NormalOf(b)) < kOtherNormal;

@@ -15,8 +15,7 @@ namespace kestrel {
 namespace {
 
 constexpr int kSide = 46;  // places along a side of the square; a stroke is three places wide
-constexpr double kOffAxis = 0.15;  // distance of places from the middle of a stroke, share of its
-                                   // width
+constexpr double kOffAxis = 0.15;  // from the middle of a stroke, share of its width
 // Margins along the edges of the print, as far as blur reaches; shares of a stroke's width.
 constexpr double kBesideRing = 0.35;
 constexpr double kBesideArm = 0.3;
@@ -38,9 +37,8 @@ struct Ramp {
   }
 };
 constexpr Ramp kIsInk{0.2f, 0.6f}, kIsDark{0.35f, 0.85f}, kIsInkOnly{0.7f, 0.95f};
-constexpr float kBeyondWhite = 0.15f;  // share of the contrast above lit white, where a highlight
-                                       // hides ink
-constexpr float kLeastContrast = 2;    // gray values
+constexpr float kBeyondWhite = 0.15f;     // above lit white, share of the contrast
+constexpr float kLeastContrast = 2;       // gray values
 constexpr float kLeastOfContrast = 0.25;  // share of the whole print's contrast, in any direction
 constexpr double kEnoughSeen = 0.25;      // least share of places in view by which a part is judged
 

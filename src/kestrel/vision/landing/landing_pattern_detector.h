@@ -55,8 +55,7 @@ struct LandingHint {
 };
 
 struct LandingDetection {
-  Eigen::Vector2d center_px;  // image of the point where the arms meet; may lie outside of the
-                              // image
+  Eigen::Vector2d center_px;           // where the arms meet; may be out of view
   RigidTransform camera_from_pattern;  // pose of the pattern (frame P) in the camera
   // Covariance of the pose error: rows 0 to 2 translation in the camera frame (m^2), 3 to 5
   // rotation vector in the camera frame (rad^2).
@@ -83,8 +82,7 @@ struct LandingDetection {
 
 struct LandingReport {
   std::optional<LandingDetection> detection;
-  LandingStage reached = LandingStage::kBinarize;  // kFound, or the stage at which the best
-                                                   // candidate failed
+  LandingStage reached = LandingStage::kBinarize;  // kFound, or where the best candidate fell
   std::string_view reason;                         // why it failed, static text; empty when found
   std::array<std::int32_t, kLandingStageCount> candidates{};  // number that entered each stage
   std::array<std::int64_t, kLandingStageCount> stage_ns{};    // time spent in each stage

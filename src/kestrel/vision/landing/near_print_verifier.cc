@@ -12,8 +12,7 @@ namespace {
 
 constexpr double kMinRingContrast = 5;    // gray values
 constexpr double kMinInsideContrast = 6;  // gray values
-constexpr double kLinesRingPx = 150;      // diameter from which on lines are tried first (paper,
-                                          // section 2.4)
+constexpr double kLinesRingPx = 150;      // above that, lines are tried first (section 2.4)
 // Least agreement of a pose that is located. A pose beside the print may miss an arm, and the edges
 // may still bring it into place.
 constexpr double kWorthLocating = 0.4;

@@ -47,8 +47,7 @@ constexpr double kFarScalePx = 1000;  // scale of the offsets in the first step
 constexpr double kLeastScalePx = 0.25;
 constexpr double kSettledPx = 0.08;      // outlines that move by less have settled
 constexpr double kMaxCorrelation = 0.9;  // largest correlation of neighbouring residuals
-constexpr double kBlurSpreadPx2 = 0.3;   // spread of the blur's square over lenses: 0.45 to 0.9 px
-                                         // of blur
+constexpr double kBlurSpreadPx2 = 0.3;   // spread over lenses (0.45 to 0.9 px), squared
 // Bright white spreads over the black in overexposed images, and ink runs. Least spread that is
 // accepted, in pixels and in its standard deviations. A smaller one may be noise, or the effect of
 // a narrow stroke's edges on each other.
@@ -70,16 +69,14 @@ constexpr std::size_t kCoarseStride = 3;  // the first measurement uses every kC
 constexpr double kWholeRing = 0.75;  // least share of the places with an edge, for a whole ring
 constexpr double kRingSettledPx = 0.2;
 constexpr double kMaxRingScatterPx = 1.5;  // standard deviation, after two iterations
-constexpr double kGathering = 0.6;  // ratio of scatter to that of the step before, below which
-                                    // edges still gather
+constexpr double kGathering = 0.6;  // edges still gather when a step scales their scatter by less
 
 }  // namespace
 
 // Predicts where the outlines are in the image.
 struct PatternLocator::State {
   RigidTransform pose;
-  double spread_px = 0;  // spread of the black over the white: offset of every edge from its
-                         // outline
+  double spread_px = 0;  // of the black over the white, at every edge
   double log_focal = 0;
   Eigen::Vector2d principal_px = Eigen::Vector2d::Zero();
 

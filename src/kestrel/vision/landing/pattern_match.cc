@@ -23,8 +23,7 @@ constexpr std::array<double, kQuadrantTurns> kQuadrantAngles{27, 33, 39, 45, 51,
 constexpr std::array<double, 3> kQuadrantRadii{0.45, 0.6, 0.75};
 constexpr float kUnseen = -1e9f;
 constexpr double kInsideRadius = 0.65;  // radius of the places inside of the ring, inner radii
-constexpr double kLeastInside = 0.2;    // least contrast of the white inside, share of the contrast
-                                        // of ring and white
+constexpr double kLeastInside = 0.2;    // least contrast there, share of that of the ring
 // A contrast in a shadow counts when its share of the brightness is at least kRatioShare times the
 // print's, or when its brighter side has at least kShareInLight of the print's contrast. It must
 // also exceed noise: kLeastInShadow gray values and kShareInShadow of the print's contrast.

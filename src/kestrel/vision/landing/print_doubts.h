@@ -34,8 +34,7 @@ enum class PrintDoubt {
   // Fit of the print as a whole.
   kFaintArm,      // share of the contrast that the worst arm lacks
   kBrokenRing,    // share of the contrast that the ring lacks, mean without the worst quarter
-  kFrameCorners,  // how much darker it is beyond the ends of the arms than between them, shares of
-                  // the contrast
+  kFrameCorners,  // darkness beyond the arms' ends minus that between them, in contrasts
   kOtherFigure,   // logarithm of (1 - correlation inside of the ring)
   kInside,        // residuals inside of the ring minus those on it, shares of the contrast
   kShadows,       // 1 where shadows were removed first, else 0

@@ -19,8 +19,7 @@ using Floats = hn::CappedTag<float, 16>;
 using Vector = hn::Vec<Floats>;
 
 constexpr float kLeastEdgeStep = 2;    // least rise of an edge, gray values per pixel
-constexpr float kStepInShadow = 0.3f;  // least rise in a shadow, share of the gray value on its
-                                       // bright side
+constexpr float kStepInShadow = 0.3f;  // in a shadow: share of the gray value of its white
 constexpr float kLeastShare = 0.12f;   // least rise of the neighbours, share of the steepest rise
 
 HWY_INLINE Vector Of(float value) { return hn::Set(Floats(), value); }

@@ -33,8 +33,7 @@ struct PrintEdges {
   std::array<PrintEdge, PrintOutline::kMaxPlaces> edges;
   std::size_t count = 0;
   int in_image = 0;                                     // places whose surroundings are in view
-  std::array<int, PrintOutline::kParts> part_places{};  // by part: places looked for, and those in
-                                                        // view
+  std::array<int, PrintOutline::kParts> part_places{};  // by part: looked for
   std::array<int, PrintOutline::kParts> part_in_image{};
   double spread_px = 0;  // spread of the black over the white: common offset of all edges
 

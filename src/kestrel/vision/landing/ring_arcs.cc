@@ -18,8 +18,7 @@ constexpr std::size_t kStride = 3;        // border points per smoothed point
 constexpr std::size_t kChord = 2;         // smoothed points over which a direction is taken
 constexpr double kCorner = 45 * kDegree;  // turn from one direction to the next that makes a corner
 constexpr double kSharpness = 3;          // if it is so many times the turn before and after it
-constexpr std::size_t kApart = 3;  // smoothed points between a corner and the turns it is compared
-                                   // with
+constexpr std::size_t kApart = 3;         // smoothed points from a corner to the turns beside it
 constexpr double kAgainst = -14 * kDegree;  // turn against the bend that ends an arc
 constexpr double kMinTurning = 45 * kDegree;
 constexpr std::size_t kMinPoints = 6;

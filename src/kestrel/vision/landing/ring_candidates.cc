@@ -21,8 +21,7 @@ constexpr std::size_t kMaxCollected = 512;
 constexpr std::size_t kMaxOutlines = 4;
 constexpr int kMaxCutFits = 16;
 constexpr std::size_t kMaxArcBorders = 8;
-constexpr int kMaxHullExtent = 62;  // px, largest width and height of a border that need not be
-                                    // convex
+constexpr int kMaxHullExtent = 62;       // px, of borders that need not be convex
 constexpr double kMinSmallContrast = 5;  // gray values
 constexpr std::array<double, 1> kOneScale{1.0};
 // An outline that has grown together with something beside it is larger than the ring.

@@ -10,7 +10,7 @@ namespace kestrel {
 // of ring sizes.
 struct SearchPass {
   int image_level;          // the image at 1 / 2^level
-  int tile_level;           // tiles of 2^level pixels make the threshold's box
+  int tile_level;           // tiles of 2^tile_level pixels make the threshold's box
   double min_ring_px;       // minor axis, full resolution
   double max_ring_px;       // major axis, full resolution
   bool black = false;       // dark is only what is black, not what lies in a shadow

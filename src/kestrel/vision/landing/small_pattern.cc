@@ -29,8 +29,7 @@ constexpr double kLeastNoise = 0.05;
 // A fit that correlates so little after so many steps is given up.
 constexpr int kLateStart = 3;
 constexpr double kMinLateCorrelation = 0.6;
-constexpr double kMaxHighlight = 0.25;  // largest share of an arm's surroundings in a highlight
-                                        // that leaves the arm visible
+constexpr double kMaxHighlight = 0.25;  // largest share around a visible arm
 constexpr std::size_t kMinPixels = 30;
 constexpr int kMaxSide = 256;  // largest side of the box around the print, pixels
 
@@ -125,8 +124,7 @@ SmallPatternFitter::SmallPatternFitter(const CameraModel& camera, const RayTable
 
 SmallPatternWorkspace::SmallPatternWorkspace() {
   constexpr std::size_t kVector = 64;                                 // at most, floats
-  constexpr std::size_t kMost = kEnoughToTellInk + 2 * kMaxSide + 1;  // pixels of a box and its
-                                                                      // border
+  constexpr std::size_t kMost = kEnoughToTellInk + 2 * kMaxSide + 1;  // of a box and its border
   const auto make_room = [](auto&... columns) { (columns.resize(kMost + kVector), ...); };
   for (auto* rays : {&pixels.ray, &pixels.ray_by_u, &pixels.ray_by_v}) {
     for (Column& column : *rays) make_room(column);

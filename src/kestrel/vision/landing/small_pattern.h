@@ -98,10 +98,8 @@ class SmallPatternFitter {
     // outliers bounded; share of the contrast).
     double inside_residual;
     double ring_residual;
-    double frame_corners;  // darkness beyond the ends of the arms minus that between them, share of
-                           // the contrast
-    double cross_correlation;  // of image and print inside of the ring, corrected for noise; low
-                               // for a blot
+    double frame_corners;  // darkness beyond the arms' ends minus that between them, in contrasts
+    double cross_correlation;  // inside of the ring, corrected for noise; low for a blot
   };
 
   struct Start {

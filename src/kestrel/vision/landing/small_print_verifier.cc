@@ -21,10 +21,8 @@ constexpr double kSmallest = 0.7;  // times the smallest ring searched for: outl
 constexpr double kMinInsideContrast = 6;         // gray values
 constexpr double kMinCorrelation = 0.35;         // of a start with the image
 constexpr double kSureCorrelation = 0.6;         // of a start by the quadrants
-constexpr double kMinCorrelationOfEither = 0.7;  // least correlation of a fit for which the other
-                                                 // mirror pose is tested
-constexpr double kSameStart = 0.05;  // distance of the centres of two rings that count as the same,
-                                     // share of the shorter axis
+constexpr double kMinCorrelationOfEither = 0.7;  // else the mirror pose is not tested
+constexpr double kSameStart = 0.05;  // distance of centres of one ring, share of its shorter axis
 constexpr double kWhole = 0.75;  // least share of the print in view for a print that is not partial
 // Explained share of the variance below which shadows are searched for even on a print that is
 // found in even light: they bend the pose.
