@@ -11,8 +11,7 @@ namespace kestrel {
 namespace {
 
 constexpr double kHalf = 0.02;
-constexpr double kShrinking = 1 / (1 + 2 * kHalf);  // of the lower face; the cuboid is as high as
-                                                    // wide
+constexpr double kShrinking = 1 / (1 + 2 * kHalf);  // of the lower face of a cube
 const Eigen::Vector2d kTopCenter(0.5, -0.3);
 
 std::vector<Eigen::Vector2d> UpperFace(double yaw) {

@@ -24,8 +24,7 @@ struct ObjectClass {
   double size_m = 0.2;      // m: diameter, edge of the upper face, or length of the bar
   double width_m = 0;       // m, of a bar
   double height_m = 0;      // m, upper face above the ground
-  double max_height_m = 0;  // m, larger where the same object may also stand higher (on a moving
-                            // robot)
+  double max_height_m = 0;  // m, more where it may also stand on a moving robot
   double score = 1;
   bool may_move = false;
 };
