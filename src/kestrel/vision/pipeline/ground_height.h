@@ -51,9 +51,8 @@ class GroundHeightEstimator {
 
   std::vector<GroundHeight> sightings_;  // the latest, oldest first
   GroundHeight told_;
-  std::optional<GroundHeight> majority_;  // mean of most sightings, where it contradicts the told
-                                          // height
-  int contradicting_frames_ = 0;          // in a row
+  std::optional<GroundHeight> majority_;       // mean of most, where it contradicts
+  int contradicting_frames_ = 0;               // in a row
   std::optional<GroundHeight> contradiction_;  // 'majority_' once it has held for enough frames
 };
 
