@@ -29,8 +29,7 @@ bool IsValid(const TargetMeasurement& measurement) {
 }
 
 TurnState WithYaw(const TurnState& state, const TargetMeasurement& measurement) {
-  constexpr double kGate = 16;  // four standard deviations; beyond that, another line was taken for
-                                // the arm
+  constexpr double kGate = 16;  // four standard deviations; beyond, the arm was mistaken
   if (!measurement.yaw) return state;
   return UpdateByYaw(state, *measurement.yaw, measurement.yaw_variance, kGate);
 }

@@ -44,8 +44,7 @@ struct TurnNoise {
   double acceleration;  // horizontal, m/s^2 per root of Hz
   double climb;         // vertical acceleration, m/s^2 per root of Hz
   double turn;          // second derivative of the turn rate, rad/s^3 per root of Hz
-  double turn_time_s;  // time constant with which an undisturbed change of the turn rate decays (to
-                       // 1/e)
+  double turn_time_s;   // decay of an undisturbed change of the turn rate (to 1/e)
   SwayMotion sway;
 };
 
