@@ -214,8 +214,7 @@ class BorderWalks {
 // other walk. A closed walk on a grid has an even number of steps, so both meet after half of them.
 // The backward walk fills the room from its end.
 std::size_t BorderWalks::WalkAround(int x, int y, int max_extent, std::span<GridPoint> room) const {
-  const WalkedImages images = images_;  // a copy, so that the compiler knows that marks do not
-                                        // change it
+  const WalkedImages images = images_;  // a copy, which marks cannot change
   const std::uint64_t start = Place(x, y, stride_);
   Walk forth{.place = start, .step = Place(1, 0, stride_), .direction = kRight};
   Walk back{.place = start, .step = 0, .direction = kLeft};

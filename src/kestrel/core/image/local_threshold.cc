@@ -112,7 +112,7 @@ void CombineRows(const std::uint8_t* HWY_RESTRICT a, const std::uint8_t* HWY_RES
   }
 }
 
-// Sums of three values over three rows, and the mean of nine from three such sums.
+// Column sums over three rows, and the mean of nine values from three neighbouring sums.
 void SumRows(const std::uint8_t* HWY_RESTRICT a, const std::uint8_t* HWY_RESTRICT b,
              const std::uint8_t* HWY_RESTRICT c, std::size_t count,
              std::uint16_t* HWY_RESTRICT out) {
