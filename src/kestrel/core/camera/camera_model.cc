@@ -386,13 +386,11 @@ ProjectionStatus CameraModel::ProjectEquidistant(const Eigen::Vector3d& point,
 
   const Slope radius = EquidistantRadius(k_, theta);
   const bool on_axis = rho == 0;
-  const double across = on_axis ? 1 / z : radius.value / rho;  // distorted radius per radius,
-                                                               // around the axis
+  const double across = on_axis ? 1 / z : radius.value / rho;  // distorted radius over radius
   *pixel << intrinsics_.fx_px * across * point.x() + intrinsics_.cx_px,
       intrinsics_.fy_px * across * point.y() + intrinsics_.cy_px;
   if (jacobian != nullptr) {
-    const double along = radius.derivative * z / squared_norm;  // derivative of the distorted
-                                                                // radius, away from the axis
+    const double along = radius.derivative * z / squared_norm;  // derivative along the radius
     const double cosine = on_axis ? 1 : point.x() / rho;
     const double sine = on_axis ? 0 : point.y() / rho;
     const double d_depth = -radius.derivative * rho / squared_norm;
