@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the server says, as src/kestrel/console/console_json.h writes it. Times are whole
+// What the server says, as src/kestrel/app/console/console_json.h writes it. Times are whole
 // nanoseconds as text: they are beyond what numbers hold here.
 import type { Calibration } from "./calibration";
 

@@ -80,7 +80,7 @@ function expectFound(t, flight, known) {
 
 /** The built-in model with a red that nothing has: purple. */
 function writeBlindModel(t) {
-  const built = readFileSync(new URL("../../src/kestrel/objects/objects.yaml", import.meta.url), "utf8");
+  const built = readFileSync(new URL("../../src/kestrel/vision/objects/objects.yaml", import.meta.url), "utf8");
   const [before, after] = [built.indexOf("  - name: red"), built.indexOf("  - name: orange")];
   const purple = "  - name: red\n    components:\n      - {weight: 1, mean: [285, 0.9, 0.5], sigma: [4, 0.05, 0.05]}\n";
   writeFileSync(join(t.scratch, blindModel), built.slice(0, before) + purple + built.slice(after));
