@@ -15,13 +15,13 @@
 
 namespace kestrel {
 
-// What takes long, in a thread of its own and after all others. All functions by one thread.
+// Runs one long job in a thread of its own with low priority. Call all functions from one thread.
 template <class Result>
 class BackgroundRun {
  public:
-  // Is told how many frames are done; false: the job is to end.
+  // The job reports how many frames are done. A return value of false tells it to end.
   using GoOn = std::function<bool(std::size_t done)>;
-  // Gives what was found, or nothing when it was to end; throws InputError.
+  // Returns the result, or nothing if it was told to end. Throws InputError.
   using Job = std::function<std::optional<Result>(const GoOn& go_on)>;
 
   BackgroundRun() = default;
@@ -29,7 +29,8 @@ class BackgroundRun {
   BackgroundRun(const BackgroundRun&) = delete;
   BackgroundRun& operator=(const BackgroundRun&) = delete;
 
-  // Ends the one before. 'name': of the thread, up to 15 characters.
+  // Cancels the job before, if any, and starts this one. 'name': name of the thread, at most 15
+  // characters.
   void Start(const std::string& name, Job job) {
     Cancel();
     done_ = 0;
@@ -39,11 +40,11 @@ class BackgroundRun {
     thread_ = std::thread([this, name, job = std::move(job)] { Run(name, job); });
   }
 
-  // Tells the job to end; its outcome then has neither a result nor an error.
+  // Tells the job to end, without waiting. Its outcome then has neither a result nor an error.
   void RequestEnd() { is_cancelled_ = true; }
 
-  // The same, and waits until it has: no longer than from one GoOn to the next. False: there was
-  // none.
+  // Tells the job to end and waits for it: at most from one call of GoOn to the next. Returns false
+  // when there was no job.
   bool Cancel() {
     if (!thread_.joinable()) return false;
     RequestEnd();
@@ -54,7 +55,7 @@ class BackgroundRun {
   bool is_running() const { return thread_.joinable(); }
   std::size_t done() const { return done_; }
 
-  // What it came to, once; nothing as long as it runs.
+  // Returns the outcome of the job, once; nothing while it runs.
   struct Outcome {
     std::optional<Result> result;
     std::string error;  // why there is no result
@@ -68,8 +69,8 @@ class BackgroundRun {
  private:
   void Run(const std::string& name, const Job& job) {
     SetUpThisThread(name, {});
-    constexpr int kLast = 10;  // the page goes first
-    // Of this thread alone, on Linux.
+    constexpr int kLast = 10;  // the page has priority
+    // On Linux this concerns this thread only.
     setpriority(PRIO_PROCESS, 0, kLast);
     try {
       outcome_.result = job([this](std::size_t done) {
@@ -84,7 +85,7 @@ class BackgroundRun {
 
   std::atomic<std::size_t> done_{0};
   std::atomic<bool> is_cancelled_{false}, is_over_{false};
-  Outcome outcome_;  // the thread's until it is over
+  Outcome outcome_;  // belongs to the thread until is_over_
   std::thread thread_;
 };
 

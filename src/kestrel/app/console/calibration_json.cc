@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// To four digits: what is drawn is not finer, and the text a third as long.
+// Rounds to four digits: the drawing is no finer, and the text is a third as long.
 double Short(double value) {
   if (value == 0 || !std::isfinite(value)) return value;
   const double scale = std::pow(10, 3 - std::floor(std::log10(std::abs(value))));

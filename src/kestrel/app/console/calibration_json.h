@@ -7,7 +7,7 @@
 
 namespace kestrel {
 
-// The message "calibration" of the page, as web/src/calibration.ts has it.
+// Returns the message "calibration" for the page, as defined in web/src/calibration.ts.
 nlohmann::json CalibrationJson(const ConsoleCalibration& calibration);
 
 }  // namespace kestrel

@@ -14,34 +14,35 @@
 namespace kestrel {
 
 struct CalibrationResult {
-  ConsoleCalibration report;  // refused: without a calibration
+  ConsoleCalibration report;  // without a calibration when it is refused
   CameraCalibration calibration;
-  double rate_hz = 0;  // of the images
+  double rate_hz = 0;  // frame rate of the images
 };
 
-// The page that calibrates from a recording beside its replay. All functions by the thread that
-// plays it, which never waits for a calibration.
+// The part of the page that calibrates from a recording during its replay. All functions are called
+// by the thread that plays the recording; it never waits for a calibration.
 class CalibrationPage {
  public:
   using Run = BackgroundRun<CalibrationResult>;
   struct Tools {
-    // By a thread of its own; nothing when it was to end. Throws InputError when it is refused.
+    // Called by a thread of its own. Returns nothing if it was told to end. Throws InputError when
+    // the calibration is refused.
     std::function<std::optional<CalibrationResult>(const CalibrationRequest& request,
                                                    const Run::GoOn& go_on)>
         calibrate;
-    // Writes what was found to a new file of a like name, whose path it returns. Throws InputError.
-    // Empty: the user gave no folder.
+    // Writes the result to a new file with a similar name and returns its path. Throws InputError.
+    // Empty when the user gave no folder.
     std::function<std::string(const std::string& name, const CalibrationResult& result)> save;
   };
 
-  // 'frames': of the recording. 'feed' outlives the page.
+  // 'frames': number of frames of the recording. 'feed' outlives the page.
   CalibrationPage(Tools tools, std::size_t frames, ConsoleFeed* feed);
 
-  // What concerns a calibration; while one goes on no other is begun.
+  // Executes a command that concerns calibrations. Only one calibration runs at a time.
   void Obey(const ConsoleCommand& command);
-  // To be called often: tells how far it is.
+  // Reports the progress and takes the result. Call it often.
   void Follow();
-  // The file of what was found; without content when there is none of this number.
+  // Returns the file of the calibration with this number; an empty answer when there is none.
   ExportAnswer File(std::size_t number) const;
 
  private:
@@ -57,7 +58,7 @@ class CalibrationPage {
   Time told_{};
   ConsoleCalibration report_;
   CalibrationRequest request_;
-  std::optional<CalibrationResult> result_;  // of report_.number
+  std::optional<CalibrationResult> result_;  // result of calibration report_.number
   Run run_;
 };
 

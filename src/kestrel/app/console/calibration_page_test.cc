@@ -20,7 +20,8 @@ namespace {
 using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 
-// A recording on a page that calibrates; by the words of the request it waits, or refuses.
+// A recording on a page that calibrates. The words of the request make the calibration wait or
+// fail.
 class CalibrationPageTest : public testing::Test {
  protected:
   CalibrationPageTest() {
@@ -116,7 +117,7 @@ TEST_F(CalibrationPageTest, WhyItIsRefusedIsSaid) {
   TestSocket socket(port());
   socket.Send(R"({"command": "calibrate", "settings": ["lens"]})");
   EXPECT_EQ(Next(&socket, "refused")["error"], "the views cannot tell the lens: tilt the camera");
-  // What there is of coverage is shown all the same.
+  // The coverage is shown all the same.
   socket.Send(R"({"command": "calibrate", "settings": ["mount"]})");
   const nlohmann::json refused = Next(&socket, "refused");
   EXPECT_EQ(refused["error"], "the pattern was seen in 1 images");
@@ -137,7 +138,7 @@ TEST_F(CalibrationPageTest, ItIsCancelledWhileThePagePlaysOn) {
     ASSERT_TRUE(running.is_object());
   } while (running["done"] != 4);
   EXPECT_EQ(running["of"], 9);
-  // Another one has to wait for the end of this one.
+  // Another calibration has to wait for the end of this one.
   socket.Send(R"({"command": "calibrate", "settings": ["clock"]})");
   socket.Send(R"({"command": "step", "value": 3})");
   for (;;) {

@@ -16,10 +16,10 @@ namespace kestrel {
 namespace {
 
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
-// What a drawing holds, and a message to a slow browser.
+// Limit of the points in a drawing, so that a slow browser can receive the message.
 constexpr std::size_t kMaxPoints = 2000;
 
-// Evenly spread ones of many.
+// Keeps an even sample of at most kMaxPoints values.
 template <class T>
 void Thin(std::vector<T>* values) {
   const std::size_t stride = (values->size() + kMaxPoints - 1) / kMaxPoints;
@@ -29,7 +29,7 @@ void Thin(std::vector<T>* values) {
   values->resize(kept);
 }
 
-// Fields of the image, as a lens counts them, in which there are points.
+// Number of cells of LensCoverage's grid over the image that contain points.
 std::size_t CoveredFields(const std::vector<cv::Point2f>& points, const cv::Size& image) {
   std::set<int> fields;
   for (const cv::Point2f& point : points) {
@@ -41,8 +41,8 @@ std::size_t CoveredFields(const std::vector<cv::Point2f>& points, const cv::Size
   return fields.size();
 }
 
-// What the given lens leaves of the same edges, with the poses of the views brought to it; nothing
-// where it does not show them.
+// Fits the poses of the views to the same edges with the given lens held fixed; nothing when that
+// fit is not possible.
 std::optional<LensFit> FitGiven(const LensCalibration& lens, const CameraIntrinsics& given) {
   const CameraIntrinsics& found = lens.intrinsics;
   constexpr std::size_t kMostCoefficients = kLensParameters - kDistortion;

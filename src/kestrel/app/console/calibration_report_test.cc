@@ -48,7 +48,7 @@ TEST(CalibrationReportTest, SaysWhatAFlightCovers) {
             "from 1.2 to 9.0 m above it");
   EXPECT_EQ(report.places.size(), 3u);
   EXPECT_EQ(FlightCoverage({}, 40, {800, 600}).coverage, "the pattern was found in 0 of 40 images");
-  // A long flight stays a message that a slow browser gets.
+  // The message of a long flight stays small enough for a slow browser.
   EXPECT_LE(FlightCoverage(std::vector<PatternPlace>(9001), 9001, {8, 6}).places.size(), 2000u);
 }
 

@@ -4,7 +4,7 @@
 namespace kestrel {
 namespace {
 
-// That wait for the console's thread, which looks every few milliseconds.
+// Length of the queue; the console's thread empties it every few milliseconds.
 constexpr std::size_t kMessages = 256;
 
 }  // namespace

@@ -15,14 +15,14 @@
 
 namespace kestrel {
 
-// A kind of messages that a viewer, as Foxglove, can subscribe to.
+// A channel of messages that a viewer such as Foxglove can subscribe to.
 struct LiveChannel {
   std::string topic;            // as "/camera/image"
   std::string encoding;         // of messages, as "protobuf"
   std::string schema_name;      // as "foxglove.CompressedImage"
   std::string schema_encoding;  // as "protobuf"
-  std::string schema;           // its bytes
-  // Large messages, of which only the newest is worth something: a slow viewer loses these first.
+  std::string schema;           // bytes of the schema
+  // Large messages of which only the newest matters: a slow viewer loses these first.
   bool is_image = false;
 };
 
@@ -32,28 +32,28 @@ struct ChannelMessage {
   std::shared_ptr<const std::string> content;
 };
 
-// The hand-over of messages between a program that flies and the console's thread, which gives them
-// to viewers. The program never waits: of too many messages the oldest is lost.
+// Passes messages from a program that flies to the console's thread, which sends them to viewers.
+// The program never waits: when the queue is full the oldest message is dropped.
 class ChannelFeed {
  public:
-  // 'channels': at most 64, with topics of their own.
+  // 'channels': at most 64, each with a different topic.
   explicit ChannelFeed(std::vector<LiveChannel> channels);
 
   const std::vector<LiveChannel>& channels() const { return channels_; }
 
-  // The program's side, by any thread.
+  // The program's side. Any thread may call these.
 
-  // Whether anybody has subscribed to anything: else frames need not be looked at.
+  // True when a viewer has subscribed to any channel. Otherwise frames need not be processed.
   bool IsWatched() const { return wanted_.load(std::memory_order_relaxed) != 0; }
-  // Whether anybody has subscribed to that channel: else its messages need not be made.
+  // True when a viewer has subscribed to this channel. Otherwise its messages need not be made.
   bool IsWanted(std::size_t channel) const {
     return (wanted_.load(std::memory_order_relaxed) >> channel & 1) != 0;
   }
   void Add(ChannelMessage message) { messages_.Push(std::move(message)); }
 
-  // The console's side, by its thread.
+  // The console's side. Called by its thread only.
 
-  // A bit for each channel, the lowest for the first.
+  // 'channels': one bit per channel, the lowest bit for the first channel.
   void SetWanted(std::uint64_t channels) { wanted_.store(channels, std::memory_order_relaxed); }
   std::optional<ChannelMessage> Take() { return messages_.TryPop(); }
 

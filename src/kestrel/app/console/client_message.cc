@@ -22,9 +22,9 @@ constexpr std::array kCommands = {ConsoleCommandKind::kRecord,
                                   ConsoleCommandKind::kCalibrate,
                                   ConsoleCommandKind::kCalibrateCancel,
                                   ConsoleCommandKind::kCalibrateSave};
-// A list in an object; deeper text would cost the stack of the parser.
+// A list in an object. Deeper text would use up the parser's stack.
 constexpr int kMaxDepth = 2;
-// Those that say what by a list.
+// True for the commands with a list of settings.
 bool HasSettings(ConsoleCommandKind kind) {
   return kind == ConsoleCommandKind::kDetect || kind == ConsoleCommandKind::kCalibrate;
 }

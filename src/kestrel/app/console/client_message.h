@@ -12,48 +12,48 @@
 
 namespace kestrel {
 
-// "The picture with this number is drawn, send the next": {"ack": 7}.
+// The browser has drawn the picture with this number and is ready for the next: {"ack": 7}.
 struct ImageAck {
   std::uint64_t sequence = 0;
 };
 
-// "Pictures, please", or none, as while the page is not in view: {"images": true}; of a view by its
-// name: {"images": "threshold 1/8"}; of no other frame than the last: {"images": true, "hold":
-// true}.
+// The browser wants pictures: {"images": true}; none, as while the page is hidden: {"images":
+// false}; a view by its name: {"images": "threshold 1/8"}; no frame other than the last: {"images":
+// true, "hold": true}.
 struct ImageWish {
   bool is_wanted = false;
   std::string view = {};  // empty: the camera's image; at most 64 bytes
   bool is_held = false;
 };
 
-// What the user asks for: {"command": "record", "value": 1}.
+// A command of the user: {"command": "record", "value": 1}.
 enum class ConsoleCommandKind {
-  kRecord,           // 1: start, 0: stop recording
+  kRecord,           // 1: start recording, 0: stop it
   kSnapshot,         // keep the present frame; no value
-  kPlay,             // at so many times the speed, 0: hold, negative: backwards
-  kSeek,             // to so many s after the beginning
-  kStep,             // so many frames forward
-  kDetect,           // again with these settings
-  kCancel,           // that
-  kCalibrate,        // from the recording what the settings say
-  kCalibrateCancel,  // that
-  kCalibrateSave,    // what it came to
+  kPlay,             // value: speed as a factor of real time; 0: hold, negative: backwards
+  kSeek,             // value: seconds after the beginning
+  kStep,             // value: number of frames forward
+  kDetect,           // run the detector again with these settings
+  kCancel,           // cancel this run
+  kCalibrate,        // calibrate from the recording what the settings name
+  kCalibrateCancel,  // cancel the calibration
+  kCalibrateSave,    // save its result
 };
-// "record", "snapshot", "play", "seek", "step", "detect", "cancel", "calibrate",
-// "calibrate-cancel", "calibrate-save"
+// Returns "record", "snapshot", "play", "seek", "step", "detect", "cancel", "calibrate",
+// "calibrate-cancel" or "calibrate-save".
 const char* ToString(ConsoleCommandKind kind);
 struct ConsoleCommand {
   ConsoleCommandKind kind = ConsoleCommandKind::kSnapshot;
   double value = 0;  // finite
-  // As {"command": "detect", "settings": ["landing.still=true"]} or {"command": "calibrate",
-  // "settings": ["mount", "clock"]}: at most 32 of 128 bytes each.
+  // As in {"command": "detect", "settings": ["landing.still=true"]} or {"command": "calibrate",
+  // "settings": ["mount", "clock"]}. At most 32 settings of at most 128 bytes each.
   std::vector<std::string> settings = {};
 };
 
 using ClientMessage = std::variant<ImageAck, ImageWish, ConsoleCommand, ColorRequest>;
 
-// What a browser has sent; nothing when it is not one of those above, to the letter. Does not
-// throw.
+// Parses a message of a browser. Returns nothing unless it is exactly one of the messages above.
+// Does not throw.
 std::optional<ClientMessage> ParseClientMessage(std::string_view text);
 
 }  // namespace kestrel

@@ -21,7 +21,7 @@ constexpr std::uintmax_t kMinFreeBytes = std::uintmax_t{128} << 20;
 constexpr std::size_t kFramesPerLook = 32;
 constexpr std::size_t kFramesPerReport = 10;
 
-// Before the disk is full, which others need as well.
+// Limits the size of a clip, so that it does not fill a disk that others need.
 void RequireRoom(const VideoFile& video) {
   std::error_code error;
   if (const auto size = fs::file_size(video.path(), error); !error && size > kMaxClipBytes) {

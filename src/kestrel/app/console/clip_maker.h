@@ -15,29 +15,30 @@
 
 namespace kestrel {
 
-// What a video shows.
+// The content of a video.
 struct Clip {
-  // Gives the picture (CV_8UC3) of each of the clip's frames, from 0 and in order. Throws
-  // InputError when it cannot.
+  // Returns the picture (CV_8UC3) of a frame of the clip. It is called for each index from 0, in
+  // order. Throws InputError when there is no picture.
   using Picture = std::function<cv::Mat(std::size_t index)>;
 
-  // Called once, by the thread that makes the clip: images are read from a source of its own.
+  // Called once, by the thread that makes the clip: it reads images from a source of its own.
   std::function<Picture()> open;
   std::size_t frames = 0;  // at least one
   double rate_hz = 0;
-  std::string name;  // that it is saved by, without the extension
+  std::string name;  // file name without the extension
 };
 
-// Makes clips, one at a time and by a thread of its own, as temporary files of bounded size, and
-// tells the page how far it is. By one thread.
+// Makes clips as temporary files of limited size, one at a time in a thread of its own, and tells
+// the page the progress. Call it from one thread.
 class ClipMaker {
  public:
   // 'feed' outlives the maker.
   explicit ClipMaker(ConsoleFeed* feed) : feed_(feed) {}
 
-  // Is answered when the clip is made, or refused: at once when another one is under way.
+  // Starts a clip. The request is answered when the clip is made or refused; it is refused at once
+  // while another clip is being made.
   void Make(PendingExport pending, Clip clip);
-  // Answers when it is time; ends what nobody waits for any more. Often.
+  // Answers a finished clip and cancels one that nobody waits for any more. Call it often.
   void Follow();
 
  private:

@@ -15,7 +15,7 @@
 namespace kestrel {
 namespace {
 
-// What became of a request.
+// A request with its answer.
 struct Asked {
   std::optional<ExportAnswer> answer;
   bool is_wanted = true;
@@ -31,7 +31,7 @@ class ClipMakerTest : public testing::Test {
     };
     return {open, frames, 10, "clip-0"};
   }
-  // A clip whose first frame waits as long as 'is_held'.
+  // A clip whose first frame waits while 'is_held'.
   Clip Held() {
     const auto open = [this] {
       return [this](std::size_t) {
@@ -53,7 +53,7 @@ class ClipMakerTest : public testing::Test {
       return asked.answer.has_value();
     });
   }
-  // What the page was told last; nothing when it was not told.
+  // The last progress that the page got; nothing when it got none.
   std::optional<ConsoleClip> Told() {
     std::optional<ConsoleClip> told;
     while (const auto update = feed_.TakeUpdate()) {
@@ -104,7 +104,7 @@ TEST_F(ClipMakerTest, WhatNobodyWaitsForIsEnded) {
   gone.is_wanted = false;
   maker_.Follow();
   is_held_ = false;
-  // There is room for another one when it has ended, of which nothing is heard.
+  // After its end, which is not reported, another clip can be made.
   ASSERT_TRUE(Eventually([&] {
     maker_.Follow();
     next.answer.reset();

@@ -7,7 +7,7 @@
 
 namespace kestrel {
 
-// Messages for the page, as web/src/color_protocol.ts has them.
+// Messages for the page, as defined in web/src/color_protocol.ts.
 nlohmann::json Message(const ConsoleColors& colors);
 nlohmann::json Message(const ConsoleColorScores& scores);
 

@@ -10,12 +10,12 @@
 namespace kestrel {
 namespace {
 
-// How long an end may be waited for.
+// Greatest time before the threads notice that they must end.
 constexpr Duration kJobPatience = std::chrono::milliseconds(100);
-// What flies goes before the page, and the page before the scores.
+// The threads that fly have priority over the page, and the page over the scores.
 constexpr int kFlightsPageNiceness = 10, kScoresNiceness = 15;
 
-// Of this thread alone, on Linux.
+// On Linux this concerns this thread only.
 void BeNice(int niceness) { setpriority(PRIO_PROCESS, 0, niceness); }
 
 }  // namespace

@@ -13,19 +13,19 @@
 
 namespace kestrel {
 
-// The page that teaches colours: a ColorSession in a thread of its own, beside one that scores what
-// was taught, so that neither the server nor a preview waits for that.
+// The page that teaches colours: a ColorSession in one thread and the scoring of the models in
+// another, so that neither the server nor a preview waits for scores.
 class ColorPage {
  public:
-  // Works from now on. 'feed' outlives the page. Throws InputError as ColorSession does.
+  // Starts the threads. 'feed' outlives the page. Throws InputError as ColorSession does.
   ColorPage(ColorSource source, ConsoleFeed* feed);
-  // Waits for the work that is under way.
+  // Waits for the work in progress.
   ~ColorPage();
   ColorPage(const ColorPage&) = delete;
   ColorPage& operator=(const ColorPage&) = delete;
 
  private:
-  // A copy of all that ScoreColor needs.
+  // A copy of all inputs of ScoreColor.
   struct Exam {
     std::uint64_t revision = 0;
     std::size_t color = 0;
@@ -39,9 +39,9 @@ class ColorPage {
   void Tell();
 
   ConsoleFeed* feed_;
-  ColorSession session_;  // of the thread of Serve
+  ColorSession session_;  // used by the thread of Serve only
   std::atomic<bool> is_stopped_{false};
-  BoundedQueue<Exam> exams_{1};  // the newest only
+  BoundedQueue<Exam> exams_{1};  // only the newest
   std::thread server_, scorer_;
 };
 

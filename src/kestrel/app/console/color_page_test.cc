@@ -29,7 +29,7 @@ constexpr std::size_t kPictures = 3;
 const cv::Vec3b kPurple(200, 60, 190);
 const cv::Vec3b kGround(90, 100, 95);
 
-// Gray ground with a purple square, darker from frame to frame, which no built-in colour takes.
+// Gray ground with a purple square that no built-in colour matches; darker from frame to frame.
 cv::Mat Picture(std::size_t frame) {
   const double light = 1 - 0.2 * static_cast<double>(frame);
   cv::Mat image(80, 120, CV_8UC3, light * cv::Scalar(kGround));
@@ -59,12 +59,12 @@ class ColorPageTest : public testing::Test {
     options.port = 0;
     return options;
   }
-  // What the page is told after a message.
+  // Sends a message and returns the state of the page after it.
   static nlohmann::json Ask(TestSocket* socket, const std::string& message) {
     socket->Send(message);
     return socket->Next("colors").value_or(nlohmann::json());
   }
-  // What the grid takes the frame's pixels for, and what they are marked as.
+  // The labels of the frame's pixels, and their marks.
   std::array<cv::Mat1b, 2> Labels(std::size_t frame) {
     TestBrowser browser(server_.port());
     const auto response = browser.Send(browser.Get(fmt::format("/export/labels-{}.bin", frame)));
@@ -138,7 +138,7 @@ TEST_F(ColorPageTest, TheDraftIsThereAgainAndUndoneStrokesAreNot) {
   page_.reset();
   page_ = std::make_unique<ColorPage>(Source(), &feed_);
   EXPECT_EQ(Ask(&second, R"({"colors": "redo"})")["strokes"], 1) << "another run of the program";
-  // Of another recording in the same folder the draft is another one.
+  // Another recording in the same folder has another draft.
   page_.reset();
   ColorSource other = Source();
   other.recording = "another flight";
@@ -205,14 +205,14 @@ TEST_F(ColorPageTest, OfACameraFramesAreKeptAndMarked) {
   page_.reset();
   ColorSource camera = Source();
   camera.frame_count = 0;
-  std::size_t kept = 0;  // of the page's thread
+  std::size_t kept = 0;  // used by the page's thread
   camera.keep = [&kept] {
     if (kept == 2) throw InputError("there is no room for more");
     return fmt::format("frame {} is kept", ++kept);
   };
   camera.warn = [] { return std::vector<std::string>{"the white balance is automatic"}; };
   TestSocket socket(server_.port());
-  ASSERT_TRUE(socket.Next("colors"));  // of the page before
+  ASSERT_TRUE(socket.Next("colors"));  // state of the page before
   page_ = std::make_unique<ColorPage>(camera, &feed_);
   nlohmann::json state = socket.Next("colors").value_or(nlohmann::json());
   EXPECT_EQ(state["frames"], 0);
@@ -229,7 +229,7 @@ TEST_F(ColorPageTest, OfACameraFramesAreKeptAndMarked) {
   EXPECT_EQ(Ask(&socket, kMarkPurple)["strokes"], 1);
   EXPECT_FALSE(Ask(&socket, R"({"colors": "teach", "color": "green"})")["refused"]);
   EXPECT_EQ(Labels(1)[0](30, 50), 4) << "seen in a frame that was not marked";
-  page_.reset();  // before what it asks for the frames goes
+  page_.reset();  // before the variables that its functions use
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ constexpr std::array kActions = {ColorAction::kChoose, ColorAction::kMark,  Colo
                                  ColorAction::kSave,   ColorAction::kKeep};
 constexpr std::array kTools = {StrokeTool::kBrush, StrokeTool::kRectangle, StrokeTool::kGrow};
 
-// One of the values by its name.
+// Finds one of the values by its name in the message.
 template <class Value, std::size_t kCount>
 std::optional<Value> Named(const Json& message, const char* key,
                            const std::array<Value, kCount>& values) {
@@ -39,7 +39,7 @@ std::optional<std::string> ReadColor(const Json& message) {
   return name;
 }
 
-// u and v in turn.
+// The numbers are u and v in turn.
 bool ReadPoints(const Json& message, std::vector<cv::Point>* points) {
   constexpr std::size_t kMaxNumbers = 2000;
   constexpr std::uint64_t kMaxPixel = 100'000;

@@ -11,28 +11,28 @@
 namespace kestrel {
 
 enum class ColorAction {
-  kChoose,  // the colour that is looked at
-  kMark,    // pixels
-  kUndo,    // of marking
+  kChoose,  // the current colour
+  kMark,    // mark pixels
+  kUndo,    // undo a mark
   kRedo,
-  kTeach,   // a colour by what is marked
-  kRevert,  // to the model of the file
-  kSave,    // the model
-  kKeep,    // the camera's newest image, as a frame to be marked
+  kTeach,   // fit a colour's model to what is marked
+  kRevert,  // go back to the model of the file
+  kSave,    // save the model
+  kKeep,    // keep the camera's newest image as a frame to be marked
 };
-// "choose", "mark", "undo", "redo", "teach", "revert", "save", "keep"
+// Returns "choose", "mark", "undo", "redo", "teach", "revert", "save" or "keep".
 const char* ToString(ColorAction action);
 
-// What the page of colours asks for, as {"colors": "undo"}, {"colors": "teach", "color": "red"} or
+// A request of the page of colours, as {"colors": "undo"}, {"colors": "teach", "color": "red"} or
 // {"colors": "mark", "frame": 3, "color": "red", "tool": "brush", "size": 4, "points": [1, 2]}.
 struct ColorRequest {
   ColorAction action = ColorAction::kUndo;
-  std::string color = {};   // to choose or teach
-  ColorStroke stroke = {};  // valid, to mark
+  std::string color = {};   // for kChoose and kTeach
+  ColorStroke stroke = {};  // for kMark; valid
 };
 
-// Nothing when it is none of those above, to the letter; does not throw. Colours have at most 64
-// bytes, strokes what ColorStroke::Validate lets pass.
+// Returns nothing unless the message is exactly one of those above; does not throw. Colours have at
+// most 64 bytes; strokes pass ColorStroke::Validate.
 std::optional<ColorRequest> ReadColorRequest(const nlohmann::json& message);
 
 }  // namespace kestrel

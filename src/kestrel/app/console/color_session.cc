@@ -21,13 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kJpegQuality = 92;  // colours are looked at
+constexpr int kJpegQuality = 92;  // high, as users judge colours by it
 
 bool IsDraftOf(const std::string& file, const std::string& recording) {
   return YamlReader(ReadFile(file), file)["recording"].Text() == recording;
 }
 
-// The recording's own: a folder may have drafts of several.
+// The recording's own draft: a folder may have drafts of several recordings.
 std::string DraftFile(const std::string& folder, const std::string& recording) {
   std::string file = (fs::path(folder) / "draft.yaml").string();
   for (int i = 2; fs::exists(file) && !IsDraftOf(file, recording); ++i) {
@@ -36,7 +36,7 @@ std::string DraftFile(const std::string& folder, const std::string& recording) {
   return file;
 }
 
-// Of an image of one byte a pixel that has no gaps.
+// The bytes of a continuous image with one byte per pixel.
 std::string BytesOf(const cv::Mat& image) {
   return {reinterpret_cast<const char*>(image.data), image.total()};
 }
@@ -73,7 +73,7 @@ void ColorSession::Obey(const ColorRequest& request) {
   state_.is_refused = false;
   try {
     Do(request);
-  } catch (const std::exception& error) {  // also what the file system says of a folder
+  } catch (const std::exception& error) {  // includes errors of the file system
     state_.answer = error.what();
     state_.is_refused = true;
   }
@@ -139,7 +139,7 @@ void ColorSession::KeepDraft() const {
   WriteFile(draft_file_, PrintColorDraft(editor_.draft(), source_.recording));
 }
 
-// All that the page shows, after a request.
+// Updates all of the state after a request.
 void ColorSession::Tell() {
   state_.frames = source_.frame_count;
   std::set<std::size_t> marked;
@@ -177,7 +177,7 @@ ExportAnswer ColorSession::Answer(const ExportRequest& request) {
       encoder_.Append(image, &picture.content);
       return picture;
     }
-    // A byte a pixel of each; an image would take the browser longer to read than all the rest.
+    // One byte per pixel for each; a browser takes longer to decode an image than for all the rest.
     const std::string labels = BytesOf(editor_.Labels(image));
     std::string marks = BytesOf(editor_.Marks(request.number));
     marks.resize(labels.size());  // zero where nothing is marked yet
@@ -185,7 +185,7 @@ ExportAnswer ColorSession::Answer(const ExportRequest& request) {
                         fmt::format("labels-{}.bin", request.number)};
     answer.coding = "deflate";
     return answer;
-  } catch (const InputError&) {  // its file is gone
+  } catch (const InputError&) {  // the image's file is gone
     return {};
   }
 }

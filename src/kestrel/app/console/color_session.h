@@ -17,37 +17,37 @@
 
 namespace kestrel {
 
-// What colours are taught by.
+// The frames and the model that a session of teaching works on.
 struct ColorSource {
-  std::string recording;    // that tells it from others
-  std::size_t frame_count;  // at least 1; of a live camera 0
-  // Gives the frame's image as it was taken, CV_8UC3. Throws InputError when it cannot.
+  std::string recording;    // name that tells it from others
+  std::size_t frame_count;  // at least 1; 0 for a live camera
+  // Returns the frame's image as it was taken, CV_8UC3. Throws InputError when it cannot.
   MarkedPixels::ReadFrame read;
-  ObjectModel model;  // to begin with
-  // For the model, its versions and the draft; made when something is to be kept.
+  ObjectModel model;  // initial model
+  // Folder for the model, its versions and the draft; created when something is saved.
   std::string folder;
-  // Of a live camera, else empty: keeps its newest image as one frame more, which 'read' then
-  // gives, and says so in words; throws InputError when it cannot.
+  // For a live camera only: keeps its newest image as an additional frame for 'read' and returns a
+  // sentence that says so; throws InputError when it cannot.
   std::function<std::string()> keep = {};
-  // Of a live camera, else empty: what it changes by itself, a sentence each.
+  // For a live camera only: returns what the camera adjusts by itself, one sentence each.
   std::function<std::vector<std::string>()> warn = {};
 };
 
-// Teaching the colours of a model, as users ask for it: a ColorEditor whose draft is kept in a file
-// after every change. By one thread.
+// Teaches the colours of a model on request: a ColorEditor whose draft is saved to a file after
+// every change. Call it from one thread.
 class ColorSession {
  public:
-  // Goes on with the draft of the recording, where the folder has one. Throws InputError when that
-  // is not a draft any more.
+  // Continues the recording's draft if the folder has one. Throws InputError when that file is not
+  // a valid draft.
   explicit ColorSession(ColorSource source);
 
-  // What is refused changes nothing; state() says why.
+  // Executes a request. A refused request changes nothing; state() says why it was refused.
   void Obey(const ColorRequest& request);
   const ConsoleColors& state() const { return state_; }
   bool is_live() const { return source_.keep != nullptr; }
 
-  // The picture of a frame, or what its pixels are taken for and marked as: PNG, red the grid's
-  // label, green the mark's (ColorEditor::Marks). Without content where there is none.
+  // Returns the picture of a frame, or its labels and marks as PNG: red is the label of the grid,
+  // green the mark (ColorEditor::Marks). Without content when there is no such frame.
   ExportAnswer Answer(const ExportRequest& request);
 
   const ColorEditor& editor() const { return editor_; }
@@ -64,12 +64,12 @@ class ColorSession {
   ColorSource source_;
   std::string draft_file_;
   std::string model_file_;
-  std::string saved_;  // what the model's file holds, or would
+  std::string saved_;  // content of the model's file, or what it would be
   ColorEditor editor_;
   ConsoleColors state_;
   JpegEncoder encoder_;
-  std::size_t frame_ = 0;  // of the image, when there is one
-  cv::Mat image_;          // that was read last
+  std::size_t frame_ = 0;  // index of image_, when there is one
+  cv::Mat image_;          // the image that was read last
 };
 
 }  // namespace kestrel

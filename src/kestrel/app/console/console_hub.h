@@ -26,37 +26,38 @@ class ConsoleClient {
   virtual ~ConsoleClient() = default;
 
   virtual void Push(const SharedMessage& message) = 0;
-  // Sends what there is to send, unless something is on its way.
+  // Sends the next message, unless one is on its way.
   virtual void SendNext() = 0;
   virtual void PushLinkReport(int clients) = 0;
 };
 
-// What the connections of the console share. By the console's thread, counters by any.
+// The state that the connections of the console share. Used by the console's thread; any thread may
+// read the counters.
 class ConsoleHub {
  public:
-  // 'options' are valid; 'feed', 'assets' and 'channels' outlive the hub. 'channels': what viewers
-  // can subscribe to; null: nothing.
+  // 'options' are valid; 'feed', 'assets' and 'channels' outlive the hub. 'channels': messages that
+  // viewers can subscribe to; null: none.
   ConsoleHub(const ConsoleOptions& options, ConsoleFeed* feed, std::span<const WebAsset> assets,
              int port, ChannelFeed* channels);
 
   const ConsoleOptions& options() const { return options_; }
   const RequestGuard& guard() const { return guard_; }
   ImageChannel& images() { return images_; }
-  // Null: there is none of that path.
+  // Returns null when there is no asset with this path.
   const WebAsset* FindAsset(std::string_view path) const;
 
-  // The right to be a connection, as long as it is held; null when there are too many.
+  // Returns a connection's slot, held as long as the connection lives; null when all are taken.
   std::shared_ptr<void> TakeSlot();
   void CountRefusal() { ++refused_; }
 
-  // A browser comes: it gets what is known so far. It leaves before it is destroyed.
+  // Adds a browser and sends it the present state. It must leave before it is destroyed.
   void Join(ConsoleClient* client);
   void Leave(ConsoleClient* client);
   bool has_clients() const { return !clients_.empty() || (viewers_ && !viewers_->empty()); }
-  // Null where there is nothing to subscribe to.
+  // Null when there are no channels to subscribe to.
   ViewerHub* viewer_hub() { return viewers_ ? &*viewers_ : nullptr; }
 
-  // Hands out what is new.
+  // Sends new updates and frames to all clients.
   void Tick(Time now);
   void Command(const ConsoleCommand& command) { feed_->Command(command); }
   void Ask(const ColorRequest& request) { feed_->Ask(request); }
@@ -83,7 +84,7 @@ class ConsoleHub {
   ImageChannel images_;
   std::optional<ViewerHub> viewers_;
   SharedMessage hello_;
-  // The newest of each kind, for those who come later; of samples none.
+  // The newest message of each kind except samples, for browsers that join later.
   std::array<SharedMessage, std::variant_size_v<ConsoleUpdate>> newest_;
   std::deque<SharedMessage> events_;
   std::vector<ConsoleClient*> clients_;

@@ -18,14 +18,14 @@ std::string Text(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// Null where it is not known.
+// Null where unknown.
 Json Milliseconds(std::optional<Duration> time) {
   return time ? Json(time->count() / 1e6) : Json();
 }
 
 std::string TimeText(Time time) { return std::to_string(ToNanoseconds(time)); }
 
-// Pixels to a twentieth: what is drawn is not finer, and the text half as long.
+// Rounds to a twentieth of a pixel: the drawing is no finer, and the text is half as long.
 double Rounded(double px) { return std::round(px * 20) / 20; }
 
 Json Numbers(const Eigen::Vector2d& vector) { return {vector.x(), vector.y()}; }
@@ -116,7 +116,7 @@ Json Message(const SessionEvent& event) {
           {"text", event.text}};
 }
 
-// One character for each frame.
+// One character per frame.
 std::string Marks(const std::vector<FrameMark>& marks) {
   std::string text;
   for (const FrameMark mark : marks) text += "-flx"[static_cast<int>(mark)];

@@ -22,7 +22,7 @@ bool IsToken(const std::string& token) {
          std::all_of(token.begin(), token.end(), IsTokenCharacter);
 }
 
-// The parts between commas, in lower case, without blanks.
+// The comma-separated parts, in lower case, without blanks.
 std::vector<std::string> PartsOf(const std::string& list) {
   std::vector<std::string> parts;
   std::istringstream stream(list);
@@ -35,7 +35,8 @@ std::vector<std::string> PartsOf(const std::string& list) {
   return parts;
 }
 
-// As "https://app.foxglove.dev", without a path. "null" is what any page can come as.
+// True for an origin such as "https://app.foxglove.dev", without a path. "null" is not accepted, as
+// any page can claim it.
 bool IsOrigin(const std::string& text) {
   const std::size_t colon = text.find("://");
   if (colon == text.npos || colon == 0) return false;
@@ -50,7 +51,7 @@ std::vector<std::string> ConsoleOptions::Validate() const {
   boost::system::error_code error;
   boost::asio::ip::make_address(address, error);
   if (error) violations.push_back(fmt::format("address is '{}', expected an IP address", address));
-  // What was given is not repeated: it is a secret.
+  // The message does not repeat the token: it is a secret.
   if (!token.empty() && !IsToken(token)) {
     violations.push_back("token is not 16 to 128 of A-Z a-z 0-9 - _");
   }

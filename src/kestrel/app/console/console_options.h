@@ -6,26 +6,28 @@
 
 namespace kestrel {
 
-// Where the web page is served, to whom, and what it may cost.
+// Address of the web page, who may use it, and the limits of its cost.
 struct ConsoleOptions {
-  // IPv4 or IPv6 address. One that others can reach, any but 127.0.0.0/8 and ::1, needs a token.
+  // IPv4 or IPv6 address. Any address that other computers can reach (all but 127.0.0.0/8 and ::1)
+  // needs a token.
   std::string address = "127.0.0.1";
-  int port = 8080;  // 0: any free one
-  // 16 to 128 of A-Z, a-z, 0-9, - and _.
+  int port = 8080;  // 0: any free port
+  // 16 to 128 characters of A-Z, a-z, 0-9, - and _.
   std::string token;
-  // Names, with commas between them, that the page may be asked by, as "kestrel.local". Addresses
-  // and localhost always may; any other name is a page that poses as this one (DNS rebinding).
+  // Comma-separated host names that requests may use, as "kestrel.local". Addresses and localhost
+  // are always allowed; with any other name another site may pose as this page (DNS rebinding).
   std::string host_names;
-  // Pages of others, with commas between them, that may subscribe to a flight's messages at
-  // /foxglove, as "https://app.foxglove.dev". They see all that the flight shows, and can do
-  // nothing. Programs that are no page need not be here.
+  // Comma-separated origins of other pages that may subscribe to a flight's messages at /foxglove,
+  // as "https://app.foxglove.dev". They see all that the flight shows and can change nothing.
+  // Programs other than browsers need not be listed.
   std::string viewer_origins;
   int max_connections = 64;
   double max_image_rate_hz = 20;
   int jpeg_quality = 70;
-  // Messages that wait for a slow browser; beyond it the oldest goes, and is counted.
+  // Messages that wait for a slow browser. When the queue is full the oldest is dropped and
+  // Time without a message or a pong after which a browser counts as gone.
   int message_queue = 256;
-  // After which a browser that says nothing, not even that it is there, is gone.
+  // Silence, pings included, after which a browser counts as gone.
   double idle_timeout_s = 20;
 
   template <class Self, class Visitor>
@@ -44,16 +46,16 @@ struct ConsoleOptions {
   }
   std::vector<std::string> Validate() const;
 
-  // Whether only programs on this computer can reach the address.
+  // True when only programs on this computer can reach the address.
   bool IsLoopback() const;
-  // The parts of host_names, in lower case.
+  // Returns the parts of host_names in lower case.
   std::vector<std::string> HostNames() const;
-  // The parts of viewer_origins, in lower case.
+  // Returns the parts of viewer_origins in lower case.
   std::vector<std::string> ViewerOrigins() const;
 };
 
-// The options with what the user said of them, as "127.0.0.1:8080" or "[::1]:0". Throws InputError
-// with 'argument' in it where that is malformed.
+// Returns the options with the address that the user gave, as "127.0.0.1:8080" or "[::1]:0". Throws
+// InputError that names 'argument' when the text is malformed.
 ConsoleOptions WithAddress(ConsoleOptions options, const std::string& text,
                            const std::string& argument);
 

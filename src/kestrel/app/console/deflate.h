@@ -6,8 +6,8 @@
 
 namespace kestrel {
 
-// The bytes as HTTP's content coding "deflate" has them (RFC 9110, 8.4.1.2), quickly rather than
-// small. Throws std::bad_alloc when there is no memory.
+// Compresses the bytes for HTTP's content coding "deflate" (RFC 9110, 8.4.1.2), for speed rather
+// than size. Throws std::bad_alloc when there is no memory.
 std::string Deflate(std::string_view bytes);
 
 }  // namespace kestrel

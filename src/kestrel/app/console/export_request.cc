@@ -16,7 +16,7 @@ std::optional<std::size_t> NumberIn(std::string_view digits) {
   return number;
 }
 
-// What is between a beginning and an end of the text; nothing when it is another text.
+// The part of the text between 'begin' and 'end'; nothing when the text does not have both.
 std::optional<std::string_view> Between(std::string_view begin, std::string_view text,
                                         std::string_view end) {
   if (!text.starts_with(begin) || !text.ends_with(end)) return std::nullopt;

@@ -11,9 +11,9 @@
 namespace kestrel {
 namespace {
 
-// Frames that wait to be shown: more are too old for a live picture.
+// Frames that wait to be shown. A longer queue would make the live picture late.
 constexpr std::size_t kFrames = 2;
-// Times of frames that wait for the checks: some seconds.
+// Times of frames that wait for the checks: those of some seconds.
 constexpr std::size_t kArrivals = 256;
 constexpr Duration kCheckInterval = std::chrono::seconds(2);
 constexpr Duration kAnswerInterval = std::chrono::milliseconds(50);
@@ -36,7 +36,7 @@ ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightVie
 
 }  // namespace
 
-// What the page shows, made by one thread.
+// Makes the content of the page; used by one thread.
 class FlightConsole::Page : public SinkWriter {
  public:
   Page(FlightConsole* console, FlightView view, FlightExamination examination)
@@ -125,8 +125,8 @@ class FlightConsole::Page : public SinkWriter {
   Time examined_{};
   FlightHealth health_;
   FlightReport report_;   // the newest
-  ConsoleStatus vision_;  // what the newest frame says
-  ConsoleStatus told_;    // the page, the last time
+  ConsoleStatus vision_;  // status from the newest frame
+  ConsoleStatus told_;    // the last status that the page got
 };
 
 FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& title,
@@ -140,7 +140,7 @@ FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& t
   if (colors) TeachColors(*colors, view);
 }
 
-// They begin with the model that the flight uses.
+// The page begins with the model that the flight uses.
 void FlightConsole::TeachColors(const FlightColors& colors, const FlightView& view) {
   kept_.emplace(colors.frames);
   const auto keep = [this] {

@@ -25,29 +25,30 @@
 
 namespace kestrel {
 
-// What a flight looks for.
+// The view of a flight: of a landing or of a hunt.
 using FlightView = std::variant<LandingView, HuntView>;
 
-// What the page may ask of a flight; each says what became of it, and throws InputError when it
-// cannot be done. They may wait.
+// Requests that the page may make of a flight. Each returns a sentence that says what was done, and
+// throws InputError when it cannot be done. They may block.
 struct FlightRequests {
   std::function<std::string(bool is_on)> record;  // on or off
   std::function<std::string(const cv::Mat& image, Time captured)> keep_snapshot;
 };
 
-// Where what the page of colours keeps of a flight goes.
+// Places for what the page of colours keeps of a flight.
 struct FlightColors {
-  std::filesystem::path frames;  // a folder that does not exist: for the frames that are kept
+  std::filesystem::path frames;  // folder for the kept frames; it must not exist yet
   std::string folder;            // for the model, its versions and the draft
-  std::function<std::vector<std::string>()> warn;  // as ColorSource's
+  std::function<std::vector<std::string>()> warn;  // as in ColorSource
 };
 
-// A session on the page. What the vision sees is handed to a thread that makes of it what the page
-// shows, and only while somebody looks: else a frame costs the vision one look at a number.
+// A session on the page. A thread of its own turns the observations into what the page shows, and
+// only while a browser looks: otherwise a frame costs the vision thread one read of a number.
 class FlightConsole : public ObservationSink {
  public:
-  // Serves from now on. 'title': of the page. 'channels' as for WebServer. 'colors': of a hunt,
-  // whose model's colours can be taught then. Throws InputError as WebServer and ColorPage do.
+  // Starts the server. 'title': title of the page. 'channels' as for WebServer. 'colors': for a
+  // hunt only; the page then teaches its model's colours. Throws InputError as WebServer and
+  // ColorPage do.
   FlightConsole(const ConsoleOptions& options, const std::string& title, FlightView view,
                 FlightExamination examination, ChannelFeed* channels = nullptr,
                 std::optional<FlightColors> colors = std::nullopt);
@@ -55,13 +56,13 @@ class FlightConsole : public ObservationSink {
   FlightConsole(const FlightConsole&) = delete;
   FlightConsole& operator=(const FlightConsole&) = delete;
 
-  // What to open in a browser on this computer.
+  // URL to open in a browser on this computer.
   std::string url() const { return server_.url(); }
-  // The same for a viewer that speaks Foxglove's protocol.
+  // URL for a viewer that speaks Foxglove's protocol.
   std::string viewer_url() const { return server_.viewer_url(); }
 
-  // Answers requests from now on, by a thread of its own: until then what the users ask waits. Once
-  // only; what is asked of is there until Finish.
+  // Starts a thread that answers requests; until then the requests of users wait. Call it once
+  // only. What 'requests' use must live until Finish.
   void Answer(FlightRequests requests);
 
   bool IsWanted() const override { return feed_.IsWatched(); }
@@ -89,10 +90,10 @@ class FlightConsole : public ObservationSink {
 
   ConsoleFeed feed_;
   BoundedQueue<FrameSample> arrivals_;
-  std::mutex mutex_;  // of what is below
-  Image shown_;       // the newest
+  std::mutex mutex_;  // protects shown_
+  Image shown_;       // the newest frame
   WebServer server_;
-  std::optional<KeptFrames> kept_;  // of the page of colours
+  std::optional<KeptFrames> kept_;  // frames of the page of colours
   std::optional<ColorPage> colors_;
   AsynchronousSink pictures_;
   std::atomic<bool> is_over_{false};

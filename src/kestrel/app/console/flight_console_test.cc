@@ -82,7 +82,7 @@ TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
   EXPECT_THAT((*status)["reason"].get<std::string>(), testing::HasSubstr("no ring"));
 }
 
-// Who opens the page later sees it as well.
+// A page that is opened later shows it as well.
 TEST(FlightConsoleOfAHunt, ShowsWhatTheTeamKnows) {
   FlightConsole console(FreePort(), "a hunt", HuntView{DefaultObjectModel()},
                         FlightExamination(PaperCalibration(), ".", 0));
@@ -117,7 +117,7 @@ TEST_F(FlightConsoleTest, ShowsTheDoctorsChecks) {
 TEST_F(FlightConsoleTest, ObeysWhatThePageAsks) {
   TestSocket socket(PortOf(console_));
   ASSERT_TRUE(socket.Next("hello"));
-  // What is asked before anybody obeys waits.
+  // Requests wait until somebody answers them.
   socket.Send(R"({"command": "record", "value": 1})");
   console_.Answer({.record = [](bool is_on) -> std::string {
                      if (!is_on) throw InputError("the disk is full");

@@ -12,7 +12,7 @@ namespace {
 
 constexpr Duration kInterval = std::chrono::seconds(1);
 
-// What the whole program has used of processors, s.
+// Processor time of the whole program, s.
 double CpuTime_s() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

@@ -10,13 +10,14 @@
 
 namespace kestrel {
 
-// How well a flight's parts do, from one second to the next. By one thread.
+// Checks the health of a flight's parts once a second. Call it from one thread.
 class FlightHealth {
  public:
-  // The checks once a second; nothing meanwhile.
+  // Returns the checks once a second, and nothing in between.
   std::optional<ConsoleHealth> Update(const FlightReport& report, Time now);
 
-  // Of the autopilot's packets, 1/s, in the last second; nothing before the first and without one.
+  // Rate of the autopilot's packets in the last second, 1/s; nothing in the first second or without
+  // an autopilot.
   std::optional<double> link_rate_hz() const { return link_rate_hz_; }
 
  private:
@@ -28,8 +29,8 @@ class FlightHealth {
   std::optional<double> link_rate_hz_;
 };
 
-// The state of a flight, and what is in its way, in words for a pilot. 'vision': what the newest
-// frame says.
+// Returns the state of a flight and what is in its way, in words for a pilot. 'vision': status from
+// the newest frame.
 ConsoleStatus FlightStatus(const FlightReport& report, const ConsoleStatus& vision);
 
 }  // namespace kestrel

@@ -9,12 +9,12 @@
 namespace kestrel {
 namespace {
 
-// Lines are drawn to a sixteenth of a pixel, by OpenCV's fixed point.
+// OpenCV draws lines in fixed point; here to a sixteenth of a pixel.
 constexpr int kFractionBits = 4;
 constexpr float kFraction = 1 << kFractionBits;
 constexpr int kMark_px = 7;
 
-// As on the page (web/src/overlay.ts); BGR.
+// Colours of the page (web/src/overlay.ts); BGR.
 cv::Scalar ColorOf(OverlayLayer layer) {
   switch (layer) {
     case OverlayLayer::kDetection:
@@ -31,12 +31,12 @@ cv::Scalar ColorOf(OverlayLayer layer) {
   return {};
 }
 
-// Of a second run only this is drawn over what the first one found.
+// Of a second run only these layers are drawn over the first run's shapes.
 bool IsFound(OverlayLayer layer) {
   return layer == OverlayLayer::kDetection || layer == OverlayLayer::kRejected;
 }
 
-// What is far outside of the image is left where lines to it still point the right way.
+// Limits points far outside of the image; lines to them keep nearly their direction.
 cv::Point FixedPoint(const cv::Point2f& point) {
   constexpr float kFar = 1e4F;
   const auto fixed = [&](float value) {

@@ -9,8 +9,8 @@
 
 namespace kestrel {
 
-// The image (8-bit gray or BGR) in colour, with the shapes drawn on it as on the page: what a
-// second run found over the first run's shapes.
+// Returns the image (8-bit gray or BGR) as BGR with the shapes drawn as on the page; the shapes of
+// a second run lie over those of the first.
 cv::Mat WithShapes(const cv::Mat& image, const std::vector<OverlayShape>& shapes);
 
 }  // namespace kestrel

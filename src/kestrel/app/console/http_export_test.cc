@@ -17,13 +17,13 @@ namespace http = boost::beast::http;
 
 class HttpExportTest : public testing::Test {
  protected:
-  // What the server was asked for.
+  // The request that the server has passed on.
   PendingExport TakePending() {
     std::optional<PendingExport> pending;
     EXPECT_TRUE(Eventually([&] { return (pending = feed_.TakeExport()).has_value(); }));
     return *pending;
   }
-  // A file of a few pieces.
+  // A file of several pieces.
   static ExportAnswer FileAnswer() {
     auto file = std::make_shared<ExportFile>();
     file->path = file->folder.path() + "/clip.mp4";
@@ -62,7 +62,7 @@ TEST_F(HttpExportTest, AFileIsSentAndRemoved) {
   EXPECT_EQ(response[http::field::cache_control], "no-store");
   EXPECT_TRUE(response.body() == content);
   EXPECT_TRUE(Eventually([&] { return !std::filesystem::exists(path); }));
-  // The same connection goes on.
+  // The same connection serves the next request.
   browser_.Ask(browser_.Get("/export/frame-1.png"));
   TakePending().answer({.content = "png", .type = "image/png", .name = "frame-1.png"});
   EXPECT_EQ(browser_.ReadResponse().body(), "png");
@@ -76,7 +76,7 @@ TEST_F(HttpExportTest, WhoGoesAwayDoesNotWaitAnyMore) {
   leaving.reset();
   EXPECT_TRUE(Eventually([&] { return !pending.is_wanted(); }));
   pending.answer(FileAnswer());
-  // Who comes next is served.
+  // The next browser is served.
   browser_.Ask(browser_.Get("/export/clip-1-5.mp4"));
   TakePending().answer({.refusal = "another clip is being made"});
   const auto refused = browser_.ReadResponse();

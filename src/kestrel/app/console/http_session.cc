@@ -17,9 +17,9 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 
 constexpr std::uint32_t kMaxHeaderBytes = 8 * 1024;
-// For a whole request, so that one byte now and then does not hold a connection, and for an answer.
+// Limit for a whole request, so that single bytes do not keep a connection, and for an answer.
 constexpr std::chrono::seconds kTimeout(10);
-// For a clip to be made.
+// Limit for making a clip.
 constexpr std::chrono::minutes kClipTimeout(20);
 constexpr std::string_view kSocketPath = "/live";
 
@@ -56,7 +56,8 @@ RequestHead HeadOf(const Request& request) {
           .is_web_socket = beast::websocket::is_upgrade(request)};
 }
 
-// What says who asks must be there once only: else two readers may read it differently.
+// Headers that identify the sender must occur once only: two readers could interpret them
+// differently.
 template <class Request>
 bool IsAmbiguous(const Request& request) {
   return request.count(http::field::host) != 1 || request.count("Origin") > 1 ||
@@ -138,7 +139,7 @@ void HttpSession::AnswerAdmitted(const Request& request) {
     return Refuse(Status::method_not_allowed, "only GET and HEAD");
   }
   const std::string_view path = View(request.target());
-  // A token that is not needed any more, as when the link is opened again.
+  // The token is not needed any more, as when the link is opened again.
   if (path.starts_with("/?token=")) return SignIn(request);
   if (const auto wanted = ParseExportPath(path); wanted && hub_->CanExport(*wanted)) {
     return SendExport(request, *wanted);
@@ -175,7 +176,7 @@ void HttpSession::SendAsset(const Request& request, const WebAsset& asset) {
   Response response(Status::ok, 11, std::string(asset.content));
   response.set(http::field::content_type, beast::string_view(asset.type.data(), asset.type.size()));
   if (asset.is_gzipped) response.set(http::field::content_encoding, "gzip");
-  // The names below /assets/ have their content's hash in them.
+  // File names below /assets/ contain the hash of their content.
   if (asset.path.starts_with("/assets/")) {
     response.set(http::field::cache_control, "private, max-age=31536000, immutable");
   }
@@ -183,9 +184,9 @@ void HttpSession::SendAsset(const Request& request, const WebAsset& asset) {
   Send(std::move(response), request.method() == http::verb::head);
 }
 
-// Another thread makes it; until then nothing is read or sent here.
+// Another thread makes the answer; until then this connection reads and sends nothing.
 void HttpSession::SendExport(const Request& request, const ExportRequest& wanted) {
-  // A link on another site leads to pages, not to work.
+  // A link on another site may open pages, but must not cause work.
   const auto site = Field(request, "Sec-Fetch-Site");
   if (site && *site != "same-origin" && *site != "none") {
     return Refuse(Status::forbidden, "another site's page may not ask");
@@ -195,8 +196,8 @@ void HttpSession::SendExport(const Request& request, const ExportRequest& wanted
   const bool keep_alive = request.keep_alive();
   patience_.expires_after(IsClip(wanted) ? std::chrono::seconds(kClipTimeout) : kTimeout);
   patience_.async_wait([self = shared_from_this()](beast::error_code error) {
-    if (error) return;       // it was answered, or nobody waits any more
-    self->stream_.cancel();  // the wait for the browser's end
+    if (error) return;       // it was answered, or the browser has gone
+    self->stream_.cancel();  // ends the wait for the browser's close
     self->Refuse(Status::service_unavailable, "not ready, or too much is asked for at once");
   });
   EndWaitWithBrowser();
@@ -211,7 +212,7 @@ void HttpSession::SendExport(const Request& request, const ExportRequest& wanted
   hub_->Export({wanted, answer, [weak] { return !weak.expired(); }});
 }
 
-// A browser that goes away does not wait: then nothing holds the session any more.
+// Notices that the browser has closed the connection; then nothing keeps the session alive.
 void HttpSession::EndWaitWithBrowser() {
   stream_.socket().async_wait(boost::asio::ip::tcp::socket::wait_read,
                               [self = shared_from_this()](beast::error_code error) {
@@ -224,7 +225,7 @@ void HttpSession::EndWaitWithBrowser() {
 
 void HttpSession::SendAnswer(const ExportAnswer& answer, bool keep_alive, bool is_head) {
   if (patience_.cancel() == 0) return;  // too late
-  stream_.cancel();                     // the wait for the browser's end
+  stream_.cancel();                     // ends the wait for the browser's close
   if (!answer.refusal.empty()) return Refuse(Status::conflict, answer.refusal);
   if (answer.file) return SendFile(answer, keep_alive, is_head);
   if (answer.content.empty()) return Refuse(Status::not_found, "there is none");
@@ -255,7 +256,7 @@ void HttpSession::Refuse(Status status, const std::string& why) {
 void HttpSession::Send(Response response, bool is_head) {
   SetPolicy(&response);
   response.prepare_payload();
-  if (is_head) response.body().clear();  // the length stays that of GET
+  if (is_head) response.body().clear();  // the length stays as for GET
   stream_.expires_after(kTimeout);
   const auto shared = std::make_shared<Response>(std::move(response));
   const auto serializer = std::make_shared<http::response_serializer<http::string_body>>(*shared);
@@ -273,12 +274,12 @@ void HttpSession::GoOn(bool keep_alive) {
   stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
 }
 
-// A file on its way. What is in memory of it is one piece.
+// A file that is being sent. One piece of it is in memory at a time.
 struct HttpSession::Download {
   Download(std::shared_ptr<const ExportFile> of, http::response<http::file_body> with)
       : file(std::move(of)), response(std::move(with)), serializer(response) {}
 
-  std::shared_ptr<const ExportFile> file;  // is there as long as this
+  std::shared_ptr<const ExportFile> file;  // keeps the file until the end
   http::response<http::file_body> response;
   http::response_serializer<http::file_body> serializer;
 };
@@ -303,7 +304,7 @@ void HttpSession::SendFile(const ExportAnswer& answer, bool keep_alive, bool is_
       });
 }
 
-// Each piece has the time of an answer: how long the whole takes depends on the network.
+// The time limit holds for each piece, as the time of the whole depends on the network.
 void HttpSession::SendPiece(const std::shared_ptr<Download>& download) {
   stream_.expires_after(kTimeout);
   http::async_write_some(

@@ -13,11 +13,11 @@
 
 namespace kestrel {
 
-// A connection that asks for the page's files, or becomes the WebSocket. Lives as long as an
-// operation of it is under way.
+// A connection that serves the page's files, or becomes a WebSocket. It lives as long as one of its
+// operations is pending.
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
-  // 'slot': the connection's right to be. 'hub' outlives the session.
+  // 'slot': the connection's slot of the hub, held until the end. 'hub' outlives the session.
   HttpSession(boost::asio::ip::tcp::socket socket, ConsoleHub* hub, std::shared_ptr<void> slot);
 
   // Reads the next request.
@@ -37,13 +37,13 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void SendAnswer(const ExportAnswer& answer, bool keep_alive, bool is_head);
   void EndWaitWithBrowser();
   void SignIn(const Request& request);
-  // Says what is wrong, and ends the connection.
+  // Answers with an error and closes the connection.
   void Refuse(Status status, const std::string& why);
   void Send(Response response, bool is_head);
   struct Download;
   void SendFile(const ExportAnswer& answer, bool keep_alive, bool is_head);
   void SendPiece(const std::shared_ptr<Download>& download);
-  // Reads the next request, or ends the connection.
+  // Reads the next request, or closes the connection.
   void GoOn(bool keep_alive);
 
   boost::beast::tcp_stream stream_;
@@ -51,7 +51,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   std::shared_ptr<void> slot_;
   boost::beast::flat_buffer buffer_;
   std::optional<boost::beast::http::request_parser<Body>> parser_;
-  // Keeps the session while it waits for an answer, and not for ever.
+  // Keeps the session alive while it waits for an answer, for a limited time.
   boost::asio::steady_timer patience_;
 };
 

@@ -36,7 +36,7 @@ OverlayShape Shape(const HuntView& view, const ObjectDetection& found, OverlayLa
   return {layer, Outline(found.ellipse), Label(view, found)};
 }
 
-// At which tests the segments fell, as "rejected: 9 by size, 1 by shape"; empty: none did.
+// How many segments each test rejected, as "rejected: 9 by size, 1 by shape"; empty: none.
 std::string Rejections(const ObjectReport& report) {
   std::string text;
   for (std::size_t stage = 1; stage < kObjectStageCount; ++stage) {

@@ -11,35 +11,36 @@
 
 namespace kestrel {
 
-// What the page shows of a hunt for coloured objects.
+// The page's view of a hunt for coloured objects.
 
-// What is the same for all frames.
+// Data that are the same for all frames.
 struct HuntView {
   ObjectModel model;
   ObjectDetectorOptions detector = {};
 };
 
-// How many objects are in view, time of the detection: what HuntSample has the values of.
+// Returns the series of HuntSample: number of objects in view, time of the detection.
 std::vector<SeriesDescription> HuntSeries();
 ConsoleSample HuntSample(const HuntObservation& observation);
 
-// The ellipses of the objects; rejected are those whose size says that they are not on the ground.
+// The ellipses of the objects. Rejected are those whose size says that they are not on the ground.
 std::vector<OverlayLayer> HuntLayers();
 std::vector<OverlayShape> HuntShapes(const HuntView& view, const HuntObservation& observation);
 
-// "segmentation": SegmentationView.
+// Returns one view, "segmentation": SegmentationView.
 std::vector<ImageView> HuntImageViews(const HuntView& view);
 
-// How many objects there are, or that there is none and at which tests the segments fell.
+// Returns the number of objects or, when there is none, how many segments each test rejected.
 ConsoleStatus HuntStatus(const HuntObservation& observation);
 
-// How many objects there are, and which.
+// Returns the number of objects and their classes.
 std::vector<ConsoleFact> HuntFacts(const HuntView& view, const HuntObservation& observation);
 
-// The camera, as LandingMap, and the objects in view that have a place in the world.
+// Returns the camera, as LandingMap does, and the objects in view that have a position in the
+// world.
 ConsoleMap HuntMap(const HuntView& view, const HuntObservation& observation);
 
-// What the team knows of, by class or, where the model has none, shape.
+// Returns the team's objects, labelled by class or, where the model has no such class, by shape.
 ConsoleTeam HuntTeam(const HuntView& view, const TeamReport& report);
 
 }  // namespace kestrel

@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Of the model's colour: the middle of its heaviest component.
+// The mean of the heaviest component of this class's colour.
 cv::Vec3b Paint(const ObjectModel& model, const std::string& name) {
   const auto& colors = model.colors.colors;
   const auto color = std::find_if(colors.begin(), colors.end(),

@@ -11,7 +11,7 @@ void ImageFlow::SetWish(bool is_wanted, std::size_t view, bool is_held) {
   is_wanted_ = is_wanted;
   view_ = view;
   is_held_ = is_held;
-  if (!is_wanted) frame_view_.reset();  // the page that comes back begins with nothing
+  if (!is_wanted) frame_view_.reset();  // a page that is shown again has no picture
 }
 
 void ImageFlow::Sent(const ChannelImage& image) {
@@ -78,7 +78,7 @@ std::optional<ChannelImage> ImageChannel::Held(const ImageFlow& flow, Time now) 
   return ChannelImage{flow.held(), flow.view(), std::move(message)};
 }
 
-// Null when there is no picture of it.
+// Returns null when there is no picture of the frame.
 SharedMessage ImageChannel::Encode(const ConsoleFrame& frame, std::size_t view, Time now) {
   const ConsoleFeed::Description& description = feed_->description();
   const ImageView* const drawn = view == 0 ? nullptr : &description.views[view - 1];

@@ -15,38 +15,39 @@
 
 namespace kestrel {
 
-// A frame as a browser gets it.
+// A frame as it is sent to browsers.
 struct ChannelImage {
   std::shared_ptr<const ConsoleFrame> frame;
-  std::size_t view = 0;  // 0: the camera's image, else of the description's views, from 1
+  std::size_t view = 0;  // 0: the camera's image, else index in the description's views, from 1
   SharedMessage message;
 };
 
-// What a browser has of the images: one is on its way at most.
+// The state of one browser's images. At most one image is on its way to it.
 class ImageFlow {
  public:
   bool wants_next() const { return is_wanted_ && !in_flight_ && !(held() && HasView()); }
   std::size_t view() const { return view_; }
-  // The newest frame that was sent in this view; 0: none.
+  // Sequence number of the newest frame that was sent in this view; 0: none.
   std::uint64_t seen() const { return HasView() ? frame_->sequence : 0; }
-  // No other frame than this one is wanted; null: the newest.
+  // The only frame that is wanted; null: the newest one.
   std::shared_ptr<const ConsoleFrame> held() const { return is_held_ ? frame_ : nullptr; }
   std::uint64_t count() const { return count_; }
-  // From capture until it was drawn, of the newest that was; nothing before the first.
+  // Time from capture until it was drawn, of the newest acknowledged image; nothing before the
+  // first.
   std::optional<Duration> draw_time() const { return draw_time_; }
 
-  // 'is_held': no other frame than the one that was sent last; when none was, than the next.
+  // 'is_held': only the frame that was sent last is wanted; when none was sent, the next one.
   void SetWish(bool is_wanted, std::size_t view, bool is_held);
   void Sent(const ChannelImage& image);
-  // An acknowledgement of anything but the image on its way does nothing.
+  // An acknowledgement of any image other than the one on its way has no effect.
   void Acknowledged(std::uint64_t sequence, Time now);
 
  private:
   bool HasView() const { return frame_ && frame_view_ == view_; }
 
-  std::shared_ptr<const ConsoleFrame> frame_;  // that was sent last,
-  std::optional<std::size_t> frame_view_;      // in this view; nothing: it has none any more
-  std::size_t view_ = 0;                       // that is wanted
+  std::shared_ptr<const ConsoleFrame> frame_;  // the frame that was sent last,
+  std::optional<std::size_t> frame_view_;      // and its view; nothing: the page has no picture
+  std::size_t view_ = 0;                       // the wanted view
   bool is_wanted_ = false;
   bool is_held_ = false;
   std::optional<std::uint64_t> in_flight_;
@@ -54,22 +55,22 @@ class ImageFlow {
   std::optional<Duration> draw_time_;
 };
 
-// The live image and the views of it, each made into a message once for all browsers, and only when
-// one asks for it: the length of the text (32 bits, lowest byte first), the text (FrameJson), the
-// JPEG. By the console's thread.
+// The live image and its views. Each is encoded once for all browsers, and only when one asks for
+// it. A message is the length of the text (32 bits, lowest byte first), the text (FrameJson) and
+// the JPEG. Used by the console's thread.
 class ImageChannel {
  public:
   // 'feed' outlives the channel.
   ImageChannel(ConsoleFeed* feed, int jpeg_quality, double max_rate_hz);
 
-  // By its name, empty for the camera's image; nothing when there is none of that name.
+  // Finds a view by its name, which is empty for the camera's image; nothing when there is none.
   std::optional<std::size_t> FindView(std::string_view name) const;
 
-  // What the browser wants and does not have; nothing when there is none, or before it is time for
-  // one of this view.
+  // Returns the image that the browser wants and does not have. Returns nothing when there is none,
+  // or when the time for the next image of this view has not come.
   std::optional<ChannelImage> NextFor(const ImageFlow& flow, Time now);
 
-  // How many were made into messages.
+  // Number of encoded images.
   std::uint64_t encoded() const { return encoded_; }
 
  private:
@@ -89,10 +90,10 @@ class ImageChannel {
   ConsoleFeed* feed_;
   JpegEncoder encoder_;
   Duration min_interval_;
-  std::vector<Stream> streams_;  // of each view
-  // The newest frame that was encoded; a copy, as the camera's memory is soon wanted again.
+  std::vector<Stream> streams_;  // one for each view
+  // The newest frame that was encoded. It is a copy, as the camera soon reuses the frame's memory.
   std::shared_ptr<const ConsoleFrame> kept_;
-  std::optional<Time> held_at_;  // when a held frame was encoded
+  std::optional<Time> held_at_;  // time at which a held frame was encoded
   std::uint64_t encoded_ = 0;
 };
 

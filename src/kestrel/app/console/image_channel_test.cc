@@ -21,7 +21,7 @@ ConsoleFrame GrayFrame(Time time, int value) {
   return frame;
 }
 
-// A browser that wants images in a view, and has drawn all that it got.
+// A browser that wants images of a view, and has drawn all that it got.
 ImageFlow Wanting(std::size_t view = 0, bool is_held = false) {
   ImageFlow flow;
   flow.SetWish(true, view, is_held);

@@ -20,7 +20,7 @@ std::string KeptFrames::Keep(const cv::Mat& image, Time captured) {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (error) throw InputError(folder_.string() + ": cannot be made: " + error.message());
-  // In the order of the numbers, when they are read as a folder.
+  // The file names sort in the order of the numbers when they are read as a folder.
   const std::string file =
       (folder_ / fmt::format("{:02}_{}.png", files_.size() + 1, ToNanoseconds(captured))).string();
   WriteImage(file, image);

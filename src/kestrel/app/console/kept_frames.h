@@ -13,21 +13,21 @@
 
 namespace kestrel {
 
-// Frames of a live camera that a user keeps, to teach colours by: images in a folder, which
-// `kestrel console` opens as any other folder of images. By one thread.
+// Frames of a live camera that a user keeps to teach colours: image files in a folder, which
+// `kestrel console` opens like any other folder of images. Call it from one thread.
 class KeptFrames {
  public:
   static constexpr std::size_t kMost = MarkedPixels::kMaxFrames;
 
-  // 'folder' does not exist; it is made with the first frame.
+  // 'folder' must not exist yet; it is created with the first frame.
   explicit KeptFrames(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  // Keeps the image as it is, CV_8UC3, with the time of its capture in its name. Returns what was
-  // done, in words. Throws InputError when that cannot be done, or there are kMost already: none is
-  // ever replaced.
+  // Saves the image (CV_8UC3) unchanged, with the time of its capture in its file name. Returns a
+  // sentence that says what was done. Throws InputError when it cannot be saved, or when there are
+  // kMost frames already: frames are never replaced.
   std::string Keep(const cv::Mat& image, Time captured);
 
-  // The frame, by its number from 0. Throws InputError when it cannot be read.
+  // Reads a frame by its index, from 0. Throws InputError when it cannot be read.
   cv::Mat Read(std::size_t frame) const;
 
  private:

@@ -23,7 +23,7 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int kPiecesPerCircle = 64;
 constexpr double kSigmas = 2;
 
-// The image of a closed curve, given by its points in the camera frame for angles 0 to 2 pi.
+// The image of a closed curve. 'curve' gives its points in the camera frame for angles 0 to 2 pi.
 std::vector<cv::Point2f> Outline(const CameraModel& camera,
                                  const std::function<Eigen::Vector3d(double)>& curve) {
   std::vector<cv::Point2f> outline;
@@ -36,7 +36,7 @@ std::vector<cv::Point2f> Outline(const CameraModel& camera,
   return outline;
 }
 
-// The same of a circle around the pattern's centre where it is seen.
+// The image of a circle around the pattern's centre, where the pattern is seen.
 std::vector<cv::Point2f> SeenOutline(const CameraModel& camera, const LandingPattern& pattern,
                                      const SeenPrint& seen, double radius_m) {
   const PlaneWarp warp = seen.Warp(camera, pattern.outer_radius_m());

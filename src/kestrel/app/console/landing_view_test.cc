@@ -62,7 +62,7 @@ TEST(LandingViewTest, TheTracksEllipseLiesWhereTheRingIs) {
   EXPECT_EQ(shapes[1].layer, OverlayLayer::kDetection);
   EXPECT_NEAR(cv::norm(Middle(shapes[0]) - Middle(shapes[1])), 0, 2);
   EXPECT_GT(Middle(shapes[1]).x, PaperCamera().cx_px + 20) << "east is right";
-  // Two deviations of 0.5 m to either side, and of 0.1 m; the ring is 1 m wide.
+  // Two standard deviations of 0.5 m and 0.1 m to either side; the ring is 1 m wide.
   EXPECT_NEAR(Width(shapes[0], false) / Width(shapes[1], false), 2, 0.1);
   EXPECT_NEAR(Width(shapes[0], true) / Width(shapes[1], true), 0.4, 0.05);
 }

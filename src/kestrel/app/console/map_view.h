@@ -9,8 +9,7 @@
 
 namespace kestrel {
 
-// Puts the camera on the map, if it is known where it was; its heading is that of the image's upper
-// edge.
+// Puts the camera on the map if its pose is known. The heading is that of the image's upper edge.
 inline void PlaceUav(const std::optional<RigidTransform>& world_from_camera, ConsoleMap* map) {
   if (!world_from_camera) return;
   map->uav = world_from_camera->translation.head<2>();

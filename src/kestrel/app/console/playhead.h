@@ -9,23 +9,24 @@
 
 namespace kestrel {
 
-// Where a recording is, and how fast it plays.
+// Position in a recording and speed of play.
 class Playhead {
  public:
-  // 'times': of each frame since the first, in order; at least one.
+  // 'times': time of each frame since the first, in order; at least one.
   explicit Playhead(std::vector<Duration> times) : times_(std::move(times)) {}
 
   std::size_t frame() const { return frame_; }
   double speed() const { return speed_; }
 
-  // At so many times the speed, 0: hold, negative: backwards; forward from the end it begins anew.
+  // 'speed': factor of real time; 0: hold, negative: backwards. At the end, forward play starts
+  // anew.
   void Play(double speed);
   void Hold() { speed_ = 0; }
-  // To the frame that is nearest to so many seconds after the first.
+  // Goes to the frame nearest to this time after the first.
   void Seek(double seconds) { GoTo(NearestFrame(seconds)); }
-  // So many frames forward, no further than to the ends; holds.
+  // Goes forward by this number of frames, at most to the ends, and holds.
   void Step(double frames);
-  // So much time has gone by. At the ends it holds. True: frame or speed are others.
+  // Advances by the elapsed time; holds at the ends. Returns true when frame or speed have changed.
   bool Advance(Duration elapsed);
 
  private:
@@ -35,7 +36,7 @@ class Playhead {
 
   std::vector<Duration> times_;
   std::size_t frame_ = 0;
-  double position_s_ = 0;  // since the first frame
+  double position_s_ = 0;  // time since the first frame
   double speed_ = 0;
 };
 

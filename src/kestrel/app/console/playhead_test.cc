@@ -8,7 +8,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Two frames 100 ms apart, one a second later.
+// Two frames 100 ms apart, and one a second later.
 Playhead ThreeFrames() { return Playhead({0ms, 100ms, 1100ms}); }
 
 TEST(PlayheadTest, SeeksTheNearestFrame) {

@@ -13,9 +13,9 @@
 namespace kestrel {
 namespace {
 
-// How often is looked for what users ask, and the fastest that pictures change.
+// Interval of the checks for requests, and the shortest between two pictures.
 constexpr Duration kLookInterval = std::chrono::milliseconds(20);
-// How often the page is told how far a second run is.
+// Interval of the reports on a second run's progress.
 constexpr Duration kTellInterval = std::chrono::milliseconds(250);
 
 std::vector<SeriesDescription> ReplaySeries(const ReplaySubject& subject) {
@@ -31,7 +31,7 @@ std::vector<OverlayLayer> ReplayLayers(const ReplaySubject& subject) {
   return layers;
 }
 
-// Frames per second from one frame to another.
+// Frames per second between two frames.
 double RateOf(const ReplayResult& run, std::size_t first, std::size_t last) {
   const Duration time = run.frames[last].time - run.frames[first].time;
   return time > Duration::zero() ? static_cast<double>(last - first) / ToSeconds(time) : 1;
@@ -75,7 +75,7 @@ void ReplayConsole::Play(ReplayResult first, Recording recording,
     if (calibration_) calibration_->Follow();
     if (const auto pending = feed_.TakeExport()) AnswerExport(*pending);
     const Time now = Now();
-    // With nobody there to see it the recording waits.
+    // The recording waits while nobody looks.
     if (feed_.IsWatched() && playhead_->Advance(now - last)) is_shown_ = false;
     last = now;
     if (!is_shown_) ShowFrame();
@@ -86,7 +86,7 @@ void ReplayConsole::Play(ReplayResult first, Recording recording,
 void ReplayConsole::Obey(const ConsoleCommand& command) {
   switch (command.kind) {
     case ConsoleCommandKind::kPlay:
-      is_shown_ = false;  // the speed is told with the frame
+      is_shown_ = false;  // the speed is sent with the frame
       return playhead_->Play(command.value);
     case ConsoleCommandKind::kSeek:
       is_shown_ = false;
@@ -157,7 +157,7 @@ void ReplayConsole::ShowFrame() {
   picture_.shapes = ShapesOf(*first_, second_.get(), index);
   try {
     picture_.image = read_(index);
-  } catch (const InputError& error) {  // its file is gone
+  } catch (const InputError& error) {  // the image's file is gone
     playhead_->Hold();
     feed_.Add(SessionEvent{picture_.captured, EventLevel::kError, error.what()});
     return;
@@ -165,7 +165,7 @@ void ReplayConsole::ShowFrame() {
   feed_.SetFrame(&picture_);
 }
 
-// All that goes with the picture.
+// Sends everything that belongs to the picture.
 void ReplayConsole::TellFrame() {
   const std::size_t index = playhead_->frame();
   const ReplayFrame& frame = first_->frames[index];
@@ -192,9 +192,9 @@ void ReplayConsole::AnswerExport(const PendingExport& pending) {
   pending.answer(MakeExport(request));
 }
 
-// Without content where there is none.
+// Returns an answer without content when there is no such file.
 ExportAnswer ReplayConsole::MakeExport(const ExportRequest& request) const {
-  if (IsOfColors(request)) return {};  // there are none: else that page would answer
+  if (IsOfColors(request)) return {};  // without colours; otherwise the page of colours answers
   if (request.kind == ExportRequest::Kind::kDetections) {
     const std::string table = request.number == 1 ? first_->table : second_ ? second_->table : "";
     return {table, "text/csv; charset=utf-8", fmt::format("detections-{}.csv", request.number)};
@@ -211,12 +211,12 @@ ExportAnswer ReplayConsole::MakeExport(const ExportRequest& request) const {
     if (!has_shapes) return {EncodePng(image), "image/png", name};
     return {EncodePng(WithShapes(image, ShapesOf(*first_, second_.get(), request.number))),
             "image/png", name};
-  } catch (const InputError&) {  // its file is gone
+  } catch (const InputError&) {  // the image's file is gone
     return {};
   }
 }
 
-// Of what both runs have found by now.
+// A clip with what both runs have found so far.
 Clip ReplayConsole::ClipOf(const ExportRequest& request) const {
   const bool has_shapes = request.kind == ExportRequest::Kind::kOverlaysClip;
   const auto start = [open = recording_.open, first = first_, second = second_, has_shapes,

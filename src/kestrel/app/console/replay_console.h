@@ -21,45 +21,45 @@
 
 namespace kestrel {
 
-// What a recording is searched for, as far as the page is concerned.
+// The page's description of what a recording is searched for.
 struct ReplaySubject {
-  std::vector<SeriesDescription> series;  // what the frames' samples hold
-  std::vector<OverlayLayer> layers;       // of the shapes that there can be
-  std::vector<ImageView> views;           // of the image
-  ConsoleOptionList options;              // that the page may change, as of the first run
-  bool has_truth = false;                 // errors are known
+  std::vector<SeriesDescription> series;  // values of the frames' samples
+  std::vector<OverlayLayer> layers;       // layers that the shapes can have
+  std::vector<ImageView> views;           // views beside the camera's image
+  ConsoleOptionList options;  // options that the page may change, with the first run's values
+  bool has_truth = false;     // the errors of the detections are known
 };
 
-// A recording on the page: a timeline, and any frame of it with what was found, by one run of the
-// detector or by two with different options.
+// A recording on the page: a timeline and any of its frames with the findings of one run of the
+// detector, or of two runs with different options.
 class ReplayConsole {
  public:
-  // Gives the image of a frame by its number. Throws InputError when it cannot.
+  // Returns the image of a frame by its index. Throws InputError when it cannot be read.
   using ReadFrame = std::function<cv::Mat(std::size_t frame)>;
-  // What the page takes from the recording.
+  // Access to the recording.
   struct Recording {
-    // Opens it; by any thread.
+    // Opens the recording. Any thread.
     std::function<ReadFrame()> open;
-    // Gives what runs the detector over it once more with these settings. Throws InputError for
-    // settings that are not valid.
+    // Returns a job that runs the detector over the recording with these settings. Throws
+    // InputError for settings that are not valid.
     std::function<SecondRun::Job(const std::vector<std::string>& settings)> detect;
   };
 
-  // Serves from now on. Throws InputError as WebServer does. 'colors': what colours are taught by,
-  // when the recording has any.
+  // Starts the server. Throws InputError as WebServer does. 'colors': source for the page of
+  // colours, if the recording has colours to teach.
   ReplayConsole(const ConsoleOptions& options, const std::string& title, ReplaySubject subject,
                 std::optional<ColorSource> colors = std::nullopt);
 
   std::string url() const { return server_.url(); }
 
-  // What is done before there is something to play, in words.
+  // Shows the progress in words before there is anything to play.
   void SetProgress(const std::string& text) { feed_.Add(ConsoleStatus{"detecting", text, false}); }
 
-  // The page calibrates by these. Before Play.
+  // Gives the page the tools to calibrate. Call it before Play.
   void OfferCalibration(CalibrationPage::Tools tools) { tools_ = std::move(tools); }
 
-  // Plays what the first run came to, at least one frame, as the users ask, until 'is_stopped',
-  // which is asked often. Once only.
+  // Plays the result of the first run (at least one frame) as the users ask, until 'is_stopped'
+  // returns true; it is called often. Call Play once only.
   void Play(ReplayResult first, Recording recording, const std::function<bool()>& is_stopped);
 
  private:
@@ -74,7 +74,7 @@ class ReplayConsole {
   ExportAnswer MakeExport(const ExportRequest& request) const;
   Clip ClipOf(const ExportRequest& request) const;
   void SendTimeline();
-  // Since the first.
+  // Returns the times since the first frame.
   std::vector<Duration> FrameTimes() const;
 
   ReplaySubject subject_;
@@ -83,10 +83,10 @@ class ReplayConsole {
   std::optional<ColorPage> colors_;
   Recording recording_;
   ReadFrame read_;
-  // The second when it is done. A clip that is made keeps what it shows.
+  // second_ is null until the second run is done. A clip in the making shares ownership of its run.
   std::shared_ptr<const ReplayResult> first_, second_;
-  std::vector<std::string> settings_;  // of the second run
-  Time told_{};                        // how far it is
+  std::vector<std::string> settings_;  // settings of the second run
+  Time told_{};                        // time of the last report of its progress
   ConsoleFrame picture_;
   std::optional<Playhead> playhead_;
   bool is_shown_ = false;

@@ -86,7 +86,7 @@ class ReplayConsoleTest : public testing::Test {
     read_ = frame;
     return cv::Mat(240, 376, CV_8UC1, cv::Scalar(static_cast<double>(frame)));
   }
-  // The next report of the second run that is in this state; null: there is none.
+  // The next report of the second run with this state; null: there is none.
   static nlohmann::json NextSecond(TestSocket* socket, const std::string& state) {
     while (const auto second = socket->Next("second")) {
       if ((*second)["state"] == state) return *second;
@@ -97,7 +97,7 @@ class ReplayConsoleTest : public testing::Test {
     const std::string url = console_.url();
     return std::stoi(url.substr(url.rfind(':') + 1));
   }
-  // Reads until the page is told that it is at this frame with this speed; false when it is not.
+  // Reads until the page is told this frame with this speed; false when it is not.
   static bool IsTold(TestSocket* socket, std::size_t frame, double speed) {
     while (const auto playback = socket->Next("playback")) {
       if ((*playback)["frame"] == frame && (*playback)["speed"] == speed) return true;
@@ -126,7 +126,7 @@ TEST_F(ReplayConsoleTest, SeeksStepsAndPlays) {
   EXPECT_TRUE(IsTold(&socket, 0, 0));
   socket.Send(R"({"command": "step", "value": 1e300})");
   EXPECT_TRUE(IsTold(&socket, kFrames - 1, 0));
-  // From the end it plays from the beginning, and holds at the end.
+  // Play at the end starts from the beginning, and holds at the end.
   socket.Send(R"({"command": "play", "value": 0.001})");
   EXPECT_TRUE(IsTold(&socket, 0, 0.001));
   socket.Send(R"({"command": "play", "value": 10})");
@@ -145,8 +145,8 @@ TEST_F(ReplayConsoleTest, DetectsAgainWithOtherOptions) {
   ASSERT_TRUE(second.is_object());
   EXPECT_EQ(second["marks"], "ffffffffff----------");
   EXPECT_EQ(second["settings"][0], "landing.hint_age_s=1");
-  // What was found is drawn beside what the first run found, which is nothing here. The picture
-  // before the second run's may still be on its way.
+  // The findings are drawn beside those of the first run, which has none here. A picture from
+  // before the second run may still be on its way.
   nlohmann::json shapes;
   while (shapes.empty()) {
     socket.Send(R"({"images": true})");
@@ -208,7 +208,7 @@ TEST_F(ReplayConsoleTest, GivesAClipAway) {
   }
   EXPECT_EQ(frames, 6);
   EXPECT_NEAR(video->rate_hz(), 10, 0.1);
-  // The connection goes on; of a clip that ends after the recording there is none.
+  // The connection goes on; there is no clip that ends after the recording.
   EXPECT_EQ(browser.Send(browser.Get("/export/frame-1.png")).result_int(), 200u);
   EXPECT_EQ(browser.Send(browser.Get("/export/clip-3-20.mp4")).result_int(), 404u);
 }
@@ -252,7 +252,7 @@ TEST_F(ReplayConsoleTest, ExportsAreForThisPageOnly) {
     TestBrowser browser(port());
     EXPECT_EQ(browser.Send(browser.Get(path)).result_int(), 404u) << path;
   }
-  // A link on another site is let in to the page, not to this.
+  // A link on another site may open the page, but not this.
   TestBrowser stranger(port());
   auto request = stranger.Get("/export/frame-1.png");
   request.set("Sec-Fetch-Site", "cross-site");
@@ -276,7 +276,7 @@ TEST_F(ReplayConsoleTest, ASecondRunIsCancelledWhileThePagePlaysOn) {
   EXPECT_TRUE(IsTold(&socket, 3, 0));
   socket.Send(R"({"command": "cancel"})");
   EXPECT_TRUE(NextSecond(&socket, "cancelled").is_object());
-  // One that is under way makes room for the next.
+  // A run in progress makes way for the next.
   socket.Send(R"({"command": "detect", "settings": ["landing.hint_age_s=8"]})");
   EXPECT_TRUE(NextSecond(&socket, "running").is_object());
   socket.Send(R"({"command": "detect", "settings": []})");

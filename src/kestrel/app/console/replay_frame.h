@@ -12,11 +12,11 @@
 
 namespace kestrel {
 
-// A frame of a recording as the page shows it, whatever was looked for in it.
+// A frame of a recording as the page shows it, for landings and hunts alike.
 struct ReplayFrame {
   Time time;
   FrameMark mark = FrameMark::kNothing;
-  std::optional<double> error_px;  // of a detected centre, where the truth is known
+  std::optional<double> error_px;  // error of the detected centre, where the truth is known
   ConsoleSample sample;
   ConsoleStatus status;
   ConsoleMap map;
@@ -24,29 +24,29 @@ struct ReplayFrame {
   std::vector<ConsoleFact> facts;
 };
 
-// Marked without the truth: as found where the pattern, or any object, was; as false where the
-// track does not take it.
+// Makes a frame without using the truth. Its mark is kFound when the pattern, or any object, was
+// found, and kFalse when the track rejects the pattern.
 ReplayFrame ReplayFrameOf(const LandingView& view, const LandingObservation& observation);
 ReplayFrame ReplayFrameOf(const HuntView& view, const HuntObservation& observation);
 
-// What the map of a hunt has from then on.
+// An object of a hunt's map and the time at which the map gets it.
 struct MapEntry {
   Time since;
   ConsoleMapObject object;
 };
 
-// What a run over a recording came to: all frames, in order of time.
+// Result of a run over a recording: all frames in order of time.
 struct ReplayResult {
   std::vector<ReplayFrame> frames;
-  std::string table;  // as the command writes landing_detections.csv or object_detections.csv
+  std::string table;  // text of landing_detections.csv or object_detections.csv
   std::vector<MapEntry> map;
 };
 
-// The shapes of a frame, by both runs; 'second' is null where there is one only.
+// Returns the shapes of a frame by both runs; 'second' is null when there is only one run.
 std::vector<OverlayShape> ShapesOf(const ReplayResult& first, const ReplayResult* second,
                                    std::size_t frame);
 
-// Marks as lost what is between two frames with the pattern and has no mark.
+// Marks as lost all unmarked frames between the first and the last frame with a mark.
 void MarkLost(std::vector<ReplayFrame>* frames);
 
 }  // namespace kestrel

@@ -15,7 +15,7 @@
 namespace kestrel {
 namespace {
 
-// What a pipeline's options are called in `kestrel config`, and those that may be changed.
+// The prefix of a pipeline's options in `kestrel config`, and the options that may be changed.
 struct OfferedOptions {
   std::string_view prefix;
   std::span<const std::string_view> names;

@@ -10,13 +10,14 @@
 
 namespace kestrel {
 
-// The options that the page of a recording may change: none of them costs memory, or more time than
-// the others leave. With their values, by the names of `kestrel config`.
+// Returns the options that the page of a recording may change, with their values and the names of
+// `kestrel config`. They are limited to options that cost no memory and little time.
 ConsoleOptionList ReplayOptions(const LandingPipelineOptions& options);
 ConsoleOptionList ReplayOptions(const HuntPipelineOptions& options);
 
-// The options changed by settings, as "landing.still=true" or "hunt.still=true". Throw InputError
-// for one that is none of those above or is malformed, and when the result is not valid.
+// Returns the options changed by settings such as "landing.still=true" or "hunt.still=true". Throws
+// InputError for a setting that the page may not change or that is malformed, and when the result
+// is not valid.
 LandingPipelineOptions WithSettings(LandingPipelineOptions options,
                                     const std::vector<std::string>& settings);
 HuntPipelineOptions WithSettings(HuntPipelineOptions options,

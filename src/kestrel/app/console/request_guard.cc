@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kTokenQuery = "?token=";
 
-// In a time that does not tell how much of it is right.
+// Compares in a time that does not reveal how many characters are right.
 bool IsSame(std::string_view given, std::string_view secret) {
   if (given.size() != secret.size()) return false;
   unsigned difference = 0;
@@ -60,8 +60,9 @@ Admission RequestGuard::Admit(const RequestHead& head) const {
   return has_token ? Admission::kSignedIn : Admission::kNoToken;
 }
 
-// A viewer only looks. One without an origin is no page: a browser says it with every web socket.
-// The cookie does not come with what another site's page asks: the token is in the address.
+// A viewer can only look. A client without an origin is not a page, as browsers always send it with
+// a WebSocket. Requests of other sites' pages come without the cookie; they have the token in the
+// address.
 Admission RequestGuard::AdmitViewer(const RequestHead& head) const {
   const bool is_listed = !head.origin || std::find(viewer_origins_.begin(), viewer_origins_.end(),
                                                    *head.origin) != viewer_origins_.end();
@@ -75,7 +76,7 @@ bool RequestGuard::HasToken(std::string_view target) const {
   return query.starts_with(kTokenQuery) && IsSame(query.substr(kTokenQuery.size()), token_);
 }
 
-// The port is not compared: through a tunnel it is another. An address cannot be rebound, a name
+// The port is not compared, as it differs through a tunnel. Addresses cannot be rebound, but names
 // can.
 bool RequestGuard::IsOwnHost(std::string_view host) const {
   const std::string name = NameOf(host);
@@ -87,13 +88,13 @@ bool RequestGuard::IsOwnHost(std::string_view host) const {
 }
 
 bool RequestGuard::IsForeign(const RequestHead& head) const {
-  // A link on another site may lead here; what comes of it is this site's page.
+  // A link on another site may lead here: the result is this site's page.
   const bool is_navigation = head.fetch_mode == "navigate" && !head.is_web_socket;
   if (head.fetch_site && *head.fetch_site != "same-origin" && *head.fetch_site != "none" &&
       !is_navigation) {
     return true;
   }
-  if (!head.origin) return head.is_web_socket;  // a browser says it with every web socket
+  if (!head.origin) return head.is_web_socket;  // browsers send it with every WebSocket
   return *head.origin != fmt::format("http://{}", head.host) &&
          *head.origin != fmt::format("https://{}", head.host);
 }

@@ -10,14 +10,14 @@
 
 namespace kestrel {
 
-// Where viewers that speak Foxglove's protocol connect.
+// Path to which viewers connect that speak Foxglove's protocol.
 inline constexpr std::string_view kViewerPath = "/foxglove";
 
-// The part of an HTTP request that says whose it is.
+// The parts of an HTTP request that tell who sends it.
 struct RequestHead {
-  std::string_view target = {};                 // path and query
-  std::string_view host = {};                   // as "localhost:8080"
-  std::optional<std::string_view> origin = {};  // of the page that asks, where a browser says it
+  std::string_view target = {};                     // path and query
+  std::string_view host = {};                       // as "localhost:8080"
+  std::optional<std::string_view> origin = {};      // of the page that asks, if a browser says it
   std::optional<std::string_view> fetch_site = {};  // Sec-Fetch-Site
   std::optional<std::string_view> fetch_mode = {};  // Sec-Fetch-Mode
   std::string_view cookies = {};
@@ -26,23 +26,23 @@ struct RequestHead {
 
 enum class Admission {
   kServed,
-  kSignedIn,      // the token was in the address: a cookie takes its place
+  kSignedIn,      // the token was in the address; a cookie replaces it
   kNoToken,       // neither cookie nor token, or a wrong one
-  kWrongHost,     // a name that is not this computer's: DNS rebinding
-  kForeignOrigin  // another site's page asks
+  kWrongHost,     // a host name that is not this computer's: DNS rebinding
+  kForeignOrigin  // a page of another site asks
 };
 
-// Who may speak to the console. A browser sends requests in its user's name for whatever page is
-// open in it, so that neither the loopback address nor a firewall says who asks.
+// Decides who may use the console. A browser sends requests on behalf of any page that is open in
+// it; therefore neither the loopback address nor a firewall identifies the sender.
 class RequestGuard {
  public:
-  // 'options' are valid. 'port': the one that is served, whose cookie is told from those of other
-  // servers on this computer by it.
+  // 'options' are valid. 'port': port of this server. The cookie's name contains it, so that the
+  // cookies of several servers on this computer differ.
   RequestGuard(const ConsoleOptions& options, int port);
 
   Admission Admit(const RequestHead& head) const;
 
-  // What Set-Cookie says to who has signed in.
+  // Returns the value of Set-Cookie for a browser that has signed in.
   std::string CookieHeader() const;
 
  private:

@@ -6,7 +6,7 @@
 
 namespace kestrel {
 
-// A run over a recording beside the replay.
+// A second run over a recording, in the background of the replay.
 using SecondRun = BackgroundRun<ReplayResult>;
 
 }  // namespace kestrel

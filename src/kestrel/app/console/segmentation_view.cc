@@ -8,10 +8,10 @@
 namespace kestrel {
 namespace {
 
-// How bright is left of what has no colour, and of what may be a part of one.
+// Brightness of background pixels and of ambiguous ones, relative to the image's.
 constexpr double kBackgroundLight = 0.3, kAmbiguousLight = 0.6;
 
-// The heaviest component's, as bright as it gets.
+// The colour of the heaviest component at full brightness.
 cv::Vec3b ShownColor(const ColorMixture& color) {
   const auto heaviest = std::max_element(
       color.components.begin(), color.components.end(),
@@ -23,7 +23,7 @@ cv::Vec3b ShownColor(const ColorMixture& color) {
   return 255 * bgr.at<cv::Vec3f>(0, 0);
 }
 
-// As the detector, which looks for the white digit of a cuboid.
+// True when the detector looks for the white digit of a cuboid of this colour.
 bool HasDigit(const ObjectModel& model, std::size_t color) {
   return std::any_of(model.classes.begin(), model.classes.end(), [&](const ObjectClass& object) {
     return object.color == color && object.shape == ObjectShape::kCuboid;

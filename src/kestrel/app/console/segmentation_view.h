@@ -13,16 +13,16 @@
 
 namespace kestrel {
 
-// What the object detector takes the pixels for, as a picture. By one thread.
+// Draws how the object detector segments an image. Call it from one thread.
 class SegmentationView {
  public:
   // Model and options are valid.
   SegmentationView(const ObjectModel& model, const ObjectDetectorOptions& options);
 
-  // As large as 'image', CV_8UC3 (BGR), and of that type. In their colour, which is the brightest
-  // of that hue: the segments that the detector tests; half as bright: pixels of that colour in
-  // none of them, which are too few; else the image in gray, dark, and less so where a pixel is
-  // ambiguous. Empty for any other image.
+  // Returns a picture of the size of 'image', both CV_8UC3 (BGR). Segments that the detector tests
+  // have their colour at full brightness; pixels with a label that are in no segment, or in one
+  // that is too small, have half of it. Ambiguous pixels are dimmed gray, background pixels darker
+  // gray. Empty for any other image.
   cv::Mat Draw(const cv::Mat& image);
 
  private:
@@ -33,7 +33,7 @@ class SegmentationView {
   ColorGrid grid_;
   std::size_t min_pixels_;
   SegmentationWorkspace workspace_;
-  std::vector<cv::Vec3b> colors_;  // of the labels from 1
+  std::vector<cv::Vec3b> colors_;  // colours of the labels from 1
 };
 
 }  // namespace kestrel

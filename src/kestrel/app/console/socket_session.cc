@@ -35,7 +35,7 @@ bool SocketSession::Take(std::string_view text, bool is_text, Time now) {
 
 void SocketSession::SendNext() {
   if (!is_free()) return;
-  // In turn, so that neither keeps the other back where the link is slow.
+  // Images and messages alternate, so that neither delays the other on a slow link.
   const auto send_image = [this] {
     const auto image = hub().images().NextFor(images_, Now());
     if (!image) return false;

@@ -6,7 +6,7 @@
 
 namespace kestrel {
 
-// A browser that shows the page, by its WebSocket.
+// The WebSocket of a browser that shows the page.
 class SocketSession final : public ConsoleClient, public WebSocket {
  public:
   SocketSession(boost::beast::tcp_stream stream, ConsoleHub* hub, std::shared_ptr<void> slot);

@@ -9,10 +9,10 @@
 
 namespace kestrel {
 
-// A message as it goes out, shared by all clients that it goes to.
+// A message as it is sent, shared by all clients that get it.
 using SharedMessage = std::shared_ptr<const std::string>;
 
-// The messages that wait for one client: when there are too many the oldest goes. By one thread.
+// The queue of messages for one client. When it is full the oldest is dropped. Used by one thread.
 class TelemetryChannel {
  public:
   // 'capacity': at least 1.
@@ -26,7 +26,7 @@ class TelemetryChannel {
     waiting_.push_back(std::move(message));
   }
 
-  // The oldest one; null when there is none.
+  // Returns the oldest message; null when there is none.
   SharedMessage Pop() {
     if (waiting_.empty()) return nullptr;
     SharedMessage message = std::move(waiting_.front());
@@ -34,7 +34,7 @@ class TelemetryChannel {
     return message;
   }
 
-  // How many made room for others.
+  // Number of dropped messages.
   std::uint64_t dropped() const { return dropped_; }
 
  private:

@@ -5,11 +5,11 @@
 
 namespace kestrel {
 
-// A folder of its own where temporary files go (TMPDIR, else /tmp), which is removed with what is
-// in it.
+// A new folder for temporary files in TMPDIR, or in /tmp when that is not set. The destructor
+// removes it with its content.
 class TemporaryFolder {
  public:
-  // Throws InputError when it cannot be made.
+  // Throws InputError when the folder cannot be created.
   TemporaryFolder();
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;

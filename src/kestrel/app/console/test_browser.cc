@@ -25,7 +25,7 @@ tcp::endpoint Loopback(int port) {
   return {boost::asio::ip::make_address("127.0.0.1"), static_cast<unsigned short>(port)};
 }
 
-// What an image's message begins with.
+// The text at the beginning of an image's message.
 nlohmann::json HeaderOf(const std::string& message) {
   std::size_t size = 0;
   for (int i = 0; i < 4; ++i) {

@@ -30,7 +30,7 @@ inline ConsoleOptions AnyPort(const std::string& token = "") {
   return options;
 }
 
-// Whether the condition holds before long.
+// Returns true as soon as the condition holds; false when it still does not after 10 s.
 template <class Condition>
 bool Eventually(Condition condition) {
   for (int i = 0; i < 1000; ++i) {
@@ -40,7 +40,7 @@ bool Eventually(Condition condition) {
   return false;
 }
 
-// Asks a server on this computer, as a browser or as somebody who is none.
+// Sends requests to a server on this computer, as a browser or as any other program.
 class TestBrowser {
  public:
   explicit TestBrowser(int port);
@@ -48,13 +48,13 @@ class TestBrowser {
 
   test_browser::Request Get(const std::string& target) const;
 
-  // Without waiting for the answer.
+  // Sends a request without waiting for the answer.
   void Ask(const test_browser::Request& request);
-  // The answer; status 0 when the connection ends without one.
+  // Sends a request and returns the answer; status 0 when the connection ends without one.
   test_browser::Response Send(const test_browser::Request& request);
-  // The same for bytes after which no more come.
+  // Sends bytes, ends the sending side, and returns the answer as Send does.
   test_browser::Response SendBytes(const std::string& bytes);
-  // The next answer, as above.
+  // Returns the next answer, as Send does.
   test_browser::Response ReadResponse();
 
  private:
@@ -64,31 +64,31 @@ class TestBrowser {
   std::unique_ptr<Line> line_;
 };
 
-// The page's WebSocket.
+// The page's WebSocket, from the browser's side.
 class TestSocket {
  public:
-  // 'origin', 'cookie', 'subprotocol': empty: none.
+  // 'origin', 'cookie', 'subprotocol': none when empty.
   TestSocket(int port, const std::string& origin, const std::string& cookie = "",
              const std::string& target = "/live", const std::string& subprotocol = "");
   explicit TestSocket(int port);
   ~TestSocket();
 
-  // Whether the server has let it in.
+  // True when the server has accepted it.
   bool is_open() const { return is_open_; }
-  // That the server has chosen.
+  // The subprotocol that the server has chosen.
   const std::string& subprotocol() const { return subprotocol_; }
-  // Whether the last message that was read is text.
+  // True when the last message that was read is text.
   bool is_text() const { return is_text_; }
 
   void Send(const std::string& text, bool is_text = true);
 
-  // The next message; nothing when the connection has ended, or nothing came for a long time.
+  // Returns the next message; nothing when the connection has ended or no message comes for long.
   std::optional<std::string> Read();
 
-  // The next message of a kind; images are "image". Nothing when the connection has ended.
+  // Returns the next message of a kind; images are "image". Nothing when the connection has ended.
   std::optional<nlohmann::json> Next(const std::string& kind);
 
-  // Ends the connection; Read in another thread then returns.
+  // Ends the connection; a Read in another thread then returns.
   void Shutdown();
 
   // Reads until the connection ends.

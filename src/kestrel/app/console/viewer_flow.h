@@ -15,35 +15,35 @@
 
 namespace kestrel {
 
-// A message on its way to a viewer: its head, which is of this viewer alone, and what all viewers
-// share, null where that is nothing.
+// A message on its way to a viewer: a head for this viewer only, and content that all viewers
+// share; null when there is none.
 struct ViewerMessage {
   std::string head;
   std::shared_ptr<const std::string> content;
   bool is_text = false;
 };
 
-// What one viewer has subscribed to, and what waits for it. Of images only the newest waits, and
-// only until there is nothing else; of all else the oldest goes when there is too much. By one
-// thread.
+// The subscriptions of one viewer and its queue of messages. Of each image channel only the newest
+// image waits, and it is sent only when no other message waits. When the queue of other messages is
+// full the oldest is dropped. Used by one thread.
 class ViewerFlow {
  public:
-  // 'capacity': of messages that wait, at least 1. 'channels' outlive this.
+  // 'capacity': length of the queue, at least 1. 'channels' outlive this.
   ViewerFlow(const std::vector<LiveChannel>* channels, std::size_t capacity);
 
-  // Takes what the viewer has sent. What cannot be done is said to it.
+  // Executes a viewer's request. The viewer is told what cannot be done.
   void Take(const ViewerRequest& request);
 
-  // A bit for each channel that it has subscribed to.
+  // Returns one bit for each channel with a subscription.
   std::uint64_t wanted() const;
 
-  // Takes a message that the viewer has subscribed to; any other is none of its business.
+  // Queues a message if the viewer has subscribed to its channel; otherwise does nothing.
   void Offer(const ChannelMessage& message);
   void Say(std::string text);  // JSON
-  // Says how many messages were left out since it was said the last time, if any were.
+  // Tells the viewer how many messages were dropped since the last report, if any.
   void SayLosses();
 
-  // What is to be sent next; nothing when nothing waits.
+  // Returns the message to be sent next; nothing when none waits.
   std::optional<ViewerMessage> Pop();
 
  private:
@@ -54,15 +54,16 @@ class ViewerFlow {
 
   const std::vector<LiveChannel>* channels_;
   std::size_t capacity_;
-  std::map<std::size_t, std::uint32_t> ids_;  // of subscriptions, by channel
+  std::map<std::size_t, std::uint32_t> ids_;  // ids of subscriptions, by channel
   std::deque<ViewerMessage> waiting_;
   std::map<std::size_t, ChannelMessage> images_;  // by channel
   std::uint64_t lost_messages_ = 0, lost_images_ = 0;
 };
 
-// What a viewer is told first: {"op": "serverInfo", ...}. 'session': of this run of the program.
+// The first message to a viewer: {"op": "serverInfo", ...}. 'session': id of this run of the
+// program.
 std::string ServerInfoJson(const std::string& name, const std::string& session);
-// {"op": "advertise", ...}: a channel's number is its place in the list.
+// Returns {"op": "advertise", ...}. A channel's id is its index in the list.
 std::string AdvertiseJson(const std::vector<LiveChannel>& channels);
 
 }  // namespace kestrel

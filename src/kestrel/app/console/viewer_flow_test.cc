@@ -30,7 +30,7 @@ class ViewerFlowTest : public testing::Test {
   void Subscribe(std::uint32_t id, std::uint32_t channel) {
     flow_.Take(SubscribeRequest{{{id, channel}}});
   }
-  // The contents of all that waits; of texts what they say.
+  // The contents of all waiting messages; for texts their message.
   std::vector<std::string> PopAll() {
     std::vector<std::string> all;
     while (const auto message = flow_.Pop()) {
@@ -44,7 +44,7 @@ class ViewerFlowTest : public testing::Test {
 };
 
 TEST_F(ViewerFlowTest, MessagesComeWithTheSubscriptionAndTheirTime) {
-  flow_.Offer(Message(kResults, 1));  // nobody has asked for it
+  flow_.Offer(Message(kResults, 1));  // nobody has subscribed to it
   Subscribe(0x01020304, kResults);
   EXPECT_EQ(flow_.wanted(), 2u);
   flow_.Offer(Message(kResults, 0x0506));

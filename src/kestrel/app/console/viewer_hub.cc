@@ -8,7 +8,7 @@ constexpr Duration kLossInterval = std::chrono::seconds(10);
 
 }  // namespace
 
-// The session tells a viewer that comes back whether this is the program that it knew.
+// The session id tells a returning viewer whether this is the same run of the program.
 ViewerHub::ViewerHub(ChannelFeed* feed, const std::string& name)
     : feed_(feed),
       server_info_(ServerInfoJson(name, std::to_string(ToNanoseconds(Now())))),

@@ -17,27 +17,28 @@ class ViewerClient {
   virtual ~ViewerClient() = default;
 
   virtual ViewerFlow& flow() = 0;
-  // Sends what there is to send, unless something is on its way.
+  // Sends the next message, unless one is on its way.
   virtual void SendNext() = 0;
 };
 
-// What the viewers of a flight's messages share. By the console's thread, the number by any.
+// The state that the viewers of a flight share. Used by the console's thread; any thread may call
+// viewers().
 class ViewerHub {
  public:
-  // 'feed' outlives the hub. 'name': of what is shown.
+  // 'feed' outlives the hub. 'name': name of the flight for viewers.
   ViewerHub(ChannelFeed* feed, const std::string& name);
 
   const std::vector<LiveChannel>& channels() const { return feed_->channels(); }
 
-  // A viewer comes: it is told what there is. It leaves before it is destroyed.
+  // Adds a viewer and tells it the channels. It must leave before it is destroyed.
   void Join(ViewerClient* viewer);
   void Leave(ViewerClient* viewer);
   bool empty() const { return viewers_.empty(); }
 
-  // Some viewer has subscribed to something else.
+  // To be called when a viewer's subscriptions have changed.
   void CountSubscriptions();
 
-  // Hands out what is new.
+  // Sends new messages to the viewers.
   void Tick(Time now);
 
   int viewers() const { return viewer_count_; }

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Parameters may hold objects in lists; deeper text is of nobody who means well.
+// Parameters may hold objects in lists. No well-meant text is deeper.
 constexpr int kMaxRequestDepth = 16;
 constexpr std::size_t kMaxList = 256, kMaxName = 64;
 
@@ -29,7 +29,7 @@ std::optional<std::uint32_t> ReadField(const Json& object, const char* name) {
   return ReadNumber(object[name]);
 }
 
-// The list of that name; null when there is none, or it is too long.
+// The list with this name; null when there is none, or it is too long.
 const Json* FindList(const Json& message, const char* name) {
   const auto list = message.find(name);
   const bool is_fine = list != message.end() && list->is_array() && list->size() <= kMaxList;

@@ -10,11 +10,11 @@
 
 namespace kestrel {
 
-// What a viewer sends by Foxglove's WebSocket protocol
+// Requests of a viewer by Foxglove's WebSocket protocol
 // (github.com/foxglove/ws-protocol/blob/main/docs/spec.md).
 
-// {"op": "subscribe", "subscriptions": [{"id": 0, "channelId": 3}]}: the viewer chooses the number
-// that the channel's messages come with.
+// {"op": "subscribe", "subscriptions": [{"id": 0, "channelId": 3}]}: the viewer chooses the id that
+// comes with the channel's messages.
 struct ViewerSubscription {
   std::uint32_t id = 0;
   std::uint32_t channel = 0;
@@ -28,14 +28,14 @@ struct UnsubscribeRequest {
   std::vector<std::uint32_t> ids;
 };
 
-// Anything else of the protocol: to publish, to set parameters, to call services.
+// Any other request of the protocol: to publish, to set parameters, to call services.
 struct OtherRequest {
   std::string what;  // at most 64 letters
 };
 
 using ViewerRequest = std::variant<SubscribeRequest, UnsubscribeRequest, OtherRequest>;
 
-// Nothing when it is not of the protocol. They do not throw.
+// Return nothing for a message that is not of the protocol. They do not throw.
 std::optional<ViewerRequest> ParseViewerText(std::string_view text);
 std::optional<ViewerRequest> ParseViewerBytes(std::string_view bytes);
 

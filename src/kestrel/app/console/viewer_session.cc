@@ -6,7 +6,7 @@
 namespace kestrel {
 namespace {
 
-// More that waits in the system is old when it comes where the link is slow.
+// On a slow link a larger buffer would only delay messages.
 constexpr int kSendBufferBytes = 256 * 1024;
 
 }  // namespace

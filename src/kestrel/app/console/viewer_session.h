@@ -9,7 +9,7 @@
 
 namespace kestrel {
 
-// A viewer that speaks Foxglove's WebSocket protocol.
+// The connection of a viewer that speaks Foxglove's WebSocket protocol.
 class ViewerSession final : public ViewerClient, public WebSocket {
  public:
   // 'viewers' outlive the session.
@@ -29,8 +29,8 @@ class ViewerSession final : public ViewerClient, public WebSocket {
   ViewerFlow flow_;
 };
 
-// Of the subprotocols that a viewer offers, with commas between them, the first that is spoken
-// here; nothing when there is none.
+// Returns the first supported subprotocol of the viewer's comma-separated offer; nothing when there
+// is none.
 std::optional<std::string> ChooseSubprotocol(std::string_view offered);
 
 }  // namespace kestrel

@@ -87,7 +87,7 @@ TEST_F(ViewerSessionTest, OtherSitesPagesComeInOnlyWhenTheyAreListed) {
                              "https://evil.example", "null", "file://"}) {
     EXPECT_FALSE(LetsIn(origin)) << origin;
   }
-  // Listed for the viewers' messages, not for the page's commands.
+  // The origin is allowed to get the viewers' messages, but not to send the page's commands.
   EXPECT_FALSE(LetsIn("https://app.foxglove.dev", "/live"));
   EXPECT_FALSE(LetsIn("", "/live"));
 }
@@ -149,7 +149,7 @@ TEST_F(ViewerSessionTest, NothingToSubscribeToIsSaid) {
   EXPECT_FALSE(LetsIn(""));
 }
 
-// Of what waits for one that does not read the oldest goes; the others get all.
+// The oldest messages of a viewer that does not read are dropped; the others get all.
 TEST_F(ViewerSessionTest, AStalledViewerCostsTheOthersNothing) {
   ConsoleOptions options = AnyPort();
   options.idle_timeout_s = 2;
@@ -174,7 +174,7 @@ TEST_F(ViewerSessionTest, AStalledViewerCostsTheOthersNothing) {
       EXPECT_GT(message->size(), kHeadBytes);
     }
   }
-  // The stalled one is let go of.
+  // The stalled viewer is disconnected.
   std::atomic<bool> is_over{false};
   std::thread reader([&] {
     while (!is_over && good.Read()) {

@@ -6,7 +6,7 @@
 
 namespace kestrel {
 
-// A file of the page, as it goes out.
+// A file of the page as it is sent.
 struct WebAsset {
   std::string_view path;  // as "/index.html"
   std::string_view type;  // as "text/html; charset=utf-8"
@@ -14,8 +14,8 @@ struct WebAsset {
   bool is_gzipped = false;
 };
 
-// The files of web/, which the build makes and puts into the program; a page that says how to get
-// them where it was built without Node.
+// The files that the build makes of web/ and puts into the program. A build without Node has
+// instead one page that says how to get them.
 std::span<const WebAsset> WebAssets();
 
 }  // namespace kestrel

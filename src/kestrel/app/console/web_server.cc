@@ -22,10 +22,10 @@ namespace {
 namespace asio = boost::asio;
 using Tcp = asio::ip::tcp;
 
-// How often is looked for something new: while somebody watches it adds to the image's age, and
-// while nobody does only what newcomers will get is kept.
+// Intervals of the checks for new data. While somebody watches the interval adds to the image's
+// age; while nobody does, the checks only keep what newcomers will get.
 constexpr std::chrono::milliseconds kWatchedInterval(4), kUnwatchedInterval(100);
-// What flies goes first.
+// The threads that fly have priority.
 constexpr int kNiceness = 10;
 
 Tcp::acceptor Listen(asio::io_context& context, const ConsoleOptions& options) {
@@ -75,7 +75,8 @@ class WebServer::Impl {
  private:
   void Serve() {
     SetUpThisThread("console", {});
-    // Of this thread alone, on Linux. Where it is not permitted all goes on as usual.
+    // On Linux this concerns this thread only. Where it is not permitted the server runs all the
+    // same.
     setpriority(PRIO_PROCESS, 0, kNiceness);
     context_.run();
   }
@@ -91,7 +92,7 @@ class WebServer::Impl {
     });
   }
 
-  // There are no more file descriptors: they come back.
+  // Accepting fails when there are no more file descriptors; it is tried again later.
   void AcceptLater() {
     const auto wait = std::make_shared<asio::steady_timer>(context_, kUnwatchedInterval);
     wait->async_wait([this, wait](boost::system::error_code) { Accept(); });
@@ -106,7 +107,7 @@ class WebServer::Impl {
   }
 
   ConsoleOptions options_;
-  // The connections, which leave it, are destroyed with the context.
+  // Declared before the context: the connections are destroyed with it, and then leave the hub.
   std::unique_ptr<ConsoleHub> hub_;
   asio::io_context context_{1};
   Tcp::acceptor acceptor_;

@@ -13,24 +13,24 @@
 
 namespace kestrel {
 
-// The console: the page's files by HTTP, and everything that is live by one WebSocket at /live, on
-// a thread of its own. HTTP only reads: all that a user asks for comes by the WebSocket, whose
-// origin is checked. Viewers that speak Foxglove's protocol (foxglove.sdk.v1,
-// foxglove.websocket.v1) connect to /foxglove, and only look. Nothing names a file of this
-// computer: what is served is in the program.
+// The console's server, in a thread of its own. It serves the page's files by HTTP and all live
+// data by a WebSocket at /live. HTTP only reads: all requests of a user that change something come
+// by the WebSocket, whose origin is checked. Viewers that speak Foxglove's protocol
+// (foxglove.sdk.v1, foxglove.websocket.v1) connect to /foxglove and can only look. No request names
+// a file of this computer: the files that are served are part of the program.
 class WebServer {
  public:
   struct Counters {
-    std::uint64_t connections = 0;  // taken so far
-    std::uint64_t refused = 0;      // connections and requests
-    std::uint64_t encoded = 0;      // images made into JPEG
-    int clients = 0;                // pages that look now
-    int viewers = 0;                // that have subscribed, or may
+    std::uint64_t connections = 0;  // accepted so far
+    std::uint64_t refused = 0;      // refused connections and requests
+    std::uint64_t encoded = 0;      // images encoded as JPEG
+    int clients = 0;                // pages that are open now
+    int viewers = 0;                // viewers that are connected now
   };
 
-  // Serves from now on. 'feed', 'assets' and 'channels' outlive the server. 'channels': what
-  // viewers can subscribe to; null: nothing. Throws InputError when the options are not valid, or
-  // the address cannot be listened at.
+  // Starts the server. 'feed', 'assets' and 'channels' outlive it. 'channels': messages that
+  // viewers can subscribe to; null: none. Throws InputError when the options are not valid or the
+  // address cannot be listened on.
   WebServer(const ConsoleOptions& options, ConsoleFeed* feed,
             std::span<const WebAsset> assets = WebAssets(), ChannelFeed* channels = nullptr);
   // Ends all connections.
@@ -39,9 +39,9 @@ class WebServer {
   WebServer& operator=(const WebServer&) = delete;
 
   int port() const;
-  // What to open in a browser on this computer, with the token where there is one.
+  // URL to open in a browser on this computer, with the token if there is one.
   std::string url() const;
-  // The same for a viewer.
+  // URL for a viewer.
   std::string viewer_url() const;
   Counters counters() const;
 

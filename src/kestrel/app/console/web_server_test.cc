@@ -66,7 +66,7 @@ TEST_F(WebServerTest, ServesItsPageWithAllThatKeepsItSafe) {
   EXPECT_EQ(page["Referrer-Policy"], "no-referrer");
   EXPECT_EQ(page[http::field::cache_control], "no-store");
   EXPECT_EQ(page.count("Access-Control-Allow-Origin"), 0u);
-  // The same connection goes on.
+  // The same connection serves the next request.
   auto script = browser.Get("/assets/app.1234.js");
   script.set(http::field::accept_encoding, "gzip, br");
   const auto answer = browser.Send(script);
@@ -189,7 +189,7 @@ TEST_F(WebServerTest, MalformedAndOversizeRequestsAreRefused) {
   EXPECT_EQ(browser.Send(browser.Get("/")).result_int(), 200u);
 }
 
-// Each is wrong in one way at least; the parts that are not are drawn at random.
+// Each request is wrong in at least one way; the other parts are drawn at random.
 TEST_F(WebServerTest, AThousandHostileRequestsAreRefused) {
   const WebServer server(AnyPort(kSecret), &feed_, kAssets);
   std::mt19937 random(20);
@@ -324,7 +324,7 @@ TEST_F(WebServerTest, TheNextImageComesAfterTheLastIsDrawn) {
   EXPECT_EQ((*first.Next("image"))["sequence"], 1);
   EXPECT_EQ((*second.Next("image"))["sequence"], 1);
   EXPECT_TRUE(Eventually([&] { return server.counters().encoded == 1; }));
-  // None of them says that it is drawn: no more are made.
+  // None of the browsers acknowledges the image: no more are encoded.
   for (int i = 0; i < 20; ++i, std::this_thread::sleep_for(5ms)) give();
   EXPECT_EQ(server.counters().encoded, 1u);
   first.Send(R"({"ack": 1})");
@@ -364,7 +364,7 @@ TEST_F(WebServerTest, AStalledBrowserCostsTheOthersNothing) {
   stalled.Send(R"({"images": true})");
   ASSERT_TRUE(Eventually([&] { return server.counters().clients == 2; }));
 
-  // More at once than the system's buffers take.
+  // More than the system's buffers hold.
   std::atomic<bool> is_over{false};
   const cv::Mat noise = NoiseImage(4000, 3000);
   std::thread vision([&] {
@@ -385,7 +385,7 @@ TEST_F(WebServerTest, AStalledBrowserCostsTheOthersNothing) {
     before = sequence;
     good.Send(R"({"ack": )" + std::to_string(sequence) + "}");
   }
-  // The stalled one is let go of, the good one not.
+  // The stalled browser is disconnected, the good one is not.
   std::atomic<bool> is_one{false};
   std::thread reader([&] {
     while (!is_one && good.Read()) {

@@ -10,7 +10,7 @@ namespace {
 namespace beast = boost::beast;
 namespace websocket = beast::websocket;
 
-// A browser sends acknowledgements and commands, a viewer what it subscribes to.
+// A browser sends acknowledgements and commands, a viewer its subscriptions.
 constexpr std::size_t kMaxMessageBytes = 16 * 1024;
 constexpr int kMaxMessagesPerSecond = 500;
 constexpr std::chrono::seconds kHandshakeTimeout(5);
@@ -21,7 +21,7 @@ WebSocket::WebSocket(beast::tcp_stream stream, ConsoleHub* hub, std::shared_ptr<
     : stream_(std::move(stream)), hub_(hub), slot_(std::move(slot)) {}
 
 void WebSocket::Accept(const Request& request, const std::string& subprotocol) {
-  // The WebSocket has times of its own.
+  // The WebSocket has timeouts of its own.
   beast::get_lowest_layer(stream_).expires_never();
   const Duration idle = DurationFromSeconds(hub_->options().idle_timeout_s);
   stream_.set_option(websocket::stream_base::timeout{kHandshakeTimeout, idle, true});
@@ -40,8 +40,7 @@ void WebSocket::Accept(const Request& request, const std::string& subprotocol) {
   });
 }
 
-// What is not understood ends the connection: neither the page, which is ours, nor a viewer sends
-// it.
+// A message that is not understood ends the connection: neither our page nor a viewer sends one.
 void WebSocket::Read() {
   stream_.async_read(received_, [self = shared_from_this()](beast::error_code error, std::size_t) {
     const Time now = Now();
@@ -84,7 +83,7 @@ void WebSocket::Write(std::string head, SharedMessage content, bool is_text) {
 }
 
 void WebSocket::LimitSendBuffer(int bytes) {
-  beast::error_code ignored;  // the system's own limit then holds
+  beast::error_code ignored;  // then the system's own limit holds
   beast::get_lowest_layer(stream_).socket().set_option(
       boost::asio::socket_base::send_buffer_size(bytes), ignored);
 }

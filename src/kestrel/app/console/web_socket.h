@@ -13,8 +13,8 @@
 
 namespace kestrel {
 
-// A connection by WebSocket: reads what comes, within limits, and sends one message at a time.
-// Lives as long as an operation of it is under way. By the console's thread.
+// A connection by WebSocket. It reads messages within limits and sends one message at a time. It
+// lives as long as one of its operations is pending. Used by the console's thread.
 class WebSocket : public std::enable_shared_from_this<WebSocket> {
  public:
   using Request = boost::beast::http::request<boost::beast::http::empty_body>;
@@ -22,31 +22,31 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
   WebSocket(const WebSocket&) = delete;
   WebSocket& operator=(const WebSocket&) = delete;
 
-  // Answers the request to upgrade, which the guard has let in. 'subprotocol': empty: none.
+  // Answers the request to upgrade that the guard has admitted. 'subprotocol': none when empty.
   void Accept(const Request& request, const std::string& subprotocol = "");
 
  protected:
-  // 'slot': the connection's right to be. 'hub' outlives this.
+  // 'slot': the connection's slot of the hub, held until the end. 'hub' outlives this.
   WebSocket(boost::beast::tcp_stream stream, ConsoleHub* hub, std::shared_ptr<void> slot);
-  // Who derives from this calls Close before.
+  // A derived class must call Close before its destructor ends.
   virtual ~WebSocket() = default;
 
   ConsoleHub& hub() { return *hub_; }
-  // Whether a message can be sent now.
+  // True when a message can be sent now.
   bool is_free() const { return is_open_ && !is_sending_; }
-  // Sends a message in two parts, the second of which may be null. Only when it is free.
+  // Sends a message of two parts; the second may be null. Call it only when is_free().
   void Write(std::string head, SharedMessage content, bool is_text);
   void Write(SharedMessage content, bool is_text) { Write("", std::move(content), is_text); }
-  // Beyond it the system takes no more before the other side has taken something.
+  // Limits the system's send buffer. When it is full, sending waits for the other side to read.
   void LimitSendBuffer(int bytes);
   void Close();
 
-  // It is open now; it is not any more.
+  // Called when the connection is open, and when it is closed.
   virtual void Opened() = 0;
   virtual void Closed() = 0;
-  // What has come. False: it is not understood, which ends the connection.
+  // Handles a message. Returns false when it is not understood; the connection is then closed.
   virtual bool Take(std::string_view message, bool is_text, Time now) = 0;
-  // The last message is sent.
+  // Called when the last message has been sent.
   virtual void SendNext() = 0;
 
  private:
@@ -57,7 +57,7 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
   ConsoleHub* hub_;
   std::shared_ptr<void> slot_;
   boost::beast::flat_buffer received_;
-  std::string head_;  // of what is on its way
+  std::string head_;  // head of the message on its way
   SharedMessage content_;
   bool is_sending_ = false;
   bool is_open_ = false;
