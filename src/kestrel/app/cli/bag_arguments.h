@@ -12,15 +12,15 @@
 
 namespace kestrel {
 
-// The options that say how a bag is read. Must live until the command line is parsed.
+// Options for reading a bag. Must live until the command line is parsed.
 struct BagArguments {
   std::vector<std::string> topics;
   bool use_arrival_times = false;
 
   void AddTo(CLI::App* command);
 
-  // Opens what the arguments name, a bag or another source; says on stderr what of a bag was cut
-  // off or left out. Throws InputError with what is wrong with it.
+  // Opens the bag or other source that the arguments name. Says on stderr which parts of a bag are
+  // cut off or left out. Throws InputError that says what is wrong with the source.
   std::unique_ptr<FrameSource> Open(const std::vector<std::string>& sources,
                                     PixelFormat format = PixelFormat::kGray) const;
 };

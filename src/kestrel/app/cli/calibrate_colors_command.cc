@@ -35,7 +35,7 @@ struct ColorsArguments {
   bool force = false;
 };
 
-// Puts the fitted colours in the place of those of the model that have their names.
+// Replaces the model's colours by the fitted ones with the same names.
 void ReplaceColors(const std::map<std::string, std::vector<Hsv>>& samples, int components,
                    ObjectModel* model) {
   std::vector<ColorMixture>& colors = model->colors.colors;

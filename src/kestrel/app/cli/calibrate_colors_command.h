@@ -5,7 +5,7 @@
 
 namespace kestrel {
 
-// `kestrel calibrate colors`: colour models from images with marked rectangles or masks.
+// `kestrel calibrate colors`: fits colour models to images with marked rectangles or masks.
 void AddCalibrateColorsCommand(CLI::App* calibrate);
 
 }  // namespace kestrel

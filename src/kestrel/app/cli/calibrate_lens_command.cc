@@ -25,7 +25,7 @@
 namespace kestrel {
 namespace {
 
-// The kinds of distortion that can be asked for, by their names.
+// The distortion models that the user can ask for, by name.
 std::map<std::string, DistortionModel> Models() {
   std::map<std::string, DistortionModel> models;
   for (const auto model : {DistortionModel::kNone, DistortionModel::kRadialTangential,
@@ -46,11 +46,11 @@ struct LensArguments {
   bool force = false;
 };
 
-// What the sources hold, and what their files say beside the lens.
+// The images of the sources, and the data of their files that are not about the lens.
 struct LensSources {
   std::vector<LensImage> images;
-  CameraMount mount;   // of the first
-  double rate_hz = 0;  // of the first
+  CameraMount mount;   // of the first source
+  double rate_hz = 0;  // of the first source
 };
 
 LensSources ReadSources(const std::vector<std::string>& arguments, const BagArguments& bag) {

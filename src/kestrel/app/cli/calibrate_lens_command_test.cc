@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 
 class CalibrateLensCommandTest : public CommandTest {
  protected:
-  // The pattern from straight above, at places all over the image.
+  // Views of the pattern from straight above, at places all over the image.
   void WriteLevelViews() const {
     const CameraModel camera({640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}});
     for (int i = 0; i < 12; ++i) {
@@ -64,7 +64,7 @@ TEST_F(CalibrateLensCommandTest, FindsTheFisheyeFromNothingButImages) {
   for (const char* name : {"lens_residuals.png", "lens_coverage.png"}) {
     EXPECT_GT(std::filesystem::file_size(plots + "/" + name), 1000u);
   }
-  // The mount is the recording's own.
+  // The mount is the recording's.
   const auto own = ReadCalibration(views + "/mav0/cam0/sensor.yaml");
   ASSERT_TRUE(ReadCalibration(camera).body_from_camera.has_value());
   EXPECT_TRUE(

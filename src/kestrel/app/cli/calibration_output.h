@@ -7,9 +7,9 @@
 
 namespace kestrel {
 
-// Writes a calibration that --camera reads (a sensor.yaml, with the clock offset if there is one)
-// to 'file', or to stdout where that is empty. Throws InputError when the file is there and 'force'
-// is off, or cannot be written.
+// Writes a calibration for --camera (a sensor.yaml, with the clock offset if there is one) to
+// 'file', or to stdout if that is empty. Throws InputError when the file exists and 'force' is
+// false, or when it cannot be written.
 void WriteCalibration(const CameraCalibration& calibration, double rate_hz, const std::string& file,
                       bool force);
 

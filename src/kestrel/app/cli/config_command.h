@@ -5,8 +5,7 @@
 
 namespace kestrel {
 
-// `kestrel config`: prints every option with its value, unit and meaning, as YAML that --config
-// reads.
+// `kestrel config`: prints all options with value, unit and meaning, as YAML for --config.
 void AddConfigCommand(CLI::App* app);
 
 }  // namespace kestrel

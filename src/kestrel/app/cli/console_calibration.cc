@@ -19,7 +19,7 @@ using GoOn = CalibrationPage::Run::GoOn;
 
 struct Cancelled {};
 
-// Gives all frames to 'add'. Returns how many there were.
+// Passes all frames to 'add'. Returns their number.
 template <class Add>
 std::size_t AddFrames(const OpenedSource& opened, const GoOn& go_on, const Add& add) {
   const CameraIntrinsics& camera = opened.calibration.intrinsics;
@@ -54,7 +54,7 @@ CalibrationResult MountAndClockOf(const SourceArguments& source,
     const FlightCalibration found = CalibrateFlight(flight.sightings(), poses, given, options);
     AddFlight(found, options, given, &result.report);
     SetMountAndClock(found.estimate, &result.calibration);
-  } catch (const InputError& error) {  // what there is of coverage is shown all the same
+  } catch (const InputError& error) {  // the coverage is shown all the same
     result.report.error = error.what();
   }
   return result;
@@ -80,7 +80,7 @@ CalibrationResult LensOf(const SourceArguments& source, const LandingPipelineOpt
   return result;
 }
 
-// The first of name.yaml, name_2.yaml, ... that is not there.
+// Returns the first of name.yaml, name_2.yaml, ... that does not exist.
 std::string SaveBeside(const std::string& folder, const std::string& name,
                        const CalibrationResult& result) {
   std::filesystem::path file = std::filesystem::path(folder) / (name + ".yaml");

@@ -9,9 +9,9 @@
 
 namespace kestrel {
 
-// What the console's page calibrates with: as `kestrel calibrate mount|clock|lens` of the same
-// source. 'folder': where it is saved, nothing of what is there is replaced; empty: nowhere.
-// 'source' outlives the tools.
+// Returns the tools with which the page calibrates as `kestrel calibrate mount|clock|lens` does
+// with the same source. 'folder': for the results; existing files are never replaced; empty:
+// results are not saved. 'source' outlives the tools.
 CalibrationPage::Tools CalibrationTools(const SourceArguments& source,
                                         const LandingPipelineOptions& options,
                                         const std::string& folder);

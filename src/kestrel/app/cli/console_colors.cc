@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A gray camera's images have three equal channels, if any.
+// The three channels of a gray camera's images are equal, if it gives three.
 bool HasColor(const cv::Mat& bgr) {
   constexpr double kMinDifference = 16;
   std::vector<cv::Mat> channels;
@@ -24,7 +24,7 @@ bool HasColor(const cv::Mat& bgr) {
          cv::norm(channels[0], channels[2], cv::NORM_INF) > kMinDifference;
 }
 
-// The one that is given, or saved the last time.
+// Returns the given model, or the one that was saved last, or the built-in one.
 ObjectModel FirstModel(const std::string& model, const std::string& folder) {
   if (!model.empty()) return ReadObjectModel(model);
   const std::string saved = (fs::path(folder) / "objects.yaml").string();
@@ -46,7 +46,7 @@ std::optional<ColorSource> FindColors(const SourceArguments& arguments, const st
   };
   std::vector<std::string> names;
   for (const std::string& name : sources) {
-    // As a folder with a slash behind its name.
+    // A folder has the same name with and without a slash at the end.
     names.push_back((fs::absolute(name) / "").lexically_normal().parent_path().string());
   }
   return ColorSource{fmt::format("{}", fmt::join(names, " ")), source->frame_count().value_or(1),

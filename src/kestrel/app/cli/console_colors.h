@@ -9,8 +9,8 @@
 
 namespace kestrel {
 
-// What the console's page teaches colours by; nothing when the recording is gray. 'model': the file
-// to begin with; empty: that of 'folder', where the page saves, or the built-in one.
+// Returns the source for the page of colours; nothing when the recording is gray. 'model': file of
+// the initial model; empty: the one in 'folder', where the page saves, or else the built-in one.
 std::optional<ColorSource> FindColors(const SourceArguments& source, const std::string& model,
                                       const std::string& folder);
 

@@ -32,10 +32,9 @@ struct ConsoleArguments {
   SourceArguments source;
   std::string address;
   std::string model;
-  std::string output = "taught";  // for what the page saves
+  std::string output = "taught";  // folder for the files that the page saves
   bool is_hunt = false;
-  // Of `kestrel land` or `hunt`, which is shown instead of being found again; none where it is
-  // empty.
+  // Result of `kestrel land` or `hunt` that is shown instead of a new run; empty: none.
   std::string result;
 
   ConsoleOptions Options(const KestrelOptions& options) const {
@@ -60,7 +59,7 @@ LandingPipelineOptions LandingOptions(const ConsoleArguments& arguments,
   return landing;
 }
 
-// What is looked for, with the options of `kestrel land` or `kestrel hunt`.
+// The search of the recording, with the options of `kestrel land` or `kestrel hunt`.
 std::unique_ptr<ReplaySearch> MakeSearch(const ConsoleArguments& arguments,
                                          const KestrelOptions& options) {
   const SourceArguments& source = arguments.source;
@@ -72,7 +71,7 @@ std::unique_ptr<ReplaySearch> MakeSearch(const ConsoleArguments& arguments,
       arguments.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments.model));
 }
 
-// 'arguments' and 'search' outlive it.
+// 'arguments' and 'search' outlive the recording.
 ReplayConsole::Recording RecordingOf(const ConsoleArguments& arguments,
                                      const ReplaySearch& search) {
   const auto open = [&arguments, &search]() -> ReplayConsole::ReadFrame {

@@ -5,7 +5,7 @@
 
 namespace kestrel {
 
-// `kestrel console SOURCE...`: the web page on a recording.
+// `kestrel console SOURCE...`: shows a recording on a web page.
 void AddConsoleCommand(CLI::App* app);
 
 }  // namespace kestrel

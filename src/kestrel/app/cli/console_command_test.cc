@@ -72,7 +72,7 @@ TEST_F(ConsoleCommandTest, AFlightIsRecordedWhenThePageAsks) {
     }
     return false;
   };
-  // Until there is an image, for the snapshot.
+  // Waits for an image: the snapshot needs one.
   socket.Send(R"({"images": true})");
   ASSERT_TRUE(socket.Next("image"));
   socket.Send(R"({"command": "snapshot"})");
@@ -113,7 +113,7 @@ TEST_F(ConsoleCommandTest, ARecordingIsReplayed) {
   EXPECT_THAT(browser.Send(browser.Get("/export/detections-1.csv")).body(),
               ::testing::StartsWith("frame,timestamp_ns,detected,"));
   EXPECT_THAT(browser.Send(browser.Get("/export/overlays-3.png")).body(), HasSubstr("PNG"));
-  // Nothing is as sure as this: a second run finds none.
+  // No detection is as sure as this: the second run finds none.
   socket.Send(R"({"command": "detect", "settings": ["landing.detector.min_quality=1"]})");
   nlohmann::json second;
   do {
@@ -146,7 +146,7 @@ TEST_F(ConsoleCommandTest, ColoursAreTaughtAndSaved) {
   const auto state = socket.Next("colors");
   ASSERT_TRUE(state);
   EXPECT_EQ((*state)["frames"], 2);
-  // The ground, as green: the model does not matter here.
+  // Teaches the colour of the ground as green: the model does not matter here.
   ask(R"({"colors": "mark", "frame": 1, "color": "green", "tool": "rectangle", "size": 0,)"
       R"( "points": [600, 300, 700, 400]})");
   EXPECT_EQ(ask(R"({"colors": "teach", "color": "green"})")["answer"], "taught green");
@@ -272,7 +272,7 @@ TEST_F(ConsoleCommandTest, AResultIsShownOverItsRecording) {
   const std::string flight = Recording();
   const std::string result = folder_ / "result";
   ASSERT_EQ(Run("land " + flight + " --output " + result).status, 0);
-  // With these options nothing would be found: what is shown is the result.
+  // A run with these options would find nothing: the page shows the result.
   RunningCommand console("console " + flight + " " + result +
                              " --address 127.0.0.1:0 --set landing.detector.min_quality=1",
                          folder_);

@@ -26,7 +26,7 @@ class ConsoleHuntTest : public CommandTest {
     TestBrowser browser(port);
     return browser.Send(browser.Get(path)).body();
   }
-  // Without the time that it took.
+  // The table without the durations.
   static std::string WithoutTimes(const std::string& table) {
     return std::regex_replace(table, std::regex("(,[0-9]*),[0-9]+\\.[0-9]{4},"), "$1,,");
   }
@@ -46,7 +46,7 @@ TEST_F(ConsoleHuntTest, AHuntIsReplayedAndRunAgain) {
   const std::string marks = (*timeline)["marks"];
   ASSERT_EQ(marks.size(), 6u);
   ASSERT_NE(marks.find('f'), std::string::npos) << marks;
-  // Where all that there is was found, it is shown with how far it is from where it is.
+  // In a frame where everything was found, the page shows the errors of the detections.
   socket.Send(fmt::format(R"({{"command": "step", "value": {}}})", marks.find('f')));
   nlohmann::json findings;
   do {
@@ -66,10 +66,10 @@ TEST_F(ConsoleHuntTest, AHuntIsReplayedAndRunAgain) {
   }
   EXPECT_THAT(shapes, HasSubstr("detection"));
   EXPECT_THAT(shapes, HasSubstr("truth"));
-  // The same as the command finds.
+  // The command finds the same.
   const auto hunt = Run("hunt " + flight);
   EXPECT_EQ(WithoutTimes(Get(port, "/export/detections-1.csv")), WithoutTimes(hunt.out));
-  // Nothing is as large as this.
+  // No segment is as large as this.
   socket.Send(R"({"command": "detect", "settings": ["hunt.detector.min_pixels=100000"]})");
   nlohmann::json second;
   do {
@@ -88,7 +88,7 @@ TEST_F(ConsoleHuntTest, AResultIsShownOverItsRecording) {
   const std::string flight = Recording();
   const std::string result = folder_ / "result";
   ASSERT_EQ(Run("hunt " + flight + " --output " + result).status, 0);
-  // With these options nothing would be found: what is shown is the result.
+  // A run with these options would find nothing: the page shows the result.
   RunningCommand console("console --hunt " + flight + " " + result +
                              " --address 127.0.0.1:0 --set hunt.detector.min_pixels=100000",
                          folder_);

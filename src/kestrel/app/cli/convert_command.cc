@@ -33,7 +33,7 @@ struct ConvertArguments {
   bool force = false;
 };
 
-// The calibration FILE or the source's, with the source's mount where FILE has none.
+// The calibration FILE, or the source's; a FILE without a mount gets the source's.
 std::optional<CameraCalibration> CalibrationFor(const ConvertArguments& arguments,
                                                 const FrameSource& source) {
   std::optional<CameraCalibration> calibration =
@@ -44,7 +44,7 @@ std::optional<CameraCalibration> CalibrationFor(const ConvertArguments& argument
   return calibration;
 }
 
-// What the destination has no place for.
+// Says which data of the source the destination cannot hold.
 void SayWhatIsLost(const ConvertArguments& arguments, const RecordingHead& head) {
   const bool is_bag = IsBagName(arguments.destination);
   if (!head.calibration) fmt::print(stderr, "kestrel: no calibration: the source has none\n");

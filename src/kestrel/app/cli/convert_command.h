@@ -5,7 +5,7 @@
 
 namespace kestrel {
 
-// `kestrel convert SOURCE DESTINATION`: between EuRoC folders and the bags of ROS 1 and ROS 2.
+// `kestrel convert SOURCE DESTINATION`: converts between EuRoC folders and bags of ROS 1 and ROS 2.
 void AddConvertCommand(CLI::App* app);
 
 }  // namespace kestrel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bags as a user has them: `kestrel convert`, and what `land` and `hunt` say of bags.
+// Tests bags as users have them: `kestrel convert`, and `land` and `hunt` with bags.
 #include <filesystem>
 #include <set>
 #include <sstream>
@@ -18,8 +18,7 @@ using ::testing::HasSubstr;
 
 namespace fs = std::filesystem;
 
-// The table without the columns that a bag changes by its nature: how a frame is called and how
-// long it took.
+// The table without the columns that necessarily differ for a bag: name of a frame and duration.
 std::string Comparable(const std::string& csv) {
   std::istringstream lines(csv);
   std::set<std::size_t> left_out;
@@ -38,7 +37,7 @@ std::string Comparable(const std::string& csv) {
 
 class ConvertCommandTest : public CommandTest {
  protected:
-  // A flight of three frames that is quickly rendered.
+  // A flight of three frames that renders quickly.
   std::string Simulate(const std::string& what) const {
     const std::string flight = folder_ / "flight";
     const Outcome outcome = Run("simulate " + what + " --seed 2 --output " + flight +
@@ -54,7 +53,7 @@ class ConvertCommandTest : public CommandTest {
     EXPECT_THAT(outcome.err, HasSubstr("3 frames, "));
     return destination.substr(0, destination.find(' '));
   }
-  // The file that 'command' writes of a source.
+  // The text of the file that 'command' writes for a source.
   std::string Result(const std::string& command, const std::string& source,
                      const std::string& file) const {
     const std::string output = source + "." + command;
@@ -80,7 +79,7 @@ TEST_F(ConvertCommandTest, LandFindsInABagWhatItFindsInTheRecording) {
   const std::string back = Convert(folder_ / "ros2.db3", "back");
   EXPECT_EQ(ReadFile(back + "/mav0/cam0/data.csv"), ReadFile(flight + "/mav0/cam0/data.csv"));
 
-  // Up to its cut, and that is said.
+  // The cut bag is read up to the cut, and the command says so.
   const std::string cut = Convert(flight, "cut.mcap");
   TestFolder::CutOff(cut, 0.8);
   const Outcome outcome = Run("land " + cut);
@@ -105,7 +104,7 @@ TEST_F(ConvertCommandTest, CalibrateFindsInABagWhatItFindsInTheRecording) {
             0);
   const std::string bag = folder_ / "flight.mcap";
   ASSERT_EQ(Run("convert " + flight + " " + bag).status, 0);
-  // A bag has no place for the clock offset to start from.
+  // A bag cannot hold a clock offset to start from.
   const std::string calibrate =
       "calibrate clock --both --moving --camera " + flight + "/mav0/cam0/sensor.yaml ";
   const auto result = [&](const std::string& source) {

@@ -14,7 +14,7 @@
 
 namespace kestrel {
 
-// --dds. Must live until the command line is parsed.
+// The option --dds. Must live until the command line is parsed.
 struct DdsArguments {
   std::optional<std::string> told;  // the domain; empty: that of ROS
 
@@ -22,14 +22,15 @@ struct DdsArguments {
 
   bool is_given() const { return told.has_value(); }
 
-  // Also where the option is not given. Throws InputError when it is no domain.
+  // Returns a domain also where the option is not given. Throws InputError when the text is not
+  // one.
   int Domain() const;
 
-  // Throws InputError when that is not possible.
+  // Throws InputError when the node cannot be opened.
   std::shared_ptr<Ros2Node> OpenNode(const DdsOptions& options) const;
 };
 
-// The frames of results, as the options have them.
+// Returns the names of the frames in results, as the options have them.
 RosFrames OwnFrames(const DdsOptions& options, bool has_world);
 
 }  // namespace kestrel

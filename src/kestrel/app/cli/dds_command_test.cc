@@ -37,7 +37,7 @@ Time RosTime() {
       std::chrono::duration_cast<Duration>(std::chrono::system_clock::now().time_since_epoch()));
 }
 
-// Hears some of the topics that a node called kestrel publishes, until it is destroyed.
+// Receives some of the topics of a node called kestrel until it is destroyed.
 class Listener {
  public:
   Listener(int domain, const std::vector<std::pair<std::string, std::string_view>>& topics)
@@ -58,7 +58,7 @@ class Listener {
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;
 
-  // What was heard, by topic.
+  // Ends it and returns the received messages by topic.
   const std::map<std::string, std::vector<std::string>>& Stop() {
     is_over_ = true;
     if (thread_.joinable()) thread_.join();
@@ -75,7 +75,7 @@ class Listener {
 
 class DdsCommandTest : public CommandTest {
  protected:
-  // A simulated flight over the landing pattern; the folder.
+  // Simulates a flight over the landing pattern. Returns its folder.
   std::string WriteFlight() const {
     const Outcome outcome = Run("simulate landing --scenario calm --seed 2 --output " +
                                 folder_ / "flight" + " --set frames=10 --set rate_hz=10" +
@@ -126,8 +126,8 @@ TEST_F(DdsCommandTest, LandTellsRos2WhatItFinds) {
   EXPECT_EQ(heard.at("/tf").size(), 20u);  // the UAV and the pattern
 }
 
-// A system of ROS 2 with a camera over the landing pattern, until it is destroyed: the frames of a
-// recording, again and again, ten a second and stamped with the time of the day.
+// A system of ROS 2 with a camera over the landing pattern, until it is destroyed. It publishes the
+// frames of a recording again and again, ten per second and stamped with the present time.
 class RosSystem {
  public:
   RosSystem(int domain, const std::string& flight) : node_(domain, {"system"}) {
@@ -207,7 +207,7 @@ TEST_F(DdsCommandTest, FlySeesWhatASystemOfRos2Publishes) {
                   KESTREL_COMMAND, domain_, folder_ / "out", folder_ / "said")
           .c_str());
   const std::string said = ReadFile(folder_ / "said");
-  ASSERT_EQ(WEXITSTATUS(status), 124) << said;  // of timeout
+  ASSERT_EQ(WEXITSTATUS(status), 124) << said;  // timeout's own status
   EXPECT_GE(Lines(ReadFile(folder_ / "out/landing_detections.csv")), 11) << said;
   const auto& heard = listener.Stop();
   ASSERT_GE(heard.count("/kestrel/target_pose"), 1u) << said;

@@ -41,7 +41,7 @@ struct DoctorArguments {
   bool fix = false;
 };
 
-// One look at camera and autopilot. What cannot be opened is a finding as well.
+// One examination of camera and autopilot. A device that cannot be opened is a finding as well.
 class DoctorVisit {
  public:
   explicit DoctorVisit(const DoctorArguments& arguments)
@@ -68,7 +68,7 @@ class DoctorVisit {
     return Check(observations_);
   }
 
-  // Sets what is not good and the user agrees to, reads it back, and checks again.
+  // Sets the parameters that are not good, if the user agrees, reads them back, and checks again.
   std::vector<Finding> Fix(const std::vector<Finding>& findings) {
     if (!autopilot_ || !autopilot_->is_here()) return findings;
     if (autopilot_->is_armed()) {
@@ -170,7 +170,8 @@ class DoctorVisit {
     }
   }
 
-  // What the autopilot told back goes into the observations; false: it was not written.
+  // Puts the value that the autopilot reports into the observations. Returns false when it was not
+  // written.
   bool TakeOver(const ParameterFix& fix) {
     const ParameterWriteState state = autopilot_->parameter_writes().StateOf(fix.name);
     ToldParameter& told = observations_.parameters.at(fix.name);

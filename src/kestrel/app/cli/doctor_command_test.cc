@@ -21,7 +21,7 @@ using ::testing::Not;
 
 class DoctorCommandTest : public CommandTest {
  protected:
-  // A UAV in the air beside the pattern, quickly rendered, that nobody lands.
+  // A UAV in the air beside the pattern that nobody lands; renders quickly.
   static constexpr const char* kHover =
       " --duration 5 --set fly.sim_autopilot.pilot.start_altitude_m=2.5"
       " --set fly.sim_autopilot.pilot.land_after_s=-1"
@@ -32,7 +32,7 @@ class DoctorCommandTest : public CommandTest {
     return Run("doctor sim:standing" + std::string(kHover) + " " + arguments, input);
   }
 
-  // Names of the checks of a result with --json that have this verdict. Those that hang on how busy
+  // Names of the checks with this verdict in a result of --json. Checks that depend on how busy
   // this computer is are left out.
   static std::vector<std::string> Checks(const Outcome& outcome, const std::string& verdict) {
     static const std::set<std::string> kOfTime = {
@@ -101,14 +101,14 @@ TEST_F(DoctorCommandTest, ACalibrationOfAnotherSizeOrLensIsNamed) {
 
 TEST_F(DoctorCommandTest, AMountThatIsTurnedIsNamed) {
   CameraCalibration calibration;
-  // The simulated one's, half of the paper's.
+  // The simulated camera: half of the paper's.
   calibration.intrinsics = PaperCamera();
   calibration.intrinsics.width_px = 376;
   calibration.intrinsics.height_px = 240;
   calibration.intrinsics.fx_px = calibration.intrinsics.fy_px = 130.5;
   calibration.intrinsics.cx_px = 187.75;
   calibration.intrinsics.cy_px = 119.75;
-  // Its image's up is where the UAV's is ahead; said is: to the right.
+  // The image's upper edge points ahead of the UAV; the calibration says: to the right.
   calibration.body_from_camera.emplace();
   calibration.body_from_camera->rotation = Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX());
   const std::string camera =

@@ -10,7 +10,7 @@
 
 namespace kestrel {
 
-// Evenly spread images of a stream, however long it is: at most 400.
+// Evenly spaced images of a stream of any length: at most 400.
 class EvenSample {
  public:
   void Add(const Frame& frame);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The files of examples/ say what the command understands.
+// The files of examples/ match the command.
 #include <filesystem>
 #include <regex>
 #include <string>
@@ -33,7 +33,7 @@ TEST(ExamplesTest, ConfigurationsAreRead) {
   }
 }
 
-// What the unit expands is in its environment file, and that names an example.
+// The variables that the unit expands are in its environment file, and that file names an example.
 TEST(ExamplesTest, TheUnitAndItsEnvironmentAgree) {
   const std::string unit = ReadFile(kExamples + "/kestrel-fly.service");
   const std::string environment = ReadFile(kExamples + "/kestrel-fly.env");
@@ -54,7 +54,7 @@ TEST(ExamplesTest, TheUnitAndItsEnvironmentAgree) {
 
 class ExampleCommandTest : public CommandTest {};
 
-// The options of the unit's command are there: it fails for the camera's sake alone.
+// The options of the unit's command exist: the command fails only because of the camera.
 TEST_F(ExampleCommandTest, TheUnitsCommandIsUnderstood) {
   ExpectInputError("fly /dev/video987 --camera " + folder_ / "none.yaml" + " --config " +
                        kExamples + "/usb_global_shutter.yaml --autopilot " +

@@ -13,26 +13,28 @@
 
 namespace kestrel {
 
-// What mount and clock are calibrated from, by the command and by the console's page.
+// Input of the calibration of mount and clock, for the command and for the console's page.
 
-// Of the path of a pattern that moves.
+// Spacing of the knots for the path of a moving pattern.
 inline constexpr double kMovingKnotSpacing_s = 2;
 
-// The values that a calibration has. Throws InputError when it has no mount; 'file': for that.
+// Returns mount and clock of a calibration. Throws InputError when it has no mount. 'file': its
+// name, for the error.
 MountAndClock GivenMountAndClock(const CameraCalibration& calibration, const std::string& file);
-// Puts an estimate in their place.
+// Replaces mount and clock of a calibration by an estimate.
 void SetMountAndClock(const MountAndClock& estimate, CameraCalibration* calibration);
 
-// The poses of a flight. Throws InputError when there are none; 'name': of the source.
+// Returns the poses of a flight. Throws InputError when there are none. 'name': name of the source,
+// for the error.
 std::vector<PoseSample> FlightPoses(const FrameSource& source, const std::string& name);
 
-// Finds the pattern in every frame for itself.
+// Finds the pattern in each frame independently.
 class FlightSightings {
  public:
   // Throws InputError when camera or options are not valid.
   FlightSightings(const CameraIntrinsics& camera, const LandingPipelineOptions& options);
 
-  // A frame of the camera's size.
+  // The frame must have the size of the camera's images.
   void Add(const Frame& frame);
 
   const std::vector<TargetSighting>& sightings() const { return sightings_; }
@@ -43,7 +45,7 @@ class FlightSightings {
   LandingWorkspace workspace_;
   MeasurementNoise noise_;
   std::vector<TargetSighting> sightings_;
-  std::vector<PatternPlace> places_;  // of the same frames
+  std::vector<PatternPlace> places_;  // one for each sighting
 };
 
 }  // namespace kestrel

@@ -12,7 +12,7 @@
 namespace kestrel {
 namespace {
 
-// What `land` can do and a flight cannot.
+// Throws InputError for the arguments of `land` that a flight does not support.
 void RequireFlyable(const SourceArguments& source) {
   if (source.sources.size() > 1) throw InputError("fly takes one SOURCE");
   if (source.still) throw InputError("--still: the frames of a flight follow each other");
@@ -22,8 +22,8 @@ void RequireFlyable(const SourceArguments& source) {
   if (source.altitude_m) throw InputError("--altitude: a flight has the autopilot's poses");
 }
 
-// Set-points end with the mode: to be told that once a second is too seldom. A simulated
-// pilot gives the mode when it would have landed, and has set its PX4 up for decks that drive.
+// Guidance must stop as soon as the mode changes: one report of the mode per second is too few. A
+// simulated pilot changes the mode at the time of landing, and its PX4 is set up for moving decks.
 void PrepareGuidance(const std::string& autopilot, FlyOptions* options) {
   constexpr double kMode_hz = 20;
   double& mode_hz = options->autopilot.mode_rate_hz;
@@ -42,7 +42,7 @@ double ParseLinkDelay(const std::string& text) {
   return *delay_s;
 }
 
-// What a recording has, a flight may have to do without: the pose after a frame.
+// A live flight may not have the pose after a frame, as a recording does.
 void PredictPoses(KestrelOptions* options) {
   constexpr double kLongest_s = 0.2;
   for (double* const ahead_s :

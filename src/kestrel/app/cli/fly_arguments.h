@@ -12,7 +12,7 @@
 
 namespace kestrel {
 
-// The arguments that `fly` and `doctor` share. Must live until the command line is parsed.
+// Arguments that `fly` and `doctor` share. Must live until the command line is parsed.
 struct FlyArguments {
   SourceArguments source;
   std::string autopilot;  // URL, or "sim:ardupilot", "sim:px4"; empty: none
@@ -22,17 +22,17 @@ struct FlyArguments {
   std::string signing_key;
   std::string record;
   bool ros = false;
-  std::optional<std::string> console;  // ADDRESS:PORT; empty: as the options say
+  std::optional<std::string> console;  // ADDRESS:PORT; empty: as in the options
   bool guide = false;
   bool hunt = false;
-  std::string model;  // of the objects
+  std::string model;  // file with the model of the objects
   TeamArguments team;
   bool loop = false;
 
   void AddTo(CLI::App* command);
 
-  // The options with what these arguments say of them. Throws InputError with what `land` can do
-  // and a flight cannot, and where options are not valid.
+  // Returns the options with the changes that these arguments make. Throws InputError for arguments
+  // of `land` that a flight does not support, and when the options are not valid.
   KestrelOptions ReadOptions() const;
 };
 

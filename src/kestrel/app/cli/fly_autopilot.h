@@ -10,15 +10,15 @@
 
 namespace kestrel {
 
-// Where the autopilot of a flight is reached.
+// The autopilot of a flight and the URL to reach it.
 struct FlyAutopilot {
   std::string url;
-  std::unique_ptr<SimulatedAutopilot> simulated;  // null: a real one
+  std::unique_ptr<SimulatedAutopilot> simulated;  // null: a real autopilot
 };
 
-// Of the argument --autopilot: "sim:ardupilot" and "sim:px4" make a simulated one, not yet started,
-// in the world of 'source', which gets a standing one where it has none. The source must outlive
-// it. Throws InputError when the options are not valid.
+// Evaluates the argument --autopilot. "sim:ardupilot" and "sim:px4" make a simulated autopilot, not
+// yet started, in the world of 'source', which gets a standing one if it has none. The source must
+// outlive it. Throws InputError when the options are not valid.
 FlyAutopilot MakeFlyAutopilot(const std::string& argument, const FlyOptions& options,
                               FlySource* source);
 

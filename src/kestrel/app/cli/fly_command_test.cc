@@ -19,13 +19,13 @@ namespace fs = std::filesystem;
 
 class FlyCommandTest : public CommandTest {
  protected:
-  // A landing from near by, quickly rendered.
+  // A landing from close by that renders quickly.
   static constexpr const char* kNear =
       " --set fly.sim_autopilot.pilot.start_altitude_m=4"
       " --set fly.sim_autopilot.pilot.offset_east_m=0.5"
       " --set fly.sim_autopilot.pilot.offset_north_m=-0.5 --set fly.sim_camera.scale=0.4";
 
-  // Each row of the table has its image and its result, none more.
+  // Expects exactly one image and one result for each row of the table.
   static void ExpectSameTimes(const std::string& mcap, const std::string& csv) {
     std::vector<std::string> rows, results, images;
     std::istringstream table(ReadFile(csv));
@@ -45,7 +45,7 @@ class FlyCommandTest : public CommandTest {
     EXPECT_EQ(images, results);
   }
 
-  // Metres from the pattern's centre at contact, by the simulated autopilot; 99 without.
+  // Distance from the pattern's centre at contact (m), as the simulated autopilot says; 99 without.
   static double MissOf(const Outcome& outcome) {
     std::smatch match;
     const std::regex on_board("on the board, ([0-9.]+) m");
@@ -64,7 +64,7 @@ TEST_F(FlyCommandTest, ASimulatedArduPilotLandsByWhatItIsTold) {
   EXPECT_TRUE(fs::exists(folder_ / "out/landing_track.csv"));
   EXPECT_GT(fs::file_size(flight + "/mavlink.tlog"), 10'000u);
   ExpectSameTimes(folder_ / "flight.mcap", folder_ / "out/landing_detections.csv");
-  // What it recorded is a recording with its truth.
+  // The flight's record is a recording with truth.
   const Outcome again = Run("land " + flight + " --output " + folder_ / "again");
   EXPECT_EQ(again.status, 0) << again.err;
   const Outcome compared = Run("evaluate " + flight + " " + folder_ / "again");

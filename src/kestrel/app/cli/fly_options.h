@@ -19,7 +19,7 @@ namespace kestrel {
 struct FlyOptions {
   FlightOptions flight;
   GstreamerCameraOptions camera;
-  // Keep the exposure of the camera right by what it sees. Switch on for cameras that cannot.
+  // Controls the exposure of the camera by the brightness of its images. For cameras that cannot.
   bool control_exposure = false;
   ExposureOptions exposure;
   ConnectionOptions link;
@@ -28,7 +28,7 @@ struct FlyOptions {
   SimulatedCameraOptions sim_camera;
   SimulatedAutopilotOptions sim_autopilot;
   int sim_seed = 1;
-  std::string keep_folder = "kept";  // where recordings and snapshots that the page asks for go
+  std::string keep_folder = "kept";  // for recordings and snapshots that the page asks for
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {

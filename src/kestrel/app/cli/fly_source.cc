@@ -23,7 +23,7 @@ namespace {
 constexpr std::string_view kSimulated = "sim:";
 constexpr std::string_view kTopic = "dds:";
 
-// The rendered camera as a live source.
+// A live source that renders its images.
 class SimulatedSource : public LiveSource {
  public:
   SimulatedSource(const SimulatedCameraOptions& options, VehicleWorld* world, Time start,
@@ -48,7 +48,7 @@ class SimulatedSource : public LiveSource {
   std::atomic<std::uint64_t> captured_{0};
 };
 
-// "straight,a=1,b=2" -> "straight", "a=1", "b=2".
+// Splits "straight,a=1,b=2" into "straight", "a=1", "b=2".
 std::vector<std::string> Split(std::string_view text) {
   std::vector<std::string> parts;
   for (;;) {
@@ -59,8 +59,8 @@ std::vector<std::string> Split(std::string_view text) {
   }
 }
 
-// The simulated camera's own, or what --camera says of it instead; a file without a mount takes the
-// camera's.
+// The simulated camera's calibration, or the one of --camera; a file without a mount gets the
+// simulated camera's.
 CameraCalibration SimulatedCalibration(const SourceArguments& arguments,
                                        const CameraCalibration& own) {
   if (arguments.camera.empty()) return own;
@@ -110,7 +110,7 @@ FlySource OpenCamera(const SourceArguments& arguments, PixelFormat format,
   return opened;
 }
 
-// Calibration and mount of the topics that go with the images, unless --camera has them.
+// Takes calibration and mount from the topics beside the images, unless --camera has them.
 FlySource OpenTopic(const SourceArguments& arguments, PixelFormat format,
                     const DdsOptions& options) {
   std::optional<CameraCalibration> told;

@@ -18,31 +18,32 @@
 
 namespace kestrel {
 
-// Where the images of a flight come from.
+// The source of a flight's images.
 struct FlySource {
-  std::unique_ptr<VehicleWorld> world;  // of a simulation: "sim:SCENARIO"
+  std::unique_ptr<VehicleWorld> world;  // of a simulation, "sim:SCENARIO"
   std::unique_ptr<LiveSource> source;
   CameraCalibration calibration;
   double rate_hz = 0;
-  bool has_poses = false;  // the source's own: a recording
-  // Of 'source', where it is such; else null.
+  bool has_poses = false;  // the source, a recording, has poses of its own
+  // Other views of 'source'; null where it has none.
   SimulatedCamera* simulated = nullptr;
   ExposureActuator* actuator = nullptr;
-  std::shared_ptr<Ros2Node> node;   // "dds:TOPIC": where it is heard,
-  std::optional<RosFrames> frames;  // and what its frames are called
-  bool has_true_poses = false;      // the autopilot tells where a simulated camera truly is
+  std::shared_ptr<Ros2Node> node;   // node that receives "dds:TOPIC",
+  std::optional<RosFrames> frames;  // and the names of its frames
+  bool has_true_poses = false;      // the autopilot tells the true poses of a simulated camera
 
-  // What this asks of the autopilot, beside 'options'.
+  // Returns 'options' with what this source needs from the autopilot.
   AutopilotOptions Asking(AutopilotOptions options) const;
-  // Poses of the autopilot: a simulated camera is where the true ones say, else where these do.
+  // Poses from the autopilot. They place a simulated camera: the true poses, if there are any, else
+  // the estimated ones.
   void TakePose(const PoseSample& pose);
   void TakeTruePose(const PoseSample& pose);
 };
 
-// Opens what the arguments name: a topic of ROS 2 ("dds:/camera/image_raw"), "sim:SCENARIO" with
-// further settings as "sim:straight,vehicle.speed_mps=4", a camera (/dev/video0, rtsp://..., a
-// GStreamer pipeline), or a recording, played in real time, again and again when 'is_looped'.
-// Throws InputError with what is wrong with it.
+// Opens the source that the arguments name: a topic of ROS 2 ("dds:/camera/image_raw"),
+// "sim:SCENARIO" with optional settings as "sim:straight,vehicle.speed_mps=4", a camera
+// (/dev/video0, rtsp://..., a GStreamer pipeline), or a recording, which is played in real time,
+// repeatedly when 'is_looped'. Throws InputError that says what is wrong with the source.
 FlySource OpenFlySource(const SourceArguments& arguments, PixelFormat format,
                         const KestrelOptions& options, bool is_looped);
 

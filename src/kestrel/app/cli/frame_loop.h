@@ -12,13 +12,12 @@
 
 namespace kestrel {
 
-// Calls 'process' with the frames of a source, one after the other, until its end or Ctrl-C, with a
-// progress bar. Throws InputError when the source does, or a frame is not of the calibration's
-// size.
+// Calls 'process' for each frame of a source until its end or Ctrl-C, and shows a progress bar.
+// Throws InputError when the source does, or when a frame does not have the calibration's size.
 void ForEachFrame(FrameSource* source, const CameraIntrinsics& intrinsics,
                   const std::function<void(const Frame&, const ProgressBar&)>& process);
 
-// The same for a stream of poses and frames; 'frame_count': how many frames it has, if known.
+// The same for a stream of poses and frames. 'frame_count': number of frames, if known.
 void ForEachEvent(EventSource* source, std::optional<std::size_t> frame_count,
                   const CameraIntrinsics& intrinsics,
                   const std::function<void(const PoseSample&)>& add_pose,

@@ -13,16 +13,16 @@
 
 namespace kestrel {
 
-// Images of a source by their number, also of one that only goes forward, as a bag or a video: what
-// was read last is kept, and for what is before that the source is opened anew.
+// Reads images of a source by index, even of a bag or a video that can only be read forward. It
+// keeps the images that were read last, and reopens the source for earlier ones.
 class FrameWinder {
  public:
   using Open = std::function<std::unique_ptr<FrameSource>()>;
 
-  // 'open': gives the source at its beginning, with the same frames each time.
+  // 'open': opens the source at its beginning; it must give the same frames each time.
   explicit FrameWinder(Open open) : open_(std::move(open)), source_(open_()) {}
 
-  // Throws InputError when the image cannot be read, or there is none of this number.
+  // Throws InputError when the image cannot be read or the source has fewer frames.
   cv::Mat Read(std::size_t index);
 
  private:
@@ -30,8 +30,8 @@ class FrameWinder {
 
   Open open_;
   std::unique_ptr<FrameSource> source_;
-  std::size_t next_ = 0;      // that the source gives
-  std::deque<cv::Mat> kept_;  // those before it
+  std::size_t next_ = 0;      // index of the source's next frame
+  std::deque<cv::Mat> kept_;  // the images before next_
 };
 
 }  // namespace kestrel

@@ -8,7 +8,7 @@
 namespace kestrel {
 namespace {
 
-// 300 images that only come one after the other, each with its number for a pixel.
+// 300 images that can only be read in order; the pixels hold the index.
 class ForwardSource : public FrameSource {
  public:
   bool Next(Frame* frame) override {

@@ -8,8 +8,8 @@
 
 namespace kestrel {
 
-// What the objects say of the ground, where that contradicts what is told, and what to do; empty
-// where nothing does. 'altitude_m': that of --altitude; 'has_world': the last frame had a pose.
+// Returns how the objects' sizes contradict the given height of the ground, and what to do; empty
+// where they do not. 'altitude_m': value of --altitude. 'has_world': the last frame had a pose.
 std::string GroundWarning(const HuntPipeline& pipeline, std::optional<double> altitude_m,
                           bool has_world);
 

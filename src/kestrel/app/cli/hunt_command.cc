@@ -45,7 +45,7 @@ class HuntRun : public PipelineRun {
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
 
-  // The last row of a rolling shutter.
+  // Time from the middle row to the last row of a rolling shutter.
   Duration after_frame() const override {
     return DurationFromSeconds(pipeline_.options().readout_s / 2);
   }
@@ -73,7 +73,7 @@ class HuntRun : public PipelineRun {
 
   std::string Found() const override { return fmt::format("{} detections", detections_); }
 
-  // The paper's Table 3: segments that are left after each step.
+  // Number of segments left after each step, as in the paper's Table 3.
   std::string Remarks() const override {
     std::string remarks = "segments";
     for (std::size_t i = 0; i < kObjectStageCount; ++i) {
@@ -114,13 +114,13 @@ class HuntRun : public PipelineRun {
   TeamLink* team_;   // null: none
   RosResults* dds_;  // as well
   std::optional<double> altitude_m_;
-  bool has_world_ = false;  // of the last frame
-  Time seen_{};             // that frame
+  bool has_world_ = false;  // the last frame had a pose
+  Time seen_{};             // time of the last frame
   std::size_t detections_ = 0;
   std::array<std::size_t, kObjectStageCount> passed_{};
 };
 
-// A team shares maps.
+// A team shares maps, so there must be one.
 void RequireMap(const OpenedSource& opened, const HuntPipelineOptions& options) {
   if (options.still) throw InputError("--team: expected a source that is no --still");
   if (!opened.has_world()) {

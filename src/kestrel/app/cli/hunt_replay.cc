@@ -26,11 +26,11 @@ constexpr char kTrueObjects[] = "objects0/data.csv";
 
 using Comparisons = std::vector<ObjectComparison>;
 
-// Of one frame.
+// Counts for one frame.
 struct Tally {
   int wanted = 0, found = 0;  // of the objects that must be found
-  int of_objects = 0;         // detections of something that is there
-  int not_right = 0;          // detections of nothing, or as another class
+  int of_objects = 0;         // detections of an existing object
+  int not_right = 0;          // detections of nothing, or with the wrong class
   std::optional<double> worst_px;
 
   void Add(const ObjectComparison& comparison) {
@@ -49,7 +49,7 @@ struct Tally {
   }
 };
 
-// What there is to be found, and what of it was not.
+// Adds the objects that can be found to the frame, and those that were not found.
 void AddTruth(const Comparisons& comparisons, const std::vector<TrueSighting>& sightings,
               ReplayFrame* frame) {
   Tally tally;
@@ -83,7 +83,7 @@ void MarkByObjects(const std::string& recording, ReplayResult* result) {
   for (ReplayFrame& frame : result->frames) AddTruth(by_frame[frame.time], sightings, &frame);
 }
 
-// What both kinds of runs keep of a frame.
+// The part of a frame that both kinds of runs keep.
 class HuntReplayRun : public ReplayRun {
  public:
   std::string Found() const override { return fmt::format("{} detections", detections_); }
@@ -101,7 +101,7 @@ class HuntReplayRun : public ReplayRun {
   }
 
  private:
-  std::optional<std::string> truth_;  // the recording that has it
+  std::optional<std::string> truth_;  // the recording that has the truth
   std::size_t detections_ = 0;
 };
 
@@ -119,7 +119,7 @@ class HuntPipelineRun : public HuntReplayRun {
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
 
-  // The last row of a rolling shutter.
+  // Time from the middle row to the last row of a rolling shutter.
   Duration after_frame() const override {
     return DurationFromSeconds(pipeline_.options().readout_s / 2);
   }
@@ -144,7 +144,7 @@ class HuntPipelineRun : public HuntReplayRun {
   HuntPipeline pipeline_;
   HuntView view_;
   std::optional<double> altitude_m_;
-  bool has_world_ = false;  // of the last frame
+  bool has_world_ = false;  // the last frame had a pose
 };
 
 class HuntResultRun : public HuntReplayRun {
@@ -217,7 +217,7 @@ class ObjectSearch : public ReplaySearch {
   const SourceArguments& source_;
   HuntPipelineOptions options_;
   ObjectModel model_;
-  std::optional<std::string> truth_;  // the recording that has it
+  std::optional<std::string> truth_;  // the recording that has the truth
 };
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 namespace kestrel {
 
-// Looks for the model's objects, as `kestrel hunt`. 'source' outlives the search.
+// Returns a search for the model's objects like `kestrel hunt`. 'source' outlives the search.
 std::unique_ptr<ReplaySearch> SearchForObjects(const SourceArguments& source,
                                                const HuntPipelineOptions& options,
                                                const ObjectModel& model);

@@ -15,7 +15,7 @@
 namespace kestrel {
 namespace {
 
-// The columns that ParseObjectRows has no use for.
+// The columns that ParseObjectRows does not read.
 class EllipseColumns {
  public:
   explicit EllipseColumns(const CsvTable& cells)

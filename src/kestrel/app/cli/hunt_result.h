@@ -13,20 +13,21 @@
 
 namespace kestrel {
 
-// What `kestrel hunt` wrote of a recording, frame by frame. What a table does not hold (what was
-// not on the ground, colours) is not known; ellipses are drawn around the objects' origins.
+// The output of `kestrel hunt` for a recording, frame by frame. Facts that are not in the table
+// (detections that are not on the ground, colours) are unknown. The ellipses lie around the
+// objects' origins.
 class HuntResult {
  public:
-  // 'table': object_detections.csv. Throws InputError for what is at fault in it.
+  // 'table': path of object_detections.csv. Throws InputError when it is not valid.
   explicit HuntResult(const std::string& table);
 
-  // Nothing but the names of the classes that are in the table.
+  // A model with nothing but the names of the classes in the table.
   const ObjectModel& model() const { return model_; }
 
-  // The next frame, which is of this time and seen from there. Throws InputError when the table has
-  // not a row of it.
+  // Returns the next frame. Its time and its pose are given. Throws InputError when the table has
+  // no row for it.
   HuntObservation Next(Time time, const std::optional<RigidTransform>& world_from_camera);
-  // Throws InputError when there are rows of further frames.
+  // Throws InputError when the table has rows of further frames.
   void RequireEnd() const;
 
   const std::string& text() const { return text_; }
@@ -41,8 +42,9 @@ class HuntResult {
   std::size_t next_ = 0;
 };
 
-// The objects of object_map.csv that stand, since they were first seen: where one that moves is
-// since it was last seen nobody knows. Throws InputError for what is at fault; 'file': for that.
+// Returns the standing objects of object_map.csv, each from the time when it was first seen. Moving
+// objects are left out, as their place after the last sighting is unknown. Throws InputError when
+// the text is not valid. 'file': its name, for the error.
 std::vector<MapEntry> StandingObjects(const std::string& map_csv, const std::string& file);
 
 }  // namespace kestrel

@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 constexpr Time kFirst = TimeFromNanoseconds(1'000'000'000);
 constexpr Time kSecond = TimeFromNanoseconds(1'100'000'000);
 
-// Two objects in the first of two frames, and none in the second.
+// A table with two objects in the first of two frames and none in the second.
 std::string Table() {
   ObjectModel model;
   model.classes.resize(2);

@@ -10,8 +10,8 @@
 
 namespace kestrel {
 
-// Writes what the hunt pipeline makes of frames: detections, annotated frames, and at last the map.
-// Throws InputError when that is not possible.
+// Writes the results of the hunt pipeline: detections, annotated frames and finally the map. Throws
+// InputError when it cannot write.
 class HuntSink {
  public:
   // 'origin': latitude and longitude (degrees) of the world's origin, or empty.
@@ -19,7 +19,7 @@ class HuntSink {
 
   void Write(const Frame& frame, const HuntObservation& observation, const HuntPipeline& pipeline);
 
-  // The maps go to files only.
+  // Both maps are written to files only, never to stdout.
   void WriteMap(const HuntPipeline& pipeline) const;
   void WriteTeamMap(TeamLink* team) const;
 

@@ -3,8 +3,8 @@
 
 namespace kestrel {
 
-// From now on the first Ctrl-C (or SIGTERM) only makes WasInterrupted() true; a second one ends the
-// program at once.
+// From now on the first Ctrl-C (or SIGTERM) only makes WasInterrupted() true; a second one of the
+// same signal ends the program at once.
 void CatchInterrupts();
 bool WasInterrupted();
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs the binary `kestrel` as a user does: what it writes, what it says, how it exits.
+// Runs the binary `kestrel` as a user does, and tests its files, its output and its exit status.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -45,7 +45,7 @@ constexpr char kPoses[] =
 
 class KestrelCommandTest : public CommandTest {
  protected:
-  // A pattern 1 m in diameter, 3 m below the camera; two frames and their poses.
+  // Writes two frames with poses. The pattern is 1 m in diameter, 3 m below the camera.
   std::string WriteRecording() const {
     const RigidTransform camera_from_pattern = {
         Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX())),
@@ -62,7 +62,8 @@ class KestrelCommandTest : public CommandTest {
   }
 };
 
-// GDAL, FFmpeg and what else OpenCV's codecs need take longer to load than a short command to run.
+// The libraries that OpenCV's codecs need (GDAL, FFmpeg and others) take longer to load than a
+// short command runs.
 TEST_F(KestrelCommandTest, NeedsNoneOfOpenCvsCodecs) {
   const std::string list = folder_ / "libraries.txt";
   ASSERT_EQ(std::system(fmt::format("ldd '{}' > '{}'", KESTREL_COMMAND, list).c_str()), 0);
@@ -87,7 +88,7 @@ TEST_F(KestrelCommandTest, LandSaysOnceThatTheAltitudeIsWrong) {
   EXPECT_THAT(Run(land + "3").err, Not(HasSubstr("altitude told")));
 }
 
-// The frames are of a lens of 400 px.
+// The frames come from a lens with a focal length of 400 px.
 TEST_F(KestrelCommandTest, LandSaysThatTheLensIsAnother) {
   const CameraModel camera({640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}});
   Random random(1);
@@ -229,7 +230,7 @@ TEST_F(KestrelCommandTest, NothingIsWrittenWhereAnMcapFileIsThere) {
                    "mine.mcap: is there already");
   EXPECT_EQ(ReadFile(mcap), "mine");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
-  // The other way round: no file is left behind.
+  // The reverse case: no file is left behind.
   ASSERT_EQ(Run("land " + recording + " --output " + (folder_ / "out")).status, 0);
   ExpectInputError(
       "land " + recording + " --mcap " + (folder_ / "new.mcap") + " --output " + (folder_ / "out"),

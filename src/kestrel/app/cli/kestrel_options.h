@@ -13,7 +13,7 @@
 
 namespace kestrel {
 
-// The options of all subcommands: what `kestrel config` prints and --config reads.
+// The options of all subcommands, as `kestrel config` prints and --config reads them.
 struct KestrelOptions {
   LandingPipelineOptions landing;
   HuntPipelineOptions hunt;
@@ -34,8 +34,8 @@ struct KestrelOptions {
   std::vector<std::string> Validate() const;
 };
 
-// Defaults, changed by the file (if not empty) and then by the settings "key=value". Throws
-// InputError when one of them is at fault or the result is not valid.
+// Returns the defaults, changed first by the file (if not empty) and then by the settings
+// "key=value". Throws InputError when one of them or the result is not valid.
 KestrelOptions ReadKestrelOptions(const std::string& config_file,
                                   const std::vector<std::string>& settings);
 

@@ -25,7 +25,7 @@ struct LandArguments {
   std::vector<double> predict_s;
 };
 
-// What the detections show of height and attitude, where that contradicts what is told.
+// Returns how the detections contradict the given height and attitude; empty where they do not.
 std::string ToldWarning(const LandingPipeline& pipeline, std::optional<double> altitude_m,
                         bool has_world) {
   if (const auto tilt = pipeline.contradictions().Attitude()) {
@@ -90,7 +90,7 @@ class LandRun : public PipelineRun {
     const double focal_px = pipeline_.detector().camera().intrinsics().fx_px;
     std::string remarks = LensWarning(pipeline_.calibration_monitor(), focal_px);
     if (!remarks.empty()) remarks += "\n";
-    // Only where there are poses for some of the frames; a source that has none is nothing unusual.
+    // Only where there are poses for some of the frames; a source without any is not unusual.
     for (const auto& [pose, count] : poses_) {
       if (pose == PoseLookup::kFound || pose == PoseLookup::kEmpty ||
           pose == PoseLookup::kPredicted) {

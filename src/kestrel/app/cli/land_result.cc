@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The one of these whose name is in the cell.
+// Returns the value whose name is in the cell.
 template <class Kind>
 Kind KindIn(const CsvTable& table, std::size_t row, std::size_t column,
             std::initializer_list<Kind> kinds) {
@@ -35,7 +35,7 @@ LandingDetection DetectionOf(const DetectionRow::Pattern& pattern,
                              const std::optional<RigidTransform>& world_from_camera) {
   LandingDetection detection{};
   detection.center_px = pattern.center_px;
-  // Level, with the yaw that the table has; without, as if looked at from straight above.
+  // The pattern is level and has the yaw of the table, or none if the table has none.
   detection.camera_from_pattern = {
       Eigen::Quaterniond(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX())),
       pattern.center_in_camera};
@@ -65,7 +65,7 @@ LandResult::LandResult(const std::string& table) : file_(table), text_(ReadFile(
   const CsvTable cells(text_, file_);
   const std::size_t method = cells.Column("method"), quality = cells.Column("quality"),
                     rejected = cells.Column("rejected_at"), time = cells.Column("detect_ms");
-  const std::optional<std::size_t> misfit = cells.FindColumn("misfit_px");  // newer than the others
+  const std::optional<std::size_t> misfit = cells.FindColumn("misfit_px");  // not in older tables
   for (DetectionRow& detection : ParseDetectionRows(text_, file_)) {
     const std::size_t index = rows_.size();
     Row& row = rows_.emplace_back();
@@ -108,7 +108,7 @@ LandingObservation LandResult::Next(Time time,
     detection.method = row.method;
     detection.quality = row.quality;
     detection.misfit_px = row.misfit_px;
-    // How much it should be at most is not in the table.
+    // The table does not have the bound of the misfit.
     detection.misfit_bound_px = std::numeric_limits<double>::infinity();
     observation.center_in_world = pattern->center_in_world;
     observation.yaw_in_world = pattern->yaw_in_world;

@@ -12,19 +12,19 @@
 
 namespace kestrel {
 
-// What `kestrel land` wrote of a recording, frame by frame, with the track beside it where there is
-// one. What a table does not hold (why the pattern was not found, what became of a detection in the
-// track, how the target turned) is not known.
+// The output of `kestrel land` for a recording, frame by frame, with the track from the file beside
+// it if there is one. Facts that are not in the tables (why the pattern was not found, whether the
+// track took a detection, how the target turned) are unknown.
 class LandResult {
  public:
-  // 'table': landing_detections.csv; landing_track.csv may be beside it. Throws InputError for what
-  // is at fault in them.
+  // 'table': path of landing_detections.csv; landing_track.csv may be beside it. Throws InputError
+  // when they are not valid.
   explicit LandResult(const std::string& table);
 
-  // The next frame, which is of this time and seen from there. Throws InputError when the table has
-  // not a row of it.
+  // Returns the next frame. Its time and its pose are given. Throws InputError when the table has
+  // no row for it.
   LandingObservation Next(Time time, const std::optional<RigidTransform>& world_from_camera);
-  // Throws InputError when there are rows of further frames.
+  // Throws InputError when the table has rows of further frames.
   void RequireEnd() const;
 
   const std::string& text() const { return text_; }

@@ -46,7 +46,7 @@ void AddTruth(const LandingComparison& comparison, ReplayFrame* frame) {
       {OverlayLayer::kTruth, {{center.x(), center.y()}}, is_lost ? "lost" : ""});
 }
 
-// Each of the frames by the row of the table that is of it.
+// Marks each frame by the table's row for it.
 void MarkByPatterns(const std::string& recording, ReplayResult* result) {
   const FlightTruth flight(recording);
   const std::string file = (std::filesystem::path(flight.root()) / kTruePatterns).string();
@@ -56,7 +56,7 @@ void MarkByPatterns(const std::string& recording, ReplayResult* result) {
   for (std::size_t i = 0; i < comparisons.size(); ++i) AddTruth(comparisons[i], &result->frames[i]);
 }
 
-// What both kinds of runs keep of a frame.
+// The part of a frame that both kinds of runs keep.
 class LandingReplayRun : public ReplayRun {
  public:
   std::string Found() const override { return fmt::format("pattern found in {}", found_); }
@@ -81,7 +81,7 @@ class LandingReplayRun : public ReplayRun {
 
  private:
   LandingView view_;
-  std::optional<std::string> truth_;  // the recording that has it
+  std::optional<std::string> truth_;  // the recording that has the truth
   std::size_t found_ = 0;
 };
 
@@ -165,7 +165,7 @@ class PatternSearch : public ReplaySearch {
  private:
   const SourceArguments& source_;
   LandingPipelineOptions options_;
-  std::optional<std::string> truth_;  // the recording that has it
+  std::optional<std::string> truth_;  // the recording that has the truth
 };
 
 }  // namespace

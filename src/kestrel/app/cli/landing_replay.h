@@ -8,7 +8,7 @@
 
 namespace kestrel {
 
-// Looks for the landing pattern, as `kestrel land`. 'source' outlives the search.
+// Returns a search for the landing pattern like `kestrel land`. 'source' outlives the search.
 std::unique_ptr<ReplaySearch> SearchForPattern(const SourceArguments& source,
                                                const LandingPipelineOptions& options);
 

@@ -25,11 +25,11 @@ class TrackSink {
   bool has_begun_ = false;
 };
 
-// Writes what the landing pipeline makes of frames: detections, track, predictions, annotated
-// frames. Throws InputError when that is not possible.
+// Writes the results of the landing pipeline: detections, track, predictions and annotated frames.
+// Throws InputError when it cannot write.
 class LandingSink {
  public:
-  // 'has_track': the target can be followed; 'predict_s': horizons of the predictions.
+  // 'has_track': the target can be tracked. 'predict_s': horizons of the predictions.
   LandingSink(const OutputOptions& output, bool has_track, const std::vector<double>& predict_s);
 
   void Write(const Frame& frame, const LandingObservation& observation,

@@ -25,7 +25,7 @@ constexpr int kInputAtFault = 1;
 constexpr int kWrongUsage = 2;
 constexpr int kFlightFailed = 3;
 
-// What is wrong is said once and in our words; the decoders' own messages would bury it.
+// Errors are reported once and in our words; the decoders' own messages would bury them.
 void SilenceDecoders() {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", /*replace=*/0);

@@ -10,7 +10,8 @@
 
 namespace kestrel {
 
-// --config and --set, which several subcommands take. Must live until the command line is parsed.
+// The options --config and --set of several subcommands. Must live until the command line is
+// parsed.
 struct OptionArguments {
   std::string config;
   std::vector<std::string> settings;

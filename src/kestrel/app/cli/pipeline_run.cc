@@ -17,7 +17,7 @@
 namespace kestrel {
 namespace {
 
-// ", detect_ms median 0.24, p99 0.51"; empty without a frame.
+// For example ", detect_ms median 0.24, p99 0.51"; empty without a frame.
 std::string InWords(std::vector<double> detect_ms) {
   if (detect_ms.empty()) return "";
   std::sort(detect_ms.begin(), detect_ms.end());

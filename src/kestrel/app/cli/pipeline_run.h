@@ -14,40 +14,40 @@
 
 namespace kestrel {
 
-// A pipeline and what becomes of its results: all that the commands differ in.
+// A pipeline and the use of its results; the rest of a run is the same for all commands.
 class PipelineRun {
  public:
   virtual ~PipelineRun() = default;
 
   virtual void AddPose(const PoseSample& pose) = 0;
 
-  // The last light of a frame is so much later than its time; poses are needed until then.
+  // Time from a frame's time to the end of its exposure; poses are needed until then.
   virtual Duration after_frame() const { return Duration::zero(); }
 
-  // Processes the frame and writes what it showed. Returns the time of the detection alone.
+  // Processes the frame and writes its results. Returns the time of the detection alone.
   virtual Duration Process(const Frame& frame) = 0;
 
-  // What contradicts what, as far as it is known by now; empty where nothing does.
+  // Returns the contradictions that are known so far; empty when there are none.
   virtual std::string Warning() const { return ""; }
 
-  // Writes what there is after the last frame, or after Ctrl-C.
+  // Writes the results that come after the last frame, or after Ctrl-C.
   virtual void Finish() {}
 
-  // What was found, for the line at the end ("pattern found in 12"); and lines to go below it.
+  // Found() is for the last line ("pattern found in 12"), Remarks() are lines below it.
   virtual std::string Found() const = 0;
   virtual std::string Remarks() const = 0;
 };
 
-// What --dds asks for; null without. Waits a second for those who hear: the frames of a recording
-// do not wait. Throws InputError when DDS is at fault.
+// Returns what --dds asks for; null without. Waits up to a second for subscribers, as the frames of
+// a recording do not wait for them. Throws InputError when DDS fails.
 std::unique_ptr<RosResults> OpenRosResults(const SourceArguments& arguments,
                                            const OpenedSource& opened,
                                            const KestrelOptions& options, bool is_still,
                                            const ObjectModel& model);
 
-// Gives the run all poses and frames of the source, in the order of time, and says on stderr what
-// was found, and its first warning as soon as there is one. When the source ends with an
-// InputError, that is said all the same: the results stay.
+// Gives the run all poses and frames of the source in order of time. Says on stderr what was found
+// and, as soon as there is one, the first warning. When the source ends with an InputError the
+// summary is printed all the same and the results are kept.
 void RunPipeline(const OpenedSource& opened, PipelineRun* run);
 
 }  // namespace kestrel

@@ -30,18 +30,18 @@ struct PrintArguments {
   std::string paper;
   std::string output = ".";
   bool force = false;
-  std::string photo;  // to be checked instead
+  std::string photo;  // checked instead of printing
   std::string camera;
   std::optional<double> distance_m;
   std::optional<double> ruler_m;
 };
 
-// New files in one folder, which are named when they are written.
+// New files in one folder. The command prints the name of each when it is written.
 class PrintFiles {
  public:
   PrintFiles(const std::filesystem::path& folder, bool force) : folder_(folder, force) {}
 
-  // 'write' is given the path, which is returned.
+  // Calls 'write' with the path and returns the path.
   template <class Write>
   std::string Add(const std::string& name, Write&& write) const {
     const std::filesystem::path path = folder_.NewFile(name);
@@ -65,7 +65,7 @@ void PrintWhole(const LandingPattern& pattern, const std::string& name, const st
   if (kind != kPdf) add(kSvg, PrintPatternSvg);
 }
 
-// The SVGs, of one page each, in a folder.
+// Writes the SVGs, of one page each, to a folder.
 void PrintTiled(const LandingPattern& pattern, const Tiling& tiling, const std::string& name,
                 const std::string& kind, const PrintFiles& files) {
   if (kind != kSvg) {
@@ -124,7 +124,7 @@ void ShowDimensions(const std::vector<CheckedDimension>& dimensions) {
   }
 }
 
-// Throws InputError when a dimension is not as configured, or cannot be told.
+// Throws InputError when a dimension is not as configured or cannot be measured.
 void RequireGood(const std::string& photo, const std::vector<CheckedDimension>& dimensions) {
   std::string wrong, settings;
   bool is_coarse = false;

@@ -30,7 +30,7 @@ distortion_coefficients: []
 
 class PrintCommandTest : public CommandTest {
  protected:
-  // The page of a PDF on a board on the ground, by the simulator's camera 1.8 m above it.
+  // Renders the page of a PDF on a board on the ground, from the simulator's camera 1.8 m above it.
   static cv::Mat Photograph(const std::string& pdf, double size_m) {
     const std::string command = fmt::format("pdftoppm -r 50.8 -gray -singlefile '{0}' '{0}'", pdf);
     EXPECT_EQ(std::system(command.c_str()), 0) << command;

@@ -8,12 +8,12 @@
 
 namespace kestrel {
 
-// A line on stderr that shows how far a run is and how long it will take; nothing where stderr is
-// no terminal.
+// A line on stderr with the progress of a run and the remaining time; nothing when stderr is not a
+// terminal.
 class ProgressBar {
  public:
   explicit ProgressBar(std::optional<std::size_t> total);
-  ~ProgressBar();  // takes the line away
+  ~ProgressBar();  // removes the line
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 

@@ -16,10 +16,10 @@
 
 namespace kestrel {
 
-// A pipeline over a recording, or what it found before, kept for the page.
+// A pipeline that runs over a recording, or its earlier results, kept for the page.
 class ReplayRun : public PipelineRun {
  public:
-  // Is told now and then how many frames are done.
+  // 'tell' is called now and then with the number of frames done.
   void TellProgress(std::function<void(std::size_t done)> tell) { tell_ = std::move(tell); }
 
   Duration Process(const Frame& frame) final;
@@ -27,14 +27,14 @@ class ReplayRun : public PipelineRun {
 
   std::size_t done() const { return result_.frames.size(); }
 
-  // After the last frame, once: all frames with their marks. Throws InputError when the truth, or
-  // what was found before, is of another recording.
+  // Call it once, after the last frame. Returns all frames with their marks. Throws InputError when
+  // the truth, or the earlier result, belongs to another recording.
   ReplayResult TakeResult();
 
  protected:
-  // Adds what the frame shows. Returns the time of the detection alone.
+  // Adds the content of a frame. Returns the time of the detection alone.
   virtual Duration Add(const Frame& frame, ReplayResult* result) = 0;
-  // What is known after the last frame only.
+  // Adds what is known only after the last frame.
   virtual void Complete(ReplayResult* result) = 0;
 
  private:
@@ -42,30 +42,30 @@ class ReplayRun : public PipelineRun {
   ReplayResult result_;
 };
 
-// What `kestrel console` looks for in a recording. Outlives what it gives.
+// The search of `kestrel console` in a recording. It outlives the runs and the subject it gives.
 class ReplaySearch {
  public:
   using StartRun = std::function<std::unique_ptr<ReplayRun>(const OpenedSource& opened)>;
 
   virtual ~ReplaySearch() = default;
 
-  // Of the images that the pipeline takes.
+  // Pixel format that the pipeline takes.
   virtual PixelFormat format() const = 0;
   virtual ReplaySubject Subject() const = 0;
-  // The pipeline, with options as the command has them but for these settings. Throws InputError
-  // for settings that are not valid or not for the page.
+  // Runs the pipeline with the command's options changed by these settings. Throws InputError for
+  // settings that are not valid or that the page may not change.
   virtual StartRun Detect(const std::vector<std::string>& settings) const = 0;
-  // What was found before.
+  // Shows an earlier result.
   virtual StartRun Show(const std::string& table) const = 0;
 };
 
-// Runs over the recording once more by 'start'; nothing when it is to end before.
+// Runs over the recording once more with 'start'; returns nothing when it was told to end.
 std::optional<ReplayResult> DetectAgain(const SourceArguments& source, PixelFormat format,
                                         const ReplaySearch::StartRun& start,
                                         const SecondRun::GoOn& go_on);
 
-// The recording whose truth is known: the only source, a folder that has a table of that name with
-// what there is to be found, as "landing_pattern0/data.csv", and the true poses.
+// Returns the recording with known truth: the only source, if it is a folder with the true poses
+// and a table of this name with what can be found, as "landing_pattern0/data.csv".
 std::optional<std::string> FindTruth(const std::vector<std::string>& sources,
                                      const std::string& table_name);
 

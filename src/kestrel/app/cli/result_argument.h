@@ -7,9 +7,9 @@
 
 namespace kestrel {
 
-// Takes what a command wrote, a folder with the table of this name ("landing_detections.csv") or
-// such a file itself, out of the sources. Returns the path of the table; nothing when there is
-// none. Throws InputError when there are several, or nothing else.
+// Removes the output of a command from the sources: a folder with a table of this name
+// ("landing_detections.csv"), or a CSV file itself. Returns the path of the table; nothing when
+// there is none. Throws InputError when there are several, or no other source.
 std::optional<std::string> TakeResult(const std::string& table_name,
                                       std::vector<std::string>* sources);
 

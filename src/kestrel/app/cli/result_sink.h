@@ -13,21 +13,21 @@
 
 namespace kestrel {
 
-// Where the results of a run go.
+// Destination of a run's results.
 struct OutputOptions {
-  std::string folder;    // empty: the table to stdout, and nothing else
-  bool force = false;    // replace files that exist
+  std::string folder;    // empty: only the table, to stdout
+  bool force = false;    // replace existing files
   std::string annotate;  // "video", "images" or empty
-  double rate_hz = 0;    // of the video
+  double rate_hz = 0;    // frame rate of the video
 };
 
-// What every run writes: a table, row by row, and annotated frames. All throw InputError when that
-// is not possible.
+// Writes the results that all runs have: a table, row by row, and annotated frames. All functions
+// throw InputError when they cannot write.
 class ResultSink {
  public:
-  // 'table': the name of its file, 'header' its first line.
+  // 'table': name of the table's file. 'header': its first line.
   ResultSink(const OutputOptions& options, const char* table, const std::string& header);
-  ResultSink(const ResultSink&) = delete;  // the writer of pictures knows the folder in it
+  ResultSink(const ResultSink&) = delete;  // the writer of pictures points to the folder in it
   ResultSink& operator=(const ResultSink&) = delete;
 
   void WriteRows(const std::string& rows);
@@ -35,7 +35,7 @@ class ResultSink {
   bool wants_pictures() const { return pictures_ != nullptr; }
   void WritePicture(const std::string& frame_name, const cv::Mat& picture);
 
-  // For further files; null where all goes to stdout.
+  // Folder for further files; null where the table goes to stdout.
   const OutputFolder* folder() const { return folder_ ? &*folder_ : nullptr; }
 
  private:

@@ -13,7 +13,7 @@
 
 namespace kestrel {
 
-// The arguments that all kinds of simulations share. Must live until the command line is parsed.
+// Arguments that all kinds of simulations share. Must live until the command line is parsed.
 struct SimulateArguments {
   std::string output;
   std::string scenario;
@@ -27,7 +27,7 @@ struct SimulateArguments {
 
   void AddTo(CLI::App* command);
 
-  // The file's lens; what it does not say of the mount is the default camera's.
+  // Returns the calibration of the file; the default camera completes its mount.
   CameraCalibration FindCamera(const CameraCalibration& by_default) const;
 };
 

@@ -49,7 +49,7 @@ void Render(const RecordingPlan& plan, const SimulateArguments& arguments, int w
              took.count());
 }
 
-// What `landing` and `hunt` differ in.
+// The parts in which `landing` and `hunt` differ.
 template <class Options>
 struct Kind {
   std::span<const Scenario> scenarios;
@@ -57,7 +57,7 @@ struct Kind {
                   const std::vector<std::string>& settings);
   RecordingPlan (*plan)(const Options& options, const CameraCalibration& camera,
                         std::uint64_t seed);
-  CameraCalibration camera;  // where none is given
+  CameraCalibration camera;  // default
 };
 
 template <class Options>
@@ -69,7 +69,7 @@ void Run(const Kind<Options>& kind, const SimulateArguments& arguments, int thre
     return;
   }
   RecordingPlan plan = kind.plan(options, arguments.FindCamera(kind.camera), arguments.seed);
-  // By which an evaluation sorts its results.
+  // An evaluation groups its results by the condition.
   if (!arguments.scenario.empty()) plan.scene += "condition: " + arguments.scenario + "\n";
   Render(plan, arguments, threads);
 }

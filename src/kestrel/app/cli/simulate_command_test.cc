@@ -14,13 +14,13 @@ using ::testing::Not;
 
 class SimulateCommandTest : public CommandTest {
  protected:
-  // What landing_detections.csv says of the camera: up to p_CP_C_z_m. The poses, and with them the
-  // positions in the world, were rounded when they were written.
+  // The columns of landing_detections.csv in the camera's frame, up to p_CP_C_z_m. Poses are
+  // rounded in the files, and with them the positions in the world.
   static std::string InCamera(const std::string& csv) {
     return std::regex_replace(csv, std::regex("((?:[^,\\n]*,){10})[^\\n]*"), "$1");
   }
 
-  // Options of a flight that is quickly rendered.
+  // Options for a flight that renders quickly.
   static constexpr const char* kSmall =
       " --set frames=2 --set rate_hz=1 --set ground.map_px=256 --set shutter.rays_per_pixel=4";
 };

@@ -23,12 +23,12 @@ struct OpenedSource {
   std::unique_ptr<FrameSource> source;
   CameraCalibration calibration;
 
-  // Whether frames can be placed in the world: by poses and the camera's mount.
+  // True when frames can be placed in the world, by poses and the camera's mount.
   bool has_world() const { return calibration.body_from_camera && !source->poses().empty(); }
 };
 
-// The arguments that `land` and `hunt` share: where the frames come from and where the results go.
-// Must live until the command line is parsed.
+// Arguments that `land` and `hunt` share: the source of the frames and the destination of the
+// results. Must live until the command line is parsed.
 struct SourceArguments {
   std::vector<std::string> sources;
   BagArguments bag;
@@ -36,7 +36,7 @@ struct SourceArguments {
   OptionArguments options;
   std::string output;
   std::string annotate;  // "video", "images" or empty
-  std::string mcap;      // file, or empty
+  std::string mcap;      // file; empty: none
   DdsArguments dds;
   bool still = false;
   bool force = false;
@@ -44,18 +44,18 @@ struct SourceArguments {
   std::optional<double> clock_offset;
 
   void AddTo(CLI::App* command);
-  // Without where results go.
+  // Adds the arguments for reading only, without those for the results.
   void AddReadingTo(CLI::App* command);
 
-  // The source with the calibration FILE or its own; a FILE without a mount takes the source's, and
-  // its clock offset. Says on stderr when there are poses but no mount. Throws InputError when
-  // there is no calibration, or source or calibration are at fault.
+  // Opens the source with the calibration FILE or its own. A FILE without a mount gets the
+  // source's, and its clock offset. Says on stderr when there are poses but no mount. Throws
+  // InputError when there is no calibration, or when source or calibration are not valid.
   OpenedSource Open(PixelFormat format) const;
 
   OutputOptions Output(const OpenedSource& opened) const;
 
-  // The file of --mcap; null without. Throws InputError as ObservationFile does, and when it is
-  // the source.
+  // Opens the file of --mcap; null without. Throws InputError as ObservationFile does, and when the
+  // file is the source.
   std::unique_ptr<ObservationFile> OpenMcap(const CameraIntrinsics& intrinsics,
                                             std::variant<LandingView, HuntView> view) const;
 
@@ -63,13 +63,14 @@ struct SourceArguments {
   CameraCalibration FindCalibration(const FrameSource& source) const;
 };
 
-// Throws InputError when the file that is to be written is one of the sources.
+// Throws InputError when the file to be written is one of the sources.
 void RequireNoSource(const std::string& file, const std::vector<std::string>& sources);
 
-// The flag --annotate: "video" or "images".
+// Adds the flag --annotate: "video" or "images".
 CLI::Option* AddAnnotateFlag(CLI::App* command, std::string* annotate);
 
-// Accepts numbers above 'min' and below 'max', which 'words' names; CLI11 takes "nan" for one.
+// Accepts numbers between 'min' and 'max', both excluded; 'words' describes them in the error.
+// CLI11 alone would accept "nan".
 CLI::Validator InRange(double min, double max, const std::string& words);
 
 }  // namespace kestrel

@@ -39,8 +39,8 @@ distortion_coefficients: []
 
 class TeamCommandTest : public CommandTest {
  protected:
-  // Six discs below a UAV that stands 4 m high, and, later, six 8 m further; its navigation is off
-  // by 'bias'. The folder.
+  // Six discs below a UAV that stands 4 m high and, later, six more 8 m away; its navigation is off
+  // by 'bias'. Returns the folder.
   std::string WriteFlight(const std::string& name, const Eigen::Vector2d& bias) const {
     ObjectScene scene(4, /*tilt=*/0);
     const std::vector<std::pair<Eigen::Vector2d, cv::Scalar>> discs = {
@@ -77,8 +77,8 @@ class TeamCommandTest : public CommandTest {
     return false;
   }
 
-  // The outcome of the commands that 'first' and 'second' begin, run as UAVs and nodes "a" and "b"
-  // of one team.
+  // Runs the commands that begin with 'first' and 'second' as UAVs "a" and "b" of one team, each
+  // with a node of its own. Returns their outcome.
   int RunTeam(const std::string& first, const std::string& second, int silence_s = 30) const {
     const auto command = [&, domain = TestDomain()](const std::string& begin,
                                                     const std::string& uav) {
@@ -119,7 +119,7 @@ TEST_F(TeamCommandTest, TwoHuntsEndWithOneMap) {
   const std::string map = TeamMapOf("a");
   EXPECT_EQ(map, TeamMapOf("b"));
   EXPECT_EQ(Lines(map), 13) << map;
-  EXPECT_EQ(RowsThatEnd(map, ",a b,\n"), 12) << map;  // both have it, nobody goes for it
+  EXPECT_EQ(RowsThatEnd(map, ",a b,\n"), 12) << map;  // both have it, nobody has claimed it
 }
 
 TEST_F(TeamCommandTest, EachGoesForAnotherObject) {

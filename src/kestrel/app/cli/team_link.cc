@@ -33,10 +33,10 @@ bool IsTeamName(const std::string& name) {
                      [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
-// The computer's name as that of a UAV.
+// The computer's name, changed to a valid name of a UAV.
 std::string ComputerName() {
   std::array<char, kMaxName + 1> name{};
-  // A name that is longer is cut off: an error that is none.
+  // A longer name is cut off, which is not an error here.
   static_cast<void>(gethostname(name.data(), kMaxName));
   std::string text = name.data();
   std::replace_if(
@@ -92,7 +92,7 @@ bool TeamLink::IsTimeToTell() const {
 }
 
 void TeamLink::Tell(std::vector<MappedObject> objects) {
-  if (map_time_ == Time::min() && objects.empty()) return;  // it has no time yet
+  if (map_time_ == Time::min() && objects.empty()) return;  // the map has no time yet
   for (const MappedObject& object : objects) {
     map_time_ = std::max({map_time_, object.time, object.last_seen});
   }
@@ -109,7 +109,7 @@ void TeamLink::Exchange() {
   }
 }
 
-// As often as others are told of it.
+// Called as often as the claim is sent to others.
 void TeamLink::ChooseAgain() {
   next_claim_ = Now() + DurationFromSeconds(options_.team.digest_period_s);
   const TeamView view = View();
@@ -138,7 +138,7 @@ void TeamLink::Finish(std::vector<MappedObject> objects) {
   Tell(std::move(objects));
   member_.SetDone();
   bool was_said = false;
-  Time awaited = Now();  // the last time that somebody was not done
+  Time awaited = Now();  // the last time at which a UAV was not done
   Time lacking = Now();  // or something was not here or with another, or was new
   std::vector<std::optional<Claim>> claims;
   for (;;) {

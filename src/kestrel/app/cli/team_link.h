@@ -22,11 +22,11 @@
 
 namespace kestrel {
 
-// The options of a UAV in its team.
+// Options of a UAV in a team.
 struct TeamLinkOptions {
-  std::string uav;     // its name; empty: that of the computer
+  std::string uav;     // name of the UAV; empty: that of the computer
   std::string key;     // file with the key that the team shares; empty: messages are not signed
-  bool claim = false;  // go for an object
+  bool claim = false;  // claim an object and go for it
   TeamOptions team;
 
   template <class Self, class Visitor>
@@ -43,51 +43,51 @@ struct TeamLinkOptions {
   std::vector<std::string> Validate() const;
 };
 
-// --team. Must live until the command line is parsed.
+// The option --team. Must live until the command line is parsed.
 struct TeamArguments {
   std::string team;  // empty: none
 
-  // The option.
+  // Adds the option.
   CLI::Option* AddTo(CLI::App* command);
 };
 
-// A UAV's part in its team, by DDS: tells the map that it makes, hears those of the others, goes
-// for an object where the options say so, writes what all know together. One thread at a time.
+// A UAV's part in its team, by DDS: it sends its map, receives those of the others, claims an
+// object if the options say so, and writes the map of the whole team. One thread at a time.
 class TeamLink {
  public:
   using Say = std::function<void(const std::string&)>;
 
-  // Throws InputError when arguments or options are at fault, the key cannot be read, there is no
-  // network, or DDS is not part of this build. 'domain': of DDS. 'map': how the UAVs' maps are
-  // fused. 'model': of the objects. 'say': gets what a person should know, a line each.
+  // Throws InputError when arguments or options are not valid, the key cannot be read, there is no
+  // network, or this build has no DDS. 'domain': DDS domain. 'map': how the UAVs' maps are fused.
+  // 'model': of the objects. 'say': receives messages for a person, one line each.
   TeamLink(const TeamArguments& arguments, int domain, const TeamLinkOptions& options,
            const ObjectMapOptions& map, const ObjectModel& model, Say say);
 
-  // Whether the map should be told again.
+  // True when it is time to send the map again.
   bool IsTimeToTell() const;
 
-  // Tells the objects of this UAV's map.
+  // Sends the objects of this UAV's map.
   void Tell(std::vector<MappedObject> objects);
 
-  // Where the UAV is now, in its own world: claims are by the distance from there.
+  // Sets the position of the UAV in its own world; claims depend on the distance from it.
   void SetPosition(const Eigen::Vector3d& position) { position_ = position; }
 
-  // Sends what there is to be sent, and hears; call it often.
+  // Sends and receives what is due; call it often.
   void Exchange();
 
-  // Tells the objects, which are this UAV's last, and waits until those that are heard have told
-  // their last, all have all and nobody claims another object, or until Ctrl-C. Who hears nobody
-  // waits for silence_s.
+  // Sends the objects as this UAV's last. Then waits until all UAVs that are heard have sent their
+  // last, all have everything, and no claim changes any more; or until Ctrl-C. Without another UAV
+  // it waits for silence_s.
   void Finish(std::vector<MappedObject> objects);
 
-  // What the team knows, in this UAV's own world.
+  // Returns the team's map in this UAV's own world.
   std::vector<TeamObject> Map() { return OwnMap(View()); }
 
-  // Writes team_map.csv and, with the 'origin' of this UAV's world (latitude and longitude,
-  // degrees; or empty), team_map.geojson. Throws InputError when that is not possible.
+  // Writes team_map.csv and, if 'origin' is not empty, team_map.geojson. 'origin': latitude and
+  // longitude of this UAV's world, degrees. Throws InputError when it cannot write.
   void WriteMap(const std::vector<double>& origin, const OutputFolder& folder);
 
-  // For the line at the end: "team: 3 UAVs, 27 objects".
+  // Returns a text for the last line: "team: 3 UAVs, 27 objects".
   std::string Found();
 
  private:
@@ -102,11 +102,11 @@ class TeamLink {
   TeamFusion fusion_;
   ObjectModel model_;
   Say say_;
-  Time map_time_ = Time::min();  // of the map told last, on its own clock
+  Time map_time_ = Time::min();  // time of the map that was sent last, on its own clock
   std::optional<Time> told_;
   std::optional<Eigen::Vector3d> position_;
   Time next_claim_ = Time::min();
-  std::optional<ObjectRef> claimed_;  // as it was said
+  std::optional<ObjectRef> claimed_;  // as it was reported
 };
 
 }  // namespace kestrel

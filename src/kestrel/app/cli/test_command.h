@@ -15,7 +15,7 @@
 
 namespace kestrel {
 
-// How a run of the command ended and what it said.
+// Exit status and output of a run of the command.
 struct Outcome {
   int status;
   std::string out;
@@ -24,10 +24,10 @@ struct Outcome {
 
 inline auto Lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
-// Runs the binary `kestrel` as a user does, with a folder of the test's own.
+// Runs the binary `kestrel` as a user does, with a folder for each test.
 class CommandTest : public ::testing::Test {
  protected:
-  // 'input': what it reads from stdin.
+  // 'input': text for its stdin.
   Outcome Run(const std::string& arguments, const std::string& input = "") const {
     const std::string out = folder_ / "stdout";
     const std::string err = folder_ / "stderr";
@@ -36,7 +36,7 @@ class CommandTest : public ::testing::Test {
         fmt::format("{} {} >'{}' 2>'{}' <'{}'", KESTREL_COMMAND, arguments, out, err, in).c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadFile(out), ReadFile(err)};
   }
-  // Exit status 1 and one line on stderr that has 'words' in it.
+  // Expects exit status 1 and one line on stderr that contains 'words'.
   void ExpectInputError(const std::string& arguments, const std::string& words) const {
     const Outcome outcome = Run(arguments);
     EXPECT_EQ(outcome.status, 1) << arguments;

@@ -15,10 +15,10 @@
 
 namespace kestrel {
 
-// The command while it runs; ends with Ctrl-C.
+// Runs the command in the background; ends it with Ctrl-C.
 class RunningCommand {
  public:
-  // 'folder': where the file of its stderr, 'log', goes.
+  // 'folder': for the file 'log' with its stderr.
   RunningCommand(const std::string& arguments, const TestFolder& folder)
       : log_(folder.Write("log", "")) {
     const std::string line = fmt::format("exec {} {} 2>'{}'", KESTREL_COMMAND, arguments, log_);
@@ -29,10 +29,10 @@ class RunningCommand {
   }
   ~RunningCommand() { End(); }
 
-  // What it has said on stderr.
+  // Returns its stderr so far.
   std::string Log() const { return ReadFile(log_); }
 
-  // Where it serves its page. Throws when it does not say so.
+  // Returns the port of its page. Throws when it serves no page.
   int Port() const {
     const std::regex url("console: http://127\\.0\\.0\\.1:([0-9]+)/");
     for (int i = 0; i < 1000; ++i) {
@@ -45,7 +45,7 @@ class RunningCommand {
     throw std::runtime_error("serves no page: " + Log());
   }
 
-  // Its exit status; -1 when it had ended by itself.
+  // Ends it. Returns its exit status; -1 when it had ended by itself.
   int End() {
     if (process_ <= 0) return -1;
     kill(process_, SIGINT);

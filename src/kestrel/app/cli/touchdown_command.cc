@@ -42,7 +42,7 @@ void WriteResult(const TouchdownResult& result, std::uint64_t seed, const Output
   WritePlot(TouchdownPlot(result), folder.NewFile("touchdown.png").string());
 }
 
-// Flies, and writes images and what is found in them as it goes. Nothing when interrupted.
+// Flies, and writes images and results during the flight. Returns nothing when interrupted.
 std::optional<TouchdownResult> FlyInto(const RecordingWriter& writer, const std::string& annotate,
                                        double rate_hz, TouchdownSimulation* simulation) {
   LandingSink sink(
