@@ -9,14 +9,14 @@
 
 namespace kestrel {
 
-// A range of a quantity by which results are reported: low <= value < high, or the one value where
-// both are the same.
+// A range of a quantity by which results are grouped: low <= value < high, or exactly one value
+// where low and high are equal.
 struct Bin {
   double low;
   double high;
 
   bool Contains(double value) const { return value == low || (value > low && value < high); }
-  // "2 to 6", "1" for one value, "14 and more" where it is open.
+  // Returns "2 to 6", "1" for a single value, or "14 and more" for a range without an upper end.
   std::string Label() const {
     if (low == high) return fmt::format("{:g}", low);
     return high == std::numeric_limits<double>::infinity() ? fmt::format("{:g} and more", low)
@@ -24,7 +24,7 @@ struct Bin {
   }
 };
 
-// Heights of the camera above the pattern (m): those of the paper's Table 2, and higher.
+// Heights of the camera above the pattern (m): those of the paper's Table 2, and greater ones.
 inline constexpr std::array<Bin, 5> kAltitudeBins{
     {{0, 2}, {2, 6}, {6, 9}, {9, 14}, {14, std::numeric_limits<double>::infinity()}}};
 

@@ -7,9 +7,9 @@
 
 namespace kestrel {
 
-// Compares what `kestrel hunt` wrote into the folder 'output' (object_detections.csv; if there,
-// object_map.csv) with the truth of 'recording'. Throws InputError when one of them is missing, at
-// fault or does not belong to the other.
+// Compares the output of `kestrel hunt` in the folder 'output' (object_detections.csv and, if
+// there, object_map.csv) with the truth of 'recording'. Throws InputError when a file is missing or
+// not valid, or does not belong to the recording.
 Report EvaluateHunt(const std::string& recording, const std::string& output);
 
 }  // namespace kestrel

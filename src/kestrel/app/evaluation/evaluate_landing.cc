@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What 'parse' makes of a file; nothing when there is none.
+// Returns 'parse' of the file's text; an empty result when there is no file.
 template <class Parse>
 auto ReadIfThere(const fs::path& file, const Parse& parse) -> decltype(parse("", "")) {
   if (!fs::exists(file)) return {};

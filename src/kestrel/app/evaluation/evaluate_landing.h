@@ -7,9 +7,9 @@
 
 namespace kestrel {
 
-// Compares what `kestrel land` wrote into the folder 'output' (landing_detections.csv; if there,
-// landing_track.csv and landing_prediction.csv) with the truth of 'recording'. Throws InputError
-// when one of them is missing, at fault or does not belong to the other.
+// Compares the output of `kestrel land` in the folder 'output' (landing_detections.csv and, if
+// there, landing_track.csv and landing_prediction.csv) with the truth of 'recording'. Throws
+// InputError when a file is missing or not valid, or does not belong to the recording.
 Report EvaluateLanding(const std::string& recording, const std::string& output);
 
 }  // namespace kestrel

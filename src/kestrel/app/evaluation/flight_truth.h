@@ -11,20 +11,20 @@
 
 namespace kestrel {
 
-// What is true of a recording whatever was looked for in it: images, lens, mount, flight, scene.
-// All times are on the clock of the images.
+// The truth of a recording, whatever is searched for in it: images, lens, mount, flight, scene. All
+// times are on the clock of the images.
 class FlightTruth {
  public:
   // 'recording': a folder in the EuRoC layout with state_groundtruth_estimate0; scene.yaml may be
-  // absent. Throws InputError when something is missing or at fault.
+  // absent. Throws InputError when a file is missing or not valid.
   explicit FlightTruth(const std::string& recording);
 
-  const std::string& root() const { return root_; }  // the folder in which cam0 lies
+  const std::string& root() const { return root_; }  // the folder of cam0
   const std::vector<Time>& frames() const { return frames_; }
   const CameraModel& camera() const { return camera_; }
   const SceneTruth& scene() const { return scene_; }
 
-  // Throws InputError when there is no image of that time; 'row' says who asks.
+  // Throws InputError when there is no image with this time; 'row' names the source of the time.
   void RequireFrame(Time time, const std::string& row) const;
 
   // True poses; nothing outside of the ground truth and in its gaps.
@@ -36,7 +36,7 @@ class FlightTruth {
   std::vector<Time> frames_;
   SceneTruth scene_;
   CameraModel camera_;
-  RigidTransform body_from_camera_;  // with the mount's error
+  RigidTransform body_from_camera_;  // includes the mount's error
   PoseHistory poses_;
 };
 

@@ -16,7 +16,7 @@ double TiltOf(const RigidTransform& world_from_body) {
   return std::acos(std::clamp(up.z(), -1.0, 1.0));
 }
 
-// Where the pattern's centre is in the image at any time near that of a row.
+// The pattern's centre in the image at a time close to that of its row.
 std::optional<Eigen::Vector2d> CenterAt(const FlightTruth& flight, const TruePattern& pattern,
                                         Time time) {
   const auto world_from_camera = flight.WorldFromCamera(time);
@@ -40,7 +40,7 @@ std::optional<double> MotionDuringExposure(const FlightTruth& flight, const True
   return (*end - *begin).norm();
 }
 
-// 'angle' without whole quarter turns, within an eighth of a turn.
+// Reduces 'angle' by quarter turns to at most an eighth of a turn.
 double WithinAnEighth(double angle) { return std::remainder(angle, std::numbers::pi / 2); }
 
 LandingVerdict Judge(const FlightTruth& flight, const TruePattern* truth,

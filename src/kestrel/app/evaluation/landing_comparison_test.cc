@@ -46,7 +46,7 @@ TEST(MeasureErrors, SplitsAlongAndAcrossTheLineOfSight) {
   detected.center_px = {323, 244};
   detected.center_in_camera = {0.03, -0.04, 4.1};
   detected.center_in_world = Eigen::Vector3d(1, 2, 2);
-  detected.yaw_in_world = -kPi / 4 + 0.01;  // the pattern looks the same a quarter turn on
+  detected.yaw_in_world = -kPi / 4 + 0.01;  // the pattern looks the same after a quarter turn
   TruePattern truth = PatternBelow(0);
   truth.world_from_pattern.rotation = Eigen::AngleAxisd(kPi / 4 - 0.02, Eigen::Vector3d::UnitZ());
   const TestFlight files;
@@ -111,7 +111,7 @@ TEST(ErrorTable, HasARowForEveryAltitudeWithAFind) {
   const auto comparisons =
       CompareLanding(flight, {PatternBelow(0)}, {Detected(0, {321, 240})}, "file");
   const ReportTable errors = ErrorTable(comparisons);
-  ASSERT_EQ(errors.rows.size(), 2u);  // and all
+  ASSERT_EQ(errors.rows.size(), 2u);  // and the row for all
   EXPECT_EQ(errors.rows[0][0], "2 to 6");
   EXPECT_EQ(errors.rows[0][2], "1.00");
   EXPECT_EQ(errors.rows[0][8], "-");  // no position in the world

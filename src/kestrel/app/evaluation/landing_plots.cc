@@ -14,7 +14,7 @@ namespace {
 constexpr char kTimeLabel[] = "time, s";
 constexpr std::array<char, 3> kAxes = {'x', 'y', 'z'};
 
-// Points over time of those 'rows' for which 'value' has one; it gives an optional.
+// Points over time of the 'rows' for which 'value', which returns an optional, has a value.
 template <class Rows, class Value>
 Points2d OverTime(const Rows& rows, Time start, const Value& value) {
   Points2d points;
@@ -26,7 +26,7 @@ Points2d OverTime(const Rows& rows, Time start, const Value& value) {
   return points;
 }
 
-// The time at which it begins or breaks off is not bridged by a line.
+// The same as a line that does not bridge the gaps in time.
 template <class Rows, class Value>
 Points2d LineOverTime(const Rows& rows, Time start, const Value& value) {
   constexpr Duration kMaxGap = std::chrono::milliseconds(500);

@@ -10,7 +10,7 @@
 
 namespace kestrel {
 
-// All that was compared on one flight; times in the plots count from 'start'.
+// All comparisons of one flight; times in the plots count from 'start'.
 struct LandingPlotData {
   Time start;
   std::span<const TruePattern> patterns;
@@ -20,9 +20,9 @@ struct LandingPlotData {
   std::span<const PredictionErrors> prediction_errors;
 };
 
-// The paper's figure 11: true and estimated position of the target over time and in the plane, and
-// the errors; rate by altitude, NEES over time; velocity and prediction where there is a track.
-// Plots for which there is nothing are left out.
+// Returns the plots of the paper's figure 11: true and estimated position of the target over time
+// and in the plane, and the errors; also the rate by altitude, the NEES over time and, if there is
+// a track, velocity and prediction. Plots without data are left out.
 std::vector<Plot> LandingPlots(const LandingPlotData& data);
 
 }  // namespace kestrel

@@ -12,7 +12,7 @@
 
 namespace kestrel {
 
-// What `kestrel land` wrote, row by row (the columns: docs/recording.md).
+// A row of the output of `kestrel land` (the columns: docs/recording.md).
 struct DetectionRow {
   struct Pattern {
     Eigen::Vector2d center_px;
@@ -22,7 +22,7 @@ struct DetectionRow {
     std::optional<double> yaw_in_world;
   };
   Time time;
-  std::optional<Pattern> pattern;  // when it was detected
+  std::optional<Pattern> pattern;  // nothing when it was not detected
 };
 
 struct TrackRow {
@@ -35,13 +35,14 @@ struct TrackRow {
 };
 
 struct PredictionRow {
-  Time time;           // when it was made
-  Duration horizon{};  // for so much later
+  Time time;           // time at which it was made
+  Duration horizon{};  // it predicts the position so much later
   Eigen::Vector3d position_in_world;
 };
 
-// The texts of landing_detections.csv, landing_track.csv (rows without a position are left out) and
-// landing_prediction.csv. Throw InputError with file and line for what is at fault or out of order.
+// Parse the texts of landing_detections.csv, landing_track.csv (rows without a position are left
+// out) and landing_prediction.csv. Throw InputError with file and line for what is not valid or not
+// in order of time.
 std::vector<DetectionRow> ParseDetectionRows(std::string_view text, const std::string& file);
 std::vector<TrackRow> ParseTrackRows(std::string_view text, const std::string& file);
 std::vector<PredictionRow> ParsePredictionRows(std::string_view text, const std::string& file);

@@ -90,7 +90,7 @@ ReportTable RateTable(std::span<const LandingComparison> comparisons, ReportTabl
   return table;
 }
 
-// Errors of one kind of the images of an altitude.
+// Errors of one kind for the images of an altitude.
 template <class Get>
 std::vector<double> ErrorsOf(std::span<const LandingComparison> comparisons, const Bin& bin,
                              const Get& get) {
@@ -131,7 +131,7 @@ std::vector<std::string> ErrorCells(std::span<const LandingComparison> compariso
           FormatFixed(Quantile(yaw, 0.95), 2)};
 }
 
-// The bins of altitude, and all of them together, with the word for each.
+// The bins of altitude and one for all of them, each with its label.
 std::vector<std::pair<Bin, std::string>> AltitudeRows() {
   std::vector<std::pair<Bin, std::string>> rows;
   for (const Bin& bin : kAltitudeBins) rows.emplace_back(bin, bin.Label());

@@ -17,7 +17,7 @@ auto FirstNotBefore(const std::vector<TruePattern>& patterns, Time time) {
                           [](const TruePattern& row, Time t) { return row.time < t; });
 }
 
-// Hermite's cubic at the part 's' (0 to 1) of the time between the rows.
+// Cubic Hermite interpolation; 's' is the fraction (0 to 1) of the time between the rows.
 TrueMotion Interpolate(const TruePattern& from, const TruePattern& to, double s) {
   const double span_s = ToSeconds(to.time - from.time);
   const Eigen::Vector3d p0 = from.world_from_pattern.translation;

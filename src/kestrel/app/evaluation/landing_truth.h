@@ -14,14 +14,14 @@
 
 namespace kestrel {
 
-// Rows in order of time. Throws InputError with file and line for what is at fault.
+// Returns the rows in order of time. Throws InputError with file and line for what is not valid.
 std::vector<TruePattern> ParseTruePatterns(std::string_view text, const std::string& file);
 
-// The row of that very time, if there is one.
+// Returns the row of exactly this time; null when there is none.
 const TruePattern* FindTruePattern(const std::vector<TruePattern>& patterns, Time time);
 
-// Position and velocity at any time between two rows that are at most half a second apart, by the
-// cubic through both positions and velocities.
+// True position and velocity, interpolated between two rows that are at most half a second apart by
+// the cubic through both positions and velocities.
 struct TrueMotion {
   Eigen::Vector3d position_in_world;
   Eigen::Vector3d velocity_in_world;

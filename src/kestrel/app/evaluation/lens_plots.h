@@ -6,11 +6,12 @@
 
 namespace kestrel {
 
-// What the lens leaves unexplained of the edges, and how far from the principal point it shows
-// directions, both by their angle to the optical axis; beyond the edges the latter is dashed.
+// Returns the residuals of the edges, and the distance from the principal point at which the lens
+// shows a direction, both over the angle to the optical axis. Beyond the edges the latter is
+// dashed.
 Plot LensResidualPlot(const LensCalibration& calibration);
 
-// Where the edges are in the image, of every view a colour.
+// Returns the positions of the edges in the image, with one colour per view.
 Plot LensCoveragePlot(const LensCalibration& calibration);
 
 }  // namespace kestrel

@@ -6,7 +6,7 @@
 namespace kestrel {
 namespace {
 
-// Two views with an edge each, at 0 and 45 degrees from the axis of a pinhole.
+// Two views with one edge each, at 0 and 45 degrees from the axis of a pinhole camera.
 LensCalibration TwoViews() {
   LensCalibration calibration;
   calibration.intrinsics = {640, 480, 200, 200, 320, 240, DistortionModel::kNone, {}};
@@ -32,7 +32,7 @@ TEST(LensPlotsTest, TheCurveIsDashedBeyondTheEdges) {
   EXPECT_NEAR(by_edges.points.back().x(), 45, 1e-9);
   EXPECT_NEAR(by_edges.points.back().y(), 200, 1e-9);
   EXPECT_EQ(beyond.style, PlotStyle::kDashes);
-  // To the corners, which lie at 63 degrees.
+  // The curve goes to the corners, at 63 degrees.
   EXPECT_NEAR(beyond.points.back().x(), 63, 1);
 }
 

@@ -5,15 +5,15 @@
 
 namespace kestrel {
 
-// Two things that are near each other.
+// A possible pair: indices of two things and the distance between them.
 struct Candidate {
   int first;
   int second;
   double distance;
 };
 
-// Pairs such that each thing is in one at most: the nearest first (greedy), for things that are
-// further from each other than from their partners.
+// Returns pairs such that each thing is in at most one, the nearest first (greedy). It suits things
+// that are further from each other than from their partners.
 std::vector<Candidate> MatchNearest(std::vector<Candidate> candidates);
 
 }  // namespace kestrel

@@ -19,7 +19,7 @@ constexpr double kMaxMapDistance_m = 1;
 constexpr int kMinSightings = 3;
 constexpr std::string_view kMerged = "merged";
 
-// The elements of 'rows', in order of time, that are of 'time'.
+// The elements of 'rows', which are in order of time, with this time.
 template <class Row>
 std::span<const Row> RowsAt(const std::vector<Row>& rows, Time time) {
   const auto begin = std::partition_point(rows.begin(), rows.end(),
@@ -29,7 +29,7 @@ std::span<const Row> RowsAt(const std::vector<Row>& rows, Time time) {
   return {begin, end};
 }
 
-// An object lies flat: its circle is horizontal.
+// The object lies flat: its circle is horizontal.
 bool IsWanted(const FlightTruth& flight, const TrueSighting& sighting, double diameter_m) {
   const auto world_from_camera = flight.WorldFromCamera(sighting.time);
   if (!world_from_camera || sighting.visible_fraction < 0.999) return false;
@@ -56,7 +56,8 @@ double ReachOf(const ObjectRow& detection) {
   return std::max(kMinReach_px, detection.semi_major_px);
 }
 
-// Discs that touch have no position: a row that says so is neither right nor wrong where they are.
+// Touching discs have no position. A row that reports them where they are is neither right nor
+// wrong.
 bool IsOfTouchingDiscs(const ObjectRow& detection, const TrueObjects& objects,
                        std::span<const TrueSighting> sightings) {
   constexpr int kMinDiscs = 2;

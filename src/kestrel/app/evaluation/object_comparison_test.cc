@@ -18,7 +18,7 @@ const TrueObjects kObjects = {{1, {"red", 0.2, "cuboid", 9}},
                               {2, {"blue", 0.2, "disc", {}}},
                               {3, {"yellow", 0.2, "disc", {}}}};
 
-// At x metres north of the origin, for the camera of TestFlight.
+// A sighting x metres north of the origin, for the camera of TestFlight.
 TrueSighting Sighting(int id, double x, double visible = 1) {
   return {FrameTime(0), id, {x, 0, 0}, {0, 0, 0}, {320, 240 - 100 * x}, visible};
 }
@@ -112,7 +112,7 @@ TEST(CompareMap, FindsWhatIsMissingAndWhatIsNotThere) {
       {3, "red", "disc", {}, {9, 9, 0}, {0, 0, 0}, FrameTime(0)}};
   const auto map = CompareMap(kObjects, sightings, comparisons, rows);
   ASSERT_EQ(map.size(), 4u);
-  EXPECT_EQ(map[0].true_class, "yellow");  // followed to where it went
+  EXPECT_EQ(map[0].true_class, "yellow");  // tracked to its last place
   EXPECT_NEAR(map[0].position_error_m, 0, 1e-9);
   EXPECT_NEAR(map[0].velocity_error_mps, 0.5, 1e-9);
   EXPECT_NEAR(map[1].position_error_m, 0.5, 1e-9);

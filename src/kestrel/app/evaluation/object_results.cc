@@ -49,7 +49,7 @@ class ShapeColumns {
 };
 
 constexpr std::array kShapes = {"disc", "cuboid", "bar", "merged"};
-constexpr std::size_t kMappedShapes = 3;  // merged ones have no place in a map
+constexpr std::size_t kMappedShapes = 3;  // merged objects are never in a map
 
 }  // namespace
 

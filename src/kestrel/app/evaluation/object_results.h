@@ -12,7 +12,7 @@
 
 namespace kestrel {
 
-// The digit of a row, and how probable it is said to be.
+// The digit of a row with its reported probability.
 struct SaidDigit {
   int digit = 0;
   double probability = 0;
@@ -27,11 +27,11 @@ struct ObjectRow {
   double class_probability = 0;
   std::string shape;  // disc, cuboid, bar, merged
   std::optional<SaidDigit> digit;
-  std::optional<Eigen::Vector3d> center_in_camera;  // of all but merged ones
+  std::optional<Eigen::Vector3d> center_in_camera;  // merged objects have none
   std::optional<Eigen::Vector3d> center_in_world;
 };
 
-// object_detections.csv: the objects, and the times of all frames, with and without an object.
+// The content of object_detections.csv: the objects, and the times of all frames.
 struct ObjectRows {
   std::vector<Time> frames;  // increasing
   std::vector<ObjectRow> objects;
@@ -48,8 +48,8 @@ struct MapRow {
   Time last_seen;
 };
 
-// Throw InputError with file and line for what is at fault or out of order, like an object without
-// a position.
+// Throw InputError with file and line for what is not valid or not in order, as an object without a
+// position.
 ObjectRows ParseObjectRows(std::string_view text, const std::string& file);
 std::vector<MapRow> ParseMapRows(std::string_view text, const std::string& file);
 

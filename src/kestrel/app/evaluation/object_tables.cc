@@ -54,7 +54,7 @@ struct DetectionTally {
   }
 };
 
-// The class that a comparison is listed under: the true one, or else the detected.
+// The class in whose row a comparison counts: the true one or, without one, the detected one.
 const std::string& ListedClass(const ObjectComparison& c) {
   return c.IsObject() ? c.true_class : c.detected_class;
 }

@@ -8,18 +8,18 @@
 
 namespace kestrel {
 
-// By class and in all: found of the objects that must be found, precision of the detections, share
-// of right classes, errors.
+// By class and in total: share of the wanted objects that were found, precision of the detections,
+// share of right classes, errors.
 ReportTable DetectionTable(std::span<const ObjectComparison> comparisons);
 
-// Rows: true classes; columns: the classes that they were given, or nothing.
+// Rows: true classes. Columns: the classes that were reported for them, or nothing.
 ReportTable ConfusionTable(std::span<const ObjectComparison> comparisons);
 
-// What is said to be so probable, and how much of it is right: classes with their shapes, and
-// digits (a 6 is no 9 here: each is said to be as probable as it is).
+// Share of right classes (with shapes) and digits by their reported probability. A 6 does not count
+// as a 9 here, as each digit has a probability of its own.
 ReportTable ProbabilityTable(std::span<const ObjectComparison> comparisons);
 
-// How complete and how right the map is.
+// Completeness and correctness of the map.
 ReportTable MapTable(std::span<const MapComparison> comparisons);
 
 }  // namespace kestrel

@@ -13,7 +13,7 @@
 
 namespace kestrel {
 
-// A row of objects0/objects.csv: what an object is; and its digit, by objects0/digits.csv.
+// A row of objects0/objects.csv, with its digit from objects0/digits.csv.
 struct TrueObject {
   std::string class_name;
   double diameter_m = 0;
@@ -32,26 +32,26 @@ struct TrueSighting {
   double visible_fraction = 0;
 };
 
-// Throw InputError with file and line for what is at fault; sightings are in order of time, and
+// Throw InputError with file and line for what is not valid. Sightings are in order of time, and
 // their ids must be among 'objects'.
 TrueObjects ParseTrueObjects(std::string_view text, const std::string& file);
 void ParseTrueDigits(std::string_view text, const std::string& file, TrueObjects* objects);
 std::vector<TrueSighting> ParseTrueSightings(std::string_view text, const std::string& file,
                                              const TrueObjects& objects);
 
-// All of objects0 of a recording.
+// The content of objects0 of a recording.
 struct ObjectTruth {
   TrueObjects objects;
   std::vector<TrueSighting> sightings;
 };
-// 'root': the folder in which objects0 lies. Throws InputError as above, and for a missing file
-// other than digits.csv.
+// 'root': the folder of objects0. Throws InputError as above, and for a missing file other than
+// digits.csv.
 ObjectTruth ReadObjectTruth(const std::string& root);
 
-// The sighting of the object that is nearest to 'time'; null when it was never in view.
+// Returns the object's sighting nearest to 'time'; null when it was never in view.
 const TrueSighting* NearestSighting(const std::vector<TrueSighting>& sightings, int id, Time time);
 
-// Where an object that keeps its velocity is at another time than that of its sighting.
+// Returns the object's position at another time, if its velocity is constant.
 Eigen::Vector3d PositionAt(const TrueSighting& sighting, Time time);
 
 }  // namespace kestrel

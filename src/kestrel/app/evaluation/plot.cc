@@ -18,18 +18,18 @@ constexpr int kMapHeight_px = 1100;
 constexpr int kPanelHeight_px = 420;
 constexpr int kTitleHeight_px = 60;
 
-// Of Okabe and Ito (2008): can be told apart by the colour-blind and in gray print.
+// Colours of Okabe and Ito (2008), which the colour-blind and gray prints can tell apart.
 constexpr std::array<const char*, 6> kColors = {"#000000", "#0072B2", "#D55E00",
                                                 "#009E73", "#CC79A7", "#E69F00"};
 
-// A string of gnuplot in which nothing but the quote has a meaning.
+// A gnuplot string in which only the quote has a special meaning.
 std::string Quoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted.append(c == '\'' ? 2 : 1, c);
   return quoted + "'";
 }
 
-// A word of the shell.
+// A word quoted for the shell.
 std::string ShellQuoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
@@ -101,7 +101,7 @@ std::string PanelScript(const PlotPanel& panel, std::size_t index) {
                               fmt::join(curves, ", "));
 }
 
-// In characters: the longest label with its sample.
+// Width of the longest label with its sample, in characters.
 std::size_t LegendWidth(const Plot& plot) {
   constexpr std::size_t kSample = 9;
   std::size_t longest = 0;

@@ -10,13 +10,13 @@
 
 namespace kestrel {
 
-// Image of a circle about the origin in the plane z = 0 of its frame: points all around, in order;
-// those that the lens does not show are left out.
+// Returns the image of a circle about the origin in the plane z = 0 of its frame: points all
+// around, in order. Points that the lens does not show are left out.
 std::vector<Eigen::Vector2d> ProjectCircle(const CameraModel& camera,
                                            const RigidTransform& camera_from_circle,
                                            double diameter_m);
 
-// Largest distance (px) of the circle's image from that of its centre; 0 where the lens shows none.
+// Largest distance (px) of the circle's image from the image of its centre; 0 when none is shown.
 double ProjectedRadius(const CameraModel& camera, const RigidTransform& camera_from_circle,
                        double diameter_m);
 

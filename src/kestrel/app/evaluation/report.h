@@ -10,18 +10,18 @@
 
 namespace kestrel {
 
-// What an evaluation says.
+// The result of an evaluation.
 struct Report {
   std::string title;
   std::vector<ReportTable> tables;
   std::vector<Plot> plots;
 };
 
-// The tables as one Markdown page.
+// Returns the tables as one page of Markdown.
 std::string ToMarkdown(const Report& report);
 
-// Writes report.md, one CSV per table and one PNG per plot. Throws InputError when a file is there
-// already and may not be replaced, or cannot be written.
+// Writes report.md, one CSV per table and one PNG per plot. Throws InputError when a file exists
+// and may not be replaced, or cannot be written.
 void WriteReport(const Report& report, const OutputFolder& folder);
 
 }  // namespace kestrel

@@ -8,28 +8,28 @@
 
 namespace kestrel {
 
-// A table of a report, as text; every row is as wide as 'columns'.
+// A table of a report, as text; each row has as many cells as 'columns'.
 struct ReportTable {
-  std::string name;  // of its file, without the ending
+  std::string name;  // file name without the extension
   std::string title;
   std::string note;  // one line under the title; may be empty
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;
 };
 
-// A Markdown section: title, note, table.
+// Returns a section of Markdown: title, note, table.
 std::string ToMarkdown(const ReportTable& table);
 
-// CSV with a header row; a value that is not known is left empty.
+// Returns CSV with a header row; unknown values are empty.
 std::string ToCsv(const ReportTable& table);
 
-// What stands in a cell for a value that is not known.
+// Text of a cell whose value is unknown.
 inline constexpr char kUnknownCell[] = "-";
 
-// 'value' with 'decimals' digits after the point; kUnknownCell for NaN.
+// Returns 'value' with 'decimals' digits after the point; kUnknownCell for NaN.
 std::string FormatFixed(double value, int decimals);
 
-// A share 0 to 1 as percent, and an interval of it, "97.2 to 98.8".
+// Returns a share of 0 to 1, or an interval of shares, in percent: "97.2 to 98.8".
 std::string FormatPercent(double share);
 std::string FormatPercent(const Interval& shares);
 

@@ -13,7 +13,7 @@
 namespace kestrel {
 namespace {
 
-// A map in the file, by which its values are read and its faults named; may be absent.
+// A map in the file. It reads values and names the errors; the map may be absent.
 class Section {
  public:
   Section(const YAML::Node& node, const std::string& name) : node_(node), name_(name) {}
@@ -39,7 +39,7 @@ class Section {
     return node_[key];
   }
 
-  const YAML::Node node_;  // const: looking for a key must not make it
+  const YAML::Node node_;  // const: a look-up must not create the key
   std::string name_;
 };
 

@@ -11,8 +11,8 @@
 
 namespace kestrel {
 
-// What scene.yaml of a recording says of it as a whole and of its single images. Keys that are not
-// there leave the defaults; keys that are not known here are left alone.
+// The content of a recording's scene.yaml: facts about the whole recording and about single images.
+// Missing keys leave the defaults; unknown keys are ignored.
 struct SceneTruth {
   std::string condition = "all";  // light and weather
   double ring_diameter_m = 1;     // options.pattern.outer_diameter_m
@@ -21,7 +21,7 @@ struct SceneTruth {
   double clock_offset_s = 0;         // time_offset_s: t_nav = t_image + offset
   std::optional<double> exposure_s;  // options.shutter.exposure_s
 
-  // frames.<timestamp>.condition and .exposure_s, where an image has its own.
+  // frames.<timestamp>.condition and .exposure_s, for images with values of their own.
   std::map<Time, std::string> frame_conditions;
   std::map<Time, double> frame_exposures_s;
 
@@ -29,7 +29,7 @@ struct SceneTruth {
   std::optional<double> ExposureAt(Time time) const;
 };
 
-// Throws InputError with file and key for what is no YAML or no number.
+// Throws InputError with file and key when the text is not YAML or a value is not a number.
 SceneTruth ParseSceneTruth(const std::string& text, const std::string& file);
 
 }  // namespace kestrel

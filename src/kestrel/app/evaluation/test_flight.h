@@ -37,7 +37,7 @@ class TestFlight {
   std::string recording() const { return folder_ / "flight"; }
   std::string output() const { return folder_ / "output"; }
 
-  // Files of the truth, below mav0, and of the results.
+  // Write files of the truth, below mav0, and of the results.
   void WriteTruth(const std::string& name, const std::string& text) const {
     folder_.Write("flight/mav0/" + name, text);
   }

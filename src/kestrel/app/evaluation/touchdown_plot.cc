@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// The paths as 'view' shows them.
+// The paths, projected by 'view'.
 template <class View>
 std::vector<PlotSeries> Series(const std::vector<TouchdownMoment>& path, const View& view) {
   PlotSeries vehicle{"pattern", PlotStyle::kLine, {}, {}};

@@ -6,8 +6,8 @@
 
 namespace kestrel {
 
-// The paths of the UAV and of the vehicle, seen from above and from the side: in the vertical plane
-// through the first and the last position of the UAV.
+// Returns the paths of the UAV and of the vehicle from above and from the side, the latter in the
+// vertical plane through the first and the last position of the UAV.
 Plot TouchdownPlot(const TouchdownResult& result);
 
 }  // namespace kestrel

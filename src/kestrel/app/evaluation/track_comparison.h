@@ -12,33 +12,32 @@
 
 namespace kestrel {
 
-// Errors of a row of the track in the world, estimate minus truth.
+// Errors of a row of the track in the world's frame, estimate minus truth.
 struct TrackErrors {
   Time time;
   double altitude_m = 0;  // of the camera above the pattern, at the last image before
   Eigen::Vector3d position;
   Eigen::Vector3d velocity;
-  double position_nees = 0;  // against the standard deviation that all axes are given
+  double position_nees = 0;  // with the one standard deviation that holds for all axes
   double velocity_nees = 0;
 };
 
 struct PredictionErrors {
-  Time time;  // for which it was made
+  Time time;  // time that it predicts
   Duration horizon{};
   Eigen::Vector3d position;
 };
 
-// Rows for whose time the truth is not known are left out, and those of a track that is not yet
-// one.
+// Rows are left out when their time is outside of the known truth or their track is not confirmed.
 std::vector<TrackErrors> CompareTrack(const std::vector<TruePattern>& patterns,
                                       const std::vector<TrackRow>& rows);
 std::vector<PredictionErrors> ComparePredictions(const std::vector<TruePattern>& patterns,
                                                  const std::vector<PredictionRow>& rows);
 
-// Errors of position and velocity by altitude, with NEES.
+// Returns the errors of position and velocity by altitude, with NEES.
 ReportTable TrackTable(std::span<const TrackErrors> errors);
 
-// Errors of the predicted position by horizon.
+// Returns the errors of the predicted position by horizon.
 ReportTable PredictionTable(std::span<const PredictionErrors> errors);
 
 }  // namespace kestrel
