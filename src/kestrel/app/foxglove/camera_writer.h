@@ -10,14 +10,14 @@
 
 namespace kestrel {
 
-// Writes frames as /camera/image (foxglove.CompressedImage, JPEG) and, with each, what the camera
-// is, where that is known, as /camera/calibration (foxglove.CameraCalibration).
+// Writes frames as /camera/image (foxglove.CompressedImage, JPEG) and with each, if they are known,
+// the intrinsics as /camera/calibration (foxglove.CameraCalibration).
 class CameraWriter {
  public:
   // 'sink' outlives this.
   CameraWriter(FoxgloveSink* sink, const std::optional<CameraIntrinsics>& camera);
 
-  // Throws InputError when the sink cannot be written, or the frame is neither 8-bit gray nor BGR.
+  // Throws InputError when the sink cannot write, or the frame is neither 8-bit gray nor BGR.
   void Write(const Frame& frame);
 
  private:

@@ -16,9 +16,9 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kLiveFrames = 16;
-// With more that wait, images are left out until there are fewer.
+// Images are left out while more frames than this wait.
 constexpr std::size_t kFramesInTime = 2;
-// The threads that fly go first.
+// The threads that fly have priority.
 constexpr int kNiceness = 10;
 
 std::vector<LiveChannel> ChannelsOf(bool is_hunt) {
@@ -35,14 +35,14 @@ std::vector<LiveChannel> ChannelsOf(bool is_hunt) {
   return channels;
 }
 
-// The channel of a topic of kObservationTopics.
+// Index of a topic of kObservationTopics among the channels.
 std::size_t ChannelOf(const std::vector<LiveChannel>& channels, std::string_view topic) {
   const auto channel = std::find_if(channels.begin(), channels.end(),
                                     [&](const LiveChannel& each) { return each.topic == topic; });
   return static_cast<std::size_t>(channel - channels.begin());
 }
 
-// Puts messages into the feed.
+// Passes messages to the feed.
 class FeedSink : public FoxgloveSink {
  public:
   FeedSink(ChannelFeed* feed, double max_image_rate_hz)
@@ -86,7 +86,7 @@ class FeedWriter : public SinkWriter {
     sink_.set_waiting_frames(waiting);
     try {
       writer_.Write(observation);
-    } catch (const InputError& error) {  // an image that cannot be shown
+    } catch (const InputError& error) {  // the image cannot be shown
       Write(SessionEvent{Now(), EventLevel::kWarning, error.what()});
     }
   }

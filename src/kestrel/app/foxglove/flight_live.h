@@ -12,16 +12,16 @@
 
 namespace kestrel {
 
-// A flight as the messages that viewers can subscribe to while it happens: the topics and messages
-// of ObservationWriter, made by a thread of its own, and only those that somebody has subscribed
-// to. Else a frame costs the vision one look at a number.
+// Makes messages of a running flight for viewers, with the topics and messages of
+// ObservationWriter. A thread of its own makes only the messages of topics with a subscription.
+// Without any a frame costs the vision thread one read of a number.
 class FlightLive : public ObservationSink {
  public:
-  // 'max_image_rate_hz': of /camera/image; all else is of each frame.
+  // 'max_image_rate_hz': limit for /camera/image; the other messages are made for each frame.
   FlightLive(const CameraIntrinsics& camera, const std::variant<LandingView, HuntView>& view,
              double max_image_rate_hz);
 
-  // What a WebServer gives to viewers; for as long as this is there.
+  // The channels for a WebServer; valid as long as this.
   ChannelFeed* channels() { return &feed_; }
 
   bool IsWanted() const override { return feed_.IsWatched(); }

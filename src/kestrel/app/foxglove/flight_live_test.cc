@@ -25,7 +25,7 @@ std::size_t ChannelOf(FlightLive* flight, const std::string& topic) {
   return channel;
 }
 
-// The messages until there is one of /result for each of so many frames, by topic.
+// Takes messages, by topic, until there are so many of /result.
 std::map<std::string, std::vector<ChannelMessage>> TakeFrames(FlightLive* flight,
                                                               std::size_t frames) {
   std::map<std::string, std::vector<ChannelMessage>> messages;
@@ -64,7 +64,7 @@ TEST(FlightLiveTest, MakesOnlyWhatIsWanted) {
   const Frame frame = ObservedFrame(0);
   flight.Take(Observation{frame, ObservedLanding(frame.time)});
   std::this_thread::sleep_for(20ms);
-  EXPECT_EQ(frame.image.u->refcount, 1);  // nobody looks: it is not even kept
+  EXPECT_EQ(frame.image.u->refcount, 1);  // nobody looks: it is not even stored
   flight.channels()->SetWanted(std::uint64_t{1} << ChannelOf(&flight, "/result"));
   SeeFrame(&flight, 1);
   const auto messages = TakeFrames(&flight, 1);

@@ -11,22 +11,22 @@
 
 namespace kestrel {
 
-// An MCAP file of messages in protobuf, each topic with its schema. It has its own name from the
-// beginning, and all that is older than a second is in it: cut off, it is read up to the cut. All
-// calls throw InputError when it cannot be written.
+// An MCAP file of messages in protobuf, with a schema for each topic. It has its final name from
+// the start and contains all messages older than a second; a file that was cut off can be read up
+// to the cut. All functions throw InputError when the file cannot be written.
 class FoxgloveFile : public FoxgloveSink {
  public:
-  // The file must not be there unless 'replace' is set.
+  // The file must not exist unless 'replace' is set.
   FoxgloveFile(const std::string& path, bool replace)
       : file_(path, {.replace = replace, .name = UnfinishedName::kOwn}) {}
 
-  // Whether nothing was written.
+  // True when nothing has been written.
   bool empty() const { return channels_.empty(); }
 
-  // Writes what waits for more of its second.
+  // Writes the messages that still wait for their second to be complete.
   void Flush() { file_.FinishChunk(); }
 
-  // Nothing is written after it.
+  // Finishes the file; nothing can be written after it.
   void Close() { file_.Close(); }
 
  private:

@@ -13,8 +13,8 @@
 #include "kestrel/app/foxglove/protobuf_writer.h"
 #include "kestrel/core/base/time.h"
 
-// The messages by which Foxglove and other viewers know what is what
-// (docs.foxglove.dev/docs/sdk/schemas), with the fields that Kestrel fills; and one of its own.
+// The standard messages of Foxglove and other viewers (docs.foxglove.dev/docs/sdk/schemas), with
+// the fields that Kestrel fills; and some of Kestrel's own.
 namespace kestrel::foxglove {
 
 struct Point2 {  // px, 0 is the corner of the first pixel
@@ -291,7 +291,7 @@ struct TextPrimitive {
   }
 };
 
-// A thing in the world. One of the same id takes its place; else it goes after its lifetime.
+// An object in the world. It replaces one with the same id; else it disappears after its lifetime.
 struct SceneEntity {
   static constexpr std::string_view kType = "foxglove.SceneEntity";
   Time timestamp;
@@ -331,7 +331,7 @@ struct Log {
   Time timestamp;
   LogLevel level = LogLevel::kUnknown;
   std::string message;
-  std::string name;  // of who says it
+  std::string name;  // name of the sender
 
   template <class Self, class Visitor>
   static void Fields(Self& self, Visitor& visit) {
@@ -342,11 +342,11 @@ struct Log {
   }
 };
 
-// Something that was found in a frame.
+// A detection in a frame.
 struct Detection {
   static constexpr std::string_view kType = "kestrel.Detection";
-  std::string name;  // of the landing pattern how its cross was verified, of an object its class
-  double probability = 0;  // that it is what it is taken for
+  std::string name;        // how the pattern's cross was verified, or the class of an object
+  double probability = 0;  // probability that it is right
   Point2 center;           // px; as all pixels here, 0 is the corner of the first
   // m, and m^2 row by row, empty where they are not known.
   std::optional<Vector3> position_in_camera;
@@ -366,12 +366,12 @@ struct Detection {
   }
 };
 
-// The landing target by its track, in the world.
+// The landing target by its track, in the world's frame.
 struct Target {
   static constexpr std::string_view kType = "kestrel.Target";
   Vector3 position;                // m
   Vector3 velocity;                // m/s
-  double heading = 0;              // rad from x (east) to y
+  double heading = 0;              // rad, from x (east) towards y (north)
   double turn_rate = 0;            // rad/s
   std::vector<double> covariance;  // of position and velocity: 6 x 6, row by row
 
@@ -385,15 +385,15 @@ struct Target {
   }
 };
 
-// All that a frame showed, and how long that took.
+// The result of a frame, with its durations.
 struct FrameResult {
   static constexpr std::string_view kType = "kestrel.FrameResult";
   Time timestamp;                                                // of the frame
   std::string frame;                                             // its name; empty in flight
-  double detect_ms = 0;                                          // of the detection alone
+  double detect_ms = 0;                                          // the detection alone
   double latency_ms = std::numeric_limits<double>::quiet_NaN();  // from capture to this, in flight
-  std::string state;   // of the track, as "tracking"; "3 in view" of a hunt
-  std::string reason;  // why there is not more
+  std::string state;   // state of the track, as "tracking"; for a hunt, as "3 in view"
+  std::string reason;  // why the state is no better
   std::vector<Detection> detections;
   std::optional<Target> target;
 

@@ -11,12 +11,12 @@
 
 namespace kestrel {
 
-// A recording as an MCAP file for Foxglove and other viewers: frames (see CameraWriter), poses as
-// /pose (foxglove.PoseInFrame) and /tf (foxglove.FrameTransforms, "map" to "base_link"), and the
-// mount with each frame as /tf ("base_link" to "camera_optical_frame").
+// Writes a recording as an MCAP file for Foxglove and other viewers: frames (see CameraWriter),
+// poses as /pose (foxglove.PoseInFrame) and /tf (foxglove.FrameTransforms, "map" to "base_link"),
+// and with each frame the mount as /tf ("base_link" to "camera_optical_frame").
 class FoxgloveRecording : public RecordingSink {
  public:
-  // The file must not be there unless 'replace' is set; its name ends in .mcap. Throws InputError.
+  // The file must not exist unless 'replace' is set; its name ends in .mcap. Throws InputError.
   FoxgloveRecording(const std::string& path, const RecordingHead& head, bool replace);
 
   void AddPose(const PoseSample& pose) override;

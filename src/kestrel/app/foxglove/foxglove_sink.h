@@ -16,7 +16,7 @@ struct FoxgloveTopic {
   std::string_view name;
 };
 
-// The same for who does not care for the type.
+// The same without the type as a template argument.
 struct FoxgloveTopicInfo {
   std::string_view name;
   std::string_view type;    // as "foxglove.Log"
@@ -27,18 +27,18 @@ constexpr FoxgloveTopicInfo InfoOf(const FoxgloveTopic<Message>& topic) {
   return {topic.name, Message::kType, ProtobufSchemaOf<Message>};
 }
 
-// Where messages in protobuf go: into a file, or to who looks.
+// Destination of messages in protobuf: a file, or viewers.
 class FoxgloveSink {
  public:
   virtual ~FoxgloveSink() = default;
 
-  // Throws InputError when it cannot be written.
+  // Throws InputError when it cannot write.
   template <ProtobufMessage Message>
   void Write(const FoxgloveTopic<Message>& topic, Time time, const Message& message) {
     Put(InfoOf(topic), time, ProtobufBytesOf(message));
   }
 
-  // The same for what 'make' returns, which is not called where the message goes nowhere.
+  // Writes the result of 'make', which is called only if somebody wants the message.
   template <ProtobufMessage Message, class Make>
   void Offer(const FoxgloveTopic<Message>& topic, Time time, const Make& make) {
     if (Wants(topic.name)) Write<Message>(topic, time, make());

@@ -20,7 +20,7 @@ inline constexpr FoxgloveTopic<foxglove::SceneUpdate> kSceneTopic{"/scene"};
 inline constexpr FoxgloveTopic<foxglove::FrameResult> kResultTopic{"/result"};
 inline constexpr FoxgloveTopic<foxglove::Log> kLogTopic{"/log"};
 
-// Of frames and of what is found in them; a hunt has no target.
+// Topics of frames and of their results; a hunt has no target.
 inline constexpr std::array kObservationTopics = {
     InfoOf(kImageTopic),      InfoOf(kCalibrationTopic), InfoOf(kAnnotationsTopic),
     InfoOf(kCameraPoseTopic), InfoOf(kTransformsTopic),  InfoOf(kTargetTopic),

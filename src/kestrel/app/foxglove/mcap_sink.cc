@@ -14,7 +14,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kFrames = 32;  // that wait for the disk
+constexpr std::size_t kFrames = 32;  // queue of frames for the disk
 constexpr Duration kFlushPeriod = std::chrono::seconds(1);
 
 class McapWriter : public SinkWriter {

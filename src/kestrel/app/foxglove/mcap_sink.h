@@ -12,9 +12,9 @@
 
 namespace kestrel {
 
-// A sink that writes an MCAP file, as ObservationFile does. 'tell', by the thread that writes: the
-// file cannot be written any more (the session goes on), or how many frames are left out. Throws
-// InputError as ObservationFile does.
+// Returns a sink that writes an MCAP file as ObservationFile does. 'tell' is called by the writing
+// thread with a text: that the file cannot be written any more (the session goes on), or how many
+// frames are left out. Throws InputError as ObservationFile does.
 std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
                                                const CameraIntrinsics& camera,
                                                const std::variant<LandingView, HuntView>& view,

@@ -42,7 +42,7 @@ TEST(McapSinkTest, WritesAllThatItWasGiven) {
   EXPECT_EQ(messages.at("/log")[0].fields.number<std::int64_t>(2), 3);
 }
 
-// What a crash would leave: the file is there and is read, though nothing follows.
+// After a crash the file would be like this: readable, although nothing follows.
 TEST(McapSinkTest, ASecondAfterAFrameItIsInTheFile) {
   const TestFolder folder;
   const std::string path = folder / "flight.mcap";
@@ -53,7 +53,7 @@ TEST(McapSinkTest, ASecondAfterAFrameItIsInTheFile) {
   std::size_t topics = 0;
   for (int i = 0; i < 200 && topics < 9; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    // Nothing of it, or a part only, may be there yet.
+    // The file may be missing, or may not be complete enough yet.
     InputErrorOf([&] { topics = McapReader(path).topics().size(); });
   }
   EXPECT_EQ(topics, 9u);

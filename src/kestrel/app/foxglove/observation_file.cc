@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-// Not where it is a device.
+// Removes a file, but not a device.
 void RemoveFile(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_regular_file(path, ignored)) std::filesystem::remove(path, ignored);
@@ -26,7 +26,7 @@ ObservationFile::ObservationFile(const std::string& path, bool replace,
 ObservationFile::~ObservationFile() {
   try {
     if (!file_.empty()) Close();
-  } catch (const InputError&) {  // what is in the file can be read all the same
+  } catch (const InputError&) {  // the file can be read all the same
   }
   if (file_.empty()) RemoveFile(path_);
 }

@@ -10,29 +10,29 @@
 
 namespace kestrel {
 
-// What ObservationWriter writes, as an MCAP file. All calls throw InputError when it cannot be
-// written.
+// Writes the messages of ObservationWriter into an MCAP file. All functions throw InputError when
+// the file cannot be written.
 class ObservationFile {
  public:
-  // 'view': what is looked for. The file must not be there unless 'replace' is set.
+  // 'view': view of a landing or of a hunt. The file must not exist unless 'replace' is set.
   ObservationFile(const std::string& path, bool replace, const CameraIntrinsics& camera,
                   std::variant<LandingView, HuntView> view);
-  // What was written stays, as after Close; a file without a message is removed.
+  // Finishes the file as Close does, without errors; a file without messages is removed.
   ~ObservationFile();
   ObservationFile(const ObservationFile&) = delete;
   ObservationFile& operator=(const ObservationFile&) = delete;
 
   ObservationWriter& writer() { return writer_; }
-  // As those of the writer.
+  // The same as in ObservationWriter.
   template <class Seen>
   void Write(const Frame& frame, const Seen& seen, std::optional<Duration> latency = std::nullopt) {
     writer_.Write(frame, seen, latency);
   }
 
-  // Writes what waits for more of its second.
+  // Writes the messages that still wait for their second to be complete.
   void Flush() { file_.Flush(); }
 
-  // Nothing is written after it.
+  // Finishes the file; nothing can be written after it.
   void Close();
 
  private:

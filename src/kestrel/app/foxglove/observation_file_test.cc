@@ -39,7 +39,7 @@ TEST(ObservationFileTest, WritesALanding) {
     EXPECT_EQ(messages.at(topic)[24].time, ObservedFrame(24).time) << topic;
   }
   EXPECT_EQ(messages.at("/tf").size(), 50u);
-  EXPECT_EQ(messages.at("/log").size(), 1u);  // the track began
+  EXPECT_EQ(messages.at("/log").size(), 1u);  // the start of the track
 
   const ProtobufFields image = messages.at("/camera/image")[3].fields;
   EXPECT_EQ(image.time(1), ObservedFrame(3).time);
@@ -62,7 +62,7 @@ TEST(ObservationFileTest, WritesALanding) {
   EXPECT_EQ(result.bytes(5), "tracking");
   const ProtobufFields detection = result.message(7);
   EXPECT_EQ(detection.bytes(1), "quadrants");
-  EXPECT_DOUBLE_EQ(detection.message(3).number<double>(1), 32);  // a corner is 0, not the centre
+  EXPECT_DOUBLE_EQ(detection.message(3).number<double>(1), 32);  // 0 is a corner, not a centre
   EXPECT_THAT(detection.doubles(5), ElementsAre(0.01, 0, 0, 0, 0.01, 0, 0, 0, 0.01));
   const ProtobufFields target = result.message(8);
   EXPECT_DOUBLE_EQ(target.message(1).number<double>(1), 1);

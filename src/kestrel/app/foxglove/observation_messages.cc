@@ -22,7 +22,7 @@ constexpr foxglove::Color kRed{.r = 1, .g = 0.2, .b = 0.2};
 constexpr foxglove::Color kWhite{.r = 1, .g = 1, .b = 1};
 constexpr foxglove::Color kShade{.a = 0.5};
 constexpr foxglove::Color kNoColor{.a = 0};
-constexpr double kOpacity = 0.35;  // of what shows an uncertainty
+constexpr double kOpacity = 0.35;  // for uncertainties
 constexpr double kLine_px = 2;
 constexpr double kText_px = 14;
 constexpr double kSigmas = 2;
@@ -34,7 +34,7 @@ foxglove::Vector3 VectorOf(const Eigen::Vector3d& vector) {
 
 foxglove::Point3 PointOf(const Eigen::Vector3d& point) { return {point.x(), point.y(), point.z()}; }
 
-// Viewers have the corner of the first pixel at 0, Kestrel its centre.
+// In viewers 0 is the corner of the first pixel, in Kestrel it is the centre.
 foxglove::Point2 PixelOf(double u_px, double v_px) { return {u_px + 0.5, v_px + 0.5}; }
 
 template <class Matrix>
@@ -87,7 +87,7 @@ foxglove::TextAnnotation LabelMessage(Time time, const OverlayShape& shape) {
   return label;
 }
 
-// The names that the schema knows, with as many coefficients as they have.
+// Sets the name that the schema uses for the model, and its number of coefficients.
 void SetDistortion(const CameraIntrinsics& camera, foxglove::CameraCalibration* message) {
   constexpr std::size_t kPlumbBob = 5;
   message->d = camera.distortion;
@@ -109,7 +109,7 @@ foxglove::SceneEntity EntityOf(Time time, std::string id) {
   return entity;
 }
 
-// Where the thing is with two standard deviations.
+// An ellipsoid of two standard deviations around the position.
 foxglove::SpherePrimitive Ellipsoid(const Eigen::Vector3d& position,
                                     const Eigen::Matrix3d& covariance, foxglove::Color color) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);

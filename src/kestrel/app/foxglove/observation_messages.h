@@ -14,8 +14,8 @@
 
 namespace kestrel {
 
-// What a viewer shows of frames and of what was found in them. The world's frame is "map", the
-// camera's "camera_optical_frame", the pattern's "landing_pattern".
+// Messages that show frames and their results in a viewer. The world's frame is "map", the camera's
+// "camera_optical_frame", the pattern's "landing_pattern".
 inline constexpr const char* kFoxgloveWorld = "map";
 inline constexpr const char* kFoxgloveCamera = "camera_optical_frame";
 inline constexpr const char* kFoxglovePattern = "landing_pattern";
@@ -27,16 +27,17 @@ foxglove::FrameTransform FoxgloveTransform(Time time, const char* parent, const 
 
 foxglove::Pose FoxglovePose(const RigidTransform& pose);
 
-// What the console draws over the image: what was found green, what was rejected red, what is
-// expected blue.
+// Returns the shapes that the console draws over the image: detections green, rejected ones red,
+// predictions blue.
 foxglove::ImageAnnotations FoxgloveAnnotations(Time time, const std::vector<OverlayShape>& shapes);
 
-// In the world: the target's ring, two standard deviations of its position and its path in the next
-// 3 s; of objects in view two standard deviations and what they are. Each for a second.
+// Returns a scene in the world. For a landing: the target's ring, its position with two standard
+// deviations, and its path over the next 3 s. For a hunt: each object in view with its class and
+// two standard deviations. Entities last for a second.
 foxglove::SceneUpdate FoxgloveScene(const LandingView& view, const LandingObservation& observation);
 foxglove::SceneUpdate FoxgloveScene(const HuntView& view, const HuntObservation& observation);
 
-// Without the frame's name and the latency.
+// The frame's name and the latency are left empty.
 foxglove::FrameResult FoxgloveResult(const LandingObservation& observation);
 foxglove::FrameResult FoxgloveResult(const HuntView& view, const HuntObservation& observation);
 

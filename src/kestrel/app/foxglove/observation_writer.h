@@ -22,8 +22,8 @@
 
 namespace kestrel {
 
-// Frames and what a pipeline makes of them, as messages for Foxglove and other viewers. Every
-// message of a frame has the frame's time:
+// Writes frames and their results as messages for Foxglove and other viewers. All messages of a
+// frame have the frame's time:
 //
 //   /camera/image, /camera/calibration   foxglove.CompressedImage (JPEG), CameraCalibration
 //   /camera/annotations                  foxglove.ImageAnnotations
@@ -36,11 +36,11 @@ namespace kestrel {
 // All calls throw InputError when the sink cannot be written.
 class ObservationWriter {
  public:
-  // 'sink' outlives this. 'view': what is looked for.
+  // 'sink' outlives this. 'view': view of a landing or of a hunt.
   ObservationWriter(FoxgloveSink* sink, const CameraIntrinsics& camera,
                     std::variant<LandingView, HuntView> view);
 
-  // The observation must be of what the view is of. 'latency': from capture to the result, live.
+  // The observation must be of the view's kind. 'latency': from capture to the result, in flight.
   void Write(const Frame& frame, const LandingObservation& observation,
              std::optional<Duration> latency = std::nullopt);
   void Write(const Frame& frame, const HuntObservation& observation,

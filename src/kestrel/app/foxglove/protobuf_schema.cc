@@ -18,7 +18,7 @@ std::string PackageOf(std::string_view type) {
 
 std::string NameOf(std::string_view type) { return std::string(type.substr(type.rfind('.') + 1)); }
 
-// "foxglove/Color.proto"; the files of protobuf's own messages have small letters.
+// Returns for example "foxglove/Color.proto"; protobuf's own files have names in lower case.
 std::string FileOf(std::string_view type) {
   std::string name = NameOf(type);
   if (PackageOf(type) == kGoogle) {

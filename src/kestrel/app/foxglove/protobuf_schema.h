@@ -24,12 +24,12 @@ namespace kestrel {
 template <class Enum>
 struct ProtobufEnum;
 
-// The schema of messages, as protobuf's own messages describe it
-// (google/protobuf/descriptor.proto): what a reader needs that knows nothing of them. One file for
-// each message, those that a message needs before it.
+// The schema of messages, in protobuf's own messages (google/protobuf/descriptor.proto), for
+// readers that do not know the messages. It has one file per message, after the files of the
+// messages that it uses.
 class ProtobufSchema {
  public:
-  // Adds the message, and all those that it has in it, unless they are there.
+  // Adds the message and all messages in its fields, unless they are in the schema.
   template <ProtobufMessage Message>
   void Add() {
     if (IsKnown(Message::kType)) return;
@@ -39,7 +39,7 @@ class ProtobufSchema {
     AddFile(description);
   }
 
-  // A FileDescriptorSet, serialized.
+  // Returns a serialized FileDescriptorSet.
   std::string Bytes() const;
 
  private:
@@ -61,7 +61,7 @@ class ProtobufSchema {
     int number = 0;
     Label label = Label::kOptional;
     FieldType type = FieldType::kDouble;
-    std::string type_name;  // ".package.Name", of messages and enumerations
+    std::string type_name;  // ".package.Name", for messages and enumerations
 
     template <class Self, class Visitor>
     static void Fields(Self& self, Visitor& visit);
@@ -78,7 +78,7 @@ class ProtobufSchema {
     std::vector<std::string> values;
   };
 
-  // Takes the fields of a message down.
+  // Records the fields of a message.
   class Description {
    public:
     Description(ProtobufSchema* schema, std::string_view type) : schema_(schema), type_(type) {}

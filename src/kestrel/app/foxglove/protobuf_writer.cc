@@ -18,7 +18,7 @@ DurationMessage DurationOf(Duration duration) {
   return {duration.count() / kSecond_ns, static_cast<int>(duration.count() % kSecond_ns)};
 }
 
-// Seven bits a byte, the lowest first; all but the last have the eighth.
+// Seven bits per byte, the lowest first; the eighth bit is set in all bytes but the last.
 void ProtobufWriter::PutVarint(std::uint64_t value) {
   constexpr std::uint64_t kMore = 0x80;
   for (; value >= kMore; value >>= 7) *bytes_ += static_cast<char>(value | kMore);

@@ -33,7 +33,7 @@ struct ProtobufBytes {
   std::string bytes;
 };
 
-// google.protobuf.Timestamp and Duration; a span of less than zero has both parts so.
+// google.protobuf.Timestamp and Duration. In a negative duration both parts are negative.
 struct TimestampMessage {
   static constexpr std::string_view kType = "google.protobuf.Timestamp";
   std::int64_t seconds = 0;
@@ -64,8 +64,8 @@ concept ProtobufMessage = requires {
   Type::kType;
 };
 
-// Appends the fields of a message to 'bytes'. Numbers are written even where they are 0, empty
-// texts and lists are not.
+// Appends the fields of a message to 'bytes'. Numbers are written even when they are 0; empty texts
+// and lists are not.
 class ProtobufWriter {
  public:
   explicit ProtobufWriter(std::string* bytes) : bytes_(bytes) {}
@@ -120,7 +120,7 @@ class ProtobufWriter {
   void operator()(int number, const char* name, const std::vector<Value>& list) {
     for (const Value& value : list) (*this)(number, name, value);
   }
-  // Numbers lie in one block, as proto3 has them.
+  // Packed numbers, as is the rule in proto3.
   void operator()(int number, const char*, const std::vector<double>& list) {
     PutDoubles(number, list.data(), list.size());
   }

@@ -61,7 +61,7 @@ struct ProtobufEnum<Kind> {
 
 namespace {
 
-// The examples of protobuf.dev/programming-guides/encoding.
+// Examples from protobuf.dev/programming-guides/encoding.
 TEST(ProtobufWriterTest, WritesWhatTheSpecificationShows) {
   EXPECT_EQ(ProtobufBytesOf(Inner{150}), "\x08\x96\x01"s);
   Outer outer;
@@ -95,7 +95,7 @@ TEST(ProtobufWriterTest, TimesBeforeTheEpochHaveTheirNanosecondsAfterTheSecond) 
   EXPECT_EQ(before.nanos, 999'999'999);
 }
 
-// A message's file comes after those of the messages that it needs, each once.
+// The file of a message comes after the files of the messages that it needs; each file comes once.
 TEST(ProtobufSchemaTest, DescribesTheMessageAndAllThatItNeeds) {
   const ProtobufFields set(ProtobufSchemaOf<Outer>());
   ASSERT_EQ(set.count(1), 3u);

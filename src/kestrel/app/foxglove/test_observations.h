@@ -30,8 +30,8 @@ inline Frame ObservedFrame(int index) {
           cv::Mat(48, 64, CV_8UC1, cv::Scalar(100))};
 }
 
-// The pattern 2 m below the camera, which is 5 m above the world's origin; the track has it a metre
-// to the east.
+// The pattern is 2 m below the camera, which is 5 m above the world's origin. The track has it one
+// metre to the east.
 inline LandingObservation ObservedLanding(Time time) {
   LandingObservation observation;
   observation.time = time;

@@ -17,8 +17,8 @@
 
 namespace kestrel {
 
-// The fields of a serialized message: of each number, in order, the bytes of a block or of a number
-// (that of a varint as 64 bits).
+// The fields of a serialized message. For each field number it has, in order, the bytes of the
+// blocks or numbers; a varint has 64 bits.
 class ProtobufFields {
  public:
   explicit ProtobufFields(std::string_view bytes) {
@@ -83,7 +83,7 @@ class ProtobufFields {
   std::map<int, std::vector<std::string>> fields_;
 };
 
-// The messages of an MCAP file, by topic, each with the time that the file has it by.
+// The messages of an MCAP file by topic, each with its time in the file.
 struct StoredMessage {
   Time time;
   ProtobufFields fields;
