@@ -33,7 +33,7 @@ class HuntNodeTest : public VisionNodeTest {
   void SetUp() override {
     camera_info_ = SerializeMessage(CameraInfoOf(ObjectCamera().intrinsics()), WireFormat::kRos1);
   }
-  // Five images, one a second, with the UAV 4 m above the ground.
+  // Five images, one per second, with the UAV 4 m above the ground.
   Time Hunt(VisionNode* node) {
     node->TakeCameraInfo(camera_info_, "camera_info");
     TakeMount(node);
@@ -66,7 +66,7 @@ TEST_F(HuntNodeTest, ObjectsAreDetectionsAndAMap) {
   EXPECT_EQ(map.header.stamp, last);
   EXPECT_EQ(map.header.frame_id, "map");
   ASSERT_EQ(map.detections.size(), 1);
-  // The camera's x is the world's, its y and z point the other way.
+  // The camera's x points along the world's, its y and z against the world's.
   EXPECT_NEAR(map.detections[0].results[0].pose.position.x, 10 + 100.5 / 500 * 3.988, 0.02);
   EXPECT_NEAR(map.detections[0].results[0].pose.position.y, 20 + 99.5 / 500 * 3.988, 0.02);
   EXPECT_EQ(connection_.Newest<MarkerArrayMessage>(ResultTopic::kMapMarkers).markers.size(), 3);

@@ -20,7 +20,7 @@ HuntTask::HuntTask(const CameraCalibration& calibration, const HuntedObjects& ob
   pipeline_.SetAltitude(options.altitude());
 }
 
-// The last row of a rolling shutter is later than the frame.
+// The last row of a rolling shutter is later than the frame's time.
 Duration HuntTask::pose_lead() const {
   return clock_offset_ + DurationFromSeconds(pipeline_.options().readout_s / 2);
 }

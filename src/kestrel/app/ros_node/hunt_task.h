@@ -7,10 +7,10 @@
 
 namespace kestrel {
 
-// Coloured objects, and the map of them.
+// The hunt for coloured objects, with their map.
 class HuntTask : public NodeTask {
  public:
-  // As MakeNodeTask.
+  // Parameters and errors as in MakeNodeTask.
   HuntTask(const CameraCalibration& calibration, const HuntedObjects& objects,
            const NodeOptions& options, const NodeFrames& frames, NodeConnection* connection);
 
@@ -28,7 +28,7 @@ class HuntTask : public NodeTask {
   Duration clock_offset_;
   HuntPipeline pipeline_;
   HuntResults results_;
-  const HuntObservation* observation_ = nullptr;  // of the last frame
+  const HuntObservation* observation_ = nullptr;  // observation of the last frame
   bool is_map_published_ = false;
 };
 

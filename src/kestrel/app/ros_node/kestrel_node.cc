@@ -23,7 +23,7 @@ constexpr std::array kHuntNodeTopics = {
     ResultTopic::kDetections,  ResultTopic::kMarkers, ResultTopic::kAnnotatedImage,
     ResultTopic::kDiagnostics, ResultTopic::kMap,     ResultTopic::kMapMarkers};
 
-// The node's topics, in ROS 1.
+// The node's topics in ROS 1.
 class Ros1NodeConnection : public NodeConnection {
  public:
   Ros1NodeConnection(const std::shared_ptr<Ros1Connection>& ros, ResultTopics topics)
@@ -41,7 +41,7 @@ class Ros1NodeConnection : public NodeConnection {
   Ros1ResultConnection results_;
 };
 
-// camera_info lies beside the image, as image_transport has it.
+// The topic camera_info beside the image's, as in image_transport.
 std::string BesideOf(const std::string& topic, const std::string& name) {
   return topic.substr(0, topic.rfind('/') + 1) + name;
 }
@@ -83,7 +83,7 @@ void SubscribePoses(const NodeOptions& options, Ros1Connection* ros, VisionNode*
                  });
 }
 
-// What 'action' says, or what is wrong.
+// Returns the text of 'action', or its error.
 Ros1Connection::Answer AnswerBy(const std::function<std::string()>& action) {
   try {
     return {true, action()};

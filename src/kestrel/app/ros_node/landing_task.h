@@ -7,10 +7,10 @@
 
 namespace kestrel {
 
-// The landing pattern.
+// The search for the landing pattern.
 class LandingTask : public NodeTask {
  public:
-  // As MakeNodeTask.
+  // Parameters and errors as in MakeNodeTask.
   LandingTask(const CameraCalibration& calibration, const NodeOptions& options,
               const NodeFrames& frames, NodeConnection* connection);
 
@@ -28,7 +28,7 @@ class LandingTask : public NodeTask {
   Duration clock_offset_;
   LandingPipeline pipeline_;
   LandingResults results_;
-  LandingObservation observation_;  // of the last frame
+  LandingObservation observation_;  // observation of the last frame
 };
 
 }  // namespace kestrel

@@ -8,11 +8,11 @@
 
 namespace kestrel {
 
-// The node's way to ROS. All calls from any thread.
+// The node's connection to ROS. Any thread may call all functions.
 class NodeConnection : public ResultConnection {
  public:
   virtual void Warn(const std::string& text) = 0;
-  // On the clock of the stamps.
+  // Returns the present time on the clock of the stamps.
   virtual Time StampNow() const = 0;
 };
 

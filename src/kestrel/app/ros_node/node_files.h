@@ -10,19 +10,19 @@
 
 namespace kestrel {
 
-// What the hunt looks for.
+// The objects that the hunt looks for.
 struct HuntedObjects {
   ObjectModel model;
   ColorGrid grid;
 };
 
-// What the files say that the options name.
+// The content of the files that the options name.
 struct NodeFiles {
-  std::optional<CameraCalibration> calibration;  // nothing: camera_info says it
-  std::optional<HuntedObjects> objects;          // of the hunt; the built-in ones without files
+  std::optional<CameraCalibration> calibration;  // nothing: it comes from camera_info
+  std::optional<HuntedObjects> objects;          // for the hunt; built-in ones without files
 };
 
-// Throws InputError when one of them is at fault.
+// Throws InputError when a file is not valid.
 NodeFiles ReadNodeFiles(const NodeOptions& options);
 
 }  // namespace kestrel

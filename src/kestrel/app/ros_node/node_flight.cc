@@ -10,9 +10,9 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kWaitingArrivals = 16;  // more than frames can wait
+constexpr std::size_t kWaitingArrivals = 16;  // more than the frames that can wait
 
-// Without poses there is nothing that a frame could wait for.
+// Without poses a frame has nothing to wait for.
 LiveEventsOptions EventsOf(const NodeOptions& options) {
   LiveEventsOptions events = options.kestrel.fly.flight.events;
   if (options.poses == "none") events.pose_wait_s = 0;
@@ -69,7 +69,7 @@ void NodeFlight::Process(const Frame& frame) {
 void NodeFlight::CountLatency(Time stamp, Duration detect_time) {
   const Time now = Now();
   while (const auto arrival = arrivals_.TryPop()) {
-    if (arrival->stamp != stamp) continue;  // of a frame that was dropped
+    if (arrival->stamp != stamp) continue;  // arrival of a dropped frame
     latency_.Add(now - arrival->arrival);
     beyond_detect_.Add(now - arrival->arrival - detect_time);
     detect_.Add(detect_time);

@@ -18,21 +18,21 @@
 
 namespace kestrel {
 
-// The node's task, with a thread of its own, from the first image to a reset.
+// Runs the node's task in a thread of its own, from the first image to a reset.
 class NodeFlight {
  public:
-  // As MakeNodeTask.
+  // Parameters and errors as in MakeNodeTask.
   NodeFlight(const CameraCalibration& calibration, const std::optional<HuntedObjects>& objects,
              const NodeOptions& options, const NodeFrames& frames, NodeConnection* connection);
   ~NodeFlight();
 
-  // Neither waits. 'arrival', by Now(): from when the latency counts.
+  // Neither function waits. 'arrival': time of the arrival, by Now(); the latency counts from it.
   void Push(Frame frame, Time arrival);
   void Push(const PoseSample& pose) { events_.Push(pose); }
 
   const CameraIntrinsics& intrinsics() const { return intrinsics_; }
 
-  // Calls 'action' with the task, between two frames.
+  // Calls 'action' with the task between two frames.
   template <class Action>
   auto WithTask(const Action& action) {
     const std::lock_guard lock(task_mutex_);
@@ -41,8 +41,8 @@ class NodeFlight {
 
   struct Counters {
     LiveEvents::Counters events;
-    std::uint64_t found = 0;       // images in which something was
-    LatencySummary latency;        // from an image's arrival until its detections were published
+    std::uint64_t found = 0;       // images with a detection
+    LatencySummary latency;        // from an image's arrival to the publication of its detections
     LatencySummary beyond_detect;  // the same without the time of Detect
     LatencySummary detect;
   };

@@ -16,7 +16,8 @@
 namespace kestrel {
 namespace {
 
-// Options, or groups of them, that a node takes while it runs. Another pattern is another target.
+// Options, or groups of them, that a running node can change. The pattern is not among them, as
+// another pattern is another target.
 constexpr std::array<std::string_view, 26> kChangeable = {
     "config",
     "pattern_frame",

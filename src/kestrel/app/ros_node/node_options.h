@@ -10,25 +10,25 @@
 
 namespace kestrel {
 
-// The parameters of the node, and among them the options of `kestrel config` by the same names.
+// The parameters of the node. They include the options of `kestrel config`, with the same names.
 struct NodeOptions {
   std::string task = "landing";         // or "hunt": coloured objects
   std::string camera;                   // calibration file; empty: camera_info
-  std::string config;                   // file of options, as --config
-  std::string image_transport = "raw";  // or "compressed": of the images that are subscribed
-  // Where the UAV's poses come from: "topic" (`poses`, of any of the types of bags), "tf", or
-  // "none": then there are detections, and no track.
+  std::string config;                   // file of options, as for --config
+  std::string image_transport = "raw";  // of the subscribed images; or "compressed"
+  // Source of the UAV's poses: "topic" (`poses`, of any of the types in bags), "tf", or "none";
+  // without poses there are detections but no track.
   std::string poses = "none";
   std::string world_frame;               // for tf; empty: the root of the body's frames
-  std::string body_frame = "base_link";  // whose poses tf tells, and where the camera is fixed to
-  std::string pattern_frame = "landing_pattern";  // of tf, for the pattern as it was detected
-  std::string target_frame = "landing_target";    // that the track's velocity is in
+  std::string body_frame = "base_link";  // the UAV's frame in tf; the camera is fixed to it
+  std::string pattern_frame = "landing_pattern";  // tf frame of the detected pattern
+  std::string target_frame = "landing_target";    // frame of the track's velocity
   bool publish_tf = true;
-  double altitude_m = 0;  // of the camera above the pattern where there are no poses; 0: not known
+  double altitude_m = 0;  // height of the camera above the pattern without poses; 0: unknown
   double prediction_s = 2;
   double prediction_step_s = 0.1;
-  // Of the hunt, as the options of `kestrel hunt`: objects and their colours, the color grid; where
-  // the map is saved, whether it replaces an older one, and where the world's origin is.
+  // For the hunt, as the options of `kestrel hunt`: model of the objects, colour grid, folder for
+  // the map, whether it may replace an older one, and origin of the world.
   std::string model;
   std::string grid;
   std::string output;
@@ -66,11 +66,12 @@ struct NodeOptions {
   std::vector<double> origin_degrees() const;  // latitude and longitude, or empty
 };
 
-// Defaults, changed by the file that `config` names and then by the parameters, key ("landing.
-// detector.min_quality") and value. Throws InputError when one of them is at fault.
+// Returns the defaults, changed by the file that `config` names and then by the parameters, pairs
+// of key ("landing.detector.min_quality") and value. Throws InputError when one of them is not
+// valid.
 NodeOptions ReadNodeOptions(const std::vector<std::pair<std::string, std::string>>& parameters);
 
-// What became of options that changed, by their names.
+// The changed options, by name: those that were taken over and those that were not.
 struct OptionUpdate {
   std::vector<std::string> taken;
   std::vector<std::string> left;  // these need a reset

@@ -15,18 +15,18 @@
 
 namespace kestrel {
 
-// The names of the frames that results are in.
+// Names of the frames of the results.
 struct NodeFrames {
   std::string camera;
   std::optional<std::string> world;  // where there are poses
 };
 
-// What the node does with images: a pipeline, and what is published of it. One thread at a time.
+// The node's work on images: a pipeline and the publication of its results. One thread at a time.
 class NodeTask {
  public:
   virtual ~NodeTask() = default;
 
-  // How much later than a frame's time, on the navigation's clock, the last pose is that it needs.
+  // Time from a frame's time to the last pose that it needs, on the navigation's clock.
   virtual Duration pose_lead() const = 0;
 
   virtual void AddPose(const PoseSample& pose) = 0;
@@ -35,23 +35,23 @@ class NodeTask {
     bool something = false;
     Duration detect_time{};  // of Detect alone
   };
-  // Publishes the detections of a frame.
+  // Processes a frame and publishes its detections.
   virtual Found PublishDetections(const Frame& frame) = 0;
-  // Publishes what else the same frame said.
+  // Publishes the other results of the same frame.
   virtual void PublishRest(const Frame& frame) = 0;
 
-  // Goes on with options that UpdateOptions took over, and forgets nothing.
+  // Continues with options that UpdateOptions has taken over; track and map stay.
   virtual void Update(const NodeOptions& options) = 0;
 
-  // Publishes the map as it is after the last frame, unless it was published.
+  // Publishes the map as of the last frame, unless it has been published.
   virtual void PublishMap() = 0;
-  // Writes the map to the options' folder, and says in words what it wrote. Throws InputError when
-  // there is no map or it cannot be written.
+  // Writes the map to the options' folder and returns a text that says what it wrote. Throws
+  // InputError when there is no map or it cannot be written.
   virtual std::string SaveMap() = 0;
 };
 
-// The hunt for 'objects', or the landing pattern where there are none. Throws InputError when
-// calibration or options are not valid.
+// Makes the task of the hunt for 'objects' or, without objects, of the landing. Throws InputError
+// when calibration or options are not valid.
 std::unique_ptr<NodeTask> MakeNodeTask(const CameraCalibration& calibration,
                                        const std::optional<HuntedObjects>& objects,
                                        const NodeOptions& options, const NodeFrames& frames,

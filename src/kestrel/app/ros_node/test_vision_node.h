@@ -18,7 +18,7 @@
 
 namespace kestrel {
 
-// Keeps what the node says.
+// Keeps the messages that the node publishes.
 class FakeConnection : public NodeConnection {
  public:
   bool HasSubscribers(ResultTopic) const override { return true; }
@@ -33,12 +33,12 @@ class FakeConnection : public NodeConnection {
   }
   Time StampNow() const override { return TimeFromNanoseconds(1); }
 
-  // The newest message of a topic, for which it waits.
+  // Waits for the newest message of a topic and returns it.
   template <class Message>
   Message Newest(ResultTopic topic) {
     return Await<Message>(topic, [](const Message&) { return true; });
   }
-  // The newest with this stamp.
+  // The same for a message with this stamp.
   template <class Message>
   Message At(ResultTopic topic, Time stamp) {
     return Await<Message>(topic,
@@ -117,7 +117,7 @@ class VisionNodeTest : public ::testing::Test {
 
   static constexpr Time kStamp = TimeFromNanoseconds(5'000'000'000);
   const CameraIntrinsics camera_{640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}};
-  // Looks straight down from 3 m.
+  // The camera looks straight down from 3 m.
   const RigidTransform camera_from_pattern_{Eigen::Quaterniond(0, 1, 0, 0), {0.2, 0.1, 3}};
   FakeConnection connection_;
 };

@@ -17,11 +17,11 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kKeptPoses = 200;  // fewer than LiveEvents takes at once
+constexpr std::size_t kKeptPoses = 200;  // fewer than LiveEvents can take at once
 constexpr Duration kJumpBack = std::chrono::seconds(1);
 constexpr Duration kWarnAgainAfter = std::chrono::seconds(5);
 
-// A pipeline of colours sees nothing in a gray image.
+// The hunt cannot see colours in a gray image.
 void RequireColors(const ImageMessage& message, const std::string& topic) {
   if (message.encoding != "mono8" && message.encoding != "8UC1") return;
   throw InputError(fmt::format("{}: the images are gray ({}), task:=hunt needs colours", topic,
@@ -84,7 +84,7 @@ void VisionNode::TakeAnyImage(std::string_view bytes, const std::string& topic) 
   if (is_stopped_) return;
   const Time arrival = Now();
   ++received_;
-  ++refused_;  // until it is taken
+  ++refused_;  // until it is accepted
   WarnOfErrors([&] {
     const auto message = ParseMessage<Message>(bytes, WireFormat::kRos1, topic);
     if (!CheckOrder(message.header, topic)) return;
@@ -101,8 +101,8 @@ void VisionNode::TakeAnyImage(std::string_view bytes, const std::string& topic) 
   });
 }
 
-// Counts the images that never came, and begins anew where the clock went back: a bag that is
-// played again.
+// Counts the images that never came. Starts anew when the clock jumps back, as when a bag is played
+// again.
 bool VisionNode::CheckOrder(const HeaderMessage& header, const std::string& topic) {
   if (ToNanoseconds(header.stamp) <= 0) {
     throw InputError(topic + ": the images have no stamps (zero), expected when they were taken");
@@ -210,7 +210,7 @@ void VisionNode::AddPose(const PoseSample& pose, const std::string& world) {
   if (flight_) flight_->Push(pose);
 }
 
-// The images left out meanwhile are not missed.
+// Images that are left out meanwhile do not count as missed.
 void VisionNode::Stop() {
   is_stopped_ = true;
   sequence_.reset();
@@ -222,7 +222,7 @@ void VisionNode::Forget() {
   sequence_.reset();
 }
 
-// What decides on topics.
+// Throws InputError for options that would change the topics.
 void VisionNode::RequireChangeable(const NodeOptions& options) const {
   if (options.task == options_.task && options.poses == options_.poses &&
       options.image_transport == options_.image_transport) {

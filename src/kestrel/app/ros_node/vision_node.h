@@ -20,36 +20,37 @@
 
 namespace kestrel {
 
-// A pipeline as a node of ROS 1, without ROS itself: it is given serialized messages and gives such
-// to a connection. What is wrong with a message is a warning; the message is left out.
-// All calls by one thread.
+// A pipeline as a node of ROS 1, without ROS itself: it takes serialized messages and publishes
+// through a connection. A message that is not valid is left out with a warning. All functions must
+// be called by one thread.
 class VisionNode {
  public:
-  // 'connection' must outlive this. Throws InputError when a file of the options is at fault.
+  // 'connection' must outlive this. Throws InputError when a file of the options is not valid.
   VisionNode(const NodeOptions& options, NodeConnection* connection);
 
-  // 'topic': the name that messages and warnings have for it; images of one called image_rect are
-  // described by P of the camera_info.
+  // 'topic': name of the topic for messages and warnings. For images of a topic called image_rect
+  // the matrix P of camera_info holds.
   void TakeCameraInfo(std::string_view bytes, const std::string& topic);
   void TakeImage(std::string_view bytes, const std::string& topic);
   void TakeCompressedImage(std::string_view bytes, const std::string& topic);
   void TakePose(std::string_view type, std::string_view bytes, const std::string& topic);
   void TakeTransforms(std::string_view bytes, bool is_static, const std::string& topic);
 
-  // Images are processed from the start on until Stop, after which they are left out.
+  // Images are processed between Start and Stop; others are left out.
   void Start() { is_stopped_ = false; }
   void Stop();
-  // Forgets track, map and all that was counted, and goes on with these options; poses, calibration
-  // and mount stay. Throws InputError, and changes nothing, as the constructor does.
+  // Discards track, map and counters, and continues with these options; poses, calibration and
+  // mount stay. Throws InputError as the constructor does, and then changes nothing.
   void Reset(const NodeOptions& options);
-  // Takes of these options what needs no reset, forgets nothing, and says in words what it took and
-  // what it did not. Throws as Reset.
+  // Takes over the options that need no reset and keeps track and map. Returns a text that says
+  // which options it took over and which not. Throws as Reset does.
   std::string Update(const NodeOptions& options);
-  // Says in words what it wrote. Throws InputError when there is no map or it cannot be written.
+  // Returns a text that says what it wrote. Throws InputError when there is no map or it cannot be
+  // written.
   std::string SaveMap();
 
-  // Once a second: the map, and diagnostics: the rate since the last call, latency and drops since
-  // the start or reset.
+  // To be called once a second. Publishes the map and the diagnostics: rate since the last call,
+  // latency and drops since the start or reset.
   void Tick();
 
  private:
@@ -73,17 +74,17 @@ class VisionNode {
   std::optional<CameraInfoMessage> camera_info_;
   std::string camera_info_topic_;
   LiveTransforms transforms_;
-  std::deque<PoseSample> poses_;  // the newest, for a flight that is still to begin
+  std::deque<PoseSample> poses_;  // the newest, for a flight that has not begun yet
   std::string world_;
-  std::string body_;  // where the poses' topic tells it
+  std::string body_;  // if the poses' topic names it
   std::unique_ptr<NodeFlight> flight_;
   bool is_stopped_ = false;
 
-  std::optional<Time> newest_;  // stamp of an image that was taken
+  std::optional<Time> newest_;  // stamp of the last accepted image
   std::optional<std::uint32_t> sequence_;
   std::uint64_t received_ = 0;
-  std::uint64_t missed_ = 0;   // by the numbers of the headers
-  std::uint64_t refused_ = 0;  // broken, out of order, or before all was known
+  std::uint64_t missed_ = 0;   // by the sequence numbers of the headers
+  std::uint64_t refused_ = 0;  // broken, out of order, or before calibration and poses were known
 
   std::string last_warning_;
   Time last_warning_time_;

@@ -52,7 +52,7 @@ TEST_F(VisionNodeTest, WithPosesAndTheMountThereIsATrackInTheWorld) {
   }
   const auto track = connection_.Newest<OdometryMessage>(ResultTopic::kTrack);
   EXPECT_EQ(track.header.frame_id, "map");
-  // The camera's x is the world's, its y and z point the other way.
+  // The camera's x points along the world's, its y and z against the world's.
   EXPECT_NEAR(track.pose.position.x, 10.2, 0.05);
   EXPECT_NEAR(track.pose.position.y, 19.9, 0.05);
   EXPECT_NEAR(track.pose.position.z, 0, 0.1);
@@ -98,7 +98,7 @@ TEST_F(VisionNodeTest, AStoppedNodeTakesNoImages) {
             1);
 }
 
-// A bag that is played again.
+// This happens when a bag is played again.
 TEST_F(VisionNodeTest, StampsThatJumpBackStartAnew) {
   VisionNode node(Options("none"), &connection_);
   TakeCameraInfo(&node);
