@@ -77,8 +77,8 @@ struct OptionUpdate {
   std::vector<std::string> left;  // these need a reset
 };
 
-// Takes over from 'told' what a node that runs can change without forgetting track or map: the
-// thresholds of the detectors, the noise, the names of frames, and what is published and saved.
+// Takes over the changes in 'told' that a running node can make without losing track or map:
+// thresholds of the detectors, noise, names of frames, and what is published and saved.
 OptionUpdate UpdateOptions(NodeOptions told, NodeOptions* options);
 
 }  // namespace kestrel
