@@ -25,7 +25,7 @@ class ImageWriter : public AnnotatedWriter {
 
 class VideoWriter : public AnnotatedWriter {
  public:
-  // Neither may be there yet: which of the two it becomes is known with the first frame.
+  // Neither file may exist: only with the first frame is it known which of the two it becomes.
   VideoWriter(const OutputFolder& folder, double rate_hz)
       : video_(folder.NewFile("annotated.mp4").replace_extension().string(), rate_hz) {
     folder.NewFile("annotated.avi");

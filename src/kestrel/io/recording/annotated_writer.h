@@ -10,7 +10,7 @@
 
 namespace kestrel {
 
-// Where frames with drawings on them (CV_8UC3) go.
+// Destination of frames with drawings on them (CV_8UC3).
 class AnnotatedWriter {
  public:
   virtual ~AnnotatedWriter() = default;
@@ -18,10 +18,10 @@ class AnnotatedWriter {
   virtual void Write(const std::string& frame_name, const cv::Mat& image) = 0;
 };
 
-// annotated/<name of the frame>.png. 'folder' must outlive the writer.
+// Writes annotated/<name of the frame>.png. 'folder' must outlive the writer.
 std::unique_ptr<AnnotatedWriter> MakeImageWriter(const OutputFolder& folder);
 
-// annotated.mp4, or annotated.avi (motion JPEG) where GStreamer has no encoder for the first.
+// Writes annotated.mp4, or annotated.avi (motion JPEG) when GStreamer has no encoder for MP4.
 std::unique_ptr<AnnotatedWriter> MakeVideoWriter(const OutputFolder& folder, double rate_hz);
 
 }  // namespace kestrel

@@ -29,7 +29,7 @@ cv::Rect ParseRectangle(const YamlReader& reader) {
   return rectangle;
 }
 
-// The part of the image that is marked, as a mask of its size.
+// Returns a mask of the marked pixels, with the image's size.
 cv::Mat MaskOf(const ColorMark& mark, const cv::Size& size) {
   if (!mark.mask.empty()) {
     cv::Mat mask = ReadImage(mark.mask, PixelFormat::kGray);

@@ -11,7 +11,7 @@
 
 namespace kestrel {
 
-// Pixels of one colour in an image: a rectangle, or where a mask image is not black.
+// Marked pixels of one colour in an image: a rectangle, or the pixels of a mask that are not black.
 struct ColorMark {
   std::string image;  // path
   std::string color;
@@ -19,13 +19,13 @@ struct ColorMark {
   std::string mask;    // path; may be empty
 };
 
-// Marks from a YAML list of {image: FILE, color: NAME, rectangle: [x, y, width, height]} or
-// {image: FILE, color: NAME, mask: FILE}; paths are relative to the file's folder. Throws
-// InputError for what is missing, unknown or of the wrong type.
+// Parses a YAML list of {image: FILE, color: NAME, rectangle: [x, y, width, height]} or {image:
+// FILE, color: NAME, mask: FILE}; paths are relative to the folder of 'file'. Throws InputError for
+// entries that are missing, unknown or of the wrong type.
 std::vector<ColorMark> ParseColorMarks(const std::string& yaml, const std::string& file);
 
-// The marked colours by name. Throws InputError when an image cannot be read, a rectangle is not
-// inside of it, or a mask is not of its size.
+// Returns the colours of the marked pixels by name. Throws InputError when an image cannot be read,
+// a rectangle is not inside of the image, or a mask does not have its size.
 std::map<std::string, std::vector<Hsv>> ReadMarkedColors(const std::vector<ColorMark>& marks);
 
 }  // namespace kestrel

@@ -19,7 +19,7 @@ cv::Vec3b CellPixel(std::size_t cell) {
 cv::Mat DrawHueSaturation(const ColorGrid& grid) {
   constexpr int kWidth = 360;
   constexpr int kHeight = 200;
-  constexpr int kReach = 2;  // a cell covers more than a pixel of the plane
+  constexpr int kReach = 2;  // a cell covers more than one pixel of the plane
   cv::Mat plane = cv::Mat::zeros(kHeight, kWidth, CV_8UC3);
   cv::Mat values = cv::Mat::zeros(kHeight, kWidth, CV_32FC1);
   for (std::size_t cell = 0; cell < ColorGrid::kCells; ++cell) {

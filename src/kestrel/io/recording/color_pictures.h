@@ -7,12 +7,13 @@
 
 namespace kestrel {
 
-// The hue-saturation plane (paper, section 3.2): hue from left to right, saturation from bottom to
-// top, brightest value of each; black where no cell of the grid has an object's label.
+// Draws the hue-saturation plane (paper, section 3.2): hue from left to right, saturation from
+// bottom to top, each at its brightest value. It is black where no cell of the grid has the label
+// of an object.
 cv::Mat DrawHueSaturation(const ColorGrid& grid);
 
-// A copy of the image (CV_8UC3) in which background is dark gray, what is ambiguous a lighter gray,
-// and pixels of the objects' colours keep theirs.
+// Returns a copy of the image (CV_8UC3) in which background is dark gray and ambiguous pixels are
+// lighter gray; pixels of the objects' colours are unchanged.
 cv::Mat DrawLabels(const cv::Mat& image, const ColorGrid& grid);
 
 }  // namespace kestrel

@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-// 127 years: differences and clock offsets stay within 64 bits.
+// 127 years. Differences and clock offsets then stay within 64 bits.
 constexpr std::int64_t kMaxTimestampNs = 4'000'000'000'000'000'000;
 
 Time ParseTime(const CsvTable& table, std::size_t row, std::size_t column) {

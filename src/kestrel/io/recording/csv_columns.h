@@ -14,16 +14,16 @@
 
 namespace kestrel {
 
-// How the times of a table must follow each other: one row a time, or several.
+// Required order of a table's times: one row per time, or several.
 enum class TimeOrder { kIncreasing, kNotDecreasing };
 
-// The times (ns, 0 to 127 years) in the column 'name', in order. Throws InputError with the line of
-// the first that is out of range or out of order.
+// Returns the times (ns, 0 to 127 years) in the column 'name'. Throws InputError with the line of
+// the first that is out of range or not in order.
 std::vector<Time> ParseTimes(const CsvTable& table, std::string_view name,
                              TimeOrder order = TimeOrder::kIncreasing);
 
-// Three neighbouring columns that only differ in x, y, z: 'before' + "x" + 'after', ...; the table
-// must outlive it.
+// Three neighbouring columns whose names differ in x, y, z only: 'before' + "x" + 'after', ... The
+// table must outlive it.
 class VectorColumns {
  public:
   VectorColumns(const CsvTable& table, const std::string& before, const std::string& after);
@@ -35,12 +35,12 @@ class VectorColumns {
   std::size_t x_, y_, z_;
 };
 
-// The pose of frame B in A in EuRoC's columns, for 'frames' "AB": p_AB_A_x [m], ..., q_AB_w [],
-// ...; the table must outlive it.
+// The pose of frame B in A in EuRoC's columns, for 'frames' "AB": p_AB_A_x [m], ..., q_AB_w [], ...
+// The table must outlive it.
 class PoseColumns {
  public:
   PoseColumns(const CsvTable& table, const std::string& frames);
-  // Throws InputError unless all are finite and the quaternion is of unit length (to 1 %).
+  // Throws InputError unless all numbers are finite and the quaternion has unit length (to 1 %).
   RigidTransform Parse(std::size_t row) const;
 
  private:

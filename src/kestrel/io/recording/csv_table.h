@@ -10,18 +10,19 @@
 
 namespace kestrel {
 
-// A CSV text with a header row: comma-separated, no quotes (the EuRoC / ASL form). Every error is
-// an InputError that names the file and the line.
+// A CSV text with a header row: comma-separated, without quotes (the EuRoC / ASL form). All errors
+// are InputErrors that name the file and the line.
 class CsvTable {
  public:
-  // 'text' must outlive the table; 'file' is for messages. A '#' before the header, blanks around
-  // cells, '\r' and empty lines are tolerated; a row of another width than the header's is not.
+  // 'text' must outlive the table; 'file' is its name for messages. A '#' before the header, blanks
+  // around cells, '\r' and empty lines are accepted. A row with another number of cells than the
+  // header is an error.
   CsvTable(std::string_view text, std::string file);
 
   std::size_t row_count() const { return rows_.size(); }
 
-  // Index of the column 'name'; the header's names are compared without their blanks. FindColumn:
-  // nothing where there is none, which Column throws for.
+  // Return the index of the column 'name'; blanks around the header's names are ignored. Without
+  // such a column FindColumn returns nothing, and Column throws.
   std::size_t Column(std::string_view name) const;
   std::optional<std::size_t> FindColumn(std::string_view name) const;
 
@@ -29,7 +30,7 @@ class CsvTable {
   double Number(std::size_t row, std::size_t column) const;  // finite
   std::int64_t Integer(std::size_t row, std::size_t column) const;
 
-  // For values that may be unknown: whether the cell is empty; its number, nothing when it is.
+  // For values that may be unknown: true when the cell is empty; its number, or nothing when it is.
   bool IsEmpty(std::size_t row, std::size_t column) const;
   std::optional<double> OptionalNumber(std::size_t row, std::size_t column) const;
 
@@ -48,7 +49,7 @@ class CsvTable {
   std::vector<Row> rows_;
 };
 
-// 'text' as one cell (RFC 4180): with a comma, a quote or a line break in it, it is put in quotes.
+// Returns 'text' as one cell (RFC 4180), in quotes if it contains a comma, a quote or a line break.
 std::string CsvCell(const std::string& text);
 
 }  // namespace kestrel

@@ -9,29 +9,32 @@
 
 namespace kestrel {
 
-// What a calibration file calls it: "equidistant", "radial-tangential" or "none".
+// Returns the name in calibration files: "equidistant", "radial-tangential" or "none".
 const char* DistortionName(DistortionModel model);
 
-// cam0/sensor.yaml of a recording in the EuRoC layout: lens, size, rate and, where the calibration
-// has one, the mount T_BS. ReadCalibration reads it back, to the last bit.
+// Returns the text of cam0/sensor.yaml in the EuRoC layout: lens, size, rate and, if the
+// calibration has one, the mount T_BS. ReadCalibration reads it back exactly, to the last bit.
 std::string EurocCameraText(const CameraCalibration& calibration, double rate_hz);
 
-// The same with the clock offset, where the calibration has one.
+// The same with the clock offset, if the calibration has one.
 std::string EurocCalibrationText(const CameraCalibration& calibration, double rate_hz);
 
-// nav0/sensor.yaml.
+// Returns the text of nav0/sensor.yaml.
 std::string EurocPoseSensorText(double rate_hz);
 
-// The columns of a pose's file, without the end of the line, and a row of it: position (to a
-// micrometre) and quaternion (w x y z). 'frames': the two in their names, "WB" in nav0, "RS" in
-// EuRoC's ground truth.
+// Return the columns of a file of poses, without the end of the line, and a row of it: position (to
+// a micrometre) and quaternion (w x y z). 'frames': the two frames in the names of the columns,
+// "WB" in nav0, "RS" in EuRoC's ground truth.
 std::string EurocPoseColumns(const std::string& frames);
 std::string EurocPoseCells(Time time, const RigidTransform& pose);
 
-// nav0/data.csv: the body in the world.
+// Returns the text of nav0/data.csv: poses of the body in the world.
 std::string EurocPoseText(const std::vector<PoseSample>& poses);
 
-// A matrix as EuRoC files have it, rows in a flat list: "  cols: 4\n  rows: 4\n  data: [...]\n".
+// Returns a matrix in the form of EuRoC's files: "  cols: 4
+//   rows: 4
+//   data: [...]
+// ", row by row.
 std::string EurocTransformText(const RigidTransform& transform);
 
 }  // namespace kestrel

@@ -13,27 +13,27 @@
 
 namespace kestrel {
 
-// There are no further events.
+// The stream has ended.
 struct EndOfStream {};
 
-// What a pipeline is given: a frame, a pose of the navigation (with its rates, if it tells them).
+// Input of a pipeline: a frame, or a pose of the navigation (with its rates, if they are known).
 using Event = std::variant<EndOfStream, Frame, PoseSample>;
 
-// Frames and poses as one stream. A recording, and a camera beside an autopilot, are the same to
-// whoever reads it. Poses are in order of time, frames are too; a frame comes after the poses that
-// it needs, unless these are late: then they come after it.
+// Frames and poses as one stream, the same for a recording as for a camera beside an autopilot.
+// Poses are in order of time, and so are frames. A frame comes after the poses that it needs,
+// except for poses that are late: these come after it.
 class EventSource {
  public:
   virtual ~EventSource() = default;
 
-  // The next event; of a live source, when there is one. After the end always EndOfStream. Throws
-  // InputError when the source is at fault.
+  // Returns the next event; with a live source it waits for one. After the end it always returns
+  // EndOfStream. Throws InputError when the source fails.
   virtual Event Next() = 0;
 };
 
-// The frames of a source, each after the poses that it needs: all of the navigation until the first
-// that is not before the frame's time + 'lead' (the clock offset, and what a frame needs after its
-// own time). 'source' must outlive this.
+// Gives each frame of a source after the poses that it needs: all poses up to the first one that is
+// not before the frame's time + 'lead' (the clock offset, and the time after its own that a frame
+// needs). 'source' must outlive this.
 class RecordingEvents : public EventSource {
  public:
   RecordingEvents(FrameSource* source, std::vector<PoseSample> poses, Duration lead);
@@ -47,7 +47,7 @@ class RecordingEvents : public EventSource {
   std::vector<PoseSample> poses_;
   Duration lead_;
   std::size_t next_pose_ = 0;
-  std::optional<Frame> frame_;  // the next one
+  std::optional<Frame> frame_;  // the next frame
 };
 
 }  // namespace kestrel

@@ -28,7 +28,7 @@ class TimedFrames : public FrameSource {
   std::size_t next_ = 0;
 };
 
-// "p1" a pose of 1 ms, "f2" a frame of 2 ms.
+// Returns the events as text: "p1" for a pose at 1 ms, "f2" for a frame at 2 ms.
 std::string EventsOf(std::vector<int> frames_ms, const std::vector<int>& poses_ms, int lead_ms) {
   TimedFrames frames(std::move(frames_ms));
   std::vector<PoseSample> poses;

@@ -9,17 +9,17 @@
 
 namespace kestrel {
 
-// How the pixels of a frame are stored.
+// Storage of a frame's pixels.
 enum class PixelFormat {
   kGray,  // CV_8UC1
   kBgr,   // CV_8UC3
 };
 
-// One image of a source.
+// An image of a source.
 struct Frame {
-  std::string name;  // the image's path as it was given or lies below the source
-  Time time;         // when its light was collected, on the clock of the images
-  cv::Mat image;     // in the format that the source was asked for
+  std::string name;  // path of the image, as given or relative to the source
+  Time time;         // middle of the exposure, on the clock of the images
+  cv::Mat image;     // in the format that was requested of the source
 };
 
 }  // namespace kestrel

@@ -14,41 +14,45 @@
 
 namespace kestrel {
 
-// Frames per second where a source does not say: images that are just files.
+// Frames per second of sources without a rate, such as image files.
 inline constexpr double kNominalRateHz = 30;
 
-// How a camera is mounted, as far as that is known.
+// The mount of a camera, as far as it is known.
 struct CameraMount {
   std::optional<RigidTransform> body_from_camera;
   std::optional<Duration> clock_offset;  // t_nav = t_image + clock_offset
 };
 
-// Where frames come from, one after the other.
+// A source of frames, one after the other.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
-  // What the next frames shall be; gray unless asked otherwise.
+  // Sets the pixel format of the next frames; it is gray by default.
   void set_format(PixelFormat format) { format_ = format; }
 
-  // Fills 'frame' with the next image; false at the end. Frames are in order of time. Throws
-  // InputError when an image is missing, broken or of a kind that is not read (16 bits), and at the
-  // end of a video that ends before it should.
+  // Fills 'frame' with the next image; returns false at the end. Frames are in order of time.
+  // Throws InputError when an image is missing, broken or of an unsupported kind (16 bits), and at
+  // the end of a video that ends too early.
   virtual bool Next(Frame* frame) = 0;
 
-  // Fills 'frame' with the image 'index', from 0, wherever Next is; false where a source cannot go
-  // to and fro, as a video, and where there is no such image. Throws InputError as Next does.
+  // Fills 'frame' with the image 'index', from 0; the position of Next does not change. Returns
+  // false for sources without random access, such as videos, and when there is no such image.
+  // Throws InputError as Next does.
   virtual bool Read(std::size_t /*index*/, Frame* /*frame*/) const { return false; }
 
-  // How many frames there are, when that is known; of a video it is what the container says.
+  // Number of frames, if known; for a video it is what the container says.
   virtual std::optional<std::size_t> frame_count() const = 0;
   virtual double rate_hz() const = 0;
 
-  // The source's own calibration; nothing if it has none. Throws InputError when it is at fault.
+  // Returns the source's own calibration; nothing if it has none. Throws InputError when it is not
+  // valid.
   virtual std::optional<CameraCalibration> calibration() const { return std::nullopt; }
-  // What the source tells of its camera's mount, be there a calibration or not. Throws as above.
+  // Returns the mount of the source's camera, with or without a calibration. Throws as
+  // calibration().
   virtual CameraMount mount() const;
-  // What the navigation reported, on its own clock, in order of time; empty if it said nothing.
+  // Returns the poses of the navigation, on its own clock, in order of time; empty if there are
+  // none.
   virtual std::vector<PoseSample> poses() const { return {}; }
 
  protected:

@@ -33,36 +33,37 @@ using GstElementPointer = std::unique_ptr<GstElement, GstReleaser>;
 using GstMessagePointer = std::unique_ptr<GstMessage, GstReleaser>;
 using GstSamplePointer = std::unique_ptr<GstSample, GstReleaser>;
 
-// What a camera is to GStreamer: a device (/dev/video0, which is asked for 'device_caps'; empty:
-// for what it likes), an address (rtsp://...) or a pipeline's text. Ends in an appsink.
+// Returns GStreamer's pipeline for a camera: a device (/dev/video0, with the caps 'device_caps', or
+// its own choice if that is empty), an address (rtsp://...) or the text of a pipeline. It ends in
+// an appsink.
 std::string CameraPipelineText(const std::string& camera, const std::string& device_caps);
 
-// The pipeline of a text. Throws InputError that begins with 'name' when there is none: a fault in
-// the text, an element that is not installed.
+// Returns the pipeline of a text. Throws InputError that begins with 'name' when the text is not
+// valid or an element is not installed.
 GstElementPointer ParsePipeline(const std::string& text, const std::string& name);
 
-// Throws InputError that begins with 'name' when the pipeline has none.
+// Throws InputError that begins with 'name' when the pipeline has no appsink.
 GstElementPointer FindAppSink(GstElement* pipeline, const std::string& name);
 
-// The images that an appsink takes.
+// Sets the pixel format that an appsink accepts.
 void SetPixelFormat(GstElement* sink, PixelFormat format);
 
-// The newest image that nobody took yet; null when none comes within 'timeout'.
+// Returns the next image in the sink; null when none comes within 'timeout'.
 GstSamplePointer PullSample(GstElement* sink, Duration timeout);
 
-// Copies a sample's pixels into 'image', which has their size and format; false when they cannot be
-// read.
+// Copies a sample's pixels into 'image', which has their size and format. Returns false when they
+// cannot be read.
 bool CopyPixels(GstSample* sample, const GstVideoInfo& info, cv::Mat* image);
 
-// What a pipeline says of itself.
+// Watches the messages of a pipeline.
 class GstWatch {
  public:
   explicit GstWatch(GstElement* pipeline) : bus_(gst_element_get_bus(pipeline)) {}
 
-  // Takes what was said; waits up to 'timeout' where that is nothing.
+  // Takes the messages; when there are none it waits up to 'timeout'.
   void Poll(Duration timeout = {});
 
-  // The first thing that went wrong, in one line; empty as long as nothing did.
+  // The first error, in one line; empty when there is none.
   const std::string& fault() const { return fault_; }
   bool has_ended() const { return has_ended_; }
 
@@ -70,7 +71,7 @@ class GstWatch {
   void Take(GstMessage* message);
 
   GstBusPointer bus_;
-  std::string missing_;  // what no plugin of GStreamer can do
+  std::string missing_;  // a capability that no plugin of GStreamer has
   std::string fault_;
   bool has_ended_ = false;
 };

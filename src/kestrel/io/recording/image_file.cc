@@ -21,7 +21,7 @@ const char* DepthName(int depth) {
   return kNames[depth];
 }
 
-// cv::cvtColor's code from 'channels' to 'format'; nothing where they are the same.
+// Returns the code of cv::cvtColor from 'channels' to 'format'; nothing when they are the same.
 std::optional<int> ConversionCode(int channels, PixelFormat format) {
   const bool is_gray = format == PixelFormat::kGray;
   if (channels == 1) return is_gray ? std::nullopt : std::optional<int>(cv::COLOR_GRAY2BGR);

@@ -10,19 +10,19 @@
 
 namespace kestrel {
 
-// The image in 'format'; colour is converted to luminance by BT.601. The pixels stay where the
-// sensor had them: a rotation asked for by EXIF is ignored, because the calibration does not know
-// of it. Throws InputError when the file is missing, cut off or not an image, or has other than 8
-// bits a channel.
+// Reads an image in 'format'; colour is converted to luminance by BT.601. The pixels stay in the
+// sensor's order: a rotation in the EXIF data is ignored, as the calibration does not know it.
+// Throws InputError when the file is missing, cut off or not an image, or does not have 8 bits per
+// channel.
 cv::Mat ReadImage(const std::string& path, PixelFormat format);
 inline cv::Mat ReadGrayImage(const std::string& path) {
   return ReadImage(path, PixelFormat::kGray);
 }
 
-// The same from the bytes of such a file; 'name' is for the message.
+// The same for the bytes of an image file; 'name' is for the message.
 cv::Mat DecodeImageBytes(std::string_view bytes, PixelFormat format, const std::string& name);
 
-// 'image' in 'format', as above; 'name' is for the message.
+// Converts 'image' to 'format', as above; 'name' is for the message.
 cv::Mat ToFormat(const cv::Mat& image, PixelFormat format, const std::string& name);
 
 }  // namespace kestrel

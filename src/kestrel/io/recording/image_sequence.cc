@@ -17,7 +17,7 @@ namespace {
 
 bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)); }
 
-// Cuts off the digits at the front and returns them without leading zeros.
+// Removes the digits at the front of the text. Returns them without leading zeros.
 std::string_view TakeNumber(std::string_view* text) {
   const auto end = std::find_if_not(text->begin(), text->end(), IsDigit);
   std::string_view number = text->substr(0, end - text->begin());
@@ -26,7 +26,7 @@ std::string_view TakeNumber(std::string_view* text) {
   return number;
 }
 
-// Numbers within the text compare by their value, the rest by its letters.
+// Compares numbers within the texts by value and everything else by character.
 bool NaturallyLess(const std::string& left, const std::string& right) {
   std::string_view a = left;
   std::string_view b = right;

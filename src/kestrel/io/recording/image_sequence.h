@@ -8,7 +8,7 @@
 
 namespace kestrel {
 
-// Images that lie in files.
+// A source of image files.
 class ImageSequence : public FrameSource {
  public:
   struct Item {
@@ -17,7 +17,7 @@ class ImageSequence : public FrameSource {
     Time time;
   };
 
-  // 'items' in order of time, at least one; the other two as FrameSource gives them out.
+  // 'items' are in order of time, at least one. The other two are as FrameSource returns them.
   explicit ImageSequence(std::vector<Item> items, std::string calibration_file = "",
                          std::vector<PoseSample> poses = {});
 
@@ -26,7 +26,7 @@ class ImageSequence : public FrameSource {
   std::optional<std::size_t> frame_count() const override { return items_.size(); }
   double rate_hz() const override;
   std::optional<CameraCalibration> calibration() const override;
-  // Empty if there is none.
+  // Empty when there is none.
   const std::string& calibration_file() const { return calibration_file_; }
   std::vector<PoseSample> poses() const override { return poses_; }
 
@@ -37,14 +37,14 @@ class ImageSequence : public FrameSource {
   std::size_t next_ = 0;
 };
 
-// The time of the image 'index' where nothing says it: kNominalRateHz, from zero.
+// Returns the time of the image 'index' where it has none: kNominalRateHz, from zero.
 Time NominalTime(std::size_t index);
 
-// Images in the order in which they are given, at nominal times.
+// Opens images in the given order, at nominal times.
 ImageSequence OpenImageFiles(const std::vector<std::string>& paths);
 
-// All images in and below 'folder', at nominal times, in natural order of their paths ("frame9"
-// before "frame10"). Throws InputError when there is none.
+// Opens all images in and below 'folder', at nominal times, in natural order of their paths
+// ("frame9" before "frame10"). Throws InputError when there is none.
 ImageSequence OpenImageFolder(const std::string& folder);
 
 }  // namespace kestrel

@@ -15,7 +15,7 @@ std::string Position(const std::optional<Eigen::Vector3d>& position) {
   return fmt::format("{:.6f},{:.6f},{:.6f}", position->x(), position->y(), position->z());
 }
 
-// u_px to p_CP_C_z_m: what the detection says.
+// The columns u_px to p_CP_C_z_m, from the detection.
 std::string ImageCells(const std::optional<LandingDetection>& detection) {
   if (!detection) return ",,,,,,";
   return fmt::format("{:.3f},{:.3f},{},{:.4f},{}", detection->center_px.x(),
@@ -23,7 +23,7 @@ std::string ImageCells(const std::optional<LandingDetection>& detection) {
                      Position(detection->camera_from_pattern.translation));
 }
 
-// Edges are never met to the last bit: 0 is where there were none.
+// 0 stands for "no edges", as a measured misfit is never exactly 0.
 std::string MisfitCell(const std::optional<LandingDetection>& detection) {
   if (!detection || detection->misfit_px == 0) return "";
   return fmt::format("{:.3f}", detection->misfit_px);

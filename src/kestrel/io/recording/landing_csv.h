@@ -7,8 +7,8 @@
 
 namespace kestrel {
 
-// The lines of landing_detections.csv, each with its newline. A value that is not known is empty;
-// lengths have 1e-6 m, pixels 1e-3 px.
+// Lines of landing_detections.csv, each with its newline. Unknown values are empty; lengths are
+// rounded to 1e-6 m, pixels to 1e-3 px.
 std::string LandingCsvHeader();
 std::string LandingCsvRow(const std::string& frame_name, const LandingObservation& observation);
 

@@ -16,7 +16,7 @@ namespace kestrel {
 namespace {
 
 using Polyline = std::vector<Eigen::Vector3d>;  // in the pattern's frame, m
-// Pixel of a point in the pattern's frame; false when it has none.
+// Projects a point in the pattern's frame to a pixel; false when it has none.
 using Projection = std::function<bool(const Eigen::Vector3d& point, Eigen::Vector2d* pixel)>;
 
 const cv::Scalar kRed(40, 40, 255);
@@ -26,7 +26,7 @@ const cv::Scalar kYellow(0, 230, 255);
 const cv::Scalar kMagenta(255, 90, 255);
 const cv::Scalar kOutline(0, 0, 0);
 
-// A lens bends lines: an edge is drawn in as many pieces.
+// A lens bends lines; therefore an edge is drawn in this number of pieces.
 constexpr int kPiecesPerEdge = 12;
 constexpr int kPiecesPerCircle = 96;
 
@@ -47,7 +47,7 @@ Polyline LineBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   return points;
 }
 
-// Outline of both arms: one corner between the arms and two at the end of each, four times.
+// Outline of both arms: one corner between two arms and two at each end, four times.
 Polyline Cross(const LandingPattern& pattern) {
   const double half_width = 0.5 * pattern.arm_width_m;
   const double length = std::min(pattern.arm_half_length_m, pattern.inner_radius_m());
@@ -93,7 +93,7 @@ class Canvas {
     cv::circle(image_, Fixed(pixel), radius, kYellow, Thickness(), cv::LINE_AA, kFixedBits);
   }
 
-  // 'row': from the top.
+  // 'row': line of the text, from the top.
   void Write(const std::string& text, const cv::Scalar& color, int row = 0) {
     const double font_scale = 0.6 * std::max(scale_, 0.7);
     const double line_height_px = 34 * font_scale;
@@ -108,7 +108,7 @@ class Canvas {
   const cv::Mat& image() const { return image_; }
 
  private:
-  static constexpr int kFixedBits = 4;  // of a pixel, for OpenCV's drawing
+  static constexpr int kFixedBits = 4;  // fraction of a pixel, for OpenCV's drawing
   static constexpr int kFixedOne = 1 << kFixedBits;
 
   // OpenCV's integers overflow far outside of the image.
@@ -130,7 +130,7 @@ void DrawPrint(const LandingPattern& pattern, const Projection& project, const c
   canvas->DrawLine(Cross(pattern), project, color);
 }
 
-// The print where its edges are, beside where pose and lens have it.
+// Draws the print at its edges in the image, and as pose and lens project it.
 void DrawMisfit(const LandingDetection& detection, const CameraModel& camera,
                 const LandingPattern& pattern, Canvas* canvas) {
   const PlaneWarp seen = detection.seen->Warp(camera, pattern.outer_radius_m());

@@ -9,11 +9,11 @@
 
 namespace kestrel {
 
-// The frame (CV_8UC1) with what was found in it, as CV_8UC3 (BGR): both edges of the ring and the
-// outline of the cross where the pose projects them through the lens, the centre, the axes (x red,
-// y green, z blue), and in words method, distance and quality; or else the stage at which the best
-// candidate fell, and why. Of a misfit also the print where it is seen, in another colour, and what
-// the colours mean.
+// Returns the frame (CV_8UC1) with the result drawn in, as CV_8UC3 (BGR). With a detection: both
+// edges of the ring and the outline of the cross as the pose projects them through the lens, the
+// centre, the axes (x red, y green, z blue), and in words method, distance and quality. Otherwise:
+// the stage at which the best candidate was rejected, and why. For a misfit also the print where it
+// is seen, in another colour, and a legend of the colours.
 cv::Mat DrawLandingOverlay(const cv::Mat& image, const CameraModel& camera,
                            const LandingPattern& pattern, const LandingObservation& observation);
 

@@ -46,7 +46,7 @@ bool IsMagenta(const cv::Mat& image, int x, int y) {
   return pixel[2] > 150 && pixel[0] > 150 && pixel[1] < 120;
 }
 
-// Seen 40 px to the right of where pose and lens have it.
+// The pattern is seen 40 px to the right of its projection by pose and lens.
 TEST(LandingOverlay, OfAMisfitBothOutlinesAreDrawn) {
   LandingObservation observation = FoundAt({0.0, 0.0, 2.0});
   LandingDetection& detection = *observation.report.detection;
@@ -62,7 +62,7 @@ TEST(LandingOverlay, OfAMisfitBothOutlinesAreDrawn) {
   EXPECT_TRUE(IsYellow(drawn(), 319 + 60, 239 + 80));
   EXPECT_TRUE(IsMagenta(drawn(), 359 + 60, 239 + 80));
   EXPECT_TRUE(IsMagenta(drawn(), 359 + 48, 239 + 64));
-  // What the colours mean.
+  // The legend of the colours.
   cv::Mat magenta;
   cv::inRange(drawn().rowRange(0, 100), cv::Scalar(150, 0, 150), cv::Scalar(255, 120, 255),
               magenta);

@@ -15,7 +15,7 @@ const cv::Scalar kPaper(245, 245, 245);
 const cv::Scalar kInk(40, 40, 40);
 constexpr int kScaleHeight_px = 24;
 
-// From metres in the world to pixels of the inset.
+// Maps metres in the world to pixels of the inset.
 class Plan {
  public:
   Plan(const Eigen::AlignedBox2d& area, const cv::Rect& frame) : area_(area), frame_(frame) {
@@ -78,7 +78,7 @@ void DrawObject(const Plan& plan, const MappedObject& object, const ObjectModel&
               cv::FONT_HERSHEY_SIMPLEX, 0.35, kInk, 1, cv::LINE_AA);
 }
 
-// A bar of 1, 2, 5, 10 ... m.
+// Draws a bar of 1, 2, 5, 10 ... m.
 void DrawScale(const Plan& plan, const cv::Rect& frame, cv::Mat* image) {
   const double wanted_m = 0.25 * frame.width / plan.per_m();
   const double power = std::pow(10, std::floor(std::log10(wanted_m)));

@@ -11,10 +11,10 @@
 
 namespace kestrel {
 
-// Draws the map into the lower right corner of a CV_8UC3 image: seen from above, north up, with
-// everything in view, and a scale. Objects are dots of their colour with their score, larger where
-// their position is less certain; moving ones have a line to where they will be in a second. 'uav':
-// where the UAV is (m), a cross. Draws nothing when there is nothing to show.
+// Draws the map into the lower right corner of a CV_8UC3 image: from above, north up, with all
+// objects in view and a scale. Objects are dots of their colour with their score, larger where
+// their position is less certain; moving ones have a line to their position in one second. 'uav':
+// position of the UAV (m), drawn as a cross. Draws nothing when there is nothing to show.
 void DrawMapInset(const std::vector<MappedObject>& objects, const ObjectModel& model,
                   const std::optional<Eigen::Vector2d>& uav, cv::Mat* image);
 

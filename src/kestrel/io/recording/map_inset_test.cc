@@ -37,7 +37,7 @@ cv::Mat Draw(const std::vector<MappedObject>& objects, const std::optional<Eigen
 }
 
 TEST(DrawMapInset, NorthIsUpAndEastIsRight) {
-  // From the UAV, which the object moves away from.
+  // The object moves away from the UAV.
   const Eigen::Vector2d uav(0, 0);
   const Eigen::Vector2d north = RedPlace(Draw({RedDiscAt(0, 10)}, uav));
   const Eigen::Vector2d south = RedPlace(Draw({RedDiscAt(0, -10)}, uav));

@@ -21,7 +21,7 @@ std::string Sigma(const std::optional<ObjectLocation>& location) {
   return location ? fmt::format("{:.4f}", std::sqrt(location->covariance.trace() / 3)) : "";
 }
 
-// shape to digit_probability.
+// The columns shape to digit_probability.
 std::string ShapeCells(const ObjectDetection& detection, const ObjectModel& model) {
   const char* shape = detection.completeness == Completeness::kMerged
                           ? ToString(detection.completeness)
@@ -31,7 +31,7 @@ std::string ShapeCells(const ObjectDetection& detection, const ObjectModel& mode
   return fmt::format("{},{},{:.4f}", shape, digit.digit, digit.probability);
 }
 
-// u_px to pixels.
+// The columns u_px to pixels.
 std::string DetectionCells(const ObjectDetection& detection,
                            const std::optional<ObjectLocation>& in_world,
                            const ObjectModel& model) {

@@ -7,9 +7,9 @@
 
 namespace kestrel {
 
-// object_detections.csv: a header row, then for every frame one row for each object, or one with
-// the frame and its times alone. 'shape': disc, cuboid, bar, or merged for discs that touch, which
-// have no position; 'digit': the likeliest, empty where none was read.
+// Lines of object_detections.csv: a header row, then for each frame one row per object, or one row
+// with the frame and its times only. 'shape': disc, cuboid, bar, or merged for touching discs,
+// which have no position. 'digit': the most probable one, empty when none was read.
 std::string ObjectCsvHeader();
 std::string ObjectCsvRows(const std::string& frame_name, const HuntObservation& observation,
                           const ObjectModel& model);

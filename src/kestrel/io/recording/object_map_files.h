@@ -9,15 +9,15 @@
 
 namespace kestrel {
 
-// Writes the confirmed objects of the pipeline's map: object_map.csv, object_map.json (nothing is
-// lost), and object_map.geojson where 'origin' is known: latitude and longitude (degrees) of the
-// world's origin, or empty. Throws InputError when they cannot be written.
+// Writes the confirmed objects of the pipeline's map: object_map.csv, object_map.json (which loses
+// nothing) and, if 'origin' is not empty, object_map.geojson. 'origin': latitude and longitude
+// (degrees) of the world's origin. Throws InputError when they cannot be written.
 void WriteObjectMap(const HuntPipeline& pipeline, const std::vector<double>& origin,
                     const OutputFolder& folder);
 
-// Writes the team's map: team_map.csv, in the world that is common to the team, and, where 'origin'
-// is known, team_map.geojson: 'own' are the same objects in the world whose origin that is. Throws
-// InputError when they cannot be written.
+// Writes the team's map: team_map.csv, in the world frame that the team shares, and, if 'origin' is
+// not empty, team_map.geojson with 'own', the same objects in the world frame that has this origin.
+// Throws InputError when they cannot be written.
 void WriteTeamMap(const std::vector<TeamObject>& common, const std::vector<MappedObject>& own,
                   const ObjectModel& model, const std::vector<double>& origin,
                   const OutputFolder& folder);

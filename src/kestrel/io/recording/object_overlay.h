@@ -7,8 +7,8 @@
 
 namespace kestrel {
 
-// A copy of the frame (CV_8UC3) with what was found drawn in: whole objects in white, cut off and
-// merged ones in gray, each with its class, digit and distance.
+// Returns a copy of the frame (CV_8UC3) with the detections drawn in: whole objects in white, cut
+// off and merged ones in gray, each with its class, digit and distance.
 cv::Mat DrawObjectOverlay(const cv::Mat& image, const ObjectModel& model,
                           const HuntObservation& observation);
 

@@ -18,7 +18,7 @@ HuntObservation DiscAt(const Eigen::Vector2d& center, Completeness completeness)
   return observation;
 }
 
-// Brightest pixel a few px beside the outline, left of the centre.
+// Returns the brightest pixel a few px outside of the outline, left of the centre.
 int BrightestOutside(const cv::Mat& image, int u, int v) {
   int brightest = 0;
   for (int x = u - 38; x < u - 30; ++x) {

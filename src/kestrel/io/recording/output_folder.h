@@ -7,19 +7,19 @@
 
 namespace kestrel {
 
-// The folder that the files of a run go to. Nothing that is there is overwritten unless asked for.
+// The folder for the files of a run. Existing files are not overwritten unless asked for.
 class OutputFolder {
  public:
-  // Makes the folder if it is not there. 'allowance': how the user has files replaced, for
-  // messages. Throws InputError when it cannot be made.
+  // Creates the folder if it does not exist. 'allowance': the option with which the user has files
+  // replaced, for messages. Throws InputError when the folder cannot be created.
   OutputFolder(std::filesystem::path folder, bool replace_files, std::string allowance = "--force");
 
-  // Path of the new file 'name' (with its folders made); 'name' stays below the folder whatever it
-  // is ("/a/../b.png" gives "a/b.png"). Throws InputError when there is such a file and
-  // 'replace_files' is off, or its folder cannot be made.
+  // Returns the path of the new file 'name' and creates its folders. The file stays below the
+  // folder whatever 'name' is ("/a/../b.png" gives "a/b.png"). Throws InputError when the file
+  // exists and 'replace_files' is false, or when its folder cannot be created.
   std::filesystem::path NewFile(const std::filesystem::path& name) const;
 
-  // The same, opened. Throws InputError when it is not writable.
+  // Opens such a file. Throws InputError when it cannot be written.
   std::ofstream OpenText(const std::filesystem::path& name) const;
 
  private:
@@ -28,8 +28,8 @@ class OutputFolder {
   std::string allowance_;
 };
 
-// Writes and flushes 'text', for whoever reads along. Throws InputError, with the file's 'name',
-// when it cannot be written.
+// Writes and flushes 'text', for readers that follow the file. Throws InputError with the file's
+// 'name' when it cannot be written.
 void WriteAtOnce(const std::string& text, const char* name, std::ostream* file);
 
 }  // namespace kestrel

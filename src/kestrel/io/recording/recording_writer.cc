@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Fails with what the system says.
+// Throws InputError with the system's message.
 void Require(const std::error_code& error, const fs::path& path, const char* what) {
   if (error) throw InputError(fmt::format("{}: {}: {}", path.string(), what, error.message()));
 }
@@ -25,7 +25,7 @@ void CreateFolders(const fs::path& folder) {
   Require(error, folder, "cannot be made");
 }
 
-// Under another name first: what has its name is whole.
+// Writes under another name first: a file with its final name is complete.
 void WriteWhole(const fs::path& path, const std::string& bytes) {
   CreateFolders(path.parent_path());
   const fs::path unfinished = path.string() + ".unfinished";

@@ -15,41 +15,42 @@ namespace kestrel {
 
 // A text file of a recording.
 struct RecordingFile {
-  std::string name;  // below mav0
+  std::string name;  // path below mav0
   std::string text;
 };
 
-// Throws InputError when there is something at 'output' that a recording must not take the place
-// of: a file, a folder with other things in it, or a recording, unless 'replace'.
+// Throws InputError when a recording must not replace what is at 'output': a file, a folder with
+// other content, or a recording unless 'replace'.
 void RequireFreeForRecording(const std::filesystem::path& output, bool replace);
 
-// An image's path in a recording.
+// Returns an image's path in a recording.
 std::filesystem::path RecordedImagePath(Time time);
 
-// Writes a recording. Until it is complete it lies in a folder beside its place, "<output>.part",
-// where no other writer may write.
-// WriteImage and HasImage may be called from several threads at a time, for different images.
+// Writes a recording. Until it is complete it is in a folder beside its place, "<output>.part",
+// where no other writer may write. WriteImage and HasImage may be called from several threads at a
+// time, for different images.
 class RecordingWriter {
  public:
-  // 'scene', the text of scene.yaml, names all that the images depend on: images that an
-  // interrupted writer of the same scene has left are kept, everything of another one is removed.
+  // 'scene', the text of scene.yaml, contains all that the images depend on: images that an
+  // interrupted writer of the same scene has left are kept, everything of another scene is removed.
   // Throws InputError when 'output' exists (unless it is empty, or 'replace' and a recording),
-  // another writer is at work on it, or it cannot be written, as the functions below do.
+  // another writer works on it, or it cannot be written. The functions below throw too when they
+  // cannot write.
   RecordingWriter(const std::filesystem::path& output, bool replace, const std::string& scene);
 
-  // Where the files are until they are published.
+  // Folder of the files until they are published.
   const std::filesystem::path& part() const { return part_; }
 
   bool HasImage(Time time) const;
   void WriteImage(Time time, const cv::Mat& image) const;
 
-  // Writes cam0/data.csv and 'files'; then the recording has its name.
+  // Writes cam0/data.csv and 'files'; then gives the recording its final name.
   void Publish(const std::vector<Time>& times, const std::vector<RecordingFile>& files) const;
 
  private:
   std::filesystem::path output_;
   std::filesystem::path part_;
-  std::optional<FolderLock> lock_;  // of that part
+  std::optional<FolderLock> lock_;  // lock of part_
 };
 
 }  // namespace kestrel

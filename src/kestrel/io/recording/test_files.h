@@ -13,7 +13,7 @@
 
 namespace kestrel {
 
-// Makes the folders that lead to 'name' as well; returns the file's path.
+// Also creates the folders of 'name'. Returns the file's path.
 inline std::string WriteTestImage(const TestFolder& folder, const std::string& name,
                                   const cv::Mat& image) {
   const std::string path = folder / name;
@@ -22,7 +22,7 @@ inline std::string WriteTestImage(const TestFolder& folder, const std::string& n
   return path;
 }
 
-// Noise, so that an encoded file has a size worth cutting; the same for the same seed.
+// Noise, so that an encoded file is large enough to be cut; the same for the same seed.
 inline cv::Mat NoiseImage(int width, int height, int type, int seed = 1) {
   cv::Mat image(height, width, type);
   cv::RNG random(seed);
@@ -30,7 +30,7 @@ inline cv::Mat NoiseImage(int width, int height, int type, int seed = 1) {
   return image;
 }
 
-// A video of noise; returns the file's path.
+// Writes a video of noise. Returns the file's path.
 inline std::string WriteTestVideo(const std::string& stem, VideoFormat format, int frames,
                                   const cv::Size& size, double rate_hz = 20) {
   VideoFile video(stem, rate_hz, format);

@@ -7,11 +7,11 @@
 
 namespace kestrel {
 
-// The lines of landing_track.csv, each with its newline; a target that is not known is empty.
+// Lines of landing_track.csv, each with its newline; without a target its cells are empty.
 std::string TrackCsvHeader();
 std::string TrackCsvRow(const LandingObservation& observation);
 
-// The lines of landing_prediction.csv: made at 'time' for 'prediction.time'.
+// Lines of landing_prediction.csv: a prediction made at 'time' for 'prediction.time'.
 std::string PredictionCsvHeader();
 std::string PredictionCsvRow(Time time, const TargetEstimate& prediction);
 

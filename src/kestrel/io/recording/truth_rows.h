@@ -10,16 +10,16 @@
 
 namespace kestrel {
 
-// Rows of the files of a recording that hold what is true, where a simulation or a survey knows it.
+// Rows of a recording's files of truth, from a simulation or a survey.
 
-// Where the pattern was when an image was taken.
+// The pattern at the time of an image.
 struct TruePattern {
   Time time;
   RigidTransform world_from_pattern;
   Eigen::Vector3d velocity_in_world = Eigen::Vector3d::Zero();
   Eigen::Vector2d center_px = Eigen::Vector2d::Zero();  // may lie outside of the image
-  double altitude_m = 0;                                // of the camera above the pattern
-  double visible_fraction = 0;  // part of ring and cross that the image shows
+  double altitude_m = 0;                                // height of the camera above the pattern
+  double visible_fraction = 0;  // part of ring and cross within the image, 0 to 1
 };
 
 // Header and row of state_groundtruth_estimate0/data.csv.

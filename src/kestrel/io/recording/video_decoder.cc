@@ -61,7 +61,7 @@ bool VideoDecoder::Next(cv::Mat* image, std::optional<Time>* time) {
   return true;
 }
 
-// An error of the pipeline is no end of the stream for its sink: both have to be looked for.
+// The sink does not see an error of the pipeline as the end of the stream: both must be checked.
 GstSamplePointer VideoDecoder::Pull() {
   constexpr Duration kLook = std::chrono::milliseconds(100);
   constexpr Duration kStall = std::chrono::seconds(30);

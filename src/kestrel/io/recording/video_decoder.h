@@ -12,22 +12,22 @@
 
 namespace kestrel {
 
-// The images of a pipeline of GStreamer that ends in an appsink, one after the other.
+// Gives the images of a GStreamer pipeline with an appsink, one after the other.
 class VideoDecoder {
  public:
-  // Waits for the first image. Throws InputError with what went wrong when none comes.
+  // Waits for the first image. Throws InputError that says what went wrong when none comes.
   explicit VideoDecoder(GstElementPointer pipeline);
   ~VideoDecoder();
   VideoDecoder(const VideoDecoder&) = delete;
   VideoDecoder& operator=(const VideoDecoder&) = delete;
 
-  // The next image (CV_8UC3) and its time in the stream, where it has one; false at the end, after
-  // which fault() says why if it should not have ended.
+  // Gives the next image (CV_8UC3) and its time in the stream, if it has one. Returns false at the
+  // end; then fault() says why, if the stream should not have ended.
   bool Next(cv::Mat* image, std::optional<Time>* time);
   const std::string& fault() const { return fault_; }
 
-  // What the container says: images a second, 0 where it does not; how many there are, 0 where it
-  // does not, or there is no end.
+  // Data of the container: images per second, 0 if unknown; number of images, 0 if unknown or
+  // without an end.
   double rate_hz() const { return rate_hz_; }
   std::size_t frame_count() const { return frame_count_; }
 

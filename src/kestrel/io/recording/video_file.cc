@@ -17,15 +17,15 @@ namespace {
 
 constexpr int kRateParts = 100;  // the rate is in 1/100 Hz
 
-// What vp9enc looks ahead at is lost at the end. mp4mux wants to know of VP9 what vp9enc does not
-// say, and crashes without the site of the chroma.
+// vp9enc would lose the images in its look-ahead at the end. mp4mux needs to know things about VP9
+// that vp9enc does not say, and crashes without the chroma site.
 constexpr const char* kVp9InMp4 =
     "video/x-raw,format=I420,colorimetry=bt601 ! "
     "vp9enc deadline=1 cpu-used=9 lag-in-frames=0 end-usage=cq cq-level=24 "
     "target-bitrate=20000000 ! "
     "capssetter caps=\"video/x-vp9,chroma-format=(string)4:2:0,chroma-site=(string)mpeg2,"
     "bit-depth-luma=(uint)8,bit-depth-chroma=(uint)8\" ! mp4mux";
-// A JPEG's colours have the whole range.
+// JPEG uses the full range of values.
 constexpr const char* kJpegInAvi =
     "video/x-raw,format=I420,colorimetry=1:4:0:0 ! jpegenc quality=85 ! avimux";
 
@@ -38,7 +38,7 @@ std::string PipelineText(VideoFormat format) {
 
 class VideoFile::Encoder {
  public:
-  // Throws InputError when GStreamer has not all elements of the pipeline.
+  // Throws InputError when GStreamer lacks an element of the pipeline.
   Encoder(GstElementPointer pipeline, std::string path, const cv::Size& size, double rate_hz)
       : path_(std::move(path)),
         pipeline_(std::move(pipeline)),
@@ -86,7 +86,7 @@ class VideoFile::Encoder {
   GstClockTime TimeOf(guint64 image) const {
     return gst_util_uint64_scale(image, GST_SECOND * info_.fps_d, info_.fps_n);
   }
-  // So that images do not pile up before the encoder, and its faults are heard.
+  // Images must not pile up before the encoder, and its errors must be noticed.
   void WaitForRoom() {
     constexpr guint64 kQueued = 4;
     watch_.Poll();
@@ -110,7 +110,7 @@ class VideoFile::Encoder {
   GstWatch watch_;
   GstVideoInfo info_{};
   guint64 count_ = 0;
-  int looks_ = 0;  // without progress, a millisecond each
+  int looks_ = 0;  // without progress, one millisecond each
 };
 
 VideoFile::VideoFile(const std::string& stem, double rate_hz, VideoFormat format)
@@ -121,7 +121,7 @@ VideoFile::VideoFile(const std::string& stem, double rate_hz, VideoFormat format
 VideoFile::~VideoFile() {
   try {
     Close();
-  } catch (const InputError&) {  // who wants to know closes it
+  } catch (const InputError&) {  // callers that want the error call Close themselves
   }
 }
 

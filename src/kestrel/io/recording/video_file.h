@@ -10,26 +10,26 @@ namespace kestrel {
 
 enum class VideoFormat {
   kMp4,  // VP9 in MP4, which browsers play
-  kAvi,  // motion JPEG in AVI, which every player plays, and ten times as large
+  kAvi,  // motion JPEG in AVI, which all players play; ten times as large
 };
 
-// A video that is written, by GStreamer.
+// Writes a video by GStreamer.
 class VideoFile {
  public:
-  // 'stem': its path without the extension; what is there is replaced. The rate is taken to what
-  // players and containers want: from 1 to 240 Hz, in 1/100 Hz. Where GStreamer has no encoder for
-  // MP4, it becomes an AVI.
+  // 'stem': path without the extension; an existing file is replaced. The rate is limited to what
+  // players and containers accept: 1 to 240 Hz, in steps of 1/100 Hz. If GStreamer has no encoder
+  // for MP4, it writes an AVI.
   VideoFile(const std::string& stem, double rate_hz, VideoFormat format = VideoFormat::kMp4);
   ~VideoFile();
   VideoFile(const VideoFile&) = delete;
   VideoFile& operator=(const VideoFile&) = delete;
 
-  // CV_8UC3, all of one size, at least 16 px each way. Throws InputError when there is no encoder,
-  // or the file cannot be made, or not go on: the disk is full.
+  // 'image': CV_8UC3, all of one size, at least 16 px each way. Throws InputError when there is no
+  // encoder, or the file cannot be created or continued, as when the disk is full.
   void Write(const cv::Mat& image);
 
-  // After the last image: the file is whole. Throws InputError when it cannot be. By the destructor
-  // as well, which does not throw.
+  // Completes the file after the last image. Throws InputError when that fails. The destructor does
+  // the same without throwing.
   void Close();
 
   // Empty before the first image.

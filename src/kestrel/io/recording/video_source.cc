@@ -20,7 +20,7 @@ namespace {
 
 class VideoSource : public FrameSource {
  public:
-  // 'frame_count': 0 when that is not known or there is no end.
+  // 'frame_count': 0 when it is unknown or there is no end.
   VideoSource(std::unique_ptr<VideoDecoder> decoder, std::string name, std::size_t frame_count)
       : decoder_(std::move(decoder)),
         name_(std::move(name)),
@@ -79,14 +79,14 @@ class FileHead {
     std::ifstream(path, std::ios::binary).read(bytes_.data(), bytes_.size());
   }
 
-  // GStreamer's element for the container; empty where another may have to be found.
+  // Returns GStreamer's element for the container; empty when another element may be needed.
   const char* Demuxer() const {
     if (IsAvi()) return "avidemux";
     if (HasAt(4, "ftyp")) return "qtdemux";
     return HasAt(0, "\x1a\x45\xdf\xa3") ? "matroskademux" : "";
   }
-  // How many frames the head of an AVI says that there are, else 0. GStreamer counts those that are
-  // there, and would not notice that a file is cut off.
+  // Returns the number of frames in the header of an AVI, else 0. GStreamer counts the frames that
+  // exist, and would not notice that a file is cut off.
   std::size_t FrameCount() const {
     if (!IsAvi() || !HasAt(24, "avih")) return 0;
     std::size_t count = 0;
@@ -98,7 +98,7 @@ class FileHead {
   }
 
  private:
-  static constexpr std::size_t kAviCount = 48;  // dwTotalFrames
+  static constexpr std::size_t kAviCount = 48;  // position of dwTotalFrames
 
   bool HasAt(std::size_t place, std::string_view text) const {
     return std::string_view(bytes_.data(), bytes_.size()).substr(place).starts_with(text);
@@ -108,8 +108,8 @@ class FileHead {
   std::array<char, kAviCount + 4> bytes_{};
 };
 
-// decodebin does not listen while it starts a demuxer: it would lose that there is nothing to be
-// found, and wait. The demuxers that are known stand before it.
+// decodebin does not listen while it starts a demuxer: it would miss the error that there is
+// nothing to decode, and wait. Therefore a known demuxer is put before it.
 GstElementPointer FilePipeline(const std::string& path, const FileHead& head) {
   const std::string demuxer = head.Demuxer();
   const std::string video = demuxer.empty()
@@ -122,7 +122,7 @@ GstElementPointer FilePipeline(const std::string& path, const FileHead& head) {
   return pipeline;
 }
 
-// 'fault': what is wrong where it does not open.
+// 'fault': text of the error when it does not open.
 std::unique_ptr<VideoDecoder> Open(GstElementPointer pipeline, const std::string& fault) {
   try {
     return std::make_unique<VideoDecoder>(std::move(pipeline));
