@@ -23,7 +23,7 @@ bool IsStorageFile(const fs::path& path) {
   return path.extension() == ".db3" || path.extension() == ".mcap" || IsCompressedBagFile(path);
 }
 
-// The number that rosbag2 puts before the extension of its parts ("flight_12.mcap"); 0 without.
+// Returns the number of a part of a bag, before the extension ("flight_12.mcap"); 0 without one.
 unsigned long PartOf(const fs::path& path) {
   const std::string stem = path.stem().string();
   const std::size_t digits = stem.find_last_not_of("0123456789") + 1;
@@ -77,7 +77,7 @@ BagFolder ParseMetadata(const std::string& text, const fs::path& folder) {
   }
   for (const YAML::Node& node : paths) {
     const fs::path path = folder / (node.IsScalar() ? node.Scalar() : "");
-    // Early bags have the path from where they were recorded.
+    // Early bags contain the paths at the time of recording.
     const fs::path beside = folder / path.filename();
     std::error_code ignored;  // a name may be too long for any file
     const fs::path& found = fs::exists(path, ignored) ? path : beside;

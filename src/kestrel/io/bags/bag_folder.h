@@ -7,21 +7,21 @@
 
 namespace kestrel {
 
-// The files of a rosbag2 folder.
+// The content of a rosbag2 folder.
 struct BagFolder {
-  std::vector<std::string> files;        // one after the other
-  bool has_compressed_messages = false;  // each by zstd
+  std::vector<std::string> files;        // in order of time
+  bool has_compressed_messages = false;  // each compressed by zstd
 };
 
-// Whether rosbag2 has compressed the file as a whole (.db3.zstd, .mcap.zstd), which is not read.
+// True when rosbag2 has compressed the whole file (.db3.zstd, .mcap.zstd). Such files are not read.
 bool IsCompressedBagFile(const std::filesystem::path& file);
 
-// Whether the folder is a bag of rosbag2: with its metadata.yaml, or with .db3 or .mcap files,
-// compressed ones too.
+// True when the folder is a bag of rosbag2: it has a metadata.yaml, or .db3 or .mcap files, perhaps
+// compressed.
 bool IsBagFolder(const std::filesystem::path& folder);
 
-// By metadata.yaml; without it, as a power loss leaves it, all .db3 or .mcap files in natural
-// order. Throws InputError when a file is missing, or metadata.yaml is at fault.
+// Reads metadata.yaml. Without it, as after a power loss, it takes all .db3 or .mcap files in
+// natural order. Throws InputError when a file is missing or metadata.yaml is not valid.
 BagFolder ReadBagFolder(const std::filesystem::path& folder);
 
 }  // namespace kestrel

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kDefaultBody = "base_link";
 
-// Poses as they come, out of order and wrong as they may be.
+// Collects poses, which may be out of order or wrong.
 class PoseList {
  public:
   PoseList(bool use_arrival_times, std::string name)
@@ -34,7 +34,7 @@ class PoseList {
                       twist ? MotionOf(*twist, *pose) : std::nullopt});
   }
 
-  // In order; what is wrong with them goes to 'remark'.
+  // Returns the poses in order. What is wrong with them is written to 'remark'.
   std::vector<PoseSample> Take(std::string* remark) {
     if (poses_.empty() && unstamped_ > 0) {
       throw InputError(name_ +
@@ -65,7 +65,7 @@ class PoseList {
   std::size_t unstamped_ = 0;
 };
 
-// Poses of 'body' in the root of its frames, one each time that the moving frame next to it moves.
+// Poses of 'body' in the root frame, one for each message of the moving frame nearest to the body.
 class TransformPoses {
  public:
   TransformPoses(const FrameTree& tree, const std::string& body)
@@ -88,7 +88,7 @@ class TransformPoses {
     std::optional<RigidTransform> root_from_body = RigidTransform();
     for (const std::string& link : chain_) {
       const auto known = newest_.find(link);
-      if (known == newest_.end()) return;  // not all of them were told yet
+      if (known == newest_.end()) return;  // not all of the transforms are known yet
       root_from_body = known->second * *root_from_body;
     }
     if (!parent_from_frame) root_from_body.reset();
@@ -96,8 +96,8 @@ class TransformPoses {
   }
 
  private:
-  std::vector<std::string> chain_;  // from the body up
-  std::string moving_;              // the first of it that moves
+  std::vector<std::string> chain_;  // from the body to the root
+  std::string moving_;              // the first frame of the chain that moves
   std::map<std::string, RigidTransform> newest_;
 };
 
@@ -105,7 +105,7 @@ std::string NameOfTopic(const BagReader& bag, std::size_t topic, const std::stri
   return fmt::format("{}: {}", path, bag.topics()[topic].name);
 }
 
-// The frame whose poses are asked for.
+// Returns the frame whose poses are wanted.
 std::string FindBody(const FrameTree& tree, const std::string& told, const std::string& camera) {
   for (const std::string& body : {told, std::string(kDefaultBody)}) {
     if (!body.empty() && tree.Has(body)) return body;
@@ -113,7 +113,7 @@ std::string FindBody(const FrameTree& tree, const std::string& told, const std::
   return tree.ChainToRoot(camera, /*only_fixed=*/true).back();
 }
 
-// The poses that tf itself has, for want of a topic that has them.
+// Reads the poses from tf, for a bag without a topic of poses.
 std::vector<PoseSample> ReadTransformPoses(BagReader* bag, const std::vector<std::size_t>& topics,
                                            const FrameTree& tree, const std::string& body,
                                            bool use_arrival_times, const std::string& path,

@@ -14,17 +14,17 @@
 
 namespace kestrel {
 
-// Where the UAV was by a bag, and where the camera sits on it.
+// The poses of the UAV in a bag, and the mount of the camera.
 struct BagPoses {
-  std::vector<PoseSample> poses;                   // in order of time, no two of one
-  std::optional<RigidTransform> body_from_camera;  // where tf tells
-  std::string remark;                              // what was left out, on one line; else empty
+  std::vector<PoseSample> poses;                   // in order of time, all different
+  std::optional<RigidTransform> body_from_camera;  // if tf tells it
+  std::string remark;                              // what was left out, in one line; else empty
 };
 
-// Reads the poses of a bag in one pass, in two where tf has them. The body is the child frame of
-// the poses, or base_link, or the frame that the camera is fixed to. 'camera_frame': that of the
-// images, empty where they tell none. 'use_arrival_times': instead of the stamps. Throws InputError
-// when a message is broken, or all stamps are zero.
+// Reads the poses of a bag in one pass, or in two if they are in tf. The body is the child frame of
+// the poses, or base_link, or the frame that the camera is fixed to. 'camera_frame': frame of the
+// images; empty if they do not name it. 'use_arrival_times': use them instead of the stamps. Throws
+// InputError when a message is broken or all stamps are zero.
 BagPoses ReadPoses(BagReader* bag, const BagTopics& topics, const std::string& camera_frame,
                    bool use_arrival_times, const std::string& path);
 

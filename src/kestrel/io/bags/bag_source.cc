@@ -64,7 +64,7 @@ std::optional<std::size_t> BagSource::frame_count() const {
   return bag_->topics()[topics_.image].messages;
 }
 
-// Estimates the rate; returns the frame of the camera.
+// Estimates the frame rate. Returns the camera's frame.
 std::string BagSource::ReadFirstImages() {
   bag_->Select({topics_.image});
   const BagTopic& topic = bag_->topics()[topics_.image];
@@ -72,7 +72,7 @@ std::string BagSource::ReadFirstImages() {
   std::vector<Time> times;
   BagMessage message;
   while (times.size() < kImagesForRate && bag_->Next(&message)) {
-    // Both kinds of images begin with the header.
+    // Messages of raw and of compressed images both begin with the header.
     const auto header =
         ParseMessage<HeaderMessage>(message.data, topic.wire_format, NameOf(message.topic));
     if (times.empty()) camera_frame = header.frame_id;

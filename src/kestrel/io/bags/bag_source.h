@@ -16,30 +16,30 @@
 
 namespace kestrel {
 
-// How a bag is read.
+// Options for reading a bag.
 struct BagChoice {
-  std::vector<std::string> topics = {};  // where the types of the topics leave a choice
+  std::vector<std::string> topics = {};  // where the types leave a choice
   bool use_arrival_times = false;        // instead of the stamps in the headers
-  // What the user should know: what was cut off or left out, a line each. May be empty.
+  // Called with what the user should know: what was cut off or left out, one line each. May be
+  // empty.
   std::function<void(const std::string&)> tell = {};
 };
 
-// The images of a bag with its camera's calibration (camera_info, and the mount from tf) and its
-// poses. A frame's name is its topic with its time below it:
+// The images of a bag, with the calibration of their camera (from camera_info, the mount from tf)
+// and the poses. A frame's name is its topic with its time below it:
 // "camera/image_raw/1403636579763555584".
 class BagSource : public FrameSource {
  public:
-  // Throws InputError with what is wrong with the bag: broken, no images, several cameras, no
+  // Throws InputError that says what is wrong with the bag: broken, no images, several cameras, no
   // stamps.
   BagSource(const std::string& path, BagChoice choice);
 
-  // Frames are put in order where they are by up to 8 images out of it; what is later than that,
-  // and what has the stamp of another, is left out, and that is told at the end,
-  // as is what was damaged.
+  // Frames are sorted where up to 8 images are out of order. Images that are later than that, or
+  // have the stamp of another, are left out; this and what was damaged is reported at the end.
   bool Next(Frame* frame) override;
   std::optional<std::size_t> frame_count() const override;
   double rate_hz() const override { return rate_hz_; }
-  // Throws InputError when camera_info is no calibration.
+  // Throws InputError when camera_info does not hold a valid calibration.
   std::optional<CameraCalibration> calibration() const override;
   CameraMount mount() const override { return {body_from_camera_, std::nullopt}; }
   std::vector<PoseSample> poses() const override { return poses_; }
@@ -70,8 +70,8 @@ class BagSource : public FrameSource {
   std::size_t left_out_ = 0;
 };
 
-// Opens a bag, or any other source that OpenSource knows. Throws InputError as they do, and when
-// 'choice' chooses in something that is no bag.
+// Opens a bag, or any source that OpenSource supports. Throws InputError as they do, and when
+// 'choice' has topics for a source that is not a bag.
 std::unique_ptr<FrameSource> OpenSourceOrBag(const std::vector<std::string>& arguments,
                                              PixelFormat format, const BagChoice& choice);
 

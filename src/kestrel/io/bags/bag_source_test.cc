@@ -24,7 +24,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-// The time of every frame, in images, and that the pixels are those of that image.
+// Returns the frames' times, in numbers of images. Checks that their pixels are those of the image.
 std::vector<int> ImagesOf(FrameSource* source) {
   std::vector<int> images;
   for (Frame frame; source->Next(&frame);) {
@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EveryBag,
                            return name;
                          });
 
-// A cut takes no more than what was not whole.
+// A cut removes only images that are not complete.
 TEST(BagSource, ReadsAllWholeImagesOfACutBag) {
   const TestFolder folder;
   for (const char* name : {"flight.bag", "flight.mcap"}) {
@@ -131,7 +131,7 @@ TEST(BagSource, ReadsABagOfWhichTheEndWasFilledWithZeros) {
   EXPECT_GT(ImagesOf(&source).size(), 120u);
 }
 
-// In bags of several chunks, all of which have poses and images.
+// The bags have several chunks, all with poses and images.
 TEST(BagSource, LeavesOutChunksThatAreDamaged) {
   const TestFolder folder;
   constexpr int kImages = 600;
@@ -303,7 +303,7 @@ TEST(BagSource, ReadsTheFolderOfABagInParts) {
               HasSubstr("lost.mcap is not there"));
 }
 
-// Bytes of this process in memory.
+// Returns the resident memory of this process in bytes.
 std::size_t ResidentBytes() {
   std::ifstream statm("/proc/self/statm");
   std::size_t pages = 0;

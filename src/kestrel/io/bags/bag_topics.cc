@@ -31,7 +31,7 @@ TopicUse UseOf(const BagTopic& topic) {
   return IsPoseType(topic.type) ? TopicUse::kPose : TopicUse::kNone;
 }
 
-// The choice among the topics of a bag.
+// Chooses among the topics of a bag.
 class TopicChooser {
  public:
   TopicChooser(const std::vector<BagTopic>& topics, const std::vector<std::string>& names,
@@ -40,7 +40,7 @@ class TopicChooser {
     for (const std::string& name : names_) CheckName(name);
   }
 
-  // Those of this use; only those that are named, where any is.
+  // Returns the topics for this use; if some of them are named, only those.
   std::vector<std::size_t> Candidates(TopicUse use) const {
     std::vector<std::size_t> all = All(use);
     std::vector<std::size_t> named;
@@ -61,7 +61,8 @@ class TopicChooser {
     return images.front();
   }
 
-  // Beside the image: "/camera/camera_info" for "/camera/image_raw" (and "/compressed" below it).
+  // Finds the topic beside the image: "/camera/camera_info" for "/camera/image_raw" (and for
+  // "/compressed" below it).
   std::optional<std::size_t> CameraInfo(std::size_t image) const {
     const std::vector<std::size_t> infos = Candidates(TopicUse::kCameraInfo);
     std::string_view base = RawName(image);
@@ -118,7 +119,7 @@ class TopicChooser {
     if (name.ends_with(kCompressed)) name.remove_suffix(kCompressed.size());
     return name;
   }
-  // Whether this is the compressed copy of images that are there raw.
+  // True when this is the compressed copy of images that also exist raw.
   bool IsCopy(std::size_t image) const {
     if (!std::string_view(topics_[image].name).ends_with(kCompressed)) return false;
     return std::any_of(topics_.begin(), topics_.end(), [&](const BagTopic& topic) {

@@ -10,23 +10,23 @@
 
 namespace kestrel {
 
-// What a bag is read for; indices of its topics.
+// Indices of the topics that a bag is read for.
 struct BagTopics {
   std::size_t image = 0;
   std::optional<std::size_t> camera_info;
-  std::optional<std::size_t> pose;      // nothing: from tf
+  std::optional<std::size_t> pose;      // nothing: tf has the poses
   std::vector<std::size_t> transforms;  // tf and static tf
 };
 
-// Finds the topics by type, and by 'names' (of --topic) where the type is not enough. Of several
-// cameras one must be named, of several topics with poses as well, unless one is what mavros says
-// of its local position; of an image that is there raw and compressed the raw one is taken. The
-// camera's information is what lies beside the image, or the only one there is. Throws InputError,
-// with the 'bag' and the topics that there are, when there is no image or no telling which.
+// Finds the topics by type, and by 'names' (of --topic) where the type is ambiguous. Of several
+// cameras one must be named, and of several topics with poses too, unless one of them is the local
+// position from mavros. Of an image that exists raw and compressed the raw one is taken. The
+// camera_info is the one beside the image, or the only one. Throws InputError with 'bag' and its
+// topics when there is no image or the choice is ambiguous.
 BagTopics ChooseTopics(const std::vector<BagTopic>& topics, const std::vector<std::string>& names,
                        const std::string& bag);
 
-// Whether the images of this topic are called undistorted, as image_proc calls them (image_rect).
+// True when the topic's name (image_rect) says that image_proc has undistorted its images.
 bool IsRectified(const std::string& topic);
 
 }  // namespace kestrel

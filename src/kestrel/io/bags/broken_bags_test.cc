@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is wrong with a bag is said in one line that begins with the bag.
+// Errors in a bag are reported in one line that begins with the bag's name.
 #include <algorithm>
 #include <limits>
 #include <string>
@@ -28,7 +28,7 @@ std::string Flight(const TestFolder& folder, const std::string& name,
   return folder / name;
 }
 
-// With 'to' wherever 'from' was; both are of one length.
+// Returns the file with 'to' instead of each 'from'; both have the same length.
 std::string Patched(const std::string& path, const std::string& from, const std::string& to) {
   std::string bytes = ReadFile(path);
   EXPECT_NE(bytes.find(from), std::string::npos) << path;
@@ -39,7 +39,7 @@ std::string Patched(const std::string& path, const std::string& from, const std:
   return path;
 }
 
-// With 300 bytes lost from 'offset' on.
+// Returns the file without 300 of its bytes, from 'offset' on.
 std::string Damaged(const std::string& path, std::size_t offset) {
   constexpr std::size_t kLost = 300;
   std::string bytes = ReadFile(path);
@@ -58,7 +58,7 @@ std::string Single(const TestFolder& folder, const Message& message, Time arriva
   return folder / name;
 }
 
-// An image that 'change' has made wrong.
+// Returns a bag with an image that 'change' has made wrong.
 template <class Change>
 std::string WrongImage(const TestFolder& folder, const Change& change) {
   const cv::Mat pixels = BagImage(1);
@@ -67,7 +67,7 @@ std::string WrongImage(const TestFolder& folder, const Change& change) {
   return Single(folder, message);
 }
 
-// Images with a camera_info that 'change' has made wrong.
+// Returns a bag with images and a camera_info that 'change' has made wrong.
 template <class Change>
 std::string WrongCamera(const TestFolder& folder, const Change& change) {
   TestBag bag(folder / "flight.mcap");
@@ -80,7 +80,7 @@ std::string WrongCamera(const TestFolder& folder, const Change& change) {
   return folder / "flight.mcap";
 }
 
-// As `rosbag encrypt` says it in the bag header.
+// Returns a bag whose header says that it is encrypted, as `rosbag encrypt` does.
 std::string EncryptedBag(const TestFolder& folder) {
   std::string header;
   PutText("op=\3", &header);

@@ -15,11 +15,11 @@ namespace kestrel {
 
 static_assert(std::endian::native == std::endian::little, "bags are little-endian, as Kestrel is");
 
-// Takes little-endian numbers and texts off the front of a piece of bytes. Every call throws
-// InputError, "<name>: ends too early", where the bytes do.
+// Takes little-endian numbers and texts off the front of some bytes. All functions throw
+// InputError, "<name>: ends too early", when there are not enough bytes.
 class ByteCursor {
  public:
-  // 'name' must outlive this: what the bytes are, for the message.
+  // 'name' says what the bytes are, for the message; it must outlive this.
   ByteCursor(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(&name) {}
 
   std::size_t left() const { return bytes_.size(); }
@@ -38,7 +38,7 @@ class ByteCursor {
     return taken;
   }
 
-  // A text after its length in 32 bits.
+  // Takes a text that follows its length in 32 bits.
   std::string_view Text() { return Bytes(Take<std::uint32_t>()); }
 
  private:
@@ -46,7 +46,7 @@ class ByteCursor {
   const std::string* name_;
 };
 
-// Puts little-endian numbers and texts at the end of 'bytes'.
+// Appends little-endian numbers and texts to 'bytes'.
 template <std::integral Number>
 void Put(Number number, std::string* bytes) {
   bytes->append(reinterpret_cast<const char*>(&number), sizeof(number));

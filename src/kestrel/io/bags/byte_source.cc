@@ -15,12 +15,12 @@
 namespace kestrel {
 namespace {
 
-// What is read at least: the heads of records lie close together, and a call costs more than them.
+// Smallest piece to read: the heads of records lie close together, and a call costs more than they.
 constexpr std::uint64_t kReadAhead = 4096;
-// What no message, no chunk and no summary is larger than.
+// Limit of the size of a message, a chunk or a summary.
 constexpr std::uint64_t kMaxPiece = 1 << 30;
 
-// How many of 'size' bytes from 'offset' on there are in a source of 'total'.
+// Returns how many of 'size' bytes from 'offset' exist in a source of 'total' bytes.
 std::uint64_t BytesThere(std::uint64_t offset, std::uint64_t size, std::uint64_t total) {
   return offset < total ? std::min(size, total - offset) : 0;
 }

@@ -9,14 +9,14 @@
 
 namespace kestrel {
 
-// Bytes that are looked at by their place, without having all of them in memory.
+// Random access to bytes that are not all in memory.
 class ByteSource {
  public:
   virtual ~ByteSource() = default;
 
   virtual std::uint64_t size() const = 0;
 
-  // 'size' bytes from 'offset' on, fewer where the source ends. Valid until the next call.
+  // Returns 'size' bytes from 'offset', fewer at the end of the source. Valid until the next call.
   virtual std::string_view View(std::uint64_t offset, std::uint64_t size) = 0;
 };
 
@@ -32,7 +32,7 @@ class MemoryBytes : public ByteSource {
   std::string_view bytes_;
 };
 
-// The bytes of a file as it was when it was opened.
+// The bytes of a file, with its size at the time of opening.
 class FileBytes : public ByteSource {
  public:
   // Throws InputError when the file cannot be opened.
@@ -51,14 +51,14 @@ class FileBytes : public ByteSource {
   std::string path_;
   int descriptor_;
   std::uint64_t size_ = 0;
-  // A part of the file; not a string, which would be filled with zeros before it is read.
+  // A part of the file. It is not a string, which would be filled with zeros before it is read.
   std::unique_ptr<char[]> buffer_;
   std::uint64_t capacity_ = 0;
   std::uint64_t buffer_offset_ = 0;
   std::uint64_t buffered_ = 0;
 };
 
-// A part of another source, which must outlive this; no longer than what the source has.
+// A part of another source, which must outlive this; it ends with the source at the latest.
 class BytesPart : public ByteSource {
  public:
   BytesPart(ByteSource* source, std::uint64_t offset, std::uint64_t size);

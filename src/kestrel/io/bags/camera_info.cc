@@ -13,7 +13,7 @@
 namespace kestrel {
 namespace {
 
-// A name out of a bag as YAML and messages can have it.
+// Makes a name from a bag safe for YAML and messages.
 std::string PlainName(std::string name) {
   std::replace_if(
       name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c) && c != '-'; }, '_');

@@ -8,14 +8,15 @@
 
 namespace kestrel {
 
-// The lens and size that a message tells: lens by the names plumb_bob, rational_polynomial,
-// equidistant and fisheye; no coefficients are no distortion. 'is_rectified': of the images that
-// image_proc has undistorted, which P describes. Throws InputError, with 'name', when the camera is
-// not calibrated, and for all that ReadCalibration refuses; for binning and regions of interest.
+// Returns the lens and image size of a message. The lens models are plumb_bob, rational_polynomial,
+// equidistant and fisheye; without coefficients there is no distortion. 'is_rectified': the images
+// are undistorted by image_proc, so that P describes them. Throws InputError with 'name' when the
+// camera is not calibrated, for everything that ReadCalibration refuses, and for binning and
+// regions of interest.
 CameraCalibration CalibrationOf(const CameraInfoMessage& message, bool is_rectified,
                                 const std::string& name);
 
-// The other way, without header. A mount has no place in the message.
+// Returns the message of a camera, without a header. The message has no place for a mount.
 CameraInfoMessage CameraInfoOf(const CameraIntrinsics& camera);
 
 }  // namespace kestrel

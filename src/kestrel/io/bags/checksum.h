@@ -8,10 +8,11 @@
 
 namespace kestrel {
 
-// CRC-32 (that of zip and MCAP) of some bytes, or of those that have 'before' and these.
+// Returns the CRC-32 (as in zip and MCAP) of some bytes; 'before': CRC-32 of the bytes before them.
 std::uint32_t Checksum(std::string_view bytes, std::uint32_t before = 0);
 
-// That of the first 'size' bytes, read in pieces. Throws InputError as they do.
+// Returns the CRC-32 of the first 'size' bytes, read in pieces. Throws InputError as the source
+// does.
 std::uint32_t ChecksumOf(ByteSource* bytes, std::uint64_t size);
 
 }  // namespace kestrel

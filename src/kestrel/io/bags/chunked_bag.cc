@@ -11,7 +11,7 @@
 namespace kestrel {
 namespace {
 
-// What of a chunk is not as it was written.
+// A part of a chunk differs from what was written.
 class DamagedChunk : public InputError {
  public:
   using InputError::InputError;
@@ -92,7 +92,7 @@ ByteSource* ChunkedBag::OpenChunk(const Chunk& chunk) {
 }
 
 void ChunkedBag::DecompressChunk(const Chunk& chunk) {
-  // What is larger is no chunk, whatever it claims; it is cut off here.
+  // Nothing larger is a chunk, whatever it claims; it is cut off here.
   constexpr std::uint64_t kMaxStored = 1 << 30;
   const std::uint64_t stored_size = std::min(chunk.stored_size, kMaxStored);
   const std::string_view stored = file_.View(chunk.offset, stored_size);

@@ -14,7 +14,7 @@ namespace {
 
 std::string CompressBz2(std::string_view bytes) {
   constexpr int kBlocks_100kB = 9;
-  auto size = static_cast<unsigned>(bytes.size() + bytes.size() / 100 + 600);  // as bzip2 asks
+  auto size = static_cast<unsigned>(bytes.size() + bytes.size() / 100 + 600);  // as bzip2 requires
   std::string output(size, '\0');
   const int status = BZ2_bzBuffToBuffCompress(output.data(), &size, const_cast<char*>(bytes.data()),
                                               static_cast<unsigned>(bytes.size()), kBlocks_100kB,
@@ -24,7 +24,7 @@ std::string CompressBz2(std::string_view bytes) {
   return output;
 }
 
-// ROS 1's own reader of LZ4 wants blocks that do not refer to each other.
+// ROS 1's own reader of LZ4 needs blocks that do not refer to each other.
 std::string CompressLz4(std::string_view bytes) {
   LZ4F_preferences_t preferences{};
   preferences.frameInfo.blockMode = LZ4F_blockIndependent;

@@ -8,10 +8,10 @@
 
 namespace kestrel {
 
-// "none", "bz2", "lz4", "zstd"
+// Returns "none", "bz2", "lz4" or "zstd".
 const char* ToString(Compression compression);
 
-// 'bytes' compressed; below 2 GiB of them.
+// Returns 'bytes' compressed; they must be less than 2 GiB.
 std::string Compress(Compression compression, std::string_view bytes);
 
 }  // namespace kestrel

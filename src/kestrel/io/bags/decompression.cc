@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint64_t kMaxDecompressed = 1 << 30;
 
-// What one step of a decompressor did.
+// The result of one step of a decompressor.
 struct Progress {
   std::size_t read = 0;
   std::size_t written = 0;
@@ -64,7 +64,7 @@ class Lz4Stream {
   }
 
  private:
-  // One for a thread: it has megabytes, which would be new pages for every chunk.
+  // One per thread: it has megabytes, which would be new pages for each chunk.
   static LZ4F_dctx* Context() {
     struct Owner {
       Owner() { LZ4F_createDecompressionContext(&context, LZ4F_VERSION); }
@@ -91,8 +91,8 @@ class ZstdStream {
   std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context_{ZSTD_createDCtx(), ZSTD_freeDCtx};
 };
 
-// Steps until the end of the input or of the stream. The output has room for a usual compression at
-// once, and grows with what is there, whatever size is claimed.
+// Steps until the end of the input or of the stream. The output starts with room for a usual
+// compression and grows with the data that exist, whatever size is claimed.
 template <class Stream>
 void RunStream(std::string_view input, std::optional<std::uint64_t> expected,
                const std::string& name, std::string* output) {
@@ -105,7 +105,7 @@ void RunStream(std::string_view input, std::optional<std::uint64_t> expected,
   while (!is_done) {
     if (output->size() == written) {
       if (written > size) break;
-      // One byte more than is expected shows a stream that is too long.
+      // One byte more than expected reveals a stream that is too long.
       output->resize(std::min<std::size_t>(size + 1, std::max(first_room, 2 * written)));
     }
     const Progress step = stream.Step(input, output->data() + written, output->size() - written);

@@ -8,7 +8,7 @@
 namespace kestrel {
 namespace {
 
-// What a transform that stands still may differ by when it is sent again.
+// Largest difference between repeated messages of a fixed transform.
 constexpr double kSameTranslation_m = 1e-6;
 constexpr double kSameRotation_rad = 1e-6;
 
@@ -66,7 +66,7 @@ bool FrameTree::IsFixed(const std::string& frame) const {
 
 std::vector<std::string> FrameTree::ChainToRoot(const std::string& frame, bool only_fixed) const {
   std::vector<std::string> chain{frame};
-  // No longer than there are links: frames may be each other's parents.
+  // The number of links is the limit: frames may be each other's parents.
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const auto link = links_.find(chain.back());
     if (link == links_.end() || (only_fixed && !link->second.is_fixed)) break;

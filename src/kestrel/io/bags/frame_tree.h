@@ -11,35 +11,35 @@
 
 namespace kestrel {
 
-// The rigid transform that a pose of ROS is, or nothing when it is not finite or its quaternion is
-// not of unit length (to 1 %).
+// Returns the rigid transform of a ROS pose; nothing when it is not finite or its quaternion does
+// not have unit length (to 1 %).
 std::optional<RigidTransform> TransformOf(const PoseMessage& pose);
 PoseMessage PoseMessageOf(const RigidTransform& transform);
 
-// A frame's name without the slash that ROS 1 once put before it.
+// Returns a frame's name without the leading slash of old ROS 1 versions.
 std::string FrameName(const std::string& frame_id);
 
-// The frames of tf: each has a parent, and stands still in it or moves.
+// The tree of tf frames: each frame has a parent, and is fixed in it or moves.
 class FrameTree {
  public:
-  // A transform that is not valid is left out.
+  // A transform that is not valid is ignored.
   void Add(const TransformStampedMessage& transform);
 
   bool Has(const std::string& frame) const;
 
-  // 'frame', its parent, and so on to the root; only over frames that stand still in their parent
-  // where 'only_fixed' is set.
+  // Returns 'frame', its parent and so on up to the root; with 'only_fixed' only as long as the
+  // frames are fixed in their parents.
   std::vector<std::string> ChainToRoot(const std::string& frame, bool only_fixed) const;
 
   bool IsFixed(const std::string& frame) const;
 
-  // 'to' from 'from', where all frames between them stand still.
+  // Returns the transform from 'from' to 'to', if all frames between them are fixed.
   std::optional<RigidTransform> Fixed(const std::string& to, const std::string& from) const;
 
  private:
   struct Link {
     std::string parent;
-    RigidTransform parent_from_frame;  // the first
+    RigidTransform parent_from_frame;  // the first one
     bool is_fixed = true;
   };
   std::map<std::string, Link> links_;

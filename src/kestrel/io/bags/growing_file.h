@@ -8,17 +8,17 @@
 
 namespace kestrel {
 
-// The name of a file that is not whole yet.
+// Name of a file that is not complete yet.
 enum class UnfinishedName {
-  kPart,  // "<path>.part"; without Finish it is removed
-  kOwn,   // its own: what is there can be read, and stays without Finish
+  kPart,  // "<path>.part", removed without Finish
+  kOwn,   // its final name: it can be read, and stays without Finish
 };
 
-// A file that is written from its begin to its end. All calls throw InputError, with the path, when
-// they cannot do what they are to.
+// A file that is written from beginning to end. All functions throw InputError with the path when
+// they fail.
 class GrowingFile {
  public:
-  // The file must not be there unless 'replace' is set.
+  // The file must not exist unless 'replace' is set.
   GrowingFile(const std::string& path, bool replace, UnfinishedName name = UnfinishedName::kPart);
   ~GrowingFile();
   GrowingFile(const GrowingFile&) = delete;
@@ -26,15 +26,15 @@ class GrowingFile {
 
   void Append(std::string_view bytes);
   std::uint64_t size() const { return size_; }
-  // Gives the system all that was appended: the end of this program does not lose it.
+  // Passes all appended bytes to the system, so that the end of this program does not lose them.
   void Flush();
 
-  // Writes over bytes that are there.
+  // Replaces bytes that have been written.
   void Overwrite(std::uint64_t offset, std::string_view bytes);
 
   void Finish();
 
-  // The name until then, of UnfinishedName::kPart.
+  // Returns the name of an unfinished file with UnfinishedName::kPart.
   static std::string PartOf(const std::string& path) { return path + ".part"; }
 
  private:
@@ -47,7 +47,7 @@ class GrowingFile {
   bool is_finished_ = false;
 };
 
-// Throws InputError when there is such a file and 'replace' is not set.
+// Throws InputError when the file exists and 'replace' is false.
 void RequireNew(const std::string& path, bool replace);
 
 }  // namespace kestrel

@@ -18,7 +18,7 @@ namespace {
 constexpr int kAsItIs = -1;
 constexpr std::uint32_t kMaxSide_px = 1 << 15;
 
-// How OpenCV comes from an encoding to gray and to BGR.
+// OpenCV's conversions from an encoding to gray and to BGR.
 struct Encoding {
   std::string_view name;
   int channels;
@@ -27,7 +27,8 @@ struct Encoding {
   bool has_pairs = false;  // two pixels share their colour
 };
 
-// OpenCV names Bayer's patterns by the second row's second and third pixel, ROS by the first four.
+// OpenCV names Bayer's patterns by the second and third pixel of the second row, ROS by the first
+// four pixels.
 constexpr std::array kEncodings = {
     Encoding{"mono8", 1, kAsItIs, cv::COLOR_GRAY2BGR},
     Encoding{"8UC1", 1, kAsItIs, cv::COLOR_GRAY2BGR},
@@ -70,7 +71,7 @@ void CheckSize(const ImageMessage& message, const Encoding& encoding, const std:
                                  width, encoding.name));
   }
   const std::uint64_t row = std::uint64_t{width} * encoding.channels;
-  // The last row need not be filled up.
+  // The last row need not be padded.
   const std::uint64_t needed = std::uint64_t{height - 1} * message.step + row;
   if (message.step < row || message.data.size() < needed) {
     throw InputError(fmt::format("{}: has {} bytes in rows of {}, too few for {}x{} pixels of {}",

@@ -19,11 +19,11 @@ using ::testing::HasSubstr;
 
 const cv::Vec3b kBlueish(200, 60, 20);  // in BGR
 
-// One colour as a message in an encoding, of 8x6 pixels.
+// An image of 8x6 pixels of one colour as a message in an encoding.
 struct Coloured {
   std::string encoding;
   int channels;
-  std::vector<int> bytes;  // of two pixels in a row, and of Bayer's patterns of two rows
+  std::vector<int> bytes;  // of two pixels in a row; for Bayer's patterns of two rows
   int tolerance;
 };
 

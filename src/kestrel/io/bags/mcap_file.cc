@@ -13,7 +13,7 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kMcapChunkSize = 1 << 20;
-constexpr std::int64_t kMcapChunk_ns = 1'000'000'000;  // what a crash loses at most
+constexpr std::int64_t kMcapChunk_ns = 1'000'000'000;  // limit of what a crash can lose
 
 std::string McapRecord(std::uint8_t opcode, std::string_view content) {
   std::string record;
@@ -23,7 +23,7 @@ std::string McapRecord(std::uint8_t opcode, std::string_view content) {
   return record;
 }
 
-// What the records and the indexes of chunks call it.
+// The name of a compression in the records and indexes of chunks.
 std::string_view NameOf(Compression compression) {
   return compression == Compression::kNone ? "" : ToString(compression);
 }
@@ -84,14 +84,14 @@ void McapFile::Write(std::size_t channel, Time time, std::string_view data) {
   std::string message;
   Put(id, &message);
   Put(static_cast<std::uint32_t>(messages_[channel]++), &message);
-  Put(time_ns, &message);  // when it was recorded
-  Put(time_ns, &message);  // when it was published
+  Put(time_ns, &message);  // time of recording
+  Put(time_ns, &message);  // time of publication
   message.append(data);
   chunk_ += McapRecord(kMcapMessage, message);
   if (chunk_.size() >= kMcapChunkSize) FinishChunk();
 }
 
-// Of the file and of the chunk.
+// Extends the range of times of the file and of the chunk.
 void McapFile::StretchTimes(std::int64_t time_ns) {
   first_time_ = has_messages_ ? std::min(first_time_, time_ns) : time_ns;
   last_time_ = has_messages_ ? std::max(last_time_, time_ns) : time_ns;
@@ -133,7 +133,7 @@ void McapFile::FinishChunk() {
   const std::uint64_t chunk_offset = file_.size();
   Append(ChunkRecord(stored));
   const std::uint64_t index_offset = file_.size();
-  std::string offsets;  // of the message indexes
+  std::string offsets;  // offsets of the message indexes
   for (const auto& [channel, messages] : index_) {
     Put(channel, &offsets);
     Put(file_.size(), &offsets);
@@ -188,7 +188,7 @@ void McapFile::Close() {
   std::string footer;
   Put(summary_offset, &footer);
   Put(std::uint64_t{0}, &footer);  // no offsets within the summary
-  Put(std::uint32_t{0}, &footer);  // the checksum's place
+  Put(std::uint32_t{0}, &footer);  // place of the checksum
   summary += McapRecord(kMcapFooter, footer);
   summary.resize(summary.size() - sizeof(std::uint32_t));
   Put(Checksum(summary), &summary);

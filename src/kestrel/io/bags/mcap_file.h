@@ -15,7 +15,7 @@
 
 namespace kestrel {
 
-// A topic of an MCAP file; the words are those of mcap.dev/spec.
+// A topic of an MCAP file; the names of the fields are those of mcap.dev/spec.
 struct McapChannel {
   std::string topic;
   std::string message_encoding;  // "cdr", "protobuf"
@@ -26,29 +26,29 @@ struct McapChannel {
 };
 
 struct McapFileOptions {
-  std::string profile = {};  // what the file's readers may expect: "ros2", or "" for nothing
+  std::string profile = {};  // convention of the content: "ros2", or "" for none
   Compression compression = Compression::kNone;
-  bool replace = false;  // a file that is there
+  bool replace = false;  // replace an existing file
   UnfinishedName name = UnfinishedName::kPart;
 };
 
-// Writes an MCAP file: chunks of about a megabyte and of no more than a second, each written at
-// once with its indexes, and the summary. All calls throw InputError when it cannot be written.
+// Writes an MCAP file: chunks of about a megabyte and at most one second, each written at once with
+// its indexes, and the summary. All functions throw InputError when it cannot be written.
 class McapFile {
  public:
   McapFile(const std::string& path, const McapFileOptions& options);
 
-  // Returns its number.
+  // Returns the index of the channel.
   std::size_t AddChannel(const McapChannel& channel);
 
-  // A message of a channel, recorded at 'time'.
+  // Adds a message of a channel that was recorded at 'time'.
   void Write(std::size_t channel, Time time, std::string_view data);
 
   // Writes the messages that wait for their chunk to be full.
   void FinishChunk();
 
-  // Nothing is written after it. Without it the file has no summary, or is discarded with
-  // UnfinishedName::kPart.
+  // Completes the file; nothing can be written after it. Without Close the file has no summary, or
+  // is discarded with UnfinishedName::kPart.
   void Close();
 
  private:
@@ -61,18 +61,18 @@ class McapFile {
   std::string Statistics() const;
 
   GrowingFile file_;
-  std::uint32_t checksum_ = 0;  // of all that is in the file
+  std::uint32_t checksum_ = 0;  // of everything in the file
   Compression compression_;
   std::vector<std::string> channels_;    // the records of schema and channel
   std::vector<std::uint64_t> messages_;  // by channel
   bool has_messages_ = false;
-  std::vector<bool> is_announced_;  // in some chunk
+  std::vector<bool> is_announced_;  // in some chunk; by channel
   std::vector<std::string> chunk_indexes_;
   std::int64_t first_time_ = 0;  // of all messages
   std::int64_t last_time_ = 0;
 
   std::string chunk_;
-  std::map<std::uint16_t, MessageIndex> index_;  // of the chunk, by channel
+  std::map<std::uint16_t, MessageIndex> index_;  // of the present chunk, by channel
   std::int64_t chunk_first_time_ = 0;
   std::int64_t chunk_last_time_ = 0;
 };

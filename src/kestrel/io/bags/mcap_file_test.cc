@@ -37,7 +37,7 @@ constexpr int kPerSecond = 4;
 
 std::string TextOf(int message) { return fmt::format("message {}", message); }
 
-// A message each quarter of a second; returns where the file ended after each.
+// Writes a message each quarter of a second. Returns the size of the file after each.
 std::vector<std::uint64_t> WriteNumbers(const std::string& path, int count, bool is_closed,
                                         Compression compression = Compression::kNone) {
   McapFile file(path, {.compression = compression, .name = UnfinishedName::kOwn});
@@ -82,7 +82,7 @@ TEST(McapFileTest, ItsMessagesAreReadAgain) {
   }
 }
 
-// While it is written a second is missing at most: what a crash would lose.
+// During writing at most one second is missing from the file: as much as a crash would lose.
 TEST(McapFileTest, AChunkIsASecondAtMost) {
   const TestFolder folder;
   const std::vector<std::uint64_t> sizes = WriteNumbers(folder / "a.mcap", 40, false);
@@ -104,8 +104,8 @@ TEST(McapFileTest, CutAtAnyByteItIsReadUpToTheCut) {
     for (std::size_t cut = sizes[5]; cut < bytes.size(); ++cut) {
       const std::string path = folder.Write("cut.mcap", bytes.substr(0, cut));
       const std::vector<std::string> messages = ReadMessages(path);
-      // The chunk that the file ended with when it had this size was written by the message that
-      // did not fit into it any more.
+      // The last chunk of the file with this size was written when the next message did not fit
+      // into it any more.
       const auto complete = std::upper_bound(sizes.begin(), sizes.end(), cut) - sizes.begin() - 1;
       const auto needed = complete / (kPerSecond + 1) * (kPerSecond + 1);
       ASSERT_GE(static_cast<std::ptrdiff_t>(messages.size()), needed) << cut;
@@ -114,7 +114,7 @@ TEST(McapFileTest, CutAtAnyByteItIsReadUpToTheCut) {
   }
 }
 
-// CRC-32 as the specification of PNG has it, bit by bit.
+// CRC-32 as in the PNG specification, bit by bit.
 std::uint32_t Crc32(std::string_view bytes) {
   std::uint32_t crc = ~0u;
   for (const char byte : bytes) {
@@ -158,14 +158,14 @@ TEST(McapFileTest, ChecksumsAreRight) {
   EXPECT_GT(data_end, 0u);
 }
 
-// What is in the file is found and changed, as a bad disk does it.
+// Finds and changes bytes in the file, as a bad disk would.
 std::string Changed(std::string bytes, std::string_view from, std::string_view to) {
   const std::size_t at = bytes.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return bytes.replace(at, from.size(), to);
 }
 
-// The places of all checksums of chunks.
+// Returns the places of the checksums of all chunks.
 std::vector<std::size_t> ChunkChecksums(std::string_view bytes) {
   std::vector<std::size_t> places;
   const std::string name = "file";
@@ -182,7 +182,7 @@ std::string WithoutChecksums(std::string bytes) {
   return bytes;
 }
 
-// With a footer that knows of no summary.
+// Replaces the footer by one that says that there is no summary.
 std::string WithoutSummary(std::string bytes) {
   constexpr std::size_t kFooterAndMagic = 20 + 8;
   return bytes.replace(bytes.size() - kFooterAndMagic, 8, 8, '\0');
@@ -223,7 +223,7 @@ TEST(McapFileTest, ASummaryWithAWrongChecksumIsNotUsed) {
   EXPECT_THAT(ReadMessages(path), ElementsAreArray(Numbers(14)));
 }
 
-// For the chunks that have none of their own.
+// This protects chunks without a checksum of their own.
 TEST(McapFileTest, TheChecksumOfAllIsCheckedWhereTheFileIsReadThrough) {
   const TestFolder folder;
   WriteNumbers(folder / "whole.mcap", 14, true);

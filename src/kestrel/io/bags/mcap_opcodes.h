@@ -5,7 +5,7 @@
 
 namespace kestrel {
 
-// What each record of an MCAP file begins with (mcap.dev/spec).
+// First byte of the records of an MCAP file (mcap.dev/spec).
 inline constexpr std::uint8_t kMcapHeader = 0x01;
 inline constexpr std::uint8_t kMcapFooter = 0x02;
 inline constexpr std::uint8_t kMcapSchema = 0x03;

@@ -34,7 +34,7 @@ WireFormat WireFormatOf(std::string_view message_encoding, std::string_view sche
 struct McapReader::Record {
   std::uint8_t opcode = 0;
   std::uint64_t offset = 0;          // of the record
-  std::uint64_t content_offset = 0;  // these in what the record lies in
+  std::uint64_t content_offset = 0;  // both in the source of the record
   std::uint64_t content_size = 0;
   std::string name;
 
@@ -56,7 +56,7 @@ McapReader::McapReader(const std::string& path) : ChunkedBag(path) {
   ReadThrough();
 }
 
-// False where there is no further whole record.
+// Returns false when there is no further whole record.
 bool McapReader::ReadRecord(ByteSource* records, std::uint64_t offset, Record* record) const {
   record->offset = offset;
   record->name = Place(offset);
@@ -73,13 +73,13 @@ bool McapReader::HasEndMagic() {
   return file().View(file().size() - kMcapMagic.size(), kMcapMagic.size()) == kMcapMagic;
 }
 
-// Whether the bytes have the checksum; 0 is none.
+// True when the bytes have the checksum; 0 stands for none.
 bool McapReader::IsIntact(std::uint64_t offset, std::uint64_t size, std::uint32_t checksum) {
   BytesPart part(&file(), offset, size);
   return checksum == 0 || ChecksumOf(&part, size) == checksum;
 }
 
-// False when there is no summary, or none that is enough to find all messages.
+// Returns false when there is no summary, or one with which not all messages can be found.
 bool McapReader::ReadSummary() {
   constexpr std::uint64_t kEnd = kRecordHead + kFooterSize + kMcapMagic.size();
   const std::uint64_t size = file().size();
@@ -92,7 +92,7 @@ bool McapReader::ReadSummary() {
   ByteCursor cursor(footer.Content(&file()), footer.name);
   const auto summary = cursor.Take<std::uint64_t>();
   if (summary == 0 || summary > footer.offset) return false;
-  cursor.Bytes(8);  // where the offsets within the summary are
+  cursor.Bytes(8);  // place of the offsets within the summary
   const std::uint64_t checked_size = footer.end() - sizeof(std::uint32_t) - summary;
   try {
     if (!IsIntact(summary, checked_size, cursor.Take<std::uint32_t>())) return false;
@@ -103,7 +103,7 @@ bool McapReader::ReadSummary() {
 }
 
 bool McapReader::ReadSummaryRecords(std::uint64_t offset, std::uint64_t end) {
-  std::vector<std::pair<Record, std::string>> chunk_indexes;  // and their content
+  std::vector<std::pair<Record, std::string>> chunk_indexes;  // with their content
   std::optional<std::string> statistics;
   Record record;
   for (; offset < end && ReadRecord(&file(), offset, &record); offset = record.end()) {
@@ -132,12 +132,12 @@ bool McapReader::ReadSummaryRecords(std::uint64_t offset, std::uint64_t end) {
       return false;
     }
     Chunk chunk = ReadChunkHead(head);
-    cursor.Bytes(8);  // the chunk's length
+    cursor.Bytes(8);  // length of the chunk
     ByteCursor channels(cursor.Text(), index.name);
     chunk.has_topics = channels.left() > 0;
     while (channels.left() > 0) {
       chunk.topics.push_back(TopicOfChannel(channels.Take<std::uint16_t>(), index.name));
-      channels.Bytes(8);  // where the index of its messages is
+      channels.Bytes(8);  // place of the index of its messages
     }
     chunks().push_back(std::move(chunk));
   }
@@ -154,8 +154,8 @@ void McapReader::SetMessageCounts(std::string_view counts, const std::string& na
   }
 }
 
-// Finds topics and chunks without the summary, up to where the file ends or makes no sense any
-// more. Messages that are in no chunk are taken for one with all that follows them.
+// Finds topics and chunks without the summary, up to the end of the file or to a record that makes
+// no sense. Messages outside of chunks, and all that follows them, are treated as one chunk.
 void McapReader::ReadThrough() {
   std::uint64_t offset = kMcapMagic.size();
   bool has_end = false;
@@ -188,7 +188,7 @@ void McapReader::ReadThrough() {
       CheckData(record);
       return;
     }
-    // The last chunk may be there in part: what is whole of it counts.
+    // The last chunk may be cut off: its whole records count.
     if (record.content_offset > offset && record.opcode == kMcapChunk) {
       const Chunk chunk = ReadChunkHead(record, /*is_cut=*/true);
       ReadRecordsThrough(OpenChunk(chunk), chunk);
@@ -200,7 +200,7 @@ void McapReader::ReadThrough() {
   SetCutRemark(offset);
 }
 
-// Messages that are in no chunk, or in one without a checksum, have only that of all.
+// Messages outside of chunks, or in chunks without a checksum, only have the checksum of all data.
 void McapReader::CheckData(const Record& data_end) {
   const bool are_checked = std::all_of(chunks().begin(), chunks().end(),
                                        [](const Chunk& chunk) { return chunk.checksum != 0; });
@@ -211,7 +211,7 @@ void McapReader::CheckData(const Record& data_end) {
   SetRemark(path() + ": something in it is damaged: the checksum of all is wrong");
 }
 
-// Adds the chunk. Where a record makes no sense the one before it may be half written, too.
+// Adds the chunk. If a record makes no sense, the one before it may be only half written.
 void McapReader::ReadRecordsThrough(ByteSource* records, Chunk chunk) {
   std::set<std::size_t> topics;
   Record record;
@@ -243,7 +243,7 @@ void McapReader::ReadRecordsThrough(ByteSource* records, Chunk chunk) {
 }
 
 ChunkedBag::Chunk McapReader::ReadChunkHead(const Record& record, bool is_cut) {
-  constexpr std::uint64_t kMaxHead = 128;  // the name of the compression is the only text in it
+  constexpr std::uint64_t kMaxHead = 128;  // its only text is the name of the compression
   const std::string_view bytes =
       file().View(record.content_offset, std::min(record.content_size, kMaxHead));
   ByteCursor cursor(bytes, record.name);

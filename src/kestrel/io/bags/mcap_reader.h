@@ -10,15 +10,15 @@
 
 namespace kestrel {
 
-// What an MCAP file begins and ends with.
+// First and last bytes of an MCAP file.
 inline constexpr std::string_view kMcapMagic("\x89MCAP0\r\n", 8);
 
-// An MCAP file (mcap.dev/spec) with messages of ROS 2 or ROS 1: in chunks without compression, lz4
-// and zstd, or without chunks. A file without a summary is read through once at the start; one that
-// was cut off is read up to there.
+// Reads an MCAP file (mcap.dev/spec) with messages of ROS 2 or ROS 1: in chunks without
+// compression, with lz4 or zstd, or without chunks. A file without a summary is read through once
+// at the start; a file that was cut off is read up to the cut.
 class McapReader : public ChunkedBag {
  public:
-  // Throws InputError when the file is no such file or is broken.
+  // Throws InputError when the file is not an MCAP file or is broken.
   explicit McapReader(const std::string& path);
 
  protected:

@@ -14,12 +14,12 @@ namespace {
 
 struct Definition {
   std::string_view type;
-  std::string_view checksum;  // of ROS 1; empty for types that are only parts
+  std::string_view checksum;  // in ROS 1; empty for types that occur only in others
   std::string_view fields;
   std::vector<std::string_view> parts;  // types of its fields
 };
 
-// As ROS 1 has them; Ros2Definitions has what is other there.
+// The definitions in ROS 1; Ros2Definitions has those that differ in ROS 2.
 const std::vector<Definition>& Definitions() {
   static const std::vector<Definition> kDefinitions = {
       {"sensor_msgs/Image",
@@ -153,7 +153,7 @@ const std::vector<Definition>& Definitions() {
   return kDefinitions;
 }
 
-// What ROS 2 says in other words.
+// The definitions that differ in ROS 2.
 const std::vector<Definition>& Ros2Definitions() {
   static const std::vector<Definition> kDefinitions = {
       {"sensor_msgs/CameraInfo",
@@ -196,7 +196,7 @@ const std::vector<Definition>& Ros2Definitions() {
        "vision_msgs/ObjectHypothesis hypothesis\ngeometry_msgs/PoseWithCovariance pose\n",
        {"vision_msgs/ObjectHypothesis", "geometry_msgs/PoseWithCovariance"}},
       {"vision_msgs/ObjectHypothesis", "", "string class_id\nfloat64 score\n", {}},
-      // What makes nodes visible to `ros2 node list`, since Iron.
+      // Makes nodes visible to `ros2 node list`, since Iron.
       {"rmw_dds_common/ParticipantEntitiesInfo",
        "",
        "rmw_dds_common/Gid gid\nrmw_dds_common/NodeEntitiesInfo[] node_entities_info_seq\n",
@@ -227,7 +227,7 @@ const Definition& DefinitionOf(std::string_view type, WireFormat format) {
   return *found;
 }
 
-// The types in 'type', each once, in the order in which they are met.
+// Adds the types in 'type', each once, in the order of their occurrence.
 void AddParts(std::string_view type, WireFormat format, std::vector<std::string_view>* parts) {
   for (const std::string_view part : DefinitionOf(type, format).parts) {
     if (std::find(parts->begin(), parts->end(), part) != parts->end()) continue;

@@ -8,14 +8,14 @@
 
 namespace kestrel {
 
-// The definition of a type of messages.h or result_messages.h, with those of the types in it, as
-// bags have it: in ROS 1's or in ROS 2's words ('format': kRos1, kCdr).
+// Returns the definition of a type of messages.h or result_messages.h with those of the types in
+// it, as bags contain it: in the words of ROS 1 or of ROS 2 ('format': kRos1, kCdr).
 std::string MessageDefinition(std::string_view type, WireFormat format);
 
-// The checksum by which ROS 1 knows the definition.
+// Returns the checksum of the definition in ROS 1.
 std::string_view MessageChecksum(std::string_view type);
 
-// "sensor_msgs/msg/Image" for "sensor_msgs/Image".
+// Returns "sensor_msgs/msg/Image" for "sensor_msgs/Image".
 std::string Ros2TypeName(std::string_view type);
 
 }  // namespace kestrel

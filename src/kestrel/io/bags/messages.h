@@ -38,8 +38,8 @@ struct ImageMessage {
   std::uint32_t width = 0;
   std::string encoding;
   std::uint8_t is_bigendian = 0;
-  std::uint32_t step = 0;  // bytes a row
-  std::string_view data;   // lies in the serialized message
+  std::uint32_t step = 0;  // bytes per row
+  std::string_view data;   // points into the serialized message
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
@@ -57,7 +57,7 @@ struct CompressedImageMessage {
   static constexpr std::string_view kType = "sensor_msgs/CompressedImage";
   HeaderMessage header;
   std::string format;     // "jpeg", "bgr8; jpeg compressed bgr8", ...
-  std::string_view data;  // lies in the serialized message
+  std::string_view data;  // points into the serialized message
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
@@ -91,7 +91,7 @@ struct CameraInfoMessage {
   std::uint32_t width = 0;
   std::string distortion_model;
   std::vector<double> d;
-  std::array<double, 9> k{};  // row by row, as the next two
+  std::array<double, 9> k{};  // row by row, like the next two
   std::array<double, 9> r{};
   std::array<double, 12> p{};
   std::uint32_t binning_x = 0;
@@ -194,7 +194,7 @@ struct TransformStampedMessage {
   static constexpr std::string_view kType = "geometry_msgs/TransformStamped";
   HeaderMessage header;
   std::string child_frame_id;
-  PoseMessage transform;  // of the child in the header's frame
+  PoseMessage transform;  // pose of the child in the header's frame
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {

@@ -34,7 +34,7 @@ std::string BeginOf(const std::string& path) {
 
 enum class BagKind { kNone, kRos1, kMcap, kSqlite, kCompressed };
 
-// By the content; by the name where a cut left no content that tells.
+// Returns the kind by the content, or by the name when a cut has left too little content.
 BagKind BagKindOf(const std::string& path) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return BagKind::kNone;
@@ -70,7 +70,7 @@ std::unique_ptr<BagReader> OpenBagFile(const std::string& path, bool has_compres
   throw InputError(path + ": is no bag, expected a ROS 1 bag, an MCAP file or rosbag2's .db3");
 }
 
-// The parts of a bag, one after the other; one is open at a time.
+// Reads the parts of a bag one after the other; only one file is open at a time.
 class SplitBag : public BagReader {
  public:
   explicit SplitBag(BagFolder folder) : folder_(std::move(folder)) {
@@ -140,7 +140,7 @@ class SplitBag : public BagReader {
   BagFolder folder_;
   std::vector<BagTopic> topics_;
   std::string remark_;
-  std::string damage_;  // the first that was met
+  std::string damage_;  // the first damage that was met
   std::vector<std::size_t> selected_;
   bool is_selected_ = false;
   std::size_t next_part_ = 0;

@@ -8,11 +8,11 @@
 
 namespace kestrel {
 
-// Whether the argument is a bag: a file that begins as one, or is called .bag, .mcap or .db3; a
-// folder with metadata.yaml of rosbag2, or with such files.
+// True when the argument is a bag: a file with a bag's first bytes or the extension .bag, .mcap or
+// .db3, or a folder with metadata.yaml of rosbag2 or with such files.
 bool IsBag(const std::string& path);
 
-// The reader for it. Throws InputError with what is wrong with it.
+// Returns a reader for the bag. Throws InputError that says what is wrong with it.
 std::unique_ptr<BagReader> OpenBag(const std::string& path);
 
 }  // namespace kestrel

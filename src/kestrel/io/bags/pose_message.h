@@ -11,25 +11,25 @@
 
 namespace kestrel {
 
-// One pose as a message of any of the types tells it.
+// A pose from a message of any supported type.
 struct StampedPose {
   Time stamp;
-  std::string world;  // the frame that the pose is in
-  std::string body;   // empty where the type does not say
+  std::string world;  // frame of the pose
+  std::string body;   // empty if the type does not have it
   PoseMessage pose;
   std::optional<TwistMessage> twist;  // in the body's frame
 };
 
-// Whether ParsePose reads this type: PoseStamped, PoseWithCovarianceStamped, TransformStamped and
-// Odometry.
+// True when ParsePose supports this type: PoseStamped, PoseWithCovarianceStamped, TransformStamped
+// and Odometry.
 bool IsPoseType(std::string_view type);
 
-// Reads a message of such a type. Throws InputError, with 'name', when it is broken.
+// Parses a message of such a type. Throws InputError with 'name' when it is broken.
 StampedPose ParsePose(std::string_view type, std::string_view data, WireFormat format,
                       const std::string& name);
 
-// How the body moves whose pose in the world is 'pose'. Nothing where the twist was not filled in:
-// then it is zero.
+// Returns the motion of the body whose pose in the world is 'pose'. Returns nothing when the twist
+// was not filled in, which means that it is zero.
 std::optional<BodyMotion> MotionOf(const TwistMessage& twist, const RigidTransform& pose);
 
 }  // namespace kestrel

@@ -5,8 +5,8 @@
 
 namespace kestrel {
 
-// How a topic is offered, as rosbag2 writes it: reliable; the last message kept for who comes later
-// where it is latched, else none.
+// Returns the quality of service of a topic as rosbag2 writes it: reliable; a latched topic keeps
+// its last message for later subscribers.
 inline std::string QosText(bool is_latched) {
   return std::string("- history: 1\n  depth: ") + (is_latched ? "1" : "10") +
          "\n  reliability: 1\n  durability: " + (is_latched ? "1" : "2") +

@@ -24,7 +24,7 @@ constexpr const char* kWorldFrame = "map";
 constexpr const char* kBodyFrame = "base_link";
 constexpr const char* kCameraFrame = "camera_optical_frame";
 
-// The image, in one channel where the three say the same.
+// Returns the image, with one channel if its three channels are equal.
 cv::Mat Smallest(const cv::Mat& bgr) {
   if (bgr.channels() == 1) return bgr;
   cv::Mat channels[3];
@@ -104,7 +104,7 @@ class BagSink : public RecordingSink {
     return message;
   }
 
-  // Once, before all else.
+  // Called before everything else; writes the mount only once.
   void WriteMount(Time time) {
     if (!mount_ || std::exchange(is_mount_written_, true)) return;
     TfMessage message;

@@ -31,7 +31,7 @@ void CopyTo(const std::string& destination, const std::string& source) {
   to->Close();
 }
 
-// Gray and coloured images, a mount and poses.
+// Writes gray and coloured images, a mount and poses.
 void WriteEurocFlight(const TestFolder& folder) {
   std::vector<PoseSample> poses;
   std::string images = "#timestamp [ns],filename\n";
@@ -85,7 +85,7 @@ TEST(NewRecording, ReplacesNothingUnasked) {
     const std::string path = folder.Write(name, "precious");
     EXPECT_THAT(InputErrorOf([&] { NewRecording(path, {}, Compression::kNone, false); }),
                 HasSubstr("is there already; --force replaces it"));
-    // What is not closed leaves the old file as it was, and nothing else.
+    // A recording that is not closed leaves the old file unchanged, and no other file.
     NewRecording(path, {}, Compression::kNone, /*replace=*/true);
     EXPECT_EQ(ReadFile(path), "precious");
     EXPECT_FALSE(std::filesystem::exists(path + ".part"));

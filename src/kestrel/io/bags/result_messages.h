@@ -11,7 +11,7 @@
 
 namespace kestrel {
 
-// The messages of ROS that only results need, by the rules of messages.h.
+// The messages of ROS that only results need, by the same rules as in messages.h.
 
 struct PathMessage {
   static constexpr std::string_view kType = "nav_msgs/Path";
@@ -51,7 +51,7 @@ struct RosDurationMessage {
   }
 };
 
-// What ROS 2 has for surfaces of markers, without any.
+// The texture of a marker in ROS 2; always empty here.
 struct EmptyTextureMessage {
   std::string resource;
   CompressedImageMessage texture;
@@ -91,7 +91,7 @@ struct MarkerMessage {
   ColorMessage color;
   RosDurationMessage lifetime;  // 0: for ever
   std::uint8_t frame_locked = 0;
-  std::vector<Vector3Message> points;  // of an arrow: its ends
+  std::vector<Vector3Message> points;  // for an arrow: its ends
   std::vector<ColorMessage> colors;
   EmptyTextureMessage texture;  // ROS 2 only
   std::string text;
@@ -176,7 +176,7 @@ struct DiagnosticArrayMessage {
 // vision_msgs/ObjectHypothesisWithPose.
 struct ObjectHypothesisMessage {
   std::int64_t id = 0;   // of the class; ROS 1 (Noetic) only
-  std::string class_id;  // its name; ROS 2 (since Humble) only
+  std::string class_id;  // name of the class; ROS 2 (since Humble) only
   double score = 0;      // 0 to 1
   PoseMessage pose;
   std::array<double, 36> covariance{};
@@ -191,7 +191,7 @@ struct ObjectHypothesisMessage {
   }
 };
 
-// sensor_msgs/PointCloud2 without a point.
+// sensor_msgs/PointCloud2 without points.
 struct EmptyCloudMessage {
   HeaderMessage header;
   std::uint32_t height = 0;
@@ -224,7 +224,7 @@ struct Detection3DMessage {
   PoseMessage box_center;
   Vector3Message box_size;         // m
   EmptyCloudMessage source_cloud;  // ROS 1 (Noetic) only
-  std::string id;                  // from frame to frame; ROS 2 (since Humble) only
+  std::string id;                  // the same from frame to frame; ROS 2 (since Humble) only
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {

@@ -59,7 +59,7 @@ class Fields {
   std::string name_;
 };
 
-// A time of ROS 1: seconds and, above them, nanoseconds.
+// Converts a time of ROS 1: the lower 32 bits are seconds, the upper ones nanoseconds.
 Time TimeOfField(std::uint64_t field) {
   return TimeFromNanoseconds(static_cast<std::int64_t>(field & 0xffffffff) * 1'000'000'000 +
                              static_cast<std::int64_t>(field >> 32));
@@ -70,7 +70,7 @@ Time TimeOfField(std::uint64_t field) {
 struct Ros1Bag::Record {
   std::string header;
   std::uint64_t offset = 0;       // of the record
-  std::uint64_t data_offset = 0;  // these in what the record lies in
+  std::uint64_t data_offset = 0;  // both in the source of the record
   std::uint32_t data_size = 0;
   std::string name;
 
@@ -120,7 +120,7 @@ Ros1Bag::RecordStatus Ros1Bag::ReadRecord(ByteSource* records, std::uint64_t off
   return record->end() > records->size() ? RecordStatus::kCut : RecordStatus::kOk;
 }
 
-// False when there is no index, or one that does not fit the bag.
+// Returns false when there is no index, or one that does not fit the bag.
 bool Ros1Bag::ReadIndex(std::uint64_t index_offset) {
   if (index_offset == 0 || index_offset >= file().size()) return false;
   try {
@@ -162,8 +162,8 @@ bool Ros1Bag::ReadIndex(std::uint64_t index_offset) {
   return true;
 }
 
-// Finds topics and chunks without the index, up to where the file ends or makes no sense any more:
-// a file system may fill up with zeros what it had no time to write.
+// Finds topics and chunks without the index, up to the end of the file or to a record that makes no
+// sense: after a crash the file system may fill up a file with zeros.
 void Ros1Bag::ReadThrough(std::uint64_t offset) {
   Record record;
   bool has_index = false;
@@ -177,7 +177,7 @@ void Ros1Bag::ReadThrough(std::uint64_t offset) {
       ReadChunkThrough(ReadChunkHead(record));
     }
     if (offset == file().size() && has_index) return;
-    // What is whole of the last chunk counts.
+    // The whole records of the last chunk count.
     if (record.data_offset > offset && record.kind() == kChunk) {
       Chunk chunk = ReadChunkHead(record);
       if (record.data_size == 0) {
@@ -192,7 +192,7 @@ void Ros1Bag::ReadThrough(std::uint64_t offset) {
   SetCutRemark(offset);
 }
 
-// Adds the chunk. Where a record makes no sense the one before it may be half written, too.
+// Adds the chunk. If a record makes no sense, the one before it may be only half written.
 void Ros1Bag::ReadChunkThrough(Chunk chunk) {
   ByteSource* records = OpenChunk(chunk);
   std::set<std::size_t> topics;

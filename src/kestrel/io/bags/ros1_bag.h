@@ -9,14 +9,14 @@
 
 namespace kestrel {
 
-// What a ROS 1 bag begins with.
+// First bytes of a ROS 1 bag.
 inline constexpr std::string_view kRos1BagMagic = "#ROSBAG V2.0\n";
 
-// A ROS 1 bag, format 2.0: chunks without compression, bz2 and lz4. A bag without an index, or with
-// one that is wrong, is read through once at the start; one that was cut off is read up to there.
+// Reads a ROS 1 bag, format 2.0, with chunks without compression, with bz2 or lz4. A bag without a
+// valid index is read through once at the start; one that was cut off is read up to the cut.
 class Ros1Bag : public ChunkedBag {
  public:
-  // Throws InputError when the file is no such bag, is broken or is encrypted.
+  // Throws InputError when the file is not a ROS 1 bag, is broken or is encrypted.
   explicit Ros1Bag(const std::string& path);
 
  protected:

@@ -15,9 +15,9 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kRos1ChunkSize = 768 << 10;  // as rosbag has it
+constexpr std::size_t kRos1ChunkSize = 768 << 10;  // the same as in rosbag
 constexpr std::uint32_t kIndexVersion = 1;
-// Each record begins with these.
+// Kinds of records, in the field "op" of their header.
 constexpr std::uint8_t kMessageRecord = 2;
 constexpr std::uint8_t kBagHeaderRecord = 3;
 constexpr std::uint8_t kIndexRecord = 4;
@@ -54,14 +54,14 @@ std::string RecordOf(const FieldWriter& header, std::string_view data) {
   return record;
 }
 
-// A time of ROS 1: seconds and, above them, nanoseconds.
+// Converts to a time of ROS 1: the lower 32 bits are seconds, the upper ones nanoseconds.
 std::uint64_t FieldOfTime(Time time) {
   constexpr std::int64_t kSecond_ns = 1'000'000'000;
   const auto ns = static_cast<std::uint64_t>(ToNanoseconds(time));
   return ns / kSecond_ns | (ns % kSecond_ns) << 32;
 }
 
-// So that the first is the earliest: nanoseconds lie above the seconds in a field.
+// Compares two fields by time: the nanoseconds are in the upper bits.
 bool IsEarlier(std::uint64_t a, std::uint64_t b) {
   return std::pair(a & 0xffffffff, a >> 32) < std::pair(b & 0xffffffff, b >> 32);
 }
@@ -74,7 +74,7 @@ Ros1BagWriter::Ros1BagWriter(const std::string& path, Compression compression, b
   file_.Append(BagHeader(/*index_offset=*/0));
 }
 
-// Always of one size, because it is written again at the end.
+// The record always has the same size, because it is written again at the end.
 std::string Ros1BagWriter::BagHeader(std::uint64_t index_offset) const {
   constexpr std::size_t kSize = 4096;
   FieldWriter header(kBagHeaderRecord);

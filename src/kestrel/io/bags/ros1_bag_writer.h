@@ -23,7 +23,7 @@ class Ros1BagWriter : public BagWriter {
 
  private:
   struct IndexEntry {
-    std::uint64_t time;  // as a field
+    std::uint64_t time;  // in the form of a field
     std::uint32_t offset;
   };
   struct ChunkInfo {
@@ -37,11 +37,11 @@ class Ros1BagWriter : public BagWriter {
 
   GrowingFile file_;
   Compression compression_;
-  std::vector<std::string> connections_;  // their records
-  std::vector<bool> is_announced_;        // in some chunk
+  std::vector<std::string> connections_;  // the records of the connections
+  std::vector<bool> is_announced_;        // in some chunk; by connection
   std::vector<ChunkInfo> chunks_;
   std::string chunk_;
-  std::map<std::uint32_t, std::vector<IndexEntry>> index_;  // of the chunk, by connection
+  std::map<std::uint32_t, std::vector<IndexEntry>> index_;  // of the present chunk, by connection
 };
 
 }  // namespace kestrel

@@ -30,7 +30,7 @@ WireReader::WireReader(std::string_view bytes, WireFormat format, const std::str
   is_big_endian_ = head[1] == 0;
 }
 
-// ROS 2 counts seconds with a sign, ROS 1 without.
+// The seconds are signed in ROS 2 and unsigned in ROS 1.
 void WireReader::operator()(Time& time) {
   std::uint32_t seconds = 0;
   std::uint32_t nanoseconds = 0;

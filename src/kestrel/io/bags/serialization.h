@@ -17,16 +17,17 @@
 
 namespace kestrel {
 
-// The rules of both formats. ROS 1: little-endian, no alignment, texts by length. ROS 2 (XCDR1):
-// four bytes that name the byte order, numbers aligned to their size from there on, texts with a
-// zero at the end that counts. Lists in both have their length before them in 32 bits.
+// The rules of both formats. ROS 1: little-endian, no alignment, texts after their length. ROS 2
+// (XCDR1): four bytes that name the byte order, then numbers aligned to their size from there on,
+// and texts that end with a zero, which is part of their length. In both, lists follow their length
+// in 32 bits.
 
-// Gives the fields of a message what its bytes say. Every call throws InputError, with 'name', when
-// the bytes end too early.
+// Reads the fields of a message from its bytes. All functions throw InputError with 'name' when
+// there are not enough bytes.
 class WireReader {
  public:
-  // 'bytes' must outlive what is read: lists of bytes stay there. 'name' outlives this. Throws
-  // InputError for bytes of ROS 2 in another representation than plain CDR.
+  // 'bytes' must outlive the message, as lists of bytes point into them. 'name' outlives this.
+  // Throws InputError for bytes of ROS 2 in another representation than plain CDR.
   WireReader(std::string_view bytes, WireFormat format, const std::string& name);
 
   template <class Number>
@@ -44,7 +45,7 @@ class WireReader {
   requires std::is_class_v<Message>
   void operator()(Message& message) { Message::Fields(message, *this); }
 
-  // A field that the type has in one of the two only.
+  // Reads a field that the type has in only one of the formats.
   template <class Field>
   void OfRos1(Field& field) {
     if (format_ == WireFormat::kRos1) (*this)(field);
@@ -54,7 +55,7 @@ class WireReader {
     if (format_ == WireFormat::kCdr) (*this)(field);
   }
   void ByteList(std::string_view& bytes) { bytes = Take(Count()); }
-  // Grows with what is there, whatever length is claimed.
+  // The list grows with the bytes that exist, whatever length they claim.
   template <class Element>
   void List(std::vector<Element>& list) {
     list.clear();
@@ -73,7 +74,7 @@ class WireReader {
   bool is_big_endian_ = false;
 };
 
-// The bytes of a message, from its fields.
+// Writes the fields of a message as bytes.
 class WireWriter {
  public:
   // 'format': kRos1 or kCdr (little-endian).
@@ -118,8 +119,8 @@ class WireWriter {
   std::string bytes_;
 };
 
-// The message that 'bytes' are; lists of bytes in it stay there. Throws InputError, with 'name',
-// when they are something else.
+// Returns the message in 'bytes'; its lists of bytes point into them. Throws InputError with 'name'
+// when they are not such a message.
 template <class Message>
 Message ParseMessage(std::string_view bytes, WireFormat format, const std::string& name) {
   WireReader reader(bytes, format, name);
@@ -128,7 +129,7 @@ Message ParseMessage(std::string_view bytes, WireFormat format, const std::strin
   return message;
 }
 
-// The other way.
+// Returns the bytes of a message.
 template <class Message>
 std::string SerializeMessage(const Message& message, WireFormat format) {
   WireWriter writer(format);

@@ -22,7 +22,7 @@ TransformStampedMessage ExampleTransform() {
   return {{7, kStamp, "map"}, "uav1", {{1, 2, 3}, {0, 0, 0, 1}}};
 }
 
-// One (1.0) as eight bytes of a double.
+// The numbers 0.0 to 3.0 as the eight bytes of a double.
 constexpr std::string_view kZero = "\0\0\0\0\0\0\0\0"sv;
 constexpr std::string_view kOne = "\0\0\0\0\0\0\xf0\x3f"sv;
 constexpr std::string_view kTwo = "\0\0\0\0\0\0\0\x40"sv;
@@ -40,7 +40,7 @@ TEST(Serialization, OfRos1HasNoAlignmentAndTheNumberOfTheHeader) {
                     kTwo, kThree, kZero, kZero, kZero, kOne}));
 }
 
-// Texts end with a zero that counts; the first double, after 25 bytes, begins at 32.
+// Texts end with a zero that is part of their length; the first double, after 25 bytes, is at 32.
 TEST(Serialization, OfRos2IsAlignedFromTheFourthByteOn) {
   EXPECT_EQ(SerializeMessage(ExampleTransform(), WireFormat::kCdr),
             Joined({"\0\1\0\0"sv, "\3\0\0\0\4\0\0\0"sv, "\4\0\0\0map\0"sv, "\5\0\0\0uav1\0"sv,

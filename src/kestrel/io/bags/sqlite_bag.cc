@@ -28,7 +28,7 @@ std::string_view BlobOf(sqlite3_stmt* statement, int column) {
           blob == nullptr ? 0 : static_cast<std::size_t>(sqlite3_column_bytes(statement, column))};
 }
 
-// A file name as a URI has it, so that '?' and '#' in it are no parameters.
+// Returns a file name as a URI, so that '?' and '#' in it do not begin parameters.
 std::string UriOf(const std::string& path) {
   std::string uri = "file:";
   for (const unsigned char c : std::filesystem::absolute(path).string()) {
@@ -45,8 +45,8 @@ void FinalizeSqlite::operator()(sqlite3_stmt* statement) const { sqlite3_finaliz
 
 SqliteBag::SqliteBag(const std::string& path, bool has_compressed_messages)
     : path_(path), has_compressed_messages_(has_compressed_messages) {
-  // A journal that lies beside the file belongs to a bag that was not closed: reading it needs the
-  // file to be writable in some way, so without one nothing else may happen to the bag.
+  // A journal beside the file belongs to a bag that was not closed. Reading it needs some write
+  // access to the file; without a journal the bag is opened so that it cannot change.
   std::error_code ignored;
   const bool has_journal = std::filesystem::file_size(path + "-wal", ignored) > 0 && !ignored;
   const std::string uri = UriOf(path) + (has_journal ? "?mode=ro" : "?mode=ro&immutable=1");
@@ -97,8 +97,8 @@ bool SqliteBag::HasTimeIndex() const {
   return Step(index.get());
 }
 
-// By the index on the time; without it in the order of recording, because sorting would take the
-// memory or disk of all messages.
+// The order is that of the index on the time. Without an index it is the order of recording, as
+// sorting would need the memory or disk space of all messages.
 void SqliteBag::Select(const std::vector<std::size_t>& topics) {
   std::vector<std::int64_t> ids;
   for (const std::size_t topic : topics) ids.push_back(ids_.at(topic));

@@ -12,14 +12,14 @@
 
 namespace kestrel {
 
-// What an sqlite3 file begins with.
+// First bytes of an sqlite3 file.
 inline constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
 
-// A file of rosbag2's sqlite3 storage (.db3), in all versions of its tables.
+// Reads a file of rosbag2's sqlite3 storage (.db3), in all versions of its tables.
 class SqliteBag : public BagReader {
  public:
-  // 'has_compressed_messages': each is zstd, as metadata.yaml says it (compression_mode: MESSAGE).
-  // Throws InputError when the file is no such bag or is broken.
+  // 'has_compressed_messages': each message is compressed by zstd, as metadata.yaml says
+  // (compression_mode: MESSAGE). Throws InputError when the file is not such a bag or is broken.
   explicit SqliteBag(const std::string& path, bool has_compressed_messages = false);
 
   const std::vector<BagTopic>& topics() const override { return topics_; }
@@ -29,7 +29,7 @@ class SqliteBag : public BagReader {
 
  private:
   SqliteStatement Prepare(const std::string& sql) const;
-  bool Step(sqlite3_stmt* statement) const;  // whether there is a row
+  bool Step(sqlite3_stmt* statement) const;  // true when there is a row
   [[noreturn]] void Fail() const;
   bool HasTimeIndex() const;
   void ReadTopics();
@@ -39,7 +39,7 @@ class SqliteBag : public BagReader {
   bool has_compressed_messages_;
   SqliteDatabase database_;
   std::vector<BagTopic> topics_;
-  std::vector<std::int64_t> ids_;  // of the topics
+  std::vector<std::int64_t> ids_;  // the database's ids of the topics
   SqliteStatement messages_;
   std::string decompressed_;
   std::string remark_;

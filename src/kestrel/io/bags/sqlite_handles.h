@@ -15,7 +15,7 @@ struct FinalizeSqlite {
   void operator()(sqlite3_stmt* statement) const;
 };
 
-// A database, which is to outlive its statements.
+// The database must outlive its statements.
 using SqliteDatabase = std::unique_ptr<sqlite3, CloseSqlite>;
 using SqliteStatement = std::unique_ptr<sqlite3_stmt, FinalizeSqlite>;
 

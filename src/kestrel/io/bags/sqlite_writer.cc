@@ -41,8 +41,8 @@ SqliteWriter::SqliteWriter(const std::string& path, bool replace) : path_(path) 
       sqlite3_open_v2(part.c_str(), &database, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
   database_.reset(database);
   if (status != SQLITE_OK) Fail();
-  // Until Close the file has another name, and nobody needs it: no journal, no waiting for the
-  // disk.
+  // Until Close the file has another name and nobody needs it: therefore no journal, and no waiting
+  // for the disk.
   Execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; BEGIN;");
   Execute(kTables);
   topic_ = Prepare("INSERT INTO topics VALUES (?, ?, ?, 'cdr', ?)");

@@ -9,7 +9,7 @@
 
 namespace kestrel {
 
-// Writes a file of rosbag2's sqlite3 storage, with the tables that Humble and all later ones read.
+// Writes a file of rosbag2's sqlite3 storage, with the tables that Humble and later versions read.
 class SqliteWriter : public BagWriter {
  public:
   SqliteWriter(const std::string& path, bool replace);

@@ -32,7 +32,7 @@ inline CameraIntrinsics BagCamera() {
           .distortion = {0.01, 0, 0, 0}};
 }
 
-// Every pixel the image's number.
+// All pixels have the image's number.
 inline cv::Mat BagImage(int image) { return cv::Mat(24, 32, CV_8UC1, cv::Scalar(image)); }
 
 inline ImageMessage BagImageMessage(const cv::Mat& image, Time stamp,
@@ -47,7 +47,7 @@ inline ImageMessage BagImageMessage(const cv::Mat& image, Time stamp,
   return message;
 }
 
-// 'bytes': an image file's; they must outlive it.
+// 'bytes': the bytes of an image file, which must outlive the message.
 inline CompressedImageMessage BagCompressedMessage(std::string_view bytes, Time stamp,
                                                    const std::string& format) {
   CompressedImageMessage message;
@@ -63,7 +63,7 @@ inline TransformStampedMessage BagTransform(const std::string& parent, const std
   return {{0, stamp, parent}, child, {{x, 0, 0}, {}}};
 }
 
-// Writes messages of any kind into a bag that 'path' names, and closes it.
+// Writes messages of any type into the bag 'path', and closes it.
 class TestBag {
  public:
   explicit TestBag(const std::string& path, Compression compression = Compression::kNone)
@@ -98,7 +98,7 @@ class TestBag {
   std::map<std::string, std::size_t> topics_;
 };
 
-// A flight of 'images' images, with all that a bag should have.
+// Writes a flight of 'images' images with everything that a bag should have.
 inline void WriteTestFlight(const std::string& path, int images,
                             Compression compression = Compression::kNone) {
   TestBag bag(path, compression);

@@ -19,7 +19,7 @@
 namespace kestrel {
 namespace {
 
-// type_description_interfaces/FieldType: what a field is, and what is added where it is many.
+// Codes of type_description_interfaces/FieldType: kind of a field, and offsets for arrays of it.
 constexpr int kNested = 1;
 constexpr int kString = 17;
 constexpr int kBoundedString = 21;
@@ -36,7 +36,7 @@ constexpr std::array<std::pair<std::string_view, int>, 14> kPrimitives{{{"int8",
                                                                         {"uint64", 9},
                                                                         {"float32", 10},
                                                                         {"float64", 11},
-                                                                        {"char", 3},  // ROS 2's own
+                                                                        {"char", 3},  // as in ROS 2
                                                                         {"bool", 15},
                                                                         {"byte", 16},
                                                                         {"string", kString}}};
@@ -54,7 +54,7 @@ unsigned SizeIn(std::string_view digits) {
   return *size;
 }
 
-// A field's type, as "uint8[]", "float64[9]", "string<=256", "std_msgs/Header".
+// Returns the JSON of a field's type, as "uint8[]", "float64[9]", "string<=256", "std_msgs/Header".
 std::string TypeInJson(std::string_view type) {
   constexpr std::string_view kBound = "<=";
   int id = 0;
@@ -82,7 +82,7 @@ std::string TypeInJson(std::string_view type) {
       capacity, string_capacity, nested);
 }
 
-// A definition's lines "type name"; constants ("uint8 ADD=0") are no fields.
+// The lines of a definition are "type name"; constants ("uint8 ADD=0") are not fields.
 std::string DescriptionInJson(std::string_view type, std::string_view lines) {
   std::vector<std::string> fields;
   while (!lines.empty()) {

@@ -6,9 +6,9 @@
 
 namespace kestrel {
 
-// "RIHS01_" and 64 hexadecimal digits: by what ROS 2 (since Iron) compares the definitions of a
-// type that two nodes have (REP 2016). It is the SHA-256 of the type's fields, and those of all
-// types in them, in JSON. 'type', as MessageDefinition knows it: "sensor_msgs/Image".
+// Returns the hash by which ROS 2 (since Iron) compares two nodes' definitions of a type (REP
+// 2016): "RIHS01_" and 64 hexadecimal digits, the SHA-256 of the JSON description of the type's
+// fields and of all types in them. 'type' is named as in MessageDefinition: "sensor_msgs/Image".
 std::string TypeHash(std::string_view type);
 
 }  // namespace kestrel

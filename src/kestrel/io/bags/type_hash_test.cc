@@ -6,7 +6,7 @@
 namespace kestrel {
 namespace {
 
-// As `ros2 topic info -v` and the packages of ROS 2 Jazzy say them.
+// Hashes as in `ros2 topic info -v` and the packages of ROS 2 Jazzy.
 TEST(TypeHash, IsThatOfRos2) {
   EXPECT_EQ(TypeHash("builtin_interfaces/Time"),
             "RIHS01_b106235e25a4c5ed35098aa0a61a3ee9c9b18d197f398b0e4206cea9acf9c197");
