@@ -46,7 +46,7 @@ ColorStroke ParseStroke(const YamlReader& item) {
   return stroke;
 }
 
-// As a YAML scalar, whatever is in it.
+// Returns any text as a YAML scalar.
 std::string Quoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? "''" : std::string(1, c);

@@ -10,31 +10,31 @@
 
 namespace kestrel {
 
-// What a person has marked so far, with a way back and forth.
+// The strokes that a person has marked so far, with undo and redo.
 class ColorDraft {
  public:
   static constexpr std::size_t kMaxStrokes = 500;
 
-  // What was undone cannot be redone from then on. Throws InputError for a stroke that is not valid
-  // and for one too many; the draft is then as it was.
+  // Adds a stroke; undone strokes cannot be redone any more. Throws InputError for a stroke that is
+  // not valid and when there are too many; the draft is then unchanged.
   void Add(const ColorStroke& stroke);
-  // False: there is nothing to undo, to redo.
+  // Return false when there is nothing to undo or to redo.
   bool Undo();
   bool Redo();
 
-  // In order; without those that were undone.
+  // The strokes in order, without those that were undone.
   std::span<const ColorStroke> strokes() const { return {strokes_.data(), count_}; }
   bool can_redo() const { return count_ < strokes_.size(); }
 
  private:
   std::vector<ColorStroke> strokes_;
-  std::size_t count_ = 0;  // of those that are not undone
+  std::size_t count_ = 0;  // strokes that are not undone
 };
 
-// YAML from which ParseColorDraft gets the same strokes. 'recording' says of what.
+// Returns YAML for ParseColorDraft. 'recording': name of the recording that the strokes belong to.
 std::string PrintColorDraft(const ColorDraft& draft, const std::string& recording);
-// Throws InputError, with the line, for what is missing, unknown, of the wrong type, or a draft of
-// another recording. 'file' is for messages.
+// Throws InputError with the line for entries that are missing, unknown or of the wrong type, and
+// for a draft of another recording. 'file' is for messages.
 ColorDraft ParseColorDraft(const std::string& yaml, const std::string& recording,
                            const std::string& file);
 

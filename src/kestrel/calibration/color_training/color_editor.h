@@ -17,48 +17,49 @@
 namespace kestrel {
 
 // A model whose colours a person changes by marking pixels in the frames of a recording (paper,
-// section 3.2). By one thread. What throws leaves everything as it was.
+// section 3.2). Used by one thread. A function that throws changes nothing.
 class ColorEditor {
  public:
   // 'model' is valid. Frames are numbered from 0 to frame_count - 1.
   ColorEditor(ObjectModel model, std::size_t frame_count, MarkedPixels::ReadFrame read);
 
-  // There is one frame more.
+  // Announces one more frame.
   void AddFrame() { ++frame_count_; }
 
-  // Throws InputError for a stroke that is not valid, of a frame that is not there, outside of the
-  // image or of a colour that the model does not have, and for one too many.
+  // Throws InputError for a stroke that is not valid, belongs to a frame that does not exist, lies
+  // outside of the image or has a colour that is not in the model, and when there are too many.
   void Mark(const ColorStroke& stroke);
-  // False: there is nothing to undo, to redo. Throw InputError when a frame cannot be read again.
+  // Return false when there is nothing to undo or to redo. Throw InputError when a frame cannot be
+  // read again.
   bool Undo();
   bool Redo();
-  // In the place of all that is marked. Throws as Mark.
+  // Replaces all marks. Throws as Mark does.
   void Restore(const ColorDraft& draft) { Replace(draft); }
   const ColorDraft& draft() const { return draft_; }
 
-  // Teaches the model the colour. Throws InputError for one that the model does not have, fewer
-  // than ten pixels that are marked so, and a colour that contradicts another one of the model or
-  // cannot be told from it.
+  // Fits the model's colour to the marks. Throws InputError for a colour that the model does not
+  // have, for fewer than ten marked pixels, and for a colour that contradicts another one of the
+  // model or cannot be distinguished from it.
   void Teach(const std::string& color);
 
-  // Of a colour of the model; throw InputError when it has none of that name.
+  // For a colour of the model; throw InputError when it has none with this name.
   ColorScores Scores(const std::string& color) const;
   std::vector<std::string> Warnings(const std::string& color) const;
-  HueSaturationHistogram Histogram(const std::string& color) const;  // of what is marked so
+  HueSaturationHistogram Histogram(const std::string& color) const;  // of its marked pixels
 
-  // What ScoreColor needs beside model and grid, for who does that in a thread of its own.
+  // Inputs of ScoreColor besides model and grid, for callers that score in a thread of their own.
   std::vector<FrameMarks> MarksFor(const std::string& color) const { return pixels_.Of(color); }
   std::size_t IndexOf(const std::string& color) const;
 
-  // What the pixels of a frame are marked as: labels as of the grid, background where nothing is
-  // marked, ambiguous where it is none of the colours. CV_8UC1; empty when nothing of the frame is
-  // marked.
+  // Returns the marks of a frame's pixels, CV_8UC1: labels as in the grid, background where nothing
+  // is marked, ambiguous where the mark says none of the colours. Empty when the frame has no
+  // marks.
   cv::Mat Marks(std::size_t frame) const;
 
-  // A valid model of the same colours, in the place of what was taught.
+  // Replaces the model by another valid one with the same colours.
   void SetModel(ObjectModel model);
 
-  // What the detector takes each pixel for: ColorLabel, CV_8UC1. 'image' is CV_8UC3.
+  // Returns how the detector labels each pixel: ColorLabel, CV_8UC1. 'image' is CV_8UC3.
   cv::Mat Labels(const cv::Mat& image) const;
 
   const ObjectModel& model() const { return model_; }
@@ -68,10 +69,10 @@ class ColorEditor {
   void Replace(ColorDraft draft);
 
   ObjectModel model_;
-  ColorGrid grid_;  // of the model
+  ColorGrid grid_;  // grid of the model
   std::size_t frame_count_;
   ColorDraft draft_;
-  MarkedPixels pixels_;  // of the draft
+  MarkedPixels pixels_;  // pixels of the draft
 };
 
 }  // namespace kestrel

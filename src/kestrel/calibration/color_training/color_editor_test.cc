@@ -24,12 +24,11 @@ using ::testing::Not;
 const std::array kPaints = {kRedPaint, kOrangePaint, kYellowPaint, kGreenPaint, kBluePaint};
 constexpr std::array kNames = {"red", "orange", "yellow", "green", "blue"};
 
-// Discs of all colours on gray ground, in the light that is so bright, as a sensor with noise has
-// it.
+// Discs of all colours on gray ground in light of this brightness, as seen by a sensor with noise.
 cv::Mat DiscsInLight(double light, int seed) {
   ObjectScene scene;
   for (std::size_t i = 0; i < kPaints.size(); ++i) {
-    const double radius_m = i == 1 ? 0.25 : 0.1;  // as the model's classes are
+    const double radius_m = i == 1 ? 0.25 : 0.1;  // as in the model's classes
     scene.DrawDisc(scene.PointUnder({80 + 115.0 * static_cast<double>(i), 240}, 0.012), radius_m,
                    kPaints[i]);
   }
@@ -45,7 +44,7 @@ cv::Mat DiscsInLight(double light, int seed) {
 
 class ColorEditorTest : public ::testing::Test {
  protected:
-  // A brush on the disc of a colour.
+  // A brush stroke on the disc of a colour.
   static ColorStroke On(std::size_t frame, std::size_t color) {
     const int u = 80 + 115 * static_cast<int>(color);
     return {frame, kNames[color], StrokeTool::kBrush, 4, {{u - 3, 240}, {u + 3, 240}}};
@@ -183,7 +182,7 @@ TEST_F(ColorEditorTest, WarningsSayWhatToMarkNext) {
   EXPECT_THAT(editor_.Warnings("red"), Not(Contains(HasSubstr("nothing is marked"))));
 }
 
-// Where the objects of an image are, by class.
+// An object found in an image: its class and place.
 struct Found {
   std::string name;
   Eigen::Vector2d center_px;
@@ -217,8 +216,8 @@ bool IsAmong(const Found& object, const std::vector<Found>& others) {
 
 struct Agreement {
   int built_in = 0;  // objects that the built-in model finds
-  int both = 0;      // of them with the taught one too
-  int more = 0;      // that only the taught one finds
+  int both = 0;      // of them, also found by the taught model
+  int more = 0;      // found by the taught model only
 };
 
 Agreement Compare(const ObjectModel& taught, std::span<const cv::Mat> frames) {

@@ -36,7 +36,7 @@ void DrawBrush(const ColorStroke& stroke, cv::Mat* mask) {
 
 cv::Mat GrownMask(const ColorStroke& stroke, const cv::Mat& image) {
   constexpr int kMarked = 255;
-  // The fill wants a border of a pixel around its mask.
+  // floodFill needs a border of one pixel around its mask.
   cv::Mat mask = cv::Mat::zeros(image.rows + 2, image.cols + 2, CV_8UC1);
   cv::Mat unchanged = image;
   const cv::Scalar reach = cv::Scalar::all(stroke.size);

@@ -12,7 +12,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kMinPixels = 10;  // that a colour is fitted to
+constexpr std::size_t kMinPixels = 10;  // fewest pixels that a colour is fitted to
 
 Hsv HsvOf(const cv::Vec3b& bgr) { return HsvFromBgr(bgr[0], bgr[1], bgr[2]); }
 
@@ -25,7 +25,7 @@ std::vector<Hsv> Colors(std::span<const FrameMarks> marks,
   return colors;
 }
 
-// Part of the pixels that the mixture reaches.
+// Share of the pixels within 'distance' of the mixture.
 double ReachedShare(const ColorMixture& mixture, std::span<const Hsv> pixels, double distance) {
   const auto count = std::count_if(pixels.begin(), pixels.end(), [&](const Hsv& pixel) {
     return mixture.Mahalanobis(pixel) <= distance;
@@ -33,7 +33,7 @@ double ReachedShare(const ColorMixture& mixture, std::span<const Hsv> pixels, do
   return static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, pixels.size()));
 }
 
-// By what its deviations are multiplied for the best of recall less false share.
+// Factor for the mixture's deviations with the best difference of recall and false share.
 float BestScale(const ColorMixture& mixture, std::span<const Hsv> wanted,
                 std::span<const Hsv> others, double max_distance) {
   float best_scale = 1;
@@ -54,7 +54,7 @@ struct GridShare {
   double share = 0;
 };
 
-// The part of the pixels of all frames that have the label.
+// Share of all frames' pixels with the label.
 GridShare LabelledShare(const ColorGrid& grid, ColorLabel label, std::span<const FrameMarks> marks,
                         std::vector<cv::Vec3b> FrameMarks::*kind) {
   std::size_t count = 0;
@@ -66,7 +66,7 @@ GridShare LabelledShare(const ColorGrid& grid, ColorLabel label, std::span<const
   return {count, count == 0 ? 0 : static_cast<double>(labelled) / static_cast<double>(count)};
 }
 
-// Nothing where the other frames do not have enough pixels.
+// Returns nothing when the other frames do not have enough pixels.
 std::optional<double> LeftOutRecall(ColorModel model, std::size_t color,
                                     std::span<const FrameMarks> marks, std::size_t left_out) {
   std::vector<FrameMarks> rest(marks.begin(), marks.end());
@@ -80,7 +80,7 @@ std::optional<double> LeftOutRecall(ColorModel model, std::size_t color,
   return static_cast<double>(count) / static_cast<double>(wanted.size());
 }
 
-// Of the frame's wanted pixels, of which there is at least one.
+// Median of the frame's wanted pixels, of which there must be at least one.
 float MedianValue(const FrameMarks& marks) {
   std::vector<Hsv> colors = Colors({&marks, 1}, &FrameMarks::wanted);
   const auto middle = colors.begin() + static_cast<std::ptrdiff_t>(colors.size() / 2);

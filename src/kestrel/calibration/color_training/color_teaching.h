@@ -12,49 +12,49 @@
 
 namespace kestrel {
 
-// The mixture of the marked pixels (ChooseColorMixture), made useful for other frames than those:
-// wider in value, as paint keeps its hue in other light but not its value, and in all narrower
-// where that leaves out more of the other pixels than of the wanted ones. Throws InputError for
-// fewer than ten wanted pixels.
+// Returns the mixture of the marked pixels (ChooseColorMixture), changed to suit other frames:
+// wider in value, as paint keeps its hue in other light but not its value; and narrower overall
+// where that excludes a larger share of the other pixels than of the wanted ones. Throws InputError
+// for fewer than ten wanted pixels.
 ColorMixture TeachColor(const std::string& color, std::span<const FrameMarks> marks,
                         double max_distance);
 
-// What two colours of a model have in common: which of them a pixel is depends on little there.
+// The overlap of two colours of a model; a pixel's colour is uncertain there.
 struct ColorOverlap {
   std::string color;  // the other one
-  double share = 0;   // of this colour's cells in the grid
+  double share = 0;   // share of this colour's cells in the grid
 };
 
-// Of the colour number 'color' of a valid 'model' with the others, of more than nothing, in the
-// model's order.
+// Returns the overlaps of colour 'color' (an index) with the other colours of a valid 'model', in
+// the model's order, without those that are zero.
 std::vector<ColorOverlap> ColorOverlaps(const ColorModel& model, std::size_t color);
 
-// Throws InputError when most of the cells of colour number 'color' of a valid 'model' are another
-// one's too: the grid cannot tell the two apart, and gives the pixels of one to the other.
+// Throws InputError when another colour of a valid 'model' has most of the cells of colour 'color'
+// too: the grid then cannot distinguish the two, and gives one the pixels of the other.
 void RequireDistinct(const ColorModel& model, std::size_t color);
 
-// How good a colour of a model is, by the marked pixels.
+// The quality of a model's colour, measured by the marked pixels.
 struct ColorScores {
-  // Of a frame's pixels, when the colour is taught by the other frames only.
+  // Recall in one frame when the colour is taught by the other frames only.
   struct LeftOut {
     std::size_t frame = 0;
     double recall = 0;
   };
 
   std::size_t wanted = 0;  // marked pixels of the colour
-  double recall = 0;       // the part of them that the grid says so of; 0 when there are none
+  double recall = 0;       // share of them that the grid labels so; 0 without any
   std::size_t others = 0;  // marked pixels of another colour or of none
-  double false_share = 0;  // the part of them that the grid says this colour of
+  double false_share = 0;  // share of them that the grid gives this colour
   std::vector<ColorOverlap> overlaps;
-  std::vector<LeftOut> left_outs;  // of frames with wanted pixels, when there are several
+  std::vector<LeftOut> left_outs;  // for frames with wanted pixels, if there are several
 };
 
-// Of the colour number 'color' of a valid 'model'; 'grid' is of that model.
+// Scores the colour 'color' (an index) of a valid 'model'; 'grid' is the grid of that model.
 ColorScores ScoreColor(const ColorModel& model, const ColorGrid& grid, std::size_t color,
                        std::span<const FrameMarks> marks);
 
-// What should be marked otherwise, a sentence each: SampleWarnings, too few frames or lightings,
-// nothing marked that the colour is not.
+// Returns what should be marked differently, one sentence each: SampleWarnings, too few frames or
+// lightings, no marks of what the colour is not.
 std::vector<std::string> TeachingWarnings(std::span<const FrameMarks> marks);
 
 }  // namespace kestrel

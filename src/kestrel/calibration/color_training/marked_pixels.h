@@ -14,34 +14,35 @@
 
 namespace kestrel {
 
-// The marked pixels of a frame (BGR) for one colour: those that are of it, and those that are of
-// another one or of none.
+// The marked pixels of a frame (BGR) for one colour: those of the colour, and those of another
+// colour or of none.
 struct FrameMarks {
   std::size_t frame = 0;
   std::vector<cv::Vec3b> wanted;
   std::vector<cv::Vec3b> others;
 };
 
-// Which pixels of which frames are marked as what. Where strokes overlap the later one holds.
+// The marks of pixels in frames. Where strokes overlap the later one counts.
 class MarkedPixels {
  public:
-  // Gives the image of a frame, CV_8UC3 (BGR), as it was taken. Throws InputError when it cannot.
+  // Returns the image of a frame, CV_8UC3 (BGR), as it was taken. Throws InputError when it cannot.
   using ReadFrame = std::function<cv::Mat(std::size_t frame)>;
 
-  // Frames stay in memory while they are marked.
+  // Limit, as the marked frames stay in memory.
   static constexpr std::size_t kMaxFrames = 32;
 
   explicit MarkedPixels(ReadFrame read) : read_(std::move(read)) {}
 
-  // Throws InputError when a frame cannot be read, a stroke is not inside of it, or there are marks
-  // on too many frames; what was marked is then as it was.
+  // Throws InputError when a frame cannot be read, a stroke is not inside of its image, or too many
+  // frames have marks; the marks are then unchanged.
   void Set(std::span<const ColorStroke> strokes);
 
-  // Of the frame's pixels the number of their stroke, from 1, or 0: CV_16UC1; empty when nothing of
-  // the frame is marked.
+  // Returns for each pixel of the frame the number of its stroke, from 1, or 0: CV_16UC1. Empty
+  // when the frame has no marks.
   cv::Mat StrokesOn(std::size_t frame) const;
 
-  // By frame, in order; of a frame at most 10,000 pixels of each kind, evenly taken.
+  // Returns the marks by frame, in order; at most 10,000 pixels of each kind per frame, evenly
+  // sampled.
   std::vector<FrameMarks> Of(const std::string& color) const;
 
  private:
@@ -54,7 +55,7 @@ class MarkedPixels {
 
   ReadFrame read_;
   std::map<std::size_t, MarkedFrame> frames_;
-  std::vector<std::string> colors_;  // of the strokes
+  std::vector<std::string> colors_;  // colours of the strokes
 };
 
 }  // namespace kestrel

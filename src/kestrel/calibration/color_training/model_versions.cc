@@ -26,8 +26,8 @@ std::vector<std::string> Lines(const std::string& text) {
   return lines;
 }
 
-// Of the tails of two texts from line i of the one and j of the other: how many lines the longest
-// common part has.
+// Length of the longest common subsequence of two texts' tails, from line i of the one and line j
+// of the other.
 class CommonTails {
  public:
   CommonTails(const std::vector<std::string>& a, const std::vector<std::string>& b)
@@ -46,7 +46,8 @@ class CommonTails {
   std::vector<int> counts_;
 };
 
-// After the highest that is there: a version that was removed is not taken again.
+// The next number after the highest one: the number of a version that was removed is not used
+// again.
 std::string NextVersion(const std::string& path) {
   for (int version = kMaxVersion; version > 0; --version) {
     if (!fs::exists(fmt::format("{}.{}", path, version))) continue;
@@ -62,7 +63,7 @@ std::string NextVersion(const std::string& path) {
 
 std::string SaveModelVersion(const std::string& path, const ObjectModel& model) {
   const std::string text = PrintObjectModel(model);
-  ParseObjectModel(text, path);  // what could not be read is not written
+  ParseObjectModel(text, path);  // a model that cannot be read is not written
   std::string version;
   if (fs::exists(path)) {
     const std::string before = ReadFile(path);
