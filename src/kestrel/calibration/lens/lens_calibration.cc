@@ -16,18 +16,18 @@
 namespace kestrel {
 namespace {
 
-// Views, of which fewer are refused, and of which fewer hardly tell their own spread.
+// Numbers of views: fewer are refused; fewer hardly determine their own scatter; the most used.
 constexpr std::size_t kMinViews = 8;
 constexpr std::size_t kGoodViews = 20;
 constexpr std::size_t kMaxViews = 100;
-constexpr std::size_t kFewViews = 40;  // enough to find more with
-// Standard deviations of the focal length, of itself: what is no calibration, and what is no good
-// one.
+constexpr std::size_t kFewViews = 40;  // enough to find more views with
+// Standard deviations of the focal length, relative: above the first there is no calibration, above
+// the second it is not a good one.
 constexpr double kMaxFocalSigma = 0.05;
 constexpr double kGoodFocalSigma = 0.01;
 constexpr double kMaxPrincipalSigma = 0.01;  // of the image's width
-constexpr double kLeastReach = 0.35;         // of the edges, in halves of the image's diagonal
-constexpr double kLevelDeg = 12;             // views with less tilt look straight at the pattern
+constexpr double kLeastReach = 0.35;         // least good reach, in halves of the diagonal
+constexpr double kLevelDeg = 12;             // views with less tilt face the pattern
 InputError CannotTell(const std::string& why) {
   return InputError("the views cannot tell the lens: " + why);
 }
@@ -39,7 +39,7 @@ void RequireViews(std::size_t count) {
                   count, kMinViews));
 }
 
-// The tilt of the print against the image plane that nine tenths of the views stay below, rad.
+// The tilt of the print against the image plane that nine tenths of the views do not exceed, rad.
 double UsualTilt(const std::vector<LensView>& views) {
   std::vector<double> tilts;
   for (const LensView& view : views) {
@@ -99,8 +99,8 @@ std::vector<std::string> Warnings(const LensCalibration& calibration) {
   return warnings;
 }
 
-// Lenses that an image of this size may come from: fields of view across it from 35 to 190
-// degrees, a third apart in focal length.
+// Possible lenses of an image of this size: fields of view across it from 35 to 190 degrees, in
+// steps of a third of the focal length.
 std::vector<CameraIntrinsics> Guesses(const cv::Size& size) {
   constexpr std::array<double, 5> kPinholes{0.45, 0.6, 0.8, 1.1, 1.5};  // focal length over width
   constexpr std::array<double, 4> kFisheyes{0.25, 0.33, 0.43, 0.57};
@@ -134,7 +134,7 @@ std::vector<LensView> FindViews(std::span<const LensImage> images, std::size_t s
   return views;
 }
 
-// The guess with which the pattern is found most often in a sample.
+// The guess with which the pattern is found in the most images of a sample.
 CameraIntrinsics BestGuess(std::span<const LensImage> images,
                            const LensCalibrationOptions& options) {
   constexpr std::size_t kSample = 40;
@@ -165,7 +165,7 @@ void RequireOneSize(std::span<const LensImage> images) {
   }
 }
 
-// The lens of at most 'max_views' views, told or not.
+// Estimates the lens from at most 'max_views' views, whether they determine it or not.
 LensCalibration Estimate(const std::vector<LensView>& views, const CameraIntrinsics& start,
                          std::optional<DistortionModel> model, std::size_t max_views) {
   RequireViews(views.size());
@@ -207,7 +207,7 @@ LensCalibration CalibrateLens(std::span<const LensImage> images,
   }
   CameraIntrinsics camera = options.start ? *options.start : BestGuess(images, options);
   std::vector<LensView> views = FindViews(images, 1, camera, options);
-  // The better the lens, the more views are found, at the border of the image most of all.
+  // A better lens finds more views, above all at the border of the image.
   constexpr int kSearches = 3;
   for (int round = 0; round < kSearches && views.size() >= kMinViews; ++round) {
     camera = Estimate(views, camera, options.model, kFewViews).intrinsics;

@@ -17,44 +17,45 @@
 
 namespace kestrel {
 
-// A lens as views of the landing pattern have it.
+// A lens estimated from views of the landing pattern.
 struct LensCalibration {
   CameraIntrinsics intrinsics;
-  LensFit fit;                  // of the same lens, with its standard deviations
-  std::size_t found = 0;        // views in which the pattern was found, near enough
-  std::vector<LensView> views;  // those that were used, as 'fit' has them: not too many alike
+  LensFit fit;                  // fit of this lens, with its standard deviations
+  std::size_t found = 0;        // views in which the pattern was found, large enough
+  std::vector<LensView> views;  // the views that were used, with the poses of 'fit'
   int outliers = 0;             // views that do not fit and were left out
   LensCoverage coverage;
-  // What the views do not tell well, in words.
+  // What the views do not determine well, in words.
   std::vector<std::string> warnings;
 };
 
-// The lens that explains the views best, from one that is near (to 30 % of the focal length).
-// 'model': its kind; without it the kind and how many coefficients it has are those that promise
-// the least error on other views of the same kind (Takeuchi's information criterion, with the
-// penalty of BIC). Throws InputError with what is to be done when the views cannot tell the lens.
+// Returns the lens that explains the views best, starting from one with a similar focal length (to
+// 30 %). 'model': the distortion model. Without it the model and its number of coefficients are
+// those with the least expected error on other views of the same kind (Takeuchi's information
+// criterion, with the penalty of BIC). Throws InputError that says what to do when the views do not
+// determine the lens.
 LensCalibration EstimateLens(const std::vector<LensView>& views, const CameraIntrinsics& start,
                              std::optional<DistortionModel> model = {});
 
-// An image of the landing pattern, or without it.
+// An image with or without the landing pattern.
 struct LensImage {
   std::string name;
   cv::Mat image;  // CV_8UC1
 };
 
 struct LensCalibrationOptions {
-  std::optional<DistortionModel> model;   // as of EstimateLens
+  std::optional<DistortionModel> model;   // as in EstimateLens
   std::optional<CameraIntrinsics> start;  // a guess of the lens; without it several are tried
   LandingPatternDetectorOptions detector;
-  // Called before the pattern is looked for in an image; what it throws ends the calibration. May
-  // be empty.
+  // Called before each image is searched for the pattern; an exception from it ends the
+  // calibration. May be empty.
   std::function<void()> before_image = {};
 };
 
-// The lens of a camera from images of one size, in any order: the pattern is detected with guesses
-// of the lens, the lens is estimated from its edges, and with that lens the pattern is looked for
-// again. Throws InputError as EstimateLens does, and when the sizes differ or are not that of
-// 'start'.
+// Calibrates a camera from images of one size, in any order: it detects the pattern with guesses of
+// the lens, estimates the lens from the pattern's edges, and detects the pattern again with that
+// lens. Throws InputError as EstimateLens does, and when the sizes of the images differ from each
+// other or from that of 'start'.
 LensCalibration CalibrateLens(std::span<const LensImage> images,
                               const LensCalibrationOptions& options);
 

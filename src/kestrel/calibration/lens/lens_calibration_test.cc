@@ -35,7 +35,7 @@ double MedianDifferencePx(const CameraIntrinsics& truth, const CameraIntrinsics&
       LensDifferencePx(CameraModel(truth), CameraModel(estimate), max_angle_deg * kPi / 180));
 }
 
-// A guess that is off in all.
+// A guess that is wrong in all parameters.
 CameraIntrinsics Guess(CameraIntrinsics camera, double zoom) {
   camera.fx_px *= zoom;
   camera.fy_px = camera.fx_px;
@@ -47,7 +47,7 @@ CameraIntrinsics Guess(CameraIntrinsics camera, double zoom) {
 
 CameraIntrinsics Pinhole() { return {640, 480, 400, 400, 325, 236, DistortionModel::kNone, {}}; }
 
-// What EstimateLens says when it refuses; empty when it does not.
+// Message of EstimateLens when it refuses; empty when it does not.
 std::string Refusal(const std::vector<LensView>& views, const CameraIntrinsics& start) {
   try {
     EstimateLens(views, start);
@@ -80,7 +80,7 @@ TEST(EstimateLensTest, FindsARadialTangentialLensFromAPinhole) {
   EXPECT_LT(MedianDifferencePx(truth, lens.intrinsics, 45), 0.1);
 }
 
-// Another kind than the lens's own comes near to it, no more.
+// A model other than the lens's own is a good approximation at best.
 TEST(EstimateLensTest, GivesALensTheKindThatIsAskedFor) {
   const auto views = MakeLensViews(EurocCamera(), {.count = 30, .seed = 3});
   const LensCalibration lens =
@@ -114,7 +114,7 @@ TEST(EstimateLensTest, ErrorsAreAsLargeAsTheStandardDeviationsSay) {
     const double error = (lens.intrinsics.fx_px - Pinhole().fx_px) / lens.fit.sigmas(kFocal);
     squares += error * error;
   }
-  // Chi-square with 12 degrees of freedom, 99.8 % between 2.2 and 32.9.
+  // 99.8 % of a chi-square variable with 12 degrees of freedom lie between 2.2 and 32.9.
   EXPECT_GT(squares, 2.2);
   EXPECT_LT(squares, 32.9);
 }
@@ -164,7 +164,7 @@ TEST(EstimateLensTest, StartsFromARationalLens) {
 }
 
 TEST(UnlikeViewsTest, TakesThoseThatDiffer) {
-  // A camera that hovers, and three views elsewhere.
+  // A hovering camera, and three views from elsewhere.
   std::vector<LensView> views = MakeLensViews(Pinhole(), {.count = 4, .seed = 15});
   const LensView hovering = views[0];
   views.insert(views.begin() + 2, 20, hovering);
@@ -231,7 +231,7 @@ TEST(LensDifferenceTest, IsNothingForALensThatIsTurned) {
   CameraIntrinsics zoomed = truth;
   zoomed.fx_px = zoomed.fy_px = 1.01 * truth.fx_px;
   EXPECT_GT(MedianDifferencePx(truth, zoomed, 45), 1);
-  // A shift of the principal point is nearly a turn, by 2 px of 400.
+  // A shift of the principal point is nearly a rotation, here by 2 px of 400.
   CameraIntrinsics shifted = truth;
   shifted.cx_px += 2;
   EXPECT_LT(MedianDifferencePx(truth, shifted, 45), 0.6);

@@ -13,12 +13,12 @@ namespace kestrel {
 namespace {
 
 constexpr double kLeastSigmaPx = 0.02;  // of an edge
-constexpr double kOutlier = 4;          // standard deviations, of an edge
-constexpr double kOutlierView = 3;      // its error in those of the view in the middle
-// Lenses of a pinhole kind show nothing farther from their axis, in practice.
+constexpr double kOutlier = 4;          // of an edge, in standard deviations
+constexpr double kOutlierView = 3;      // relative to the error of the median view
+// Lenses of a pinhole model show nothing farther from their axis, in practice.
 constexpr double kMaxPinholeAngle = Radians(80);
 
-// How many coefficients are estimated, one after the other; the two tangential ones go together.
+// Numbers of coefficients that are tried, in order; the two tangential ones are estimated together.
 std::vector<int> DistortionOrders(DistortionModel model) {
   if (model == DistortionModel::kNone) return {0};
   if (model == DistortionModel::kEquidistant) return {0, 1, 2, 3, 4};
@@ -36,9 +36,9 @@ double LargestRadiusPx(const std::vector<LensView>& views, const CameraIntrinsic
   return largest;
 }
 
-// A lens of kind 'model' that is like 'camera' out to 'radius_px' from the principal point, with
-// all coefficients that the kind has: by linear least squares over the radius. Nothing where it
-// cannot be.
+// Returns a lens of the distortion model 'model' that is like 'camera' out to 'radius_px' from the
+// principal point, with all coefficients of the model, by linear least squares over the radius.
+// Returns nothing when that is not possible.
 std::optional<CameraIntrinsics> Converted(const CameraIntrinsics& camera, DistortionModel model,
                                           double radius_px) {
   CameraIntrinsics converted = camera;
@@ -78,7 +78,7 @@ void SetPoses(const std::vector<RigidTransform>& poses, std::vector<LensView>* v
   for (std::size_t i = 0; i < views->size(); ++i) (*views)[i].camera_from_pattern = poses[i];
 }
 
-// The pose under which a far print looks the same: its normal on the other side of the line of
+// Returns the pose with which a far print looks the same: its normal is mirrored at the line of
 // sight.
 RigidTransform Mirrored(const RigidTransform& pose) {
   const Eigen::Vector3d sight = pose.translation.normalized();
@@ -94,8 +94,8 @@ double SumOfMagnitudes(const std::vector<double>& residuals) {
   return sum;
 }
 
-// The least is best: the cost, and by how much the parameters are expected to have made it too
-// small, with the factor of Schwarz's criterion (BIC) for so many edges.
+// The least score is the best: the cost, and the amount by which the parameters are expected to
+// have made it too small, with the factor of Schwarz's criterion (BIC) for this number of edges.
 double Score(const LensFit& fit) {
   double edges = 0;
   for (const auto& residuals : fit.residuals_px) edges += static_cast<double>(residuals.size());
@@ -114,7 +114,7 @@ std::vector<DistortionModel> LensChoice::Kinds() const {
   return {DistortionModel::kRadialTangential, DistortionModel::kEquidistant};
 }
 
-// Brings the poses to where the lens has the views, each to the better one of two mirror images.
+// Fits the poses of the views to the lens, and takes the better one of two mirror images for each.
 bool LensChoice::Resect(const CameraIntrinsics& lens) {
   constexpr LensFreedom kNothing{.focal = false, .aspect = false, .principal = false};
   std::vector<LensView> mirrored = views_;
@@ -152,8 +152,8 @@ std::optional<LensFit> LensChoice::Choose(const CameraIntrinsics& start) {
   LensFreedom with_aspect = best->freedom;
   with_aspect.aspect = true;
   Offer(Refit(*best, best->intrinsics, with_aspect), &best);
-  // Were edges independent, the optimism would be the number of parameters: as much as it is more,
-  // less does an edge tell beside what is known without the views.
+  // For independent edges the optimism would be the number of parameters. The greater it is, the
+  // less an edge tells compared with the prior.
   const double alike = std::max(1.0, best->optimism / best->freedom.count());
   edge_sigma_px_ *= std::sqrt(alike);
   best = Refit(*best, best->intrinsics, best->freedom);
@@ -161,7 +161,7 @@ std::optional<LensFit> LensChoice::Choose(const CameraIntrinsics& start) {
   return best;
 }
 
-// The best number of coefficients of a kind.
+// Fit with the best number of coefficients of a distortion model.
 std::optional<LensFit> LensChoice::BestOrder(const CameraIntrinsics& start,
                                              DistortionModel kind) const {
   std::optional<LensFit> best;
@@ -169,14 +169,14 @@ std::optional<LensFit> LensChoice::BestOrder(const CameraIntrinsics& start,
   std::vector<int> orders = DistortionOrders(kind);
   for (orders.pop_back(); fit; orders.pop_back()) {
     Offer(fit, &best);
-    // With fewer coefficients the cost can only rise.
+    // The cost cannot fall with fewer coefficients.
     if (orders.empty() || (best && fit->cost > Score(*best))) break;
     fit = FitOrder(*fit, orders.back());
   }
   return best;
 }
 
-// With all coefficients of a kind.
+// Fit with all coefficients of a distortion model.
 std::optional<LensFit> LensChoice::FitKind(const CameraIntrinsics& start,
                                            DistortionModel kind) const {
   const auto begin = Converted(start, kind, LargestRadiusPx(views_, start));
@@ -188,14 +188,14 @@ std::optional<LensFit> LensChoice::FitKind(const CameraIntrinsics& start,
   return FitOrder(*rough, all);
 }
 
-// With the first 'order' coefficients; the others are 0.
+// Fit with the first 'order' coefficients; the others are 0.
 std::optional<LensFit> LensChoice::FitOrder(const LensFit& fit, int order) const {
   CameraIntrinsics start = fit.intrinsics;
   std::fill(start.distortion.begin() + order, start.distortion.end(), 0.0);
   return Refit(fit, start, {.distortion = order});
 }
 
-// From the poses of another fit of these views.
+// Starts from the poses of another fit of these views.
 std::optional<LensFit> LensChoice::Refit(const LensFit& fit, const CameraIntrinsics& start,
                                          const LensFreedom& freedom) const {
   std::vector<LensView> views = views_;
@@ -203,7 +203,7 @@ std::optional<LensFit> LensChoice::Refit(const LensFit& fit, const CameraIntrins
   return FitLens(views, start, freedom, edge_sigma_px_);
 }
 
-// Takes what the fit cannot explain out of the views, and gives the others its poses.
+// Removes the edges and views that the fit does not explain, and gives the others its poses.
 void LensChoice::Clean(const LensFit& fit) {
   std::vector<double> errors;
   for (const auto& residuals : fit.residuals_px) {

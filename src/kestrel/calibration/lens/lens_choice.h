@@ -11,20 +11,22 @@
 
 namespace kestrel {
 
-// Finds out which kind of lens, with how many coefficients, explains views best.
+// Chooses the distortion model and the number of coefficients that explain views best.
 class LensChoice {
  public:
-  // 'model': the kind, where it is known.
+  // 'model': the distortion model, if it is known.
   LensChoice(std::vector<LensView> views, std::optional<DistortionModel> model)
       : views_(std::move(views)), model_(model) {}
 
-  // A lens near the best one, from one that may be far off. Brings the poses of the views to it and
-  // leaves out what it does not explain, edges and views. Nothing where no lens shows the views.
+  // Returns a lens near the best one, from one that may be far off. Gives the views the poses of
+  // that lens and leaves out edges and views that it does not explain. Returns nothing when no lens
+  // shows the views.
   std::optional<CameraIntrinsics> Approach(const CameraIntrinsics& start);
 
-  // The best of all kinds, numbers of coefficients and aspects, from a lens that is near: that with
-  // the least cost and expected optimism (Takeuchi's information criterion, with the factor of
-  // BIC). The views get its poses. Nothing where no lens shows them.
+  // Returns the best fit of all models, numbers of coefficients and aspects, from a lens that is
+  // near: the one with the least sum of cost and expected optimism (Takeuchi's information
+  // criterion, with the factor of BIC). Gives the views its poses. Returns nothing when no lens
+  // shows them.
   std::optional<LensFit> Choose(const CameraIntrinsics& start);
 
   const std::vector<LensView>& views() const { return views_; }
@@ -42,7 +44,7 @@ class LensChoice {
 
   std::vector<LensView> views_;
   std::optional<DistortionModel> model_;
-  double edge_sigma_px_ = 0.5;  // until it is known
+  double edge_sigma_px_ = 0.5;  // initial value
   int outliers_ = 0;
 };
 

@@ -23,12 +23,12 @@ double NearlyLargest(std::vector<double> values) {
   return *place;
 }
 
-// The field of 'count' in which a coordinate lies, integer = centre of a pixel.
+// The field, of 'count', that contains a coordinate; integer coordinates are centres of pixels.
 int FieldOf(double coordinate, int size_px, int count) {
   return std::clamp(static_cast<int>((coordinate + 0.5) * count / size_px), 0, count - 1);
 }
 
-// What the border of the image lacks: corners that are empty, and sides of which all else is.
+// The empty parts at the border of the image: corners, and sides that are otherwise empty.
 std::vector<std::string> EmptyParts(const LensCoverage& coverage) {
   constexpr int kRight = LensCoverage::kColumns - 1, kBottom = LensCoverage::kRows - 1;
   std::vector<std::string> parts;

@@ -10,19 +10,19 @@
 
 namespace kestrel {
 
-// Which parts of the image views of the pattern say something about.
+// The parts of the image in which the views have edges of the pattern.
 struct LensCoverage {
   static constexpr int kColumns = 8;
   static constexpr int kRows = 6;
 
-  std::array<int, kColumns * kRows> edges{};  // in each field of the image, row by row
-  double max_angle_deg = 0;                   // from the optical axis; all but 1 % are nearer
+  std::array<int, kColumns * kRows> edges{};  // number in each field of the image, row by row
+  double max_angle_deg = 0;                   // from the optical axis; 99 % are nearer
   double reach = 0;  // the same from the middle of the image, in halves of its diagonal
 
-  int fields() const;  // that hold edges
+  int fields() const;  // number of fields with edges
   int EdgesAt(int column, int row) const { return edges[row * kColumns + column]; }
 
-  // One sentence on how far the edges reach and one on what they leave out, if anything.
+  // Returns a sentence on how far the edges reach, and one on the parts without any.
   std::string InWords() const;
 };
 

@@ -23,7 +23,7 @@ std::vector<double> LensDifferencePx(const CameraModel& truth, const CameraModel
         continue;
       }
       if (estimate.Unproject(pixel, &other) == ProjectionStatus::kOutsideModel) {
-        other = Eigen::Vector3d::Zero();  // says nothing about the rotation
+        other = Eigen::Vector3d::Zero();  // does not count for the rotation
       }
       pixels.push_back(pixel);
       rays.push_back(ray);

@@ -7,10 +7,10 @@
 
 namespace kestrel {
 
-// How far two lenses are apart: at pixels all over the image that 'truth' has within 'max_angle'
-// (rad) of its axis, how far (px) 'estimate' shows the same direction from there, once the two
-// are turned against each other as the mount of the camera would be. Infinite where it does not;
-// empty where 'truth' has no such pixel.
+// Returns the differences between two lenses, in px, at pixels all over the image that 'truth' has
+// within 'max_angle' (rad) of its axis: the distance from each pixel to where 'estimate' shows the
+// same direction, after the rotation between the two that a mount would compensate. Infinite where
+// it does not show that direction; empty when 'truth' has no such pixel.
 std::vector<double> LensDifferencePx(const CameraModel& truth, const CameraModel& estimate,
                                      double max_angle);
 

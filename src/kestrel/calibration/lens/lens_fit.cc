@@ -13,14 +13,14 @@
 namespace kestrel {
 namespace {
 
-// What is estimated of a view: rotation vector by which it differs from where it began (in the
-// camera), translation, spread of the black over the white.
+// Parameters of a view: rotation vector relative to its initial pose (in the camera's frame),
+// translation, spread of the black over the white.
 constexpr int kViewParameters = 7;
 constexpr int kSpread = 6;
 constexpr double kSpreadSigmaPx = 0.3;
 constexpr double kHuber = 2;  // standard deviations of an edge
-// Before the views are looked at: of the focal length, in what it is at the start, and of the
-// principal point about the middle of the image, in its widths.
+// Priors: of the focal length, relative to its initial value, and of the principal point about the
+// middle of the image, in widths of the image.
 constexpr double kFocalSigma = 0.7;
 constexpr double kPrincipalSigma = 0.03;
 
@@ -28,7 +28,7 @@ using LensVector = Eigen::Vector<double, kLensParameters>;
 using LensMatrix = Eigen::Matrix<double, kLensParameters, kLensParameters>;
 using ViewVector = Eigen::Vector<double, kViewParameters>;
 
-// How far an edge is from the outline, across it and in its standard deviations.
+// Distance of an edge from the outline, across it, in standard deviations of the edge.
 struct EdgeError {
   template <class T>
   bool operator()(const T* lens, const T* view, T* residual) const {
@@ -51,7 +51,7 @@ struct EdgeError {
   double sigma_px;
 };
 
-// Holds a parameter of a block to a value.
+// Prior for a parameter of a block.
 template <int kSize>
 struct Prior {
   template <class T>
@@ -78,7 +78,7 @@ LensVector ParametersOf(const CameraIntrinsics& camera) {
   return parameters;
 }
 
-// 'like': of the same size and kind.
+// 'like': a camera of the same size and distortion model.
 CameraIntrinsics IntrinsicsOf(const LensVector& parameters, const CameraIntrinsics& like) {
   CameraIntrinsics camera = like;
   camera.fx_px = parameters(kFocal);
@@ -99,10 +99,10 @@ std::vector<int> FixedParameters(const LensFreedom& freedom) {
   return fixed;
 }
 
-// Variance of the sum of the views' gradients (columns), of which those that follow each other may
-// be alike (Newey and West 1987), fitted as they are.
+// Variance of the sum of the views' gradients (columns), as fitted. Gradients that follow each
+// other may be correlated (Newey and West 1987).
 Eigen::MatrixXd ScatterOf(const Eigen::MatrixXd& gradients) {
-  constexpr Eigen::Index kLagShare = 12;  // views per view that another may still be like
+  constexpr Eigen::Index kLagShare = 12;  // views per view that may still be correlated with it
   const Eigen::Index count = gradients.cols();
   const Eigen::Index lags = count / kLagShare;
   Eigen::MatrixXd scatter = gradients * gradients.transpose();
@@ -116,7 +116,7 @@ Eigen::MatrixXd ScatterOf(const Eigen::MatrixXd& gradients) {
   return static_cast<double>(count) / freedom * scatter;
 }
 
-// Lens and views as one problem of Ceres.
+// Lens and views as one Ceres problem.
 class Adjustment {
  public:
   Adjustment(std::span<const LensView> views, const CameraIntrinsics& start,
@@ -141,7 +141,7 @@ class Adjustment {
     }
   }
 
-  // False when the lens cannot show the views.
+  // Returns false when the lens cannot show the views.
   bool Solve() {
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_SCHUR;
@@ -209,7 +209,7 @@ class Adjustment {
     return residuals;
   }
 
-  // Rows of the Jacobian, and the residuals, of one view; those of the lens where 'view' is null.
+  // Rows of the Jacobian and residuals of one view; those of the lens's priors when 'view' is null.
   struct Linearized {
     Eigen::MatrixXd of_lens, of_view;
     Eigen::VectorXd residuals;
@@ -233,9 +233,10 @@ class Adjustment {
             Eigen::Map<Eigen::VectorXd>(residuals.data(), std::ssize(residuals))};
   }
 
-  // Standard deviations and optimism. With the poses eliminated, each view has a Hessian and a
-  // gradient of the lens; were the residuals independent, the variance of the gradients would be
-  // the Hessian. It is larger where views are off as a whole (the sandwich of Huber and White).
+  // Computes standard deviations and optimism. With the poses eliminated, each view has a Hessian
+  // and a gradient of the lens. For independent residuals the variance of the gradients would be
+  // the Hessian; it is larger where whole views are off (the sandwich estimator of Huber and
+  // White).
   void Judge(LensFit* fit) {
     const int count = freedom_.count();
     Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(count, count);
@@ -305,7 +306,7 @@ double LensFit::RootMeanSquare() const {
 }
 
 CameraIntrinsics LensFit::Simplified() const {
-  constexpr int kRadialTangential = 4;  // coefficients, at least
+  constexpr int kRadialTangential = 4;  // fewest coefficients
   CameraIntrinsics camera = intrinsics;
   if (camera.distortion_model == DistortionModel::kEquidistant) return camera;
   if (freedom.distortion == 0) {

@@ -13,48 +13,49 @@
 
 namespace kestrel {
 
-// Which parameters of a lens are estimated; the others keep their values.
+// The parameters of a lens that are estimated; the others keep their values.
 struct LensFreedom {
   bool focal = true;
-  bool aspect = false;  // fy apart from fx
+  bool aspect = false;  // fy independent of fx
   bool principal = true;
-  int distortion = 0;  // the first so many coefficients
+  int distortion = 0;  // number of coefficients, from the first
 
-  // fx, fy / fx, cx, cy, coefficients.
+  // 'parameter': index in fx, fy / fx, cx, cy, coefficients.
   bool IsFree(int parameter) const;
   int count() const;
 };
 
-// A lens and the poses of all views, by least squares.
+// A lens and the poses of all views, estimated by least squares.
 struct LensFit {
   CameraIntrinsics intrinsics;
   LensFreedom freedom;
-  // Standard deviations of the parameters (fx, fy / fx, cx, cy, coefficients), by how differently
-  // the views pull at them; 0 of those that were not estimated.
+  // Standard deviations of the parameters (fx, fy / fx, cx, cy, coefficients), from the scatter of
+  // the views' gradients; 0 for those that were not estimated.
   Eigen::Vector<double, kLensParameters> sigmas;
-  std::vector<RigidTransform> camera_from_pattern;  // by view
-  std::vector<std::vector<double>> residuals_px;    // of each view's edges, across the outline
-  double cost = 0;  // robust, half of the squares over the variance of an edge
-  // By how much the lens has come nearer to these views than it will to others: trace of the
+  std::vector<RigidTransform> camera_from_pattern;  // for each view
+  std::vector<std::vector<double>> residuals_px;    // for each view's edges, across the outline
+  double cost = 0;  // robust: half of the squared residuals over the variance of an edge
+  // Amount by which the fit to these views is better than the fit to others will be: trace of the
   // inverse Hessian times the variance of the views' gradients (Takeuchi 1976).
   double optimism = 0;
 
   double RootMeanSquare() const;  // of the residuals, px
 
-  // The lens without coefficients that were not estimated, as a calibration file has it.
+  // Returns the lens without the coefficients that were not estimated, for a calibration file.
   CameraIntrinsics Simplified() const;
 };
 
-// Bundle adjustment: lens and poses (and by how much the black of each print has spread over its
-// white) that bring the outlines nearest to the edges across them, from the poses of the views and
-// the lens 'start' (of at most five coefficients), with Huber's loss. 'edge_sigma_px': standard
-// deviation of an edge. The principal point is held to the middle of the image and, weakly, the
-// focal length to that of 'start', so that all has a solution: the standard deviations tell what
-// the views do not say. Nothing when the lens cannot show a view.
+// Bundle adjustment. Estimates the lens, the poses and for each print how far its black has spread
+// over the white, so that the outlines come nearest to the edges, measured across them, with
+// Huber's loss. It starts from the poses of the views and the lens 'start' (with at most five
+// coefficients). 'edge_sigma_px': standard deviation of an edge. Priors hold the principal point to
+// the middle of the image and, weakly, the focal length to that of 'start', so that there always is
+// a solution; the standard deviations show what the views do not determine. Returns nothing when
+// the lens cannot show a view.
 std::optional<LensFit> FitLens(std::span<const LensView> views, const CameraIntrinsics& start,
                                const LensFreedom& freedom, double edge_sigma_px);
 
-// The standard deviation of an edge by the median of the magnitudes of all residuals.
+// Returns the standard deviation of an edge, from the median magnitude of all residuals.
 double RobustSigma(const std::vector<std::vector<double>>& residuals_px);
 
 }  // namespace kestrel

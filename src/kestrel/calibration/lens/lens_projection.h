@@ -7,12 +7,13 @@
 
 namespace kestrel {
 
-// The parameters of a lens in the order in which they are estimated: fx, fy / fx, cx, cy, and the
-// distortion as CameraIntrinsics has it, at most five coefficients.
+// The parameters of a lens in the order of the estimation: fx, fy / fx, cx, cy, and the distortion
+// coefficients as in CameraIntrinsics, at most five.
 enum LensParameter { kFocal, kAspect, kPrincipalX, kPrincipalY, kDistortion, kLensParameters = 9 };
 
-// Pixel of a point in the camera frame, as CameraModel::Project has it, for automatic
-// differentiation. 'parameters': kLensParameters. False when the lens does not show the point.
+// Projects a point in the camera frame to a pixel as CameraModel::Project does, for automatic
+// differentiation. 'parameters': kLensParameters values. Returns false when the lens does not show
+// the point.
 template <class T>
 bool ProjectThroughLens(DistortionModel model, const T* parameters, const T* point, T* pixel) {
   using std::atan2;

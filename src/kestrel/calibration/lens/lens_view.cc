@@ -10,13 +10,13 @@ namespace kestrel {
 namespace {
 
 constexpr double kMinRingPx = 40;     // diameter: an arm of a tenth of it has two edges
-constexpr double kReachShare = 0.03;  // of the ring's diameter, in which edges are looked for
+constexpr double kReachShare = 0.03;  // search range for edges, of the ring's diameter
 constexpr double kLeastReachPx = 3;
 constexpr double kMinStep = 4;         // of an edge, gray values per pixel
-constexpr double kInPlacePx = 1;       // of an edge from where its neighbours have it
+constexpr double kInPlacePx = 1;       // of an edge from its place by its neighbours
 constexpr std::size_t kMinEdges = 40;  // of 150
 
-// The camera that explains the view: what a wrong one is off, the detection says.
+// Corrects a wrong camera by the evidence of the detection.
 CameraIntrinsics Recalibrated(CameraIntrinsics camera, const CalibrationEvidence& evidence) {
   if (!evidence.contradicts) return camera;
   const double zoom = std::exp(evidence.log_focal);

@@ -15,10 +15,10 @@
 
 namespace kestrel {
 
-// A point of the print's outline as an image shows it: where the edge is across the outline; along
-// it an edge says nothing.
+// A point of the print's outline in an image. It tells where the outline is across its direction;
+// along the outline it tells nothing.
 struct LensEdge {
-  Eigen::Vector2d on_print;  // of the pattern's plane, m
+  Eigen::Vector2d on_print;  // in the pattern's plane, m
   Eigen::Vector2d pixel;
   Eigen::Vector2d across;  // unit normal of the outline in the image, from black to white
 };
@@ -27,19 +27,19 @@ struct LensEdge {
 struct LensView {
   std::string name;
   std::vector<LensEdge> edges;
-  RigidTransform camera_from_pattern;  // near the true one
+  RigidTransform camera_from_pattern;  // approximate
 };
 
 // Finds the edges of the pattern in images.
 class LensViewFinder {
  public:
-  // 'camera': may be a guess. It only has to be near enough for the pattern to be detected: where
-  // an edge is found is a question to the image alone (AlignPrint). Throws InputError when camera
-  // or options are not valid.
+  // 'camera': may be a guess. It only has to be good enough for the detection of the pattern; the
+  // positions of the edges depend on the image alone (AlignPrint). Throws InputError when camera or
+  // options are not valid.
   LensViewFinder(const CameraIntrinsics& camera, const LandingPatternDetectorOptions& options);
 
-  // 'image': CV_8UC1 of the camera's size. Nothing where the pattern is not found, or too small for
-  // its edges to be found.
+  // 'image': CV_8UC1 of the camera's size. Returns nothing when the pattern is not found, or is too
+  // small for its edges to be found.
   std::optional<LensView> Find(const std::string& name, const cv::Mat& image);
 
  private:

@@ -60,7 +60,7 @@ TEST(LensViewFinderTest, AWrongLensFindsTheSameEdges) {
     EXPECT_GT(wrong->edges.size(), 120u);
     double squares = 0;
     for (const LensEdge& edge : wrong->edges) {
-      double least = 1e9;  // across the outline, from the nearest edge of the other
+      double least = 1e9;  // across the outline, from the nearest edge of the other view
       double nearest = 1e9;
       for (const LensEdge& other : right->edges) {
         const Eigen::Vector2d apart = edge.pixel - other.pixel;

@@ -22,12 +22,12 @@ struct TestLensViews {
   int count = 40;
   int seed = 1;
   double max_tilt_deg = 50;
-  double share_of_image = 1;  // of its width and height, in which the pattern's centre lies
-  double noise_px = 0.1;      // of an edge, standard deviation
+  double share_of_image = 1;  // share of its width and height in which the pattern's centre lies
+  double noise_px = 0.1;      // standard deviation of an edge
 };
 
-// The edges that a camera has of the pattern from random poses, which are told with an error of
-// some degrees and percent.
+// Returns a camera's edges of the pattern from random poses. The given poses have an error of some
+// degrees and percent.
 inline std::vector<LensView> MakeLensViews(const CameraIntrinsics& intrinsics,
                                            const TestLensViews& options) {
   constexpr double kDegrees = std::numbers::pi / 180;
@@ -44,13 +44,13 @@ inline std::vector<LensView> MakeLensViews(const CameraIntrinsics& intrinsics,
         ProjectionStatus::kOk) {
       continue;
     }
-    // Turned towards the camera as far as the options allow.
+    // The pattern is tilted against the line of sight as far as the options allow.
     const double tilt = random.Uniform(0, options.max_tilt_deg * kDegrees);
     const double tilt_axis = random.Uniform(0, 2 * std::numbers::pi);
     const double distance = random.Uniform(1.3, 2.5) * intrinsics.fx_px / 300;
     const double yaw = random.Uniform(0, 2 * std::numbers::pi);
     const RigidTransform pose = PrintPose(distance * ray, tilt, tilt_axis, yaw);
-    // Looked at from too flat, its edges would not be found.
+    // At such a flat angle its edges would not be found.
     if (-(pose.rotation * Eigen::Vector3d::UnitZ()).dot(ray) < 0.4) continue;
     LensView view{"view " + std::to_string(views.size()), {}, pose};
     const PlaneWarp warp(camera, pose, outline.radius_m());

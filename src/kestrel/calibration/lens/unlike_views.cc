@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-// What makes views differ: where the print lies in the image, how near, and its normal.
+// The features in which views differ: place of the print in the image, its distance, its normal.
 using ViewFeatures = Eigen::Vector<double, 6>;
 
 ViewFeatures FeaturesOf(const LensView& view, int width_px) {

@@ -8,9 +8,10 @@
 
 namespace kestrel {
 
-// At most 'max_views' of the views, in their order, each as unlike the others as can be (the
-// farthest from all that are chosen is next): a camera that hovers shows the same again and again,
-// which says nothing more and outweighs what does. 'width_px': of the image.
+// Returns at most 'max_views' of the views, in their order, chosen to differ as much as possible:
+// the next is always the one farthest from all that are chosen. A camera that hovers shows the same
+// view again and again, which adds nothing and outweighs the others. 'width_px': width of the
+// image.
 std::vector<LensView> UnlikeViews(const std::vector<LensView>& views, std::size_t max_views,
                                   int width_px);
 
