@@ -20,7 +20,7 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kMinSightings = 20;
-constexpr int kRounds = 3;  // of leaving out what does not fit
+constexpr int kRounds = 3;  // in which outliers are left out
 constexpr Duration kMaxGap = std::chrono::milliseconds(200);
 constexpr Duration kSmoothing = std::chrono::milliseconds(100);  // to either side
 constexpr int kAngles = 3;
@@ -30,12 +30,12 @@ constexpr int kScale = 4;
 constexpr int kParameters = 5;
 constexpr double kScaleSigma = 0.005;
 
-// Roll, pitch, yaw of the mount's error (rad), clock offset (s), and by what part all distances are
-// too short: an error of the pattern's size, of kScaleSigma, that a descent would else turn into
-// one of the clock.
+// Roll, pitch, yaw of the mount's error (rad), clock offset (s), and the relative amount by which
+// all distances are too short: an error of the pattern's size with the standard deviation
+// kScaleSigma. Without it a descent would turn such an error into an error of the clock.
 using Parameters = Eigen::Vector<double, kParameters>;
-// By how much they are changed for the derivative. The clock's spans several poses, whose noise
-// would else be that of the derivative.
+// Steps of the parameters for the derivative. The clock's step spans several poses, otherwise their
+// noise would be noise of the derivative.
 const Parameters kSteps(1e-5, 1e-5, 1e-5, 0.01, 1e-5);
 
 Eigen::Quaterniond MountError(const Eigen::Vector3d& angles) {
@@ -64,7 +64,7 @@ class FlightFit {
   const std::vector<TargetSighting>& sightings() const { return sightings_; }
   Eigen::Index path_size() const { return path_.size(); }
 
-  // Weighted distances of the positions in the world from the path, a row for each sighting.
+  // Weighted vectors from the path to the positions in the world, one row per sighting.
   Eigen::MatrixX3d Residuals(const Parameters& parameters) const {
     const MountAndClock applied = Applied(given_, parameters);
     const Duration offset = DurationFromSeconds(applied.clock_offset_s);
@@ -78,7 +78,7 @@ class FlightFit {
     return path_.Residuals(positions);
   }
 
-  // All of them in one column, and last the scale against its standard deviation.
+  // All residuals in one column; last the scale divided by its standard deviation.
   Eigen::VectorXd Errors(const Parameters& parameters) const {
     const Eigen::MatrixX3d residuals = Residuals(parameters);
     Eigen::VectorXd errors(residuals.size() + 1);
@@ -86,7 +86,7 @@ class FlightFit {
     return errors;
   }
 
-  // From the path, in metres, of each sighting.
+  // Distance of each sighting from the path, m.
   Eigen::VectorXd Distances(const Parameters& parameters) const {
     return (WeightsOf(sightings_).cwiseInverse().asDiagonal() * Residuals(parameters))
         .rowwise()
@@ -124,7 +124,7 @@ Eigen::MatrixXd Jacobian(const FlightFit& fit, const Parameters& parameters) {
   return jacobian;
 }
 
-// The whole flight as one residual block of Ceres.
+// The whole flight as one residual block for Ceres.
 class FlightCost : public ceres::CostFunction {
  public:
   explicit FlightCost(const FlightFit* fit) : fit_(fit) {
@@ -162,7 +162,7 @@ Parameters Refine(const FlightFit& fit, Parameters parameters,
   if (!fixed.empty()) {
     problem.SetManifold(parameters.data(), new ceres::SubsetManifold(kParameters, fixed));
   }
-  // The offset stays where there are poses.
+  // Limits the offset to the times that have poses.
   problem.SetParameterLowerBound(parameters.data(), kClock,
                                  std::min(options.min_offset_s, parameters(kClock)));
   problem.SetParameterUpperBound(parameters.data(), kClock,
@@ -175,7 +175,7 @@ Parameters Refine(const FlightFit& fit, Parameters parameters,
   return parameters;
 }
 
-// The paper's grid search: offset first, then the angles.
+// The paper's grid search: first the offset, then the angles.
 Parameters SearchGrid(const FlightFit& fit, const Parameters& given,
                       const FlightCalibrationOptions& options) {
   Parameters best = given;
@@ -209,8 +209,8 @@ Parameters SearchGrid(const FlightFit& fit, const Parameters& given,
   return best;
 }
 
-// Those sightings whose distance from the path is at most four standard deviations per axis, by the
-// median of all.
+// Returns the sightings whose distance from the path is at most four standard deviations per axis,
+// which are estimated from the median.
 std::vector<TargetSighting> WithoutOutliers(const FlightFit& fit, const Parameters& parameters) {
   constexpr double kSigmas = 4;
   constexpr double kMedianOfThree = 1.538;  // of a chi variable with 3 degrees of freedom
@@ -225,9 +225,9 @@ std::vector<TargetSighting> WithoutOutliers(const FlightFit& fit, const Paramete
   return kept;
 }
 
-// How many times larger the variance of a mean is than that of independent values, for values as
-// like their neighbours in time as these residuals: (1 + r) / (1 - r) with r their correlation
-// (that of a first-order autoregressive process).
+// Factor by which the variance of a mean is larger than for independent values, given the
+// correlation r of these residuals with their neighbours in time: (1 + r) / (1 - r), as for a
+// first-order autoregressive process.
 double VarianceInflation(const Eigen::MatrixX3d& residuals) {
   const Eigen::Index pairs = residuals.rows() - 1;
   const double products = residuals.topRows(pairs).cwiseProduct(residuals.bottomRows(pairs)).sum();
@@ -235,7 +235,7 @@ double VarianceInflation(const Eigen::MatrixX3d& residuals) {
   return (1 + correlation) / (1 - correlation);
 }
 
-// Standard deviations of those parameters that were estimated; infinite where nothing is known.
+// Standard deviations of the estimated parameters; infinite where nothing is known.
 Parameters Sigmas(const FlightFit& fit, const Parameters& parameters,
                   const FlightCalibrationOptions& options) {
   const Eigen::MatrixXd jacobian = Jacobian(fit, parameters);
@@ -286,7 +286,7 @@ double RootMeanSquare(const Eigen::VectorXd& values) {
   return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
 }
 
-// Sightings that have a pose whatever the offset within the bounds.
+// Returns the sightings that have a pose for each offset within the bounds.
 std::vector<TargetSighting> WithPoses(const std::vector<TargetSighting>& sightings,
                                       const PoseHistory& poses, const MountAndClock& given,
                                       const FlightCalibrationOptions& options) {
@@ -304,7 +304,7 @@ std::vector<TargetSighting> WithPoses(const std::vector<TargetSighting>& sightin
   return kept;
 }
 
-// Those that a history takes, smoothed: a UAV moves more evenly than its navigation says.
+// The poses that a history accepts, smoothed: a UAV moves more evenly than its navigation says.
 PoseHistory HistoryOf(const std::vector<PoseSample>& samples) {
   PoseHistory history(samples.size(), kMaxGap);
   std::vector<PoseSample> valid;

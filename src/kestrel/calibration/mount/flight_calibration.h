@@ -12,14 +12,14 @@
 
 namespace kestrel {
 
-// Where the camera saw the target.
+// A detection of the target by the camera.
 struct TargetSighting {
   Time time;  // on the clock of the images
   Eigen::Vector3d center_in_camera;
   double sigma_m;  // standard deviation per axis, positive
 };
 
-// What is between the camera and the navigation: its mount and the clocks.
+// The relation of the camera to the navigation: its mount and the clocks.
 struct MountAndClock {
   RigidTransform body_from_camera;
   double clock_offset_s = 0;  // t_nav = t_image + clock_offset_s
@@ -28,9 +28,10 @@ struct MountAndClock {
 struct FlightCalibrationOptions {
   bool estimate_mount = true;
   bool estimate_clock = true;
-  // 0: the target stands. Else it moves, along a curve with a knot every so many seconds.
+  // 0: the target stands. Else it moves along a curve with a knot each so many seconds.
   double knot_spacing_s = 0;
-  // The grid of the search (paper, section 2.6): angles either way of the given mount, and offsets.
+  // The grid of the search (paper, section 2.6): angles to both sides of the given mount, and
+  // offsets.
   double max_angle_deg = 6;
   double angle_step_deg = 1;
   double min_offset_s = -0.1;
@@ -38,33 +39,33 @@ struct FlightCalibrationOptions {
   double offset_step_s = 0.02;
 };
 
-// How far the position of a sighting in the world is from the path.
+// Distance of a sighting's position in the world from the path.
 struct SightingResidual {
-  Time time;            // of the sighting
-  double before_m = 0;  // by the given values
-  double after_m = 0;   // by the estimate
+  Time time;            // time of the sighting
+  double before_m = 0;  // with the given values
+  double after_m = 0;   // with the estimate
 };
 
 struct FlightCalibration {
   MountAndClock estimate;
-  // Roll, pitch, yaw (rad) by which the mount differs from the given one: Rz Ry Rx, in the body.
+  // Roll, pitch, yaw (rad) of the mount relative to the given one: Rz Ry Rx, in the body's frame.
   Eigen::Vector3d angles = Eigen::Vector3d::Zero();
-  // Standard deviations, by what is left of the positions and how it hangs together from image to
+  // Standard deviations, from the residuals of the positions and their correlation from image to
   // image; 0: not estimated.
   Eigen::Vector3d angle_sigmas = Eigen::Vector3d::Zero();
   double clock_sigma_s = 0;
-  double rms_before_m = 0;  // of the positions in the world from the path, by the given values
+  double rms_before_m = 0;  // of the positions in the world from the path, with the given values
   double rms_after_m = 0;
-  std::vector<SightingResidual> residuals;  // of the sightings that were used
-  int sightings = 0;                        // used
-  int outliers = 0;                         // left out
-  // What the flight cannot tell, in words.
+  std::vector<SightingResidual> residuals;  // for the sightings that were used
+  int sightings = 0;                        // number used
+  int outliers = 0;                         // number left out
+  // What the flight does not determine, in words.
   std::vector<std::string> warnings;
 };
 
-// Mount angles and clock offset that make the positions of the target in the world fit one path
-// best (paper, section 2.6): grid search, then least squares over all of them with those sightings
-// that do not fit left out. Throws InputError when there are too few sightings with poses around
+// Returns the mount angles and the clock offset with which the positions of the target in the world
+// fit one path best (paper, section 2.6): a grid search, then least squares over all of them
+// without the sightings that do not fit. Throws InputError when too few sightings have poses around
 // them.
 FlightCalibration CalibrateFlight(const std::vector<TargetSighting>& sightings,
                                   const std::vector<PoseSample>& poses, const MountAndClock& given,

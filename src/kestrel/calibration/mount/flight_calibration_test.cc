@@ -24,16 +24,16 @@ Eigen::Quaterniond Turn(double angle, const Eigen::Vector3d& axis) {
 
 Time At(double seconds) { return Time(DurationFromSeconds(10 + seconds)); }
 
-// A UAV above the pattern that sways and turns, and what its camera and its navigation say of it.
+// A UAV above the pattern that sways and turns, with the data of its camera and its navigation.
 struct Flight {
   double sway = 0.05;  // amplitude of roll and pitch, rad
   double turn = 0.2;   // rad/s
   double climb_m = 3;  // from 2 m up
   double clock_offset_s = 0.12;
-  Eigen::Vector3d angles{0.03, -0.05, 0.06};  // of the mount's error: roll, pitch, yaw
+  Eigen::Vector3d angles{0.03, -0.05, 0.06};  // roll, pitch, yaw of the mount's error
   double target_speed_mps = 0;
   double noise_m = 0.005;
-  double scale = 1;  // of the distances that the camera reports
+  double scale = 1;  // factor of the distances that the camera reports
 
   RigidTransform WorldFromBody(double t) const {
     return {Turn(turn * t, Eigen::Vector3d::UnitZ()) *
@@ -134,7 +134,8 @@ TEST(CalibrateFlight, LeavesOutWhatIsNotThePattern) {
 }
 
 TEST(CalibrateFlight, SaysWhatTheFlightCannotTell) {
-  // It hangs still: nothing tells the mount from where the target is, nor one time from another.
+  // It hangs still: nothing distinguishes the mount from the place of the target, or one time from
+  // another.
   Flight flight{.sway = 0, .turn = 0, .climb_m = 0};
   flight.noise_m = 0.02;
   std::vector<PoseSample> poses = flight.Poses();

@@ -9,10 +9,10 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kMinSamples = 6;  // for a parabola that is not the samples themselves
+constexpr std::size_t kMinSamples = 6;  // for a parabola that does not just pass through them
 
-// The pose at the time of 'at' by the parabolas through 'window', which reaches 'half_window_s'
-// from there at most: what they say at that time, by the normal equations.
+// Returns the pose at the time of 'at' by the parabolas through 'window', which reaches at most
+// 'half_window_s' from there. Solves the normal equations.
 RigidTransform FitAt(const PoseSample& at, std::span<const PoseSample> window,
                      double half_window_s) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();

@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-// The four cubic B-splines that are not zero at the part 's' (0 to 1) of a span.
+// The four cubic B-splines that are not zero at the fraction 's' (0 to 1) of a span.
 Eigen::RowVector4d CubicBasis(double s) {
   const double r = 1 - s;
   return Eigen::RowVector4d(r * r * r, 3 * s * s * s - 6 * s * s + 4, 3 * r * r * r - 6 * r * r + 4,
@@ -38,7 +38,7 @@ TargetPath::TargetPath(const std::vector<Time>& times, const Eigen::VectorXd& we
     : weights_(weights) {
   Eigen::MatrixXd design = knot_spacing_s > 0 ? SplineDesign(times, knot_spacing_s)
                                               : Eigen::MatrixXd::Ones(weights.size(), 1);
-  // Columns without data (a gap in the flight) have no rank and fall away.
+  // Columns without data (a gap in the flight) do not add to the rank and are dropped.
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(weights_.asDiagonal() * design);
   basis_ = qr.householderQ() * Eigen::MatrixXd::Identity(weights.size(), qr.rank());
 }
