@@ -20,7 +20,7 @@ cairo_surface_t* MakeSurface(Canvas::Format format, const std::string& file,
     return cairo_svg_surface_create(file.c_str(), size.x(), size.y());
   }
   cairo_surface_t* const surface = cairo_pdf_surface_create(file.c_str(), size.x(), size.y());
-  // Else it is the time of writing.
+  // The default is the time of writing.
   cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
   cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, "Kestrel landing pattern");
   return surface;

@@ -10,33 +10,33 @@
 
 namespace kestrel {
 
-// Pages of vector drawings, in metres: x to the right, y down from the upper left corner.
+// Pages of vector drawings in metres: x to the right, y down from the upper left corner.
 class Canvas {
  public:
   enum class Format { kPdf, kSvg };
 
-  // Writes 'file'; an SVG has one page. Nothing in it depends on the time.
+  // Writes 'file'; an SVG has one page. The content of the file does not depend on the time.
   Canvas(Format format, const std::string& file, const Eigen::Vector2d& page_size_m);
 
-  // Begins a page after the first.
+  // Begins another page.
   void NextPage();
 
-  // Writes what is drawn. Throws InputError when the file cannot be written.
+  // Writes the drawing. Throws InputError when the file cannot be written.
   void Finish();
 
   struct Ink {
     double red, green, blue;
   };
   void SetInk(const Ink& ink);
-  void Fill();  // what the path encloses
+  void Fill();  // fills the path
   void Line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double width_m);
   void Rectangle(const Eigen::Vector2d& corner, const Eigen::Vector2d& size);  // adds to the path
 
-  // 'align': 0 begins at 'base', 0.5 is centred on it, 1 ends there.
+  // 'align': the text begins at 'base' (0), is centred on it (0.5) or ends there (1).
   void Text(const Eigen::Vector2d& base, double height_m, const std::string& text,
             double align = 0);
 
-  // Draws in coordinates that are moved, turned (rad, clockwise as seen) and scaled.
+  // Draws in coordinates that are moved, rotated (rad, clockwise as seen) and scaled.
   void Within(const Eigen::Vector2d& origin, double angle, double scale,
               const std::function<void()>& draw);
 

@@ -21,12 +21,12 @@ using Eigen::Vector2d;
 
 constexpr double kMaxPage_m = 14400 * 0.0254 / 72;
 constexpr Canvas::Ink kBlack{0, 0, 0};
-constexpr Canvas::Ink kGray{0.5, 0.5, 0.5};  // of what is on the board and not of the pattern
+constexpr Canvas::Ink kGray{0.5, 0.5, 0.5};  // for what is on the board but not part of the pattern
 constexpr Canvas::Ink kBlue{0.2, 0.5, 1};
 constexpr double kTextHeight_m = 0.004;
 constexpr double kThinLine_m = 0.0002;
 
-// Around the centre of the board.
+// The origin is the centre of the board.
 void DrawRingAndCross(const LandingPattern& pattern, Canvas* canvas) {
   cairo_t* const cairo = canvas->cairo();
   canvas->SetInk(kBlack);
@@ -38,7 +38,7 @@ void DrawRingAndCross(const LandingPattern& pattern, Canvas* canvas) {
   cairo_close_path(cairo);
   canvas->Fill();
   const Vector2d half_arm(pattern.arm_half_length_m, 0.5 * pattern.arm_width_m);
-  if (half_arm.norm() > pattern.outer_radius_m()) {  // the corners of the arms end with the ring
+  if (half_arm.norm() > pattern.outer_radius_m()) {  // the ring cuts off the corners of the arms
     cairo_arc(cairo, 0, 0, pattern.outer_radius_m(), 0, 2 * kPi);
     cairo_clip(cairo);
   }
@@ -48,13 +48,13 @@ void DrawRingAndCross(const LandingPattern& pattern, Canvas* canvas) {
   }
 }
 
-// From the upper left corner of the board.
+// The origin is the upper left corner of the board.
 void DrawBoard(const LandingPattern& pattern, Canvas* canvas) {
   canvas->Within(Vector2d::Constant(0.5 * pattern.board_size_m), 0.25 * kPi, 1,
                  [&] { DrawRingAndCross(pattern, canvas); });
 }
 
-// To the right from the origin, ticks upwards; 'scale' of ticks and text.
+// Draws to the right from the origin, with ticks upwards. 'scale': of ticks and text.
 void DrawRuler(double length_m, double scale, Canvas* canvas) {
   constexpr int kTicks = 20;
   const double line = scale * kThinLine_m;
@@ -84,7 +84,7 @@ void DrawLines(const std::vector<std::string>& lines, const Vector2d& first, dou
   }
 }
 
-// Rulers in the lower left corner of the board, words in the lower right one.
+// Draws rulers in the lower left corner of the board and text in the lower right one.
 void DrawNotes(const LandingPattern& pattern, Canvas* canvas) {
   const double size = pattern.board_size_m;
   const double scale = std::min(1.0, size / 0.75);
@@ -115,7 +115,7 @@ void DrawWholeBoard(const LandingPattern& pattern, Canvas* canvas) {
   DrawNotes(pattern, canvas);
 }
 
-// At the four corners of the tile, outside of it.
+// Draws marks at the four corners of the tile, outside of it.
 void DrawCutMarks(const Tiling& tiling, Canvas* canvas) {
   constexpr double kFrom_m = 0.001, kTo_m = 0.005;
   for (const double right : {0.0, 1.0}) {
@@ -225,7 +225,7 @@ double RulerLength(const LandingPattern& pattern) {
   constexpr double kLongest_m = 0.2;
   const double room = 0.25 * pattern.board_size_m;
   if (room >= kLongest_m) return kLongest_m;
-  // The largest of ... 0.01, 0.02, 0.05, 0.1 ... m that has room.
+  // Returns the largest of ... 0.01, 0.02, 0.05, 0.1 ... m that fits.
   const double decade = std::pow(10, std::floor(std::log10(room)));
   for (const double step : {5, 2}) {
     if (step * decade <= room) return step * decade;

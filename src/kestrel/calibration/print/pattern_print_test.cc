@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Renders what was printed, as a print shop does, and measures it.
+// Renders the files as a print shop does, and measures the result.
 #include "kestrel/calibration/print/pattern_print.h"
 
 #include <cmath>
@@ -29,7 +29,7 @@ bool CanRun(const std::string& program) {
   return std::system(fmt::format("command -v {} >/dev/null", program).c_str()) == 0;
 }
 
-// A page (from 1) as an image; the renderer rounds its size up to whole pixels.
+// Renders a page (from 1); the renderer rounds its size up to whole pixels.
 cv::Mat RenderPdf(const std::string& file, int page, double pixels_per_m) {
   const std::string image = file + ".page";
   const std::string command = fmt::format("pdftoppm -r {} -f {} -l {} -gray -singlefile '{}' '{}'",
@@ -46,8 +46,8 @@ cv::Mat RenderSvg(const std::string& file, double pixels_per_m) {
   return ReadGrayImage(image);
 }
 
-// Black on the way from one point to the other (m, from the upper left corner), in m: exact where
-// the edges are at right angles to it.
+// Length of black on the line between two points (m, from the upper left corner), in m; exact where
+// the edges are at right angles to the line.
 double BlackAlong(const cv::Mat& page, double pixels_per_m, const Vector2d& from,
                   const Vector2d& to) {
   constexpr double kStep_px = 0.05;
@@ -135,7 +135,7 @@ TEST_F(PatternPrintTest, ArmsThatReachTheRingEndWithIt) {
   }
 }
 
-// The middle of a line that crosses 'window' (px) of a page upright, in px from the page's left.
+// The middle of a line across 'window' (px) of an upright page, in px from the page's left edge.
 double LineAt(const cv::Mat& page, const cv::Rect& window) {
   cv::Mat ink;
   cv::reduce(255 - page(window), ink, 0, cv::REDUCE_SUM, CV_64F);
@@ -147,7 +147,7 @@ double LineAt(const cv::Mat& page, const cv::Rect& window) {
   return window.x + moment / sum;
 }
 
-// Where the cut marks of a page are: left and right edge of its tile, in px from the page's left.
+// The positions of a page's cut marks: left and right edge of its tile, in px from the page's left.
 Vector2d CutMarks(const cv::Mat& page, double scale, const Tiling& tiling) {
   Vector2d marks;
   for (const int right : {0, 1}) {
@@ -160,7 +160,7 @@ Vector2d CutMarks(const cv::Mat& page, double scale, const Tiling& tiling) {
   return marks;
 }
 
-// The board, glued from sheets that were cut at their marks.
+// The board, glued together from sheets that were cut at their marks.
 cv::Mat Assemble(const std::vector<std::string>& sheets, double scale, const Tiling& tiling,
                  double board_size_m) {
   Tiling turned = tiling;
@@ -178,7 +178,7 @@ cv::Mat Assemble(const std::vector<std::string>& sheets, double scale, const Til
     const Vector2d end = corner + scale * tiling.tile;
     const cv::Rect place(cv::Point(cvRound(corner.x()), cvRound(corner.y())),
                          cv::Point(cvRound(end.x()), cvRound(end.y())));
-    // From the board's pixels to the sheet's, whose centres are at halves.
+    // Maps the board's pixels to the sheet's, whose centres are at halves.
     const cv::Matx23d sheet_from_board(1, 0, place.x - corner.x() + across[0], 0, 1,
                                        place.y - corner.y() + down[0]);
     cv::warpAffine(sheet, board(place), sheet_from_board, place.size(),
@@ -220,7 +220,7 @@ TEST_F(PatternPrintTest, RulersAreTrue) {
   const double scale = 2000;
   PrintPatternSvg(pattern, folder_ / "p.svg");
   const cv::Mat page = RenderSvg(folder_ / "p.svg", scale);
-  // The long ticks at the ends of the lower ruler reach beyond those between.
+  // The long ticks at the ends of the lower ruler are longer than those between.
   const double base = 1.5 - 0.006, tick = 0.00325;
   const cv::Rect window(static_cast<int>(0.0110 * scale), static_cast<int>((base - tick) * scale),
                         static_cast<int>(0.002 * scale), 1);

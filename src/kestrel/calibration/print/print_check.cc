@@ -8,9 +8,9 @@
 namespace kestrel {
 namespace {
 
-// A tolerance that is a larger part of what is measured tells nothing.
+// A larger tolerance, relative to the dimension, is not good enough for a verdict.
 constexpr double kMaxTolerance = 0.1;
-constexpr double kLeastGap_px = 6;  // between arm and ring, that is seen
+constexpr double kLeastGap_px = 6;  // smallest visible gap between arm and ring
 
 PrintVerdict Judge(const CheckedDimension& dimension) {
   const double difference = std::abs(dimension.measured->value_m - dimension.configured_m);

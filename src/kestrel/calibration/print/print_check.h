@@ -13,11 +13,11 @@ namespace kestrel {
 enum class PrintVerdict {
   kGood,
   kWrong,
-  kTooCoarse,  // the photograph does not tell
+  kTooCoarse,  // the photograph is not accurate enough
 };
 const char* ToString(PrintVerdict verdict);  // "good", "WRONG", "cannot tell"
 
-// A dimension of the pattern, by the name of its option, and what was measured of it.
+// A dimension of the pattern, with the name of its option, and its measurement.
 struct CheckedDimension {
   std::string option;
   double configured_m;
@@ -28,18 +28,18 @@ struct CheckedDimension {
   double tolerance_m() const { return measured ? 3 * measured->sigma_m : 0; }
 };
 
-// How large a print is to what is configured, with its standard deviation.
+// Size of a print relative to the configuration, with its standard deviation.
 struct PrintScale {
   double value;
   double sigma;
 };
-// By the camera's distance from the middle of the pattern, measured to a hundredth, and by the
-// ruler on the print, measured to a fifth of a millimetre.
+// Return the scale from the camera's distance to the middle of the pattern, measured to 1 %, and
+// from the ruler on the print, measured to a fifth of a millimetre.
 PrintScale ScaleByDistance(double distance_m, const PrintMeasurement& print);
 PrintScale ScaleByRuler(double ruler_m, const LandingPattern& configured);
 
-// Holds a measured print against the configuration. Without a scale only the proportions: the outer
-// diameter is then taken for right and is not among the results.
+// Compares a measured print with the configuration. Without a scale it checks the proportions only:
+// the outer diameter is then assumed to be right and is not among the results.
 std::vector<CheckedDimension> CheckPrint(const LandingPattern& configured,
                                          const PrintMeasurement& print,
                                          const std::optional<PrintScale>& scale);

@@ -14,9 +14,9 @@
 namespace kestrel {
 namespace {
 
-// What is estimated: the rotation vector by which the pose differs from where it began (in the
-// camera), translation (m), logarithm of the zoom, bend of the lens, spread of the black over the
-// white, dimensions (m).
+// The estimated parameters: rotation vector of the pose relative to its initial value (in the
+// camera's frame), translation (m), logarithm of the zoom, bend of the lens, spread of the black
+// over the white, dimensions (m).
 enum Parameter {
   kTurn = 0,
   kTranslation = 3,
@@ -30,14 +30,14 @@ enum Parameter {
 };
 constexpr double kSpreadSigma_px =
     0.6;                               // of optics, exposure and gamma: real frames have up to 1.1
-constexpr double kEdgeSigma_px = 0.2;  // before anything is known
+constexpr double kEdgeSigma_px = 0.2;  // initial value
 constexpr double kLeastSigma_px = 0.05;
-constexpr double kUnmodelled_px = 0.15;  // of a dimension: gaps of few pixels, more of the lens
+constexpr double kUnmodelled_px = 0.15;  // of a dimension: gaps of few pixels, and lens errors
 constexpr double kHuber = 2;             // standard deviations
-// Of 180, about 100, 96 and 28.
+// Fewest edges: of 180 on the outer and about 100 on the inner circle, 96 on sides, 28 on ends.
 constexpr int kMinCircle = 60, kMinSides = 40, kMinEnds = 14;
 
-// How far an edge is from its outline, in its standard deviations.
+// Distance of an edge from its outline, in standard deviations of the edge.
 struct LineError {
   template <class T>
   bool operator()(const T* state, T* residual) const {
@@ -89,7 +89,7 @@ struct LineError {
   PrintLine line;
   Eigen::Vector2d outwards;
   Eigen::Vector3d ray;
-  double corner_share;  // squared distance from the axis, over that of the corner
+  double corner_share;  // squared distance from the axis, relative to the corner's
   Eigen::Matrix3d pattern_from_camera;
   double outer_radius;
   double sigma_m;
@@ -132,8 +132,8 @@ class LineFit {
                        start_.pattern.outer_radius_m(), kEdgeSigma_px * start_.pixel_m});
   }
 
-  // Once with the scatter that is expected and again with the one that there is. False when that
-  // has no solution. 'with_ends': whether the length of the arms is seen.
+  // Solves twice: with the expected scatter, and with the actual one. Returns false when there is
+  // no solution. 'with_ends': the length of the arms is visible.
   bool Solve(bool with_ends) {
     for (int round = 0; round < 2; ++round) {
       if (round > 0) {
@@ -221,7 +221,7 @@ class LineFit {
            covariance.GetCovarianceBlock(block, block, covariance_.data());
   }
 
-  // Standard deviation of the edges from their outlines by the median, m.
+  // Standard deviation of the edges from their outlines, estimated by the median, m.
   double Scatter() const {
     std::vector<double> magnitudes;
     for (const LineError& error : errors_) {

@@ -10,30 +10,30 @@
 
 namespace kestrel {
 
-// Where a print is and what it is like, about.
+// An approximate or measured print: its pose, its pattern and the camera.
 struct FoundPrint {
   CameraIntrinsics camera;
   RigidTransform camera_from_pattern;
   LandingPattern pattern;
-  double pixel_m;  // of the print that a pixel shows
+  double pixel_m;  // size of a pixel on the print
 };
 
-// What is known of a lens before a print is looked at.
+// Prior knowledge of a lens.
 struct LensPrior {
-  double zoom_sigma;  // relative, of the focal length
-  double bend_sigma;  // by what part the corners of the image may lie farther out
-  double focal_px;    // the likeliest
+  double zoom_sigma;  // relative standard deviation of the focal length
+  double bend_sigma;  // standard deviation of the shift of the image's corners outwards, relative
+  double focal_px;    // the most likely focal length
 };
 
 struct PrintFit {
   PrintMeasurement measurement;
-  FoundPrint print;    // by what was measured
-  bool is_consistent;  // the edges lie on outlines, and black and white spread no more than usual
+  FoundPrint print;    // with the measured values
+  bool is_consistent;  // the edges lie on outlines, and the spread of black is usual
 };
 
-// Dimensions, pose and lens that bring the outlines of 'print' nearest to 'edges', robust least
-// squares from what it is about; the outer diameter is that of its pattern. Nothing where the edges
-// are too few.
+// Estimates dimensions, pose and lens with which the outlines of 'print' come nearest to 'edges',
+// by robust least squares from approximate values. The outer diameter is fixed to that of the
+// pattern. Returns nothing when there are too few edges.
 std::optional<PrintFit> FitPrint(std::span<const PrintLineEdge> edges, const LensPrior& lens,
                                  const FoundPrint& print);
 

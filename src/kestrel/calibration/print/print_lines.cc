@@ -15,10 +15,10 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kStep_px = 0.5;
-constexpr float kLeastContrast = 20;  // gray values, of white over black
+constexpr float kLeastContrast = 20;  // of white over black, gray values
 constexpr double kSmoothing_px = 0.8;
 
-// Looks at the print along lines of its plane.
+// Samples the image along lines in the plane of the print.
 class PrintLines {
  public:
   PrintLines(const cv::Mat& image, const CameraModel& camera,
@@ -27,8 +27,8 @@ class PrintLines {
     cv::GaussianBlur(image, image_, cv::Size(), kSmoothing_px);
   }
 
-  // The pixel where a line that begins in black gets bright; nothing where it does not, or the
-  // image does not show all of it.
+  // Returns the pixel where a line that begins in black gets bright; nothing when it does not, or
+  // when the image does not contain all of it.
   std::optional<Vector2d> FirstRise(const Vector2d& from, const Vector2d& to) {
     if (!Sample(from, to)) return std::nullopt;
     const float black = gray_.front();
@@ -80,7 +80,7 @@ class PrintLines {
     return mix(mix(upper[0], upper[1], u), mix(lower[0], lower[1], u), v);
   }
 
-  // Median of what is brighter than 'least'.
+  // Median of the values above 'least'.
   float WhiteAbove(float least) {
     sorted_.clear();
     std::copy_if(gray_.begin(), gray_.end(), std::back_inserter(sorted_),
@@ -99,12 +99,12 @@ class PrintLines {
 
 Vector2d Direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
-// Across the circles, each from the middle of the ring.
+// Finds edges across the circles, from the middle of the ring.
 void FindCircles(const LandingPattern& pattern, PrintLines* lines,
                  std::vector<PrintLineEdge>* edges) {
   constexpr int kCount = 180;
-  constexpr double kBeside = 0.35;  // rad from an arm, where the white between arm and ring ends
-  constexpr double kBeyond = 0.15;  // of the outer radius, that is looked at outside of it
+  constexpr double kBeside = 0.35;  // rad from an arm, at which the white between arm and ring ends
+  constexpr double kBeyond = 0.15;  // search range outside of the outer radius, relative to it
   const double middle = pattern.outer_radius_m() - 0.5 * pattern.ring_width_m;
   const double inside = 0.7 * pattern.inner_radius_m();
   for (int i = 0; i < kCount; ++i) {
@@ -124,7 +124,7 @@ void FindCircles(const LandingPattern& pattern, PrintLines* lines,
   }
 }
 
-// Across the sides of the arms, from their axes; and along them over their ends.
+// Finds edges across the sides of the arms, from their axes, and along the arms over their ends.
 void FindArms(const LandingPattern& pattern, PrintLines* lines, std::vector<PrintLineEdge>* edges) {
   constexpr int kSides = 12, kEnds = 7;
   const double first = 1.8 * pattern.arm_width_m;

@@ -12,19 +12,19 @@
 
 namespace kestrel {
 
-// Which outline of a print an edge belongs to.
+// The outline of a print that an edge belongs to.
 enum class PrintLine { kOuterCircle, kInnerCircle, kArmSide, kArmEnd };
 
 // An edge of a print in an image.
 struct PrintLineEdge {
   PrintLine line;
-  Eigen::Vector2d outwards;  // of arms: unit vector of the plane from black to white
+  Eigen::Vector2d outwards;  // for arms: unit vector in the plane from black to white
   Eigen::Vector2d pixel;
 };
 
-// Where the brightness rises half of its way from the black of ring and arms to the white beside
-// them, along lines across all outlines of the print: wherever that is, not only near to where the
-// pattern would have it. 'image' is CV_8UC1.
+// Finds the points where the brightness has risen half of the way from the black of ring and arms
+// to the white beside them, along lines across all outlines of the print. It takes the edge
+// wherever it is on the line, not only near its expected place. 'image' is CV_8UC1.
 std::vector<PrintLineEdge> FindPrintLineEdges(const cv::Mat& image, const CameraModel& camera,
                                               const RigidTransform& camera_from_pattern,
                                               const LandingPattern& pattern);

@@ -12,7 +12,7 @@
 namespace kestrel {
 namespace {
 
-constexpr double kLargest_px = 1600;  // side of an image in which the pattern is looked for
+constexpr double kLargest_px = 1600;  // side of the image in which the pattern is searched
 
 CameraIntrinsics Pinhole(const cv::Size& size, double focal_px) {
   return {size.width,
@@ -25,7 +25,7 @@ CameraIntrinsics Pinhole(const cv::Size& size, double focal_px) {
           {}};
 }
 
-// Lenses of telephones and cameras, in the order in which they are likely.
+// Lenses of telephones and cameras, the most likely first.
 std::vector<CameraIntrinsics> LikelyCameras(const cv::Size& size) {
   std::vector<CameraIntrinsics> cameras;
   const double side = std::max(size.width, size.height);
@@ -45,7 +45,7 @@ CameraIntrinsics Scaled(CameraIntrinsics camera, const cv::Size& size) {
   return camera;
 }
 
-// The pattern first, and what a print may be that was made for another configuration.
+// The pattern itself, then prints that were made for other configurations.
 std::vector<LandingPattern> LikelyPatterns(const LandingPattern& pattern) {
   std::vector<LandingPattern> patterns{pattern};
   for (const double ring : {1.0, 0.7, 1.4}) {
@@ -62,12 +62,12 @@ std::vector<LandingPattern> LikelyPatterns(const LandingPattern& pattern) {
   return patterns;
 }
 
-// How well a calibrated lens is known, and one that is assumed.
+// The prior of a calibrated lens, or of an assumed one.
 LensPrior PriorOf(const CameraIntrinsics& camera, bool is_calibrated) {
   return is_calibrated ? LensPrior{0.003, 0.002, camera.fx_px} : LensPrior{0.4, 0.03, camera.fx_px};
 }
 
-// Finds a print and measures it, with one assumption about camera and pattern after the other.
+// Finds and measures a print, trying one assumption about camera and pattern after the other.
 class PrintSearch {
  public:
   explicit PrintSearch(const cv::Mat& image) : image_(image), small_(image) {
@@ -83,7 +83,7 @@ class PrintSearch {
     const double ring_px = 2 * report.detection->ring_semi_major_px * image_.cols / small_.cols;
     const FoundPrint found{camera, report.detection->camera_from_pattern, options.pattern,
                            options.pattern.outer_diameter_m / ring_px};
-    // Again from where the lines are better across the outlines.
+    // Repeated with the measured pattern, whose lines cross the outlines better.
     std::optional<PrintFit> fit = Fit(found, lens);
     if (!fit || !fit->print.pattern.Validate().empty()) return std::nullopt;
     return Fit(fit->print, lens);

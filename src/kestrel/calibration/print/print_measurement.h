@@ -17,24 +17,23 @@ struct MeasuredLength {
   double sigma_m;
 };
 
-// The dimensions of a print in a photograph, in what its outer diameter is configured to be: a
+// The dimensions of a print in a photograph, relative to the configured outer diameter, as a
 // photograph has no scale.
 struct PrintMeasurement {
   MeasuredLength ring_width;
   MeasuredLength arm_width;
-  // Nothing where no ends are seen: the arms reach the ring, or the gap is too narrow for the
-  // image.
+  // Nothing when no ends are seen: the arms reach the ring, or the gap is too narrow for the image.
   std::optional<MeasuredLength> arm_half_length;
   MeasuredLength distance;  // from the camera to the middle of the print
-  double pixel_m;           // of the print that a pixel shows, there
+  double pixel_m;           // size of a pixel on the print, there
   double ring_px;           // diameter of the ring in the image
 };
 
-// Measures the print in 'image' (CV_8UC1), all of which should be in view. 'camera': of the image's
-// size; without it a pinhole camera with little distortion is assumed, and the distance is worth
-// nothing. Dimensions may be half as much more or a third less than those of 'options'. The
-// standard deviations hold the scatter of the edges, by how much white may have spread over black,
-// and what is not known of the lens. Nothing where the pattern is not found, or too small to be
+// Measures the print in 'image' (CV_8UC1), which should show all of it. 'camera': has the image's
+// size; without it a pinhole camera with little distortion is assumed, and the distance is
+// meaningless. Dimensions may be up to half larger or a third smaller than those of 'options'. The
+// standard deviations include the scatter of the edges, the spread of white over black, and the
+// uncertainty of the lens. Returns nothing when the pattern is not found or is too small to be
 // measured. Throws InputError when camera or options are not valid.
 std::optional<PrintMeasurement> MeasurePrint(const cv::Mat& image,
                                              const std::optional<CameraIntrinsics>& camera,

@@ -17,7 +17,7 @@ namespace {
 using Eigen::AngleAxisd;
 using Eigen::Vector3d;
 
-// Of a telephone, with a little barrel distortion.
+// The lens of a telephone, with a little barrel distortion.
 CameraIntrinsics Telephone() {
   return {1344, 1008, 967, 967, 680, 499, DistortionModel::kRadialTangential, {-0.02, 0, 0, 0}};
 }

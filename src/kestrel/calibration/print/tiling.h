@@ -10,31 +10,31 @@
 
 namespace kestrel {
 
-// Names of the sizes of paper, largest first: a0 to a4.
+// Returns the names of the paper sizes, largest first: a0 to a4.
 std::vector<std::string> PaperNames();
 
-// Width and height in m of a sheet, upright (ISO 216); nothing for another name.
+// Returns width and height (m) of an upright sheet (ISO 216); nothing for another name.
 std::optional<Eigen::Vector2d> PaperSize(std::string_view name);
 
-// A square board cut into equal tiles, one a sheet, that meet without overlap. Metres; x to the
-// right, y down from the upper left corner of sheet or board.
+// A square board cut into equal tiles, one per sheet, that meet without overlap. In metres; x to
+// the right, y down from the upper left corner of sheet or board.
 struct Tiling {
-  Eigen::Vector2d sheet;          // its size
-  Eigen::Vector2d tile;           // its size
+  Eigen::Vector2d sheet;          // size of a sheet
+  Eigen::Vector2d tile;           // size of a tile
   Eigen::Vector2d tile_on_sheet;  // upper left corner
   int rows;
   int columns;
 
   int count() const { return rows * columns; }
-  // Upper left corner of a tile; row and column count from 0.
+  // Returns the upper left corner of a tile; row and column count from 0.
   Eigen::Vector2d TileOnBoard(int row, int column) const {
     return {column * tile.x(), row * tile.y()};
   }
 };
 
-// The tiling with the fewest sheets, upright or on their side, with room around each tile for what
-// printers leave white and for marks. 'paper': size of an upright sheet. Throws InputError when the
-// board needs more sheets than anyone glues.
+// Returns the tiling with the fewest sheets, upright or on their sides, with room around each tile
+// for the printer's margins and for marks. 'paper': size of an upright sheet. Throws InputError
+// when the board needs more than 1000 sheets.
 Tiling TileBoard(double board_size_m, const Eigen::Vector2d& paper);
 
 }  // namespace kestrel

@@ -23,7 +23,7 @@ TEST(TilingTest, TilesCoverTheBoardAndFitTheirSheets) {
 
 TEST(TilingTest, TurnsTheSheetWhereThatSavesSome) {
   EXPECT_EQ(TileBoard(1.5, *PaperSize("a4")).count(), 48);
-  const Tiling wide = TileBoard(0.27, *PaperSize("a4"));  // 2 x 1 either way: stays upright
+  const Tiling wide = TileBoard(0.27, *PaperSize("a4"));  // 2 x 1 both ways: stays upright
   EXPECT_EQ(wide.count(), 2);
   EXPECT_LT(wide.sheet.x(), wide.sheet.y());
   for (double board = 0.1; board < 3; board += 0.05) {
