@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Prints how well the landing pattern is found: on the real frames, on independently rendered
-// stills and on our own, as Markdown tables, and holds the results against the limits.
+// Prints how well the landing pattern is found on the real frames, on independently rendered stills
+// and on our own, as Markdown tables, and compares the results with the limits.
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -41,7 +41,7 @@ struct Limit {
   double bound;
 };
 
-// What must hold. Shares and errors of the position in percent.
+// The limits. Shares and errors of the position in percent.
 constexpr Limit kLimits[] = {
     {"real: found, %", true, 99},
     {"real: detections elsewhere or without pattern", false, 0},
@@ -66,7 +66,7 @@ constexpr Limit kLimits[] = {
 
 using Measured = std::map<std::string, double>;
 
-// Prints the limits; true when those that were measured hold.
+// Prints the limits. Returns true when all that were measured hold.
 bool PrintLimits(const Measured& measured) {
   fmt::print("\n## Limits\n\n| limit | wanted | measured | |\n|---|---|---|---|\n");
   bool all_hold = true;
@@ -99,7 +99,7 @@ const char* ToString(LandingOutcome outcome) {
   return "";
 }
 
-// One line on a fault, for the reader who wants to know why.
+// Returns one line about a fault, with the reason.
 std::string Describe(const LandingFrame& frame, const LandingScore& score) {
   std::string line = fmt::format("- {}: {}", score.name, ToString(score.outcome));
   if (frame.truth != PatternTruth::kNone) {
@@ -116,7 +116,7 @@ std::string Describe(const LandingFrame& frame, const LandingScore& score) {
                             score.detected_px.x(), score.detected_px.y(), score.quality);
 }
 
-// Collects what went wrong, and writes its images when the user wants them.
+// Collects the faults, and writes their images if the user wants them.
 class FaultLog {
  public:
   explicit FaultLog(const Options& options) : options_(options) {}
@@ -362,7 +362,7 @@ std::vector<LandingScore> ReportStillsOfBin(std::size_t bin, int stills, FaultLo
   return scores;
 }
 
-// Found of so many, by altitude and by what makes them hard.
+// Found of all, by altitude and by hardship.
 void PrintStillsByGroup(const std::vector<std::vector<LandingScore>>& bins) {
   fmt::print("\n| found of |");
   for (const AltitudeBin& bin : kAltitudeBins) fmt::print(" {} |", bin.Name());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Usage: bag_read messages|frames BAG. Reads all of a bag, as scripts/bag_cost measures it: every
-// message, as its bytes in memory of the caller, or every frame, with all that Kestrel takes of a
-// bag before the first. Prints how many there were and the seconds of the processor that took.
+// Usage: bag_read messages|frames BAG. Reads all of a bag, for scripts/bag_cost: each message as
+// bytes in the caller's memory, or each frame, with everything that Kestrel reads from a bag before
+// the first frame. Prints their number and the processor time in seconds.
 #include <cstddef>
 #include <cstdio>
 #include <ctime>

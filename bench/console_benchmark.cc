@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the console costs the vision thread: the time of a frame, landing pipeline and hand-over to
-// the flight's console, at 30 Hz with nobody looking, with one browser, and with 20 of which one is
-// stalled. The browsers are threads of this program, less urgent than all else, as they would be on
-// another computer. The rounds of all three are taken in turn, so that noise hits all alike.
+// Measures the cost of the console for the vision thread: the time of a frame, for the landing
+// pipeline and the hand-over to the flight's console, at 30 Hz with no browser, with one, and with
+// 20 of which one is stalled. The browsers are threads of this program with a low priority, as if
+// they were on another computer. The rounds of all three alternate, so that noise affects all
+// alike.
 #include <algorithm>
 #include <atomic>
 #include <memory>
@@ -60,7 +61,7 @@ double ThreadTime_ms() {
   return 1e3 * time.tv_sec + 1e-6 * time.tv_nsec;
 }
 
-// What the vision of a flight does with a frame where there is a console.
+// The work of a flight's vision on a frame with a console.
 class Vision {
  public:
   explicit Vision(FlightConsole* console)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Prints how well coloured objects are found: on the real frame, on the independently rendered
-// flights, and on recordings of your own that have a truth.
+// flights, and on your own recordings with truth.
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Speed of the object detector on 1280 x 720, one thread, beside what others do to every pixel: a
-// scalar pass of table look-ups (with which the authors' code begins), and the masks and connected
-// components of OpenCV.
+// Speed of the object detector on 1280 x 720 with one thread, compared with other work on all
+// pixels: a scalar pass of table look-ups (the first step of the authors' code), and the masks and
+// connected components of OpenCV.
 #include <algorithm>
 #include <cstdint>
 #include <ctime>
@@ -72,8 +72,7 @@ void BM_OpenCv(benchmark::State& state) {
   }
 }
 
-// Processor time within which 99 of 100 frames with 0 to 7 discs are done, as a multiple of their
-// median.
+// 99th percentile of the processor time for frames with 0 to 7 discs, relative to the median.
 void BM_FlightP99(benchmark::State& state) {
   constexpr int kFrames = 400;
   const cv::Size size(1280, 720);

@@ -29,7 +29,7 @@ struct AnnotatedDisc {
   std::string color;
 };
 
-// Columns file, u, v, radius_px, colour; what follows is remarks, with commas in quotes.
+// Columns file, u, v, radius_px, colour; the rest of a line is remarks, with commas in quotes.
 std::vector<AnnotatedDisc> ReadAnnotations(const fs::path& path) {
   std::istringstream lines(ReadFile(path.string()));
   std::vector<AnnotatedDisc> discs;

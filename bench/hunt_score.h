@@ -13,7 +13,7 @@ namespace kestrel {
 // An annotated disc of the real frame, and the detection nearest to it.
 struct RealDisc {
   std::string color;
-  std::string found_as;  // class; empty: nothing is within 20 px
+  std::string found_as;  // class; empty: no detection within 20 px
   double center_error_px = 0;
 };
 
@@ -26,8 +26,7 @@ struct RealFrameScore {
 // 'folder': hunt_real, a screenshot without calibration; its plot and legend are painted over.
 RealFrameScore ScoreRealFrame(const std::string& folder);
 
-// Digits that are right, of the detections of cuboids wholly in view; a 6 that is upside down is a
-// 9.
+// Digits read right, for the detections of cuboids wholly in view; a 6 upside down is a 9.
 struct DigitScore {
   int right = 0;
   int count = 0;
@@ -35,15 +34,15 @@ struct DigitScore {
 
 struct HuntScore {
   std::vector<ObjectComparison> comparisons;
-  // Of the objects found (px): those that had to be found by shape ("disc, wanted") and together
-  // ("all, wanted"), and "cut off, hidden or small".
+  // Errors of the detected objects (px): of those that must be found by shape ("disc, wanted") and
+  // together ("all, wanted"), and of those that are "cut off, hidden or small".
   std::map<std::string, std::vector<double>> center_errors_px;
   DigitScore digits;
-  DigitScore near_digits;  // of cuboids at most 3 m away
+  DigitScore near_digits;  // for cuboids at most 3 m away
 };
 
-// A recording with its truth through HuntPipeline: clock offset and mount are given as scene.yaml
-// has them, as a calibration would, and the rolling shutter's readout of 25 ms.
+// Runs HuntPipeline over a recording and compares the result with the truth. Clock offset and mount
+// are those of scene.yaml, as from a calibration; the rolling shutter's readout is 25 ms.
 HuntScore ScoreHunt(const std::string& folder, const ObjectModel& model = DefaultObjectModel());
 
 }  // namespace kestrel

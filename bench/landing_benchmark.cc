@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the landing pattern detector's time goes: Google Benchmark on a few frames, the time of its
-// stages over all real frames and its cost against the size of the image. landing_speed has it
-// beside known work.
+// Measures where the landing pattern detector spends its time: Google Benchmark on a few frames,
+// the time of its stages over all real frames, and its time by the size of the image. landing_speed
+// compares it with known methods.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -30,7 +30,7 @@ namespace {
 constexpr int kRounds = 9;
 constexpr double kHintError_m = 0.05;  // standard deviation per axis
 
-// Frames of one camera and what a tracker would tell the detector about each.
+// Frames of one camera and the hints that a tracker would give about each.
 struct Scenes {
   std::string name;
   LandingPatternDetector detector;
@@ -58,7 +58,7 @@ Scenes MakeScenes(const std::string& name, const CameraIntrinsics& camera,
   return scenes;
 }
 
-// The first stills, with the pattern or with look-alikes; the same at every size.
+// The first stills, with the pattern or with look-alikes; the same for each size.
 std::vector<cv::Mat> RenderedImages(const CameraIntrinsics& camera, int count, bool lookalikes) {
   LandingStillOptions options;
   options.camera = camera;
@@ -72,7 +72,7 @@ std::vector<cv::Mat> RenderedImages(const CameraIntrinsics& camera, int count, b
 
 bool IsSequence(const LandingFrameSet& set) { return set.frames.size() > 1; }
 
-// Four frames with the pattern of each sequence, evenly spread.
+// Four frames with the pattern of each sequence, evenly spaced.
 std::vector<cv::Mat> SampleSequences(const std::vector<LandingFrameSet>& real) {
   constexpr std::size_t kPerSequence = 4;
   std::vector<cv::Mat> images;
@@ -168,7 +168,7 @@ double MillisecondsOf(const std::function<void()>& run) {
       .count();
 }
 
-// Time per stage, summed up over frames.
+// Time of each stage, summed over frames.
 struct StageTimes {
   std::array<double, kLandingStageCount> ms{};
   int frames = 0;
@@ -184,7 +184,7 @@ struct FrameTime {
   double detect_ms;
 };
 
-// Goes over all frames kRounds times, round after round.
+// Processes all frames kRounds times, one round after the other.
 std::vector<FrameTime> TimeFrames(const LandingFrameSet& set, StageTimes* stages) {
   const LandingPatternDetector detector(CameraModel(set.camera), {});
   LandingWorkspace workspace;
@@ -229,7 +229,7 @@ void PrintFrames(const LandingFrameSet& set) {
   PrintSlowest(times);
 }
 
-// The real frames camera by camera, those without the pattern too.
+// All real frames, including those without the pattern, camera by camera.
 void PrintAllFrames(const std::vector<LandingFrameSet>& real) {
   LandingFrameSet sequences{"All real 640x360 frames", {}, {}};
   for (const LandingFrameSet& set : real) {
@@ -243,7 +243,7 @@ void PrintAllFrames(const std::vector<LandingFrameSet>& real) {
   if (!sequences.frames.empty()) PrintFrames(sequences);
 }
 
-// The paper's camera with other pixels.
+// The paper's camera with another number of pixels.
 CameraIntrinsics CameraOfSize(double megapixels) {
   CameraIntrinsics camera = PaperCamera();
   const double scale = std::sqrt(1e6 * megapixels / (camera.width_px * camera.height_px));

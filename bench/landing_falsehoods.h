@@ -12,31 +12,31 @@
 
 namespace kestrel {
 
-// A calibration that is not the camera's: another unit of the lens, a zoom, a crop, a guess.
+// A wrong calibration: another unit of the lens, a zoom, a crop, a guess.
 struct CalibrationError {
   std::string_view name;
   CameraIntrinsics (*apply)(CameraIntrinsics camera);
 };
-// All of them; the first changes nothing.
+// Returns all of them; the first changes nothing.
 std::span<const CalibrationError> CalibrationErrors();
 
-// A print that is no flat, rigid one.
+// A print that is not flat.
 struct PrintError {
   std::string_view name;
   double bulge;  // as in LandingStillOptions
   double fold;
   double rolling_skew;
 };
-// All of them; the first one is flat.
+// Returns all of them; the first one is flat.
 std::span<const PrintError> PrintErrors();
 
-// Makers of stills with such a print, one for each of kAltitudeBins.
+// Returns makers of stills with such a print, one for each of kAltitudeBins.
 std::vector<LandingStillMaker> StillMakers(const PrintError& print);
 
-// So many rendered stills of each of kAltitudeBins, the same in every run.
+// Renders this number of stills for each of kAltitudeBins, the same in every run.
 LandingFrameSet RenderStills(int per_altitude, const PrintError& print, int threads);
 
-// What a caller tells the detector about a frame with known pose, right or wrong.
+// A hint of a caller about a frame with known pose, right or wrong.
 struct ToldHint {
   std::string_view name;
   LandingHint (*tell)(const LandingFrame& frame);

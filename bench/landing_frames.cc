@@ -25,8 +25,8 @@ namespace fs = std::filesystem;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// The camera of the sequences has no published calibration; focal length and principal point were
-// measured on its frames.
+// The camera of the sequences has no published calibration; its focal length and principal point
+// were measured in its frames.
 const CameraIntrinsics kSequenceCamera{.width_px = 640,
                                        .height_px = 360,
                                        .fx_px = 370,
@@ -144,7 +144,7 @@ LandingFrameSet ReadHardCondition(const fs::path& folder) {
   LandingFrameSet set{folder.filename().string(), calibration.intrinsics, {}};
   const std::vector<PoseSample> poses = images.poses();
   for (Frame image; images.Next(&image);) {
-    // The navigation of these recordings is exact: it serves as truth and as hint.
+    // The navigation of these recordings is exact: it is the truth and the hint.
     const RigidTransform camera_from_world =
         (PoseAt(poses, image) * *calibration.body_from_camera).Inverse();
     LandingFrame frame;

@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-// Gray values between two images, by a map of 0 to 1.
+// Blends two images by a map of 0 to 1.
 cv::Mat Blend(const cv::Mat& from, const cv::Mat& to, const cv::Mat& share) {
   cv::Mat a, b, out;
   from.convertTo(a, CV_32F);
@@ -30,7 +30,7 @@ cv::Mat Dark(const cv::Mat& image, std::uint64_t seed) {
   return out;
 }
 
-// Too bright by an exposure, and by a light that the board mirrors.
+// Too bright by the exposure, and by lights that the board reflects.
 cv::Mat Overexposed(const cv::Mat& image, std::uint64_t seed) {
   cv::RNG random(seed + 2);
   cv::Mat light = cv::Mat::zeros(image.size(), CV_8U);
@@ -47,7 +47,7 @@ cv::Mat Overexposed(const cv::Mat& image, std::uint64_t seed) {
   return out;
 }
 
-// Blots of a gray of their own, as large as pixels or as rings.
+// Blots with a gray value of their own, in sizes from pixels to rings.
 cv::Mat Dirty(const cv::Mat& image, std::uint64_t seed) {
   cv::RNG random(seed + 3);
   const double size_px = std::exp(random.uniform(std::log(2.0), std::log(20.0)));
@@ -55,7 +55,7 @@ cv::Mat Dirty(const cv::Mat& image, std::uint64_t seed) {
                 std::max(2, static_cast<int>(image.cols / size_px)), CV_32F);
   random.fill(blots, cv::RNG::NORMAL, 0, 1);
   cv::resize(blots, blots, image.size(), 0, 0, cv::INTER_CUBIC);
-  const double least = random.uniform(0.8, 1.8);  // of the noise that is a blot
+  const double least = random.uniform(0.8, 1.8);  // threshold of the noise for a blot
   blots = (blots - least) * random.uniform(1.0, 4.0);
   cv::threshold(blots, blots, 0, 0, cv::THRESH_TOZERO);
   cv::threshold(blots, blots, 1, 1, cv::THRESH_TRUNC);
@@ -63,7 +63,7 @@ cv::Mat Dirty(const cv::Mat& image, std::uint64_t seed) {
   return Blend(image, gray, blots * random.uniform(0.4, 1.0));
 }
 
-// Shadows of arms and rotors: bars and discs that take some of the light.
+// Shadows of arms and rotors: bars and discs that take away some of the light.
 cv::Mat Shadowed(const cv::Mat& image, std::uint64_t seed) {
   cv::RNG random(seed + 4);
   cv::Mat shadow = cv::Mat::zeros(image.size(), CV_32F);

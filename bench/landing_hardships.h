@@ -7,8 +7,8 @@
 
 namespace kestrel {
 
-// What makes a print hard to see, as strong as the seed says: too little light, too much of it,
-// dirt, shadows of thin things.
+// Returns changes that make a print hard to see, with strengths that depend on the seed: too little
+// light, too much light, dirt, shadows of thin things.
 std::span<const ImageVariant> Hardships();
 
 }  // namespace kestrel

@@ -10,7 +10,7 @@
 
 namespace kestrel {
 
-// What the landing pattern detector is measured beside: known work on the same image, by one
+// Known methods that the landing pattern detector is compared with, on the same image and with one
 // thread.
 
 // One cv::adaptiveThreshold, mean of a box of 11 pixels.

@@ -18,7 +18,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Distance of a point to an ellipse along the line to its centre.
+// Distance of a point from an ellipse along the line to its centre.
 double DistanceToEllipse(const Ellipse& ellipse, const Vector2d& point) {
   const Vector2d offset = point - ellipse.center;
   const double scale = std::hypot(offset.dot(ellipse.major_axis()) / ellipse.semi_major,

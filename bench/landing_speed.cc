@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The landing pattern detector's speed in one table, beside what is known: one adaptive threshold,
-// AprilTag 3 and ArUco on the same frames. They take turns, pass by pass, so that noise hits all
-// alike. Times are of the processor and one thread; a frame's is its median over the passes.
+// Speed of the landing pattern detector in one table with known methods on the same frames: one
+// adaptive threshold, AprilTag 3 and ArUco. They alternate, pass by pass, so that noise affects all
+// alike. Times are processor times of one thread; a frame's time is its median over the passes.
 #include <algorithm>
 #include <ctime>
 #include <functional>
@@ -26,9 +26,9 @@ namespace kestrel {
 namespace {
 
 constexpr double kHintError_m = 0.05;  // standard deviation per axis
-constexpr int kMinCallsPerPass = 50;   // a set of few frames is gone through several times
+constexpr int kMinCallsPerPass = 50;   // a set of few frames is repeated
 
-// Largest ratios of times that are wanted, where any are.
+// Largest wanted ratios of times, if any.
 struct Wanted {
   std::optional<double> median_per_threshold = {};
   std::optional<double> p99_per_tag_median = {};
@@ -37,7 +37,7 @@ struct Wanted {
 
 struct SpeedSet {
   LandingFrameSet frames;
-  Wanted whole_frame;  // of Detect without a prediction,
+  Wanted whole_frame;  // for Detect without a prediction,
   Wanted predicted;    // and with one
 };
 
@@ -54,7 +54,7 @@ LandingFrameSet RenderedLookalikes() {
   return set;
 }
 
-// The frames of 'sets', which are of one camera, that 'is_wanted' takes.
+// The frames of 'sets', which have one camera, for which 'is_wanted' is true.
 LandingFrameSet Join(const std::string& name, const std::vector<LandingFrameSet>& sets,
                      const std::function<bool(const LandingFrame&)>& is_wanted) {
   LandingFrameSet joined{name, sets.front().camera, {}};
@@ -70,7 +70,7 @@ std::vector<SpeedSet> MakeSets(const std::string& data_dir) {
   std::vector<LandingFrameSet> real = ReadLandingReal(data_dir);
   const auto sequences =
       std::stable_partition(real.begin(), real.end(), [](const LandingFrameSet& set) {
-        return set.frames.size() == 1;  // the fisheye's
+        return set.frames.size() == 1;  // from the fisheye camera
       });
   const auto every = [](const LandingFrame&) { return true; };
   if (sequences != real.begin()) {
@@ -94,7 +94,7 @@ std::vector<SpeedSet> MakeSets(const std::string& data_dir) {
   return sets;
 }
 
-// What a tracker would tell before a frame with this detection.
+// The hint of a tracker for a frame with this detection.
 LandingHint Predict(const LandingDetection& detection, Random* random) {
   LandingHint hint;
   hint.center_in_camera = detection.camera_from_pattern.translation;
@@ -112,8 +112,8 @@ struct Contestant {
   std::string name;
   std::function<void(std::size_t frame)> run;
   Wanted wanted = {};
-  std::vector<std::size_t> frames = {};            // those that it is run on
-  std::vector<std::vector<double>> times_ms = {};  // of each of them
+  std::vector<std::size_t> frames = {};            // indices of the frames that it runs on
+  std::vector<std::vector<double>> times_ms = {};  // for each of these frames
 };
 
 double ProcessorMs() {
@@ -142,7 +142,7 @@ void RunPasses(int passes, std::vector<Contestant>* contestants) {
   }
 }
 
-// The time below which the part 'p' of the contestant's frames lie.
+// The quantile 'p' of the contestant's frame times.
 double FrameMs(const Contestant& contestant, double p) {
   std::vector<double> medians_ms;
   for (const std::vector<double>& times_ms : contestant.times_ms) {

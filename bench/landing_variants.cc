@@ -50,7 +50,7 @@ cv::Mat Blurred(const cv::Mat& image, std::uint64_t /*seed*/) {
   return out;
 }
 
-// The path is not centred: the truth stays where it was, half a pixel beside the image's.
+// The path is not centred: the truth stays where it was, half a pixel from the image's.
 cv::Mat MovedByFourPixels(const cv::Mat& image, std::uint64_t /*seed*/) {
   cv::Mat path = cv::Mat::zeros(1, 5, CV_32F);
   path.colRange(0, 4) = 0.25;
@@ -98,7 +98,7 @@ LandingFrameSet Mirrored(const LandingFrameSet& set, bool left_right, bool top_b
   camera.cx_px = principal.x();
   camera.cy_px = principal.y();
   const Eigen::Vector3d in_camera(sign.x(), sign.y(), 1);
-  // The print is turned about its normal by the mirror, or swaps its sides as well.
+  // The mirror rotates the print about its normal, or also swaps its sides.
   const Eigen::Vector3d in_print(sign.prod(), 1, 1);
   const int code = left_right && top_bottom ? -1 : left_right ? 1 : 0;
   for (LandingFrame& frame : mirrored.frames) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Prints how well `kestrel calibrate lens` finds lenses: of rendered views against the true one,
-// and of the real sequences, for each of them and with what is found of the pattern by it.
+// Prints how well `kestrel calibrate lens` estimates lenses: for rendered views the error against
+// the true lens; for each of the real sequences the result, and how much of the pattern is found
+// with it.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -27,7 +28,7 @@ namespace kestrel {
 namespace {
 
 constexpr int kThreads = 2;
-constexpr double kMaxAngle = Radians(80);  // to which lenses are compared
+constexpr double kMaxAngle = Radians(80);  // limit for the comparison of lenses
 
 struct Options {
   std::string data_dir = KESTREL_DATA_DIR;
@@ -105,13 +106,13 @@ void ReportRendered(const Options& options) {
                          RenderViews(rendered.camera, options.views, set));
     }
   }
-  // Each of another lens.
+  // Each set has another lens.
   for (const LandingFrameSet& set : ReadLandingHard(options.data_dir)) {
     ReportAgainstTruth("another renderer, " + set.name, set.camera, ImagesOf({set}));
   }
 }
 
-// The fit of some views' focal length, all else of the lens as it is.
+// Fits the focal length to some views; the rest of the lens is fixed.
 std::optional<LensFit> FitFocal(const std::vector<LensView>& views,
                                 const CameraIntrinsics& camera) {
   if (views.empty()) return std::nullopt;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Prints how well the landing pattern is found by light: under the shadows of UAVs and of other
-// things, in glare, darkness, dust and blur; and what is taken for it under the same lights.
+// Prints how well the landing pattern is found in different light: under shadows of UAVs and of
+// other things, in glare, darkness, dust and blur; and what is detected falsely in the same light.
 #include <algorithm>
 #include <filesystem>
 #include <string>
@@ -30,10 +30,10 @@ struct Options {
   int lookalikes = 3000;
   int counterfeits = 500;
   bool verbose = false;
-  std::string keep;  // folder for the images of what is missed or wrong
+  std::string keep;  // folder for the images of misses and false detections
 };
 
-// Stills of one row of the table.
+// The stills of a row of the table.
 struct Row {
   std::string name;
   LandingStillOptions stills;
@@ -110,7 +110,7 @@ class Report {
   }
 
  private:
-  // Every light in turn.
+  // Uses each of the lights in turn.
   void PrintLookalikeRow(const std::string& name, LookalikeSet set, double min_visible, int count) {
     std::vector<LandingStillMaker> makers;
     for (int i = 0; i < kStillConditions; ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Prints whether the map says of yellow discs that they move, and how fast, by the number of
-// sightings: 20 simulated hunts over discs that stand or drive straight on, with the clock offset
-// known and wrong by 20 ms. Usage: mover_accuracy [--hunts N] [--first-seed N]
+// Prints whether the map says that yellow discs move, and how fast, by the number of sightings: 20
+// simulated hunts over discs that stand or drive straight on, with a right clock offset and one
+// that is wrong by 20 ms. Usage: mover_accuracy [--hunts N] [--first-seed N]
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -33,16 +33,16 @@ constexpr std::array kSpeeds_mps = {0.0, 0.3, 0.6, 1.4, 2.0};
 constexpr std::array kClockErrors_ms = {0, 20};
 constexpr double kReadout_s = 0.025;
 
-// What the map says of one disc after each sighting, in their order.
+// The map's reports of one disc after each of its sightings, in order.
 struct DiscReport {
   std::vector<bool> moves;
   std::vector<double> velocity_errors_mps;
 };
-// By error of the clock (ms) and speed.
+// By error of the clock (ms) and speed (m/s).
 using Reports = std::map<std::pair<int, double>, std::vector<DiscReport>>;
 
-// To and fro over an area of 16 m x 10 m at 6 m, as `kestrel simulate hunt` does; every disc is
-// yellow.
+// A flight to and fro over an area of 16 m x 10 m at a height of 6 m, like that of `kestrel
+// simulate hunt`; all discs are yellow.
 HuntSimulationOptions HuntOptions(double speed_mps) {
   return ReadHuntSimulation(
       "sweep", "",
@@ -61,7 +61,7 @@ const std::string& FileOf(const RecordingPlan& plan, const std::string& name) {
   throw InputError("the simulated hunt has no " + name);
 }
 
-// The pipeline of a hunt whose clock offset is wrong by 'clock_error_ms', with all poses.
+// The pipeline of a hunt with all poses, and a clock offset that is wrong by 'clock_error_ms'.
 HuntPipeline MakePipeline(const RecordingPlan& plan, int clock_error_ms) {
   CameraCalibration calibration = HuntCalibration();
   calibration.clock_offset = std::chrono::milliseconds(clock_error_ms);
@@ -74,7 +74,7 @@ HuntPipeline MakePipeline(const RecordingPlan& plan, int clock_error_ms) {
   return pipeline;
 }
 
-// The disc nearest to an entry of the map that was seen at 'time'; null when none is near.
+// The disc nearest to an entry of the map that was seen at this time; null when none is near.
 const TrueSighting* DiscOf(const MappedObject& object, const std::vector<TrueSighting>& sightings) {
   constexpr double kReach_m = 0.7;
   const TrueSighting* nearest = nullptr;
@@ -148,7 +148,7 @@ ReportTable SightingsTable(const Reports& reports) {
   return table;
 }
 
-// Of the discs that were seen at least three times.
+// For the discs that were seen at least three times.
 ReportTable SaidTable(const Reports& reports) {
   constexpr std::size_t kConfirmed = 3;
   ReportTable table{"said",

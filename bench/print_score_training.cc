@@ -16,7 +16,7 @@ constexpr std::size_t kHinges = kKnots * kPrintDoubts;
 constexpr double kRidge = 1e-4;
 constexpr int kRounds = 3;
 constexpr int kSweeps = 150;
-constexpr double kLeastKnot = -99;  // of doubts that are not known
+constexpr double kLeastKnot = -99;  // for unknown doubts
 
 double Sigmoid(double log_odds) { return 1 / (1 + std::exp(-log_odds)); }
 
@@ -41,15 +41,15 @@ const ScoredPrint* MostProbable(const PrintScore& score, const ScoredFrame& fram
   return best;
 }
 
-// The kinds of prints that one is learned from. What speaks against a whole print speaks against a
-// part of one, of which there are fewer.
+// The kinds of prints that one kind is trained with. The doubts of whole prints apply to parts of
+// prints too, of which there are fewer.
 std::vector<PrintKind> LearnedFrom(PrintKind kind) {
   if (kind == PrintKind::kPart) return {PrintKind::kPart, PrintKind::kByEdges};
   return {kind};
 }
 
-// The prints that a kind is learned from: all, or of a frame the most probable pattern and the most
-// probable other one.
+// The prints that a kind is trained with: all, or for each frame the most probable pattern and the
+// most probable other print.
 std::vector<const ScoredPrint*> Select(std::span<const ScoredFrame> frames, PrintKind kind,
                                        const PrintScore* score) {
   std::vector<const ScoredPrint*> selected;
@@ -135,7 +135,7 @@ class Regression {
 
   void StepSlope(std::size_t hinge) {
     constexpr double kLeastVariance = 1e-10;
-    constexpr double kMaxStep = 2;  // log odds of a standard deviation
+    constexpr double kMaxStep = 2;  // log odds per standard deviation
     if (variances_[hinge] < kLeastVariance) return;
     const double ridge = kRidge * static_cast<double>(prints_.size()) * variances_[hinge];
     double gradient = -ridge * slopes_[hinge], curvature = ridge;
@@ -163,7 +163,7 @@ class Regression {
   std::vector<double> log_odds_;
 };
 
-// What is detected: the most probable print of each frame.
+// The detection of a frame: its most probable print.
 struct Detected {
   double log_odds;
   bool is_right;
@@ -177,7 +177,7 @@ std::vector<Detected> Detections(const PrintScore& score, std::span<const Scored
   return detections;
 }
 
-// Makes the log odds those of detections (Platt 1999): logistic regression of what is right.
+// Makes the log odds those of detections (Platt 1999), by logistic regression on which are right.
 void Calibrate(std::span<const ScoredFrame> frames, PrintScore* score) {
   const std::vector<Detected> detections = Detections(*score, frames);
   double slope = 1, offset = 0;

@@ -16,54 +16,55 @@ namespace kestrel {
 struct ScoredPrint {
   PrintKind kind;
   PrintDoubts doubts;
-  bool is_pattern;  // whether it lies where the frame has the pattern
+  bool is_pattern;  // it lies where the frame has the pattern
 };
 
-// What a frame may be hard to see by, a bit each: the conditions of stills, then these.
+// Hardships of a frame, one bit each: the conditions of stills, then these.
 inline constexpr std::array<std::string_view, 4> kFrameHardships{"small", "near", "cut off",
                                                                  "worn"};
 
-// All that a search located in a frame, near misses of the pattern left out.
+// All prints that a search located in a frame, without near misses of the pattern.
 struct ScoredFrame {
   std::string name;
   unsigned hardships;  // bits
-  bool is_held_out;    // nothing is trained on it
+  bool is_held_out;    // it is not used for training
   bool has_pattern;
   std::vector<ScoredPrint> prints;
 };
 
 using PrintScore = std::array<PrintWeights, kPrintKinds>;
 
-// Logistic regression with weights that are not negative, on hinges of the doubts. A frame counts
-// once: with the print that the score itself would choose of it (multiple-instance learning), for
-// that one decides what is detected. The odds are those of such detections.
+// Logistic regression with non-negative weights on hinges of the doubts. Each frame counts once,
+// with the print that the score itself would choose (multiple-instance learning), as that print
+// becomes the detection. The odds are those of such detections.
 PrintScore TrainPrintScore(std::span<const ScoredFrame> frames);
 
-// Detections that were said to be about as probable.
+// Detections with about the same reported probability.
 struct ReliabilityBin {
   int count = 0;
   double mean_quality = 0;
-  double right = 0;  // share of them
+  double right = 0;  // share of right ones
 };
 
 struct Reliability {
   std::vector<ReliabilityBin> bins;  // of equal width
-  // Mean over all detections of how far the bin's quality is from its share (Naeini et al. 2015).
+  // Mean over all detections of the difference between quality and share of their bin (Naeini et
+  // al. 2015).
   double expected_calibration_error = 0;
 };
 
-// A detection of each frame that has any: its most probable print.
+// Uses one detection of each frame that has any: its most probable print.
 Reliability MeasureReliability(const PrintScore& score, std::span<const ScoredFrame> frames);
 
-// Shares of frames at a least quality.
+// Shares of frames with a detection of at least a given quality.
 struct DetectionRates {
-  double found = 0;         // of those with the pattern
-  double false_of_all = 0;  // detections in those without
+  double found = 0;         // of frames with the pattern
+  double false_of_all = 0;  // of frames without it
 };
 DetectionRates MeasureRates(const PrintScore& score, std::span<const ScoredFrame> frames,
                             double min_quality);
 
-// The table of weights as a source file.
+// Returns the table of weights as a source file.
 std::string ToSource(const PrintScore& score);
 
 }  // namespace kestrel

@@ -7,7 +7,7 @@
 
 namespace kestrel {
 
-// Exit status of a report: what 'run' returns, or 1, with a line on stderr, when input is at fault.
+// Returns the exit status of a report: that of 'run', or 1 with a line on stderr for an InputError.
 template <class Run>
 int ReportMain(const Run& run) {
   try {

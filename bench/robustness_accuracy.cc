@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Prints how well the landing pattern is found when the detector is told wrong things (calibration,
-// altitude, attitude, track) and when the print is no flat, rigid one, beside what is right.
+// Prints how well the landing pattern is found when the detector gets wrong information
+// (calibration, altitude, attitude, track) and when the print is not flat, beside the right case.
 #include <cstdio>
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Usage: rosbag_read BAG. What bag_read does with messages, by rosbag's library and as `rosbag
-// play` does it: every message, as its bytes in memory of the caller. Prints the same.
+// Usage: rosbag_read BAG. Reads messages like bag_read, but with rosbag's library and in the way of
+// `rosbag play`: each message as bytes in the caller's memory. Prints the same.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>

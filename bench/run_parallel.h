@@ -8,7 +8,7 @@
 
 namespace kestrel {
 
-// Calls 'run' with 0 ... count - 1, on each core one at a time.
+// Calls 'run' with 0 ... count - 1, one at a time on each core.
 template <class Run>
 void RunParallel(int count, const Run& run) {
   std::atomic<int> next = 0;

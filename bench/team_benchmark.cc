@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a team's messages cost a UAV: a map of 100 objects that it hears, a digest, and all maps
-// made one (for the first time, after one UAV's map has changed, after that of the common world
-// has, and when none has), by the number of UAVs.
+// Measures the cost of a team's messages for a UAV, by the number of UAVs: receiving a map of 100
+// objects, a digest, and fusing all maps (for the first time, after a change of one UAV's map,
+// after a change of the map of the common world, and without a change).
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -20,8 +20,8 @@ constexpr std::size_t kObjects = 100;
 
 UavKey KeyOf(int uav) { return {"uav" + std::to_string(uav), 1}; }
 
-// A hundred objects of five colours over 100 m, as seen by a UAV whose navigation is off by a metre
-// and a degree.
+// A hundred objects of five colours within 100 m, as seen by a UAV whose navigation is off by one
+// metre and one degree.
 PartMessage PartOf(int uav, std::uint64_t version) {
   constexpr double kNoise_m = 0.05;
   Random field(1);
@@ -90,7 +90,7 @@ void FirstView(benchmark::State& state) {
   }
 }
 
-// A new version of the map of 'changing' comes; 0: of none.
+// Receives a new version of the map of 'changing'; 0: of none.
 void ViewAgain(benchmark::State& state, int changing) {
   TeamMember member(KeyOf(0), {});
   HearAll(static_cast<int>(state.range(0)), 1, &member);

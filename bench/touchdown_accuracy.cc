@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Many simulated touchdowns, in closed loop: how many land, how long they take and how well they
-// hit. Usage: touchdown_accuracy [--scenario NAME] [--flights N] [--first-seed N] [--set K=V]...
+// Simulates many touchdowns in closed loop, and prints how many land, how long they take and how
+// far from the centre. Usage: touchdown_accuracy [--scenario NAME] [--flights N] [--first-seed N]
+// [--set K=V]...
 #include <cstdint>
 #include <iostream>
 #include <mutex>
@@ -33,7 +34,7 @@ TouchdownResult Fly(const TouchdownSimulationOptions& options, std::uint64_t see
   return *simulation.Fly([](const auto&...) { return true; });
 }
 
-// One flight on each core at a time; the rows as they are done.
+// Flies one flight on each core at a time; prints the rows as they are done.
 std::vector<TouchdownResult> FlyAll(const TouchdownSimulationOptions& options,
                                     const Arguments& arguments) {
   std::vector<TouchdownResult> results(arguments.flights);
@@ -46,7 +47,7 @@ std::vector<TouchdownResult> FlyAll(const TouchdownSimulationOptions& options,
   return results;
 }
 
-// A row of the table.
+// Returns a row of the table.
 std::string Summary(const std::string& scenario, const std::vector<TouchdownResult>& results) {
   std::vector<double> times_s, distances_m, slips_mps;
   for (const TouchdownResult& result : results) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trains the score that says how probably a print is the pattern, on seeded stills: patterns on
-// flat and bent boards, look-alikes, each still as it is, as another camera has it with a
-// calibration that may be wrong, and hard to see. A fifth of the stills is held out and measured
-// afterwards, and so are the real frames.
+// Trains the score that gives the probability that a print is the pattern, on seeded stills:
+// patterns on flat and bent boards, and look-alikes. Each still is used as it is, as another camera
+// would show it with a calibration that may be wrong, and hard to see. A fifth of the stills is
+// held out and measured afterwards, and so are the real frames.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -38,16 +38,16 @@ namespace {
 
 constexpr int kThreads = 2;
 
-// Of a still with the pattern, a print that lies so near to it is the pattern, and what is farther
-// off than the second is something else: ring radii, and least pixels.
+// In a still with the pattern, a print nearer to it than the first limit is the pattern, and one
+// farther than the second is something else: ring radii, and least pixels.
 constexpr double kSame = 0.1, kOther = 0.15;
 constexpr double kSamePx = 2, kOtherPx = 4;
 constexpr double kSameSize = 1.33;  // times
 
-// How a still is changed before it is searched.
+// Change of a still before the search.
 enum class Change { kNone, kOtherCamera, kHardToSee };
 
-// Frames that are made one by one.
+// A source of frames that are made one by one.
 struct TrainingSource {
   std::string name;
   CameraIntrinsics camera;
@@ -67,8 +67,8 @@ std::string NameOf(unsigned bit) {
                                 : std::string(kFrameHardships[bit - kStillConditions]);
 }
 
-// A still whose image is kept in a folder: read where it is there, else rendered and written. Empty
-// folder: none is kept.
+// Returns a still whose image is kept in a folder: it is read if it exists, else rendered and
+// written. Empty folder: nothing is kept.
 template <class Still>
 Still Kept(const std::string& folder, const std::string& name, const std::function<Still()>& place,
            const std::function<Still()>& render) {
@@ -83,7 +83,7 @@ Still Kept(const std::string& folder, const std::string& name, const std::functi
   return still;
 }
 
-// All stills that the score is trained on or tested with, in proportion to 'scale'.
+// All stills for training and testing; their number is proportional to 'scale'.
 class StillSources {
  public:
   StillSources(double scale, std::string image_folder)
@@ -98,10 +98,10 @@ class StillSources {
 
  private:
   static constexpr double kLowest = 0.35, kHighest = 14;  // m
-  static constexpr double kCutOff = 0.25;                 // least of a look-alike in view
+  static constexpr double kCutOff = 0.25;                 // smallest part of a look-alike in view
   static constexpr std::uint64_t kFirstSeed = 120'000'000, kSeedsOfSource = 1'000'000;
 
-  // Near is as frequent as far.
+  // Near stills are as frequent as far ones.
   static constexpr std::array<AltitudeBin, 5> kBins{
       {{kLowest, 1}, {1, 2}, {2, 4}, {4, 8}, {8, kHighest}}};
 
@@ -146,7 +146,7 @@ class StillSources {
     AddFlatLookalikes(0, 200);
   }
 
-  // Prints and look-alikes that are dirty and scraped.
+  // Adds prints and look-alikes that are dirty and scraped.
   void AddWorn() {
     for (const AltitudeBin& bin : kBins) {
       LandingStillOptions options = OptionsOf(0);
@@ -252,7 +252,7 @@ unsigned HardshipsOf(const LandingFrame& frame) {
   return hardships;
 }
 
-// Changes the image, and chooses a calibration.
+// Changes the image and chooses a calibration.
 cv::Mat Apply(Change change, std::uint64_t seed, const cv::Mat& image, std::size_t* calibration) {
   std::mt19937_64 random(seed);
   const auto apply_one_of = [&](std::span<const ImageVariant> variants) {
@@ -265,7 +265,7 @@ cv::Mat Apply(Change change, std::uint64_t seed, const cv::Mat& image, std::size
   return apply_one_of(ImageVariants());
 }
 
-// What a print is of a frame; nothing when that cannot be told.
+// True when the print is the frame's pattern; nothing when that cannot be decided.
 std::optional<bool> IsPattern(const PrintFinding& print, const LandingFrame& frame) {
   if (frame.truth == PatternTruth::kNone) return false;
   const double radius_px = frame.ring_radius_px;
@@ -296,7 +296,7 @@ std::vector<ScoredFrame> Search(const TrainingSource& source) {
       const auto number = static_cast<std::size_t>(change);
       std::size_t calibration = 0;
       const cv::Mat image = Apply(change, 7919 * i + number, frame.image, &calibration);
-      // Of a still all its changes are held out, or none.
+      // All changes of a still are held out, or none of them.
       constexpr std::size_t kOneOf = 5;
       ScoredFrame scored{fmt::format("{}:{}:{}", source.name, i, number),
                          source.hardships | HardshipsOf(frame),
@@ -388,7 +388,7 @@ void Report(const std::string& name, const PrintScore& score,
   }
 }
 
-// How well it is calibrated by what makes a frame hard to see.
+// Prints the calibration of the score by what makes a frame hard to see.
 void ReportHardships(const PrintScore& score, const std::vector<ScoredFrame>& frames) {
   fmt::print(
       "\n## By condition, held out\n\n| condition | frames | expected calibration error | found, "

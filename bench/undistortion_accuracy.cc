@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Prints Table 1 of the paper: the largest error of the ways from a pixel to a direction, by the
-// angle of the direction to the optical axis, against the exact inverse.
+// Prints Table 1 of the paper: the largest error of several methods from a pixel to a direction, by
+// the angle of the direction to the optical axis, compared with the exact inverse.
 #include <algorithm>
 #include <array>
 #include <functional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Time per point of the ways from a pixel to a ray (RayTable) or to the undistorted plane (the
-// paper's Algorithms 1 and 2, OpenCV), on one thread, in the counter "ns_per_point".
+// Measures the time per point of methods from a pixel to a ray (RayTable) or to the undistorted
+// plane (the paper's Algorithms 1 and 2, OpenCV), with one thread, in the counter "ns_per_point".
 #include <random>
 #include <vector>
 
@@ -19,7 +19,7 @@ struct Pixels {
   std::vector<float> v;
 };
 
-// Pixels all over the image in random order, as bad for the tables as it gets.
+// Pixels all over the image in random order, the worst case for the tables.
 Pixels RandomPixels(std::size_t count) {
   std::mt19937 generator(1);
   std::uniform_real_distribution<float> u(0, 751);
