@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever metadata.yaml says, a folder of rosbag2 has files that are there, or is refused.
+// For any metadata.yaml, a folder of rosbag2 has files that exist, or is refused.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// One folder for all inputs, in memory where there is such a place; it has one file of a bag.
+// One folder for all inputs, in memory if possible; it contains one file of a bag.
 const fs::path& InputFolder() {
   static const fs::path kFolder = [] {
     const fs::path memory = "/dev/shm";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever is in a bag's file, its readers give messages of topics that they named, and its frames
-// come in order of time, or the bag is refused. The kind is told by the content, as for any file.
+// For any content of a bag's file, its readers give messages of topics that they listed, and frames
+// in order of time, or refuse the bag. As for any file, the content tells the kind of bag.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -18,7 +18,7 @@
 
 namespace {
 
-// One file for all inputs, in memory where there is such a place.
+// One file for all inputs, in memory if possible.
 const std::string& InputFile() {
   static const std::string kFile = [] {
     const std::filesystem::path memory = "/dev/shm";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever a calibration file holds: it is read into a camera that can be used, or refused with an
-// InputError of one line.
+// Any content of a calibration file gives a usable camera, or is refused with an InputError of one
+// line.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever a browser's socket brings: the reader of its messages does not throw, and what it reads
-// are numbers that the program can use, a path gives numbers only; what a viewer sends gets it no
-// more than it may have; the guard lets nobody in who has not the token.
+// For any input from a browser's socket: the parser of its messages does not throw, and its results
+// are numbers that the program can use; a path gives numbers only; a viewer's requests get it no
+// more than it may have; the guard admits nobody without the token.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -80,7 +80,7 @@ void Subscribe(std::string_view text) {
   Require(sent <= kCapacity + 1);
 }
 
-// Host, origin, cookies and target, a line each.
+// Host, origin, cookies and target, one line each.
 void AskGuard(std::string_view text, bool is_web_socket) {
   std::string_view lines[4];
   for (std::string_view& line : lines) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever the bytes of an image file are, they are an image of the size that is allowed, or are
-// refused in one line.
+// Any bytes of an image file give an image of an allowed size, or are refused in one line.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

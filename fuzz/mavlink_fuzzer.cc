@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever comes over the line, the parser, the signatures and the autopilot behind it neither
-// crash nor throw, and what they tell is finite. The first byte chooses how the bytes are cut into
-// datagrams; every packet is also given to the autopilot as if its checksum and its sender were
-// right, so that the bytes of messages need not get past them.
+// For any input of a link, the parser, the signatures and the autopilot behind it neither crash nor
+// throw, and their results are finite. The first byte selects how the bytes are cut into datagrams.
+// Each packet is also given to the autopilot as if its checksum and its sender were right, so that
+// the contents of messages need not pass these checks.
 #include <algorithm>
 #include <chrono>
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever the bytes of a message are, each type is read from them or refused. The first byte
-// chooses the serialization.
+// For any bytes of a message, each type is parsed or refused. The first byte selects the
+// serialization.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

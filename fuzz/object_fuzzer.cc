@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever is in a model, a grid, a digit model, a map or a draft, the readers give what can be
-// used or refuse it.
+// For any content of a model, a grid, a digit model, a map or a draft, the readers give usable data
+// or refuse it.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -20,7 +20,7 @@ void ReadModel(const std::string& text) {
 }
 
 void ReadGrid(const std::string& text) {
-  // Whole grids are too large to be found by chance: the text is repeated.
+  // A complete grid is too large to be found by chance: the text is repeated.
   std::string bytes;
   while (!text.empty() && bytes.size() < kestrel::ColorGrid::kCells) bytes += text;
   bytes.resize(text.size() % 2 == 0 ? kestrel::ColorGrid::kCells : text.size());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever is in a recording's CSV files, the readers give rows in order of time or refuse them.
+// For any content of a recording's CSV files, the readers give rows in order of time or refuse
+// them.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

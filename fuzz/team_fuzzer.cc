@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever a UAV hears, it neither crashes nor throws, what it takes for a message is one that can
-// be sent again, and the map that it makes of it is finite.
+// For anything that a UAV receives, it neither crashes nor throws, a message that it accepts can be
+// sent again, and the map that it makes of it is finite.
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
