@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Counts allocations by taking the place of the C library's functions (glibc), through which
-// operator new and cv::Mat go as well. For one source file of a program.
+// Counts allocations by replacing the C library's functions (glibc), which operator new and cv::Mat
+// use too. Include it in one source file of a program.
 #pragma once
 
 #include <cerrno>
@@ -50,7 +50,7 @@ int posix_memalign(void** memory, std::size_t align, std::size_t size) noexcept 
 
 namespace kestrel {
 
-// How many allocations 'action' makes on this thread.
+// Returns the number of allocations of 'action' on this thread.
 template <class Action>
 int CountAllocations(const Action& action) {
   allocation_count = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the object detector must reach on the data sets where they are there; bench/hunt_accuracy.cc
-// prints it in full.
+// Limits for the object detector on the data sets, if they are there; bench/hunt_accuracy.cc prints
+// the results in full.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -65,7 +65,7 @@ TEST_P(HuntHardTest, DigitsAreRight) {
   EXPECT_GE(digits.right, 0.9 * digits.count);
 }
 
-// A click on the middle of an object.
+// A click on the centre of an object.
 ColorStroke ClickOn(const TrueSighting& sighting, const std::string& color,
                     const std::vector<Time>& times) {
   const auto frame = std::find(times.begin(), times.end(), sighting.time) - times.begin();
@@ -74,8 +74,8 @@ ColorStroke ClickOn(const TrueSighting& sighting, const std::string& color,
   return {static_cast<std::size_t>(frame), color, StrokeTool::kGrow, 30, {middle}};
 }
 
-// The built-in model whose colours are taught anew by a click on the first and on the last object
-// of each that is wholly in view.
+// The built-in model, with each colour taught anew by a click on the first and on the last of its
+// objects that are wholly in view.
 ObjectModel TaughtModel(const std::string& folder) {
   const auto source = OpenSource({folder}, PixelFormat::kBgr);
   std::vector<Time> times;

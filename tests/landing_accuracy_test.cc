@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the landing detector must reach, on few stills and on the data sets where they are there;
+// Limits for the landing detector, on few stills and on the data sets if they are there;
 // bench/accuracy.cc measures it in full.
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Detect does not allocate once its workspace has warmed up, the tracker not at all.
+// Detect does not allocate once its workspace has warmed up, and the tracker never does.
 #include <chrono>
 #include <vector>
 
@@ -23,7 +23,7 @@ struct Shot {
   LandingHint hint;
 };
 
-// Stills from 0.5 to 9 m, one after the other of another height.
+// Stills from 0.5 to 9 m, each at another height than the one before.
 LandingStillMaker MakerOf(int index) {
   constexpr double kAltitudes_m[] = {3, 0.5, 6, 1.2, 9};
   LandingStillOptions options;
@@ -87,7 +87,7 @@ TEST(LandingAllocationTest, NoneWithoutPattern) {
   ExpectNoAllocationAfterWarmUp(ShotsOfLookalikes());
 }
 
-// A hint that comes late, as a tracker's does, finds the workspace warm.
+// A hint that comes late, like a tracker's, meets a workspace that has warmed up without it.
 TEST(LandingAllocationTest, NoneWhenTheHintComesLate) {
   std::vector<Shot> shots = ShotsOfPattern(/*with_hint=*/true);
   for (int i = 0; i < kWarmUpFrames; ++i) shots[i].hint = {};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the landing detector must reach when what it is told is wrong and when the print is no flat,
-// rigid one, on few stills; bench/robustness_accuracy.cc measures it in full.
+// Limits for the landing detector when it gets wrong information and when the print is not flat and
+// rigid, on few stills; bench/robustness_accuracy.cc measures it in full.
 #include <string>
 #include <string_view>
 
@@ -17,7 +17,7 @@ namespace {
 constexpr int kThreads = 2;
 constexpr int kStillsPerAltitude = 8;
 constexpr double kMinShareOfRight = 0.95;
-constexpr double kMaxCenterErrorPx = 2;  // of 95 % of the stills
+constexpr double kMaxCenterErrorPx = 2;  // for 95 % of the stills
 
 LandingTally Score(const LandingFrameSet& set, const CameraIntrinsics& camera, HintOf hint) {
   const LandingPatternDetector detector{CameraModel(camera), {}};
@@ -25,7 +25,7 @@ LandingTally Score(const LandingFrameSet& set, const CameraIntrinsics& camera, H
                                   [&](std::size_t i) { return set.frames[i]; }));
 }
 
-// The figures go to the test's report (--gtest_output): how far they are from their bounds.
+// The figures and their distances from the limits go to the test's report (--gtest_output).
 void ExpectAsGood(std::string_view what, const LandingTally& tally, const LandingTally& right) {
   const std::string name(what);
   testing::Test::RecordProperty(
@@ -70,12 +70,13 @@ TEST(LandingRobustnessTest, APrintThatIsNotFlatCostsLittle) {
   }
 }
 
-// Near the pattern a wrong focal length bends the pose, and the edges tell: the covariance says so.
+// Near the pattern a wrong focal length distorts the pose. The edges show it, and the covariance
+// grows.
 TEST(LandingRobustnessTest, TheCovarianceKnowsOfAWrongFocalLength) {
   constexpr std::size_t kStills = 30;
   constexpr double kMaxDistance_m = 1.2;
   constexpr double kDegreesOfFreedom = 3;
-  constexpr double kMaxNees = 6;  // a degree of freedom, mean; 1 when the lens is right
+  constexpr double kMaxNees = 6;  // mean per degree of freedom; 1 for the right lens
   LandingStillOptions options;
   options.min_altitude_m = 0.5;
   options.max_altitude_m = 1;

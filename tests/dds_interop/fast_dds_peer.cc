@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Usage: fast_dds_peer. What Fast DDS hears and says in a domain that is free, as bytes that it
-// does not understand; ends when stdin does. Commands on stdin, a line each:
+// Usage: fast_dds_peer. Receives and publishes by Fast DDS, in a domain that is free, messages that
+// are only bytes to it; ends when stdin does. Commands on stdin, one per line:
 //
 //   read TOPIC TYPE QOS         listens; QOS: best_effort, reliable or kept
 //   write TOPIC TYPE QOS SIZE   publishes the SIZE bytes that follow the line
 //
-// On stdout, a line each, with SIZE bytes after it:
+// Output on stdout, one line each, with SIZE bytes after it:
 //
-//   domain NUMBER SIZE                 and the CYCLONEDDS_URI by which others get there
-//   participant GID - - SIZE           who was found, and its user data; GID: hexadecimal
-//   reader|writer GID TOPIC TYPE SIZE  the same of an endpoint
-//   message TOPIC SIZE                 what was heard
+//   domain NUMBER SIZE                 and the CYCLONEDDS_URI with which others join it
+//   participant GID - - SIZE           a participant, and its user data; GID: hexadecimal
+//   reader|writer GID TOPIC TYPE SIZE  the same for an endpoint
+//   message TOPIC SIZE                 a received message
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -47,7 +47,7 @@ class Peer {
  public:
   explicit Peer(int domain) : participant_(domain) {}
 
-  // Carries out what is whole of the commands; the rest is left in 'input'.
+  // Executes the complete commands; the rest is left in 'input'.
   void Obey(std::string* input) {
     for (std::size_t end; (end = input->find('\n')) != std::string::npos;) {
       std::istringstream line(input->substr(0, end));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws the landing pattern as a camera 3 m above it sees it and expects Kestrel to find it there.
+// Draws the landing pattern as seen from 3 m above it, and expects Kestrel to find it there.
 #include <cmath>
 #include <iostream>
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Kestrel's side of interop.js: "write [KEY]" prints a line of JSON for every message of
-// messages.h, with every field set, and its frame; "read [KEY]" reads frames in hexadecimal digits,
-// one a line, and prints the same of them. With the file of a key the frames are signed, and have
-// to be.
+// Kestrel's side of interop.js: "write [KEY]" prints a line of JSON for each message of messages.h,
+// with all fields set, and its frame; "read [KEY]" reads frames in hexadecimal digits, one per
+// line, and prints the same for them. With the file of a key the frames are signed, and must be.
 #include <array>
 #include <cstdint>
 #include <iostream>
@@ -27,7 +26,7 @@ namespace mavlink = kestrel::mavlink;
 
 constexpr std::uint64_t kUnixTime_ns = 1'700'000'000'000'000'000;
 
-// Visitor that gives every field another value, with all bytes in use.
+// Visitor that gives each field another value, with all bytes in use.
 class FieldFiller {
  public:
   template <class Value>
@@ -56,7 +55,7 @@ class FieldFiller {
   int count_ = 0;
 };
 
-// Visitor that writes fields as JSON: 64 bits as texts, because JavaScript's numbers have 53.
+// Visitor that writes fields as JSON: 64-bit numbers as texts, because JavaScript's have 53 bits.
 class JsonWriter {
  public:
   explicit JsonWriter(std::string* json) : json_(json) {}
