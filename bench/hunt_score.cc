@@ -125,7 +125,7 @@ HuntScore ScoreHunt(const std::string& folder, const ObjectModel& model) {
   HuntPipelineOptions options;
   options.readout_s = kReadout_s;
   HuntPipeline pipeline(calibration, model, options);
-  // As in flight: poses up to the one after the last row.
+  // As in flight, the poses up to the one after the last row are needed.
   const Duration lead = *calibration.clock_offset + DurationFromSeconds(kReadout_s / 2);
   RecordingEvents events(source.get(), source->poses(), lead);
   HuntScore score;

@@ -35,7 +35,7 @@ struct Scenes {
   std::string name;
   LandingPatternDetector detector;
   std::vector<cv::Mat> images;
-  std::vector<LandingHint> hints;  // without a centre where the pattern was not found
+  std::vector<LandingHint> hints;  // without a centre if the pattern was not found
 };
 
 Scenes MakeScenes(const std::string& name, const CameraIntrinsics& camera,

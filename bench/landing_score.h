@@ -28,7 +28,7 @@ struct LandingScore {
   double ring_radius_px = 0;
   double altitude_m = 0;
   Eigen::Vector2d detected_px = Eigen::Vector2d::Zero();  // place of the detection
-  double quality = 0;                                     // of the detection
+  double quality = 0;                                     // quality of the detection
   double center_error_px = 0;                             // found, kWhole
   double position_error = 0;  // found, pose known: relative to the true distance
   double nees = 0;            // found, pose known: squared position error over covariance

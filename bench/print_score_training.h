@@ -26,7 +26,7 @@ inline constexpr std::array<std::string_view, 4> kFrameHardships{"small", "near"
 // All prints that a search located in a frame, without near misses of the pattern.
 struct ScoredFrame {
   std::string name;
-  unsigned hardships;  // bits
+  unsigned hardships;  // one bit each
   bool is_held_out;    // it is not used for training
   bool has_pattern;
   std::vector<ScoredPrint> prints;

@@ -42,7 +42,7 @@ constexpr int kThreads = 2;
 // farther than the second is something else: ring radii, and least pixels.
 constexpr double kSame = 0.1, kOther = 0.15;
 constexpr double kSamePx = 2, kOtherPx = 4;
-constexpr double kSameSize = 1.33;  // times
+constexpr double kSameSize = 1.33;  // factor
 
 // Change of a still before the search.
 enum class Change { kNone, kOtherCamera, kHardToSee };
@@ -319,7 +319,7 @@ std::vector<ScoredFrame> Search(const TrainingSource& source) {
   return frames;
 }
 
-// --- Findings as a file, for rendering them takes an hour: one line a frame, one a print. ---
+// --- Findings as a file, as rendering takes an hour: one line per frame and one per print. ---
 
 void Write(const std::vector<ScoredFrame>& frames, const std::string& file) {
   auto out = fmt::output_file(file);

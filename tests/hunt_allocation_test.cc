@@ -24,7 +24,7 @@ void ExpectNoneAfterWarmUp(const HuntPipelineOptions& options) {
   constexpr int kFrames = 15;
   CameraCalibration calibration;
   calibration.intrinsics = ObjectCamera().intrinsics();
-  // Looks straight down.
+  // The camera looks straight down.
   calibration.body_from_camera = RigidTransform{
       Eigen::Quaterniond(Eigen::AngleAxisd(3.141592653589793, Eigen::Vector3d::UnitX())),
       Eigen::Vector3d::Zero()};

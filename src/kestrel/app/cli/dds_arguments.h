@@ -16,7 +16,7 @@ namespace kestrel {
 
 // The option --dds. Must live until the command line is parsed.
 struct DdsArguments {
-  std::optional<std::string> told;  // the domain; empty: that of ROS
+  std::optional<std::string> told;  // the domain; empty: that of ROS; nothing: not given
 
   void AddTo(CLI::App* command);
 

@@ -221,7 +221,7 @@ void AddDoctorCommand(CLI::App* app) {
       "doctor", "Says what is wrong with camera, calibration, mount, autopilot and computer");
   const auto arguments = std::make_shared<DoctorArguments>();
   arguments->flight.AddTo(command);
-  command->get_option("SOURCE")->required(false);  // --explain needs none
+  command->get_option("SOURCE")->required(false);  // not needed for --explain
   command
       ->add_flag("--moving{4.2}", arguments->moving_mps,
                  "Check for a target that moves, with 4.2 m/s or --moving=SPEED")

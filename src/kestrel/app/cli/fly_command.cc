@@ -114,7 +114,7 @@ class Flight {
     return ViewOf(source_.calibration, options_.landing);
   }
 
-  // First of all: a port that is taken is said before anything is written.
+  // The first step: an error about a port in use comes before anything is written.
   void OpenConsole() {
     if (!arguments_.console) return;
     const ConsoleOptions& options = options_.console;
@@ -188,7 +188,7 @@ class Flight {
                             [this](const std::string& text) { Say(text, EventLevel::kWarning); }));
   }
 
-  // Before anything is written.
+  // Called before anything is written.
   void OpenTeam() {
     if (arguments_.team.team.empty()) return;
     if (!HasWorld()) {

@@ -112,7 +112,7 @@ class HuntRun : public PipelineRun {
   HuntSink sink_;
   bool has_map_;
   TeamLink* team_;   // null: none
-  RosResults* dds_;  // as well
+  RosResults* dds_;  // null: none
   std::optional<double> altitude_m_;
   bool has_world_ = false;  // the last frame had a pose
   Time seen_{};             // time of the last frame

@@ -28,7 +28,7 @@ using Comparisons = std::vector<ObjectComparison>;
 
 // Counts for one frame.
 struct Tally {
-  int wanted = 0, found = 0;  // of the objects that must be found
+  int wanted = 0, found = 0;  // the wanted objects
   int of_objects = 0;         // detections of an existing object
   int not_right = 0;          // detections of nothing, or with the wrong class
   std::optional<double> worst_px;

@@ -154,7 +154,7 @@ TEST_F(TeamCommandTest, TheTeamsMapIsToldToRos2) {
                           [](const auto& one) { return one.results.at(0).class_id == "red"; }),
             4);
   const auto markers = ParseMessage<MarkerArrayMessage>(heard[1], WireFormat::kCdr, "heard");
-  EXPECT_EQ(markers.markers.size(), 25u);  // two for each object; and those before go
+  EXPECT_EQ(markers.markers.size(), 25u);  // two per object, one that deletes the others
 }
 
 TEST_F(TeamCommandTest, OnlyThoseWithTheKeyAreHeard) {

@@ -132,14 +132,14 @@ std::vector<std::optional<Claim>> TeamLink::Claims() const {
 }
 
 void TeamLink::Finish(std::vector<MappedObject> objects) {
-  constexpr Duration kStay = std::chrono::seconds(1);  // others may lack something, unheard
+  constexpr Duration kStay = std::chrono::seconds(1);  // others may lack data, unheard
   constexpr Duration kPause = std::chrono::milliseconds(10);
   const Duration silence = DurationFromSeconds(options_.team.silence_s);
   Tell(std::move(objects));
   member_.SetDone();
   bool was_said = false;
-  Time awaited = Now();  // the last time at which a UAV was not done
-  Time lacking = Now();  // or something was not here or with another, or was new
+  Time awaited = Now();  // last time at which a UAV was not done
+  Time lacking = Now();  // last time at which data were missing or changed
   std::vector<std::optional<Claim>> claims;
   for (;;) {
     Exchange();

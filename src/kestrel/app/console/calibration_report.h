@@ -41,7 +41,7 @@ struct CalibrationNumber {
 
 // Residuals before and after the calibration.
 struct CalibrationResiduals {
-  std::string of;    // as "position in the world"
+  std::string of;    // measured quantity, as "position in the world"
   std::string unit;  // as "m"
   std::string over;  // label of the abscissa, as "time, s"
   double rms_before = 0;
@@ -73,7 +73,7 @@ struct ConsoleCalibration {
   std::string save_error;  // why it was not saved
 };
 
-// Where the pattern was in one image of a flight.
+// A place of the pattern in one image of a flight.
 struct PatternPlace {
   cv::Point2f pixel;  // its centre
   double height_m;    // height of the camera above it

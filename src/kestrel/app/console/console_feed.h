@@ -107,7 +107,7 @@ struct ConsoleCheck {
   std::string name;
   std::string verdict;      // "good", "doubtful", "wrong", "not checked"
   std::string measured;     // in words
-  std::string advice = {};  // what to do; empty where all is well
+  std::string advice = {};  // what to do; empty when all is well
 };
 struct ConsoleHealth {
   std::vector<ConsoleCheck> checks;

@@ -171,7 +171,7 @@ Json Message(const ConsoleClip& clip) {
   return {{"kind", "clip"}, {"done", clip.done}, {"frames", clip.frames}};
 }
 
-// NaN is null, as in all of the messages.
+// NaN becomes null, as in all messages.
 Json Message(const ConsoleCalibration& calibration) { return CalibrationJson(calibration); }
 
 }  // namespace

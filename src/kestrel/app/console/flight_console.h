@@ -31,7 +31,7 @@ using FlightView = std::variant<LandingView, HuntView>;
 // Requests that the page may make of a flight. Each returns a sentence that says what was done, and
 // throws InputError when it cannot be done. They may block.
 struct FlightRequests {
-  std::function<std::string(bool is_on)> record;  // on or off
+  std::function<std::string(bool is_on)> record;  // switches recording on or off
   std::function<std::string(const cv::Mat& image, Time captured)> keep_snapshot;
 };
 

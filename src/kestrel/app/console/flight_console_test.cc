@@ -70,7 +70,7 @@ TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
   ASSERT_TRUE(image);
   EXPECT_EQ((*image)["width"], 376);
   socket.Send(fmt::format(R"({{"ack": {}}})", (*image)["sequence"].get<int>()));
-  // The same frame, as there is no newer one.
+  // The image is of the same frame, as there is no newer one.
   socket.Send(R"({"images": "threshold 1/2"})");
   const auto threshold = socket.Next("image");
   ASSERT_TRUE(threshold);

@@ -31,7 +31,7 @@ cv::Scalar ColorOf(OverlayLayer layer) {
   return {};
 }
 
-// Of a second run only these layers are drawn over the first run's shapes.
+// Layers of a second run that are drawn over the first run's shapes.
 bool IsFound(OverlayLayer layer) {
   return layer == OverlayLayer::kDetection || layer == OverlayLayer::kRejected;
 }

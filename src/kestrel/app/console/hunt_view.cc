@@ -26,7 +26,7 @@ std::vector<cv::Point2f> Outline(const Ellipse& ellipse) {
   return outline;
 }
 
-// As "red 0.98".
+// For example "red 0.98".
 std::string Label(const HuntView& view, const ObjectDetection& found) {
   return fmt::format("{} {:.2f}", view.model.classes[found.class_index].name,
                      found.class_probability);
@@ -36,7 +36,7 @@ OverlayShape Shape(const HuntView& view, const ObjectDetection& found, OverlayLa
   return {layer, Outline(found.ellipse), Label(view, found)};
 }
 
-// How many segments each test rejected, as "rejected: 9 by size, 1 by shape"; empty: none.
+// Numbers of segments that each test rejected, as "rejected: 9 by size, 1 by shape"; empty: none.
 std::string Rejections(const ObjectReport& report) {
   std::string text;
   for (std::size_t stage = 1; stage < kObjectStageCount; ++stage) {

@@ -28,7 +28,7 @@ ImageFlow Wanting(std::size_t view = 0, bool is_held = false) {
   return flow;
 }
 
-// Half as bright as the camera's image.
+// The view is half as bright as the camera's image.
 ConsoleFeed::Description WithDarkView() {
   ConsoleFeed::Description description;
   description.views.push_back({"dark", [](const cv::Mat& image) { return cv::Mat(image / 2); }});

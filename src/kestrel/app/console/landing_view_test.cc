@@ -11,8 +11,8 @@
 namespace kestrel {
 namespace {
 
-// A camera 5 m above the world's origin that looks straight down, its upper edge to the north, and
-// a pattern 1 m east of below it.
+// A camera 5 m above the world's origin that looks straight down, with its upper edge to the north,
+// and a pattern 1 m east of the point below it.
 LandingObservation Seen() {
   LandingObservation observation;
   RigidTransform world_from_camera;

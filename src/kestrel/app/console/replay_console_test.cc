@@ -63,7 +63,8 @@ class ReplayConsoleTest : public testing::Test {
     is_stopped_ = true;
     thread_.join();
   }
-  // A run that finds the pattern in the first half, unless it is told to wait or fail.
+  // A run that finds the pattern in the first half of the frames, unless it is told to wait or
+  // fail.
   std::optional<ReplayResult> DetectAgain(const LandingPipelineOptions& options,
                                           const SecondRun::GoOn& go_on) {
     if (options.hint_age_s == 7) throw InputError("frame3.png: no such file");

@@ -39,7 +39,7 @@ class ViewerFlow {
 
   // Queues a message if the viewer has subscribed to its channel; otherwise does nothing.
   void Offer(const ChannelMessage& message);
-  void Say(std::string text);  // JSON
+  void Say(std::string text);  // 'text': JSON
   // Tells the viewer how many messages were dropped since the last report, if any.
   void SayLosses();
 

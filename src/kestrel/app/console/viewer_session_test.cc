@@ -161,7 +161,7 @@ TEST_F(ViewerSessionTest, AStalledViewerCostsTheOthersNothing) {
       Eventually([&] { return server_->counters().viewers == 2 && channels_.IsWanted(0); }));
   good.Read();
   good.Read();
-  constexpr std::size_t kLarge = 4 << 20;  // more than the system's buffers take
+  constexpr std::size_t kLarge = 4 << 20;  // more than the system's buffers hold
   for (int i = 1; i <= 20; ++i) {
     Add(0, i, kLarge);
     Add(1, i);

@@ -32,7 +32,7 @@ ConsoleFrame SomeFrame(int width = 64) {
   return frame;
 }
 
-// Noise, which JPEG does not make small.
+// Noise, as JPEG cannot make it small.
 cv::Mat NoiseImage(int width, int height) {
   cv::Mat image(height, width, CV_8UC1);
   std::mt19937 random(1);

@@ -16,7 +16,7 @@ using ::testing::Not;
 
 class EvaluateTest : public ::testing::Test {
  protected:
-  // The pattern straight below in every image, found in the first, missed in the second.
+  // The pattern is straight below in each image; it is found in the first and missed in the second.
   void WriteLanding() const {
     std::string truth = kPatternHeader;
     for (int i = 0; i < 5; ++i) {

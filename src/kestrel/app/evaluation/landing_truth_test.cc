@@ -13,7 +13,7 @@ using ::testing::HasSubstr;
 
 constexpr double kTurnRate = 0.5;
 
-// On a circle of 8 m at 4 m/s, a row every 0.1 s.
+// A pattern on a circle of 8 m at 4 m/s, with a row every 0.1 s.
 TruePattern OnCircle(double seconds) {
   const double angle = kTurnRate * seconds;
   TruePattern row;

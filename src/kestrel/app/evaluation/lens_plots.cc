@@ -43,7 +43,7 @@ Points2d ByAngle(const Points2d& residuals) {
   return points;
 }
 
-// The curve of the lens, in pixels to the right of the principal point.
+// The distance from the principal point, to its right, over the angle to the axis.
 PlotPanel CurvePanel(const CameraModel& camera, double max_angle_deg) {
   PlotSeries by_edges{"lens, by the edges", PlotStyle::kLine, {}, {}};
   PlotSeries beyond{"extrapolated", PlotStyle::kDashes, {}, {}};

@@ -11,7 +11,7 @@ using ::testing::ElementsAre;
 
 Time At(double seconds) { return Time(DurationFromSeconds(seconds)); }
 
-// 2 m/s along x, seen from 3 m.
+// A target that moves at 2 m/s along x, seen from a height of 3 m.
 std::vector<TruePattern> Straight() {
   std::vector<TruePattern> rows;
   for (int i = 0; i <= 10; ++i) {

@@ -347,8 +347,8 @@ struct Detection {
   static constexpr std::string_view kType = "kestrel.Detection";
   std::string name;        // how the pattern's cross was verified, or the class of an object
   double probability = 0;  // probability that it is right
-  Point2 center;           // px; as all pixels here, 0 is the corner of the first
-  // m, and m^2 row by row, empty where they are not known.
+  Point2 center;           // px; as for all pixels here, 0 is the corner of the first
+  // In m, and m^2 row by row; empty where unknown.
   std::optional<Vector3> position_in_camera;
   std::vector<double> covariance_in_camera;
   std::optional<Vector3> position_in_world;

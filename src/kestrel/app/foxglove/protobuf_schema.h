@@ -15,7 +15,7 @@
 
 namespace kestrel {
 
-// What an enumeration that is a field is called in the schema, within the message that has it:
+// Names of an enumeration in the schema, within the message that has a field of this type:
 //
 //   template <> struct ProtobufEnum<Level> {
 //     static constexpr const char* kName = "Level";

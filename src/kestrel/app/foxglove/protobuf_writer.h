@@ -17,17 +17,17 @@ namespace kestrel {
 
 static_assert(std::endian::native == std::endian::little, "protobuf is little-endian");
 
-// Messages in protobuf's wire format (protobuf.dev/programming-guides/encoding), to be written
-// only. A message names its fields once, with their numbers, by
+// Writes messages in protobuf's wire format (protobuf.dev/programming-guides/encoding). A message
+// lists its fields once, with their numbers, by
 //
 //   static constexpr std::string_view kType = "package.Name";
 //   template <class Self, class Visitor> static void Fields(Self& self, Visitor& visit) {
 //     visit(1, "x", self.x);
 //   }
 //
-// From this the bytes are made here, and the schema in protobuf_schema.h. A field is a double,
-// bool, int (int32), std::int64_t, std::uint32_t (fixed32), text, ProtobufBytes, Time or Duration
-// (those of google.protobuf), an enumeration, a message, perhaps optional, or a list of these.
+// This gives the bytes here and the schema in protobuf_schema.h. A field is a double, bool, int
+// (int32), std::int64_t, std::uint32_t (fixed32), text, ProtobufBytes, Time or Duration (those of
+// google.protobuf), an enumeration, a message (which may be optional), or a list of these.
 
 struct ProtobufBytes {
   std::string bytes;

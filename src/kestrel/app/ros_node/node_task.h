@@ -18,7 +18,7 @@ namespace kestrel {
 // Names of the frames of the results.
 struct NodeFrames {
   std::string camera;
-  std::optional<std::string> world;  // where there are poses
+  std::optional<std::string> world;  // if there are poses
 };
 
 // The node's work on images: a pipeline and the publication of its results. One thread at a time.

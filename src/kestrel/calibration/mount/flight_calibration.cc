@@ -51,7 +51,7 @@ MountAndClock Applied(const MountAndClock& given, const Parameters& parameters) 
       parameters(kClock)};
 }
 
-// Sightings, poses and path as a function of the parameters.
+// The residuals of sightings, poses and path as a function of the parameters.
 class FlightFit {
  public:
   FlightFit(std::vector<TargetSighting> sightings, const PoseHistory* poses,

@@ -75,7 +75,7 @@ class PatternPrintTest : public ::testing::Test {
       ASSERT_TRUE(CanRun(program)) << program << " is not there: scripts/install-deps";
     }
   }
-  // 'tolerance': m.
+  // 'tolerance' is in m.
   static void ExpectDimensions(const cv::Mat& page, double scale, const LandingPattern& pattern,
                                double tolerance) {
     const Vector2d center = Vector2d::Constant(0.5 * pattern.board_size_m);

@@ -236,7 +236,7 @@ class LineFit {
   LensPrior lens_;
   FoundPrint start_;
   CameraModel camera_;
-  double corner_;  // squared tangent of the angle of the image's corner
+  double corner_;  // squared tangent of the angle at the image's corner
   State state_;
   std::vector<LineError> errors_;
   Eigen::Matrix<double, kParameters, kParameters, Eigen::RowMajor> covariance_;

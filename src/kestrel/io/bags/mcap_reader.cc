@@ -21,7 +21,7 @@ constexpr std::uint64_t kRecordHead = 9;    // opcode and length
 constexpr std::uint64_t kFooterSize = 20;   // without its head
 constexpr std::uint64_t kMessageHead = 22;  // channel, sequence, two times
 
-// "cdr" with a schema of ROS 2, "ros1" with one of ROS 1.
+// Pairs: "cdr" with a schema of ROS 2, "ros1" with one of ROS 1.
 WireFormat WireFormatOf(std::string_view message_encoding, std::string_view schema_encoding) {
   const bool is_ros2 = schema_encoding == "ros2msg" || schema_encoding == "ros2idl";
   if (message_encoding == "cdr" && is_ros2) return WireFormat::kCdr;

@@ -11,12 +11,12 @@
 
 namespace kestrel {
 
-// The standard messages of ROS that Kestrel reads and writes. Each names its fields once, in the
-// order in which they are serialized, by
+// The standard messages of ROS that Kestrel reads and writes. Each lists its fields once, in the
+// order of their serialization, by
 //
 //   template <class Self, class Wire> static void Fields(Self& self, Wire& wire);
 //
-// From this serialization.h reads and writes them in the formats of ROS 1 and of ROS 2.
+// With this serialization.h reads and writes them in the formats of ROS 1 and of ROS 2.
 
 struct HeaderMessage {
   std::uint32_t sequence = 0;  // ROS 1 only

@@ -14,7 +14,7 @@
 
 namespace kestrel {
 
-// Owners of GStreamer's objects.
+// Smart pointers that own GStreamer's objects.
 struct GstReleaser {
   void operator()(GstBuffer* buffer) const { gst_buffer_unref(buffer); }
   void operator()(GstCaps* caps) const { gst_caps_unref(caps); }

@@ -14,7 +14,7 @@ const cv::Mat kGray(480, 640, CV_8UC1, 128);
 
 LandingObservation FoundAt(const Eigen::Vector3d& center_in_camera) {
   LandingDetection detection{};
-  // The printed face looks at the camera.
+  // The printed face points to the camera.
   detection.camera_from_pattern.rotation =
       Eigen::AngleAxisd(3.14159265358979, Eigen::Vector3d::UnitX());
   detection.camera_from_pattern.translation = center_in_camera;
@@ -35,7 +35,7 @@ TEST(LandingOverlay, DrawsTheRingWhereThePoseSaysIt) {
       DrawLandingOverlay(kGray, kCamera, LandingPattern(), FoundAt({0.0, 0.0, 2.0}));
   ASSERT_EQ(drawn.type(), CV_8UC3);
   ASSERT_EQ(drawn.size(), kGray.size());
-  // The outer radius of 0.5 m at 2 m is 100 px, the inner one of 0.4 m 80 px; off the axes.
+  // At 2 m the outer radius of 0.5 m is 100 px and the inner one of 0.4 m is 80 px; off the axes.
   EXPECT_TRUE(IsYellow(drawn, 319 - 60, 239 - 80));
   EXPECT_TRUE(IsYellow(drawn, 319 - 48, 239 - 64));
   EXPECT_FALSE(IsYellow(drawn, 319 - 54, 239 - 72));

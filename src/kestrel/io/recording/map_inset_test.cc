@@ -15,7 +15,7 @@ MappedObject RedDiscAt(double x, double y) {
 
 bool IsRed(const cv::Vec3b& pixel) { return pixel[2] > 200 && pixel[1] < 60 && pixel[0] < 60; }
 
-// Mean place of the red pixels.
+// Mean position of the red pixels.
 Eigen::Vector2d RedPlace(const cv::Mat& image) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int count = 0;
