@@ -6,9 +6,9 @@
 
 namespace kestrel {
 
-// Atomically replaces the file at 'path' by one with these bytes: at any time, readers find either
-// the complete old file or the complete new one. Throws InputError when it cannot be written; the
-// old file then stays unchanged.
+// Atomically replaces the file at 'path' by one with these bytes: at any time, and after a power
+// loss, readers find either the complete old file or the complete new one. Waits for the disk.
+// Throws InputError when it cannot be written; the old file then stays unchanged.
 void WriteFile(const std::string& path, std::string_view bytes);
 
 }  // namespace kestrel

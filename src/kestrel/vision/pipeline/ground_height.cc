@@ -17,12 +17,14 @@ bool Agree(const GroundHeight& a, const GroundHeight& b) {
 void GroundHeightEstimator::Update(const GroundHeight& told, std::span<const GroundHeight> seen) {
   constexpr int kMinFrames = 5;
   told_ = told;
+  bool is_seen = false;
   for (const GroundHeight& sighting : seen) {
     if (!std::isfinite(sighting.height_m) || !std::isfinite(sighting.sigma_m)) continue;
     if (sightings_.size() == kCapacity) sightings_.erase(sightings_.begin());
     sightings_.push_back(sighting);
+    is_seen = true;
   }
-  if (seen.empty() || sightings_.empty()) return;
+  if (!is_seen) return;
   double height_m = told.height_m;
   std::size_t most = CountNear(told);
   for (const GroundHeight& sighting : sightings_) {

@@ -82,6 +82,13 @@ TEST(GroundHeightEstimator, FramesOfTheirOwnContradictTogether) {
   EXPECT_NEAR(ground.Contradiction()->height_m, 14, 1e-9) << "by the last one alone";
 }
 
+TEST(GroundHeightEstimator, AFrameWithoutAFiniteSightingDoesNotContradict) {
+  GroundHeightEstimator ground;
+  UpdateTimes(4, {{10, 0.1}}, &ground);
+  UpdateTimes(20, {{std::numeric_limits<double>::quiet_NaN(), 0.1}}, &ground);
+  EXPECT_FALSE(ground.Contradiction());
+}
+
 TEST(GroundHeightEstimator, SightingsThatAreNotFiniteAreLeftOut) {
   GroundHeightEstimator ground;
   const double infinity = std::numeric_limits<double>::infinity();
