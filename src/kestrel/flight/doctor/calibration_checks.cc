@@ -16,7 +16,7 @@ namespace {
 constexpr char kCalibrateAdvice[] =
     "a dozen views of the pattern, then kestrel calibrate lens FOLDER --output DIR";
 
-// Pixels along the border of the image for which the lens model has a ray.
+// Number of pixels along the image's border for which the lens model has a ray.
 struct BorderReach {
   int pixels = 0;
   int reached = 0;
@@ -42,8 +42,8 @@ BorderReach ReachOf(const CameraModel& model) {
   return reach;
 }
 
-// Between the rays through the middles of the left and the right border, rad; nothing where one of
-// them is outside of the model.
+// Returns the angle between the rays through the middles of the left and right border, rad; nothing
+// where the model has no ray for one of them.
 std::optional<double> AngleOfView(const CameraModel& model) {
   Eigen::Vector3d left;
   Eigen::Vector3d right;
@@ -81,7 +81,7 @@ Finding CheckImageSize(const CameraIntrinsics& intrinsics, const CameraObservati
 
 Finding CheckLensModel(const CameraIntrinsics& intrinsics) {
   constexpr double kCorners =
-      0.6;  // of the border; the rest may be black beside a fisheye's circle
+      0.6;  // of the border; the rest may be the black corners around a fisheye's circle
   const std::string check = "lens model";
   if (const auto violations = intrinsics.Validate(); !violations.empty()) {
     return Wrong(check, violations.front(), kCalibrateAdvice);
@@ -147,7 +147,7 @@ Finding CheckCalibrationByPattern(const VisionObservations& vision) {
     measured += fmt::format(", focal length {:.3f} +- {:.3f} of the file's", vision.focal->factor,
                             vision.focal->sigma);
   }
-  // Images of one place share their errors, which the standard deviation does not know of.
+  // Images from one place share their errors, which the standard deviation does not contain.
   const double focal_off =
       vision.focal_contradiction ? std::abs(std::log(vision.focal_contradiction->factor)) : 0;
   if (focal_off > kFocalWrong) {

@@ -33,7 +33,7 @@ double MedianOfQualities(const CameraObservations& camera, double ImageQuality::
   return MedianOf(std::move(values));
 }
 
-// How often in a row an image was the same as the one before, at most.
+// Returns the largest number of images in a row that repeat the one before.
 int LongestFreeze(const CameraObservations& camera) {
   int longest = 0;
   int now = 0;
@@ -84,8 +84,8 @@ Finding CheckFrameRate(const CameraObservations& camera) {
   return Good(check, measured);
 }
 
-// Images that are left out are no jitter: an interval counts by its distance from the next multiple
-// of the median one.
+// Missing images are not jitter: an interval counts by its distance from the nearest multiple of
+// the median interval.
 Finding CheckSteadiness(const CameraObservations& camera) {
   constexpr double kMost = 0.3;
   constexpr double kMostOf = 0.9;

@@ -8,8 +8,8 @@
 
 namespace kestrel {
 
-// Checks of what comes out of the camera, whatever its calibration says. Each gives one finding;
-// those without frames say that they were not checked.
+// Checks of the camera's output, whatever its calibration says. Each returns one finding; a check
+// without frames returns "not checked".
 Finding CheckImages(const CameraObservations& camera);  // whether there are any
 Finding CheckFrameRate(const CameraObservations& camera);
 Finding CheckSteadiness(const CameraObservations& camera);  // jitter of the stamps
@@ -19,7 +19,7 @@ Finding CheckCaptureClock(const CameraObservations& camera);
 Finding CheckExposure(const CameraObservations& camera);
 Finding CheckFocus(const CameraObservations& camera);
 
-// All of them.
+// All of these checks.
 std::vector<Finding> CheckCamera(const CameraObservations& camera);
 
 }  // namespace kestrel

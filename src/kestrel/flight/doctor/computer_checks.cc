@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of all thermal zones, deg C.
+// Returns the highest temperature of all thermal zones, deg C.
 std::optional<double> HottestZone() {
   constexpr double kMilli = 1e-3;
   constexpr double kMostPlausible = 150;
@@ -42,7 +42,7 @@ std::optional<std::uint32_t> ThrottledFlags() {
   return flags;
 }
 
-// Of the disk that a folder is or will be on.
+// Returns the free room on the disk of an existing or future folder, MB.
 std::optional<double> FreeDisk(const std::string& folder) {
   constexpr double kMega = 1e6;
   std::error_code error;

@@ -9,10 +9,10 @@
 
 namespace kestrel {
 
-// What this computer tells of itself; 'record': the folder of the recording, empty: none.
+// Measures the state of this computer. 'record': folder of the recording, empty: none.
 ComputerObservations ObserveComputer(const std::string& record);
 
-// Checks of the computer and of the time that it needs.
+// Checks of the computer and of its computing time.
 Finding CheckDetectionTime(const DoctorObservations& observations);  // against the frames' period
 Finding CheckLoad(const ComputerObservations& computer);
 Finding CheckHeat(const ComputerObservations& computer);

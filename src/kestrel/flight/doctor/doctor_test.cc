@@ -66,16 +66,16 @@ struct Fault {
   std::string name;
   Setup setup;
   Break break_it;
-  std::string check;  // that names it
+  std::string check;  // name of the check that should find it
   Verdict verdict;
-  std::string words;  // in what was measured or the advice
+  std::string words;  // words in its measurement or advice
 };
 
 Break Parameter(const std::string& name, double value) {
   return [=](DoctorObservations* all) { all->parameters[name] = {value, name, 1}; };
 }
 
-// The camera is mounted turned from what the calibration says.
+// The camera's real mount is turned from the calibration's.
 Break TurnedCamera(const Eigen::Vector3d& axis, double degrees) {
   return [=](DoctorObservations* all) {
     RigidTransform mount = DownwardMount();
@@ -334,7 +334,7 @@ std::vector<Fault> ComputerFaults() {
   };
 }
 
-// For the names of failed tests.
+// GoogleTest prints this for failed tests.
 void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
 
 class DoctorFaultTest : public ::testing::TestWithParam<Fault> {};
@@ -357,7 +357,7 @@ INSTANTIATE_TEST_SUITE_P(Link, DoctorFaultTest, ::testing::ValuesIn(LinkFaults()
 INSTANTIATE_TEST_SUITE_P(Parameters, DoctorFaultTest, ::testing::ValuesIn(ParameterFaults()));
 INSTANTIATE_TEST_SUITE_P(Computer, DoctorFaultTest, ::testing::ValuesIn(ComputerFaults()));
 
-// --- What a check must not be misled by ---
+// --- Cases that must not mislead a check ---
 
 TEST(DoctorTest, AMountIsNotJudgedByAUavThatStandsStill) {
   DoctorObservations all = GoodSetup(AutopilotKind::kArduPilot);

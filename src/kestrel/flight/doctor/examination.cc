@@ -19,9 +19,9 @@
 namespace kestrel {
 namespace {
 
-constexpr Duration kPatience = std::chrono::milliseconds(100);  // of a thread that waits
+constexpr Duration kPatience = std::chrono::milliseconds(100);  // longest wait of a thread
 constexpr Duration kLinkPatience = std::chrono::milliseconds(5);
-// Until the streams that were asked for run as they are to.
+// Time until the requested streams run at their rate.
 constexpr Duration kStreamsStart = std::chrono::milliseconds(2500);
 constexpr std::size_t kRememberedPoses = 1024;
 constexpr Duration kLargestGap = std::chrono::milliseconds(500);
@@ -165,11 +165,11 @@ void Examination::TakeEvent(const AutopilotEvent& event) {
       is_one_way_ = true;
       break;
     default:
-      break;  // said by other checks
+      break;  // reported by other checks
   }
 }
 
-// --- In the end ---
+// --- At the end ---
 
 void Examination::Summarize(Time start, Time end, DoctorObservations* observations) const {
   observations->calibration = parts_.calibration;

@@ -20,7 +20,7 @@
 
 namespace kestrel {
 
-// What an examination looks at; all outlive it. Null where there is none.
+// Input of an examination; all outlive it. Null where there is none.
 struct ExaminationParts {
   LiveSource* source = nullptr;
   CameraCalibration calibration;  // of the source
@@ -28,21 +28,22 @@ struct ExaminationParts {
   Autopilot* autopilot = nullptr;  // on the connection
 };
 
-// Looks at camera and autopilot for some seconds: capture, vision and link, each in a thread of its
-// own, as a flight does, but nothing is sent that would move the UAV.
+// Watches camera and autopilot for some seconds: capture, vision and link have a thread each, as in
+// a flight, but nothing is sent that would move the UAV.
 class Examination {
  public:
   // Throws InputError when options or calibration are not valid.
   Examination(const LandingPipelineOptions& options, const LiveEventsOptions& events,
               const ExaminationParts& parts);
 
-  // A pose of the autopilot, on the local clock: what its listener gets, by the thread that calls
-  // Run.
+  // Takes a pose of the autopilot, on the local clock, from its listener. Called by the thread that
+  // calls Run.
   void TakePose(const PoseSample& pose) { events_.Push(pose); }
-  // What the autopilot's listener tells. Same thread.
+  // Takes an event from the autopilot's listener. Called by the same thread.
   void TakeEvent(const AutopilotEvent& event);
 
-  // Looks for 'duration', or until 'is_stopped', and adds what it saw. Once only.
+  // Watches for 'duration', or until 'is_stopped', and adds the results to 'observations'. Call it
+  // once only.
   void Run(Duration duration, const std::function<bool()>& is_stopped,
            DoctorObservations* observations);
 
@@ -60,38 +61,38 @@ class Examination {
 
   ExaminationParts parts_;
   LiveEvents events_;
-  // Where there is a source. Without mount: what it finds owes nothing to the attitude.
+  // Set when there is a source. It has no mount: what it finds does not depend on the attitude.
   std::optional<LandingPipeline> pipeline_;
-  PoseHistory poses_;  // the vision thread's
+  PoseHistory poses_;  // used by the vision thread
   std::atomic<bool> is_over_{false};
 
-  // Of the capture thread.
+  // Used by the capture thread.
   std::vector<FrameSample> frames_;
   int width_px_ = 0;
   int height_px_ = 0;
-  // Of the vision thread.
+  // Used by the vision thread.
   std::vector<ImageQuality> qualities_;
   std::vector<PatternSample> patterns_;
   std::vector<double> detect_s_;
   std::vector<double> latency_s_;
-  // Of the link's.
+  // Used by the link's thread.
   bool asked_parameters_ = false;
   int heartbeats_ = 0;
   bool hears_signed_ = false;
   bool is_one_way_ = false;  // TIMESYNC is not answered
   int attitudes_ = 0;
   int positions_ = 0;
-  std::optional<Time> heard_;      // the first time
-  std::optional<Time> listening_;  // to the streams, since
+  std::optional<Time> heard_;      // time of the first message
+  std::optional<Time> listening_;  // time since which the streams are counted
   Time attitude_time_;
   Time position_time_;
   std::vector<std::string> told_;
 };
 
-// What a detection tells the checks; its time and the UAV's pose are left to the caller.
+// Returns the part of a detection that the checks use; the caller adds its time and the UAV's pose.
 PatternSample PatternSampleOf(const LandingDetection& detection);
 
-// All checks, in the order in which a set-up is put right.
+// Runs all checks, in the order in which a set-up is put right.
 std::vector<Finding> Check(const DoctorObservations& observations);
 
 }  // namespace kestrel

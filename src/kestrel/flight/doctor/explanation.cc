@@ -25,10 +25,10 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::array kProfiles = {LinkProfile::kArduPilot, LinkProfile::kPx4, LinkProfile::kPx4Vte};
-constexpr std::int64_t kBoot_us = 100'000'000;  // the autopilot's own clock at the start
+constexpr std::int64_t kBoot_us = 100'000'000;  // the autopilot's own clock at the beginning
 constexpr Duration kStep = std::chrono::milliseconds(4);
 constexpr Duration kTold = std::chrono::seconds(4);
-constexpr int kStepsPerMessage = 12;  // 20 messages in a second
+constexpr int kStepsPerMessage = 12;  // 20 messages per second
 
 RigidTransform BodyOf(const ExplainedScene& scene) {
   const Eigen::Quaterniond ned_from_frd(
@@ -46,7 +46,7 @@ TargetReport ReportOf(const ExplainedScene& scene) {
   return report;
 }
 
-// The autopilot's state while it hovers there.
+// Returns the autopilot's state while it hovers in the scene.
 FlightState HoverOf(const ExplainedScene& scene, int step) {
   constexpr std::int64_t kNsPerUs = 1000;
   FlightState state;
@@ -58,7 +58,7 @@ FlightState HoverOf(const ExplainedScene& scene, int step) {
   return state;
 }
 
-// Tells 'target' of the scene for a while. 'tell' is called 20 times a second.
+// Runs 'target' on the scene for a while. 'tell' is called 20 times a second to send messages.
 template <class Target, class Tell>
 void TellFor(const ExplainedScene& scene, Target* target, const Tell& tell) {
   for (int step = 0; step * kStep < kTold; ++step) {
@@ -73,7 +73,7 @@ Announce KeepLast(std::string* text) {
 }
 
 void AskArduPilot(const ExplainedScene& scene, LinkProfile profile, Understanding* understanding) {
-  // Nobody there takes TARGET_RELATIVE.
+  // ArduPilot does not use TARGET_RELATIVE.
   if (profile == LinkProfile::kPx4Vte) return;
   const AutopilotParameters parameters(AutopilotFirmware::kArduPilot);
   ArduPilotTarget target(parameters, KeepLast(&understanding->ardupilot_text));
@@ -111,7 +111,7 @@ void AskPx4(const ExplainedScene& scene, LinkProfile profile, Understanding* und
 
 // --- In words ---
 
-// Every field of a message, one a line.
+// Writes every field of a message, one per line.
 class FieldLines {
  public:
   template <class Value>

@@ -10,27 +10,28 @@
 
 namespace kestrel {
 
-// A UAV and a pattern of which it is known where they are.
+// A UAV and a pattern at known places.
 struct ExplainedScene {
   Eigen::Vector3d uav_in_ned{10, 20, -30};   // m, in the autopilot's local frame
   double heading_deg = 60;                   // of the nose, clockwise from north
   Eigen::Vector3d pattern_in_body{2, 1, 5};  // m ahead, right, below
-  double size_m = 1;                         // of the pattern
+  double size_m = 1;                         // diameter of the pattern
 };
 
-// Where the autopilots will think that the pattern is, by their rules (sitl/), after some seconds
-// of targets by 'profile'.
+// Places at which the autopilots believe the pattern to be, according to their rules
+// (comms/autopilot_rules), after some seconds of targets sent by 'profile'.
 struct Understanding {
-  // m north, east, down in the local frame; nothing: it ignores what it is told.
+  // m north, east, down in the local frame; nothing: it ignores the targets.
   std::optional<Eigen::Vector3d> ardupilot_in_ned;
   std::optional<Eigen::Vector3d> px4_in_ned;  // ArduPilot's is horizontal, with the newest depth
-  // What they say to the ground station about it.
+  // Their messages to the ground station about it.
   std::string ardupilot_text;
   std::string px4_text;
 };
 Understanding UnderstandingOf(const ExplainedScene& scene, LinkProfile profile);
 
-// For each profile every field of the message that is sent, and what the autopilots make of it.
+// Returns, for each profile, every field of the message that is sent, and the autopilots' belief
+// from it.
 std::string Explain(const ExplainedScene& scene);
 
 }  // namespace kestrel

@@ -9,7 +9,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// 2 m along (cos 60, sin 60) and 1 m along (-sin 60, cos 60) from (10, 20), 5 m below -30.
+// (10, 20, -30) plus 2 m along (cos 60, sin 60), 1 m along (-sin 60, cos 60), 5 m down.
 const Eigen::Vector3d kPatternInNed(10.134, 22.232, -25);
 
 TEST(ExplanationTest, EachAutopilotUnderstandsItsProfile) {

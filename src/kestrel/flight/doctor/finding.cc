@@ -105,7 +105,7 @@ std::string FindingsJson(std::span<const Finding> findings) {
   json["findings"] = nlohmann::ordered_json::array();
   for (const Finding& finding : findings) json["findings"].push_back(ToJson(finding));
   constexpr int kIndent = 2;
-  // Texts of the autopilot may be in no encoding at all.
+  // Texts from the autopilot may have no valid encoding.
   return json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -15,7 +15,7 @@
 namespace kestrel {
 namespace {
 
-// Of the newest ten seconds, about.
+// About the newest ten seconds.
 constexpr std::size_t kSamples = 300;
 constexpr std::size_t kQualities = 20;
 constexpr Duration kQualityInterval = std::chrono::milliseconds(500);
@@ -89,7 +89,7 @@ std::vector<Finding> FlightExamination::Check(const FlightReport& report) const 
   all.computer.least_disk_mb = least_disk_mb_;
   std::vector<Finding> findings;
   const auto& mount = calibration_.body_from_camera;
-  // By its motion the mount is not judged: the target may turn.
+  // The mount is not judged by motion: the target may turn.
   const std::vector<Finding> mounted = {CheckMountGiven(mount),
                                         CheckMountByGravity(mount, all.vision)};
   for (const auto& part :

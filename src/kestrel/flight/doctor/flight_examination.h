@@ -16,22 +16,22 @@
 
 namespace kestrel {
 
-// The doctor's checks of a flight, from what the flight sees anyway: calibration, camera, mount and
-// computer by its newest frames. Link and parameters of the autopilot are not looked at, nor what
-// only a doctor's own look can tell: the focal length and the mount by the motion. By one thread.
+// The doctor's checks of a flight, made from the flight's newest frames: calibration, camera, mount
+// and computer. It does not check the link or the autopilot's parameters, nor what only a doctor's
+// own examination can show: the focal length, and the mount by motion. Used by one thread.
 class FlightExamination {
  public:
-  // 'record': the folder that recordings go to; 'least_disk_mb': that the recorder leaves.
+  // 'record': folder of the recordings. 'least_disk_mb': room that the recorder leaves free.
   FlightExamination(const CameraCalibration& calibration, const std::string& record,
                     double least_disk_mb);
 
-  // A frame that reached the vision, in order.
+  // Adds a frame that has reached the vision, in order.
   void AddFrame(const FrameSample& frame);
-  // What was seen in a frame; not every one has to be told.
+  // Adds the contents of a frame; not every frame is needed.
   void Look(const cv::Mat& image, Time now);
   void Look(const LandingObservation& observation);
 
-  // All checks of what was told so far.
+  // Runs all checks on what was added so far.
   std::vector<Finding> Check(const FlightReport& report) const;
 
  private:

@@ -18,7 +18,7 @@ class FlightExaminationTest : public ::testing::Test {
  protected:
   FlightExaminationTest() : calibration_(GoodSetup(AutopilotKind::kPx4).calibration) {}
 
-  // Ten seconds of a flight over the pattern, seen through the camera with 'true_mount'.
+  // Returns the examination after ten seconds of flight over the pattern, seen with 'true_mount'.
   FlightExamination Fly(const RigidTransform& true_mount) const {
     FlightExamination examination(calibration_, ".", 0);
     const cv::Mat image(calibration_.intrinsics.height_px, calibration_.intrinsics.width_px,

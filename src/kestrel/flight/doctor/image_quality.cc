@@ -27,7 +27,7 @@ Histogram HistogramOf(const cv::Mat& gray) {
   return histogram;
 }
 
-// The gray value that 'share' of the pixels do not exceed.
+// Returns the gray value that 'share' of the pixels do not exceed.
 double Quantile(const Histogram& histogram, double share, double pixels) {
   double below = 0;
   for (int gray = 0; gray < kGrays; ++gray) {
@@ -37,7 +37,8 @@ double Quantile(const Histogram& histogram, double share, double pixels) {
   return kGrays - 1;
 }
 
-// How far and how steeply the edges of a line of pixels rise, those that are no noise.
+// Appends the widths (pixels) of the edges along a line: rise over steepest slope. Small rises may
+// be noise and are left out.
 void MeasureEdges(const std::uint8_t* line, int size, std::vector<double>* widths) {
   constexpr int kLeastRise = 40;
   int start = 0;
@@ -55,7 +56,7 @@ void MeasureEdges(const std::uint8_t* line, int size, std::vector<double>* width
   }
 }
 
-// The sharper ones: those that run aslant, or are soft by nature, say nothing of the lens.
+// Returns a width among the sharper edges: oblique or soft edges say nothing about the lens.
 std::optional<double> SharpEdges(const cv::Mat& gray) {
   constexpr std::size_t kFewest = 30;
   constexpr double kSharper = 0.25;

@@ -8,14 +8,14 @@
 
 namespace kestrel {
 
-// What an image says of focus and exposure, and whether it is the same as another.
+// Focus and exposure of an image, and a hash that detects repeated images.
 struct ImageQuality {
   double mean_gray = 0;
   double bright_gray = 0;      // 1 % of the pixels are brighter
   double dark_gray = 0;        // 1 % are darker
   double saturated_share = 0;  // of pixels at 250 and above
-  // Over how many pixels the sharpest edges rise: 1 where nothing blurs them, 2.5 standard
-  // deviations of a blur. Nothing where there are too few edges.
+  // Width of the sharpest edges in pixels: 1 without blur, 2.5 standard deviations of a blur.
+  // Nothing where there are too few edges.
   std::optional<double> edge_px;
   std::uint64_t hash = 0;  // see RepeatedImage
 };

@@ -7,7 +7,7 @@
 namespace kestrel {
 namespace {
 
-// Squares of paper on a gray floor, as a camera with some noise sees them.
+// Squares of paper on a gray floor, seen by a camera with some noise.
 cv::Mat Scene(double blur_px, double gain) {
   cv::Mat image(240, 320, CV_8UC1, cv::Scalar(90));
   for (int i = 0; i < 12; ++i) {

@@ -21,7 +21,7 @@ double ShareOf(std::uint64_t part, std::uint64_t rest) {
   return static_cast<double>(part) / std::max(1.0, static_cast<double>(part + rest));
 }
 
-// A line on which nothing could be read.
+// Returns the finding for a line on which nothing could be read.
 Finding SilentLine(const std::string& check, const LinkObservations& link) {
   constexpr std::uint64_t kGarbage = 50;  // bytes
   const ConnectionCounters& counters = link.counters;
@@ -46,7 +46,7 @@ Finding SilentLine(const std::string& check, const LinkObservations& link) {
 
 Finding CheckStream(const std::string& check, int messages, double listened_s, double age_s,
                     double asked_hz, const std::string& missing_advice) {
-  constexpr double kEnough = 0.6;  // of what was asked for
+  constexpr double kEnough = 0.6;  // of the requested rate
   constexpr double kLeast_hz = 10;
   constexpr double kOld_s = 1;
   const double rate_hz = listened_s > 0 ? messages / listened_s : 0;

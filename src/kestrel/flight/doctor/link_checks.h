@@ -8,7 +8,7 @@
 
 namespace kestrel {
 
-// Checks of the line to the autopilot and of what it says there, besides its parameters.
+// Checks of the line to the autopilot and of its messages, except its parameters.
 Finding CheckLine(const LinkObservations& link);
 Finding CheckSigning(const LinkObservations& link);
 Finding CheckHeartbeat(const LinkObservations& link);
@@ -21,10 +21,10 @@ Finding CheckAutopilotClock(const LinkObservations& link);
 Finding CheckRoundTrip(const LinkObservations& link, const DoctorUse& use);
 Finding CheckLinkEvents(const LinkObservations& link);
 
-// All of them; without a heartbeat only the first three.
+// All of these checks; without a heartbeat only the first three.
 std::vector<Finding> CheckLink(const LinkObservations& link, const DoctorUse& use);
 
-// The profile by which the autopilot is told: the one chosen, or by its heartbeat.
+// Returns the profile used to report the target: the chosen one, or one by the heartbeat.
 LinkProfile ProfileOf(const DoctorObservations& observations);
 
 }  // namespace kestrel

@@ -17,8 +17,8 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 constexpr std::size_t kFewestPatterns = 10;
-// How far from level the pattern may lie, rad, by a mount that is turned by quarters and taken into
-// account: when the UAV tilts, more than by the right one.
+// Largest tilt of the pattern (rad) by a turned mount that is compared. It is generous: while the
+// UAV tilts, the pattern's tilt is larger than by the right mount.
 constexpr double kLevel = 0.6;
 constexpr char kShakeAdvice[] =
     "hold the UAV 1 to 3 m above the pattern and tilt it by 20 deg forward, back and to the sides "
@@ -32,13 +32,13 @@ std::vector<const PatternSample*> PosedPatterns(const VisionObservations& vision
   return posed;
 }
 
-// How far from level the pattern lies by its pose in the camera, rad.
+// Returns the angle between the pattern's normal and the vertical, rad.
 double TiltOf(const RigidTransform& camera_from_pattern, const Quaterniond& world_from_camera) {
   const Vector3d normal = world_from_camera * (camera_from_pattern.rotation * Vector3d::UnitZ());
   return std::acos(std::clamp(normal.z(), -1.0, 1.0));
 }
 
-// The median; of two poses that look the same the one that is more level.
+// Returns the median tilt; of two poses that look the same the more level one counts.
 double MedianTilt(const std::vector<const PatternSample*>& patterns,
                   const Quaterniond& body_from_camera) {
   std::vector<double> tilts;
@@ -53,7 +53,7 @@ double MedianTilt(const std::vector<const PatternSample*>& patterns,
   return MedianOf(std::move(tilts));
 }
 
-// The root mean square by which the pattern leaves its place, or its straight way, m.
+// Returns the root mean square distance of the pattern from one place, or from a straight way, m.
 double Wandering(const std::vector<const PatternSample*>& patterns,
                  const RigidTransform& body_from_camera, bool target_moves) {
   const auto rows = static_cast<Eigen::Index>(patterns.size());
@@ -70,7 +70,7 @@ double Wandering(const std::vector<const PatternSample*>& patterns,
   return std::sqrt((places - motion * way).rowwise().squaredNorm().mean());
 }
 
-// All 24 rotations by quarters of a turn; the first is none.
+// All 24 rotations by quarter turns; the first is the identity.
 std::vector<Quaterniond> QuarterTurns() {
   constexpr int kQuarters = 4;
   const auto turn = [](int quarters, const Vector3d& axis) {
@@ -123,13 +123,14 @@ Finding TooFewPatterns(const std::string& check, std::size_t patterns, double le
                     kShakeAdvice);
 }
 
-// How another mount would do.
+// Result of another mount.
 struct OtherMount {
   Quaterniond turn;
   double wandering_m;
 };
 
-// Of those turned mounts by which the pattern lies level, the one that keeps it in place best.
+// Returns, of the turned mounts by which the pattern lies level, the one that keeps it in place
+// best.
 std::optional<OtherMount> BestTurned(const std::vector<const PatternSample*>& patterns,
                                      const RigidTransform& body_from_camera, bool target_moves) {
   std::optional<OtherMount> best;

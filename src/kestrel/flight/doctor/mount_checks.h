@@ -9,17 +9,18 @@
 
 namespace kestrel {
 
-// Checks of how the camera is mounted.
+// Checks of the camera's mount.
 
-// Whether it is told at all, and the camera looks down by it.
+// Checks that the mount is given, and that by it the camera looks down.
 Finding CheckMountGiven(const std::optional<RigidTransform>& body_from_camera);
 
-// Whether the pattern lies level by mount and attitude, as on a level deck.
+// Checks that, by mount and attitude, the pattern lies level, as on a level deck.
 Finding CheckMountByGravity(const std::optional<RigidTransform>& body_from_camera,
                             const VisionObservations& vision);
 
-// Whether the pattern stays where it is (or drives straight on, where 'target_moves') while the UAV
-// moves or tilts: the same for the mount turned by quarters of a turn in all ways, of which the
+// Checks that, by the mount, the pattern stays where it is (or drives straight on, where
+// 'target_moves') while the UAV moves or tilts. The mount is compared with all mounts turned by
+// quarter turns: the right one keeps the pattern in place best.
 // right one keeps it in place best.
 Finding CheckMountByMotion(const std::optional<RigidTransform>& body_from_camera,
                            const VisionObservations& vision, bool target_moves);

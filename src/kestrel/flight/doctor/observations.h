@@ -18,83 +18,83 @@
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
 
-// What the checks look at: all that camera, autopilot and computer showed in some seconds. The
-// checks are functions of these alone, whoever filled them in.
+// Input of the checks: what camera, autopilot and computer showed in some seconds. The checks are
+// functions of these alone.
 namespace kestrel {
 
-// What the set-up is to be used for, on which the checks depend.
+// Intended use of the set-up, on which the checks depend.
 struct DoctorUse {
-  std::optional<LinkProfile> profile;  // nothing: by the heartbeat
+  std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
   bool guides = false;                 // Kestrel flies the UAV by set-points
   std::optional<double> target_mps;    // speed of a target that moves; nothing: it stands
   bool sends_distance = false;         // DISTANCE_SENSOR too
-  double attitude_rate_hz = 100;       // asked of the autopilot
+  double attitude_rate_hz = 100;       // requested from the autopilot
   double position_rate_hz = 50;        //
   std::optional<double> link_delay_s;  // as configured; nothing: by the round trip
   std::string record;                  // folder of the recording; empty: none
 };
 
-// A frame as it came.
+// The times of a frame.
 struct FrameSample {
-  Time stamp;    // when its light was collected, by the source
+  Time stamp;    // when its light was collected, according to the source
   Time arrival;  // both on the clock of Now()
 };
 
 struct CameraObservations {
-  std::string open_error;       // why it could not be opened; empty: it was
+  std::string open_error;       // why it could not be opened; empty: it could be
   bool has_other_size = false;  // the reason was the size of its images
-  std::string error;            // what it said last
-  double duration_s = 0;        // for which it was listened to
+  std::string error;            // its last error
+  double duration_s = 0;        // time for which it was watched
   int width_px = 0;             // of its images; 0: there were none
   int height_px = 0;
   std::vector<FrameSample> frames;      // in the order in which they came
-  std::vector<ImageQuality> qualities;  // of those that were looked at
+  std::vector<ImageQuality> qualities;  // of the examined frames
   CaptureCounters counters;
 };
 
-// The pattern in one frame, found without any knowledge of mount and attitude.
+// The pattern in one frame, found without mount and attitude.
 struct PatternSample {
   Time time;  // of the frame, on the navigation's clock
   RigidTransform camera_from_pattern;
   std::optional<RigidTransform> mirror_camera_from_pattern;
-  double ring_px = 0;        // its smaller diameter
-  double misfit_px = 0;      // how far the edges are from where pose and lens have them
-  bool contradicts = false;  // the calibration cannot explain it
-  std::optional<RigidTransform> world_from_body;  // by the autopilot
+  double ring_px = 0;        // smaller diameter of the ring
+  double misfit_px = 0;      // distance of the edges from where pose and lens place them
+  bool contradicts = false;  // the calibration cannot explain the detection
+  std::optional<RigidTransform> world_from_body;  // according to the autopilot
 };
 
 struct VisionObservations {
   int frames = 0;          // processed
-  int dropped_frames = 0;  // because the frame before was still processed
+  int dropped_frames = 0;  // while the frame before was still processed
   std::vector<PatternSample> patterns;
-  std::optional<FocalFactor> focal;                // what they say of the focal length
-  std::optional<FocalFactor> focal_contradiction;  // the same, where it contradicts
+  std::optional<FocalFactor> focal;                // their estimate of the focal length
+  std::optional<FocalFactor> focal_contradiction;  // the same, where it contradicts the calibration
   double detect_s = 0;                             // median and
   double detect_p90_s = 0;
-  double latency_s = 0;  // median, from the frame's light to the detection
+  double latency_s = 0;  // median, from the frame's exposure to the detection
 };
 
 struct LinkObservations {
   bool is_asked = false;   // an autopilot was given at all
-  std::string open_error;  // why the line could not be opened; empty: it was
+  std::string open_error;  // why the line could not be opened; empty: it could be
   LinkScheme scheme = LinkScheme::kUdpIn;
   int baud = 0;               // of a serial line
-  bool is_signed = false;     // this side signs
-  bool hears_signed = false;  // the other side does
+  bool is_signed = false;     // this side signs its packets
+  bool hears_signed = false;  // the other side signs its packets
   ConnectionCounters counters;
-  bool is_heard = false;  // a heartbeat, in the end
+  bool is_heard = false;  // a heartbeat came before the end
   AutopilotKind kind = AutopilotKind::kUnknown;
   std::optional<AutopilotVersion> version;
   std::optional<std::uint8_t> vehicle_type;  // MAV_TYPE
   std::string mode;
   bool is_armed = false;
   int heartbeats = 0;
-  double listened_s = 0;  // to the streams
+  double listened_s = 0;  // time for which the streams were counted
   int attitudes = 0;      // messages in that time
   int positions = 0;
   double attitude_age_s = 0;  // of the newest one, at the end
   double position_age_s = 0;
-  std::optional<bool> has_good_position;  // by the autopilot's own estimator
+  std::optional<bool> has_good_position;  // according to the autopilot's own estimator
   std::uint64_t lost_packets = 0;
   bool knows_clock = false;
   bool is_one_way = false;  // TIMESYNC is not answered
@@ -103,18 +103,18 @@ struct LinkObservations {
   double clock_sigma_s = 0;
   int clock_jumps = 0;
   int restarts = 0;
-  std::vector<std::string> events;  // what a pilot should know
-  int own_system = 0;               // this program's
+  std::vector<std::string> events;  // events that a pilot should know
+  int own_system = 0;               // system number of this program
 };
 
 struct ComputerObservations {
   int cores = 1;
   double load = 0;                         // processes that run or wait, mean of a minute
-  std::optional<double> hottest_c;         // of the thermal zones
+  std::optional<double> hottest_c;         // of all thermal zones
   std::optional<std::uint32_t> throttled;  // Raspberry Pi's flags
-  std::optional<double> free_disk_mb;      // where the recording goes
-  double least_disk_mb = 0;                // that the recorder leaves
-  double frame_mb = 0;                     // of a frame, uncompressed
+  std::optional<double> free_disk_mb;      // on the disk of the recording
+  double least_disk_mb = 0;                // room that the recorder leaves free
+  double frame_mb = 0;                     // size of a frame, uncompressed
 };
 
 struct DoctorObservations {

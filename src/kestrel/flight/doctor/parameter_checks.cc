@@ -29,19 +29,19 @@ constexpr std::array<std::string_view, 18> kOfPx4 = {
     "MPC_XY_VEL_MAX",  "MPC_TILTMAX_AIR",  "COM_OF_LOSS_T",   "COM_OBL_RC_ACT", "NAV_RCL_ACT",
     "COM_RC_OVERRIDE", "MAN_OVERRIDE_SPD", "LNDMC_XY_VEL_MAX"};
 
-// Of a vehicle of which nothing is told, the paper's: 15 km/h.
+// Speed of a vehicle when none is given, from the paper: 15 km/h.
 constexpr double kUsualSpeed_mps = 4.2;
-// By which the UAV has to be faster than what it follows.
+// Speed margin of the UAV over the target.
 constexpr double kSpeedMargin_mps = 3;
 
-// What is wanted of a parameter.
+// The wanted value of a parameter.
 struct Wanted {
   double value;
-  std::string_view why;  // what happens otherwise
+  std::string_view why;  // the consequence otherwise
   bool needs_reboot = false;
 };
 
-// Looks at one parameter after the other and keeps what it finds.
+// Checks one parameter after the other and collects the findings.
 class ParameterRules {
  public:
   explicit ParameterRules(const DoctorObservations& observations) : all_(observations) {}
@@ -55,8 +55,8 @@ class ParameterRules {
     return (static_cast<int>(Find(name).value_or(0)) >> bit & 1) != 0;
   }
 
-  // Good where 'is_good', else what 'otherwise' says, with what to set. A parameter that the
-  // autopilot does not have is left out.
+  // Adds a finding: good where 'is_good', else 'otherwise' with the value to set. A parameter that
+  // the autopilot does not have is left out.
   template <class IsGood>
   void Want(std::string_view name, Verdict otherwise, const Wanted& wanted, const IsGood& is_good) {
     const auto found = all_.parameters.find(name);
@@ -86,10 +86,10 @@ class ParameterRules {
   }
   void Add(Finding finding) { findings_.push_back(std::move(finding)); }
 
-  // Where targets are ignored: set-points land without them, less surely.
+  // Verdict where targets are ignored: set-points land without them, but less surely.
   Verdict without_targets() const { return all_.use.guides ? Verdict::kDoubtful : Verdict::kWrong; }
   bool moves() const { return all_.use.target_mps.has_value(); }
-  // Wanted of the UAV's speed, m/s.
+  // Wanted speed of the UAV, m/s.
   double wanted_mps() const { return target_mps() + kSpeedMargin_mps; }
   double target_mps() const { return all_.use.target_mps.value_or(kUsualSpeed_mps); }
   const DoctorObservations& all() const { return all_; }
@@ -104,7 +104,7 @@ class ParameterRules {
 
 void CheckPrecisionLandingOfArduPilot(ParameterRules* rules) {
   if (rules->Find("PLND_ENABLED").value_or(0) == 0 && !rules->Find("PLND_TYPE")) {
-    // ArduPilot hides the others until then.
+    // ArduPilot hides the other parameters until then.
     rules->WantExactly("PLND_ENABLED", rules->without_targets(),
                        {1,
                         "precision landing is off, and its parameters hidden until it is on "
@@ -185,7 +185,7 @@ void CheckGuidanceOfArduPilot(ParameterRules* rules) {
               [](double s) { return s >= kShortest_s && s <= kLongest_s; });
 }
 
-// How fast it turns into the curve of a vehicle that it is guided to.
+// Checks how fast it turns into the curve of the vehicle that it is guided to.
 void CheckAgilityOfArduPilot(ParameterRules* rules) {
   constexpr double kLeastAcceleration = 4;
   constexpr double kAcceleration = 6;

@@ -10,17 +10,18 @@
 
 namespace kestrel {
 
-// First names of the parameters that the checks look at; none for other autopilots.
+// First names of the parameters that the checks use; none for other autopilots.
 std::span<const std::string_view> CheckedParameters(AutopilotKind kind);
 
-// Whether the autopilot understands the messages of the profile.
+// Checks that the autopilot understands the messages of the profile.
 Finding CheckProfile(const DoctorObservations& observations);
 
-// From the light of a frame to the use of what it showed, against what the autopilot reckons with.
+// Checks the time from a frame's exposure to the use of its result against the delay that the
+// autopilot assumes.
 Finding CheckLatency(const DoctorObservations& observations);
 
-// The autopilot's parameters, for what the set-up is to be used for. One finding for each that
-// matters then.
+// Checks the autopilot's parameters for the intended use. Returns one finding for each parameter
+// that matters for it.
 std::vector<Finding> CheckParameters(const DoctorObservations& observations);
 
 }  // namespace kestrel

@@ -7,14 +7,14 @@
 
 namespace kestrel {
 
-// A parameter as the autopilot told it.
+// A parameter as reported by the autopilot.
 struct ToldParameter {
-  double value = 0;      // in the unit of its first name (link/parameter_names.h)
-  std::string own_name;  // what this autopilot calls it
-  double scale = 1;      // value over that of the autopilot's own unit
+  double value = 0;      // in the unit of its first name (comms/mavlink/parameter_names.h)
+  std::string own_name;  // this autopilot's name for it
+  double scale = 1;      // value divided by the value in the autopilot's own unit
 };
 
-// By first name, those that were told.
+// The reported parameters by first name.
 using ParameterValues = std::map<std::string, ToldParameter, std::less<>>;
 
 }  // namespace kestrel

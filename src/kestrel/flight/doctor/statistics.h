@@ -8,11 +8,11 @@
 
 namespace kestrel {
 
-// For numbers that people read.
+// Factors for numbers that people read.
 inline constexpr double kPercent = 100;
 inline constexpr double kMilliseconds = 1000;  // per second
 
-// The value that 'share' (0 to 1) of the values do not exceed; 'values' must not be empty.
+// Returns the quantile 'share' (0 to 1) of the values, by nearest rank; 'values' must not be empty.
 inline double QuantileOf(std::vector<double> values, double share) {
   const auto last = static_cast<double>(values.size() - 1);
   const auto place = values.begin() + std::lround(share * last);

@@ -20,14 +20,14 @@ inline Time FrameTime(int i) {
   return Time(std::chrono::seconds(100)) + DurationFromSeconds(kPeriod_s * i);
 }
 
-// A camera under the body that looks down, its image's up ahead.
+// A camera under the body that looks down; the top of its image is ahead.
 inline RigidTransform DownwardMount() {
   Eigen::Matrix3d body_from_camera;
   body_from_camera << 0, -1, 0, -1, 0, 0, 0, 0, -1;
   return {Eigen::Quaterniond(body_from_camera), {0.1, 0, -0.05}};
 }
 
-// A UAV that is held above the origin and tilted about.
+// Pose of a UAV that somebody holds above the origin and tilts about.
 inline RigidTransform HeldPose(double time_s, double tilt_deg) {
   const Eigen::Quaterniond level(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()));
   const Eigen::Vector3d tilt =
@@ -35,7 +35,7 @@ inline RigidTransform HeldPose(double time_s, double tilt_deg) {
   return {level * RotationBy(tilt), {0.3, -0.2, 2.5}};
 }
 
-// What the camera with 'true_mount' sees of a pattern that lies at the origin.
+// Returns what a camera with 'true_mount' sees of a pattern at the origin.
 inline std::vector<PatternSample> PatternsSeen(const RigidTransform& true_mount, double tilt_deg) {
   std::vector<PatternSample> patterns;
   for (int i = 0; i < kFrames; i += 2) {
@@ -102,7 +102,7 @@ inline LinkObservations GoodLink(AutopilotKind kind) {
   return link;
 }
 
-// Those of the simulated autopilot.
+// Parameters of the simulated autopilot.
 inline ParameterValues DefaultParameters(AutopilotKind kind) {
   const AutopilotParameters defaults(kind == AutopilotKind::kPx4 ? AutopilotFirmware::kPx4
                                                                  : AutopilotFirmware::kArduPilot);
@@ -114,7 +114,7 @@ inline ParameterValues DefaultParameters(AutopilotKind kind) {
   return values;
 }
 
-// A set-up that is right for landing on a pattern that stands.
+// A set-up that is right for landing on a standing pattern.
 inline DoctorObservations GoodSetup(AutopilotKind kind) {
   DoctorObservations all;
   all.calibration.intrinsics = {752, 480, 420, 420, 375.5, 239.5, DistortionModel::kNone, {}};
@@ -132,7 +132,7 @@ inline DoctorObservations GoodSetup(AutopilotKind kind) {
   return all;
 }
 
-// One that is right for guidance onto a car, too.
+// A set-up that is also right for guidance onto a car.
 inline DoctorObservations GoodGuidedSetup(AutopilotKind kind) {
   DoctorObservations all = GoodSetup(kind);
   all.use.guides = true;
