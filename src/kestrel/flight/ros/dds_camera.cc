@@ -23,12 +23,14 @@ namespace kestrel {
 namespace {
 
 constexpr Duration kTick = std::chrono::milliseconds(20);
-constexpr Duration kSettle = std::chrono::seconds(1);  // topics of one system, from first to last
+constexpr Duration kSettle = std::chrono::seconds(1);  // time in which all topics of one system
+                                                       // appear
 constexpr Duration kStall = std::chrono::seconds(2);
-constexpr Duration kLive = std::chrono::seconds(10);  // a stamp that is further off is none of now
+constexpr Duration kLive = std::chrono::seconds(10);  // a stamp that differs more from now is not
+                                                      // live
 constexpr std::size_t kMaxWaiting = 64;
 constexpr Ros2Qos kPosesQos{false, false, 200};
-constexpr Ros2Qos kStaticQos{true, true, 100};  // of every node that tells static transforms
+constexpr Ros2Qos kStaticQos{true, true, 100};  // as all nodes that publish static transforms use
 
 constexpr char kStaticTransforms[] = "/tf_static";
 
@@ -65,7 +67,7 @@ DdsCamera::DdsCamera(std::shared_ptr<Ros2Node> node, DdsCameraOptions options,
     calibration_->body_from_camera = mount();
     if (!options_.camera) options_.camera = calibration_->intrinsics;
   }
-  // Of the images that came so far nobody has checked the size.
+  // The size of the images that came so far has not been checked.
   std::erase_if(waiting_, [](const Event& event) { return std::holds_alternative<Frame>(event); });
   has_poses_ = newest_pose_.has_value();
   if (std::chrono::abs(-to_stamps() + RosTimeAhead()) > kLive) {
@@ -73,7 +75,7 @@ DdsCamera::DdsCamera(std::shared_ptr<Ros2Node> node, DdsCameraOptions options,
   }
 }
 
-// The image's topic and, a moment later, those that go with it.
+// Finds the image's topic, and the other topics a moment later.
 std::vector<BagTopic> DdsCamera::FindTopics() const {
   const Time end = Now() + DurationFromSeconds(options_.wait_s);
   std::optional<Time> found;
@@ -157,7 +159,7 @@ void DdsCamera::TakeMessage(const BagTopic& topic, std::string_view bytes) {
   }
 }
 
-// By the first stamp, for all: the time between images and poses is theirs.
+// The first stamp sets the shift for all stamps: the time between images and poses is kept.
 Time DdsCamera::TimeOf(Time stamp) {
   if (!from_stamps_) {
     from_stamps_ = -RosTimeAhead();
@@ -171,7 +173,7 @@ template <class Message>
 void DdsCamera::TakeImage(const BagTopic& topic, std::string_view bytes) {
   {
     const std::lock_guard lock(mutex_);
-    ++counters_.missed;  // until it is good
+    ++counters_.missed;  // counted as missed until the message proves good
   }
   const auto message = ParseMessage<Message>(bytes, topic.wire_format, topic.name);
   if (ToNanoseconds(message.header.stamp) <= 0) {
@@ -232,7 +234,7 @@ void DdsCamera::AddPose(PoseSample pose, const std::string& world) {
   Add(pose);
 }
 
-// While nobody asks, the newest are as good as all.
+// While nobody calls Next, the newest events replace the oldest.
 void DdsCamera::Add(Event event) {
   if (waiting_.size() == kMaxWaiting) waiting_.pop_front();
   waiting_.push_back(std::move(event));

@@ -25,25 +25,26 @@ namespace kestrel {
 
 struct DdsCameraOptions {
   std::string image;                // topic: "/camera/image_raw"
-  std::vector<std::string> topics;  // where the types of the others leave a choice (--topic)
+  std::vector<std::string> topics;  // chosen topics (--topic), where several of a type exist
   PixelFormat format = PixelFormat::kGray;
-  std::string body_frame;                       // of the UAV, where the poses do not say
-  std::optional<CameraIntrinsics> camera = {};  // what the user told; nothing: by camera_info
-  double wait_s = 10;                           // for images, camera_info and mount
+  std::string body_frame;                       // frame of the UAV, where the poses do not name it
+  std::optional<CameraIntrinsics> camera = {};  // calibration given by the user; nothing: from
+                                                // camera_info
+  double wait_s = 10;                           // longest wait for images, camera_info and mount
 };
 
-// Images and poses of a system of ROS 2 while they happen. The topics are found and read as those
-// of a bag: the image's by name, raw or compressed; camera_info beside it; poses by type, or by tf;
-// the mount by tf. Stamps are ROS' time of this computer or, where they are far from that (a bag
-// that is played, a simulation), a time that began with the first of them.
+// Live images and poses from a system of ROS 2. The topics are found and read like those of a bag:
+// the image by name, raw or compressed; camera_info beside it; poses by type, or by tf; the mount
+// by tf. Stamps are the ROS time of this computer. Where they are far from it (a played bag, a
+// simulation), the first stamp maps to the time of its arrival.
 class DdsCamera : public LiveSource {
  public:
-  // Waits for all that is to come. Throws InputError, with the topic and what is there instead, for
-  // want of images or camera_info, and where they are at fault. 'tell': what the user should know.
+  // Waits for all topics. Throws InputError, with the topic and what exists instead, when there are
+  // no images or no camera_info, or when these are wrong. 'tell' receives messages for the user.
   DdsCamera(std::shared_ptr<Ros2Node> node, DdsCameraOptions options,
             const std::function<void(const std::string&)>& tell);
 
-  // By camera_info and tf; nothing where the user told another and there is no camera_info.
+  // From camera_info and tf; nothing when the user gave another one and there is no camera_info.
   const std::optional<CameraCalibration>& calibration() const { return calibration_; }
   std::optional<RigidTransform> mount() const;
   bool has_poses() const { return has_poses_; }
@@ -51,8 +52,7 @@ class DdsCamera : public LiveSource {
   const std::string& world_frame() const { return world_frame_; }  // empty: there are no poses
   Duration to_stamps() const { return -from_stamps_.value_or(Duration::zero()); }
 
-  // Messages that are broken, and images out of order, are left out: error() says why, until there
-  // is a good one.
+  // Leaves out broken messages and images out of order: error() says why, until a good one comes.
   std::optional<Event> Next(Duration timeout) override;
   std::string error() const override;
   CaptureCounters counters() const override;
@@ -76,7 +76,7 @@ class DdsCamera : public LiveSource {
   std::shared_ptr<Ros2Node> node_;
   DdsCameraOptions options_;
   std::string name_;              // "dds:/camera/image_raw"
-  std::vector<BagTopic> topics_;  // those that are heard, in the order of their indices
+  std::vector<BagTopic> topics_;  // the subscribed topics, in the order of their indices
   BagTopics chosen_;
   bool has_poses_ = false;
   LiveTransforms transforms_;
@@ -84,14 +84,14 @@ class DdsCamera : public LiveSource {
   std::optional<CameraCalibration> calibration_;
   std::string camera_frame_;
   std::string world_frame_;
-  std::string body_frame_;  // where the poses say it
+  std::string body_frame_;  // as the poses say
   std::optional<Duration> from_stamps_;
   std::optional<Time> newest_image_;
   std::optional<Time> newest_pose_;
   std::deque<Event> waiting_;
-  Time last_image_;  // when one came, by Now()
+  Time last_image_;  // arrival of the newest image, by Now()
 
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // guards what follows
   CaptureCounters counters_;
   std::string error_;
 };

@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::string_view, 6> kDistributions{"humble", "iron",    "jazzy",
                                                          "kilted", "lyrical", "rolling"};
 
-// As ROS names nodes.
+// True when ROS accepts 'name' as the name of a node.
 bool IsNodeName(const std::string& name) {
   constexpr std::size_t kMaxLength = 255;
   return !name.empty() && name.size() <= kMaxLength &&

@@ -6,20 +6,20 @@
 
 namespace kestrel {
 
-// How Kestrel takes part in a system of ROS 2: see docs/ros2.md.
+// Options of Kestrel's part in a system of ROS 2, see docs/ros2.md.
 struct DdsOptions {
-  std::string node = "kestrel";  // its name; topics are below it
-  // Of ROS: since Iron nodes list each other in words that Humble does not know.
+  std::string node = "kestrel";  // name of the node; its topics are below it
+  // Distribution of ROS: since Iron, nodes list each other in messages that Humble does not know.
   std::string distribution = "jazzy";
-  std::string camera_frame = "camera_optical_frame";  // dds: sources have their own
-  std::string world_frame = "map";                    // as well
+  std::string camera_frame = "camera_optical_frame";  // a dds: source has its own
+  std::string world_frame = "map";                    // a dds: source has its own
   std::string body_frame = "base_link";
-  std::string pattern_frame = "landing_pattern";  // of tf, for the pattern as it was detected
-  std::string target_frame = "landing_target";    // that the track's velocity is in
+  std::string pattern_frame = "landing_pattern";  // of tf, for the detected pattern
+  std::string target_frame = "landing_target";    // frame of the track's velocity
   bool publish_tf = true;
   double prediction_s = 2;
   double prediction_step_s = 0.1;
-  double wait_s = 10;  // for the images, camera_info and mount of a dds: source
+  double wait_s = 10;  // longest wait for images, camera_info and mount of a dds: source
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {

@@ -36,7 +36,7 @@ Vector3Message SizeOf(const ObjectClass& of) {
   return {of.size_m, width, std::max(of.height_m, kFlat_m)};
 }
 
-// By the hue alone: as paint, not as it looked in that light.
+// Returns the colour by its hue alone: as paint, without the light in which it was seen.
 ColorMessage PaintOf(const Hsv& color) {
   const auto channel = [&](float shift) {
     const float part = std::fmod(shift + color.hue_deg / 60, 6.0F);
@@ -107,7 +107,7 @@ MarkerMessage VelocityMarker(const MappedObject& object, const HeaderMessage& he
   return marker;
 }
 
-// What is in the array so far replaces all markers of the topic.
+// Returns an array whose first marker deletes all earlier markers of the topic.
 MarkerArrayMessage NoMarkers(Time stamp, const std::string& frame) {
   MarkerArrayMessage message;
   MarkerMessage& none = message.markers.emplace_back();

@@ -13,31 +13,30 @@
 
 namespace kestrel {
 
-// What the pipeline of coloured objects says, in the messages of ROS. Stamps are capture times.
+// Results of the pipeline of coloured objects as messages of ROS. Stamps are capture times.
 
-// The objects of a frame that have a location, in the camera's frame: their class by name, its
-// probability as the score, the position with its covariance; of how they are turned nothing is
-// known.
+// The located objects of a frame, in the camera's frame: the class by name, its probability as the
+// score, the position with its covariance. The orientation is unknown.
 Detection3DArrayMessage DetectionsOf(const HuntObservation& observation, const ObjectModel& model,
                                      const std::string& camera_frame);
 
-// For RViz: where they are in the world, in their colours; those of the frame before go.
+// For RViz: the objects in the world, in their colours. They replace those of the frame before.
 MarkerArrayMessage MarkersOf(const HuntObservation& observation, const ObjectModel& model,
                              const std::string& world_frame);
 
-// The map as it was at 'stamp': where each object was when it was last seen, the stamp of its own
-// header; the score is the probability that it is there. An object that no class has (its colour is
-// still open) has a box and no class.
+// The map at 'stamp': each object where it was last seen, with that time in its own header; the
+// score is the probability that it exists. An object that fits no class (its colour is still open)
+// has a box and no class.
 Detection3DArrayMessage MapOf(const std::vector<MappedObject>& objects, Time stamp,
                               const ObjectModel& model, const std::string& world_frame);
 
-// The same for RViz: bodies in their colours, what they are in words, and where those that move
-// drive within a second. They stay until the next map.
+// The same for RViz: bodies in their colours, labels, and the path within the next second of those
+// that move. They stay until the next map.
 MarkerArrayMessage MapMarkersOf(const std::vector<MappedObject>& objects, Time stamp,
                                 const ObjectModel& model, const std::string& world_frame);
 
-// The team's map as MapOf and MapMarkersOf; the words also say who has an object in its map and who
-// goes for it: "red: one two, for two".
+// The team's map as MapOf and MapMarkersOf. The labels also say which UAVs have an object in their
+// map and which one claims it: "red: one two, for two".
 Detection3DArrayMessage TeamDetectionsOf(const TeamReport& team, const ObjectModel& model,
                                          const std::string& world_frame);
 MarkerArrayMessage TeamMarkersOf(const TeamReport& team, const ObjectModel& model,

@@ -13,8 +13,8 @@ namespace {
 const Time kMapTime = TimeFromNanoseconds(9'000'000'000);
 const Time kSeen = TimeFromNanoseconds(7'000'000'000);
 
-// The first class of the model, a disc of 0.2 m whose upper face is 12 mm above the ground; known
-// to 0.1 m along x. It is there with a probability of 0.9.
+// A disc of the model's first class, 0.2 m wide, with its upper face 12 mm above the ground. Its
+// position is known to 0.1 m along x. It exists with a probability of 0.9.
 MappedObject MappedDisc() {
   MappedObject object;
   object.id = 5;
@@ -84,7 +84,7 @@ TEST(HuntMessages, MarkersOfTheMapReplaceThoseBeforeAndStay) {
   }
 }
 
-// That disc, which two have and one goes for.
+// The same disc in the maps of two UAVs, one of which claims it.
 TeamReport TeamsDisc() { return {kMapTime, {{MappedDisc(), {"one", "two"}, "two"}}}; }
 
 TEST(HuntMessages, TheTeamsMapIsOfOneTime) {

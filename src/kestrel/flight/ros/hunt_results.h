@@ -18,7 +18,7 @@
 
 namespace kestrel {
 
-// By what names results are published, and what the objects are.
+// Names of the published frames and format, and the model of the objects.
 struct HuntResultsOptions {
   WireFormat format = WireFormat::kRos1;
   std::string camera_frame;
@@ -26,8 +26,8 @@ struct HuntResultsOptions {
   ObjectModel model;
 };
 
-// Publishes what the pipeline of coloured objects says of a frame, and its map. What is only looked
-// at is made only for those who look.
+// Publishes the results of the pipeline of coloured objects for a frame, and its map. Messages for
+// display are made only when somebody subscribes to them.
 class HuntResults {
  public:
   // 'connection' must outlive this.
@@ -35,11 +35,11 @@ class HuntResults {
 
   void PublishDetections(const HuntObservation& observation);
   void PublishMarkers(const HuntObservation& observation);
-  // With what was found drawn on it, and the map, where it is not null, in a corner.
+  // The image with the results drawn on it, and the map in a corner, unless it is null.
   void PublishImage(const cv::Mat& image, const HuntObservation& observation, const ObjectMap* map);
-  // The map as it was at 'stamp', and its markers. Nothing where there are no poses.
+  // The map at 'stamp', and its markers. Nothing where there are no poses.
   void PublishMap(const std::vector<MappedObject>& map, Time stamp);
-  // The team's, likewise.
+  // The team's map and its markers, likewise.
   void PublishTeam(const TeamReport& team);
 
  private:

@@ -27,7 +27,7 @@ RigidTransform PoseOf(const TargetEstimate& target) {
   return {RotationBy({0, 0, target.heading()}), target.motion.position()};
 }
 
-// Of the direction of the velocity; of a target that stands nothing is known.
+// Variance of the velocity's direction (rad^2); unknown for a target that stands.
 double HeadingVariance(const TurnState& motion) {
   const Eigen::Vector2d velocity = motion.velocity().head<2>();
   const double squared_speed = velocity.squaredNorm();
@@ -43,7 +43,7 @@ MarkerMessage Marker(const std::string& name, Time stamp, const std::string& fra
   marker.header = HeaderOf(stamp, frame);
   marker.name_space = name;
   marker.type = shape;
-  marker.lifetime = {1, 0};  // so that RViz forgets it with the node
+  marker.lifetime = {1, 0};  // RViz forgets the marker soon after the node ends
   return marker;
 }
 

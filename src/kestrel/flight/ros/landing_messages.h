@@ -16,11 +16,11 @@
 
 namespace kestrel {
 
-// What the landing pipeline says, in the messages of ROS. Stamps are capture times. Frames by REP
+// Results of the landing pipeline as messages of ROS. Stamps are capture times. Frames follow REP
 // 103: the camera's is an optical one, the world's z is up.
 
-// The detection as it is, in the camera's frame; no detection is an empty list. The box is the
-// board's, the score the detection's quality.
+// The detection in the camera's frame; an empty list when there is none. The box is the board's,
+// the score is the detection's quality.
 Detection3DArrayMessage DetectionsOf(const LandingObservation& observation,
                                      const std::string& camera_frame,
                                      const LandingPattern& pattern);
@@ -33,23 +33,24 @@ PoseWithCovarianceStampedMessage TargetPoseOf(const LandingDetection& detection,
 TfMessage PatternTransformOf(const LandingDetection& detection, Time stamp,
                              const std::string& camera_frame, const std::string& pattern_frame);
 
-// The track: where the target is in the world, headed where it drives; velocities in its own frame.
-// What the track does not know (roll, pitch and their rates) has a variance of pi^2 / 3.
+// The track: the target's pose in the world, headed along its velocity; velocities in its own
+// frame. Quantities that the track does not know (roll, pitch and their rates) have a variance of
+// pi^2 / 3.
 OdometryMessage TrackOf(const TargetEstimate& target, const std::string& world_frame,
                         const std::string& target_frame);
 
-// Where the target will be, from its own time on, 'horizon' ahead in steps of 'step' (above 0),
-// when nothing but 'noise' disturbs its motion.
+// Predicted path of the target, from its own time to 'horizon' ahead in steps of 'step' (above 0),
+// when only 'noise' disturbs its motion.
 PathMessage PredictionOf(const TargetEstimate& target, const TurnNoise& noise, Duration horizon,
                          Duration step, const std::string& world_frame);
 
-// For RViz: the pattern's ring in the camera's frame; in the world's, where that is known, where
-// the target drives within a second, and the ellipsoid of three standard deviations around it.
+// For RViz: the pattern's ring in the camera's frame; in the world's frame, where it is known, the
+// target's path within the next second and the ellipsoid of three standard deviations around it.
 MarkerArrayMessage MarkersOf(const LandingObservation& observation, const LandingPattern& pattern,
                              const std::string& camera_frame,
                              const std::optional<std::string>& world_frame);
 
-// An image (CV_8UC3, BGR, continuous), whose pixels the message shows without a copy.
+// The message refers to the pixels of the image (CV_8UC3, BGR, continuous) without a copy.
 ImageMessage ImageMessageOf(const cv::Mat& image, Time stamp, const std::string& camera_frame);
 
 }  // namespace kestrel

@@ -10,7 +10,8 @@ namespace {
 
 const Time kTrackTime = TimeFromNanoseconds(7'000'000'000);
 
-// Drives north at 2 m/s, which is known to 0.1 m/s along and 0.2 m/s across; turns left.
+// A target that drives north at 2 m/s and turns left. Standard deviation 0.1 m/s along, 0.2 m/s
+// across.
 TargetEstimate DrivingNorth() {
   TargetEstimate target;
   target.time = kTrackTime;
@@ -20,7 +21,7 @@ TargetEstimate DrivingNorth() {
   return target;
 }
 
-// REP 103 and nav_msgs/Odometry: the pose in the world, the twist in the frame that drives.
+// REP 103 and nav_msgs/Odometry: the pose is in the world, the twist in the target's frame.
 TEST(LandingMessages, TheTrackIsHeadedWhereItDrives) {
   const OdometryMessage track = TrackOf(DrivingNorth(), "map", "target");
   EXPECT_EQ(track.header.frame_id, "map");

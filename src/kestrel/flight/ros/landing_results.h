@@ -16,7 +16,7 @@
 
 namespace kestrel {
 
-// By what names results are published, and how far the prediction goes.
+// Names and format of the published results, and the extent of the prediction.
 struct LandingResultsOptions {
   WireFormat format = WireFormat::kRos1;
   std::string camera_frame;
@@ -30,17 +30,17 @@ struct LandingResultsOptions {
   TurnNoise noise;  // of the track's motion
 };
 
-// Publishes what the landing pipeline says of a frame. What is only looked at is made only for
-// those who look.
+// Publishes the results of the landing pipeline for a frame. Messages for display are made only
+// when somebody subscribes to them.
 class LandingResults {
  public:
   // 'connection' must outlive this.
   LandingResults(LandingResultsOptions options, ResultConnection* connection);
 
   void PublishDetection(const LandingObservation& observation);
-  // Also markers.
+  // Also publishes markers.
   void PublishTrack(const LandingObservation& observation);
-  // With what was found drawn on it.
+  // The image with the results drawn on it.
   void PublishImage(const cv::Mat& image, const CameraModel& camera,
                     const LandingObservation& observation);
 

@@ -17,7 +17,7 @@ void LiveTransforms::Add(const TransformStampedMessage& transform, bool is_stati
 std::vector<LiveTransforms::Ancestor> LiveTransforms::AncestorsOf(const std::string& frame,
                                                                   bool only_static) const {
   std::vector<Ancestor> ancestors{{frame, {}}};
-  // No longer than there are links: frames may be each other's parents.
+  // Bounded by the number of links: a wrong tree may have a cycle.
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const auto link = links_.find(ancestors.back().name);
     if (link == links_.end() || (only_static && !link->second.is_static)) break;

@@ -12,22 +12,21 @@
 
 namespace kestrel {
 
-// The newest transforms of tf as they come. What /tf_static tells stands still, all else may move.
+// The newest transforms of tf. Those from /tf_static are fixed, all others may move.
 class LiveTransforms {
  public:
-  // A transform that is not valid is left out.
+  // Leaves out a transform that is not valid.
   void Add(const TransformStampedMessage& transform, bool is_static);
 
-  // 'to' from 'from', where all frames between them stand still.
+  // Returns 'to' from 'from', where all frames between them are fixed to each other; else nothing.
   std::optional<RigidTransform> Fixed(const std::string& to, const std::string& from) const;
 
   struct WorldPose {
     std::string world;
     PoseSample sample;
   };
-  // The pose of 'body' that the transform just added tells, when that is the first above 'body'
-  // that moves; in 'world', or in the root of the body's frames where that is empty. Its time is
-  // the transform's.
+  // Returns the pose of 'body' in 'world' (empty: in the root of the body's frames), if the
+  // transform just added is the first above 'body' that moves. Its time is the transform's.
   std::optional<WorldPose> PoseBy(const TransformStampedMessage& transform, const std::string& body,
                                   const std::string& world) const;
 
@@ -37,8 +36,8 @@ class LiveTransforms {
     RigidTransform parent_from_frame;
     bool is_static;
   };
-  // 'frame' and all above it with what leads to it from 'frame'; only over frames that stand still
-  // where 'only_static' is set.
+  // Returns 'frame' and all frames above it, each with the transform to it from 'frame'.
+  // 'only_static': stops at the first link that may move.
   struct Ancestor {
     std::string name;
     RigidTransform ancestor_from_frame;

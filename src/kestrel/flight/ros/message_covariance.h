@@ -9,10 +9,10 @@
 
 namespace kestrel {
 
-// As ROS has it: x, y, z, and rotations about x, y, z.
+// Order of ROS: x, y, z, and rotations about x, y, z.
 using MessageCovariance = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
-// Of an angle of which nothing is known (rad^2).
+// Variance of an unknown angle, rad^2.
 inline constexpr double kUnknownAngleVariance = kPi * kPi / 3;
 
 inline std::array<double, 36> NumbersOf(const MessageCovariance& covariance) {

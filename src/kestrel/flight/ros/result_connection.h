@@ -12,7 +12,7 @@
 
 namespace kestrel {
 
-// What a node publishes. A name without a slash is below the node's own.
+// Topics of a node's results. A name without a slash is below the node's own.
 enum class ResultTopic : std::size_t {
   kDetections,
   kTargetPose,
@@ -32,7 +32,7 @@ enum class ResultTopic : std::size_t {
 struct ResultTopicInfo {
   std::string_view name;
   std::string_view type;
-  bool is_latched = false;  // who comes later gets the newest, too
+  bool is_latched = false;  // later subscribers receive the newest message, too
 };
 
 inline constexpr std::array kResultTopics = {
@@ -56,7 +56,7 @@ constexpr const ResultTopicInfo& InfoOf(ResultTopic topic) {
   return kResultTopics[static_cast<std::size_t>(topic)];
 }
 
-// Those that others are told of at once. What is latched they are told of when there is some.
+// Topics that are advertised at once. A latched topic is advertised with its first message.
 using ResultTopics = std::span<const ResultTopic>;
 inline constexpr std::array kLandingTopics = {
     ResultTopic::kDetections, ResultTopic::kTargetPose, ResultTopic::kTrack,
@@ -66,14 +66,14 @@ inline constexpr std::array kHuntTopics = {ResultTopic::kDetections, ResultTopic
                                            ResultTopic::kAnnotatedImage, ResultTopic::kTransforms,
                                            ResultTopic::kDiagnostics};
 
-// The way of results to others. All calls from any thread.
+// Connection that carries results to others. Any thread may call it.
 class ResultConnection {
  public:
   virtual ~ResultConnection() = default;
 
   virtual bool HasSubscribers(ResultTopic topic) const = 0;
   virtual void Publish(ResultTopic topic, const std::string& bytes) = 0;
-  // Waits until all that hear have all, as far as that is known, and not for long.
+  // Waits for a short time until all subscribers have everything, as far as that is known.
   virtual void Flush() {}
 };
 

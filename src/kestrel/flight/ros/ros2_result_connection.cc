@@ -38,7 +38,7 @@ bool Ros2ResultConnection::HasSubscribers(ResultTopic topic) const {
 void Ros2ResultConnection::Publish(ResultTopic topic, const std::string& bytes) {
   const auto known = publishers_.find(topic);
   const std::size_t publisher = known != publishers_.end() ? known->second : Advertise(topic);
-  // What DDS does not take is lost, as on a network.
+  // A message that DDS does not accept is lost, as on a network.
   static_cast<void>(node_->Publish(publisher, bytes));
 }
 

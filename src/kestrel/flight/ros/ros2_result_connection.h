@@ -11,7 +11,7 @@
 
 namespace kestrel {
 
-// The results' topics in ROS 2.
+// Publishes the results on topics of ROS 2.
 class Ros2ResultConnection : public ResultConnection {
  public:
   // Topics without a slash are below 'name'. Throws InputError where DDS refuses.

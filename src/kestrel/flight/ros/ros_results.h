@@ -22,19 +22,20 @@
 
 namespace kestrel {
 
-// By what frames the results are published, and what they are about.
+// Frames in which the results are published.
 struct RosFrames {
   std::string camera;
   std::optional<std::string> world;  // where there are poses
-  std::optional<std::string> body;   // tell tf of the UAV and the mount; nothing: others do
-  Duration to_stamps{};              // from the time of frames to that of stamps
+  std::optional<std::string> body;   // publish the UAV and the mount on tf; nothing: others do
+  Duration to_stamps{};              // added to a frame's time to get its stamp
 };
 
-// What has to be added to times by Now() to get ROS' time, which is that of the day, as it is now.
+// Returns the current difference between the ROS time (the time of day) and Now(): add it to a time
+// by Now().
 Duration RosTimeAhead();
 
-// What the pipelines find, on topics of ROS 1 or ROS 2, by the same names (docs/ros2.md). One
-// thread at a time.
+// Publishes the results of the pipelines on topics of ROS 1 or ROS 2, with the same names
+// (docs/ros2.md). Called by one thread at a time.
 class RosResults {
  public:
   // 'connection' takes messages of 'format'.
@@ -43,17 +44,17 @@ class RosResults {
              const CameraCalibration& calibration, const LandingPipelineOptions& landing,
              ObjectModel model);
 
-  // Until somebody hears, but not longer: who is there is found after a moment only.
+  // Waits until somebody subscribes, at most 'timeout': subscribers are found only after a moment.
   void WaitForSubscribers(Duration timeout) const;
 
   void Publish(const Frame& frame, const LandingObservation& observation);
   void Publish(const Frame& frame, const HuntObservation& observation);
-  // The team's map, where the frames have a world; kept for those that come late.
+  // The team's map, if the frames have a world; kept for later subscribers.
   void Publish(const TeamReport& team);
-  // Rates since the last call.
+  // Publishes the rates since the last call.
   void Publish(const FlightReport& report);
 
-  // Waits until all that hear have all.
+  // Waits until all subscribers have everything.
   void Flush() const { connection_->Flush(); }
 
  private:

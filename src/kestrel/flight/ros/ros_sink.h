@@ -10,8 +10,8 @@
 
 namespace kestrel {
 
-// A sink that publishes on ROS topics. 'tell', by the thread that publishes: how many frames are
-// left out because the network is too slow.
+// Returns a sink that publishes on ROS topics. Its thread calls 'tell' with the number of frames
+// that are left out because the network is too slow.
 std::unique_ptr<AsynchronousSink> MakeRosSink(std::unique_ptr<RosResults> results,
                                               std::function<void(const std::string&)> tell);
 
