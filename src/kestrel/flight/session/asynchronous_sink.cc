@@ -27,7 +27,7 @@ void AsynchronousSink::Finish() {
 
 void AsynchronousSink::Run() {
   SetUpThisThread(options_.thread_name, {});
-  // Of this thread alone, on Linux. Where it is not permitted all goes on as usual.
+  // Linux sets the niceness of this thread alone. Without permission it stays as it is.
   if (options_.niceness > 0) setpriority(PRIO_PROCESS, 0, options_.niceness);
   for (;;) {
     const bool was_over = is_over_;

@@ -13,36 +13,36 @@
 
 namespace kestrel {
 
-// The slow part of a sink. All but IsWanted is called by one thread. Nothing here throws.
+// The slow part of a sink. All functions but IsWanted are called by one thread. They do not throw.
 class SinkWriter {
  public:
   virtual ~SinkWriter() = default;
 
-  // Whether frames are worth keeping for this. By any thread.
+  // True when frames are worth keeping for this writer. Called by any thread.
   virtual bool IsWanted() const { return true; }
 
-  // 'waiting': frames that wait behind this one.
+  // 'waiting': number of frames that wait behind this one.
   virtual void Write(const Observation& observation, std::size_t waiting) = 0;
   virtual void Write(const FlightReport& /*report*/) {}
   virtual void Write(const TeamReport& /*report*/) {}
   virtual void Write(const SessionEvent& /*event*/) {}
 
-  // After all that there was, whether or not it was a frame.
+  // Called after everything that was waiting is written. 'had_frame': a frame was among it.
   virtual void Rest(bool /*had_frame*/) {}
-  // The end. 'dropped': frames that made room for newer ones.
+  // The end. 'dropped': number of frames that were dropped for newer ones.
   virtual void Finish(std::size_t /*dropped*/) {}
 };
 
 struct AsynchronousSinkOptions {
   std::string thread_name;
-  std::size_t frames = 8;  // that may wait; of more the oldest is dropped
-  // Everything but a frame waits no longer than this.
+  std::size_t frames = 8;  // that may wait; beyond that the oldest is dropped
+  // Longest time that everything but a frame waits.
   Duration patience = std::chrono::milliseconds(100);
-  int niceness = 0;  // 0 to 19, as of nice(1)
+  int niceness = 0;  // 0 to 19, as in nice(1)
 };
 
-// A sink that works in a thread of its own. Who gives never waits: of too many frames the oldest is
-// dropped, of reports the newest counts.
+// A sink that works in a thread of its own. The caller never waits: when too many frames wait the
+// oldest is dropped; of reports only the newest is kept.
 class AsynchronousSink : public ObservationSink {
  public:
   AsynchronousSink(AsynchronousSinkOptions options, std::unique_ptr<SinkWriter> writer);
@@ -55,7 +55,7 @@ class AsynchronousSink : public ObservationSink {
   void Take(const FlightReport& report) override { reports_.Push(report); }
   void Take(const TeamReport& report) override { team_reports_.Push(report); }
   void Take(const SessionEvent& event) override { events_.Push(event); }
-  // Returns when all that was taken is written.
+  // Returns when everything that was taken is written.
   void Finish() override;
 
  private:

@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-// What a writer was given, and a gate that holds it up.
+// Records what a writer receives, and has a gate that holds the writer up.
 struct Written {
   std::mutex mutex;
   std::condition_variable changed;
@@ -75,7 +75,7 @@ TEST(AsynchronousSinkTest, WritesAllThatItWasGivenInOrder) {
   EXPECT_EQ(written.finished, 1);
 }
 
-// A disk or a network that stalls costs its own frames, the oldest, and nobody's time.
+// When a disk or a network stalls, only the oldest frames are lost, and no caller waits.
 TEST(AsynchronousSinkTest, AWriterThatStallsHoldsNobodyUp) {
   Written written;
   written.is_held = true;
@@ -105,7 +105,7 @@ TEST(AsynchronousSinkTest, KeepsNoFrameThatNobodyWants) {
   EXPECT_EQ(written.events.size(), 1u);
 }
 
-// Notes its end.
+// Writes down the order in which sinks end.
 class NotedSink : public ObservationSink {
  public:
   NotedSink(int number, std::vector<int>* ended) : number_(number), ended_(*ended) {}

@@ -15,7 +15,7 @@
 
 namespace kestrel {
 
-// What is known of the target's whereabouts, for people.
+// State of the search for the target, for people.
 enum class TargetPhase {
   kSearching,  // not seen yet
   kFound,      // tracked, or predicted well enough
@@ -24,7 +24,7 @@ enum class TargetPhase {
 };
 const char* ToString(TargetPhase phase);  // "searching", "found", "lost", "contact"
 
-// State of the autopilot and of what it is told.
+// State of the autopilot and of what Kestrel sends to it.
 struct AutopilotState {
   bool is_here = false;     // its heartbeats come
   bool is_landing = false;  // armed, in a mode that lands
@@ -33,15 +33,16 @@ struct AutopilotState {
   ConnectionCounters link;
 };
 
-// What a flight recorder has written.
+// Counts of a flight recorder.
 struct RecorderCounters {
   std::uint64_t images = 0;        // written
-  std::uint64_t dropped = 0;       // images that are not, see dropped.csv
-  std::uint64_t bytes = 0;         // of the images that are written
-  std::uint64_t lost_records = 0;  // poses, exposures and packets for which there was no time
+  std::uint64_t dropped = 0;       // images that are not written, see dropped.csv
+  std::uint64_t bytes = 0;         // size of the written images
+  std::uint64_t lost_records = 0;  // poses, exposures and packets that the recorder was too slow to
+                                   // write
 };
 
-// State of a live session, beside what its vision sees; all counts are since it began.
+// State of a live session, beside the results of its vision. All counts are since it began.
 struct FlightReport {
   std::string trouble;  // why there are no images; empty as long as they come
   CaptureCounters capture;
@@ -51,9 +52,9 @@ struct FlightReport {
   std::optional<RecorderCounters> recorder;
 };
 
-// What the UAV's team knows, in this UAV's world.
+// The knowledge of the UAV's team, in this UAV's world.
 struct TeamReport {
-  Time time;  // of the newest frame that is in it
+  Time time;  // of the newest frame that has contributed
   std::vector<TeamObject> objects;
 };
 

@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kWaitingPoses = 256;  // seconds of any autopilot
+constexpr std::size_t kWaitingPoses = 256;  // several seconds of poses of any autopilot
 
 Duration PoseWaitOf(const LiveEventsOptions& options) {
   RequireValid(options);
@@ -31,8 +31,8 @@ void LiveEvents::Push(Frame frame) {
   std::optional<WaitingFrame> arrived(WaitingFrame{std::move(frame), Now() + pose_wait_});
   {
     const std::lock_guard lock(mutex_);
-    // The frame that waits for its pose stays: if every newer one took its place, and the poses
-    // took longer than from frame to frame, none would ever get through.
+    // The frame that waits for its pose stays. If every newer frame replaced it, and poses took
+    // longer than the time between frames, no frame would ever get through.
     std::swap(waiting_ ? newest_ : waiting_, arrived);
     if (arrived) ++counters_.dropped_frames;
   }

@@ -16,8 +16,8 @@
 namespace kestrel {
 
 struct LiveEventsOptions {
-  // A frame waits so long for the pose after its time. More than the delay of the poses on the
-  // link; 0: it never waits, and its pose is predicted.
+  // Longest time that a frame waits for the pose after it. More than the delay of the poses on the
+  // link; 0: a frame never waits, and its pose is predicted.
   double pose_wait_s = 0.03;
 
   template <class Self, class Visitor>
@@ -28,36 +28,36 @@ struct LiveEventsOptions {
   std::vector<std::string> Validate() const;
 };
 
-// The stream of a flight: frames and poses that threads of their own put in, for the one thread
-// that processes them. Of the frames that come while it is busy only the newest that has its pose
-// is given out. Nobody who puts in waits, and nothing is allocated once the memory of images is.
+// The stream of a flight: several threads put in frames and poses, one thread processes them. While
+// that thread is busy, only the newest frame that has its pose is kept for it. The threads that put
+// in never wait, and nothing is allocated once the image memory is.
 class LiveEvents : public EventSource {
  public:
-  // 'lead': the time of a frame + 'lead' is until when it needs poses, see RecordingEvents. Throws
-  // InputError when the options are not valid.
+  // 'lead': a frame needs poses until its time + 'lead', see RecordingEvents. Throws InputError
+  // when the options are not valid.
   LiveEvents(const LiveEventsOptions& options, Duration lead);
 
   void Push(Frame frame);
   void Push(const PoseSample& pose);
-  // The end: Next gives EndOfStream and waits no more.
+  // Ends the stream: Next returns EndOfStream and waits no more.
   void Close();
 
-  // Waits for an event: poses at once, a frame when the pose after it has been given out or has
-  // been waited for in vain.
+  // Waits for an event and returns it: a pose at once; a frame when the pose after it has been
+  // given out, or when the wait for it has ended.
   Event Next() override;
 
   struct Counters {
     std::uint64_t frames = 0;          // given out
-    std::uint64_t dropped_frames = 0;  // made room for a newer one
+    std::uint64_t dropped_frames = 0;  // replaced by a newer frame
     std::uint64_t unposed_frames = 0;  // given out before the pose after them
-    std::uint64_t dropped_poses = 0;   // made room for newer ones
+    std::uint64_t dropped_poses = 0;   // replaced by newer poses
   };
   Counters counters() const;
 
  private:
   struct WaitingFrame {
     Frame frame;
-    Time deadline;  // when it goes without a pose
+    Time deadline;  // time at which the frame goes without a pose
   };
   bool HasPoseAfter(const Frame& frame) const;
   bool IsReady(const std::optional<WaitingFrame>& frame, Time now) const;
@@ -73,8 +73,8 @@ class LiveEvents : public EventSource {
   std::size_t first_pose_ = 0;
   std::size_t pose_count_ = 0;
   std::optional<Time> newest_pose_;      // that was given out
-  std::optional<WaitingFrame> waiting_;  // the next to be given out
-  std::optional<WaitingFrame> newest_;   // came after that
+  std::optional<WaitingFrame> waiting_;  // the next frame to be given out
+  std::optional<WaitingFrame> newest_;   // the newest frame that came after it
   Counters counters_;
   bool is_closed_ = false;
 };

@@ -17,7 +17,7 @@ Time AtMs(int ms) { return Time(milliseconds(ms)); }
 Frame EmptyFrame(int ms) { return {"", AtMs(ms), {}}; }
 PoseSample UnitPose(int ms) { return {AtMs(ms), {}}; }
 
-// "f20" or "p10", "end".
+// Returns "f20" or "p10" (kind and time in ms), or "end".
 std::string InWords(const Event& event) {
   if (const auto* frame = std::get_if<Frame>(&event)) {
     return "f" + std::to_string(ToNanoseconds(frame->time) / 1'000'000);
@@ -65,7 +65,7 @@ TEST(LiveEvents, TheNewestFrameWinsWhileTheReaderIsBusy) {
   EXPECT_EQ(events.counters().dropped_frames, 9u);
 }
 
-// Else poses that are later than the next frame would let none through.
+// Otherwise poses that are later than the next frame would let no frame through.
 TEST(LiveEvents, NewerFramesDoNotReplaceTheOneThatWaits) {
   LiveEvents events({.pose_wait_s = 1}, Duration::zero());
   for (int ms = 0; ms < 50; ms += 10) events.Push(EmptyFrame(ms));

@@ -11,14 +11,14 @@
 
 namespace kestrel {
 
-// A frame and what a pipeline made of it: a landing pattern, or coloured objects.
+// A frame and a pipeline's result for it: a landing pattern, or coloured objects.
 struct Observation {
-  Frame frame;  // nobody changes its pixels any more
+  Frame frame;  // its pixels do not change any more
   std::variant<LandingObservation, HuntObservation> seen;
   std::optional<Duration> latency = {};  // from capture until it was processed; live only
 };
 
-// Time that the detection alone took.
+// Returns the time that the detection alone took.
 inline Duration DetectTime(const Observation& observation) {
   return std::visit([](const auto& seen) { return seen.detect_time; }, observation.seen);
 }

@@ -11,9 +11,9 @@
 
 namespace kestrel {
 
-// Where the results of a session go: a file, a page, a network. A sink of one's own overrides what
-// it wants to have. Take is called by the session's threads and must not wait: what is slow belongs
-// into an AsynchronousSink.
+// Receiver of a session's results: a file, a page, a network. A new sink overrides the functions
+// for the results that it needs. The session's threads call Take, which must not wait: slow work
+// belongs into an AsynchronousSink.
 //
 //   class Counter : public ObservationSink {
 //    public:
@@ -24,23 +24,24 @@ class ObservationSink {
  public:
   virtual ~ObservationSink() = default;
 
-  // Whether a frame is worth an Observation. By any thread.
+  // True when a frame is worth an Observation. Called by any thread.
   virtual bool IsWanted() const { return true; }
 
-  // A frame with what it showed. By the vision's thread.
+  // A frame with its results. Called by the vision thread.
   virtual void Take(const Observation& observation) = 0;
-  // The state of the flight, ten times a second. By the session's thread.
+  // State of the flight, ten times a second. Called by the session's thread.
   virtual void Take(const FlightReport& /*report*/) {}
-  // The team's map, about twice a second. By the session's thread.
+  // The team's map, about twice a second. Called by the session's thread.
   virtual void Take(const TeamReport& /*report*/) {}
-  // By any thread.
+  // Called by any thread.
   virtual void Take(const SessionEvent& /*event*/) {}
 
-  // Writes what is left. Nothing is taken afterwards. Once, by the session's thread.
+  // Writes what is left. Called once, by the session's thread; no Take follows.
   virtual void Finish() {}
 };
 
-// Gives all to several sinks, in the order in which they were added; they end in the opposite one.
+// Passes everything to several sinks, in the order in which they were added. They finish in the
+// opposite order.
 class ObservationSinks : public ObservationSink {
  public:
   ObservationSinks() = default;
@@ -50,7 +51,7 @@ class ObservationSinks : public ObservationSink {
   ObservationSinks(const ObservationSinks&) = delete;
   ObservationSinks& operator=(const ObservationSinks&) = delete;
 
-  // Before the session begins. Returns the sink.
+  // Adds a sink before the session begins. Returns the sink.
   template <class Sink>
   Sink* Add(std::unique_ptr<Sink> sink) {
     Sink* const added = sink.get();
