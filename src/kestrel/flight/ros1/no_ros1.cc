@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// In the place of ros1_connection.cc where ROS is not installed.
+// Replaces ros1_connection.cc when ROS is not installed.
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/ros1/ros1_connection.h"
 

@@ -58,7 +58,7 @@ struct TypedBytes {
   std::string bytes;
 };
 
-// Takes messages as they are, whatever their type.
+// Takes messages of any type as serialized bytes.
 class BytesCallback : public ros::SubscriptionCallbackHelper {
  public:
   explicit BytesCallback(Ros1Connection::TakeMessage take) : take_(std::move(take)) {}

@@ -11,11 +11,11 @@
 
 namespace kestrel {
 
-// A type of messages as ROS 1 knows it.
+// Returns the message type in the form of ROS 1.
 Ros1Connection::MessageType Ros1TypeOf(std::string_view type);
 
-// A node of ROS 1 that has a master; Ctrl-C is the program's own. Throws InputError, which begins
-// with 'asked_by', where there is no master.
+// Opens a node of ROS 1; Ctrl-C stays with the program. Throws InputError, whose text begins with
+// 'asked_by', when there is no master.
 std::shared_ptr<Ros1Connection> OpenRos1(const std::string& node, const std::string& asked_by);
 
 // The results' topics in ROS 1.
@@ -30,7 +30,7 @@ class Ros1ResultConnection : public ResultConnection {
   std::size_t Advertise(ResultTopic topic);
 
   std::shared_ptr<Ros1Connection> ros_;
-  std::map<ResultTopic, std::size_t> topics_;  // as ROS numbers them
+  std::map<ResultTopic, std::size_t> topics_;  // index of each topic at the connection
 };
 
 }  // namespace kestrel
