@@ -7,17 +7,17 @@
 
 namespace kestrel {
 
-// What a camera changes by itself; nothing where its driver does not tell.
+// Automatic adjustments of a camera; nothing where its driver does not report them.
 struct CameraAutomatics {
   std::optional<bool> white_balance;
   std::optional<bool> exposure;
 };
 
-// Of a V4L2 device, as "/dev/video0". Of what is none, or has no such controls, nothing is known.
-// Does not throw.
+// Reads them from a V4L2 device, as "/dev/video0". Nothing is known of another kind of device, or
+// of one without such controls. Does not throw.
 CameraAutomatics ReadCameraAutomatics(const std::string& device);
 
-// What of it spoils the teaching of colours, a sentence each.
+// Returns one sentence for each adjustment that spoils the training of colours.
 std::vector<std::string> ColorWarnings(const CameraAutomatics& automatics);
 
 }  // namespace kestrel

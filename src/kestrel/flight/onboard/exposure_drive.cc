@@ -34,7 +34,7 @@ void ExposureDrive::Update(const cv::Mat& image, const cv::Rect& area) {
 
 V4l2ExposureActuator::V4l2ExposureActuator(std::string device) : device_(std::move(device)) {}
 
-// Opened each time: the device goes and comes back, and a descriptor of one that went is of no use.
+// Opens the device each time: it may go and come back, which makes an old descriptor useless.
 bool V4l2ExposureActuator::SetExposure(double exposure_s) {
   constexpr double kUnit_s = 1e-4;
   const int device = open(device_.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK);

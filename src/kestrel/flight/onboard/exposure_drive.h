@@ -9,27 +9,28 @@
 
 namespace kestrel {
 
-// What sets the exposure of a camera.
+// Sets the exposure of a camera.
 class ExposureActuator {
  public:
   virtual ~ExposureActuator() = default;
 
-  // Sets it for the images to come; false when the camera refuses, or is away. Does not throw.
+  // Sets the exposure of the images to come; false when the camera refuses or is away. Does not
+  // throw.
   virtual bool SetExposure(double exposure_s) = 0;
 };
 
-// Exposure control of a live camera: the controller's result goes to the camera.
+// Exposure control of a live camera: passes the controller's result to the camera.
 class ExposureDrive {
  public:
   // 'actuator' must outlive this. Throws InputError when the options are not valid.
   ExposureDrive(const ExposureOptions& options, double exposure_s, ExposureActuator* actuator);
 
-  // As ExposureController::Update. What the camera refuses is given to it again with the next
+  // As ExposureController::Update. An exposure that the camera refused is sent again with the next
   // image.
   void Update(const cv::Mat& image, const cv::Rect& area = {});
 
   double exposure_s() const { return controller_.exposure_s(); }
-  // Whether the camera has the exposure.
+  // True when the camera has accepted the exposure.
   bool is_set() const { return set_s_ == controller_.exposure_s(); }
 
  private:
@@ -38,11 +39,11 @@ class ExposureDrive {
   double set_s_ = 0;
 };
 
-// The exposure of a V4L2 device: V4L2_CID_EXPOSURE_ABSOLUTE (0.1 ms), with the driver's own control
-// switched off where it has one.
+// Exposure of a V4L2 device: V4L2_CID_EXPOSURE_ABSOLUTE (0.1 ms). Switches the driver's own
+// exposure control off, if it has one.
 class V4l2ExposureActuator : public ExposureActuator {
  public:
-  // 'device': "/dev/video0". It need not be there yet.
+  // 'device': "/dev/video0". It need not exist yet.
   explicit V4l2ExposureActuator(std::string device);
 
   bool SetExposure(double exposure_s) override;

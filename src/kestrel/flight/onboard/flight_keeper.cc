@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// 'name', or with the first number behind it of which there is none yet.
+// Returns 'name', or 'name' with the first number for which nothing exists yet.
 fs::path FreeName(const fs::path& folder, const std::string& name, const std::string& ending) {
   fs::path path = folder / (name + ending);
   for (int i = 2; fs::exists(path); ++i) path = folder / fmt::format("{}-{}{}", name, i, ending);

@@ -13,23 +13,23 @@
 
 namespace kestrel {
 
-// A path in 'folder' of which there is nothing yet: 'prefix', and the time of day (UTC).
+// Returns a path in 'folder' that does not exist yet: 'prefix', and the time of day (UTC).
 std::filesystem::path PathOfNow(const std::filesystem::path& folder,
                                 const std::string& prefix = "");
 
-// What a user asks to be kept while the UAV flies, in a folder of its own: nothing that is there
-// is replaced. By one thread, which waits for the disk.
+// Keeps recordings and snapshots that the user asks for in flight, in a folder of its own. Never
+// replaces existing files. Used by one thread, which waits for the disk.
 class FlightKeeper {
  public:
-  // 'folder' is made when something is to be kept. 'recording' outlives the keeper.
+  // 'folder' is made when there is something to keep. 'recording' outlives the keeper.
   FlightKeeper(std::filesystem::path folder, RecordingSwitch* recording)
       : folder_(std::move(folder)), recording_(recording) {}
 
-  // Each says what became of it, in a line for the user; throws InputError when that cannot be
-  // done. A new recording has the time of day (UTC) as its name.
+  // Each returns the outcome in a line for the user, and throws InputError on failure. The name of
+  // a new recording is the time of day (UTC).
   std::string StartRecording();
   std::string StopRecording();
-  // The image as it is, with the time of its capture in its name.
+  // Stores the unchanged image, with the time of its capture in its name.
   std::string KeepSnapshot(const cv::Mat& image, Time captured);
 
  private:

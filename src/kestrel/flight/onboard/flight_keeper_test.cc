@@ -46,7 +46,7 @@ class FlightKeeperTest : public ::testing::Test {
  protected:
   FlightKeeperTest() { options_.free_space_mb = 0; }
 
-  // The folders and files that were kept.
+  // Returns the kept folders and files.
   std::vector<fs::path> Kept() const {
     const std::string folder = folder_ / "kept";
     return {fs::directory_iterator(folder), fs::directory_iterator()};
@@ -64,7 +64,7 @@ class FlightKeeperTest : public ::testing::Test {
 TEST_F(FlightKeeperTest, ARecordingIsSwitchedOnAndOff) {
   EXPECT_EQ(keeper_.StopRecording(), "no recording is on");
   EXPECT_EQ(recording_.Get(), nullptr);
-  for (int round = 0; round < 2; ++round) {  // each in a folder of its own, in one second too
+  for (int round = 0; round < 2; ++round) {  // each has a folder of its own, even within one second
     EXPECT_THAT(keeper_.StartRecording(), StartsWith("recording into "));
     EXPECT_EQ(keeper_.StartRecording(), "a recording is on already");
     for (int i = 0; i < 5; ++i) recording_.Get()->AddFrame(NoiseFrame(20 * i));

@@ -14,10 +14,10 @@ namespace kestrel {
 
 struct FlightOptions {
   double rate_hz = 50;
-  // From sending to the autopilot's use, s; negative: half of the fastest round trip that TIMESYNC
-  // measures. Give it where the link delays much more often than not.
+  // Time from sending to the autopilot's use, s; negative: half of the fastest round trip that
+  // TIMESYNC measures. Set it where the link usually delays much more than at its fastest.
   double link_delay_s = -1;
-  // When it is no use to wait any longer: the flight has ended, badly.
+  // After so long without images, or without the autopilot, the flight ends as failed.
   double source_timeout_s = 60;
   double autopilot_timeout_s = 60;
   TargetReporterOptions target;

@@ -13,10 +13,10 @@
 namespace kestrel {
 namespace {
 
-constexpr Duration kPatience = std::chrono::milliseconds(100);  // of a thread that waits
+constexpr Duration kPatience = std::chrono::milliseconds(100);  // longest wait of a thread
 constexpr Duration kLinkPatience = std::chrono::milliseconds(2);
 constexpr Duration kOutputPeriod = std::chrono::milliseconds(50);
-constexpr std::size_t kPoses = 512;  // of the link: some seconds
+constexpr std::size_t kPoses = 512;  // from the link: some seconds
 constexpr Duration kPoseGap = std::chrono::milliseconds(500);
 
 }  // namespace
@@ -49,11 +49,11 @@ FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
   }
   events_.Close();
   for (std::thread& thread : threads) thread.join();
-  parts_.vision->WriteResults();  // of the last frames
+  parts_.vision->WriteResults();  // rows of the last frames
   return end_;
 }
 
-// The first reason counts.
+// Only the first reason counts.
 void FlightProgram::End(FlightEnd end) {
   std::call_once(ended_, [&] {
     end_ = end;
@@ -132,7 +132,8 @@ void FlightProgram::See() {
   }
 }
 
-// That the set-up contradicts what is seen; the end says it again, with all that is known by then.
+// Warns once that the set-up contradicts the images; the summary says it again, with all that is
+// known by then.
 void FlightProgram::WarnOnce() {
   if (was_warned_) return;
   const std::string warning = parts_.vision->Warning();
@@ -141,9 +142,9 @@ void FlightProgram::WarnOnce() {
   say_(warning);
 }
 
-// What a camera repeats shows where the target was, not where it is.
+// True when the camera repeats an image: it shows where the target was, not where it is.
 bool FlightProgram::IsFrozen(const Frame& frame) {
-  constexpr int kFrozen = 5;  // repetitions: no accident of a driver any more
+  constexpr int kFrozen = 5;  // so many repetitions are no accident of a driver
   const bool was_frozen = repeated_image_.in_a_row() >= kFrozen;
   const bool is_repeated = repeated_image_.IsRepeated(frame.image);
   if (is_repeated) ++repeated_frames_;
@@ -174,7 +175,7 @@ void FlightProgram::Communicate() {
     parts_.connection->Receive(kLinkPatience, [this](const mavlink::Packet& packet, Time received) {
       parts_.autopilot->Handle(packet, received);
     });
-    if (parts_.source_has_poses) poses_.Add(source_pose_.Get());  // once: another is out of order
+    if (parts_.source_has_poses) poses_.Add(source_pose_.Get());  // a repeated one is ignored
     const Time now = Now();
     parts_.autopilot->Tick(now);
     TellTarget(now);

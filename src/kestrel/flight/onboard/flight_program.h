@@ -30,15 +30,15 @@
 
 namespace kestrel {
 
-// How a flight ended.
+// The end of a flight.
 enum class FlightEnd {
   kStopped,      // by the user
   kLanded,       // disarmed after it had flown
   kSourceEnded,  // a recording, to its end
-  kFailed,       // camera or autopilot are gone for good
+  kFailed,       // camera or autopilot did not come back
 };
 
-// What a flight is made of; all outlive the program. Null where there is none.
+// The parts of a flight; all outlive the program. Null where there is none.
 struct FlightParts {
   LiveSource* source = nullptr;
   FlightVision* vision = nullptr;
@@ -47,34 +47,35 @@ struct FlightParts {
   RecordingSwitch* recording = nullptr;
   ObservationSink* sink = nullptr;
   bool guides = false;                 // flies by set-points when the pilot gives the mode
-  bool source_has_poses = false;       // then those of the autopilot are not used
-  std::optional<LinkProfile> profile;  // nothing: by the heartbeat
-  // Of the pattern when a frame was taken, where a simulation knows it.
+  bool source_has_poses = false;       // the autopilot's poses are then not used
+  std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
+  // Returns the true pattern at the time of a frame, in a simulation that knows it.
   std::function<std::optional<TruePattern>(const Frame&)> truth;
-  double pattern_size_m = 1;  // its outer diameter
+  double pattern_size_m = 1;  // outer diameter of the pattern
 };
 
-// The program that flies: capture, vision, link and output, each in a thread of its own. Between
-// them are hand-overs that nobody waits at: frames that are late are dropped, the newest track and
-// the newest pose count.
+// The program that flies: capture, vision, link and output have a thread each. Nobody waits at the
+// hand-overs between them: late frames are dropped, and only the newest track and the newest pose
+// count.
 class FlightProgram {
  public:
-  // 'tracker': of the vision's track. 'say': a line for the user, by any thread. Throws InputError
-  // when the options are not valid.
+  // 'tracker': options of the vision's track. 'say': receives lines for the user, from any thread.
+  // Throws InputError when the options are not valid.
   FlightProgram(const FlightOptions& options, const TargetTrackerOptions& tracker,
                 const FlightParts& parts, std::function<void(const std::string&)> say);
 
-  // Flies until it has landed, the source ends or 'is_stopped', which is asked ten times a second.
-  // Once only.
+  // Flies until the UAV has landed, the source ends or 'is_stopped', which is called ten times a
+  // second, returns true. Call it once only.
   FlightEnd Run(const std::function<bool()>& is_stopped);
 
-  // One line of how things are now. By any thread.
+  // Returns the present state in one line. Called by any thread.
   std::string State() const;
-  // The latency of each step, what was dropped and what was sent; a few lines. After the flight.
+  // Returns latencies of each step and the counts of what was dropped and sent; a few lines, after
+  // the flight.
   std::string Summary() const;
 
-  // A pose of the autopilot, on the local clock: what its listener gets. By the thread that Run
-  // lets the connection receive in.
+  // Takes a pose of the autopilot, on the local clock, from its listener. Called by the thread in
+  // which Run lets the connection receive.
   void TakeAutopilotPose(const PoseSample& pose);
 
  private:
@@ -102,20 +103,20 @@ class FlightProgram {
   LiveEvents events_;
   LatestValue<TrackSnapshot> track_;
   LatestValue<PoseSample> source_pose_;
-  PoseHistory poses_;  // the link's
+  PoseHistory poses_;  // from the link
   LatencyStatistics latency_;
   std::once_flag ended_;
   std::atomic<bool> is_over_{false};
-  FlightEnd end_ = FlightEnd::kStopped;  // once it is over
+  FlightEnd end_ = FlightEnd::kStopped;  // valid once the flight is over
 
-  // Of the link's thread.
+  // Used by the link's thread only.
   std::optional<TargetSender> sender_;
   std::optional<GuidedFlight> guided_;
   LandingWatch landing_;
-  Time heard_;  // the autopilot, the last time
+  Time heard_;  // the newest time at which the autopilot was heard
   std::optional<PoseSample> newest_pose_;
 
-  // Of the vision's thread.
+  // Used by the vision's thread only.
   RepeatedImage repeated_image_;
   bool was_warned_ = false;
 

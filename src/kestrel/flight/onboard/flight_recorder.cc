@@ -24,8 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kRecords = 4096;  // seconds of any autopilot
-constexpr double kPoseRate_hz = 50;     // as asked of the autopilot
+constexpr std::size_t kRecords = 4096;  // several seconds of any autopilot
+constexpr double kPoseRate_hz = 50;     // as requested from the autopilot
 
 void RequireDone(const std::error_code& error, const fs::path& folder) {
   if (!error) return;
@@ -41,7 +41,7 @@ fs::path MadeFolder(const fs::path& folder, bool replace, const FlightRecorderOp
   return folder;
 }
 
-// Removes a recording that is there, and makes the folders of a new one.
+// Removes an existing recording, and makes the folders of a new one.
 void MakeParts(const fs::path& folder) {
   std::error_code error;
   for (const char* old : {"mav0", "mavlink.tlog"}) {
@@ -169,7 +169,7 @@ void FlightRecorder::RunWriter() {
   }
 }
 
-// The disk takes its time for that, in which images go on to be written.
+// Commits in a thread of its own: it takes time, during which images go on being written.
 void FlightRecorder::RunCommitter() {
   SetUpThisThread("recorder-sync", {});
   std::string told;
@@ -198,12 +198,13 @@ void FlightRecorder::Write(const RecordedImage& image) {
   if (image.truth) files_.Add(kTruePatterns, LandingTruthRow(*image.truth));
 }
 
-// After images were stopped it asks for a tenth more than else, so that they do not come and go.
+// True when there is room for images. After a stop it requires a tenth more, so that writing does
+// not switch on and off all the time.
 bool FlightRecorder::HasRoom() {
   constexpr double kMore = 1.1;
   if (Now() < next_attempt_) return false;
   struct statvfs disk {};
-  if (statvfs(folder_.c_str(), &disk) != 0) return true;  // writing will tell
+  if (statvfs(folder_.c_str(), &disk) != 0) return true;  // an attempt to write will show
   const double free_mb =
       1e-6 * static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize);
   const double floor_mb = options_.free_space_mb * (are_images_stopped_ ? kMore : 1);
@@ -283,7 +284,7 @@ void FlightRecorder::WriteRecord(const Dropped& dropped) {
   files_.Add(kDropped, fmt::format("{},{}\n", ToNanoseconds(dropped.time), dropped.reason));
 }
 
-// A .tlog is a chain of times (us of UTC, big endian) and packets.
+// A .tlog is a sequence of times (us of UTC, big endian) and packets.
 void FlightRecorder::WriteRecord(const Packet& packet) {
   constexpr int kTimeBytes = 8;
   const std::int64_t us = ToNanoseconds(packet.time + utc_offset_) / 1000;

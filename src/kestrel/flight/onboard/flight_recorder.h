@@ -32,16 +32,15 @@
 namespace kestrel {
 
 struct FlightRecorderOptions {
-  // "png" keeps every gray value; "jpg" is a fifth of its size and of its work, and moves edges by
+  // "png" keeps every gray value; "jpg" needs a fifth of its size and work, and moves edges by
   // hundredths of a pixel.
   std::string compression = "png";
-  int png_level = 1;  // 0 (as it is, quick) to 9 (smallest, slow)
+  int png_level = 1;  // 0 (uncompressed, fast) to 9 (smallest, slow)
   int jpg_quality = 95;
-  int queue_frames = 32;  // that may wait for the disk; more is dropped
-  // No images when the disk has less room than this, until it has a tenth more.
+  int queue_frames = 32;  // that may wait for the disk; further frames are dropped
+  // Below this room on the disk no images are written, until there is a tenth more.
   double free_space_mb = 200;
-  // How often the disk is asked to keep what was written: at most so much is lost when the power
-  // goes.
+  // Period of syncing to the disk: a loss of power loses at most the data of this time.
   double commit_period_s = 1;
   ThreadOptions thread = {};
 
@@ -60,41 +59,42 @@ struct FlightRecorderOptions {
 };
 
 // Writes a flight as a recording in the EuRoC layout (docs/recording.md) that `kestrel land`,
-// `hunt`, `calibrate` and `evaluate` read, with threads of its own: nobody who gives it something
-// waits, and what the disk cannot keep up with is dropped. Every image that is listed is whole,
-// whatever happens: it is written under another name, and listed once it is on the disk.
+// `hunt`, `calibrate` and `evaluate` read. It has threads of its own: no caller waits, and data
+// that the disk is too slow for are dropped. Every listed image is complete, whatever happens: it
+// is written under another name, and listed once it is on the disk.
 //
 //   mav0/cam0/data.csv, data/*.png, sensor.yaml   images, as they were given out by the camera
 //   mav0/cam0/exposure.csv                        timestamp, exposure (s) from that image on
 //   mav0/cam0/dropped.csv                         timestamp, reason: images that are not there
-//   mav0/nav0/data.csv                            poses as the autopilot told them
-//   mav0/state_groundtruth_estimate0/data.csv     true poses, where a simulation tells them
+//   mav0/nav0/data.csv                            poses as the autopilot reported them
+//   mav0/state_groundtruth_estimate0/data.csv     true poses, where a simulation has them
 //   mav0/landing_pattern0/data.csv                the pattern's truth, of images that are there
-//   mavlink.tlog                                  what was sent and received (us of UTC, bytes)
+//   mavlink.tlog                                  sent and received packets (us of UTC, bytes)
 class FlightRecorder {
  public:
-  // What is told to the user: of images, that the disk is full and that it goes on. Called by a
+  // Receives messages for the user: the disk is full for images, and writing goes on. Called by a
   // thread of the recorder.
   using Tell = std::function<void(const std::string&)>;
 
   // Throws InputError when 'folder' has something else in it (or a recording, unless 'replace'),
-  // cannot be written or is written by another, or the options are not valid. 'rate_hz': of images.
+  // cannot be written or is in use by another writer, or the options are not valid. 'rate_hz': rate
+  // of the images.
   FlightRecorder(const std::filesystem::path& folder, bool replace,
                  const CameraCalibration& calibration, double rate_hz,
                  const FlightRecorderOptions& options, Tell tell);
-  // Writes all that it was given.
+  // Writes all data that it has received.
   ~FlightRecorder();
   FlightRecorder(const FlightRecorder&) = delete;
   FlightRecorder& operator=(const FlightRecorder&) = delete;
 
-  // These may be called by any thread, and do not wait, throw or allocate. Each kind in order of
-  // time: what is not later than the last of its kind is left out. 'truth': of the pattern when the
-  // frame was taken. Nobody may write into the frame's pixels any more.
+  // Any thread may call these; they do not wait, throw or allocate. Each kind must come in order of
+  // time: data not later than the last of the same kind are left out. 'truth': the true pattern at
+  // the frame's time. Nobody may write into the frame's pixels any more.
   void AddFrame(const Frame& frame, const std::optional<TruePattern>& truth = std::nullopt);
   void AddPose(const PoseSample& pose);
   void AddTruePose(const PoseSample& pose);
   void AddExposure(Time from, double exposure_s);
-  // A MAVLink packet as it was on the wire; more than 280 bytes are none.
+  // Takes a MAVLink packet as it was on the wire; longer ones than 280 bytes are left out.
   void AddPacket(Time time, std::span<const std::uint8_t> bytes);
 
   RecorderCounters counters() const;
@@ -157,17 +157,17 @@ class FlightRecorder {
   std::filesystem::path folder_;
   FolderLock lock_;
   Tell tell_;
-  std::optional<JpegEncoder> jpeg_encoder_;  // where images are not PNG
+  std::optional<JpegEncoder> jpeg_encoder_;  // for images that are not PNG
   Duration utc_offset_;                      // UTC minus Now()
   RecordedFiles files_;
   BoundedQueue<RecordedImage> images_;
   BoundedQueue<Record> records_;
 
-  // The writer's.
+  // Used by the writer's thread only.
   std::array<std::optional<Time>, kFileCount> last_times_;
   std::string encoded_;
   std::string row_;
-  Time next_attempt_;  // after a failure to write
+  Time next_attempt_;  // of writing, after a failure
 
   std::atomic<bool> are_images_stopped_{false};
   std::atomic<std::uint64_t> image_count_{0};

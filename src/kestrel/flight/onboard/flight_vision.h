@@ -11,29 +11,29 @@
 
 namespace kestrel {
 
-// A pipeline in flight. AddPose and Process are the vision thread's, the rest the output thread's:
-// what waits for a disk is not done where the vision would wait for it.
+// A pipeline in flight. The vision thread calls AddPose and Process, the output thread the rest, so
+// that the vision never waits for a disk.
 class FlightVision {
  public:
   virtual ~FlightVision() = default;
 
   virtual void AddPose(const PoseSample& pose) = 0;
 
-  // How much later than a frame's time, on the navigation's clock, the last pose is that it needs.
+  // Time from a frame's time, on the navigation's clock, to the last pose that the frame needs.
   virtual Duration pose_lead() const = 0;
 
-  // 'sink': gets what the frame showed; null: there is none.
+  // Processes a frame. 'sink' receives the results; null: there is none.
   virtual TrackSnapshot Process(const Frame& frame, ObservationSink* sink) = 0;
 
-  // What of the set-up contradicts what was seen, and what to do, as far as it is known by now;
-  // empty where nothing does. By the vision's thread, or after the flight.
+  // Says which part of the set-up contradicts the images, and what to do, as far as it is known by
+  // now; empty where nothing does. Called by the vision thread, or after the flight.
   virtual std::string Warning() const { return ""; }
 
-  // Writes the rows of the frames that were processed meanwhile; false when the disk does not take
-  // them any more (then they are lost, and said to be).
+  // Writes the rows of the frames processed since the last call; false when the disk does not take
+  // them any more (they are then lost, and the user is told so).
   virtual bool WriteResults() = 0;
 
-  // What was found, for the line at the end.
+  // Returns what was found, for the summary at the end.
   virtual std::string Found() const = 0;
 };
 

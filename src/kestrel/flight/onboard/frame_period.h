@@ -10,18 +10,19 @@
 
 namespace kestrel {
 
-// The period of a camera by the times of its images, of which some come late and some not at all.
+// Estimates the period of a camera from the times of its images, of which some are late and some
+// missing.
 class FramePeriod {
  public:
-  // Times that do not grow are left out.
+  // Leaves out times that do not increase.
   void Add(Time captured) {
     if (last_ && captured > *last_) between_[count_++ % kFrames] = captured - *last_;
     last_ = captured;
   }
 
-  // The lower quartile of the last times between two images: images that were dropped do not
-  // lengthen it, nor does a late one, which the next follows at once, shorten it. Nothing before
-  // there are enough.
+  // Returns the lower quartile of the latest intervals between images. Dropped images do not
+  // lengthen it; a late image, which the next one follows at once, does not shorten it. Nothing
+  // until there are enough.
   std::optional<Duration> Get() const {
     if (count_ < kFrames) return std::nullopt;
     std::array<Duration, kFrames> sorted = between_;

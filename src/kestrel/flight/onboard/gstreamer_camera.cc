@@ -17,9 +17,9 @@ namespace kestrel {
 namespace {
 
 constexpr std::string_view kDevice = "/dev/video";
-constexpr std::size_t kPooledImages = 64;  // what vision and the recorder's queue have at a time
+constexpr std::size_t kPooledImages = 64;  // that vision and the recorder's queue hold at a time
 
-// What a device is asked for.
+// Returns the caps to request from a device.
 std::string DeviceCaps(const CameraIntrinsics& calibration, const GstreamerCameraOptions& options) {
   if (!options.device_caps.empty()) return options.device_caps;
   return fmt::format("video/x-raw,width={},height={}", calibration.width_px, calibration.height_px);
@@ -92,7 +92,7 @@ std::optional<Event> GstreamerCamera::TakeFrameOrFail(Duration timeout) {
   }
 }
 
-// What was opened is only back when a frame has come: 'error_' stays until then.
+// Reopens the pipeline. The camera is back only when a frame has come: 'error_' stays until then.
 bool GstreamerCamera::Reopen() {
   try {
     Open();
@@ -106,7 +106,7 @@ bool GstreamerCamera::Reopen() {
 void GstreamerCamera::Fail(const std::string& reason) {
   next_attempt_ = Now() + back_off_;
   back_off_ = std::min(2 * back_off_, DurationFromSeconds(options_.max_reopen_s));
-  std::unique_ptr<GstreamerPipeline> gone;  // stops without the lock
+  std::unique_ptr<GstreamerPipeline> gone;  // stops without the lock held
   const std::lock_guard lock(mutex_);
   gone = std::exchange(pipeline_, nullptr);
   error_ = reason;
@@ -146,7 +146,7 @@ std::optional<Event> GstreamerCamera::TakeFrame(Duration timeout) {
   if (!error_.empty()) ++counters_.reopened;
   error_.clear();
   frame.time = CaptureTime(driver_time, now);
-  if (frame.time <= last_time_) {  // nobody needs a frame from before the last
+  if (frame.time <= last_time_) {  // not later than the last: not needed
     ++counters_.missed;
     return std::nullopt;
   }
@@ -155,7 +155,8 @@ std::optional<Event> GstreamerCamera::TakeFrame(Duration timeout) {
   return frame;
 }
 
-// A driver whose clock is another one would put frames anywhere: the arrival serves then.
+// Returns the capture time. If the driver uses another clock, its times are useless: the arrival is
+// used instead.
 Time GstreamerCamera::CaptureTime(std::optional<Time> driver_time, Time now) {
   constexpr Duration kOldest = std::chrono::seconds(5);
   constexpr Duration kNewest = std::chrono::milliseconds(100);

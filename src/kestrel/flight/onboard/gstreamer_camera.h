@@ -18,22 +18,22 @@ namespace kestrel {
 class GstreamerPipeline;
 
 struct GstreamerCameraOptions {
-  // From the middle of the exposure to the time that the driver gives the frame, without half of
-  // the exposure itself: what `kestrel calibrate clock` finds, or the sensor's read-out time where
+  // Time from the middle of the exposure to the driver's time of the frame, without half of the
+  // exposure itself: the result of `kestrel calibrate clock`, or the sensor's read-out time where
   // the driver stamps the end of it.
   double readout_s = 0;
-  // Length of the exposure, half of which is before the time that the driver gives; 0 where the
-  // driver stamps its middle. Exposure control knows better once it runs.
+  // Length of the exposure, half of which is before the driver's time; 0 where the driver stamps
+  // the middle. While exposure control runs, its value is used instead.
   double exposure_s = 0;
-  // Element and property that set the exposure, as "source.exposure"; empty: a device's by V4L2.
+  // Element and property that set the exposure, as "source.exposure"; empty: V4L2 for a device.
   std::string exposure_property = {};
-  double exposure_unit_s = 1e-6;  // of that property
-  // Caps that a device is asked for; empty: raw images of the calibration's size. "image/jpeg,
-  // width=752,height=480,framerate=50/1" asks for compressed ones.
+  double exposure_unit_s = 1e-6;  // unit of that property
+  // Caps requested from a device; empty: raw images of the calibration's size. "image/jpeg,
+  // width=752,height=480,framerate=50/1" requests compressed ones.
   std::string device_caps = {};
-  // Without a frame for so long the camera is taken to be gone.
+  // After so long without a frame the camera counts as gone.
   double stall_s = 2;
-  // From one attempt to get it back to the next: at first, and at most, when it has doubled.
+  // Time between attempts to reopen it: the first, and the largest after doubling.
   double reopen_s = 0.5;
   double max_reopen_s = 8;
 
@@ -53,9 +53,9 @@ struct GstreamerCameraOptions {
   std::vector<std::string> Validate() const;
 };
 
-// A camera through GStreamer: a device (/dev/video0), an RTSP address, or any pipeline. The newest
-// frame wins; a frame's time is its buffer's PTS on the pipeline's clock, which is that of Now(),
-// less half of the exposure and the read-out.
+// A camera through GStreamer: a device (/dev/video0), an RTSP address, or any pipeline. Only the
+// newest frame is kept. A frame's time is its buffer's PTS on the pipeline's clock, which is that
+// of Now(), minus half of the exposure and the read-out.
 class GstreamerCamera : public LiveSource, public ExposureActuator {
  public:
   // 'camera': "/dev/video0", "rtsp://..." or a pipeline ("videotestsrc is-live=true ! ..."), with
@@ -70,11 +70,11 @@ class GstreamerCamera : public LiveSource, public ExposureActuator {
   std::string error() const override;
   CaptureCounters counters() const override;
 
-  // By any thread. The times of frames follow.
+  // Called by any thread. The times of the frames follow the new exposure.
   bool SetExposure(double exposure_s) override;
 
  private:
-  // These throw InputError, in words for the user.
+  // These throw InputError with a message for the user.
   void Open();
   std::optional<Event> TakeFrame(Duration timeout);
 
@@ -90,15 +90,15 @@ class GstreamerCamera : public LiveSource, public ExposureActuator {
   std::optional<V4l2ExposureActuator> v4l2_exposure_;
   std::atomic<double> exposure_s_;
   ImagePool images_;
-  std::optional<Event> first_;  // the frame that the constructor waited for
+  std::optional<Event> first_;  // the frame that the constructor has waited for
   Time last_time_ = Time::min();
   Time last_arrival_;
-  Time next_attempt_;  // to reopen
+  Time next_attempt_;  // of reopening
   Duration back_off_{};
   bool has_ended_ = false;
 
-  mutable std::mutex mutex_;  // of what follows
-  // Only Next replaces it, and may use it without the lock.
+  mutable std::mutex mutex_;  // guards what follows
+  // Only Next replaces it; Next may use it without the lock.
   std::unique_ptr<GstreamerPipeline> pipeline_;
   CaptureCounters counters_;
   std::string error_;

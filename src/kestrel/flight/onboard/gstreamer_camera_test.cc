@@ -36,7 +36,7 @@ GstreamerCamera Camera(const std::string& pipeline, const GstreamerCameraOptions
   return GstreamerCamera(pipeline, Small(), format, options);
 }
 
-// The next frame; an empty one when none comes within 20 s.
+// Returns the next frame; an empty one when none comes within 20 s.
 Frame NextFrame(GstreamerCamera* camera) {
   const Time deadline = Now() + seconds(20);
   while (Now() < deadline) {
@@ -86,7 +86,7 @@ TEST(GstreamerCamera, TheNewestFrameWinsAndTheOthersAreCounted) {
   GstreamerCamera camera = Camera(kTestCamera);
   NextFrame(&camera);
   std::this_thread::sleep_for(milliseconds(400));
-  NextFrame(&camera);  // lay there
+  NextFrame(&camera);  // it was already waiting
   const Time now = Now();
   EXPECT_GT(NextFrame(&camera).time, now - milliseconds(300));
   EXPECT_GE(camera.counters().missed, 5u);

@@ -15,8 +15,8 @@ namespace {
 
 using GstClockPointer = std::unique_ptr<GstClock, GstReleaser>;
 
-// The source's number of a frame; GST_BUFFER_OFFSET_NONE where it has none: what counts bytes does
-// not end one further.
+// Returns the source's number of a frame; GST_BUFFER_OFFSET_NONE where it has none: if the offset
+// counts bytes, its end is not one further.
 guint64 FrameNumber(const GstBuffer* buffer) {
   const guint64 number = GST_BUFFER_OFFSET(buffer);
   return number + 1 == GST_BUFFER_OFFSET_END(buffer) ? number : GST_BUFFER_OFFSET_NONE;
@@ -123,7 +123,7 @@ void GstreamerPipeline::SetUpSink(PixelFormat format) {
   gst_base_sink_set_sync(GST_BASE_SINK(sink), FALSE);
 }
 
-// Else a source may bring a clock of its own, whose times are not those of Now().
+// Otherwise a source may bring its own clock, whose times are not those of Now().
 void GstreamerPipeline::UseMonotonicClock() {
   const GstClockPointer clock(GST_CLOCK(g_object_new(
       GST_TYPE_SYSTEM_CLOCK, "name", "kestrel", "clock-type", GST_CLOCK_TYPE_MONOTONIC, nullptr)));
@@ -131,7 +131,8 @@ void GstreamerPipeline::UseMonotonicClock() {
   gst_pipeline_use_clock(GST_PIPELINE(pipeline_.get()), clock.get());
 }
 
-// What is not live would come as fast as it can be read: the sink then keeps it to its pace.
+// A source that is not live would deliver as fast as it can be read: the sink then keeps it to its
+// pace.
 void GstreamerPipeline::Start() {
   const GstStateChangeReturn paused = gst_element_set_state(pipeline_.get(), GST_STATE_PAUSED);
   is_live_ = paused == GST_STATE_CHANGE_NO_PREROLL;

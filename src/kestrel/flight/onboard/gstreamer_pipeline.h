@@ -11,13 +11,14 @@
 
 namespace kestrel {
 
-// "element.property" of a pipeline that sets the exposure.
+// Sets the exposure by "element.property" of a pipeline.
 class GstExposureProperty {
  public:
-  // 'unit_s': of the property. Throws InputError when the pipeline has no such element or property.
+  // 'unit_s': unit of the property. Throws InputError when the pipeline has no such element or
+  // property.
   GstExposureProperty(GstElement* pipeline, const std::string& name, double unit_s);
 
-  // What is outside of the property's range goes to its end. By any thread.
+  // Values outside of the property's range are clamped. Called by any thread.
   void Set(double exposure_s);
 
  private:
@@ -26,11 +27,11 @@ class GstExposureProperty {
   double unit_s_;
 };
 
-// A pipeline of GStreamer that ends in an appsink, of which the newest frame is to be had, with
-// times on the clock of Now(). Faults name 'camera'.
+// A pipeline of GStreamer that ends in an appsink. It gives out the newest frame, with times on the
+// clock of Now(). Errors name 'camera'.
 class GstreamerPipeline {
  public:
-  // Throws InputError when 'text' is no pipeline with an appsink.
+  // Throws InputError when 'text' is not a pipeline with an appsink.
   GstreamerPipeline(const std::string& text, const std::string& camera, PixelFormat format);
   ~GstreamerPipeline();
   GstreamerPipeline(const GstreamerPipeline&) = delete;
@@ -42,22 +43,22 @@ class GstreamerPipeline {
   // Throws InputError when it does not start.
   void Start();
 
-  // The newest frame that was not yet given out; null when none comes within 'timeout'.
+  // Returns the newest frame that was not yet given out; null when none comes within 'timeout'.
   GstSamplePointer Pull(Duration timeout);
 
-  // When the driver had the frame; nothing when the buffer has no time.
+  // Returns the driver's time of the frame; nothing when the buffer has none.
   std::optional<Time> DriverTime(GstSample* sample) const;
 
-  // Frames between this one and the last that never came here: by the source's numbers, else by the
-  // times.
+  // Returns the number of frames lost between the last one and this one: by the source's frame
+  // numbers, else by the times.
   std::uint64_t MissedBefore(GstSample* sample);
 
-  // What went wrong, in one line; empty as long as nothing did.
+  // Describes the error in one line; empty as long as there is none.
   std::string Fault();
   bool HasEnded() const;
   bool is_live() const { return is_live_; }
 
-  // False without a property for it. By any thread.
+  // False when there is no property for it. Called by any thread.
   bool SetExposure(double exposure_s);
 
  private:

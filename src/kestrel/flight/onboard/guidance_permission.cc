@@ -12,7 +12,7 @@
 namespace kestrel {
 namespace {
 
-// The names of the autopilot's limits: horizontal speed, climb, descent (m/s), tilt (deg).
+// Names of the autopilot's limits: horizontal speed, climb, descent (m/s), tilt (deg).
 struct LimitNames {
   std::string_view speed, climb, sink, tilt;
 };
@@ -20,8 +20,8 @@ constexpr LimitNames kArduPilotLimits{"WP_SPD", "WP_SPD_UP", "WP_SPD_DN", "ATC_A
 constexpr LimitNames kPx4Limits{"MPC_XY_VEL_MAX", "MPC_Z_VEL_MAX_UP", "MPC_Z_VEL_MAX_DN",
                                 "MPC_TILTMAX_AIR"};
 constexpr std::string_view kArduPilotJerk = "PSC_JERK_NE";  // m/s^3
-constexpr double kSlowestJerk = 1;                          // less is no flying
-// What PX4 does when set-points stop: without a transmitter, and with its pilot ignored.
+constexpr double kSlowestJerk = 1;                          // below it no flight is possible
+// PX4's actions when set-points stop: without a transmitter, and with its pilot ignored.
 constexpr std::string_view kPx4LossAction = "COM_OBL_RC_ACT", kPx4RadioLossAction = "NAV_RCL_ACT";
 
 const LimitNames& NamesFor(AutopilotKind kind) {
@@ -53,7 +53,7 @@ AutopilotLimits LimitsOf(const Autopilot& autopilot) {
 GuidanceOptions OptionsFor(const Autopilot& autopilot, GuidanceOptions options) {
   const bool is_px4 = autopilot.kind() == AutopilotKind::kPx4;
   options.stream_before_start = options.stream_before_start || is_px4;
-  // PX4's LAND would brake on a deck that drives on.
+  // PX4's LAND would brake on a moving deck.
   options.land_in_contact = options.land_in_contact || !is_px4;
   if (const auto jerk = autopilot.parameters().Find(kArduPilotJerk);
       jerk && options.autopilot_jerk == 0) {

@@ -13,25 +13,25 @@
 
 namespace kestrel {
 
-// Asks for the parameters that the functions below need.
+// Requests the parameters that the functions below need.
 void WantGuidanceParameters(Autopilot* autopilot);
 
-// The autopilot's own limits, as far as its parameters tell.
+// The autopilot's own limits, as far as its parameters are known.
 AutopilotLimits LimitsOf(const Autopilot& autopilot);
 
-// The options of guidance for this autopilot, as far as its parameters tell.
+// The options of guidance for this autopilot, as far as its parameters are known.
 GuidanceOptions OptionsFor(const Autopilot& autopilot, GuidanceOptions options);
 
-// Its home position in the world, where it has told that.
+// The autopilot's home position in the world, if it has reported one.
 std::optional<Eigen::Vector2d> HomeOf(const Autopilot& autopilot);
 
-// One line on why guidance must not begin with this autopilot and the body at 'position' at 'now':
-// not a multicopter, no estimate of its position, no home, limits beyond its own, out of the
-// geofence around home. Empty when it may.
+// Returns one line that says why guidance must not begin with this autopilot and the body at
+// 'position' at 'now': not a multicopter, no position estimate, no home, limits beyond its own, out
+// of the geofence around home. Empty when it may.
 std::string WhyNotGuide(const Autopilot& autopilot, const FlightLimitsOptions& limits,
                         const Eigen::Vector3d& position, Time now);
 
-// One line on a setting with which losing this program is dangerous; empty: none.
+// Returns one line on a setting that makes it dangerous to lose this program; empty: none.
 std::string DangerOfGuidance(const Autopilot& autopilot);
 
 }  // namespace kestrel

@@ -17,9 +17,9 @@
 namespace kestrel {
 namespace {
 
-constexpr double kMinRate_hz = 20;  // guidance is made for no less
+constexpr double kMinRate_hz = 20;  // lowest rate that guidance is made for
 constexpr double kMaxFrameAge_s = 1;
-constexpr double kLinkAge_s = 0.5;  // without a pose for so long the link is away
+constexpr double kLinkAge_s = 0.5;  // after so long without a pose the link is away
 constexpr Duration kPermissionPeriod = std::chrono::milliseconds(500);
 constexpr Duration kAskPeriod = std::chrono::seconds(1);
 
@@ -64,8 +64,8 @@ bool GuidedFlight::Fly(Time now, const TrackSnapshot& track, const PoseHistory& 
   return is_news && is_begun_;
 }
 
-// What guidance is for, once it is heard, and a mode that it has then was not given to this
-// program.
+// Prepares guidance for the autopilot once it is heard. A mode that is already on then was not
+// given to this program.
 void GuidedFlight::KnowAutopilot(Time now) {
   if (!autopilot_.is_here() || autopilot_.kind() == kind_) return;
   kind_ = autopilot_.kind();
@@ -79,7 +79,7 @@ void GuidedFlight::KnowAutopilot(Time now) {
 }
 
 // Begins when the pilot has given the mode and the UAV is in the air (a take-off in the same mode
-// is the autopilot's), unless something speaks against it; then the mode has to be given anew.
+// belongs to the autopilot), unless there is a refusal; the pilot must then give the mode anew.
 void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
   const bool is_mode = autopilot_.is_here() ? autopilot_.is_guided_mode() : was_mode_;
   if (is_mode && !was_mode_) is_given_ = true;
@@ -108,7 +108,7 @@ void GuidedFlight::CheckPermission(const GuidanceInput& input, Time now) {
   if (knows_parameters_ || !autopilot_.parameters().is_done()) return;
   knows_parameters_ = true;
   guidance_.emplace(OptionsFor(autopilot_, options_.guidance));
-  guidance_->Update(input);  // which has not begun
+  guidance_->Update(input);  // guidance has not begun
   if (const std::string danger = DangerOfGuidance(autopilot_); !danger.empty()) {
     Tell(mavlink::kSeverityWarning, danger);
   }

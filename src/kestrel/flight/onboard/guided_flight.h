@@ -18,12 +18,12 @@
 
 namespace kestrel {
 
-// Flies the UAV by the guidance's set-points while the pilot gives it the mode, and tells people
-// what it does. Of the link's thread.
+// Flies the UAV by set-points of guidance while the pilot gives it the mode, and informs the user.
+// Used by the link's thread only.
 class GuidedFlight {
  public:
-  // 'tracker': of the track that is predicted. 'say': a line for the user. Throws InputError when
-  // the options are not valid, or the rate is too low to fly by.
+  // 'tracker': options of the predicted track. 'say': receives lines for the user. Throws
+  // InputError when the options are not valid, or the rate is too low for flying.
   GuidedFlight(const FlightOptions& options, const TargetTrackerOptions& tracker,
                Autopilot* autopilot, Connection* connection,
                std::function<void(const std::string&)> say);
@@ -31,7 +31,7 @@ class GuidedFlight {
   // Sends what is due at 'now'; true when it was the first set-point of a new frame.
   bool Fly(Time now, const TrackSnapshot& track, const PoseHistory& poses);
 
-  // It flies the UAV, which has not landed.
+  // True while guidance flies the UAV and it has not landed.
   bool is_flying() const { return is_begun_ && phase() != GuidancePhase::kLanded; }
   GuidancePhase phase() const { return guidance_->phase(); }
   int set_points() const { return set_points_; }  // sent
@@ -56,16 +56,16 @@ class GuidedFlight {
   SendSchedule schedule_;
 
   bool was_mode_ = false;  // GUIDED or OFFBOARD was on
-  bool is_given_ = false;  // the pilot has given it, and guidance has not begun yet
+  bool is_given_ = false;  // the pilot has given the mode, and guidance has not begun yet
   bool is_begun_ = false;
   bool was_armed_ = false;
   Time permission_due_{};
-  bool may_begin_ = false;  // nothing speaks against it
-  std::string refusal_;     // what does
+  bool may_begin_ = false;  // guidance may begin
+  std::string refusal_;     // reason why it may not
   bool knows_parameters_ = false;
 
-  Time told_frame_;  // the newest frame that a set-point was made from
-  Time asked_{};     // the autopilot, for a mode or to disarm
+  Time told_frame_;  // the newest frame used for a set-point
+  Time asked_{};     // when the autopilot was last asked for a mode or to disarm
   GuidancePhase said_phase_ = GuidancePhase::kIdle;
   const char* said_reason_ = "";
   int set_points_ = 0;

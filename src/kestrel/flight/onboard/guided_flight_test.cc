@@ -20,7 +20,7 @@ namespace {
 using std::chrono_literals::operator""ms;
 using testing::HasSubstr;
 
-// An autopilot that says what it is told to, and a UAV that hovers at (3, 1, 8) m. Time is
+// An autopilot that reports what it is set to, and a UAV that hovers at (3, 1, 8) m. Time is
 // simulated.
 class GuidedFlightTest : public testing::Test {
  protected:
@@ -37,7 +37,7 @@ class GuidedFlightTest : public testing::Test {
         [this](const std::string& text) { said_ += text + "\n"; });
   }
 
-  // What Kestrel sends.
+  // Receives Kestrel's packets.
   void Hear(const mavlink::Packet& packet) {
     if (packet.As<mavlink::SetPositionTargetLocalNed>()) ++set_points_;
     if (const auto question = packet.As<mavlink::ParamRequestRead>()) {
@@ -56,7 +56,7 @@ class GuidedFlightTest : public testing::Test {
     });
   }
 
-  // Time goes on in steps of 10 ms, with a frame that shows the target, standing below, every 50.
+  // Time passes in steps of 10 ms; every 50 ms a frame shows the target, which stands below.
   void Pass(double seconds) {
     for (int i = 0; i < 100 * seconds; ++i) {
       now_ += 10ms;
@@ -105,7 +105,7 @@ class GuidedFlightTest : public testing::Test {
   std::uint16_t ekf_flags_ = 0x3f;  // attitude, velocities and positions
   bool has_home_ = true;
   mavlink::HomePosition home_{.latitude = 473977420, .longitude = 85455940, .altitude = 488000};
-  float limit_ = 50;  // of all that the autopilot limits
+  float limit_ = 50;  // value of all limits of the autopilot
   TrackSnapshot track_;
   PoseHistory poses_{512, 500ms};
   mavlink::PacketParser parser_;

@@ -13,7 +13,7 @@ namespace kestrel {
 namespace {
 
 constexpr char kObjects[] = "object_detections.csv";
-constexpr std::size_t kFrames = 256;  // whose rows wait for the disk
+constexpr std::size_t kFrames = 256;  // whose rows may wait for the disk
 
 }  // namespace
 
@@ -27,7 +27,7 @@ HuntVision::HuntVision(const CameraCalibration& calibration, const ObjectModel& 
   WriteAtOnce(ObjectCsvHeader(), kObjects, &*file_);
 }
 
-// The last row of a rolling shutter is later than the frame.
+// The last row of a rolling shutter is exposed later than the frame's time.
 Duration HuntVision::pose_lead() const {
   return clock_offset_ + DurationFromSeconds(pipeline_.options().readout_s / 2);
 }
@@ -47,7 +47,7 @@ TrackSnapshot HuntVision::Process(const Frame& frame, ObservationSink* sink) {
   return snapshot_;
 }
 
-// A copy, once in a while: the map goes on with the next frame.
+// Makes a copy from time to time: the map changes with the next frame.
 void HuntVision::PublishMap(const Frame& frame, const HuntObservation& observation) {
   if (!share_period_) return;
   const Time now = Now();

@@ -15,14 +15,15 @@
 
 namespace kestrel {
 
-// The map of a hunt while it goes on.
+// The map during a hunt.
 struct SharedMap {
   std::vector<MappedObject> objects;
-  Time captured;                            // the newest frame
-  std::optional<Eigen::Vector3d> position;  // of the camera then, in the world, where it is known
+  Time captured;                            // capture time of the newest frame
+  std::optional<Eigen::Vector3d> position;  // of the camera at that time, in the world, if it is
+                                            // known
 };
 
-// The pipeline of coloured objects in flight; writes object_detections.csv, and at the end the
+// The pipeline of coloured objects in flight. It writes object_detections.csv and, at the end, the
 // map. It has no landing target.
 class HuntVision : public FlightVision {
  public:
@@ -36,13 +37,14 @@ class HuntVision : public FlightVision {
   bool WriteResults() override;
   std::string Found() const override;
 
-  // From now on the map is there for another thread, anew every 'period'. Before the first frame.
+  // From now on a copy of the map is made for another thread every 'period'. Call it before the
+  // first frame.
   void ShareMap(Duration period) { share_period_ = period; }
-  // The newest, when it was not taken yet; any thread's.
+  // Returns the newest copy, if it was not taken yet. Called by any thread.
   std::optional<SharedMap> TakeMap() { return shared_.TryPop(); }
 
-  // The map of all that was seen, and its objects; after the last frame. Throws InputError when it
-  // cannot be written.
+  // Writes the map of all that was seen, and its objects, after the last frame. Throws InputError
+  // when it cannot be written.
   void WriteMap(const OutputFolder& output) const;
   std::vector<MappedObject> Objects() const { return pipeline_.map().Confirmed(); }
 
@@ -56,7 +58,7 @@ class HuntVision : public FlightVision {
   BoundedQueue<std::string> rows_;
   std::optional<std::ofstream> file_;
   BoundedQueue<SharedMap> shared_{1};
-  std::optional<Duration> share_period_;  // nothing: with nobody
+  std::optional<Duration> share_period_;  // nothing: it is not shared
   Time next_share_ = Time::min();
 };
 

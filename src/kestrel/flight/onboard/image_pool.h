@@ -9,14 +9,14 @@
 
 namespace kestrel {
 
-// Memory for images that go from thread to thread: an image whose last user has let go of it is
-// given out again. One thread takes; any may let go.
+// Memory for images that go from thread to thread: an image is reused when its last user has
+// released it. One thread takes; any may release.
 class ImagePool {
  public:
-  // Keeps up to 'capacity' images; those beyond are allocated each time.
+  // Keeps up to 'capacity' images; further ones are allocated each time.
   explicit ImagePool(std::size_t capacity) { images_.reserve(capacity); }
 
-  // An image that nobody else has; what is in it is not said.
+  // Returns an image that nobody else uses; its contents are undefined.
   cv::Mat Take(cv::Size size, int type) {
     for (cv::Mat& image : images_) {
       if (!IsUnused(image)) continue;
@@ -29,7 +29,7 @@ class ImagePool {
   }
 
  private:
-  // Another thread's last use of the pixels is before its release of them, which acquire sees.
+  // Acquire makes another thread's last use of the pixels, before its release, visible.
   static bool IsUnused(const cv::Mat& image) {
     return std::atomic_ref(image.u->refcount).load(std::memory_order_acquire) == 1;
   }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr char kDetections[] = "landing_detections.csv";
 constexpr char kTrack[] = "landing_track.csv";
-constexpr std::size_t kResults = 256;  // that wait for the disk
+constexpr std::size_t kResults = 256;  // that may wait for the disk
 
 std::optional<RigidTransform> InverseOf(const std::optional<RigidTransform>& transform) {
   if (!transform) return std::nullopt;
@@ -61,8 +61,9 @@ TrackSnapshot LandingVision::Process(const Frame& frame, ObservationSink* sink) 
   return snapshot_;
 }
 
-// A search that takes longer than the camera's period costs a frame; one that is given up goes on
-// in the next. What is left is for the step that it is in, and for all else that a frame takes.
+// A search that takes longer than the camera's period costs a frame; a search that is given up goes
+// on in the next frame. The rest of the period is left for the step that is running, and for the
+// other work of a frame.
 void LandingVision::LimitSearch(const Frame& frame) {
   constexpr double kSearchShare = 0.6;
   period_.Add(frame.time);
@@ -76,7 +77,8 @@ std::optional<TargetReport> LandingVision::Sighting(const LandingObservation& ob
   if (!detection || !observation.world_from_camera || !camera_from_body_) return std::nullopt;
   const RigidTransform& world_from_camera = *observation.world_from_camera;
   const Eigen::Vector3d& center = detection->camera_from_pattern.translation;
-  // Relative to the UAV: of its pose the attitude counts, with all that frames have in common.
+  // Relative to the UAV only the pose's attitude counts, including the errors that all frames
+  // share.
   MeasurementNoise noise = pipeline_.options().noise;
   noise.pose_sigma_m = noise.pose_bias_m = 0;
   TargetReport report;

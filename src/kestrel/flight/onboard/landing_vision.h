@@ -18,8 +18,9 @@ namespace kestrel {
 // The landing pipeline in flight; writes landing_detections.csv and landing_track.csv.
 class LandingVision : public FlightVision {
  public:
-  // 'output': where the tables go; null: nowhere. 'exposure': keeps the pattern's white right.
-  // Throws InputError when calibration or options are not valid, or the files cannot be written.
+  // 'output': folder of the tables; null: none are written. 'exposure': keeps the pattern's white
+  // right. Throws InputError when calibration or options are not valid, or the files cannot be
+  // written.
   LandingVision(const CameraCalibration& calibration, const LandingPipelineOptions& options,
                 const OutputFolder* output,
                 const std::optional<ExposureDrive>& exposure = std::nullopt);

@@ -5,10 +5,10 @@
 
 namespace kestrel {
 
-// Notices that the UAV has landed: it is disarmed after it was in the air.
+// Detects that the UAV has landed: it is disarmed after it was in the air.
 class LandingWatch {
  public:
-  // To be called often. 'z_m': height of the body in the world.
+  // Call it often. 'z_m': height of the body in the world.
   void Observe(bool is_armed, LandedState state, double z_m);
 
   bool has_landed() const { return has_landed_; }

@@ -26,7 +26,7 @@ TEST(LandingWatchTest, ArmedAndDisarmedOnTheGroundHasNotFlown) {
 
 TEST(LandingWatchTest, KnowsTheAirByHeightWhereTheAutopilotDoesNotTell) {
   LandingWatch watch;
-  watch.Observe(true, LandedState::kUnknown, 10);  // begun in the air
+  watch.Observe(true, LandedState::kUnknown, 10);  // the program begins in the air
   watch.Observe(true, LandedState::kUnknown, 8.5);
   watch.Observe(false, LandedState::kUnknown, 0);
   EXPECT_TRUE(watch.has_landed());

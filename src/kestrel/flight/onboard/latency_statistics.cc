@@ -32,7 +32,7 @@ LatencySummary LatencyHistogram::Summary() const {
   summary.dropped = dropped_.load(kOrder);
   if (summary.count == 0) return summary;
   summary.max_s = 1e-9 * static_cast<double>(max_ns_.load(kOrder));
-  // By nearest rank, the middle of its bin.
+  // Nearest rank; the result is the middle of its bin.
   const auto quantile_s = [&](double part) {
     const auto rank =
         static_cast<std::uint64_t>(std::ceil(part * static_cast<double>(summary.count)));

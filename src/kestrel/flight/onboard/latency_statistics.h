@@ -12,21 +12,21 @@
 
 namespace kestrel {
 
-// What is told of a step. Times in s; 0 where there was none.
+// Summary of a step. Times in s; 0 where there was none.
 struct LatencySummary {
   std::uint64_t count = 0;
-  std::uint64_t dropped = 0;  // never came to the end of the step
-  double median_s = 0;        // within 1 %, as p99
+  std::uint64_t dropped = 0;  // began the step, but never ended it
+  double median_s = 0;        // within 1 %, like p99
   double p99_s = 0;
   double max_s = 0;
 };
 
-// How long a step takes: a histogram of fixed size, by the logarithm of the time, from 1 us to 1000
-// s. One thread adds, any may ask; neither locks nor allocates.
+// Durations of a step: a histogram of fixed size over the logarithm of the time, from 1 us to 1000
+// s. One thread adds, any thread may read; neither locks nor allocates.
 class LatencyHistogram {
  public:
-  // Times outside of the histogram go to its ends; a negative one is a step back of a clock, and
-  // goes to the lower end.
+  // Times outside of the histogram count in its first or last bin; a negative one (the clock
+  // stepped back) counts in the first.
   void Add(Duration latency);
   void AddDropped(std::uint64_t count = 1) { dropped_.fetch_add(count, kOrder); }
 
@@ -34,17 +34,17 @@ class LatencyHistogram {
 
  private:
   static constexpr auto kOrder = std::memory_order_relaxed;
-  static constexpr std::size_t kBins = 1042;  // of 2 %
+  static constexpr std::size_t kBins = 1042;  // each 2 % wide
 
   std::array<std::atomic<std::uint64_t>, kBins> bins_{};
   std::atomic<std::uint64_t> dropped_{0};
   std::atomic<std::int64_t> max_ns_{0};
 };
 
-// Those of all steps of a program.
+// Latencies of all steps of a program.
 class LatencyStatistics {
  public:
-  // 'steps': their names, as "capture to detection".
+  // 'steps': names of the steps, as "capture to detection".
   explicit LatencyStatistics(std::vector<std::string> steps);
 
   LatencyHistogram& step(std::size_t index) { return histograms_[index]; }

@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-// Poses from before the first frame that are played: what a history has when a flight begins.
+// Poses from before the first frame that are played, as a history has them when a flight begins.
 constexpr Duration kPosesAhead = std::chrono::milliseconds(200);
 
 }  // namespace
@@ -59,7 +59,7 @@ bool RealtimeReplay::IsPoseNext() const {
   return next_pose_ < poses_.size() && DueOf(poses_[next_pose_]) <= DueOf(*frame_);
 }
 
-// In a further round the first poses may be from before the last of the round before.
+// In a further round the first poses may be earlier than the last one of the round before.
 std::optional<Event> RealtimeReplay::TakePose() {
   PoseSample pose = poses_[next_pose_++];
   pose.time += shift_;

@@ -14,17 +14,17 @@
 
 namespace kestrel {
 
-// A recording played at the pace at which it was flown: its frames and poses come when they are
-// due, with their times moved to the clock of Now(). Where it cannot be read fast enough it is
-// played slower, in jerks.
+// Replays a recording at the pace at which it was flown: frames and poses come when they are due,
+// with their times moved to the clock of Now(). If it cannot be read fast enough, it is played
+// slower, in jerks.
 class RealtimeReplay : public LiveSource {
  public:
   using Open = std::function<std::unique_ptr<FrameSource>()>;
 
-  // 'open' gives the recording from its begin, once for each round. 'clock_offset': of its
+  // 'open' opens the recording at its beginning, once for each round. 'clock_offset': of its
   // calibration, t_nav = t_image + clock_offset: a pose comes with the frames of its instant.
-  // 'is_looped': it begins again after the last frame, at once, so that positions jump; else it
-  // ends. Throws InputError when 'open' does, or the recording has no frame.
+  // 'is_looped': it begins again at once after the last frame, so that positions jump; otherwise it
+  // ends. Throws InputError when 'open' does, or when the recording has no frame.
   RealtimeReplay(Open open, Duration clock_offset, bool is_looped);
 
   std::optional<Event> Next(Duration timeout) override;
@@ -48,13 +48,13 @@ class RealtimeReplay : public LiveSource {
   std::vector<PoseSample> poses_;
   std::size_t next_pose_ = 0;
   std::optional<Frame> frame_;      // the next one
-  std::optional<Time> last_frame_;  // that was given out, and of poses
+  std::optional<Time> last_frame_;  // times last given out, of a frame and of a pose
   std::optional<Time> last_pose_;
   Duration shift_{};  // Now() minus the recording's time
   bool is_started_ = false;
   bool has_ended_ = false;
 
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // guards what follows
   CaptureCounters counters_;
   std::string error_;
 };

@@ -46,7 +46,7 @@ class RealtimeReplayTest : public ::testing::Test {
         clock_offset, is_looped);
   }
 
-  // The next event, however long it takes.
+  // Waits for the next event without a limit, and returns it.
   static Event Wait(RealtimeReplay* replay) {
     for (;;) {
       if (const auto event = replay->Next(milliseconds(10))) return *event;

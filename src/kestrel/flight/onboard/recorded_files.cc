@@ -15,7 +15,7 @@
 namespace kestrel {
 namespace {
 
-// Appends the whole text, or nothing. Returns 0 or what the system says.
+// Appends the whole text, or nothing. Returns 0 or the system's error number.
 int AppendWhole(int descriptor, std::int64_t size, std::string_view text) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t written = pwrite(descriptor, text.data() + done, text.size() - done,
@@ -79,8 +79,8 @@ std::string RecordedFiles::Write(Growing* file) {
   return fmt::format("{}: cannot be written: {}", path, std::generic_category().message(error));
 }
 
-// Header and first rows go under another name until they are on the disk: there is never an empty
-// file.
+// Writes header and first rows under another name until they are on the disk: an empty file never
+// exists.
 int RecordedFiles::Begin(Growing* file) {
   constexpr int kMode = 0644;
   const std::string draft = file->file.path.string() + ".part";
@@ -99,7 +99,7 @@ int RecordedFiles::Begin(Growing* file) {
 int RecordedFiles::Append(const std::string& text, Growing* file) {
   const int error = AppendWhole(file->descriptor, file->size, text);
   if (error != 0) return error;
-  if (fdatasync(file->descriptor) != 0) return errno;  // the next attempt writes over it
+  if (fdatasync(file->descriptor) != 0) return errno;  // the next attempt overwrites it
   file->size += static_cast<std::int64_t>(text.size());
   return 0;
 }

@@ -11,39 +11,40 @@
 
 namespace kestrel {
 
-// Files of a recording that grow row by row, and of which every row that is on the disk is whole,
-// and is about things that are there: rows are kept in memory until Commit, which first has the
-// system write all else to the disk. A full disk keeps them there until there is room again.
+// Files of a recording that grow row by row. Every row on the disk is complete, and the data that
+// it refers to are on the disk: rows are kept in memory until Commit, which first syncs all other
+// data to the disk. While the disk is full they stay in memory.
 class RecordedFiles {
  public:
   struct File {
     std::filesystem::path path;
-    std::string header;  // its first row
+    std::string header;  // first row of the file
   };
 
-  // A file is made when its first row is committed. 'folder': all that the rows are about is on its
-  // file system. Throws InputError when it cannot be opened.
+  // A file is made when its first row is committed. 'folder': everything that the rows refer to is
+  // on its file system. Throws InputError when it cannot be opened.
   RecordedFiles(const std::filesystem::path& folder, std::vector<File> files);
   ~RecordedFiles();
   RecordedFiles(const RecordedFiles&) = delete;
   RecordedFiles& operator=(const RecordedFiles&) = delete;
 
-  // Whole rows for the file 'index'; more than 4 MB that wait are dropped. By any thread.
+  // Adds complete rows for the file 'index'. When more than 4 MB wait, further rows are dropped.
+  // Called by any thread.
   void Add(std::size_t index, std::string_view rows);
 
-  // Writes all rows that were added, and waits for the disk. Returns an empty text or, in words,
-  // why some rows could not be written; these are tried again. One thread at a time.
+  // Writes all added rows and waits for the disk. Returns an empty text or the reason why some rows
+  // could not be written; these are tried again. One thread at a time.
   std::string Commit();
 
  private:
   struct Growing {
     File file;
-    std::string added;      // under the lock
-    std::string committed;  // what Commit is at, or failed to write
+    std::string added;      // guarded by the lock
+    std::string committed;  // rows that Commit is writing, or failed to write
     int descriptor = -1;
     std::int64_t size = 0;
   };
-  // What went wrong: in words, or 0 or the system's number.
+  // Return the error: as text, or as 0 or the system's error number.
   std::string Write(Growing* file);
   static int Begin(Growing* file);
   static int Append(const std::string& text, Growing* file);

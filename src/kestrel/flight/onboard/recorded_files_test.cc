@@ -38,7 +38,7 @@ TEST(RecordedFiles, AFileThatCannotBeWrittenIsToldAndHoldsUpNoOther) {
   EXPECT_EQ(ReadFile(folder / "b.csv"), "#b\n2\n");
 }
 
-// A limit on the size of files stands for a full disk.
+// A limit on the size of files simulates a full disk.
 TEST(RecordedFiles, WhatDoesNotFitLeavesNoPartOfIt) {
   const TestFolder folder;
   RecordedFiles files(folder.path(), {{folder / "a.csv", "#a\n"}, {folder / "b.csv", "#b\n"}});

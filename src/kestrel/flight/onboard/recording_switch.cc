@@ -29,7 +29,8 @@ bool RecordingSwitch::Stop() {
     recorder = std::exchange(recorder_, nullptr);
   }
   if (!recorder) return false;
-  // Its end waits for the disk: that comes here, not in a thread that just gave it something.
+  // The recorder's end waits for the disk: that happens here, not in a thread that still gives it
+  // data.
   while (recorder.use_count() > 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return true;
 }

@@ -11,7 +11,7 @@
 
 namespace kestrel {
 
-// A recording that is switched on and off in flight. Every function may be called by any thread.
+// A recording that is switched on and off in flight. Any thread may call every function.
 class RecordingSwitch {
  public:
   // Begins a recording in a folder; throws InputError as FlightRecorder does.
@@ -23,22 +23,23 @@ class RecordingSwitch {
   RecordingSwitch(const RecordingSwitch&) = delete;
   RecordingSwitch& operator=(const RecordingSwitch&) = delete;
 
-  // The recording that is on, for as long as something is given to it; null: none. Waits for
-  // nobody who waits for a disk.
+  // Returns the running recording, to be held only while data are given to it; null: none. Does not
+  // wait for anybody who waits for a disk.
   std::shared_ptr<FlightRecorder> Get() const;
 
-  // False, and nothing is done, while one is on, or after Close. Throws InputError as 'open' does.
+  // Returns false, and does nothing, while a recording runs or after Close. Throws InputError as
+  // 'open' does.
   bool Start(const std::filesystem::path& folder, bool replace);
-  // Returns when all that the recording was given is written; false: none is on.
+  // Returns when all data of the recording are written; false: none was running.
   bool Stop();
-  // The same, for good.
+  // The same, and nothing can be started afterwards.
   void Close();
 
  private:
   Open open_;
-  std::mutex switching_;  // one after the other
+  std::mutex switching_;  // held during Start, Stop and Close
   bool is_closed_ = false;
-  mutable std::mutex mutex_;  // of what is below, for as long as a pointer is copied
+  mutable std::mutex mutex_;  // guards what is below, while a pointer is copied
   std::shared_ptr<FlightRecorder> recorder_;
 };
 

@@ -8,17 +8,17 @@
 
 namespace kestrel {
 
-// Of the pixels in every eighth row: the noise of a sensor makes any two images differ there.
+// Hash of the pixels in every eighth row: a sensor's noise makes any two images differ there.
 std::uint64_t HashOf(const cv::Mat& image);
 
-// Notices images that are the one before once more: a camera or a driver that hangs repeats what it
-// has, with new times, and what stands still in the image seems to fly along.
+// Detects images that repeat the one before: a camera or driver that hangs repeats its last image
+// with new times, and everything in it seems to move along with the UAV.
 class RepeatedImage {
  public:
-  // Whether 'image' has the HashOf of the one before. Does not allocate.
+  // True when 'image' has the same HashOf as the one before. Does not allocate.
   bool IsRepeated(const cv::Mat& image);
 
-  int in_a_row() const { return in_a_row_; }  // repetitions up to the newest image
+  int in_a_row() const { return in_a_row_; }  // number of repetitions up to the newest image
 
  private:
   std::optional<std::uint64_t> hash_;  // of the newest image

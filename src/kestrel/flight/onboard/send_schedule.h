@@ -8,16 +8,16 @@
 
 namespace kestrel {
 
-// When to send the next message of a steady stream: at a rate, and at once what is news, if the
-// next one is nearly due.
+// Schedule of a stream of messages at a steady rate. News are sent at once if the next message is
+// nearly due.
 class SendSchedule {
  public:
   explicit SendSchedule(double rate_hz) : period_(DurationFromSeconds(1 / rate_hz)) {}
 
-  // Whether one is to be sent at 'now', which then has been.
+  // True when a message is to be sent at 'now'; it then counts as sent.
   bool IsDue(Time now, bool is_news) {
     if (now < due_ - (is_news ? period_ / 2 : Duration::zero())) return false;
-    // What was missed is not made up for.
+    // Missed messages are not made up for.
     due_ = std::max(due_ + period_, now + period_ / 2);
     return true;
   }

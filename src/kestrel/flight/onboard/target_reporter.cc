@@ -36,7 +36,7 @@ std::optional<TargetReport> TargetReporter::Report(Time now, Duration until_use,
     deck = ContactDetector::Deck{report.position_in_world, report.velocity_in_world};
     height_m_ = report.world_from_body.translation.z() - report.position_in_world.z();
   }
-  // A UAV that is held in the air so low is told the truth all the same: the deck is straight
+  // Where a UAV is only held this low in the air, the report is still true: the deck is straight
   // below.
   if (!may_stand_) contact_.Reset();
   if (may_stand_ && contact_.Update(now, report.world_from_body.translation, body_velocity, deck)) {
@@ -58,7 +58,7 @@ bool TargetReporter::PredictTarget(const TrackSnapshot& track, TargetReport* rep
   report->position_in_world = target.position();
   report->velocity_in_world = target.velocity();
   report->covariance = target.covariance.topLeftCorner<3, 3>();
-  // Written so that what is not finite is refused.
+  // Written so that values that are not finite are refused.
   return report->covariance.trace() <= 3 * std::pow(options_.max_sigma_m, 2) &&
          report->position_in_world.allFinite();
 }

@@ -17,13 +17,13 @@
 
 namespace kestrel {
 
-// What the vision knows of the target after a frame. Times are those of the navigation's clock.
+// The vision's knowledge of the target after a frame. Times are on the navigation's clock.
 struct TrackSnapshot {
-  Time captured;             // the frame's light
-  std::optional<Time> seen;  // of the newest frame that showed the target where the track has it
+  Time captured;             // time of the frame's exposure
+  std::optional<Time> seen;  // the newest frame that showed the target where the track expects it
   TrackState state = TrackState::kSearching;
   std::optional<TargetEstimate> target;  // at 'captured', in the world
-  // What this frame alone showed, seen from where the UAV was then.
+  // The target in this frame alone, seen from the UAV's pose at that time.
   std::optional<TargetReport> sighting;
   Duration detect_time{};
   int frames = 0;      // so far
@@ -33,7 +33,7 @@ struct TrackSnapshot {
 struct TargetReporterOptions {
   double max_sigma_m = 0.5;
   double max_pose_age_s = 0.3;
-  // Contact: of the body, which is that much above the deck when the legs stand there.
+  // Contact of the body, whose origin is above the deck by the length of the legs.
   ContactOptions contact = {.height_m = 0.6, .reach_m = 0.6};
   double contact_below_m = 0.2;
 
@@ -50,26 +50,26 @@ struct TargetReporterOptions {
   std::vector<std::string> Validate() const;
 };
 
-// From the track to what the autopilot is told, at any instant: the target predicted to when the
-// message is used, seen from where the UAV will be then. After contact the camera sees nothing any
-// more and the track fades; the deck is then straight below, and moves as the UAV does: without
-// being told so an autopilot brakes, and never disarms on a deck that drives on.
+// Computes the report to the autopilot from the track, at any instant: the target predicted to the
+// time at which the message is used, seen from the UAV's pose at that time. After contact the
+// camera sees nothing any more and the track fades; the deck is then straight below and moves as
+// the UAV does. Without that report an autopilot brakes, and never disarms on a moving deck.
 class TargetReporter {
  public:
-  // 'tracker': of the track that is predicted. Throws InputError when the options are not valid.
+  // 'tracker': options of the predicted track. Throws InputError when the options are not valid.
   TargetReporter(const TargetReporterOptions& options, const TargetTrackerOptions& tracker);
 
-  // The target 'until_use' after 'now': after the link's delay, and before now where the autopilot
-  // uses a measurement as one of some time ago. 'poses': the newest ones of the UAV. Nothing while
-  // the target or the pose is not known well enough. To be called in order of time.
+  // Returns the target 'until_use' after 'now': later by the link's delay, or earlier where the
+  // autopilot takes a measurement as one of some time ago. 'poses': the newest poses of the UAV.
+  // Nothing while the target or the pose is not known well enough. Call it in order of time.
   std::optional<TargetReport> Report(Time now, Duration until_use, const TrackSnapshot& track,
                                      const PoseHistory& poses);
 
-  // Whether it may stand on the deck: who flies it by set-points may know that it hovers there.
+  // Says whether the UAV may stand on the deck: guidance may know that it hovers there.
   void set_may_stand(bool may_stand) { may_stand_ = may_stand; }
 
   TargetPhase phase() const { return phase_; }
-  // Of the body above the target, by the newest report, m.
+  // Height of the body above the target in the newest report, m.
   double height_m() const { return height_m_; }
 
  private:

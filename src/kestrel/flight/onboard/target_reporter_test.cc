@@ -32,7 +32,7 @@ struct Uav {
   }
 };
 
-// A track of a target that is at 'position' at 'seconds'.
+// Returns the track of a target at 'position' at the time 'seconds'.
 TrackSnapshot TrackAt(double seconds, const Vector3d& position, const Vector3d& velocity,
                       double sigma_m = 0.02) {
   TrackSnapshot track;
@@ -56,7 +56,7 @@ TEST(TargetReporterTest, TellsNothingBeforeThereIsATrackOrAPose) {
   EXPECT_EQ(reporter.phase(), TargetPhase::kSearching);
 }
 
-// Target and UAV are both where they will be when the autopilot uses the message.
+// Target and UAV are both predicted to the time at which the autopilot uses the message.
 TEST(TargetReporterTest, PredictsBothToTheTimeOfUse) {
   TargetReporter reporter = MakeReporter();
   const Uav uav{{0, 0, 5}, {2, 0, 0}};
@@ -85,7 +85,7 @@ TEST(TargetReporterTest, IsSilentWithoutAFreshPose) {
       reporter.Report(At(1.5), kAtOnce, TrackAt(1.5, {0, 0, 0}, {0, 0, 0}), Uav().PosesUntil(1)));
 }
 
-// Flies with a deck, 'height_m' above it, for a second.
+// Flies for a second along with a deck, 'height_m' above it.
 TargetReporter RideOn(double height_m, const Vector3d& velocity, const Vector3d& deck_velocity) {
   TargetReporter reporter = MakeReporter();
   for (int i = 0; i <= 50; ++i) {

@@ -15,7 +15,7 @@
 namespace kestrel {
 namespace {
 
-// ArduPilot's: the delay that it reckons with, and where it takes the camera to be.
+// Parameters of ArduPilot: the delay that it assumes, and the place where it assumes the camera.
 constexpr std::string_view kLag = "PLND_LAG", kCameraX = "PLND_CAM_POS_X",
                            kCameraY = "PLND_CAM_POS_Y", kCameraZ = "PLND_CAM_POS_Z";
 constexpr std::array kParameters = {kLag, kCameraX, kCameraY, kCameraZ};
@@ -48,9 +48,9 @@ bool TargetSender::Tell(Time now, const TrackSnapshot& track, const PoseHistory&
   const LinkProfile profile = profile_.value_or(ProfileFor(autopilot_.kind()));
   auto report = reporter_.Report(now, UntilUse(), track, poses);
   SayPhase();
-  // PX4's target estimator filters by itself, and corrects the UAV's velocity by what it is told:
-  // a track, which has the UAV's own estimate in it, would lead it in a circle. It gets what each
-  // frame shows, with its time.
+  // PX4's target estimator filters by itself, and corrects the UAV's velocity by the messages. A
+  // track contains the UAV's own estimate: sending it would close a loop. It gets the measurement
+  // of each frame, with its time.
   if (report && profile != LinkProfile::kArduPilot) WarnOfSpeed(report->velocity_in_world);
   if (profile == LinkProfile::kPx4Vte) report = is_news ? track.sighting : std::nullopt;
   told_frame_ = track.captured;
@@ -64,29 +64,29 @@ bool TargetSender::Tell(Time now, const TrackSnapshot& track, const PoseHistory&
   return is_news;
 }
 
-// What an autopilot does not have it is not asked for.
+// Requests parameters only from an autopilot that has them.
 void TargetSender::WantParameters() {
   if (asked_parameters_ || autopilot_.kind() != AutopilotKind::kArduPilot) return;
   asked_parameters_ = true;
   for (const std::string_view parameter : kParameters) autopilot_.parameters().Want(parameter);
 }
 
-// Where ArduPilot takes the camera to be (FLU): it adds that to what it is told, which is measured
-// from the body's origin.
+// Place at which ArduPilot assumes the camera (FLU): it adds this place to the reported target,
+// which is measured from the body's origin.
 Eigen::Vector3d TargetSender::CameraOfArduPilot() const {
   const ParameterReader& parameters = autopilot_.parameters();
   const auto in_frd = [&](std::string_view name) { return parameters.Find(name).value_or(0); };
   return FluFromFrd({in_frd(kCameraX), in_frd(kCameraY), in_frd(kCameraZ)});
 }
 
-// The link takes some time; and ArduPilot takes a target for one that was seen some time ago.
+// The link's delay, minus the age that ArduPilot assumes for a target.
 Duration TargetSender::UntilUse() const {
   const Duration delay = LinkDelay(options_, autopilot_);
   if (autopilot_.kind() != AutopilotKind::kArduPilot) return delay;
   return delay - DurationFromSeconds(autopilot_.parameters().Find(kLag).value_or(kDefaultLag_s));
 }
 
-// Said once, when it is sure.
+// Warns once, when it is sure.
 void TargetSender::WarnOfSpeed(const Eigen::Vector3d& velocity) {
   constexpr double kStanding_mps = 1;
   constexpr int kSure = 50;  // messages in a row
@@ -102,7 +102,7 @@ void TargetSender::WarnOfSpeed(const Eigen::Vector3d& velocity) {
                       "Kestrel: the pattern moves, PX4 will not land on it");
 }
 
-// Tells the user and the ground station when the target is found, lost, stood on.
+// Tells the user and the ground station when the target is found, lost, or stood on.
 void TargetSender::SayPhase() {
   const TargetPhase phase = reporter_.phase();
   if (phase == said_phase_) return;
@@ -127,7 +127,7 @@ void TargetSender::SayPhase() {
   autopilot_.Announce(severity, "Kestrel: " + text);
 }
 
-// And when the autopilot begins to land by it.
+// Tells them when the autopilot begins to land by it.
 void TargetSender::SayLanding() {
   const bool is_landing = autopilot_.is_landing_mode() && autopilot_.is_armed();
   if (is_landing && !was_landing_) {

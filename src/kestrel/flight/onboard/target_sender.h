@@ -19,19 +19,20 @@
 
 namespace kestrel {
 
-// From sending to the autopilot's use: as configured, or half of the fastest round trip.
+// Time from sending to the autopilot's use: as configured, or half of the fastest round trip.
 Duration LinkDelay(const FlightOptions& options, const Autopilot& autopilot);
 
-// Tells the autopilot where the target is, steadily, and people what is known of it. Of the link's
-// thread.
+// Reports the target to the autopilot steadily, and its state to the user. Used by the link's
+// thread only.
 class TargetSender {
  public:
-  // 'profile': nothing: by the heartbeat. 'size_m': across the pattern. 'say': a line for the user.
+  // 'profile': nothing: chosen by the heartbeat. 'size_m': diameter of the pattern. 'say': receives
+  // lines for the user.
   TargetSender(const FlightOptions& options, const TargetTrackerOptions& tracker,
                std::optional<LinkProfile> profile, double size_m, Autopilot* autopilot,
                Connection* connection, std::function<void(const std::string&)> say);
 
-  // Sends what is due at 'now'; true when it was the first of a new frame.
+  // Sends what is due at 'now'; true when it was the first message of a new frame.
   bool Tell(Time now, const TrackSnapshot& track, const PoseHistory& poses);
 
   // See TargetReporter.
@@ -39,7 +40,7 @@ class TargetSender {
 
   TargetPhase phase() const { return reporter_.phase(); }
   double height_m() const { return reporter_.height_m(); }  // of the UAV above the target
-  int messages() const { return messages_; }                // targets sent
+  int messages() const { return messages_; }                // number of targets sent
 
  private:
   void WantParameters();
@@ -57,9 +58,9 @@ class TargetSender {
   std::function<void(const std::string&)> say_;
   TargetReporter reporter_;
   SendSchedule schedule_;
-  Time told_frame_;  // the newest frame that a message was made from
+  Time told_frame_;  // the newest frame used for a message
   TargetPhase said_phase_ = TargetPhase::kSearching;
-  int moving_messages_ = 0;  // in a row of which the target moved
+  int moving_messages_ = 0;  // in a row whose target moved
   bool is_warned_ = false;
   bool was_landing_ = false;
   bool asked_parameters_ = false;
