@@ -11,11 +11,12 @@
 
 namespace kestrel {
 
-// Contact: as near to the deck, and as much at rest against it, as when the legs stand there.
+// Contact: the feet are near the deck and at rest against it, as when the legs stand on it.
 struct ContactOptions {
-  // Less than what an autopilot sinks by near the ground, longer than the bottom of a bounce takes.
-  double height_m = 0.25;  // of the feet above the deck, by the track
-  double reach_m = 0.6;    // and how far they may be beside its middle
+  // speed_mps is below the sink rate of an autopilot near the ground; time_s is longer than the
+  // bottom of a bounce.
+  double height_m = 0.25;  // largest height of the feet above the deck, by the track
+  double reach_m = 0.6;    // largest horizontal distance of the feet from the deck's middle
   double speed_mps = 0.1;
   double time_s = 0.5;
 
@@ -29,8 +30,8 @@ struct ContactOptions {
   std::vector<std::string> Validate() const;
 };
 
-// Whether the UAV stands on the deck. Once it does the camera sees nothing any more: contact then
-// lasts until it has risen by twice the height.
+// Decides whether the UAV stands on the deck. After contact the camera sees nothing any more:
+// contact therefore lasts until the feet have risen by twice height_m.
 class ContactDetector {
  public:
   explicit ContactDetector(const ContactOptions& options) : options_(options) {}
@@ -39,8 +40,8 @@ class ContactDetector {
     Eigen::Vector3d position;
     Eigen::Vector3d velocity;
   };
-  // Where the feet and the deck are in the world (m, m/s); no deck while it is not known. Returns
-  // has_contact().
+  // Takes position (m) and velocity (m/s) of the feet and of the deck in the world; no deck while
+  // it is not known. Returns has_contact().
   bool Update(Time now, const Eigen::Vector3d& feet, const Eigen::Vector3d& velocity,
               const std::optional<Deck>& deck);
 
@@ -53,7 +54,7 @@ class ContactDetector {
 
   ContactOptions options_;
   std::optional<Time> resting_since_;
-  std::optional<double> contact_z_m_;  // of the feet, at contact
+  std::optional<double> contact_z_m_;  // height of the feet at contact
 };
 
 }  // namespace kestrel

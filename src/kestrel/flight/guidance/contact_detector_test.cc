@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 const Vector3d kDeckVelocity(4, 0, 0);
 
 struct Contacts {
-  // Told every 20 ms for 'seconds' where the feet are against the deck, and how fast.
+  // Updates every 20 ms for 'seconds' with the feet at 'from_deck' and this sink rate.
   bool Update(double seconds, const Vector3d& from_deck, double sink_mps, bool knows_deck = true) {
     bool has_contact = false;
     for (int i = 0; i < seconds / 0.02; ++i) {

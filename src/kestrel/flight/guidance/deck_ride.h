@@ -9,15 +9,16 @@
 
 namespace kestrel {
 
-// How a deck moves that carries the UAV along: as the UAV does, by its own velocity. Horizontal.
+// Horizontal motion of a deck that carries the UAV, measured by the UAV's own velocity.
 class DeckRide {
  public:
-  // The UAV's velocity at 'now', while it stands on the deck, m/s.
+  // Takes the UAV's velocity (m/s, world) at 'now' while it stands on the deck.
   void Observe(Time now, const Eigen::Vector2d& velocity);
-  // It stands on it no longer.
+  // The UAV has left the deck.
   void Reset();
 
-  // Of the deck, in a curve that goes on, 'ahead_s' after the newest velocity.
+  // Returns the velocity of the deck (m/s) 'ahead_s' after the newest observation, by its
+  // acceleration.
   Eigen::Vector2d Velocity(double ahead_s) const;
   const Eigen::Vector2d& acceleration() const { return acceleration_; }  // smoothed, m/s^2
 

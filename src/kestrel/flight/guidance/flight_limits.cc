@@ -17,12 +17,13 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// How fast it goes to a boundary, or back from beyond it, per metre of distance: an autopilot with
+// Speed to a boundary, or back from beyond it, per metre of distance. With it an autopilot with
 // half a second of lag does not overshoot.
 constexpr double kBoundaryGain = 0.7;
-constexpr double kBrakingPart = 0.5;  // of the largest acceleration, before a boundary
+constexpr double kBrakingPart = 0.5;  // part of the largest acceleration, for braking before a
+                                      // boundary
 
-// Largest speed towards a boundary that is 'distance_m' away (less than 0: beyond it).
+// Largest speed towards a boundary 'distance_m' away (less than 0: beyond it).
 double SpeedTowards(double distance_m, double braking) {
   const double slow = kBoundaryGain * distance_m;
   return distance_m > 0 ? std::min(slow, std::sqrt(2 * braking * distance_m)) : slow;
@@ -30,7 +31,7 @@ double SpeedTowards(double distance_m, double braking) {
 
 void RequireWithin(double own, const std::optional<double>& autopilot, const char* key,
                    const char* unit, std::vector<std::string>* violations) {
-  // A tenth of a per cent is the rounding of a parameter that is a float.
+  // A tenth of a per cent allows for the rounding of a parameter that is a float.
   if (!autopilot || own <= 1.001 * *autopilot) return;
   violations->push_back(fmt::format("limits.{} is {:g} {}, the autopilot's own limit is {:g} {}",
                                     key, own, unit, *autopilot, unit));
@@ -111,7 +112,7 @@ void FlightLimits::LimitHeight(double z_m, bool follows_target, SetPoint* limite
                                    options_.max_climb_mps));
 }
 
-// Outwards no faster than it can brake; what is along the fence stays as it is.
+// Limits the outward velocity to what can be braked; the part along the fence stays.
 void FlightLimits::KeepInFence(const Vector2d& position, SetPoint* limited) const {
   const Vector2d from_center = position - center_;
   const double distance_m = from_center.norm();

@@ -11,12 +11,13 @@
 
 namespace kestrel {
 
-// Where guidance may fly, and how fast. The defaults are within those that ArduCopter and PX4 come
-// with.
+// Volume in which guidance may fly, and its speeds. The defaults are within the default limits of
+// ArduCopter and PX4.
 struct FlightLimitsOptions {
   double geofence_radius_m = 100;  // horizontal, around the home position
   double ceiling_m = 30;           // above the world's z = 0
-  double floor_m = 3;              // the same, of the body while it follows no target
+  double floor_m = 3;              // above the world's z = 0, of the body while it follows no
+                                   // target
   double max_speed_mps = 10;       // horizontal
   double max_climb_mps = 2.5;
   double max_sink_mps = 1.5;
@@ -35,11 +36,11 @@ struct FlightLimitsOptions {
   }
   std::vector<std::string> Validate() const;
 
-  double max_acceleration() const;  // horizontal, of the largest tilt, m/s^2
+  double max_acceleration() const;  // horizontal acceleration at the largest tilt, m/s^2
 };
 
-// What the autopilot itself limits, as far as its parameters are known: beyond that it would not
-// follow.
+// The autopilot's own limits, as far as its parameters are known: it does not follow commands
+// beyond them.
 struct AutopilotLimits {
   std::optional<double> max_speed_mps = std::nullopt;  // horizontal
   std::optional<double> max_climb_mps = std::nullopt;
@@ -47,23 +48,23 @@ struct AutopilotLimits {
   std::optional<double> max_tilt_deg = std::nullopt;
 };
 
-// One line for each limit that is beyond the autopilot's own.
+// Returns one line for each limit that exceeds the autopilot's own limit.
 std::vector<std::string> ViolationsOf(const AutopilotLimits& autopilot,
                                       const FlightLimitsOptions& limits);
 
-// The one place where what is commanded is limited. No allocation, no throw.
+// Limits all set-points; nothing else does. No allocation, no throw.
 class FlightLimits {
  public:
-  // 'center' of the geofence, in the world. Throws InputError when the options are not valid.
+  // 'center' of the geofence, in the world, m. Throws InputError when the options are not valid.
   FlightLimits(const FlightLimitsOptions& options, const Eigen::Vector2d& center);
 
-  // One line on why guidance must not begin with the body at 'position' (outside of the geofence,
-  // above the ceiling); empty when it may. Allocates only when it may not.
+  // Returns one line that says why guidance must not begin with the body at 'position' (outside of
+  // the geofence, above the ceiling); empty when it may. Allocates only when it may not.
   std::string WhyNot(const Eigen::Vector3d& position) const;
   bool Contains(const Eigen::Vector3d& position) const;
 
-  // 'wanted' of a body at 'position', limited: it can still brake before the geofence, the ceiling
-  // and, without a target, the floor; beyond one of them it is brought back.
+  // Returns 'wanted', limited for a body at 'position': it can still brake before the geofence, the
+  // ceiling and, without a target, the floor. Beyond one of them the body is brought back.
   SetPoint Limited(const SetPoint& wanted, const Eigen::Vector3d& position,
                    bool follows_target) const;
 

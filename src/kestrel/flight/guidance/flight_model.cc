@@ -20,30 +20,32 @@ constexpr double kSample_s = 0.02;
 constexpr int kWindow = 10;      // samples over which the motion is averaged
 constexpr int kLearnEvery = 5;   // samples
 constexpr int kDelayStep = 2;    // samples between the delays tried
-constexpr double kGap_s = 0.25;  // after which what was before is of no use
-// Deviations from the model (gusts above all) last so long: measurements are not independent.
+constexpr double kGap_s = 0.25;  // samples before a longer gap are of no use
+// Deviations from the model (gusts above all) last this long: measurements within are not
+// independent.
 constexpr double kCorrelation_s = 0.5;
-constexpr double kWeight = kLearnEvery * kSample_s / kCorrelation_s;  // of one
+constexpr double kWeight = kLearnEvery * kSample_s / kCorrelation_s;  // of one measurement
 constexpr double kNoise_mps = 0.6;
-constexpr double kDelaySigma_s = 0.03;  // of what is assumed
+constexpr double kDelaySigma_s = 0.03;  // of the assumed delay
 constexpr double kAirMemory_s = 20;
 constexpr double kAirNoise = 0.3;      // m/s^2
 constexpr double kMaxAirSigma = 0.06;  // of the drag, 1/s
 
-// What it is further from the command than the first is a limit of the autopilot's, not its answer,
-// while it comes nearer by the last (m/s^2) or is further than the second.
+// Limits of the learning. A slack above the first is a limit of the autopilot, not its answer, if
+// the velocity still approaches the command by more than the last (m/s^2) or if the slack is above
+// the second.
 constexpr double kMaxSlack_mps = 1.5;
 constexpr double kMaxSteadySlack_mps = 4;
 constexpr double kSteadyAcceleration = 1;
 
-// Before anything is known: the autopilot knows its own velocity without delay, so that what is
-// commanded ahead by the delay is too much by the delay times the acceleration.
+// Assumption: the autopilot knows its own velocity without delay. A command that is given ahead by
+// the delay is therefore too large by the delay times the acceleration.
 Answer AssumedAnswer(double delay_s) { return {0.3, -delay_s, 0, 0, 0}; }
 Answer AnswerSigma() { return {0.3, 0.05, 0.1, 0.3, 0.3}; }
 
-// Whether a UAV that is by 'slack' slower than it was told is at a limit of its autopilot, which
-// says nothing of how it answers. One that is and does not come nearer has drag that nobody
-// compensates.
+// True when a UAV that is slower than its command by 'slack' is at a limit of its autopilot: this
+// says nothing about its answer. A UAV with a moderate slack that comes no nearer to the command
+// has drag that nothing compensates, and counts.
 bool IsAtLimit(const Eigen::Vector2d& slack, const Eigen::Vector2d& acceleration) {
   const double size = slack.norm();
   if (size <= kMaxSlack_mps) return false;
@@ -86,7 +88,7 @@ void FlightModel::Observe(Time now, const Vector3d& velocity, const Vector3d& up
   if (count_ == 0) Weigh();
 }
 
-// A sample before the set-point of this instant was sent: that of the one before is in force.
+// Adds a sample before the set-point of this instant was sent: the one before is in force.
 void FlightModel::AddSample(const Vector3d& velocity, const Vector2d& lean) {
   Sums sums = count_ > 0 ? Ago(0) : Sums();
   sums.velocity_now = velocity;
@@ -106,7 +108,7 @@ void FlightModel::Learn() {
   const Sums& end = Ago(0);
   const Sums& begin = Ago(kWindow);
   const Vector3d acceleration = (end.velocity_now - begin.velocity_now) / (kWindow * kSample_s);
-  // The mean between the samples, not of those after the first.
+  // The mean between the samples, not of the samples after the first.
   const Vector2d ends = 0.5 * (begin.velocity_now - end.velocity_now).head<2>();
   const Vector2d velocity = (end.velocity - begin.velocity + ends) / kWindow;
   LearnAir(begin, end, acceleration);
@@ -143,7 +145,7 @@ void FlightModel::LearnAir(const Sums& begin, const Sums& end, const Vector3d& a
   }
 }
 
-// The mean over the delays, each as likely as what it leaves unexplained tells.
+// Averages over the delays, each weighted by its likelihood given its residuals.
 void FlightModel::Weigh() {
   const double assumed_s = options_.delay_s + link_delay_s_;
   delay_s_ = assumed_s;
@@ -175,7 +177,7 @@ Vector2d FlightModel::VelocityCommand(const Vector2d& velocity,
 }
 
 std::optional<AirEstimate> FlightModel::air() const {
-  constexpr double kLeastDrag = 0.02;  // 1/s; less says nothing of the wind
+  constexpr double kLeastDrag = 0.02;  // 1/s; a lower drag says nothing about the wind
   const auto fit = by_lean_.Solve();
   if (fit.sigma(0) > kMaxAirSigma || fit.parameters(0) < kLeastDrag) return std::nullopt;
   return AirEstimate{fit.parameters(0), fit.parameters.tail<2>() / fit.parameters(0)};

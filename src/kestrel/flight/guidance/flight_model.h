@@ -16,10 +16,10 @@
 namespace kestrel {
 
 struct FlightModelOptions {
-  bool is_used = true;  // false: what is assumed is kept
-  // What is assumed until the flight has told better.
+  bool is_used = true;  // false: the assumed values are kept
+  // The delay that is assumed until the flight has shown a better one.
   double delay_s = 0.12;  // of attitude and thrust after the autopilot's command
-  double memory_s = 20;   // what is longer ago is forgotten
+  double memory_s = 20;   // older measurements are forgotten
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -31,51 +31,53 @@ struct FlightModelOptions {
   std::vector<std::string> Validate() const;
 };
 
-// The air, by how the UAV leans against it.
+// The air, estimated from how the UAV leans against it.
 struct AirEstimate {
   double drag = 0;             // acceleration per speed through the air, 1/s
   Eigen::Vector2d wind{0, 0};  // velocity of the air, m/s
 };
 
-// How a UAV answers to set-points, learnt while it flies. Horizontally, what it is commanded
-// differs from what it does some time later by
+// The UAV's answer to set-points, learnt in flight. Horizontally, the commanded velocity differs
+// from the velocity some time later by
 //   v_command - v = slack (a - a_command) + lag a_command + drag v + push
-// whatever its autopilot does inside: a velocity control with too little gain, drag that it does
-// not compensate, the wind, integrators. The four are fitted for each of some delays, and weighted
-// by how well each explains the flight; the same equation then says what to command.
+// whatever the autopilot does inside: a velocity control with too little gain, drag that it does
+// not compensate, the wind, integrators. The four terms are fitted for each of several delays. The
+// delays are weighted by how well each explains the flight. The same equation then gives the
+// command.
 class FlightModel {
  public:
   // Throws InputError when the options are not valid.
   explicit FlightModel(const FlightModelOptions& options);
 
-  // The UAV at 'now' (the body's z axis in the world is 'up', along which it is pushed), and the
-  // set-point that is sent now; nothing: none is, or it could not obey. In order of time.
+  // Takes the UAV's state at 'now' and the set-point that is sent now, in order of time. 'up': the
+  // body's z axis in the world, the direction of thrust. No set-point: none is sent, or the UAV
+  // could not obey it.
   void Observe(Time now, const Eigen::Vector3d& velocity, const Eigen::Vector3d& up,
                const std::optional<SetPoint>& sent, double link_delay_s);
 
-  // The UAV is not known for a moment: what comes next has nothing to do with what was before.
+  // The UAV's state is not known for a moment: the next samples do not continue the previous ones.
   void Forgo() { newest_.reset(); }
 
-  // From sending a set-point to its effect, s.
+  // Time from sending a set-point to its effect, s.
   double delay_s() const { return delay_s_; }
 
-  // The horizontal velocity to command, beside 'acceleration', for the UAV to fly with 'velocity'
-  // and 'acceleration' when the command has its effect.
+  // Returns the horizontal velocity to command, beside 'acceleration', so that the UAV flies with
+  // 'velocity' and 'acceleration' when the command takes effect.
   Eigen::Vector2d VelocityCommand(const Eigen::Vector2d& velocity,
                                   const Eigen::Vector2d& acceleration) const;
 
-  // Nothing until it has flown with different velocities.
+  // Nothing until the UAV has flown at different velocities.
   std::optional<AirEstimate> air() const;
 
  private:
   static constexpr int kDelays = 13;
   static constexpr int kSamples = 64;
 
-  // What has been up to an instant, added up over the samples: differences are means.
+  // Sums over all samples up to an instant. Differences of two sums give means.
   struct Sums {
     Eigen::Vector3d velocity_now{0, 0, 0};  // not a sum
     Eigen::Vector2d velocity{0, 0};
-    Eigen::Vector2d lean{0, 0};  // horizontal per vertical thrust
+    Eigen::Vector2d lean{0, 0};  // horizontal part of the thrust's direction per vertical part
     Eigen::Vector2d commanded_velocity{0, 0};
     Eigen::Vector2d commanded_acceleration{0, 0};
     int commands = 0;

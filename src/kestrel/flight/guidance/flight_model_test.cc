@@ -11,8 +11,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Flies a circle of 6 m at 4.2 m/s by what the model says should be commanded for it; how far the
-// velocity is from the one wanted, RMS over the last 10 s.
+// Flies a circle of 6 m at 4.2 m/s with the commands of the model. Returns the RMS difference from
+// the wanted velocity over the last 10 s.
 double FlyCircle(const TestUavOptions& uav_options, const Vector3d& wind, double link_delay_s,
                  FlightModel* model) {
   constexpr double kSpeed = 4.2;
@@ -65,8 +65,8 @@ TEST(FlightModelTest, SaysNothingOfTheAirBeforeItFlies) {
   EXPECT_FALSE(model.air()) << "hovers in a calm";
 }
 
-// What the flight tells takes the error that a velocity control with little gain has in the wind
-// down to a part.
+// With little gain, wind causes an error of the velocity control. The learnt model reduces it to a
+// part.
 TEST(FlightModelTest, TheVelocityIsThatWantedOnACurveInTheWind) {
   TestUavOptions options;
   options.p = 1.5;

@@ -6,27 +6,27 @@
 
 namespace kestrel {
 
-// Linear least squares over what has lately been measured: value = row * parameters, with a prior
-// that is never forgotten, so that what the data do not tell stays at its mean.
+// Linear least squares over recent measurements: value = row * parameters. The prior is never
+// forgotten: a parameter that the data do not determine stays at its mean.
 template <int N>
 class ForgettingRegression {
  public:
   using Vector = Eigen::Matrix<double, N, 1>;
 
   ForgettingRegression() = default;
-  // Parameters of 'mean' with standard deviations 'sigma'; a measurement of weight 1 has the
-  // standard deviation 'noise'.
+  // Prior: 'mean' of the parameters with standard deviations 'sigma'. A measurement of weight 1 has
+  // the standard deviation 'noise'.
   ForgettingRegression(const Vector& mean, const Vector& sigma, double noise)
       : mean_(mean), prior_(sigma.cwiseAbs2().cwiseInverse()), noise_(noise) {}
 
-  // What was known before counts 'part' (0 to 1) as much as before.
+  // Multiplies the weight of all previous measurements by 'part' (0 to 1).
   void Forget(double part) {
     information_ *= part;
     weighted_ *= part;
     squares_ *= part;
   }
 
-  // 'weight': of how many independent measurements it is.
+  // 'weight': the number of independent measurements that this one counts as.
   void Add(const Vector& row, double value, double weight) {
     const double precision = weight / (noise_ * noise_);
     const double rest = value - row.dot(mean_);
@@ -57,7 +57,7 @@ class ForgettingRegression {
   Vector prior_ = Vector::Ones();  // information of the prior, diagonal
   double noise_ = 1;
   Matrix information_ = Matrix::Zero();
-  Vector weighted_ = Vector::Zero();  // of the difference from the mean
+  Vector weighted_ = Vector::Zero();  // of the differences from the mean
   double squares_ = 0;
 };
 

@@ -11,64 +11,69 @@
 namespace kestrel {
 
 struct GuidanceOptions {
-  double leg_m = 0.35;  // from the body's origin down to the feet
-  // Without a target: to where it should pass or was last, at this altitude above the world's
-  // z = 0. After search_wait_s there it circles outwards, to search_radius_m (0: it stays).
+  double leg_m = 0.35;  // distance from the body's origin down to the feet
+  // Search, without a target: flies to the place where the vehicle should pass or was last, at this
+  // altitude above the world's z = 0. After search_wait_s there it flies a spiral out to
+  // search_radius_m (0: it stays).
   double search_altitude_m = 10;
   double search_wait_s = 15;
   double search_radius_m = 0;
   double search_speed_mps = 4;
-  // Height of the feet above the board at which it follows the vehicle before it goes down; further
-  // away it flies higher, by 'glide' per metre.
+  // Height of the feet above the board at which it follows the vehicle before the descent; further
+  // away it flies higher, by 'glide' metres per metre of horizontal distance.
   double follow_height_m = 2.5;
   double glide = 0.7;
-  // Speed towards the target: in proportion to the distance (less where the autopilot is slow, as
-  // the flight tells), further away as fast as it can still be braked.
+  // Speed towards the target: proportional to the distance near by (lower when the flight shows
+  // that the autopilot is slow), and further away the highest from which it can still brake.
   double position_gain = 2.5;
   double braking = 3;
-  // How fast the autopilot changes the acceleration (m/s^3; 0: at once). ArduCopter shapes what it
-  // is told by PSC_JERK_NE, which `fly` reads: what asks for more swings about the target.
+  // Jerk of the autopilot, i.e. how fast it changes the acceleration (m/s^3; 0: at once).
+  // ArduCopter shapes commands by PSC_JERK_NE, which `fly` reads: a command that needs more makes
+  // the UAV swing about the target.
   double autopilot_jerk = 0;
-  // Speed per metre and second that it stays off: what remains of the wind and the curve.
+  // Integral part: speed per metre and second of offset. It removes the rest that wind and curve
+  // leave.
   double integral_gain = 0.2;
-  // Over how long the target's velocity is smoothed: a vehicle sways on its springs, faster than a
-  // UAV can follow.
+  // Time constant of the smoothed target velocity. A vehicle sways on its springs faster than a UAV
+  // can follow.
   double smoothing_s = 0.5;
-  // It goes down, in proportion to the height, while the target is within a cone: 'cone_m' wide on
-  // the board and 'cone_slope' wider per metre of height.
+  // It descends, in proportion to the height, while the target is within a cone: radius 'cone_m' on
+  // the board, 'cone_slope' more per metre of height.
   double sink_gain = 0.8;
   double touchdown_sink_mps = 0.7;
   double cone_m = 0.15;
   double cone_slope = 0.35;
-  // Below this height it goes through with it.
+  // Below this height it commits: it goes down the last bit without the cone.
   double commit_height_m = 0.35;
-  // Where the target is known no better (standard deviation per axis) it does not go down, and
-  // twice as badly it climbs.
+  // While the target's standard deviation per axis is above this it does not descend; above twice
+  // this it climbs.
   double max_sigma_m = 0.25;
-  // In sight is what a frame showed so recently. Out of sight it does not go down, and below
-  // sight_height_m it climbs; only the last bit it may go down for commit_sight_s.
+  // The target is in sight when a frame showed it within sight_s. Out of sight the UAV does not
+  // descend, and below sight_height_m it climbs; only in the last bit it may go on down for
+  // commit_sight_s.
   double sight_s = 0.5;
   double sight_height_m = 2;
   double commit_sight_s = 1;
-  // A target that rises or sinks faster is none.
+  // A target that rises or sinks faster is not credible.
   double max_target_climb_mps = 1;
-  // Without a pose it flies on level for hold_pose_s, after lose_pose_s it gives up.
+  // Without a pose it flies on level for hold_pose_s, then stands still; after lose_pose_s it gives
+  // up.
   double hold_pose_s = 0.3;
   double lose_pose_s = 1;
-  // A camera that is away for so long: gives up.
+  // It gives up when the camera was away for so long.
   double lose_camera_s = 10;
-  // After a link that was away for so long it sends nothing until the autopilot has told its mode
-  // anew, and then goes around.
+  // When the link was away for longer than this it sends nothing until the autopilot has reported
+  // its mode anew, and then goes around.
   double lose_link_s = 0.8;
-  // A velocity that differs so much from the one commanded and comes no nearer to it, for so long,
-  // says that the autopilot does not obey.
+  // When the velocity differs from the commanded one by more than disobey_mps and comes no nearer
+  // to it for disobey_s, the autopilot does not obey.
   double disobey_mps = 3;
   double disobey_s = 3;
-  // Streams set-points of standing still before the mode is given: PX4 does not go to OFFBOARD
-  // without.
+  // Streams set-points of standing still before the pilot gives the mode: PX4 does not enter
+  // OFFBOARD without them.
   bool stream_before_start = false;
-  // In contact: asks for the LAND mode (ArduPilot; PX4 would brake there), disarms by force after
-  // disarm_after_s (0: never).
+  // In contact: asks for the LAND mode (ArduPilot; PX4 would brake in it), and disarms by force
+  // after disarm_after_s (0: never).
   bool land_in_contact = false;
   double disarm_after_s = 0;
   ContactOptions contact;

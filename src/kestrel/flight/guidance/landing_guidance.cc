@@ -12,22 +12,22 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kHeightGain = 1;      // climb rate per metre that it is too low
-constexpr double kResting_mps = 0.25;  // what is told to go down and sinks no faster rests
+constexpr double kHeightGain = 1;      // climb rate per metre below the wanted height
+constexpr double kResting_mps = 0.25;  // a UAV that is told to descend and sinks more slowly rests
 constexpr double kToldDown_mps = 0.3;
-constexpr double kStanding_mps = 0.5;  // a deck that is slower stands
-constexpr double kMaxClosing_mps = 1;  // faster over the target it does not go down
-// Following ends where it is so many cones off, the last bit where it is so many off.
+constexpr double kStanding_mps = 0.5;  // a slower deck stands
+constexpr double kMaxClosing_mps = 1;  // if it moves faster over the target it does not descend
+// Offset, in cones, at which following ends, and at which the last bit ends.
 constexpr double kFollowCones = 4;
 constexpr double kCommitCones = 3;
-// A mode that the autopilot has not told for so long is not known: it tells it once a second.
+// After so long without a report the mode is not known: the autopilot reports it once a second.
 constexpr double kMaxModeAge_s = 3.5;
 constexpr double kLongestStep_s = 0.2;
 constexpr double kCommitAcceleration = 0.2;  // m/s^2, downwards
-// Over so long a change of the velocity is judged, and at least so much (m/s^2) is obedience.
+// Obedience: the change of the velocity over this time, and the least change (m/s^2) that counts.
 constexpr double kTrend_s = 1;
 constexpr double kLeastObedience = 0.5;
-constexpr double kLeastAcceleration = 1;  // m/s^2; no autopilot is set up for less
+constexpr double kLeastAcceleration = 1;  // m/s^2; every autopilot is set up for more
 
 constexpr const char* kWaits = "waits for the pilot to give the mode";
 constexpr const char* kWasGuided = "the mode was on already: leave it and give it anew";
@@ -36,7 +36,7 @@ bool IsLongerThan(double seconds, const std::optional<Time>& since, Time now) {
   return since && ToSeconds(now - *since) >= seconds;
 }
 
-// Since when 'is' has been so.
+// Keeps in 'since' the time at which 'is' became true; nothing while it is false.
 void Remember(bool is, Time now, std::optional<Time>* since) {
   if (!is) {
     since->reset();
@@ -139,8 +139,8 @@ GuidanceOutput LandingGuidance::Update(const GuidanceInput& input) {
   return output;
 }
 
-// Whether there is a link and the mode is known. After a long gap both are waited for: the
-// autopilot may have left the mode meanwhile, and PX4 would go back to it for a set-point.
+// True when there is a link and the mode is known. After a long gap both are waited for: the
+// autopilot may have left the mode meanwhile, and a set-point could bring PX4 back into it.
 bool LandingGuidance::HasLink(const GuidanceInput& input) {
   const bool is_gone = !input.is_link_up || !(input.mode_age_s <= kMaxModeAge_s);
   if (is_gone) {
@@ -175,7 +175,7 @@ void LandingGuidance::Start(const GuidanceInput& input) {
   has_given_up_ = true;  // until nothing speaks against it
   if (!input.uav || !IsFinite(*input.uav)) return End("refused: the UAV's position is not known");
   if (!input.is_armed || input.is_landed) {
-    has_given_up_ = false;  // nothing to hold
+    has_given_up_ = false;  // there is nothing to hold on the ground
     return End("refused: the UAV is on the ground");
   }
   const Vector3d& position = input.uav->world_from_body.translation;
@@ -216,7 +216,7 @@ GuidanceOutput LandingGuidance::Idle(const GuidanceInput& input) const {
   return Output(hold, GuidanceRequest::kNone);
 }
 
-// Without a pose: level on for a moment, then standing still, then not at all.
+// Without a pose: flies on level for a moment, then stands still, then gives up.
 GuidanceOutput LandingGuidance::Blind(const GuidanceInput& input) {
   Remember(true, input.now, &poses_lost_);
   model_.Forgo();
@@ -260,7 +260,7 @@ GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
   return Output(limited, RequestInContact(input));
 }
 
-// What ends guidance while the pilot still leaves it the mode.
+// True when guidance ends although the pilot has not left the mode.
 bool LandingGuidance::GivesUp(const GuidanceInput& input) {
   if (!input.is_armed) {
     End(phase_ == GuidancePhase::kLanded ? "landed and disarmed" : "the motors are off");
@@ -279,7 +279,7 @@ bool LandingGuidance::GivesUp(const GuidanceInput& input) {
   return true;
 }
 
-// An autopilot that does not fly what it is told does not even come nearer to it.
+// True unless the velocity is far from the commanded one and does not even approach it.
 bool LandingGuidance::Obeys(const GuidanceInput& input) {
   const Vector3d& velocity = input.uav->velocity_in_world;
   const double part = std::min(ToSeconds(input.now - last_) / kTrend_s, 1.0);
@@ -331,7 +331,7 @@ void LandingGuidance::ChoosePhase(const GuidanceInput& input, const Situation& n
   ChooseDescent(input, now);
 }
 
-// Approach, follow and the beginning of the descent.
+// Chooses between approach, follow and the beginning of the descent.
 void LandingGuidance::ChooseAbove(const Situation& now) {
   const double cone_m = Cone(now.height_m);
   if (phase_ == GuidancePhase::kApproach && now.off_m < cone_m && now.slip_mps < kMaxClosing_mps) {
@@ -346,7 +346,7 @@ void LandingGuidance::ChooseAbove(const Situation& now) {
   }
 }
 
-// The descent: through to the deck, or up again.
+// Chooses within the descent: on down to the deck, or up again.
 void LandingGuidance::ChooseDescent(const GuidanceInput& input, const Situation& now) {
   const double cone_m = Cone(now.height_m);
   if (phase_ == GuidancePhase::kDescend) {
@@ -361,7 +361,7 @@ void LandingGuidance::ChooseDescent(const GuidanceInput& input, const Situation&
     }
   }
   if (phase_ != GuidancePhase::kCommit) return;
-  // One that does not sink any more stands on the deck, where the camera may see nothing.
+  // A UAV that does not sink any more stands on the deck, where the camera may see nothing.
   const bool sinks = now.velocity.z() - input.target->motion.velocity().z() < -kResting_mps;
   if (sinks && !(input.target_age_s <= options_.commit_sight_s)) {
     return GoAround("near the deck, and the target was not in sight for too long");
@@ -370,9 +370,10 @@ void LandingGuidance::ChooseDescent(const GuidanceInput& input, const Situation&
   if (now.height_m > 2 * options_.commit_height_m) GoAround("has risen from the deck");
 }
 
-// Whether it stands on the deck, by its own rest against it or by what the autopilot says.
+// True when the UAV stands on the deck: by its rest against the deck, or because the autopilot says
+// so.
 bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& now) {
-  // What is not told to go down may hover there.
+  // A UAV that is not told to descend may hover near the deck.
   const bool is_told_down = sent_ && sent_->velocity.z() < -kToldDown_mps;
   std::optional<ContactDetector::Deck> deck;
   if (input.target && is_told_down) {
@@ -401,15 +402,15 @@ GuidanceRequest LandingGuidance::RequestInContact(const GuidanceInput& input) co
       IsLongerThan(options_.disarm_after_s, contact_since_, input.now)) {
     return GuidanceRequest::kDisarm;
   }
-  // On a deck that drives on LAND would brake, unless the autopilot has found that it has landed:
-  // until then the set-points go on.
+  // LAND would brake on a moving deck, unless the autopilot has found that it has landed: until
+  // then the set-points go on.
   const bool may_land =
       input.is_landed || input.uav->velocity_in_world.head<2>().norm() < kStanding_mps;
   return options_.land_in_contact && may_land ? GuidanceRequest::kLand : GuidanceRequest::kNone;
 }
 
-// On the deck: a descent that goes on, and along with the deck. So the autopilot finds that it has
-// landed, and does not lean against what carries it.
+// On the deck: goes on down and along with the deck. The autopilot then finds that it has landed,
+// and does not lean against the motion of the deck.
 SetPoint LandingGuidance::Rest(const GuidanceInput& input, const Situation& now) {
   ride_.Observe(input.now, now.velocity.head<2>());
   SetPoint command;
@@ -431,8 +432,8 @@ SetPoint LandingGuidance::Pursue(const GuidanceInput& input, const Situation& no
   SetPoint command =
       pursuit_.Above(*input.target, {now.feet.head<2>(), now.velocity.head<2>()}, model_);
   command.velocity.z() = ClimbRate(input, now);
-  // Out of sight nothing goes down but the last bit. Low it stops at once, for it takes a UAV a
-  // while to, and goes around when that has lasted.
+  // Out of sight only the last bit goes down. Near the deck the descent stops early, because a UAV
+  // takes a while to stop; it goes around when that has lasted.
   const double patience_s =
       now.height_m < options_.sight_height_m ? 0.5 * options_.sight_s : options_.sight_s;
   const bool is_seen = now.is_in_sight && input.target_age_s <= patience_s;
@@ -445,7 +446,7 @@ SetPoint LandingGuidance::Pursue(const GuidanceInput& input, const Situation& no
 double LandingGuidance::ClimbRate(const GuidanceInput& input, const Situation& now) const {
   const double sink = std::max(options_.sink_gain * now.height_m, options_.touchdown_sink_mps);
   if (phase_ == GuidancePhase::kCommit) {
-    // Ever faster: an autopilot that is told so does not take the deck for its own braking.
+    // Ever faster: the autopilot then does not mistake the stop by the deck for its own braking.
     return -sink - kCommitAcceleration * ToSeconds(input.now - entered_);
   }
   if (phase_ == GuidancePhase::kDescend) return now.off_m < Cone(now.height_m) ? -sink : 0;

@@ -23,19 +23,20 @@ namespace kestrel {
 
 enum class GuidancePhase {
   kIdle,      // not begun, refused, or ended: the pilot flies
-  kSearch,    // to where the vehicle was last or should pass, waits there, then circles outwards
-  kApproach,  // to above the target
-  kFollow,    // above it, at the height of following, until it may go down
-  kDescend,   // down above it
-  kCommit,    // the last bit
-  kGoAround,  // up again
+  kSearch,    // flies to where the vehicle was last or should pass, waits there, then circles
+              // outwards
+  kApproach,  // flies to above the target
+  kFollow,    // follows above it, at follow_height_m, until it may descend
+  kDescend,   // descends above it
+  kCommit,    // the last bit of the descent
+  kGoAround,  // climbs again
   kLanded,    // in contact with the deck; stays so until guidance begins anew
 };
 // "idle", "search", "approach", "follow", "descend", "commit", "go-around", "landed"
 const char* ToString(GuidancePhase phase);
 
-// What the autopilot should be asked for, beside the set-points. Repeated for as long as it holds:
-// the caller limits how often it asks.
+// Request to the autopilot beside the set-points. It is repeated for as long as it holds: the
+// caller limits how often it asks.
 enum class GuidanceRequest {
   kNone,
   kLand,    // its LAND mode, in contact
@@ -44,42 +45,42 @@ enum class GuidanceRequest {
 };
 const char* ToString(GuidanceRequest request);  // "none", "land", "hold", "disarm"
 
-// What the UAV knows of itself.
+// The UAV's own state.
 struct UavState {
   RigidTransform world_from_body;               // FLU to ENU
   Eigen::Vector3d velocity_in_world{0, 0, 0};   // m/s
   std::optional<double> position_sigma_m = {};  // per axis, where it is known
 };
 
-// All that guidance knows at an instant.
+// All inputs of guidance at an instant.
 struct GuidanceInput {
   Time now;                              // never earlier than the one before
   std::optional<UavState> uav;           // predicted to now; nothing when the poses have stopped
   std::optional<TargetEstimate> target;  // predicted to now; nothing while there is none, or lost
-  // Since a frame was taken that showed the target, s.
+  // Time since the newest frame that showed the target was taken, s.
   double target_age_s = std::numeric_limits<double>::infinity();
   bool is_guided = false;  // the mode in which the autopilot obeys set-points, by its heartbeat
   bool is_armed = false;
   bool is_landed = false;    // the autopilot says that it is on the ground
   bool is_link_up = true;    // messages come from the autopilot
-  bool is_camera_up = true;  // new images come that are not the same as before
-  double mode_age_s = 0;     // since the autopilot told the mode, s
-  double link_delay_s = 0;   // from sending a set-point to its use, s
+  bool is_camera_up = true;  // new images come that differ from the ones before
+  double mode_age_s = 0;     // time since the autopilot reported its mode, s
+  double link_delay_s = 0;   // time from sending a set-point to its use, s
 };
 
 struct GuidanceOutput {
   std::optional<SetPoint> set_point;  // nothing: send none
   GuidancePhase phase = GuidancePhase::kIdle;
   GuidanceRequest request = GuidanceRequest::kNone;
-  const char* reason = "";  // why the phase is what it is, for the user; a literal
+  const char* reason = "";  // reason for the phase, for the user; a literal
 };
 
-// Flies a multicopter to a moving target, by set-points, and down onto it. A state machine without
-// clock, socket or thread: all that happens is in the inputs. docs/guidance.md has its phases and
-// what it does about each loss.
+// Flies a multicopter to a moving target and down onto it by set-points. A state machine without
+// clock, socket or thread: everything that happens is in the inputs. docs/guidance.md describes its
+// phases and its reaction to each loss.
 //
-// It begins when is_guided turns true, and ends when it turns false; the mode must then be left and
-// given anew. Update does not allocate and does not throw.
+// It begins when is_guided turns true and ends when it turns false. To begin again, the pilot must
+// leave the mode and give it anew.
 class LandingGuidance {
  public:
   // 'place': where the vehicle should pass (m, world); nothing: where guidance begins. Throws
@@ -87,32 +88,32 @@ class LandingGuidance {
   explicit LandingGuidance(const GuidanceOptions& options,
                            const std::optional<Eigen::Vector2d>& place = std::nullopt);
 
-  // To be called at 20 Hz or more, in order of time.
+  // Call it at 20 Hz or more, in order of time.
   GuidanceOutput Update(const GuidanceInput& input);
 
-  // Set-points of standing still are sent again before the mode is given (stream_before_start):
-  // after the mode was left they are not, until this is called. PX4 would go back to OFFBOARD by
-  // itself. Nothing happens while guidance flies.
+  // With stream_before_start: sends set-points of standing still again before the mode is given.
+  // After the pilot has left the mode none are sent until this is called, because PX4 would go back
+  // to OFFBOARD by itself. No effect while guidance flies.
   void Rearm();
 
-  // The geofence's middle from now on, instead of where guidance begins.
+  // Sets the middle of the geofence (m, world), instead of the place where guidance begins.
   void SetFenceCenter(const Eigen::Vector2d& center);
 
   GuidancePhase phase() const { return phase_; }
-  int go_arounds() const { return go_arounds_; }  // how often it went up again
-  // What the flight has told of the wind, the drag and the autopilot.
+  int go_arounds() const { return go_arounds_; }  // number of times it climbed again
+  // Wind, drag and the autopilot's answer, as learnt in flight.
   const FlightModel& model() const { return model_; }
 
  private:
-  // Where the UAV is, by what is known of it and of the target.
+  // The UAV's state relative to the target.
   struct Situation {
     Eigen::Vector3d feet;
     Eigen::Vector3d velocity;
     double height_m = 0;  // of the feet above the target
-    double off_m = 0;     // horizontally
-    double slip_mps = 0;  // horizontal speed against the target
+    double off_m = 0;     // horizontal distance from the target
+    double slip_mps = 0;  // horizontal speed relative to the target
     bool is_in_sight = false;
-    bool is_known = false;  // well enough to go down
+    bool is_known = false;  // the target's position is known well enough to descend
     bool is_credible = true;
   };
 
@@ -124,7 +125,7 @@ class LandingGuidance {
   bool GivesUp(const GuidanceInput& input);
   bool Obeys(const GuidanceInput& input);
 
-  // What is sent.
+  // Set-points.
   GuidanceOutput Idle(const GuidanceInput& input) const;
   GuidanceOutput Blind(const GuidanceInput& input);
   GuidanceOutput Fly(const GuidanceInput& input);
@@ -135,7 +136,7 @@ class LandingGuidance {
   GuidanceRequest RequestInContact(const GuidanceInput& input) const;
   GuidanceOutput Output(const std::optional<SetPoint>& set_point, GuidanceRequest request) const;
 
-  // Which phase.
+  // Choice of the phase.
   Situation Look(const GuidanceInput& input) const;
   void ChoosePhase(const GuidanceInput& input, const Situation& now);
   void ChooseAbove(const Situation& now);
@@ -144,7 +145,7 @@ class LandingGuidance {
   void Enter(GuidancePhase phase, const char* reason);
   void GoAround(const char* reason);
   double Cone(double height_m) const;
-  bool IsLow() const;  // in a phase in which it goes down
+  bool IsLow() const;  // in a phase that descends
 
   GuidanceOptions options_;
   bool has_place_;
@@ -159,21 +160,21 @@ class LandingGuidance {
   GuidancePhase phase_ = GuidancePhase::kIdle;
   const char* reason_;
   int go_arounds_ = 0;
-  Time entered_;  // the phase
+  Time entered_;  // time at which the phase began
   bool is_active_ = false;
-  bool has_given_up_ = false;  // and asks for hold while it has the mode
+  bool has_given_up_ = false;  // asks for hold while it has the mode
   bool may_stream_;
-  std::optional<bool> was_guided_;         // nothing: not told yet
+  std::optional<bool> was_guided_;         // nothing: not reported yet
   Time last_;                              // time of the last update
-  std::optional<Time> link_lost_;          // since when there is none
-  std::optional<Time> mode_wanted_since_;  // the autopilot has not told its mode since
+  std::optional<Time> link_lost_;          // since when there is no link
+  std::optional<Time> mode_wanted_since_;  // since then the autopilot has not reported its mode
   std::optional<Time> poses_lost_;
   std::optional<Time> camera_lost_;
   std::optional<Time> disobeys_since_;
-  Eigen::Vector3d velocity_trend_{0, 0, 0};  // of the UAV, a low pass
+  Eigen::Vector3d velocity_trend_{0, 0, 0};  // the UAV's velocity through a low pass
   std::optional<Time> contact_since_;
   Eigen::Vector2d place_{0, 0};  // where the vehicle was last, or should pass
-  double yaw_ = 0;               // that the nose keeps, rad
+  double yaw_ = 0;               // heading that the nose keeps, rad
   std::optional<SetPoint> sent_;
 };
 

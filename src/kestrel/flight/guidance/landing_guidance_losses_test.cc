@@ -13,7 +13,7 @@ namespace {
 
 using Phase = GuidancePhase;
 
-// No descent without a target in sight below 2 m, but for the last bit for a moment.
+// Below 2 m there is no descent without a target in sight, except for a moment in the last bit.
 class UnseenTest : public testing::TestWithParam<double> {};
 TEST_P(UnseenTest, DoesNotGoDown) {
   TestFlight flight = InPhase(Phase::kDescend);
@@ -74,7 +74,7 @@ TEST(LandingGuidanceLossesTest, DoesNotGoDownOnWhatItHardlyKnows) {
   EXPECT_NEAR(flight.Feet().z(), 10, 0.4) << "climbs";
 }
 
-// As a picture that is frozen makes it: the target seems to sink as the UAV does.
+// A frozen image has this effect: the target seems to sink as the UAV does.
 TEST(LandingGuidanceLossesTest, DoesNotFollowATargetDown) {
   TestFlight flight = InPhase(Phase::kDescend);
   flight.Step([](GuidanceInput& input) { input.target->motion.mean(5) = -1.3; });

@@ -44,7 +44,7 @@ TEST(LandingGuidanceTest, GoesThroughThePhasesInOrder) {
       [&](GuidanceInput& input) {
         if (flight.time_s < 1) input.target.reset();
       });
-  // Following is over at once where all is well.
+  // The phase of following ends at once where all is well.
   EXPECT_THAT(phases, testing::ElementsAre(Phase::kIdle, Phase::kSearch, Phase::kApproach,
                                            Phase::kDescend, Phase::kCommit));
 }
@@ -54,7 +54,7 @@ struct Autopilot {
   TestUavOptions uav;
 };
 
-// Autopilots that differ in all that guidance is not told.
+// Autopilots that differ in everything that guidance is not told.
 TEST(LandingGuidanceTest, LandsWithWhateverAutopilot) {
   TestUavOptions stiff;
   stiff.compensates_drag = true;
@@ -128,7 +128,7 @@ TEST(LandingGuidanceTest, StreamsBeforeTheFirstStartOnlyAndAfterRearm) {
   ASSERT_TRUE(flight.output.set_point);
   EXPECT_EQ(flight.output.set_point->velocity.norm(), 0);
   flight.FlyUntil([] { return false; }, 2);
-  flight.guidance.Rearm();  // nothing while it flies
+  flight.guidance.Rearm();  // no effect in flight
   for (int i = 0; i < 20; ++i) EXPECT_FALSE(flight.Step(kTakenBack).set_point);
   flight.guidance.Rearm();
   EXPECT_TRUE(flight.Step(kTakenBack).set_point);

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kReached_m = 3;
-// The turns of the spiral are as far apart as the UAV is high: a fisheye sees that far to all
+// Distance between the turns of the spiral per metre of altitude: a fisheye sees that far to all
 // sides.
 constexpr double kSpacing = 1;
 

@@ -7,16 +7,17 @@
 
 namespace kestrel {
 
-// Where to look for a target: at a place, and after a while on a spiral around it that widens as
-// far as the camera sees, over and over.
+// Path of the search for a target: it stays at a place, and after a while runs on a spiral around
+// it whose turns are as far apart as the camera sees. At the end of the spiral it begins anew.
 class SearchPath {
  public:
   explicit SearchPath(const GuidanceOptions& options) : options_(options) {}
 
-  // Begins anew at 'place', m.
+  // Begins anew at 'place', m in the world.
   void Start(const Eigen::Vector2d& place);
 
-  // Where to be 'seconds' after the last call; it goes on while the UAV keeps up with it.
+  // Returns the place to be at 'seconds' after the last call. The path advances only while the UAV
+  // keeps up with it.
   Eigen::Vector2d Advance(const Eigen::Vector2d& uav, double seconds);
 
  private:
@@ -25,7 +26,7 @@ class SearchPath {
   GuidanceOptions options_;
   Eigen::Vector2d place_{0, 0};
   double waited_s_ = 0;
-  double angle_ = 0;  // of the spiral, rad
+  double angle_ = 0;  // angle on the spiral, rad
 };
 
 }  // namespace kestrel

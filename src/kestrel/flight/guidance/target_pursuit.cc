@@ -12,19 +12,21 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Largest product of the position's gain and the delay: beyond, it would swing about the target.
+// Largest product of the position gain and the delay: above it the UAV would swing about the
+// target.
 constexpr double kMaxGainDelay = 0.35;
-// Of the acceleration that the limits allow: with so much it brakes before a place.
+// Share of the acceleration within the limits that is used for braking before a place.
 constexpr double kBrakingShare = 0.6;
-// Closing in from so far away with a gain k changes the acceleration by k^3 times the distance per
-// second; a jerk that the autopilot does not have makes it swing. Braking sets in within so long.
+// From this distance, closing in with a gain k changes the acceleration by k^3 times the distance
+// per second: if the autopilot lacks that jerk, the UAV swings. Braking sets in within
+// kBrakingOnset_s.
 constexpr double kJerkReach_m = 2.5;
 constexpr double kBrakingOnset_s = 0.4;
 constexpr double kMaxLag_mps = 1;
 constexpr double kIntegrateWithin_m = 0.5;
 constexpr double kMaxIntegral_mps = 0.8;
 
-// A vector turned on by the target's curve for 'ahead_s', and how the velocity changes then.
+// Returns 'vector' turned by the target's curve over the next 'ahead_s'.
 Vector3d Turned(const TurnState& motion, const Vector3d& vector, double ahead_s) {
   const double angle = (motion.turn_rate() + 0.5 * ahead_s * motion.turn_change()) * ahead_s;
   return Eigen::AngleAxisd(angle, Vector3d::UnitZ()) * vector;
@@ -99,7 +101,7 @@ void TargetPursuit::Close(const Vector2d& offset, const Vector2d& slip, const Ve
   const double distance_m = offset.norm();
   const Closing closing = ClosingSpeed(distance_m, gain, braking_);
   if (distance_m > 0) command->velocity.head<2>() += closing.speed / distance_m * offset;
-  // A UAV that is yet to reach that velocity has nothing to brake.
+  // A UAV that is still below that velocity has nothing to brake.
   const Vector2d behind = command->velocity.head<2>() - velocity;
   Vector2d change = closing.rate * slip;
   if (const double along = change.dot(behind); along < 0 && behind.norm() > kMaxLag_mps) {
@@ -108,7 +110,7 @@ void TargetPursuit::Close(const Vector2d& offset, const Vector2d& slip, const Ve
   command->acceleration.head<2>() += change;
 }
 
-// A low pass that turns with the target: it does not lag in curves.
+// A low pass that turns with the target, so that it does not lag in curves.
 Vector3d TargetPursuit::Smoothed(const TargetEstimate& target) {
   const Vector3d velocity = target.motion.velocity();
   if (!smoothed_) smoothed_ = {target.time, velocity};

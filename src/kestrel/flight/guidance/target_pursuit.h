@@ -13,19 +13,20 @@
 
 namespace kestrel {
 
-// The speed at which to close in on something 'distance_m' away, and its derivative by the
-// distance: in proportion to it while that can be braked, by the root further away.
+// Speed at which to close in on something 'distance_m' away, and its derivative by the distance:
+// proportional to the distance near by, and further away by the square root, so that the UAV can
+// brake.
 struct Closing {
   double speed;
   double rate;
 };
 Closing ClosingSpeed(double distance_m, double gain, double braking);
 
-// Horizontal set-points to a place or to above a target that moves. The velocity wanted is the
-// target's, smoothed, plus one towards it; both, and the accelerations that they need (the target's
-// in its curve, that of closing in), are those of the moment at which the set-point has its effect,
-// and the UAV's model says what to command for them. What remains is integrated, in a frame that
-// turns with the target.
+// Horizontal set-points to a place or to above a moving target. The wanted velocity is the target's
+// smoothed velocity plus a velocity towards it. Both, and the accelerations that they need (the
+// target's in its curve, that of closing in), are those of the moment at which the set-point takes
+// effect. The UAV's model gives the command for them. The remaining offset is integrated, in a
+// frame that turns with the target.
 class TargetPursuit {
  public:
   explicit TargetPursuit(const GuidanceOptions& options);
@@ -34,7 +35,7 @@ class TargetPursuit {
     Eigen::Vector2d position;
     Eigen::Vector2d velocity;
   };
-  // Velocity and acceleration without their vertical parts.
+  // Velocity and acceleration have no vertical parts.
   SetPoint To(const Eigen::Vector2d& place, const Motion& uav, const FlightModel& model,
               double max_speed_mps) const;
   SetPoint Above(const TargetEstimate& target, const Motion& uav, const FlightModel& model);
@@ -58,7 +59,7 @@ class TargetPursuit {
   double gain_;                       // speed per metre, 1/s
   double braking_;                    // m/s^2
   std::optional<Velocity> smoothed_;  // of the target
-  std::optional<Time> integrated_;    // until when
+  std::optional<Time> integrated_;    // time up to which the offset is integrated
   Eigen::Vector2d integral_{0, 0};    // m/s
 };
 

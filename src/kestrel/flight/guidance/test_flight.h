@@ -19,7 +19,7 @@
 
 namespace kestrel {
 
-inline constexpr double kTestStep_s = 0.02;  // of guidance, 50 Hz
+inline constexpr double kTestStep_s = 0.02;  // step of guidance, 50 Hz
 inline constexpr double kTestBoard_m = 1.8;  // height of the deck
 
 // A multicopter whose autopilot controls the velocity as ArduCopter and PX4 do.
@@ -30,7 +30,7 @@ struct TestUavOptions {
   double attitude_lag_s = 0.06;  // of each of two lags
   double drag = 0.25;
   double max_tilt_deg = 40;
-  double shaping_accel = 0;  // of commands, m/s^2; 0: none
+  double shaping_accel = 0;  // limit of the commands' shaping, m/s^2; 0: none
   double shaping_jerk = 0;
   double delay_s = 0;  // of the link
 
@@ -69,7 +69,8 @@ class TestUav {
   const Eigen::Vector3d& velocity() const { return velocity_; }
 
  private:
-  // Input shaping: the velocity asked for is reached with limited acceleration and jerk.
+  // Input shaping: the shaped velocity reaches the commanded one with limited acceleration and
+  // jerk.
   void Shape(double seconds) {
     if (options_.shaping_accel <= 0) {
       shaped_ = command_;
@@ -120,7 +121,7 @@ class TestUav {
   SetPoint shaped_;
 };
 
-// A deck that drives, and what a track tells of it.
+// A driving deck, and the track's estimate of it.
 class TestTarget {
  public:
   TestTarget(const VehicleMotionOptions& options, std::uint64_t seed) {
@@ -161,8 +162,8 @@ class TestTarget {
   std::function<double(double)> wander_[4];
 };
 
-// Guidance, a multicopter, a deck and the wind, all of which know everything about each other but
-// for what a test takes away.
+// Guidance, a multicopter, a deck and the wind. Each knows the truth about the others, except for
+// what a test takes away.
 struct TestFlight {
   explicit TestFlight(const GuidanceOptions& options = {}, const TestUavOptions& uav_options = {},
                       const VehicleMotionOptions& vehicle = {}, std::uint64_t seed = 1)
@@ -188,7 +189,7 @@ struct TestFlight {
     return input;
   }
 
-  // One step; 'change' may take something away from what guidance is told.
+  // Does one step. 'change' may take something away from the input of guidance.
   template <class Change>
   const GuidanceOutput& Step(const Change& change) {
     GuidanceInput input = Input();
@@ -217,7 +218,7 @@ struct TestFlight {
     return FlyUntil([&] { return output.phase == phase; }, longest_s);
   }
 
-  // Comes down and is carried by the deck until guidance has found that.
+  // Descends and is carried by the deck until guidance has found contact.
   void LandOnDeck() {
     FlyUntil([&] { return Height() <= 0; });
     is_on_deck = true;

@@ -14,13 +14,13 @@ inline constexpr auto kNoTarget = [](GuidanceInput& input) { input.target.reset(
 inline constexpr auto kUnseen = [](GuidanceInput& input) { input.target_age_s = 1.5; };
 inline constexpr auto kTakenBack = [](GuidanceInput& input) { input.is_guided = false; };
 
-// Flies until 'phase', where one is to be taken from it. Contact: the deck carries it.
+// Flies until 'phase' is reached. In contact the deck carries the UAV.
 inline TestFlight InPhase(GuidancePhase phase, const GuidanceOptions& options = {}) {
   TestFlight flight(options);
   if (phase == GuidancePhase::kSearch) {
     flight.FlyUntil([] { return false; }, 2, kNoTarget);
   } else if (phase == GuidancePhase::kFollow) {
-    // Not known well enough to go down.
+    // The target is not known well enough for a descent.
     flight.FlyUntil([&] { return flight.output.phase == phase && flight.Height() < 2.7; }, 30,
                     [&](GuidanceInput& input) {
                       input.target = flight.target.Estimate(input.now, flight.time_s, 0.4);
