@@ -10,8 +10,8 @@
 
 namespace kestrel {
 
-// Puts numbers into bytes: whole ones seven bits at a time, the lowest first, others as IEEE 754,
-// little endian.
+// Writes numbers as bytes: integers seven bits at a time, the lowest first; other numbers as IEEE
+// 754, little endian.
 class ByteWriter {
  public:
   void Byte(std::uint8_t value) { bytes_.push_back(value); }
@@ -39,14 +39,14 @@ class ByteWriter {
   std::vector<std::uint8_t> bytes_;
 };
 
-// Takes them out again. After the first thing that is not as it should be nothing is read any more:
-// all numbers are 0, and has_failed() says so.
+// Reads the numbers again. After the first invalid one nothing is read any more: all numbers are 0,
+// and has_failed() is true.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
   std::uint8_t Byte() { return Fixed<std::uint8_t>(); }
-  // At most 'max', or it fails.
+  // Fails for a number above 'max'.
   std::uint64_t Whole(std::uint64_t max) {
     std::uint64_t value = 0;
     for (int shift = 0; shift < 64; shift += ByteWriter::kBits) {
@@ -77,7 +77,7 @@ class ByteReader {
     return text;
   }
 
-  // Fails where 'holds' does not.
+  // Fails unless 'holds'.
   bool Require(bool holds) {
     if (!holds) has_failed_ = true;
     if (has_failed_) bytes_ = {};

@@ -11,7 +11,7 @@
 namespace kestrel {
 namespace {
 
-// Objects that agree on an alignment: so many do not by chance.
+// Number of objects that never agree on an alignment by chance.
 constexpr std::size_t kBeyondDoubt = 7;
 
 std::vector<MappedObject> Moved(std::vector<MappedObject> objects, const WorldAlignment& to) {
@@ -72,7 +72,7 @@ TeamFusion::Group TeamFusion::ChooseCommonGroup() {
     waiting.push_back({uav, 0, {}});
     most = std::max(most, part.objects.size());
   }
-  // In a small map's world the others would lie less surely.
+  // In a small map's world the others would be placed less certainly.
   std::stable_partition(waiting.begin(), waiting.end(), [&](const Place& place) {
     return 2 * parts_.at(place.uav).objects.size() >= most;
   });
@@ -84,7 +84,8 @@ TeamFusion::Group TeamFusion::ChooseCommonGroup() {
   return common;
 }
 
-// The first of those that wait, and all that can be aligned with it or with one that has been.
+// Takes the first of those that wait, and all that can be aligned with it or with one already
+// taken.
 TeamFusion::Group TeamFusion::TakeGroup(std::vector<Place>* waiting) {
   Group group{waiting->front()};
   waiting->erase(waiting->begin());
@@ -96,7 +97,8 @@ TeamFusion::Group TeamFusion::TakeGroup(std::vector<Place>* waiting) {
       return true;
     });
     if (next + 1 < group.size()) continue;
-    // Of those that are in doubt only the surest: by it others may be placed more surely.
+    // Of the doubtful ones only the most certain is taken: others may be placed with more certainty
+    // by it.
     const auto surest =
         std::max_element(waiting->begin(), waiting->end(),
                          [](const Place& a, const Place& b) { return a.matches < b.matches; });
@@ -114,7 +116,7 @@ std::size_t TeamFusion::CountObjects(const std::vector<Place>& places) const {
                          });
 }
 
-// By the reference, if more objects agree on that than on what was found before.
+// Aligns with the reference, if more objects agree on that than on what was found before.
 void TeamFusion::Align(const Place& reference, Place* waiting) {
   const Part& part = parts_.at(waiting->uav);
   const Part& other = parts_.at(reference.uav);
@@ -153,7 +155,7 @@ void TeamFusion::FuseAll() {
 }
 
 void TeamFusion::FuseChildren(std::size_t node) {
-  // A leaf's objects are moved when they are wanted: a copy of all maps would be much memory.
+  // A leaf's objects are moved when they are needed: a copy of all maps would need much memory.
   const auto objects_of = [&](std::size_t child) {
     const std::size_t leaves = nodes_.size() / 2;
     if (child < leaves) return nodes_[child].objects;
@@ -166,8 +168,8 @@ void TeamFusion::FuseChildren(std::size_t node) {
   nodes_[node].is_changed = true;
 }
 
-// What lies where nobody knows changes nothing of what is known, and is new only where there is
-// nothing that it may be. Last, so that it takes no place of what is known better.
+// Objects of unplaced worlds do not change what is known, and are new only where they can match
+// nothing. They come last, so that they take no place of better known ones.
 void TeamFusion::FuseAdrift() {
   standing_ = nodes_[1].objects;
   for (auto& [uav, part] : parts_) {

@@ -16,62 +16,63 @@
 
 namespace kestrel {
 
-// What stands in the maps of a team, as one map in the common world: that of the first UAV by key
-// whose map is at least half as large as the largest. Of several groups of UAVs whose worlds can be
-// aligned with each other, by whatever way, but not with those of another group, it is the first of
-// the group with the most objects. Every other world is aligned with the first of those already
-// placed with which that is beyond doubt, or, where it is with none, with that with which most
-// objects agree. A world that cannot be aligned is taken for the common one, less surely: its
-// objects are laid onto those that are there already, and only what is left is put beside them. A
-// function of what the maps hold: all that hold the same see the same, to the last bit.
+// Fuses the standing objects of a team's maps into one map in the common world: that of the first
+// UAV by key whose map is at least half as large as the largest. Worlds that can be aligned with
+// each other, directly or through others, form a group. If there are several groups, the common
+// world is that of the first UAV of the group with the most objects. Every other world is aligned
+// with the first placed one for which the alignment is beyond doubt; if there is none, with the one
+// for which most objects agree. A world that cannot be aligned is taken for the common one, with
+// less certainty: its objects are matched with those that are there already, and only the rest is
+// added. The result is a function of the maps alone: all that hold the same maps get the same
+// result, to the last bit.
 //
-// What has not changed since the last call is not worked out again: alignments are kept by pair,
-// and the fused maps in a binary tree, of which a map that has changed redoes its branch.
+// What has not changed since the last call is not computed again: alignments are kept by pair, the
+// fused maps in a binary tree, in which only the branch of a changed map is redone.
 class TeamFusion {
  public:
   TeamFusion(const TeamOptions& team, const ObjectMapOptions& options);
 
-  // 'map': the same one with every call. UAVs whose maps are empty are none here.
+  // 'map': the same one in every call. UAVs with empty maps are ignored.
   void Update(const TeamMap& map);
 
   const ObjectMapOptions& options() const { return options_; }
 
-  // Each where and as surely as its UAVs told it; times are those of several clocks.
+  // Position and certainty are those of their UAVs' maps; times are on several clocks.
   const std::vector<MappedObject>& standing() const;
-  // Of the standing objects of a UAV's map, by their ids: the index of each in standing().
+  // Returns the index in standing() of each standing object of a UAV's map, by their ids.
   std::vector<std::size_t> IndicesOf(const UavKey& uav) const;
 
-  // Whether it is known where the UAV's world lies.
+  // True when the position of the UAV's world is known.
   bool IsPlaced(const UavKey& uav) const;
-  // From the UAV's world to the common one, with what is not known of it in the covariance.
+  // Transform from the UAV's world to the common one; its uncertainty is in the covariance.
   const WorldAlignment& CommonFromWorld(const UavKey& uav) const;
 
  private:
   struct Part {
-    std::uint64_t revision = 0;         // of the told map that this is
-    std::vector<MappedObject> objects;  // that stand, by id, in the UAV's own world
+    std::uint64_t revision = 0;         // revision of the map's part that these are from
+    std::vector<MappedObject> objects;  // standing ones, by id, in the UAV's own world
     bool is_placed = false;
     WorldAlignment common_from_world;
-    bool is_changed = true;            // since it was fused
-    std::size_t leaf = 0;              // if it is placed
-    std::vector<std::size_t> indices;  // in standing_, if it is not
+    bool is_changed = true;            // since the last fusion
+    std::size_t leaf = 0;              // if the UAV is placed
+    std::vector<std::size_t> indices;  // in standing_, if the UAV is not placed
   };
   struct Pair {
     std::uint64_t revision = 0;
     std::uint64_t reference_revision = 0;
     std::optional<FoundAlignment> found;
   };
-  // A UAV that waits to be placed in a group, or is: in the world of the group's first.
+  // A UAV that waits to be placed in a group, or is placed: in the world of the group's first UAV.
   struct Place {
     UavKey uav;
-    std::size_t matches = 0;  // of the best alignment with one of the group; 0: there is none
+    std::size_t matches = 0;  // of the best alignment with a UAV of the group; 0: there is none
     WorldAlignment group_from_world;
   };
   using Group = std::vector<Place>;
   // The children of node i are 2 i and 2 i + 1; the leaves are the last half.
   struct Node {
-    std::vector<MappedObject> objects;    // of a leaf none: those of its part
-    std::vector<std::size_t> from_right;  // where those of the second child are
+    std::vector<MappedObject> objects;    // of its part of the tree; a leaf has none
+    std::vector<std::size_t> from_right;  // where the objects of the second child are
     bool is_changed = true;
   };
 
@@ -89,8 +90,8 @@ class TeamFusion {
   ObjectMapOptions options_;
   WorldPrior prior_;
   std::map<UavKey, Part> parts_;
-  std::map<std::pair<UavKey, UavKey>, Pair> pairs_;  // a UAV, and the one it is aligned with
-  std::vector<UavKey> order_;                        // of the leaves: those that are placed
+  std::map<std::pair<UavKey, UavKey>, Pair> pairs_;  // a UAV, and the one with which it is aligned
+  std::vector<UavKey> order_;                        // of the leaves, one for each placed UAV
   std::vector<UavKey> fused_order_;
   std::vector<Node> nodes_;
   std::vector<MappedObject> standing_;

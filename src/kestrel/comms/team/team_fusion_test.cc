@@ -20,8 +20,8 @@ using ::testing::SizeIs;
 
 UavKey KeyOf(int uav) { return {std::string(1, static_cast<char>('a' + uav)), 1}; }
 
-// What a UAV tells of the objects 'first' to 'last' of the field in a world of its own, which
-// changes a little with every version.
+// Returns a UAV's part with the objects 'first' to 'last' of the field, in a world of its own,
+// which changes a little with every version.
 PartMessage PartOf(int uav, std::uint64_t version, const std::vector<MappedObject>& field,
                    std::size_t first, std::size_t last) {
   Random random(static_cast<std::uint64_t>(uav) * 100 + version);
@@ -66,7 +66,7 @@ TEST(TeamFusion, WhatIsKeptIsWhatIsWorkedOutAnew) {
   EXPECT_EQ(kept.IndicesOf(KeyOf(0))[20], kept.IndicesOf(KeyOf(4))[0]);
 }
 
-// The first and the last have nothing in common.
+// The first and the last world have nothing in common.
 TEST(TeamFusion, WorldsAreAlignedByWayOfOthers) {
   const std::vector<MappedObject> field = Field();
   TeamMap map;
@@ -88,7 +88,7 @@ TEST(TeamFusion, WorldsAreAlignedByWayOfOthers) {
   }
 }
 
-// A hundred discs of three colours over 30 m, a metre apart or more.
+// A hundred discs of three colours over 30 m, at least a metre apart.
 std::vector<MappedObject> DenseField(std::uint64_t seed) {
   Random random(seed);
   std::vector<MappedObject> field = TestField(100, &random);
@@ -100,7 +100,7 @@ std::vector<MappedObject> DenseField(std::uint64_t seed) {
   return field;
 }
 
-// The UAV's navigation is off by a metre and two degrees.
+// The UAV's navigation is wrong by a metre and two degrees.
 WorldAlignment BiasOf(int uav) {
   WorldAlignment bias;
   bias.translation = {std::cos(1.26 * uav), std::sin(1.26 * uav), 0};
@@ -108,7 +108,8 @@ WorldAlignment BiasOf(int uav) {
   return bias;
 }
 
-// What a UAV of five has seen of the field that it flies over along x, in strips that overlap.
+// Returns what one UAV of five has seen of the field that it flies over along x, in overlapping
+// strips.
 PartMessage StripOf(int uav, const UavKey& key, const WorldAlignment& bias, double reach_m,
                     const std::vector<MappedObject>& field, Random* random) {
   PartMessage part{key, {}, {1, Time(), {}}, {}};
@@ -124,7 +125,7 @@ PartMessage StripOf(int uav, const UavKey& key, const WorldAlignment& bias, doub
   return part;
 }
 
-// How often each object of the field is in the map, within half a metre.
+// Counts how often each object of the field is in the map, within half a metre.
 std::vector<int> CountIn(const std::vector<MappedObject>& map,
                          const std::vector<MappedObject>& field, const WorldAlignment& common) {
   std::vector<int> counts;
@@ -137,13 +138,13 @@ std::vector<int> CountIn(const std::vector<MappedObject>& map,
   return counts;
 }
 
-// What it had seen until then cannot be aligned, or only by chance, and nobody corrects it any
+// The objects that it saw before cannot be aligned, or only by chance, and nobody corrects them any
 // more.
 TEST(TeamFusion, AUavThatDiesEarlyAndReturnsLeavesNothingTwice) {
   for (int seed = 1; seed <= 4; ++seed) {
     for (int dead = 0; dead < 5; ++dead) {
       for (const double reach_m : {0.5, 1.0, 2.0, 4.0, 8.0}) {
-        for (const std::uint32_t boot : {0u, 9u}) {  // before or after its other life, by key
+        for (const std::uint32_t boot : {0u, 9u}) {  // sorted by key before or after its other life
           Random random(static_cast<std::uint64_t>(seed));
           const std::vector<MappedObject> field = DenseField(static_cast<std::uint64_t>(seed));
           TeamMap map;

@@ -16,7 +16,7 @@ using ::testing::IsEmpty;
 using ::testing::Key;
 using ::testing::SizeIs;
 
-// What a UAV tells while its map changes: objects come, move and go.
+// Returns a UAV's messages while its map changes: objects come, move and go.
 std::vector<PartMessage> Told(const UavKey& uav, Random* random) {
   std::vector<PartMessage> messages;
   std::map<std::int64_t, std::uint64_t> versions;

@@ -12,8 +12,8 @@
 namespace kestrel {
 namespace {
 
-// Of objects in one message: with what else is in it, it is one frame of most radios. Of two frames
-// one would be lost nearly twice as often.
+// Bytes of objects in one message: with the rest of the message it fits one frame of most radios.
+// With two frames the loss would be nearly twice as frequent.
 constexpr std::size_t kPartBytes = 900;
 
 bool IsSame(const MappedObject& a, const MappedObject& b) {
@@ -26,12 +26,12 @@ bool HaveSameIds(const Contents& a, const Contents& b) {
                     [](const auto& x, const auto& y) { return x.first == y.first; });
 }
 
-// Whether a beat comes after another: the count begins again after its greatest number.
+// True when a beat comes after another: the count wraps around.
 bool IsLater(std::uint32_t beat, std::uint32_t other) {
   return static_cast<std::int32_t>(beat - other) > 0;
 }
 
-// Whether the message says of the part what the part does not say of itself.
+// True when the message contradicts the part that is here.
 bool Contradicts(const PartMessage& message, const TeamMap::Part& part) {
   if (message.contents.version > part.contents.version) return true;
   if (message.contents.version == part.contents.version &&
@@ -93,7 +93,7 @@ void TeamMember::Hear(std::span<const std::uint8_t> bytes, Time local) {
     return;
   }
   if (message->sender.name == self_.name && message->sender != self_) {
-    // One that has started again may still be heard from its life before.
+    // After a restart messages from the earlier run may still arrive.
     const Time since = twins_.try_emplace(message->sender, local).first->second;
     if (twins_.size() > kMaxUavs) twins_.clear();
     constexpr Duration kEcho = std::chrono::seconds(2);
@@ -116,7 +116,7 @@ void TeamMember::HearPart(const PartMessage& part, Time local) {
   }
 }
 
-// Somebody tells another map under this UAV's name. Only a version above it makes all forget it.
+// Somebody sends another map under this UAV's name. Only a version above it makes all forget it.
 void TeamMember::Defend(const PartMessage& part, Time local) {
   const TeamMap::Part* own = map_.Find(self_);
   const TeamMap::Part nothing;
@@ -169,7 +169,7 @@ void TeamMember::Answer(const UavKey& sender, const DigestLine& line, Time local
   lacked_ = local;
   if (line.uav == sender || RankAfter(line.uav, sender, local) > line.tries) return;
   const std::set<std::int64_t> missing(line.missing.begin(), line.missing.end());
-  // Who still lacks it after so many digests does not hear the one that told it.
+  // A UAV that still lacks it after so many digests does not hear the one that sent it.
   constexpr int kPatience = 8;
   const Duration resend = DurationFromSeconds(line.tries > kPatience ? 0 : options_.resend_s);
   bool is_on_air = false;
@@ -181,11 +181,11 @@ void TeamMember::Answer(const UavKey& sender, const DigestLine& line, Time local
       queue_.insert({line.uav, id});
     }
   }
-  // With an object come the contents.
+  // The contents are sent with every object.
   if (line.version < part.contents.version && !is_on_air) queue_.insert({line.uav, kContents});
 }
 
-// How many UAVs answer before this one when somebody lacks a part of the owner's map.
+// Returns how many UAVs answer before this one when somebody lacks a part of the owner's map.
 int TeamMember::RankAfter(const UavKey& owner, const UavKey& asker, Time local) const {
   if (owner == self_) return 0;
   const auto before = peers_.lower_bound(self_);
@@ -194,7 +194,7 @@ int TeamMember::RankAfter(const UavKey& owner, const UavKey& asker, Time local) 
          }));
 }
 
-// Null when there are as many as there can be.
+// Null when the number of UAVs has reached its limit.
 TeamMember::Peer* TeamMember::Know(const UavKey& uav) {
   if (peers_.size() >= kMaxUavs && !peers_.contains(uav)) return nullptr;
   return &peers_[uav];
@@ -251,7 +251,7 @@ void TeamMember::Tick(Time local, const Send& send) {
   while (allowance_ > 0 && !queue_.empty()) SendQueued(local, send);
 }
 
-// A new version, with what has changed.
+// Sends a new version, with what has changed.
 void TeamMember::TellOwn(Time local) {
   const TeamMap::Part* part = map_.Find(self_);
   const TeamMap::Part nothing;
@@ -301,7 +301,7 @@ void TeamMember::SendDigest(Time local, const Send& send) {
   has_news_ = false;
 }
 
-// One message with the contents of the UAV whose turn it is and the objects next in turn.
+// Sends one message with the contents of the next UAV in turn and its next objects.
 void TeamMember::SendQueued(Time local, const Send& send) {
   auto next = queue_.lower_bound(cursor_);
   if (next == queue_.end()) next = queue_.begin();
@@ -318,7 +318,7 @@ void TeamMember::SendQueued(Time local, const Send& send) {
     cursor_ = {uav, next->id + 1};
     next = queue_.erase(next);
   }
-  // The contents are in it.
+  // The message contains the contents.
   queue_.erase({uav, kContents});
   map_.Merge(message, local);  // it is on the air now
   SendMessage({self_, std::move(message)}, send);

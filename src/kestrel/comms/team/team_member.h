@@ -20,33 +20,33 @@
 
 namespace kestrel {
 
-// A UAV in its team, whatever carries the messages: each may come late, twice, out of order or not
-// at all. It tells its own map, and every digest_period_s what it has heard of all: who hears that
-// the sender lacks something sends it. The UAV itself answers at once; where it is gone or not
-// heard the others do, by their names one more with every digest that still lacks it, so that one
-// is enough. Times named 'local' are on this computer's clock and never go back; clocks of
-// different UAVs have nothing to do with each other. One thread at a time.
+// A UAV in its team, over any transport: messages may come late, twice, out of order or not at all.
+// It sends its own map, and every digest_period_s a digest of what it has heard of all. A UAV that
+// hears that the sender of a digest lacks something sends it. The owner answers at once. If the
+// owner is gone or not heard, the others answer, in the order of names: one more with every digest
+// that still lacks it, so that one answer is enough. Times named 'local' are on this computer's
+// clock and never go back; clocks of different UAVs are unrelated. One thread at a time.
 class TeamMember {
  public:
-  // With a key, all is signed and what is not signed by it is refused. Throws InputError when the
-  // options are not valid or the name is none.
+  // With a key, every message is signed, and messages without its signature are refused. Throws
+  // InputError when the options or the name are not valid.
   TeamMember(const UavKey& self, const TeamOptions& options, std::optional<TeamKey> key = {});
 
-  // The own map at its time 'now', which does not decrease: of more than kMaxToldObjects those seen
-  // most. It is told with the next Tick.
+  // Sets the own map at its time 'now', which does not decrease. Of more than kMaxToldObjects,
+  // those seen most are kept. The next Tick sends it.
   void Tell(std::vector<MappedObject> objects, Time now);
 
-  // What this UAV goes for, with the bid as others will hear it; told with the next Tick where that
-  // is news.
+  // Sets the object that this UAV claims, with the bid as others will hear it. The next Tick sends
+  // a change.
   void SetClaim(const std::optional<Claim>& claim);
 
-  // The map told last is this UAV's last; told with the next Tick.
+  // Declares that the map set last is this UAV's last one; the next Tick sends that.
   void SetDone();
 
-  // A message from anyone. What is malformed changes nothing.
+  // Takes a message from anyone. A malformed one changes nothing.
   void Hear(std::span<const std::uint8_t> bytes, Time local);
 
-  // Gives 'send' what is to be told to all; call it often.
+  // Passes the messages that are due to 'send'; call it often.
   using Send = std::function<void(std::span<const std::uint8_t>)>;
   void Tick(Time local, const Send& send);
 
@@ -54,34 +54,35 @@ class TeamMember {
   const TeamOptions& options() const { return options_; }
   const TeamMap& map() const { return map_; }
 
-  // Whether all that is known to have been told is here, and nothing waits to be told.
+  // True when all that is known to have been sent is here, and nothing waits to be sent.
   bool IsWhole() const;
-  // When another UAV was heard last to lack what is here.
+  // Time at which another UAV was last heard to lack something that is here.
   const std::optional<Time>& lacked() const { return lacked_; }
-  // The UAV itself, and those that were heard of within silence_s, by whomever.
+  // True for this UAV, and for those of which anyone has heard within silence_s.
   bool IsAlive(const UavKey& uav, Time local) const;
-  // All that were ever heard of, and the UAV itself.
+  // Returns all UAVs ever heard of, and this one.
   std::vector<UavKey> Known() const;
-  // Whether every UAV that is alive, and this one, has said that its map is its last.
+  // True when this UAV and every UAV that is alive have declared their map the last one.
   bool AreAllDone(Time local) const;
-  // What a UAV that is alive goes for.
+  // Returns the claim of a UAV that is alive.
   std::optional<Claim> ClaimOf(const UavKey& uav, Time local) const;
 
-  std::size_t refused() const { return refused_; }  // messages
-  // What the user should know, since the last call.
+  std::size_t refused() const { return refused_; }  // number of messages
+  // Returns warnings for the user since the last call.
   std::vector<std::string> TakeWarnings();
 
  private:
-  // What is known of a UAV beside its map.
+  // State of a UAV, except its map.
   struct Peer {
     std::uint32_t beat = 0;
-    std::optional<Time> beat_at;  // when it rose last
+    std::optional<Time> beat_at;  // when it last increased
     std::optional<Claim> claim;
     bool is_done = false;
-    std::uint64_t newest = 0;  // version that anyone has heard of
+    std::uint64_t newest = 0;  // newest version that anyone has heard of
     int tries = 0;
   };
-  static constexpr std::int64_t kContents = -1;  // in the place of an object's id
+  static constexpr std::int64_t kContents = -1;  // stands for the contents instead of an object's
+                                                 // id
 
   void HearDigest(const UavKey& sender, const Digest& digest, Time local);
   void HearPart(const PartMessage& part, Time local);
@@ -103,7 +104,7 @@ class TeamMember {
   TeamOptions options_;
   std::optional<TeamKey> key_;
   TeamMap map_;
-  std::map<UavKey, Peer> peers_;  // with oneself
+  std::map<UavKey, Peer> peers_;  // this UAV included
   struct OwnMap {
     std::vector<MappedObject> objects;
     Time now;
@@ -114,10 +115,10 @@ class TeamMember {
   std::optional<Time> last_tick_;
   std::optional<Time> lacked_;
   bool has_news_ = false;         // for the digest
-  double allowance_;              // bytes that may be sent now
-  std::set<ObjectRef> queue_;     // to be sent
-  ObjectRef cursor_;              // where in the queue the turn is
-  std::map<UavKey, Time> twins_;  // others of the same name: when they were heard first
+  double allowance_;              // number of bytes that may be sent now
+  std::set<ObjectRef> queue_;     // parts to be sent
+  ObjectRef cursor_;              // next position in the queue
+  std::map<UavKey, Time> twins_;  // other UAVs with the same name: when they were first heard
   std::size_t refused_ = 0;
   std::set<std::string> warned_;
   std::vector<std::string> warnings_;

@@ -98,7 +98,7 @@ TEST(TeamMember, APartitionHeals) {
 
 TEST(TeamMember, OneThatHearsButIsNotHeardIsPassedOnOnceItIs) {
   SimulatedTeam team = TeamOfFive(3);
-  // 'a' hears nobody; then it hears only 'e', which hears all.
+  // 'a' hears nobody; later it hears only 'e', which hears all.
   team.is_cut = [](std::size_t /*from*/, std::size_t to) { return to == 0; };
   Fly(&team, 5);
   EXPECT_FALSE(team.AreEqual());
@@ -162,7 +162,7 @@ TEST(TeamMember, StrangersDoNoHarm) {
     team.Broadcast({}, noise);
   }
   team.Broadcast({}, std::vector<std::uint8_t>(100'000));
-  // Under the name of 'a': an empty map of a later version, and a beat from far ahead.
+  // Sent under the name of 'a': an empty map of a later version, and a beat from far ahead.
   PartMessage map;
   map.uav = {"a", 1};
   map.contents.version = 1000;
@@ -181,7 +181,7 @@ TEST(TeamMember, StrangersDoNoHarm) {
   EXPECT_TRUE(team.AreEqual());
   ExpectAllWhole(team, kTeam);
   EXPECT_GT(team.uavs[1].member->refused(), 200);
-  EXPECT_THAT(team.uavs[0].warnings, SizeIs(2));  // what was refused, and the forged map
+  EXPECT_THAT(team.uavs[0].warnings, SizeIs(2));  // the refused messages, and the forged map
   EXPECT_TRUE(team.uavs[1].member->IsAlive({"a", 1}, team.LocalTime(1)));
 }
 
@@ -226,7 +226,7 @@ TEST(TeamMember, IsDoneWhenAllThatLiveAre) {
   EXPECT_TRUE(are_done(1));
 }
 
-// Who says so has told its last map before.
+// A UAV that declares its map the last one has sent that map before.
 TEST(TeamMember, WhatIsToldLastComesBeforeTheWordThatItIs) {
   SimulatedTeam team(10);
   team.Add({"a", 1});

@@ -20,7 +20,7 @@ constexpr std::uint64_t kMaxAge_ns = 1'000'000'000'000'000;  // eleven days
 constexpr double kMaxPosition_m = 1e8;
 constexpr double kMaxNumber = 1e9;
 constexpr int kMaxDetections = 1 << 30;
-constexpr int kStanding = 3;  // numbers of the state of what does not move
+constexpr int kStanding = 3;  // number of values in the state of a standing object
 enum Kind : std::uint8_t { kDigest, kPart };
 enum Flag : std::uint8_t { kMayMove = 1, kHasDigits = 2, kMoves = 4, kDone = 1 };
 
@@ -38,7 +38,7 @@ UavKey ReadKey(ByteReader* in) {
 
 std::int64_t ReadId(ByteReader* in) { return static_cast<std::int64_t>(in->Whole(kMaxId)); }
 
-// How long before 'now'; the future has no number.
+// Writes the time before 'now'; a later time cannot be written.
 void WriteAge(Time time, Time now, ByteWriter* out) {
   out->Whole(static_cast<std::uint64_t>((now - time).count()));
 }
@@ -182,7 +182,7 @@ PartMessage ReadPart(ByteReader* in) {
   return part;
 }
 
-// A claim names the UAV by its line: names are long.
+// A claim refers to the UAV by its line, because names are long.
 void Write(const Digest& digest, ByteWriter* out) {
   out->Whole(digest.size());
   for (const DigestLine& line : digest) {

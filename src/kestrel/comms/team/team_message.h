@@ -16,8 +16,8 @@
 
 namespace kestrel {
 
-// A UAV from its start to its end. One that starts again, and another one of the same name, has
-// another 'boot' and a map of its own.
+// Identifies a UAV from its start to its end. After a restart it has another 'boot' and a map of
+// its own, and so has another UAV of the same name.
 struct UavKey {
   std::string name;        // see IsUavName
   std::uint32_t boot = 0;  // random
@@ -26,7 +26,7 @@ struct UavKey {
   friend auto operator<=>(const UavKey&, const UavKey&) = default;
 };
 
-// 1 to 32 letters, digits, '_', '-' and '.'.
+// True for 1 to 32 letters, digits, '_', '-' and '.'.
 bool IsUavName(const std::string& name);
 
 // An object of a UAV's map.
@@ -38,39 +38,41 @@ struct ObjectRef {
   friend auto operator<=>(const ObjectRef&, const ObjectRef&) = default;
 };
 
-// A UAV goes for an object; of two that do, the one with the higher bid.
+// A UAV claims an object; of two claims, the one with the higher bid counts.
 struct Claim {
   ObjectRef object;
-  double bid = 0;  // finite; rounded to a float on its way
+  double bid = 0;  // finite; sent as a float
 
   bool operator==(const Claim&) const = default;
 };
 
-// What a UAV's map consists of: an object that is not listed is not in it any more.
+// Contents of a UAV's map: an object that is not listed is not in it any more.
 struct Contents {
-  std::uint64_t version = 0;  // grows with every change; 0: nothing was told yet
-  Time now;                   // of the map, on the UAV's clock; no object is later
-  std::map<std::int64_t, std::uint64_t> objects;  // id, and the version that changed it last
+  std::uint64_t version = 0;  // grows with every change; 0: nothing was sent yet
+  Time now;                   // time of the map, on the UAV's clock; no object is later
+  std::map<std::int64_t, std::uint64_t> objects;  // id, and the version in which it last changed
 };
 
-// Of the map of 'uav', which need not be the sender: its contents, and some of its objects in the
-// state that the contents list.
+// A part of the map of 'uav', which need not be the sender: its contents, and some of its objects
+// in the state that the contents list.
 struct PartMessage {
   UavKey uav;
-  Duration age{};  // since the contents were told first, as far as the sender knows
+  Duration age{};  // time since the contents were first sent, as far as the sender knows
   Contents contents;
   std::vector<MappedObject> objects;
 };
 
-// What the sender has heard of a UAV; one of the lines is its own.
+// The sender's knowledge of a UAV; one of the lines is about itself.
 struct DigestLine {
   UavKey uav;
-  std::uint32_t beat = 0;     // digests that the UAV had sent, modulo 2^32: who lives counts on
-  std::uint64_t version = 0;  // of its contents
-  bool is_done = false;       // the UAV's map is its last: it has seen all that it will see
+  std::uint32_t beat = 0;     // number of digests that the UAV had sent, modulo 2^32: it grows
+                              // while the UAV lives
+  std::uint64_t version = 0;  // of the UAV's contents
+  bool is_done = false;       // the UAV's map is its last one
   std::optional<Claim> claim;
   std::vector<std::int64_t> missing;  // objects that the contents list and the sender lacks
-  int tries = 0;                      // digests since the sender knows that it lacks something
+  int tries = 0;                      // number of digests since the sender knows that it lacks
+                                      // something
 };
 using Digest = std::vector<DigestLine>;
 
@@ -79,7 +81,7 @@ struct TeamMessage {
   std::variant<Digest, PartMessage> body;
 };
 
-// Bounds of what is told and taken.
+// Limits of what is sent and accepted.
 inline constexpr std::size_t kMaxTeamMessage = 16384;  // bytes
 inline constexpr std::size_t kMaxUavs = 128;
 inline constexpr std::size_t kMaxToldObjects = 512;  // of one UAV
@@ -89,15 +91,15 @@ inline constexpr int kMaxTries = 255;
 
 std::vector<std::uint8_t> EncodeMessage(const TeamMessage& message);
 
-// Nothing for bytes that no EncodeMessage makes: of another format, cut off, too many, with numbers
-// that are not finite or have no meaning, with objects seen later than the map's own time.
+// Returns nothing for bytes that EncodeMessage never makes: another format, truncated, too many,
+// numbers that are not finite or have no meaning, objects seen later than the map's own time.
 std::optional<TeamMessage> ParseMessage(std::span<const std::uint8_t> bytes);
 
-// Bytes that the object takes in a message whose contents are of 'now'; two are the same when these
-// are.
+// Returns the object's bytes in a message whose contents have the time 'now'. Two objects are sent
+// as the same when their bytes are.
 std::vector<std::uint8_t> EncodeObject(const MappedObject& object, Time now);
 
-// The object as others will hear it: rounded. Nothing when it cannot be told.
+// Returns the object as others will hear it: rounded. Nothing when it cannot be sent.
 std::optional<MappedObject> AsTold(const MappedObject& object, Time now);
 
 }  // namespace kestrel

@@ -146,7 +146,7 @@ TEST(TeamMessage, NamesAreShortWords) {
   EXPECT_TRUE(IsUavName("uav-1_B.x"));
 }
 
-// RFC 4231, test case 1, with its key filled up by zeros, which change no HMAC.
+// RFC 4231, test case 1. Zeros fill its key up, which changes no HMAC.
 TEST(MessageSignature, IsHmacSha256) {
   TeamKey key{};
   std::fill_n(key.begin(), 20, 0x0b);

@@ -7,18 +7,18 @@
 namespace kestrel {
 
 struct TeamOptions {
-  // How often the own map is told, when it has changed, and how often a UAV tells what it has
-  // heard, which makes the others send it what it lacks. Less often where the rate is used up.
+  // Period of sending the own map, if it has changed, and of sending the digest, for which the
+  // others send what is missing. Longer where the rate is used up.
   double tell_period_s = 0.5;
   double digest_period_s = 0.25;
-  // What was told or heard so short a time ago is not told again; the link's delay to and fro.
+  // A part sent or heard more recently than this is not sent again; covers the link's round trip.
   double resend_s = 0.5;
-  // A UAV that was not heard of for so long is gone: what it claimed is free.
+  // A UAV of which nothing was heard for so long is gone: its claim is free.
   double silence_s = 5;
-  // Bytes that one UAV sends, at most, without the transport's own.
+  // Largest number of bytes that one UAV sends, without those of the transport.
   double rate_bytes_per_s = 9000;
-  // How far another UAV's world may be off before it was compared: error of its navigation,
-  // standard deviations per axis and of the heading.
+  // Prior for another UAV's world before it is compared: error of its navigation, standard
+  // deviations per axis and of the heading.
   double world_sigma_m = 1.5;
   double world_yaw_sigma_deg = 2;
 

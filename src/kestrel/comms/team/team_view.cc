@@ -8,14 +8,14 @@
 namespace kestrel {
 namespace {
 
-// What has to be added to times of the UAV's clock to get those of the clock that says 'now' at
-// 'local'.
+// Returns the difference to add to times of the UAV's clock for times of the clock that shows 'now'
+// at 'local'.
 Duration ShiftOf(const TeamMap::Part& part, Time local, Time now) {
   const Duration since_told = std::max(local - part.told_at, Duration::zero());
   return now - since_told - part.contents.now;
 }
 
-// What may move in a UAV's map, at 'now' and in the common world.
+// Returns the moving objects of a UAV's map, at 'now' and in the common world.
 std::vector<MappedObject> MovingObjects(const TeamMap::Part& part, Duration shift, Time now,
                                         const ObjectMotion& motion,
                                         const WorldAlignment& common_from_world) {
@@ -30,7 +30,8 @@ std::vector<MappedObject> MovingObjects(const TeamMap::Part& part, Duration shif
   return moving;
 }
 
-// Which objects of the view those of the UAV's map are; what stands is seen when they were.
+// Fills the index of the UAV's objects in the view; widens the time in which standing objects were
+// seen.
 void Index(const UavKey& uav, const TeamMap::Part& part, Duration shift,
            const std::vector<std::size_t>& standing, const std::vector<std::size_t>& moving,
            TeamView* view) {
@@ -46,7 +47,7 @@ void Index(const UavKey& uav, const TeamMap::Part& part, Duration shift,
   }
 }
 
-// To each claimed object the one who has it.
+// Finds the holder of each claimed object.
 void FindHolders(const TeamMember& member, Time local, TeamView* view) {
   view->holders.resize(view->objects.size());
   std::vector<double> bids(view->objects.size());
@@ -110,7 +111,7 @@ std::vector<TeamObject> OwnMap(const TeamView& view) {
     if (view.holders[i]) objects[i].holder = view.holders[i]->name;
   }
   for (const auto& [ref, i] : view.index) {
-    // Two starts of one UAV have one name.
+    // Two runs of one UAV have the same name.
     std::vector<std::string>& uavs = objects[i].uavs;
     if (uavs.empty() || uavs.back() != ref.uav.name) uavs.push_back(ref.uav.name);
   }
@@ -122,7 +123,7 @@ std::vector<TeamObject> CommonMap(const TeamMember& member, const TeamView& view
   std::vector<TeamObject> objects = OwnMap(view);
   const std::vector<MappedObject>& standing = fusion.standing();
   for (std::size_t i = 0; i < standing.size(); ++i) objects[i].object = standing[i];
-  std::vector<bool> is_found(objects.size());  // where it moves
+  std::vector<bool> is_found(objects.size());  // for objects that move
   for (const auto& [ref, i] : view.index) {
     if (i < standing.size()) continue;
     const MappedObject& told = member.map().Find(ref.uav)->objects.at(ref.id).object;
@@ -149,7 +150,7 @@ std::optional<std::size_t> ChooseObject(const TeamView& view, const Eigen::Vecto
   std::optional<std::size_t> chosen;
   for (const auto& [ref, i] : view.index) {
     if (view.holders[i] && view.holders[i] != member->self()) continue;
-    // A metre is as good as nothing: of objects that are near the value decides.
+    // The metre limits the weight of distance: among near objects the value decides.
     const double bid =
         ScoreOf(view.objects[i], model) / (1 + (view.objects[i].position() - position).norm());
     if (!(bid > 0) || (best && best->bid >= bid)) continue;

@@ -16,34 +16,34 @@
 
 namespace kestrel {
 
-// The team's map as one UAV sees it.
+// The team's map, seen by one UAV.
 struct TeamView {
-  // In the UAV's own world, on its own clock and, if they move, at the time for which the view was
-  // made; ids count from 1.
+  // In the UAV's own world, on its own clock; those that move at the time of the view. Ids count
+  // from 1.
   std::vector<MappedObject> objects;
-  std::map<ObjectRef, std::size_t> index;  // of the UAVs' objects in 'objects'
-  // Who goes for each of them: of those alive that claim it the highest bid, of equal ones the
-  // first by key.
+  std::map<ObjectRef, std::size_t> index;  // index in 'objects' of the UAVs' objects
+  // Holder of each object: the UAV that is alive and claims it with the highest bid; of equal bids
+  // the first by key.
   std::vector<std::optional<UavKey>> holders;
-  // From the worlds of the UAVs to the common one; not of those of which it is not known yet.
+  // Transforms from the UAVs' worlds to the common one, as far as they are known.
   std::map<UavKey, WorldAlignment> common_from_world;
 };
 
-// All UAVs' maps as one. 'fusion' is this member's own, which remembers what does not change.
+// Joins the maps of all UAVs. 'fusion' belongs to this member, and remembers what does not change.
 TeamView ViewTeam(const TeamMember& member, Time local, TeamFusion* fusion);
 
-// The objects of the view: in the UAV's own world and on its own clock.
+// Returns the objects of the view, in the UAV's own world and on its own clock.
 std::vector<TeamObject> OwnMap(const TeamView& view);
 
-// The objects of the view, which 'fusion' made, in the common world; their times mean nothing. All
-// that hold the same have the same to the last bit: what moves is where that UAV saw it that knows
-// it best.
+// Returns the objects of the view, which 'fusion' made, in the common world; their times mean
+// nothing. Members that hold the same get the same, to the last bit: a moving object is where the
+// UAV that knows it best saw it.
 std::vector<TeamObject> CommonMap(const TeamMember& member, const TeamView& view,
                                   const TeamFusion& fusion);
 
-// Chooses what the UAV at 'position' (in its own world) goes for, and claims it: the object with
-// the most value for its distance that nobody else holds. It keeps what it has until that is gone
-// or somebody bids more. The index in the view; nothing when there is no object left.
+// Chooses an object for the UAV at 'position' (in its own world), and claims it: the one with the
+// most value for its distance that nobody else holds. It keeps its object until that is gone or
+// somebody bids more. Returns the index in the view; nothing when no object is left.
 std::optional<std::size_t> ChooseObject(const TeamView& view, const Eigen::Vector3d& position,
                                         const ObjectModel& model, Time local, TeamMember* member);
 

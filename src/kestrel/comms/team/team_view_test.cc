@@ -16,8 +16,8 @@ using ::testing::Ne;
 using ::testing::SizeIs;
 using ::testing::UnorderedElementsAre;
 
-// A team over one field of 60, each with 40 of its objects and, unless 'bias_m' is 0, with a
-// navigation of its own that is off.
+// A team over one field of 60 objects; each UAV has 40 of them and, unless 'bias_m' is 0, a
+// navigation error of its own.
 struct FieldTeam {
   FieldTeam(int count, double bias_m, std::uint64_t seed) : team(seed) {
     Random random(seed);
@@ -90,7 +90,7 @@ TEST(TeamView, AllSeeTheFieldOnceEachInItsOwnWorld) {
   }
 }
 
-// What a UAV that lives and one that is gone say of a moving object is of different times.
+// A living UAV and one that is gone report a moving object at different times.
 TEST(TeamView, ObjectsAreAtTheTimeOfTheView) {
   SimulatedTeam team(1);
   team.Add({"a", 1});
@@ -111,7 +111,7 @@ TEST(TeamView, ObjectsAreAtTheTimeOfTheView) {
 struct Hunters : FieldTeam {
   explicit Hunters(std::uint64_t seed) : FieldTeam(5, 0, seed), holds(5) {}
 
-  // All choose, four times a second.
+  // All UAVs choose, four times a second.
   void Hunt(double seconds) {
     for (double t = 0; t < seconds; t += 0.25) {
       for (std::size_t i = 0; i < 5; ++i) {
@@ -127,7 +127,7 @@ struct Hunters : FieldTeam {
     }
   }
 
-  // UAVs that go for an object for which another goes too.
+  // Returns the number of UAVs that claim an object that another claims, too.
   int Rivals() const {
     int rivals = 0;
     for (std::size_t i = 0; i < 5; ++i) {
@@ -139,7 +139,7 @@ struct Hunters : FieldTeam {
   }
 
   std::vector<std::optional<Eigen::Vector3d>> holds;
-  double spacing_m = 20;  // from one UAV to the next
+  double spacing_m = 20;  // between neighbouring UAVs
 };
 
 TEST(ChooseObject, EachGoesForAnotherObject) {
@@ -167,7 +167,7 @@ TEST(ChooseObject, AllSeeWhoGoesForWhich) {
 TEST(ChooseObject, RivalsOfAPartitionAgreeAfterIt) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Hunters hunters(seed);
-    hunters.spacing_m = 1;  // all want the same
+    hunters.spacing_m = 1;  // all want the same object
     hunters.team.is_cut = [](std::size_t from, std::size_t to) { return (from < 2) != (to < 2); };
     hunters.Hunt(8);
     EXPECT_GT(hunters.Rivals(), 0) << seed;

@@ -15,7 +15,7 @@
 
 namespace kestrel {
 
-// A standing disc of one of five colours, at 'time'.
+// A standing disc of one of five colours, seen at 'time'.
 inline MappedObject TestDisc(std::int64_t id, const Eigen::Vector3d& position, Time time,
                              double sigma_m = 0.05) {
   MappedObject object;
@@ -29,11 +29,11 @@ inline MappedObject TestDisc(std::int64_t id, const Eigen::Vector3d& position, T
   return object;
 }
 
-// 'count' of them over 100 m, no two within 3 m; the same field for the same seed.
+// 'count' discs over 100 m, no two within 3 m; the same field for the same seed.
 inline std::vector<MappedObject> TestField(int count, Random* random, Time time = Time()) {
   std::vector<MappedObject> objects;
   while (static_cast<int>(objects.size()) < count) {
-    // Braces: drawn in this order by every compiler.
+    // Braces: every compiler draws in this order.
     const Eigen::Vector3d position{random->Uniform(0, 100), random->Uniform(0, 100), 0};
     const bool is_free = std::all_of(objects.begin(), objects.end(), [&](const auto& other) {
       return (other.position() - position).norm() > 3;
@@ -43,7 +43,7 @@ inline std::vector<MappedObject> TestField(int count, Random* random, Time time 
   return objects;
 }
 
-// All that is to be equal at UAVs that hold the same.
+// Returns as text all that must be equal at UAVs that hold the same.
 inline std::string TextOf(const TeamMap& map) {
   std::string text;
   for (const auto& [uav, part] : map.parts()) {
@@ -56,7 +56,7 @@ inline std::string TextOf(const TeamMap& map) {
   return text;
 }
 
-// A team over a radio that loses, delays and cuts, in simulated time.
+// A team over a radio that loses, delays and interrupts, in simulated time.
 class SimulatedTeam {
  public:
   struct Uav {
@@ -69,7 +69,7 @@ class SimulatedTeam {
 
   explicit SimulatedTeam(std::uint64_t seed) : random_(seed) {}
 
-  // The index of a new UAV; each has another clock.
+  // Adds a UAV, and returns its index; each has another clock.
   std::size_t Add(const UavKey& key, const std::optional<TeamKey>& secret = {}) {
     const auto offset = std::chrono::seconds(10 * std::ssize(uavs));
     uavs.push_back({std::make_unique<TeamMember>(key, TeamOptions(), secret), offset, 0, 0, {}});
@@ -83,7 +83,7 @@ class SimulatedTeam {
     for (; now < end; now += std::chrono::milliseconds(10)) Step();
   }
 
-  // How long (s) it takes until 'holds'; at most 'limit_s'.
+  // Returns the time (s) until 'holds'; at most 'limit_s'.
   double RunUntil(const std::function<bool()>& holds, double limit_s) {
     const Time start = now;
     while (!holds() && ToSeconds(now - start) < limit_s) {
@@ -93,7 +93,7 @@ class SimulatedTeam {
     return ToSeconds(now - start);
   }
 
-  // Whether all that are on hold the same, and nobody lacks anything.
+  // True when all running UAVs hold the same, and nobody lacks anything.
   bool AreEqual() const {
     std::optional<std::string> text;
     for (const Uav& uav : uavs) {
@@ -106,7 +106,7 @@ class SimulatedTeam {
     return true;
   }
 
-  // To all that hear the sender; also for strangers.
+  // Sends to all that hear the sender; strangers may send, too.
   void Broadcast(std::optional<std::size_t> from, std::span<const std::uint8_t> bytes) {
     for (std::size_t to = 0; to < uavs.size(); ++to) {
       if (from == to || (from && is_cut(*from, to)) || random_.Chance(loss)) continue;

@@ -22,17 +22,17 @@ using Landmarks = std::vector<Landmark>;
 constexpr std::size_t kMaxObjects = 40;
 constexpr std::size_t kMaxMatches = 150;
 constexpr double kGate = 16.3;        // squared Mahalanobis distance, 3 degrees of freedom
-constexpr double kSlack_m = 0.1;      // of a position beside its covariance: bias of a pass
+constexpr double kSlack_m = 0.1;      // allowed beside the covariance of a position: bias of a pass
 constexpr double kMaxShift_m = 0.3;   // by an error of the yaw
-constexpr double kMinBaseline_m = 3;  // between two objects that tell the yaw
+constexpr double kMinBaseline_m = 3;  // between two objects that determine the yaw
 
-// One object in both worlds, perhaps.
+// A possible match: one object in both worlds.
 struct Match {
   const MappedObject* object;
   const MappedObject* reference;
 };
 
-// The best known of those that stand.
+// Returns the best known of the standing objects.
 Landmarks FindLandmarks(const std::vector<MappedObject>& objects) {
   std::vector<std::pair<double, const MappedObject*>> standing;
   for (const MappedObject& object : objects) {
@@ -60,7 +60,7 @@ Eigen::Matrix3d Turn(double yaw) {
   return Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
 
-// How a point of the first world moves with translation and yaw.
+// Returns the derivative of a moved point of the first world by translation and yaw.
 Eigen::Matrix<double, 3, 4> JacobianAt(const WorldAlignment& alignment,
                                        const Eigen::Vector3d& point) {
   const Eigen::Vector3d lever = Turn(alignment.yaw) * (point - alignment.pivot);
@@ -76,7 +76,7 @@ Eigen::Matrix4d PriorCovariance(const WorldPrior& prior) {
   return variances.asDiagonal();
 }
 
-// Covariance of the difference of a match's two positions.
+// Returns the covariance of the difference of a match's two positions.
 Eigen::Matrix3d Noise(const Match& match) {
   Eigen::Matrix3d noise = match.object->covariance.topLeftCorner<3, 3>() +
                           match.reference->covariance.topLeftCorner<3, 3>();
@@ -84,9 +84,9 @@ Eigen::Matrix3d Noise(const Match& match) {
   return noise;
 }
 
-// Squared Mahalanobis distance, if it is within the gate.
+// Returns the squared Mahalanobis distance, if it is within the gate.
 std::optional<double> GatedDistance(const Eigen::Vector3d& residual, const Eigen::Matrix3d& noise) {
-  // No variance along any direction is above the trace: most need no solver.
+  // No variance along any direction is above the trace: most cases need no solver.
   if (residual.squaredNorm() > kGate * noise.trace()) return std::nullopt;
   const double distance = residual.dot(noise.llt().solve(residual));
   return distance <= kGate ? std::optional(distance) : std::nullopt;
@@ -96,7 +96,7 @@ Eigen::Vector3d Residual(const WorldAlignment& alignment, const Match& match) {
   return match.reference->position() - alignment * match.object->position();
 }
 
-// Those that may be the same by the prior, the nearest first.
+// Returns the pairs that may match by the prior, the nearest first.
 std::vector<Match> PossibleMatches(const Landmarks& objects, const Landmarks& reference,
                                    const WorldAlignment& unknown) {
   std::vector<std::pair<double, Match>> found;
@@ -118,7 +118,7 @@ std::vector<Match> PossibleMatches(const Landmarks& objects, const Landmarks& re
   return matches;
 }
 
-// The alignment that lays one pair of objects onto another, if their distances agree.
+// Returns the alignment that maps one pair of objects onto another, if their distances agree.
 std::optional<WorldAlignment> AlignmentOf(const Match& a, const Match& b,
                                           const WorldAlignment& unknown) {
   if (a.object == b.object || a.reference == b.reference) return std::nullopt;
@@ -141,12 +141,13 @@ std::optional<WorldAlignment> AlignmentOf(const Match& a, const Match& b,
   return alignment;
 }
 
-// The matches that agree with the alignment, each object in one of them only.
+// Returns the matches that agree with the alignment, each object in only one of them.
 std::vector<Match> Agreeing(const std::vector<Match>& matches, const WorldAlignment& alignment) {
   std::vector<std::pair<double, Match>> near;
   for (const Match& match : matches) {
     const Eigen::Vector3d residual = Residual(alignment, match);
-    // The yaw of two near objects says little far away; what is only loosely near does not count.
+    // The yaw from two near objects is uncertain far away; a match that is only loosely near does
+    // not count.
     const double lever = (match.object->position() - alignment.pivot).head<2>().norm();
     const double shift_m = std::min(std::sqrt(alignment.covariance(3, 3)) * lever, kMaxShift_m);
     Eigen::Matrix3d noise = Noise(match) + alignment.covariance.topLeftCorner<3, 3>();
@@ -166,7 +167,8 @@ std::vector<Match> Agreeing(const std::vector<Match>& matches, const WorldAlignm
   return agreeing;
 }
 
-// Least squares over the matches, from the alignment on, with the prior as a measurement.
+// Returns the least squares solution over the matches, from 'alignment' on, with the prior as a
+// measurement.
 WorldAlignment Refined(const std::vector<Match>& matches, const WorldPrior& prior,
                        WorldAlignment alignment) {
   const Eigen::Matrix4d prior_information = PriorCovariance(prior).inverse();
@@ -201,7 +203,7 @@ struct Consensus {
   std::vector<Match> matches;
 };
 
-// From the alignment of a pair to the least squares of all that agree, which may become more.
+// Iterates from a pair's alignment to the least squares over all that agree, whose number may grow.
 Consensus Grow(const std::vector<Match>& matches, const WorldPrior& prior, Consensus from) {
   constexpr int kMaxRounds = 4;
   for (int i = 0; i < kMaxRounds; ++i) {
@@ -214,14 +216,14 @@ Consensus Grow(const std::vector<Match>& matches, const WorldPrior& prior, Conse
   return from;
 }
 
-// Whether one alignment stands out, on which 'best' matches agree, where on another 'rival' of
-// other matches do: by more than equal patterns and chance account for.
+// True when one alignment stands out: 'best' matches agree on it, 'rival' of the other matches
+// agree on another one, and the difference is more than equal patterns and chance explain.
 bool StandsOut(std::size_t best, std::size_t rival) {
   return 2 * best >= 3 * rival && 2 * (best - rival) * (best - rival) >= 3 * rival;
 }
 
-// The alignment that most of the matches agree on; nothing where it does not stand out from others,
-// which pair objects otherwise.
+// Returns the alignment on which most matches agree; nothing where it does not stand out from
+// others, which pair the objects differently.
 std::optional<Consensus> FindConsensus(const std::vector<Match>& matches,
                                        const WorldAlignment& unknown, const WorldPrior& prior) {
   Consensus best;
@@ -229,7 +231,7 @@ std::optional<Consensus> FindConsensus(const std::vector<Match>& matches,
   std::vector<std::vector<Match>> votes;
   for (std::size_t i = 0; i < matches.size(); ++i) {
     for (std::size_t k = i + 1; k < matches.size(); ++k) {
-      // A pair of the best says what the best says.
+      // A pair from the best consensus would give the same alignment.
       if (is_in_best[i] && is_in_best[k]) continue;
       const auto alignment = AlignmentOf(matches[i], matches[k], unknown);
       if (!alignment) continue;
@@ -241,7 +243,7 @@ std::optional<Consensus> FindConsensus(const std::vector<Match>& matches,
       for (std::size_t m = 0; m < matches.size(); ++m) {
         is_in_best[m] = Contains(best.matches, matches[m]);
       }
-      // All others together are too few for a rival.
+      // All the other matches together are too few for a rival.
       if (StandsOut(best.matches.size(), matches.size() - best.matches.size())) return best;
     }
   }
@@ -294,7 +296,7 @@ void MoveToWorld(const WorldAlignment& alignment, MappedObject* object) {
   const auto jacobian = JacobianAt(alignment, object->position());
   const Eigen::Matrix3d turn = Turn(alignment.yaw);
   const Eigen::Vector3d position = alignment * Eigen::Vector3d(object->position());
-  const int size = object->may_move ? MappedObject::kStateSize : 3;  // of what is not zero
+  const int size = object->may_move ? MappedObject::kStateSize : 3;  // of the part that is not zero
   for (int i = 0; i < size; i += 3) {
     object->state.segment<3>(i) = (turn * object->state.segment<3>(i)).eval();
     for (int k = 0; k < size; k += 3) {

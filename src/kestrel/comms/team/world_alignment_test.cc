@@ -13,7 +13,7 @@ namespace {
 
 const WorldPrior kPrior{1.5, Radians(2)};
 
-// The field as seen by a UAV whose navigation is off.
+// Returns the field as seen by a UAV whose navigation is off.
 std::vector<MappedObject> SeenIn(const WorldAlignment& world, std::vector<MappedObject> objects,
                                  double sigma_m, Random* random) {
   for (MappedObject& object : objects) {
@@ -48,7 +48,7 @@ TEST(EstimateAlignment, FindsABiasWithItsCovariance) {
     const Eigen::Vector3d at_pivot = alignment * alignment.pivot - bias.Inverse() * alignment.pivot;
     squares += at_pivot.dot(alignment.covariance.topLeftCorner<3, 3>().llt().solve(at_pivot));
   }
-  EXPECT_LT(squares / (3 * found), 1.5);  // 1 when the covariance says what the errors are
+  EXPECT_LT(squares / (3 * found), 1.5);  // 1 when the covariance agrees with the errors
 }
 
 TEST(EstimateAlignment, IsNotSureOfTooLittle) {
@@ -57,12 +57,12 @@ TEST(EstimateAlignment, IsNotSureOfTooLittle) {
   const std::vector<MappedObject> two(field.begin(), field.begin() + 2);
   EXPECT_FALSE(EstimateAlignment(two, field, kPrior));
   EXPECT_FALSE(EstimateAlignment({}, field, kPrior));
-  // Other objects, which fit by chance at most.
+  // Other objects, which match by chance at most.
   Random other(4);
   EXPECT_FALSE(EstimateAlignment(TestField(60, &other), field, kPrior));
 }
 
-// A row of equal objects looks the same one further.
+// A row of equal objects looks the same when shifted by one.
 TEST(EstimateAlignment, IsNotSureWhereTwoFit) {
   std::vector<MappedObject> row;
   for (int i = 0; i < 5; ++i) row.push_back(TestDisc(5 * (i + 1), {3.5 * i, 0, 0}, Time()));
