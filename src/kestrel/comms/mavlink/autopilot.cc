@@ -200,7 +200,7 @@ bool Autopilot::HandlePose(const mavlink::Packet& packet, Time received) {
     TellPose(poses_.Handle(*attitude, received, &clock_, &pose), "attitude", pose);
   } else if (const auto position = packet.As<mavlink::LocalPositionNed>()) {
     const PoseFate fate = poses_.Handle(*position);
-    // By itself it makes no pose.
+    // A position alone makes no pose.
     TellPose(fate == PoseFate::kUsed ? PoseFate::kNone : fate, "position", pose);
   } else {
     return false;
@@ -258,15 +258,15 @@ bool Autopilot::HandleTruePose(const mavlink::Packet& packet, Time received) {
   return true;
 }
 
-// The time of a message that has none of its own, by when it came, which a link that delays as it
-// likes makes wrong: it was sent between the attitude before it and the next one.
+// Returns the time of a message without a stamp. Its arrival is wrong when the link's delay varies;
+// but it was sent between the attitude before it and the next one.
 Time Autopilot::BetweenAttitudes(Time guess) const {
   if (!newest_pose_ || options_.attitude_rate_hz == 0) return guess;
   const Duration period = DurationFromSeconds(1 / options_.attitude_rate_hz);
   return std::clamp(guess, *newest_pose_, *newest_pose_ + period);
 }
 
-// Messages that come seldom.
+// Messages that come rarely.
 void Autopilot::HandleStatus(const mavlink::Packet& packet, Time received) {
   const LandedState before = status_.landed();
   status_.Handle(packet, clock_.sync(), received);
@@ -276,7 +276,7 @@ void Autopilot::HandleStatus(const mavlink::Packet& packet, Time received) {
 }
 
 void Autopilot::CountLost(const mavlink::Packet& packet) {
-  constexpr std::uint8_t kLongestGap = 128;  // more is out of order
+  constexpr std::uint8_t kLongestGap = 128;  // a larger gap means out of order
   if (sequence_) {
     const auto gap = static_cast<std::uint8_t>(packet.sequence - *sequence_ - 1);
     if (gap < kLongestGap) counters_.lost_packets += gap;
@@ -284,7 +284,7 @@ void Autopilot::CountLost(const mavlink::Packet& packet) {
   sequence_ = packet.sequence;
 }
 
-// 0 is for everybody.
+// Target id 0 addresses everybody.
 bool Autopilot::IsForThis(std::uint8_t target_system, std::uint8_t target_component) const {
   return (target_system == 0 || target_system == connection_->system()) &&
          (target_component == 0 || target_component == connection_->component());
@@ -310,7 +310,7 @@ void Autopilot::HandleTimesync(const mavlink::Timesync& message, Time received) 
   }
 }
 
-// The autopilot's clock began anew, or was set.
+// The autopilot's clock has restarted, or was set.
 void Autopilot::Restart() {
   ++restarts_;
   clock_.Reset();
@@ -366,7 +366,7 @@ void Autopilot::WantStreams() {
   streams_.Want(mavlink::AttitudeQuaternion::kId, options_.attitude_rate_hz);
   streams_.Want(mavlink::LocalPositionNed::kId, options_.position_rate_hz);
   streams_.Want(mavlink::ExtendedSysState::kId, options_.landed_rate_hz);
-  // Not every vehicle has one.
+  // Not every vehicle has a range sensor.
   streams_.WantIfThere(mavlink::DistanceSensor::kId, options_.range_rate_hz);
   const bool is_px4 = kind_ == AutopilotKind::kPx4;
   streams_.WantIfThere(is_px4 ? mavlink::CurrentMode::kId : mavlink::Heartbeat::kId,
@@ -381,7 +381,7 @@ void Autopilot::WantStreams() {
   WantTimesync();
 }
 
-// PX4 trusts stamps after 500 answers, which takes it 50 s at the rate at which it asks by itself.
+// PX4 trusts stamps after 500 answers, which takes 50 s at the rate of its own requests.
 void Autopilot::WantTimesync() {
   constexpr int kTrusted = 600;
   constexpr double kHurry_hz = 100;
@@ -469,7 +469,7 @@ void Autopilot::TellEnding(const CommandRequests::Ending& ending) {
   }
 }
 
-// What is told once, when it is asked for.
+// Requests data that are sent once, on request.
 void Autopilot::SendQuestions(Time now) {
   constexpr int kQuick = 10;
   constexpr Duration kSlow = seconds(10);
@@ -500,7 +500,7 @@ void Autopilot::SendStreamRequest(const StreamRequests::Request& request) {
   });
 }
 
-// For an autopilot that does not know the message, or not the command.
+// For an autopilot that does not know the message or the command.
 void Autopilot::SendOldStreamRequest(bool is_attitude, double rate_hz) {
   if (is_attitude) SendInterval(mavlink::Attitude::kId, rate_hz);
   mavlink::RequestDataStream request;

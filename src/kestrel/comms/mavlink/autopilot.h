@@ -26,26 +26,26 @@
 namespace kestrel {
 
 struct AutopilotOptions {
-  // System of the autopilot; 0: the first that is heard.
+  // System of the autopilot; 0: the first one that is heard.
   int system_id = 0;
-  // How often the autopilot is asked to tell these; 0: as often as it does by itself.
+  // Rates that are requested from the autopilot; 0: its own default.
   double attitude_rate_hz = 100;
   double position_rate_hz = 50;
   double landed_rate_hz = 5;
   double range_rate_hz = 20;
   double status_rate_hz = 2;
-  // Where set-points depend on the mode it has to be told more often than the heartbeat does, once
-  // a second: by more heartbeats, and by CURRENT_MODE, which PX4 sends as soon as it changes.
+  // Set-points depend on the mode, which must then come more often than once a second with the
+  // heartbeat: by more heartbeats, and by CURRENT_MODE, which PX4 sends as soon as it changes.
   double mode_rate_hz = 0;
-  // Ask for the true pose, which only simulated vehicles know, and how often.
+  // Requests the true pose, which only simulated vehicles know, at this rate.
   bool wants_true_pose = false;
   double true_pose_rate_hz = 100;
   // After so long without a heartbeat the autopilot is away.
   double away_after_s = 3;
-  // After so long a position is too old to say where the vehicle is now.
+  // An older position does not tell where the vehicle is now.
   double position_age_s = 0.5;
-  // Heartbeats as a ground station's too: PX4 sends its texts to such only. It then also thinks
-  // that a ground station is there when there is none.
+  // Also sends heartbeats of a ground station: PX4 sends its texts only to ground stations. PX4
+  // then believes that a ground station is there even if there is none.
   bool poses_as_ground_station = false;
 
   template <class Self, class Visitor>
@@ -71,73 +71,77 @@ struct AutopilotOptions {
 };
 
 enum class AutopilotEventKind {
-  kHeard,              // there it is
+  kHeard,              // found
   kAway,               // no heartbeat any more
-  kBack,               // and there it is again
-  kRestarted,          // it began anew: its clock, and all that it was asked
+  kBack,               // heartbeats come again
+  kRestarted,          // it has restarted: its clock, and all requests are forgotten
   kModeChanged,        // mode, armed or landed state
-  kFailsafe,           // it says that it is in an emergency
-  kCommandAccepted,    // a request of this program; no proof that it is done
-  kCommandRefused,     // and why
-  kCommandUnanswered,  // however often it was sent
+  kFailsafe,           // it reports an emergency
+  kCommandAccepted,    // a request of this program; no proof that it is carried out
+  kCommandRefused,     // with the reason
+  kCommandUnanswered,  // after all repetitions
   kOtherAutopilot,     // another autopilot is on the link, and ignored
-  kIdClash,            // somebody else sends with this program's ids
-  kOwnIdIsAutopilots,  // this program's ids are the autopilot's: it will ignore all
-  kTargetEcho,         // somebody else sends landing targets
+  kIdClash,            // another program sends with this program's ids
+  kOwnIdIsAutopilots,  // this program's ids are the autopilot's: it will ignore every message
+  kTargetEcho,         // another program sends landing targets
   kNotFinite,          // an attitude or position is not finite
   kTimeBackwards,      // a message is older than the one before
-  kNoTimeSync,         // it does not answer TIMESYNC: its clock is known roughly
-  kSlowStream,         // it does not send as often as it was asked to
+  kNoTimeSync,         // it does not answer TIMESYNC: its clock is known only roughly
+  kSlowStream,         // it sends more slowly than requested
 };
 
-// Something that a pilot should know, in words. Each of those from kOtherAutopilot on is told once.
+// An event that a pilot should know, in words. Each kind from kOtherAutopilot on is reported once.
 struct AutopilotEvent {
   AutopilotEventKind kind;
   std::string text;
 };
 
-// Packets that were received and not used, and why.
+// Counts of received packets that were not used, by reason.
 struct AutopilotCounters {
-  std::uint64_t lost_packets = 0;  // of the autopilot, by its sequence
+  std::uint64_t lost_packets = 0;  // of the autopilot, by its sequence numbers
   std::uint64_t other_systems = 0;
   std::uint64_t own_ids = 0;
   std::uint64_t target_echoes = 0;
   std::uint64_t not_finite = 0;
   std::uint64_t backwards = 0;
-  std::uint64_t without_position = 0;  // attitudes for which no position is young enough
+  std::uint64_t without_position = 0;  // attitudes without a recent position
   std::uint64_t without_clock = 0;     // attitudes before the clock was known
 };
 
-// Which poses and words come of an autopilot. All are called in the thread that calls Handle.
+// Receives poses and texts of an autopilot. All functions are called in the thread that calls
+// Handle.
 struct AutopilotListener {
   // Body (FLU) in the world (ENU, origin of the autopilot's local frame), on the local clock. One
-  // for each attitude, with the position of that instant by the newest position and velocity.
+  // pose for each attitude, with the position of that instant from the newest position and
+  // velocity.
   std::function<void(const PoseSample&)> pose;
-  std::function<void(const PoseSample&)> true_pose;  // as above, of a simulated vehicle
+  std::function<void(const PoseSample&)> true_pose;  // as above, from a simulated vehicle
   std::function<void(const AutopilotEvent&)> event;
   std::function<void(std::uint8_t severity, std::string_view text)> text;  // STATUSTEXT
 };
 
-// The autopilot at the other end of a connection: finds it, keeps up with what it does, asks it for
-// what is needed, as often as is needed, and learns its clock. Driven by one thread:
+// The autopilot at the other end of a connection: finds it, follows its state, requests what is
+// needed as often as necessary, and learns its clock. Driven by one thread:
 //
-//   connection.Receive(timeout, [&](const auto& packet, Time time) { autopilot.Handle(packet,
-//   time); }); autopilot.Tick(Now());
+//   connection.Receive(timeout, [&](const auto& packet, Time time) {
+//     autopilot.Handle(packet, time);
+//   });
+//   autopilot.Tick(Now());
 //
-// Hostile bytes neither throw nor crash; nothing is allocated per message after the first seconds.
+// Malformed bytes neither throw nor crash; after the first seconds no message allocates.
 class Autopilot {
  public:
-  // 'connection' has to outlive this. Throws InputError when the options are not valid.
+  // 'connection' must outlive this. Throws InputError when the options are not valid.
   Autopilot(const AutopilotOptions& options, Connection* connection, AutopilotListener listener);
 
   void Handle(const mavlink::Packet& packet, Time received);
-  // Sends what is due: heartbeats, requests, questions of time. To be called every 10 ms or so.
+  // Sends what is due: heartbeats, requests, TIMESYNC. Call it about every 10 ms.
   void Tick(Time now);
 
-  // A heartbeat was heard lately.
+  // True when a heartbeat was heard recently.
   bool is_here() const { return is_here_; }
-  Time mode_told() const { return mode_told_; }  // by the newest heartbeat, or PX4's CURRENT_MODE
-  Time received() const { return received_; }    // the newest message
+  Time mode_told() const { return mode_told_; }  // newest heartbeat, or PX4's CURRENT_MODE
+  Time received() const { return received_; }    // time of the newest message
   AutopilotKind kind() const { return kind_; }
   std::uint8_t system() const { return system_; }
   std::uint8_t component() const { return component_; }
@@ -146,20 +150,20 @@ class Autopilot {
   bool is_landing_mode() const { return IsLandingMode(kind_, heartbeat_.custom_mode); }
   bool is_guided_mode() const { return IsGuidedMode(kind_, heartbeat_.custom_mode); }
   bool is_armed() const;
-  // It says that it is in an emergency, and does what it is set to do then.
+  // True when it reports an emergency and carries out its failsafe.
   bool is_in_failsafe() const;
   std::uint8_t vehicle_type() const { return heartbeat_.type; }  // MAV_TYPE
   bool is_multicopter() const { return IsMulticopter(heartbeat_.type); }
   LandedState landed_state() const { return status_.landed(); }
-  // What it says about itself, each where it was told.
+  // The autopilot's reports about itself, as far as they came.
   const AutopilotStatus& status() const { return status_; }
   std::optional<AutopilotVersion> version() const { return status_.version(); }
   std::optional<AutopilotRange> range() const { return status_.range(); }
   std::optional<GlobalPosition> origin() const { return status_.origin(); }  // of the local frame
   std::optional<GlobalPosition> home() const { return status_.home(); }
   std::optional<AutopilotBattery> battery() const { return status_.battery(); }
-  // Whether it trusts its own attitude, velocity and place; nothing: it does not say, or not for
-  // 'away_after_s' any more.
+  // True when the autopilot trusts its own attitude, velocity and position; nothing when it does
+  // not report this, or has not for 'away_after_s'.
   std::optional<bool> is_position_good(Time now) const;
 
   const TimeSync& time_sync() const { return clock_.sync(); }
@@ -170,20 +174,20 @@ class Autopilot {
   const AutopilotCounters& counters() const { return counters_; }
   int restarts() const { return restarts_; }
 
-  // Asks for this mode until it is answered, which an event tells; whether it was entered the mode
-  // tells. Given up at once when the autopilot goes to yet another mode, which somebody else wants
-  // then. False: an autopilot of this kind cannot be asked.
+  // Requests this mode until an answer comes, which an event reports; the reported mode shows
+  // whether it was entered. Stops at once when the autopilot enters another mode: somebody else
+  // wants that one. False: an autopilot of this kind cannot be asked.
   bool RequestMode(FlightMode mode);
   // Stops the motors at once, also in flight.
   void DisarmByForce();
-  // An answer to one of the two is awaited.
+  // True while the answer to one of the two is awaited.
   bool is_request_pending() const;
 
-  // Sets a parameter by its first name and in that one's unit (parameter_names.h), until the
-  // autopilot tells it back: parameter_writes() tells whether it did.
+  // Sets a parameter by its first name and in that name's unit (parameter_names.h). Repeats it
+  // until the autopilot reports the value back: parameter_writes() has the outcome.
   void SetParameter(std::string_view name, double value);
 
-  // A text for the ground station, in pieces of 50 characters where it is longer; 'severity' as
+  // Sends a text to the ground station, in pieces of 50 characters if it is longer. 'severity':
   // MAV_SEVERITY.
   void Announce(std::uint8_t severity, std::string_view text);
 
@@ -237,7 +241,7 @@ class Autopilot {
   std::optional<std::uint8_t> sequence_;
 
   ClockExchange clock_;
-  int jumps_ = 0;  // of the clock, that were seen
+  int jumps_ = 0;  // number of jumps of the clock that were seen
   AutopilotStatus status_;
   AutopilotPoses poses_;
   std::optional<Time> newest_pose_;
@@ -253,7 +257,7 @@ class Autopilot {
   std::uint16_t text_id_ = 0;
   AutopilotCounters counters_;
   int restarts_ = 0;
-  std::uint32_t told_ = 0;  // bits of kinds that are told once
+  std::uint32_t told_ = 0;  // one bit for each kind that is reported once
 };
 
 }  // namespace kestrel

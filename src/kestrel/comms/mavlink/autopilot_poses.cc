@@ -12,7 +12,7 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-// Signed, s; right over the wrap after 49 days.
+// Signed difference, s; correct across the wrap after 49 days.
 double SecondsBetween(std::uint32_t from_ms, std::uint32_t to_ms) {
   return 1e-3 * static_cast<std::int32_t>(to_ms - from_ms);
 }
@@ -30,8 +30,8 @@ bool IsRotation(const Quaterniond& rotation) {
 
 }  // namespace
 
-// Packets overtake each other by some milliseconds; several in a row that are older come from a
-// clock that began anew.
+// Packets overtake each other by some milliseconds; several older ones in a row come from a clock
+// that has restarted.
 PoseFate AutopilotPoses::CheckOrder(std::uint32_t boot_ms, StampOrder* order) {
   constexpr int kRestartAfter = 3;
   constexpr double kRestartBack_s = 1;
@@ -40,7 +40,7 @@ PoseFate AutopilotPoses::CheckOrder(std::uint32_t boot_ms, StampOrder* order) {
     return PoseFate::kUsed;
   }
   back_s_ = SecondsBetween(boot_ms, *order->newest_ms);
-  if (back_s_ == 0) return PoseFate::kNone;  // sent twice
+  if (back_s_ == 0) return PoseFate::kNone;  // a repetition
   order->backwards = back_s_ > kRestartBack_s ? order->backwards + 1 : 0;
   return order->backwards == kRestartAfter ? PoseFate::kRestarted : PoseFate::kBackwards;
 }
@@ -56,7 +56,7 @@ PoseFate AutopilotPoses::Handle(const mavlink::AttitudeQuaternion& message, Time
   return MakePose({message.time_boot_ms, rotation.normalized(), rate}, received, clock, pose);
 }
 
-// Of an autopilot that sends both, the quaternions are used.
+// If an autopilot sends both, only the quaternions are used.
 PoseFate AutopilotPoses::Handle(const mavlink::Attitude& message, Time received,
                                 ClockExchange* clock, PoseSample* pose) {
   constexpr double kQuaternionsEnd_s = 0.5;
@@ -98,7 +98,7 @@ PoseFate AutopilotPoses::MakePose(const AttitudeSample& sample, Time received, C
   return PoseFate::kUsed;
 }
 
-// SIM_STATE has no time of its own: it was sent when the fastest message would have had to be.
+// SIM_STATE has no time of its own: the fastest message that arrived at this time gives it.
 PoseFate TruePoseOf(const mavlink::SimState& message, AutopilotKind kind,
                     const GlobalPosition& origin, const TimeSync& clock, Time received,
                     PoseSample* pose) {

@@ -15,36 +15,36 @@
 
 namespace kestrel {
 
-// What became of a message that tells a pose, or a part of one.
+// Outcome of a message that carries a pose, or a part of one.
 enum class PoseFate {
   kUsed,
-  kNone,             // not needed: sent twice, or others of its kind are better
+  kNone,             // not needed: a repetition, or messages of another kind are better
   kNotFinite,        // an attitude or position is not finite
   kBackwards,        // it is older than the one before
-  kRestarted,        // several in a row are: the autopilot's clock began anew
+  kRestarted,        // several in a row are: the autopilot's clock has restarted
   kWithoutClock,     // the autopilot's clock is not known yet
-  kWithoutPosition,  // no position is young enough
+  kWithoutPosition,  // there is no recent position
 };
 
-// Makes poses of the messages of an autopilot: one for each attitude, with the position of that
-// instant by the newest position and velocity. Body (FLU) in the world (ENU, origin of the
+// Makes poses from the messages of an autopilot: one for each attitude, with the position of that
+// instant from the newest position and velocity. Body (FLU) in the world (ENU, origin of the
 // autopilot's local frame), on the local clock.
 class AutopilotPoses {
  public:
-  // 'position_age_s': an older position does not make a pose.
+  // 'position_age_s': an older position is not used for a pose.
   explicit AutopilotPoses(double position_age_s) : position_age_s_(position_age_s) {}
 
-  // 'pose' is set where the fate is kUsed. The clock learns from the stamps.
+  // Sets 'pose' when the result is kUsed. The clock learns from the stamps.
   PoseFate Handle(const mavlink::AttitudeQuaternion& message, Time received, ClockExchange* clock,
                   PoseSample* pose);
   PoseFate Handle(const mavlink::Attitude& message, Time received, ClockExchange* clock,
                   PoseSample* pose);
   PoseFate Handle(const mavlink::LocalPositionNed& message);
 
-  // The autopilot started again.
+  // The autopilot has restarted.
   void Reset() { *this = AutopilotPoses(position_age_s_); }
 
-  // By how much the last message that was kBackwards is older than the one before.
+  // Returns by how much the last kBackwards message was older than the one before, s.
   double back_s() const { return back_s_; }
 
  private:
@@ -58,7 +58,7 @@ class AutopilotPoses {
     Eigen::Quaterniond ned_from_frd;
     Eigen::Vector3d rate_in_frd;
   };
-  // Time stamps of one kind of message, which only rise unless the autopilot starts again.
+  // Time stamps of one kind of message: they increase unless the autopilot restarts.
   struct StampOrder {
     std::optional<std::uint32_t> newest_ms;
     int backwards = 0;  // in a row
@@ -77,8 +77,8 @@ class AutopilotPoses {
   double back_s_ = 0;
 };
 
-// The true pose, which simulated vehicles tell, in the world that has its origin at 'origin'.
-// 'pose' is set where the fate is kUsed.
+// Returns the true pose, which simulated vehicles report, in the world with its origin at 'origin'.
+// Sets 'pose' when the result is kUsed.
 PoseFate TruePoseOf(const mavlink::SimState& message, AutopilotKind kind,
                     const GlobalPosition& origin, const TimeSync& clock, Time received,
                     PoseSample* pose);

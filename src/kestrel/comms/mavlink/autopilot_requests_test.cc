@@ -121,7 +121,7 @@ TEST_F(AutopilotTest, AsksForAModeUntilItIsAnswered) {
   }
 }
 
-// Else the pilot, who takes over, would have the mode taken away again.
+// Otherwise a pilot who takes over would lose the mode again.
 TEST_F(AutopilotTest, DoesNotAskForAModeAnyMoreWhenThePilotTookAnother) {
   Start();
   Pass(1);

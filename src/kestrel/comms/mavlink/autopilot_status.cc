@@ -29,7 +29,7 @@ AutopilotVersion VersionOf(std::uint32_t number) {
           static_cast<int>(number >> 8 & 0xff)};
 }
 
-// Of an estimate that one can fly by; 'bad' are the flags that must not be there.
+// True for an estimate that is good enough for flight; none of the 'bad' flags may be set.
 bool IsGood(std::uint16_t flags, std::uint16_t bad) {
   constexpr std::uint16_t kNeeded =
       mavlink::kEstimatorAttitude | mavlink::kEstimatorVelocityHorizontal |
@@ -76,7 +76,7 @@ void AutopilotStatus::Handle(const mavlink::Packet& packet, const TimeSync& cloc
                                    mavlink::kEkfUninitialized | mavlink::kEkfGpsGlitching;
     estimator_ = {received, ekf->flags, IsGood(ekf->flags, kBad)};
   } else if (const auto status = packet.As<mavlink::EstimatorStatus>()) {
-    // PX4 is in the mode of constant position whenever it rests on the ground.
+    // PX4 is in constant position mode whenever it stands on the ground.
     estimator_ = {received, status->flags, IsGood(status->flags, mavlink::kEstimatorGpsGlitch)};
   } else if (const auto origin = packet.As<mavlink::GpsGlobalOrigin>()) {
     origin_ = {origin->latitude, origin->longitude, kMetres * origin->altitude};

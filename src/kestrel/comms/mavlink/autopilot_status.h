@@ -21,13 +21,13 @@ struct AutopilotVersion {
   int patch = 0;
 };
 
-// Distance to the ground below, by the autopilot's own sensor.
+// Distance to the ground below, measured by the autopilot's own sensor.
 struct AutopilotRange {
   Time time;
   double distance_m;
 };
 
-// Nothing: the autopilot does not measure it.
+// A value is nothing when the autopilot does not measure it.
 struct AutopilotBattery {
   std::optional<double> voltage_v;
   std::optional<double> current_a;
@@ -43,20 +43,20 @@ struct AutopilotSensors {
   std::uint32_t failed() const { return present & enabled & ~healthy; }
 };
 
-// What the autopilot thinks of its own estimate.
+// The autopilot's judgement of its own estimate.
 struct EstimatorHealth {
   Time received;
   std::uint16_t flags = 0;  // ESTIMATOR_STATUS_FLAGS, or EKF_STATUS_FLAGS of ArduPilot
-  bool is_good = false;     // attitude, velocity and place are known, and it trusts its GNSS
+  bool is_good = false;     // attitude, velocity and position are known, and it trusts its GNSS
 };
 
-// What an autopilot says about itself, seldom and by itself or when it is asked.
+// Reports of an autopilot about itself, which it sends rarely, by itself or on request.
 class AutopilotStatus {
  public:
-  // Any of its messages; others than those below are left alone.
+  // Takes any of its messages; ignores others than those below.
   void Handle(const mavlink::Packet& packet, const TimeSync& clock, Time received);
 
-  // The autopilot started again.
+  // The autopilot has restarted.
   void Reset() { *this = {}; }
 
   const std::optional<AutopilotVersion>& version() const { return version_; }
@@ -82,7 +82,8 @@ class AutopilotStatus {
   std::optional<EstimatorHealth> estimator_;
 };
 
-// Nanoseconds of a time in milliseconds, which was cut off: half of one is missing on average.
+// Returns the nanoseconds of a time in truncated milliseconds: half of one is added for the mean
+// loss.
 std::int64_t NanosecondsOfBoot(std::uint32_t boot_ms);
 
 }  // namespace kestrel

@@ -78,7 +78,7 @@ TEST_F(AutopilotTest, UsesEulerAnglesWhereThereAreNoQuaternions) {
   EXPECT_EQ(poses_.size(), 1u);  // quaternions come
   attitude.time_boot_ms = BootMs() + 700;
   Say(attitude);
-  EXPECT_EQ(poses_.size(), 1u);  // and the position is old by now
+  EXPECT_EQ(poses_.size(), 1u);  // the position is too old by now
   now_ += milliseconds(700);
   SayPose();
   poses_.clear();
@@ -105,7 +105,7 @@ TEST_F(AutopilotTest, AsksForItsStreamsAndAgainWhenTheyAreTakenAway) {
     return intervals_us_.count(mavlink::AttitudeQuaternion::kId);
   };
   ask_count();
-  EXPECT_EQ(ask_count(), 0u);  // it comes
+  EXPECT_EQ(ask_count(), 0u);  // it comes already
   Pass(7);
   EXPECT_EQ(intervals_us_.count(mavlink::AttitudeQuaternion::kId), 1u);
 }
@@ -295,7 +295,7 @@ TEST_F(AutopilotTest, KnowsWhetherItsEstimateIsGood) {
   Start();
   Pass(1);
   mavlink::EkfStatusReport report;
-  report.flags = 831;  // as ArduPilot tells it in flight
+  report.flags = 831;  // as ArduPilot reports it in flight
   Say(report);
   EXPECT_EQ(autopilot_->is_position_good(now_), true);
   report.flags = mavlink::kEkfUninitialized;
@@ -350,7 +350,7 @@ TEST_F(AutopilotTest, TellsTheTruePoseOfASimulation) {
   EXPECT_NEAR(ToSeconds(now_ - true_poses_[0].time), 0.002, 0.001);
 }
 
-// It has no time of its own, and a link that delays as it likes says little of it.
+// SIM_STATE has no time of its own, and on a link with varying delay its arrival says little.
 TEST_F(AutopilotTest, TheTruePoseOfASimulationIsOfTheAttitudesAroundIt) {
   AutopilotOptions options;
   options.wants_true_pose = true;
@@ -359,7 +359,7 @@ TEST_F(AutopilotTest, TheTruePoseOfASimulationIsOfTheAttitudesAroundIt) {
   Say(mavlink::GpsGlobalOrigin{-353632621, 1491652374, 584000});
   SayPose();
   ASSERT_EQ(poses_.size(), 1u);
-  now_ += milliseconds(500);  // on its way
+  now_ += milliseconds(500);  // time that it is on its way
   mavlink::SimState state;
   state.q1 = 1;
   state.lat_int = -353632621;
@@ -370,7 +370,7 @@ TEST_F(AutopilotTest, TheTruePoseOfASimulationIsOfTheAttitudesAroundIt) {
   EXPECT_LE(true_poses_[0].time, poses_[0].time + milliseconds(10));
 }
 
-// PX4's heartbeat comes once a second, whatever it is asked.
+// PX4's heartbeat comes once a second, whatever rate is requested.
 TEST_F(AutopilotTest, KnowsTheModeOfPx4BeforeTheNextHeartbeat) {
   kind_ = mavlink::kAutopilotPx4;
   mode_ = Px4CustomMode(6, 0);

@@ -29,7 +29,7 @@ std::optional<mavlink::Timesync> ClockExchange::Ask(Time now) {
 std::optional<mavlink::Timesync> ClockExchange::Handle(const mavlink::Timesync& message,
                                                        Time received) {
   if (message.tc1 != 0) {
-    // Answers to others' questions come here too.
+    // Answers to other programs' requests come here, too.
     auto* asked = std::find(asked_.begin(), asked_.end(), message.ts1);
     if (message.ts1 == 0 || asked == asked_.end()) return std::nullopt;
     *asked = 0;

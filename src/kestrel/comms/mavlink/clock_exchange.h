@@ -12,30 +12,32 @@
 
 namespace kestrel {
 
-// Questions and answers of TIMESYNC with an autopilot, which feed a TimeSync. The autopilot's own
-// questions are answered with what its own clock says, as it is known here: so every stamp that
-// goes to the autopilot is on its clock, whether it converts stamps by what it learns from the
-// answers (PX4, once it trusts them) or takes them as they are.
+// Requests and answers of TIMESYNC with an autopilot, which feed a TimeSync. The autopilot's own
+// requests are answered with its own clock's time, as it is known here. Every stamp to the
+// autopilot is therefore on its clock, whether it converts stamps by the answers (PX4, once it
+// trusts them) or takes them as they are.
 class ClockExchange {
  public:
   const TimeSync& sync() const { return sync_; }
 
-  // The clock is known from stamps alone.
+  // True when the clock is known from stamps alone.
   bool is_one_way() const { return sync_.is_known() && !was_answered_; }
 
-  // The question to send at 'now', when one is due: 20 per second during the first ten, then 10.
+  // Returns the request to send at 'now', if one is due: 20 per second for the first ten, then 10
+  // per second.
   std::optional<mavlink::Timesync> Ask(Time now);
 
-  // A TIMESYNC of the autopilot; the answer to send, when it is a question and the answer is known.
+  // Takes a TIMESYNC of the autopilot. Returns the answer to send, if it is a request and the
+  // answer is known.
   std::optional<mavlink::Timesync> Handle(const mavlink::Timesync& message, Time received);
 
-  // Another message said what the autopilot's clock showed as it was sent: all there is for an
-  // autopilot that does not know TIMESYNC.
+  // Takes the autopilot's clock from another message, at the time of its sending: the only source
+  // for an autopilot that does not know TIMESYNC.
   void HandleStamp(std::int64_t remote_ns, Time received);
 
   void Reset();
 
-  int answers() const { return answers_; }  // to the autopilot's questions since Reset()
+  int answers() const { return answers_; }  // to the autopilot's requests since Reset()
 
  private:
   static constexpr std::size_t kQuestions = 32;

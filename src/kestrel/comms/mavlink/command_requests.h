@@ -10,30 +10,30 @@
 
 namespace kestrel {
 
-// Commands whose answer matters: each is sent until the autopilot answers it. The answer is no
-// proof that it did it.
+// Commands whose answer matters: each is repeated until the autopilot answers it. The answer does
+// not prove that the command was carried out.
 class CommandRequests {
  public:
-  // How a command ended.
+  // The outcome of a command.
   struct Ending {
     mavlink::CommandLong command;
-    std::optional<std::uint8_t> result;  // MAV_RESULT; nothing: it was never answered
+    std::optional<std::uint8_t> result;  // MAV_RESULT; nothing: no answer ever came
 
     bool is_accepted() const;
   };
 
-  // Sends this from now on, in the place of an earlier one of the same number.
+  // Sends this command from now on, in place of an earlier one of the same number.
   void Want(const mavlink::CommandLong& command);
-  // No longer sends that one.
+  // Stops sending that command.
   void Drop(std::uint16_t command);
-  // It is on its way.
+  // True while the command is being sent.
   bool IsWanted(std::uint16_t command) const;
 
-  // An answer; how the command that it answers ended, if it did.
+  // Takes an answer. Returns the outcome of the command that it answers, if that has ended.
   std::optional<Ending> Handle(const mavlink::CommandAck& ack);
 
-  // The message to send at 'now'; nothing: none is due. 'ended' is set when the patience with one
-  // is over.
+  // Returns the message to send at 'now'; nothing when none is due. Sets 'ended' when a command is
+  // given up.
   std::optional<mavlink::CommandLong> Next(Time now, std::optional<Ending>* ended);
 
  private:

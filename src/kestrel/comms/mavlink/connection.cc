@@ -81,7 +81,7 @@ void Connection::Receive(Duration timeout, const Handler& handler) {
   for (int i = 0; i < kMaxReads && ReceiveOnce(i == 0 ? timeout : Duration::zero(), handler);) ++i;
 }
 
-// Whether something came.
+// True when something was received.
 bool Connection::ReceiveOnce(Duration timeout, const Handler& handler) {
   const std::size_t size = transport_->Receive(timeout, buffer_);
   if (size == 0) return false;
@@ -94,7 +94,8 @@ bool Connection::ReceiveOnce(Duration timeout, const Handler& handler) {
     if (tap_) tap_(packet.frame(), received);
     handler(packet, received);
   };
-  // A reference, because a function that captures this much does not fit into std::function.
+  // A reference, because a function that captures this much does not fit into std::function without
+  // allocation.
   const mavlink::PacketParser::Handler reference = std::ref(take);
   parser_.Parse(std::span(buffer_).first(size), reference);
   if (transport_->has_datagrams()) parser_.EndDatagram(reference);

@@ -23,11 +23,11 @@
 namespace kestrel {
 
 struct ConnectionOptions {
-  // Who this program is: 0 for the system is the autopilot's own, 1 until that is heard.
+  // Ids of this program. System 0: the autopilot's own, and 1 until it is heard.
   int system_id = 0;
   int component_id = 191;
-  // File with the key that packets are signed with, and without which none is believed; empty: not
-  // signed. What was signed last is kept in a file of this name and ".timestamp".
+  // File with the key for signing packets; packets without a signature by it are refused. Empty: no
+  // signing. The last timestamp used is kept in a file of this name with ".timestamp".
   std::string signing_key;
 
   template <class Self, class Visitor>
@@ -41,25 +41,25 @@ struct ConnectionOptions {
   std::vector<std::string> Validate() const;
 };
 
-// What went over a connection, since it was made.
+// Counts of a connection since it was made.
 struct ConnectionCounters {
-  std::uint64_t received = 0;          // packets that were handed on
-  std::uint64_t sent = 0;              // packets that the system took
-  std::uint64_t unsent = 0;            // that it did not: line full, or nobody there
-  std::uint64_t bad_checksums = 0;     // frames that were damaged
-  std::uint64_t garbage_bytes = 0;     // in no packet
-  std::uint64_t unsigned_packets = 0;  // refused by a signed connection, as are the next two
+  std::uint64_t received = 0;          // packets that were passed on
+  std::uint64_t sent = 0;              // packets that the system accepted
+  std::uint64_t unsent = 0;            // packets that it did not accept: line full, or nobody there
+  std::uint64_t bad_checksums = 0;     // damaged frames
+  std::uint64_t garbage_bytes = 0;     // bytes that belong to no packet
+  std::uint64_t unsigned_packets = 0;  // refused by a signed connection, like the next two
   std::uint64_t forged_packets = 0;
   std::uint64_t replayed_packets = 0;
 };
 
-// A line to an autopilot that carries messages: transport, parser, writer and signing in one. It
-// connects again by itself. One thread calls Receive; Send may be called by others meanwhile.
-// Neither waits for the other end, throws, or allocates.
+// A line to an autopilot that carries messages: transport, parser, writer and signing. It
+// reconnects by itself. One thread calls Receive; other threads may call Send meanwhile. Neither
+// waits for the other end, throws, or allocates.
 class Connection {
  public:
   using Handler = std::function<void(const mavlink::Packet&, Time received)>;
-  // Sees every frame that goes over the line, in the thread that sends or receives it.
+  // Receives every frame on the line, in the thread that sends or receives it.
   using Tap = std::function<void(std::span<const std::uint8_t> frame, Time time)>;
 
   // Throws InputError as ParseLinkUrl, OpenTransport and ReadSigningKey do.
@@ -72,11 +72,11 @@ class Connection {
     return SendFrame(writer_.Write(message, signing_.has_value()));
   }
 
-  // Waits at most 'timeout' for the other end to say something, and hands 'handler' the packets
-  // that are there. However much comes in, it returns soon after 'timeout'.
+  // Waits at most 'timeout' for data from the other end, and passes the packets to 'handler'.
+  // However much comes in, it returns soon after 'timeout'.
   void Receive(Duration timeout, const Handler& handler);
 
-  // Who this program is from now on (see ConnectionOptions::system_id).
+  // Sets the system id of this program (see ConnectionOptions::system_id).
   void SetSystem(std::uint8_t system);
   bool takes_system_of_autopilot() const { return takes_system_; }
   std::uint8_t system() const;
@@ -98,7 +98,7 @@ class Connection {
   Tap tap_;
   std::vector<std::uint8_t> buffer_;
   mavlink::PacketParser parser_;
-  mutable std::mutex send_mutex_;  // of the writer and the signing
+  mutable std::mutex send_mutex_;  // guards the writer and the signing
   mavlink::PacketWriter writer_;
   std::unique_ptr<TimestampFile> timestamp_file_;
   std::optional<mavlink::Signing> signing_;

@@ -45,7 +45,7 @@ std::string Url(const std::string& scheme, int port) {
   return scheme + "://127.0.0.1:" + std::to_string(port);
 }
 
-// Both ends speak until 'to' has heard 'count' heartbeats; how many it heard.
+// Both ends send until 'to' has heard 'count' heartbeats. Returns the number heard.
 int Heartbeats(Connection* from, Connection* to, int count) {
   int heard = 0;
   const auto ignore = [](const mavlink::Packet&, Time) {};
@@ -113,7 +113,7 @@ TEST(ConnectionTest, SaysThatThePortIsInUse) {
 TEST(ConnectionTest, SpeaksOverUdp) {
   const int port = FreeLoopbackPort();
   Connection in(Url("udpin", port), {});
-  EXPECT_FALSE(in.Send(mavlink::Heartbeat{}));  // nobody has spoken yet
+  EXPECT_FALSE(in.Send(mavlink::Heartbeat{}));  // nobody has sent to it yet
   EXPECT_EQ(in.counters().unsent, 1u);
   Connection out(Url("udpout", port), {});
   ExpectBothWays(&out, &in);
@@ -144,7 +144,7 @@ TEST(ConnectionTest, FindsAUdpAutopilotThatWasStartedAgain) {
 
 TEST(ConnectionTest, SpeaksOverTcpAndConnectsAgain) {
   const int port = FreeLoopbackPort();
-  Connection client(Url("tcpout", port), {});  // before there is a server
+  Connection client(Url("tcpout", port), {});  // opened before there is a server
   client.Receive(milliseconds(1), [](const mavlink::Packet&, Time) {});
   EXPECT_FALSE(client.Send(mavlink::Heartbeat{}));
   for (int i = 0; i < 2; ++i) {
@@ -171,7 +171,7 @@ TEST(ConnectionTest, DropsWhatTheLineDoesNotTake) {
   text.text.fill('x');
   for (int i = 0; i < 1'000'000 && client.counters().unsent < 1000; ++i) client.Send(text);
   EXPECT_GE(client.counters().unsent, 1000u);
-  // What is taken later is whole packets again.
+  // What is accepted later are complete packets again.
   int heard = 0;
   for (int i = 0; i < 100'000 && client.counters().unsent < 2000; ++i) {
     server.Receive(milliseconds(0), [&](const mavlink::Packet&, Time) { ++heard; });

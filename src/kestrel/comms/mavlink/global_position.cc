@@ -15,7 +15,7 @@ double EarthRadius(AutopilotKind kind) {
   return kind == AutopilotKind::kPx4 ? kPx4Radius_m : kArduPilotRadius_m;
 }
 
-// Of a circle of latitude, in the middle between two latitudes.
+// Relative size of the circle of latitude in the middle between two latitudes.
 double Shrinking(double latitude_e7, double other_e7) {
   return std::cos(kRadiansPerUnit * (latitude_e7 + other_e7) / 2);
 }

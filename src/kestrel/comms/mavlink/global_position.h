@@ -9,15 +9,16 @@
 
 namespace kestrel {
 
-// A place on the Earth as MAVLink tells it.
+// A position on the Earth in the form of MAVLink.
 struct GlobalPosition {
   std::int32_t latitude_e7 = 0;   // 1e-7 degrees
   std::int32_t longitude_e7 = 0;  // 1e-7 degrees
   double altitude_m = 0;          // above mean sea level
 };
 
-// 'position' in the world (ENU) that has its origin at 'origin', as this autopilot computes it:
-// each has a radius of the Earth of its own. To the millimetre up to a kilometre away.
+// Returns 'position' in the world (ENU) with its origin at 'origin', m, as this kind of autopilot
+// computes it: each uses another radius of the Earth. Exact to the millimetre up to a kilometre
+// away.
 Eigen::Vector3d LocalFromGlobal(AutopilotKind kind, const GlobalPosition& origin,
                                 const GlobalPosition& position);
 GlobalPosition GlobalFromLocal(AutopilotKind kind, const GlobalPosition& origin,

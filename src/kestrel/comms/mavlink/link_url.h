@@ -8,21 +8,21 @@ namespace kestrel {
 enum class LinkScheme {
   kSerial,             // serial://DEVICE:BAUD
   kSerialFlowControl,  // serial_flowcontrol://DEVICE:BAUD, with RTS and CTS
-  kUdpIn,              // udpin://ADDRESS:PORT, waits there for whoever speaks
-  kUdpOut,             // udpout://HOST:PORT, speaks first
+  kUdpIn,              // waits there for anyone who sends
+  kUdpOut,             // sends first
   kTcpIn,              // tcpin://ADDRESS:PORT, a server
   kTcpOut,             // tcpout://HOST:PORT, a client
 };
 
-// Where an autopilot is, as MAVSDK writes it. A numeric IPv6 address stands in brackets.
+// Address of an autopilot, in the notation of MAVSDK. A numeric IPv6 address is in brackets.
 struct LinkUrl {
-  std::string text;  // as it was given, for messages
+  std::string text;  // as given, for messages
   LinkScheme scheme = LinkScheme::kSerial;
   std::string place;  // device, host name or address
-  int number = 0;     // baud of a serial line, else the port
+  int number = 0;     // baud rate of a serial line, else the port
 };
 
-// Throws InputError when 'text' is none: says what is wrong with it and how it is written.
+// Throws InputError when 'text' is not valid: says what is wrong and how it is written.
 LinkUrl ParseLinkUrl(const std::string& text);
 
 }  // namespace kestrel

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-// Numbers of MAVLink's enums that Kestrel speaks in.
+// Values of MAVLink's enums that Kestrel uses.
 namespace kestrel::mavlink {
 
 // MAV_TYPE
@@ -26,7 +26,7 @@ inline constexpr std::uint8_t kTypeDecarotor = 35;
 
 // MAV_AUTOPILOT
 inline constexpr std::uint8_t kAutopilotArduPilot = 3;
-inline constexpr std::uint8_t kAutopilotInvalid = 8;  // the sender is no autopilot
+inline constexpr std::uint8_t kAutopilotInvalid = 8;  // the sender is not an autopilot
 inline constexpr std::uint8_t kAutopilotPx4 = 12;
 
 // MAV_COMPONENT
@@ -61,7 +61,7 @@ inline constexpr std::uint8_t kResultInProgress = 5;
 // Parameter 2 of kCommandArmDisarm: at once, also in flight.
 inline constexpr float kArmByForce = 21196;
 
-// POSITION_TARGET_TYPEMASK: what of a set-point is not to be used.
+// POSITION_TARGET_TYPEMASK: parts of a set-point to be ignored.
 inline constexpr std::uint16_t kIgnorePosition = 0x007;
 inline constexpr std::uint16_t kIgnoreVelocity = 0x038;
 inline constexpr std::uint16_t kIgnoreAcceleration = 0x1c0;
@@ -69,7 +69,7 @@ inline constexpr std::uint16_t kForceNotAcceleration = 0x200;
 inline constexpr std::uint16_t kIgnoreYaw = 0x400;
 inline constexpr std::uint16_t kIgnoreYawRate = 0x800;
 
-// ESTIMATOR_STATUS_FLAGS; of EKF_STATUS_FLAGS those with the same names are the same.
+// ESTIMATOR_STATUS_FLAGS; flags of EKF_STATUS_FLAGS with the same names have the same values.
 inline constexpr std::uint16_t kEstimatorAttitude = 1;
 inline constexpr std::uint16_t kEstimatorVelocityHorizontal = 2;
 inline constexpr std::uint16_t kEstimatorVelocityVertical = 4;

@@ -14,8 +14,8 @@
 
 #include "kestrel/comms/mavlink/crc.h"
 
-// Where the bytes of a message of messages.h are in its payload, and its CRC_EXTRA, by the rules of
-// mavlink.io/en/guide/serialization, at compile time.
+// Layout of a message of messages.h in its payload, and its CRC_EXTRA, by the rules of
+// mavlink.io/en/guide/serialization, computed at compile time.
 namespace kestrel::mavlink {
 
 static_assert(std::endian::native == std::endian::little, "the wire is little-endian");
@@ -24,10 +24,10 @@ inline constexpr std::size_t kMaxPayload = 255;
 
 struct FieldLayout {
   std::string_view name;
-  std::string_view type;  // as the XML calls that of an element
+  std::string_view type;  // type name of an element in the XML
   std::string_view unit;  // empty: none, or an enum
   std::size_t element_size = 0;
-  std::size_t count = 0;  // elements of an array, 0 when it is none
+  std::size_t count = 0;  // number of elements of an array; 0: not an array
   bool is_extension = false;
   std::size_t offset = 0;  // in the payload
 
@@ -64,7 +64,7 @@ struct MessageLayout {
 
   std::array<FieldLayout, kMaxFields> fields{};  // in the order of Visit
   std::size_t field_count = 0;
-  std::size_t base_length = 0;  // without extensions: all that MAVLink 1 knows
+  std::size_t base_length = 0;  // without extensions: the part that MAVLink 1 has
   std::size_t full_length = 0;
   std::uint8_t crc_extra = 0;
 };
@@ -91,8 +91,8 @@ class FieldCollector {
   bool in_extensions_ = false;
 };
 
-// On the wire the fields go by the size of their elements, the largest first; extensions follow as
-// they come. CRC_EXTRA is made of the message's name and of all about the fields before these.
+// On the wire the fields are sorted by the size of their elements, the largest first; extensions
+// follow in their order. CRC_EXTRA covers the message's name and all fields before the extensions.
 template <class Message>
 constexpr MessageLayout MakeLayout() {
   MessageLayout layout;
@@ -144,7 +144,7 @@ class PayloadWriter {
   std::uint8_t* payload_;
 };
 
-// Visitor that copies them back.
+// Visitor that copies the fields of a message out of a payload.
 class PayloadReader {
  public:
   PayloadReader(const MessageLayout& layout, const std::uint8_t* payload)
@@ -161,7 +161,7 @@ class PayloadReader {
   const std::uint8_t* payload_;
 };
 
-// Writes the payload and returns its length: without the zeros at its end, but at least one byte.
+// Writes the payload and returns its length: without trailing zeros, but at least one byte.
 template <class Message>
 std::size_t WritePayload(const Message& message, std::span<std::uint8_t, kMaxPayload> payload) {
   Message::Visit(message, PayloadWriter(kLayout<Message>, payload.data()));
@@ -170,8 +170,8 @@ std::size_t WritePayload(const Message& message, std::span<std::uint8_t, kMaxPay
   return length;
 }
 
-// The message of a payload: what is missing at its end is zero, what the description does not know
-// is left out.
+// Reads a message from a payload: a missing end is zero, and bytes beyond the description are
+// ignored.
 template <class Message>
 Message ReadPayload(std::span<const std::uint8_t> payload) {
   constexpr std::size_t kLength = kLayout<Message>.full_length;

@@ -31,7 +31,7 @@ constexpr bool IsSortedById() {
 }
 static_assert(IsSortedById());
 
-// What the autopilots' own headers, generated from the XML, have: a description that differs from
+// Values from the autopilots' own headers, generated from the XML: a description that differs from
 // theirs does not compile.
 template <class Message>
 constexpr bool Is(std::uint8_t crc_extra, std::size_t base_length, std::size_t full_length) {

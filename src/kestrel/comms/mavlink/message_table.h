@@ -9,7 +9,7 @@
 
 namespace kestrel::mavlink {
 
-// What is known of a message by its id.
+// Properties of a message.
 struct MessageInfo {
   std::uint32_t id;
   std::string_view name;
@@ -19,7 +19,7 @@ struct MessageInfo {
 // All messages of messages.h, by id.
 std::span<const MessageInfo> KnownMessages();
 
-// One of them; null when the id is not among them.
+// Returns one of them; null for an unknown id.
 const MessageInfo* FindMessage(std::uint32_t id);
 
 }  // namespace kestrel::mavlink

@@ -6,11 +6,11 @@
 #include <string_view>
 
 // The messages of MAVLink (dialects minimal, common, ardupilotmega, development) that Kestrel reads
-// or sends, with the protocol's own names, units and frames (NED, FRD): what they mean is in
-// mavlink.io/en/messages. Each is described once, by Visit: name, member (which has the type) and
-// unit of every field in the order of the XML, the extensions of MAVLink 2 after Extensions().
-// Everything about its bytes follows from that (message_layout.h), so that a description that is
-// not the autopilot's has another CRC_EXTRA and is never sent as if it were.
+// or sends, with the protocol's own names, units and frames (NED, FRD); mavlink.io/en/messages has
+// their meaning. Visit describes each message once: name, member (which has the type) and unit of
+// every field in the order of the XML; the extensions of MAVLink 2 follow after Extensions(). The
+// byte layout is derived from it (message_layout.h): a description that differs from the
+// autopilot's has another CRC_EXTRA, so that the autopilot rejects it.
 namespace kestrel::mavlink {
 
 struct Heartbeat {
@@ -137,7 +137,7 @@ struct ParamRequestList {
   }
 };
 
-// ArduPilot casts every value to float; PX4 puts the bits of an INT32 into it.
+// ArduPilot converts every value to float; PX4 puts the bits of an INT32 into it.
 struct ParamValue {
   static constexpr std::uint32_t kId = 22;
   static constexpr std::string_view kName = "PARAM_VALUE";
@@ -459,7 +459,7 @@ struct SetPositionTargetLocalNed {
   }
 };
 
-// Where a simulated vehicle truly is. ArduPilot scales lat and lon wrongly: lat_int and lon_int are
+// True pose of a simulated vehicle. ArduPilot scales lat and lon wrongly: lat_int and lon_int are
 // right.
 struct SimState {
   static constexpr std::uint32_t kId = 108;
@@ -517,8 +517,8 @@ struct SimState {
   }
 };
 
-// A request has tc1 = 0 and the asker's clock in ts1; an answer has the answerer's clock in tc1 and
-// ts1 as it was asked.
+// A request has tc1 = 0 and the requester's clock in ts1; an answer has the answerer's clock in tc1
+// and the request's ts1.
 struct Timesync {
   static constexpr std::uint32_t kId = 111;
   static constexpr std::string_view kName = "TIMESYNC";

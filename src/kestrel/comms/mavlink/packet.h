@@ -12,25 +12,25 @@
 namespace kestrel::mavlink {
 
 inline constexpr std::uint8_t kMagic1 = 0xfe;  // first byte of a frame of MAVLink 1
-inline constexpr std::uint8_t kMagic2 = 0xfd;  // and of MAVLink 2
+inline constexpr std::uint8_t kMagic2 = 0xfd;  // first byte of a frame of MAVLink 2
 inline constexpr std::size_t kHeaderSize1 = 6;
 inline constexpr std::size_t kHeaderSize2 = 10;
 inline constexpr std::size_t kChecksumSize = 2;
 inline constexpr std::size_t kSignatureSize = 13;
 inline constexpr std::size_t kMaxFrame =
     kHeaderSize2 + kMaxPayload + kChecksumSize + kSignatureSize;
-inline constexpr std::uint8_t kIncompatSigned = 0x01;  // the only incompatibility flag there is
+inline constexpr std::uint8_t kIncompatSigned = 0x01;  // the only incompatibility flag that exists
 
-// A message as it came over the wire.
+// A message as received.
 struct Packet {
   std::uint8_t system = 0;  // of the sender
   std::uint8_t component = 0;
   std::uint8_t sequence = 0;
   std::uint32_t id = 0;
-  bool is_known = false;   // in messages.h: only then the checksum could be verified
-  bool is_signed = false;  // carries a signature; whether it is a good one Signing says
+  bool is_known = false;   // in messages.h: the checksum of others cannot be verified
+  bool is_signed = false;  // carries a signature; Signing decides whether it is valid
   std::array<std::uint8_t, kMaxFrame> bytes{};
-  std::size_t size = 0;  // of the frame in 'bytes', from the magic to checksum or signature
+  std::size_t size = 0;  // of the frame in 'bytes', from the magic byte to checksum or signature
   std::size_t header_size = 0;
   std::size_t payload_size = 0;
 
@@ -39,7 +39,7 @@ struct Packet {
     return {bytes.data() + header_size, payload_size};
   }
 
-  // The message, when it is one of this type.
+  // Returns the message, if it is of this type.
   template <class Message>
   std::optional<Message> As() const {
     if (id != Message::kId) return std::nullopt;

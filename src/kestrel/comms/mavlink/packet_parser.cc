@@ -48,7 +48,7 @@ void PacketParser::Parse(std::span<const std::uint8_t> bytes, const Handler& han
 
 void PacketParser::EndDatagram(const Handler& handler) { ParseBuffered(true, handler); }
 
-// What stays in the buffer is less than a frame: there is room for the next bytes.
+// The rest in the buffer is less than a frame: there is room for the next bytes.
 void PacketParser::ParseBuffered(bool is_end, const Handler& handler) {
   while (begin_ < end_) {
     const Attempt attempt = TryFrame({buffer_.data() + begin_, end_ - begin_});
@@ -68,7 +68,7 @@ void PacketParser::Drop(std::size_t count) {
   skipped_bytes_ += count;
 }
 
-// The frame that begins with the first of these bytes, into packet_.
+// Parses the frame that begins with the first of these bytes into packet_.
 PacketParser::Attempt PacketParser::TryFrame(std::span<const std::uint8_t> bytes) {
   if (!IsMagic(bytes[0])) return Attempt::kNone;
   const bool is_version_2 = bytes[0] == kMagic2;
@@ -89,8 +89,8 @@ PacketParser::Attempt PacketParser::TryFrame(std::span<const std::uint8_t> bytes
   return attempt;
 }
 
-// The checksum of a message that is not known cannot be verified: it is believed where another
-// frame follows it, or nothing yet.
+// The checksum of an unknown message cannot be verified: the frame is accepted if another frame, or
+// nothing yet, follows it.
 PacketParser::Attempt PacketParser::TryChecksum(std::span<const std::uint8_t> frame,
                                                 std::uint8_t following) {
   const MessageInfo* info = FindMessage(packet_.id);

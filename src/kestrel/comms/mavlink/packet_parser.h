@@ -11,18 +11,17 @@
 
 namespace kestrel::mavlink {
 
-// Finds the packets of MAVLink 1 and 2 in a stream of bytes, whatever else is in it: after garbage,
-// a wrong checksum, or an incompatibility flag that nobody knows, it looks for the next frame from
-// the byte after the one where the last seemed to begin, so that no packet hides in a broken one.
-// Neither throws nor allocates.
+// Finds the packets of MAVLink 1 and 2 in a stream of any bytes. After garbage, a wrong checksum,
+// or an unknown incompatibility flag, it looks for the next frame from the byte after the beginning
+// of the last one, so that a broken frame hides no packet. Neither throws nor allocates.
 class PacketParser {
  public:
   using Handler = std::function<void(const Packet&)>;
 
-  // Hands every packet that these bytes complete to 'handler'.
+  // Passes every packet that these bytes complete to 'handler'.
   void Parse(std::span<const std::uint8_t> bytes, const Handler& handler);
 
-  // A datagram ended here: a frame that is not complete will never be.
+  // The datagram has ended: an incomplete frame will not be completed.
   void EndDatagram(const Handler& handler);
 
   std::uint64_t packets() const { return packets_; }              // found
@@ -38,7 +37,7 @@ class PacketParser {
 
   static constexpr std::size_t kBuffer = 4096;
   std::array<std::uint8_t, kBuffer> buffer_{};
-  std::size_t begin_ = 0;  // of what is in the buffer and not yet looked at
+  std::size_t begin_ = 0;  // beginning of the data in the buffer that were not yet examined
   std::size_t end_ = 0;
   Packet packet_;
   std::uint64_t packets_ = 0;

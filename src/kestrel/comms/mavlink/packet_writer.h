@@ -11,10 +11,10 @@
 
 namespace kestrel::mavlink {
 
-// Makes frames of MAVLink 2 of messages, with a sequence of its own. Neither throws nor allocates.
+// Makes MAVLink 2 frames from messages, with a sequence of its own. Neither throws nor allocates.
 class PacketWriter {
  public:
-  // Of whom the packets are: the system and the component.
+  // 'system' and 'component': ids of the sender.
   PacketWriter(std::uint8_t system, std::uint8_t component)
       : system_(system), component_(component) {}
 
@@ -22,8 +22,8 @@ class PacketWriter {
   std::uint8_t component() const { return component_; }
   void set_system(std::uint8_t system) { system_ = system; }
 
-  // The frame of a message; it is valid until the next one. With 'will_be_signed' it says so, and
-  // the signature has to be put behind it (see Signing::Sign).
+  // Returns the frame of a message, valid until the next call. 'will_be_signed': the frame
+  // announces a signature, which has to be appended (see Signing::Sign).
   template <class Message>
   std::span<std::uint8_t> Write(const Message& message, bool will_be_signed = false) {
     std::span<std::uint8_t, kMaxPayload> payload(frame_.data() + kHeaderSize2, kMaxPayload);
@@ -31,7 +31,7 @@ class PacketWriter {
                   will_be_signed);
   }
 
-  // All of the frame's memory, for the signature behind it.
+  // The frame's whole memory, with room for the signature.
   std::span<std::uint8_t, kMaxFrame> memory() { return frame_; }
 
  private:

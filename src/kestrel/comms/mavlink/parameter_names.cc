@@ -4,7 +4,7 @@
 namespace kestrel {
 namespace {
 
-// ArduCopter 4.7 went from centimetres and hundredths of a degree to metres and degrees.
+// ArduCopter 4.7 changed from centimetres and hundredths of a degree to metres and degrees.
 constexpr double kCenti = 0.01;
 
 constexpr std::array<ParameterNames, 19> kRenamed = {{

@@ -7,19 +7,20 @@
 
 namespace kestrel {
 
-// What a parameter is called by the releases of an autopilot. The first name is the one that
-// Kestrel uses for it, and in whose unit its value is told.
+// The names of a parameter in the releases of an autopilot. Kestrel uses the first name, and values
+// in its unit.
 struct ParameterNames {
   struct Name {
-    std::string_view name;  // empty: there is no more
-    double scale = 1;       // value of the first name's parameter over the value of this one
+    std::string_view name;  // empty: no further name
+    double scale = 1;       // value in the first name's unit divided by the value in this name's
+                            // unit
   };
   static constexpr std::size_t kMost = 3;
 
   std::array<Name, kMost> names;
 };
 
-// All names of 'name', which is the first one; only 'name' where there is no other.
+// Returns all names of 'name', which is a first name; only 'name' where there is no other.
 ParameterNames NamesOf(std::string_view name);
 
 }  // namespace kestrel

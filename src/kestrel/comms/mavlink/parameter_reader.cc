@@ -122,7 +122,7 @@ std::string_view ParameterReader::Next(Time now) {
     }
     const std::string_view name = parameter.names[parameter.asked].name;
     next_ = now + kBetween;
-    // All of its names one after the other, then the autopilot has time to answer.
+    // Requests all of its names one after the other, then gives the autopilot time to answer.
     if (++parameter.asked == parameter.names.size()) {
       parameter.asked = 0;
       ++parameter.requests;

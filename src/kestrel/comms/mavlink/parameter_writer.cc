@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kMaxWriteRequests = 5;
 
-// As far as a float of the wire can tell.
+// True when the values are equal within the precision of the wire's float.
 bool IsSameOnWire(double a, double b) {
   constexpr double kPrecision = 1e-6;
   return std::abs(a - b) <= kPrecision * std::max(1.0, std::abs(b));
@@ -58,7 +58,7 @@ void ParameterWriter::Handle(AutopilotKind kind, const mavlink::ParamValue& mess
   const std::string_view told = TextOf(message.param_id);
   for (Write& write : writes_) {
     const auto entry = reader.EntryOf(write.name);
-    // A value that comes before the first request answers nobody's.
+    // A value that comes before the first request is no answer.
     if (!entry || entry->name != told || write.requests == 0) continue;
     write.was_answered = true;
     if (IsSameOnWire(entry->scale * ParameterValue(kind, message), write.value)) {

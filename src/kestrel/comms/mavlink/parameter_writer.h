@@ -14,30 +14,29 @@
 namespace kestrel {
 
 enum class ParameterWriteState {
-  kNone,        // was not asked for
-  kWaiting,     // on its way
-  kWritten,     // the autopilot told the value back
-  kRefused,     // it told another value, however often it was asked
-  kUnanswered,  // it told nothing, or does not have the parameter
+  kNone,        // no write was requested
+  kWaiting,     // no confirmation yet
+  kWritten,     // the autopilot reported the value back
+  kRefused,     // it reported another value after every request
+  kUnanswered,  // it reported nothing, or does not have the parameter
 };
 const char* ToString(ParameterWriteState state);  // "written", "refused", ...
 
-// Writes parameters of an autopilot, again and again until it tells them back.
+// Writes parameters of an autopilot, and repeats each until the autopilot reports it back.
 class ParameterWriter {
  public:
-  // 'name' and 'value' as the reader has them: the first name, in that one's unit. The reader has
-  // to want it, or to know it: what type it is the autopilot has to tell first.
+  // 'name' and 'value' as in the reader: the first name, in that name's unit. The reader must have
+  // requested the parameter or know it: the autopilot has to report its type first.
   void Set(std::string_view name, double value);
 
   ParameterWriteState StateOf(std::string_view name) const;
-  // Nothing is on its way.
+  // True when no write is open.
   bool is_done() const;
 
   void Handle(AutopilotKind kind, const mavlink::ParamValue& message,
               const ParameterReader& reader);
 
-  // The message that is to be sent at 'now', without its target; nothing: none is. At most one per
-  // 50 ms.
+  // Returns the message to send at 'now', without its target; nothing: none. At most one per 50 ms.
   std::optional<mavlink::ParamSet> Next(AutopilotKind kind, const ParameterReader& reader,
                                         Time now);
 

@@ -54,7 +54,7 @@ bool Configure(const FileDescriptor& file, speed_t speed, bool has_flow_control)
   return tcsetattr(file.number(), TCSANOW, &settings) == 0;
 }
 
-// A non-blocking file of the device that nobody else has, or an error in errno.
+// Returns a non-blocking file of the device that no other program has, or an error in errno.
 FileDescriptor OpenDevice(const std::string& path) {
   FileDescriptor file(open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (file.is_open() && flock(file.number(), LOCK_EX | LOCK_NB) != 0) file.Close();

@@ -6,7 +6,7 @@
 namespace kestrel {
 
 // serial:// and serial_flowcontrol://: eight bits, no parity, one stop bit. The device is locked
-// against other programs that ask.
+// against other programs that respect locks.
 class SerialTransport : public StreamTransport {
  public:
   explicit SerialTransport(const LinkUrl& url);

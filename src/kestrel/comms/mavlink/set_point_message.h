@@ -11,15 +11,15 @@
 
 namespace kestrel {
 
-// A set-point as ArduPilot's GUIDED and PX4's OFFBOARD take it alike: velocity, acceleration and
-// heading in the frame LOCAL_NED, nothing else. Without a yaw the nose stays: ArduPilot, which
-// would turn it along the velocity, is told to turn with a rate of zero. 'boot_ms': now, on the
-// autopilot's clock.
+// Returns a set-point in a form that ArduPilot's GUIDED and PX4's OFFBOARD treat alike: velocity,
+// acceleration and heading in the frame LOCAL_NED, nothing else. Without a yaw the heading stays:
+// ArduPilot, which would turn along the velocity, gets a yaw rate of zero. 'boot_ms': the present
+// time on the autopilot's clock.
 mavlink::SetPositionTargetLocalNed SetPointMessage(const SetPoint& set_point, AutopilotKind kind,
                                                    std::uint8_t system, std::uint8_t component,
                                                    std::uint32_t boot_ms);
 
-// Sends it. False when it was not sent: it is not finite, or the line did not take it.
+// Sends it. False when it was not sent: it is not finite, or the line did not accept it.
 bool SendSetPoint(const SetPoint& set_point, const Autopilot& autopilot, Time now,
                   Connection* connection);
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kTimestampSize = 6;
 constexpr std::size_t kLinkSize = 1;
-constexpr std::uint8_t kLink = 0;  // number of the line among those of the sender
+constexpr std::uint8_t kLink = 0;  // number of the link among the sender's links
 
 int HexDigit(char digit) {
   if (digit >= '0' && digit <= '9') return digit - '0';

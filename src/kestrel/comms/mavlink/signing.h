@@ -13,26 +13,26 @@ namespace kestrel::mavlink {
 
 using SigningKey = std::array<std::uint8_t, 32>;
 
-// The key in a file: 32 bytes, or 64 hexadecimal digits. Throws InputError when there is no such
-// file, when others than its owner may read or write it, or when it holds no key; a key of zeros is
-// none, because it means "do not sign" to autopilots.
+// Reads the key from a file: 32 bytes, or 64 hexadecimal digits. Throws InputError when the file
+// does not exist, when others than its owner may read or write it, or when it holds no key; a key
+// of zeros is not valid, because it means "do not sign" to autopilots.
 SigningKey ReadSigningKey(const std::string& path);
 
-// Signs packets and judges those of others, as mavlink.io/en/guide/message_signing says. A signed
-// packet carries a timestamp that only ever rises, so that nobody can play it again. Neither throws
-// nor allocates after construction; not thread-safe.
+// Signs packets and verifies those of others, as in mavlink.io/en/guide/message_signing. A signed
+// packet carries a timestamp that only increases, which prevents replay. Neither throws nor
+// allocates after construction; not thread-safe.
 class Signing {
  public:
   // Ticks of 10 us since 2015.
   using Timestamp = std::uint64_t;
   static Timestamp TimestampOf(std::uint64_t unix_ns);
 
-  // 'stored': the last timestamp of the run before; this one's are later, even on a computer whose
-  // clock does not go while it is off.
+  // 'stored': last timestamp of the previous run. New timestamps are later, even if the computer's
+  // clock does not run while it is off.
   Signing(const SigningKey& key, Timestamp stored);
 
-  // Puts the signature behind a frame that says it will be signed; the frame with it. 'memory'
-  // begins with the frame. 'unix_ns': what the clock of the computer says.
+  // Appends the signature to a frame that announces one, and returns the signed frame. 'memory'
+  // begins with the frame. 'unix_ns': the computer's clock.
   std::span<const std::uint8_t> Sign(std::span<const std::uint8_t> frame,
                                      std::span<std::uint8_t, kMaxFrame> memory,
                                      std::uint64_t unix_ns);
@@ -40,12 +40,12 @@ class Signing {
   enum class Verdict {
     kGood,
     kUnsigned,
-    kForged,    // another key, or changed on its way
+    kForged,    // another key, or changed on the way
     kReplayed,  // not later than the last one of the same sender, or a minute behind this clock
   };
   Verdict Check(const Packet& packet, std::uint64_t unix_ns);
 
-  // The latest of all: what the next run has to begin after.
+  // The latest timestamp: the next run has to begin after it.
   Timestamp timestamp() const { return timestamp_; }
 
  private:

@@ -34,7 +34,7 @@ SocketAddress ResolveAddress(const LinkUrl& url) {
                                  gai_strerror(error)));
   }
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(list, &freeaddrinfo);
-  // "localhost" is ::1 first, where autopilots in simulation do not listen.
+  // "localhost" is ::1 first, on which simulated autopilots do not listen.
   const addrinfo* chosen = list;
   while (chosen != nullptr && chosen->ai_family != AF_INET) chosen = chosen->ai_next;
   if (chosen == nullptr) chosen = list;
@@ -47,8 +47,8 @@ SocketAddress ResolveAddress(const LinkUrl& url) {
 FileDescriptor BindSocket(const LinkUrl& url, const SocketAddress& address, int type) {
   FileDescriptor bound(socket(address.storage.ss_family, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!bound.is_open()) ThrowLinkError(url, "no socket", errno);
-  // A server's port is free again at once after the program ended; that of datagrams always is, and
-  // there the option would let two programs share it.
+  // With this option a server's port is free again at once after the program has ended. A datagram
+  // port always is, and there the option would let two programs share it.
   const int yes = 1;
   if (type == SOCK_STREAM) {
     setsockopt(bound.number(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));

@@ -19,19 +19,19 @@ struct SocketAddress {
   bool operator==(const SocketAddress& other) const;
 };
 
-// Address of the URL's host and port; asks the name service where the host is a name. Throws
-// InputError when nobody knows it.
+// Returns the address of the URL's host and port; a host name is looked up. Throws InputError when
+// it is not known.
 SocketAddress ResolveAddress(const LinkUrl& url);
 
-// A non-blocking socket (SOCK_DGRAM or SOCK_STREAM) that is bound to the address. Throws InputError
+// Returns a non-blocking socket (SOCK_DGRAM or SOCK_STREAM) bound to the address. Throws InputError
 // when the port is in use or the address is not this computer's.
 FileDescriptor BindSocket(const LinkUrl& url, const SocketAddress& address, int type);
 
-// A port of 127.0.0.1 that nobody uses now, for programs that talk to each other on one computer.
-// Throws InputError when there is none.
+// Returns a free port of 127.0.0.1, for programs that communicate on one computer. Throws
+// InputError when there is none.
 int FreeLoopbackPort();
 
-// InputError with the URL, what failed and the system's own words for 'error' (errno).
+// Throws InputError with the URL, what failed and the system's text for 'error' (errno).
 [[noreturn]] void ThrowLinkError(const LinkUrl& url, const char* what, int error);
 
 }  // namespace kestrel

@@ -8,35 +8,36 @@
 
 namespace kestrel {
 
-// How often the messages that are wanted of an autopilot come, and when it has to be asked again:
-// another ground station may ask for less, parameters on their way slow all down, a reboot forgets.
+// Measures the rates of the wanted messages and decides when to request them again: another ground
+// station may request a lower rate, a parameter transfer slows everything down, a restart forgets
+// all.
 class StreamRequests {
  public:
   struct Request {
     std::uint32_t id = 0;
     double rate_hz = 0;
-    int requests = 0;            // of this message before
-    bool is_unanswered = false;  // nothing ever came of those before: it may be an older autopilot
+    int requests = 0;            // number of earlier requests for this message
+    bool is_unanswered = false;  // no message ever came: it may be an older autopilot
   };
 
-  // Wants message 'id' 'rate_hz' times a second from now on, or no longer (0).
+  // Sets the wanted rate of message 'id' (Hz) from now on; 0: not wanted any more.
   void Want(std::uint32_t id, double rate_hz);
-  // The same for a message that the autopilot may not have: when it does not come it is soon asked
-  // for once a minute only.
+  // The same for a message that the autopilot may not have: if it does not come, it is soon
+  // requested only once a minute.
   void WantIfThere(std::uint32_t id, double rate_hz);
 
-  // Such a message was received.
+  // A message of this id was received.
   void Count(std::uint32_t id);
 
-  // A request that is due at 'now', one at a time; false: none is. To be called every second at
-  // least. A message that comes with less than 0.7 of its rate is asked for again, each second at
+  // Sets 'request' to a request that is due at 'now', one at a time; false: none is. Call it at
+  // least every second. A message at less than 0.7 of its rate is requested again, every second at
   // first and every five seconds later.
   bool Next(Time now, Request* request);
 
-  // The autopilot forgot all that it was asked.
+  // The autopilot has forgotten all requests.
   void AskAgain();
 
-  // Of the last whole second, or of the last four messages that should have come; 1/s.
+  // Rate over the last whole second, or over the last four messages that should have come; 1/s.
   double RateOf(std::uint32_t id) const;
 
  private:

@@ -89,8 +89,8 @@ void StreamTransport::AwaitConnection(Duration timeout) {
   }
 }
 
-// Somebody else called: an autopilot that was cut off without a goodbye, unless the one that is
-// there still speaks.
+// Somebody else has connected. It is an autopilot that was cut off without closing the line, unless
+// the present one is still sending.
 void StreamTransport::Replace() {
   constexpr Duration kSilence = std::chrono::seconds(2);
   Line line = Open();
@@ -101,7 +101,7 @@ ssize_t StreamTransport::Write(int file, std::span<const std::uint8_t> bytes) {
   return send(file, bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
-// Sends what is left of the frame before; true when nothing is left.
+// Sends the rest of the previous frame; true when nothing is left.
 bool StreamTransport::Flush() {
   while (rest_begin_ < rest_end_) {
     const ssize_t size =

@@ -12,7 +12,7 @@
 
 namespace kestrel {
 
-// Lines without datagrams: what they have in common. How one is opened its heirs say.
+// Common part of lines without datagrams. Subclasses say how a line is opened.
 class StreamTransport : public Transport {
  public:
   std::size_t Receive(Duration timeout, std::span<std::uint8_t> buffer) override;
@@ -23,14 +23,14 @@ class StreamTransport : public Transport {
  protected:
   struct Line {
     FileDescriptor file;
-    bool is_connecting = false;  // it is ready as soon as it can be written to
+    bool is_connecting = false;  // it is ready when it can be written to
   };
 
-  // A line, or one without a file where that is not possible now. Does not block.
+  // Returns a line, or one without a file while none can be opened. Does not block.
   virtual Line Open() = 0;
-  // Where new lines arrive by themselves; -1: they have to be opened again and again.
+  // File on which new lines arrive by themselves; -1: lines have to be opened again.
   virtual int listener() const { return -1; }
-  // As write() of the system, but never with a signal.
+  // As write() of the system, but never raises a signal.
   virtual ssize_t Write(int file, std::span<const std::uint8_t> bytes);
 
   void Use(Line line);
@@ -42,14 +42,14 @@ class StreamTransport : public Transport {
   void Close();
   bool Flush();
 
-  FileDescriptor file_;  // changed by the thread that receives only, under the lock
+  FileDescriptor file_;  // changed only by the receiving thread, under the lock
   std::atomic<bool> is_connected_ = false;
-  std::atomic<bool> is_broken_ = false;  // a sender found out
+  std::atomic<bool> is_broken_ = false;  // noticed by a sender
   Time heard_{};
   Time next_attempt_{};
   Duration backoff_ = kFirstBackoff;
-  std::mutex mutex_;  // of the file against senders, and of what follows
-  // The part of a frame that the system did not take: the next frame goes behind it.
+  std::mutex mutex_;  // guards the file against senders, and what follows
+  // The part of a frame that the system did not accept: it is sent before the next frame.
   std::array<std::uint8_t, mavlink::kMaxFrame> rest_{};
   std::size_t rest_begin_ = 0;
   std::size_t rest_end_ = 0;

@@ -17,14 +17,14 @@ namespace {
 
 using Quaternion = std::array<float, 4>;  // w, x, y, z
 
-// Of the two that are the same rotation the one with w >= 0.
+// Of the two quaternions of one rotation, the one with w >= 0 is sent.
 Quaternion ToWire(const Eigen::Quaterniond& rotation) {
   const double sign = rotation.w() < 0 ? -1 : 1;
   return {static_cast<float>(sign * rotation.w()), static_cast<float>(sign * rotation.x()),
           static_cast<float>(sign * rotation.y()), static_cast<float>(sign * rotation.z())};
 }
 
-// NED from the target's own frame: forward, right, down.
+// Rotation to NED from the target's own frame: forward, right, down.
 Eigen::Quaterniond NedFromTarget(const TargetReport& report) {
   const double heading = std::numbers::pi / 2 - report.yaw.value_or(std::numbers::pi / 2);
   return Eigen::Quaterniond(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()));
@@ -36,7 +36,7 @@ Eigen::Quaterniond NedFromBody(const TargetReport& report) {
 
 float ToFloat(double value) { return static_cast<float>(value); }
 
-// What LANDING_TARGET says in both frames alike.
+// Makes the part of LANDING_TARGET that is the same in both frames.
 mavlink::LandingTarget MakeLandingTarget(const TargetReport& report, std::uint64_t stamp_us,
                                          std::uint8_t frame, const Eigen::Vector3d& position,
                                          const Eigen::Quaterniond& rotation) {
@@ -59,7 +59,7 @@ mavlink::LandingTarget MakeLandingTarget(const TargetReport& report, std::uint64
   return message;
 }
 
-// The report's time on the autopilot's clock, us; nothing when that clock is not known.
+// Returns the report's time on the autopilot's clock, us; nothing when that clock is not known.
 std::optional<std::uint64_t> StampOf(const Autopilot& autopilot, Time time) {
   if (!autopilot.time_sync().is_known()) return std::nullopt;
   constexpr std::int64_t kNsPerUs = 1000;
@@ -132,7 +132,7 @@ mavlink::TargetRelative TargetRelativeForPx4(const TargetReport& report, std::ui
   message.yaw_std = ToFloat(report.yaw ? report.yaw_sigma : std::numbers::pi);
   message.q_target = ToWire(NedFromBody(report).conjugate() * NedFromTarget(report));
   message.q_sensor = ToWire(NedFromBody(report));
-  // What PX4 was seen to take; it knows no other kind of vision.
+  // PX4 was seen to accept this type; it knows no other type of vision.
   message.type = mavlink::kTargetTypeVisionFiducial;
   return message;
 }

@@ -17,22 +17,22 @@
 
 namespace kestrel {
 
-// How an autopilot is told of a landing target.
+// Form in which a landing target is reported to an autopilot.
 enum class LinkProfile {
-  kArduPilot,  // LANDING_TARGET relative to the body: all that ArduPilot takes
-  kPx4,        // LANDING_TARGET as a place in the local frame: all that PX4 takes without the next
+  kArduPilot,  // LANDING_TARGET relative to the body: the only form that ArduPilot accepts
+  kPx4,        // LANDING_TARGET as a place in the local frame: the only form for PX4 without VTE_EN
   kPx4Vte,     // TARGET_RELATIVE with its uncertainty, for PX4's vision target estimator (VTE_EN)
 };
 const char* ToString(LinkProfile profile);  // "ardupilot", "px4", "px4-vte"
 
-// Of a name as above. Throws InputError when it is none.
+// Parses a name as above. Throws InputError for any other.
 LinkProfile ParseLinkProfile(const std::string& name);
 
-// What suits an autopilot of this kind: kPx4 for PX4, kArduPilot for all others.
+// Returns the profile for an autopilot of this kind: kPx4 for PX4, kArduPilot for all others.
 LinkProfile ProfileFor(AutopilotKind kind);
 
-// Where the target and the UAV are at an instant, mostly a predicted one: when the autopilot will
-// use it.
+// Target and UAV at an instant, usually a predicted one: the time at which the autopilot uses the
+// report.
 struct TargetReport {
   Time time;                       // local clock
   RigidTransform world_from_body;  // UAV (FLU) in the world (ENU)
@@ -41,28 +41,29 @@ struct TargetReport {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of the position relative to the UAV, m^2
   std::optional<double> yaw = std::nullopt;  // of the target in the world, rad from east to north
   double yaw_sigma = 0;                      // rad
-  double size_m = 0;                         // across the pattern; 0: not known
+  double size_m = 0;                         // diameter of the pattern; 0: not known
 
   Eigen::Vector3d position_in_body() const { return world_from_body.Inverse() * position_in_world; }
 };
 
-// The messages. 'stamp_us' is the report's time on the autopilot's clock (see TimeSync::ToRemote),
-// in us; 0 where that is not known.
+// Make the messages. 'stamp_us' is the report's time on the autopilot's clock (see
+// TimeSync::ToRemote), in us; 0 where that is not known.
 mavlink::LandingTarget LandingTargetForArduPilot(const TargetReport& report,
                                                  std::uint64_t stamp_us);
 mavlink::LandingTarget LandingTargetForPx4(const TargetReport& report, std::uint64_t stamp_us);
 mavlink::TargetRelative TargetRelativeForPx4(const TargetReport& report, std::uint64_t stamp_us);
 
-// What a rangefinder under the UAV would measure to the plane of the target; nothing when that is
-// not below, or beyond 'max_m'. 'boot_ms': the report's time on the autopilot's clock.
+// Returns the distance that a rangefinder under the UAV would measure to the target's plane;
+// nothing when the plane is not below, or beyond 'max_m'. 'boot_ms': the report's time on the
+// autopilot's clock.
 std::optional<mavlink::DistanceSensor> DistanceSensorOf(const TargetReport& report, double max_m,
                                                         std::uint32_t boot_ms);
 
-// Where the target is on the Earth, for follow modes.
+// Returns the target's position on the Earth, for follow modes.
 mavlink::FollowTarget FollowTargetOf(const TargetReport& report, AutopilotKind kind,
                                      const GlobalPosition& origin, std::uint64_t boot_ms);
 
-// Which messages are sent beside that of the profile.
+// Messages that are sent beside that of the profile.
 struct TargetMessageOptions {
   bool sends_distance = false;
   double max_distance_m = 40;
@@ -79,10 +80,10 @@ struct TargetMessageOptions {
   std::vector<std::string> Validate() const;
 };
 
-// Sends what the profile says of the report, and what the options say. False when the target's
-// message was not sent: the line did not take it, or kPx4Vte does not know the autopilot's clock
-// yet. PX4's estimator refuses the future: a report of kPx4Vte is to be of 'now' at the latest, a
-// later one is stamped with 'now'.
+// Sends the profile's message for the report, and those of the options. False when the target's
+// message was not sent: the line did not accept it, or kPx4Vte does not know the autopilot's clock
+// yet. PX4's estimator refuses times in the future: with kPx4Vte a report should not be later than
+// 'now'; a later one is stamped with 'now'.
 bool SendTarget(LinkProfile profile, const TargetMessageOptions& options,
                 const TargetReport& report, const Autopilot& autopilot, Time now,
                 Connection* connection);

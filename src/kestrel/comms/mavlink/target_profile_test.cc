@@ -15,8 +15,8 @@ namespace {
 
 constexpr float kTolerance = 1e-5f;
 
-// A UAV 5 m above the ground that looks north; the target is 2 m north, 1 m east of it on a board
-// of 1 m, turned to the east.
+// A UAV 5 m above the ground that heads north. The target is 2 m north and 1 m east of it on a
+// board of 1 m, and heads east.
 TargetReport Report() {
   TargetReport report;
   report.time = TimeFromNanoseconds(1'000'000'000);
@@ -85,7 +85,7 @@ TEST(TargetProfileTest, TellsPx4sEstimatorTheUncertainty) {
   EXPECT_NEAR(message.pos_std[1], 0.1, kTolerance);
   EXPECT_NEAR(message.pos_std[2], 0.03, kTolerance);
   EXPECT_NEAR(message.yaw_std, 0.1, kTolerance);
-  EXPECT_NEAR(message.q_sensor[0], 1, kTolerance);  // the body looks north
+  EXPECT_NEAR(message.q_sensor[0], 1, kTolerance);  // the body heads north
 }
 
 TEST(TargetProfileTest, MeasuresTheDistanceDown) {

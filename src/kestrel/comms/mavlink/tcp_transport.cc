@@ -7,7 +7,7 @@
 namespace kestrel {
 namespace {
 
-// A message is sent at once: the next one is no reason to wait.
+// Sends every message at once, without waiting for the next one.
 void SendAtOnce(const FileDescriptor& file) {
   const int yes = 1;
   setsockopt(file.number(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof(yes));

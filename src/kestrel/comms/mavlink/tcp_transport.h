@@ -6,7 +6,7 @@
 
 namespace kestrel {
 
-// tcpout://
+// tcpout://, a client.
 class TcpClient : public StreamTransport {
  public:
   explicit TcpClient(const LinkUrl& url) : server_(ResolveAddress(url)) {}

@@ -19,8 +19,8 @@
 
 namespace kestrel {
 
-// An autopilot as a table of what it says, with a clock of its own, at the other end of a line that
-// takes 2 ms each way. Time is simulated.
+// A scripted autopilot with a clock of its own, at the other end of a line that takes 2 ms each
+// way. Time is simulated.
 class AutopilotTest : public testing::Test {
  protected:
   void Start(const AutopilotOptions& options = {}, const ConnectionOptions& connection = {}) {
@@ -37,7 +37,7 @@ class AutopilotTest : public testing::Test {
             [this](std::uint8_t, std::string_view text) { texts_.emplace_back(text); }});
   }
 
-  // What Kestrel sends to it.
+  // Receives Kestrel's packets.
   void Hear(const mavlink::Packet& packet) {
     ++heard_[packet.id];
     last_heard_[packet.id] = packet;
@@ -71,7 +71,7 @@ class AutopilotTest : public testing::Test {
     Say(mavlink::Heartbeat{mavlink::kTypeQuadrotor, autopilot, mavlink::kModeFlagArmed, mode, 4,
                            3});
   }
-  // Attitude and position: at 3 m north, 1 m east, 5 m up, going 2 m/s east, turned to the east.
+  // Sends attitude and position: 3 m north, 1 m east, 5 m up, moving at 2 m/s east, heading east.
   void SayPose() {
     mavlink::LocalPositionNed position;
     position.time_boot_ms = BootMs();
@@ -92,7 +92,7 @@ class AutopilotTest : public testing::Test {
     return attitude;
   }
 
-  // Time goes on, in steps of 10 ms; what is due is sent, TIMESYNC is answered.
+  // Time passes in steps of 10 ms; what is due is sent, TIMESYNC is answered.
   void Pass(double seconds, bool has_heartbeat = true) {
     for (int i = 0; i < std::lround(100 * seconds); ++i) {
       now_ += std::chrono::milliseconds(10);

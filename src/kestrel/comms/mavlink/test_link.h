@@ -7,7 +7,7 @@
 
 namespace kestrel::mavlink {
 
-// The bytes that pairs of hexadecimal digits stand for.
+// Returns the bytes given by pairs of hexadecimal digits.
 inline std::vector<std::uint8_t> BytesOfHex(const std::string& digits) {
   std::vector<std::uint8_t> bytes;
   for (std::size_t i = 0; i + 1 < digits.size(); i += 2) {

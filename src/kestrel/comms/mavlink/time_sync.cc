@@ -10,26 +10,26 @@ namespace {
 
 constexpr double kCell_s = 0.2;
 
-// How a clock runs.
+// Behaviour of a clock.
 struct ClockKind {
-  double window_s;      // for so long its drift is the same
-  double max_drift;     // of any such clock that works
-  double drift_sigma;   // usual
-  double drift_wander;  // how well the drift is known once nobody tells any more
+  double window_s;      // time over which its drift is constant
+  double max_drift;     // of any clock of this kind that works
+  double drift_sigma;   // usual drift
+  double drift_wander;  // uncertainty of the drift once no messages come any more
 };
 constexpr ClockKind kCrystal = {90, 500e-6, 50e-6, 20e-6};
-// An autopilot in software, whose time is that of a simulation which falls behind by a percent or
-// so, stalls and catches up, as the computer has time for it. What is wanted of such a clock is not
-// its stalls but what it shows mostly.
+// An autopilot in software, whose time is that of a simulation: it falls behind by a percent or so,
+// stalls and catches up, depending on the computer's load. The fit should follow its typical time,
+// not its stalls.
 constexpr ClockKind kSimulated = {8, 0.1, 0.02, 5e-3};
-constexpr double kSimulatedOffset_s = 2;  // of its window, for what it shows now
+constexpr double kSimulatedOffset_s = 2;  // part of the window used for the present offset
 constexpr int kSimulatedCells = 40;       // of its window
 
 constexpr const ClockKind& KindOf(bool is_crystal) { return is_crystal ? kCrystal : kSimulated; }
 
 constexpr int kMinRoundTrips = 3;
 
-// The value in the middle of 'values', which are put into another order; there has to be one.
+// Returns the middle value of 'values', which are reordered; there must be at least one.
 double MedianOf(std::span<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -38,8 +38,8 @@ double MedianOf(std::span<double> values) {
 
 }  // namespace
 
-// Whether differences of such times can be computed: those of a clock that counts from its start or
-// from 1970 can.
+// True when differences of such times can be computed: for a clock that counts from its start or
+// from 1970.
 bool TimeSync::IsClock(std::int64_t remote_ns) {
   constexpr std::int64_t kLimit = std::int64_t{1} << 61;
   return remote_ns > -kLimit && remote_ns < kLimit;
@@ -75,13 +75,13 @@ double TimeSync::OffsetAt(double time_s) const {
   return line_.offset_s + line_.drift * (time_s - line_.time_s);
 }
 
-// 'excess_s': by how much a message was faster than no time at all, were the offset as it is
-// thought to be. The offset is wrong by no more than half of the fastest round trip.
+// 'excess_s': by how much a message was faster than possible, if the estimated offset is right. The
+// error of the offset is at most half of the fastest round trip.
 bool TimeSync::IsPossible(double excess_s, int* impossible) {
   constexpr double kMargin_s = 0.005;
   constexpr int kMaxImpossible = 3;
   constexpr double kJump_s = 1;  // no clock stalls or catches up by so much
-  // Its stalls are outliers of a fit that bears them.
+  // Its stalls are outliers of a robust fit.
   if (!is_crystal_ && excess_s <= kJump_s) {
     *impossible = 0;
     return true;
@@ -96,7 +96,7 @@ bool TimeSync::IsPossible(double excess_s, int* impossible) {
     Reset();
     return false;
   }
-  // It drifts as no crystal does. The last estimate holds until there is a new one.
+  // It drifts more than a crystal does. The last estimate holds until there is a new one.
   is_crystal_ = false;
   *impossible = 0;
   return true;
@@ -178,9 +178,9 @@ TimeSync::Bounds TimeSync::BoundsFor(double drift, double center_s) const {
   return bounds;
 }
 
-// The drift with the widest strip, which is a concave function of it, less what a clock that drifts
-// so much is unlikely: the likeliest one when delays beyond the fastest are distributed
-// exponentially. By golden section.
+// Returns the drift with the widest strip, minus a penalty for unlikely drifts: the most likely
+// drift when delays beyond the fastest are distributed exponentially. The width is a concave
+// function of the drift; it is maximized by golden section search.
 double TimeSync::BestDrift(const Strip& strip) const {
   constexpr double kGolden = 0.6180339887498949;
   constexpr int kSteps = 25;  // to 0.01 ppm of a crystal
@@ -231,10 +231,10 @@ void TimeSync::Fit(double now_s) {
   }
 }
 
-// An estimate stays as long as it is worth more than one of the messages that are there: after a
-// pause there are few.
+// The old estimate stays as long as it is better than one from the present messages: after a pause
+// there are few.
 void TimeSync::FitBoth(const Strip& strip) {
-  constexpr double kSpread = 1.0;  // of the fit's error, measured, in units of slack per message
+  constexpr double kSpread = 1.0;  // error of the fit, measured, in units of slack per message
   const int count = std::min(strip.there, strip.back);
   Line line;
   line.time_s = strip.mean_time_s;
@@ -255,7 +255,8 @@ void TimeSync::FitBoth(const Strip& strip) {
   is_known_ = true;
 }
 
-// The middles between there and back of all cells with both, the newest last; returns how many.
+// Collects the middles between there and back of all cells with both, the newest last; returns
+// their number.
 std::size_t TimeSync::CollectMiddles(double now_s, std::span<Middle> middles) const {
   const auto newest = static_cast<std::int64_t>(std::floor(now_s / kCell_s));
   const auto count = static_cast<std::int64_t>(kCells);
@@ -271,7 +272,7 @@ std::size_t TimeSync::CollectMiddles(double now_s, std::span<Middle> middles) co
   return size;
 }
 
-// The median slope of all pairs, drawn to nothing where they are close together.
+// Returns the median slope of all pairs, drawn towards zero where they are close together.
 double TimeSync::MedianDrift(std::span<const Middle> middles) {
   constexpr double kSure_s = 1;
   std::array<double, kSimulatedCells*(kSimulatedCells - 1) / 2> slopes;
@@ -291,7 +292,7 @@ double TimeSync::MedianDrift(std::span<const Middle> middles) {
          std::clamp(MedianOf({slopes.data(), size}), -kSimulated.max_drift, kSimulated.max_drift);
 }
 
-// A line that the middles lie around, whatever the fewer half of the newest ones are.
+// Fits a line to the middles that is robust against up to half of the newest ones.
 void TimeSync::FitSimulated(double now_s) {
   constexpr double kLeastSigma_s = 1e-3;
   std::array<Middle, kSimulatedCells> all;

@@ -11,74 +11,74 @@
 
 namespace kestrel {
 
-// What the clock of another computer says and how fast it runs, from messages that say it: the
-// remote time of a round trip lies between two local ones, and a stamped message was not received
-// before it was sent. A message that was held up says little; so the clock is taken to run along
-// the middle of the widest straight strip that no message of the last minute and a half lies in,
-// between the fastest ways there and the fastest ways back. Fixed memory; not thread-safe.
+// Estimates offset and rate of another computer's clock from messages that carry its time: the
+// remote time of a round trip lies between two local times, and a stamped message was not received
+// before it was sent. A delayed message says little. The clock is therefore fitted by the middle of
+// the widest straight strip that contains no message of the last minute and a half, between the
+// fastest messages there and the fastest messages back. Fixed memory; not thread-safe.
 class TimeSync {
  public:
-  // A question sent at 'sent' was answered with the remote time 'remote_ns', received at
-  // 'received'. An impossible one (received before it was sent) is left out.
+  // A request sent at 'sent' was answered with the remote time 'remote_ns', received at 'received'.
+  // An impossible one (received before it was sent) is left out.
   void AddRoundTrip(Time sent, std::int64_t remote_ns, Time received);
 
   // A message that was sent at the remote time 'remote_ns' was received at 'received'.
   void AddOneWay(std::int64_t remote_ns, Time received);
 
-  // The other computer started again: nothing is known any more.
+  // The other computer has restarted: nothing is known any more.
   void Reset();
 
-  // From the third round trip on; from one-way messages alone after two seconds of them, as if the
-  // fastest had taken no time, with the uncertainty that this costs.
+  // True from the third round trip on; with one-way messages alone after two seconds, as if the
+  // fastest had taken no time, with the uncertainty that this causes.
   bool is_known() const { return is_known_; }
 
-  // The instant at which the remote clock says 'remote_ns', and back. Needs is_known().
+  // Converts between the remote clock's time and the local time. Needs is_known().
   Time ToLocal(std::int64_t remote_ns) const;
   std::int64_t ToRemote(Time time) const;
 
-  // Standard deviation of ToLocal at 'now', s: of the fit, of what the clocks may have drifted
-  // since the last message, and of that the fastest way there need not take as long as the fastest
-  // back, which nobody can see from here.
+  // Standard deviation of ToLocal at 'now', s. It contains the error of the fit, the possible drift
+  // since the last message, and the possible asymmetry of the fastest messages there and back,
+  // which cannot be measured.
   double sigma_s(Time now) const;
 
-  // By how much the remote clock is faster, 1: 5e-5 gains 50 us in a second.
+  // Relative rate of the remote clock minus 1: 5e-5 gains 50 us per second.
   double drift() const { return line_.drift; }
 
-  // The fastest round trip of the last minute and a half; of a clock in software what it is mostly.
+  // Fastest round trip of the last minute and a half; for a simulated clock the typical one.
   Duration round_trip() const { return DurationFromSeconds(line_.width_s); }
 
-  // How often the remote clock was found to have jumped: three messages in a row that it cannot
-  // have sent unless it did. One that drifts as no crystal does (an autopilot in software) does
-  // not: from then on what it shows mostly is followed over some seconds, and its stalls are not.
+  // Number of jumps of the remote clock: three messages in a row that are impossible without a
+  // jump. A clock that drifts more than a crystal (a simulated autopilot) does not count as
+  // jumping: from then on its typical time is followed over some seconds, without its stalls.
   int jumps() const { return jumps_; }
 
  private:
-  // Seconds since 'local_origin_' for times, and of the remote clock ahead of 'remote_origin_' and
-  // these for offsets: small numbers.
+  // Small numbers: times in seconds since 'local_origin_'; offsets of the remote clock relative to
+  // 'remote_origin_' and these times.
   struct Sample {
     double time_s = 0;
     double bound_s = std::numeric_limits<double>::infinity();
   };
-  // The fastest messages of a fifth of a second.
+  // The fastest messages within a fifth of a second.
   struct Cell {
     std::int64_t index = -1;
-    Sample there;  // the offset is no more than the bound
-    Sample back;   // the offset is no less than minus the bound
+    Sample there;  // upper bound of the offset
+    Sample back;   // minus the lower bound of the offset
   };
   struct Line {
-    double time_s = 0;  // where 'offset_s' is
+    double time_s = 0;  // time of 'offset_s'
     double offset_s = 0;
     double drift = 0;
-    double width_s = 0;  // of the strip: the fastest round trip
+    double width_s = 0;  // width of the strip: the fastest round trip
     double fit_sigma_s = std::numeric_limits<double>::infinity();
   };
-  // Sums over the cells that are young enough.
+  // Sums over the cells within the window.
   struct Strip {
     int there = 0;
     int back = 0;
     double mean_time_s = 0;
     double newest_s = 0;
-    double mean_slack_s = 0;  // by how much messages were slower than the fastest
+    double mean_slack_s = 0;  // mean delay of messages beyond the fastest
   };
   struct Bounds {
     double there_s;
@@ -86,7 +86,7 @@ class TimeSync {
     double width_s() const { return there_s + back_s; }
   };
 
-  // Between the fastest ways there and back of a cell.
+  // Middle between the fastest messages there and back of a cell.
   struct Middle {
     double time_s = 0;
     double offset_s = 0;
@@ -116,7 +116,7 @@ class TimeSync {
 
   bool has_origin_ = false;
   bool is_known_ = false;
-  bool is_crystal_ = true;  // it runs as steadily as clocks do, as far as is known
+  bool is_crystal_ = true;  // it runs as steadily as a crystal, as far as is known
   Time local_origin_{};
   std::int64_t remote_origin_ = 0;
   std::array<Cell, kCells> cells_;

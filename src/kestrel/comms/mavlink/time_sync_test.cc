@@ -11,7 +11,7 @@
 namespace kestrel {
 namespace {
 
-// Two clocks and the line between them: delays from 'least_s' to 'most_s', each as likely.
+// Two clocks and the line between them: delays are uniform from 'least_s' to 'most_s'.
 class SimulatedClocks {
  public:
   SimulatedClocks(unsigned seed, double drift, double least_s, double most_s)
@@ -25,7 +25,7 @@ class SimulatedClocks {
   }
   void Jump(double by_s) { jump_s_ += by_s; }
 
-  // A question at 'time_s'.
+  // Sends a request at 'time_s'.
   void Ask(double time_s, TimeSync* sync) {
     const double there_s = time_s + delay_s_(random_);
     sync->AddRoundTrip(Local(time_s), Remote(there_s), Local(there_s + delay_s_(random_)));
@@ -109,7 +109,7 @@ TEST(TimeSyncTest, NoticesThatTheOtherComputerStartedAgain) {
   }
 }
 
-// ArduPilot in software, on a computer that has other things to do.
+// A simulated ArduPilot on a computer with other work.
 TEST(TimeSyncTest, FollowsAClockThatStallsAndCatchesUp) {
   for (const double stall_s : {-0.2, 0.2}) {
     SimulatedClocks clocks(2, 0, 0.005, 0.05);
@@ -122,7 +122,7 @@ TEST(TimeSyncTest, FollowsAClockThatStallsAndCatchesUp) {
   }
 }
 
-// PX4 in software loses a percent of its time, more while the computer has other things to do.
+// A simulated PX4 loses a percent of its time, more while the computer has other work.
 TEST(TimeSyncTest, FollowsASimulatedClockFromSecondToSecond) {
   for (const double drift : {-0.011, -0.03, 0.011}) {
     SimulatedClocks clocks(5, drift, 0.0001, 0.0003);
@@ -130,7 +130,7 @@ TEST(TimeSyncTest, FollowsASimulatedClockFromSecondToSecond) {
     for (int i = 0; i < 600; ++i) {
       const double time_s = 0.05 * i;
       clocks.Ask(time_s, &sync);
-      if (i % 100 == 99) clocks.Jump(0.004);  // it was held up
+      if (i % 100 == 99) clocks.Jump(0.004);  // it was delayed
       if (i < 60) continue;
       ASSERT_TRUE(sync.is_known());
       EXPECT_LT(std::abs(clocks.ErrorOf(sync, time_s)), 0.012) << drift << " " << time_s;
@@ -142,7 +142,7 @@ TEST(TimeSyncTest, FollowsASimulatedClockFromSecondToSecond) {
   }
 }
 
-// An autopilot in software: it stalls, answers nothing meanwhile, and catches up at three times its
+// A simulated autopilot: it stalls, answers nothing meanwhile, and catches up at three times its
 // rate.
 class StallingClock {
  public:
@@ -151,7 +151,7 @@ class StallingClock {
   Time Local(double time_s) const {
     return TimeFromNanoseconds(std::llround(1e9 * (100 + time_s)));
   }
-  // What it shows mostly.
+  // Its typical time.
   std::int64_t Mostly(double time_s) const { return std::llround(1e9 * (50 + rate_ * time_s)); }
 
   void Ask(double time_s, TimeSync* sync) {
@@ -187,7 +187,7 @@ TEST(TimeSyncTest, IsCalmWhileASimulatedClockStalls) {
       for (int i = 0; i < 1200; ++i) {
         clock.Ask(0.1 * i, &sync);
         if (i < 100) continue;
-        // Until just before the next question.
+        // Until just before the next request.
         for (const double later_s : {0.0, 0.05, 0.1}) {
           errors_s.push_back(std::abs(clock.ErrorOf(sync, 0.1 * i + later_s)));
         }

@@ -16,7 +16,7 @@ namespace kestrel {
 namespace {
 
 constexpr std::chrono::seconds kWriteEvery(30);
-// A minute in ticks of 10 us: what a power cut can have taken from the file.
+// A minute in ticks of 10 us: the largest loss from the file by a power cut.
 constexpr std::uint64_t kMargin = 6'000'000;
 
 std::uint64_t ReadStored(const std::string& path) {
@@ -56,8 +56,8 @@ void TimestampFile::Run() {
     try {
       Write(timestamp_);
     } catch (const InputError&) {
-      // The disk is full or gone: the next run begins by the clock, and that is told where the
-      // recorder finds the same.
+      // The disk is full or gone: the next run begins by the clock. The recorder meets the same
+      // error and reports it.
       continue;
     }
   }

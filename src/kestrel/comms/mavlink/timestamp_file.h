@@ -10,21 +10,21 @@
 
 namespace kestrel {
 
-// Keeps the latest timestamp of signed packets on disk, from one run to the next. A thread of its
-// own writes it, because a disk may take its time.
+// Keeps the latest timestamp of signed packets on disk from one run to the next. A thread of its
+// own writes it, because a disk may be slow.
 class TimestampFile {
  public:
-  // Throws InputError when the file is there and is none, or cannot be written.
+  // Throws InputError when the file exists and holds no timestamp, or cannot be written.
   explicit TimestampFile(const std::string& path);
   ~TimestampFile();
   TimestampFile(const TimestampFile&) = delete;
   TimestampFile& operator=(const TimestampFile&) = delete;
 
-  // Of the run before; 0 where there was none. It is ahead of what was used by as much as may have
-  // been used after it was written.
+  // Timestamp of the previous run; 0 where there was none. It is ahead of the stored one by as much
+  // as may have been used after the last write.
   std::uint64_t stored() const { return stored_; }
 
-  // From any thread; does not wait.
+  // Called by any thread; does not wait.
   void Set(std::uint64_t timestamp) { timestamp_ = timestamp; }
 
  private:

@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-// An address of the family with port 0: the system chooses.
+// Returns an address of the same family with port 0: the system chooses the port.
 SocketAddress AnyAddress(const SocketAddress& like) {
   SocketAddress address;
   address.storage.ss_family = like.storage.ss_family;
@@ -53,8 +53,8 @@ void UdpTransport::Confirm() {
   *place = Peer{sender_, now};
 }
 
-// Who has been silent for long is not sent to any more, as soon as somebody else speaks: an
-// autopilot that was started again has another port.
+// A peer that has been silent for long is dropped as soon as somebody else sends: an autopilot that
+// has restarted has another port.
 void UdpTransport::Forget(Time now) {
   constexpr Duration kSilence = std::chrono::seconds(10);
   for (auto& peer : peers_) {

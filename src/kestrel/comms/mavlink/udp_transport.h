@@ -11,8 +11,8 @@
 
 namespace kestrel {
 
-// Datagrams: udpout:// to one place, from where alone it listens; udpin:// to everybody who sent
-// MAVLink to it lately.
+// Datagrams. udpout:// sends to one address and listens only to it; udpin:// sends to everybody who
+// recently sent MAVLink to it.
 class UdpTransport : public Transport {
  public:
   explicit UdpTransport(const LinkUrl& url);
@@ -34,7 +34,7 @@ class UdpTransport : public Transport {
   FileDescriptor socket_;
   std::optional<SocketAddress> server_;  // of udpout://
   SocketAddress sender_;                 // of the newest datagram
-  mutable std::mutex mutex_;             // of the peers
+  mutable std::mutex mutex_;             // guards the peers
   std::array<std::optional<Peer>, 4> peers_;
 };
 

@@ -10,7 +10,8 @@
 
 namespace kestrel {
 
-// Waits at most 'timeout' until something happens at one of the files; how many it happened at.
+// Waits at most 'timeout' for an event on one of the files. Returns the number of files with
+// events.
 inline int WaitForAny(std::span<pollfd> files, Duration timeout) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   const std::int64_t ns = timeout.count() > 0 ? timeout.count() : 0;
@@ -18,7 +19,7 @@ inline int WaitForAny(std::span<pollfd> files, Duration timeout) {
   return ppoll(files.data(), files.size(), &time, nullptr);
 }
 
-// Whether there is something to read within 'timeout'.
+// True when there is something to read within 'timeout'.
 inline bool WaitReadable(int file, Duration timeout) {
   pollfd entry = {file, POLLIN, 0};
   return WaitForAny({&entry, 1}, timeout) > 0;
