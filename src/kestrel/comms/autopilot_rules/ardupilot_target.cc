@@ -24,8 +24,8 @@ constexpr double kAccelerationNoise = 2.5;  // PLND_ACC_P_NSE, m/s^2
 constexpr double kMaxInnovationRatio = 3;
 constexpr int kMaxOutliers = 3;
 
-// The turn from forward-right-down of a level body with that heading to the world. Upstream turns
-// by the wrong sign (AP #31651), and so does this.
+// Rotation from forward-right-down of a level body with that heading to the world. Upstream rotates
+// with the wrong sign (AP #31651), and so does this.
 Eigen::Quaterniond WrongLocalFrame(const Eigen::Quaterniond& world_from_body) {
   const Vector3d forward = world_from_body * Vector3d::UnitX();
   const double north_from_heading = std::atan2(forward.x(), forward.y());
@@ -52,14 +52,14 @@ void ArduPilotTarget::Handle(const mavlink::LandingTarget& target, const FlightS
   }
 }
 
-// From the body to the target, in FLU, m; nothing when the message is not used.
+// Returns the vector from the body to the target in FLU, m; nothing when the message is not used.
 std::optional<Vector3d> ArduPilotTarget::LineOfSight(const mavlink::LandingTarget& target) {
   if (target.frame != mavlink::kFrameBodyFrd && target.frame != mavlink::kFrameLocalFrd) {
     if (!told_wrong_frame_) announce_(Severity::kInfo, "Plnd: Frame not supported ");
     told_wrong_frame_ = true;
     return std::nullopt;
   }
-  // There is no rangefinder that could say how far it is.
+  // There is no rangefinder that could measure the distance.
   if (!(target.distance > 0)) return std::nullopt;
   Vector3d in_frd(target.x, target.y, target.z);
   if (target.position_valid != 1) {
@@ -91,7 +91,7 @@ void ArduPilotTarget::Remember(const FlightState& state) {
   while (history_.size() > 1 && history_[1].time <= oldest) history_.pop_front();
 }
 
-// The newest sighting, once, as a vector in the world by the attitude of then.
+// Returns the newest sighting, once, as a vector in the world by the attitude at its time.
 std::optional<Vector3d> ArduPilotTarget::TakeMeasurement(Time now,
                                                          const Eigen::Quaterniond& attitude) {
   const auto in_body = std::exchange(sighted_in_body_, std::nullopt);
@@ -170,7 +170,7 @@ void ArduPilotTarget::FuseMeasurement(const Vector3d& measurement, double varian
   for (int i = 0; i < 2; ++i) filters_[i].Fuse(measurement[i], variance);
 }
 
-// It trusts a target that it has been told of for a while, without long gaps.
+// Trusts the target after messages for a while without long gaps.
 void ArduPilotTarget::CheckStart(Time now) {
   if (is_acquired_ || !is_started_) return;
   if (now - updated_at_ > kStartGap) {
@@ -189,7 +189,7 @@ void ArduPilotTarget::CheckTimeout(Time now) {
   announce_(Severity::kInfo, "PrecLand: Target Lost");
 }
 
-// From PLND_LAG ago to now.
+// Predicts the output from PLND_LAG ago to now.
 void ArduPilotTarget::PredictOutput() {
   position_ = raw_position_;
   velocity_ = raw_velocity_;

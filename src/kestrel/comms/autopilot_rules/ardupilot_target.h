@@ -14,8 +14,9 @@
 
 namespace kestrel {
 
-// What ArduPilot (AC_PrecLand, EST_TYPE 0 and 1) makes of LANDING_TARGET: which messages it takes,
-// how it dates them by PLND_LAG, when it trusts them, and where it believes the target to be.
+// ArduPilot's estimate of the target from LANDING_TARGET (AC_PrecLand, EST_TYPE 0 and 1): which
+// messages it uses, how it dates them by PLND_LAG, when it trusts them, and where it believes the
+// target to be.
 class ArduPilotTarget {
  public:
   ArduPilotTarget(const AutopilotParameters& parameters, Announce announce);
@@ -25,14 +26,15 @@ class ArduPilotTarget {
 
   bool is_acquired() const { return is_acquired_; }
 
-  // From the body to the target, horizontally in the world, m and m/s; while it is acquired.
+  // Horizontal vector from the body to the target in the world, and its rate; m and m/s. Valid
+  // while the target is acquired.
   const Eigen::Vector2d& position() const { return position_; }
   const Eigen::Vector2d& velocity() const { return velocity_; }
-  // How far below the body the newest measurement was, m.
+  // Depth of the newest measurement below the body, m.
   double depth() const { return depth_; }
 
  private:
-  // What the inertial unit felt in one step.
+  // Readings of the inertial unit in one step.
   struct InertialSample {
     Time time;
     double step_s;

@@ -11,7 +11,7 @@
 namespace kestrel {
 namespace {
 
-// ArduCopter 4.7's names and units, with precision landing switched on.
+// Names and units of ArduCopter 4.7, with precision landing enabled.
 std::vector<AutopilotParameter> ArduPilotDefaults() {
   return {{"ATC_ANGLE_MAX", 30, false},     {"BATT_FS_CRT_ACT", 0, true},
           {"BATT_FS_LOW_ACT", 0, true},     {"DISARM_DELAY", 10, true},

@@ -11,20 +11,19 @@ namespace kestrel {
 
 enum class AutopilotFirmware { kArduPilot, kPx4 };
 
-// One parameter, with the value as it is meant: integers are whole numbers here, however the wire
-// carries them.
+// One parameter with its real value: integers are whole numbers here, however MAVLink carries them.
 struct AutopilotParameter {
   std::string name;
   double value = 0;
   bool is_integer = false;
 };
 
-// The parameters of a firmware that matter for landing, with their defaults.
+// The parameters of a firmware that affect landing, with their defaults.
 class AutopilotParameters {
  public:
   explicit AutopilotParameters(AutopilotFirmware firmware);
 
-  // Value of a parameter that exists; the rules know their names.
+  // Value of a parameter that exists; the rules know the names.
   double operator[](std::string_view name) const;
 
   std::optional<std::size_t> Find(std::string_view name) const;

@@ -6,7 +6,7 @@
 namespace kestrel {
 
 // Kalman filter of one axis: position and velocity of a target relative to a body whose changes of
-// velocity are measured. The estimator of the autopilots that we imitate (ArduPilot's PosVelEKF).
+// velocity are measured. The estimator of the simulated autopilots (ArduPilot's PosVelEKF).
 class PositionVelocityFilter {
  public:
   void Start(double position, double position_variance, double velocity, double velocity_variance) {
@@ -17,7 +17,7 @@ class PositionVelocityFilter {
     velocity_variance_ = velocity_variance;
   }
 
-  // 'velocity_change' with the standard deviation 'noise' over the next 'seconds'.
+  // Predicts over 'seconds' with a 'velocity_change' of standard deviation 'noise'.
   void Predict(double seconds, double velocity_change, double noise) {
     position_ += seconds * velocity_;
     velocity_ += velocity_change;
@@ -26,7 +26,7 @@ class PositionVelocityFilter {
     velocity_variance_ += noise * noise;
   }
 
-  // Squared innovation over its variance.
+  // Returns the squared innovation divided by its variance.
   double InnovationRatio(double position, double variance) const {
     const double innovation = position - position_;
     return innovation * innovation / (position_variance_ + variance);

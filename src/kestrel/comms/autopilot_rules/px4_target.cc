@@ -31,7 +31,7 @@ Px4Target::Px4Target(const AutopilotParameters& parameters, const Px4TimeSync& c
       poses_(kRememberedPoses, std::chrono::seconds(1)) {}
 
 void Px4Target::Handle(const mavlink::LandingTarget& target, const FlightState& state) {
-  // Angles go to a driver that the vision target estimator has taken the place of.
+  // PX4 passes angles to a driver that the vision target estimator replaces.
   if (target.position_valid == 0) return;
   if (target.frame != mavlink::kFrameLocalNed) {
     announce_(Severity::kCritical,
@@ -63,7 +63,7 @@ void Px4Target::Handle(const mavlink::TargetRelative& target, const FlightState&
   if (place && place->allFinite() && sigma.allFinite()) Fuse(*place, sigma, state);
 }
 
-// The target in the world, seen from where the body was.
+// Returns the target in the world, seen from the pose that the body had then.
 std::optional<Vector3d> Px4Target::InWorld(const mavlink::TargetRelative& target,
                                            const RigidTransform& world_from_body) const {
   const Vector3d told(target.x, target.y, target.z);
@@ -80,7 +80,7 @@ std::optional<Vector3d> Px4Target::InWorld(const mavlink::TargetRelative& target
 void Px4Target::Fuse(const Vector3d& in_world, const Vector3d& sigma, const FlightState& state) {
   constexpr double kLeastVariance = 1e-4;
   constexpr double kMaxRatio = 3.84;     // 95 % of one axis
-  constexpr int kMaxOutliersInARow = 3;  // in a row; what goes on is no outlier
+  constexpr int kMaxOutliersInARow = 3;  // in a row; a longer series is not an outlier
   constexpr std::int64_t kTimeout_us = 2'000'000;
   if (!is_filtering_ || state.boot_us - fused_us_ > kTimeout_us) {
     for (int i = 0; i < 3; ++i) filters_[i].Start(in_world[i], 1, 0, 1);

@@ -16,25 +16,25 @@
 
 namespace kestrel {
 
-// What PX4 makes of LANDING_TARGET (an absolute place, taken as it is when it arrives), or with
-// VTE_EN of TARGET_RELATIVE, which it filters.
+// PX4's estimate of the target: from LANDING_TARGET (an absolute place, used as it arrives) or,
+// with VTE_EN, from TARGET_RELATIVE, which it filters.
 class Px4Target {
  public:
-  // A target as PX4's precision landing knows it.
+  // A target in the form that PX4's precision landing uses.
   struct Place {
     Eigen::Vector3d in_world{0, 0, 0};
-    Eigen::Vector2d velocity{0, 0};  // m/s; only the vision target estimator knows one
-    std::int64_t stamp_us = 0;       // on its own clock
+    Eigen::Vector2d velocity{0, 0};  // m/s; only the vision target estimator estimates one
+    std::int64_t stamp_us = 0;       // on the autopilot's own clock
   };
 
-  // All of them must outlive it.
+  // All arguments must outlive this.
   Px4Target(const AutopilotParameters& parameters, const Px4TimeSync& clock, Announce announce);
 
   void Handle(const mavlink::LandingTarget& target, const FlightState& state);
   void Handle(const mavlink::TargetRelative& target, const FlightState& state);
   void Estimate(const FlightState& state);
 
-  // The newest place; a new one since the last call is 'updated'.
+  // The newest place. TakeUpdated() is true when there is a new one since its last call.
   const std::optional<Place>& place() const { return place_; }
   bool TakeUpdated();
 
@@ -48,7 +48,7 @@ class Px4Target {
   const AutopilotParameters& parameters_;
   const Px4TimeSync& clock_;
   Announce announce_;
-  PoseHistory poses_;  // on its own clock
+  PoseHistory poses_;  // on the autopilot's own clock
   std::optional<Place> place_;
   bool is_updated_ = false;
   std::array<PositionVelocityFilter, 3> filters_;  // of the target in the world

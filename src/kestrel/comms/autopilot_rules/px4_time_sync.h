@@ -6,13 +6,13 @@
 
 namespace kestrel {
 
-// PX4's view of a companion's clock: from answers to its TIMESYNC requests. Only after 500 answers
-// whose round trip was below 10 ms it converts the companion's stamps; before, a stamp counts as
-// the time of its arrival.
+// PX4's estimate of a companion's clock, from the answers to its TIMESYNC requests. It converts the
+// companion's stamps only after 500 answers with a round trip below 10 ms; before, a stamp counts
+// as the time of its arrival.
 class Px4TimeSync {
  public:
-  // An answer to the request of 'sent_us' arrived at 'now_us' (own clock); 'remote_us' is what the
-  // other side's clock said in between.
+  // Takes the answer to the request of 'sent_us', which arrived at 'now_us' (own clock).
+  // 'remote_us': the time of the other side's clock in between.
   void AddAnswer(std::int64_t sent_us, std::int64_t remote_us, std::int64_t now_us) {
     constexpr std::int64_t kMaxRoundTrip_us = 10'000;
     if (now_us - sent_us < 0 || now_us - sent_us > kMaxRoundTrip_us) return;
@@ -27,10 +27,10 @@ class Px4TimeSync {
 
   bool is_converged() const { return answers_ >= kAnswersToConverge; }
 
-  // A stamp of the companion on the own clock.
+  // Returns a stamp of the companion on the own clock.
   std::int64_t OwnTime(std::uint64_t stamp_us, std::int64_t now_us) const {
     if (!is_converged()) return now_us;
-    // A stamp is whatever came over the wire: as unsigned numbers the sum may run over.
+    // A stamp may be any number: unsigned arithmetic makes an overflow harmless.
     return static_cast<std::int64_t>(stamp_us +
                                      static_cast<std::uint64_t>(std::llround(offset_us_)));
   }
@@ -39,7 +39,7 @@ class Px4TimeSync {
   static constexpr int kAnswersToConverge = 500;
 
   int answers_ = 0;
-  double offset_us_ = 0;  // own minus the companion's
+  double offset_us_ = 0;  // own clock minus the companion's
 };
 
 }  // namespace kestrel
