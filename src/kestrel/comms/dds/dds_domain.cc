@@ -16,7 +16,7 @@
 namespace kestrel {
 namespace {
 
-// Participants of one computer that are found without multicast: as many as ROS 2 lets be.
+// Number of participants of one computer that are found without multicast: as in ROS 2.
 constexpr char kByIndex[] =
     "<ParticipantIndex>auto</ParticipantIndex>"
     "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>";
@@ -32,7 +32,7 @@ bool IsAddress(std::string_view text) {
   });
 }
 
-// "a;b" of ROS_STATIC_PEERS.
+// Returns the addresses of ROS_STATIC_PEERS, "a;b".
 std::string StaticPeers() {
   const std::string list = Variable("ROS_STATIC_PEERS");
   std::string peers;

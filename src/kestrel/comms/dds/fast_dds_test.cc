@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Against another implementation of DDS, which ROS 2 has by default: Fast DDS of Debian, that knows
-// nothing of the types but their names.
+// Tests against another implementation of DDS, the default of ROS 2: Debian's Fast DDS, which knows
+// only the names of the types.
 #include <algorithm>
 #include <chrono>
 #include <optional>
@@ -35,7 +35,7 @@ bool WaitUntil(const Condition& holds) {
   return false;
 }
 
-// The first message that comes; empty when none does.
+// Returns the first message that comes; empty when none does.
 std::string Hear(fast::DataReader* reader) {
   std::string bytes;
   WaitUntil([&] { return TakeRaw(reader, &bytes); });
@@ -93,8 +93,8 @@ TEST(FastDds, IsToldTheHashesOfTypes) {
   EXPECT_EQ(heard, expected);
 }
 
-// The 16 bytes by which 'peer' knows the endpoint of a topic, or with "" the participant; empty
-// when it does not come to know it.
+// Returns the 16 bytes by which 'peer' knows the endpoint of a topic, or with "" the participant;
+// empty when it does not discover it.
 std::string GidHeard(const FastParticipant& peer, const std::string& topic) {
   std::string gid;
   WaitUntil([&] {
@@ -106,8 +106,8 @@ std::string GidHeard(const FastParticipant& peer, const std::string& topic) {
   return gid;
 }
 
-// ParticipantEntitiesInfo, field by field, as Iron and later ones and as Humble have it; all Gids
-// are those by which the other side knows the endpoints, up to 24 bytes with zeros for Humble.
+// ParticipantEntitiesInfo, field by field, as Iron and later, and as Humble have it. The Gids are
+// those by which the other side knows the endpoints; for Humble zeros fill them up to 24 bytes.
 TEST(FastDds, ListsTheNode) {
   for (const bool is_humble : {false, true}) {
     const int domain = TestDomain();
@@ -147,14 +147,13 @@ TEST(FastDds, ListsTheNode) {
   }
 }
 
-// As docs.ros.org has it: a subscriber hears a publisher that offers as much as it asks for.
+// As docs.ros.org has it: a subscriber hears a publisher that offers at least what it requests.
 // Kestrel offers no deadline and no lease, and asks for none.
 struct QosPair {
   const char* what;
   Ros2Qos own;
   FastQos other;
-  // Where the other subscribes and where it publishes: the policy that does not match, 0 where all
-  // do.
+  // Policy that does not match when the other subscribes, and when it publishes; 0 where all match.
   fast::QosPolicyId_t subscribing, publishing;
 };
 
@@ -193,7 +192,7 @@ const QosPair kQosPairs[] = {
     {"a lease", kDefaultQos, {.lease_s = 5}, fast::LIVELINESS_QOS_POLICY_ID, kMatch},
 };
 
-// What the other says of a pair: whether they match, and which policy does not.
+// True when the other reports for a pair what is expected: a match, or the policy that differs.
 bool IsAsExpected(int matches, const fast::IncompatibleQosStatus& refused,
                   fast::QosPolicyId_t expected) {
   if (expected == kMatch) return matches == 1 && refused.total_count == 0;

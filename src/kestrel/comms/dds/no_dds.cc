@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// In the place of the sources that use Cyclone DDS where it is not installed.
+// Replaces the sources that use Cyclone DDS when it is not installed.
 #include "kestrel/comms/dds/ros2_node.h"
 #include "kestrel/comms/dds/team_topic.h"
 #include "kestrel/core/base/error.h"

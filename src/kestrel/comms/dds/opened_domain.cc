@@ -16,8 +16,8 @@
 namespace kestrel {
 namespace {
 
-// After a break of the radio of less than a minute the others are still known; after a longer one
-// they are found again within half a second, not only after eight.
+// After a radio gap of less than a minute the others are still known. After a longer one they are
+// found again within half a second, instead of eight.
 constexpr char kOften[] =
     "<Discovery><LeaseDuration>60 s</LeaseDuration><SPDPInterval>500 ms</SPDPInterval></Discovery>";
 

@@ -5,9 +5,9 @@
 
 namespace kestrel {
 
-// Keeps the domain, with DiscoverySettings() and then those of CYCLONEDDS_URI, as long as it lives;
-// all that is opened in one process meanwhile shares it. What Cyclone logs of peers that cannot be
-// reached, period after period, is not shown. Throws InputError where the settings are at fault.
+// Opens the domain with DiscoverySettings() and then those of CYCLONEDDS_URI, and keeps it as long
+// as the result lives; everything opened in the process meanwhile shares it. Cyclone's repeated log
+// lines about unreachable peers are not shown. Throws InputError where the settings are wrong.
 std::shared_ptr<const void> OpenDdsDomain(int domain);
 
 }  // namespace kestrel

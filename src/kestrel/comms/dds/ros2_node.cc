@@ -26,7 +26,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kEncapsulation = 4;  // bytes before the data of CDR
+constexpr std::size_t kEncapsulation = 4;  // bytes before the data in CDR
 constexpr char kDiscoveryInfo[] = "rmw_dds_common/ParticipantEntitiesInfo";
 constexpr std::string_view kTypeMiddle = "::msg::dds_::";
 constexpr std::string_view kTopicPrefix = "rt/";
@@ -47,7 +47,8 @@ const dds_topic_descriptor_t* const kTypes[] = {
     &rmw_dds_common_msg_dds__ParticipantEntitiesInfo__desc,
 };
 
-// "sensor_msgs/Image" for "sensor_msgs::msg::dds_::Image_"; nothing for what is no message of ROS.
+// Returns "sensor_msgs/Image" for "sensor_msgs::msg::dds_::Image_"; nothing for a type that is not
+// of ROS.
 std::optional<std::string> RosTypeOf(std::string_view dds_type) {
   const std::size_t middle = dds_type.find(kTypeMiddle);
   if (middle == std::string_view::npos || !dds_type.ends_with('_')) return std::nullopt;
@@ -63,7 +64,7 @@ const dds_topic_descriptor_t* DescriptorOf(std::string_view type) {
   return known == std::end(kTypes) ? nullptr : *known;
 }
 
-// A message as Cyclone wants it to be given.
+// A message in the form in which Cyclone takes it.
 class RosSample {
  public:
   explicit RosSample(const dds_topic_descriptor_t* type)
@@ -75,7 +76,7 @@ class RosSample {
   RosSample(const RosSample&) = delete;
   RosSample& operator=(const RosSample&) = delete;
 
-  // False where the bytes are not of the type.
+  // False when the bytes are not of the type.
   bool Read(std::string_view bytes) {
     if (bytes.size() < kEncapsulation) return false;
     std::string data(bytes.substr(kEncapsulation));
@@ -117,7 +118,7 @@ QosPointer MakeQos(const Ros2Qos& qos, const std::string& user_data) {
   return made;
 }
 
-// As it was sent: Cyclone fills it up to four bytes, and has their number in the fourth.
+// Returns the bytes as sent: Cyclone pads them to four bytes, and stores the padding in the fourth.
 std::string BytesOf(const ddsi_serdata& message) {
   constexpr std::size_t kOptions = 3;
   std::string bytes(ddsi_serdata_size(&message), '\0');
@@ -127,7 +128,7 @@ std::string BytesOf(const ddsi_serdata& message) {
   return bytes;
 }
 
-// The same message of Humble, by the same name.
+// The type of the same name as in Humble.
 const dds_topic_descriptor_t& HumbleInfo() {
   static const dds_topic_descriptor_t kType = [] {
     dds_topic_descriptor_t type = rmw_dds_common_humble_dds__ParticipantEntitiesInfo__desc;
@@ -152,7 +153,7 @@ std::string HashOf(std::string_view type) { return fmt::format("typehash={};", T
 }  // namespace
 
 struct Ros2Node::Entities {
-  // What tells others of this node's publishers and subscribers: ParticipantEntitiesInfo of one
+  // Lists this node's publishers and subscribers for others: a ParticipantEntitiesInfo with one
   // node.
   struct GidMessage {
     dds_guid_t guid{};
@@ -186,7 +187,7 @@ struct Ros2Node::Entities {
     }
   };
 
-  // With all that is made in it.
+  // Deletes all its entities, too.
   struct Participant {
     Participant() = default;
     ~Participant() {
@@ -261,7 +262,7 @@ struct Ros2Node::Entities {
   std::shared_ptr<const void> opened;
   Participant participant;
   dds_entity_t waitset = 0;
-  dds_entity_t discovery = 0;  // hears what others publish
+  dds_entity_t discovery = 0;  // receives what others publish
   Publisher info_publisher{};
   NodeInfoMessage info;
   std::vector<Publisher> publishers;

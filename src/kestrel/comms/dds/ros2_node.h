@@ -13,29 +13,29 @@
 
 namespace kestrel {
 
-// How a topic's messages are delivered. A subscriber hears a publisher that offers as much as it
-// asks for: reliable messages for one that asks for such, kept ones for one that came late.
+// Delivery of a topic's messages. A subscriber hears only publishers that offer at least what it
+// requests: reliable messages if it requests reliable ones, kept ones if it requests those.
 struct Ros2Qos {
-  bool is_reliable = true;  // else best effort
-  bool is_kept = false;     // the last for those that come late (transient local)
+  bool is_reliable = true;  // false: best effort
+  bool is_kept = false;     // the last are kept for late subscribers (transient local)
   int depth = 10;           // messages that wait for a slow reader
 };
-inline constexpr Ros2Qos kDefaultQos{};  // ROS' own
+inline constexpr Ros2Qos kDefaultQos{};  // default of ROS
 inline constexpr Ros2Qos kSensorDataQos{false, false, 5};
 inline constexpr Ros2Qos kLatchedQos{true, true, 1};
 inline constexpr Ros2Qos kTransformsQos{true, false, 100};
 
 struct Ros2NodeOptions {
   std::string name = "kestrel";
-  // Distribution of ROS that is to see the node: nodes up to Humble and since Iron list each other
-  // in different words.
+  // True for a node that systems of ROS up to Humble see: nodes up to Humble and since Iron list
+  // each other in different messages.
   bool is_humble = false;
 };
 
-// A node of ROS 2 without ROS: its topics over Eclipse Cyclone DDS, by ROS' names and types, and
-// seen by `ros2 node list` and `ros2 topic list`. Messages are plain CDR, as serialization.h writes
-// and reads it. Publish and Take do not throw and may be called by different threads; the others
-// before that, by one.
+// A node of ROS 2 without ROS: its topics go over Eclipse Cyclone DDS, by the names and types of
+// ROS, and `ros2 node list` and `ros2 topic list` show them. Messages are plain CDR, as
+// serialization.h writes and reads it. Publish and Take do not throw and may be called by different
+// threads; the other functions are called before, by one thread.
 class Ros2Node {
  public:
   // Throws InputError when there is no such domain (0 to 232), no network, or DDS is not part of
@@ -45,29 +45,29 @@ class Ros2Node {
   Ros2Node& operator=(const Ros2Node&) = delete;
   ~Ros2Node();
 
-  // Whether messages of the type ("sensor_msgs/Image") can be published and heard.
+  // True when messages of the type ("sensor_msgs/Image") can be published and heard.
   static bool Knows(std::string_view type);
 
-  // Returns its index among those that are published. 'topic': "/tf", "/kestrel/track". Throws
-  // InputError for a type that is not known, and where DDS refuses.
+  // Returns the index of the publisher. 'topic': "/tf", "/kestrel/track". Throws InputError for an
+  // unknown type, and where DDS refuses.
   std::size_t Advertise(const std::string& topic, std::string_view type, const Ros2Qos& qos);
   bool HasSubscribers(std::size_t publisher) const;
-  // False where the bytes are not of the type, or DDS does not take them.
+  // False when the bytes are not of the type, or DDS does not accept them.
   bool Publish(std::size_t publisher, std::string_view bytes);
 
-  // Waits until those who hear have what was published reliably, but not longer than 'timeout'.
+  // Waits until all subscribers have what was published reliably, but not longer than 'timeout'.
   void Flush(Duration timeout) const;
 
-  // Returns its index among those that are heard, as Advertise.
+  // Returns the index of the subscription; otherwise as Advertise.
   std::size_t Subscribe(const std::string& topic, std::string_view type, const Ros2Qos& qos);
 
   using TakeMessage = std::function<void(std::size_t subscriber, std::string_view bytes)>;
-  // Gives 'take' what has come, all of it of the topic's type; waits for that until 'timeout' has
-  // passed.
+  // Passes everything that has come to 'take', all of it of the topic's type; waits for it until
+  // 'timeout' has passed.
   void Take(Duration timeout, const TakeMessage& take);
 
-  // What others publish of ROS' topics, each name and type once, in the order of names. Takes a
-  // moment from the node's birth on.
+  // Returns the topics of ROS that others publish, each name and type once, in the order of names.
+  // They are complete only a moment after the node has begun.
   std::vector<BagTopic> Topics() const;
 
  private:

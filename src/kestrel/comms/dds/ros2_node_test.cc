@@ -28,7 +28,7 @@ std::string BytesOf(const Message& message) {
   return SerializeMessage(message, WireFormat::kCdr);
 }
 
-// One message of each type that is published, with something in each of its lists.
+// Returns one message of each published type, with an entry in each of its lists.
 std::vector<std::pair<std::string_view, std::string>> SomeMessages() {
   const HeaderMessage header{0, TimeFromNanoseconds(1'700'000'000'123'456'789), "camera"};
   const PoseMessage pose{{1, 2, 3}, {0, 0.6, 0, 0.8}};
@@ -69,7 +69,7 @@ std::vector<std::pair<std::string_view, std::string>> SomeMessages() {
           {CompressedImageMessage::kType, BytesOf(compressed)}};
 }
 
-// The first message that comes within 'timeout'.
+// Returns the first message that comes within 'timeout'.
 std::optional<std::string> Hear(Ros2Node* node, Duration timeout) {
   std::optional<std::string> heard;
   for (const Time end = Now() + timeout; !heard && Now() < end;) {
@@ -121,7 +121,7 @@ TEST_F(Ros2NodeTest, WhatIsNotOfTheTypeIsNotPublished) {
   EXPECT_THROW(node.Advertise("/not a name", ImageMessage::kType, kDefaultQos), InputError);
 }
 
-// As docs.ros.org has it: what a publisher offers must be what a subscriber asks for.
+// As docs.ros.org has it: a publisher must offer what a subscriber requests.
 TEST_F(Ros2NodeTest, QosMatchesAsInRos) {
   struct Case {
     Ros2Qos offered, asked;
@@ -152,7 +152,7 @@ TEST_F(Ros2NodeTest, QosMatchesAsInRos) {
     sender.Advertise(topic, TfMessage::kType, cases[i].offered);
     receiver.Subscribe(topic, TfMessage::kType, cases[i].asked);
   }
-  // Endpoints are told in their order.
+  // Endpoints are announced in their order.
   const std::size_t last = sender.Advertise("/last", TfMessage::kType, kDefaultQos);
   receiver.Subscribe("/last", TfMessage::kType, kDefaultQos);
   ASSERT_TRUE(FindsSubscriber(sender, last, kLong));

@@ -43,11 +43,11 @@ struct TeamTopic::Entities {
                                                                       dds_delete_qos);
       dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kHistory);
       dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
-      // Kestrel's own reader asks for no more than best effort: what is lost is found by the
-      // digests, and whoever has it sends it. What DDS sends again comes on top of that, and late.
+      // Kestrel's own reader requests only best effort: the digests find what is lost, and a UAV
+      // that has it sends it. Repetitions by DDS would come in addition, and late.
       dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);
       reader = Require(dds_create_reader(participant, topic, qos.get(), nullptr), domain, "reader");
-      // Others may ask for all.
+      // Others may request everything.
       dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, 0);
       dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
       dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, 1, DDS_LENGTH_UNLIMITED,
@@ -84,7 +84,7 @@ void TeamTopic::Send(std::span<const std::uint8_t> bytes) {
   entities_->sender.copy(sample.sender, sizeof sample.sender - 1);
   sample.bytes._buffer = copy.data();
   sample.bytes._length = sample.bytes._maximum = static_cast<std::uint32_t>(copy.size());
-  // What cannot be written is lost, as on the air; the digests find it.
+  // A message that cannot be written is lost, as on the air; the digests find it.
   static_cast<void>(dds_write(entities_->writer, &sample));
 }
 

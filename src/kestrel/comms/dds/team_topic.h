@@ -9,23 +9,24 @@
 
 namespace kestrel {
 
-// The topic on which a team's messages go through DDS (Eclipse Cyclone DDS): keyed by sender,
-// reliable and transient-local for those who ask for that, which a TeamTopic does not: what it
-// misses TeamMember's digests find. How DDS finds the others can be set by CYCLONEDDS_URI. Send and
-// Receive neither block nor throw.
+// The DDS topic (Eclipse Cyclone DDS) of a team's messages: keyed by sender, reliable and
+// transient-local for readers that request that. A TeamTopic does not: the digests of TeamMember
+// find what it misses. CYCLONEDDS_URI sets how DDS finds the others. Send and Receive neither block
+// nor throw.
 class TeamTopic {
  public:
-  // 'team': its name, 'sender': unique. Throws InputError when there is no such domain (0 to 232),
+  // 'team': name of the team. 'sender': unique. Throws InputError when there is no such domain (0
+  // to 232), no network, or DDS is not part of this build.
   // no network, or DDS is not part of this build.
   TeamTopic(int domain, const std::string& team, const std::string& sender);
   TeamTopic(const TeamTopic&) = delete;
   TeamTopic& operator=(const TeamTopic&) = delete;
   ~TeamTopic();
 
-  // What is longer than 16400 bytes is left out.
+  // Leaves out messages longer than 16400 bytes.
   void Send(std::span<const std::uint8_t> bytes);
 
-  // Gives 'hear' what the others have sent since the last call.
+  // Passes the messages of the others since the last call to 'hear'.
   void Receive(const std::function<void(std::span<const std::uint8_t>)>& hear);
 
  private:

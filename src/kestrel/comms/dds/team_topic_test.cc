@@ -18,8 +18,8 @@
 namespace kestrel {
 namespace {
 
-// Takes part until 'count' UAVs are known and nothing is lacking; false after ten seconds. Those
-// that are done stay for the others.
+// Takes part until 'count' UAVs are known and nothing is missing; false after ten seconds. A UAV
+// that is done stays for the others.
 bool TakePart(int domain, const std::string& name, std::size_t count) {
   const UavKey self{name, 1};
   TeamTopic topic(domain, "test", name);

@@ -10,8 +10,8 @@
 
 namespace kestrel {
 
-// A domain of this process' own (below 100), on this computer alone, for it and those that it
-// starts: a file that is locked as long as they run keeps it from tests that run beside.
+// Returns a domain (below 100), on this computer alone, for this process and those that it starts.
+// A file that is locked as long as they run keeps it from tests that run at the same time.
 inline int TestDomain() {
   constexpr int kDomains = 100;
   static const int kDomain = [] {

@@ -26,7 +26,7 @@ namespace kestrel {
 namespace fast = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 
-// Messages as they are on the wire, as std::string.
+// Messages as their bytes on the wire, in a std::string.
 class RawType : public fast::TopicDataType {
  public:
   explicit RawType(const std::string& name) {
@@ -57,7 +57,7 @@ class RawType : public fast::TopicDataType {
   bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
 };
 
-// What another is known by.
+// Properties that identify another's entity.
 struct FastEntity {
   std::string gid;  // 16 bytes
   std::string user_data;
@@ -67,7 +67,7 @@ struct FastEntity {
   bool is_writer = false;
 };
 
-// Keeps what was discovered of others, in its order.
+// Keeps what was discovered of others, in the order of discovery.
 class FastListener : public fast::DomainParticipantListener {
  public:
   void on_participant_discovery(fast::DomainParticipant*,
@@ -115,7 +115,7 @@ class FastListener : public fast::DomainParticipantListener {
   std::vector<FastEntity> heard_;
 };
 
-// What a reader asks for or a writer offers.
+// Delivery that a reader requests or a writer offers.
 struct FastQos {
   bool is_reliable = true;
   bool is_kept = false;  // transient local
@@ -141,7 +141,7 @@ struct FastQos {
   }
 };
 
-// A participant of Fast DDS that is found on this computer alone.
+// A participant of Fast DDS that is found on this computer only.
 class FastParticipant {
  public:
   explicit FastParticipant(int domain) {
@@ -169,7 +169,7 @@ class FastParticipant {
 
   const FastListener& others() const { return listener_; }
 
-  // Once for each topic.
+  // Call it once for each topic.
   fast::DataReader* Read(const std::string& topic, const std::string& type,
                          const FastQos& asked = {}) {
     auto qos = asked.Of<fast::DataReaderQos>();
@@ -180,7 +180,7 @@ class FastParticipant {
   fast::DataWriter* Write(const std::string& topic, const std::string& type,
                           const FastQos& offered = {}) {
     auto qos = offered.Of<fast::DataWriterQos>();
-    qos.publish_mode().kind = fast::ASYNCHRONOUS_PUBLISH_MODE;  // for what is above 64 kB
+    qos.publish_mode().kind = fast::ASYNCHRONOUS_PUBLISH_MODE;  // for messages above 64 kB
     return participant_->create_publisher(fast::PUBLISHER_QOS_DEFAULT)
         ->create_datawriter(Topic(topic, type), qos);
   }
@@ -195,7 +195,7 @@ class FastParticipant {
   fast::DomainParticipant* participant_;
 };
 
-// The next message, without what fills it up to four bytes. False where there is none.
+// Returns the next message without its padding to four bytes. False where there is none.
 inline bool TakeRaw(fast::DataReader* reader, std::string* bytes) {
   fast::SampleInfo info;
   while (reader->take_next_sample(bytes, &info) == ReturnCode_t::RETCODE_OK) {
