@@ -10,7 +10,7 @@
 
 namespace kestrel {
 
-// Unit vectors of the plane: at an angle (rad) to x, and anywhere.
+// Unit vectors in the plane: at an angle (rad) to x, and in a random direction.
 inline Eigen::Vector2d Direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
 inline Eigen::Vector2d RandomDirection(Random* random) {
   return Direction(random->Uniform(0, 2 * kPi));

@@ -8,9 +8,9 @@
 
 namespace kestrel {
 
-// A shape on a plane: rings, discs and bars, added to and erased from one another in order. It is
-// known by the signed distance to its edge instead of by pixels, so that it can be painted at any
-// scale with exact edges. Metres in general; any unit when all that is drawn has the same.
+// A shape in a plane: rings, discs and bars that are added and erased in order. It is stored by the
+// signed distance to its edge instead of by pixels, and can be painted at any scale with exact
+// edges. Lengths are metres in general; any unit when the whole drawing uses the same.
 class Drawing {
  public:
   struct Ring {
@@ -18,7 +18,7 @@ class Drawing {
     double outer_radius;
     double inner_radius = 0;  // 0: a disc
   };
-  // A rectangle, 'half_length' to both sides of 'center' along the unit vector 'axis'.
+  // A rectangle: 'half_length' to both sides of 'center' along the unit vector 'axis'.
   struct Bar {
     Eigen::Vector2d center;
     Eigen::Vector2d axis;
@@ -28,8 +28,8 @@ class Drawing {
   using Shape = std::variant<Ring, Bar>;
 
   struct Edge {
-    double distance;         // to the edge, negative inside; its size never exceeds the true one
-    Eigen::Vector2d normal;  // unit vector in which the distance grows
+    double distance;         // to the edge, negative inside; never larger than the true distance
+    Eigen::Vector2d normal;  // unit vector in which the distance increases
   };
 
   Drawing& Add(const Shape& shape);
@@ -37,8 +37,8 @@ class Drawing {
 
   bool empty() const { return steps_.empty(); }
 
-  // The nearest edge as seen from 'point'; from far outside (more than the size of the drawing) a
-  // circle around all of it. A drawing without any shape has its edge at infinity.
+  // Returns the edge nearest to 'point'; for a point far outside (farther than the size of the
+  // drawing) a circle around all of it. An empty drawing has its edge at infinity.
   Edge NearestEdge(const Eigen::Vector2d& point) const;
 
  private:
@@ -48,13 +48,13 @@ class Drawing {
   };
 
   std::vector<Step> steps_;
-  // A circle around everything that was added.
+  // Circle around everything that was added.
   Eigen::Vector2d bound_center_ = Eigen::Vector2d::Zero();
   double bound_radius_ = -1;
 };
 
-// Part of a box 'width' wide around a point at 'distance' outside of a straight edge that lies
-// inside of it.
+// Returns the part of a box of width 'width' that lies inside of a straight edge. The box is around
+// a point at 'distance' outside of the edge.
 double Coverage(double distance, double width);
 
 }  // namespace kestrel

@@ -52,7 +52,7 @@ std::vector<Lookalike> AllLookalikes() {
   return all;
 }
 
-// The renderer takes a single ray where the edge is farther away than the pixel is large.
+// The renderer uses a single ray where the edge is farther away than the size of the pixel.
 TEST(DrawingTest, NoEdgeIsNearerThanTheNearest) {
   Random random(3);
   for (const Lookalike& kind : AllLookalikes()) {
@@ -68,7 +68,7 @@ TEST(DrawingTest, NoEdgeIsNearerThanTheNearest) {
   }
 }
 
-// Part of the ink that two drawings share.
+// Returns the part of the ink that two drawings share.
 double Overlap(const Drawing& a, const Drawing& b, double radius) {
   int both = 0;
   int any = 0;

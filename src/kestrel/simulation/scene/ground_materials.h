@@ -11,22 +11,22 @@
 
 namespace kestrel {
 
-// What the ground is made of.
+// Material of the ground.
 struct GroundMaterial {
   const char* name;
   Color color;
   double map_variation;     // of the reflectance, at scales of decimetres and metres
   double detail_variation;  // of the reflectance, at scales of millimetres and centimetres
   double grain_m;           // size of the smallest grains
-  bool paved;               // roads are made of it
+  bool paved;               // roads are made of this material
 };
 
 std::span<const GroundMaterial> GroundMaterials();
 
-// Throws InputError when there is none of that name.
+// Throws InputError for an unknown name.
 const GroundMaterial& FindGroundMaterial(const std::string& name);
 
-// CV_8UC1 codes around kDetailMean, repeats at its sides.
+// CV_8UC1 codes around kDetailMean; opposite sides fit each other.
 cv::Mat DetailOf(const GroundMaterial& material, int size_px, double size_m, std::uint64_t seed);
 
 }  // namespace kestrel

@@ -23,7 +23,7 @@ constexpr int kMapShift = 4;  // fractional bits of OpenCV's drawing coordinates
 
 Vector2d LeftOf(const Vector2d& direction) { return {-direction.y(), direction.x()}; }
 
-// A piece of road marking: straight, or bent with a radius of 6 to 40 m.
+// Returns a piece of road marking: straight, or curved with a radius of 6 to 40 m.
 std::vector<Vector2d> RandomCurve(const Vector2d& start, double yaw, double length_m,
                                   Random* random) {
   constexpr double kStep_m = 0.3;
@@ -35,7 +35,7 @@ std::vector<Vector2d> RandomCurve(const Vector2d& start, double yaw, double leng
   return points;
 }
 
-// Edges of a line 'width_m' wide.
+// Returns the outline of a line 'width_m' wide.
 std::vector<Vector2d> Outline(const std::vector<Vector2d>& line, double width_m) {
   std::vector<Vector2d> left;
   std::vector<Vector2d> right;
@@ -84,7 +84,7 @@ GroundPainter::GroundPainter(const GroundOptions& options, Random* random)
 }
 
 cv::Point GroundPainter::ToMap(const Vector2d& point) const {
-  // OpenCV's (0, 0) is the centre of the first pixel, the texture's its corner.
+  // OpenCV's (0, 0) is the centre of the first pixel, that of the texture is its corner.
   const Vector2d pixel(0.5 * map_px_ + per_m_ * point.x() - 0.5,
                        0.5 * map_px_ - per_m_ * point.y() - 0.5);
   constexpr double kScale = 1 << kMapShift;
@@ -109,7 +109,7 @@ void GroundPainter::FillPolygon(const Points& corners, const Color& color, doubl
 }
 
 void GroundPainter::Strip(const Points& line, double width_m, const Color& color, double opacity) {
-  // In pieces: a box around all of a long line would be most of the map.
+  // In pieces: the box around a whole long line would cover most of the map.
   constexpr std::size_t kPiece = 12;
   for (std::size_t i = 0; i + 1 < line.size(); i += kPiece) {
     const std::size_t end = std::min(i + kPiece + 1, line.size());
@@ -297,7 +297,8 @@ Ground GroundPainter::ToGround(int channels) const {
 
 namespace {
 
-// Sunlight through trees and past houses: soft-edged shade over about a third of the ground.
+// Returns sunlight through trees and past houses: soft-edged shade over about a third of the
+// ground.
 std::shared_ptr<const Texture> MakeSunlit(Random* random) {
   constexpr int kSize_px = 1024;
   cv::Mat lit(kSize_px, kSize_px, CV_8U, cv::Scalar(255));

@@ -14,15 +14,15 @@
 
 namespace kestrel {
 
-// The ground of a world: what lies there and what is painted on it.
+// Material of a world's ground, and the paint on it.
 struct GroundOptions {
   std::string material = "asphalt";  // asphalt, concrete, sand, grass
   int markings = 12;                 // lines, bays, crossings
   int details = 30;                  // manhole covers, drains, cracks, stains, tyre marks
   bool curb = true;                  // a round curb, another material behind it
-  bool shadows = true;               // of trees and houses that are not in the world
-  double map_size_m = 64;            // side of the square that repeats (mirrored)
-  int map_px = 4096;                 // its side; a power of two, 64 to 8192
+  bool shadows = true;               // of trees and houses outside of the world
+  double map_size_m = 64;            // side of the square that the map covers; it repeats, mirrored
+  int map_px = 4096;                 // side of the map; a power of two, 64 to 8192
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -38,16 +38,16 @@ struct GroundOptions {
   std::vector<std::string> Validate() const;
 };
 
-// Draws on the ground's map, in metres around its middle (x right, y up in the map).
+// Paints on the ground's map, in metres from its middle (x right, y up in the map).
 class GroundPainter {
  public:
   GroundPainter(const GroundOptions& options, Random* random);
 
   void Markings(int count, Random* random);
   void Details(int count, Random* random);
-  // A curb 'radius_m' around the middle, not quite round, 'material' behind it.
+  // Paints a curb 'radius_m' around the middle, not quite round, with 'material' behind it.
   void Curb(double radius_m, const std::string& material, Random* random);
-  // Two white lines, 'half_width_m' to both sides of a closed or open track.
+  // Paints two white lines, 'half_width_m' to both sides of a closed or open track.
   void TrackLines(const std::vector<Eigen::Vector2d>& track, double half_width_m);
 
   Ground ToGround(int channels) const;
@@ -78,7 +78,7 @@ class GroundPainter {
   cv::Mat detail_;  // CV_8UC1 codes
 };
 
-// The whole ground by its options. 'track': where the vehicle drives; may be empty.
+// Makes the whole ground from its options. 'track': path of the vehicle; may be empty.
 Ground MakeGround(const GroundOptions& options, const std::vector<Eigen::Vector2d>& track,
                   int channels, Random* random);
 

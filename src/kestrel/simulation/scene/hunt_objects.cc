@@ -24,12 +24,12 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kDiscHeight_m = 0.012;
-constexpr double kPostHeight_m = 0.14;  // of the yellow ones, which ride on robots
+constexpr double kPostHeight_m = 0.14;  // of the yellow discs, which ride on robots
 constexpr double kOrangeDiameter_m = 0.5;
 constexpr double kBarLength_m = 2;
 constexpr double kBarWidth_m = 0.15;
 
-// Free places, not closer to each other than a distance.
+// Free places, at least a distance apart.
 class Places {
  public:
   Places(const Vector2d& half_area, Random* random) : half_area_(half_area), random_(random) {}
@@ -56,7 +56,7 @@ class Places {
   std::vector<Vector2d> taken_;
 };
 
-// Adds one thing after the other.
+// Adds the objects one after the other.
 class Placer {
  public:
   Placer(const HuntObjectsOptions& options, const Vector2d& half_area, Random* random, World* world)
@@ -156,7 +156,7 @@ class Placer {
   }
 
   Path Wandering() {
-    // Sines of about this period and amplitude are about that fast.
+    // The speed of sines with about this period and amplitude is about the wanted one.
     constexpr double kPeriod_s = 14;
     const double sigma = options_.yellow_speed_mps * kPeriod_s / (2 * kPi);
     const auto x = Wander(sigma / std::numbers::sqrt2, kPeriod_s, random_);

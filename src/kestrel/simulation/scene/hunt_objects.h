@@ -13,8 +13,8 @@
 
 namespace kestrel {
 
-// What lies around in the treasure hunt (paper, section 3): coloured things to be found, and things
-// of the same colours that are not to be found.
+// Objects of the treasure hunt (paper, section 3): coloured things to be found, and things of the
+// same colours that are not to be found.
 struct HuntObjectsOptions {
   std::string shape = "disc";  // of the red, green and blue ones: disc or cuboid
   double size_m = 0.2;         // diameter, or side of the cuboids
@@ -23,13 +23,13 @@ struct HuntObjectsOptions {
   int blue = 4;
   int yellow = 3;  // discs that move
   double yellow_speed_mps = 0.6;
-  // wander: about a place, at about that speed; straight: from there, at that speed.
+  // wander: around a place, at about that speed; straight: away from it, at that speed.
   std::string yellow_path = "wander";
   int orange = 1;        // large discs, 0.5 m
   int orange_bars = 1;   // 2 m long
   int distractors = 10;  // other shapes
-  double fading = 0.15;  // most that the paint is bleached, 0 to 1
-  double gloss = 0.25;   // most of the sun's mirror image in the paint
+  double fading = 0.15;  // largest part by which the paint is bleached, 0 to 1
+  double gloss = 0.25;   // largest strength of the sun's mirror image in the paint
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -52,20 +52,20 @@ struct HuntObjectsOptions {
   std::vector<std::string> Validate() const;
 };
 
-// One that is to be found.
+// An object that is to be found.
 struct HuntObject {
   int id = 0;
   std::string color;  // red, green, blue, yellow, orange
   std::string shape;  // disc, cuboid, bar
   double size_m;      // diameter, side or length
   int digit = -1;     // of a cuboid, 0 to 9
-  double yaw = 0;     // rad, in the world: which way its digit is read
+  double yaw = 0;     // rad, in the world: reading direction of its digit
   Path center;        // of its upper face, in the world
-  // Half the sides of its upper face, in the world; of a disc, of the square around it.
+  // Half the sides of its upper face, in the world; for a disc, of the square around it.
   Eigen::Vector2d half_size;
 };
 
-// Puts everything into the square 'half_size' around the middle and returns what is to be found.
+// Places everything in the rectangle 'half_area' around the middle. Returns what is to be found.
 std::vector<HuntObject> AddHuntObjects(const HuntObjectsOptions& options,
                                        const Eigen::Vector2d& half_area, Random* random,
                                        World* world);

@@ -31,8 +31,8 @@ SquarePaint MakePaint(double fading, const std::string& color, Random* random) {
   return paint;
 }
 
-// Hershey fonts other than DUPLEX and COMPLEX: these are for the training of whatever reads the
-// digits, so that it is tried on digits that it has not seen.
+// Hershey fonts other than DUPLEX and COMPLEX: those two are for training the reader of digits,
+// which is thereby tested on unseen digits.
 constexpr std::array<int, 5> kFonts = {
     cv::FONT_HERSHEY_SIMPLEX, cv::FONT_HERSHEY_TRIPLEX, cv::FONT_HERSHEY_PLAIN,
     cv::FONT_HERSHEY_SIMPLEX | cv::FONT_ITALIC, cv::FONT_HERSHEY_TRIPLEX | cv::FONT_ITALIC};
@@ -55,7 +55,7 @@ using Polygon = std::vector<cv::Point>;
 
 constexpr double kMiddle_px = 0.5 * kPaint_px;
 
-// Corners at given radii (parts of half the side) in equal steps of angle.
+// Returns corners at the given radii (parts of half the side), at equal steps of angle.
 Polygon Star(const std::vector<double>& radii) {
   Polygon corners;
   for (std::size_t i = 0; i < radii.size(); ++i) {

@@ -9,16 +9,16 @@
 
 namespace kestrel {
 
-// The paint of an object of the hunt: 'color' is red, green, blue, yellow or orange; 'fading' (0 to
-// 1) is the part that the sun has bleached. A little different every time, and dirty.
+// Paint of an object of the hunt: 'color' is red, green, blue, yellow or orange; 'fading' (0 to 1)
+// is the bleached part. It varies a little from object to object, and is dirty.
 std::shared_ptr<const Texture> FadedPaint(double fading, const std::string& color, int channels,
                                           Random* random);
 
-// The same with a white digit on it, whose reading direction is the texture's x.
+// The same with a white digit on it, which reads along the texture's x.
 std::shared_ptr<const Texture> DigitPaint(double fading, const std::string& color, int digit,
                                           int channels, Random* random);
 
-// The outline of something that is not a disc: a triangle, square, star, ring, L, cross or stripes.
+// Outline of an object that is not a disc: a triangle, square, star, ring, L, cross or stripes.
 std::shared_ptr<const Texture> DistractorMask(Random* random);
 
 }  // namespace kestrel

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Draws in a frame of its own: origin in the centre, the largest radius is 1.
+// Draws in a frame of its own: origin in the centre, largest radius 1.
 class Pen {
  public:
   Pen(const Vector2d& center, double radius, double yaw)
@@ -152,7 +152,7 @@ Drawing HInRing(const Vector2d& center, double radius, double yaw, Random* rando
   return ink;
 }
 
-// A frame around what is inside, as wide as a stroke.
+// Adds a frame around the inside, as wide as a stroke.
 void AddFrame(const Pen& pen, double stroke, Drawing* ink) {
   const double half = std::numbers::sqrt2 / 2;
   ink->Add(pen.Bar({0, 0}, 0, half, half));
@@ -177,7 +177,8 @@ Drawing FrameWithCross(const Vector2d& center, double radius, double yaw, Random
   return ink;
 }
 
-// The middle of field (column, row) of 'fields' x 'fields' in the square that the circle holds.
+// Returns the centre of field (column, row) of 'fields' x 'fields' in the square inscribed in the
+// circle.
 Vector2d FieldCenter(int column, int row, int fields) {
   const double half = std::numbers::sqrt2 / 2;
   return Vector2d(2 * column + 1 - fields, 2 * row + 1 - fields) * (half / fields);
@@ -242,7 +243,7 @@ Drawing OtherStrokes(const Vector2d& center, double radius, double yaw, Random* 
       .Add(pen.Bar({0, 0}, 0.5 * kPi, 0.76, half_width));
 }
 
-// A cross that goes on beyond its ring.
+// A cross that extends beyond its ring.
 Drawing Crosshair(const Vector2d& center, double radius, double yaw, Random* random) {
   const Pen pen(center, radius, yaw);
   const double ring = random->Uniform(0.5, 0.75);
@@ -304,7 +305,7 @@ Drawing LetterInRing(const Vector2d& center, double radius, double yaw, Random* 
   }
 }
 
-// The outline of a polygon whose corners lie on a circle.
+// Adds the outline of a polygon whose corners lie on a circle.
 void AddPolygon(const Pen& pen, int corners, double radius, double half_width, Drawing* ink) {
   const double half_turn = kPi / corners;
   for (int i = 0; i < corners; ++i) {
@@ -323,7 +324,7 @@ Drawing PolygonInRing(const Vector2d& center, double radius, double yaw, Random*
   return ink;
 }
 
-// The pattern's own cross, alone.
+// The pattern's own cross without a ring.
 Drawing CrossOfThePattern(const Vector2d& center, double radius, double yaw, Random* random) {
   const Pen pen(center, radius, yaw);
   const double half_length = random->Uniform(0.7, 0.9);
@@ -362,7 +363,7 @@ Drawing Clock(const Vector2d& center, double radius, double yaw, Random* random)
   return random->Chance(0.5) ? ink.Add(pen.Ring(0.12)) : ink;
 }
 
-// Bars that bend at right angles in a ring, as of a hooked cross's mirror image or a maze.
+// Bars that bend at right angles in a ring, as in a mirrored hooked cross or a maze.
 Drawing BentCross(const Vector2d& center, double radius, double yaw, Random* random) {
   const Pen pen(center, radius, yaw);
   const double half_width = random->Uniform(0.07, 0.1), hook = random->Uniform(0.15, 0.3);

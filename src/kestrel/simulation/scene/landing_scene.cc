@@ -64,7 +64,7 @@ RigidTransform AddBoard(int vehicle, const LandingPattern& pattern, const BoardO
   if (options.carrier == "pickup") height = AddPickup(vehicle, color, random, world);
   if (options.carrier == "car") height = AddCar(vehicle, color, random, world);
   constexpr double kThickness_m = 0.04;
-  // Between the roof and the board on its rack.
+  // Distance from the roof to the board on its rack.
   const double gap = options.carrier == "none" ? 0 : 0.1;
   const double half = 0.5 * pattern.board_size_m + options.border_m;
   const double top = height + gap + kThickness_m;
@@ -80,7 +80,7 @@ RigidTransform AddBoard(int vehicle, const LandingPattern& pattern, const BoardO
   return {Eigen::Quaterniond(Eigen::AngleAxisd(kPi / 4, Vector3d::UnitZ())), {0, 0, top}};
 }
 
-// Where the vehicle drives during the flight and some time before and after.
+// Returns the vehicle's path during the flight and for some time before and after.
 std::vector<Vector2d> Track(const Motion& vehicle, double duration_s) {
   constexpr double kMore_s = 8;
   constexpr double kStep_s = 0.1;
@@ -91,7 +91,7 @@ std::vector<Vector2d> Track(const Motion& vehicle, double duration_s) {
   return track;
 }
 
-// A place 'reach_m' around a point of the track, but not on it.
+// Returns a place 'reach_m' around a point of the track, but not on the track.
 Vector2d BesideTrack(const std::vector<Vector2d>& track, double clearance_m, double reach_m,
                      Random* random) {
   Vector2d place(0, 0);

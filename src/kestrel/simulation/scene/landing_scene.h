@@ -19,11 +19,11 @@ namespace kestrel {
 struct BoardOptions {
   std::string carrier = "pickup";  // pickup, car, box (0.4 m high) or none: on the ground
   double border_m = 0.08;          // dark frame around the white board
-  double arm_variation_m = 0.03;   // the arms' length is drawn up to this above or below
+  double arm_variation_m = 0.03;   // the arms' length varies by up to this, more or less
   double dirt = 0.06;              // relative variation of the print
-  int scratches = 4;               // and places where the ink is gone
+  int scratches = 4;               // places without ink
   double gloss = 0.15;             // strength of the sun's mirror image in it, in units of white
-  double gloss_width_deg = 12;     // angle at which that has faded to a third
+  double gloss_width_deg = 12;     // angle at which it has faded to 1 / e
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -40,7 +40,7 @@ struct BoardOptions {
   std::vector<std::string> Validate() const;
 };
 
-// What else stands around.
+// Other things around.
 struct SurroundingsOptions {
   int vehicles = 3;
   int lookalikes = 2;
@@ -59,7 +59,7 @@ struct SurroundingsOptions {
   std::vector<std::string> Validate() const;
 };
 
-// What a landing flies over.
+// Scene under a landing.
 struct LandingSceneOptions {
   VehicleMotionOptions vehicle;
   LandingPattern pattern;
@@ -83,17 +83,17 @@ struct LandingSceneOptions {
 // A world with the landing pattern on a vehicle.
 struct LandingScene {
   World world;
-  LandingPattern pattern;  // as it was drawn
+  LandingPattern pattern;  // as drawn
   Motion world_from_pattern;
-  Path target;  // the pattern's centre without the vehicle's shaking, for a UAV to follow
+  Path target;  // the pattern's centre without the vehicle's shaking, which a UAV follows
 };
 
-// Each part of a simulated landing has random numbers of its own: options of one do not change
+// Each part of a simulated landing has its own random numbers: options of one part do not change
 // another.
 enum class LandingPart { kVehicle, kBoard, kFlight, kGround, kLight, kSurroundings, kStart, kWind };
 Random RandomOf(std::uint64_t seed, LandingPart part);
 
-// Draws everything that 'options' leave open. Things stand beside where the vehicle drives within
+// Draws all that 'options' leave open. Other things stand beside the vehicle's path within
 // 'duration_s'. Gray (1 channel) or colour (3).
 LandingScene MakeLandingScene(const LandingSceneOptions& options, double duration_s, int channels,
                               std::uint64_t seed);

@@ -39,7 +39,7 @@ Lighting MakeLighting(const LightOptions& options, Random* random) {
   light.haze_radiance = options.haze_radiance;
   light.haze_variation = options.dust_clouds;
   light.flare = options.flare * options.direct;
-  // A lower sun is redder, the sky bluer than it.
+  // A lower sun is redder, and the sky is bluer than the sun.
   const double red = 0.25 * (1 - std::sin(elevation));
   light.sun_color = {1 - red, 1, 1 + 0.5 * red};
   light.sky_color = {1.12, 1, 0.9};

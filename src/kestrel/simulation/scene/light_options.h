@@ -11,11 +11,12 @@ namespace kestrel {
 
 // Sun, sky and air.
 struct LightOptions {
-  double sun_elevation_deg = 50;  // 3 to 90; its azimuth is drawn
-  double direct = 0.75;           // part of the light that comes straight from the sun; overcast: 0
+  double sun_elevation_deg = 50;  // 3 to 90; its azimuth is random
+  double direct = 0.75;           // part of the light that comes directly from the sun; overcast: 0
   double sky_radiance = 1;        // near the horizon, in units of white
-  double visibility_m = 0;        // distance at which haze or dust leaves 5 %; 0: clear air
-  double dust_clouds = 0;         // by how much the density of the dust varies
+  double visibility_m = 0;        // distance at which haze or dust leaves 5 % of the light; 0:
+                                  // clear air
+  double dust_clouds = 0;         // relative variation of the dust's density
   double haze_radiance = 0.55;    // in units of white
   double flare = 0.3;             // sunlight that the lens scatters around the sun's image
 
@@ -35,10 +36,10 @@ struct LightOptions {
 
 Lighting MakeLighting(const LightOptions& options, Random* random);
 
-// Roofs and trees on the horizon.
+// Returns the skyline of roofs and trees on the horizon.
 std::vector<float> MakeSkyline(Random* random);
 
-// What of the lens the calibration does not say.
+// Properties of the lens that the calibration does not contain.
 struct LensViewOptions {
   double half_angle_deg =
       85;  // of the lens circle; with the paper's camera 85 are as in its frames

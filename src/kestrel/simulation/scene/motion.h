@@ -13,14 +13,14 @@ namespace kestrel {
 // Pose of a body in the world as a function of time (s); smooth, thread-safe.
 using Motion = std::function<RigidTransform(double time_s)>;
 
-// A position (m) as a function of time (s), two times differentiable.
+// Position (m) as a function of time (s), twice differentiable.
 using Path = std::function<Eigen::Vector3d(double time_s)>;
 
-// Velocity (m/s) of a body's origin.
+// Velocity (m/s) of a body's origin in the world.
 Eigen::Vector3d VelocityOf(const Motion& world_from_body, double time_s);
 
-// A smooth random function of time: sines of random phase and of periods around 'period_s', mean 0,
-// with the standard deviation 'sigma'.
+// A smooth random function of time: sines with random phases and with periods around 'period_s';
+// mean 0, standard deviation 'sigma'.
 std::function<double(double time_s)> Wander(double sigma, double period_s, Random* random);
 
 }  // namespace kestrel

@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-// Random numbers on a lattice of at least 4 x 4, made smooth between.
+// Random numbers on a lattice of at least 4 x 4, interpolated smoothly.
 cv::Mat ValueNoise(cv::Size size, double cell_px, Random* random) {
   const int columns = std::clamp(static_cast<int>(size.width / cell_px), 4, size.width);
   const int rows = std::clamp(static_cast<int>(size.height / cell_px), 4, size.height);
@@ -18,7 +18,7 @@ cv::Mat ValueNoise(cv::Size size, double cell_px, Random* random) {
   for (int i = 0; i < rows * columns; ++i) {
     lattice.at<float>(i / columns, i % columns) = static_cast<float>(random->Uniform(-1, 1));
   }
-  // With a margin from the other side, so that the noise repeats.
+  // The margin comes from the opposite side, so that the noise repeats.
   constexpr int kMargin = 2;
   cv::Mat wrapped;
   cv::copyMakeBorder(lattice, wrapped, kMargin, kMargin, kMargin, kMargin, cv::BORDER_WRAP);

@@ -13,7 +13,7 @@
 
 namespace kestrel {
 
-// What paint reflects: blue, green, red, each 0 to 1.
+// Reflectance of paint: blue, green, red, each 0 to 1.
 using Color = Eigen::Vector3d;
 
 Color Gray(double reflectance);
@@ -21,18 +21,19 @@ Color Gray(double reflectance);
 // The same as codes, for OpenCV's drawing functions.
 cv::Scalar CodesOf(const Color& color);
 
-// Noise at all scales from 'largest_px' down by 'octaves' steps of 'ratio': CV_32F, about -1 to 1,
-// mean 0, repeats at its sides. 'size' is a power of two.
+// Noise at all scales from 'largest_px' down, in 'octaves' steps of 'ratio': CV_32F, about -1 to 1,
+// mean 0; opposite sides fit each other. 'size' is a power of two.
 cv::Mat FractalNoise(cv::Size size, double largest_px, int octaves, double ratio,
                      std::uint64_t seed);
 
 // CV_8UC3 codes of a colour that varies with 'noise' (CV_32F) by the part 'variation'.
 cv::Mat Painted(const Color& color, double variation, const cv::Mat& noise);
 
-// An even colour.
+// Paint of one even colour.
 std::shared_ptr<const Texture> PlainPaint(const Color& color, int channels);
 
-// A square of 'size_m' around the origin, 'size_px' wide, with its drawings in order: exact edges.
+// Paint of a square of 'size_m' around the origin, 'size_px' wide, with its drawings in order and
+// exact edges.
 class SquarePaint {
  public:
   SquarePaint(int size_px, double size_m, const Color& color);
@@ -46,7 +47,7 @@ class SquarePaint {
 
  private:
   void DrawPixels(const cv::Rect& block, const Drawing& drawing, const Color& color);
-  // 'pixel' counts from the upper left corner.
+  // 'pixel' is counted from the upper left corner.
   Eigen::Vector2d PointAt(const Eigen::Vector2d& pixel) const;
 
   double size_m_;

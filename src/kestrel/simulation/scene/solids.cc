@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 using Paint = std::shared_ptr<const Texture>;
 
-// Glass between posts of the colour of the car.
+// Glass between posts in the colour of the car.
 Paint WindowPaint(const Color& color, int panes, int channels) {
   cv::Mat codes(32, 32 * panes, CV_8UC3, CodesOf(color));
   for (int i = 0; i < panes; ++i) {
@@ -138,7 +138,7 @@ void AddBanner(const Vector2d& center, double yaw, double length_m, double heigh
 
 void AddUavShadow(int body, double size_m, World* world) {
   constexpr int kSize_px = 256;
-  constexpr double kRotorOpacity = 0.35;  // a turning rotor lets most of the light through
+  constexpr double kRotorOpacity = 0.35;  // a rotating rotor lets most of the light through
   cv::Mat opacity(kSize_px, kSize_px, CV_8U, cv::Scalar(0));
   const cv::Point middle(kSize_px / 2, kSize_px / 2);
   constexpr int kArms = 6;

@@ -20,28 +20,28 @@ struct Box {
   Eigen::Vector3d half;
 };
 
-// Adds the five sides of a box that can be seen from above; 'top' and 'side' are their paint.
+// Adds the five sides of a box that are visible from above; 'top' and 'side' are their paint.
 void AddBox(int body, const Box& box, const std::shared_ptr<const Texture>& top,
             const std::shared_ptr<const Texture>& side, World* world);
 
-// Adds a horizontal rectangle that is seen from above: 'yaw' turns its right side from the body's
-// x.
+// Adds a horizontal rectangle that is visible from above. 'yaw' is the angle from the body's x to
+// its right side.
 Surface& AddPlate(int body, const Eigen::Vector3d& center, double half_length, double half_width,
                   double yaw, const std::shared_ptr<const Texture>& paint, World* world);
 
-// A car or a pick-up 4.5 m long; its body's frame: x forward, z up, origin on the ground under the
-// middle. Returns the height of its roof, m.
+// Adds a car or a pick-up 4.5 m long. Its body's frame: x forward, z up, origin on the ground under
+// the middle. Returns the height of its roof, m.
 double AddCar(int body, const Color& color, Random* random, World* world);
 double AddPickup(int body, const Color& color, Random* random, World* world);
 
-// A vertical wall with letters on both sides, as they stand around an arena.
+// Adds a vertical wall with letters on both sides, as they stand around an arena.
 void AddBanner(const Eigen::Vector2d& center, double yaw, double length_m, double height_m,
                const Color& color, Random* random, World* world);
 
-// The UAV's shadow: a body that is not seen. 'size_m': from rotor to rotor.
+// Adds the UAV's shadow: an invisible body. 'size_m': from rotor to rotor.
 void AddUavShadow(int body, double size_m, World* world);
 
-// A motion that stands still.
+// Returns a motion that stands still.
 Motion Standing(const Eigen::Vector2d& place, double yaw);
 
 }  // namespace kestrel

@@ -18,7 +18,7 @@ std::array<float, 256> MakeReflectances() {
   return reflectances;
 }
 
-// Half as wide and high; a side of one pixel stays.
+// Returns the image at half the width and height; a side of one pixel stays.
 cv::Mat Halve(const cv::Mat& codes) {
   cv::Mat half((codes.rows + 1) / 2, (codes.cols + 1) / 2, codes.type());
   const int channels = codes.channels();

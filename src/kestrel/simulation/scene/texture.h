@@ -10,34 +10,34 @@
 
 namespace kestrel {
 
-// Paint is stored in 8 bits as the square root of what it reflects: as fine in the dark as in the
-// light. 'reflectance' is 0 to 1.
+// Paint is stored in 8 bits as the square root of its reflectance: the steps are as fine in the
+// dark as in the light. 'reflectance' is 0 to 1.
 std::uint8_t CodeOfReflectance(double reflectance);
 
 // Light of one channel (gray) or three (blue, green, red).
 template <int kChannels>
 using Light = Eigen::Array<float, kChannels, 1>;
 
-// An image to be painted on a surface, with smaller copies of itself (mip levels) for when it is
-// seen from afar. Immutable, thread-safe.
+// An image painted on a surface, with smaller copies of itself (mip levels) for views from afar.
+// Immutable, thread-safe.
 class Texture {
  public:
-  // What is beyond the edge: the last row or column again, the image again, or its mirror image.
+  // Continuation beyond the edge: the last row or column, the image again, or its mirror image.
   enum class Beyond { kClamp, kRepeat, kMirror };
 
   // 'codes': CV_8UC1 or CV_8UC3 of CodeOfReflectance, at least 1 px; kRepeat and kMirror need sides
-  // that are powers of two. 'channels': 1 or 3, what Sample will be asked for.
+  // that are powers of two. 'channels': 1 or 3, as Sample will request.
   Texture(const cv::Mat& codes, int channels, Beyond beyond = Beyond::kClamp);
 
   int channels() const { return channels_; }
   int width_px() const { return levels_.front().width; }
   int height_px() const { return levels_.front().height; }
 
-  // The level whose pixels are about as large as 'footprint', in pixels of the full image.
+  // Returns the level whose pixels are about as large as 'footprint', in pixels of the full image.
   int LevelOf(float footprint) const;
 
-  // Reflectance at (x, y) px of the full image, whose upper left corner (not pixel centre) is
-  // (0, 0); bilinear within 'level'.
+  // Returns the reflectance at (x, y) px of the full image, whose upper left corner (not pixel
+  // centre) is (0, 0); bilinear within 'level'.
   template <int kChannels>
   Light<kChannels> Sample(float x, float y, int level) const;
 

@@ -19,8 +19,8 @@ using Eigen::Vector3d;
 
 using PlanePath = std::function<Vector2d(double time_s)>;
 
-// Bernoulli's lemniscate, 2 radius long. The sine keeps the speed the same to a few percent; over
-// a whole round the curve is 5.244 radius long.
+// Bernoulli's lemniscate, 2 radius long. The sine keeps the speed constant within a few percent; a
+// whole round is 5.244 radius long.
 PlanePath FigureOfEight(double radius_m, double speed_mps, double phase) {
   const double rate = 2 * kPi * speed_mps / (5.2441 * radius_m);
   return [=](double time_s) {
@@ -47,7 +47,7 @@ PlanePath DrivenPath(const VehicleMotionOptions& options, Random* random) {
   return [=](double time_s) { return Vector2d(moving * time_s * heading); };
 }
 
-// Unit vector of the motion, or nothing to divide by: 'standing' where it does not move.
+// Returns the unit vector of the motion; 'standing' where it does not move.
 Vector2d Heading(const PlanePath& path, double time_s, const Vector2d& standing) {
   constexpr double kStep_s = 5e-3;
   const Vector2d step = path(time_s + kStep_s) - path(time_s - kStep_s);

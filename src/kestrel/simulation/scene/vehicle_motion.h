@@ -9,12 +9,12 @@
 
 namespace kestrel {
 
-// How the vehicle drives. Its body's frame: x forward, y left, z up, origin on the ground.
+// Motion of the vehicle. Its body's frame: x forward, y left, z up, origin on the ground.
 struct VehicleMotionOptions {
   std::string path = "figure8";  // standing, straight, circle or figure8
   double speed_mps = 4.2;        // 0 to 20; the contest: 15 km/h
   double radius_m = 15;          // of the circle; half the length of the figure of eight
-  double shake_deg = 0.4;        // roll and pitch by its springs, standard deviation
+  double shake_deg = 0.4;        // roll and pitch on its springs, standard deviation
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -27,7 +27,7 @@ struct VehicleMotionOptions {
   std::vector<std::string> Validate() const;
 };
 
-// The vehicle's motion; starts somewhere on its path at time 0.
+// Returns the vehicle's motion; it starts at a random place of its path at time 0.
 Motion VehicleMotion(const VehicleMotionOptions& options, Random* random);
 
 }  // namespace kestrel
