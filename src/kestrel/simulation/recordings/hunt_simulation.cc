@@ -26,15 +26,15 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Each part of the scene has random numbers of its own: options of one do not change another.
+// Each part of the scene has its own random numbers: options of one part do not change another.
 enum class HuntPart { kObjects = 200, kFlight, kGround, kLight, kSurroundings };
 Random RandomOf(std::uint64_t seed, HuntPart part) {
   return Random(Hash(seed, static_cast<std::uint64_t>(part)));
 }
 
-// To and fro along x, one lane further in y at every turn; smooth.
+// Back and forth along x, one lane further in y at every turn; smooth.
 Path SweepPath(const HuntFlightOptions& options, Random* random) {
-  // The larger, the straighter the lanes and the sharper the turns; below 1.
+  // Larger values make the lanes straighter and the turns sharper; below 1.
   constexpr double kStraightness = 0.95;
   const double whole = std::asin(kStraightness);
   const double rate = 2 * options.speed_mps * whole / (options.length_m * kStraightness);
@@ -44,14 +44,14 @@ Path SweepPath(const HuntFlightOptions& options, Random* random) {
   return [=, lane = options.lane_m, altitude = options.altitude_m](double time_s) {
     const double phase = rate * time_s - 0.4 * kPi;
     const double x = half_length * std::asin(kStraightness * std::sin(phase)) / whole;
-    // The integral of (1 - cos(2 phase))^2: stands still along the lanes, moves in the turns.
+    // The integral of (1 - cos(2 phase))^2: constant along the lanes, changing in the turns.
     const double turns =
         (1.5 * phase - std::sin(2 * phase) + 0.125 * std::sin(4 * phase)) / (1.5 * kPi);
     return Vector3d(x, start_y + lane * (turns + 0.4), altitude + wave(time_s));
   };
 }
 
-// From a few metres beside the object and high above it to low above it.
+// Descends from a place a few metres beside the object and high above it to one low above it.
 Path DescentPath(const HuntFlightOptions& options, const Path& object, double duration_s,
                  Random* random) {
   const double side = random->Uniform(0, 2 * kPi);

@@ -14,16 +14,17 @@
 
 namespace kestrel {
 
-// How the UAV flies over the objects.
+// Flight of the UAV over the objects.
 struct HuntFlightOptions {
-  std::string path = "sweep";   // sweep: to and fro over the area; descend: down on an object
-  double altitude_m = 6;        // of the sweep, or at the start of the descent
+  std::string path = "sweep";   // sweep: back and forth over the area; descend: down to an object
+  double altitude_m = 6;        // of the sweep, or at the beginning of the descent
   double end_altitude_m = 0.8;  // at the end of the descent
   double speed_mps = 3.5;       // of the sweep
   double length_m = 30;         // of the area, along the lanes
   double width_m = 20;
-  double lane_m = 6.5;    // from one lane to the next
-  double first_lane = 0;  // with which the sweep begins: UAVs of a team begin with several
+  double lane_m = 6.5;    // distance between lanes
+  double first_lane = 0;  // lane with which the sweep begins: the UAVs of a team begin with
+                          // different ones
   double attitude_noise_deg = 0.4;
 
   template <class Self, class Visitor>
@@ -41,21 +42,21 @@ struct HuntFlightOptions {
   std::vector<std::string> Validate() const;
 };
 
-// A flight over coloured objects, from the motion to the sensor.
+// A simulated flight over coloured objects, from the motion to the sensor.
 struct HuntSimulationOptions {
   FlightRecordingOptions recording = ConsumerCamera();
   HuntFlightOptions flight;
   HuntObjectsOptions objects;
   GroundOptions ground = Arena();
   LightOptions light;
-  int field_seed = 0;  // of all that is not the flight's; 0: the recording's seed
+  int field_seed = 0;  // seed of everything outside of the flight; 0: the recording's seed
   int banners = 4;
   int vehicles = 1;
   bool uav_shadow = true;
 
   static GroundOptions Arena();
 
-  // A colour camera with a rolling shutter on a mount that shakes, which sharpens and compresses.
+  // A colour camera with rolling shutter, sharpening and compression, on a shaking mount.
   static FlightRecordingOptions ConsumerCamera();
 
   template <class Self, class Visitor>
@@ -74,11 +75,11 @@ struct HuntSimulationOptions {
   std::vector<std::string> Validate() const;
 };
 
-// 1280x720, 77 degrees wide, looks down, the upper side of its image is forward.
+// 1280x720, 77 degrees wide; it looks down, and the top of its image is forward.
 CameraCalibration HuntCalibration();
 
-// Plans the recording: everything but the images is made. 'camera' has a mount (the nominal one).
-// The same arguments give the same recording. Throws InputError when options are not valid.
+// Plans the recording: everything is made except the images. 'camera' has a mount (the nominal
+// one). The same arguments give the same recording. Throws InputError when options are not valid.
 RecordingPlan PlanHunt(const HuntSimulationOptions& options, const CameraCalibration& camera,
                        std::uint64_t seed);
 

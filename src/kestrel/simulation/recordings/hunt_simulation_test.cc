@@ -34,7 +34,8 @@ HuntSimulationOptions Small(const char* scenario, std::vector<std::string> setti
   return ReadHuntSimulation(scenario, "", settings);
 }
 
-// Centre of what is more red than green and blue, within 'reach_px' of a pixel.
+// Returns the centre of the pixels that are more red than green and blue, within 'reach_px' of
+// 'near'.
 Eigen::Vector2d RedCenter(const cv::Mat& image, const Eigen::Vector2d& near, double reach_px) {
   Eigen::Vector2d sum(0, 0);
   double weights = 0;
@@ -51,7 +52,7 @@ Eigen::Vector2d RedCenter(const cv::Mat& image, const Eigen::Vector2d& near, dou
 }
 
 TEST(HuntSimulationTest, ObjectsAreWhereTheirRowsSayRollingShutterAndVibrationIncluded) {
-  // Fast, shaking, and only red discs, large ones.
+  // A fast, shaking flight over only large red discs.
   const RecordingPlan plan = PlanHunt(
       Small("sweep", {"frames=24", "objects.size_m=0.5", "objects.red=14", "objects.green=0",
                       "objects.blue=0", "objects.yellow=0", "objects.orange=0",
@@ -126,7 +127,7 @@ TEST(HuntSimulationTest, DescentEndsOverTheFirstObject) {
   EXPECT_TRUE(seen);
 }
 
-// What the rows say of an object: its position.
+// Returns the position of each object from the rows.
 std::map<std::int64_t, std::string> Positions(const RecordingPlan& plan) {
   const std::string text = TextOf(plan, "objects0/data.csv");
   const CsvTable rows(text, "objects");

@@ -20,7 +20,7 @@ bool IsInside(const Vector2d& pixel, const CameraModel& camera, double margin_px
          pixel.y() > -0.5 - margin_px && pixel.y() < camera.height_px() - 0.5 + margin_px;
 }
 
-// Part of the upper face that the image shows: that is inside of it, with nothing before it.
+// Returns the part of the upper face that is inside of the image, with nothing in front of it.
 double VisiblePart(const HuntObject& object, const SimulatedFlight& flight, double time_s) {
   const FlightCamera& camera = flight.camera();
   constexpr int kSteps = 10;
@@ -54,7 +54,7 @@ std::string ObjectRow(const HuntObject& object, const SimulatedFlight& flight, d
   const CameraModel& model = camera.lens().camera();
   const auto pixel = camera.Project(time_s, object.center);
   if (!pixel) return "";
-  // Half the object may be in view while its middle is not.
+  // Half of the object may be in view while its middle is not.
   const double range_m =
       (camera.WorldFromCamera(time_s).translation - object.center(time_s)).norm();
   const double margin_px = 1.5 * object.size_m * model.intrinsics().fx_px / range_m;

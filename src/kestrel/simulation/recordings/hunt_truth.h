@@ -9,7 +9,7 @@
 
 namespace kestrel {
 
-// The files of objects0: what there is, where it is seen in which image, and the digits on it.
+// The files of objects0: the objects with their digits, and where each is seen in which image.
 std::string ObjectsText(const std::vector<HuntObject>& objects);
 std::string ObjectRowsText(const std::vector<HuntObject>& objects, const SimulatedFlight& flight);
 std::string DigitsText(const std::vector<HuntObject>& objects);

@@ -23,8 +23,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// No UAV sinks faster than about 10 m/s: whoever asks for fewer images has to say what else
-// changes.
+// No UAV sinks faster than about 10 m/s: with fewer images other options have to change, too.
 void RequireTime(const LandingFlightOptions& flight, double duration_s,
                  std::vector<std::string>* violations) {
   constexpr double kFastest_mps = 10;

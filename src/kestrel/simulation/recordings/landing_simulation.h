@@ -14,7 +14,7 @@
 
 namespace kestrel {
 
-// A flight over the landing pattern, from the motion to the sensor.
+// A simulated flight over the landing pattern, from the motion to the sensor.
 struct LandingSimulationOptions : LandingSceneOptions {
   FlightRecordingOptions recording;
   StillsOptions stills;  // of what follows, stills use only the pattern and the lens' half angle
@@ -30,10 +30,10 @@ struct LandingSimulationOptions : LandingSceneOptions {
   std::vector<std::string> Validate() const;
 };
 
-// The camera of the paper on a UAV: it looks down, the upper side of its image is forward.
+// The camera of the paper on a UAV: it looks down, and the top of its image is forward.
 CameraCalibration PaperCalibration();
 
-// Plans a flight, or stills, as a recording: everything but the images is made. 'camera' has a
+// Plans a flight, or stills, as a recording: everything is made except the images. 'camera' has a
 // mount (the nominal one). The same arguments give the same recording. Throws InputError when
 // options are not valid.
 RecordingPlan PlanLanding(const LandingSimulationOptions& options, const CameraCalibration& camera,

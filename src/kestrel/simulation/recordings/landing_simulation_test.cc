@@ -22,7 +22,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Few and small images, quickly made.
+// Few and small images, for speed.
 LandingSimulationOptions SmallFlight() {
   return ReadLandingSimulation("figure8", "",
                                {"frames=4", "rate_hz=0.5", "ground.map_px=256",
@@ -35,7 +35,7 @@ CameraCalibration SmallCamera() {
   return camera;
 }
 
-// Rows of a CSV text by the time in their first column.
+// Returns the rows of a CSV text by the time in their first column.
 std::map<std::int64_t, std::size_t> RowsByTime(const CsvTable& table) {
   std::map<std::int64_t, std::size_t> rows;
   for (std::size_t row = 0; row < table.row_count(); ++row) rows[table.Integer(row, 0)] = row;

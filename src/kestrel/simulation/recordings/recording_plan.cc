@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-// Renders the images that are not there yet. Every thread takes the next one.
+// Renders the missing images. Each thread takes the next one.
 class ImageJob {
  public:
   ImageJob(const RecordingPlan& plan, const RecordingWriter& writer, const RenderProgress& progress)

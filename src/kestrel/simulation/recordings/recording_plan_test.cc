@@ -25,7 +25,7 @@ using ::testing::ThrowsMessage;
 
 constexpr int kImages = 6;
 
-// Counts the images that it renders in 'rendered'.
+// Counts the rendered images in 'rendered'.
 RecordingPlan TestPlan(std::atomic<int>* rendered, const std::string& scene = "seed: 1\n") {
   RecordingPlan plan;
   for (int i = 0; i < kImages; ++i) plan.times.push_back(TimeOfFlight(0.1 * i));

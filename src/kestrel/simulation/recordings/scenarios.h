@@ -11,7 +11,7 @@
 
 namespace kestrel {
 
-// A named flight: what it changes in the default options.
+// A named flight: its changes to the default options.
 struct Scenario {
   const char* name;
   const char* meaning;
@@ -23,9 +23,9 @@ std::span<const Scenario> LandingScenarios();
 std::span<const Scenario> HuntScenarios();
 std::span<const Scenario> TouchdownScenarios();
 
-// The options of a scenario, then those of the file (if not empty), then the settings "key=value".
-// Throws InputError when there is no such scenario, one of them is at fault, or the result is not
-// valid.
+// Returns the options of a scenario, changed by those of the file (if not empty), and then by the
+// settings "key=value". Throws InputError when the scenario does not exist, a setting is wrong, or
+// the result is not valid.
 LandingSimulationOptions ReadLandingSimulation(const std::string& scenario,
                                                const std::string& config_file,
                                                const std::vector<std::string>& settings);

@@ -14,10 +14,10 @@
 namespace kestrel {
 namespace {
 
-// The navigation's poses begin before the first image and end after the last, whatever the offset.
+// The poses begin before the first image and end after the last one, whatever the clock offset.
 constexpr double kMargin_s = 0.5;
 
-// Each has random numbers of its own.
+// Each part has its own random numbers.
 enum class FlightPart { kErrors = 100, kPoses, kVibration, kGain, kNoise };
 std::uint64_t SeedOf(std::uint64_t seed, FlightPart part) {
   return Hash(seed, static_cast<std::uint64_t>(part));

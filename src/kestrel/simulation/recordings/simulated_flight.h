@@ -17,7 +17,7 @@
 
 namespace kestrel {
 
-// What every flight has, whatever it flies over.
+// Options of every flight, whatever is below it.
 struct FlightRecordingOptions {
   int frames = 300;
   double rate_hz = 30;
@@ -40,13 +40,13 @@ struct FlightRecordingOptions {
   double duration_s() const { return frames / rate_hz; }
 };
 
-// A flight through a world with a camera and all the errors of its navigation. Thread-safe.
+// A flight through a world, with a camera and all errors of its navigation. Thread-safe.
 class SimulatedFlight {
  public:
-  // 'camera' has a mount, the nominal one; 'airframe' stands in front of the lens.
+  // 'camera' has a mount, the nominal one; 'airframe' is in front of the lens.
   SimulatedFlight(const FlightRecordingOptions& options, const CameraCalibration& camera,
                   const Drawing& airframe, World world, Motion world_from_body, std::uint64_t seed);
-  SimulatedFlight(const SimulatedFlight&) = delete;  // the camera looks into the world in it
+  SimulatedFlight(const SimulatedFlight&) = delete;  // the camera refers to the world in it
   SimulatedFlight& operator=(const SimulatedFlight&) = delete;
 
   const FlightCamera& camera() const { return *camera_; }
@@ -54,17 +54,17 @@ class SimulatedFlight {
   const NavigationErrors& errors() const { return errors_; }
   const std::vector<double>& times_s() const { return times_s_; }  // of the images
 
-  // 'gain' multiplies the light, besides the wandering gain of the options.
+  // 'gain' multiplies the light, in addition to the varying gain of the options.
   cv::Mat Image(std::size_t index, double gain = 1) const;
 
-  // Leaves out the images from 'index' on: a flight that is over.
+  // Leaves out the images from 'index' on: the flight has ended.
   void EndBefore(std::size_t index);
 
-  // The navigation, before its first report, which is that of 'begin_s'.
+  // Returns the navigation before its first report, which is that of 'begin_s'.
   NavigationSensor navigation() const;
   double begin_s() const;
 
-  // What scene.yaml says of any flight; lines to go on after.
+  // Returns the part of scene.yaml that all flights share; further lines may follow.
   std::string SceneText(const std::string& kind) const;
 
   // cam0/sensor.yaml, nav0 and state_groundtruth_estimate0.

@@ -22,13 +22,13 @@ class SimulatedLanding {
   const SimulatedFlight& flight() const { return flight_; }
   const Motion& world_from_pattern() const { return world_from_pattern_; }
 
-  // Leaves out the images from 'index' on: a flight that is over.
+  // Leaves out the images from 'index' on: the flight has ended.
   void EndBefore(std::size_t index) { flight_.EndBefore(index); }
 
-  // scene.yaml; 'options': all of them, as YAML.
+  // Text of scene.yaml; 'options': all of them, as YAML.
   std::string SceneText(const std::string& kind, const std::string& options) const;
 
-  // Those of any flight and landing_pattern0.
+  // The files of every flight and landing_pattern0.
   std::vector<RecordingFile> Files() const;
 
  private:

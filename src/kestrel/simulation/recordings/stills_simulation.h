@@ -11,9 +11,9 @@
 
 namespace kestrel {
 
-// Images that have nothing to do with each other, as LandingStillMaker makes them.
+// Unrelated images, made by LandingStillMaker.
 struct StillsOptions {
-  std::string show = "nothing";  // pattern, lookalikes; nothing: it is a flight
+  std::string show = "nothing";  // pattern, lookalikes; nothing: a flight instead of stills
   double min_altitude_m = 0.35;  // of the camera above the pattern
   double max_altitude_m = 14;
   double max_tilt_deg = 40;
@@ -32,9 +32,9 @@ struct StillsOptions {
   std::vector<std::string> Validate() const;
 };
 
-// Plans a recording of 'frames' stills, one a second, in which the pattern, or the plane of the
-// look-alikes, is the world's z = 0. The navigation has no error. Arguments that go together are
-// checked (InputError); 'camera' has a mount.
+// Plans a recording of 'frames' stills, one per second. The pattern, or the plane of the
+// look-alikes, is the world's z = 0. The navigation has no error. Checks combinations of arguments
+// (InputError); 'camera' has a mount.
 RecordingPlan PlanStills(const StillsOptions& options, const LandingPattern& pattern, int frames,
                          double lens_half_angle_deg, const CameraCalibration& camera,
                          std::uint64_t seed);

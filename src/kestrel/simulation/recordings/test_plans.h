@@ -8,7 +8,7 @@
 
 namespace kestrel {
 
-// The text of one of the plan's files.
+// Returns the text of one of the plan's files.
 inline const std::string& TextOf(const RecordingPlan& plan, const std::string& name) {
   for (const auto& file : plan.files) {
     if (file.name == name) return file.text;

@@ -15,13 +15,13 @@ namespace kestrel {
 
 enum class TouchdownOutcome {
   kLanded,
-  kTooFast,      // came down on the board, but faster than it may
+  kTooFast,      // came down on the board, but too fast
   kBesideBoard,  // came down beside the board
   kTimeUp,       // still in the air after the last image
 };
 const char* ToString(TouchdownOutcome outcome);  // "landed", "too fast", ...
 
-// Where things were when an image was taken (for plots).
+// Positions when an image was taken (for plots).
 struct TouchdownMoment {
   Time time;
   GuidancePhase phase = GuidancePhase::kIdle;
@@ -30,24 +30,24 @@ struct TouchdownMoment {
   std::optional<Eigen::Vector3d> target_in_world;  // by the track
 };
 
-// How a flight ended.
+// The outcome of a flight.
 struct TouchdownResult {
   TouchdownOutcome outcome = TouchdownOutcome::kTimeUp;
   double time_s = 0;                   // from the start to the end
-  std::optional<double> first_seen_s;  // when the first image was taken that showed it
+  std::optional<double> first_seen_s;  // time of the first image that showed it
   double distance_m = 0;               // of the feet's middle from the pattern's, on the board
-  double slip_mps = 0;                 // speed against the board, horizontal
-  double sink_mps = 0;                 // and vertical
+  double slip_mps = 0;                 // horizontal speed relative to the board
+  double sink_mps = 0;                 // vertical speed relative to the board
   double wind_mps = 0;                 // mean over the flight
   int go_arounds = 0;
   int frames = 0;
-  std::vector<TouchdownMoment> path;  // one for every image
+  std::vector<TouchdownMoment> path;  // one for each image
 };
 
-// The flight in words, a few lines.
+// Returns the flight in words, a few lines.
 std::string InWords(const TouchdownResult& result);
 
-// touchdown.csv: one row for a flight. touchdown_path.csv: one row for every image.
+// touchdown.csv: one row per flight. touchdown_path.csv: one row per image.
 std::string TouchdownCsvHeader();
 std::string TouchdownCsvRow(std::uint64_t seed, const TouchdownResult& result);
 std::string TouchdownPathCsv(const TouchdownResult& result);

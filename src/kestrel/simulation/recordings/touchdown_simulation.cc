@@ -21,8 +21,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kFlightStep_s = 0.005;
-constexpr double kRideOn_s = 1;    // after touchdown, for the navigation's last poses
-constexpr int kExposureDelay = 2;  // images after a new exposure that have the old one
+constexpr double kRideOn_s = 1;    // after touchdown, for the last poses of the navigation
+constexpr int kExposureDelay = 2;  // number of images with the old exposure after a change
 
 CameraCalibration WithClockOffset(CameraCalibration camera, Duration clock_offset) {
   camera.clock_offset = clock_offset;
@@ -59,7 +59,7 @@ TouchdownSimulationOptions::TouchdownSimulationOptions() {
   recording.navigation.mount_error_deg = 0;
   recording.navigation.clock_offset_min_s = 0;
   recording.navigation.clock_offset_max_s = 0;
-  // What the multicopter can do, and more room than the vehicle takes.
+  // The abilities of the multicopter, and more room than the vehicle needs.
   guidance.limits = {.geofence_radius_m = 300,
                      .max_speed_mps = multicopter.max_speed_mps,
                      .max_climb_mps = 2.5,
@@ -105,7 +105,7 @@ TouchdownSimulation::Start TouchdownSimulation::DrawStart() const {
   const double pass_s = random.Uniform(options.pass_min_s, options.pass_max_s);
   const Vector2d place = landing_.world_from_pattern()(pass_s).translation.head<2>();
   const Vector2d vehicle = landing_.world_from_pattern()(0).translation.head<2>();
-  // Not where it would see the vehicle at once.
+  // Not at a place from which it would see the vehicle at once.
   constexpr int kTries = 20;
   Vector2d away(1, 0);
   for (int i = 0; i < kTries; ++i) {
@@ -148,7 +148,7 @@ std::optional<TouchdownResult> TouchdownSimulation::Fly(const FrameSink& sink) {
   return result;
 }
 
-// What the navigation reports up to now.
+// Adds the navigation's reports up to now.
 void TouchdownSimulation::ReportPoses(double time_s) {
   for (;; ++poses_) {
     const double pose_s =
@@ -159,7 +159,7 @@ void TouchdownSimulation::ReportPoses(double time_s) {
   }
 }
 
-// The next image, if all of its light has been collected.
+// Takes the next image, if its exposure has ended.
 void TouchdownSimulation::TakeImage(double time_s) {
   const std::vector<double>& times_s = landing_.flight().times_s();
   if (next_image_ == times_s.size()) return;
@@ -174,7 +174,7 @@ void TouchdownSimulation::TakeImage(double time_s) {
   ++next_image_;
 }
 
-// The images taken up to 'until_s'.
+// Processes the images taken up to 'until_s'.
 bool TouchdownSimulation::ProcessImages(double until_s, const FrameSink& sink,
                                         TouchdownResult* result) {
   for (; !images_.empty() && images_.front().time <= TimeOfFlight(until_s); images_.pop_front()) {
@@ -197,7 +197,7 @@ bool TouchdownSimulation::ProcessImages(double until_s, const FrameSink& sink,
   return true;
 }
 
-// The pilot gives the mode at once; the link is perfect.
+// The pilot gives the mode at once, and the link is perfect.
 SetPoint TouchdownSimulation::Guide(double time_s) {
   GuidanceInput input;
   input.now = TimeOfFlight(time_s);
@@ -233,7 +233,7 @@ bool TouchdownSimulation::HasEnded(double time_s, TouchdownResult* result) const
 TouchdownOutcome TouchdownSimulation::OutcomeOf(const Vector3d& feet_on_board,
                                                 const TouchdownResult& result) const {
   const TouchdownOptions& options = options_.touchdown;
-  // The arms, the axes of the pattern, point to the corners of the board.
+  // The arms, which are the axes of the pattern, point to the corners of the board.
   const double to_side_m =
       (std::abs(feet_on_board.x()) + std::abs(feet_on_board.y())) / std::numbers::sqrt2;
   if (to_side_m > 0.5 * options_.pattern.board_size_m - options.feet_radius_m) {
@@ -244,7 +244,7 @@ TouchdownOutcome TouchdownSimulation::OutcomeOf(const Vector3d& feet_on_board,
   return is_slow ? TouchdownOutcome::kLanded : TouchdownOutcome::kTooFast;
 }
 
-// The vehicle takes the UAV along for a moment.
+// The vehicle carries the UAV for a moment.
 void TouchdownSimulation::RideOn(double time_s) {
   const RigidTransform pattern_from_body =
       landing_.world_from_pattern()(time_s).Inverse() * path_.At(time_s);

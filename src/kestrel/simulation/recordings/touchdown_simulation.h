@@ -27,21 +27,22 @@
 
 namespace kestrel {
 
-// Where the UAV starts, what a touchdown is, and how late the vision.
+// Start of the UAV, conditions of a touchdown, and delay of the vision.
 struct TouchdownOptions {
   double start_altitude_m = 10;  // above ground
   double start_distance_m = 20;  // from the place where the vehicle should pass
-  // The vehicle passes that place at a time drawn between these. The UAV knows the place, not the
-  // time. The vehicle is not nearer to the start than that place.
+  // The vehicle passes that place at a random time between these. The UAV knows the place, but not
+  // the time. The vehicle is never nearer to the start than that place.
   double pass_min_s = 4;
   double pass_max_s = 8;
-  // From the middle of an image's exposure until its result can be used: transfer and detection.
+  // Time from the middle of an image's exposure until its result can be used: transfer and
+  // detection.
   double processing_delay_s = 0.06;
-  double leg_m = 0.35;  // from the body's origin down to its feet
+  double leg_m = 0.35;  // distance from the body's origin down to its feet
   double feet_radius_m =
-      0.25;  // its feet stand on the board when their middle is so far from the edge
-  double max_slip_mps = 1.5;  // horizontal speed against the board with which it stays there
-  double max_sink_mps = 2;    // and vertical
+      0.25;  // its feet stand on the board when their middle is this far inside of its edge
+  double max_slip_mps = 1.5;  // largest horizontal speed against the board for it to stay there
+  double max_sink_mps = 2;    // largest vertical speed
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -60,12 +61,12 @@ struct TouchdownOptions {
   std::vector<std::string> Validate() const;
 };
 
-// A simulated UAV that lands on a vehicle by what the pipeline sees.
+// A simulated UAV that lands on a vehicle by the results of the pipeline.
 struct TouchdownSimulationOptions : LandingSceneOptions {
   TouchdownSimulationOptions();
 
   TouchdownOptions touchdown;
-  FlightRecordingOptions recording;  // 'frames': after so many the flight ends
+  FlightRecordingOptions recording;  // 'frames': the flight ends after so many
   MulticopterOptions multicopter;
   WindOptions wind;
   GuidanceOptions guidance;
@@ -84,28 +85,28 @@ struct TouchdownSimulationOptions : LandingSceneOptions {
   std::vector<std::string> Validate() const;
 };
 
-// A closed loop: the UAV flies by the track, the track comes from the pipeline, the pipeline gets
-// the rendered images, late, and the poses that the navigation reports, and the images show what
-// the UAV sees where its flight has brought it. The truth is used for rendering and for the result
-// only. The same arguments give the same flight.
+// A closed loop: the UAV flies by the track, the track comes from the pipeline, the pipeline
+// receives the delayed rendered images and the poses reported by the navigation, and the images
+// show the view from the place to which the flight has brought the UAV. The truth is used only for
+// rendering and for the result. The same arguments give the same flight.
 class TouchdownSimulation {
  public:
-  // 'camera' has a mount; the pipeline knows it and the clock offset that was drawn. Throws
-  // InputError when options are not valid.
+  // 'camera' has a mount; the pipeline knows it and the drawn clock offset. Throws InputError when
+  // options are not valid.
   TouchdownSimulation(const TouchdownSimulationOptions& options, const CameraCalibration& camera,
                       std::uint64_t seed);
   TouchdownSimulation(const TouchdownSimulation&) =
-      delete;  // the camera looks along the path in it
+      delete;  // the camera refers to the path that is in it
   TouchdownSimulation& operator=(const TouchdownSimulation&) = delete;
 
-  // Called with every image and what the pipeline made of it, in order; returns whether to go on.
+  // Called with every image and the pipeline's result for it, in order; returns whether to go on.
   using FrameSink = std::function<bool(const cv::Mat& image, const LandingObservation& observation,
                                        const LandingPipeline& pipeline)>;
 
-  // Flies until touchdown, or the last image. Nothing when 'sink' stopped it. Once only.
+  // Flies until touchdown or the last image. Nothing when 'sink' stopped it. Call it once only.
   std::optional<TouchdownResult> Fly(const FrameSink& sink);
 
-  // The texts of a recording: scene.yaml, and after the flight the other files.
+  // Texts of a recording: scene.yaml, and after the flight the other files.
   std::string SceneText() const { return landing_.SceneText("touchdown", PrintOptions(options_)); }
   std::vector<RecordingFile> Files() const { return landing_.Files(); }
 
@@ -141,15 +142,15 @@ class TouchdownSimulation {
   LandingGuidance guidance_;
   NavigationSensor navigation_;
   PoseSample newest_pose_;
-  int poses_ = 0;  // reported
+  int poses_ = 0;  // number of reported poses
   Duration clock_offset_;
   LandingPipeline pipeline_;
   ExposureController exposure_;
   std::deque<double> exposures_s_;  // of the next images
-  cv::Rect pattern_area_;           // in the newest image processed
+  cv::Rect pattern_area_;           // in the newest processed image
   std::deque<TakenImage> images_;   // taken, not yet processed
   std::size_t next_image_ = 0;
-  std::optional<Time> last_seen_;  // when the last image was taken that showed the target
+  std::optional<Time> last_seen_;  // time of the newest image that showed the target
 };
 
 }  // namespace kestrel

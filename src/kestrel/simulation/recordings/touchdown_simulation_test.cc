@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Quickly rendered.
+// Options that render fast.
 TouchdownSimulationOptions Small() {
   return ReadTouchdownSimulation("figure8", "",
                                  {"shutter.rays_per_pixel=1", "ground.map_px=512", "rate_hz=15"});

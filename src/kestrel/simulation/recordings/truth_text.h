@@ -16,21 +16,21 @@
 
 namespace kestrel {
 
-// state_groundtruth_estimate0/data.csv of a flight: the true pose and velocity at 100 Hz from
-// 'begin_s' to 'end_s', and at all image times.
+// Text of state_groundtruth_estimate0/data.csv of a flight: the true pose and velocity at 100 Hz
+// from 'begin_s' to 'end_s', and at all image times.
 std::string TrueStateText(const Motion& world_from_body, double begin_s, double end_s,
                           const std::vector<double>& image_times_s);
 
-// The same of poses that have nothing to do with each other: without velocities.
+// The same for unrelated poses: without velocities.
 std::string TrueStateText(const std::vector<PoseSample>& poses);
 
-// The pattern in the image that 'camera' takes at 'time_s', whose stamp is 'stamp'; nothing where
-// the camera's model does not see the pattern's centre.
+// Returns the pattern in the image that 'camera' takes at 'time_s', whose stamp is 'stamp'; nothing
+// where the camera model does not cover the pattern's centre.
 std::optional<TruePattern> SeenPattern(Time stamp, double time_s, const FlightCamera& camera,
                                        const LandingPattern& pattern,
                                        const Motion& world_from_pattern);
 
-// A text of lines as a part of a YAML map: two blanks before each.
+// Returns lines of text as a part of a YAML map: with two blanks before each.
 std::string Indented(const std::string& lines);
 
 }  // namespace kestrel
