@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ExposureController with a simulated camera.
+// Tests ExposureController with a simulated camera.
 #include <deque>
 #include <vector>
 
@@ -13,9 +13,9 @@
 namespace kestrel {
 namespace {
 
-constexpr double kExposure_s = 0.001;  // at which white in full light has gray 235
+constexpr double kExposure_s = 0.001;  // exposure at which white in full light has gray 235
 
-// A camera 2 m above a pattern, that applies a new exposure two images late.
+// A camera 2 m above a pattern that applies a new exposure two images late.
 class Loop {
  public:
   Loop(double gamma, double exposure_s)
@@ -28,7 +28,7 @@ class Loop {
         controller_({.gamma = gamma}, exposure_s),
         exposures_s_(3, exposure_s) {}
 
-  // Gray value that a fiftieth of the board's white exceeds, image by image.
+  // Returns for each image the gray value that a fiftieth of the board's white exceeds.
   std::vector<int> Run(double light, int images) {
     std::vector<int> grays;
     for (int i = 0; i < images; ++i, ++taken_) {
@@ -50,7 +50,7 @@ class Loop {
     return world;
   }
 
-  inline static const cv::Rect kArea{98, 58, 44, 44};  // of the ring
+  inline static const cv::Rect kArea{98, 58, 44, 44};  // around the ring
   World world_;
   FlightCamera camera_;
   ExposureController controller_;
@@ -58,7 +58,7 @@ class Loop {
   int taken_ = 0;
 };
 
-// From image 'settled' on, all are as they should be.
+// From image 'settled' on, all gray values are as wanted.
 void ExpectSettles(const std::vector<int>& grays, std::size_t settled, double light) {
   for (std::size_t i = settled; i < grays.size(); ++i) {
     EXPECT_GE(grays[i], 198) << "image " << i << ", light " << light;

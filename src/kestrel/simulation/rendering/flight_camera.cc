@@ -25,7 +25,7 @@ cv::Mat FlightCamera::Capture(double time_s, double gain, std::uint64_t seed) co
 
 std::optional<Eigen::Vector2d> FlightCamera::Project(double time_s,
                                                      const Path& point_in_world) const {
-  // The row's time depends on the row: a few rounds settle it.
+  // The row's time depends on the row: a few iterations converge.
   constexpr int kRounds = 12;
   constexpr double kTolerance_s = 1e-6;
   double row_time_s = time_s;

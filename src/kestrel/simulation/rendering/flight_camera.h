@@ -11,10 +11,10 @@
 
 namespace kestrel {
 
-// A camera on a flying body, and where the things appear that it sees. Thread-safe.
+// A camera on a flying body, and the projection of what it sees. Thread-safe.
 class FlightCamera {
  public:
-  // 'world_from_camera': its motion with its vibration. Neither copied nor moved; the world must
+  // 'world_from_camera': its motion with its vibration. Not copyable or movable; the world must
   // outlive it.
   FlightCamera(const FlightCamera&) = delete;
   FlightCamera& operator=(const FlightCamera&) = delete;
@@ -22,17 +22,17 @@ class FlightCamera {
   FlightCamera(const CameraModel& camera, const LensOptions& lens, const ShutterOptions& shutter,
                const SensorOptions& sensor, const World& world, Motion world_from_camera);
 
-  // The 8-bit image whose exposure has its middle at 'time_s'; 'gain' multiplies the light, 'seed'
-  // makes the noise.
+  // Returns the 8-bit image whose exposure has its middle at 'time_s'. 'gain' multiplies the light,
+  // 'seed' determines the noise.
   cv::Mat Capture(double time_s, double gain, std::uint64_t seed) const;
 
-  // Where a point appears in that image: the middle of the streak that it leaves during the
-  // exposure of the row in which it appears. Nothing where the lens model says nothing, or where
-  // the image moves as fast as the rolling shutter, so that there is no one row (far beside the
+  // Returns the pixel at which a point appears in that image: the middle of its streak during the
+  // exposure of the row in which it appears. Nothing where the lens model is not valid, or where
+  // the image moves as fast as the rolling shutter, so that there is no single row (far beside the
   // image).
   std::optional<Eigen::Vector2d> Project(double time_s, const Path& point_in_world) const;
 
-  // The middle of the exposure of the row of a pixel.
+  // Returns the middle of the exposure of a pixel's row, s.
   double TimeOfRow(double time_s, const Eigen::Vector2d& pixel) const {
     return time_s + renderer_.RowTime(pixel.y());
   }

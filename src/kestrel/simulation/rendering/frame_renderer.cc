@@ -20,13 +20,14 @@ constexpr int kMomentsPerExposure = 64;
 constexpr int kMaxMoments = 2048;
 constexpr float kFarthest_m = 3000;
 
-// Rays take the paint from a level this much finer than the pixel: they average among themselves.
+// Rays sample the paint at a level this much finer than the pixel: the average over the rays does
+// the rest.
 constexpr float kRayFootprint = 0.5f;
 
-// The step of a sequence that fills the unit cube evenly (Roberts' R3): place in the pixel, moment.
+// Step of a sequence that fills the unit cube evenly (Roberts' R3): place in the pixel, moment.
 const Vector3f kStep(0.8191725134f, 0.6710436067f, 0.5497004779f);
 
-// A point of the unit cube [0, 1) made of 63 of the bits.
+// Returns a point of the unit cube [0, 1) from 63 of the bits.
 Vector3f UnitCube(std::uint64_t bits) {
   const auto part = [bits](int shift) {
     return static_cast<float>((bits >> shift) & 0x1FFFFF) * 0x1p-21f;
@@ -36,7 +37,7 @@ Vector3f UnitCube(std::uint64_t bits) {
 
 float Fraction(float x) { return x - std::floor(x); }
 
-// Places on the sun's disc, for soft shadows.
+// Returns places on the sun's disc, for soft shadows.
 std::array<Vector2f, 64> MakeDisc() {
   std::array<Vector2f, 64> places;
   for (int i = 0; i < 64; ++i) {
@@ -57,7 +58,7 @@ Light<kChannels> InChannels(const Eigen::Vector3d& bgr) {
   }
 }
 
-// Where a ray ends.
+// The end of a ray.
 struct Hit {
   int seen = -1;  // -1: the sky
   float w = 0;    // 1 / distance
@@ -65,7 +66,7 @@ struct Hit {
   float y = 0;
 };
 
-// The pixels of one frame.
+// Computes the pixels of one frame.
 template <int kChannels>
 class Painter {
  public:
@@ -107,7 +108,7 @@ class Painter {
     return Hazy(light, hit.w, ray);
   }
 
-  // What the lens scatters of the sun, in a pixel that looks along 'ray'.
+  // Returns the sunlight that the lens scatters into a pixel that looks along 'ray'.
   Color Flare(const Vector3f& ray) const {
     if (world_.light.flare <= 0) return Color::Zero();
     constexpr float kWidth2 = 0.12f * 0.12f;  // squared angle at which it has faded to a half
@@ -141,7 +142,7 @@ class Painter {
                           0.5f * (1 - on.y() / on.z()) * mask.height_px(), 0)[0] < 0.5f;
   }
 
-  // Sets the paint's level for what the pixel sees of the surface.
+  // Chooses the paint's level for the pixel's part of the surface.
   void FindLevel(const Hit& hit) {
     if (level_of_ == hit.seen) return;
     level_of_ = hit.seen;
@@ -159,7 +160,7 @@ class Painter {
     const Ground& ground = world_.ground;
     Color paint = ground.map->Sample<kChannels>(map_middle_ + map_per_m_ * hit.x,
                                                 map_middle_ - map_per_m_ * hit.y, level_);
-    constexpr int kEvenLevel = 5;  // from here on the detail is the same everywhere
+    constexpr int kEvenLevel = 5;  // from here on the detail is even
     if (detail_level_ < kEvenLevel) {
       const auto scale = static_cast<float>(ground.detail->width_px() / ground.detail_size_m);
       paint *=
@@ -176,7 +177,7 @@ class Painter {
                                    level_);
   }
 
-  // Part of the sun that gets to a point past what is in the world.
+  // Returns the part of the sun that reaches a point past the things in the world.
   float Sunlit(const Hit& hit, int moment, const Vector2f& jitter) {
     const SeenSurface& seen = view_.seen(hit.seen);
     float light = FarShade(hit);
@@ -193,7 +194,7 @@ class Painter {
     return light;
   }
 
-  // The same past what is far away. Its edges are soft: one look a pixel is enough.
+  // The same past things far away. Its edges are soft: one sample per pixel is enough.
   float FarShade(const Hit& hit) {
     if (!world_.ground.sunlit || shade_of_ == hit.seen) return shade_;
     shade_of_ = hit.seen;
@@ -205,7 +206,7 @@ class Painter {
     return shade_;
   }
 
-  // The blurred mirror image of the sun.
+  // Returns the blurred mirror image of the sun.
   float Glare(const SeenSurface& seen, const Vector3f& ray_in_world) const {
     const Vector3f mirrored = ray_in_world - 2 * seen.normal.dot(ray_in_world) * seen.normal;
     const float cosine = mirrored.dot(world_.light.to_sun.cast<float>());
@@ -247,14 +248,14 @@ class Painter {
   std::span<const int> surfaces_;
   std::span<const int> ground_shadows_;
   float pixel_angle_ = 0;
-  int level_of_ = -1;  // the surface that the values below are of
+  int level_of_ = -1;  // surface to which the values below belong
   int level_ = 0;
   int detail_level_ = 0;
-  int shade_of_ = -1;  // the surface that FarShade is known of
+  int shade_of_ = -1;  // surface for which FarShade is known
   float shade_ = 1;
 };
 
-// Side of a pixel as an angle, from the rays of its corners.
+// Returns the side of a pixel as an angle (rad), from the rays of its corners.
 float PixelAngle(const std::array<Vector3f, 4>& corners) {
   return std::sqrt((corners[1] - corners[0]).cross(corners[2] - corners[0]).norm());
 }

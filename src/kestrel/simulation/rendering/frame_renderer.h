@@ -15,10 +15,11 @@
 
 namespace kestrel {
 
-// How a frame collects its light.
+// Exposure of a frame.
 struct ShutterOptions {
   double exposure_s = 0.003;  // of a row, > 0
-  double readout_s = 0;       // from the first row's exposure to the last's; 0: global shutter
+  double readout_s = 0;       // from the exposure of the first row to that of the last; 0: global
+                              // shutter
   int rays_per_pixel = 8;     // 1 to 64, spread over the pixel and over the exposure
 
   template <class Self, class Visitor>
@@ -32,22 +33,22 @@ struct ShutterOptions {
   std::vector<std::string> Validate() const;
 };
 
-// Ray casting: the light that falls on the pixels of a moving camera in a moving world. Every ray
-// has its own place in the pixel and its own moment of the exposure, hence motion blur and rolling
-// shutter are what they are in a camera. Immutable and thread-safe; a frame depends on nothing but
-// its own arguments.
+// Ray casting: the light on the pixels of a moving camera in a moving world. Every ray has its own
+// place in the pixel and its own moment of the exposure, which gives motion blur and rolling
+// shutter as in a camera. Immutable and thread-safe; a frame depends only on its own arguments.
 class FrameRenderer {
  public:
   // 'world' and 'lens' must outlive the renderer. Throws InputError when options are not valid.
   FrameRenderer(const Lens& lens, const World& world, const ShutterOptions& shutter);
 
-  // CV_32FC1 or CV_32FC3 (the world's channels): linear light in units of white, before the lens
-  // takes its part; 0 where the lens lets nothing through. 'time_s' is the middle of the exposure
-  // (of the middle row), 'world_from_camera' the camera's motion. 'seed' makes the places of the
-  // rays within pixels.
+  // Returns CV_32FC1 or CV_32FC3 (the world's channels): linear light in units of white, before the
+  // loss in the lens; 0 where the lens is dark. 'time_s' is the middle of the exposure (of the
+  // middle row), 'world_from_camera' the camera's motion. 'seed' determines the places of the rays
+  // within pixels.
   cv::Mat Render(double time_s, const Motion& world_from_camera, std::uint64_t seed) const;
 
-  // When row 'v' (fractions allowed) has the middle of its exposure, relative to the frame's time.
+  // Returns the middle of the exposure of row 'v' (fractions allowed) relative to the frame's time,
+  // s.
   double RowTime(double v) const;
 
   const ShutterOptions& shutter() const { return shutter_; }

@@ -26,8 +26,8 @@ double Bilinear(const cv::Mat& image, const Vector2d& pixel) {
          y * ((1 - x) * image.at<float>(v + 1, u) + x * image.at<float>(v + 1, u + 1));
 }
 
-// Where along 'direction' the image goes half the way from its value 3 px before 'expected' to that
-// 3 px after it, in px from 'expected': by the area under the step.
+// Returns the place along 'direction' at which the image is halfway between its values 3 px before
+// and 3 px after 'expected', in px from 'expected': computed from the area under the step.
 double EdgeOffset(const cv::Mat& image, const Vector2d& expected, const Vector2d& direction) {
   constexpr double kReach_px = 3;
   constexpr int kSteps = 120;
@@ -41,7 +41,8 @@ double EdgeOffset(const cv::Mat& image, const Vector2d& expected, const Vector2d
   return kReach_px - 2 * kReach_px * sum / kSteps;
 }
 
-// The centre of what is darker than 'white' within 20 px of 'near', weighted by how much.
+// Returns the centre of the pixels darker than 'white' within 20 px of 'near', weighted by the
+// difference.
 Vector2d DarkCenter(const cv::Mat& image, const Vector2d& near, double white) {
   constexpr double kReach_px = 20;
   Vector2d sum(0, 0);
@@ -113,7 +114,7 @@ TEST(FrameRendererTest, RollingShutterShowsEveryRowAtItsTime) {
   World world = PlainWorld(0.8);
   AddInkPlate(Drawing().Add(Drawing::Ring{{0, 0}, 0.1}), 1.2, 0.01, &world);
   const ShutterOptions rolling{.exposure_s = 0.002, .readout_s = 0.03, .rays_per_pixel = 16};
-  // The camera turns about its axis and moves: what is at the upper side is seen earlier.
+  // The camera turns about its axis and moves: the upper rows are exposed earlier.
   const Motion moving = [](double time_s) {
     RigidTransform pose = LookingDown({-0.9 + 2 * time_s, 0.5, 2});
     pose.rotation = pose.rotation * AngleAxisd(5 * time_s, Vector3d::UnitZ());
@@ -153,7 +154,7 @@ TEST(FrameRendererTest, SunThrowsSoftShadowsWhereTheyBelong) {
   EXPECT_NEAR(light(-1, 0.35), 0, 0.01);
   EXPECT_NEAR(light(-1, 0.7), 0.8, 0.02);
   EXPECT_NEAR(light(-1.7, 0), 0.8, 0.02);
-  // On the edge half of the sun is seen.
+  // At the edge half of the sun is visible.
   EXPECT_NEAR(light(-1, 0.5), 0.4, 0.08);
 }
 

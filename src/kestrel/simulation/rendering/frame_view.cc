@@ -17,12 +17,12 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// How far (m) a velocity is followed to find it.
+// Time step of numerical velocities, s.
 constexpr double kVelocityStep_s = 1e-3;
 
 PlacedSurface GroundPlane() { return {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}; }
 
-// A cone around a surface as the camera sees it during the whole exposure.
+// A cone around a surface, seen by the camera during the whole exposure.
 struct ViewCone {
   Vector3f axis;
   float radius;  // rad; pi: all around
@@ -52,7 +52,7 @@ ViewCone ConeAround(const Surface& surface, const Motion& world_from_body,
   return {middle.cast<float>(), static_cast<float>(radius + kMotionMargin * motion + 1e-3)};
 }
 
-// The homography of a rectangle in the camera frame; zero when its back is seen.
+// Returns the homography of a rectangle in the camera frame; zero when its back is seen.
 Eigen::Matrix3f HomographyOf(const PlacedSurface& in_camera) {
   Matrix3d columns;
   columns << in_camera.right, in_camera.up, in_camera.center;
@@ -66,7 +66,8 @@ PlacedSurface GroundInCamera(const RigidTransform& world_from_camera) {
           camera_from_world.rotation * Vector3d::UnitY()};
 }
 
-// (x, y, 1) on a rectangle to the point of the ground that the same ray of the sun would meet.
+// Returns the map from (x, y, 1) on a rectangle to the point of the ground on the same ray of the
+// sun.
 Eigen::Matrix<float, 2, 3> AlongSunToGround(const PlacedSurface& at, const Vector3d& to_sun) {
   Eigen::Matrix<double, 2, 3> project;
   project << 1, 0, -to_sun.x() / to_sun.z(), 0, 1, -to_sun.y() / to_sun.z();
@@ -100,7 +101,7 @@ ImageTiles::ImageTiles(const Lens& lens) {
           tile.radius = std::max(tile.radius, std::acos(cosine));
         }
       }
-      // Of a square of pixels, a few rays all around are enough to tell where it looks.
+      // A few rays around a square of pixels are enough to find where it looks.
       std::vector<Vector3f> few;
       const std::size_t step = std::max<std::size_t>(tile.rim.size() / 48, 1);
       for (std::size_t i = 0; i < tile.rim.size(); i += step) few.push_back(tile.rim[i]);
@@ -166,7 +167,7 @@ void FrameView::MakeHomographies(const World& world, const std::vector<RigidTran
 }
 
 void FrameView::Light(const World& world, const RigidTransform& camera, double time_s) {
-  // A surface that faces a low sun gets more than the ground does, but not without end.
+  // A surface that faces a low sun gets more light than the ground, but within a limit.
   constexpr double kMinSunHeight = 0.25;
   const Lighting& light = world.light;
   for (SeenSurface& seen : seen_) {
@@ -222,7 +223,8 @@ void FrameView::FindGroundShadows(const ImageTiles& tiles, int middle) {
   for (std::size_t i = 0; i < tiles.tiles().size(); ++i) {
     const ImageTiles::Tile& tile = tiles.tiles()[i];
     if (tile.dark) continue;
-    // The box around what the tile shows of the ground; all of it where it reaches the horizon.
+    // The box around the part of the ground that the tile shows; all of the ground where the tile
+    // reaches the horizon.
     Eigen::AlignedBox2f box;
     bool is_open = false;
     for (const Vector3f& ray : tile.rim) {
@@ -236,7 +238,7 @@ void FrameView::FindGroundShadows(const ImageTiles& tiles, int middle) {
       const Eigen::Matrix3f map = shadow.occluder_from_receiver;
       const Eigen::Matrix2f receiver_from_occluder = map.topLeftCorner<2, 2>().inverse();
       const Eigen::Vector2f center = receiver_from_occluder * -map.topRightCorner<2, 1>();
-      // Motion over a few ms and the blur of the edge widen it.
+      // Motion over a few ms and the blur of the edge widen the shadow.
       const Eigen::Vector2f reach = receiver_from_occluder.cwiseAbs().rowwise().sum() +
                                     shadow.blur + 0.03f * shadow.velocity.cwiseAbs() +
                                     0.05f * box.sizes();

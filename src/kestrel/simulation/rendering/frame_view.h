@@ -13,7 +13,7 @@
 
 namespace kestrel {
 
-// The image cut into squares, each with a cone around the rays of its pixels.
+// The image divided into squares, each with a cone around the rays of its pixels.
 class ImageTiles {
  public:
   static constexpr int kSide_px = 16;
@@ -23,7 +23,7 @@ class ImageTiles {
   struct Tile {
     int left;
     int top;
-    bool dark = true;                  // no light gets to it
+    bool dark = true;                  // it receives no light
     Eigen::Vector3f axis{0, 0, 1};     // of the cone
     float radius = 0;                  // rad, half the opening of the cone
     std::vector<Eigen::Vector3f> rim;  // rays around it
@@ -34,21 +34,21 @@ class ImageTiles {
   std::vector<Tile> tiles_;
 };
 
-// A surface (or the ground) as the camera sees it during one exposure.
+// A surface (or the ground) seen by the camera during one exposure.
 struct SeenSurface {
   const Surface* surface = nullptr;  // null: the ground
   double plane_distance = 0;         // of the camera from its plane, m
-  float ambient = 0;                 // light that it gets from the sky
-  float direct = 0;                  // and from the sun where nothing is between
+  float ambient = 0;                 // light from the sky
+  float direct = 0;                  // light from the sun where nothing is in between
   Eigen::Vector3f normal{0, 0, 1};   // in the world
   double pixel_size_m = 1;           // of its paint, geometric mean
-  // (x, y, 1) of a point on it to the point of the ground where its sunlight would arrive.
+  // Maps (x, y, 1) of a point on it to the point of the ground on the same ray of the sun.
   Eigen::Matrix<float, 2, 3> ground_from_point = Eigen::Matrix<float, 2, 3>::Zero();
   std::vector<ShadowMap> shadows;
 };
 
-// What Render works out once a frame: where everything is at many moments of the exposure, what can
-// be seen in which part of the image, and what shades what.
+// Precomputed once per frame by Render: where everything is at many moments of the exposure, which
+// surface is visible in which part of the image, and which surface shades which.
 //
 // Every surface is a homography: for a ray r in the camera, (x, y, w) = h r, where (x / w, y / w)
 // are the point's coordinates on the surface and 1 / w is the distance along the (unit) ray.
@@ -65,8 +65,8 @@ class FrameView {
   }
   const Eigen::Matrix3f& WorldFromCamera(int moment) const { return rotations_[moment]; }
 
-  // Surfaces other than the ground that a tile may show, and the shadows that may fall on the
-  // ground in it.
+  // Surfaces other than the ground that a tile may show, and shadows that may fall on the ground in
+  // it.
   std::span<const int> SurfacesIn(std::size_t tile) const { return surfaces_in_[tile]; }
   std::span<const int> GroundShadowsIn(std::size_t tile) const { return ground_shadows_in_[tile]; }
 
@@ -80,7 +80,7 @@ class FrameView {
   void Light(const World& world, const RigidTransform& camera, double time_s);
 
   std::vector<SeenSurface> seen_;
-  std::vector<Eigen::Matrix3f> homographies_;  // moment by moment
+  std::vector<Eigen::Matrix3f> homographies_;  // ordered by moment
   std::vector<Eigen::Matrix3f> rotations_;
   std::vector<std::vector<int>> surfaces_in_;
   std::vector<std::vector<int>> ground_shadows_in_;

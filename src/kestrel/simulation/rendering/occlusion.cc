@@ -27,7 +27,7 @@ bool Hides(const Surface& surface, const PlacedSurface& at, const Vector3d& eye,
   const Vector3d normal = at.normal();
   const double eye_height = normal.dot(eye - at.center);
   const double point_height = normal.dot(point - at.center);
-  // Seen from its front only.
+  // A surface is visible from its front only.
   if (eye_height <= 0 || point_height > -kTouching_m) return false;
   const double part = eye_height / (eye_height - point_height);
   const Vector3d hit = eye + part * (point - eye) - at.center;

@@ -7,8 +7,8 @@
 
 namespace kestrel {
 
-// Whether a surface stands between two points of the world at 'time_s'. What the point itself lies
-// on does not hide it.
+// True when a surface stands between 'eye' and 'point' (in the world) at 'time_s'. The surface on
+// which the point lies does not count.
 bool IsHidden(const World& world, double time_s, const Eigen::Vector3d& eye,
               const Eigen::Vector3d& point);
 

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Points that cover ring and cross evenly.
+// Returns points that cover ring and cross evenly.
 std::vector<Vector2d> InkPoints(const LandingPattern& pattern) {
   const Drawing ink = LandingPatternInk(pattern);
   constexpr int kSteps = 60;

@@ -7,8 +7,8 @@
 
 namespace kestrel {
 
-// Part (0 to 1) of the area of ring and cross that shows in the image: inside of it and of the lens
-// circle, not behind the airframe.
+// Returns the part (0 to 1) of the area of ring and cross that is visible in the image: inside of
+// it and of the lens circle, not behind the airframe.
 double VisibleFraction(const LandingPattern& pattern, const RigidTransform& camera_from_pattern,
                        const Lens& lens);
 

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The camera looks straight down; the pattern's centre appears where 'ray' points.
+// The camera looks straight down; the pattern's centre appears in the direction of 'ray'.
 RigidTransform NadirPose(const Vector3d& ray, double altitude_m) {
   const Eigen::Quaterniond down(Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitX()));
   return {down, ray * (altitude_m / ray.z())};

@@ -19,7 +19,7 @@ namespace {
 constexpr int kNormals = 1 << 14;
 constexpr float kShotNoiseGray = 100;  // gray value at which 'shot_noise' is given
 
-// Standard normal numbers, to be picked by random bits.
+// Standard normal numbers, selected by random bits.
 const std::array<float, kNormals>& Normals() {
   static const std::array<float, kNormals> normals = [] {
     std::array<float, kNormals> values{};
@@ -54,7 +54,7 @@ cv::Mat Compressed(const cv::Mat& image, int jpeg_quality) {
   return DecodeImage(EncodeJpeg(image, jpeg_quality), "image");
 }
 
-// Gray values of all amounts of light in steps of a quarter.
+// Table of the gray values for light in steps of a quarter.
 class ToneCurve {
  public:
   explicit ToneCurve(double gamma) {

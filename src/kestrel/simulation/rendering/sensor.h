@@ -11,16 +11,18 @@
 
 namespace kestrel {
 
-// How light becomes 8 bits. Gray values of noise and levels are those before gamma.
+// Conversion of light to 8 bits. Gray values of noise and levels are those before gamma.
 struct SensorOptions {
-  double black_level = 4;     // gray value without light, 0 to 255
-  double white_level = 235;   // gray value of a white horizontal surface in full light
-  double gain_variation = 0;  // relative, by which exposure control wanders to both sides, 0 to 1
-  double gamma = 1;           // exponent of the camera's curve; 1 is linear, 0.45 as for screens
-  double read_noise = 1.2;    // standard deviation, gray values
-  double shot_noise = 1;      // standard deviation at gray 100; it grows with the root of the light
+  double black_level = 4;      // gray value without light, 0 to 255
+  double white_level = 235;    // gray value of a white horizontal surface in full light
+  double gain_variation = 0;   // relative variation of the gain by exposure control, to both sides,
+                               // 0 to 1
+  double gamma = 1;            // exponent of the camera's curve; 1 is linear, 0.45 as for screens
+  double read_noise = 1.2;     // standard deviation, gray values
+  double shot_noise = 1;       // standard deviation at gray 100; proportional to the root of the
+                               // light
   double blur_sigma_px = 0.6;  // Gaussian blur of the optics, 0 to 20
-  double sharpening = 0;       // part of the detail that the camera adds once more, 0 to 3
+  double sharpening = 0;       // part of the detail that the camera adds, 0 to 3
   int jpeg_quality = 100;      // below 100: the camera compresses its images, 1 to 100
 
   template <class Self, class Visitor>
@@ -41,9 +43,9 @@ struct SensorOptions {
   std::vector<std::string> Validate() const;
 };
 
-// 8-bit image of 'radiance' (CV_32FC1 or CV_32FC3, linear, in units of white, as FrameRenderer
-// makes it): behind the airframe and the lens, blurred, exposed with noise. The seed makes the
-// noise; 'gain' multiplies the light.
+// Returns the 8-bit image of 'radiance' (CV_32FC1 or CV_32FC3, linear, in units of white, as from
+// FrameRenderer): seen behind the airframe and through the lens, blurred, exposed with noise.
+// 'seed' determines the noise; 'gain' multiplies the light.
 cv::Mat Expose(const SensorOptions& options, const Lens& lens, double gain, std::uint64_t seed,
                cv::Mat radiance);
 

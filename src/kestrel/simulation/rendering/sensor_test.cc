@@ -27,7 +27,7 @@ SensorOptions Noiseless() {
 
 cv::Mat Even(float radiance) { return {TestLens().gain().size(), CV_32F, cv::Scalar(radiance)}; }
 
-// Mean and standard deviation in the middle of the image.
+// Returns mean and standard deviation in the middle of the image.
 cv::Vec2d Statistics(const cv::Mat& image) {
   cv::Scalar mean;
   cv::Scalar deviation;

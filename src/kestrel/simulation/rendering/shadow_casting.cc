@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMinSine = 0.02;  // of the angle between the sun's rays and an occluder
 
-// Whether all corners of the receiver are beside the occluder, on the same side, or above it.
+// True when all corners of the receiver are on the same outer side of the occluder, or above it.
 bool IsBeside(const Eigen::Matrix3d& map) {
   std::array<Eigen::Vector3d, 4> corners;
   for (int i = 0; i < 4; ++i) {
@@ -53,7 +53,7 @@ std::optional<ShadowMap> MapShadow(const PlacedSurface& receiver, bool endless,
                                    const Surface& occluder, const PlacedSurface& at,
                                    const Lighting& light) {
   const double sine = at.normal().dot(light.to_sun);
-  // Solid things are closed: the sides that face the sun throw the whole shadow.
+  // Solid things are closed: the sides that face the sun cast the whole shadow.
   if (sine < kMinSine) return std::nullopt;
   Eigen::Matrix3d axes;
   axes << at.right, at.up, -light.to_sun;

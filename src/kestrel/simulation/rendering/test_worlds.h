@@ -16,7 +16,7 @@
 
 namespace kestrel {
 
-// An even gray ground in even light, without anything on it.
+// An even gray ground in even light, with nothing on it.
 inline World PlainWorld(double reflectance) {
   World world;
   world.ground.map = std::make_shared<Texture>(cv::Mat(1, 1, CV_8UC3, CodesOf(Gray(reflectance))),
@@ -28,7 +28,7 @@ inline World PlainWorld(double reflectance) {
   return world;
 }
 
-// A white plate with a black disc or ring in its middle, 'height_m' above the origin.
+// Adds a white plate with 'ink' in its middle, 'height_m' above the origin.
 inline void AddInkPlate(const Drawing& ink, double size_m, double height_m, World* world) {
   SquarePaint paint(1024, size_m, Gray(0.8));
   paint.Draw(ink, Gray(0.05));
@@ -48,7 +48,7 @@ inline CameraIntrinsics SmallFisheye() {
           .distortion = {-0.0448, 0.0686053, -0.072277, 0.027011955}};
 }
 
-// Looks straight down, the upper side of its image towards world x.
+// A camera that looks straight down; the top of its image points to world x.
 inline RigidTransform LookingDown(const Eigen::Vector3d& place) {
   Eigen::Matrix3d axes;
   axes << 0, -1, 0, -1, 0, 0, 0, 0, -1;
