@@ -25,7 +25,7 @@ bool IsFrameOfGuided(std::uint8_t frame) {
 
 }  // namespace
 
-// A set-point that it cannot take stops it.
+// A set-point that it does not accept stops it.
 void ArduPilotGuided::Handle(const mavlink::SetPositionTargetLocalNed& message,
                              const FlightState& state, bool is_guided) {
   constexpr double kFastest_mps = 1000;
@@ -66,15 +66,15 @@ FlightCommand ArduPilotGuided::Fly(const FlightState& state) {
   if (wanted_.yaw) {
     command.set_point.yaw = wanted_.yaw;
   } else if (turn_rate_) {
-    if (*turn_rate_ != 0) command.set_point.yaw = HeadingOf(state) + *turn_rate_;  // a second on
+    if (*turn_rate_ != 0) command.set_point.yaw = HeadingOf(state) + *turn_rate_;  // a second ahead
   } else if (wanted_.velocity.head<2>().norm() > 1) {
-    // By WP_YAW_BEHAVIOR the nose goes where it flies.
+    // With WP_YAW_BEHAVIOR the heading follows the velocity.
     command.set_point.yaw = std::atan2(wanted_.velocity.y(), wanted_.velocity.x());
   }
   return command;
 }
 
-// Where its control of the velocity asks for more than it may lean.
+// Returns the limit where the velocity control asks for more tilt than allowed.
 ShapedPath<2>::Limit ArduPilotGuided::LimitOf(const Vector2d& way,
                                               const Vector2d& velocity_error) const {
   const Vector2d wanted = horizontal_.acceleration() + parameters_["PSC_NE_VEL_P"] * velocity_error;
@@ -89,7 +89,7 @@ void ArduPilotGuided::Follow(const FlightState& state) {
   vertical_.Step(Vector1d(wanted_.velocity.z()), Vector1d(wanted_.acceleration.z()),
                  parameters_["WP_ACC_Z"], parameters_["PSC_JERK_D"], state.step_s);
   if (!state.is_standing) return;
-  // What carries it takes the path along.
+  // The surface that carries it moves the path along.
   horizontal_.MoveTo(state.position().head<2>());
   vertical_.MoveTo(state.position().tail<1>());
 }

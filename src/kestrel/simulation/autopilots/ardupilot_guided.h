@@ -10,11 +10,11 @@
 
 namespace kestrel {
 
-// ArduCopter's GUIDED mode by velocities, with acceleration or not. Set-points of places are not
-// modelled: it stops, as by one that it refuses.
+// ArduCopter's GUIDED mode with velocities, with or without accelerations. Position set-points are
+// not modelled: it stops, as for a set-point that it refuses.
 class ArduPilotGuided : public GuidedRules {
  public:
-  // The parameters must outlive it.
+  // The parameters must outlive this.
   explicit ArduPilotGuided(const AutopilotParameters& parameters) : parameters_(parameters) {}
 
   void Handle(const mavlink::SetPositionTargetLocalNed& message, const FlightState& state,
@@ -22,7 +22,7 @@ class ArduPilotGuided : public GuidedRules {
   bool IsAvailable(const FlightState& /*state*/) const override { return true; }
   void Start(const FlightState& state) override;
   FlightCommand Fly(const FlightState& state) override;
-  // Without set-points it stays in the mode, and stops.
+  // Without set-points it stays in the mode and stops.
   std::optional<FlightMode> LossAction(const FlightState& /*state*/) const override {
     return std::nullopt;
   }
@@ -35,7 +35,7 @@ class ArduPilotGuided : public GuidedRules {
   const AutopilotParameters& parameters_;
   SetPoint wanted_;
   std::optional<double> turn_rate_;  // ENU, rad/s
-  std::optional<Time> told_;         // when; nothing: it is to stop
+  std::optional<Time> told_;         // time of the last one; nothing: it has to stop
   ShapedPath<2> horizontal_;
   ShapedPath<2>::Limit limit_;
   ShapedPath<1> vertical_;

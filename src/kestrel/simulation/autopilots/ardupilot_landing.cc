@@ -19,7 +19,7 @@ void ArduPilotLanding::Handle(const mavlink::LandingTarget& target, const Flight
   target_.Handle(target, state);
 }
 
-// ArduPilot does not know this message.
+// ArduPilot does not use this message.
 void ArduPilotLanding::Handle(const mavlink::TargetRelative& /*target*/,
                               const FlightState& /*state*/) {}
 
@@ -39,13 +39,13 @@ SetPoint ArduPilotLanding::Land(const FlightState& state) {
   return command;
 }
 
-// With PLND_STRICT 2 it does not go down without the target that it had.
+// With PLND_STRICT 2 it does not descend after it has lost its target.
 bool ArduPilotLanding::Hovers() const {
   constexpr int kVeryStrict = 2;
   return had_target_ && !target_.is_acquired() && parameters_["PLND_STRICT"] == kVeryStrict;
 }
 
-// Towards the target within the limits of acceleration and jerk; to a stop while there is none.
+// Moves towards the target within the limits of acceleration and jerk; stops while there is none.
 void ArduPilotLanding::ShapePath(const FlightState& state) {
   const double max_acceleration = parameters_["WP_ACC"];
   const double max_jerk = parameters_["PSC_JERK_NE"];
@@ -67,7 +67,7 @@ void ArduPilotLanding::ShapePath(const FlightState& state) {
 
 double ArduPilotLanding::ClimbRate(const FlightState& state) const {
   const double land_mps = parameters_["LAND_SPD_MS"];
-  // Altitude is above home: without a rangefinder it knows nothing of what is below.
+  // The altitude is above home: without a rangefinder the ground below is unknown.
   const double to_low_m = state.position().z() - parameters_["LAND_ALT_LOW_M"];
   const double gain = parameters_["PSC_NE_POS_P"];
   const double fall_mps = to_low_m > 0 ? BrakingSpeed(to_low_m, gain, parameters_["WP_ACC"]) : 0;
@@ -77,7 +77,7 @@ double ArduPilotLanding::ClimbRate(const FlightState& state) const {
   const double error_m = target_.position().norm();
   const double max_error_m = parameters_["PLND_XY_DIST_MAX"];
   if (max_error_m > 0 && error_m > max_error_m) return 0;
-  // Near the target it slows down, the more the further it is beside it.
+  // Near the target it slows down, the more the farther it is beside it.
   if (target_.depth() > 0.35 && target_.depth() < 2) {
     constexpr double kAcceptableError_m = 0.15;
     constexpr double kSlowest_mps = 0.1;

@@ -13,7 +13,7 @@ namespace kestrel {
 // ArduCopter's LAND mode with precision landing.
 class ArduPilotLanding : public LandingRules {
  public:
-  // The parameters must outlive it.
+  // The parameters must outlive this.
   ArduPilotLanding(const AutopilotParameters& parameters, Announce announce);
 
   void Handle(const mavlink::LandingTarget& target, const FlightState& state) override;
@@ -32,7 +32,7 @@ class ArduPilotLanding : public LandingRules {
   const AutopilotParameters& parameters_;
   ArduPilotTarget target_;
   bool had_target_ = false;  // since the mode began
-  ShapedPath<2> path_;       // that it follows, horizontally
+  ShapedPath<2> path_;       // horizontal path that it follows
 };
 
 }  // namespace kestrel

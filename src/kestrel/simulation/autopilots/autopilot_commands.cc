@@ -7,12 +7,12 @@
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/simulation/autopilots/autopilot_model.h"
 
-// What the simulated autopilot is told.
+// Messages that the simulated autopilot receives.
 namespace kestrel {
 namespace {
 
 constexpr std::uint32_t kPx4TakeOff = Px4CustomMode(4, 2);
-// Numbers of ArduCopter's modes that can be asked for.
+// Numbers of ArduCopter's modes that can be requested.
 constexpr std::array<std::uint32_t, 12> kArduPilotModes = {0, 2, 3, 4, 5, 6, 7, 9, 16, 17, 21, 23};
 constexpr std::uint32_t kPx4LastMain = 8;
 constexpr std::uint32_t kPx4LastSub = 9;
@@ -22,7 +22,7 @@ constexpr std::uint32_t kPx4LastSub = 9;
 void AutopilotModel::Handle(const CompanionMessage& message, std::uint8_t system,
                             std::uint8_t component, Time now) {
   if (IsSilentAfterReboot(now)) return;
-  // What claims to be the autopilot itself is dropped.
+  // Messages that claim to be from the autopilot itself are dropped.
   if (system == options_.system_id && component == mavlink::kComponentAutopilot) return;
   peer_system_ = system;
   peer_component_ = component;
@@ -153,7 +153,7 @@ std::uint8_t AutopilotModel::SetModeBy(const mavlink::CommandLong& command, Time
 
 std::uint8_t AutopilotModel::Arm(bool arm, bool by_force) {
   if (arm == is_armed_) return mavlink::kResultAccepted;
-  // A plain disarm is for what has landed.
+  // A plain disarm is accepted only after landing.
   if (!arm && !by_force && !detector_.has_landed()) return mavlink::kResultFailed;
   is_armed_ = arm;
   resumes_guided_ = false;
@@ -167,7 +167,7 @@ std::uint8_t AutopilotModel::Arm(bool arm, bool by_force) {
   return mavlink::kResultAccepted;
 }
 
-// 'altitude': above home for ArduPilot, above the sea for PX4.
+// 'altitude': above home for ArduPilot, above sea level for PX4.
 std::uint8_t AutopilotModel::TakeOff(double altitude, Time now) {
   constexpr double kPx4Default_m = 2.5;
   if (!is_armed_) return mavlink::kResultFailed;

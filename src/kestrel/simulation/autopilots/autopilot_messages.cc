@@ -21,7 +21,7 @@ struct EulerAngles {
   float yaw;
 };
 
-// Of ned_from_frd, as ATTITUDE has them.
+// Angles of ned_from_frd, as in ATTITUDE.
 EulerAngles EulerAnglesOf(const Eigen::Quaterniond& q) {
   const double sine = std::clamp(2 * (q.w() * q.y() - q.z() * q.x()), -1.0, 1.0);
   return {static_cast<float>(std::atan2(2 * (q.w() * q.x() + q.y() * q.z()),
@@ -149,7 +149,7 @@ mavlink::SimState SimStateOf(const PoseSample& pose, const GlobalOrigin& origin)
   state.xgyro = rate.x();
   state.ygyro = rate.y();
   state.zgyro = rate.z();
-  // As ArduPilot scales them: 1e-7 degrees, where the message has degrees.
+  // ArduPilot's wrong scale: 1e-7 degrees, where the message has degrees.
   state.lat = static_cast<float>(at.latitude);
   state.lon = static_cast<float>(at.longitude);
   state.alt = static_cast<float>(at.altitude_m);

@@ -17,7 +17,7 @@
 
 namespace kestrel {
 
-// All that a simulated autopilot says.
+// All messages that a simulated autopilot sends.
 using AutopilotMessage =
     std::variant<mavlink::Heartbeat, mavlink::Attitude, mavlink::AttitudeQuaternion,
                  mavlink::LocalPositionNed, mavlink::GlobalPositionInt, mavlink::GpsGlobalOrigin,
@@ -26,16 +26,16 @@ using AutopilotMessage =
                  mavlink::AutopilotVersion, mavlink::ParamValue, mavlink::CommandAck,
                  mavlink::SysStatus, mavlink::EkfStatusReport, mavlink::EstimatorStatus>;
 
-// All that it listens to.
+// All messages that it handles.
 using CompanionMessage =
     std::variant<mavlink::Heartbeat, mavlink::CommandLong, mavlink::SetMode, mavlink::Timesync,
                  mavlink::LandingTarget, mavlink::TargetRelative, mavlink::ParamRequestRead,
                  mavlink::ParamRequestList, mavlink::ParamSet, mavlink::SetPositionTargetLocalNed>;
 
-// What a packet says, if it listens to that.
+// Returns the message of a packet, if the autopilot handles it.
 std::optional<CompanionMessage> CompanionMessageOf(const mavlink::Packet& packet);
 
-// Where the local frame's origin is on the Earth.
+// Position of the local frame's origin on the Earth.
 struct GlobalOrigin {
   double latitude_deg = 47.397742;
   double longitude_deg = 8.545594;
@@ -49,7 +49,7 @@ struct GlobalOrigin {
   }
 };
 
-// The messages of a pose (ENU, FLU, with motion) at 'boot_ms' on the autopilot's clock.
+// Messages of a pose (ENU, FLU, with motion) at 'boot_ms' on the autopilot's clock.
 mavlink::Attitude AttitudeOf(const PoseSample& pose, std::uint32_t boot_ms);
 mavlink::AttitudeQuaternion AttitudeQuaternionOf(const PoseSample& pose, std::uint32_t boot_ms);
 mavlink::LocalPositionNed LocalPositionOf(const PoseSample& pose, std::uint32_t boot_ms);
@@ -59,7 +59,7 @@ mavlink::SimState SimStateOf(const PoseSample& pose, const GlobalOrigin& origin)
 mavlink::HomePosition HomePositionOf(const GlobalOrigin& origin, std::int64_t boot_us);
 mavlink::GpsGlobalOrigin GlobalOriginOf(const GlobalOrigin& origin, std::int64_t boot_us);
 
-// Battery and sensors; a low battery, or a good one.
+// State of battery and sensors, with a low battery or a good one.
 mavlink::SysStatus SysStatusOf(bool has_low_battery);
 
 // Flags of EKF_STATUS_REPORT and of ESTIMATOR_STATUS, with and without a position.
@@ -70,7 +70,7 @@ mavlink::ParamValue ParamValueOf(const AutopilotParameters& parameters, std::siz
                                  AutopilotFirmware firmware);
 double ValueOf(const mavlink::ParamSet& set, AutopilotFirmware firmware);
 
-// Text in a field that is not closed by a zero when it is full, and back.
+// Convert between text and a character field, which has no final zero when it is full.
 template <std::size_t kSize>
 std::array<char, kSize> CharsOf(std::string_view text) {
   std::array<char, kSize> chars{};

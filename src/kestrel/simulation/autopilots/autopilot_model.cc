@@ -26,7 +26,7 @@ using Eigen::Vector3d;
 constexpr Duration kModelStep = std::chrono::milliseconds(4);
 constexpr Duration kBootTime = std::chrono::seconds(3);  // silent after a reboot
 
-// "NAME=value,NAME=value"
+// Parses "NAME=value,NAME=value".
 void SetParameters(const std::string& list, AutopilotParameters* parameters) {
   for (std::size_t begin = 0; begin < list.size();) {
     const std::size_t end = std::min(list.find(',', begin), list.size());
@@ -51,7 +51,7 @@ AutopilotParameters ParametersOf(AutopilotFirmware firmware, const std::string& 
   return parameters;
 }
 
-// The autopilot keeps its own limit of the tilt, whatever the UAV could do.
+// The autopilot keeps its own tilt limit, whatever the UAV could do.
 SimulatedUavOptions WithTiltOf(AutopilotFirmware firmware, const AutopilotParameters& parameters,
                                SimulatedUavOptions uav) {
   const double tilt_deg =
@@ -164,7 +164,7 @@ void AutopilotModel::ObserveFlight(Time now) {
   state_.pose.time = now;
   state_.pose.motion = truth.motion;
   if (jumps) state_.pose.world_from_body.translation.x() += faults.jump_m;
-  // It knows when its estimate was reset: what it holds goes along.
+  // It knows when its estimate was reset: the held place moves along.
   if (jumps && !std::exchange(has_jumped_, true)) hold_.x() += faults.jump_m;
   state_.is_standing = uav_.is_standing();
 }
@@ -174,7 +174,7 @@ void AutopilotModel::FollowPilot(Time now) {
   if (const auto mode = pilot_.Switch(now, pilot_flies_)) EnterMode(*mode, Wish::kPilot, now);
 }
 
-// Whatever its parameters say of the battery but to land, it returns: that is what is tried here.
+// It returns unless its battery parameters say to land; other actions are not modelled.
 void AutopilotModel::EnterBatteryFailsafe(Time now) {
   constexpr int kArduPilotLands = 1;
   constexpr int kPx4Lands = 2;
@@ -182,11 +182,11 @@ void AutopilotModel::EnterBatteryFailsafe(Time now) {
                               : parameters_["BATT_FS_LOW_ACT"] == kArduPilotLands;
   is_in_failsafe_ = true;
   Say(Severity::kCritical, is_px4() ? "Critical battery" : "Battery 1 low: failsafe");
-  // As the pilot's, it is not undone by set-points.
+  // Like the pilot's, this mode is not left for set-points.
   EnterMode(lands ? FlightMode::kLand : FlightMode::kReturn, Wish::kPilot, now);
 }
 
-// Set-points that end, and, after its own failsafe, come again.
+// Handles set-points that stop, and that come again after its own failsafe.
 void AutopilotModel::WatchSetPoints(Time now) {
   if (!is_armed_) return;
   if (IsIn(FlightMode::kGuided)) {
@@ -205,7 +205,7 @@ FlightCommand AutopilotModel::Fly() {
     command.set_point = landing_->Land(state_);
   } else if (IsIn(FlightMode::kGuided) && !is_taking_off_) {
     command = guided_->Fly(state_);
-    // ArduPilot's velocities do not lift it off.
+    // ArduPilot does not lift off by velocities.
     double& climb = command.set_point.velocity.z();
     if (!is_px4() && detector_.has_landed()) climb = std::min(climb, 0.0);
   } else if (IsIn(FlightMode::kReturn)) {
@@ -224,7 +224,7 @@ SetPoint AutopilotModel::Hold() const {
   SetPoint command;
   command.velocity.head<2>() = BrakingVelocity(way.head<2>(), 1, 2.5, kMax_mps);
   command.velocity.z() = std::clamp(way.z(), -1.5, 2.5);
-  // PX4's plain LAND goes straight down.
+  // PX4's plain LAND descends vertically.
   if (is_px4() && IsIn(FlightMode::kLand)) command.velocity.z() = -parameters_["MPC_LAND_SPEED"];
   return command;
 }
@@ -252,7 +252,7 @@ bool AutopilotModel::EnterMode(std::uint32_t custom_mode, Wish wish, Time now) {
     guided_->Start(state_);
     ++result_.guided_entries;
   }
-  // ArduPilot tells at once, PX4 when the next heartbeat is due.
+  // ArduPilot reports it at once, PX4 with the next heartbeat.
   if (!is_px4() && !IsSilentAfterReboot(now)) send_(HeartbeatOf());
   return true;
 }
@@ -264,7 +264,7 @@ void AutopilotModel::LeaveMode(Time now) {
     result_.set_points_after_take_back = 0;
     result_.last_set_point_after_s = 0;
   }
-  // What the pilot does by hand is no landing.
+  // A descent by the pilot's hand is not a landing.
   if (!result_.contact && !MayComeDown()) landing_since_.reset();
 }
 
@@ -272,7 +272,7 @@ bool AutopilotModel::MayComeDown() const {
   return LandsByTarget() || IsIn(FlightMode::kGuided) || IsIn(FlightMode::kLand);
 }
 
-// The last time that it came down counts: it may have gone around after another.
+// The last contact counts: it may have gone around after an earlier one.
 void AutopilotModel::ObserveContact(Time now) {
   if (!MayComeDown() || !landing_since_ || !is_armed_ || !uav_.is_standing()) return;
   const auto& contact = uav_.contact();
@@ -285,7 +285,7 @@ void AutopilotModel::ObserveContact(Time now) {
 void AutopilotModel::DisarmAfterLanding(Time now) {
   if (!is_armed_ || !detector_.has_landed() || detector_.landed_s() < 0) return;
   const bool lands = MayComeDown() && !IsIn(FlightMode::kGuided);
-  // ArduPilot's modes that land do not wait.
+  // ArduPilot's landing modes do not wait.
   double wait_s = parameters_[is_px4() ? "COM_DISARM_LAND" : "DISARM_DELAY"];
   if (!is_px4() && (lands || IsIn(FlightMode::kReturn))) {
     wait_s = 0;

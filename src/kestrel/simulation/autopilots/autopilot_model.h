@@ -30,19 +30,19 @@
 
 namespace kestrel {
 
-// A UAV with its autopilot, as far as a companion computer can tell it from a real one: its clock,
-// messages, modes, parameters, and how it flies and lands by what it is told. Steps on whatever
-// clock it is given; no thread, no socket.
+// A UAV with its autopilot, as a companion computer sees it: clock, messages, modes, parameters,
+// and its flight and landing by the messages it receives. It steps on any clock; no thread, no
+// socket.
 class AutopilotModel {
  public:
   using Send = std::function<void(const AutopilotMessage& message)>;
 
-  // The world must outlive it. Throws InputError when the options are not valid, or name a
+  // The world must outlive this. Throws InputError when the options are not valid, or name a
   // parameter that does not exist.
   AutopilotModel(AutopilotFirmware firmware, const AutopilotModelOptions& options,
                  VehicleWorld* world, Time start, std::uint64_t seed, Send send);
 
-  // Goes on to 'now' on the local clock, in steps of 4 ms.
+  // Continues to 'now' on the local clock, in steps of 4 ms.
   void Step(Time now);
 
   // A message from 'system', 'component' arrived at 'now'.
@@ -50,11 +50,12 @@ class AutopilotModel {
               Time now);
 
   // Injected faults.
-  void Reboot(Time now);            // of all but the flight: clock, streams, and silent for a while
-  void JumpClock(Duration change);  // of its own clock
+  void Reboot(Time now);            // except the flight: clock and streams restart, and it is
+                                    // silent for a while
+  void JumpClock(Duration change);  // of the autopilot's own clock
   void set_nan_attitude(bool nan) { nan_attitude_ = nan; }
 
-  // Its own clock, ns since boot.
+  // Time of its own clock, ns since boot.
   std::int64_t OwnTime(Time now) const;
 
   const PoseSample& truth() const { return uav_.pose(); }  // at the last step
@@ -64,10 +65,10 @@ class AutopilotModel {
   AutopilotParameters& parameters() { return parameters_; }
 
  private:
-  // Who wants a mode.
+  // The source of a wish for a mode.
   enum class Wish { kPilot, kLink, kFailsafe, kResumption };
 
-  // autopilot_model.cc: how it flies.
+  // autopilot_model.cc: flight.
   void StepOnce(Time now);
   void ObserveFlight(Time now);
   FlightCommand Fly();
@@ -89,11 +90,11 @@ class AutopilotModel {
   AutopilotKind kind() const { return is_px4() ? AutopilotKind::kPx4 : AutopilotKind::kArduPilot; }
   std::int64_t OwnMicroseconds(Time now) const { return OwnTime(now) / 1000; }
   bool IsSilentAfterReboot(Time now) const;
-  // Seconds since the start lie within 'for_s' from 'after_s' on, which is not negative.
+  // True within 'for_s' from 'after_s' after the start; false for a negative 'after_s'.
   bool IsWithin(Time now, double after_s, double for_s) const;
   bool HasLostPosition(Time now) const;
 
-  // autopilot_reports.cc: what it says.
+  // autopilot_reports.cc: sent messages.
   bool SendMessage(std::uint32_t id, Time now);
   bool SendPose(std::uint32_t id, Time now);
   bool SendPlace(std::uint32_t id, Time now);
@@ -102,7 +103,7 @@ class AutopilotModel {
   mavlink::Heartbeat HeartbeatOf() const;
   mavlink::AutopilotVersion VersionOf() const;
 
-  // autopilot_commands.cc: what it is told.
+  // autopilot_commands.cc: received messages.
   void Receive(const mavlink::Heartbeat& message, Time now);
   void Receive(const mavlink::CommandLong& message, Time now);
   void Receive(const mavlink::SetMode& message, Time now);
@@ -141,17 +142,17 @@ class AutopilotModel {
   double boot_uptime_s_;  // own clock when it booted
   Duration clock_jump_{0};
   FlightState state_;
-  bool has_jumped_ = false;        // its position
-  Eigen::Vector3d hold_{0, 0, 0};  // where it hovers where nothing else moves it
+  bool has_jumped_ = false;        // of the estimated position
+  Eigen::Vector3d hold_{0, 0, 0};  // place where it hovers unless something else moves it
   std::uint32_t custom_mode_ = 0;
   bool is_armed_ = false;
-  bool pilot_flies_ = true;      // the script, not the link
-  bool is_taking_off_ = false;   // in the mode that is guided
-  bool resumes_guided_ = false;  // its own failsafe ended the mode: it goes back to it
+  bool pilot_flies_ = true;      // the script flies, not the link
+  bool is_taking_off_ = false;   // in the guided mode
+  bool resumes_guided_ = false;  // its own failsafe ended the mode: it returns to it
   bool is_in_failsafe_ = false;
   bool has_gcs_ = false;  // a ground station's heartbeat has come
   bool nan_attitude_ = false;
-  std::uint8_t peer_system_ = 0;  // of the message that is handled
+  std::uint8_t peer_system_ = 0;  // sender of the message being handled
   std::uint8_t peer_component_ = 0;
   std::optional<Time> landing_since_;
   SitlResult result_;

@@ -16,7 +16,7 @@ std::vector<std::string> EstimateFaultOptions::Validate() const {
   return violations;
 }
 
-// A good estimate: its errors are not what is tested.
+// A good estimate: its errors are not under test.
 AutopilotModelOptions::AutopilotModelOptions() {
   navigation.position_noise_m = 0.003;
   navigation.position_drift_m = 0.005;

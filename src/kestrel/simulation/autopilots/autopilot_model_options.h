@@ -11,10 +11,10 @@
 
 namespace kestrel {
 
-// What goes wrong with the autopilot's own estimate. Times are from the start of the simulation;
-// negative: never.
+// Faults of the autopilot's own estimate. Times are from the start of the simulation; negative:
+// never.
 struct EstimateFaultOptions {
-  double silent_after_s = -1;  // it tells neither attitude nor position
+  double silent_after_s = -1;  // it sends neither attitude nor position
   double silent_for_s = 2;
   double jump_after_s = -1;  // of the position, to the east
   double jump_m = 5;
@@ -40,10 +40,10 @@ struct AutopilotModelOptions {
   AutopilotModelOptions();
 
   int system_id = 1;
-  int vehicle_type = 2;    // MAV_TYPE in its heartbeat; it flies as a quadrotor all the same
+  int vehicle_type = 2;    // MAV_TYPE in its heartbeat; it flies as a quadrotor in any case
   double uptime_s = 100;   // its own clock at the start
-  double drift_ppm = 0;    // by which its clock is fast
-  std::string parameters;  // "NAME=value,NAME=value": other than the defaults
+  double drift_ppm = 0;    // its clock is fast by this
+  std::string parameters;  // "NAME=value,NAME=value": differences from the defaults
   SimulatedUavOptions uav;
   NavigationOptions navigation;  // errors of its estimate
   EstimateFaultOptions estimate;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kLongest_s = 90;
 
-// Lands with 50 messages a second; goes on for a while after contact.
+// Lands with 50 messages per second; continues for a while after contact.
 template <class MakeMessage>
 SitlResult Land(TestAutopilot* autopilot, MakeMessage&& message, double seconds = kLongest_s) {
   autopilot->Run(seconds, [&] { autopilot->Tell(message()); });
@@ -226,8 +226,8 @@ TEST(Px4LandingTest, DisarmsByItsLandDetectorsSpeedLimit) {
   }
 }
 
-// Only after PX4 has synchronised it converts stamps, and then they have to be of the clock that
-// its questions were answered by.
+// PX4 converts stamps only after it has synchronised. They then have to be on the clock that
+// answered its requests.
 TEST(Px4LandingTest, StampsAreOfTheClockThatAnswersTimesync) {
   TestAutopilot autopilot(AutopilotFirmware::kPx4, {}, TestVehicle("standing", 0));
   const std::int64_t companion_ns = 1'000'000'000'000;

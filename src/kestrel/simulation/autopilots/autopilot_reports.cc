@@ -4,11 +4,10 @@
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/simulation/autopilots/autopilot_model.h"
 
-// What the simulated autopilot says.
+// Messages that the simulated autopilot sends.
 namespace kestrel {
 
-// PX4 tells texts only where a ground station listens; to others it sends events, which nobody here
-// needs.
+// PX4 sends texts only where a ground station listens; others get events, which nobody here needs.
 void AutopilotModel::Say(Severity severity, const std::string& text) const {
   if (is_px4() && !has_gcs_) return;
   mavlink::Statustext message;
@@ -49,7 +48,7 @@ mavlink::AutopilotVersion AutopilotModel::VersionOf() const {
   return message;
 }
 
-// False: it cannot send that message.
+// False when it cannot send that message.
 bool AutopilotModel::SendMessage(std::uint32_t id, Time now) {
   switch (id) {
     case mavlink::Heartbeat::kId:
@@ -76,7 +75,7 @@ bool AutopilotModel::SendMessage(std::uint32_t id, Time now) {
   }
 }
 
-// Of its estimate.
+// Sends messages of its estimate.
 bool AutopilotModel::SendPose(std::uint32_t id, Time now) {
   const PoseSample& pose = state_.pose;
   const auto own_ms = static_cast<std::uint32_t>(state_.boot_us / 1000);

@@ -8,15 +8,15 @@ namespace kestrel {
 
 enum class CameraFault {
   kNone,
-  kFrozen,  // the same image again and again, with new stamps
+  kFrozen,  // repeats the same image with new stamps
   kBlack,
-  kBright,   // nearly all of it saturated
-  kSlow,     // three images a second
+  kBright,   // nearly all pixels saturated
+  kSlow,     // three images per second
   kStopped,  // no images
-  kBeside,   // all is seen 1.5 m beside where it is, as by a track on a wrong object
+  kBeside,   // everything appears 1.5 m beside its place, as with a track on a wrong object
 };
 
-// What goes wrong with a simulated camera, for a while.
+// A temporary fault of a simulated camera.
 struct CameraFaultOptions {
   std::string kind = "none";  // none, frozen, black, bright, slow, stopped or beside
   double after_s = 10;        // from the camera's start
@@ -30,7 +30,7 @@ struct CameraFaultOptions {
   }
   std::vector<std::string> Validate() const;
 
-  // The fault that there is so long after the start.
+  // Returns the fault at a time since the start.
   CameraFault At(double since_start_s) const;
 };
 

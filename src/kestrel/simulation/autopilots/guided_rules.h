@@ -9,23 +9,24 @@
 
 namespace kestrel {
 
-// How an autopilot flies by set-points from outside (ArduPilot's GUIDED, PX4's OFFBOARD): which of
-// them it takes, what it makes of them, and what it does when they end. Internally ENU and FLU.
+// Flight of an autopilot by external set-points (ArduPilot's GUIDED, PX4's OFFBOARD): which ones it
+// accepts, how it follows them, and what it does when they stop. Internally ENU and FLU.
 class GuidedRules {
  public:
   virtual ~GuidedRules() = default;
 
-  // A set-point came, in whatever mode it flies.
+  // Takes a set-point, in any mode.
   virtual void Handle(const mavlink::SetPositionTargetLocalNed& message, const FlightState& state,
                       bool is_guided) = 0;
 
-  // Whether the mode may begin.
+  // True when the mode may begin.
   virtual bool IsAvailable(const FlightState& state) const = 0;
-  // The mode begins.
+  // Called when the mode begins.
   virtual void Start(const FlightState& state) = 0;
-  // One step of it: how to fly.
+  // One step of the mode. Returns the command to fly.
   virtual FlightCommand Fly(const FlightState& state) = 0;
-  // To which mode it goes now because there are no set-points any more; nothing: it stays.
+  // Returns the mode that it enters now because there are no set-points any more; nothing: it
+  // stays.
   virtual std::optional<FlightMode> LossAction(const FlightState& state) const = 0;
 };
 

@@ -36,11 +36,11 @@ class GuidedAutopilot : public TestAutopilot {
     set_point.velocity = velocity;
     return SetPointMessage(set_point, kind_, 1, 1, 0);
   }
-  // Set-points of this velocity, 50 times a second.
+  // Sends set-points of this velocity, 50 times per second.
   void Guide(double seconds, const Vector3d& velocity) {
     Run(seconds, [&] { Tell(Message(velocity)); });
   }
-  // Follows the pattern's centre, 'height_m' above it, with 'gain', and its acceleration.
+  // Follows the pattern's centre and its acceleration with 'gain', 'height_m' above it.
   void Pursue(double seconds, double height_m, double gain, double sink_mps = 0) {
     Run(seconds, [&] {
       constexpr double kStep_s = 0.05;
@@ -55,7 +55,7 @@ class GuidedAutopilot : public TestAutopilot {
       Tell(SetPointMessage(set_point, kind_, 1, 1, 0));
     });
   }
-  // RMS of the horizontal distance from the pattern over a while of that.
+  // Returns the RMS of the horizontal distance from the pattern during a while of Pursue.
   double TrailingRms(double seconds, double gain) {
     double sum = 0;
     int count = 0;
@@ -324,8 +324,8 @@ TEST(Px4OffboardTest, ClipsVelocities) {
   EXPECT_NEAR(autopilot.Velocity().z(), -1.5, 0.2);
 }
 
-// Of the real one with SIH, with its drag and a quarter of it, on a circle of 8 m: 2.1 and 0.54 m
-// with a gain of 1, 1.1 and 0.27 with 2; straight 0.08 and 0.03.
+// Measured with the real one in SIH, with its drag and a quarter of it, on a circle of 8 m: 2.1 and
+// 0.54 m with a gain of 1, 1.1 and 0.27 m with 2; straight 0.08 and 0.03 m.
 TEST(Px4OffboardTest, TrailsOnACurveByItsDrag) {
   const auto trails_by = [](const std::string& path, double drag, double gain) {
     AutopilotModelOptions options = Guided();

@@ -6,15 +6,15 @@
 namespace kestrel {
 namespace {
 
-// From contact until it is landed: of ArduPilot three seconds until the throttle has come down and
-// one at its lower limit (measured: 4 s), of PX4 ground contact, maybe landed, landed (measured: 3
-// to 4 s).
+// Time from contact to the state "landed". ArduPilot: three seconds until the throttle has come
+// down and one at its lower limit (measured: 4 s). PX4: ground contact, maybe landed, landed
+// (measured: 3 to 4 s).
 constexpr double kArduPilotDetect_s = 4;
 constexpr double kPx4Detect_s = 3.5;
 
-// While it wants to change its speed by more, ArduPilot's motors are not at their lower limit: its
-// detector has no horizontal speed in it, but a UAV that brakes against the deck that carries it
-// along does not idle.
+// While a larger change of speed is wanted, ArduPilot's motors are not at their lower limit: its
+// detector does not use horizontal speed, but a UAV that brakes against the deck that carries it
+// does not idle.
 bool ArduPilotSettles(const FlightState& state, const SetPoint& command) {
   constexpr double kBraking_mps = 1;
   const Eigen::Vector2d braking = command.velocity.head<2>() - state.velocity().head<2>();
@@ -40,7 +40,7 @@ bool LandDetector::Settles(const FlightState& state, const SetPoint& command) co
 
 void LandDetector::Observe(const FlightState& state, const SetPoint& command) {
   is_on_ground_ = is_on_ground_ && state.is_standing;
-  // What has landed stays so until it lifts off.
+  // Once landed, it stays landed until it lifts off.
   const bool stays = has_landed() && state.is_standing;
   settled_s_ = stays || Settles(state, command) ? settled_s_ + state.step_s : 0;
 }

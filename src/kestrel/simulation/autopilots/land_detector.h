@@ -6,19 +6,19 @@
 
 namespace kestrel {
 
-// When an autopilot thinks that it has landed, in any mode: what it feels and what it wants have to
-// agree for some seconds.
+// Decides when an autopilot believes that it has landed, in any mode: measurements and commands
+// have to agree for some seconds.
 class LandDetector {
  public:
-  // The parameters must outlive it.
+  // The parameters must outlive this.
   LandDetector(AutopilotFirmware firmware, const AutopilotParameters& parameters)
       : firmware_(firmware), parameters_(parameters) {}
 
-  // After each step: what was flown by 'command'.
+  // Called after each step; 'command' was flown.
   void Observe(const FlightState& state, const SetPoint& command);
 
   bool has_landed() const { return is_on_ground_ || landed_s() >= 0; }
-  // For how long, s; negative: it has not, or never flew.
+  // Time since it has landed, s; negative: it has not, or it never flew.
   double landed_s() const;
 
  private:

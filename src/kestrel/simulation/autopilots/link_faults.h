@@ -15,13 +15,13 @@
 
 namespace kestrel {
 
-// What a link does to the messages on it, in either direction.
+// Faults of a link for the messages in both directions.
 struct LinkFaultOptions {
   double delay_s = 0;   // of each message
-  double jitter_s = 0;  // the delay varies by up to this to both sides; the order stays
+  double jitter_s = 0;  // the delay varies by up to this to both sides; messages stay in order
   double loss = 0;      // part of the messages that are lost
-  // Silence in both directions: from so long after the start on (negative: never), for so long, and
-  // again every so often (0: once).
+  // Silence in both directions: begins 'down_after_s' after the start (negative: never), lasts
+  // 'down_for_s', and is repeated with a period (0: once).
   double down_after_s = -1;
   double down_for_s = 2;
   double down_every_s = 0;
@@ -68,7 +68,7 @@ class DelayLine {
     messages_.emplace_back(last_due_, std::move(message));
   }
 
-  // The next message that has arrived by 'now'.
+  // Returns the next message that has arrived by 'now'.
   std::optional<Message> Pop(Time now) {
     if (messages_.empty() || messages_.front().first > now) return std::nullopt;
     std::optional<Message> message = std::move(messages_.front().second);

@@ -40,7 +40,7 @@ MessageStreams::MessageStreams(AutopilotFirmware firmware) : firmware_(firmware)
     streams_.push_back({mavlink::CurrentMode::kId, kMode_us, kMode_us});
   } else {
     streams_.push_back({mavlink::EkfStatusReport::kId, 0, 0});
-    // The truth is what only ArduPilot's simulator tells.
+    // Only ArduPilot's simulator sends the truth.
     streams_.push_back({mavlink::SimState::kId, 0, 0});
   }
 }
@@ -61,7 +61,7 @@ std::uint8_t MessageStreams::SetInterval(std::uint32_t id, double interval_us) {
   } else if (interval_us < 0) {
     stream->interval_us = 0;
   } else {
-    constexpr double kArduPilotLeast_us = 2500;  // its main loop
+    constexpr double kArduPilotLeast_us = 2500;  // period of its main loop
     constexpr double kPx4Least_us = 8000;
     if (!is_px4 && interval_us < kArduPilotLeast_us) return mavlink::kResultDenied;
     const double least_us = is_px4 ? kPx4Least_us : kArduPilotLeast_us;

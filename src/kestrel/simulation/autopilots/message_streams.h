@@ -8,24 +8,25 @@
 
 namespace kestrel {
 
-// Which messages an autopilot sends by itself, and how often.
+// The messages that an autopilot sends periodically, and their rates.
 class MessageStreams {
  public:
-  // The defaults: of ArduPilot nothing but heartbeats, of PX4 those of its onboard mode.
+  // Default streams: ArduPilot only heartbeats, PX4 those of its onboard mode.
   explicit MessageStreams(AutopilotFirmware firmware);
 
-  // MAV_CMD_SET_MESSAGE_INTERVAL: 'interval_us' -1 stops it, 0 is the default. Returns MAV_RESULT.
+  // As MAV_CMD_SET_MESSAGE_INTERVAL: 'interval_us' -1 stops it, 0 is the default. Returns
+  // MAV_RESULT.
   std::uint8_t SetInterval(std::uint32_t id, double interval_us);
 
-  // Whether it can send that message at all.
+  // True when it can send that message.
   bool Has(std::uint32_t id) const;
 
-  // Calls 'send' with the id of each message whose time has come by the autopilot's own clock.
+  // Calls 'send' with the id of each message that is due by the autopilot's own clock.
   template <class Send>
   void SendDue(std::int64_t own_us, Send&& send) {
     for (Stream& stream : streams_) {
       if (stream.interval_us <= 0) continue;
-      // After a reboot or a jump the clock may be far from what was due.
+      // After a reboot or a jump the clock may be far from the due times.
       const std::int64_t until = stream.due_us - own_us;
       if (until > stream.interval_us || until < -kLate_us) stream.due_us = own_us;
       if (stream.due_us > own_us) continue;
@@ -39,7 +40,7 @@ class MessageStreams {
 
   struct Stream {
     std::uint32_t id;
-    std::int64_t default_us;  // 0: not by default
+    std::int64_t default_us;  // 0: not sent by default
     std::int64_t interval_us;
     std::int64_t due_us = 0;
   };

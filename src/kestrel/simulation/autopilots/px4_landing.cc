@@ -10,11 +10,11 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Set-points of a mission are smoothed; with MPC_XY_P this trails a moving target by 2 s in all,
+// PX4 smooths the set-points of a mission; with MPC_XY_P this trails a moving target by 2 s in all,
 // as measured.
 constexpr double kSmoothing_s = 0.95;
 constexpr double kAcceleration = 3;
-// How long it waits before it searches, and above the target before it goes down.
+// Time that it waits before it searches, and above the target before it descends.
 constexpr double kPatience_s = 2;
 
 }  // namespace
@@ -53,7 +53,7 @@ SetPoint Px4Landing::Land(const FlightState& state) {
                       kAcceleration, parameters_["MPC_XY_CRUISE"]);
   const bool follows = phase_ == Phase::kApproach || phase_ == Phase::kDescend;
   if (follows && target_.place()) {
-    // What the estimator knows of the velocity moves the set-point along.
+    // The estimator's velocity moves the set-point along.
     horizontal += target_.place()->velocity;
     set_point_ += state.step_s * target_.place()->velocity;
   }
@@ -69,7 +69,7 @@ void Px4Landing::ObserveTarget(const FlightState& state) {
   }
 }
 
-// In seconds, by its stamp: negative when that is in the future.
+// Age in seconds, by its stamp: negative when that is in the future.
 double Px4Landing::AgeOfTarget(const FlightState& state) const {
   return 1e-6 *
          (static_cast<double>(state.boot_us) - static_cast<double>(target_.place()->stamp_us));
@@ -83,7 +83,8 @@ bool Px4Landing::IsAbove(const FlightState& state) const {
 
 bool Px4Landing::CanApproach(const FlightState& state) const {
   if (phase_ != Phase::kApproach) return is_updated_;
-  // Where it saw the target last it needs to see it again; on the way there it does not.
+  // Above the place where it last saw the target, it needs to see it again; on the way there it
+  // does not.
   return is_valid_ || !IsAbove(state);
 }
 
@@ -126,7 +127,7 @@ void Px4Landing::ChoosePhase(const FlightState& state) {
 void Px4Landing::Approach(const FlightState& state) {
   if (!CanApproach(state)) return Enter(Phase::kStart, state);
   if (CanDescend(state) && above_s_ == 0) above_s_ = state.step_s;
-  // Once it was above the target, the time goes on; in the end it has to be there again.
+  // Once it was above the target, the time runs on; at the end it has to be there again.
   if (above_s_ > 0) above_s_ += state.step_s;
   if (above_s_ > kPatience_s && CanDescend(state)) return Enter(Phase::kDescend, state);
   goal_ = target_.place()->in_world.head<2>();

@@ -10,10 +10,10 @@
 
 namespace kestrel {
 
-// PX4's precision landing (mode 4/9), required: it searches before it lands without a target.
+// PX4's required precision landing (mode 4/9): without a target it searches before it lands.
 class Px4Landing : public LandingRules {
  public:
-  // All of them must outlive it.
+  // All arguments must outlive this.
   Px4Landing(const AutopilotParameters& parameters, const Px4TimeSync& clock, Announce announce);
 
   void Handle(const mavlink::LandingTarget& target, const FlightState& state) override {
@@ -47,12 +47,12 @@ class Px4Landing : public LandingRules {
   const AutopilotParameters& parameters_;
   Px4Target target_;
   Phase phase_ = Phase::kStart;
-  double phase_s_ = 0;               // how long it has been in it
-  double above_s_ = 0;               // for how long it has been above the target in the approach
+  double phase_s_ = 0;               // time in the phase
+  double above_s_ = 0;               // time above the target in the approach
   bool is_valid_ = false;            // the target is not older than PLD_BTOUT
-  bool is_updated_ = false;          // and was told since the last step
-  Eigen::Vector2d goal_{0, 0};       // where it wants to be
-  Eigen::Vector2d set_point_{0, 0};  // on the way there, smoothly
+  bool is_updated_ = false;          // and was reported since the last step
+  Eigen::Vector2d goal_{0, 0};       // place to fly to
+  Eigen::Vector2d set_point_{0, 0};  // smoothed place on the way there
   double altitude_ = 0;              // of the approach, or of the search
   int searches_ = 0;
 };

@@ -20,8 +20,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kStream_s = 0.6;    // of set-points, before it trusts them (measured)
-constexpr double kSlowest_s = 0.5;   // between two of a stream
+constexpr double kStream_s = 0.6;    // duration of a stream before it is trusted (measured)
+constexpr double kSlowest_s = 0.5;   // longest time between two set-points of a stream
 constexpr double kReaction_s = 0.3;  // of its failsafe, after the time-out (measured)
 
 }  // namespace
@@ -69,7 +69,7 @@ Vector3d Px4Offboard::WithinLimits(const Vector3d& velocity) const {
   return limited;
 }
 
-// The last set-point is flown on for as long as the mode lasts.
+// It flies by the last set-point for as long as the mode lasts.
 FlightCommand Px4Offboard::Fly(const FlightState& state) {
   FlightCommand command;
   command.is_thrust = true;
@@ -81,7 +81,7 @@ FlightCommand Px4Offboard::Fly(const FlightState& state) {
   return command;
 }
 
-// P, I and D, as an acceleration; the integral stops where the tilt is at its limit.
+// P, I and D, as an acceleration; the integral stops at the tilt limit.
 Vector3d Px4Offboard::ControlVelocity(const FlightState& state, const Vector3d& velocity) {
   constexpr double kFilter_s = 0.03;  // of the derivative
   const auto gains = [this](const char* horizontal, const char* vertical) {
@@ -116,7 +116,7 @@ std::optional<FlightMode> Px4Offboard::LossAction(const FlightState& state) cons
     default:
       break;
   }
-  // To a mode of the pilot's it cannot go without a transmitter.
+  // Without a transmitter it cannot enter a mode of the pilot.
   switch (static_cast<int>(parameters_["NAV_RCL_ACT"])) {
     case 1:
       return FlightMode::kHold;

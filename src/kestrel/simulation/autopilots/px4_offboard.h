@@ -11,12 +11,12 @@
 
 namespace kestrel {
 
-// PX4's OFFBOARD mode by velocities, without a transmitter. It needs a stream of set-points before
-// it begins, and ends it by the parameters of its failsafe. It does not compensate the air's drag:
-// its velocity control has to. Set-points of places are not modelled: they are dropped.
+// PX4's OFFBOARD mode with velocities, without a transmitter. It needs a stream of set-points
+// before it begins, and its failsafe parameters decide its end. It does not compensate the air's
+// drag: its velocity control has to. Position set-points are not modelled: they are dropped.
 class Px4Offboard : public GuidedRules {
  public:
-  // The parameters must outlive it.
+  // The parameters must outlive this.
   Px4Offboard(const AutopilotParameters& parameters, Announce announce);
 
   void Handle(const mavlink::SetPositionTargetLocalNed& message, const FlightState& state,
@@ -35,11 +35,11 @@ class Px4Offboard : public GuidedRules {
   Announce announce_;
   SetPoint wanted_;
   std::optional<double> turn_rate_;  // ENU, rad/s
-  std::optional<Time> first_told_;   // of the stream that goes on
-  Time told_{};                      // last
+  std::optional<Time> first_told_;   // beginning of the present stream
+  Time told_{};                      // time of the last one
   Eigen::Vector3d integral_{0, 0, 0};
   Eigen::Vector3d last_velocity_{0, 0, 0};
-  Eigen::Vector3d change_{0, 0, 0};  // of the velocity, m/s^2
+  Eigen::Vector3d change_{0, 0, 0};  // derivative of the velocity, m/s^2
 };
 
 }  // namespace kestrel

@@ -35,7 +35,7 @@ SetPoint ReturnFlight::Fly(const FlightState& state) {
   SetPoint command;
   command.velocity.head<2>() =
       BrakingVelocity(goal - state.position().head<2>(), 1, kBraking, parameters_[speed_]);
-  // One that is higher already stays so.
+  // If it is already higher, it stays there.
   command.velocity.z() =
       leg_ == Leg::kDown ? -SinkAt(state.position().z()) : std::clamp(to_climb_m, 0.0, kClimb_mps);
   return command;

@@ -6,10 +6,10 @@
 
 namespace kestrel {
 
-// RTL, in its outlines: up to the altitude of returning, straight to the origin, and down there.
+// RTL, simplified: up to the altitude of returning, straight to the origin, and down there.
 class ReturnFlight {
  public:
-  // The parameters must outlive it.
+  // The parameters must outlive this.
   ReturnFlight(AutopilotFirmware firmware, const AutopilotParameters& parameters);
 
   void Start(const FlightState& state);

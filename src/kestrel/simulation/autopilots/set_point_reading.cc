@@ -26,7 +26,7 @@ double HeadingOf(const FlightState& state) {
 
 std::optional<VelocityOrder> VelocityOrderOf(const mavlink::SetPositionTargetLocalNed& message,
                                              const FlightState& state) {
-  // One axis that is left out leaves out all three.
+  // If one axis is ignored, all three are.
   if ((message.type_mask & mavlink::kIgnoreVelocity) != 0) return std::nullopt;
   const bool is_of_body = IsOfBody(message.coordinate_frame);
   const Eigen::AngleAxisd turn(is_of_body ? HeadingOf(state) - kNorth : 0,

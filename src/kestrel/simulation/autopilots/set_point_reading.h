@@ -10,18 +10,19 @@
 
 namespace kestrel {
 
-// What SET_POSITION_TARGET_LOCAL_NED says of a velocity, in the world (ENU).
+// The velocity in a SET_POSITION_TARGET_LOCAL_NED, in the world (ENU).
 struct VelocityOrder {
   SetPoint set_point;
   std::optional<double> turn_rate;  // rad/s, from east to north
 };
 
-// Nothing where the message has no velocity, or anything of it is not finite. Velocity and
-// acceleration of the frames MAV_FRAME_BODY_NED and BODY_OFFSET_NED are turned by the heading.
+// Returns nothing when the message has no velocity, or any of its values is not finite. In the
+// frames MAV_FRAME_BODY_NED and BODY_OFFSET_NED, velocity and acceleration are rotated by the
+// heading.
 std::optional<VelocityOrder> VelocityOrderOf(const mavlink::SetPositionTargetLocalNed& message,
                                              const FlightState& state);
 
-// The heading of a UAV, rad from east to north.
+// Returns the heading of a UAV, rad from east to north.
 double HeadingOf(const FlightState& state);
 
 }  // namespace kestrel

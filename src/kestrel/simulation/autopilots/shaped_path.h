@@ -9,7 +9,7 @@
 
 namespace kestrel {
 
-// A place that moves smoothly, whatever velocity is wanted: ArduPilot's shaping within limits of
+// A position that moves smoothly, whatever velocity is wanted: ArduPilot's shaping within limits of
 // acceleration and jerk.
 template <int kDimensions>
 class ShapedPath {
@@ -21,18 +21,18 @@ class ShapedPath {
     velocity_ = velocity;
     acceleration_.setZero();
   }
-  // Elsewhere, as fast as before.
+  // Moves to another position at the same velocity.
   void MoveTo(const Vector& position) { position_ = position; }
 
-  // What the UAV that follows cannot do: it does not run away from it.
+  // Limits of the UAV that follows: the path does not run away from it.
   struct Limit {
     Vector direction = Vector::Zero();       // in which it cannot accelerate more; zero: it can
     Vector way = Vector::Zero();             // from the UAV to the path, m
     Vector velocity_error = Vector::Zero();  // of the UAV, m/s
   };
 
-  // 'feed_forward': acceleration that is wanted with the velocity. 'max_acceleration' limits only
-  // what corrects the velocity.
+  // 'feed_forward': wanted acceleration in addition to the velocity. 'max_acceleration' limits only
+  // the correction of the velocity.
   void Step(const Vector& wanted_velocity, const Vector& feed_forward, double max_acceleration,
             double max_jerk, double seconds, const Limit& limit = {}) {
     const Vector error = wanted_velocity - velocity_;

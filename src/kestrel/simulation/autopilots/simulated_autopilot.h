@@ -24,7 +24,7 @@ struct SimulatedAutopilotOptions {
   std::string firmware = "ardupilot";  // ardupilot or px4
   AutopilotModelOptions model;
   LinkFaultOptions link;
-  std::string signing_key;  // as of ConnectionOptions
+  std::string signing_key;  // as in ConnectionOptions
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -37,23 +37,23 @@ struct SimulatedAutopilotOptions {
 };
 
 // A simulated UAV behind real MAVLink: an autopilot that flies in real time, on the clock of Now().
-// The socket is all that it shares with who talks to it, and the vehicle below. All but Start, Stop
-// and Step may be called from any thread.
+// It shares only the socket with its companion, and the vehicle below. Any thread may call all
+// functions but Start, Stop and Step.
 class SimulatedAutopilot {
  public:
-  // 'url': where its line goes, as udpout://127.0.0.1:14550 (the companion listens there). The
-  // world must outlive it. Throws InputError when the options or the URL are not valid.
+  // 'url': its line, as udpout://127.0.0.1:14550 (where the companion listens). The world must
+  // outlive this. Throws InputError when the options or the URL are not valid.
   SimulatedAutopilot(const SimulatedAutopilotOptions& options, const std::string& url,
                      VehicleWorld* world, std::uint64_t seed);
   ~SimulatedAutopilot() { Stop(); }
   SimulatedAutopilot(const SimulatedAutopilot&) = delete;
   SimulatedAutopilot& operator=(const SimulatedAutopilot&) = delete;
 
-  // A thread of its own calls Step until Stop.
+  // Between Start and Stop a thread of its own calls Step.
   void Start();
   void Stop();
 
-  // Waits up to 'wait' for messages and flies on to the time that it is then.
+  // Waits up to 'wait' for messages, and flies on to the present time.
   void Step(Duration wait);
 
   SitlResult result() const;
@@ -61,7 +61,7 @@ class SimulatedAutopilot {
   bool is_armed() const;
   std::uint32_t custom_mode() const;
 
-  // Faults, besides those of the options.
+  // Faults, in addition to those of the options.
   void set_link_down(bool down) {
     is_link_down_ = down;
   }  // as by the options, until it is up again
@@ -86,7 +86,7 @@ class SimulatedAutopilot {
   Random random_;
   DelayLine<AutopilotMessage> outgoing_;
   DelayLine<Received> incoming_;
-  mutable std::mutex mutex_;  // of the model
+  mutable std::mutex mutex_;  // guards the model
   AutopilotModel model_;
   std::thread thread_;
 };

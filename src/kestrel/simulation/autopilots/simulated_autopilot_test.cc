@@ -26,7 +26,7 @@ class SimulatedAutopilotTest : public testing::Test {
         address_("127.0.0.1:" + std::to_string(FreeLoopbackPort())),
         companion_("udpin://" + address_, ConnectionOptions()) {}
 
-  // Listens until 'done' or the time is over.
+  // Listens until 'done' returns true or the time is over.
   bool Listen(Duration longest, const std::function<bool(const mavlink::Packet&)>& done) {
     const Time end = Now() + longest;
     bool is_done = false;

@@ -21,10 +21,10 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kCameraPoses = 1000;
-// The autopilot's link may be away for so long and its pose between is still told.
+// Longest gap of the autopilot's link over which a pose is still interpolated.
 constexpr Duration kLongestPoseGap = std::chrono::milliseconds(500);
 
-// The paper's camera with 'scale' times its pixels. The corners of the image stay where they are.
+// Returns the paper's camera with 'scale' times its pixels. The corners of the image stay.
 CameraCalibration ScaledCalibration(double scale) {
   CameraCalibration calibration = PaperCalibration();
   CameraIntrinsics& lens = calibration.intrinsics;
@@ -39,7 +39,7 @@ CameraCalibration ScaledCalibration(double scale) {
 
 }  // namespace
 
-// Few rays: an image in a few ms.
+// Few rays, so that an image takes a few ms.
 SimulatedCameraOptions::SimulatedCameraOptions() { shutter.rays_per_pixel = 3; }
 
 std::vector<std::string> SimulatedCameraOptions::Validate() const {
@@ -115,7 +115,7 @@ CameraFault SimulatedCamera::FaultAt(Time capture) const {
   return options_.fault.At(ToSeconds(capture - start_));
 }
 
-// By its fault.
+// True when its fault leaves the image out.
 bool SimulatedCamera::IsLeftOut(Time capture) const {
   constexpr double kSlow_hz = 3;
   const CameraFault fault = FaultAt(capture);
@@ -124,7 +124,7 @@ bool SimulatedCamera::IsLeftOut(Time capture) const {
   return fault == CameraFault::kSlow && next_ % slower != 0;
 }
 
-// When the next image is taken: the newest one whose time has come, or the next to come.
+// Returns the time of the next image: the newest one that is due, or the next one.
 Time SimulatedCamera::NextCapture() {
   const double due = std::floor(ToSeconds(Now() - start_) * options_.rate_hz);
   const auto newest = static_cast<std::int64_t>(due);
@@ -165,8 +165,8 @@ std::optional<Frame> SimulatedCamera::Capture(Time capture) {
   return frame;
 }
 
-// The pose at 'capture' and how it changes, from the poses around; from the newest one where none
-// is later.
+// Returns the pose at 'capture' and its motion, from the poses around it; from the newest one where
+// none is later.
 std::optional<SimulatedCamera::Snapshot> SimulatedCamera::SnapshotAt(Time capture) {
   constexpr Duration kStep = std::chrono::milliseconds(10);
   const std::lock_guard lock(mutex_);

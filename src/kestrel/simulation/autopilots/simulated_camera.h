@@ -30,8 +30,8 @@ struct SimulatedCameraOptions {
 
   double rate_hz = 20;
   double scale = 0.5;         // of the paper's image of 752x480
-  double clock_offset_s = 0;  // t_nav = t_image + clock_offset_s; a late stamp is negative
-  double pose_wait_s = 0.3;   // longest that an image waits for its pose, then it is extrapolated
+  double clock_offset_s = 0;  // t_nav = t_image + clock_offset_s; negative for a late stamp
+  double pose_wait_s = 0.3;   // longest wait of an image for its pose, which is then extrapolated
   LensViewOptions lens;
   ShutterOptions shutter;
   SensorOptions sensor;
@@ -53,42 +53,42 @@ struct SimulatedCameraOptions {
   std::vector<std::string> Validate() const;
 };
 
-// A live camera that is rendered: what is seen from where the autopilot says that the UAV is, over
-// a vehicle that drives in real time.
+// A live camera that is rendered: the view from the pose that the autopilot reports for the UAV,
+// over a vehicle that drives in real time.
 class SimulatedCamera {
  public:
-  // The world must outlive it. The first image is taken at 'start' on the local clock. Throws
+  // The world must outlive this. The first image is taken at 'start' on the local clock. Throws
   // InputError when the options are not valid.
   SimulatedCamera(const SimulatedCameraOptions& options, VehicleWorld* world, Time start,
                   std::uint64_t seed);
-  SimulatedCamera(const SimulatedCamera&) = delete;  // the renderer looks into it
+  SimulatedCamera(const SimulatedCamera&) = delete;  // the renderer refers to it
   SimulatedCamera& operator=(const SimulatedCamera&) = delete;
 
-  // Where the UAV was, on the local clock. Thread-safe; wakes Next.
+  // Adds a pose of the UAV, on the local clock. Thread-safe; wakes Next.
   void AddPose(const PoseSample& pose);
 
-  // Waits for the next image of the rate, and for its pose, and renders it; images whose time has
-  // gone by meanwhile are left out and counted. False when there is none within 'timeout': no pose
+  // Waits for the next image of the rate and for its pose, and renders it; images whose time has
+  // passed meanwhile are left out and counted. False when there is none within 'timeout': no pose
   // has come yet, or the next image is later. One thread at a time.
   bool Next(Frame* frame, Duration timeout);
 
-  // The image that is taken at 'capture' on the local clock; nothing without any pose near. One
-  // thread at a time, the same as Next.
+  // Returns the image taken at 'capture' on the local clock; nothing without a pose near it. Called
+  // by the same thread as Next.
   std::optional<Frame> Capture(Time capture);
 
-  // Nominal: with the mount, without a clock offset.
+  // The nominal calibration: with the mount, without a clock offset.
   const CameraCalibration& calibration() const { return calibration_; }
 
-  // world_from_pattern when the image with that stamp was taken.
+  // Returns world_from_pattern at the image with that stamp.
   RigidTransform PatternAt(Time stamp) const;
 
-  // Of the pattern in the newest frame; nothing when it cannot be in it. Same thread as Next.
+  // Truth of the pattern in the newest frame; nothing when it cannot be in it. Same thread as Next.
   std::optional<TruePattern> Truth(const Frame& frame) const;
 
-  std::int64_t left_out() const { return left_out_; }  // images, for lack of time or pose
+  std::int64_t left_out() const { return left_out_; }  // number of images, for lack of time or pose
 
  private:
-  // A pose with its motion, as it is while one image is exposed.
+  // A pose with its motion during the exposure of one image.
   struct Snapshot {
     double time_s = 0;  // of the scene
     RigidTransform world_from_body;
@@ -116,7 +116,7 @@ class SimulatedCamera {
   std::int64_t next_ = 0;  // index of the next image
   std::int64_t left_out_ = 0;
 
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // guards what follows
   std::condition_variable pose_came_;
   PoseHistory poses_;
   std::optional<PoseSample> newest_pose_;

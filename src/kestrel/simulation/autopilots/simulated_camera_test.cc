@@ -40,7 +40,7 @@ class SimulatedCameraTest : public testing::Test {
  protected:
   SimulatedCameraTest() : world_(ReadVehicleWorld("circle", {}), kStart, /*seed=*/3) {}
 
-  // Poses from 'begin_s' to 'end_s', 'altitude_m' above where the pattern is at the start.
+  // Adds poses from 'begin_s' to 'end_s', 'altitude_m' above the pattern's place at the start.
   void Fly(SimulatedCamera* camera, double altitude_m, double begin_s, double end_s) {
     const Vector3d start = world_.PatternAt(kStart).translation + Vector3d(-0.2, 0.3, altitude_m);
     for (double time_s = begin_s; time_s < end_s; time_s += 0.02) {
@@ -51,7 +51,7 @@ class SimulatedCameraTest : public testing::Test {
   VehicleWorld world_;
 };
 
-// Where the pattern's centre is in the image, by the calibration and the poses that were told.
+// Returns the pixel of the pattern's centre, by the calibration and the reported poses.
 Eigen::Vector2d TruePixel(const SimulatedCamera& camera, const PoseSample& pose, Time stamp) {
   const RigidTransform world_from_camera =
       pose.world_from_body * *camera.calibration().body_from_camera;

@@ -14,19 +14,19 @@
 
 namespace kestrel {
 
-// What the simulated pilot does: keeps the UAV beside the pattern, then switches to the mode that
-// lands, or gives the companion the mode that is guided. Commands from the link take over. All
-// times are from the start of the simulation.
+// The simulated pilot: keeps the UAV beside the pattern, then switches to the landing mode or gives
+// the companion the guided mode. Commands from the link take over. All times are from the start of
+// the simulation.
 struct PilotOptions {
   double start_altitude_m = 10;  // above the pattern; 0: disarmed on the ground at the origin
   double offset_east_m = 2;      // of the UAV from the pattern
   double offset_north_m = -1;
-  double heading_deg = 60;               // of its nose, clockwise from north
+  double heading_deg = 60;               // of its heading, clockwise from north
   double land_after_s = 5;               // negative: never
-  double guide_after_s = -1;             // negative: never; else instead of landing
+  double guide_after_s = -1;             // negative: never; otherwise instead of landing
   double take_back_after_s = -1;         // negative: never
   double battery_failsafe_after_s = -1;  // negative: never
-  bool follows_vehicle = true;           // until then, as a pilot does by eye; else it hovers
+  bool follows_vehicle = true;           // until then, as a pilot does by eye; otherwise it hovers
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -51,19 +51,20 @@ struct PilotOptions {
 
 class SimulatedPilot {
  public:
-  // The world must outlive it. Throws InputError when the options are not valid.
+  // The world must outlive this. Throws InputError when the options are not valid.
   SimulatedPilot(const PilotOptions& options, const VehicleWorld& world, Time start);
 
-  // Where the pilot keeps the UAV.
+  // Place at which the pilot keeps the UAV.
   Eigen::Vector3d PlaceAt(Time now) const;
-  // How, by eye, until somebody else takes over; 'position': where the UAV truly is.
+  // Command of the pilot, by eye, until somebody else takes over. 'position': true position of the
+  // UAV.
   SetPoint FollowVehicle(Time now, const Eigen::Vector3d& position) const;
   bool follows_vehicle() const { return options_.follows_vehicle; }
 
-  // To which mode the pilot switches at 'now'; 'flies': nobody else has taken over. The mode that
-  // is guided the pilot tries again and again.
+  // Returns the mode to which the pilot switches at 'now'. 'flies': nobody else has taken over. The
+  // pilot tries the guided mode repeatedly.
   std::optional<FlightMode> Switch(Time now, bool flies);
-  // The battery is low from now on; true once.
+  // True once: the battery is low from now on.
   bool LosesBattery(Time now);
   bool has_low_battery() const { return has_low_battery_; }
 

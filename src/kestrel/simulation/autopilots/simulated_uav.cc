@@ -13,9 +13,9 @@ using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-// Deeper below the board than this the feet are beside or under it.
+// If the feet are deeper below the board than this, they are beside or under it.
 constexpr double kBoardReach_m = 0.3;
-// A climb that is commanded this fast lifts the UAV off.
+// A climb command above this lifts the UAV off.
 constexpr double kLiftOff_mps = 0.1;
 
 Quaterniond Level(double heading) { return Quaterniond(AngleAxisd(heading, Vector3d::UnitZ())); }
@@ -90,7 +90,7 @@ void SimulatedUav::Fly(double seconds, const FlightCommand& command, bool motors
   pose_.motion->velocity_in_world = multicopter_.velocity();
 }
 
-// Stands where its feet have reached the board or the ground.
+// Stands at the place where its feet have reached the board or the ground.
 void SimulatedUav::ComeDown() {
   const RigidTransform& body = pose_.world_from_body;
   const Vector3d feet = body.translation - options_.leg_m * Vector3d::UnitZ();

@@ -22,12 +22,12 @@
 namespace kestrel {
 
 struct SimulatedUavOptions {
-  // The autopilots measure accelerations, which is what makes so stiff a velocity control work.
+  // Autopilots measure accelerations, which makes such a stiff velocity control possible.
   SimulatedUavOptions() { multicopter.velocity_gain = 6; }
 
   MulticopterOptions multicopter;
   WindOptions wind;
-  double leg_m = 0.35;  // from the body's origin down to its feet
+  double leg_m = 0.35;  // distance from the body's origin down to its feet
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -38,32 +38,32 @@ struct SimulatedUavOptions {
   std::vector<std::string> Validate() const;
 };
 
-// Where a UAV came down.
+// Place and velocity at which a UAV came down.
 struct Contact {
   Time time;
-  bool on_board = false;                       // else on the ground
+  bool on_board = false;                       // otherwise on the ground
   Eigen::Vector3d feet_in_pattern{0, 0, 0};    // middle of its feet, m
-  Eigen::Vector3d velocity_in_world{0, 0, 0};  // relative to what it came down on, m/s
+  Eigen::Vector3d velocity_in_world{0, 0, 0};  // relative to the surface below, m/s
 };
 
-// The true UAV: a multicopter in the wind that stands on the ground or on the vehicle's board when
-// it has come down there, and drives along with that.
+// The true UAV: a multicopter in the wind. After it has come down on the ground or on the vehicle's
+// board it stands there, and moves with the board.
 class SimulatedUav {
  public:
-  // In the air at 'position' (ENU, m) with 'velocity', or on the ground below it when that is not
+  // In the air at 'position' (ENU, m) with 'velocity', or on the ground below it if that is not
   // higher than its legs. 'heading' of its x axis, rad from east to north. The world must outlive
-  // it.
+  // this.
   SimulatedUav(const SimulatedUavOptions& options, const VehicleWorld& world, Time now,
                const Eigen::Vector3d& position, const Eigen::Vector3d& velocity, double heading,
                Random* random);
 
-  // Goes on to 'now', a few ms later. Without motors it falls.
+  // Continues to 'now', a few ms later. Without motors it falls.
   void Step(Time now, const FlightCommand& command, bool motors);
 
   // The truth: world_from_body, velocity and angular rate, at the time of the last step.
   const PoseSample& pose() const { return pose_; }
   bool is_standing() const { return body_in_support_.has_value(); }
-  // The last time that it came down.
+  // The last contact.
   const std::optional<Contact>& contact() const { return contact_; }
 
  private:

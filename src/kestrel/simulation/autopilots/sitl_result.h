@@ -8,30 +8,30 @@
 
 namespace kestrel {
 
-// How a landing went.
+// The outcome of a landing.
 struct SitlResult {
-  std::optional<Contact> contact;  // in a mode that lands, or that is guided
+  std::optional<Contact> contact;  // in a landing mode, or in the guided mode
   double landing_s = 0;            // from the switch to the first such mode until contact
   bool is_disarmed = false;        // after contact, not by force
   double disarm_s = 0;             // from contact
 
-  // Of the mode that is guided by set-points.
-  double guided_s = 0;       // how long it was on
-  int set_points = 0;        // that came in it
-  int guided_entries = 0;    // how often it began
-  int modes_by_link = 0;     // how often the companion asked for a mode
+  // These are about the mode guided by set-points.
+  double guided_s = 0;       // time that it was on
+  int set_points = 0;        // that came while it was on
+  int guided_entries = 0;    // number of times that it began
+  int modes_by_link = 0;     // number of modes requested by the companion
   bool was_forced = false;   // the companion stopped the motors by force
-  std::optional<Time> left;  // when it was left last, for whatever mode
-  // Set-points that came after it was left, and the last of them so long after.
+  std::optional<Time> left;  // end of the guided mode, to any other mode
+  // Set-points after its end, and the time of the last of them after it.
   int set_points_after_take_back = 0;
   double last_set_point_after_s = 0;
 
-  // Of the feet's middle from the pattern's centre, m; only with a contact.
+  // Distance of the feet's middle from the pattern's centre, m; only with a contact.
   double offset_m() const { return contact->feet_in_pattern.head<2>().norm(); }
 };
 
-// Lines: "came down on the board, 0.03 m from the centre, after 18.2 s; disarmed 2.1 s later", and
-// how it was guided, if it was.
+// Returns lines: "came down on the board, 0.03 m from the centre, after 18.2 s; disarmed 2.1 s
+// later", and a summary of the guidance, if there was any.
 std::string InWords(const SitlResult& result);
 
 }  // namespace kestrel

@@ -28,7 +28,7 @@ inline VehicleWorldOptions TestVehicle(const std::string& path, double speed_mps
   VehicleWorldOptions options = ReadVehicleWorld(path, {});
   options.drive_altitude_m = 0;
   options.vehicle.speed_mps = speed_mps;
-  options.ground.map_px = 64;  // nobody looks
+  options.ground.map_px = 64;  // it is not rendered
   return options;
 }
 
@@ -41,7 +41,7 @@ inline VehicleWorld& TestWorld(const VehicleWorldOptions& vehicle) {
       .first->second;
 }
 
-// A simulated autopilot on a clock that runs as fast as it can, with a companion that knows the
+// A simulated autopilot on a clock that runs as fast as possible, with a companion that knows the
 // truth.
 class TestAutopilot {
  public:
@@ -56,7 +56,7 @@ class TestAutopilot {
     model.Handle(message, 1, kOnboardComputer, now);
   }
 
-  // Goes on; 'act' is called every 20 ms.
+  // Continues for 'seconds'; 'act' is called every 20 ms.
   template <class Act>
   void Run(double seconds, Act&& act) {
     const Time end = now + DurationFromSeconds(seconds);
@@ -70,7 +70,7 @@ class TestAutopilot {
     Run(seconds, [] {});
   }
 
-  // The messages of one kind that it has sent so far.
+  // Returns the messages of one kind that it has sent so far.
   template <class Message>
   std::vector<Message> Sent() const {
     std::vector<Message> messages;
@@ -87,19 +87,19 @@ class TestAutopilot {
     return count;
   }
 
-  // From the body to the pattern, in FLU, by the truth.
+  // True vector from the body to the pattern, in FLU.
   Eigen::Vector3d PatternInBody() const {
     return model.truth().world_from_body.Inverse() * world.PatternAt(now).translation;
   }
 
-  // How far the UAV is beside the pattern, m.
+  // Horizontal distance of the UAV from the pattern, m.
   double HorizontalError() const {
     const Eigen::Vector3d way =
         world.PatternAt(now).translation - model.truth().world_from_body.translation;
     return way.head<2>().norm();
   }
 
-  // What the profiles send, made of the truth. With contact the point stays below the body.
+  // Messages of the profiles, made from the truth. In contact the point stays below the body.
   mavlink::LandingTarget ArduPilotTargetMessage() const {
     Eigen::Vector3d in_frd = FrdFromFlu(PatternInBody());
     in_frd.z() = std::max(in_frd.z(), 0.2);

@@ -18,7 +18,7 @@ namespace kestrel {
 namespace {
 
 constexpr double kWaiting = std::numeric_limits<double>::infinity();
-// Of the track that is painted on the ground and kept free of things.
+// Duration of the track that is painted on the ground and kept free of things.
 constexpr double kTrackDuration_s = 60;
 
 const std::vector<SitlScenario>& AllSitlScenarios() {
@@ -49,8 +49,9 @@ const SitlScenario& FindSitlScenario(const std::string& name) {
 
 }  // namespace
 
-// The board is where the ground of an autopilot in software is, which lands on nothing else. Few
-// things around: every surface costs time of each frame. And a coarser ground is drawn sooner.
+// The board is at the height of the ground, because a simulated autopilot lands on nothing else.
+// There are few things around, because every surface costs time in each frame; a coarser ground is
+// drawn sooner.
 VehicleWorldOptions::VehicleWorldOptions() {
   board.carrier = "none";
   ground.map_px = 2048;
@@ -103,7 +104,7 @@ Eigen::Vector3d VehicleWorld::VelocityAt(Time time) const {
 }
 
 bool VehicleWorld::IsOnBoard(const Eigen::Vector3d& point_in_pattern) const {
-  // The pattern's arms, its axes, point to the corners of the board.
+  // The arms, which are the pattern's axes, point to the corners of the board.
   const double diagonal =
       std::numbers::sqrt2 * (0.5 * scene_.pattern.board_size_m + options_.board.border_m);
   return std::abs(point_in_pattern.x()) + std::abs(point_in_pattern.y()) <= diagonal;
@@ -115,7 +116,7 @@ void VehicleWorld::ObserveUav(Time time, const Eigen::Vector3d& position_in_worl
   departure_s_.compare_exchange_strong(waiting, SceneTime(time) + options_.drive_delay_s);
 }
 
-// How long it would have driven at full speed to be where it is.
+// Returns how long it would have driven at full speed to be where it is.
 double VehicleWorld::DrivenTime(double scene_time_s) const {
   if (options_.drive_altitude_m <= 0) return scene_time_s;
   const double driving_s = scene_time_s - departure_s_;

@@ -21,11 +21,11 @@ namespace kestrel {
 struct VehicleWorldOptions : LandingSceneOptions {
   VehicleWorldOptions();
 
-  // 0: it drives all the time. Else it waits at its start until a UAV has been so high above
-  // ground, and 'drive_delay_s' longer.
+  // 0: it drives all the time. Otherwise it waits at its start until a UAV has been this high above
+  // ground, and for 'drive_delay_s' more.
   double drive_altitude_m = 0;
   double drive_delay_s = 0;
-  double drive_acceleration = 1;  // with which it drives off after it has waited
+  double drive_acceleration = 1;  // of the start after waiting
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -46,20 +46,20 @@ struct SitlScenario {
 };
 std::span<const SitlScenario> SitlScenarios();
 
-// The options of a scenario (standing, straight, circle, figure8), then the settings "key=value".
-// Throws InputError when there is no such scenario, a setting is at fault, or the result is not
-// valid.
+// Returns the options of a scenario (standing, straight, circle, figure8), changed by the settings
+// "key=value". Throws InputError when the scenario does not exist, a setting is wrong, or the
+// result is not valid.
 VehicleWorldOptions ReadVehicleWorld(const std::string& scenario,
                                      const std::vector<std::string>& settings);
 
-// What the simulated camera and the simulated autopilot share: one vehicle, on one clock. Its
-// drawn scene is fixed by the options and the seed. Thread-safe.
+// World shared by the simulated camera and the simulated autopilot: one vehicle, on one clock. The
+// options and the seed determine its scene. Thread-safe.
 class VehicleWorld {
  public:
   // Time 0 of the scene is at 'start' on the local clock. Throws InputError when the options are
   // not valid.
   VehicleWorld(const VehicleWorldOptions& options, Time start, std::uint64_t seed);
-  VehicleWorld(const VehicleWorld&) = delete;  // the scene's motions look into it
+  VehicleWorld(const VehicleWorld&) = delete;  // the scene's motions refer to it
   VehicleWorld& operator=(const VehicleWorld&) = delete;
 
   // Seconds since the start: the time of the scene's motions.
@@ -68,10 +68,10 @@ class VehicleWorld {
   RigidTransform PatternAt(Time time) const;    // world_from_pattern
   Eigen::Vector3d VelocityAt(Time time) const;  // of the pattern's centre in the world, m/s
 
-  // Whether a point of the pattern's plane (in the pattern's frame) is on the board.
+  // True when a point of the pattern's plane (in the pattern's frame) is on the board.
   bool IsOnBoard(const Eigen::Vector3d& point_in_pattern) const;
 
-  // Tells where a UAV is, for a vehicle that waits for it.
+  // Reports the position of a UAV, for a vehicle that waits for it.
   void ObserveUav(Time time, const Eigen::Vector3d& position_in_world);
 
   const LandingScene& scene() const { return scene_; }
