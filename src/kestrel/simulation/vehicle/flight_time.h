@@ -5,7 +5,7 @@
 
 namespace kestrel {
 
-// The image time of time 0 of a simulated flight.
+// Image time of time 0 of a simulated flight.
 inline constexpr Time kStartTime = TimeFromNanoseconds(100'000'000'000);
 inline Time TimeOfFlight(double time_s) { return kStartTime + DurationFromSeconds(time_s); }
 

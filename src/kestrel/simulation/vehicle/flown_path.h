@@ -7,16 +7,16 @@
 
 namespace kestrel {
 
-// Where a body was, step by step, while a simulation goes on: a motion that grows.
+// The poses of a body, step by step, while a simulation runs: a motion that grows.
 class FlownPath {
  public:
-  // The first pose added is that of 'begin_s'; from one to the next it is 'step_s'.
+  // The first pose that is added is that of 'begin_s'; the following ones are 'step_s' apart.
   FlownPath(double begin_s, double step_s) : begin_s_(begin_s), step_s_(step_s) {}
 
   void Add(const RigidTransform& world_from_body) { poses_.push_back(world_from_body); }
 
-  // Between two steps by straight line and shortest arc; before the first and after the last pose,
-  // that one. At least one pose must be there.
+  // Interpolates between two steps by straight line and shortest arc; before the first and after
+  // the last pose it returns that pose. There must be at least one pose.
   RigidTransform At(double time_s) const;
 
   double end_s() const { return begin_s_ + step_s_ * (static_cast<double>(poses_.size()) - 1); }

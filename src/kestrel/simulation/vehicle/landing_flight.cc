@@ -37,7 +37,7 @@ std::vector<std::string> LandingFlightOptions::Validate() const {
 
 Motion LandingFlight(const LandingFlightOptions& options, const Path& target, double duration_s,
                      Random* random) {
-  // Two sways across each other, of periods that do not meet again soon.
+  // Two sways across each other, with periods that coincide only rarely.
   constexpr double kPeriodRatio = 0.8;
   const double rate_x = 2 * kPi / options.sway_period_s;
   const double rate_y = kPeriodRatio * rate_x;
@@ -48,9 +48,9 @@ Motion LandingFlight(const LandingFlightOptions& options, const Path& target, do
   const auto beside_y = Wander(options.offset_m / std::numbers::sqrt2, kDriftPeriod_s, random);
   const double ratio = options.end_altitude_m / options.start_altitude_m;
   const Path position = [=](double time_s) {
-    constexpr double kHalfSwayAltitude_m = 1;  // about: less room to sway further down
+    constexpr double kHalfSwayAltitude_m = 1;  // about: less room for swaying further down
     const double part = std::clamp(time_s / duration_s, -0.1, 1.1);
-    // As long at 1 to 2 m as at 4 to 8 m.
+    // Exponential: it takes as long from 2 to 1 m as from 8 to 4 m.
     const double altitude = options.start_altitude_m * std::pow(ratio, part);
     const double sway = acceleration * altitude / std::hypot(altitude, kHalfSwayAltitude_m);
     const double sway_x = sway / (rate_x * rate_x) * std::sin(rate_x * time_s);

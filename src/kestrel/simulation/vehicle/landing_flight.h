@@ -13,13 +13,14 @@
 
 namespace kestrel {
 
-// How the UAV flies over the vehicle. Altitudes are those of the body above the pattern.
+// Flight of the UAV over the vehicle. Altitudes are those of the body above the pattern.
 struct LandingFlightOptions {
   double start_altitude_m = 12;
   double end_altitude_m = 0.6;
-  double offset_m = 0.15;          // how far beside the pattern, per metre of altitude
-  double sway_acceleration = 0.2;  // largest of its swaying, m/s^2, less near the pattern; the
-                                   // paper's calm flight: 0.2; 8 tilts the UAV by 40 degrees
+  double offset_m = 0.15;          // horizontal offset from the pattern per metre of altitude
+  double sway_acceleration = 0.2;  // largest acceleration of its swaying, m/s^2, less near the
+                                   // pattern; the paper's calm flight: 0.2; 8 tilts the UAV by 40
+                                   // degrees
   double sway_period_s = 6;
   double attitude_noise_deg = 0.3;  // fast, small errors of the attitude control
   double yaw_rate_deg = 10;         // amplitude of its slow turning, degrees per second
@@ -38,7 +39,8 @@ struct LandingFlightOptions {
   std::vector<std::string> Validate() const;
 };
 
-// The UAV's motion over 'duration_s' from the start altitude to the end altitude above 'target'.
+// Returns the UAV's motion above 'target' over 'duration_s', from the start altitude to the end
+// altitude.
 Motion LandingFlight(const LandingFlightOptions& options, const Path& target, double duration_s,
                      Random* random);
 

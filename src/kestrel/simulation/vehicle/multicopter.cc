@@ -15,9 +15,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kDragLag_s = 0.2;
-constexpr double kMaxVertical = 5;  // m/s^2; the rotors neither stop nor have double power
+constexpr double kMaxVertical = 5;  // m/s^2; the rotors neither stop nor reach double power
 
-// 'vector' with its horizontal part and its height no longer than these.
+// Returns 'vector', with its horizontal and its vertical part limited to these lengths.
 Vector3d Limited(const Vector3d& vector, double horizontal, double vertical) {
   const double length = std::hypot(vector.x(), vector.y());
   const double scale = length > horizontal ? horizontal / length : 1;
@@ -78,7 +78,7 @@ void Multicopter::Turn(std::optional<double> yaw, double seconds) {
 }
 
 Vector3d Multicopter::WantedThrust(const SetPoint& command) const {
-  // Limited together: the acceleration must not bring it beyond the speed either.
+  // Limited together: the acceleration must not exceed the speed limit either.
   const Vector3d velocity =
       Limited(command.velocity + command.acceleration / options_.velocity_gain,
               options_.max_speed_mps, options_.max_climb_mps);

@@ -12,16 +12,16 @@
 
 namespace kestrel {
 
-// What the simulated multicopter can do.
+// Abilities of the simulated multicopter.
 struct MulticopterOptions {
   double max_tilt_deg = 40;
   double max_acceleration = 8;   // horizontal, m/s^2
   double max_speed_mps = 16;     // horizontal
   double max_climb_mps = 4;      // up and down
-  double attitude_lag_s = 0.06;  // of each of two lags in a row between command and thrust
-  double drag = 0.25;            // acceleration by the air, per m/s of speed through it
+  double attitude_lag_s = 0.06;  // of each of two lags in series between command and thrust
+  double drag = 0.25;            // deceleration by the air, per m/s of speed through it
   double velocity_gain = 4;      // of its velocity control, m/s^2 per m/s
-  double max_turn_dps = 60;      // of its nose, deg/s
+  double max_turn_dps = 60;      // of its heading, deg/s
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -38,22 +38,22 @@ struct MulticopterOptions {
   std::vector<std::string> Validate() const;
 };
 
-// A multicopter with its autopilot: a point of mass 1 that is pushed by its thrust, gravity and the
-// air. The thrust's direction is the body's z axis; it follows the command after two lags, which is
-// what attitude control and motors make of it. The autopilot controls the velocity, which it knows
-// (that is what its inertial unit is for), and compensates the air's drag as it feels it, a moment
-// late.
+// A multicopter with its autopilot: a point of mass 1 that is driven by its thrust, gravity and the
+// air. The direction of the thrust is the body's z axis. It follows the command after two lags,
+// which model attitude control and motors. The autopilot controls the velocity, which it knows
+// (from its inertial unit), and compensates the air's drag as it measures it, a moment late.
 class Multicopter {
  public:
-  // Level at 'position', looking towards 'heading' (rad, from x to y); hovers, or has a velocity.
+  // Level at 'position', with the heading 'heading' (rad, from x to y) and 'velocity'; it hovers by
+  // default.
   Multicopter(const MulticopterOptions& options, const Eigen::Vector3d& position, double heading,
               const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero());
 
-  // Flies on for 'seconds', a few ms, in the wind (m/s, the air's velocity).
+  // Flies on for 'seconds', a few ms, in the wind (velocity of the air, m/s).
   void Step(const SetPoint& command, const Eigen::Vector3d& wind, double seconds);
 
-  // The same for an autopilot that controls the velocity by itself: the rotors are to give
-  // 'acceleration' (world, m/s^2) beyond what carries the weight, whatever the air does to it.
+  // The same for an autopilot that controls the velocity itself: the rotors give 'acceleration'
+  // (world, m/s^2) in addition to the one that carries the weight, whatever the air does.
   void StepByThrust(const Eigen::Vector3d& acceleration, std::optional<double> yaw,
                     const Eigen::Vector3d& wind, double seconds);
 

@@ -10,12 +10,12 @@
 
 namespace kestrel {
 
-// Attitude (world_from_body) of a multicopter whose thrust, as an acceleration in the world, is
-// along its z axis; 'yaw' is the heading of x, rad.
+// Returns the attitude (world_from_body) of a multicopter whose thrust, as an acceleration in the
+// world, is along its z axis; 'yaw' is the heading of x, rad.
 Eigen::Quaterniond MulticopterAttitude(const Eigen::Vector3d& thrust, double yaw);
 
-// The body (x forward, y left, z up) of a multicopter that follows 'position': its thrust, along z,
-// is what the acceleration and gravity ask for. 'yaw' is the heading of x, rad.
+// Returns the motion of a multicopter's body (x forward, y left, z up) that follows 'position': its
+// thrust, along z, balances acceleration and gravity. 'yaw' is the heading of x, rad.
 Motion MulticopterMotion(const Path& position, const std::function<double(double time_s)>& yaw,
                          double attitude_noise_deg, Random* random);
 

@@ -16,20 +16,20 @@
 
 namespace kestrel {
 
-// The errors of what the UAV believes: where it is, when, and how its camera is mounted.
+// Errors of the UAV's navigation: position, attitude, clock, and mount of the camera.
 struct NavigationOptions {
   double rate_hz = 100;
-  // Where the world's origin lies in the navigation's own world and where its x axis points there,
+  // Origin of the true world in the navigation's world, and the direction of the true x axis there,
   // from x to y: no two navigations begin with quite the same world.
   double origin_x_m = 0;
   double origin_y_m = 0;
   double world_yaw_deg = 0;
-  double position_noise_m = 0.01;    // standard deviation per axis, of every pose anew
+  double position_noise_m = 0.01;    // standard deviation per axis, new for every pose
   double position_drift_m = 0.02;    // the same, changes over minutes
   double position_bias_m = 0.02;     // the same, constant
-  double attitude_noise_deg = 0.15;  // standard deviation per axis, of every pose anew
+  double attitude_noise_deg = 0.15;  // standard deviation per axis, new for every pose
   double attitude_bias_deg = 0.2;    // the same, constant
-  double clock_offset_min_s = -0.1;  // the clock offset is drawn between these
+  double clock_offset_min_s = -0.1;  // the clock offset is random between these
   double clock_offset_max_s = 0.3;
   double mount_error_deg = 1;  // standard deviation of the camera's roll, pitch and yaw
   double vibration_deg = 0;    // of the camera on its mount, standard deviation per axis
@@ -59,7 +59,7 @@ struct NavigationOptions {
   std::vector<std::string> Validate() const;
 };
 
-// The errors of one flight, drawn by NavigationOptions.
+// The errors of one flight, drawn from NavigationOptions.
 struct NavigationErrors {
   double clock_offset_s = 0;  // t_nav = t_image + offset
   // True mount = Rz(yaw) Ry(pitch) Rx(roll) nominal mount, in the body frame.
@@ -71,15 +71,15 @@ struct NavigationErrors {
 };
 NavigationErrors DrawNavigationErrors(const NavigationOptions& options, Random* random);
 
-// What the navigation reports of a flight, pose by pose. Copies go on by themselves.
+// The navigation's reports of a flight, pose by pose. A copy continues independently.
 class NavigationSensor {
  public:
   NavigationSensor(const NavigationOptions& options, const NavigationErrors& errors, Random random);
 
-  // The next pose: of 'time_s', in the time of the navigation's own clock.
+  // Returns the next pose: of 'time_s', stamped with the navigation's own clock.
   PoseSample Report(double time_s, RigidTransform world_from_body);
 
-  // All poses from 'begin_s' on at the navigation's rate; the last is not before 'end_s'.
+  // Returns all poses from 'begin_s' on at the navigation's rate; the last is not before 'end_s'.
   std::vector<PoseSample> ReportAll(const Motion& world_from_body, double begin_s, double end_s);
 
  private:
@@ -92,7 +92,7 @@ class NavigationSensor {
   std::array<std::function<double(double time_s)>, 3> drift_;
 };
 
-// Rotation of the camera on its mount (camera_from_still_camera) as a function of time.
+// Rotation of the camera on its mount (camera_from_still_camera) as a function of time (s).
 std::function<Eigen::Quaterniond(double time_s)> Vibration(const NavigationOptions& options,
                                                            Random* random);
 

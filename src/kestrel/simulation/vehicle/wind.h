@@ -9,12 +9,12 @@
 
 namespace kestrel {
 
-// The air's motion: a steady wind, whose speed and direction are drawn, with gusts.
+// Motion of the air: a steady wind with random speed and direction, and gusts.
 struct WindOptions {
-  double min_mps = 2.8;  // the steady speed is drawn between these; 10 to 20 km/h
+  double min_mps = 2.8;  // the steady speed is random between these; 10 to 20 km/h
   double max_mps = 5.6;
   double gusts = 0.25;  // standard deviation of the gusts per axis, as a part of the steady speed;
-                        // half of it up and down
+                        // half of it vertically
   double gust_period_s = 3;
 
   template <class Self, class Visitor>
