@@ -15,7 +15,7 @@ constexpr int kLatticeBits = 7;
 constexpr int kLatticeSize = 1 << kLatticeBits;
 constexpr int kOctaves = 6;
 constexpr double kLargestScale = 5.0;  // m
-constexpr double kScaleRatio = 2.9;    // not an integer, so that lattices do not fall together
+constexpr double kScaleRatio = 2.9;    // not an integer, so that lattices do not coincide
 
 double SmoothStep(double t) { return t * t * (3 - 2 * t); }
 

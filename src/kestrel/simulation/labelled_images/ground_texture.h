@@ -9,13 +9,13 @@
 namespace kestrel {
 
 // Random brightness of the ground at all scales from centimetres to metres, like asphalt or grass:
-// a sum of octaves of value noise on lattices of random numbers.
+// a sum of octaves of value noise on random lattices.
 class GroundTexture {
  public:
   explicit GroundTexture(std::uint64_t seed);
 
-  // About -1 to 1, mean 0, at a point of the plane (m). Scales that a footprint of 'footprint_m'
-  // cannot show are left out, as a camera would average over them.
+  // Returns about -1 to 1, mean 0, at a point of the plane (m). Scales that a footprint of
+  // 'footprint_m' cannot resolve are left out, because a camera averages over them.
   double At(const Eigen::Vector2d& point, double footprint_m) const;
 
  private:

@@ -37,8 +37,8 @@ struct ImageExtent {
   double minor_px;
 };
 
-// Largest and smallest width of the image of a circle on the plane; nothing when the camera model
-// does not reach all of it.
+// Returns the largest and smallest width of the image of a circle on the plane; nothing when the
+// camera model does not cover all of it.
 std::optional<ImageExtent> ExtentOfCircle(const CameraModel& camera,
                                           const RigidTransform& camera_from_pattern,
                                           const Vector2d& center, double radius) {
@@ -71,14 +71,14 @@ Vector2d RandomPixel(const CameraModel& camera, double margin_px, Random* random
           random->Uniform(-margin_px, camera.height_px() - 1 + margin_px)};
 }
 
-// A random tilt and yaw at 'altitude_m', with the plane's origin somewhere in view or, by up to
-// 'margin_px', beside it. Nothing when the pixel drawn does not see the plane.
+// Returns a random tilt and yaw at 'altitude_m', with the plane's origin somewhere in view or up to
+// 'margin_px' beside it. Nothing when the chosen pixel does not see the plane.
 std::optional<RigidTransform> RandomPose(const CameraModel& camera, double altitude_m,
                                          double max_tilt_deg, double margin_px, Random* random) {
   const double tilt = Radians(random->Uniform(0, max_tilt_deg));
   const Vector2d tilt_axis = RandomDirection(random);
   const double yaw = random->Uniform(0, 2 * kPi);
-  // Level, the camera looks straight down: half a turn about x.
+  // Level means that the camera looks straight down: half a turn about x.
   const Eigen::Quaterniond rotation = Eigen::AngleAxisd(tilt, OnPlane(tilt_axis)) *
                                       Eigen::AngleAxisd(kPi, Vector3d::UnitX()) *
                                       Eigen::AngleAxisd(yaw, Vector3d::UnitZ());
@@ -93,8 +93,8 @@ std::optional<RigidTransform> RandomPose(const CameraModel& camera, double altit
   return RigidTransform{rotation, ray * (altitude_m / fall)};
 }
 
-// A point of the plane that the camera sees or that lies up to 'margin_px' beside its image, or
-// nothing.
+// Returns a point of the plane that the camera sees or that lies up to 'margin_px' beside its
+// image, or nothing.
 std::optional<Vector2d> RandomPlacePoint(const CameraModel& camera,
                                          const RigidTransform& camera_from_pattern,
                                          double margin_px, Random* random) {
@@ -118,7 +118,8 @@ LensOptions LensOf(const LandingStillOptions& options, bool legs) {
   return lens;
 }
 
-// In every second image a motion across the view of up to two pixels, less for what is small.
+// Adds, in every second image, a motion across the view of up to two pixels, less for small
+// patterns.
 void AddRandomMotion(const CameraModel& camera, const RigidTransform& camera_from_pattern,
                      double size_px, Random* random, ImagingOptions* imaging) {
   if (!random->Chance(0.5)) return;
@@ -132,12 +133,12 @@ void AddRandomMotion(const CameraModel& camera, const RigidTransform& camera_fro
   imaging->velocity_in_camera = motion * (range * angle / imaging->exposure_s);
 }
 
-// A motion across the view during the read-out that skews what is seen by so much a row.
+// Adds a motion across the view during the read-out: it shifts the image by 'skew' px per row.
 void AddRollingShutter(const CameraModel& camera, const RigidTransform& camera_from_pattern,
                        double skew, Random* random, ImagingOptions* imaging) {
   if (skew == 0) return;
   imaging->readout_s = 0.033;
-  imaging->exposure_s = 0.001;  // hardly blurs
+  imaging->exposure_s = 0.001;  // causes hardly any blur
   const double range = camera_from_pattern.translation.norm();
   const double rate = skew * camera.height_px() / imaging->readout_s / camera.intrinsics().fx_px;
   const Vector3d ray = camera_from_pattern.translation / range;
@@ -147,7 +148,7 @@ void AddRollingShutter(const CameraModel& camera, const RigidTransform& camera_f
       range * rate * (std::cos(direction) * across + std::sin(direction) * ray.cross(across));
 }
 
-// Where the middle of the print appears: on the sheet's relief, at its row's time.
+// Returns the pixel of the print's middle: on the sheet's relief, at its row's time.
 Vector2d CenterPx(const CameraModel& camera, const RigidTransform& camera_from_pattern,
                   const Relief& relief, const ImagingOptions& imaging) {
   const Vector3d center(0, 0, relief.HeightAt({0, 0}));
@@ -166,7 +167,7 @@ struct LookalikePlace {
   double minor_px;  // of its circle's image
 };
 
-// Share of a circle that is in view.
+// Returns the part of a circle that is in view.
 double SeenShare(const Vector2d& center, double radius, const Lens& lens,
                  const RigidTransform& camera_from_pattern) {
   constexpr int kPoints = 24;
@@ -179,8 +180,8 @@ double SeenShare(const Vector2d& center, double radius, const Lens& lens,
   return static_cast<double>(seen) / kPoints;
 }
 
-// A place where a look-alike can be told from the pattern by eye and covers no other one, or
-// nothing when the one drawn is not good.
+// Returns a place where the eye can distinguish a look-alike from the pattern and where it covers
+// no other one, or nothing when the chosen place is not good.
 std::optional<LookalikePlace> RandomPlace(const LandingStillOptions& options,
                                           const SceneRenderer& renderer,
                                           const RigidTransform& camera_from_pattern,
@@ -225,7 +226,7 @@ const LandingStillOptions& Valid(const LandingStillOptions& options) {
   return options;
 }
 
-// The truth of a still for a pose, or nothing when it shows too little of the pattern.
+// Returns the truth of a still for a pose, or nothing when it shows too little of the pattern.
 std::optional<LandingStill> TruthOf(const LandingStillOptions& options,
                                     const SceneRenderer& renderer, const LandingPattern& pattern,
                                     const RigidTransform& camera_from_pattern) {
@@ -253,7 +254,7 @@ std::optional<LandingStill> TruthOf(const LandingStillOptions& options,
                       .ring_minor_px = ring->minor_px};
 }
 
-// The pattern with arms as long as they are on one board or another.
+// Returns the pattern with a random length of the arms, as it varies between boards.
 LandingPattern RandomPattern(const LandingPattern& nominal, Random* random) {
   LandingPattern pattern = nominal;
   const double change = nominal.outer_diameter_m * random->Uniform(-0.02, 0.04);
@@ -267,7 +268,7 @@ LandingStill RandomTruth(const LandingStillOptions& options, const SceneRenderer
   const double altitude = random->Uniform(options.min_altitude_m, options.max_altitude_m);
   const LandingPattern pattern = RandomPattern(options.pattern, random);
   const CameraModel& camera = renderer.camera();
-  // The pattern's middle may lie beside the image while a part of the pattern is in view.
+  // The pattern's middle may lie outside of the image while a part of the pattern is in view.
   const double margin_px = std::min(
       0.4 * camera.height_px(), camera.intrinsics().fx_px * pattern.outer_radius_m() / altitude);
   for (int i = 0; i < kMaxTries; ++i) {

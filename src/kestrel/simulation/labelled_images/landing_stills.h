@@ -17,13 +17,13 @@
 
 namespace kestrel {
 
-// What a still is hard to see by.
+// Condition that makes a still difficult.
 enum class StillCondition {
   kMixed,          // a little of everything
   kUavShadow,      // sun, and the shadow of a UAV on the pattern
   kOtherShadow,    // sun, and shadows of trees, masts, people, fences, parts of the vehicle
-  kHeldOutShadow,  // sun, and shadows of what is in neither of them
-  kGlare,          // a low sun, mirrored by wet or glossy print
+  kHeldOutShadow,  // sun, and shadows of things in neither of them
+  kGlare,          // a low sun, mirrored by a wet or glossy print
   kDark,           // little light and much noise
   kDust,
   kBlur,  // out of focus, or moving
@@ -33,7 +33,7 @@ const char* ToString(StillCondition condition);  // "mixed", "shadow of a UAV", 
 
 struct LandingStillOptions {
   CameraIntrinsics camera = PaperCamera();
-  // Radius of the lens circle as an angle to the optical axis, degrees. With PaperCamera() 85
+  // Radius of the lens circle as an angle to the optical axis, degrees. With PaperCamera(), 85
   // degrees put its rim where the paper's real frames have it.
   double lens_half_angle_deg = 85;
   LandingPattern pattern;  // the arm's half length varies by 0.04 outer radii to both sides
@@ -42,49 +42,50 @@ struct LandingStillOptions {
   double max_altitude_m = 6;
   // Largest angle between the optical axis and straight down, degrees, 0 to 80.
   double max_tilt_deg = 40;
-  // What must be seen of the pattern (see LandingStill) for a still to be worth scoring. A landing
-  // leg may hide a tenth of it in addition.
+  // The least part of the pattern (see LandingStill) that a still must show to be scored. A landing
+  // leg may hide another tenth of it.
   double min_visible_fraction = 0.25;
   double min_ring_minor_px = 6;
   double min_ring_major_px = 13;
-  // Smallest axes of a look-alike's circle in the image: by default those from which on an eye can
-  // tell each of them from the pattern. And the largest minor one: look-alikes seen from the side.
+  // Smallest axes of a look-alike's circle in the image: by default those from which the eye can
+  // distinguish each of them from the pattern. And the largest minor axis: look-alikes seen from
+  // the side.
   double min_lookalike_major_px = 26;
   double min_lookalike_minor_px = 15;
   double max_lookalike_minor_px = 1e9;
   LookalikeSet lookalikes = LookalikeSet::kPlain;
-  // Of each look-alike the share of its circle that is in view is at least this, and where it is
-  // less than 1 no look-alike is whole.
+  // At least this part of each look-alike's circle is in view. If it is less than 1, no look-alike
+  // is whole.
   double min_lookalike_visible = 1;
   StillCondition condition = StillCondition::kMixed;
-  // Of the condition's casters of shadows the one of this index; any, where it is negative.
+  // Index of the caster of shadows among those of the condition; negative: any.
   int shadow_caster = -1;
-  // What makes the print no flat, rigid one: height of the middle of a board that bulges (negative:
-  // sags), and of the creases of a sheet that was folded, shares of the board's size; and by how
-  // much a rolling shutter skews the ring, share of its size.
+  // Deviations of the print from a flat, rigid one. Parts of the board's size: height of the middle
+  // of a board that bulges (negative: sags), and height of the creases of a folded sheet. Part of
+  // the ring's size: its skew by a rolling shutter.
   double bulge = 0;
   double fold = 0;
   double rolling_skew = 0;
-  // Amount of dirt and scraped places on a print: 0, none, to 1, as much as an eye still reads
-  // through.
+  // Amount of dirt and scratches on a print: from 0, none, to 1, the most that the eye can still
+  // read through.
   double wear = 0;
 
-  // Every violation in words; empty when stills can be made.
+  // Returns every violation in words; empty when stills can be made.
   std::vector<std::string> Validate() const;
 };
 
 // One rendered image of the landing pattern with its truth.
 struct LandingStill {
   cv::Mat image;                       // CV_8UC1
-  LandingPattern pattern;              // as it was drawn
+  LandingPattern pattern;              // as drawn
   RigidTransform camera_from_pattern;  // true pose in the middle of the exposure
-  Eigen::Vector2d center_px;           // projection of the pattern's origin; may lie outside
+  Eigen::Vector2d center_px;           // projection of the pattern's origin; may be outside
   double altitude_m;                   // of the camera above the pattern's plane
   Eigen::Vector3d up_in_camera;        // unit vector away from the ground
   double visible_fraction;             // of ring and cross, see VisibleFraction
   bool has_shadow = false;     // of the UAV, or the edge of a larger one, on or near the ring
-  bool has_highlight = false;  // a mirrored sun on or near the ring
-  double ring_major_px;        // largest and smallest width of the outer ring's image,
+  bool has_highlight = false;  // largest and smallest width of the image of the whole
+  double ring_major_px;        // outer ring, ignoring the border of the image
   double ring_minor_px;        // whole, as if the image had no border
 };
 
@@ -94,12 +95,12 @@ struct LookalikeStill {
   RigidTransform camera_from_pattern;  // pose of the plane
   double altitude_m;
   Eigen::Vector3d up_in_camera;
-  std::vector<std::string> names;  // of the look-alikes in it, at least one
+  std::vector<std::string> names;  // of its look-alikes, at least one
 };
 
 // Makes random stills: any yaw, tilt and place in the lens circle, random ground, light, shadow,
-// glare, haze, wear, blur, motion and noise, all as strong as an eye can still see through. The
-// same options and seed give the same bytes. Immutable and thread-safe.
+// glare, haze, wear, blur, motion and noise, each up to the strength that the eye can still see
+// through. The same options and seed give the same bytes. Immutable and thread-safe.
 class LandingStillMaker {
  public:
   // Throws InputError when the options are not valid.
@@ -108,11 +109,11 @@ class LandingStillMaker {
   // Throws InputError when no pose within the options shows enough of the pattern.
   LandingStill MakePattern(std::uint64_t seed) const;
 
-  // One to five look-alikes of random kinds, whole and as large as the options say. Throws
-  // InputError when none can be placed.
+  // Makes a still with one to five look-alikes of random kinds, visible and large as the options
+  // say. Throws InputError when none can be placed.
   LookalikeStill MakeLookalikes(std::uint64_t seed) const;
 
-  // The same without their images, which are left empty: quick.
+  // The same without the images, which are left empty: fast.
   LandingStill PlacePattern(std::uint64_t seed) const;
   LookalikeStill PlaceLookalikes(std::uint64_t seed) const;
 
@@ -120,7 +121,7 @@ class LandingStillMaker {
   const LandingStillOptions& options() const { return options_; }
 
  private:
-  // What an image is rendered from, other than the pose.
+  // Everything but the pose that an image is rendered from.
   struct View {
     Scene scene;
     ImagingOptions imaging;

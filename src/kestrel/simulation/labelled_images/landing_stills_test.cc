@@ -38,7 +38,7 @@ TEST(LandingStillMakerTest, StillsKeepTheirOptions) {
   }
 }
 
-// Mean gray value where the still shows ink ('ink') or paper between the arms.
+// Returns the mean gray value of the still's ink ('ink'), or of the paper between the arms.
 double MeanOnPattern(const LandingStill& still, const CameraModel& camera, bool ink) {
   double sum = 0;
   int count = 0;
@@ -68,8 +68,7 @@ TEST(LandingStillMakerTest, TruthIsWhereThePatternIs) {
   }
 }
 
-// What makes the print no flat, rigid one moves the true centre in the image, and the print with
-// it.
+// A print that is not flat and rigid moves the true centre in the image by as much as the print.
 TEST(LandingStillMakerTest, TruthIsOnTheSheetAtItsTime) {
   LandingStillOptions flat;
   flat.min_visible_fraction = 1;
@@ -92,7 +91,7 @@ TEST(LandingStillMakerTest, TruthIsOnTheSheetAtItsTime) {
         EXPECT_LT((still.center_px - of_bulge).norm(), 1e-6) << "seed " << seed;
         continue;
       }
-      // So much a row; the fisheye shows angles by more or less in its outer parts.
+      // Proportional to the row; the outer parts of the fisheye change the scale of angles.
       const double rows = std::abs(still.center_px.y() - 239.5);
       const double shift = (still.center_px - of_flat).norm();
       EXPECT_GT(shift, 0.6 * options.rolling_skew * rows) << "seed " << seed;
@@ -148,10 +147,10 @@ constexpr int kStills = 6;  // of each condition
 
 struct MeanLevels {
   double ink = 0, white = 0;
-  int shadows = 0;  // stills that have one
+  int shadows = 0;  // number of stills that have one
 };
 
-// Gray values of stills of a condition, means.
+// Returns mean gray values of stills of a condition.
 MeanLevels LevelsUnder(StillCondition condition) {
   LandingStillOptions options;
   options.condition = condition;

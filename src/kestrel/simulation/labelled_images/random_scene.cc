@@ -28,7 +28,7 @@ Drawing UavShadow(const Vector2d& center, double size_m, Random* random) {
   return shadow;
 }
 
-// The shadow of something large whose edge passes within 'reach_m' of the origin.
+// The shadow of a large thing whose edge passes within 'reach_m' of the origin.
 Drawing ShadowEdge(double reach_m, Random* random) {
   constexpr double kHalfSize = 500;
   const Vector2d outward = RandomDirection(random);
@@ -37,14 +37,14 @@ Drawing ShadowEdge(double reach_m, Random* random) {
       Drawing::Bar{(distance + kHalfSize) * outward, outward, kHalfSize, kHalfSize});
 }
 
-// A mirrored sun that washes out a part of the pattern.
+// Adds a mirror image of the sun that washes out a part of the pattern.
 void AddGlare(const Vector2d& around, double radius_m, Random* random, Scene* scene) {
   const Vector2d center = around + radius_m * random->Uniform(0.5, 1.6) * RandomDirection(random);
   scene->glares.push_back(
       {center, radius_m * random->Uniform(0.15, 0.35), random->Uniform(0.3, 1.5)});
 }
 
-// White lines on the ground, straight across the scene.
+// Adds white lines on the ground, straight across the scene.
 void AddMarkings(Random* random, Scene* scene) {
   const int count = random->Integer(0, 4);
   for (int i = 0; i < count; ++i) {
@@ -57,7 +57,7 @@ void AddMarkings(Random* random, Scene* scene) {
   }
 }
 
-// The roof of the vehicle that carries the board, and parts of it.
+// Adds the roof of the vehicle that carries the board, and parts of it.
 void AddVehicle(double board_size_m, Random* random, Scene* scene) {
   const Vector2d axis =
       random->Chance(0.7) ? Vector2d(Vector2d(1, 1).normalized()) : RandomDirection(random);
@@ -99,7 +99,7 @@ void AddRandomPattern(const LandingPattern& pattern, Random* random, Scene* scen
   scene->layers.push_back({ink, random->Uniform(0.03, 0.15), dirt});
 }
 
-// A stain is a trail of round spots that grow smaller: dark dirt, pale dust, or bare white.
+// A stain is a trail of round spots of decreasing size: dark dirt, pale dust, or bare white.
 void AddRandomWear(const Vector2d& center, double radius_m, double wear, Random* random,
                    Scene* scene) {
   constexpr double kMostStains = 9, kReach = 1.2;
@@ -169,7 +169,7 @@ std::span<const ShadowCaster> CastersOf(StillCondition condition) {
   }
 }
 
-// A broad highlight over a part of the board that leaves some contrast, and smaller ones.
+// Adds a broad highlight that leaves some contrast on a part of the board, and smaller ones.
 void AddLowSun(const StillLight& light, Random* random, Scene* scene) {
   const double radius_m = light.radius_m;
   const double distance = radius_m * random->Uniform(0, 1.6);
@@ -231,7 +231,7 @@ ImagingOptions RandomImaging(const StillLight& light, Random* random) {
   imaging.blur_sigma_px = condition == StillCondition::kBlur
                               ? random->Uniform(1, 1 + 0.02 * std::min(light.size_px, 100.0))
                               : random->Uniform(0.4, most_blur_px);
-  // What an eye makes out in noise grows with the size.
+  // The noise that the eye can see through increases with the size.
   const double most_noise =
       condition == StillCondition::kDark ? std::clamp(0.003 * light.size_px, 0.05, 0.15) : 0.018;
   imaging.read_noise = (1 - imaging.haze) * contrast * random->Uniform(0.003, most_noise);

@@ -10,27 +10,27 @@
 
 namespace kestrel {
 
-// The random parts of which stills are made. All lengths in metres on the scene's plane.
+// Random parts of stills. All lengths are in metres on the scene's plane.
 
-// Asphalt or grass under a sky, with up to four white lines.
+// Returns asphalt or grass under a sky, with up to four white lines.
 Scene RandomGround(Random* random);
 
-// The landing pattern on its board, often on a vehicle's roof, sometimes worn.
+// Adds the landing pattern on its board, often on a vehicle's roof, sometimes worn.
 void AddRandomPattern(const LandingPattern& pattern, Random* random, Scene* scene);
 
-// Stains and scraped places on a print around 'center', 'radius_m' large. 'wear': as in
+// Adds stains and scratches on a print of radius 'radius_m' around 'center'. 'wear': as in
 // LandingStillOptions; 0 adds nothing and draws no random number.
 void AddRandomWear(const Eigen::Vector2d& center, double radius_m, double wear, Random* random,
                    Scene* scene);
 
-// A look-alike of a random kind, on a board or painted on the ground; returns its name.
+// Adds a look-alike of a random kind, on a board or painted on the ground; returns its name.
 const char* AddRandomLookalike(const Eigen::Vector2d& center, double radius_m, LookalikeSet set,
                                Random* random, Scene* scene);
 
-// The light of a condition on what lies around 'center', 'radius_m' large, and how it becomes
-// gray values: shadows, highlights, haze, blur, noise, as strong as an eye can still see through.
-// 'shadow_reach_m': of mixed shadows, from the origin; 'height_m': of the UAV; 'size_px': smallest
-// width of the pattern in the image; 'shadow_caster': see LandingStillOptions.
+// Light of a condition on a region of radius 'radius_m' around 'center', and its conversion to gray
+// values: shadows, highlights, haze, blur, noise, each up to the strength that the eye can still
+// see through. 'shadow_reach_m': distance of mixed shadows from the origin. 'height_m': of the UAV.
+// 'size_px': smallest width of the pattern in the image. 'shadow_caster': see LandingStillOptions.
 struct StillLight {
   StillCondition condition;
   int shadow_caster;

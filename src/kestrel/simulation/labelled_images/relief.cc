@@ -9,7 +9,8 @@
 namespace kestrel {
 namespace {
 
-// From crease to crease, -1 to 1 of the way across the sheet: up at one third, down at the other.
+// Height of a folded sheet at a position across it, all -1 to 1: up at one third, down at the
+// other.
 double FoldProfile(double across) {
   constexpr double kCrease = 1.0 / 3;
   const double distance = std::abs(across);

@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-// A point of the sheet by its sides, -1 to 1 of half the side each.
+// Returns a point of the sheet, in units of half its sides, -1 to 1.
 Eigen::Vector2d At(const Relief& relief, double across, double along) {
   const double half = 0.5 * relief.size_m;
   return half * std::sqrt(0.5) * (across * Eigen::Vector2d(1, 1) + along * Eigen::Vector2d(-1, 1));
@@ -35,7 +35,7 @@ TEST(Relief, ABulgeIsHighestInTheMiddleAndEndsAtTheRim) {
   }
 }
 
-// Two creases in each direction: one up, one down, straight between them.
+// Two creases in each direction, one up and one down, with straight lines between them.
 TEST(Relief, AFoldHasCreasesAtTheThirds) {
   const Relief relief{1.5, 0, 0.03};
   const auto height = [&](double across) { return relief.HeightAt(At(relief, across, 0)); };

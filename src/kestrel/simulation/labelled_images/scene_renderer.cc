@@ -20,17 +20,18 @@
 namespace kestrel {
 namespace {
 
-// A pixel with an edge is cut into cells, each with its own ray. Where the plane moves during the
-// exposure, every cell is seen at several times: only whole grids of cells leave an edge in place.
+// A pixel with an edge is divided into cells with one ray each. If the plane moves during the
+// exposure, every cell is sampled at several times: only whole grids of cells keep an edge in
+// place.
 constexpr int kCellsPerSideStill = 4;
 constexpr int kCellsPerSideMoving = 2;
 constexpr int kTimesMoving = 12;
 
-// Rays that fall on the plane flatter than this (sine of the angle) see the sky: the plane ends at
-// the horizon, a thousand camera heights away.
+// Rays that meet the plane at a smaller angle (sine) see the sky: the plane ends at the horizon, a
+// thousand camera heights away.
 constexpr double kHorizonSine = 1e-3;
 
-// Gray values of radiances in units of white, with noise.
+// Returns gray values from radiances in units of white, with noise.
 cv::Mat Expose(const ImagingOptions& imaging, const cv::Mat& radiance) {
   constexpr double kShotNoiseGray = 100;  // gray value at which 'shot_noise' is given
   Random random(imaging.noise_seed);
@@ -114,7 +115,7 @@ std::vector<std::string> ImagingOptions::Validate() const {
   return violations;
 }
 
-// The radiance of single pixels of one picture.
+// Computes the radiance of single pixels of one picture.
 class SceneRenderer::PlanePainter {
  public:
   // The arguments must outlive the painter.
@@ -133,7 +134,7 @@ class SceneRenderer::PlanePainter {
     }
   }
 
-  // 'rays': of the upper left, upper right, lower left and lower right corner of the pixel.
+  // 'rays': those of the upper left, upper right, lower left and lower right corner of the pixel.
   double Radiance(const std::array<Eigen::Vector3d, 4>& rays) const {
     const std::optional<Footprint> footprint = FootprintOf(rays);
     if (!footprint) return ManyRays(rays);
@@ -144,7 +145,7 @@ class SceneRenderer::PlanePainter {
   }
 
  private:
-  // A camera pose as the plane sees it, or the sheet on it.
+  // A camera pose relative to the plane, or to the sheet on it.
   struct PlaneView {
     Eigen::Matrix3d pattern_from_camera;
     Eigen::Vector3d camera_in_pattern;
@@ -155,14 +156,14 @@ class SceneRenderer::PlanePainter {
           camera_in_pattern(camera_from_pattern.Inverse().translation),
           relief(sheet) {}
 
-    // The point of the plane that a ray of any length sees, or false when it sees none.
+    // Finds the point of the plane that a ray of any length sees; false when it sees none.
     bool Hit(const Eigen::Vector3d& ray_in_camera, Eigen::Vector2d* point) const {
       const Eigen::Vector3d ray = pattern_from_camera * ray_in_camera;
       if (ray.z() > -kHorizonSine) return false;
       const Eigen::Vector2d run = ray.head<2>() / ray.z();
       *point = camera_in_pattern.head<2>() - camera_in_pattern.z() * run;
       if (relief.IsFlat()) return true;
-      // The height is that of the point that is seen: by steps towards it.
+      // The height is that of the visible point, which is found iteratively.
       constexpr int kSteps = 8;
       const Eigen::Vector2d on_plane = *point;
       for (int i = 0; i < kSteps; ++i) *point = on_plane + relief.HeightAt(*point) * run;
@@ -170,17 +171,17 @@ class SceneRenderer::PlanePainter {
     }
   };
 
-  // What a pixel sees of the plane.
+  // The part of the plane that a pixel sees.
   struct Footprint {
     bool sky = false;
     Eigen::Vector2d center{0, 0};
     Eigen::Vector2d right{0, 0};  // from one pixel to its right neighbour
     Eigen::Vector2d down{0, 0};
     double size = 0;    // geometric mean of its sides
-    double radius = 0;  // of the circle that holds it during the whole exposure
+    double radius = 0;  // of the circle that contains it during the whole exposure
   };
 
-  // Nothing when the pixel sees the horizon.
+  // Returns nothing when the pixel sees the horizon.
   std::optional<Footprint> FootprintOf(const std::array<Eigen::Vector3d, 4>& rays) const {
     std::array<Eigen::Vector2d, 4> corners;
     int hits = 0;
@@ -200,7 +201,7 @@ class SceneRenderer::PlanePainter {
     return footprint;
   }
 
-  // How far the point under a ray moves over the plane during the exposure.
+  // Returns the motion over the plane of the point under a ray during the exposure.
   double MotionOf(const Eigen::Vector3d& ray) const {
     Eigen::Vector2d from;
     Eigen::Vector2d to;
@@ -260,7 +261,7 @@ class SceneRenderer::PlanePainter {
     return std::max(reflectance, 0.0) * light + glare;
   }
 
-  // The edge is a ramp as wide as the cell is across the edge.
+  // The edge is a ramp as wide as the cell's extent across the edge.
   static double CoverOf(const Drawing& shape, const Eigen::Vector2d& point, const Footprint& cell,
                         double min_width) {
     const Drawing::Edge edge = shape.NearestEdge(point);

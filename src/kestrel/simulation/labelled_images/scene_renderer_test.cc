@@ -46,7 +46,8 @@ LensOptions ClearLens() {
   return lens;
 }
 
-// The pattern 'range_m' away in direction 'ray', tilted by 'tilt' (rad) against facing the camera.
+// Returns a pose of the pattern 'range_m' away in direction 'ray', tilted by 'tilt' (rad) from
+// facing the camera.
 RigidTransform FacingPose(const Vector3d& ray, double range_m, double tilt) {
   const Eigen::Quaterniond facing =
       Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), -ray.normalized());
@@ -67,8 +68,8 @@ double Interpolate(const cv::Mat& image, const Vector2d& pixel) {
          y * ((1 - x) * at(u, v + 1) + x * at(u + 1, v + 1));
 }
 
-// Where the profile through 'pixel' along 'normal' changes from its first to its last level, by the
-// area under it; px from 'pixel'.
+// Returns the place at which the profile through 'pixel' along 'normal' changes from its first to
+// its last level, computed from the area under it; px from 'pixel'.
 double EdgeOffset(const cv::Mat& image, const Vector2d& pixel, const Vector2d& normal) {
   constexpr double kReach = 3.5;
   constexpr int kSteps = 141;
@@ -89,10 +90,10 @@ struct EdgeErrors {
   double max_abs = 0;
 };
 
-// Where an image shows a point of the pattern's plane; nothing out of the lens.
+// Returns the pixel of a point of the pattern's plane; nothing outside of the lens.
 using ShownAt = std::function<std::optional<Vector2d>(const Vector2d& point)>;
 
-// Errors of the ring's two edges in the image.
+// Returns the errors of the ring's two edges in the image.
 EdgeErrors MeasureRing(const ShownAt& shown_at, const cv::Mat& image) {
   const LandingPattern pattern;
   EdgeErrors errors;
@@ -109,7 +110,7 @@ EdgeErrors MeasureRing(const ShownAt& shown_at, const cv::Mat& image) {
       if (!pixel || !beyond || !next) continue;
       const Vector2d margin = pixel->cwiseMin(Vector2d(751, 479) - *pixel);
       if (margin.minCoeff() < 6) continue;
-      // The edge's normal in the image: across the image of the tangent.
+      // The edge's normal in the image is perpendicular to the image of the tangent.
       const Vector2d along = (*next - *pixel).normalized();
       Vector2d normal(-along.y(), along.x());
       if (normal.dot(*beyond - *pixel) < 0) normal = -normal;
@@ -123,7 +124,7 @@ EdgeErrors MeasureRing(const ShownAt& shown_at, const cv::Mat& image) {
   return errors;
 }
 
-// The same of a flat print that stands still.
+// The same for a flat print that stands still.
 EdgeErrors MeasureRing(const CameraModel& camera, const RigidTransform& camera_from_pattern,
                        const cv::Mat& image) {
   return MeasureRing(
@@ -201,7 +202,7 @@ TEST(SceneRendererTest, ASheetLiesWhereItsReliefHasIt) {
   }
 }
 
-// The view moves while the rows are read out: by 5 % of their number from the first to the last.
+// The view moves during the read-out: by 5 % of the number of rows from the first to the last.
 TEST(SceneRendererTest, ARollingShutterSkewsWhatMoves) {
   const CameraModel camera(PaperCamera());
   const SceneRenderer renderer(camera, ClearLens());
@@ -221,7 +222,7 @@ TEST(SceneRendererTest, ARollingShutterSkewsWhatMoves) {
     pixel.x() += kSkew * (pixel.y() - center.y());
     return pixel;
   };
-  // A shift of the plane is one of the image but for the lens's distortion.
+  // A shift of the plane shifts the image, except for the lens's distortion.
   const EdgeErrors errors = MeasureRing(skewed, image);
   EXPECT_GT(errors.count, 200);
   EXPECT_LT(errors.max_abs, 0.5);
@@ -252,7 +253,7 @@ Level LevelIn(const cv::Mat& image, const cv::Rect& area) {
   return {mean[0], sigma[0]};
 }
 
-// Ground of one level all over the image.
+// Ground of one level in the whole image.
 Scene FlatScene(double reflectance) {
   Scene scene;
   scene.ground_reflectance = reflectance;

@@ -16,7 +16,7 @@ using Shadows = std::vector<Shadow>;
 
 constexpr double kSunDiameter = 0.0093;  // rad
 
-// A point within a circle, denser towards the middle.
+// Returns a point within a circle, denser towards the middle.
 Vector2d RandomPoint(double radius, Random* random) {
   const double distance = radius * random->Uniform();
   return distance * RandomDirection(random);
@@ -25,12 +25,13 @@ Vector2d RandomPoint(double radius, Random* random) {
 // Draws the shadow of one thing, in a frame of its own.
 class ShadowPen {
  public:
-  // 'reach_m': from the middle of the light, 'height_m': of what casts the shadow.
+  // 'reach_m': distance from the middle of the light. 'height_m': of the thing that casts the
+  // shadow.
   ShadowPen(double reach_m, double height_m, const SunLight& sun, Random* random)
       : random_(*random),
         center_(sun.center + RandomPoint(reach_m, random)),
         yaw_(random->Uniform(0, 2 * kPi)),
-        penumbra_m_(kSunDiameter * height_m * random->Uniform(1, 2.5)),  // a low sun's is longer
+        penumbra_m_(kSunDiameter * height_m * random->Uniform(1, 2.5)),  // longer for a low sun
         ambient_(sun.ambient) {}
 
   Random& random() { return random_; }
@@ -38,7 +39,7 @@ class ShadowPen {
   Drawing::Ring Ring(const Vector2d& at, double outer, double inner = 0) const {
     return {Place(at), outer, inner};
   }
-  // From one point to another.
+  // Returns a bar from one point to another.
   Drawing::Bar Bar(const Vector2d& from, const Vector2d& to, double width) const {
     const Vector2d start = Place(from), along = Place(to) - start;
     const double length = std::max(along.norm(), 1e-6);
@@ -49,7 +50,7 @@ class ShadowPen {
   void Cast(const Drawing& shape, double transmission) {
     shadows_.push_back({shape, transmission, penumbra_m_});
   }
-  // Propellers: discs that turn, or blades that an exposure is too short to blur.
+  // Propellers: rotating discs, or blades that the exposure is too short to blur.
   void CastPropellers(std::span<const Vector2d> hubs, double radius) {
     const bool turning = random_.Chance(0.7);
     Drawing shape;
@@ -78,11 +79,11 @@ class ShadowPen {
   Shadows shadows_;
 };
 
-constexpr double kUavReach = 0.6;  // m, of the middle of a UAV's shadow from that of the pattern
+constexpr double kUavReach = 0.6;  // m, from the middle of the pattern to that of a UAV's shadow
 
 double UavSize(Random* random) { return 0.35 * std::pow(3.5, random->Uniform()); }  // m
 
-// Hubs of 'count' rotors around the middle, the first one at 'first' rad.
+// Hubs of 'count' rotors around the middle; the first one is at the angle 'first' (rad).
 std::vector<Vector2d> Hubs(int count, double radius, double first) {
   std::vector<Vector2d> hubs;
   for (int i = 0; i < count; ++i) hubs.push_back(radius * Direction(first + 2 * kPi * i / count));
@@ -176,7 +177,7 @@ Shadows VerticalPlane(const SunLight& sun, Random* random) {
   return pen.Take();
 }
 
-// Everything beyond a straight edge, as a house or a hangar casts it.
+// The region beyond a straight edge, like the shadow of a house or a hangar.
 Shadows Edge(const SunLight& sun, Random* random) {
   ShadowPen pen(0.7, random->Uniform(0, 6), sun, random);
   constexpr double kFar = 500;

@@ -12,15 +12,16 @@
 
 namespace kestrel {
 
-// Where and how a shadow falls.
+// Place and properties of a shadow.
 struct SunLight {
-  Eigen::Vector2d center;  // of the shadows, about, on the plane
-  double height_m;  // of a UAV above the plane; edges are as soft as the sun's disc makes them
-  double ambient;   // share of the light that is left in a shadow, 0 to 1
+  Eigen::Vector2d center;  // approximate centre of the shadows, on the plane
+  double height_m;  // of a UAV above the plane; the sun's disc makes edges soft in proportion to
+                    // the height
+  double ambient;   // part of the light that remains in a shadow, 0 to 1
 };
 
-// Something that stands between the sun and the pattern. Its parts may overlap, which makes several
-// levels of shadow.
+// A thing between the sun and the pattern. Its parts may overlap, which makes several levels of
+// shadow.
 struct ShadowCaster {
   std::string_view name;
   std::vector<Shadow> (*cast)(const SunLight& sun, Random* random);
@@ -30,11 +31,11 @@ struct ShadowCaster {
 // plane that takes off vertically.
 std::span<const ShadowCaster> UavShadowCasters();
 
-// What else stands around a landing pattern: trees, masts, people, fences, parts of the vehicle.
+// Other things around a landing pattern: trees, masts, people, fences, parts of the vehicle.
 std::span<const ShadowCaster> SurroundingShadowCasters();
 
-// Casters of other shapes, which nothing is trained on: a helicopter, a coaxial octocopter on long
-// legs, a lattice mast, a bush.
+// Casters of other shapes, which are never used for training: a helicopter, a coaxial octocopter on
+// long legs, a lattice mast, a bush.
 std::span<const ShadowCaster> HeldOutShadowCasters();
 
 }  // namespace kestrel
