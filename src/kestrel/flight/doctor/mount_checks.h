@@ -21,7 +21,6 @@ Finding CheckMountByGravity(const std::optional<RigidTransform>& body_from_camer
 // Checks that, by the mount, the pattern stays where it is (or drives straight on, where
 // 'target_moves') while the UAV moves or tilts. The mount is compared with all mounts turned by
 // quarter turns: the right one keeps the pattern in place best.
-// right one keeps it in place best.
 Finding CheckMountByMotion(const std::optional<RigidTransform>& body_from_camera,
                            const VisionObservations& vision, bool target_moves);
 
