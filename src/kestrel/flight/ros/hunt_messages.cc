@@ -116,7 +116,7 @@ MarkerArrayMessage NoMarkers(Time stamp, const std::string& frame) {
   return message;
 }
 
-// "red: one two, for two".
+// Returns a label like "red: one two, for two".
 std::string TeamLabelOf(const TeamObject& known, const std::string& what) {
   const std::string label = fmt::format("{}: {}", what, fmt::join(known.uavs, " "));
   return known.holder.empty() ? label : label + ", for " + known.holder;
