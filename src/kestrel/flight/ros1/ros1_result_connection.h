@@ -18,7 +18,7 @@ Ros1Connection::MessageType Ros1TypeOf(std::string_view type);
 // 'asked_by', when there is no master.
 std::shared_ptr<Ros1Connection> OpenRos1(const std::string& node, const std::string& asked_by);
 
-// The results' topics in ROS 1.
+// Publishes the results on topics of ROS 1.
 class Ros1ResultConnection : public ResultConnection {
  public:
   Ros1ResultConnection(std::shared_ptr<Ros1Connection> ros, ResultTopics topics);
