@@ -50,8 +50,8 @@ class LatencyStatistics {
   LatencyHistogram& step(std::size_t index) { return histograms_[index]; }
   const LatencyHistogram& step(std::size_t index) const { return histograms_[index]; }
 
-  // A line for each step: "capture to detection: median 4.21 ms, p99 7.92, max 12.40; 3 of 1000
-  // dropped". Steps in which nothing happened are left out.
+  // Returns a line for each step: "capture to detection: median 4.21 ms, p99 7.92, max 12.40; 3 of
+  // 1000 dropped". Steps in which nothing happened are left out.
   std::string InWords() const;
 
  private:
