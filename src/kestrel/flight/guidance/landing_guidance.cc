@@ -172,7 +172,7 @@ void LandingGuidance::FollowMode(const GuidanceInput& input) {
 
 void LandingGuidance::Start(const GuidanceInput& input) {
   may_stream_ = false;
-  has_given_up_ = true;  // until nothing speaks against it
+  has_given_up_ = true;  // until all checks are passed
   if (!input.uav || !IsFinite(*input.uav)) return End("refused: the UAV's position is not known");
   if (!input.is_armed || input.is_landed) {
     has_given_up_ = false;  // there is nothing to hold on the ground
