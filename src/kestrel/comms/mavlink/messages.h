@@ -844,7 +844,6 @@ struct Statustext {
   }
 };
 
-// Dialect development: of PX4's vision target estimator.
 struct CurrentMode {
   static constexpr std::uint32_t kId = 436;
   static constexpr std::string_view kName = "CURRENT_MODE";
@@ -860,6 +859,7 @@ struct CurrentMode {
   }
 };
 
+// Dialect development: message of PX4's vision target estimator.
 struct TargetRelative {
   static constexpr std::uint32_t kId = 511;
   static constexpr std::string_view kName = "TARGET_RELATIVE";

@@ -244,7 +244,7 @@ void TimeSync::FitBoth(const Strip& strip) {
   line.width_s = std::max(bounds.width_s(), 0.0);
   line.fit_sigma_s =
       kSpread * strip.mean_slack_s / count + (count < kMinRoundTrips ? line.width_s / 2 : 0);
-  // Both at the newest message.
+  // Moves both to the time of the newest message.
   line.offset_s += line.drift * (strip.newest_s - line.time_s);
   line.time_s = strip.newest_s;
   constexpr int kEnough = 50;

@@ -29,7 +29,7 @@ class Transport {
   // end is away: nothing of it is then sent.
   virtual bool Send(std::span<const std::uint8_t> frame) = 0;
 
-  // As far as this end can know.
+  // True when connected, as far as this end can know.
   virtual bool is_connected() const = 0;
   virtual bool has_datagrams() const = 0;
 };
