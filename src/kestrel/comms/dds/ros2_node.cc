@@ -143,7 +143,7 @@ const dds_topic_descriptor_t* KnownType(std::string_view type) {
   throw InputError(fmt::format("the type {} is not spoken over DDS", type));
 }
 
-// "rt/tf" for "/tf" and "tf".
+// Returns "rt/tf" for "/tf" and "tf".
 std::string DdsTopicName(std::string_view topic) {
   return fmt::format("{}{}", kTopicPrefix, topic.substr(topic.starts_with('/')));
 }

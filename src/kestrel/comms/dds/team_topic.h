@@ -17,7 +17,6 @@ class TeamTopic {
  public:
   // 'team': name of the team. 'sender': unique. Throws InputError when there is no such domain (0
   // to 232), no network, or DDS is not part of this build.
-  // no network, or DDS is not part of this build.
   TeamTopic(int domain, const std::string& team, const std::string& sender);
   TeamTopic(const TeamTopic&) = delete;
   TeamTopic& operator=(const TeamTopic&) = delete;
