@@ -352,7 +352,7 @@ Drawing StarInRing(const Vector2d& center, double radius, double yaw, Random* ra
   return ink.Add(pen.Ring(random->Uniform(0.2, 0.35)));
 }
 
-// Hands at a right angle and twelve marks.
+// A clock: hands at a right angle and twelve marks.
 Drawing Clock(const Vector2d& center, double radius, double yaw, Random* random) {
   const Pen pen(center, radius, yaw);
   Drawing ink;
