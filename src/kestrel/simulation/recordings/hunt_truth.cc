@@ -48,7 +48,7 @@ double VisiblePart(const HuntObject& object, const SimulatedFlight& flight, doub
   return static_cast<double>(inside) / all;
 }
 
-// One row, or nothing when the object is not in view.
+// Returns one row, or nothing when the object is not in view.
 std::string ObjectRow(const HuntObject& object, const SimulatedFlight& flight, double time_s) {
   const FlightCamera& camera = flight.camera();
   const CameraModel& model = camera.lens().camera();
