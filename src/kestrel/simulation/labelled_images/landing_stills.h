@@ -84,9 +84,9 @@ struct LandingStill {
   Eigen::Vector3d up_in_camera;        // unit vector away from the ground
   double visible_fraction;             // of ring and cross, see VisibleFraction
   bool has_shadow = false;     // of the UAV, or the edge of a larger one, on or near the ring
-  bool has_highlight = false;  // largest and smallest width of the image of the whole
-  double ring_major_px;        // outer ring, ignoring the border of the image
-  double ring_minor_px;        // whole, as if the image had no border
+  bool has_highlight = false;  // a mirror image of the sun on or near the ring
+  double ring_major_px;        // largest and smallest width of the outer ring's image,
+  double ring_minor_px;        // as if the image had no border
 };
 
 // One rendered image without the landing pattern.
