@@ -36,7 +36,7 @@ std::optional<TargetReport> TargetReporter::Report(Time now, Duration until_use,
     deck = ContactDetector::Deck{report.position_in_world, report.velocity_in_world};
     height_m_ = report.world_from_body.translation.z() - report.position_in_world.z();
   }
-  // Where a UAV is only held this low in the air, the report is still true: the deck is straight
+  // If a UAV is only held this low in the air, the report is still true: the deck is straight
   // below.
   if (!may_stand_) contact_.Reset();
   if (may_stand_ && contact_.Update(now, report.world_from_body.translation, body_velocity, deck)) {
