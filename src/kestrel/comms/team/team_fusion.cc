@@ -97,7 +97,7 @@ TeamFusion::Group TeamFusion::TakeGroup(std::vector<Place>* waiting) {
       return true;
     });
     if (next + 1 < group.size()) continue;
-    // Of the doubtful ones only the most certain is taken: others may be placed with more certainty
+    // Only the most certain of the doubtful ones is taken: others may be placed with more certainty
     // by it.
     const auto surest =
         std::max_element(waiting->begin(), waiting->end(),

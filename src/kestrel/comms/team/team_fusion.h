@@ -26,8 +26,8 @@ namespace kestrel {
 // added. The result is a function of the maps alone: all that hold the same maps get the same
 // result, to the last bit.
 //
-// What has not changed since the last call is not computed again: alignments are kept by pair, the
-// fused maps in a binary tree, in which only the branch of a changed map is redone.
+// Unchanged parts are not computed again: alignments are kept by pair, the fused maps in a binary
+// tree, in which only the branch of a changed map is redone.
 class TeamFusion {
  public:
   TeamFusion(const TeamOptions& team, const ObjectMapOptions& options);
