@@ -171,7 +171,7 @@ TEST(ConnectionTest, DropsWhatTheLineDoesNotTake) {
   text.text.fill('x');
   for (int i = 0; i < 1'000'000 && client.counters().unsent < 1000; ++i) client.Send(text);
   EXPECT_GE(client.counters().unsent, 1000u);
-  // What is accepted later are complete packets again.
+  // Packets that are accepted later are complete again.
   int heard = 0;
   for (int i = 0; i < 100'000 && client.counters().unsent < 2000; ++i) {
     server.Receive(milliseconds(0), [&](const mavlink::Packet&, Time) { ++heard; });

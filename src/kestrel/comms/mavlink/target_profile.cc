@@ -17,7 +17,7 @@ namespace {
 
 using Quaternion = std::array<float, 4>;  // w, x, y, z
 
-// Of the two quaternions of one rotation, the one with w >= 0 is sent.
+// Returns the one of the two quaternions of a rotation that has w >= 0.
 Quaternion ToWire(const Eigen::Quaterniond& rotation) {
   const double sign = rotation.w() < 0 ? -1 : 1;
   return {static_cast<float>(sign * rotation.w()), static_cast<float>(sign * rotation.x()),

@@ -20,8 +20,8 @@ class TimestampFile {
   TimestampFile(const TimestampFile&) = delete;
   TimestampFile& operator=(const TimestampFile&) = delete;
 
-  // Timestamp of the previous run; 0 where there was none. It is ahead of the stored one by as much
-  // as may have been used after the last write.
+  // Timestamp of the previous run; 0 where there was none. It is ahead of the one in the file by as
+  // much as may have been used after the last write.
   std::uint64_t stored() const { return stored_; }
 
   // Called by any thread; does not wait.
