@@ -38,7 +38,7 @@ struct DiscReport {
   std::vector<bool> moves;
   std::vector<double> velocity_errors_mps;
 };
-// By error of the clock (ms) and speed (m/s).
+// Reports by error of the clock (ms) and speed (m/s).
 using Reports = std::map<std::pair<int, double>, std::vector<DiscReport>>;
 
 // A flight to and fro over an area of 16 m x 10 m at a height of 6 m, like that of `kestrel

@@ -19,7 +19,8 @@ namespace kestrel {
 struct FlyOptions {
   FlightOptions flight;
   GstreamerCameraOptions camera;
-  // Controls the exposure of the camera by the brightness of its images. For cameras that cannot.
+  // Controls the exposure by the brightness of the images, for cameras that cannot do it
+  // themselves.
   bool control_exposure = false;
   ExposureOptions exposure;
   ConnectionOptions link;

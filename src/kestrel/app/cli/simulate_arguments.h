@@ -27,7 +27,8 @@ struct SimulateArguments {
 
   void AddTo(CLI::App* command);
 
-  // Returns the calibration of the file; the default camera completes its mount.
+  // Returns the calibration of the file, with the default's mount if it has none; without a file
+  // the default.
   CameraCalibration FindCamera(const CameraCalibration& by_default) const;
 };
 

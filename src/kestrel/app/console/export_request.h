@@ -16,13 +16,13 @@ namespace kestrel {
 struct ExportRequest {
   enum class Kind {
     kFrame,         // /export/frame-12.png: the image as it is
-    kOverlays,      // /export/overlays-12.png: the image with the findings drawn on it
+    kOverlays,      // /export/overlays-12.png: the image with the overlay drawn on it
     kDetections,    // /export/detections-1.csv: all detections of the first or the second run
     kPicture,       // /export/picture-12.jpg: the image in colour, for the page of colours
     kLabels,        // /export/labels-12.bin: labels and marks of its pixels
     kCalibration,   // /export/calibration-3.yaml: result of the third calibration
     kClip,          // /export/clip-12-80.mp4: a video of the frames 12 to 80 as they are
-    kOverlaysClip,  // /export/overlays-12-80.mp4: the same with the findings drawn on them
+    kOverlaysClip,  // /export/overlays-12-80.mp4: the same with the overlay drawn on them
   };
   Kind kind = Kind::kFrame;
   std::size_t number = 0;  // frame from 0, run 1 or 2, or calibration from 1

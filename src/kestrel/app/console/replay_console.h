@@ -30,7 +30,7 @@ struct ReplaySubject {
   bool has_truth = false;     // the errors of the detections are known
 };
 
-// A recording on the page: a timeline and any of its frames with the findings of one run of the
+// A recording on the page: a timeline and any of its frames with the results of one run of the
 // detector, or of two runs with different options.
 class ReplayConsole {
  public:

@@ -146,7 +146,7 @@ TEST_F(ReplayConsoleTest, DetectsAgainWithOtherOptions) {
   ASSERT_TRUE(second.is_object());
   EXPECT_EQ(second["marks"], "ffffffffff----------");
   EXPECT_EQ(second["settings"][0], "landing.hint_age_s=1");
-  // The findings are drawn beside those of the first run, which has none here. A picture from
+  // The shapes are drawn beside those of the first run, which has none here. A picture from
   // before the second run may still be on its way.
   nlohmann::json shapes;
   while (shapes.empty()) {

@@ -19,7 +19,7 @@ struct ObjectComparison {
   std::string true_shape;
   std::optional<int> true_digit;
   bool is_wanted = false;  // wholly in view with at least 50 px: it must be found
-  // Of the detection; the class is empty where there is none.
+  // Values of the detection; the class is empty where there is none.
   std::string detected_class;
   std::string detected_shape;
   double class_probability = 0;

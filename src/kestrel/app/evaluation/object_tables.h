@@ -8,8 +8,8 @@
 
 namespace kestrel {
 
-// By class and in total: share of the wanted objects that were found, precision of the detections,
-// share of right classes, errors.
+// Returns by class and in total: share of the wanted objects that were found, precision of the
+// detections, share of right classes, errors.
 ReportTable DetectionTable(std::span<const ObjectComparison> comparisons);
 
 // Rows: true classes. Columns: the classes that were reported for them, or nothing.

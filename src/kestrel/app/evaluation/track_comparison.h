@@ -28,7 +28,7 @@ struct PredictionErrors {
   Eigen::Vector3d position;
 };
 
-// Rows are left out when their time is outside of the known truth or their track is not confirmed.
+// Rows outside of the known truth and rows in the state "searching" are left out.
 std::vector<TrackErrors> CompareTrack(const std::vector<TruePattern>& patterns,
                                       const std::vector<TrackRow>& rows);
 std::vector<PredictionErrors> ComparePredictions(const std::vector<TruePattern>& patterns,

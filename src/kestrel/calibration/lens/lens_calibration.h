@@ -25,7 +25,7 @@ struct LensCalibration {
   std::vector<LensView> views;  // the views that were used, with the poses of 'fit'
   int outliers = 0;             // views that do not fit and were left out
   LensCoverage coverage;
-  // What the views do not determine well, in words.
+  // Quantities that the views do not determine well, in words.
   std::vector<std::string> warnings;
 };
 

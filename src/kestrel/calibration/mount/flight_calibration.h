@@ -59,7 +59,7 @@ struct FlightCalibration {
   std::vector<SightingResidual> residuals;  // for the sightings that were used
   int sightings = 0;                        // number used
   int outliers = 0;                         // number left out
-  // What the flight does not determine, in words.
+  // Quantities that the flight does not determine, in words.
   std::vector<std::string> warnings;
 };
 

@@ -9,7 +9,7 @@ namespace kestrel {
 
 // The content of a rosbag2 folder.
 struct BagFolder {
-  std::vector<std::string> files;        // in order of time
+  std::vector<std::string> files;        // in the order of recording
   bool has_compressed_messages = false;  // each compressed by zstd
 };
 

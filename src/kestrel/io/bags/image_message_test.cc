@@ -58,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Coloured{"bayer_bggr8", 1, {200, 60, 60, 20}, 0},
                       Coloured{"bayer_gbrg8", 1, {60, 200, 20, 60}, 0},
                       Coloured{"bayer_grbg8", 1, {60, 20, 200, 60}, 0},
-                      // By BT.601: y = 71, u = 195, v = 100.
+                      // In BT.601: y = 71, u = 195, v = 100.
                       Coloured{"yuv422", 2, {195, 71, 100, 71}, 4},
                       Coloured{"yuv422_yuy2", 2, {71, 195, 71, 100}, 4}),
     [](const auto& coloured) { return coloured.param.encoding; });
