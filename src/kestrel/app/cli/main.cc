@@ -25,16 +25,13 @@ constexpr int kInputAtFault = 1;
 constexpr int kWrongUsage = 2;
 constexpr int kFlightFailed = 3;
 
-// Errors are reported once and in our words; the decoders' own messages would bury them.
-void SilenceDecoders() {
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", /*replace=*/0);
-}
+// Errors are reported once and in our words; those of OpenCV would bury them.
+void SilenceOpenCv() { cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  SilenceDecoders();
+  SilenceOpenCv();
   CLI::App app("Kestrel gives UAVs eyes for landing on moving targets.", "kestrel");
   app.set_version_flag("--version", "kestrel " KESTREL_VERSION);
   app.require_subcommand(1);

@@ -7,8 +7,8 @@ namespace kestrel {
 
 enum class FileKind { kImage, kVideo, kOther };
 
-// Returns the kind of a file by the extension of its name, in upper or lower case. The content does
-// not tell it: FFmpeg opens even a text as a video.
+// Returns the kind of a file by the extension of its name, in upper or lower case. Containers of
+// videos have no common mark in their content.
 FileKind FileKindOf(const std::filesystem::path& path);
 
 }  // namespace kestrel
