@@ -1,5 +1,5 @@
-# `cmake --install` puts the command, the rooms as static libraries and their headers in place, and
-# the package that `find_package(kestrel COMPONENTS ...)` finds. A component is what a user wants, and
+# `cmake --install` puts the command, the rooms as static libraries, the public headers and the
+# package that `find_package(kestrel COMPONENTS ...)` finds. A component is what a user wants, and
 # asks only for the libraries that it needs: cmake/kestrelConfig.cmake.in.
 include(CMakePackageConfigHelpers)
 
@@ -28,13 +28,13 @@ foreach(floor IN LISTS floors)
       set(component ${component_of_${room}})
     endif()
     install(TARGETS kestrel_${room} EXPORT kestrel_${component})
-    install(
-      DIRECTORY src/kestrel/${name}/${room}
-      DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kestrel/${name}
-      FILES_MATCHING
-      PATTERN "*.h"
-      PATTERN "test_*.h" EXCLUDE)
   endforeach()
+endforeach()
+include(PublicHeaders)
+kestrel_included_headers(headers ${KESTREL_PUBLIC_HEADERS})
+foreach(header IN LISTS headers)
+  cmake_path(GET header PARENT_PATH folder)
+  install(FILES src/kestrel/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kestrel/${folder})
 endforeach()
 foreach(component vision calibration io flight simulation console)
   install(EXPORT kestrel_${component} NAMESPACE kestrel:: FILE kestrel_${component}.cmake
