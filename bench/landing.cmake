@@ -43,3 +43,8 @@ target_link_libraries(train_print_score PRIVATE kestrel::codec kestrel::landing 
                                                 opencv_imgproc)
 target_compile_definitions(train_print_score
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
+
+add_executable(landing_cost landing_cost.cc landing_frames.cc)
+target_link_libraries(landing_cost PRIVATE kestrel::landing kestrel::recording
+                                           kestrel::labelled_images CLI11::CLI11 fmt::fmt)
+target_compile_definitions(landing_cost PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
