@@ -130,8 +130,8 @@ class FlightConsole::Page : public SinkWriter {
 };
 
 FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& title,
-                             FlightView view, FlightExamination examination, ChannelFeed* channels,
-                             std::optional<FlightColors> colors)
+                             const FlightView& view, FlightExamination examination,
+                             ChannelFeed* channels, std::optional<FlightColors> colors)
     : feed_(DescriptionOf(title, view, colors.has_value())),
       arrivals_(kArrivals),
       server_(options, &feed_, WebAssets(), channels),

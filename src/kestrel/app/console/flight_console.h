@@ -49,7 +49,7 @@ class FlightConsole : public ObservationSink {
   // Starts the server. 'title': title of the page. 'channels' as for WebServer. 'colors': for a
   // hunt only; the page then teaches its model's colours. Throws InputError as WebServer and
   // ColorPage do.
-  FlightConsole(const ConsoleOptions& options, const std::string& title, FlightView view,
+  FlightConsole(const ConsoleOptions& options, const std::string& title, const FlightView& view,
                 FlightExamination examination, ChannelFeed* channels = nullptr,
                 std::optional<FlightColors> colors = std::nullopt);
   ~FlightConsole() override { Finish(); }
