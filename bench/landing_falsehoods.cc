@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "for_each_index.h"
 #include "landing_score.h"
 
 namespace kestrel {

@@ -2,15 +2,15 @@
 #include "landing_score.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <future>
 #include <mutex>
 #include <numbers>
 #include <numeric>
 
 #include <Eigen/Cholesky>
 #include <fmt/format.h>
+
+#include "for_each_index.h"
 
 namespace kestrel {
 namespace {
@@ -110,17 +110,6 @@ LandingHint AttitudeHint(const LandingFrame& frame) {
   LandingHint hint;
   hint.up_in_camera = frame.up_in_camera;
   return hint;
-}
-
-void ForEachIndex(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next = 0;
-  std::vector<std::future<void>> workers;
-  for (int i = 0; i < threads; ++i) {
-    workers.push_back(std::async(std::launch::async, [&] {
-      for (std::size_t index = next++; index < count; index = next++) work(index);
-    }));
-  }
-  for (std::future<void>& worker : workers) worker.get();
 }
 
 std::vector<LandingScore> ScoreFrames(

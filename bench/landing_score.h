@@ -49,9 +49,6 @@ using HintOf = LandingHint (*)(const LandingFrame& frame);
 LandingHint NoHint(const LandingFrame& frame);
 LandingHint AttitudeHint(const LandingFrame& frame);
 
-// Calls 'work' with 0 ... count - 1, on 'threads' threads.
-void ForEachIndex(std::size_t count, int threads, const std::function<void(std::size_t)>& work);
-
 // Scores the frames 0 ... count - 1 that 'make_frame' makes, on 'threads' threads with one
 // workspace each. 'sees' (if any) is called for each frame, by one thread at a time. The results
 // are in order.

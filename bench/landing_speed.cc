@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
 
+#include "for_each_index.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/camera/paper_camera.h"
 #include "kestrel/vision/landing/landing_pattern_detector.h"

@@ -14,6 +14,7 @@
 #include <fmt/ranges.h>
 #include <opencv2/core.hpp>
 
+#include "for_each_index.h"
 #include "kestrel/calibration/lens/lens_calibration.h"
 #include "kestrel/calibration/lens/lens_difference.h"
 #include "kestrel/core/base/error.h"

@@ -15,6 +15,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "for_each_index.h"
 #include "kestrel/app/evaluation/object_truth.h"
 #include "kestrel/app/evaluation/report_table.h"
 #include "kestrel/app/evaluation/statistics.h"
@@ -24,7 +25,6 @@
 #include "kestrel/simulation/recordings/scenarios.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
 #include "report_main.h"
-#include "run_parallel.h"
 
 namespace kestrel {
 namespace {
@@ -176,7 +176,7 @@ ReportTable SaidTable(const Reports& reports) {
 void Run(int hunts, std::uint64_t first_seed) {
   Reports reports;
   std::mutex mutex;
-  RunParallel(hunts, [&](int i) {
+  ForEachIndex(hunts, [&](std::size_t i) {
     const Reports more = Hunt(kSpeeds_mps[i % kSpeeds_mps.size()], first_seed + i);
     const std::lock_guard lock(mutex);
     for (const auto& [key, discs] : more) {

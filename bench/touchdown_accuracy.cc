@@ -12,12 +12,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "for_each_index.h"
 #include "kestrel/app/evaluation/statistics.h"
 #include "kestrel/simulation/recordings/landing_simulation.h"
 #include "kestrel/simulation/recordings/scenarios.h"
 #include "kestrel/simulation/recordings/touchdown_simulation.h"
 #include "report_main.h"
-#include "run_parallel.h"
 
 namespace kestrel {
 namespace {
@@ -39,7 +39,7 @@ std::vector<TouchdownResult> FlyAll(const TouchdownSimulationOptions& options,
                                     const Arguments& arguments) {
   std::vector<TouchdownResult> results(arguments.flights);
   std::mutex mutex;
-  RunParallel(arguments.flights, [&](int i) {
+  ForEachIndex(arguments.flights, [&](std::size_t i) {
     results[i] = Fly(options, arguments.first_seed + i);
     const std::lock_guard lock(mutex);
     std::cout << TouchdownCsvRow(arguments.first_seed + i, results[i]) << std::flush;

@@ -21,6 +21,7 @@
 #include <fmt/os.h>
 #include <opencv2/core.hpp>
 
+#include "for_each_index.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/codec/image_codec.h"
 #include "kestrel/io/recording/image_file.h"

@@ -102,7 +102,7 @@ class Flight {
     sinks_.Take(SessionEvent{Now(), level, text});
   }
 
-  // On the terminal alone.
+  // Prints a line on the terminal; no other sink gets it.
   void Log(const std::string& text) { log_->Take(SessionEvent{Now(), EventLevel::kInfo, text}); }
 
   ObjectModel ReadModel() const {

@@ -50,7 +50,7 @@ class TilePyramid {
 // is dark when it is below the mean of the box of 3 x 3 tiles around its own tile, and bright when
 // it is nearer to the brightest pixel of the box than to its mean. Where the box has too little
 // contrast, a box four times as large decides, so that the inside of a broad dark stroke is dark.
-// Where that has too little contrast too, a pixel is undecided.
+// A pixel is undecided when that has too little contrast as well.
 class LocalThreshold {
  public:
   // Definition of dark: as above, or only within a quarter of the contrast above the darkest pixel

@@ -45,7 +45,7 @@ LiveSession::LiveSession(LiveSessionParts parts, LiveSessionOptions options)
       recording_([this](const std::filesystem::path& folder, bool replace) {
         return OpenRecorder(folder, replace);
       }) {
-  // Where no poses come, no frame waits for one.
+  // A frame waits for a pose only if the source or an autopilot sends poses.
   if (parts_.autopilot.empty() && !parts_.has_poses) options_.flight.events.pose_wait_s = 0;
   if (!parts_.record.empty()) recording_.Start(parts_.record, parts_.replace);
   OpenVision();
@@ -54,7 +54,7 @@ LiveSession::LiveSession(LiveSessionParts parts, LiveSessionOptions options)
                    [this](const std::string& text) { Say(text); });
 }
 
-// What is recorded may still say something to the sink.
+// The recorder may still give events to the sink, which outlives the session.
 LiveSession::~LiveSession() { recording_.Close(); }
 
 FlightEnd LiveSession::Run(const std::function<bool()>& is_stopped) {

@@ -39,7 +39,7 @@ struct LiveSessionOptions {
   std::optional<ExposureOptions> exposure;
 };
 
-// What a session is made of. Pointers outlive it.
+// Parts of a session. The objects that pointers name must outlive it.
 struct LiveSessionParts {
   LiveSource* source = nullptr;
   CameraCalibration calibration;
@@ -58,7 +58,8 @@ struct LiveSessionParts {
   std::string record;  // folder of a recording that begins at once; empty: none
   bool replace = false;
 
-  // Of a simulation: what it wants to know of the autopilot's poses, and the truth of a frame.
+  // Set by a simulation: receive the autopilot's estimated and true poses; the true pattern of a
+  // frame.
   std::function<void(const PoseSample&)> pose;
   std::function<void(const PoseSample&)> true_pose;
   std::function<std::optional<TruePattern>(const Frame&)> truth;

@@ -12,7 +12,7 @@ inline constexpr double kUnflatShare = 0.004;
 // Evidence of one view of a print about the camera's calibration.
 struct CalibrationEvidence {
   // Natural logarithm of (true focal length / calibrated focal length), and its standard deviation.
-  // Where the view says nothing, the deviation is that of the prior on any calibration.
+  // The deviations are those of the prior on any calibration when the view says nothing.
   double log_focal = 0;
   double log_focal_sigma = 0.25;
   Eigen::Vector2d principal_px = Eigen::Vector2d::Zero();  // its error in the calibration

@@ -31,7 +31,7 @@ bool AreMirrorPoses(const PrintFinding& a, const PrintFinding& b) {
          NormalOf(a).dot(NormalOf(b)) < kOtherNormal;
 }
 
-// Of two mirror poses, the one with the smaller residuals is better: both show the same parts of
+// The better one of two mirror poses has the smaller residuals: both show the same parts of
 // the print in place, but not equally near to their place.
 bool IsBetterMirror(const PrintFinding& a, const PrintFinding& b) {
   const PatternLocation& one = a.location;

@@ -131,8 +131,8 @@ TEST_F(DetectionChoiceTest, TheBoundsOfTheQualityAreReached) {
   EXPECT_FALSE(none.Add(FindingAt({0, 0}, 50)));
 }
 
-// Of the two poses of one ring, the one with the smaller residuals is reported, and the other one
-// as its mirror. The covariance reaches the other one.
+// The pose with the smaller residuals is reported, and the other pose of the same ring as its
+// mirror. The covariance reaches the other one.
 TEST_F(DetectionChoiceTest, TheOtherPoseOfTheRingIsTold) {
   PrintFinding right = FindingAt({100, 100}, 3);
   PrintFinding mirror = FindingAt({100.5, 100}, 3.5);

@@ -118,7 +118,7 @@ TEST_F(LandingHintTest, AWrongHintHidesNothing) {
       ASSERT_TRUE(report.detection) << told.what << " at " << distance << " m: " << report.reason;
       EXPECT_LT((report.detection->center_px - center_px).norm(), 0.2)
           << told.what << " at " << distance << " m";
-      // Where 'up' is wrong, the reported pose may be the mirror pose that agrees better with it.
+      // A wrong 'up' may choose the mirror pose, which agrees better with it.
       EXPECT_LT((report.detection->camera_from_pattern.translation - at).norm(), 0.1 * distance)
           << told.what << " at " << distance << " m";
     }

@@ -160,8 +160,8 @@ std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCross(const 
   const auto print = [&](const Cross& cross, CrossMethod method) {
     return Hypothesis{PatternPose(ring, cross.arm_angle), method, contrast};
   };
-  // Where the lines of a large cross are broken, thinning is tried. On the rectified inside it is
-  // fast at any size.
+  // Thinning is tried when the lines of a large cross are broken. It is fast on the rectified
+  // inside, at any size.
   if (diameter_px > kLinesRingPx) {
     const auto inside = RectifyInside(image, view, pattern, kLinesSize, kMinInsideContrast);
     const auto cross =

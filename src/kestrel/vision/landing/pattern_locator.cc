@@ -500,7 +500,7 @@ void PatternLocator::Describe(const Linearized& linearized, const Solution& solu
   location->misfit_px = std::sqrt(solution.camera_mean_square);
 }
 
-// Where the calibration may be wrong, adds to the covariance the uncertainty of the pose under a
+// Adds, when the calibration may be wrong, to the covariance the uncertainty of the pose under a
 // free calibration and the distance by which that pose would move.
 void PatternLocator::DoubtCalibration(const Solution& held, const Solution& free,
                                       PatternLocation* location) {

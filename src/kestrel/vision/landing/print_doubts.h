@@ -8,8 +8,8 @@
 
 namespace kestrel {
 
-// How a print was examined: by its edges, whole (kByEdges) or cut off (kPart); or fitted as a whole
-// (kAsAWhole) because its strokes are no wider than the blur.
+// Kind of examination of a print: by its edges, whole (kByEdges) or cut off (kPart); or fitted as a
+// whole (kAsAWhole) because its strokes are no wider than the blur.
 enum class PrintKind { kByEdges, kPart, kAsAWhole };
 inline constexpr std::size_t kPrintKinds = 3;
 

@@ -95,7 +95,7 @@ struct Zones {
     int count = 0;
     double Rms() const { return std::sqrt(std::max(0.0, squares / std::max(1, count))); }
   };
-  // Of the inside without the worst quadrant, which dirt or a highlight may spoil.
+  // Returns the RMS of the inside without the worst quadrant, which dirt or a highlight may spoil.
   double InsideRms() const {
     const auto worst = std::max_element(
         quadrants.begin(), quadrants.end(),

@@ -155,7 +155,7 @@ void CompareGrays(const PrintLight& light, float limit, SmallPatternWorkspace* w
         hn::MulAdd(At(points.x, i), Of(light.slope_x),
                    hn::MulAdd(At(points.y, i), Of(light.slope_y), Of(light.white)));
     const Vector expected = hn::NegMulAdd(Of(light.contrast), At(points.dark, i), white);
-    // Where the image saturates and more is expected, it counts as showing what is expected.
+    // A saturated pixel of which more is expected counts as showing what is expected.
     const auto cut_off = hn::And(hn::Ge(gray, Of(light.saturated)), hn::Gt(expected, gray));
     const Vector seen = hn::IfThenElse(cut_off, expected, gray);
     const Vector residual = hn::Sub(seen, expected);

@@ -139,7 +139,7 @@ class ObjectDetector {
   DigitClassifier digits_;
   double focal_px_;
   int search_step_;
-  // By label: true when a class of this colour is a cuboid, which has a white digit.
+  // True for labels of colours that a class of cuboids has: these have a white digit.
   std::array<bool, 256> has_digit_{};
 };
 
