@@ -38,7 +38,7 @@ void WriteWhole(const fs::path& path, const std::string& bytes) {
   Require(error, path, "cannot be written");
 }
 
-constexpr char kImages[] = "mav0/cam0/data";
+constexpr char kImageFolder[] = "mav0/cam0/data";
 
 }  // namespace
 
@@ -55,7 +55,7 @@ void RequireFreeForRecording(const fs::path& output, bool replace) {
 }
 
 fs::path RecordedImagePath(Time time) {
-  return fs::path(kImages) / fmt::format("{}.png", ToNanoseconds(time));
+  return fs::path(kImageFolder) / fmt::format("{}.png", ToNanoseconds(time));
 }
 
 RecordingWriter::RecordingWriter(const fs::path& output, bool replace, const std::string& scene) {
@@ -74,7 +74,7 @@ RecordingWriter::RecordingWriter(const fs::path& output, bool replace, const std
     }
     WriteWhole(scene_file, scene);
   }
-  CreateFolders(part_ / kImages);
+  CreateFolders(part_ / kImageFolder);
 }
 
 bool RecordingWriter::HasImage(Time time) const {
