@@ -57,6 +57,19 @@ class McapWriter : public SinkWriter {
   std::atomic<bool> has_failed_{false};
 };
 
+class McapFileSink : public ObservationSink {
+ public:
+  McapFileSink(const std::string& path, bool replace, const CameraIntrinsics& camera,
+               const std::variant<LandingView, HuntView>& view)
+      : file_(path, replace, camera, view) {}
+
+  void Take(const Observation& observation) override { file_.writer().Write(observation); }
+  void Finish() override { file_.Close(); }
+
+ private:
+  ObservationFile file_;
+};
+
 }  // namespace
 
 std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
@@ -66,6 +79,12 @@ std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool rep
   return std::make_unique<AsynchronousSink>(
       AsynchronousSinkOptions{.thread_name = "mcap", .frames = kFrames, .patience = kFlushPeriod},
       std::make_unique<McapWriter>(path, replace, camera, view, std::move(tell)));
+}
+
+std::unique_ptr<ObservationSink> OpenMcapFile(const std::string& path, bool replace,
+                                              const CameraIntrinsics& camera,
+                                              const std::variant<LandingView, HuntView>& view) {
+  return std::make_unique<McapFileSink>(path, replace, camera, view);
 }
 
 }  // namespace kestrel

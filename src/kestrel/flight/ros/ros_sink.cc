@@ -14,14 +14,18 @@ namespace {
 constexpr std::size_t kFrames = 8;  // that wait for the network
 constexpr Duration kReportPeriod = std::chrono::seconds(1);
 
+void Publish(const Observation& observation, RosResults* results) {
+  std::visit([&](const auto& seen) { results->Publish(observation.frame, seen); },
+             observation.seen);
+}
+
 class RosWriter : public SinkWriter {
  public:
   RosWriter(std::unique_ptr<RosResults> results, std::function<void(const std::string&)> tell)
       : results_(std::move(results)), tell_(std::move(tell)), next_report_(Now()) {}
 
   void Write(const Observation& observation, std::size_t /*waiting*/) override {
-    std::visit([&](const auto& seen) { results_->Publish(observation.frame, seen); },
-               observation.seen);
+    Publish(observation, results_.get());
   }
   void Write(const FlightReport& report) override {
     const Time now = Now();
@@ -42,6 +46,20 @@ class RosWriter : public SinkWriter {
   Time next_report_;
 };
 
+class WaitingRosSink : public ObservationSink {
+ public:
+  explicit WaitingRosSink(std::unique_ptr<RosResults> results) : results_(std::move(results)) {
+    results_->WaitForSubscribers(std::chrono::seconds(1));
+  }
+
+  void Take(const Observation& observation) override { Publish(observation, results_.get()); }
+  void Take(const TeamReport& report) override { results_->Publish(report); }
+  void Finish() override { results_->Flush(); }
+
+ private:
+  std::unique_ptr<RosResults> results_;
+};
+
 }  // namespace
 
 std::unique_ptr<AsynchronousSink> MakeRosSink(std::unique_ptr<RosResults> results,
@@ -49,6 +67,10 @@ std::unique_ptr<AsynchronousSink> MakeRosSink(std::unique_ptr<RosResults> result
   return std::make_unique<AsynchronousSink>(
       AsynchronousSinkOptions{.thread_name = "ros", .frames = kFrames},
       std::make_unique<RosWriter>(std::move(results), std::move(tell)));
+}
+
+std::unique_ptr<ObservationSink> MakeWaitingRosSink(std::unique_ptr<RosResults> results) {
+  return std::make_unique<WaitingRosSink>(std::move(results));
 }
 
 }  // namespace kestrel

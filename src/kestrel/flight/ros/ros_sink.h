@@ -15,4 +15,9 @@ namespace kestrel {
 std::unique_ptr<AsynchronousSink> MakeRosSink(std::unique_ptr<RosResults> results,
                                               std::function<void(const std::string&)> tell);
 
+// Returns a sink that publishes in the caller's thread and leaves nothing out; for sessions over
+// recordings. Waits up to a second for subscribers, as the frames of a recording do not wait for
+// them.
+std::unique_ptr<ObservationSink> MakeWaitingRosSink(std::unique_ptr<RosResults> results);
+
 }  // namespace kestrel
