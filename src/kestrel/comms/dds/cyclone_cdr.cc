@@ -83,8 +83,7 @@ bool WriteCdr(dds_entity_t writer, const dds_topic_descriptor_t& type, std::stri
   if (bytes.size() < kEncapsulation || dds_get_entity_sertype(writer, &own_type) < 0) return false;
   std::string copy(bytes);
   const ddsrt_iovec_t part{copy.data(), copy.size()};
-  ddsi_serdata* const given =
-      ddsi_serdata_from_ser_iov(own_type, SDK_DATA, 1, &part, copy.size());
+  ddsi_serdata* const given = ddsi_serdata_from_ser_iov(own_type, SDK_DATA, 1, &part, copy.size());
   if (given == nullptr) return false;
   void* const sample = dds_alloc(type.m_size);
   const bool is_read = ddsi_serdata_to_sample(given, sample, nullptr, nullptr);

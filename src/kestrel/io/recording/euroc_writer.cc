@@ -18,9 +18,10 @@ namespace fs = std::filesystem;
 
 constexpr char kRoot[] = "mav0";
 
-constexpr std::array kEurocTables{
-    EurocTable::kImages,    EurocTable::kExposures,    EurocTable::kDroppedImages, EurocTable::kPoses,
-    EurocTable::kTruePoses, EurocTable::kTruePatterns, EurocTable::kPackets};
+constexpr std::array kEurocTables{EurocTable::kImages,        EurocTable::kExposures,
+                                  EurocTable::kDroppedImages, EurocTable::kPoses,
+                                  EurocTable::kTruePoses,     EurocTable::kTruePatterns,
+                                  EurocTable::kPackets};
 
 // The file's path in a recording and its first row.
 RecordedFiles::File FileOf(EurocTable table) {
@@ -60,7 +61,9 @@ fs::path WithFolders(const fs::path& folder, const std::vector<EurocTable>& tabl
   for (const EurocTable table : tables) {
     const bool is_images = table == EurocTable::kImages;
     const fs::path parent = PathOf(table).parent_path();
-    if (!error) fs::create_directories(folder / (is_images ? kRoot / fs::path(euroc::kImageFolder) : parent), error);
+    if (!error)
+      fs::create_directories(folder / (is_images ? kRoot / fs::path(euroc::kImageFolder) : parent),
+                             error);
   }
   if (!error) return folder;
   throw InputError(fmt::format("{}: cannot be written: {}", folder.string(), error.message()));
