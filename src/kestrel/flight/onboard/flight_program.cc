@@ -2,6 +2,7 @@
 #include "kestrel/flight/onboard/flight_program.h"
 
 #include <chrono>
+#include <exception>
 #include <thread>
 #include <utility>
 #include <variant>
@@ -42,15 +43,26 @@ FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
   threads.emplace_back([this] { Capture(); });
   threads.emplace_back([this] { WriteResults(); });
   if (parts_.connection != nullptr) threads.emplace_back([this] { Communicate(); });
+  std::exception_ptr error;
+  try {
+    Watch(is_stopped);
+  } catch (...) {
+    error = std::current_exception();
+    End(FlightEnd::kFailed);
+  }
+  events_.Close();
+  for (std::thread& thread : threads) thread.join();
+  parts_.vision->WriteResults();  // rows of the last frames
+  if (error) std::rethrow_exception(error);
+  return end_;
+}
+
+void FlightProgram::Watch(const std::function<bool()>& is_stopped) {
   while (!is_over_) {
     if (is_stopped()) End(FlightEnd::kStopped);
     if (parts_.sink != nullptr) parts_.sink->Take(ReportNow());
     std::this_thread::sleep_for(kPatience);
   }
-  events_.Close();
-  for (std::thread& thread : threads) thread.join();
-  parts_.vision->WriteResults();  // rows of the last frames
-  return end_;
 }
 
 // Only the first reason counts.

@@ -65,7 +65,8 @@ class FlightProgram {
                 const FlightParts& parts, std::function<void(const std::string&)> say);
 
   // Flies until the UAV has landed, the source ends or 'is_stopped', which is called ten times a
-  // second, returns true. Call it once only.
+  // second, returns true. Throws what 'is_stopped' throws, once the threads have ended. Call it
+  // once only.
   FlightEnd Run(const std::function<bool()>& is_stopped);
 
   // Returns the present state in one line. Called by any thread.
@@ -82,6 +83,7 @@ class FlightProgram {
   // The steps whose latency is measured.
   enum Step { kArrival, kVision, kDetection, kMessage, kSetPoint };
 
+  void Watch(const std::function<bool()>& is_stopped);
   void Capture();
   void See();
   void Communicate();

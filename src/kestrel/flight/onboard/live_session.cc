@@ -45,6 +45,9 @@ LiveSession::LiveSession(LiveSessionParts parts, LiveSessionOptions options)
       recording_([this](const std::filesystem::path& folder, bool replace) {
         return OpenRecorder(folder, replace);
       }) {
+  if (parts_.sink != nullptr) {
+    sink_.emplace(parts_.sink, [this](const std::string& error) { sink_error_ = error; });
+  }
   // A frame waits for a pose only if the source or an autopilot sends poses.
   if (parts_.autopilot.empty() && !parts_.has_poses) options_.flight.events.pose_wait_s = 0;
   if (!parts_.record.empty()) recording_.Start(parts_.record, parts_.replace);
@@ -64,8 +67,16 @@ FlightEnd LiveSession::Run(const std::function<bool()>& is_stopped) {
   return end;
 }
 
+std::string LiveSession::Summary() const {
+  std::string summary = program_->Summary();
+  if (!sink_error_.empty()) {
+    summary += fmt::format("the sink of the results has failed: {}\n", sink_error_);
+  }
+  return summary;
+}
+
 void LiveSession::Say(const std::string& text, EventLevel level) {
-  if (parts_.sink != nullptr) parts_.sink->Take(SessionEvent{Now(), level, text});
+  if (sink_) sink_->Take(SessionEvent{Now(), level, text});
 }
 
 void LiveSession::OpenVision() {
@@ -120,7 +131,7 @@ FlightParts LiveSession::ProgramParts() {
           .connection = connection_ ? &*connection_ : nullptr,
           .autopilot = autopilot_ ? &*autopilot_ : nullptr,
           .recording = &recording_,
-          .sink = parts_.sink,
+          .sink = sink_ ? &*sink_ : nullptr,
           .guides = parts_.guides,
           .source_has_poses = parts_.has_poses,
           .profile = parts_.profile,

@@ -19,7 +19,7 @@
 #include "kestrel/flight/onboard/hunt_vision.h"
 #include "kestrel/flight/onboard/recording_switch.h"
 #include "kestrel/flight/session/live_source.h"
-#include "kestrel/flight/session/observation_sink.h"
+#include "kestrel/flight/session/observation_sinks.h"
 #include "kestrel/io/recording/output_folder.h"
 #include "kestrel/io/recording/truth_rows.h"
 #include "kestrel/vision/objects/object_model.h"
@@ -98,7 +98,7 @@ class LiveSession {
   // One line of how things are now. By any thread.
   std::string State() const { return program_->State(); }
   // Latency of each step, what was dropped and what was sent; a few lines. After Run.
-  std::string Summary() const { return program_->Summary(); }
+  std::string Summary() const;
 
  private:
   void OpenVision();
@@ -112,6 +112,8 @@ class LiveSession {
 
   LiveSessionParts parts_;
   LiveSessionOptions options_;
+  std::optional<GuardedSink> sink_;
+  std::string sink_error_;  // what the sink has thrown; read after Run only
   RecordingSwitch recording_;
   std::optional<OutputFolder> output_;
   std::unique_ptr<ExposureActuator> actuator_;

@@ -64,9 +64,12 @@ class WaitingRosSink : public ObservationSink {
 
 std::unique_ptr<AsynchronousSink> MakeRosSink(std::unique_ptr<RosResults> results,
                                               std::function<void(const std::string&)> tell) {
+  AsynchronousSinkOptions options{.thread_name = "ros", .frames = kFrames, .tell = {}};
+  options.tell = [tell](const std::string& error) {
+    tell(fmt::format("ROS: {}: the flight goes on without it", error));
+  };
   return std::make_unique<AsynchronousSink>(
-      AsynchronousSinkOptions{.thread_name = "ros", .frames = kFrames},
-      std::make_unique<RosWriter>(std::move(results), std::move(tell)));
+      std::move(options), std::make_unique<RosWriter>(std::move(results), std::move(tell)));
 }
 
 std::unique_ptr<ObservationSink> MakeWaitingRosSink(std::unique_ptr<RosResults> results) {

@@ -11,7 +11,7 @@
 namespace kestrel {
 
 // Returns a sink that publishes on ROS topics. Its thread calls 'tell' with the number of frames
-// that are left out because the network is too slow.
+// that are left out because the network is too slow, or why nothing is published any more.
 std::unique_ptr<AsynchronousSink> MakeRosSink(std::unique_ptr<RosResults> results,
                                               std::function<void(const std::string&)> tell);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/flight/onboard/recorded_files.h"
+#include "kestrel/io/recording/recorded_files.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -52,13 +52,23 @@ void RecordedFiles::Add(std::size_t index, std::string_view rows) {
   if (added.size() + rows.size() <= kMost) added += rows;
 }
 
+std::size_t RecordedFiles::waiting_bytes() const {
+  const std::lock_guard lock(mutex_);
+  std::size_t bytes = 0;
+  for (const Growing& file : files_) bytes += file.added.size();
+  return bytes;
+}
+
 std::string RecordedFiles::Commit() {
+  bool has_rows = false;
   {
     const std::lock_guard lock(mutex_);
     for (Growing& file : files_) {
       if (file.committed.empty()) std::swap(file.committed, file.added);
+      has_rows = has_rows || !file.committed.empty();
     }
   }
+  if (!has_rows) return "";
   syncfs(folder_descriptor_);
   std::string failure;
   for (Growing& file : files_) {
@@ -82,7 +92,7 @@ std::string RecordedFiles::Write(Growing* file) {
 // Writes header and first rows under another name until they are on the disk: an empty file never
 // exists.
 int RecordedFiles::Begin(Growing* file) {
-  constexpr int kMode = 0644;
+  constexpr int kMode = 0666;  // less the user's mask
   const std::string draft = file->file.path.string() + ".part";
   file->descriptor = open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
   if (file->descriptor < 0) return errno;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/flight/onboard/recorded_files.h"
+#include "kestrel/io/recording/recorded_files.h"
 
 #include <csignal>
 #include <filesystem>

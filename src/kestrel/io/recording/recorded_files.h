@@ -32,8 +32,11 @@ class RecordedFiles {
   // Called by any thread.
   void Add(std::size_t index, std::string_view rows);
 
-  // Writes all added rows and waits for the disk. Returns an empty text or the reason why some rows
-  // could not be written; these are tried again. One thread at a time.
+  // Returns the number of bytes that wait for Commit. Called by any thread.
+  std::size_t waiting_bytes() const;
+
+  // Writes all added rows and waits for the disk, if there are any. Returns an empty text or the
+  // reason why some rows could not be written; these are tried again. One thread at a time.
   std::string Commit();
 
  private:
@@ -50,7 +53,7 @@ class RecordedFiles {
   static int Append(const std::string& text, Growing* file);
 
   int folder_descriptor_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::vector<Growing> files_;
 };
 
