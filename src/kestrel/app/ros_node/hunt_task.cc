@@ -34,7 +34,7 @@ NodeTask::Found HuntTask::PublishDetections(const Frame& frame) {
 
 void HuntTask::PublishRest(const Frame& frame) {
   results_.PublishMarkers(*observation_);
-  results_.PublishImage(frame.image, *observation_, &pipeline_.map());
+  results_.PublishImage(frame.image, *observation_, pipeline_.map().Confirmed());
 }
 
 void HuntTask::Update(const NodeOptions& options) {

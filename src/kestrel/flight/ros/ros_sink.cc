@@ -16,8 +16,11 @@ constexpr Duration kReportPeriod = std::chrono::seconds(1);
 
 class RosWriter : public SinkWriter {
  public:
-  RosWriter(std::unique_ptr<RosResults> results, std::function<void(const std::string&)> tell)
-      : results_(std::move(results)), tell_(std::move(tell)), next_report_(Now()) {}
+  RosWriter(std::shared_ptr<RosResults> results, std::function<void(const std::string&)> tell,
+            bool reports)
+      : results_(std::move(results)),
+        tell_(std::move(tell)),
+        next_report_(reports ? Now() : Time::max()) {}
 
   void Write(const Observation& observation, std::size_t /*waiting*/) override {
     std::visit([&](const auto& seen) { results_->Publish(observation.frame, seen); },
@@ -37,18 +40,19 @@ class RosWriter : public SinkWriter {
   }
 
  private:
-  std::unique_ptr<RosResults> results_;
+  std::shared_ptr<RosResults> results_;
   std::function<void(const std::string&)> tell_;
   Time next_report_;
 };
 
 }  // namespace
 
-std::unique_ptr<AsynchronousSink> MakeRosSink(std::unique_ptr<RosResults> results,
-                                              std::function<void(const std::string&)> tell) {
+std::unique_ptr<AsynchronousSink> MakeRosSink(std::shared_ptr<RosResults> results,
+                                              std::function<void(const std::string&)> tell,
+                                              bool reports) {
   return std::make_unique<AsynchronousSink>(
       AsynchronousSinkOptions{.thread_name = "ros", .frames = kFrames},
-      std::make_unique<RosWriter>(std::move(results), std::move(tell)));
+      std::make_unique<RosWriter>(std::move(results), std::move(tell), reports));
 }
 
 }  // namespace kestrel

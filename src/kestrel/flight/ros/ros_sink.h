@@ -11,8 +11,10 @@
 namespace kestrel {
 
 // Returns a sink that publishes on ROS topics. Its thread calls 'tell' with the number of frames
-// that are left out because the network is too slow.
-std::unique_ptr<AsynchronousSink> MakeRosSink(std::unique_ptr<RosResults> results,
-                                              std::function<void(const std::string&)> tell);
+// that are left out because the network is too slow. 'reports': it publishes the flight's state,
+// too, once a second; false: somebody else does.
+std::unique_ptr<AsynchronousSink> MakeRosSink(std::shared_ptr<RosResults> results,
+                                              std::function<void(const std::string&)> tell,
+                                              bool reports = true);
 
 }  // namespace kestrel
