@@ -48,6 +48,7 @@ struct FlightParts {
   ObservationSink* sink = nullptr;
   bool guides = false;                 // flies by set-points when the pilot gives the mode
   bool source_has_poses = false;       // the autopilot's poses are then not used
+  bool sees_repeated = false;          // processes images that equal the one before
   std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
   // Returns the true pattern at the time of a frame, in a simulation that knows it.
   std::function<std::optional<TruePattern>(const Frame&)> truth;
@@ -75,6 +76,12 @@ class FlightProgram {
   // the flight.
   std::string Summary() const;
 
+  // Calls 'action' between two frames: the vision waits for it. By any thread.
+  void BetweenFrames(const std::function<void()>& action);
+
+  // Returns the present state. Called by any thread.
+  FlightReport Report() const;
+
   // Takes a pose of the autopilot, on the local clock, from its listener. Called by the thread in
   // which Run lets the connection receive.
   void TakeAutopilotPose(const PoseSample& pose);
@@ -96,7 +103,6 @@ class FlightProgram {
   void TellTarget(Time now);
   void WatchFlight(Time now);
   void End(FlightEnd end);
-  FlightReport ReportNow() const;
   std::shared_ptr<FlightRecorder> Recorder() const;  // null: nothing is recorded
 
   FlightOptions options_;
@@ -117,6 +123,8 @@ class FlightProgram {
   LandingWatch landing_;
   Time heard_;  // the newest time at which the autopilot was heard
   std::optional<PoseSample> newest_pose_;
+
+  std::mutex vision_mutex_;  // held while the vision works
 
   // Used by the vision's thread only.
   RepeatedImage repeated_image_;

@@ -10,7 +10,6 @@
 
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/flight/onboard/landing_vision.h"
 
 namespace kestrel {
 namespace {
@@ -79,17 +78,30 @@ void LiveSession::Say(const std::string& text, EventLevel level) {
   if (sink_) sink_->Take(SessionEvent{Now(), level, text});
 }
 
+void LiveSession::Change(const LiveSessionOptions& options) {
+  BetweenFrames([&] {
+    if (hunt_ != nullptr) hunt_->ChangeOptions(options.hunt);
+    if (landing_ != nullptr) landing_->ChangeOptions(options.landing);
+    vision_->SetAltitude(options.altitude_m);
+  });
+}
+
 void LiveSession::OpenVision() {
   if (!parts_.output.empty()) output_.emplace(parts_.output, parts_.replace);
   if (parts_.objects) {
-    auto hunt =
-        std::make_unique<HuntVision>(parts_.calibration, *parts_.objects, options_.hunt, output());
+    const ObjectModel& model = *parts_.objects;
+    auto hunt = std::make_unique<HuntVision>(parts_.calibration, model,
+                                             parts_.grid ? *parts_.grid : ColorGrid(model.colors),
+                                             options_.hunt, output());
     hunt_ = hunt.get();
     vision_ = std::move(hunt);
-    return;
+  } else {
+    auto landing =
+        std::make_unique<LandingVision>(parts_.calibration, options_.landing, output(), Exposure());
+    landing_ = landing.get();
+    vision_ = std::move(landing);
   }
-  vision_ =
-      std::make_unique<LandingVision>(parts_.calibration, options_.landing, output(), Exposure());
+  vision_->SetAltitude(options_.altitude_m);
 }
 
 std::optional<ExposureDrive> LiveSession::Exposure() {
@@ -134,6 +146,7 @@ FlightParts LiveSession::ProgramParts() {
           .sink = sink_ ? &*sink_ : nullptr,
           .guides = parts_.guides,
           .source_has_poses = parts_.has_poses,
+          .sees_repeated = parts_.sees_repeated,
           .profile = parts_.profile,
           .truth = parts_.truth,
           .pattern_size_m = options_.landing.detector.pattern.outer_diameter_m};

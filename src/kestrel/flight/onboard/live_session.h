@@ -17,11 +17,13 @@
 #include "kestrel/flight/onboard/flight_program.h"
 #include "kestrel/flight/onboard/flight_recorder.h"
 #include "kestrel/flight/onboard/hunt_vision.h"
+#include "kestrel/flight/onboard/landing_vision.h"
 #include "kestrel/flight/onboard/recording_switch.h"
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/flight/session/observation_sinks.h"
 #include "kestrel/io/recording/output_folder.h"
 #include "kestrel/io/recording/truth_rows.h"
+#include "kestrel/vision/objects/color_grid.h"
 #include "kestrel/vision/objects/object_model.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
@@ -37,6 +39,8 @@ struct LiveSessionOptions {
   FlightRecorderOptions recorder;
   // Exposure that keeps the image right; nothing: the camera does that itself.
   std::optional<ExposureOptions> exposure;
+  // Height of the camera above the target or the ground, where there are no poses.
+  std::optional<double> altitude_m = {};
 };
 
 // Parts of a session. The objects that pointers name must outlive it.
@@ -47,7 +51,11 @@ struct LiveSessionParts {
   bool has_poses = false;              // the source has some: those of the autopilot are not used
   ExposureActuator* camera = nullptr;  // sets the exposure; null: it cannot be set
 
+  // Processes images that equal the one before. False: a camera that repeats its image is frozen.
+  bool sees_repeated = false;
+
   std::optional<ObjectModel> objects;  // hunts for these; nothing: looks for the landing pattern
+  std::optional<ColorGrid> grid;       // of the objects' colours; nothing: the model's own
   ObservationSink* sink = nullptr;     // takes all results and events; null: nobody
 
   std::string autopilot;               // URL as of Connection; empty: none
@@ -88,6 +96,12 @@ class LiveSession {
   // by this thread, says so. Then all tables and the recording are written. Once only.
   FlightEnd Run(const std::function<bool()>& is_stopped);
 
+  // Continues with the options of the pipeline and the altitude in 'options', see ChangeOptions of
+  // the pipelines. Track, map and all other options stay. By any thread.
+  void Change(const LiveSessionOptions& options);
+  // Calls 'action' between two frames: the vision waits for it. By any thread.
+  void BetweenFrames(const std::function<void()>& action) { program_->BetweenFrames(action); }
+
   // Starts and stops recordings. By any thread.
   RecordingSwitch& recording() { return recording_; }
   // The hunt; null: it looks for the landing pattern.
@@ -95,6 +109,8 @@ class LiveSession {
   // The folder of the tables; null: none.
   const OutputFolder* output() const { return output_ ? &*output_ : nullptr; }
 
+  // The state as the sinks get it. By any thread.
+  FlightReport Report() const { return program_->Report(); }
   // One line of how things are now. By any thread.
   std::string State() const { return program_->State(); }
   // Latency of each step, what was dropped and what was sent; a few lines. After Run.
@@ -118,6 +134,7 @@ class LiveSession {
   std::optional<OutputFolder> output_;
   std::unique_ptr<ExposureActuator> actuator_;
   std::unique_ptr<FlightVision> vision_;
+  LandingVision* landing_ = nullptr;  // one of these is the vision
   HuntVision* hunt_ = nullptr;
   std::optional<Connection> connection_;
   std::optional<Autopilot> autopilot_;

@@ -21,8 +21,11 @@ void Publish(const Observation& observation, RosResults* results) {
 
 class RosWriter : public SinkWriter {
  public:
-  RosWriter(std::unique_ptr<RosResults> results, std::function<void(const std::string&)> tell)
-      : results_(std::move(results)), tell_(std::move(tell)), next_report_(Now()) {}
+  RosWriter(std::shared_ptr<RosResults> results, std::function<void(const std::string&)> tell,
+            bool reports)
+      : results_(std::move(results)),
+        tell_(std::move(tell)),
+        next_report_(reports ? Now() : Time::max()) {}
 
   void Write(const Observation& observation, std::size_t /*waiting*/) override {
     Publish(observation, results_.get());
@@ -41,7 +44,7 @@ class RosWriter : public SinkWriter {
   }
 
  private:
-  std::unique_ptr<RosResults> results_;
+  std::shared_ptr<RosResults> results_;
   std::function<void(const std::string&)> tell_;
   Time next_report_;
 };
@@ -62,14 +65,16 @@ class WaitingRosSink : public ObservationSink {
 
 }  // namespace
 
-std::unique_ptr<AsynchronousSink> MakeRosSink(std::unique_ptr<RosResults> results,
-                                              std::function<void(const std::string&)> tell) {
+std::unique_ptr<AsynchronousSink> MakeRosSink(std::shared_ptr<RosResults> results,
+                                              std::function<void(const std::string&)> tell,
+                                              bool reports) {
   AsynchronousSinkOptions options{.thread_name = "ros", .frames = kFrames, .tell = {}};
   options.tell = [tell](const std::string& error) {
     tell(fmt::format("ROS: {}: the flight goes on without it", error));
   };
   return std::make_unique<AsynchronousSink>(
-      std::move(options), std::make_unique<RosWriter>(std::move(results), std::move(tell)));
+      std::move(options),
+      std::make_unique<RosWriter>(std::move(results), std::move(tell), reports));
 }
 
 std::unique_ptr<ObservationSink> MakeWaitingRosSink(std::unique_ptr<RosResults> results) {

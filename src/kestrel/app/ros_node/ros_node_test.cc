@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/ros_node/vision_node.h"
+#include "kestrel/app/ros_node/ros_node.h"
 
 #include <chrono>
+#include <fstream>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kestrel/app/ros_node/test_vision_node.h"
+#include "kestrel/app/ros_node/test_ros_node.h"
 #include "kestrel/core/base/error.h"
+#include "kestrel/io/recording/test_files.h"
 
 namespace kestrel {
 namespace {
@@ -17,8 +20,8 @@ using ::testing::Contains;
 using ::testing::Field;
 using ::testing::HasSubstr;
 
-TEST_F(VisionNodeTest, AnImageAndItsCameraInfoAreADetection) {
-  VisionNode node(Options("none"), &connection_);
+TEST_F(RosNodeTest, AnImageAndItsCameraInfoAreADetection) {
+  RosNode node(Options("none"), &connection_);
   TakeCameraInfo(&node);
   TakeImage(&node, kStamp);
   const auto message =
@@ -39,8 +42,8 @@ TEST_F(VisionNodeTest, AnImageAndItsCameraInfoAreADetection) {
   EXPECT_TRUE(connection_.warnings().empty());
 }
 
-TEST_F(VisionNodeTest, WithPosesAndTheMountThereIsATrackInTheWorld) {
-  VisionNode node(Options("topic"), &connection_);
+TEST_F(RosNodeTest, WithPosesAndTheMountThereIsATrackInTheWorld) {
+  RosNode node(Options("topic"), &connection_);
   TakeCameraInfo(&node);
   TakeMount(&node);
   for (int i = 0; i < 8; ++i) {
@@ -58,8 +61,8 @@ TEST_F(VisionNodeTest, WithPosesAndTheMountThereIsATrackInTheWorld) {
   EXPECT_NEAR(track.pose.position.z, 0, 0.1);
 }
 
-TEST_F(VisionNodeTest, WhatIsMissingIsSaid) {
-  VisionNode node(Options("topic"), &connection_);
+TEST_F(RosNodeTest, WhatIsMissingIsSaid) {
+  RosNode node(Options("topic"), &connection_);
   TakeImage(&node, kStamp);
   EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("no camera_info yet")));
   TakeCameraInfo(&node);
@@ -71,20 +74,20 @@ TEST_F(VisionNodeTest, WhatIsMissingIsSaid) {
   EXPECT_FALSE(connection_.HasPublished(ResultTopic::kDetections));
 }
 
-TEST_F(VisionNodeTest, BrokenMessagesAreLeftOutAndSaid) {
-  VisionNode node(Options("topic"), &connection_);
+TEST_F(RosNodeTest, BrokenMessagesAreLeftOutAndSaid) {
+  RosNode node(Options("topic"), &connection_);
   TakeImage(&node, Time());
   EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("have no stamps")));
   TakeImage(&node, kStamp, /*frame=*/"");
   EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("no frame_id")));
-  node.TakeImage("cut", "image");
+  node.Take({"image", std::string(ImageMessage::kType), WireFormat::kRos1, {}}, "cut");
   EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("image: ")));
-  node.TakePose("std_msgs/String", "", "poses");
+  node.Take({"poses", "std_msgs/String", WireFormat::kRos1, {}}, "");
   EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("is of type std_msgs/String")));
 }
 
-TEST_F(VisionNodeTest, AStoppedNodeTakesNoImages) {
-  VisionNode node(Options("none"), &connection_);
+TEST_F(RosNodeTest, AStoppedNodeTakesNoImages) {
+  RosNode node(Options("none"), &connection_);
   TakeCameraInfo(&node);
   node.Stop();
   TakeImage(&node, kStamp);
@@ -99,8 +102,8 @@ TEST_F(VisionNodeTest, AStoppedNodeTakesNoImages) {
 }
 
 // This happens when a bag is played again.
-TEST_F(VisionNodeTest, StampsThatJumpBackStartAnew) {
-  VisionNode node(Options("none"), &connection_);
+TEST_F(RosNodeTest, StampsThatJumpBackStartAnew) {
+  RosNode node(Options("none"), &connection_);
   TakeCameraInfo(&node);
   TakeImage(&node, kStamp + std::chrono::seconds(3));
   TakeImage(&node, kStamp);
@@ -108,8 +111,8 @@ TEST_F(VisionNodeTest, StampsThatJumpBackStartAnew) {
   connection_.At<Detection3DArrayMessage>(ResultTopic::kDetections, kStamp);
 }
 
-TEST_F(VisionNodeTest, ResetTakesNewOptionsAndRefusesWhatCannotChange) {
-  VisionNode node(Options("none"), &connection_);
+TEST_F(RosNodeTest, ResetTakesNewOptionsAndRefusesWhatCannotChange) {
+  RosNode node(Options("none"), &connection_);
   EXPECT_THROW(node.Reset(Options("tf")), InputError);
   TakeCameraInfo(&node);
   node.Reset(ReadNodeOptions({{"landing.detector.min_quality", "1"}}));
@@ -118,8 +121,8 @@ TEST_F(VisionNodeTest, ResetTakesNewOptionsAndRefusesWhatCannotChange) {
       connection_.Newest<Detection3DArrayMessage>(ResultTopic::kDetections).detections.empty());
 }
 
-TEST_F(VisionNodeTest, AnUpdateTakesWhatNeedsNoResetAndKeepsTheTrack) {
-  VisionNode node(Options("topic"), &connection_);
+TEST_F(RosNodeTest, AnUpdateTakesWhatNeedsNoResetAndKeepsTheTrack) {
+  RosNode node(Options("topic"), &connection_);
   EXPECT_THROW(node.Update(Options("tf")), InputError);
   TakeCameraInfo(&node);
   TakeMount(&node);
@@ -144,8 +147,8 @@ TEST_F(VisionNodeTest, AnUpdateTakesWhatNeedsNoResetAndKeepsTheTrack) {
   EXPECT_EQ(track.child_frame_id, "car");
 }
 
-TEST_F(VisionNodeTest, AStopForgetsNothing) {
-  VisionNode node(Options("none"), &connection_);
+TEST_F(RosNodeTest, AStopForgetsNothing) {
+  RosNode node(Options("none"), &connection_);
   TakeCameraInfo(&node);
   TakeImage(&node, kStamp);
   connection_.At<Detection3DArrayMessage>(ResultTopic::kDetections, kStamp);
@@ -161,13 +164,26 @@ TEST_F(VisionNodeTest, AStopForgetsNothing) {
                                                Field(&KeyValueMessage::value, "2"))));
 }
 
+TEST(NodeOptions, AFileOfOptionsIsReadAndItsErrorsAreSaid) {
+  const TestFolder files;
+  const std::string file = files / "options.yaml";
+  std::ofstream(file) << "hunt:\n  detector:\n    min_pixels: 7\nteam:\n  uav: falcon\n";
+  EXPECT_EQ(ReadNodeOptions({{"config", file}}).hunt.detector.min_pixels, 7);
+  std::ofstream(file) << "hunt:\n  detektor: 7\n";
+  EXPECT_THROW(ReadNodeOptions({{"config", file}}), InputError);
+  std::ofstream(file) << "hunt: [";
+  EXPECT_THROW(ReadNodeOptions({{"config", file}}), InputError);
+}
+
 TEST(NodeOptions, AreThoseOfTheConfigurationByTheSameNames) {
   const NodeOptions options = ReadNodeOptions({{"landing.detector.min_quality", "0.7"},
                                                {"fly.events.pose_wait_s", "0.1"},
                                                {"altitude_m", "5"}});
-  EXPECT_EQ(options.kestrel.landing.detector.min_quality, 0.7);
-  EXPECT_EQ(options.kestrel.fly.flight.events.pose_wait_s, 0.1);
+  EXPECT_EQ(options.landing.detector.min_quality, 0.7);
+  EXPECT_EQ(options.fly.events.pose_wait_s, 0.1);
   EXPECT_EQ(options.altitude_m, 5);
+  EXPECT_NO_THROW(ReadNodeOptions({{"fly.sim_seed", "5"}, {"console.port", "1"}}));
+  EXPECT_THROW(ReadNodeOptions({{"fly.events.pose_wait", "0.1"}}), InputError);
   EXPECT_THROW(ReadNodeOptions({{"landing.detector.min_qualty", "0.7"}}), InputError);
   EXPECT_THROW(ReadNodeOptions({{"poses", "gps"}}), InputError);
   EXPECT_THROW(ReadNodeOptions({{"task", "fly"}}), InputError);

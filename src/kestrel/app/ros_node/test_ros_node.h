@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kestrel/app/ros_node/vision_node.h"
+#include "kestrel/app/ros_node/ros_node.h"
 #include "kestrel/io/bags/camera_info.h"
 #include "kestrel/io/bags/serialization.h"
 #include "kestrel/vision/pipeline/test_pattern.h"
@@ -77,20 +77,25 @@ class FakeConnection : public NodeConnection {
   std::vector<std::string> warnings_;
 };
 
-class VisionNodeTest : public ::testing::Test {
+class RosNodeTest : public ::testing::Test {
  protected:
   static NodeOptions Options(const std::string& poses) {
     return ReadNodeOptions({{"poses", poses}});
   }
-  void TakeCameraInfo(VisionNode* node) const {
-    node->TakeCameraInfo(SerializeMessage(CameraInfoOf(camera_), WireFormat::kRos1), "camera_info");
+  template <class Message>
+  static void TakeMessage(RosNode* node, const Message& message, const std::string& topic) {
+    node->Take({topic, std::string(Message::kType), WireFormat::kRos1, {}},
+               SerializeMessage(message, WireFormat::kRos1));
   }
-  void TakeImage(VisionNode* node, Time stamp, const std::string& frame = "camera") const {
+  void TakeCameraInfo(RosNode* node) const {
+    TakeMessage(node, CameraInfoOf(camera_), "camera_info");
+  }
+  void TakeImage(RosNode* node, Time stamp, const std::string& frame = "camera") const {
     static const cv::Mat kImage =
         DrawPattern(CameraModel(camera_), LandingPattern(), camera_from_pattern_);
     TakePicture(node, kImage, stamp, frame);
   }
-  static void TakePicture(VisionNode* node, const cv::Mat& image, Time stamp,
+  static void TakePicture(RosNode* node, const cv::Mat& image, Time stamp,
                           const std::string& frame) {
     ImageMessage message;
     message.header = {0, stamp, frame};
@@ -99,20 +104,19 @@ class VisionNodeTest : public ::testing::Test {
     message.step = static_cast<std::uint32_t>(image.step);
     message.encoding = image.channels() == 1 ? "mono8" : "bgr8";
     message.data = {reinterpret_cast<const char*>(image.data), image.total() * image.elemSize()};
-    node->TakeImage(SerializeMessage(message, WireFormat::kRos1), "image");
+    TakeMessage(node, message, "image");
   }
-  static void TakePose(VisionNode* node, Time stamp, double height_m = 3) {
+  static void TakePose(RosNode* node, Time stamp, double height_m = 3) {
     const PoseStampedMessage pose{{0, stamp, "map"}, {{10, 20, height_m}, {}}};
-    node->TakePose(PoseStampedMessage::kType, SerializeMessage(pose, WireFormat::kRos1), "poses");
+    TakeMessage(node, pose, "poses");
   }
-  static void TakeMount(VisionNode* node) {
+  static void TakeMount(RosNode* node) {
     TfMessage mount;
     TransformStampedMessage& transform = mount.transforms.emplace_back();
     transform.header.frame_id = "base_link";
     transform.child_frame_id = "camera";
     transform.transform.orientation = {1, 0, 0, 0};
-    node->TakeTransforms(SerializeMessage(mount, WireFormat::kRos1), /*is_static=*/true,
-                         "/tf_static");
+    TakeMessage(node, mount, kStaticTfTopic);
   }
 
   static constexpr Time kStamp = TimeFromNanoseconds(5'000'000'000);
