@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/image/gray_sampling.h"
 #include "kestrel/vision/landing/gray_doubts.h"
 
@@ -278,9 +279,8 @@ InkComparison::Levels InkComparison::MeasureLevels(
     lit[s] = *Quantile(of_white, kLitWhite);
     contrast[s] = levels.white[s] - ink_level[s];
   }
-  std::array<float, kSectors> sorted = contrast;
-  std::nth_element(sorted.begin(), sorted.begin() + kSectors / 2, sorted.end());
-  const float median = sorted[kSectors / 2];
+  std::array<float, kSectors> contrasts = contrast;
+  const float median = MedianInPlace(contrasts);
   levels.has_contrast = median >= kLeastContrast;
   const float least = std::max(kLeastContrast, kLeastOfContrast * median);
   for (int s = 0; s < kSectors; ++s) {

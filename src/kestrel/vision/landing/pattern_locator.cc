@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/vision/landing/column_products.h"
 #include "kestrel/vision/landing/neighbor_correlation.h"
 
@@ -181,16 +182,13 @@ struct PatternLocator::Linearized {
 
   // Standard deviation of the offsets from the median of their magnitudes.
   double RobustScale() const {
-    Column magnitudes{};
+    Column magnitudes;
     std::size_t found = 0;
     for (std::size_t i = 0; i < edges.count; ++i) {
       magnitudes[found] = std::abs(offsets[i]);
       found += magnitudes[found] < kOutsideModelPx ? 1 : 0;
     }
-    const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(found / 2);
-    std::nth_element(magnitudes.begin(), middle,
-                     magnitudes.begin() + static_cast<std::ptrdiff_t>(found));
-    return 1.4826 * static_cast<double>(*middle);
+    return RobustSigmaInPlace(std::span(magnitudes).first(found));
   }
 
   // Returns the scale of the offsets for the next step, given 'scale_px' of this one.

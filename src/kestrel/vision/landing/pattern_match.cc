@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
 
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/image/gray_sampling.h"
 
 namespace kestrel {
@@ -63,8 +65,7 @@ struct Tally {
 template <typename Values>
 double Median(Values* values, std::size_t count) {
   if (count == 0) return 0;
-  std::nth_element(values->begin(), values->begin() + count / 2, values->begin() + count);
-  return (*values)[count / 2];
+  return MedianInPlace(std::span(*values).first(count));
 }
 
 // Returns the least gray value that no part of the print reaches beside the given white of the
@@ -187,8 +188,8 @@ double PatternMatcher::RingContrast(const cv::Mat& image, const PatternView& vie
   // Inside, arms and white alternate: a quarter of the directions must show white.
   const std::size_t upper = inside_count - inside_count / 4;
   if (inside_count >= kRingPlaces / 6) {
-    std::nth_element(inside.begin(), inside.begin() + upper, inside.begin() + inside_count);
-    if (inside[upper] < kLeastInside * contrast) return 0;
+    const float white = RankedInPlace(std::span(inside).first(inside_count), upper);
+    if (white < kLeastInside * contrast) return 0;
   }
   return contrast;
 }

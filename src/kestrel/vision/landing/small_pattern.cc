@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/vision/landing/column_products.h"
 #include "kestrel/vision/landing/neighbor_correlation.h"
 #include "kestrel/vision/landing/small_pattern_kernel.h"
@@ -59,8 +61,7 @@ double NoiseVariance(SmallPatternWorkspace* workspace) {
     const float before = points.seen[i - 1] - points.expected[i - 1];
     workspace->magnitudes[count++] = std::abs(here - before);
   }
-  if (count == 0) return 0;
-  const double difference = 1.4826 * Quantile(0.5, count, &workspace->magnitudes);
+  const double difference = RobustSigmaInPlace(std::span(workspace->magnitudes).first(count));
   return 0.5 * difference * difference;
 }
 
@@ -69,7 +70,7 @@ double RobustScale(SmallPatternWorkspace* workspace) {
   std::transform(workspace->points.residual.begin(),
                  workspace->points.residual.begin() + static_cast<std::ptrdiff_t>(workspace->count),
                  workspace->magnitudes.begin(), [](float residual) { return std::abs(residual); });
-  return 1.4826 * Quantile(0.5, workspace->count, &workspace->magnitudes);
+  return RobustSigmaInPlace(std::span(workspace->magnitudes).first(workspace->count));
 }
 
 // Residuals by zone of the print, outliers bounded, corrected for noise.
