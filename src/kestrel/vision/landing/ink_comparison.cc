@@ -317,7 +317,18 @@ double InkComparison::Doubt(const cv::Mat& image, const PatternView& view,
     return seen;
   }
   const Darkness darkness = MeasureDarkness(gray, levels);
+  DoubtCross(darkness, doubts);
+  DoubtBoard(darkness, doubts);
+  InkCorrelation correlation;
+  for (std::size_t i = 0; i < x_m_.size(); ++i) {
+    if (gray[i] < 0) continue;
+    correlation.Add(std::clamp(darkness.value[i], 0.0f, 1.0f), i < ink_end_);
+  }
+  all[PrintDoubt::kUnlike] = LogLacking(correlation.value());
+  return seen;
+}
 
+void InkComparison::DoubtCross(const Darkness& darkness, PrintDoubts* doubts) const {
   std::array<double, kArms> inkless, dark, inked, hub, spoke;
   for (int k = 0; k < kArms; ++k) {
     const double ink = darkness.Mean(arm_[k], kIsInk);
@@ -330,6 +341,17 @@ double InkComparison::Doubt(const cv::Mat& image, const PatternView& view,
       spoke[k] = std::max(spoke[k], darkness.Mean(line, kIsInkOnly));
     }
   }
+  PrintDoubts& all = *doubts;
+  const KnownValues arms(inkless), hubs(hub), spokes(spoke);
+  all[PrintDoubt::kInklessArm] = arms.empty() ? 1 : arms.FromTop(0);
+  all[PrintDoubt::kDarkQuadrants] = KnownValues(dark).Least();
+  all[PrintDoubt::kInkOnWhite] = KnownValues(inked).Least();
+  all[PrintDoubt::kDarkHub] = hubs.FromTop(1);
+  all[PrintDoubt::kOtherSpoke] = spokes.FromTop(0);
+  all[PrintDoubt::kOtherSpokes] = spokes.FromTop(1);
+}
+
+void InkComparison::DoubtBoard(const Darkness& darkness, PrintDoubts* doubts) const {
   std::array<double, kSectors> board;
   double corners = 0, sides = 0;
   int corner_count = 0, side_count = 0;
@@ -339,23 +361,9 @@ double InkComparison::Doubt(const cv::Mat& image, const PatternView& view,
     (s % 2 == 0 ? corners : sides) += board[s];
     ++(s % 2 == 0 ? corner_count : side_count);
   }
-  InkCorrelation correlation;
-  for (std::size_t i = 0; i < x_m_.size(); ++i) {
-    if (gray[i] < 0) continue;
-    correlation.Add(std::clamp(darkness.value[i], 0.0f, 1.0f), i < ink_end_);
-  }
-  const KnownValues arms(inkless), hubs(hub), spokes(spoke);
-  all[PrintDoubt::kInklessArm] = arms.empty() ? 1 : arms.FromTop(0);
-  all[PrintDoubt::kDarkQuadrants] = KnownValues(dark).Least();
-  all[PrintDoubt::kInkOnWhite] = KnownValues(inked).Least();
-  all[PrintDoubt::kDarkHub] = hubs.FromTop(1);
-  all[PrintDoubt::kOtherSpoke] = spokes.FromTop(0);
-  all[PrintDoubt::kOtherSpokes] = spokes.FromTop(1);
-  all[PrintDoubt::kDarkBoard] = KnownValues(board).Median();
-  all[PrintDoubt::kDarkCorners] =
+  (*doubts)[PrintDoubt::kDarkBoard] = KnownValues(board).Median();
+  (*doubts)[PrintDoubt::kDarkCorners] =
       corners / std::max(1, corner_count) - sides / std::max(1, side_count);
-  all[PrintDoubt::kUnlike] = LogLacking(correlation.value());
-  return seen;
 }
 
 }  // namespace kestrel
