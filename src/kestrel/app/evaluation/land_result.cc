@@ -53,7 +53,7 @@ LandingDetection DetectionOf(const DetectionRow::Pattern& pattern,
 TargetEstimate TargetOf(const TrackRow& row) {
   TargetEstimate target{row.time, {}};
   target.motion.mean.head<3>() = row.position_in_world;
-  target.motion.mean.segment<3>(3) = row.velocity_in_world;
+  target.motion.mean.segment<3>(TurnState::kVelocity) = row.velocity_in_world;
   target.motion.covariance.diagonal().head<3>().setConstant(std::pow(row.position_sigma_m, 2));
   target.motion.covariance.diagonal().segment<3>(3).setConstant(
       std::pow(row.velocity_sigma_mps, 2));

@@ -10,6 +10,8 @@
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 
+#include "kestrel/core/base/robust_statistics.h"
+
 namespace kestrel {
 namespace {
 
@@ -330,10 +332,7 @@ double RobustSigma(const std::vector<std::vector<double>>& residuals_px) {
   for (const std::vector<double>& view : residuals_px) {
     for (const double residual : view) magnitudes.push_back(std::abs(residual));
   }
-  if (magnitudes.empty()) return 0;
-  const auto middle = magnitudes.begin() + std::ssize(magnitudes) / 2;
-  std::nth_element(magnitudes.begin(), middle, magnitudes.end());
-  return 1.4826 * *middle;
+  return RobustSigmaInPlace(magnitudes);
 }
 
 }  // namespace kestrel
