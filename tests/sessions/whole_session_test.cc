@@ -63,9 +63,7 @@ class AllSinks {
   FlightConsole* console;
 
  private:
-  void Say(const std::string& text) {
-    sinks.Take(SessionEvent{Now(), EventLevel::kWarning, text});
-  }
+  void Say(const std::string& text) { sinks.Take(SessionEvent{Now(), EventLevel::kWarning, text}); }
 
   void AddRos(int domain) {
     const DdsOptions options;

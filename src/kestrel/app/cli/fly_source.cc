@@ -11,8 +11,7 @@ namespace kestrel {
 FlySource::FlySource(const SourceArguments& arguments, const KestrelOptions& options)
     : simulated(options.fly.sim_camera, static_cast<std::uint64_t>(options.fly.sim_seed)),
       dds(
-          options.dds,
-          [&arguments, dds = options.dds] { return arguments.dds.OpenNode(dds); },
+          options.dds, [&arguments, dds = options.dds] { return arguments.dds.OpenNode(dds); },
           [](const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); }),
       arguments_(arguments),
       camera_(options.fly.camera) {}

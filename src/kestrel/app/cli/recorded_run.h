@@ -21,16 +21,17 @@ void AddDdsSink(const SourceArguments& arguments, const OpenedSource& opened,
                 const KestrelOptions& options, bool has_world, const ObjectModel& model,
                 ObservationSinks* sinks);
 
-// Adds the sink of --mcap, if it is given. Throws InputError as OpenMcapFile does, and when the file
-// is a source.
+// Adds the sink of --mcap, if it is given. Throws InputError as OpenMcapFile does, and when the
+// file is a source.
 void AddMcapSink(const SourceArguments& arguments, const OpenedSource& opened,
                  const std::variant<LandingView, HuntView>& view, ObservationSinks* sinks);
 
-// Runs a session over a recording, to its end or Ctrl-C, and finishes the sinks. Shows its progress,
-// the first warning and the summary on stderr. When it ends with an InputError the summary is shown
-// all the same and the results are kept. 'on_frame': called before each frame with the number of
-// frames done.
-void RunToEnd(const OpenedSource& opened, Vision* vision, ObservationSinks* sinks,
-              const std::function<void(std::size_t done)>& on_frame = [](std::size_t) {});
+// Runs a session over a recording, to its end or Ctrl-C, and finishes the sinks. Shows its
+// progress, the first warning and the summary on stderr. When it ends with an InputError the
+// summary is shown all the same and the results are kept. 'on_frame': called before each frame with
+// the number of frames done.
+void RunToEnd(
+    const OpenedSource& opened, Vision* vision, ObservationSinks* sinks,
+    const std::function<void(std::size_t done)>& on_frame = [](std::size_t) {});
 
 }  // namespace kestrel

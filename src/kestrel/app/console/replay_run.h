@@ -16,7 +16,8 @@
 
 namespace kestrel {
 
-// A run over a recording whose frames are kept for the page: its vision, and the sink of the vision.
+// A run over a recording whose frames are kept for the page: its vision, and the sink of the
+// vision.
 class ReplayRun : public ObservationSink {
  public:
   explicit ReplayRun(std::unique_ptr<Vision> vision) : vision_(std::move(vision)) {}
@@ -45,8 +46,8 @@ class ReplayRun : public ObservationSink {
 template <class Result>
 class EarlierResults : public Vision {
  public:
-  // 'table': path of the detections. 'options': of the pipeline, for the poses. Throws InputError as
-  // Result does.
+  // 'table': path of the detections. 'options': of the pipeline, for the poses. Throws InputError
+  // as Result does.
   template <class Options>
   EarlierResults(const std::string& table, const OpenedSource& opened, const Options& options)
       : result_(table),
@@ -58,8 +59,8 @@ class EarlierResults : public Vision {
   Duration pose_lead() const override { return clock_offset_; }
   Observation Process(const Frame& frame) override {
     const auto camera = poses_.At(frame.time);
-    return {frame, result_.Next(frame.time, camera ? std::optional(camera->world_from_camera)
-                                                   : std::nullopt)};
+    return {frame, result_.Next(frame.time,
+                                camera ? std::optional(camera->world_from_camera) : std::nullopt)};
   }
   void Finish() override { result_.RequireEnd(); }
   std::string Found() const override { return result_.Found(); }

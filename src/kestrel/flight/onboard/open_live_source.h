@@ -38,7 +38,8 @@ struct SourceScheme {
   std::function<OpenedLiveSource(const LiveSourceChoice&)> open;
 };
 
-// Opens what the URI names: a source of a scheme ("dds:/camera/image_raw", "sim:straight"), a camera
+// Opens what the URI names: a source of a scheme ("dds:/camera/image_raw", "sim:straight"), a
+// camera
 // (/dev/video0, rtsp://..., a GStreamer pipeline), or a recording, which is played in real time.
 // Throws InputError that says what is wrong with the source.
 //
@@ -48,8 +49,8 @@ OpenedLiveSource OpenLiveSource(const LiveSourceChoice& choice,
                                 const GstreamerCameraOptions& camera,
                                 const std::vector<SourceScheme>& schemes = {});
 
-// Returns the calibration of the choice's file, with its clock offset, for sources that have none of
-// their own. Throws InputError when the file is not valid.
+// Returns the calibration of the choice's file, with its clock offset, for sources that have none
+// of their own. Throws InputError when the file is not valid.
 CameraCalibration ChosenCalibration(const RecordingChoice& choice);
 
 }  // namespace kestrel

@@ -56,9 +56,10 @@ OpenedLiveSource DdsSource::Open(const LiveSourceChoice& choice) {
   }
   opened.has_poses = camera->has_poses();
   if (opened.has_poses && !opened.calibration.body_from_camera) {
-    tell_(fmt::format("no mount: no positions in the world; expected a static transform from {} to "
-                      "{}, or --camera FILE with T_BS",
-                      options_.body_frame, camera->camera_frame()));
+    tell_(
+        fmt::format("no mount: no positions in the world; expected a static transform from {} to "
+                    "{}, or --camera FILE with T_BS",
+                    options_.body_frame, camera->camera_frame()));
   }
   frames_ = FramesOf(*camera);
   opened.source = std::move(camera);

@@ -13,8 +13,8 @@ namespace kestrel {
 // A session over a recording: passes all poses and frames in order of time to 'vision' and each
 // result to 'sink', by the caller's thread, as fast as they go. 'go_on' is asked before each frame,
 // with the number of frames that are done; false stops the session. Returns whether the end was
-// reached. The sink is not finished. Throws InputError when the source, the vision or the sink does,
-// or when a frame does not have the calibration's size.
+// reached. The sink is not finished. Throws InputError when the source, the vision or the sink
+// does, or when a frame does not have the calibration's size.
 //
 //   const OpenedSource opened = OpenRecording({.sources = {"flight.bag"}});
 //   LandingRun landing(opened, LandingPipelineOptions(), std::nullopt);

@@ -18,7 +18,7 @@ struct RecordingChoice {
   std::vector<std::string> sources;  // as OpenSourceOrBag takes them
   PixelFormat format = PixelFormat::kGray;
   BagChoice bag = {};
-  std::string camera = {};                     // file with the calibration; empty: the source's own
+  std::string camera = {};                    // file with the calibration; empty: the source's own
   std::optional<Duration> clock_offset = {};  // in place of the calibration's
 };
 

@@ -66,8 +66,7 @@ SourceScheme SimulatedSource::Scheme() {
 }
 
 OpenedLiveSource SimulatedSource::Open(const LiveSourceChoice& choice) {
-  std::vector<std::string> settings =
-      Split(std::string_view(choice.uri()).substr(kPrefix.size()));
+  std::vector<std::string> settings = Split(std::string_view(choice.uri()).substr(kPrefix.size()));
   const std::string scenario = settings.front();
   settings.erase(settings.begin());
   const Time start = Now();
