@@ -80,7 +80,7 @@ void SetAll(const YAML::Node& part, const std::string& key, NodeOptions* options
   if (!part.IsMap()) return;
   for (const auto& entry : part) {
     const std::string& name = entry.first.Scalar();
-    SetAll(entry.second, key.empty() ? name : key + "." + name, options);
+    SetAll(entry.second, key.empty() ? name : fmt::format("{}.{}", key, name), options);
   }
 }
 
