@@ -69,7 +69,7 @@ int main(int argc, char** argv) {
   JsonLines lines;
   parts.sink = &lines;
   if (argc > 1) parts.autopilot = argv[1];
-  kestrel::LiveSession session(parts, {});
+  kestrel::LiveSession session(parts);
   session.Run([] { return false; });
   std::cerr << session.Summary();
   return lines.found > 30 ? 0 : 1;

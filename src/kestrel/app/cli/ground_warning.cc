@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/vision/pipeline/ground_height.h"
+
 namespace kestrel {
 
 std::string GroundWarning(const HuntPipeline& pipeline, std::optional<double> altitude_m,

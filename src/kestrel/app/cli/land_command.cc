@@ -16,6 +16,7 @@
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
+#include "kestrel/vision/pipeline/told_contradictions.h"
 
 namespace kestrel {
 namespace {

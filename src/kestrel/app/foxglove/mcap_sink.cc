@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/app/console/hunt_view.h"
+#include "kestrel/app/console/landing_view.h"
 #include "kestrel/app/foxglove/observation_file.h"
 #include "kestrel/core/base/error.h"
 
@@ -66,6 +68,22 @@ std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool rep
   return std::make_unique<AsynchronousSink>(
       AsynchronousSinkOptions{.thread_name = "mcap", .frames = kFrames, .patience = kFlushPeriod},
       std::make_unique<McapWriter>(path, replace, camera, view, std::move(tell)));
+}
+
+std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
+                                               const CameraCalibration& calibration,
+                                               const LandingPipelineOptions& options,
+                                               std::function<void(const std::string&)> tell) {
+  const std::variant<LandingView, HuntView> view = ViewOf(calibration, options);
+  return OpenMcapSink(path, replace, calibration.intrinsics, view, std::move(tell));
+}
+
+std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
+                                               const CameraCalibration& calibration,
+                                               const ObjectModel& objects,
+                                               std::function<void(const std::string&)> tell) {
+  const std::variant<LandingView, HuntView> view = HuntView{.model = objects};
+  return OpenMcapSink(path, replace, calibration.intrinsics, view, std::move(tell));
 }
 
 }  // namespace kestrel

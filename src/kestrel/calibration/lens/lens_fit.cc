@@ -10,6 +10,8 @@
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 
+#include "kestrel/calibration/lens/lens_projection.h"
+
 namespace kestrel {
 namespace {
 

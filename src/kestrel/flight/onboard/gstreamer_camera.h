@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "kestrel/core/camera/camera_model.h"
-#include "kestrel/flight/onboard/exposure_drive.h"
-#include "kestrel/flight/onboard/image_pool.h"
+#include "kestrel/flight/onboard/exposure_actuator.h"
 #include "kestrel/flight/session/live_source.h"
 
 namespace kestrel {
 
 class GstreamerPipeline;
+class ImagePool;
 
 struct GstreamerCameraOptions {
   // Time from the middle of the exposure to the driver's time of the frame, without half of the
@@ -87,9 +87,9 @@ class GstreamerCamera : public LiveSource, public ExposureActuator {
   CameraIntrinsics calibration_;
   PixelFormat format_;
   GstreamerCameraOptions options_;
-  std::optional<V4l2ExposureActuator> v4l2_exposure_;
+  std::unique_ptr<ExposureActuator> v4l2_exposure_;  // null: the camera is no device
   std::atomic<double> exposure_s_;
-  ImagePool images_;
+  std::unique_ptr<ImagePool> images_;
   std::optional<Event> first_;  // the frame that the constructor has waited for
   Time last_time_ = Time::min();
   Time last_arrival_;

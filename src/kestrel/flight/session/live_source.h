@@ -19,6 +19,14 @@ struct CaptureCounters {
   std::uint64_t reopened = 0;  // number of times that the source came back
 };
 
+// Counts of the events of a flight on their way to the vision.
+struct LiveEventCounters {
+  std::uint64_t frames = 0;          // given out
+  std::uint64_t dropped_frames = 0;  // replaced by a newer frame
+  std::uint64_t unposed_frames = 0;  // given out before the pose after them
+  std::uint64_t dropped_poses = 0;   // replaced by newer poses
+};
+
 // Source of live frames (and of poses, from a recording). All times are those of Now(). Next is
 // called by one thread, the other functions by any.
 class LiveSource {

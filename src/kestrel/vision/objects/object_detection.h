@@ -12,8 +12,7 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/geometry/ellipse.h"
 #include "kestrel/vision/objects/color_model.h"
-#include "kestrel/vision/objects/digit_classifier.h"
-#include "kestrel/vision/objects/disc_location.h"
+#include "kestrel/vision/objects/digit_likelihoods.h"
 
 namespace kestrel {
 
@@ -31,6 +30,12 @@ using ColorProbabilities = std::array<double, ColorModel::kMaxColors>;
 struct HeightBySize {
   double camera_height_m = 0;
   double sigma_m = 0;  // standard deviation
+};
+
+// Location of a point of an object, camera frame, m.
+struct ObjectLocation {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
 // One object in one image.

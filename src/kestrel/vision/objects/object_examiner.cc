@@ -7,6 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include "kestrel/vision/objects/disc_location.h"
+
 namespace kestrel {
 namespace {
 
@@ -57,7 +59,7 @@ double FilledShare(const Segment& segment, const Ellipse& ellipse, const cv::Siz
 }  // namespace
 
 bool ObjectExaminer::Run(const Segment& segment) {
-  const ObjectDetectorOptions& options = detector_.options_;
+  const ObjectDetectorOptions& options = detector_.options;
   const auto count = [&](ObjectStage stage) { ++report_->passed[static_cast<int>(stage)]; };
   count(ObjectStage::kSegmented);
   if (static_cast<int>(segment.pixels.size()) < options.min_pixels) return false;
@@ -69,14 +71,14 @@ bool ObjectExaminer::Run(const Segment& segment) {
   detection.circularity = shape.circularity;
   detection.pixels = static_cast<int>(segment.pixels.size());
   detection.mean_color = shape.mean_color;
-  detection.color_probabilities = ProbabilitiesOf(detector_.model_.colors, shape.mean_color);
+  detection.color_probabilities = ProbabilitiesOf(detector_.model.colors, shape.mean_color);
   detection.center_px = shape.moments.centroid;
   detection.bearing = RayAt(detection.center_px);
 
   ObjectStage furthest = ObjectStage::kSize;
   Outcome outcome = Outcome::kNone;
   ObjectDetection found;
-  const auto& classes = detector_.model_.classes;
+  const auto& classes = detector_.model.classes;
   for (std::size_t i = 0; i < classes.size() && outcome != Outcome::kObject; ++i) {
     if (classes[i].color + 1 != segment.label) continue;
     ObjectStage reached = ObjectStage::kSize;
@@ -104,11 +106,11 @@ ObjectExaminer::Outcome ObjectExaminer::TestClass(const Segment& segment, const 
                                                   std::size_t class_index,
                                                   ObjectDetection* detection,
                                                   ObjectStage* reached) {
-  const ObjectClass& object = detector_.model_.classes[class_index];
+  const ObjectClass& object = detector_.model.classes[class_index];
   detection->class_index = class_index;
   detection->class_probability = ClassProbability(object, detection->color_probabilities);
   detection->completeness = segment.touches_border ? Completeness::kCutOff : Completeness::kWhole;
-  const bool is_round = std::abs(shape.roundness - 1) <= detector_.options_.max_roundness_error;
+  const bool is_round = std::abs(shape.roundness - 1) <= detector_.options.max_roundness_error;
   if (object.shape != ObjectShape::kBar && !is_round) return Outcome::kNone;
   *reached = ObjectStage::kRoundness;
   switch (object.shape) {
@@ -125,7 +127,7 @@ ObjectExaminer::Outcome ObjectExaminer::TestClass(const Segment& segment, const 
 ObjectExaminer::Outcome ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
                                                  const ObjectClass& object,
                                                  ObjectDetection* detection, ObjectStage* reached) {
-  const ObjectDetectorOptions& options = detector_.options_;
+  const ObjectDetectorOptions& options = detector_.options;
   Ellipse start = shape.ellipse;
   if (segment.touches_border) {
     FindBorder(segment, image_.size(), &workspace_->border);
@@ -137,9 +139,9 @@ ObjectExaminer::Outcome ObjectExaminer::TestDisc(const Segment& segment, const S
   }
   *reached = ObjectStage::kShape;
   const auto outline =
-      FitDiscOutline(image_, detector_.rays_, detector_.focal_px_, start, &workspace_->outline);
+      FitDiscOutline(image_, detector_.rays, detector_.focal_px, start, &workspace_->outline);
   if (!outline) return Outcome::kNone;
-  const double radius_px = detector_.focal_px_ * std::tan(outline->cone.HalfAngles().minCoeff());
+  const double radius_px = detector_.focal_px * std::tan(outline->cone.HalfAngles().minCoeff());
   const double max_gap = segment.touches_border ? options.max_cut_off_gap : options.max_gap;
   if (outline->gap > max_gap || outline->outside > options.max_outside ||
       outline->fit_share < options.min_outline_share) {
@@ -174,7 +176,7 @@ ObjectExaminer::Outcome ObjectExaminer::TestDisc(const Segment& segment, const S
   const double tolerance = (segment.touches_border ? 0.7 : 1) * options.ground_tolerance;
   const double distance_tolerance = (segment.touches_border ? 1.4 : 1) * options.ground_tolerance;
   if (const auto is_on_ground = IsOnGround(position, object, distance_tolerance)) {
-    const double slack_rad = 1 / detector_.focal_px_;
+    const double slack_rad = 1 / detector_.focal_px;
     const auto looks_like_disc_at = [&](double there) {
       return LooksLikeDisc(outline->cone, position / distance, there, *hint_.up_in_camera, radius_m,
                            tolerance, slack_rad);
@@ -200,7 +202,7 @@ ObjectExaminer::Outcome ObjectExaminer::TestDisc(const Segment& segment, const S
 std::optional<ColorLabel> ObjectExaminer::LabelAt(const Eigen::Vector2d& pixel) const {
   const cv::Point at(cvRound(pixel.x()), cvRound(pixel.y()));
   if (!cv::Rect({}, image_.size()).contains(at)) return std::nullopt;
-  return detector_.grid_.At(image_.ptr(at.y) + 3 * at.x);
+  return detector_.grid.At(image_.ptr(at.y) + 3 * at.x);
 }
 
 bool ObjectExaminer::IsHole(const Ellipse& outline, ColorLabel label) const {
@@ -258,7 +260,7 @@ double ObjectExaminer::MisfitOfDisc(const DiscOutline& outline, double radius_px
   constexpr double kClearOfBlur = 0.7;
   constexpr double kMaxUncolored = 0.3;
   const auto square = [](double x) { return x * x; };
-  const ObjectDetectorOptions& options = detector_.options_;
+  const ObjectDetectorOptions& options = detector_.options;
   const double edge =
       outline.residual_px / (options.outline_tolerance * radius_px + options.outline_tolerance_px);
   const double hidden = (1 - (1 - outline.gap) * outline.fit_share) / options.max_gap;
@@ -271,9 +273,9 @@ double ObjectExaminer::MisfitOfDisc(const DiscOutline& outline, double radius_px
 double ObjectExaminer::ClassProbability(const ObjectClass& object,
                                         const ColorProbabilities& colors) const {
   double all = 1;  // including the probability of background
-  for (std::size_t i = 0; i < detector_.model_.colors.colors.size(); ++i) {
+  for (std::size_t i = 0; i < detector_.model.colors.colors.size(); ++i) {
     const bool has_class = std::ranges::any_of(
-        detector_.model_.classes,
+        detector_.model.classes,
         [&](const ObjectClass& other) { return other.color == i && other.shape == object.shape; });
     if (!has_class) all -= colors[i];
   }
@@ -291,7 +293,7 @@ std::optional<bool> ObjectExaminer::IsOnGround(const Eigen::Vector3d& position,
   if (!Ground().is_known()) return std::nullopt;
   const auto on_ground = DistanceOnGround(position, object);
   return on_ground && std::abs(position.norm() - *on_ground) <=
-                          tolerance * *on_ground + detector_.options_.ground_tolerance_m;
+                          tolerance * *on_ground + detector_.options.ground_tolerance_m;
 }
 
 void ObjectExaminer::SetLocation(const Eigen::Vector3d& by_size, const ObjectClass& object,
@@ -315,15 +317,15 @@ void ObjectExaminer::SetLocation(const Eigen::Vector3d& by_size, const ObjectCla
     sigma_m *= ground_sigma_m / total;
   }
   detection->bearing = ray;
-  detector_.camera_.Project(ray, &detection->center_px);
-  detection->location = {distance * ray,
-                         LocationCovariance(distance * ray, center_sigma_px / detector_.focal_px_,
-                                            sigma_m / distance)};
+  detector_.camera.Project(ray, &detection->center_px);
+  detection->location = {
+      distance * ray,
+      LocationCovariance(distance * ray, center_sigma_px / detector_.focal_px, sigma_m / distance)};
 }
 
 Eigen::Vector3d ObjectExaminer::RayAt(const Eigen::Vector2d& pixel) const {
   const Eigen::Vector2f at = pixel.cast<float>();
-  return detector_.rays_.Ray(at.x(), at.y()).cast<double>();
+  return detector_.rays.Ray(at.x(), at.y()).cast<double>();
 }
 
 }  // namespace kestrel
