@@ -25,6 +25,12 @@ std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool rep
                                                std::function<void(const std::string&)> tell);
 
 // The same for a landing with these options, and for a hunt for these objects.
+//
+// Example:
+//   const CameraCalibration calibration = ReadCalibration("camera.yaml");
+//   ObservationSinks sinks;
+//   sinks.Add(OpenMcapSink("flight.mcap", /*replace=*/true, calibration, LandingPipelineOptions(),
+//                          [](const std::string& text) { std::cerr << text << "\n"; }));
 std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
                                                const CameraCalibration& calibration,
                                                const LandingPipelineOptions& options,

@@ -14,6 +14,13 @@ namespace kestrel {
 // Receiver of a session's results: a file, a page, a network. A new sink overrides the functions
 // for the results that it needs. The session's threads call Take, which must not wait: slow work
 // belongs into an AsynchronousSink.
+//
+// Example:
+//   class Counter : public ObservationSink {
+//    public:
+//     void Take(const Observation&) override { ++frames; }
+//     int frames = 0;
+//   };
 class ObservationSink {
  public:
   virtual ~ObservationSink() = default;
