@@ -16,7 +16,7 @@ export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 export CCACHE_BASEDIR ?= $(CURDIR)
 export CCACHE_SLOPPINESS ?= locale
 
-.PHONY: demo console test dds ros interop browser bench accuracy figures check-figures format check asan fuzz install command tests build configure deps
+.PHONY: demo console test dds ros interop browser bench accuracy figures check-figures format check asan tsan fuzz install command tests build configure deps
 
 demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
 	scripts/demo $(BIN) "$(DATA)" "$(CAMERA)"
@@ -82,6 +82,11 @@ asan: deps  ## the unit tests, of all ROOMS or of some, with the address and und
 	cmake --preset asan
 	cmake --build --preset asan $(if $(ROOMS),--target $(ROOMS:%=kestrel_%_test))
 	ctest --preset asan -j $$(nproc) $(if $(ROOMS),-R '^($(subst $(space),|,$(strip $(ROOMS))))/')
+
+tsan: deps  ## the unit tests of all ROOMS or of some, `sessions` of whole sessions, with the thread sanitizer
+	cmake --preset tsan
+	cmake --build --preset tsan --target $(if $(ROOMS),$(ROOMS:%=kestrel_%_test),tests)
+	ctest --preset tsan $(if $(ROOMS),-R '^($(subst $(space),|,$(strip $(ROOMS))))/' --no-tests=error)
 
 fuzz: deps  ## every fuzz target for FUZZ_SECONDS
 	cmake --preset asan

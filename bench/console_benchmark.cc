@@ -16,6 +16,7 @@
 
 #include "kestrel/app/console/flight_console.h"
 #include "kestrel/app/console/test_browser.h"
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/camera/paper_camera.h"
 #include "kestrel/simulation/labelled_images/landing_stills.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
@@ -97,9 +98,7 @@ class Vision {
 };
 
 double Quantile(std::vector<double> values, double part) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * (values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return QuantileInPlace(values, part, QuantileRank::kLower);
 }
 
 void RunRound(Vision* vision, int port, int browsers, Times* times) {

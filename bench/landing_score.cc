@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "for_each_index.h"
+#include "kestrel/core/base/robust_statistics.h"
 
 namespace kestrel {
 namespace {
@@ -187,9 +188,7 @@ void LandingTally::Add(const LandingTally& tally) {
 
 double Quantile(std::vector<double> values, double p) {
   if (values.empty()) return 0;
-  const auto index = static_cast<std::ptrdiff_t>(std::lround(p * (std::ssize(values) - 1)));
-  std::nth_element(values.begin(), values.begin() + index, values.end());
-  return values[index];
+  return QuantileInPlace(values, p, QuantileRank::kNearest);
 }
 
 double Mean(std::span<const double> values) {

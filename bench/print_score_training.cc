@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/core/base/robust_statistics.h"
+
 namespace kestrel {
 namespace {
 
@@ -26,9 +28,7 @@ double LogOdds(const PrintScore& score, const ScoredPrint& print) {
 
 double Quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
-  const auto index = std::min(values.size() - 1, static_cast<std::size_t>(share * values.size()));
-  std::nth_element(values.begin(), values.begin() + index, values.end());
-  return values[index];
+  return QuantileInPlace(values, share, QuantileRank::kShareBelow);
 }
 
 const ScoredPrint* MostProbable(const PrintScore& score, const ScoredFrame& frame,

@@ -35,6 +35,7 @@ set(KESTREL_PUBLIC_HEADERS
     flight/session/live_source.h
     flight/session/observation.h
     flight/session/observation_sink.h
+    flight/session/observation_sinks.h
     flight/onboard/gstreamer_camera.h
     flight/onboard/live_session.h
     flight/onboard/realtime_replay.h

@@ -133,7 +133,10 @@ def test(kestrel, node, folder):
                  "_fly/events/pose_wait_s:=1.0"):
         test_in_step(bag, expected, expected_track)
         test_services()
-    with running(node, folder, "image:=/camera/image_raw", "_poses:=none"):
+    # The options of all commands, of which the node has some.
+    with open(f"{folder}/options.yaml", "w") as file:
+        subprocess.run([kestrel, "config"], check=True, stdout=file)
+    with running(node, folder, "image:=/camera/image_raw", "_poses:=none", f"_config:={folder}/options.yaml"):
         test_rosbag_play(bag, expected)
 
 

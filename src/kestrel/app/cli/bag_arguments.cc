@@ -15,11 +15,12 @@ void BagArguments::AddTo(CLI::App* command) {
                     "Time what a bag has by when it was recorded, not by the stamps in it");
 }
 
-std::unique_ptr<FrameSource> BagArguments::Open(const std::vector<std::string>& sources,
-                                                PixelFormat format) const {
-  return OpenSourceOrBag(sources, format, {topics, use_arrival_times, [](const std::string& text) {
-                                             fmt::print(stderr, "kestrel: {}\n", text);
-                                           }});
+RecordingChoice BagArguments::Recording(const std::vector<std::string>& sources,
+                                        PixelFormat format) const {
+  return {.sources = sources,
+          .format = format,
+          .bag = {topics, use_arrival_times,
+                  [](const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); }}};
 }
 
 }  // namespace kestrel

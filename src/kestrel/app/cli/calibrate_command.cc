@@ -68,14 +68,15 @@ void RunCalibrate(const CalibrateArguments& arguments, FlightCalibrationOptions 
   const LandingPipelineOptions landing = arguments.options.Read().landing;
   if (arguments.both) options.estimate_mount = options.estimate_clock = true;
   if (arguments.moving) options.knot_spacing_s = kMovingKnotSpacing_s;
-  const std::unique_ptr<FrameSource> source = arguments.bag.Open({arguments.recording});
+  const std::unique_ptr<FrameSource> source =
+      OpenFrames(arguments.bag.Recording({arguments.recording}));
   CameraCalibration calibration = ReadGiven(arguments, *source);
   const MountAndClock given = GivenMountAndClock(
       calibration, arguments.camera.empty() ? arguments.recording : arguments.camera);
   const std::vector<PoseSample> poses = FlightPoses(*source, arguments.recording);
   FlightSightings flight(calibration.intrinsics, landing);
   ForEachFrame(source.get(), calibration.intrinsics,
-               [&](const Frame& frame, const ProgressBar&) { flight.Add(frame); });
+               [&](const Frame& frame) { flight.Add(frame); });
   const FlightCalibration result = CalibrateFlight(flight.sightings(), poses, given, options);
   PrintResult(result, options);
   SetMountAndClock(result.estimate, &calibration);

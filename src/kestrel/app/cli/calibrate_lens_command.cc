@@ -56,7 +56,7 @@ struct LensSources {
 LensSources ReadSources(const std::vector<std::string>& arguments, const BagArguments& bag) {
   LensSources sources;
   for (const std::string& argument : arguments) {
-    const std::unique_ptr<FrameSource> source = bag.Open({argument});
+    const std::unique_ptr<FrameSource> source = OpenFrames(bag.Recording({argument}));
     if (sources.rate_hz == 0) {
       sources.rate_hz = source->rate_hz();
       sources.mount = source->mount();

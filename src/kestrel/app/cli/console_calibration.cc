@@ -32,10 +32,10 @@ std::size_t AddFrames(const OpenedSource& opened, const GoOn& go_on, const Add& 
   return done;
 }
 
-CalibrationResult MountAndClockOf(const SourceArguments& source,
+CalibrationResult MountAndClockOf(const RecordingChoice& source,
                                   const LandingPipelineOptions& landing,
                                   const CalibrationRequest& request, const GoOn& go_on) {
-  const OpenedSource opened = source.Open(PixelFormat::kGray);
+  const OpenedSource opened = OpenRecording(source);
   const std::string& name = source.sources.front();
   CalibrationResult result{{}, opened.calibration, opened.source->rate_hz()};
   const MountAndClock given = GivenMountAndClock(opened.calibration, name);
@@ -60,9 +60,9 @@ CalibrationResult MountAndClockOf(const SourceArguments& source,
   return result;
 }
 
-CalibrationResult LensOf(const SourceArguments& source, const LandingPipelineOptions& landing,
+CalibrationResult LensOf(const RecordingChoice& source, const LandingPipelineOptions& landing,
                          const GoOn& go_on) {
-  const OpenedSource opened = source.Open(PixelFormat::kGray);
+  const OpenedSource opened = OpenRecording(source);
   EvenSample sample;
   const std::size_t frames =
       AddFrames(opened, go_on, [&](const Frame& frame) { sample.Add(frame); });
@@ -93,12 +93,12 @@ std::string SaveBeside(const std::string& folder, const std::string& name,
 
 }  // namespace
 
-CalibrationPage::Tools CalibrationTools(const SourceArguments& source,
+CalibrationPage::Tools CalibrationTools(const RecordingChoice& source,
                                         const LandingPipelineOptions& options,
                                         const std::string& folder) {
   CalibrationPage::Tools tools;
-  tools.calibrate = [&source, options](const CalibrationRequest& request,
-                                       const GoOn& go_on) -> std::optional<CalibrationResult> {
+  tools.calibrate = [source, options](const CalibrationRequest& request,
+                                      const GoOn& go_on) -> std::optional<CalibrationResult> {
     try {
       if (request.lens) return LensOf(source, options, go_on);
       return MountAndClockOf(source, options, request, go_on);

@@ -11,22 +11,24 @@
 #include <fmt/format.h>
 
 #include "kestrel/app/cli/console_calibration.h"
-#include "kestrel/app/cli/console_colors.h"
-#include "kestrel/app/cli/frame_winder.h"
-#include "kestrel/app/cli/hunt_replay.h"
 #include "kestrel/app/cli/interrupt.h"
-#include "kestrel/app/cli/landing_replay.h"
-#include "kestrel/app/cli/pipeline_run.h"
+#include "kestrel/app/cli/recorded_run.h"
 #include "kestrel/app/cli/result_argument.h"
 #include "kestrel/app/cli/source_arguments.h"
+#include "kestrel/app/console/find_colors.h"
+#include "kestrel/app/console/hunt_replay.h"
+#include "kestrel/app/console/landing_replay.h"
 #include "kestrel/app/console/replay_console.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
+#include "kestrel/flight/session/observation_sinks.h"
 #include "kestrel/io/recording/open_source.h"
 #include "kestrel/vision/objects/object_model.h"
 
 namespace kestrel {
 namespace {
+
+constexpr std::size_t kFramesPerReport = 20;  // of the progress, on the page
 
 struct ConsoleArguments {
   SourceArguments source;
@@ -63,39 +65,25 @@ LandingPipelineOptions LandingOptions(const ConsoleArguments& arguments,
 std::unique_ptr<ReplaySearch> MakeSearch(const ConsoleArguments& arguments,
                                          const KestrelOptions& options) {
   const SourceArguments& source = arguments.source;
-  if (!arguments.is_hunt) return SearchForPattern(source, LandingOptions(arguments, options));
+  if (!arguments.is_hunt) {
+    return SearchForPattern(source.sources, LandingOptions(arguments, options), source.altitude_m);
+  }
   HuntPipelineOptions hunt = options.hunt;
   hunt.still = hunt.still || source.still;
   return SearchForObjects(
-      source, hunt,
-      arguments.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments.model));
-}
-
-// 'arguments' and 'search' outlive the recording.
-ReplayConsole::Recording RecordingOf(const ConsoleArguments& arguments,
-                                     const ReplaySearch& search) {
-  const auto open = [&arguments, &search]() -> ReplayConsole::ReadFrame {
-    const auto winder = std::make_shared<FrameWinder>([&arguments, &search] {
-      return arguments.source.bag.Open(arguments.source.sources, search.format());
-    });
-    return [winder](std::size_t index) { return winder->Read(index); };
-  };
-  const auto detect = [&arguments, &search](const std::vector<std::string>& settings) {
-    return [&arguments, &search, start = search.Detect(settings)](const SecondRun::GoOn& go_on) {
-      return DetectAgain(arguments.source, search.format(), start, go_on);
-    };
-  };
-  return {open, detect};
+      source.sources, hunt,
+      arguments.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments.model),
+      source.altitude_m);
 }
 
 void RunConsole(const ConsoleArguments& arguments) {
   const KestrelOptions options = arguments.source.options.Read();
   RequireEnd(arguments.source.sources);
   const std::unique_ptr<ReplaySearch> search = MakeSearch(arguments, options);
-  const OpenedSource opened = arguments.source.Open(search->format());
+  const RecordingChoice choice = arguments.source.Recording(search->format());
+  const OpenedSource opened = OpenRecording(choice);
   const std::string& name = arguments.source.sources.front();
-  std::optional<ColorSource> colors =
-      FindColors(arguments.source, arguments.model, arguments.output);
+  std::optional<ColorSource> colors = FindColors(choice, arguments.model, arguments.output);
   const bool has_colors = colors.has_value();
   if (!has_colors && !arguments.model.empty() && !arguments.is_hunt) {
     throw InputError("--model: " + name + " has no images in color to teach it by");
@@ -104,17 +92,18 @@ void RunConsole(const ConsoleArguments& arguments) {
   fmt::print(stderr, "console: {}\n", console.url());
   if (has_colors) fmt::print(stderr, "colors that are taught: {}\n", arguments.output);
   const auto start = arguments.result.empty() ? search->Detect({}) : search->Show(arguments.result);
-  const std::unique_ptr<ReplayRun> run = start(opened);
-  run->TellProgress([&](std::size_t done) {
+  ObservationSinks sinks;
+  ReplayRun* const run = sinks.Add(start(opened));
+  RunToEnd(opened, run->vision(), &sinks, [&](std::size_t done) {
+    if (done % kFramesPerReport != 0) return;
     const std::size_t frames = opened.source->frame_count().value_or(0);
     console.SetProgress(fmt::format("{} of {} frames", done, frames));
   });
-  RunPipeline(opened, run.get());
   if (WasInterrupted()) return;
   if (run->done() == 0) throw InputError(name + ": has no images to show");
-  const LandingPipelineOptions landing = LandingOptions(arguments, options);
-  console.OfferCalibration(CalibrationTools(arguments.source, landing, arguments.output));
-  console.Play(run->TakeResult(), RecordingOf(arguments, *search), WasInterrupted);
+  console.OfferCalibration(CalibrationTools(arguments.source.Recording(PixelFormat::kGray),
+                                            LandingOptions(arguments, options), arguments.output));
+  console.Play(run->TakeResult(), RecordingOf(choice, *search), WasInterrupted);
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ std::unique_ptr<RecordingSink> OpenDestination(const ConvertArguments& arguments
 }
 
 void RunConvert(const ConvertArguments& arguments) {
-  const auto source = arguments.bag.Open({arguments.source}, PixelFormat::kBgr);
+  const auto source = OpenFrames(arguments.bag.Recording({arguments.source}, PixelFormat::kBgr));
   const std::vector<PoseSample> poses = source->poses();
   const RecordingHead head{
       .calibration = CalibrationFor(arguments, *source),

@@ -45,13 +45,15 @@ struct DoctorArguments {
 class DoctorVisit {
  public:
   explicit DoctorVisit(const DoctorArguments& arguments)
-      : arguments_(arguments), options_(arguments.flight.ReadOptions()) {
+      : arguments_(arguments),
+        options_(arguments.flight.ReadOptions()),
+        source_(arguments_.flight.source, options_) {
     SetUse();
     OpenSource();
     OpenLink();
     ExaminationParts parts;
-    parts.source = source_.source.get();
-    parts.calibration = source_.calibration;
+    parts.source = source_.live.source.get();
+    parts.calibration = source_.live.calibration;
     parts.connection = connection_ ? &*connection_ : nullptr;
     parts.autopilot = autopilot_ ? &*autopilot_ : nullptr;
     examination_.emplace(options_.landing, options_.fly.flight.events, parts);
@@ -107,12 +109,11 @@ class DoctorVisit {
   void OpenSource() {
     CameraObservations& camera = observations_.camera;
     try {
-      source_ = OpenFlySource(arguments_.flight.source, PixelFormat::kGray, options_,
-                              arguments_.flight.loop);
+      source_.Open(PixelFormat::kGray, arguments_.flight.loop);
     } catch (const ImageSizeError& error) {
       camera.open_error = error.what();
       camera.has_other_size = true;
-      source_.calibration = ReadCalibration(arguments_.flight.source.camera);
+      source_.live.calibration = ReadCalibration(arguments_.flight.source.camera);
     } catch (const InputError& error) {
       camera.open_error = error.what();
     }
@@ -124,7 +125,8 @@ class DoctorVisit {
     link.is_asked = true;
     link.is_signed = !options_.fly.link.signing_key.empty();
     try {
-      FlyAutopilot opened = MakeFlyAutopilot(arguments_.flight.autopilot, options_.fly, &source_);
+      FlyAutopilot opened =
+          MakeFlyAutopilot(arguments_.flight.autopilot, options_.fly, &source_.simulated);
       const LinkUrl url = ParseLinkUrl(opened.url);
       link.scheme = url.scheme;
       link.baud = url.number;
@@ -135,18 +137,18 @@ class DoctorVisit {
       return;
     }
     autopilot_.emplace(
-        source_.Asking(options_.fly.autopilot), &*connection_,
+        source_.simulated.Asking(options_.fly.autopilot), &*connection_,
         AutopilotListener{
             .pose = [this](const PoseSample& pose) { TakePose(pose); },
-            .true_pose = [this](const PoseSample& pose) { source_.TakeTruePose(pose); },
+            .true_pose = [this](const PoseSample& pose) { source_.simulated.TakeTruePose(pose); },
             .event = [this](const AutopilotEvent& e) { examination_->TakeEvent(e); },
             .text = {},
         });
   }
 
   void TakePose(const PoseSample& pose) {
-    if (!source_.has_poses) examination_->TakePose(pose);
-    source_.TakePose(pose);
+    if (!source_.live.has_poses) examination_->TakePose(pose);
+    source_.simulated.TakePose(pose);
   }
 
   bool IsWanted(const Finding& finding) const {

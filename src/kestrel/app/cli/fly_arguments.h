@@ -8,7 +8,7 @@
 
 #include "kestrel/app/cli/kestrel_options.h"
 #include "kestrel/app/cli/source_arguments.h"
-#include "kestrel/app/cli/team_link.h"
+#include "kestrel/app/cli/team_arguments.h"
 
 namespace kestrel {
 

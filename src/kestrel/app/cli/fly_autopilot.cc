@@ -18,20 +18,16 @@ constexpr char kLoopback[] = "127.0.0.1";
 }  // namespace
 
 FlyAutopilot MakeFlyAutopilot(const std::string& argument, const FlyOptions& options,
-                              FlySource* source) {
+                              SimulatedSource* source) {
   if (argument != kSimulatedArduPilot && argument != kSimulatedPx4) return {argument, nullptr};
   SimulatedAutopilotOptions simulated = options.sim_autopilot;
   simulated.firmware = argument.substr(std::string_view("sim:").size());
   simulated.signing_key = options.link.signing_key;
   const auto seed = static_cast<std::uint64_t>(options.sim_seed);
-  if (!source->world) {
-    source->world = std::make_unique<VehicleWorld>(ReadVehicleWorld("standing", {}), Now(), seed);
-  }
   const int port = FreeLoopbackPort();
-  return {
-      fmt::format("udpin://{}:{}", kLoopback, port),
-      std::make_unique<SimulatedAutopilot>(
-          simulated, fmt::format("udpout://{}:{}", kLoopback, port), source->world.get(), seed)};
+  return {fmt::format("udpin://{}:{}", kLoopback, port),
+          std::make_unique<SimulatedAutopilot>(
+              simulated, fmt::format("udpout://{}:{}", kLoopback, port), source->World(), seed)};
 }
 
 }  // namespace kestrel

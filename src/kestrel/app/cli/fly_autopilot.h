@@ -5,8 +5,8 @@
 #include <string>
 
 #include "kestrel/app/cli/fly_options.h"
-#include "kestrel/app/cli/fly_source.h"
 #include "kestrel/simulation/autopilots/simulated_autopilot.h"
+#include "kestrel/simulation/autopilots/simulated_source.h"
 
 namespace kestrel {
 
@@ -20,6 +20,6 @@ struct FlyAutopilot {
 // yet started, in the world of 'source', which gets a standing one if it has none. The source must
 // outlive it. Throws InputError when the options are not valid.
 FlyAutopilot MakeFlyAutopilot(const std::string& argument, const FlyOptions& options,
-                              FlySource* source);
+                              SimulatedSource* source);
 
 }  // namespace kestrel

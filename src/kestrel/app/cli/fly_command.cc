@@ -14,10 +14,10 @@
 #include "kestrel/app/cli/fly_autopilot.h"
 #include "kestrel/app/cli/fly_source.h"
 #include "kestrel/app/cli/interrupt.h"
-#include "kestrel/app/cli/team_link.h"
 #include "kestrel/app/console/flight_console.h"
 #include "kestrel/app/foxglove/flight_live.h"
 #include "kestrel/app/foxglove/mcap_sink.h"
+#include "kestrel/comms/team/team_link.h"
 #include "kestrel/core/base/bounded_queue.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/onboard/camera_automatics.h"
@@ -28,6 +28,7 @@
 #include "kestrel/flight/ros/ros2_result_connection.h"
 #include "kestrel/flight/ros/ros_sink.h"
 #include "kestrel/flight/ros1/ros1_result_connection.h"
+#include "kestrel/flight/session/observation_sinks.h"
 
 namespace kestrel {
 namespace {
@@ -58,16 +59,17 @@ class FlightLog : public ObservationSink {
 class Flight {
  public:
   explicit Flight(const FlyArguments& arguments)
-      : arguments_(arguments), options_(arguments.ReadOptions()) {
-    const PixelFormat format = arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray;
-    source_ = OpenFlySource(arguments.source, format, options_, arguments.loop);
+      : arguments_(arguments),
+        options_(arguments.ReadOptions()),
+        source_(arguments_.source, options_) {
+    source_.Open(arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray, arguments.loop);
     log_ = sinks_.Add(std::make_unique<FlightLog>());
     OpenConsole();
     OpenTeam();
     OpenMcap();
     OpenDds();
     OpenRos1();
-    autopilot_ = MakeFlyAutopilot(arguments.autopilot, options_.fly, &source_);
+    autopilot_ = MakeFlyAutopilot(arguments.autopilot, options_.fly, &source_.simulated);
     session_.emplace(Parts(), SessionOptions());
     if (team_) {
       session_->hunt()->ShareMap(DurationFromSeconds(options_.team.team.tell_period_s));
@@ -113,7 +115,7 @@ class Flight {
 
   FlightView View() const {
     if (arguments_.hunt) return HuntView{ReadModel(), options_.hunt.detector};
-    return ViewOf(source_.calibration, options_.landing);
+    return ViewOf(source_.live.calibration, options_.landing);
   }
 
   // The first step: an error about a port in use comes before anything is written.
@@ -121,9 +123,9 @@ class Flight {
     if (!arguments_.console) return;
     const ConsoleOptions& options = options_.console;
     FlightLive* const live = sinks_.Add(std::make_unique<FlightLive>(
-        source_.calibration.intrinsics, View(), options.max_image_rate_hz));
+        source_.live.calibration.intrinsics, View(), options.max_image_rate_hz));
     const FlightExamination examination(
-        source_.calibration,
+        source_.live.calibration,
         arguments_.record.empty() ? options_.fly.keep_folder : arguments_.record,
         options_.fly.recorder.free_space_mb);
     console_ = sinks_.Add(std::make_unique<FlightConsole>(options,
@@ -144,13 +146,13 @@ class Flight {
   }
 
   bool HasWorld() const {
-    return source_.calibration.body_from_camera &&
-           (source_.has_poses || !arguments_.autopilot.empty());
+    return source_.live.calibration.body_from_camera &&
+           (source_.live.has_poses || !arguments_.autopilot.empty());
   }
 
   // Names of the frames, as the topic or the options have them; stamps are ROS' time.
   RosFrames Frames() const {
-    if (source_.frames) return *source_.frames;
+    if (source_.dds.frames()) return *source_.dds.frames();
     RosFrames frames = OwnFrames(options_.dds, HasWorld());
     frames.to_stamps = RosTimeAhead();
     return frames;
@@ -159,9 +161,9 @@ class Flight {
   void OpenDds() {
     if (!arguments_.source.dds.is_given()) return;
     const DdsOptions& options = options_.dds;
-    if (!source_.node) source_.node = arguments_.source.dds.OpenNode(options);
-    OpenRos(std::make_unique<Ros2ResultConnection>(source_.node, options.node, Topics()),
-            WireFormat::kCdr);
+    std::shared_ptr<Ros2Node> node = source_.dds.node();
+    if (!node) node = arguments_.source.dds.OpenNode(options);
+    OpenRos(std::make_unique<Ros2ResultConnection>(node, options.node, Topics()), WireFormat::kCdr);
   }
 
   void OpenRos1() {
@@ -178,7 +180,7 @@ class Flight {
   void OpenRos(std::unique_ptr<ResultConnection> connection, WireFormat format) {
     sinks_.Add(MakeRosSink(
         std::make_unique<RosResults>(std::move(connection), format, options_.dds, Frames(),
-                                     source_.calibration, options_.landing, ReadModel()),
+                                     source_.live.calibration, options_.landing, ReadModel()),
         [this](const std::string& text) { Log(text); }));
   }
 
@@ -186,7 +188,7 @@ class Flight {
     const SourceArguments& source = arguments_.source;
     if (source.mcap.empty()) return;
     RequireNoSource(source.mcap, source.sources);
-    sinks_.Add(OpenMcapSink(source.mcap, source.force, source_.calibration.intrinsics, View(),
+    sinks_.Add(OpenMcapSink(source.mcap, source.force, source_.live.calibration.intrinsics, View(),
                             [this](const std::string& text) { Say(text, EventLevel::kWarning); }));
   }
 
@@ -197,8 +199,8 @@ class Flight {
       throw InputError(
           "--team: expected --autopilot or a source with poses, and the camera's mount");
     }
-    team_.emplace(arguments_.team, arguments_.source.dds.Domain(), options_.team, options_.hunt.map,
-                  ReadModel(), [this](const std::string& text) { Say(text); });
+    team_.emplace(arguments_.team.team, arguments_.source.dds.Domain(), options_.team,
+                  options_.hunt.map, ReadModel(), [this](const std::string& text) { Say(text); });
   }
 
   LiveSessionOptions SessionOptions() const {
@@ -207,7 +209,7 @@ class Flight {
                                .hunt = options_.hunt,
                                .flight = fly.flight,
                                .link = fly.link,
-                               .autopilot = source_.Asking(fly.autopilot),
+                               .autopilot = source_.simulated.Asking(fly.autopilot),
                                .recorder = fly.recorder,
                                .exposure = {}};
     if (fly.control_exposure) options.exposure = fly.exposure;
@@ -216,11 +218,11 @@ class Flight {
 
   LiveSessionParts Parts() {
     LiveSessionParts parts;
-    parts.source = source_.source.get();
-    parts.calibration = source_.calibration;
-    parts.rate_hz = source_.rate_hz;
-    parts.has_poses = source_.has_poses;
-    parts.camera = source_.actuator;
+    parts.source = source_.live.source.get();
+    parts.calibration = source_.live.calibration;
+    parts.rate_hz = source_.live.rate_hz;
+    parts.has_poses = source_.live.has_poses;
+    parts.camera = source_.live.actuator;
     if (arguments_.hunt) parts.objects = ReadModel();
     parts.sink = &sinks_;
     parts.autopilot = autopilot_.url;
@@ -229,13 +231,9 @@ class Flight {
     parts.output = arguments_.source.output;
     parts.record = arguments_.record;
     parts.replace = arguments_.source.force;
-    parts.pose = [this](const PoseSample& pose) { source_.TakePose(pose); };
-    parts.true_pose = [this](const PoseSample& pose) { source_.TakeTruePose(pose); };
-    if (source_.simulated != nullptr) {
-      parts.truth = [camera = source_.simulated](const Frame& frame) {
-        return camera->Truth(frame);
-      };
-    }
+    parts.pose = [this](const PoseSample& pose) { source_.simulated.TakePose(pose); };
+    parts.true_pose = [this](const PoseSample& pose) { source_.simulated.TakeTruePose(pose); };
+    parts.truth = [this](const Frame& frame) { return source_.simulated.Truth(frame); };
     return parts;
   }
 
@@ -265,7 +263,7 @@ class Flight {
   }
 
   void LeaveTeam() {
-    team_->Finish(session_->hunt()->Objects());
+    team_->Finish(session_->hunt()->Objects(), WasInterrupted);
     sinks_.Take(TeamReport{seen_, team_->Map()});
     if (session_->output() != nullptr) team_->WriteMap(/*origin=*/{}, *session_->output());
   }

@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/app/cli/hunt_command.h"
 
-#include <array>
-#include <cstddef>
 #include <memory>
-#include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "kestrel/app/cli/ground_warning.h"
-#include "kestrel/app/cli/hunt_sink.h"
-#include "kestrel/app/cli/pipeline_run.h"
+#include "kestrel/app/cli/interrupt.h"
+#include "kestrel/app/cli/recorded_run.h"
 #include "kestrel/app/cli/source_arguments.h"
-#include "kestrel/app/cli/team_link.h"
+#include "kestrel/app/cli/team_arguments.h"
+#include "kestrel/app/console/hunt_view.h"
+#include "kestrel/comms/team/team_link.h"
 #include "kestrel/core/base/error.h"
+#include "kestrel/flight/session/hunt_files.h"
+#include "kestrel/flight/session/hunt_run.h"
+#include "kestrel/flight/session/observation_sinks.h"
+#include "kestrel/vision/objects/color_grid.h"
 
 namespace kestrel {
 namespace {
@@ -28,126 +32,96 @@ struct HuntArguments {
   std::vector<double> origin;  // latitude, longitude, degrees; or empty
 };
 
-class HuntRun : public PipelineRun {
+// Shares the map of a hunt with its team, and passes what the team knows on to the other sinks.
+class TeamSharing : public ObservationSink {
  public:
-  HuntRun(const OpenedSource& opened, const ObjectModel& model, const ColorGrid& grid,
-          const HuntPipelineOptions& options, const HuntArguments& arguments, TeamLink* team,
-          RosResults* dds)
-      : pipeline_(opened.calibration, model, grid, options),
-        mcap_(arguments.source.OpenMcap(opened.calibration.intrinsics, HuntView{model})),
-        sink_(arguments.source.Output(opened), arguments.origin),
-        has_map_(opened.has_world() && !options.still),
-        team_(team),
-        dds_(dds),
-        altitude_m_(arguments.source.altitude_m) {
-    pipeline_.SetAltitude(altitude_m_);
-  }
+  TeamSharing(std::unique_ptr<TeamLink> team, const ObjectMap* map,
+              const std::vector<double>& origin, const OutputFolder* folder,
+              ObservationSink* others)
+      : team_(std::move(team)), map_(map), origin_(origin), folder_(folder), others_(others) {}
 
-  void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
-
-  // Time from the middle row to the last row of a rolling shutter.
-  Duration after_frame() const override {
-    return DurationFromSeconds(pipeline_.options().readout_s / 2);
-  }
-
-  Duration Process(const Frame& frame) override {
-    const HuntObservation& observation = pipeline_.Process(frame.image, frame.time);
-    sink_.Write(frame, observation, pipeline_);
-    if (mcap_) mcap_->Write(frame, observation);
-    if (dds_ != nullptr) dds_->Publish(frame, observation);
-    detections_ += observation.report.detections.size();
-    for (std::size_t i = 0; i < kObjectStageCount; ++i) passed_[i] += observation.report.passed[i];
-    has_world_ = observation.world_from_camera.has_value();
-    if (team_ != nullptr) ShareMap(observation);
-    return observation.detect_time;
-  }
-
-  std::string Warning() const override { return GroundWarning(pipeline_, altitude_m_, has_world_); }
-
-  void Finish() override {
-    if (has_map_) sink_.WriteMap(pipeline_);
-    if (mcap_) mcap_->Close();
-    if (team_ != nullptr) LeaveTeam();
-    if (dds_ != nullptr) dds_->Flush();
-  }
-
-  std::string Found() const override { return fmt::format("{} detections", detections_); }
-
-  // Number of segments left after each step, as in the paper's Table 3.
-  std::string Remarks() const override {
-    std::string remarks = "segments";
-    for (std::size_t i = 0; i < kObjectStageCount; ++i) {
-      remarks += fmt::format("{} {} {}", i == 0 ? "" : ",", passed_[i],
-                             ToString(static_cast<ObjectStage>(i)));
-    }
-    if (team_ != nullptr) remarks += "\n" + team_->Found();
-    return remarks + "\n";
-  }
-
- private:
-  void ShareMap(const HuntObservation& observation) {
-    if (observation.world_from_camera) {
-      team_->SetPosition(observation.world_from_camera->translation);
-    }
-    seen_ = observation.time;
+  void Take(const Observation& observation) override {
+    const auto& seen = std::get<HuntObservation>(observation.seen);
+    if (seen.world_from_camera) team_->SetPosition(seen.world_from_camera->translation);
+    seen_ = seen.time;
     if (team_->IsTimeToTell()) {
-      team_->Tell(pipeline_.map().Confirmed());
-      PublishTeam();
+      team_->Tell(map_->Confirmed());
+      Publish();
     }
     team_->Exchange();
   }
 
-  void LeaveTeam() {
-    team_->Finish(pipeline_.map().Confirmed());
-    PublishTeam();
-    sink_.WriteTeamMap(team_);
+  void Finish() override {
+    team_->Finish(map_->Confirmed(), WasInterrupted);
+    Publish();
+    if (folder_ != nullptr) team_->WriteMap(origin_, *folder_);
   }
 
-  void PublishTeam() {
-    if (dds_ != nullptr) dds_->Publish(TeamReport{seen_, team_->Map()});
-  }
+  std::string Found() { return team_->Found(); }
 
-  HuntPipeline pipeline_;
-  std::unique_ptr<ObservationFile> mcap_;
-  HuntSink sink_;
-  bool has_map_;
-  TeamLink* team_;   // null: none
-  RosResults* dds_;  // null: none
-  std::optional<double> altitude_m_;
-  bool has_world_ = false;  // the last frame had a pose
-  Time seen_{};             // time of the last frame
-  std::size_t detections_ = 0;
-  std::array<std::size_t, kObjectStageCount> passed_{};
+ private:
+  void Publish() { others_->Take(TeamReport{seen_, team_->Map()}); }
+
+  std::unique_ptr<TeamLink> team_;
+  const ObjectMap* map_;
+  std::vector<double> origin_;
+  const OutputFolder* folder_;  // null: no file is written
+  ObservationSink* others_;
+  Time seen_{};  // time of the last frame
 };
 
 // A team shares maps, so there must be one.
-void RequireMap(const OpenedSource& opened, const HuntPipelineOptions& options) {
-  if (options.still) throw InputError("--team: expected a source that is no --still");
+void RequireMap(const OpenedSource& opened, bool is_still) {
+  if (is_still) throw InputError("--team: expected a source that is no --still");
   if (!opened.has_world()) {
     throw InputError("--team: expected a source with poses, and the camera's mount");
   }
+}
+
+ObjectModel ReadModel(const HuntArguments& arguments) {
+  return arguments.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments.model);
+}
+
+ColorGrid ReadGrid(const HuntArguments& arguments, const ObjectModel& model) {
+  if (arguments.grid.empty()) return ColorGrid(model.colors);
+  return ColorGrid::Load(arguments.grid, model.colors.colors.size());
+}
+
+std::unique_ptr<TeamLink> OpenTeam(const HuntArguments& arguments, const OpenedSource& opened,
+                                   const KestrelOptions& options, bool is_still,
+                                   const ObjectModel& model) {
+  if (arguments.team.team.empty()) return nullptr;
+  RequireMap(opened, is_still);
+  return std::make_unique<TeamLink>(
+      arguments.team.team, arguments.source.dds.Domain(), options.team, options.hunt.map, model,
+      [](const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); });
 }
 
 void RunHunt(const HuntArguments& arguments) {
   const KestrelOptions all_options = arguments.source.options.Read();
   HuntPipelineOptions options = all_options.hunt;
   if (arguments.source.still) options.still = true;
-  const ObjectModel model =
-      arguments.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments.model);
-  const ColorGrid grid = arguments.grid.empty()
-                             ? ColorGrid(model.colors)
-                             : ColorGrid::Load(arguments.grid, model.colors.colors.size());
-  const OpenedSource opened = arguments.source.Open(PixelFormat::kBgr);
-  std::optional<TeamLink> team;
-  if (!arguments.team.team.empty()) {
-    RequireMap(opened, options);
-    team.emplace(arguments.team, arguments.source.dds.Domain(), all_options.team, options.map,
-                 model, [](const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); });
+  const ObjectModel model = ReadModel(arguments);
+  const ColorGrid grid = ReadGrid(arguments, model);
+  const OpenedSource opened = OpenRecording(arguments.source.Recording(PixelFormat::kBgr));
+  const bool has_map = opened.has_world() && !options.still;
+  std::unique_ptr<TeamLink> team = OpenTeam(arguments, opened, all_options, options.still, model);
+  HuntRun hunt(opened, model, grid, options, arguments.source.altitude_m);
+  const HuntPipeline& pipeline = hunt.pipeline();
+  ObservationSinks sinks;
+  auto files = std::make_unique<HuntFiles>(arguments.source.Output(opened), &pipeline, has_map,
+                                           arguments.origin);
+  AddDdsSink(arguments.source, opened, all_options, has_map, model, &sinks);
+  // The team finishes after the files are written: that may be a long wait.
+  TeamSharing* sharing = nullptr;
+  if (team) {
+    sharing = sinks.Add(std::make_unique<TeamSharing>(std::move(team), &pipeline.map(),
+                                                      arguments.origin, files->folder(), &sinks));
   }
-  const std::unique_ptr<RosResults> dds = OpenRosResults(arguments.source, opened, all_options,
-                                                         /*is_still=*/options.still, model);
-  HuntRun run(opened, model, grid, options, arguments, team ? &*team : nullptr, dds.get());
-  RunPipeline(opened, &run);
+  AddMcapSink(arguments.source, opened, HuntView{model}, &sinks);
+  sinks.Add(std::move(files));
+  RunToEnd(opened, &hunt, &sinks);
+  if (sharing != nullptr) fmt::print(stderr, "{}\n", sharing->Found());
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "kestrel/app/cli/fly_options.h"
-#include "kestrel/app/cli/team_link.h"
 #include "kestrel/app/console/console_options.h"
+#include "kestrel/comms/team/team_link.h"
 #include "kestrel/flight/ros/dds_options.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"

@@ -3,13 +3,11 @@
 
 #include <filesystem>
 #include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/parse_number.h"
-#include "kestrel/core/camera/calibration_reader.h"
 
 namespace kestrel {
 namespace {
@@ -85,47 +83,16 @@ void SourceArguments::AddTo(CLI::App* command) {
   command->add_flag("--force", force, "Replace files that exist");
 }
 
-OpenedSource SourceArguments::Open(PixelFormat format) const {
-  OpenedSource opened{bag.Open(sources, format), {}};
-  opened.calibration = FindCalibration(*opened.source);
-  return opened;
+RecordingChoice SourceArguments::Recording(PixelFormat format) const {
+  RecordingChoice choice = bag.Recording(sources, format);
+  choice.camera = camera;
+  if (clock_offset) choice.clock_offset = DurationFromSeconds(*clock_offset);
+  return choice;
 }
 
 OutputOptions SourceArguments::Output(const OpenedSource& opened) const {
   return {
       .folder = output, .force = force, .annotate = annotate, .rate_hz = opened.source->rate_hz()};
-}
-
-std::unique_ptr<ObservationFile> SourceArguments::OpenMcap(
-    const CameraIntrinsics& intrinsics, std::variant<LandingView, HuntView> view) const {
-  if (mcap.empty()) return nullptr;
-  RequireNoSource(mcap, sources);
-  return std::make_unique<ObservationFile>(mcap, force, intrinsics, std::move(view));
-}
-
-CameraCalibration SourceArguments::FindCalibration(const FrameSource& source) const {
-  CameraCalibration calibration;
-  if (camera.empty()) {
-    const std::optional<CameraCalibration> own = source.calibration();
-    if (!own) {
-      throw InputError(
-          "no calibration: the source has none, give one by --camera FILE (EuRoC sensor.yaml, "
-          "Kalibr camchain.yaml, ROS camera_info YAML or OpenCV YAML)");
-    }
-    calibration = *own;
-  } else {
-    calibration = ReadCalibration(camera);
-  }
-  if (!calibration.body_from_camera) {
-    const CameraMount own = source.mount();
-    calibration.body_from_camera = own.body_from_camera;
-    if (!calibration.clock_offset) calibration.clock_offset = own.clock_offset;
-  }
-  if (clock_offset) calibration.clock_offset = DurationFromSeconds(*clock_offset);
-  if (!calibration.body_from_camera && !source.poses().empty()) {
-    fmt::print(stderr, "kestrel: the calibration has no mount: no positions in the world\n");
-  }
-  return calibration;
 }
 
 }  // namespace kestrel

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -12,20 +10,10 @@
 #include "kestrel/app/cli/bag_arguments.h"
 #include "kestrel/app/cli/dds_arguments.h"
 #include "kestrel/app/cli/option_arguments.h"
-#include "kestrel/app/cli/result_sink.h"
-#include "kestrel/app/foxglove/observation_file.h"
-#include "kestrel/core/camera/calibration.h"
-#include "kestrel/io/recording/frame_source.h"
+#include "kestrel/flight/session/result_files.h"
+#include "kestrel/io/bags/open_recording.h"
 
 namespace kestrel {
-
-struct OpenedSource {
-  std::unique_ptr<FrameSource> source;
-  CameraCalibration calibration;
-
-  // True when frames can be placed in the world, by poses and the camera's mount.
-  bool has_world() const { return calibration.body_from_camera && !source->poses().empty(); }
-};
 
 // Arguments that `land` and `hunt` share: the source of the frames and the destination of the
 // results. Must live until the command line is parsed.
@@ -47,20 +35,10 @@ struct SourceArguments {
   // Adds the arguments for reading only, without those for the results.
   void AddReadingTo(CLI::App* command);
 
-  // Opens the source with the calibration FILE or its own. A FILE without a mount gets the
-  // source's, and its clock offset. Says on stderr when there are poses but no mount. Throws
-  // InputError when there is no calibration, or when source or calibration are not valid.
-  OpenedSource Open(PixelFormat format) const;
+  // The recording and what the arguments say of it. Warnings go to stderr.
+  RecordingChoice Recording(PixelFormat format) const;
 
   OutputOptions Output(const OpenedSource& opened) const;
-
-  // Opens the file of --mcap; null without. Throws InputError as ObservationFile does, and when the
-  // file is the source.
-  std::unique_ptr<ObservationFile> OpenMcap(const CameraIntrinsics& intrinsics,
-                                            std::variant<LandingView, HuntView> view) const;
-
- private:
-  CameraCalibration FindCalibration(const FrameSource& source) const;
 };
 
 // Throws InputError when the file to be written is one of the sources.

@@ -10,13 +10,13 @@
 #include <fmt/format.h>
 
 #include "kestrel/app/cli/interrupt.h"
-#include "kestrel/app/cli/landing_sink.h"
 #include "kestrel/app/cli/progress_bar.h"
 #include "kestrel/app/cli/simulate_arguments.h"
 #include "kestrel/app/cli/source_arguments.h"
 #include "kestrel/app/evaluation/touchdown_plot.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
+#include "kestrel/flight/session/landing_files.h"
 #include "kestrel/io/recording/output_folder.h"
 #include "kestrel/io/recording/recording_writer.h"
 #include "kestrel/simulation/recordings/landing_simulation.h"
@@ -45,17 +45,19 @@ void WriteResult(const TouchdownResult& result, std::uint64_t seed, const Output
 // Flies, and writes images and results during the flight. Returns nothing when interrupted.
 std::optional<TouchdownResult> FlyInto(const RecordingWriter& writer, const std::string& annotate,
                                        double rate_hz, TouchdownSimulation* simulation) {
-  LandingSink sink(
-      {.folder = writer.part().string(), .force = true, .annotate = annotate, .rate_hz = rate_hz},
-      /*has_track=*/true, /*predict_s=*/{});
+  std::optional<LandingFiles> files;
   CatchInterrupts();
   ProgressBar progress(std::nullopt);
   std::size_t done = 0;
   return simulation->Fly([&](const cv::Mat& image, const LandingObservation& observation,
                              const LandingPipeline& pipeline) {
+    if (!files) {
+      files.emplace(OutputOptions{writer.part().string(), /*force=*/true, annotate, rate_hz},
+                    &pipeline, /*has_track=*/true, /*predict_s=*/std::vector<double>());
+    }
     writer.WriteImage(observation.time, image);
-    sink.Write({RecordedImagePath(observation.time).string(), observation.time, image}, observation,
-               pipeline);
+    files->Take(
+        {{RecordedImagePath(observation.time).string(), observation.time, image}, observation});
     progress.Show(++done);
     return !WasInterrupted();
   });

@@ -135,7 +135,12 @@ FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& t
     : feed_(DescriptionOf(title, view, colors.has_value())),
       arrivals_(kArrivals),
       server_(options, &feed_, WebAssets(), channels),
-      pictures_({.thread_name = "console frames", .frames = kFrames},
+      pictures_({.thread_name = "console frames",
+                 .frames = kFrames,
+                 .tell =
+                     [this](const std::string& error) {
+                       Say(EventLevel::kError, "this page shows no more frames: " + error);
+                     }},
                 std::make_unique<Page>(this, view, std::move(examination))) {
   if (colors) TeachColors(*colors, view);
 }

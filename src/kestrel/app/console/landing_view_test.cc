@@ -30,7 +30,7 @@ LandingObservation Seen() {
   observation.report.detection = detection;
   TargetEstimate target{};
   target.motion.mean.head<3>() = Eigen::Vector3d(1, 0, 0);
-  target.motion.mean.segment<3>(3) = Eigen::Vector3d(2, 0, 0);
+  target.motion.mean.segment<3>(TurnState::kVelocity) = Eigen::Vector3d(2, 0, 0);
   target.motion.covariance(0, 0) = 0.25;
   target.motion.covariance(1, 1) = 0.01;
   observation.target = target;

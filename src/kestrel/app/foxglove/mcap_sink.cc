@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/app/foxglove/mcap_sink.h"
 
-#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <utility>
@@ -11,7 +10,6 @@
 #include "kestrel/app/console/hunt_view.h"
 #include "kestrel/app/console/landing_view.h"
 #include "kestrel/app/foxglove/observation_file.h"
-#include "kestrel/core/base/error.h"
 
 namespace kestrel {
 namespace {
@@ -26,37 +24,35 @@ class McapWriter : public SinkWriter {
              std::function<void(const std::string&)> tell)
       : file_(path, replace, camera, view), tell_(std::move(tell)) {}
 
-  bool IsWanted() const override { return !has_failed_; }
   void Write(const Observation& observation, std::size_t /*waiting*/) override {
-    Try([&] { file_.writer().Write(observation); });
+    file_.writer().Write(observation);
   }
-  void Write(const SessionEvent& event) override {
-    Try([&] { file_.writer().Write(event); });
-  }
+  void Write(const SessionEvent& event) override { file_.writer().Write(event); }
   void Rest(bool had_frame) override {
-    if (!had_frame) Try([this] { file_.Flush(); });
+    if (!had_frame) file_.Flush();
   }
   void Finish(std::size_t dropped) override {
-    Try([this] { file_.Close(); });
-    if (dropped == 0 || has_failed_) return;
+    file_.Close();
+    if (dropped == 0) return;
     tell_(fmt::format("--mcap: {} frames are left out: the disk is too slow", dropped));
   }
 
  private:
-  template <class Work>
-  void Try(const Work& work) {
-    if (has_failed_) return;
-    try {
-      work();
-    } catch (const InputError& error) {
-      has_failed_ = true;
-      tell_(fmt::format("{}: the flight goes on without it", error.what()));
-    }
-  }
-
   ObservationFile file_;
   std::function<void(const std::string&)> tell_;
-  std::atomic<bool> has_failed_{false};
+};
+
+class McapFileSink : public ObservationSink {
+ public:
+  McapFileSink(const std::string& path, bool replace, const CameraIntrinsics& camera,
+               const std::variant<LandingView, HuntView>& view)
+      : file_(path, replace, camera, view) {}
+
+  void Take(const Observation& observation) override { file_.writer().Write(observation); }
+  void Finish() override { file_.Close(); }
+
+ private:
+  ObservationFile file_;
 };
 
 }  // namespace
@@ -65,9 +61,20 @@ std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool rep
                                                const CameraIntrinsics& camera,
                                                const std::variant<LandingView, HuntView>& view,
                                                std::function<void(const std::string&)> tell) {
+  AsynchronousSinkOptions options{
+      .thread_name = "mcap", .frames = kFrames, .patience = kFlushPeriod, .tell = {}};
+  options.tell = [tell](const std::string& error) {
+    tell(fmt::format("{}: the flight goes on without it", error));
+  };
   return std::make_unique<AsynchronousSink>(
-      AsynchronousSinkOptions{.thread_name = "mcap", .frames = kFrames, .patience = kFlushPeriod},
+      std::move(options),
       std::make_unique<McapWriter>(path, replace, camera, view, std::move(tell)));
+}
+
+std::unique_ptr<ObservationSink> OpenMcapFile(const std::string& path, bool replace,
+                                              const CameraIntrinsics& camera,
+                                              const std::variant<LandingView, HuntView>& view) {
+  return std::make_unique<McapFileSink>(path, replace, camera, view);
 }
 
 std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,

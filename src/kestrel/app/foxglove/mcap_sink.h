@@ -24,6 +24,12 @@ std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool rep
                                                const std::variant<LandingView, HuntView>& view,
                                                std::function<void(const std::string&)> tell);
 
+// Returns a sink that writes an MCAP file in the caller's thread and leaves nothing out; for
+// sessions over recordings. Take and Finish throw InputError as ObservationFile does.
+std::unique_ptr<ObservationSink> OpenMcapFile(const std::string& path, bool replace,
+                                              const CameraIntrinsics& camera,
+                                              const std::variant<LandingView, HuntView>& view);
+
 // The same for a landing with these options, and for a hunt for these objects.
 //
 // Example:

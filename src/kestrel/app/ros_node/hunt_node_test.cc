@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kestrel/app/ros_node/test_vision_node.h"
+#include "kestrel/app/ros_node/test_ros_node.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/io/recording/test_files.h"
@@ -17,12 +17,12 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 
 // A red disc under a camera that looks straight down from 4 m.
-class HuntNodeTest : public VisionNodeTest {
+class HuntNodeTest : public RosNodeTest {
  protected:
   static NodeOptions HuntOptions(const std::string& poses, const std::string& output) {
     return ReadNodeOptions({{"task", "hunt"}, {"poses", poses}, {"output", output}});
   }
-  static void TakeDisc(VisionNode* node, Time stamp) {
+  static void TakeDisc(RosNode* node, Time stamp) {
     static const cv::Mat kImage = [] {
       ObjectScene scene(/*height_m=*/4, /*tilt=*/0);
       scene.DrawDisc(scene.PointUnder({420, 140}, 0.012), 0.1, kRedPaint);
@@ -30,12 +30,10 @@ class HuntNodeTest : public VisionNodeTest {
     }();
     TakePicture(node, kImage, stamp, "camera");
   }
-  void SetUp() override {
-    camera_info_ = SerializeMessage(CameraInfoOf(ObjectCamera().intrinsics()), WireFormat::kRos1);
-  }
+  void SetUp() override { camera_info_ = CameraInfoOf(ObjectCamera().intrinsics()); }
   // Five images, one per second, with the UAV 4 m above the ground.
-  Time Hunt(VisionNode* node) {
-    node->TakeCameraInfo(camera_info_, "camera_info");
+  Time Hunt(RosNode* node) {
+    TakeMessage(node, camera_info_, "camera_info");
     TakeMount(node);
     Time stamp = kStamp;
     for (int i = 0; i < 5; ++i) {
@@ -48,11 +46,11 @@ class HuntNodeTest : public VisionNodeTest {
     return stamp;
   }
 
-  std::string camera_info_;
+  CameraInfoMessage camera_info_;
 };
 
 TEST_F(HuntNodeTest, ObjectsAreDetectionsAndAMap) {
-  VisionNode node(HuntOptions("topic", ""), &connection_);
+  RosNode node(HuntOptions("topic", ""), &connection_);
   const Time last = Hunt(&node);
   const auto found = connection_.Newest<Detection3DArrayMessage>(ResultTopic::kDetections);
   EXPECT_EQ(found.header.frame_id, "camera");
@@ -76,7 +74,7 @@ TEST_F(HuntNodeTest, ObjectsAreDetectionsAndAMap) {
 TEST_F(HuntNodeTest, TheMapIsSavedAndReplacedOnlyWhenAllowed) {
   const TestFolder files;
   const std::string folder = files / "map";
-  VisionNode node(HuntOptions("topic", folder), &connection_);
+  RosNode node(HuntOptions("topic", folder), &connection_);
   EXPECT_THROW(node.SaveMap(), InputError) << "no image yet";
   Hunt(&node);
   EXPECT_THAT(node.SaveMap(), HasSubstr("1 objects in " + folder + "/object_map.csv"));
@@ -92,33 +90,33 @@ TEST_F(HuntNodeTest, TheMapIsSavedAndReplacedOnlyWhenAllowed) {
 }
 
 TEST_F(HuntNodeTest, WhatIsMissingForAMapIsSaid) {
-  const auto error_of = [](VisionNode* node) {
+  const auto error_of = [](RosNode* node) {
     try {
       return node->SaveMap();
     } catch (const InputError& error) {
       return std::string(error.what());
     }
   };
-  VisionNode node(HuntOptions("none", ""), &connection_);
-  node.TakeCameraInfo(camera_info_, "camera_info");
+  RosNode node(HuntOptions("none", ""), &connection_);
+  TakeMessage(&node, camera_info_, "camera_info");
   TakeDisc(&node, kStamp);
   EXPECT_THAT(error_of(&node), HasSubstr("no map without poses"));
   FakeConnection other;
-  VisionNode with_poses(HuntOptions("topic", ""), &other);
+  RosNode with_poses(HuntOptions("topic", ""), &other);
   TakePose(&with_poses, kStamp);
-  with_poses.TakeCameraInfo(camera_info_, "camera_info");
+  TakeMessage(&with_poses, camera_info_, "camera_info");
   TakeMount(&with_poses);
   TakeDisc(&with_poses, kStamp);
   EXPECT_THAT(error_of(&with_poses), HasSubstr("set the parameter output"));
   FakeConnection landing;
-  VisionNode of_pattern(Options("none"), &landing);
+  RosNode of_pattern(Options("none"), &landing);
   TakeCameraInfo(&of_pattern);
   TakeImage(&of_pattern, kStamp);
   EXPECT_THAT(error_of(&of_pattern), HasSubstr("_task:=hunt"));
 }
 
 TEST_F(HuntNodeTest, GrayImagesHaveNoColours) {
-  VisionNode node(HuntOptions("none", ""), &connection_);
+  RosNode node(HuntOptions("none", ""), &connection_);
   TakeCameraInfo(&node);
   TakeImage(&node, kStamp);
   EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("the images are gray (mono8)")));
@@ -129,7 +127,7 @@ TEST_F(HuntNodeTest, AModelThatIsNotThereIsAnErrorAtTheStart) {
   NodeOptions options = HuntOptions("none", "");
   const TestFolder files;
   options.model = files / "objects.yaml";
-  EXPECT_THROW(VisionNode(options, &connection_), InputError);
+  EXPECT_THROW(RosNode(options, &connection_), InputError);
 }
 
 }  // namespace

@@ -11,14 +11,14 @@
 
 #include "kestrel/app/ros_node/node_connection.h"
 #include "kestrel/app/ros_node/node_options.h"
-#include "kestrel/app/ros_node/vision_node.h"
+#include "kestrel/app/ros_node/ros_node.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/ros1/ros1_result_connection.h"
+#include "kestrel/flight/ros1/ros1_subscriptions.h"
 
 namespace kestrel {
 namespace {
 
-constexpr std::uint32_t kPoseQueue = 200;
 constexpr std::array kHuntNodeTopics = {
     ResultTopic::kDetections,  ResultTopic::kMarkers, ResultTopic::kAnnotatedImage,
     ResultTopic::kDiagnostics, ResultTopic::kMap,     ResultTopic::kMapMarkers};
@@ -41,46 +41,12 @@ class Ros1NodeConnection : public NodeConnection {
   Ros1ResultConnection results_;
 };
 
-// The topic camera_info beside the image's, as in image_transport.
-std::string BesideOf(const std::string& topic, const std::string& name) {
-  return topic.substr(0, topic.rfind('/') + 1) + name;
-}
-
-void SubscribeCamera(const NodeOptions& options, Ros1Connection* ros, VisionNode* node) {
-  const std::string image = ros->ResolvedName("image");
-  if (options.image_transport == "compressed") {
-    ros->Subscribe(image + "/compressed", Ros1TypeOf(CompressedImageMessage::kType), /*queue=*/1,
-                   [node, image](const std::string&, const std::string& bytes) {
-                     node->TakeCompressedImage(bytes, image);
-                   });
-  } else {
-    ros->Subscribe(image, Ros1TypeOf(ImageMessage::kType), /*queue=*/1,
-                   [node, image](const std::string&, const std::string& bytes) {
-                     node->TakeImage(bytes, image);
-                   });
-  }
-  const std::string camera_info = BesideOf(image, "camera_info");
-  ros->Subscribe(camera_info, Ros1TypeOf(CameraInfoMessage::kType), /*queue=*/1,
-                 [node, camera_info](const std::string&, const std::string& bytes) {
-                   node->TakeCameraInfo(bytes, camera_info);
-                 });
-}
-
-void SubscribePoses(const NodeOptions& options, Ros1Connection* ros, VisionNode* node) {
-  if (options.poses == "none") return;
-  for (const bool is_static : {true, false}) {
-    const std::string topic = is_static ? "/tf_static" : "/tf";
-    ros->Subscribe(topic, Ros1TypeOf(TfMessage::kType), kPoseQueue,
-                   [=](const std::string&, const std::string& bytes) {
-                     node->TakeTransforms(bytes, is_static, topic);
-                   });
-  }
-  if (options.poses == "tf") return;
-  const std::string poses = ros->ResolvedName("poses");
-  ros->Subscribe(poses, {"*", "*", ""}, kPoseQueue,
-                 [node, poses](const std::string& type, const std::string& bytes) {
-                   node->TakePose(type, bytes, poses);
-                 });
+Ros1SourceTopics TopicsOf(const NodeOptions& options) {
+  Ros1SourceTopics topics;
+  topics.is_compressed = options.image_transport == "compressed";
+  topics.has_transforms = options.has_poses();
+  if (options.poses == "topic") topics.poses = "poses";
+  return topics;
 }
 
 // Returns the text of 'action', or its error.
@@ -92,7 +58,7 @@ Ros1Connection::Answer AnswerBy(const std::function<std::string()>& action) {
   }
 }
 
-void OfferServices(Ros1Connection* ros, VisionNode* node) {
+void OfferServices(Ros1Connection* ros, RosNode* node) {
   const auto offer = [ros](const char* name, const std::function<std::string()>& action) {
     ros->Offer(name, [action] { return AnswerBy(action); });
   };
@@ -129,9 +95,10 @@ int RunNode(int argc, char** argv) {
   const NodeOptions options = ReadNodeOptions(ros->Parameters());
   Ros1NodeConnection connection(ros,
                                 options.is_hunt() ? ResultTopics(kHuntNodeTopics) : kLandingTopics);
-  VisionNode node(options, &connection);
-  SubscribeCamera(options, ros.get(), &node);
-  SubscribePoses(options, ros.get(), &node);
+  RosNode node(options, &connection);
+  SubscribeTo(
+      TopicsOf(options), ros.get(),
+      [&node](const BagTopic& topic, const std::string& bytes) { node.Take(topic, bytes); });
   OfferServices(ros.get(), &node);
   ros->Spin([&node] { node.Tick(); });
   return 0;

@@ -8,9 +8,12 @@
 #include <variant>
 
 #include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
 
+#include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/parse_number.h"
+#include "kestrel/core/base/read_file.h"
 #include "kestrel/core/base/violations.h"
 
 namespace kestrel {
@@ -48,20 +51,57 @@ constexpr std::array<std::string_view, 26> kChangeable = {
 };
 constexpr std::string_view kPattern = "landing.detector.pattern";
 
+// What `kestrel config` has for its commands alone, but for the parts of it that a node has, too.
+constexpr std::array<std::string_view, 4> kOfCommands = {"console", "team", "dds", "fly"};
+constexpr std::array<std::string_view, 2> kOfNodes = {"fly.events", "fly.vision_thread"};
+
 bool IsIn(std::string_view key, std::string_view group) {
   return key == group || (key.starts_with(group) && key[group.size()] == '.');
 }
 
-bool IsChangeable(std::string_view key) {
-  if (IsIn(key, kPattern)) return false;
-  return std::any_of(kChangeable.begin(), kChangeable.end(),
+template <class Groups>
+bool IsInOneOf(std::string_view key, const Groups& groups) {
+  return std::any_of(groups.begin(), groups.end(),
                      [&](std::string_view group) { return IsIn(key, group); });
+}
+
+bool IsChangeable(std::string_view key) {
+  return !IsIn(key, kPattern) && IsInOneOf(key, kChangeable);
+}
+
+void Set(const std::string& key, const std::string& value, NodeOptions* options) {
+  if (IsInOneOf(key, kOfCommands) && !IsInOneOf(key, kOfNodes)) return;
+  SetOption(fmt::format("{}={}", key, value), options);
+}
+
+// Sets the options of a part of a YAML file, as rosparam would load them.
+void SetAll(const YAML::Node& part, const std::string& key, NodeOptions* options) {
+  if (part.IsScalar()) Set(key, part.Scalar(), options);
+  if (!part.IsMap()) return;
+  for (const auto& entry : part) {
+    const std::string& name = entry.first.Scalar();
+    SetAll(entry.second, key.empty() ? name : key + "." + name, options);
+  }
+}
+
+void ReadConfig(const std::string& file, NodeOptions* options) {
+  const std::string text = ReadFile(file);
+  try {
+    SetAll(YAML::Load(text), "", options);
+  } catch (const YAML::Exception& error) {
+    throw InputError(fmt::format("{}:{}: not YAML: {}", file, error.mark.line + 1, error.msg));
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", file, error.what()));
+  }
 }
 
 }  // namespace
 
 std::vector<std::string> NodeOptions::Validate() const {
-  std::vector<std::string> violations = kestrel.Validate();
+  std::vector<std::string> violations = ros.Validate();
+  AddViolations("landing", landing.Validate(), &violations);
+  AddViolations("hunt", hunt.Validate(), &violations);
+  AddViolations("fly", fly.Validate(), &violations);
   if (task != "landing" && task != "hunt") violations.push_back("task must be landing or hunt");
   if (image_transport != "raw" && image_transport != "compressed") {
     violations.push_back("image_transport must be raw or compressed");
@@ -69,12 +109,7 @@ std::vector<std::string> NodeOptions::Validate() const {
   if (poses != "topic" && poses != "tf" && poses != "none") {
     violations.push_back("poses must be topic, tf or none");
   }
-  if (body_frame.empty()) violations.push_back("body_frame must not be empty");
-  if (pattern_frame.empty()) violations.push_back("pattern_frame must not be empty");
-  if (target_frame.empty()) violations.push_back("target_frame must not be empty");
   RequireIn(altitude_m, 0, 1000, "altitude_m", &violations);
-  RequireIn(prediction_s, 0, 60, "prediction_s", &violations);
-  RequireIn(prediction_step_s, 0.01, 60, "prediction_step_s", &violations);
   if (!origin.empty()) {
     const std::vector<double> degrees = origin_degrees();
     if (degrees.size() != 2 || std::abs(degrees[0]) >= 90 || std::abs(degrees[1]) > 180) {
@@ -97,12 +132,12 @@ std::vector<double> NodeOptions::origin_degrees() const {
   return {*latitude, *longitude};
 }
 
-NodeOptions ReadNodeOptions(const std::vector<std::pair<std::string, std::string>>& parameters) {
+NodeOptions ReadNodeOptions(const NodeParameters& parameters) {
   NodeOptions options;
   for (const auto& [key, value] : parameters) {
-    if (key == "config" && !value.empty()) ReadOptions(value, &options.kestrel);
+    if (key == "config" && !value.empty()) ReadConfig(value, &options);
   }
-  for (const auto& [key, value] : parameters) SetOption(fmt::format("{}={}", key, value), &options);
+  for (const auto& [key, value] : parameters) Set(key, value, &options);
   RequireValid(options);
   return options;
 }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/vision/objects/color_samples.h"
 
 namespace kestrel {
@@ -82,11 +83,9 @@ std::optional<double> LeftOutRecall(ColorModel model, std::size_t color,
 
 // Median of the frame's wanted pixels, of which there must be at least one.
 float MedianValue(const FrameMarks& marks) {
-  std::vector<Hsv> colors = Colors({&marks, 1}, &FrameMarks::wanted);
-  const auto middle = colors.begin() + static_cast<std::ptrdiff_t>(colors.size() / 2);
-  std::nth_element(colors.begin(), middle, colors.end(),
-                   [](const Hsv& a, const Hsv& b) { return a.value < b.value; });
-  return middle->value;
+  std::vector<float> values;
+  for (const Hsv& color : Colors({&marks, 1}, &FrameMarks::wanted)) values.push_back(color.value);
+  return MedianInPlace(values);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "kestrel/calibration/lens/unlike_views.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/random.h"
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/camera/test_cameras.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/vision/landing/test_prints.h"
@@ -25,14 +26,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
-double Median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + std::ssize(values) / 2, values.end());
-  return values[values.size() / 2];
-}
-
 double MedianDifferencePx(const CameraIntrinsics& truth, const CameraIntrinsics& estimate,
                           double max_angle_deg) {
-  return Median(
+  return MedianInPlace(
       LensDifferencePx(CameraModel(truth), CameraModel(estimate), max_angle_deg * kPi / 180));
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/geometry/angles.h"
 
 namespace kestrel {
@@ -17,10 +18,7 @@ constexpr double kNearly = 0.99;  // of all edges
 
 double NearlyLargest(std::vector<double> values) {
   if (values.empty()) return 0;
-  const auto place = values.begin() +
-                     static_cast<std::ptrdiff_t>(kNearly * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
+  return QuantileInPlace(values, kNearly, QuantileRank::kLower);
 }
 
 // The field, of 'count', that contains a coordinate; integer coordinates are centres of pixels.

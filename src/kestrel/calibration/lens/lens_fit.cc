@@ -11,6 +11,7 @@
 #include <ceres/rotation.h>
 
 #include "kestrel/calibration/lens/lens_projection.h"
+#include "kestrel/core/base/robust_statistics.h"
 
 namespace kestrel {
 namespace {
@@ -332,10 +333,7 @@ double RobustSigma(const std::vector<std::vector<double>>& residuals_px) {
   for (const std::vector<double>& view : residuals_px) {
     for (const double residual : view) magnitudes.push_back(std::abs(residual));
   }
-  if (magnitudes.empty()) return 0;
-  const auto middle = magnitudes.begin() + std::ssize(magnitudes) / 2;
-  std::nth_element(magnitudes.begin(), middle, magnitudes.end());
-  return 1.4826 * *middle;
+  return RobustSigmaInPlace(magnitudes);
 }
 
 }  // namespace kestrel

@@ -14,6 +14,7 @@
 #include "kestrel/calibration/mount/pose_smoothing.h"
 #include "kestrel/calibration/mount/target_path.h"
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/geometry/angles.h"
 
 namespace kestrel {
@@ -215,9 +216,9 @@ std::vector<TargetSighting> WithoutOutliers(const FlightFit& fit, const Paramete
   constexpr double kSigmas = 4;
   constexpr double kMedianOfThree = 1.538;  // of a chi variable with 3 degrees of freedom
   const Eigen::VectorXd distances = fit.Residuals(parameters).rowwise().norm();
-  std::vector<double> sorted(distances.data(), distances.data() + distances.size());
-  std::nth_element(sorted.begin(), sorted.begin() + distances.size() / 2, sorted.end());
-  const double limit = kSigmas * sorted[sorted.size() / 2] / kMedianOfThree;
+  const double median =
+      MedianInPlace(std::vector<double>(distances.data(), distances.data() + distances.size()));
+  const double limit = kSigmas * median / kMedianOfThree;
   std::vector<TargetSighting> kept;
   for (Eigen::Index i = 0; i < distances.size(); ++i) {
     if (distances(i) <= limit) kept.push_back(fit.sightings()[i]);

@@ -11,6 +11,8 @@
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 
+#include "kestrel/core/base/robust_statistics.h"
+
 namespace kestrel {
 namespace {
 
@@ -228,9 +230,7 @@ class LineFit {
       double residual = 0;
       if (error(state_.data(), &residual)) magnitudes.push_back(std::abs(residual * error.sigma_m));
     }
-    const auto middle = magnitudes.begin() + std::ssize(magnitudes) / 2;
-    std::nth_element(magnitudes.begin(), middle, magnitudes.end());
-    return std::max(1.4826 * *middle, kLeastSigma_px * start_.pixel_m);
+    return std::max(RobustSigmaInPlace(magnitudes), kLeastSigma_px * start_.pixel_m);
   }
 
   LensPrior lens_;

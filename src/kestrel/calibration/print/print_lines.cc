@@ -7,6 +7,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/geometry/angles.h"
 
 namespace kestrel {
@@ -85,9 +86,7 @@ class PrintLines {
     sorted_.clear();
     std::copy_if(gray_.begin(), gray_.end(), std::back_inserter(sorted_),
                  [least](float gray) { return gray > least; });
-    const auto middle = sorted_.begin() + std::ssize(sorted_) / 2;
-    std::nth_element(sorted_.begin(), middle, sorted_.end());
-    return *middle;
+    return MedianInPlace(sorted_);
   }
 
   const CameraModel& camera_;

@@ -4,18 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <dds/dds.h>
-#include <dds/ddsi/ddsi_cdrstream.h>
-#include <dds/ddsi/ddsi_serdata.h>
-#include <dds/ddsi/q_protocol.h>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "kestrel/comms/dds/cyclone_cdr.h"
 #include "kestrel/comms/dds/dds_domain.h"
 #include "kestrel/comms/dds/opened_domain.h"
 #include "kestrel/core/base/error.h"
@@ -26,7 +23,6 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kEncapsulation = 4;  // bytes before the data in CDR
 constexpr char kDiscoveryInfo[] = "rmw_dds_common/ParticipantEntitiesInfo";
 constexpr std::string_view kTypeMiddle = "::msg::dds_::";
 constexpr std::string_view kTopicPrefix = "rt/";
@@ -64,40 +60,6 @@ const dds_topic_descriptor_t* DescriptorOf(std::string_view type) {
   return known == std::end(kTypes) ? nullptr : *known;
 }
 
-// A message in the form in which Cyclone takes it.
-class RosSample {
- public:
-  explicit RosSample(const dds_topic_descriptor_t* type)
-      : type_(type), memory_(std::calloc(1, type->m_size)) {}
-  ~RosSample() {
-    dds_stream_free_sample(memory_, type_->m_ops);
-    std::free(memory_);
-  }
-  RosSample(const RosSample&) = delete;
-  RosSample& operator=(const RosSample&) = delete;
-
-  // False when the bytes are not of the type.
-  bool Read(std::string_view bytes) {
-    if (bytes.size() < kEncapsulation) return false;
-    std::string data(bytes.substr(kEncapsulation));
-    const auto size = static_cast<std::uint32_t>(data.size());
-    std::uint32_t used = 0;
-    const bool is_whole = dds_stream_normalize_data(data.data(), &used, size, /*bswap=*/false,
-                                                    CDR_ENC_VERSION_1, type_->m_ops) != nullptr;
-    if (!is_whole || used != size) return false;
-    dds_istream_t stream;
-    dds_istream_init(&stream, size, data.data(), CDR_ENC_VERSION_1);
-    dds_stream_read(&stream, static_cast<char*>(memory_), type_->m_ops);
-    return true;
-  }
-
-  const void* get() const { return memory_; }
-
- private:
-  const dds_topic_descriptor_t* type_;
-  void* memory_;
-};
-
 struct QosDeleter {
   void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
 };
@@ -116,16 +78,6 @@ QosPointer MakeQos(const Ros2Qos& qos, const std::string& user_data) {
   dds_qset_ignorelocal(made.get(), DDS_IGNORELOCAL_PARTICIPANT);
   dds_qset_userdata(made.get(), user_data.data(), user_data.size());
   return made;
-}
-
-// Returns the bytes as sent: Cyclone pads them to four bytes, and stores the padding in the fourth.
-std::string BytesOf(const ddsi_serdata& message) {
-  constexpr std::size_t kOptions = 3;
-  std::string bytes(ddsi_serdata_size(&message), '\0');
-  ddsi_serdata_to_ser(&message, 0, bytes.size(), bytes.data());
-  bytes.resize(bytes.size() - static_cast<std::size_t>(bytes[kOptions] & 3));
-  bytes[kOptions] = 0;
-  return bytes;
 }
 
 // The type of the same name as in Humble.
@@ -253,8 +205,7 @@ struct Ros2Node::Entities {
   }
 
   static bool Publish(const Publisher& publisher, std::string_view bytes) {
-    RosSample sample(publisher.type);
-    return sample.Read(bytes) && dds_write(publisher.writer, sample.get()) >= 0;
+    return WriteCdr(publisher.writer, *publisher.type, bytes);
   }
 
   int domain;
@@ -321,19 +272,9 @@ std::size_t Ros2Node::Subscribe(const std::string& topic, std::string_view type,
 }
 
 void Ros2Node::Take(Duration timeout, const TakeMessage& take) {
-  constexpr std::size_t kAtOnce = 16;
   dds_waitset_wait(entities_->waitset, nullptr, 0, timeout.count());
   for (std::size_t i = 0; i < entities_->subscribers.size(); ++i) {
-    std::array<ddsi_serdata*, kAtOnce> messages{};
-    std::array<dds_sample_info_t, kAtOnce> infos{};
-    const int count = dds_takecdr(entities_->subscribers[i], messages.data(), kAtOnce, infos.data(),
-                                  DDS_ANY_STATE);
-    for (int k = 0; k < count; ++k) {
-      if (infos[k].valid_data) {
-        take(i, BytesOf(*messages[k]));
-      }
-      ddsi_serdata_unref(messages[k]);
-    }
+    TakeCdr(entities_->subscribers[i], [&](std::string_view bytes) { take(i, bytes); });
   }
 }
 

@@ -34,7 +34,7 @@ struct TeamTopic::Entities {
         participant(Require(dds_create_participant(domain, nullptr, nullptr), domain,
                             "participant (is there a network?)")) {
     try {
-      const std::string name = "kestrel/comms/team/" + team;
+      const std::string name = "kestrel/team/" + team;
       const dds_entity_t topic =
           Require(dds_create_topic(participant, &kestrel_msg_dds__TeamSample__desc, name.c_str(),
                                    nullptr, nullptr),

@@ -2,6 +2,7 @@
 #include "kestrel/comms/dds/team_topic.h"
 
 #include <chrono>
+#include <dds/dds.h>
 #include <string>
 #include <sys/wait.h>
 #include <thread>
@@ -50,6 +51,22 @@ TEST(TeamTopic, ThreeProcessesShareTheirMaps) {
     wait(&status);
     EXPECT_EQ(status, 0);
   }
+}
+
+// The name that docs/team.md gives to other programs.
+TEST(TeamTopic, HasTheNameThatOthersAreTold) {
+  const int domain = TestDomain();
+  const TeamTopic topic(domain, "test", "a");
+  const dds_entity_t participant =
+      dds_create_participant(static_cast<dds_domainid_t>(domain), nullptr, nullptr);
+  const dds_entity_t reader =
+      dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr);
+  void* sample = nullptr;
+  dds_sample_info_t info{};
+  ASSERT_EQ(dds_take(reader, &sample, &info, 1, 1), 1);
+  EXPECT_STREQ(static_cast<dds_builtintopic_endpoint_t*>(sample)->topic_name, "kestrel/team/test");
+  dds_return_loan(reader, &sample, 1);
+  dds_delete(participant);
 }
 
 TEST(TeamTopic, DomainsAreChecked) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <span>
 
+#include "kestrel/core/base/robust_statistics.h"
+
 namespace kestrel {
 namespace {
 
@@ -28,13 +30,6 @@ constexpr int kSimulatedCells = 40;       // of its window
 constexpr const ClockKind& KindOf(bool is_crystal) { return is_crystal ? kCrystal : kSimulated; }
 
 constexpr int kMinRoundTrips = 3;
-
-// Returns the middle value of 'values', which are reordered; there must be at least one.
-double MedianOf(std::span<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -288,8 +283,8 @@ double TimeSync::MedianDrift(std::span<const Middle> middles) {
   if (size == 0) return 0;
   const double span_s = middles.back().time_s - middles.front().time_s;
   const double weight = span_s * span_s / (span_s * span_s + kSure_s * kSure_s);
-  return weight *
-         std::clamp(MedianOf({slopes.data(), size}), -kSimulated.max_drift, kSimulated.max_drift);
+  return weight * std::clamp(MedianInPlace(std::span(slopes).first(size)), -kSimulated.max_drift,
+                             kSimulated.max_drift);
 }
 
 // Fits a line to the middles that is robust against up to half of the newest ones.
@@ -309,10 +304,10 @@ void TimeSync::FitSimulated(double now_s) {
     widths[size] = middle.width_s;
     values[size++] = middle.offset_s + line.drift * (now_s - middle.time_s);
   }
-  line.offset_s = MedianOf({values.data(), size});
-  line.width_s = std::max(MedianOf({widths.data(), size}), 0.0);
+  line.offset_s = MedianInPlace(std::span(values).first(size));
+  line.width_s = std::max(MedianInPlace(std::span(widths).first(size)), 0.0);
   for (double& value : std::span(values.data(), size)) value = std::abs(value - line.offset_s);
-  line.fit_sigma_s = kLeastSigma_s + MedianOf({values.data(), size});
+  line.fit_sigma_s = kLeastSigma_s + MedianInPlace(std::span(values).first(size));
   line_ = line;
   is_known_ = true;
 }

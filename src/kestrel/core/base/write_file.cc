@@ -20,21 +20,29 @@ void Sync(const std::string& path) {
   close(descriptor);
 }
 
-}  // namespace
-
-void WriteFile(const std::string& path, std::string_view bytes) {
+void Replace(const std::string& path, std::string_view bytes, bool syncs) {
   // In the same folder, because rename is atomic only within one file system.
   const std::string draft = path + ".part";
   std::ofstream file(draft, std::ios::binary | std::ios::trunc);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
-  if (file) Sync(draft);
+  if (file && syncs) Sync(draft);
   std::error_code error;
   if (file) std::filesystem::rename(draft, path, error);
   if (file && !error) return;
   std::error_code ignored;
   std::filesystem::remove(draft, ignored);
   throw InputError(path + ": cannot be written");
+}
+
+}  // namespace
+
+void WriteFile(const std::string& path, std::string_view bytes) {
+  Replace(path, bytes, /*syncs=*/true);
+}
+
+void ReplaceFile(const std::string& path, std::string_view bytes) {
+  Replace(path, bytes, /*syncs=*/false);
 }
 
 }  // namespace kestrel

@@ -11,4 +11,8 @@ namespace kestrel {
 // Throws InputError when it cannot be written; the old file then stays unchanged.
 void WriteFile(const std::string& path, std::string_view bytes);
 
+// The same without waiting for the disk: what a power loss leaves is the file system's choice until
+// it is synced.
+void ReplaceFile(const std::string& path, std::string_view bytes);
+
 }  // namespace kestrel

@@ -34,6 +34,14 @@ TEST_F(WriteFileTest, ReplacesTheFileAndLeavesNothingElse) {
   EXPECT_EQ(FileCount(), 1);
 }
 
+TEST_F(WriteFileTest, ReplacesTheFileWithoutWaitingToo) {
+  ReplaceFile(Path("a"), "old");
+  ReplaceFile(Path("a"), "new");
+  EXPECT_EQ(ReadFile(Path("a")), "new");
+  EXPECT_EQ(FileCount(), 1);
+  EXPECT_THROW(ReplaceFile(Path("missing/a"), "text"), InputError);
+}
+
 TEST_F(WriteFileTest, WhatCannotBeWrittenIsSaid) {
   EXPECT_THROW(WriteFile(Path("missing/a"), "text"), InputError);
 }

@@ -10,6 +10,8 @@
 #include <limits>
 #include <span>
 
+#include "kestrel/core/base/robust_statistics.h"
+
 namespace kestrel {
 namespace {
 
@@ -122,9 +124,7 @@ int ContrastAcross(const cv::Mat& image, const GridPoint* points, std::size_t co
     contrast[seen++] = image.at<std::uint8_t>(bright) - image.at<std::uint8_t>(dark);
   }
   if (seen == 0) return 0;
-  const auto middle = contrast.begin() + static_cast<std::ptrdiff_t>(seen / 2);
-  std::nth_element(contrast.begin(), middle, contrast.begin() + static_cast<std::ptrdiff_t>(seen));
-  return *middle;
+  return MedianInPlace(std::span(contrast).first(seen));
 }
 
 }  // namespace

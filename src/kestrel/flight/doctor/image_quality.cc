@@ -9,6 +9,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/flight/onboard/repeated_image.h"
 
 namespace kestrel {
@@ -69,10 +70,7 @@ std::optional<double> SharpEdges(const cv::Mat& gray) {
     }
   }
   if (widths.size() < kFewest) return std::nullopt;
-  const auto place =
-      widths.begin() + static_cast<std::ptrdiff_t>(kSharper * static_cast<double>(widths.size()));
-  std::nth_element(widths.begin(), place, widths.end());
-  return *place;
+  return QuantileInPlace(widths, kSharper, QuantileRank::kShareBelow);
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
+
+#include "kestrel/core/base/robust_statistics.h"
 
 namespace kestrel {
 
@@ -14,10 +14,7 @@ inline constexpr double kMilliseconds = 1000;  // per second
 
 // Returns the quantile 'share' (0 to 1) of the values, by nearest rank; 'values' must not be empty.
 inline double QuantileOf(std::vector<double> values, double share) {
-  const auto last = static_cast<double>(values.size() - 1);
-  const auto place = values.begin() + std::lround(share * last);
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
+  return QuantileInPlace(values, share, QuantileRank::kNearest);
 }
 
 inline double MedianOf(std::vector<double> values) {

@@ -139,9 +139,10 @@ class TestTarget {
     TargetEstimate target;
     target.time = time;
     target.motion.mean.head<3>() = Position(time_s);
-    target.motion.mean.segment<3>(3) = Velocity(time_s);
-    target.motion.mean(6) = TurnRate(time_s);
-    target.motion.mean(7) = (TurnRate(time_s + 0.1) - TurnRate(time_s - 0.1)) / 0.2;
+    target.motion.mean.segment<3>(TurnState::kVelocity) = Velocity(time_s);
+    target.motion.mean(TurnState::kTurnRate) = TurnRate(time_s);
+    target.motion.mean(TurnState::kTurnChange) =
+        (TurnRate(time_s + 0.1) - TurnRate(time_s - 0.1)) / 0.2;
     for (int axis = 0; axis < 2; ++axis) {
       target.motion.mean(axis) += 0.02 * wander_[axis](time_s);
       target.motion.mean(3 + axis) += 0.05 * wander_[2 + axis](time_s);

@@ -2,6 +2,7 @@
 #include "kestrel/flight/onboard/flight_program.h"
 
 #include <chrono>
+#include <exception>
 #include <thread>
 #include <utility>
 #include <variant>
@@ -42,15 +43,26 @@ FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
   threads.emplace_back([this] { Capture(); });
   threads.emplace_back([this] { WriteResults(); });
   if (parts_.connection != nullptr) threads.emplace_back([this] { Communicate(); });
-  while (!is_over_) {
-    if (is_stopped()) End(FlightEnd::kStopped);
-    if (parts_.sink != nullptr) parts_.sink->Take(ReportNow());
-    std::this_thread::sleep_for(kPatience);
+  std::exception_ptr error;
+  try {
+    Watch(is_stopped);
+  } catch (...) {
+    error = std::current_exception();
+    End(FlightEnd::kFailed);
   }
   events_.Close();
   for (std::thread& thread : threads) thread.join();
   parts_.vision->WriteResults();  // rows of the last frames
+  if (error) std::rethrow_exception(error);
   return end_;
+}
+
+void FlightProgram::Watch(const std::function<bool()>& is_stopped) {
+  while (!is_over_) {
+    if (is_stopped()) End(FlightEnd::kStopped);
+    if (parts_.sink != nullptr) parts_.sink->Take(Report());
+    std::this_thread::sleep_for(kPatience);
+  }
 }
 
 // Only the first reason counts.
@@ -116,12 +128,13 @@ void FlightProgram::See() {
   for (;;) {
     const Event event = events_.Next();
     if (std::holds_alternative<EndOfStream>(event)) return;
+    const std::lock_guard lock(vision_mutex_);
     if (const auto* pose = std::get_if<PoseSample>(&event)) {
       parts_.vision->AddPose(*pose);
       continue;
     }
     const auto& frame = std::get<Frame>(event);
-    if (IsFrozen(frame)) continue;
+    if (!parts_.sees_repeated && IsFrozen(frame)) continue;
     latency_.step(kVision).Add(Now() - frame.time);
     const TrackSnapshot snapshot = parts_.vision->Process(frame, parts_.sink);
     latency_.step(kDetection).Add(snapshot.detect_time);
@@ -130,6 +143,11 @@ void FlightProgram::See() {
     track_.Set(snapshot);
     WarnOnce();
   }
+}
+
+void FlightProgram::BetweenFrames(const std::function<void()>& action) {
+  const std::lock_guard lock(vision_mutex_);
+  action();
 }
 
 // Warns once that the set-up contradicts the images; the summary says it again, with all that is
@@ -224,7 +242,7 @@ std::shared_ptr<FlightRecorder> FlightProgram::Recorder() const {
   return parts_.recording != nullptr ? parts_.recording->Get() : nullptr;
 }
 
-FlightReport FlightProgram::ReportNow() const {
+FlightReport FlightProgram::Report() const {
   FlightReport report{.trouble = parts_.source->error(),
                       .capture = parts_.source->counters(),
                       .events = events_.counters(),

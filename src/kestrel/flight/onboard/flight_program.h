@@ -41,6 +41,7 @@ struct FlightParts {
   ObservationSink* sink = nullptr;
   bool guides = false;                 // flies by set-points when the pilot gives the mode
   bool source_has_poses = false;       // the autopilot's poses are then not used
+  bool sees_repeated = false;          // processes images that equal the one before
   std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
   // Returns the true pattern at the time of a frame, in a simulation that knows it.
   std::function<std::optional<TruePattern>(const Frame&)> truth;
@@ -58,7 +59,8 @@ class FlightProgram {
                 const FlightParts& parts, std::function<void(const std::string&)> say);
 
   // Flies until the UAV has landed, the source ends or 'is_stopped', which is called ten times a
-  // second, returns true. Call it once only.
+  // second, returns true. Throws what 'is_stopped' throws, once the threads have ended. Call it
+  // once only.
   FlightEnd Run(const std::function<bool()>& is_stopped);
 
   // Returns the present state in one line. Called by any thread.
@@ -66,6 +68,12 @@ class FlightProgram {
   // Returns latencies of each step and the counts of what was dropped and sent; a few lines, after
   // the flight.
   std::string Summary() const;
+
+  // Calls 'action' between two frames: the vision waits for it. By any thread.
+  void BetweenFrames(const std::function<void()>& action);
+
+  // Returns the present state. Called by any thread.
+  FlightReport Report() const;
 
   // Takes a pose of the autopilot, on the local clock, from its listener. Called by the thread in
   // which Run lets the connection receive.
@@ -75,6 +83,7 @@ class FlightProgram {
   // The steps whose latency is measured.
   enum Step { kArrival, kVision, kDetection, kMessage, kSetPoint };
 
+  void Watch(const std::function<bool()>& is_stopped);
   void Capture();
   void See();
   void Communicate();
@@ -87,7 +96,6 @@ class FlightProgram {
   void TellTarget(Time now);
   void WatchFlight(Time now);
   void End(FlightEnd end);
-  FlightReport ReportNow() const;
   std::shared_ptr<FlightRecorder> Recorder() const;  // null: nothing is recorded
 
   FlightOptions options_;
@@ -108,6 +116,8 @@ class FlightProgram {
   LandingWatch landing_;
   Time heard_;  // the newest time at which the autopilot was heard
   std::optional<PoseSample> newest_pose_;
+
+  std::mutex vision_mutex_;  // held while the vision works
 
   // Used by the vision's thread only.
   RepeatedImage repeated_image_;

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
-#include <fstream>
 #include <sys/statvfs.h>
 #include <system_error>
 #include <utility>
@@ -14,9 +12,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/violations.h"
-#include "kestrel/core/base/write_file.h"
 #include "kestrel/core/codec/png_codec.h"
-#include "kestrel/io/recording/euroc_text.h"
 #include "kestrel/io/recording/recording_writer.h"
 
 namespace kestrel {
@@ -41,28 +37,19 @@ fs::path MadeFolder(const fs::path& folder, bool replace, const FlightRecorderOp
   return folder;
 }
 
-// Removes an existing recording, and makes the folders of a new one.
-void MakeParts(const fs::path& folder) {
+const std::vector<EurocTable> kTables{EurocTable::kImages,        EurocTable::kExposures,
+                                      EurocTable::kDroppedImages, EurocTable::kPoses,
+                                      EurocTable::kTruePoses,     EurocTable::kTruePatterns,
+                                      EurocTable::kPackets};
+
+// Returns the folder without the recording that may be in it.
+fs::path Emptied(const fs::path& folder) {
   std::error_code error;
   for (const char* old : {"mav0", "mavlink.tlog"}) {
     if (!error) fs::remove_all(folder / old, error);
   }
-  for (const char* part :
-       {"cam0/data", "nav0", "state_groundtruth_estimate0", "landing_pattern0"}) {
-    if (!error) fs::create_directories(folder / "mav0" / part, error);
-  }
   RequireDone(error, folder);
-}
-
-std::vector<RecordedFiles::File> FilesOf(const fs::path& folder) {
-  const fs::path root = folder / "mav0";
-  return {{root / "cam0/data.csv", "#timestamp [ns],filename\n"},
-          {root / "cam0/exposure.csv", "#timestamp [ns],exposure [s]\n"},
-          {root / "cam0/dropped.csv", "#timestamp [ns],reason\n"},
-          {root / "nav0/data.csv", EurocPoseColumns("WB") + "\n"},
-          {root / "state_groundtruth_estimate0/data.csv", TrueStateHeader()},
-          {root / "landing_pattern0/data.csv", LandingTruthHeader()},
-          {folder / "mavlink.tlog", ""}};
+  return folder;
 }
 
 Duration UtcOffset() {
@@ -94,27 +81,26 @@ FlightRecorder::FlightRecorder(const fs::path& folder, bool replace,
       lock_(folder_.string()),
       tell_(std::move(tell)),
       utc_offset_(UtcOffset()),
-      files_(folder_, FilesOf(folder_)),
+      writer_(Emptied(folder_), kTables),
       images_(static_cast<std::size_t>(options.queue_frames)),
       records_(kRecords) {
   if (options_.compression == "jpg") jpeg_encoder_.emplace(options_.jpg_quality);
-  MakeParts(folder_);
-  WriteFile(folder_ / "mav0/cam0/sensor.yaml", EurocCalibrationText(calibration, rate_hz));
-  WriteFile(folder_ / "mav0/nav0/sensor.yaml", EurocPoseSensorText(kPoseRate_hz));
-  writer_ = std::thread([this] { RunWriter(); });
-  committer_ = std::thread([this] { RunCommitter(); });
+  writer_.WriteCamera(calibration, rate_hz);
+  writer_.WritePoseSensor(kPoseRate_hz);
+  write_thread_ = std::thread([this] { RunWriter(); });
+  commit_thread_ = std::thread([this] { RunCommitter(); });
 }
 
 FlightRecorder::~FlightRecorder() {
   is_closing_ = true;
   images_.Close();
-  writer_.join();
+  write_thread_.join();
   {
     const std::lock_guard lock(stop_mutex_);
     is_stopping_ = true;
   }
   stop_.notify_all();
-  committer_.join();
+  commit_thread_.join();
 }
 
 void FlightRecorder::Say(const std::string& text) const {
@@ -179,7 +165,7 @@ void FlightRecorder::RunCommitter() {
       std::unique_lock lock(stop_mutex_);
       is_last = stop_.wait_for(lock, period, [this] { return is_stopping_; });
     }
-    const std::string failure = files_.Commit();
+    const std::string failure = writer_.Commit();
     if (!failure.empty() && failure != told) Say("recording: " + failure);
     told = failure;
   }
@@ -189,13 +175,10 @@ void FlightRecorder::Write(const RecordedImage& image) {
   const Time time = image.frame.time;
   if (!IsNext(kImages, time)) return Drop(time, "not later than the image before");
   if (!HasRoom()) return Drop(time, "the disk is full");
-  const std::string name = fmt::format("{}.{}", ToNanoseconds(time), options_.compression);
-  if (!WriteImage(image.frame.image, folder_ / "mav0/cam0/data" / name)) {
-    return Drop(time, "it could not be written");
-  }
+  if (!WriteImage(image.frame)) return Drop(time, "it could not be written");
   image_count_.fetch_add(1, std::memory_order_relaxed);
-  files_.Add(kImages, fmt::format("{},{}\n", ToNanoseconds(time), name));
-  if (image.truth) files_.Add(kTruePatterns, LandingTruthRow(*image.truth));
+  writer_.ListImage(time, options_.compression);
+  if (image.truth) writer_.AddTruePattern(*image.truth);
 }
 
 // True when there is room for images. After a stop it requires a tenth more, so that writing does
@@ -227,21 +210,12 @@ void FlightRecorder::Encode(const cv::Mat& image) {
   if (!jpeg_encoder_->Append(image, &encoded_)) throw InputError("no JPEG of an image");
 }
 
-bool FlightRecorder::WriteImage(const cv::Mat& image, const fs::path& path) {
-  const fs::path draft = path.string() + ".part";
+bool FlightRecorder::WriteImage(const Frame& frame) {
   try {
-    Encode(image);
+    Encode(frame.image);
+    writer_.WriteImage(frame.time, options_.compression, encoded_);
   } catch (const InputError& error) {
     StopImages(error.what());
-    return false;
-  }
-  std::ofstream file(draft, std::ios::binary | std::ios::trunc);
-  file.write(encoded_.data(), static_cast<std::streamsize>(encoded_.size()));
-  file.close();
-  if (!file || std::rename(draft.c_str(), path.c_str()) != 0) {
-    std::error_code ignored;
-    fs::remove(draft, ignored);
-    StopImages("an image could not be written, is the disk full?");
     return false;
   }
   byte_count_.fetch_add(encoded_.size(), std::memory_order_relaxed);
@@ -255,45 +229,32 @@ void FlightRecorder::WriteRecords() {
   }
 }
 
-bool FlightRecorder::IsNext(FileIndex file, Time time) {
-  std::optional<Time>& last = last_times_[file];
+bool FlightRecorder::IsNext(Kind kind, Time time) {
+  std::optional<Time>& last = last_times_[kind];
   if (last && time <= *last) return false;
   last = time;
   return true;
 }
 
 void FlightRecorder::WriteRecord(const PoseSample& pose) {
-  if (!IsNext(kPoses, pose.time)) return;
-  files_.Add(kPoses, EurocPoseCells(pose.time, pose.world_from_body) + "\n");
+  if (IsNext(kPoses, pose.time)) writer_.AddPose(pose);
 }
 
 void FlightRecorder::WriteRecord(const TruePose& truth) {
-  const PoseSample& pose = truth.pose;
-  if (!IsNext(kTruePoses, pose.time)) return;
-  files_.Add(kTruePoses, TrueStateRow(pose.time, pose.world_from_body,
-                                      pose.motion.value_or(BodyMotion()).velocity_in_world));
+  if (IsNext(kTruePoses, truth.pose.time)) writer_.AddTruePose(truth.pose);
 }
 
 void FlightRecorder::WriteRecord(const Exposure& exposure) {
-  if (!IsNext(kExposures, exposure.from)) return;
-  files_.Add(kExposures,
-             fmt::format("{},{:.7f}\n", ToNanoseconds(exposure.from), exposure.exposure_s));
+  if (IsNext(kExposures, exposure.from)) writer_.AddExposure(exposure.from, exposure.exposure_s);
 }
 
 void FlightRecorder::WriteRecord(const Dropped& dropped) {
-  files_.Add(kDropped, fmt::format("{},{}\n", ToNanoseconds(dropped.time), dropped.reason));
+  writer_.AddDroppedImage(dropped.time, dropped.reason);
 }
 
-// A .tlog is a sequence of times (us of UTC, big endian) and packets.
 void FlightRecorder::WriteRecord(const Packet& packet) {
-  constexpr int kTimeBytes = 8;
-  const std::int64_t us = ToNanoseconds(packet.time + utc_offset_) / 1000;
-  row_.clear();
-  for (int shift = 8 * (kTimeBytes - 1); shift >= 0; shift -= 8) {
-    row_ += static_cast<char>(static_cast<std::uint64_t>(us) >> shift);
-  }
-  row_.append(reinterpret_cast<const char*>(packet.bytes.data()), packet.size);
-  files_.Add(kPackets, row_);
+  const std::int64_t utc_us = ToNanoseconds(packet.time + utc_offset_) / 1000;
+  writer_.AddPacket(utc_us, std::span(packet.bytes).first(packet.size));
 }
 
 }  // namespace kestrel

@@ -24,8 +24,8 @@
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/codec/jpeg_codec.h"
 #include "kestrel/core/poses/pose_history.h"
-#include "kestrel/flight/onboard/recorded_files.h"
 #include "kestrel/flight/session/flight_report.h"
+#include "kestrel/io/recording/euroc_writer.h"
 #include "kestrel/io/recording/frame.h"
 #include "kestrel/io/recording/truth_rows.h"
 
@@ -101,16 +101,8 @@ class FlightRecorder {
   bool is_recording_images() const { return !are_images_stopped_; }
 
  private:
-  enum FileIndex : std::size_t {
-    kImages,
-    kExposures,
-    kDropped,
-    kPoses,
-    kTruePoses,
-    kTruePatterns,
-    kPackets,
-    kFileCount
-  };
+  // What must come in order of time.
+  enum Kind : std::size_t { kImages, kExposures, kPoses, kTruePoses, kKindCount };
   struct RecordedImage {
     Frame frame;
     std::optional<TruePattern> truth;
@@ -142,11 +134,11 @@ class FlightRecorder {
   void Drop(Time time, const char* reason);
   bool HasRoom();
   void Encode(const cv::Mat& image);
-  bool WriteImage(const cv::Mat& image, const std::filesystem::path& path);
+  bool WriteImage(const Frame& frame);
   void StopImages(const std::string& reason);
 
   void WriteRecords();
-  bool IsNext(FileIndex file, Time time);
+  bool IsNext(Kind kind, Time time);
   void WriteRecord(const PoseSample& pose);
   void WriteRecord(const TruePose& truth);
   void WriteRecord(const Exposure& exposure);
@@ -159,14 +151,13 @@ class FlightRecorder {
   Tell tell_;
   std::optional<JpegEncoder> jpeg_encoder_;  // for images that are not PNG
   Duration utc_offset_;                      // UTC minus Now()
-  RecordedFiles files_;
+  EurocWriter writer_;
   BoundedQueue<RecordedImage> images_;
   BoundedQueue<Record> records_;
 
   // Used by the writer's thread only.
-  std::array<std::optional<Time>, kFileCount> last_times_;
+  std::array<std::optional<Time>, kKindCount> last_times_;
   std::string encoded_;
-  std::string row_;
   Time next_attempt_;  // of writing, after a failure
 
   std::atomic<bool> are_images_stopped_{false};
@@ -179,8 +170,8 @@ class FlightRecorder {
   std::condition_variable stop_;
   bool is_stopping_ = false;
   std::atomic<bool> is_closing_{false};
-  std::thread writer_;
-  std::thread committer_;
+  std::thread write_thread_;
+  std::thread commit_thread_;
 };
 
 }  // namespace kestrel

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "kestrel/core/base/time.h"
@@ -18,6 +19,10 @@ class FlightVision {
   virtual ~FlightVision() = default;
 
   virtual void AddPose(const PoseSample& pose) = 0;
+
+  // Sets the height of the camera above the target or the ground where there are no poses; nothing:
+  // it is not known.
+  virtual void SetAltitude(std::optional<double> altitude_m) = 0;
 
   // Time from a frame's time, on the navigation's clock, to the last pose that the frame needs.
   virtual Duration pose_lead() const = 0;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
 
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/base/time.h"
 
 namespace kestrel {
@@ -25,10 +25,8 @@ class FramePeriod {
   // until there are enough.
   std::optional<Duration> Get() const {
     if (count_ < kFrames) return std::nullopt;
-    std::array<Duration, kFrames> sorted = between_;
-    const auto quartile = sorted.begin() + kFrames / 4;
-    std::nth_element(sorted.begin(), quartile, sorted.end());
-    return *quartile;
+    std::array<Duration, kFrames> values = between_;
+    return RankedInPlace(values, kFrames / 4);
   }
 
  private:

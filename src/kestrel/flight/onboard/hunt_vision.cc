@@ -18,8 +18,9 @@ constexpr std::size_t kFrames = 256;  // whose rows may wait for the disk
 }  // namespace
 
 HuntVision::HuntVision(const CameraCalibration& calibration, const ObjectModel& model,
-                       const HuntPipelineOptions& options, const OutputFolder* output)
-    : pipeline_(calibration, model, options),
+                       const ColorGrid& grid, const HuntPipelineOptions& options,
+                       const OutputFolder* output)
+    : pipeline_(calibration, model, grid, options),
       clock_offset_(calibration.clock_offset.value_or(Duration::zero())),
       rows_(kFrames) {
   if (output == nullptr) return;
@@ -34,6 +35,7 @@ Duration HuntVision::pose_lead() const {
 
 TrackSnapshot HuntVision::Process(const Frame& frame, ObservationSink* sink) {
   const HuntObservation& observation = pipeline_.Process(frame.image, frame.time);
+  newest_ = frame.time;
   snapshot_.captured = frame.time + clock_offset_;
   snapshot_.detect_time = observation.detect_time;
   ++snapshot_.frames;
@@ -72,8 +74,8 @@ std::string HuntVision::Found() const {
                      pipeline_.map().Confirmed().size());
 }
 
-void HuntVision::WriteMap(const OutputFolder& output) const {
-  WriteObjectMap(pipeline_, /*origin=*/{}, output);
+void HuntVision::WriteMap(const OutputFolder& output, const std::vector<double>& origin) const {
+  WriteObjectMap(pipeline_, origin, output);
 }
 
 }  // namespace kestrel

@@ -10,6 +10,7 @@
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/flight/onboard/flight_vision.h"
 #include "kestrel/io/recording/output_folder.h"
+#include "kestrel/vision/objects/color_grid.h"
 #include "kestrel/vision/objects/object_model.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
 
@@ -28,10 +29,11 @@ struct SharedMap {
 class HuntVision : public FlightVision {
  public:
   // As LandingVision.
-  HuntVision(const CameraCalibration& calibration, const ObjectModel& model,
+  HuntVision(const CameraCalibration& calibration, const ObjectModel& model, const ColorGrid& grid,
              const HuntPipelineOptions& options, const OutputFolder* output);
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
+  void SetAltitude(std::optional<double> altitude_m) override { pipeline_.SetAltitude(altitude_m); }
   Duration pose_lead() const override;
   TrackSnapshot Process(const Frame& frame, ObservationSink* sink) override;
   bool WriteResults() override;
@@ -43,10 +45,15 @@ class HuntVision : public FlightVision {
   // Returns the newest copy, if it was not taken yet. Called by any thread.
   std::optional<SharedMap> TakeMap() { return shared_.TryPop(); }
 
-  // Writes the map of all that was seen, and its objects, after the last frame. Throws InputError
-  // when it cannot be written.
-  void WriteMap(const OutputFolder& output) const;
+  // What follows is called after the last frame, or between two frames.
+
+  // As of HuntPipeline.
+  void ChangeOptions(const HuntPipelineOptions& options) { pipeline_.ChangeOptions(options); }
+  // Writes the map of all that was seen, as WriteObjectMap does.
+  void WriteMap(const OutputFolder& output, const std::vector<double>& origin = {}) const;
   std::vector<MappedObject> Objects() const { return pipeline_.map().Confirmed(); }
+  // Returns the time of the newest frame, on the images' clock; nothing before the first one.
+  std::optional<Time> newest() const { return newest_; }
 
  private:
   void PublishMap(const Frame& frame, const HuntObservation& observation);
@@ -54,6 +61,7 @@ class HuntVision : public FlightVision {
   HuntPipeline pipeline_;
   Duration clock_offset_;
   TrackSnapshot snapshot_;
+  std::optional<Time> newest_;
   std::size_t objects_ = 0;
   BoundedQueue<std::string> rows_;
   std::optional<std::ofstream> file_;

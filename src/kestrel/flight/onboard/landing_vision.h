@@ -26,11 +26,15 @@ class LandingVision : public FlightVision {
                 const std::optional<ExposureDrive>& exposure = std::nullopt);
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
+  void SetAltitude(std::optional<double> altitude_m) override { pipeline_.SetAltitude(altitude_m); }
   Duration pose_lead() const override { return clock_offset_; }
   TrackSnapshot Process(const Frame& frame, ObservationSink* sink) override;
   std::string Warning() const override;
   bool WriteResults() override;
   std::string Found() const override;
+
+  // As of LandingPipeline.
+  void ChangeOptions(const LandingPipelineOptions& options) { pipeline_.ChangeOptions(options); }
 
  private:
   struct Result {

@@ -20,8 +20,10 @@
 #include "kestrel/flight/onboard/landing_vision.h"
 #include "kestrel/flight/onboard/live_session_options.h"
 #include "kestrel/flight/onboard/recording_switch.h"
+#include "kestrel/flight/session/observation_sinks.h"
 #include "kestrel/io/recording/output_folder.h"
 #include "kestrel/io/recording/truth_rows.h"
+#include "kestrel/vision/objects/color_grid.h"
 
 namespace kestrel {
 namespace {
@@ -92,7 +94,10 @@ class LiveSession::Impl {
   HuntVision* hunt() { return hunt_; }
   const OutputFolder* output() const { return output_ ? &*output_ : nullptr; }
   std::string State() const { return program_->State(); }
-  std::string Summary() const { return program_->Summary(); }
+  FlightReport Report() const { return program_->Report(); }
+  std::string Summary() const;
+  void Change(const LiveSessionOptions& options);
+  void BetweenFrames(const std::function<void()>& action) { program_->BetweenFrames(action); }
 
  private:
   void OpenVision();
@@ -106,10 +111,13 @@ class LiveSession::Impl {
 
   LiveSessionParts parts_;
   LiveSessionOptions options_;
+  std::optional<GuardedSink> sink_;
+  std::string sink_error_;  // what the sink has thrown; read after Run only
   RecordingSwitch recording_;
   std::optional<OutputFolder> output_;
   std::unique_ptr<ExposureActuator> actuator_;
   std::unique_ptr<FlightVision> vision_;
+  LandingVision* landing_ = nullptr;  // one of these is the vision
   HuntVision* hunt_ = nullptr;
   std::optional<Connection> connection_;
   std::optional<Autopilot> autopilot_;
@@ -122,6 +130,9 @@ LiveSession::Impl::Impl(LiveSessionParts parts, LiveSessionOptions options)
       recording_([this](const std::filesystem::path& folder, bool replace) {
         return OpenRecorder(folder, replace);
       }) {
+  if (parts_.sink != nullptr) {
+    sink_.emplace(parts_.sink, [this](const std::string& error) { sink_error_ = error; });
+  }
   // A frame waits for a pose only if the source or an autopilot sends poses.
   if (parts_.autopilot.empty() && !parts_.has_poses) options_.flight.events.pose_wait_s = 0;
   if (!parts_.record.empty()) recording_.Start(parts_.record, parts_.replace);
@@ -141,21 +152,42 @@ FlightEnd LiveSession::Impl::Run(const std::function<bool()>& is_stopped) {
   return end;
 }
 
+std::string LiveSession::Impl::Summary() const {
+  std::string summary = program_->Summary();
+  if (!sink_error_.empty()) {
+    summary += fmt::format("the sink of the results has failed: {}\n", sink_error_);
+  }
+  return summary;
+}
+
 void LiveSession::Impl::Say(const std::string& text, EventLevel level) {
-  if (parts_.sink != nullptr) parts_.sink->Take(SessionEvent{Now(), level, text});
+  if (sink_) sink_->Take(SessionEvent{Now(), level, text});
+}
+
+void LiveSession::Impl::Change(const LiveSessionOptions& options) {
+  BetweenFrames([&] {
+    if (hunt_ != nullptr) hunt_->ChangeOptions(options.hunt);
+    if (landing_ != nullptr) landing_->ChangeOptions(options.landing);
+    vision_->SetAltitude(options.altitude_m);
+  });
 }
 
 void LiveSession::Impl::OpenVision() {
   if (!parts_.output.empty()) output_.emplace(parts_.output, parts_.replace);
   if (parts_.objects) {
-    auto hunt =
-        std::make_unique<HuntVision>(parts_.calibration, *parts_.objects, options_.hunt, output());
+    const ObjectModel& model = *parts_.objects;
+    auto hunt = std::make_unique<HuntVision>(parts_.calibration, model,
+                                             parts_.grid ? *parts_.grid : ColorGrid(model.colors),
+                                             options_.hunt, output());
     hunt_ = hunt.get();
     vision_ = std::move(hunt);
-    return;
+  } else {
+    auto landing =
+        std::make_unique<LandingVision>(parts_.calibration, options_.landing, output(), Exposure());
+    landing_ = landing.get();
+    vision_ = std::move(landing);
   }
-  vision_ =
-      std::make_unique<LandingVision>(parts_.calibration, options_.landing, output(), Exposure());
+  vision_->SetAltitude(options_.altitude_m);
 }
 
 std::optional<ExposureDrive> LiveSession::Impl::Exposure() {
@@ -197,9 +229,10 @@ FlightParts LiveSession::Impl::ProgramParts() {
           .connection = connection_ ? &*connection_ : nullptr,
           .autopilot = autopilot_ ? &*autopilot_ : nullptr,
           .recording = &recording_,
-          .sink = parts_.sink,
+          .sink = sink_ ? &*sink_ : nullptr,
           .guides = parts_.guides,
           .source_has_poses = parts_.has_poses,
+          .sees_repeated = parts_.sees_repeated,
           .profile = parts_.profile,
           .truth = parts_.truth,
           .pattern_size_m = options_.landing.detector.pattern.outer_diameter_m};
@@ -229,5 +262,10 @@ HuntVision* LiveSession::hunt() { return impl_->hunt(); }
 const OutputFolder* LiveSession::output() const { return impl_->output(); }
 std::string LiveSession::State() const { return impl_->State(); }
 std::string LiveSession::Summary() const { return impl_->Summary(); }
+FlightReport LiveSession::Report() const { return impl_->Report(); }
+void LiveSession::Change(const LiveSessionOptions& options) { impl_->Change(options); }
+void LiveSession::BetweenFrames(const std::function<void()>& action) {
+  impl_->BetweenFrames(action);
+}
 
 }  // namespace kestrel

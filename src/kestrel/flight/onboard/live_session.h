@@ -14,6 +14,7 @@
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/flight/session/observation_sink.h"
 #include "kestrel/io/recording/frame.h"
+#include "kestrel/vision/objects/color_grid.h"
 #include "kestrel/vision/objects/object_model.h"
 
 namespace kestrel {
@@ -34,7 +35,11 @@ struct LiveSessionParts {
   bool has_poses = false;              // the source has some: those of the autopilot are not used
   ExposureActuator* camera = nullptr;  // sets the exposure; null: it cannot be set
 
+  // Processes images that equal the one before. False: a camera that repeats its image is frozen.
+  bool sees_repeated = false;
+
   std::optional<ObjectModel> objects;  // hunts for these; nothing: looks for the landing pattern
+  std::optional<ColorGrid> grid;       // of the objects' colours; nothing: the model's own
   ObservationSink* sink = nullptr;     // takes all results and events; null: nobody
 
   std::string autopilot;               // URL as of Connection; empty: none
@@ -79,6 +84,12 @@ class LiveSession {
   // by this thread, says so. Then all tables and the recording are written. Once only.
   FlightEnd Run(const std::function<bool()>& is_stopped);
 
+  // Continues with the options of the pipeline and the altitude in 'options', see ChangeOptions of
+  // the pipelines. Track, map and all other options stay. By any thread.
+  void Change(const LiveSessionOptions& options);
+  // Calls 'action' between two frames: the vision waits for it. By any thread.
+  void BetweenFrames(const std::function<void()>& action);
+
   // Starts and stops recordings. By any thread.
   RecordingSwitch& recording();
   // The hunt; null: it looks for the landing pattern.
@@ -86,6 +97,8 @@ class LiveSession {
   // The folder of the tables; null: none.
   const OutputFolder* output() const;
 
+  // The state as the sinks get it. By any thread.
+  FlightReport Report() const;
   // One line of how things are now. By any thread.
   std::string State() const;
   // Latency of each step, what was dropped and what was sent; a few lines. After Run.

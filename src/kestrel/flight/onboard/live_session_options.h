@@ -23,6 +23,8 @@ struct LiveSessionOptions {
   FlightRecorderOptions recorder;
   // Exposure that keeps the image right; nothing: the camera does that itself.
   std::optional<ExposureOptions> exposure;
+  // Height of the camera above the target or the ground, where there are no poses.
+  std::optional<double> altitude_m = {};
 };
 
 }  // namespace kestrel

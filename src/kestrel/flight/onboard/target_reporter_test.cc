@@ -40,7 +40,7 @@ TrackSnapshot TrackAt(double seconds, const Vector3d& position, const Vector3d& 
   track.state = TrackState::kTracking;
   TargetEstimate target{At(seconds), {}};
   target.motion.mean.head<3>() = position;
-  target.motion.mean.segment<3>(3) = velocity;
+  target.motion.mean.segment<3>(TurnState::kVelocity) = velocity;
   target.motion.covariance.topLeftCorner<3, 3>() = sigma_m * sigma_m * Eigen::Matrix3d::Identity();
   track.target = target;
   return track;

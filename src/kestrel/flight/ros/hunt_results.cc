@@ -24,12 +24,12 @@ void HuntResults::PublishMarkers(const HuntObservation& observation) {
 }
 
 void HuntResults::PublishImage(const cv::Mat& image, const HuntObservation& observation,
-                               const ObjectMap* map) {
+                               const std::vector<MappedObject>& map) {
   if (!connection_->HasSubscribers(ResultTopic::kAnnotatedImage)) return;
   cv::Mat annotated = DrawObjectOverlay(image, options_.model, observation);
   const auto& camera = observation.world_from_camera;
-  if (camera && map != nullptr) {
-    DrawMapInset(map->Confirmed(), options_.model, camera->translation.head<2>(), &annotated);
+  if (camera && !map.empty()) {
+    DrawMapInset(map, options_.model, camera->translation.head<2>(), &annotated);
   }
   Publish(ResultTopic::kAnnotatedImage,
           ImageMessageOf(annotated, observation.time, options_.camera_frame));

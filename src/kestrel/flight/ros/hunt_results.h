@@ -12,7 +12,6 @@
 #include "kestrel/flight/session/flight_report.h"
 #include "kestrel/io/bags/serialization.h"
 #include "kestrel/vision/mapping/mapped_object.h"
-#include "kestrel/vision/mapping/object_map.h"
 #include "kestrel/vision/objects/object_model.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
 
@@ -35,8 +34,9 @@ class HuntResults {
 
   void PublishDetections(const HuntObservation& observation);
   void PublishMarkers(const HuntObservation& observation);
-  // The image with the results drawn on it, and the map in a corner, unless it is null.
-  void PublishImage(const cv::Mat& image, const HuntObservation& observation, const ObjectMap* map);
+  // The image with the results drawn on it, and the map in a corner, unless it is empty.
+  void PublishImage(const cv::Mat& image, const HuntObservation& observation,
+                    const std::vector<MappedObject>& map);
   // The map at 'stamp', and its markers. Nothing where there are no poses.
   void PublishMap(const std::vector<MappedObject>& map, Time stamp);
   // The team's map and its markers, likewise.

@@ -52,7 +52,7 @@ TEST(LandingMessages, TheTrackHasTheCovariancesOfItsFrames) {
 
 TEST(LandingMessages, OfATargetThatStandsTheHeadingIsNotKnown) {
   TargetEstimate target = DrivingNorth();
-  target.motion.mean.segment<3>(3).setZero();
+  target.motion.mean.segment<3>(TurnState::kVelocity).setZero();
   EXPECT_GT(TrackOf(target, "map", "target").pose_covariance[35], 3);
 }
 

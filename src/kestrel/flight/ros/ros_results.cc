@@ -6,15 +6,13 @@
 #include <thread>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "kestrel/io/bags/frame_tree.h"
 #include "kestrel/io/bags/serialization.h"
 
 namespace kestrel {
 namespace {
 
-LandingResultsOptions ResultsOf(WireFormat format, const DdsOptions& options,
+LandingResultsOptions ResultsOf(WireFormat format, const RosResultOptions& options,
                                 const RosFrames& frames, const LandingPipelineOptions& landing) {
   return {.format = format,
           .camera_frame = frames.camera,
@@ -28,8 +26,6 @@ LandingResultsOptions ResultsOf(WireFormat format, const DdsOptions& options,
           .noise = landing.tracker.Noise()};
 }
 
-KeyValueMessage Value(const char* key, std::uint64_t value) { return {key, fmt::to_string(value)}; }
-
 }  // namespace
 
 Duration RosTimeAhead() {
@@ -38,20 +34,20 @@ Duration RosTimeAhead() {
   return ros - Now().time_since_epoch();
 }
 
-RosResults::RosResults(std::unique_ptr<ResultConnection> connection, WireFormat format,
+RosResults::RosResults(std::shared_ptr<ResultConnection> connection, WireFormat format,
                        const DdsOptions& options, const RosFrames& frames,
                        const CameraCalibration& calibration, const LandingPipelineOptions& landing,
                        ObjectModel model)
     : format_(format),
-      options_(options),
+      name_(options.node),
+      publish_tf_(options.publish_tf),
       frames_(frames),
       body_from_camera_(calibration.body_from_camera),
       camera_(calibration.intrinsics),
       connection_(std::move(connection)),
       landing_(ResultsOf(format, options, frames, landing), connection_.get()),
-      hunt_({format, frames.camera, frames.world, std::move(model)}, connection_.get()),
-      reported_(Now()) {
-  if (frames_.body && options_.publish_tf) PublishMount();
+      hunt_({format, frames.camera, frames.world, std::move(model)}, connection_.get()) {
+  if (frames_.body && publish_tf_) PublishMount();
 }
 
 std::string RosResults::TransformBytes(Time stamp, const std::string& parent,
@@ -72,7 +68,7 @@ void RosResults::PublishMount() {
 }
 
 void RosResults::PublishBody(const std::optional<RigidTransform>& world_from_camera, Time stamp) {
-  if (!options_.publish_tf || !frames_.body || !frames_.world) return;
+  if (!publish_tf_ || !frames_.body || !frames_.world) return;
   if (!world_from_camera || !body_from_camera_) return;
   connection_->Publish(ResultTopic::kTransforms,
                        TransformBytes(stamp, *frames_.world, *frames_.body,
@@ -91,52 +87,67 @@ void RosResults::WaitForSubscribers(Duration timeout) const {
 }
 
 void RosResults::Publish(const Frame& frame, const LandingObservation& observation) {
+  const std::lock_guard lock(mutex_);
   LandingObservation stamped = observation;
   stamped.time += frames_.to_stamps;
   if (stamped.target) stamped.target->time += frames_.to_stamps;
   PublishBody(stamped.world_from_camera, stamped.time);
   landing_.PublishDetection(stamped);
+  Count(observation.report.detection.has_value(), frame.time, observation.detect_time);
   landing_.PublishTrack(stamped);
   landing_.PublishImage(frame.image, camera_, stamped);
 }
 
 void RosResults::Publish(const Frame& frame, const HuntObservation& observation) {
+  const std::lock_guard lock(mutex_);
   HuntObservation stamped = observation;
   stamped.time += frames_.to_stamps;
   PublishBody(stamped.world_from_camera, stamped.time);
   hunt_.PublishDetections(stamped);
+  Count(!observation.report.detections.empty(), frame.time, observation.detect_time);
   hunt_.PublishMarkers(stamped);
-  hunt_.PublishImage(frame.image, stamped, /*map=*/nullptr);
+  hunt_.PublishImage(frame.image, stamped, map_);
 }
 
 void RosResults::Publish(const TeamReport& team) {
+  const std::lock_guard lock(mutex_);
   TeamReport stamped = team;
   stamped.time += frames_.to_stamps;
   hunt_.PublishTeam(stamped);
 }
 
+void RosResults::Publish(std::vector<MappedObject> map, Time stamp) {
+  const std::lock_guard lock(mutex_);
+  map_ = std::move(map);
+  hunt_.PublishMap(map_, stamp);
+}
+
 void RosResults::Publish(const FlightReport& report) {
-  const Time now = Now();
-  const std::uint64_t frames = report.events.frames;
-  const double rate_hz =
-      static_cast<double>(frames - reported_frames_) / std::max(ToSeconds(now - reported_), 1e-3);
-  reported_ = now;
-  reported_frames_ = frames;
-  DiagnosticStatusMessage status;
-  status.name = options_.node + ": flight";
-  const bool is_running = report.trouble.empty() && rate_hz > 0;
-  status.level = is_running ? DiagnosticStatusMessage::kOk : DiagnosticStatusMessage::kWarn;
-  status.message = !report.trouble.empty() ? report.trouble : is_running ? "running" : "no images";
-  status.values = {{"image rate", fmt::format("{:.1f} Hz", rate_hz)},
-                   Value("images captured", report.capture.captured),
-                   Value("images missed before", report.capture.missed),
-                   Value("images processed", frames),
-                   Value("images dropped for newer ones", report.events.dropped_frames),
-                   Value("images without the pose after them", report.events.unposed_frames)};
-  DiagnosticArrayMessage message;
-  message.header.stamp = now + frames_.to_stamps;
-  message.status.push_back(std::move(status));
-  connection_->Publish(ResultTopic::kDiagnostics, SerializeMessage(message, format_));
+  const ResultCounts counts = Counts();
+  const std::lock_guard lock(mutex_);
+  const DiagnosticStatusMessage status =
+      DiagnosticsOf(name_ + ": flight", rate_.Next(report.events.frames), report, counts);
+  connection_->Publish(ResultTopic::kDiagnostics,
+                       SerializeMessage(ArrayOf(status, Now() + frames_.to_stamps), format_));
+}
+
+void RosResults::Change(const RosResultOptions& options, const LandingPipelineOptions& landing) {
+  const std::lock_guard lock(mutex_);
+  publish_tf_ = options.publish_tf;
+  landing_ = LandingResults(ResultsOf(format_, options, frames_, landing), connection_.get());
+}
+
+void RosResults::Count(bool found, Time time, Duration detect_time) {
+  const Duration latency = Now() - (time + frames_.to_now);
+  found_ += found ? 1 : 0;
+  latency_.Add(latency);
+  beyond_detect_.Add(latency - detect_time);
+  detect_.Add(detect_time);
+}
+
+ResultCounts RosResults::Counts() const {
+  const std::lock_guard lock(mutex_);
+  return {found_, latency_.Summary(), beyond_detect_.Summary(), detect_.Summary()};
 }
 
 }  // namespace kestrel

@@ -3,19 +3,23 @@
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
+#include "kestrel/flight/onboard/latency_statistics.h"
 #include "kestrel/flight/ros/dds_options.h"
+#include "kestrel/flight/ros/flight_diagnostics.h"
 #include "kestrel/flight/ros/hunt_results.h"
 #include "kestrel/flight/ros/landing_results.h"
 #include "kestrel/flight/ros/result_connection.h"
 #include "kestrel/flight/session/flight_report.h"
 #include "kestrel/io/bags/serialization.h"
 #include "kestrel/io/recording/frame.h"
+#include "kestrel/vision/mapping/mapped_object.h"
 #include "kestrel/vision/objects/object_model.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
@@ -27,7 +31,8 @@ struct RosFrames {
   std::string camera;
   std::optional<std::string> world;  // where there are poses
   std::optional<std::string> body;   // publish the UAV and the mount on tf; nothing: others do
-  Duration to_stamps{};              // added to a frame's time to get its stamp
+  Duration to_stamps{};              // added to a frame's time to get its stamp,
+  Duration to_now{};                 // and to get it by Now()
 };
 
 // Returns the current difference between the ROS time (the time of day) and Now(): add it to a time
@@ -35,11 +40,11 @@ struct RosFrames {
 Duration RosTimeAhead();
 
 // Publishes the results of the pipelines on topics of ROS 1 or ROS 2, with the same names
-// (docs/ros2.md). Called by one thread at a time.
+// (docs/ros2.md). Any thread may call all functions.
 class RosResults {
  public:
   // 'connection' takes messages of 'format'.
-  RosResults(std::unique_ptr<ResultConnection> connection, WireFormat format,
+  RosResults(std::shared_ptr<ResultConnection> connection, WireFormat format,
              const DdsOptions& options, const RosFrames& frames,
              const CameraCalibration& calibration, const LandingPipelineOptions& landing,
              ObjectModel model);
@@ -51,8 +56,16 @@ class RosResults {
   void Publish(const Frame& frame, const HuntObservation& observation);
   // The team's map, if the frames have a world; kept for later subscribers.
   void Publish(const TeamReport& team);
+  // The hunt's map, its newest frame at 'stamp', if the frames have a world; kept for later
+  // subscribers. It is also drawn into the corner of the images from now on.
+  void Publish(std::vector<MappedObject> map, Time stamp);
   // Publishes the rates since the last call.
   void Publish(const FlightReport& report);
+
+  // Continues with these names of frames and options.
+  void Change(const RosResultOptions& options, const LandingPipelineOptions& landing);
+
+  ResultCounts Counts() const;
 
   // Waits until all subscribers have everything.
   void Flush() const { connection_->Flush(); }
@@ -61,18 +74,23 @@ class RosResults {
   std::string TransformBytes(Time stamp, const std::string& parent, const std::string& child,
                              const RigidTransform& parent_from_child) const;
   void PublishMount();
+  void Count(bool found, Time time, Duration detect_time);
   void PublishBody(const std::optional<RigidTransform>& world_from_camera, Time stamp);
 
+  mutable std::mutex mutex_;  // guards all but the connection and the latencies
   WireFormat format_;
-  DdsOptions options_;
+  std::string name_;  // of the node
+  bool publish_tf_;
   RosFrames frames_;
   std::optional<RigidTransform> body_from_camera_;
   CameraModel camera_;
-  std::unique_ptr<ResultConnection> connection_;
+  std::shared_ptr<ResultConnection> connection_;
   LandingResults landing_;
   HuntResults hunt_;
-  Time reported_;
-  std::uint64_t reported_frames_ = 0;
+  std::vector<MappedObject> map_;  // of the hunt, the newest
+  Rate rate_;
+  std::uint64_t found_ = 0;
+  LatencyHistogram latency_, beyond_detect_, detect_;
 };
 
 }  // namespace kestrel

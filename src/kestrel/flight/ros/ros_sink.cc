@@ -14,14 +14,21 @@ namespace {
 constexpr std::size_t kFrames = 8;  // that wait for the network
 constexpr Duration kReportPeriod = std::chrono::seconds(1);
 
+void Publish(const Observation& observation, RosResults* results) {
+  std::visit([&](const auto& seen) { results->Publish(observation.frame, seen); },
+             observation.seen);
+}
+
 class RosWriter : public SinkWriter {
  public:
-  RosWriter(std::unique_ptr<RosResults> results, std::function<void(const std::string&)> tell)
-      : results_(std::move(results)), tell_(std::move(tell)), next_report_(Now()) {}
+  RosWriter(std::shared_ptr<RosResults> results, std::function<void(const std::string&)> tell,
+            bool reports)
+      : results_(std::move(results)),
+        tell_(std::move(tell)),
+        next_report_(reports ? Now() : Time::max()) {}
 
   void Write(const Observation& observation, std::size_t /*waiting*/) override {
-    std::visit([&](const auto& seen) { results_->Publish(observation.frame, seen); },
-               observation.seen);
+    Publish(observation, results_.get());
   }
   void Write(const FlightReport& report) override {
     const Time now = Now();
@@ -37,18 +44,41 @@ class RosWriter : public SinkWriter {
   }
 
  private:
-  std::unique_ptr<RosResults> results_;
+  std::shared_ptr<RosResults> results_;
   std::function<void(const std::string&)> tell_;
   Time next_report_;
 };
 
+class WaitingRosSink : public ObservationSink {
+ public:
+  explicit WaitingRosSink(std::unique_ptr<RosResults> results) : results_(std::move(results)) {
+    results_->WaitForSubscribers(std::chrono::seconds(1));
+  }
+
+  void Take(const Observation& observation) override { Publish(observation, results_.get()); }
+  void Take(const TeamReport& report) override { results_->Publish(report); }
+  void Finish() override { results_->Flush(); }
+
+ private:
+  std::unique_ptr<RosResults> results_;
+};
+
 }  // namespace
 
-std::unique_ptr<AsynchronousSink> MakeRosSink(std::unique_ptr<RosResults> results,
-                                              std::function<void(const std::string&)> tell) {
+std::unique_ptr<AsynchronousSink> MakeRosSink(std::shared_ptr<RosResults> results,
+                                              std::function<void(const std::string&)> tell,
+                                              bool reports) {
+  AsynchronousSinkOptions options{.thread_name = "ros", .frames = kFrames, .tell = {}};
+  options.tell = [tell](const std::string& error) {
+    tell(fmt::format("ROS: {}: the flight goes on without it", error));
+  };
   return std::make_unique<AsynchronousSink>(
-      AsynchronousSinkOptions{.thread_name = "ros", .frames = kFrames},
-      std::make_unique<RosWriter>(std::move(results), std::move(tell)));
+      std::move(options),
+      std::make_unique<RosWriter>(std::move(results), std::move(tell), reports));
+}
+
+std::unique_ptr<ObservationSink> MakeWaitingRosSink(std::unique_ptr<RosResults> results) {
+  return std::make_unique<WaitingRosSink>(std::move(results));
 }
 
 }  // namespace kestrel

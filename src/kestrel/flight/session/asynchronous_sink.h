@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
@@ -13,7 +14,8 @@
 
 namespace kestrel {
 
-// The slow part of a sink. All functions but IsWanted are called by one thread. They do not throw.
+// The slow part of a sink. All functions but IsWanted are called by one thread. After the first one
+// that throws none is called any more.
 class SinkWriter {
  public:
   virtual ~SinkWriter() = default;
@@ -38,11 +40,16 @@ struct AsynchronousSinkOptions {
   std::size_t frames = 8;  // that may wait; beyond that the oldest is dropped
   // Longest time that everything but a frame waits.
   Duration patience = std::chrono::milliseconds(100);
+  // Longest time for what waits at the end, beyond a Write that is running: the rest is dropped.
+  Duration last_patience = std::chrono::seconds(5);
   int niceness = 0;  // 0 to 19, as in nice(1)
+  // Receives what the writer has thrown, from the sink's thread; empty: nobody does.
+  std::function<void(const std::string&)> tell = {};
 };
 
 // A sink that works in a thread of its own. The caller never waits: when too many frames wait the
-// oldest is dropped; of reports only the newest is kept.
+// oldest is dropped; of reports only the newest is kept. When the writer throws, the sink takes
+// nothing any more.
 //
 // Example:
 //   struct Printer : SinkWriter {
@@ -60,18 +67,21 @@ class AsynchronousSink : public ObservationSink {
   AsynchronousSink(const AsynchronousSink&) = delete;
   AsynchronousSink& operator=(const AsynchronousSink&) = delete;
 
-  bool IsWanted() const override { return writer_->IsWanted(); }
+  bool IsWanted() const override { return !has_failed_ && writer_->IsWanted(); }
   void Take(const Observation& observation) override;
   void Take(const FlightReport& report) override { reports_.Push(report); }
   void Take(const TeamReport& report) override { team_reports_.Push(report); }
   void Take(const SessionEvent& event) override { events_.Push(event); }
-  // Returns when everything that was taken is written.
+  // Returns when everything that was taken is written, or the time for it is over.
   void Finish() override;
 
  private:
   static constexpr std::size_t kEvents = 256;
 
   void Run();
+  void WriteAll();
+  bool WriteWaiting();
+  std::size_t DropWaiting();
 
   AsynchronousSinkOptions options_;
   std::unique_ptr<SinkWriter> writer_;
@@ -80,6 +90,7 @@ class AsynchronousSink : public ObservationSink {
   BoundedQueue<TeamReport> team_reports_{1};
   BoundedQueue<SessionEvent> events_{kEvents};
   std::atomic<bool> is_over_{false};
+  std::atomic<bool> has_failed_{false};
   std::thread thread_;
 };
 

@@ -10,6 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/flight/session/observation_sinks.h"
+
 namespace kestrel {
 namespace {
 

@@ -1,24 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/io/bags/recording_sink.h"
 
-#include <fstream>
+#include <filesystem>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/core/codec/image_codec.h"
+#include "kestrel/core/codec/png_codec.h"
 #include "kestrel/io/bags/bag_writer.h"
 #include "kestrel/io/bags/camera_info.h"
 #include "kestrel/io/bags/frame_tree.h"
 #include "kestrel/io/bags/messages.h"
 #include "kestrel/io/bags/serialization.h"
-#include "kestrel/io/recording/euroc_text.h"
+#include "kestrel/io/recording/euroc_layout.h"
+#include "kestrel/io/recording/euroc_writer.h"
 #include "kestrel/io/recording/output_folder.h"
 
 namespace kestrel {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr const char* kWorldFrame = "map";
 constexpr const char* kBodyFrame = "base_link";
@@ -132,47 +136,48 @@ class BagSink : public RecordingSink {
 
 class EurocSink : public RecordingSink {
  public:
-  EurocSink(const std::string& folder, const RecordingHead& head, bool replace)
-      : folder_(folder, replace), images_(folder_.OpenText("mav0/cam0/data.csv")) {
-    images_ << "#timestamp [ns],filename\n";
-    if (head.calibration) {
-      folder_.OpenText("mav0/cam0/sensor.yaml")
-          << EurocCalibrationText(*head.calibration, head.rate_hz);
-    }
-    if (!head.has_poses) return;
-    poses_ = folder_.OpenText("mav0/nav0/data.csv");
-    poses_ << EurocPoseColumns("WB") << "\n";
+  EurocSink(const std::string& path, const RecordingHead& head, bool replace)
+      : folder_(path, replace), writer_(path, Begun(head)) {
+    if (head.calibration) writer_.WriteCamera(*head.calibration, head.rate_hz);
   }
 
   void AddPose(const PoseSample& pose) override {
-    poses_ << EurocPoseCells(pose.time, pose.world_from_body) << "\n";
+    writer_.AddPose(pose);
+    writer_.CommitMany();
     if (!first_pose_) first_pose_ = pose.time;
     last_pose_ = pose.time;
     ++pose_count_;
   }
 
   void AddFrame(const Frame& frame) override {
-    const std::string name = fmt::format("{}.png", ToNanoseconds(frame.time));
-    const std::string path = folder_.NewFile("mav0/cam0/data/" + name).string();
-    WriteImage(path, Smallest(frame.image));
-    images_ << fmt::format("{},{}\n", ToNanoseconds(frame.time), name);
+    folder_.NewFile(RecordedImagePath(frame.time));
+    writer_.WriteImage(frame.time, "png", EncodePng(Smallest(frame.image)));
+    writer_.ListImage(frame.time, "png");
+    writer_.CommitMany();
   }
 
   void Close() override {
-    WriteAtOnce("", "mav0/cam0/data.csv", &images_);
+    writer_.CommitOrThrow();
     if (!first_pose_) return;
-    WriteAtOnce("", "mav0/nav0/data.csv", &poses_);
     const double span_s = ToSeconds(last_pose_ - *first_pose_);
-    if (span_s > 0) {
-      folder_.OpenText("mav0/nav0/sensor.yaml")
-          << EurocPoseSensorText(static_cast<double>(pose_count_ - 1) / span_s);
-    }
+    if (span_s > 0) writer_.WritePoseSensor(static_cast<double>(pose_count_ - 1) / span_s);
   }
 
  private:
+  // Returns the tables. Those of an older recording are removed, if they may be replaced.
+  std::vector<EurocTable> Begun(const RecordingHead& head) const {
+    std::vector<EurocTable> tables{EurocTable::kImages};
+    std::vector<fs::path> files;
+    if (head.has_poses) tables.push_back(EurocTable::kPoses);
+    for (const EurocTable table : tables) files.push_back(folder_.NewFile(PathOf(table)));
+    if (head.calibration) folder_.NewFile(fs::path("mav0") / euroc::kCamera);
+    if (head.has_poses) folder_.NewFile(fs::path("mav0") / euroc::kPoseSensor);
+    for (const fs::path& file : files) fs::remove(file);
+    return tables;
+  }
+
   OutputFolder folder_;
-  std::ofstream images_;
-  std::ofstream poses_;
+  EurocWriter writer_;
   std::optional<Time> first_pose_;
   Time last_pose_;
   std::size_t pose_count_ = 0;

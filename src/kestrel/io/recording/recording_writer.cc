@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/io/recording/recording_writer.h"
 
-#include <fstream>
+#include <cstdint>
 
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/read_file.h"
+#include "kestrel/core/base/write_file.h"
 #include "kestrel/core/codec/png_codec.h"
+#include "kestrel/io/recording/euroc_layout.h"
 
 namespace kestrel {
 namespace {
@@ -25,20 +27,10 @@ void CreateFolders(const fs::path& folder) {
   Require(error, folder, "cannot be made");
 }
 
-// Writes under another name first: a file with its final name is complete.
-void WriteWhole(const fs::path& path, const std::string& bytes) {
+void WriteText(const fs::path& path, const std::string& text) {
   CreateFolders(path.parent_path());
-  const fs::path unfinished = path.string() + ".unfinished";
-  std::ofstream file(unfinished, std::ios::binary);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file) throw InputError(path.string() + ": cannot be written, is the disk full?");
-  std::error_code error;
-  fs::rename(unfinished, path, error);
-  Require(error, path, "cannot be written");
+  ReplaceFile(path, text);
 }
-
-constexpr char kImageFolder[] = "mav0/cam0/data";
 
 }  // namespace
 
@@ -54,10 +46,6 @@ void RequireFreeForRecording(const fs::path& output, bool replace) {
   if (!replace) throw InputError(output.string() + ": exists already; --force replaces it");
 }
 
-fs::path RecordedImagePath(Time time) {
-  return fs::path(kImageFolder) / fmt::format("{}.png", ToNanoseconds(time));
-}
-
 RecordingWriter::RecordingWriter(const fs::path& output, bool replace, const std::string& scene) {
   const fs::path path = fs::absolute(output).lexically_normal();
   output_ = path.has_filename() ? path : path.parent_path();
@@ -65,36 +53,38 @@ RecordingWriter::RecordingWriter(const fs::path& output, bool replace, const std
   part_ = output_.string() + ".part";
   CreateFolders(part_);
   lock_.emplace(part_.string());
-  const fs::path scene_file = part_ / "mav0" / "scene.yaml";
+  const fs::path scene_file = part_ / "mav0" / euroc::kScene;
   if (!fs::exists(scene_file) || ReadFile(scene_file.string()) != scene) {
     for (const fs::path& old : fs::directory_iterator(part_)) {
       std::error_code error;
       fs::remove_all(old, error);
       Require(error, old, "cannot be removed");
     }
-    WriteWhole(scene_file, scene);
+    WriteText(scene_file, scene);
   }
-  CreateFolders(part_ / kImageFolder);
+  writer_ = std::make_unique<EurocWriter>(part_, std::vector{EurocTable::kImages});
 }
 
+// A power loss may have left an empty file.
 bool RecordingWriter::HasImage(Time time) const {
-  return fs::exists(part_ / RecordedImagePath(time));
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(part_ / RecordedImagePath(time), error);
+  return !error && size > 0;
 }
 
 void RecordingWriter::WriteImage(Time time, const cv::Mat& image) const {
   constexpr int kLevel = 1;
-  WriteWhole(part_ / RecordedImagePath(time), EncodePng(image, kLevel));
+  writer_->WriteImage(time, "png", EncodePng(image, kLevel));
 }
 
 void RecordingWriter::Publish(const std::vector<Time>& times,
                               const std::vector<RecordingFile>& files) const {
-  for (const RecordingFile& file : files) WriteWhole(part_ / "mav0" / file.name, file.text);
-  std::string rows = "#timestamp [ns],filename\n";
+  for (const RecordingFile& file : files) WriteText(part_ / "mav0" / file.name, file.text);
   for (const Time time : times) {
-    rows +=
-        fmt::format("{},{}\n", ToNanoseconds(time), RecordedImagePath(time).filename().string());
+    writer_->ListImage(time, "png");
+    writer_->CommitMany();
   }
-  WriteWhole(part_ / "mav0" / "cam0" / "data.csv", rows);
+  writer_->CommitOrThrow();
   std::error_code error;
   fs::remove_all(output_, error);
   Require(error, output_, "cannot be replaced");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 
 #include "kestrel/core/base/folder_lock.h"
 #include "kestrel/core/base/time.h"
+#include "kestrel/io/recording/euroc_writer.h"
 #include "kestrel/io/recording/recording_file.h"
 
 namespace kestrel {
@@ -17,9 +19,6 @@ namespace kestrel {
 // Throws InputError when a recording must not replace what is at 'output': a file, a folder with
 // other content, or a recording unless 'replace'.
 void RequireFreeForRecording(const std::filesystem::path& output, bool replace);
-
-// Returns an image's path in a recording.
-std::filesystem::path RecordedImagePath(Time time);
 
 // Writes a recording. Until it is complete it is in a folder beside its place, "<output>.part",
 // where no other writer may write. WriteImage and HasImage may be called from several threads at a
@@ -45,7 +44,8 @@ class RecordingWriter {
  private:
   std::filesystem::path output_;
   std::filesystem::path part_;
-  std::optional<FolderLock> lock_;  // lock of part_
+  std::optional<FolderLock> lock_;       // lock of part_
+  std::unique_ptr<EurocWriter> writer_;  // into part_
 };
 
 }  // namespace kestrel

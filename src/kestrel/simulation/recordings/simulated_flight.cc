@@ -8,6 +8,7 @@
 
 #include "kestrel/core/base/hash.h"
 #include "kestrel/core/base/violations.h"
+#include "kestrel/io/recording/euroc_layout.h"
 #include "kestrel/io/recording/euroc_text.h"
 #include "kestrel/simulation/recordings/truth_text.h"
 
@@ -115,11 +116,10 @@ std::string SimulatedFlight::SceneText(const std::string& kind) const {
 std::vector<RecordingFile> SimulatedFlight::Files() const {
   const double end_s = times_s_.back() + kMargin_s;
   const auto poses = navigation().ReportAll(world_from_body_, begin_s(), end_s);
-  return {{"cam0/sensor.yaml", EurocCameraText(nominal_, options_.rate_hz)},
-          {"nav0/sensor.yaml", EurocPoseSensorText(options_.navigation.rate_hz)},
-          {"nav0/data.csv", EurocPoseText(poses)},
-          {"state_groundtruth_estimate0/data.csv",
-           TrueStateText(world_from_body_, begin_s(), end_s, times_s_)}};
+  return {{euroc::kCamera, EurocCameraText(nominal_, options_.rate_hz)},
+          {euroc::kPoseSensor, EurocPoseSensorText(options_.navigation.rate_hz)},
+          {euroc::kPoses, EurocPoseText(poses)},
+          {euroc::kTruePoses, TrueStateText(world_from_body_, begin_s(), end_s, times_s_)}};
 }
 
 }  // namespace kestrel

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/io/recording/euroc_layout.h"
 #include "kestrel/simulation/labelled_images/landing_stills.h"
 #include "kestrel/simulation/recordings/truth_text.h"
 #include "kestrel/simulation/scene/solids.h"
@@ -51,7 +52,7 @@ std::vector<RecordingFile> SimulatedLanding::Files() const {
     if (seen) rows += LandingTruthRow(*seen);
   }
   std::vector<RecordingFile> files = flight_.Files();
-  files.push_back({"landing_pattern0/data.csv", rows});
+  files.push_back({euroc::kTruePatterns, rows});
   return files;
 }
 

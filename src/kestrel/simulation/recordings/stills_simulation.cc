@@ -8,6 +8,7 @@
 #include "kestrel/core/base/hash.h"
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/violations.h"
+#include "kestrel/io/recording/euroc_layout.h"
 #include "kestrel/io/recording/euroc_text.h"
 #include "kestrel/simulation/labelled_images/landing_stills.h"
 #include "kestrel/simulation/recordings/truth_text.h"
@@ -89,11 +90,11 @@ RecordingPlan PlanStills(const StillsOptions& options, const LandingPattern& pat
                       : maker->MakePattern(Hash(seed, i)).image;
   };
   plan.scene = SceneText(options, pattern, frames, lens_half_angle_deg, camera, seed);
-  plan.files = {{"cam0/sensor.yaml", EurocCameraText(camera, kRate_hz)},
-                {"nav0/sensor.yaml", EurocPoseSensorText(kRate_hz)},
-                {"nav0/data.csv", EurocPoseText(poses)},
-                {"state_groundtruth_estimate0/data.csv", TrueStateText(poses)},
-                {"landing_pattern0/data.csv", truth}};
+  plan.files = {{euroc::kCamera, EurocCameraText(camera, kRate_hz)},
+                {euroc::kPoseSensor, EurocPoseSensorText(kRate_hz)},
+                {euroc::kPoses, EurocPoseText(poses)},
+                {euroc::kTruePoses, TrueStateText(poses)},
+                {euroc::kTruePatterns, truth}};
   return plan;
 }
 

@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/image/border_moments.h"
 #include "kestrel/core/image/gray_sampling.h"
 
@@ -133,9 +135,8 @@ double RingContrast(const cv::Mat& image, const Ellipse& outer_edge,
   const float least = contrast[seen / 4];
   if (least < std::max(kLeast, 0.2f * contrast[seen / 2])) return 0;
   // Inside, arms and white quadrants alternate: a quarter of the directions must show white.
-  const auto upper = inner_contrast.begin() + seen - seen / 4;
-  std::nth_element(inner_contrast.begin(), upper, inner_contrast.begin() + seen);
-  if (*upper < 0.2f * contrast[seen / 2]) return 0;
+  const float upper = RankedInPlace(std::span(inner_contrast).first(seen), seen - seen / 4);
+  if (upper < 0.2f * contrast[seen / 2]) return 0;
   return least;
 }
 
@@ -148,9 +149,8 @@ double BoardContrast(const cv::Mat& image, const Ellipse& outer_edge) {
     const auto dark = [&](double scale) { return sampler.Gray(i, scale); };
     contrast[i] = white < 0 ? 0 : white - std::min({dark(0.8), dark(0.95), dark(1.1)});
   }
-  const auto middle = contrast.begin() + kDirections / 2;
-  std::nth_element(contrast.begin(), middle, contrast.end());
-  return *middle > 2 ? *middle : 0;
+  const float median = MedianInPlace(contrast);
+  return median > 2 ? median : 0;
 }
 
 }  // namespace kestrel

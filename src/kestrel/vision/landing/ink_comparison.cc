@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/image/gray_sampling.h"
 #include "kestrel/vision/landing/gray_doubts.h"
 
@@ -278,9 +279,8 @@ InkComparison::Levels InkComparison::MeasureLevels(
     lit[s] = *Quantile(of_white, kLitWhite);
     contrast[s] = levels.white[s] - ink_level[s];
   }
-  std::array<float, kSectors> sorted = contrast;
-  std::nth_element(sorted.begin(), sorted.begin() + kSectors / 2, sorted.end());
-  const float median = sorted[kSectors / 2];
+  std::array<float, kSectors> contrasts = contrast;
+  const float median = MedianInPlace(contrasts);
   levels.has_contrast = median >= kLeastContrast;
   const float least = std::max(kLeastContrast, kLeastOfContrast * median);
   for (int s = 0; s < kSectors; ++s) {
@@ -317,7 +317,18 @@ double InkComparison::Doubt(const cv::Mat& image, const PatternView& view,
     return seen;
   }
   const Darkness darkness = MeasureDarkness(gray, levels);
+  DoubtCross(darkness, doubts);
+  DoubtBoard(darkness, doubts);
+  InkCorrelation correlation;
+  for (std::size_t i = 0; i < x_m_.size(); ++i) {
+    if (gray[i] < 0) continue;
+    correlation.Add(std::clamp(darkness.value[i], 0.0f, 1.0f), i < ink_end_);
+  }
+  all[PrintDoubt::kUnlike] = LogLacking(correlation.value());
+  return seen;
+}
 
+void InkComparison::DoubtCross(const Darkness& darkness, PrintDoubts* doubts) const {
   std::array<double, kArms> inkless, dark, inked, hub, spoke;
   for (int k = 0; k < kArms; ++k) {
     const double ink = darkness.Mean(arm_[k], kIsInk);
@@ -330,6 +341,17 @@ double InkComparison::Doubt(const cv::Mat& image, const PatternView& view,
       spoke[k] = std::max(spoke[k], darkness.Mean(line, kIsInkOnly));
     }
   }
+  PrintDoubts& all = *doubts;
+  const KnownValues arms(inkless), hubs(hub), spokes(spoke);
+  all[PrintDoubt::kInklessArm] = arms.empty() ? 1 : arms.FromTop(0);
+  all[PrintDoubt::kDarkQuadrants] = KnownValues(dark).Least();
+  all[PrintDoubt::kInkOnWhite] = KnownValues(inked).Least();
+  all[PrintDoubt::kDarkHub] = hubs.FromTop(1);
+  all[PrintDoubt::kOtherSpoke] = spokes.FromTop(0);
+  all[PrintDoubt::kOtherSpokes] = spokes.FromTop(1);
+}
+
+void InkComparison::DoubtBoard(const Darkness& darkness, PrintDoubts* doubts) const {
   std::array<double, kSectors> board;
   double corners = 0, sides = 0;
   int corner_count = 0, side_count = 0;
@@ -339,23 +361,9 @@ double InkComparison::Doubt(const cv::Mat& image, const PatternView& view,
     (s % 2 == 0 ? corners : sides) += board[s];
     ++(s % 2 == 0 ? corner_count : side_count);
   }
-  InkCorrelation correlation;
-  for (std::size_t i = 0; i < x_m_.size(); ++i) {
-    if (gray[i] < 0) continue;
-    correlation.Add(std::clamp(darkness.value[i], 0.0f, 1.0f), i < ink_end_);
-  }
-  const KnownValues arms(inkless), hubs(hub), spokes(spoke);
-  all[PrintDoubt::kInklessArm] = arms.empty() ? 1 : arms.FromTop(0);
-  all[PrintDoubt::kDarkQuadrants] = KnownValues(dark).Least();
-  all[PrintDoubt::kInkOnWhite] = KnownValues(inked).Least();
-  all[PrintDoubt::kDarkHub] = hubs.FromTop(1);
-  all[PrintDoubt::kOtherSpoke] = spokes.FromTop(0);
-  all[PrintDoubt::kOtherSpokes] = spokes.FromTop(1);
-  all[PrintDoubt::kDarkBoard] = KnownValues(board).Median();
-  all[PrintDoubt::kDarkCorners] =
+  (*doubts)[PrintDoubt::kDarkBoard] = KnownValues(board).Median();
+  (*doubts)[PrintDoubt::kDarkCorners] =
       corners / std::max(1, corner_count) - sides / std::max(1, side_count);
-  all[PrintDoubt::kUnlike] = LogLacking(correlation.value());
-  return seen;
 }
 
 }  // namespace kestrel

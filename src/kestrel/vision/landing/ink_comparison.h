@@ -52,6 +52,9 @@ class InkComparison {
   Range AddGrid(const Holds& holds);
   Levels MeasureLevels(const std::array<float, kMaxPlaces>& gray) const;
   Darkness MeasureDarkness(const std::array<float, kMaxPlaces>& gray, const Levels& levels) const;
+  // Set the doubts about arms and the white between them, and about the white around the ring.
+  void DoubtCross(const Darkness& darkness, PrintDoubts* doubts) const;
+  void DoubtBoard(const Darkness& darkness, PrintDoubts* doubts) const;
 
   LandingPattern pattern_;
   double extent_m_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 
 #include <Eigen/Core>
@@ -15,12 +17,17 @@
 
 namespace kestrel {
 
+// Order of a pose's unknowns in vectors and covariances: translation in the camera frame, then the
+// rotation vector in the camera frame about the pattern's centre.
+inline constexpr int kPoseTranslation = 0;
+inline constexpr int kPoseRotation = 3;
+inline constexpr int kPoseUnknowns = 6;
+
 // Pose of the pattern that explains the image best.
 struct PatternLocation {
   RigidTransform camera_from_pattern;
-  // Covariance of the pose error: translation in the camera frame (m), then rotation vector in the
-  // camera frame about the pattern's centre (rad).
-  Eigen::Matrix<double, 6, 6> covariance;
+  // Covariance of the pose error, m and rad.
+  Eigen::Matrix<double, kPoseUnknowns, kPoseUnknowns> covariance;
   // Root mean square of the residuals: 'edge_rms_px' of edges, 'gray_rms' (gray values) of a print
   // that was fitted as a whole. The other one is 0.
   double edge_rms_px = 0;
@@ -50,9 +57,9 @@ struct NormalPrior {
     constexpr double kFar = 2;  // standard deviations
     const double away = normal.cross(normal_in_camera).norm() / (kFar * sigma);
     const double weight = variance / (sigma * sigma) / (1 + away * away);
-    h->template block<3, 3>(3, 3) +=
+    h->template block<3, 3>(kPoseRotation, kPoseRotation) +=
         weight * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
-    g->template segment<3>(3) += weight * normal.cross(normal_in_camera);
+    g->template segment<3>(kPoseRotation) += weight * normal.cross(normal_in_camera);
   }
 };
 
@@ -87,14 +94,43 @@ class PatternLocator {
                                          const std::optional<NormalPrior>& prior = {}) const;
 
  private:
+  // The unknowns: pose (translation, then rotation vector), spread of the black, logarithm of the
+  // focal length's factor, shift of the principal point, and distortion (added to the distance from
+  // the principal point: distortion times its cube, in focal lengths). A single view determines the
+  // distortion too poorly to solve for it, but its information is reported.
+  static constexpr int kSpread = kPoseUnknowns;
+  static constexpr int kFocal = 7;
+  static constexpr int kPrincipal = 8;
+  static constexpr int kDistortion = 10;
+  static constexpr int kUnknowns = 11;
+  static constexpr int kCalibrationUnknowns = kUnknowns - kFocal;
+  // Further columns: the offsets, and their derivatives by the square of the blur.
+  static constexpr int kOffset = kUnknowns;
+  static constexpr int kBlur = 12;
+  static constexpr int kEdgeColumns = 13;
+  using Column = std::array<float, PrintOutline::kMaxPlaces>;
+  using PoseVector = Eigen::Matrix<double, kPoseUnknowns, 1>;
+  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
+  using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+
+  static constexpr std::size_t kMinEdges = 12;  // least number of edges for a pose
+  static constexpr int kMaxSteps = 8;
+  static constexpr double kSettledPx = 0.08;  // outlines that move by less have settled
+  // Squared Mahalanobis distance of the calibration from the camera's above which it is solved for.
+  static constexpr double kDoubtfulCalibration = 8;
+
   struct State;
   struct Equations;
   struct EdgeColumns;
+  struct Lens;
+  struct Outlines;
   struct Linearized;
   struct Residuals;
   struct Solution;
 
   Eigen::Vector2d Principal() const;
+  Lens LensOf(const State& state) const;
+  void Project(const RigidTransform& pose, const EdgeColumns& edges, Outlines* outlines) const;
   void Linearize(const State& state, double scale_px, int unknowns, Linearized* linearized) const;
   bool Approach(const EdgeColumns& edges, const std::optional<NormalPrior>& prior, State* state,
                 double* scale_px) const;

@@ -5,23 +5,28 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
 
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/image/gray_sampling.h"
 
 namespace kestrel {
 namespace {
 
+constexpr int kQuarters = 4;
 constexpr int kRingPlaces = 48;
+constexpr std::size_t kFewestOfRing = kRingPlaces / 6;  // of which a contrast is known
+constexpr int kArmPlaces = 10;                          // along half an arm
+static_assert(kQuarters * kArmPlaces <= kRingPlaces);   // they may stand for the ring
 constexpr std::size_t kMaxPlaces = 400;
+constexpr double kLeastPrintContrast = 2;  // gray values
 // A contrast counts when it has at least this share of the print's contrast in its quarter.
 constexpr double kShare = 0.35;
 // Directions of the places in a quadrant, in degrees from the arm before it, and their radii, in
 // inner radii of the ring.
-constexpr int kQuadrantTurns = 7;
-constexpr std::array<double, kQuadrantTurns> kQuadrantAngles{27, 33, 39, 45, 51, 57, 63};
+constexpr std::array<double, 7> kQuadrantAngles{27, 33, 39, 45, 51, 57, 63};
 constexpr std::array<double, 3> kQuadrantRadii{0.45, 0.6, 0.75};
-constexpr float kUnseen = -1e9f;
 constexpr double kInsideRadius = 0.65;  // radius of the places inside of the ring, inner radii
 constexpr double kLeastInside = 0.2;    // least contrast there, share of that of the ring
 // A contrast in a shadow counts when its share of the brightness is at least kRatioShare times the
@@ -36,35 +41,9 @@ constexpr double kShareInShadow = 0.1;
 constexpr double kHighlight = 0.4;
 constexpr double kSaturatedHighlight = 0.15;
 
-// A seen contrast: white minus black on the darker side and on the brighter side (gray values), and
-// the former divided by the white.
-struct Seen {
-  float difference;
-  float brighter_difference;
-  float ratio;
-  bool known() const { return difference != kUnseen; }
-};
-constexpr Seen kNotSeen{kUnseen, kUnseen, kUnseen};
-
-struct Tally {
-  static constexpr int kSeenOf = 5;  // one in kSeenOf must be in view
-  int agreed = 0;
-  int in_highlight = 0;
-  int seen = 0;
-  int all = 0;
-
-  // Negative where too little is in view, and where half or more lies in a highlight.
-  double Share() const {
-    if (kSeenOf * seen < all || (in_highlight > 0 && 2 * in_highlight >= seen)) return -1;
-    return static_cast<double>(agreed) / std::max(seen, 1);
-  }
-};
-
-template <typename Values>
-double Median(Values* values, std::size_t count) {
-  if (count == 0) return 0;
-  std::nth_element(values->begin(), values->begin() + count / 2, values->begin() + count);
-  return (*values)[count / 2];
+// Radius of the middle of the ring's stroke, m.
+double MiddleOfRing(const LandingPattern& pattern) {
+  return 0.5 * (pattern.outer_radius_m() + pattern.inner_radius_m());
 }
 
 // Returns the least gray value that no part of the print reaches beside the given white of the
@@ -113,54 +92,69 @@ double PatternMatch::Agreement() const {
 }
 
 PatternMatcher::PatternMatcher(const LandingPattern& pattern) {
-  const double outer = pattern.outer_radius_m();
-  const double inner = pattern.inner_radius_m();
-  const double middle = 0.5 * (outer + inner);
-  const double margin = 0.5 * pattern.board_size_m - outer;
-  const double outside = outer + std::min(0.8 * pattern.ring_width_m, 0.6 * margin);
+  const double margin = 0.5 * pattern.board_size_m - pattern.outer_radius_m();
+  const double outside =
+      pattern.outer_radius_m() + std::min(0.8 * pattern.ring_width_m, 0.6 * margin);
   extent_m_ = outside * 1.02;
-  const auto at = [this](double radius, double angle) {
-    return AddPlace(radius * std::cos(angle), radius * std::sin(angle));
-  };
-  // In the frame of an arm: distance along it and across it, m.
-  const auto beside = [this](int quarter, double along, double across) {
-    const double angle = quarter * std::numbers::pi / 2;
-    return AddPlace(along * std::cos(angle) - across * std::sin(angle),
-                    along * std::sin(angle) + across * std::cos(angle));
-  };
-  const auto ring_angle = [](int i) { return (i + 0.5) * 2 * std::numbers::pi / kRingPlaces; };
-  for (int i = 0; i < kRingPlaces; ++i) at(kInsideRadius * inner, ring_angle(i));
+  AddRing(pattern, outside);
+  for (int quarter = 0; quarter < kQuarters; ++quarter) {
+    AddArm(pattern, quarter);
+    AddQuadrant(pattern, quarter);
+  }
+}
+
+void PatternMatcher::AddRing(const LandingPattern& pattern, double outside_m) {
+  const double inner = pattern.inner_radius_m();
+  const auto angle = [](int i) { return (i + 0.5) * 2 * std::numbers::pi / kRingPlaces; };
+  for (int i = 0; i < kRingPlaces; ++i) AddPolar(kInsideRadius * inner, angle(i));
   for (int i = 0; i < kRingPlaces; ++i) {
-    const int quarter = static_cast<int>(std::floor(ring_angle(i) / (std::numbers::pi / 2) + 0.5));
-    const std::size_t dark = at(middle, ring_angle(i));
-    const std::size_t bright = at(outside, ring_angle(i));
-    ring_.push_back({quarter % 4, {dark, dark}, {bright, bright}});
+    const int quarter = static_cast<int>(std::floor(angle(i) / (std::numbers::pi / 2) + 0.5));
+    const std::size_t dark = AddPolar(MiddleOfRing(pattern), angle(i));
+    const std::size_t bright = AddPolar(outside_m, angle(i));
+    ring_.push_back({quarter % kQuarters, {dark, dark}, {bright, bright}});
   }
-  const double reach = std::min(pattern.arm_half_length_m, inner) - 0.3 * pattern.arm_width_m;
+}
+
+void PatternMatcher::AddArm(const LandingPattern& pattern, int quarter) {
+  const double reach =
+      std::min(pattern.arm_half_length_m, pattern.inner_radius_m()) - 0.3 * pattern.arm_width_m;
   const double side = 1.15 * pattern.arm_width_m;
-  for (int quarter = 0; quarter < 4; ++quarter) {
-    for (int i = 0; i < 10; ++i) {
-      const double along = side + 0.02 + (reach - side - 0.02) * i / 9;
-      const std::size_t dark = beside(quarter, along, 0);
-      arms_.push_back(
-          {quarter, {dark, dark}, {beside(quarter, along, side), beside(quarter, along, -side)}});
-    }
-    std::array<std::size_t, kQuadrantRadii.size()> on_arm;
+  for (int i = 0; i < kArmPlaces; ++i) {
+    const double along = side + 0.02 + (reach - side - 0.02) * i / (kArmPlaces - 1);
+    const std::size_t dark = AddBeside(quarter, along, 0);
+    arms_.push_back({quarter,
+                     {dark, dark},
+                     {AddBeside(quarter, along, side), AddBeside(quarter, along, -side)}});
+  }
+}
+
+// From half a quadrant before the arm to half a quadrant behind it.
+void PatternMatcher::AddQuadrant(const LandingPattern& pattern, int quarter) {
+  const double inner = pattern.inner_radius_m();
+  std::array<std::size_t, kQuadrantRadii.size()> on_arm;
+  for (std::size_t k = 0; k < on_arm.size(); ++k) {
+    on_arm[k] = AddBeside(quarter, kQuadrantRadii[k] * inner, 0);
+  }
+  for (const double degrees : kQuadrantAngles) {
+    const double angle = (quarter + degrees / 90) * std::numbers::pi / 2;
+    const std::size_t on_ring = AddPolar(MiddleOfRing(pattern), angle);
     for (std::size_t k = 0; k < on_arm.size(); ++k) {
-      on_arm[k] = beside(quarter, kQuadrantRadii[k] * inner, 0);
-    }
-    // From half a quadrant before the arm to half a quadrant behind it.
-    for (int i = 0; i < kQuadrantTurns; ++i) {
-      const double angle = (quarter + kQuadrantAngles[i] / 90) * std::numbers::pi / 2;
-      const std::size_t on_ring = at(middle, angle);
-      for (std::size_t k = 0; k < on_arm.size(); ++k) {
-        const std::size_t bright = at(kQuadrantRadii[k] * inner, angle);
-        quadrants_.push_back({(quarter + (kQuadrantAngles[i] > 45 ? 1 : 0)) % 4,
-                              {on_ring, on_arm[k]},
-                              {bright, bright}});
-      }
+      const std::size_t bright = AddPolar(kQuadrantRadii[k] * inner, angle);
+      quadrants_.push_back(
+          {(quarter + (degrees > 45 ? 1 : 0)) % kQuarters, {on_ring, on_arm[k]}, {bright, bright}});
     }
   }
+}
+
+std::size_t PatternMatcher::AddPolar(double radius_m, double angle) {
+  return AddPlace(radius_m * std::cos(angle), radius_m * std::sin(angle));
+}
+
+// In the frame of an arm: distance along it and across it, m.
+std::size_t PatternMatcher::AddBeside(int quarter, double along_m, double across_m) {
+  const double angle = quarter * std::numbers::pi / 2;
+  return AddPlace(along_m * std::cos(angle) - across_m * std::sin(angle),
+                  along_m * std::sin(angle) + across_m * std::cos(angle));
 }
 
 std::size_t PatternMatcher::AddPlace(double x_m, double y_m) {
@@ -169,143 +163,223 @@ std::size_t PatternMatcher::AddPlace(double x_m, double y_m) {
   return x_m_.size() - 1;
 }
 
+// A seen contrast: white minus black on the darker side and on the brighter side (gray values), and
+// the former divided by the white.
+struct PatternMatcher::Seen {
+  static constexpr float kUnseen = -1e9f;
+
+  float difference = kUnseen;
+  float brighter_difference = kUnseen;
+  float ratio = kUnseen;
+  bool known() const { return difference != kUnseen; }
+};
+
+// Of the contrasts of a part.
+struct PatternMatcher::Tally {
+  static constexpr int kSeenOf = 5;  // one in kSeenOf must be in view
+  int agreed = 0;
+  int in_highlight = 0;
+  int seen = 0;
+  int all = 0;
+
+  // Negative where too little is in view, and where half or more lies in a highlight.
+  double Share() const {
+    if (kSeenOf * seen < all || (in_highlight > 0 && 2 * in_highlight >= seen)) return -1;
+    return static_cast<double>(agreed) / std::max(seen, 1);
+  }
+};
+
+// Values at the places that are in view, at most kMost.
+template <std::size_t kMost>
+struct PatternMatcher::Values {
+  void Add(float value) { all[count++] = value; }
+  void Clear() { count = 0; }
+  double Median() { return count == 0 ? 0 : MedianInPlace(std::span(all).first(count)); }
+
+  std::array<float, kMost> all;
+  std::size_t count = 0;
+};
+
 double PatternMatcher::RingContrast(const cv::Mat& image, const PatternView& view) const {
   std::array<float, 3 * kRingPlaces> gray;
   view.Sample(image, x_m_.data(), y_m_.data(), gray.size(), gray.data());
-  std::array<float, kRingPlaces> outside, inside;
-  std::size_t count = 0, inside_count = 0;
+  Values<kRingPlaces> outside, inside;
   for (std::size_t i = 0; i < kRingPlaces; ++i) {
     const float within = gray[i];
     const float dark = gray[ring_[i].dark[0]];
     const float bright = gray[ring_[i].bright[0]];
     if (dark < 0 || bright < 0) continue;
-    outside[count++] = bright - dark;
-    if (within >= 0) inside[inside_count++] = within - dark;
+    outside.Add(bright - dark);
+    if (within >= 0) inside.Add(within - dark);
   }
-  if (count < kRingPlaces / 6) return 0;
-  const double contrast = Median(&outside, count);
+  if (outside.count < kFewestOfRing) return 0;
+  const double contrast = outside.Median();
+  if (inside.count < kFewestOfRing) return contrast;
   // Inside, arms and white alternate: a quarter of the directions must show white.
-  const std::size_t upper = inside_count - inside_count / 4;
-  if (inside_count >= kRingPlaces / 6) {
-    std::nth_element(inside.begin(), inside.begin() + upper, inside.begin() + inside_count);
-    if (inside[upper] < kLeastInside * contrast) return 0;
-  }
-  return contrast;
+  const float white =
+      RankedInPlace(std::span(inside.all).first(inside.count), inside.count - inside.count / 4);
+  return white < kLeastInside * contrast ? 0 : contrast;
 }
 
-PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view) const {
-  PatternMatch match;
-  std::array<Tally, 4> arm, quadrant, ring;
-  std::array<float, kMaxPlaces> gray;
-  view.Sample(image, x_m_.data(), y_m_.data(), x_m_.size(), gray.data());
+// What the image shows at the places of the print, and what follows for the looks of its parts.
+class PatternMatcher::Comparison {
+ public:
+  Comparison(const PatternMatcher& print, const cv::Mat& image, const PatternView& view)
+      : print_(print) {
+    view.Sample(image, print.x_m_.data(), print.y_m_.data(), print.x_m_.size(), gray_.data());
+    MeasureRing();
+    if (differences_.count < kFewestOfRing) MeasureArms();
+    contrast_ = differences_.Median();
+  }
+
+  // Contrast of the print, gray values.
+  double contrast() const { return contrast_; }
+
+  void Match(PatternMatch* match) {
+    SetBounds();
+    SetHighlights();
+    for (std::size_t i = 0; i < print_.ring_.size(); ++i) {
+      Count(print_.ring_[i], of_ring_[i], &ring_);
+    }
+    for (const Contrast& contrast : print_.arms_) CountArm(contrast);
+    for (const Contrast& contrast : print_.quadrants_) {
+      Count(contrast, LookAt(contrast), &quadrant_);
+    }
+    int seen = 0, all = 0;
+    for (int q = 0; q < kQuarters; ++q) {
+      match->shares.arm[q] = arm_[q].Share();
+      match->shares.quadrant[q] = quadrant_[q].Share();
+      match->shares.ring[q] = ring_[q].Share();
+      for (const Tally& tally : {arm_[q], quadrant_[q], ring_[q]}) {
+        seen += tally.seen;
+        all += tally.all;
+      }
+    }
+    match->seen = static_cast<double>(seen) / all;
+  }
+
+ private:
+  using Tallies = std::array<Tally, kQuarters>;
+
   // Returns the darker and the brighter gray value of two places, which may be equal.
-  const auto sample = [&](const std::array<std::size_t, 2>& places) -> std::pair<float, float> {
-    const float first = gray[places[0]];
-    const float second = gray[places[1]];
+  std::pair<float, float> Sample(const std::array<std::size_t, 2>& places) const {
+    const float first = gray_[places[0]];
+    const float second = gray_[places[1]];
     if (first < 0) return {second, second};
     if (second < 0) return {first, first};
     return std::minmax({first, second});
-  };
-  const auto look_at = [&](const Contrast& contrast) -> Seen {
-    const float dark = sample(contrast.dark).first;
-    const auto [bright, brighter] = sample(contrast.bright);
-    if (dark < 0 || bright < 0) return kNotSeen;
-    return {bright - dark, brighter - dark, (bright - dark) / std::max(bright, 1.0f)};
-  };
-
-  // The contrast of the print in each quarter, which shadow and haze may change, is that of the
-  // ring there, but at least a third of that of the whole ring. Where the ring is out of view, the
-  // arms serve instead.
-  std::array<Seen, kRingPlaces> of_ring;
-  std::array<float, kRingPlaces> known, known_ratio, ink;
-  std::size_t count = 0, ink_count = 0;
-  std::array<std::array<float, kRingPlaces>, 4> of_quarter, board;
-  std::array<std::size_t, 4> quarter_count{};
-  for (std::size_t i = 0; i < ring_.size(); ++i) {
-    of_ring[i] = look_at(ring_[i]);
-    if (!of_ring[i].known()) continue;
-    known[count] = of_ring[i].difference;
-    known_ratio[count++] = of_ring[i].ratio;
-    ink[ink_count++] = sample(ring_[i].dark).first;
-    const int q = ring_[i].quarter;
-    board[q][quarter_count[q]] = sample(ring_[i].bright).first;
-    of_quarter[q][quarter_count[q]++] = of_ring[i].difference;
   }
-  if (count < kRingPlaces / 6) {
-    count = ink_count = 0;
-    for (const Contrast& contrast : arms_) {
-      if (count == known.size()) break;
-      const Seen arm_contrast = look_at(contrast);
-      if (!arm_contrast.known()) continue;
-      known[count] = arm_contrast.difference;
-      known_ratio[count++] = arm_contrast.ratio;
+  float DarkOf(const Contrast& contrast) const { return Sample(contrast.dark).first; }
+  float BrightOf(const Contrast& contrast) const { return Sample(contrast.bright).first; }
+
+  Seen LookAt(const Contrast& contrast) const {
+    const float dark = DarkOf(contrast);
+    const auto [bright, brighter] = Sample(contrast.bright);
+    if (dark < 0 || bright < 0) return {};
+    return {bright - dark, brighter - dark, (bright - dark) / std::max(bright, 1.0f)};
+  }
+
+  void MeasureRing() {
+    for (std::size_t i = 0; i < print_.ring_.size(); ++i) {
+      const Contrast& contrast = print_.ring_[i];
+      of_ring_[i] = LookAt(contrast);
+      if (!of_ring_[i].known()) continue;
+      differences_.Add(of_ring_[i].difference);
+      ratios_.Add(of_ring_[i].ratio);
+      ink_.Add(DarkOf(contrast));
+      board_[contrast.quarter].Add(BrightOf(contrast));
+      of_quarter_[contrast.quarter].Add(of_ring_[i].difference);
     }
   }
-  match.contrast = Median(&known, count);
-  if (match.contrast < 2) return match;
-  // In a quarter with light and shadow, black is in the same proportion to the white beside it.
-  // Along an arm at the edge of a shadow, one side is in the light.
-  const double least_in_light = kShareInLight * match.contrast;
-  const double least_ratio = kRatioShare * Median(&known_ratio, count);
-  const double least_in_shadow = std::max(kLeastInShadow, kShareInShadow * match.contrast);
-  std::array<double, 4> least;
-  for (int q = 0; q < 4; ++q) {
-    const double local =
-        quarter_count[q] == 0 ? match.contrast : Median(&of_quarter[q], quarter_count[q]);
-    least[q] = kShare * std::clamp(local, match.contrast / 3, match.contrast);
+
+  // Where the ring is out of view, the arms serve instead.
+  void MeasureArms() {
+    differences_.Clear();
+    ratios_.Clear();
+    ink_.Clear();
+    for (const Contrast& contrast : print_.arms_) {
+      const Seen seen = LookAt(contrast);
+      if (!seen.known()) continue;
+      differences_.Add(seen.difference);
+      ratios_.Add(seen.ratio);
+    }
   }
 
-  const auto agrees = [&](const Seen& value, int quarter) {
-    return value.difference >= least[quarter] ||
-           (value.difference >= least_in_shadow &&
-            (value.ratio >= least_ratio || value.brighter_difference >= least_in_light));
-  };
+  // The contrast of the print in each quarter, which shadow and haze may change, is that of the
+  // ring there, but at least a third of that of the whole ring. In a quarter with light and shadow,
+  // black is in the same proportion to the white beside it. Along an arm at the edge of a shadow,
+  // one side is in the light.
+  void SetBounds() {
+    least_in_light_ = kShareInLight * contrast_;
+    least_ratio_ = kRatioShare * ratios_.Median();
+    least_in_shadow_ = std::max(kLeastInShadow, kShareInShadow * contrast_);
+    for (int q = 0; q < kQuarters; ++q) {
+      const double local = of_quarter_[q].count == 0 ? contrast_ : of_quarter_[q].Median();
+      least_[q] = kShare * std::clamp(local, contrast_ / 3, contrast_);
+    }
+  }
+
+  void SetHighlights() {
+    Values<kMaxPlaces> white;
+    for (const Contrast& contrast : print_.quadrants_) {
+      const float bright = BrightOf(contrast);
+      if (bright >= 0) white.Add(bright);
+    }
+    const double white_inside = white.Median();
+    middle_ = 0.5 * (ink_.Median() + white_inside);
+    for (int q = 0; q < kQuarters; ++q) {
+      highlight_[q] = HighlightGray(std::max(white_inside, board_[q].Median()), contrast_);
+    }
+  }
+
+  bool Agrees(const Seen& value, int quarter) const {
+    return value.difference >= least_[quarter] ||
+           (value.difference >= least_in_shadow_ &&
+            (value.ratio >= least_ratio_ || value.brighter_difference >= least_in_light_));
+  }
+
   // An arm is hidden, for instance by a landing leg, where both the arm and its side are nearer to
   // black than to the white inside of the ring. A missing arm would leave that white.
-  std::array<float, kMaxPlaces> white;
-  std::size_t white_count = 0;
-  for (const Contrast& contrast : quadrants_) {
-    const float bright = sample(contrast.bright).first;
-    if (bright >= 0) white[white_count++] = bright;
+  bool HidesArm(const Contrast& contrast) const {
+    return ink_.count > 0 && DarkOf(contrast) < middle_ && BrightOf(contrast) < middle_;
   }
-  const double white_inside = Median(&white, white_count);
-  const double middle = 0.5 * (Median(&ink, ink_count) + white_inside);
-  const auto hides_arm = [&](const Contrast& contrast) {
-    return ink_count > 0 && sample(contrast.dark).first < middle &&
-           sample(contrast.bright).first < middle;
-  };
-  // Highlights hide arms too.
-  std::array<double, 4> highlight;
-  for (int q = 0; q < 4; ++q) {
-    const double white_outside = Median(&board[q], quarter_count[q]);
-    highlight[q] = HighlightGray(std::max(white_inside, white_outside), match.contrast);
-  }
-  int seen = 0, all = 0;
-  const auto count_in = [&](const Contrast& contrast, const Seen& value,
-                            std::array<Tally, 4>* tallies) {
+
+  void Count(const Contrast& contrast, const Seen& value, Tallies* tallies) const {
     Tally& tally = (*tallies)[contrast.quarter];
     ++tally.all;
-    ++all;
     if (!value.known()) return;
     ++tally.seen;
-    ++seen;
-    tally.agreed += agrees(value, contrast.quarter);
-  };
-  for (std::size_t i = 0; i < ring_.size(); ++i) count_in(ring_[i], of_ring[i], &ring);
-  for (const Contrast& contrast : arms_) {
-    const Seen value = look_at(contrast);
-    const bool hidden = value.known() && !agrees(value, contrast.quarter) && hides_arm(contrast);
-    count_in(contrast, hidden ? kNotSeen : value, &arm);
-    arm[contrast.quarter].in_highlight +=
-        value.known() && sample(contrast.dark).first >= highlight[contrast.quarter];
+    tally.agreed += Agrees(value, contrast.quarter);
   }
-  for (const Contrast& contrast : quadrants_) count_in(contrast, look_at(contrast), &quadrant);
-  for (int q = 0; q < 4; ++q) {
-    match.shares.arm[q] = arm[q].Share();
-    match.shares.quadrant[q] = quadrant[q].Share();
-    match.shares.ring[q] = ring[q].Share();
+
+  // Highlights hide arms too.
+  void CountArm(const Contrast& contrast) {
+    const Seen value = LookAt(contrast);
+    const int q = contrast.quarter;
+    const bool hidden = value.known() && !Agrees(value, q) && HidesArm(contrast);
+    Count(contrast, hidden ? Seen{} : value, &arm_);
+    arm_[q].in_highlight += value.known() && DarkOf(contrast) >= highlight_[q];
   }
-  match.seen = static_cast<double>(seen) / all;
+
+  const PatternMatcher& print_;
+  std::array<float, kMaxPlaces> gray_;
+  std::array<Seen, kRingPlaces> of_ring_;
+  Values<kRingPlaces> differences_, ratios_, ink_;
+  std::array<Values<kRingPlaces>, kQuarters> of_quarter_, board_;  // difference, white outside
+  double contrast_;
+  // Bounds, see kShare and kRatioShare; the first by quarter.
+  std::array<double, kQuarters> least_;
+  double least_in_light_, least_ratio_, least_in_shadow_;
+  double middle_;                            // between ink and white, gray value
+  std::array<double, kQuarters> highlight_;  // least gray value of a highlight, by quarter
+  Tallies arm_, quadrant_, ring_;
+};
+
+PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view) const {
+  PatternMatch match;
+  Comparison comparison(*this, image, view);
+  match.contrast = comparison.contrast();
+  if (match.contrast >= kLeastPrintContrast) comparison.Match(&match);
   return match;
 }
 

@@ -70,7 +70,19 @@ class PatternMatcher {
     std::array<std::size_t, 2> dark;    // the darker counts
     std::array<std::size_t, 2> bright;  // the darker counts
   };
+  struct Seen;
+  struct Tally;
+  template <std::size_t kMost>
+  struct Values;
+  class Comparison;
+
+  void AddRing(const LandingPattern& pattern, double outside_m);
+  void AddArm(const LandingPattern& pattern, int quarter);
+  void AddQuadrant(const LandingPattern& pattern, int quarter);
+  // Each returns the index of the new place.
   std::size_t AddPlace(double x_m, double y_m);
+  std::size_t AddPolar(double radius_m, double angle);
+  std::size_t AddBeside(int quarter, double along_m, double across_m);
 
   double extent_m_ = 0;
   // Places of the plane, sampled all at once: first those inside of the ring, on it and outside of
@@ -79,8 +91,7 @@ class PatternMatcher {
   std::vector<float> y_m_;
   std::vector<Contrast> ring_;
   std::vector<Contrast> arms_;
-  std::vector<Contrast>
-      quadrants_;  // kQuadrantTurns directions of kQuadrantRadii places, by quadrant
+  std::vector<Contrast> quadrants_;
 };
 
 }  // namespace kestrel

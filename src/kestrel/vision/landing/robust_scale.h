@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <span>
 
+#include "kestrel/core/base/robust_statistics.h"
+
 namespace kestrel {
 
 // Standard deviation of 'offsets' from the median of their magnitudes, to half a percent; 0 for
@@ -21,7 +23,8 @@ inline double RobustScale(std::span<const float> offsets) {
     if (2 * below <= offsets.size()) median |= bit;
   }
   if (offsets.empty()) return 0;
-  return 1.4826 * static_cast<double>(std::bit_cast<float>(median | kLeastBit >> 1));
+  return kSigmaPerMedianMagnitude *
+         static_cast<double>(std::bit_cast<float>(median | kLeastBit >> 1));
 }
 
 }  // namespace kestrel

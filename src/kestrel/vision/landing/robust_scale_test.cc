@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/vision/landing/robust_scale.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "kestrel/core/base/random.h"
+#include "kestrel/core/base/robust_statistics.h"
 
 namespace kestrel {
 namespace {
@@ -20,14 +20,13 @@ TEST(RobustScale, IsThatOfTheMedian) {
     for (int i = 0; i < 20; ++i) offsets[i] = 1e6f;
     const double scale = RobustScale(offsets);
     for (float& offset : offsets) offset = std::abs(offset);
-    std::nth_element(offsets.begin(), offsets.begin() + 150, offsets.end());
-    EXPECT_NEAR(scale / (1.4826 * offsets[150]), 1, 0.005) << sigma;
+    EXPECT_NEAR(scale / RobustSigmaInPlace(offsets), 1, 0.005) << sigma;
   }
 }
 
 TEST(RobustScale, OfFewIsThatOfTheMiddleOne) {
   const std::vector<float> offsets{-5, 0.1f, -2, 100, 0.2f};
-  EXPECT_NEAR(RobustScale(offsets), 1.4826 * 2, 0.005 * 1.4826 * 2);
+  EXPECT_NEAR(RobustScale(offsets) / kSigmaPerMedianMagnitude, 2, 0.01);
   EXPECT_EQ(RobustScale({}), 0);
 }
 

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/vision/landing/column_products.h"
 #include "kestrel/vision/landing/neighbor_correlation.h"
 #include "kestrel/vision/landing/small_pattern_kernel.h"
@@ -18,8 +20,6 @@ namespace {
 
 constexpr double kMinBlurPx = 0.4;
 constexpr double kMaxBlurPx = 1.2;
-// Unknowns: pose, blur, white, contrast, and two slopes of the light.
-constexpr int kUnknowns = SmallPatternWorkspace::kUnknowns;
 constexpr double kBlurSpread = 0.35;  // standard deviation of the blur's logarithm over lenses
 constexpr double kMaxWhite = 600;     // gray value of white under the strongest overexposure
 // Outliers are residuals beyond kOutlier standard deviations. The standard deviation is at least
@@ -32,6 +32,15 @@ constexpr double kMinLateCorrelation = 0.6;
 constexpr double kMaxHighlight = 0.25;  // largest share around a visible arm
 constexpr std::size_t kMinPixels = 30;
 constexpr int kMaxSide = 256;  // largest side of the box around the print, pixels
+// Weights that hold an unknown near to where it is: of the pose a share of its own, of the light
+// per pixel. They matter only where the image leaves it open.
+constexpr double kPoseDamping = 1e-3;
+constexpr double kWhiteWeight = 0.01;
+constexpr double kSlopeWeight = 1e-6;
+// A step beyond these is wrong: rad, share of the distance. That of the blur's logarithm is cut.
+constexpr double kMaxTurn = 0.8;
+constexpr double kMaxShift = 0.5;
+constexpr double kMaxBlurStep = 0.5;
 
 // Factor by which the variance of a pixel is larger as the pose sees it: errors that neighbours in
 // a row share do not average out along the strokes.
@@ -59,8 +68,7 @@ double NoiseVariance(SmallPatternWorkspace* workspace) {
     const float before = points.seen[i - 1] - points.expected[i - 1];
     workspace->magnitudes[count++] = std::abs(here - before);
   }
-  if (count == 0) return 0;
-  const double difference = 1.4826 * Quantile(0.5, count, &workspace->magnitudes);
+  const double difference = RobustSigmaInPlace(std::span(workspace->magnitudes).first(count));
   return 0.5 * difference * difference;
 }
 
@@ -69,7 +77,7 @@ double RobustScale(SmallPatternWorkspace* workspace) {
   std::transform(workspace->points.residual.begin(),
                  workspace->points.residual.begin() + static_cast<std::ptrdiff_t>(workspace->count),
                  workspace->magnitudes.begin(), [](float residual) { return std::abs(residual); });
-  return 1.4826 * Quantile(0.5, workspace->count, &workspace->magnitudes);
+  return RobustSigmaInPlace(std::span(workspace->magnitudes).first(workspace->count));
 }
 
 // Residuals by zone of the print, outliers bounded, corrected for noise.
@@ -139,55 +147,77 @@ SmallPatternWorkspace::SmallPatternWorkspace() {
   for (Column& column : jacobian) make_room(column);
 }
 
+// The box of the disc under a pose; nothing where it is not in view, or too large to be small.
+std::optional<SmallPatternFitter::PixelBox> SmallPatternFitter::BoxAround(
+    const RigidTransform& pose, const cv::Size& image) const {
+  constexpr int kCorners = 8;                  // of an octagon around the circle
+  constexpr double kCornerRadius = 1.0823922;  // of the circle's radius
+  constexpr int kMinSide = 4;
+  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
+  Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = i * (2 * std::numbers::pi / kCorners);
+    const double reach = extent_m_ * kCornerRadius;
+    Eigen::Vector2d pixel;
+    if (camera_.Project(pose.translation + reach * (std::cos(angle) * rotation.col(0) +
+                                                    std::sin(angle) * rotation.col(1)),
+                        &pixel) == ProjectionStatus::kOutsideModel) {
+      return std::nullopt;
+    }
+    low = low.cwiseMin(pixel);
+    high = high.cwiseMax(pixel);
+  }
+  const PixelBox box{std::max(0, static_cast<int>(std::floor(low.x()))),
+                     std::max(0, static_cast<int>(std::floor(low.y()))),
+                     std::min(image.width - 1, static_cast<int>(std::ceil(high.x()))),
+                     std::min(image.height - 1, static_cast<int>(std::ceil(high.y())))};
+  const auto [shorter, longer] = std::minmax({box.right - box.left, box.bottom - box.top});
+  if (shorter < kMinSide || longer > kMaxSide) return std::nullopt;
+  return box;
+}
+
 // Collects the pixels that show the disc of the print and the white around it under 'pose'. Where
 // their box has more than 'enough_pixels', takes only every second, third, ... pixel of every such
 // row.
 bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose, int enough_pixels,
                                 SmallPatternWorkspace* workspace) const {
   workspace->count = 0;
-  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
-  Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
-  for (int i = 0; i < 8; ++i) {
-    const double angle = i * 0.7853981633974483;
-    // Corners of an octagon around the circle.
-    const double reach = extent_m_ * 1.0823922;
-    Eigen::Vector2d pixel;
-    if (camera_.Project(pose.translation + reach * (std::cos(angle) * rotation.col(0) +
-                                                    std::sin(angle) * rotation.col(1)),
-                        &pixel) == ProjectionStatus::kOutsideModel) {
-      return false;
-    }
-    low = low.cwiseMin(pixel);
-    high = high.cwiseMax(pixel);
-  }
-  const int x0 = std::max(0, static_cast<int>(std::floor(low.x())));
-  const int y0 = std::max(0, static_cast<int>(std::floor(low.y())));
-  const int x1 = std::min(image.cols - 1, static_cast<int>(std::ceil(high.x())));
-  const int y1 = std::min(image.rows - 1, static_cast<int>(std::ceil(high.y())));
-  if (x1 - x0 < 4 || y1 - y0 < 4 || x1 - x0 > kMaxSide || y1 - y0 > kMaxSide) return false;
+  const std::optional<PixelBox> box = BoxAround(pose, image.size());
+  if (!box) return false;
+  const int width = box->right - box->left, height = box->bottom - box->top;
   const int stride =
-      1 + static_cast<int>(std::sqrt((x1 - x0) * (y1 - y0) / static_cast<double>(enough_pixels)));
-  workspace->patch.left = x0;
-  workspace->patch.top = y0;
-  workspace->patch.stride = stride;
-  workspace->patch.width = (x1 - x0) / stride + 1;
-  workspace->patch.height = (y1 - y0) / stride + 1;
-  SmallPatternWorkspace::Pixels& pixels = workspace->pixels;
-  std::size_t in_box = 0;
-  for (int y = y0; y <= y1; y += stride) {
-    for (int x = x0; x <= x1; x += stride, ++in_box) {
-      workspace->u[in_box] = static_cast<float>(x);
-      workspace->v[in_box] = static_cast<float>(y);
+      1 + static_cast<int>(std::sqrt(width * height / static_cast<double>(enough_pixels)));
+  SmallPatternWorkspace::Patch& patch = workspace->patch;
+  patch.left = box->left;
+  patch.top = box->top;
+  patch.stride = stride;
+  patch.width = width / stride + 1;
+  patch.height = height / stride + 1;
+  for (int y = box->top; y <= box->bottom; y += stride) {
+    for (int x = box->left; x <= box->right; x += stride) {
+      workspace->u[workspace->count] = static_cast<float>(x);
+      workspace->v[workspace->count++] = static_cast<float>(y);
     }
   }
-  const auto rays = [&](std::size_t count, std::array<SmallPatternWorkspace::Column, 3>* columns) {
-    rays_.Rays(workspace->u.data(), workspace->v.data(), count, (*columns)[0].data(),
-               (*columns)[1].data(), (*columns)[2].data());
-  };
-  rays(in_box, &pixels.ray);
-  // Keeps the pixels whose rays meet the disc.
+  FindRays(workspace, &workspace->pixels.ray);
+  KeepPixelsOfPrint(image, pose, workspace);
+  DifferentiateRays(workspace);
+  return workspace->count >= kMinPixels;
+}
+
+void SmallPatternFitter::FindRays(SmallPatternWorkspace* workspace,
+                                  std::array<SmallPatternWorkspace::Column, 3>* columns) const {
+  rays_.Rays(workspace->u.data(), workspace->v.data(), workspace->count, (*columns)[0].data(),
+             (*columns)[1].data(), (*columns)[2].data());
+}
+
+// Keeps the pixels whose rays meet the disc.
+void SmallPatternFitter::KeepPixelsOfPrint(const cv::Mat& image, const RigidTransform& pose,
+                                           SmallPatternWorkspace* workspace) const {
+  SmallPatternWorkspace::Pixels& pixels = workspace->pixels;
   const Eigen::Matrix3f plane_from_ray = PlaneFromRay(pose).cast<float>();
   const auto extent = static_cast<float>(extent_m_ * extent_m_);
+  const std::size_t in_box = workspace->count;
   std::size_t count = 0;
   for (std::size_t i = 0; i < in_box; ++i) {
     const Eigen::Vector3f ray(pixels.ray[0][i], pixels.ray[1][i], pixels.ray[2][i]);
@@ -200,11 +230,16 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
     workspace->v[count++] = workspace->v[i];
   }
   workspace->count = count;
-  // One-sided differences suffice: they only say how far the blur reaches.
+}
+
+// One-sided differences suffice: they only say how far the blur reaches.
+void SmallPatternFitter::DifferentiateRays(SmallPatternWorkspace* workspace) const {
+  SmallPatternWorkspace::Pixels& pixels = workspace->pixels;
+  const std::size_t count = workspace->count;
   const auto differences = [&](SmallPatternWorkspace::Column* place,
                                std::array<SmallPatternWorkspace::Column, 3>* columns) {
     for (std::size_t i = 0; i < count; ++i) (*place)[i] += 1;
-    rays(count, columns);
+    FindRays(workspace, columns);
     for (std::size_t i = 0; i < count; ++i) (*place)[i] -= 1;
     for (int k = 0; k < 3; ++k) {
       for (std::size_t i = 0; i < count; ++i) (*columns)[k][i] -= pixels.ray[k][i];
@@ -212,7 +247,6 @@ bool SmallPatternFitter::Gather(const cv::Mat& image, const RigidTransform& pose
   };
   differences(&workspace->u, &pixels.ray_by_u);
   differences(&workspace->v, &pixels.ray_by_v);
-  return count >= kMinPixels;
 }
 
 // Normal equations of a state for small changes of pose (translation, then rotation about the
@@ -279,7 +313,7 @@ SmallPatternFitter::System SmallPatternFitter::Linearize(const State& state, dou
   };
   Differentiate({axis(0), axis(1), axis(2)}, static_cast<float>(state.contrast), workspace);
 
-  constexpr int kColumns = kUnknowns + 1;  // the last one is the residual
+  constexpr int kColumns = SmallPatternWorkspace::kResidual + 1;
   std::array<const float*, kColumns> columns;
   for (int k = 0; k < kColumns; ++k) columns[k] = workspace->jacobian[k].data();
   Eigen::Matrix<double, kColumns, kColumns> products;
@@ -310,27 +344,28 @@ bool SmallPatternFitter::Improve(const System& system, const std::optional<Norma
   Eigen::Matrix<double, kUnknowns, kUnknowns> h = system.h;
   Eigen::Matrix<double, kUnknowns, 1> b = system.b;
   const double blur_weight = system.variance() / (kBlurSpread * kBlurSpread);
-  h(6, 6) += blur_weight;
-  b(6) -= blur_weight * std::log(state->blur_px / kGoodLensBlurPx);
-  for (int i = 0; i < 6; ++i) h(i, i) *= 1.001;
+  h(kLogBlur, kLogBlur) += blur_weight;
+  b(kLogBlur) -= blur_weight * std::log(state->blur_px / kGoodLensBlurPx);
+  h.diagonal().head<kPoseUnknowns>() *= 1 + kPoseDamping;
   if (prior) {
     const double variance = system.variance() * Redundancy(workspace, limit);
     prior->AddTo(state->pose.rotation, variance, &h, &b);
   }
-  h(7, 7) += 0.01 * system.count;
-  h(9, 9) += 1e-6 * system.count;
-  h(10, 10) += 1e-6 * system.count;
+  h(kWhite, kWhite) += kWhiteWeight * system.count;
+  for (int i = kSlope; i < kUnknowns; ++i) h(i, i) += kSlopeWeight * system.count;
   const Eigen::Matrix<double, kUnknowns, 1> step = h.ldlt().solve(b);
   if (!step.allFinite()) return false;
   RigidTransform& pose = state->pose;
-  const Eigen::Vector3d turn = step.segment<3>(3);
-  if (turn.norm() > 0.8 || step.head<3>().norm() > 0.5 * pose.translation.norm()) return false;
-  pose = Moved(pose, step.head<3>(), turn);
+  const Eigen::Vector3d shift = step.segment<3>(kPoseTranslation);
+  const Eigen::Vector3d turn = step.segment<3>(kPoseRotation);
+  if (turn.norm() > kMaxTurn || shift.norm() > kMaxShift * pose.translation.norm()) return false;
+  pose = Moved(pose, shift, turn);
   state->blur_px =
-      std::clamp(state->blur_px * std::exp(std::clamp(step(6), -0.5, 0.5)), kMinBlurPx, kMaxBlurPx);
-  state->white += step(7);
-  state->contrast += step(8);
-  state->slope += step.tail<2>();
+      std::clamp(state->blur_px * std::exp(std::clamp(step(kLogBlur), -kMaxBlurStep, kMaxBlurStep)),
+                 kMinBlurPx, kMaxBlurPx);
+  state->white += step(kWhite);
+  state->contrast += step(kContrast);
+  state->slope += step.segment<2>(kSlope);
   return state->contrast >= kMinContrast && state->white < kMaxWhite &&
          (pose.rotation * Eigen::Vector3d::UnitZ()).dot(pose.translation) < 0;
 }
@@ -364,7 +399,7 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   if (!covariance.allFinite()) return std::nullopt;
   Fit fit;
   fit.location.camera_from_pattern = state.pose;
-  fit.location.covariance = covariance.topLeftCorner<6, 6>();
+  fit.location.covariance = covariance.topLeftCorner<kPoseUnknowns, kPoseUnknowns>();
   fit.location.gray_rms = std::sqrt(system.squares / system.count);
   state.noise_variance = NoiseVariance(workspace);
   const Zones zones(pattern_, *workspace, limit, state.noise_variance);
@@ -379,42 +414,22 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   return fit;
 }
 
-// Fits amplitudes to the ring's quarters, to each half arm and to the white of each quadrant, on
-// top of white that may vary linearly over the print, and compares them with the print's contrast.
-void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, const State& state,
-                                      PatternMatch* match) const {
-  constexpr int kParts = 15;  // 4 of the ring, 4 half arms, 4 quadrants, white and its slopes
+// Sums over the pixels for the parts of a print: 4 quarters of the ring, 4 half arms, 4 quadrants,
+// then white and its slopes.
+struct SmallPatternFitter::Parts {
+  static constexpr int kRing = 0;
+  static constexpr int kArm = 4;
+  static constexpr int kQuadrant = 8;
+  static constexpr int kLight = 12;
+  static constexpr int kParts = 15;
+  // Of these parts a pixel has one of each kind.
+  static constexpr std::size_t kOfPixel = 6;
   using Vector = Eigen::Matrix<double, kParts, 1>;
   using Matrix = Eigen::Matrix<double, kParts, kParts>;
-  Matrix h = Matrix::Zero();
-  Vector b = Vector::Zero();
-  std::array<int, 4> highlight{}, inside{};  // pixels per quarter
-  std::array<double, 12> area{};             // area of the print's parts in view, m^2
-  const double inner = pattern_.inner_radius_m();
-  const SmallPatternWorkspace::Points& points = workspace.points;
-  for (std::size_t i = 0; i < workspace.count; ++i) {
-    const double x = points.x[i], y = points.y[i], ring = points.ring[i];
-    const double gray = workspace.pixels.gray[i], expected = points.expected[i];
-    const int quarter = std::abs(x) > std::abs(y) ? (x > 0 ? 0 : 2) : (y > 0 ? 1 : 3);
-    const bool is_inside = x * x + y * y < inner * inner;
-    if (is_inside) {
-      ++inside[quarter];
-      highlight[quarter] += gray > state.White(x, y) + state.Highlight();
-    }
-    // A saturated pixel where the print should be darker is taken for white.
-    const double seen = gray < kSaturatedGray ? gray
-                        : expected <= gray    ? std::max(state.white, gray)
-                                              : expected;
-    // The parts that a pixel belongs to, in their order.
-    const std::array<int, 6> part{quarter, 4 + quarter, 8 + QuadrantOf(x, y), 12, 13, 14};
-    const std::array<double, 6> share{ring,
-                                      std::max(points.arm_x[i], points.arm_y[i]) * (1 - ring),
-                                      is_inside ? 1 - points.dark[i] : 0.0,
-                                      1,
-                                      x,
-                                      y};
-    const double pixel_area = std::abs(points.x_by_u[i] * points.y_by_v[i] -  //
-                                       points.x_by_v[i] * points.y_by_u[i]);
+
+  // 'seen': gray value. 'pixel_area': m^2.
+  void Add(const std::array<int, kOfPixel>& part, const std::array<double, kOfPixel>& share,
+           double seen, double pixel_area) {
     for (std::size_t k = 0; k < 3; ++k) area[part[k]] += share[k] * pixel_area;
     for (std::size_t row = 0; row < part.size(); ++row) {
       b(part[row]) += share[row] * seen;
@@ -423,32 +438,83 @@ void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, co
       }
     }
   }
+
   // Regularization: a part out of view gets no amplitude instead of a wild one.
-  for (int i = 0; i < kParts; ++i) h(i, i) += 1e-3 + 0.002 * h(i, i);
-  const Vector amplitude = h.selfadjointView<Eigen::Lower>().ldlt().solve(b);
-  const auto share = [&](double value) { return std::clamp(value / match->contrast, 0.0, 1.0); };
+  Vector Amplitudes() {
+    for (int i = 0; i < kParts; ++i) h(i, i) += 1e-3 + 0.002 * h(i, i);
+    return h.selfadjointView<Eigen::Lower>().ldlt().solve(b);
+  }
+
   // A part with less than a third of the area in view of the best-seen one of its kind is not
   // judged.
-  const auto seen = [&](int first, int k) {
-    return 3 * area[first + k] >= *std::max_element(&area[first], &area[first] + 4);
-  };
+  bool IsSeen(int kind, int k) const {
+    return 3 * area[kind + k] >= *std::max_element(&area[kind], &area[kind] + 4);
+  }
   // Nor is an arm in a highlight: a missing arm is white, and not brighter than that.
-  const auto arm_seen = [&](int k) {
-    return seen(4, k) && highlight[k] <= kMaxHighlight * inside[k];
+  bool IsArmSeen(int k) const {
+    return IsSeen(kArm, k) && highlight[k] <= kMaxHighlight * inside[k];
+  }
+
+  Matrix h = Matrix::Zero();
+  Vector b = Vector::Zero();
+  std::array<int, 4> highlight{}, inside{};  // pixels per quarter
+  std::array<double, kLight> area{};         // area of the print's parts in view, m^2
+};
+
+SmallPatternFitter::Parts SmallPatternFitter::SumParts(const SmallPatternWorkspace& workspace,
+                                                       const State& state) const {
+  Parts parts;
+  const double inner = pattern_.inner_radius_m();
+  const SmallPatternWorkspace::Points& points = workspace.points;
+  for (std::size_t i = 0; i < workspace.count; ++i) {
+    const double x = points.x[i], y = points.y[i], ring = points.ring[i];
+    const double gray = workspace.pixels.gray[i], expected = points.expected[i];
+    const int quarter = std::abs(x) > std::abs(y) ? (x > 0 ? 0 : 2) : (y > 0 ? 1 : 3);
+    const bool is_inside = x * x + y * y < inner * inner;
+    if (is_inside) {
+      ++parts.inside[quarter];
+      parts.highlight[quarter] += gray > state.White(x, y) + state.Highlight();
+    }
+    // A saturated pixel where the print should be darker is taken for white.
+    const double seen = gray < kSaturatedGray ? gray
+                        : expected <= gray    ? std::max(state.white, gray)
+                                              : expected;
+    const double arm = std::max(points.arm_x[i], points.arm_y[i]) * (1 - ring);
+    const double white = is_inside ? 1 - points.dark[i] : 0.0;
+    const double pixel_area = std::abs(points.x_by_u[i] * points.y_by_v[i] -  //
+                                       points.x_by_v[i] * points.y_by_u[i]);
+    parts.Add({Parts::kRing + quarter, Parts::kArm + quarter, Parts::kQuadrant + QuadrantOf(x, y),
+               Parts::kLight, Parts::kLight + 1, Parts::kLight + 2},
+              {ring, arm, white, 1, x, y}, seen, pixel_area);
+  }
+  return parts;
+}
+
+// Fits amplitudes to the ring's quarters, to each half arm and to the white of each quadrant, on
+// top of white that may vary linearly over the print, and compares them with the print's contrast.
+void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, const State& state,
+                                      PatternMatch* match) const {
+  constexpr int kRing = Parts::kRing, kArm = Parts::kArm, kQuadrant = Parts::kQuadrant;
+  Parts parts = SumParts(workspace, state);
+  const Parts::Vector amplitude = parts.Amplitudes();
+  const auto share = [&](int part) {
+    return std::clamp(-amplitude(part) / match->contrast, 0.0, 1.0);
   };
   int parts_seen = 0;
   for (int k = 0; k < 4; ++k) {
     const int before = (k + 3) % 4;
-    match->shares.ring[k] = seen(0, k) ? share(-amplitude(k)) : -1;
-    match->shares.arm[k] = arm_seen(k) ? share(-amplitude(4 + k)) : -1;
+    const bool is_ring_seen = parts.IsSeen(kRing, k);
+    const bool is_arm_seen = parts.IsArmSeen(k);
+    const bool is_quadrant_seen = parts.IsSeen(kQuadrant, k);
+    match->shares.ring[k] = is_ring_seen ? share(kRing + k) : -1;
+    match->shares.arm[k] = is_arm_seen ? share(kArm + k) : -1;
     // Quarter k has half of quadrant k and half of the one before.
-    match->shares.quadrant[k] =
-        seen(8, k) && seen(8, before)
-            ? 1 - 0.5 * (share(-amplitude(8 + k)) + share(-amplitude(8 + before)))
-            : -1;
-    parts_seen += seen(0, k) + arm_seen(k) + seen(8, k);
+    match->shares.quadrant[k] = is_quadrant_seen && parts.IsSeen(kQuadrant, before)
+                                    ? 1 - 0.5 * (share(kQuadrant + k) + share(kQuadrant + before))
+                                    : -1;
+    parts_seen += is_ring_seen + is_arm_seen + is_quadrant_seen;
   }
-  match->seen = parts_seen / 12.0;
+  match->seen = parts_seen / static_cast<double>(Parts::kLight);
 }
 
 }  // namespace kestrel

@@ -23,7 +23,13 @@ namespace kestrel {
 // Memory of SmallPatternFitter, which does not allocate. Holds one column per quantity with one
 // value per pixel of the print, so that vector instructions compute many pixels at once.
 struct SmallPatternWorkspace {
-  static constexpr std::size_t kUnknowns = 11;
+  // The unknowns after those of the pose, and the column of the residual after them.
+  static constexpr int kLogBlur = kPoseUnknowns;
+  static constexpr int kWhite = 7;
+  static constexpr int kContrast = 8;
+  static constexpr int kSlope = 9;  // of the light, along both axes of the print
+  static constexpr int kUnknowns = 11;
+  static constexpr int kResidual = kUnknowns;
   using Column = std::vector<float>;
 
   struct Pixels {
@@ -129,10 +135,27 @@ class SmallPatternFitter {
                             const std::optional<NormalPrior>& prior = {}) const;
 
  private:
+  static constexpr int kLogBlur = SmallPatternWorkspace::kLogBlur;
+  static constexpr int kWhite = SmallPatternWorkspace::kWhite;
+  static constexpr int kContrast = SmallPatternWorkspace::kContrast;
+  static constexpr int kSlope = SmallPatternWorkspace::kSlope;
+  static constexpr int kUnknowns = SmallPatternWorkspace::kUnknowns;
+
   struct State;
   struct System;
+  struct Parts;
+  // The first and the last pixel of a box, both within it.
+  struct PixelBox {
+    int left, top, right, bottom;
+  };
+  std::optional<PixelBox> BoxAround(const RigidTransform& pose, const cv::Size& image) const;
   bool Gather(const cv::Mat& image, const RigidTransform& pose, int enough_pixels,
               SmallPatternWorkspace* workspace) const;
+  void KeepPixelsOfPrint(const cv::Mat& image, const RigidTransform& pose,
+                         SmallPatternWorkspace* workspace) const;
+  void FindRays(SmallPatternWorkspace* workspace,
+                std::array<SmallPatternWorkspace::Column, 3>* columns) const;
+  void DifferentiateRays(SmallPatternWorkspace* workspace) const;
   void Predict(const RigidTransform& pose, double blur_px, SmallPatternWorkspace* workspace) const;
   void MeasureLevels(const SmallPatternWorkspace& workspace, State* state) const;
   void MeasureLight(const State& state, SmallPatternWorkspace* workspace) const;
@@ -142,6 +165,7 @@ class SmallPatternFitter {
                const SmallPatternWorkspace& workspace, double limit, State* state) const;
   void MeasureParts(const SmallPatternWorkspace& workspace, const State& state,
                     PatternMatch* match) const;
+  Parts SumParts(const SmallPatternWorkspace& workspace, const State& state) const;
   double FrameCorners(const SmallPatternWorkspace& workspace, const State& state) const;
   double CrossCorrelation(const SmallPatternWorkspace& workspace, const State& state) const;
   const CameraModel& camera_;

@@ -62,88 +62,128 @@ HWY_INLINE Vector InverseBlur(float blur_px, Vector m_per_px) {
   return hn::Div(Of(1), hn::Max(hn::Mul(Of(blur_px), m_per_px), Of(1e-9f)));
 }
 
-void EvaluatePrint(const PrintModel& model, SmallPatternWorkspace* workspace) {
-  const SmallPatternWorkspace::Pixels& pixels = workspace->pixels;
-  SmallPatternWorkspace::Points& points = workspace->points;
-  const Vector one = Of(1);
+// Where a pixel's ray meets the plane of the print, m, and how that moves over a pixel.
+struct PlanePoint {
+  Vector x, y;
+  Vector x_by_u, x_by_v, y_by_u, y_by_v;
+};
+
+HWY_INLINE PlanePoint MeetPlane(const PrintModel& model,
+                                const SmallPatternWorkspace::Pixels& pixels, std::size_t i) {
+  const auto homogeneous = [&](const std::array<std::vector<float>, 3>& ray, int row) HWY_ATTR {
+    return Dot(At(ray[0], i), At(ray[1], i), At(ray[2], i), &model.plane_from_ray[3 * row]);
+  };
+  const Vector w = hn::Div(Of(1), homogeneous(pixels.ray, 2));
+  PlanePoint point;
+  point.x = hn::Mul(homogeneous(pixels.ray, 0), w);
+  point.y = hn::Mul(homogeneous(pixels.ray, 1), w);
+  const Vector depth_by_u = homogeneous(pixels.ray_by_u, 2);
+  const Vector depth_by_v = homogeneous(pixels.ray_by_v, 2);
+  const auto moved = [&](Vector at, Vector depth_by, Vector by)
+                         HWY_ATTR { return hn::Mul(hn::NegMulAdd(at, depth_by, by), w); };
+  point.x_by_u = moved(point.x, depth_by_u, homogeneous(pixels.ray_by_u, 0));
+  point.x_by_v = moved(point.x, depth_by_v, homogeneous(pixels.ray_by_v, 0));
+  point.y_by_u = moved(point.y, depth_by_u, homogeneous(pixels.ray_by_u, 1));
+  point.y_by_v = moved(point.y, depth_by_v, homogeneous(pixels.ray_by_v, 1));
+  return point;
+}
+
+// The ring at a point: its stroke, the direction from its centre, and how it bends.
+struct RingAt {
+  Stroke stroke;
+  Vector cosine, sine;
+  Vector bend;  // m
+};
+
+HWY_INLINE RingAt BlurredRing(const PrintModel& model, const PlanePoint& at) {
+  const Vector radius = hn::Max(Length(at.x, at.y), Of(1e-9f));
+  const Vector inverse_radius = hn::Div(Of(1), radius);
+  RingAt ring;
+  ring.cosine = hn::Mul(at.x, inverse_radius);
+  ring.sine = hn::Mul(at.y, inverse_radius);
+  const Vector r_by_u = hn::MulAdd(ring.cosine, at.x_by_u, hn::Mul(ring.sine, at.y_by_u));
+  const Vector r_by_v = hn::MulAdd(ring.cosine, at.x_by_v, hn::Mul(ring.sine, at.y_by_v));
+  const Vector t_by_u = hn::MulSub(ring.cosine, at.y_by_u, hn::Mul(ring.sine, at.x_by_u));
+  const Vector t_by_v = hn::MulSub(ring.cosine, at.y_by_v, hn::Mul(ring.sine, at.x_by_v));
+  // Blur along the ring mixes in points farther from its centre; to second order the blurred ring
+  // is narrower by half of this. Without this term small prints seem farther away by half a
+  // percent.
+  ring.bend = hn::Mul(hn::Mul(Of(0.5f * model.blur_px * model.blur_px), inverse_radius),
+                      hn::MulAdd(t_by_u, t_by_u, hn::Mul(t_by_v, t_by_v)));
+  const Vector sharpness = InverseBlur(model.blur_px, Length(r_by_u, r_by_v));
+  ring.stroke = BlurredStroke(hn::Add(radius, ring.bend), model.inner_radius_m,
+                              model.outer_radius_m, sharpness);
+  return ring;
+}
+
+// The two arms at a point: strokes across and along each.
+struct ArmsAt {
+  Stroke x_across, x_along, y_across, y_along;
+};
+
+HWY_INLINE ArmsAt BlurredArms(const PrintModel& model, const PlanePoint& at) {
   const float half_width = model.arm_half_width_m;
   const float length = model.arm_half_length_m;
+  const Vector sharpness_x = InverseBlur(model.blur_px, Length(at.x_by_u, at.x_by_v));
+  const Vector sharpness_y = InverseBlur(model.blur_px, Length(at.y_by_u, at.y_by_v));
+  return {BlurredStroke(at.y, -half_width, half_width, sharpness_y),
+          BlurredStroke(at.x, -length, length, sharpness_x),
+          BlurredStroke(at.x, -half_width, half_width, sharpness_x),
+          BlurredStroke(at.y, -length, length, sharpness_y)};
+}
+
+HWY_INLINE void PutPoint(const PlanePoint& at, std::size_t i,
+                         SmallPatternWorkspace::Points* points) {
+  Put(at.x, &points->x, i);
+  Put(at.y, &points->y, i);
+  Put(at.x_by_u, &points->x_by_u, i);
+  Put(at.x_by_v, &points->x_by_v, i);
+  Put(at.y_by_u, &points->y_by_u, i);
+  Put(at.y_by_v, &points->y_by_v, i);
+}
+
+// The parts overlap: a point is white where none of them covers it.
+HWY_INLINE void PutDarkness(const RingAt& ring, const ArmsAt& arms, std::size_t i,
+                            SmallPatternWorkspace::Points* points) {
+  const auto& [x_across, x_along, y_across, y_along] = arms;
+  const Vector one = Of(1);
+  const Vector arm_x = hn::Mul(x_across.value, x_along.value);
+  const Vector arm_y = hn::Mul(y_across.value, y_along.value);
+  const Vector no_ring = hn::Sub(one, ring.stroke.value);
+  const Vector no_x = hn::Sub(one, arm_x);
+  const Vector no_y = hn::Sub(one, arm_y);
+  const Vector by_ring = hn::Mul(no_x, no_y);
+  const Vector by_r = hn::Mul(by_ring, ring.stroke.by_distance);
+  const Vector by_arm_x = hn::Mul(no_ring, no_y);
+  const Vector by_arm_y = hn::Mul(no_ring, no_x);
+  Put(ring.stroke.value, &points->ring, i);
+  Put(arm_x, &points->arm_x, i);
+  Put(arm_y, &points->arm_y, i);
+  Put(hn::NegMulAdd(no_ring, by_ring, one), &points->dark, i);
+  Put(hn::MulAdd(by_r, ring.cosine,
+                 hn::MulAdd(by_arm_x, hn::Mul(x_across.value, x_along.by_distance),
+                            hn::Mul(by_arm_y, hn::Mul(y_across.by_distance, y_along.value)))),
+      &points->dark_by_x, i);
+  Put(hn::MulAdd(by_r, ring.sine,
+                 hn::MulAdd(by_arm_x, hn::Mul(x_across.by_distance, x_along.value),
+                            hn::Mul(by_arm_y, hn::Mul(y_across.value, y_along.by_distance)))),
+      &points->dark_by_y, i);
+  const auto by_log_blur = [](const Stroke& a, const Stroke& b) HWY_ATTR {
+    return hn::MulAdd(a.by_log_blur, b.value, hn::Mul(a.value, b.by_log_blur));
+  };
+  const Vector ring_by_log_blur =
+      hn::MulAdd(hn::Add(ring.bend, ring.bend), ring.stroke.by_distance, ring.stroke.by_log_blur);
+  Put(hn::MulAdd(by_ring, ring_by_log_blur,
+                 hn::MulAdd(by_arm_x, by_log_blur(x_across, x_along),
+                            hn::Mul(by_arm_y, by_log_blur(y_across, y_along)))),
+      &points->dark_by_log_blur, i);
+}
+
+void EvaluatePrint(const PrintModel& model, SmallPatternWorkspace* workspace) {
   for (std::size_t i = 0; i < workspace->count; i += hn::Lanes(Floats())) {
-    const auto homogeneous = [&](const std::array<std::vector<float>, 3>& ray, int row) HWY_ATTR {
-      return Dot(At(ray[0], i), At(ray[1], i), At(ray[2], i), &model.plane_from_ray[3 * row]);
-    };
-    const Vector w = hn::Div(one, homogeneous(pixels.ray, 2));
-    const Vector x = hn::Mul(homogeneous(pixels.ray, 0), w);
-    const Vector y = hn::Mul(homogeneous(pixels.ray, 1), w);
-    const Vector depth_by_u = homogeneous(pixels.ray_by_u, 2);
-    const Vector depth_by_v = homogeneous(pixels.ray_by_v, 2);
-    const Vector x_by_u = hn::Mul(hn::NegMulAdd(x, depth_by_u, homogeneous(pixels.ray_by_u, 0)), w);
-    const Vector x_by_v = hn::Mul(hn::NegMulAdd(x, depth_by_v, homogeneous(pixels.ray_by_v, 0)), w);
-    const Vector y_by_u = hn::Mul(hn::NegMulAdd(y, depth_by_u, homogeneous(pixels.ray_by_u, 1)), w);
-    const Vector y_by_v = hn::Mul(hn::NegMulAdd(y, depth_by_v, homogeneous(pixels.ray_by_v, 1)), w);
-
-    const Vector radius = hn::Max(Length(x, y), Of(1e-9f));
-    const Vector inverse_radius = hn::Div(one, radius);
-    const Vector cosine = hn::Mul(x, inverse_radius);
-    const Vector sine = hn::Mul(y, inverse_radius);
-    const Vector r_by_u = hn::MulAdd(cosine, x_by_u, hn::Mul(sine, y_by_u));
-    const Vector r_by_v = hn::MulAdd(cosine, x_by_v, hn::Mul(sine, y_by_v));
-    const Vector t_by_u = hn::MulSub(cosine, y_by_u, hn::Mul(sine, x_by_u));
-    const Vector t_by_v = hn::MulSub(cosine, y_by_v, hn::Mul(sine, x_by_v));
-    // Blur along the ring mixes in points farther from its centre; to second order the blurred ring
-    // is narrower by half of this. Without this term small prints seem farther away by half a
-    // percent.
-    const Vector bend = hn::Mul(hn::Mul(Of(0.5f * model.blur_px * model.blur_px), inverse_radius),
-                                hn::MulAdd(t_by_u, t_by_u, hn::Mul(t_by_v, t_by_v)));
-    const Vector sharpness_r = InverseBlur(model.blur_px, Length(r_by_u, r_by_v));
-    const Vector sharpness_x = InverseBlur(model.blur_px, Length(x_by_u, x_by_v));
-    const Vector sharpness_y = InverseBlur(model.blur_px, Length(y_by_u, y_by_v));
-    const Stroke ring = BlurredStroke(hn::Add(radius, bend), model.inner_radius_m,
-                                      model.outer_radius_m, sharpness_r);
-    const Stroke x_across = BlurredStroke(y, -half_width, half_width, sharpness_y);
-    const Stroke x_along = BlurredStroke(x, -length, length, sharpness_x);
-    const Stroke y_across = BlurredStroke(x, -half_width, half_width, sharpness_x);
-    const Stroke y_along = BlurredStroke(y, -length, length, sharpness_y);
-    const Vector arm_x = hn::Mul(x_across.value, x_along.value);
-    const Vector arm_y = hn::Mul(y_across.value, y_along.value);
-    const Vector no_ring = hn::Sub(one, ring.value);
-    const Vector no_x = hn::Sub(one, arm_x);
-    const Vector no_y = hn::Sub(one, arm_y);
-    const Vector by_ring = hn::Mul(no_x, no_y);
-    const Vector by_r = hn::Mul(by_ring, ring.by_distance);
-    const Vector by_arm_x = hn::Mul(no_ring, no_y);
-    const Vector by_arm_y = hn::Mul(no_ring, no_x);
-    const auto by_product =
-        [](const Stroke& a, Vector by_a, const Stroke& b, Vector by_b)
-            HWY_ATTR { return hn::MulAdd(by_a, b.value, hn::Mul(a.value, by_b)); };
-
-    Put(x, &points.x, i);
-    Put(y, &points.y, i);
-    Put(x_by_u, &points.x_by_u, i);
-    Put(x_by_v, &points.x_by_v, i);
-    Put(y_by_u, &points.y_by_u, i);
-    Put(y_by_v, &points.y_by_v, i);
-    Put(ring.value, &points.ring, i);
-    Put(arm_x, &points.arm_x, i);
-    Put(arm_y, &points.arm_y, i);
-    Put(hn::NegMulAdd(no_ring, by_ring, one), &points.dark, i);
-    Put(hn::MulAdd(by_r, cosine,
-                   hn::MulAdd(by_arm_x, hn::Mul(x_across.value, x_along.by_distance),
-                              hn::Mul(by_arm_y, hn::Mul(y_across.by_distance, y_along.value)))),
-        &points.dark_by_x, i);
-    Put(hn::MulAdd(by_r, sine,
-                   hn::MulAdd(by_arm_x, hn::Mul(x_across.by_distance, x_along.value),
-                              hn::Mul(by_arm_y, hn::Mul(y_across.value, y_along.by_distance)))),
-        &points.dark_by_y, i);
-    const Vector ring_by_log_blur =
-        hn::MulAdd(hn::Add(bend, bend), ring.by_distance, ring.by_log_blur);
-    Put(hn::MulAdd(
-            by_ring, ring_by_log_blur,
-            hn::MulAdd(
-                by_arm_x, by_product(x_across, x_across.by_log_blur, x_along, x_along.by_log_blur),
-                hn::Mul(by_arm_y,
-                        by_product(y_across, y_across.by_log_blur, y_along, y_along.by_log_blur)))),
-        &points.dark_by_log_blur, i);
+    const PlanePoint point = MeetPlane(model, workspace->pixels, i);
+    PutPoint(point, i, &workspace->points);
+    PutDarkness(BlurredRing(model, point), BlurredArms(model, point), i, &workspace->points);
   }
 }
 
@@ -173,6 +213,7 @@ void CompareGrays(const PrintLight& light, float limit, SmallPatternWorkspace* w
 void Differentiate(const PrintAxes& axes, float contrast, SmallPatternWorkspace* workspace) {
   const SmallPatternWorkspace::Pixels& pixels = workspace->pixels;
   const SmallPatternWorkspace::Points& points = workspace->points;
+  using Columns = SmallPatternWorkspace;
   auto& jacobian = workspace->jacobian;
   for (std::size_t i = 0; i < workspace->count; i += hn::Lanes(Floats())) {
     const Vector root = At(points.root_weight, i);
@@ -198,18 +239,19 @@ void Differentiate(const PrintAxes& axes, float contrast, SmallPatternWorkspace*
       return hn::MulAdd(x, Of(axes.x[k]), hn::Mul(y, Of(axes.y[k])));
     };
     const Vector cx = from_center(0), cy = from_center(1), cz = from_center(2);
-    Put(px, &jacobian[0], i);
-    Put(py, &jacobian[1], i);
-    Put(pz, &jacobian[2], i);
-    Put(hn::MulSub(cy, pz, hn::Mul(cz, py)), &jacobian[3], i);
-    Put(hn::MulSub(cz, px, hn::Mul(cx, pz)), &jacobian[4], i);
-    Put(hn::MulSub(cx, py, hn::Mul(cy, px)), &jacobian[5], i);
-    Put(hn::Mul(root, hn::Mul(Of(-contrast), At(points.dark_by_log_blur, i))), &jacobian[6], i);
-    Put(root, &jacobian[7], i);
-    Put(hn::Neg(hn::Mul(root, At(points.dark, i))), &jacobian[8], i);
-    Put(hn::Mul(root, x), &jacobian[9], i);
-    Put(hn::Mul(root, y), &jacobian[10], i);
-    Put(hn::Mul(root, At(points.residual, i)), &jacobian[11], i);
+    Put(px, &jacobian[kPoseTranslation], i);
+    Put(py, &jacobian[kPoseTranslation + 1], i);
+    Put(pz, &jacobian[kPoseTranslation + 2], i);
+    Put(hn::MulSub(cy, pz, hn::Mul(cz, py)), &jacobian[kPoseRotation], i);
+    Put(hn::MulSub(cz, px, hn::Mul(cx, pz)), &jacobian[kPoseRotation + 1], i);
+    Put(hn::MulSub(cx, py, hn::Mul(cy, px)), &jacobian[kPoseRotation + 2], i);
+    const Vector by_log_blur = hn::Mul(Of(-contrast), At(points.dark_by_log_blur, i));
+    Put(hn::Mul(root, by_log_blur), &jacobian[Columns::kLogBlur], i);
+    Put(root, &jacobian[Columns::kWhite], i);
+    Put(hn::Neg(hn::Mul(root, At(points.dark, i))), &jacobian[Columns::kContrast], i);
+    Put(hn::Mul(root, x), &jacobian[Columns::kSlope], i);
+    Put(hn::Mul(root, y), &jacobian[Columns::kSlope + 1], i);
+    Put(hn::Mul(root, At(points.residual, i)), &jacobian[Columns::kResidual], i);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <span>
 
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/vision/landing/small_pattern_model.h"
 
 namespace kestrel {
@@ -138,7 +139,8 @@ bool SmallPatternFitter::EvenOut(SmallPatternWorkspace* workspace, State* state)
   const double before = Unexplained(*workspace);
   MeasureLight(*state, workspace);
   std::copy_n(workspace->light.begin(), workspace->count, workspace->magnitudes.begin());
-  const float brightest = Quantile(kBrightest, workspace->count, &workspace->magnitudes);
+  const float brightest = QuantileInPlace(std::span(workspace->magnitudes).first(workspace->count),
+                                          kBrightest, QuantileRank::kShareBelow);
   const auto least = static_cast<float>(kLeastLight) * brightest;
 
   for (std::size_t i = 0; i < workspace->count; ++i) {

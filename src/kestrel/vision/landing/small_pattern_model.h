@@ -73,15 +73,6 @@ class Correlation {
   double n_ = 0, a_ = 0, aa_ = 0, b_ = 0, bb_ = 0, ab_ = 0;
 };
 
-// Returns the value below which 'share', 0 to 1, of the first 'count' >= 1 values lie. Changes
-// their order.
-inline float Quantile(double share, std::size_t count, SmallPatternWorkspace::Column* values) {
-  const auto quantile =
-      values->begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(count));
-  std::nth_element(values->begin(), quantile, values->begin() + static_cast<std::ptrdiff_t>(count));
-  return *quantile;
-}
-
 // Returns the correlation of the image with the predicted print, -1 to 1.
 inline double CorrelatePrint(const SmallPatternWorkspace& workspace) {
   Correlation with_dark;

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/vision/objects/color_edge.h"
 
 namespace kestrel {
@@ -34,9 +35,7 @@ double MedianDistance(DiscOutlineWorkspace* workspace) {
   auto& sorted = workspace->sorted;
   sorted.clear();
   for (const double distance : workspace->distances) sorted.push_back(std::abs(distance));
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return *middle;
+  return MedianInPlace(sorted);
 }
 
 // Removes the rays farther than the limit from the cone. True when there were any. An object that

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/Geometry>
 
@@ -29,31 +28,6 @@ ColorProbabilities ProbabilitiesOf(const ColorModel& model, const Hsv& color) {
   }
   for (double& p : probabilities) p /= total;
   return probabilities;
-}
-
-// Returns the share of the ellipse's pixels in the image that belong to the segment.
-double FilledShare(const Segment& segment, const Ellipse& ellipse, const cv::Size& image) {
-  const Eigen::Vector2d along = ellipse.major_axis() / ellipse.semi_major;
-  const Eigen::Vector2d across = ellipse.minor_axis() / ellipse.semi_minor;
-  const auto is_inside = [&](int u, int v) {
-    const Eigen::Vector2d offset = Eigen::Vector2d(u, v) - ellipse.center;
-    return std::hypot(along.dot(offset), across.dot(offset)) <= 1;
-  };
-  const auto first = [&](double x) {
-    return std::max(0, static_cast<int>(x - ellipse.semi_major));
-  };
-  const auto last = [&](double x, int size) {
-    return std::min(size - 1, static_cast<int>(x + ellipse.semi_major));
-  };
-  int all = 0;
-  for (int v = first(ellipse.center.y()); v <= last(ellipse.center.y(), image.height); ++v) {
-    for (int u = first(ellipse.center.x()); u <= last(ellipse.center.x(), image.width); ++u) {
-      all += is_inside(u, v);
-    }
-  }
-  const auto filled = std::ranges::count_if(
-      segment.pixels, [&](const PixelPosition& at) { return is_inside(at.u, at.v); });
-  return static_cast<double>(filled) / std::max(1, all);
 }
 
 }  // namespace
@@ -124,150 +98,10 @@ ObjectExaminer::Outcome ObjectExaminer::TestClass(const Segment& segment, const 
   return Outcome::kNone;
 }
 
-ObjectExaminer::Outcome ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
-                                                 const ObjectClass& object,
-                                                 ObjectDetection* detection, ObjectStage* reached) {
-  const ObjectDetectorOptions& options = detector_.options;
-  Ellipse start = shape.ellipse;
-  if (segment.touches_border) {
-    FindBorder(segment, image_.size(), &workspace_->border);
-    const auto ellipse = EllipseThrough(workspace_->border.points);
-    if (!ellipse) return Outcome::kNone;
-    start = *ellipse;
-  } else if (std::abs(shape.circularity - 1) > options.max_circularity_error) {
-    return Outcome::kNone;
-  }
-  *reached = ObjectStage::kShape;
-  const auto outline =
-      FitDiscOutline(image_, detector_.rays, detector_.focal_px, start, &workspace_->outline);
-  if (!outline) return Outcome::kNone;
-  const double radius_px = detector_.focal_px * std::tan(outline->cone.HalfAngles().minCoeff());
-  const double max_gap = segment.touches_border ? options.max_cut_off_gap : options.max_gap;
-  if (outline->gap > max_gap || outline->outside > options.max_outside ||
-      outline->fit_share < options.min_outline_share) {
-    return Outcome::kNone;
-  }
-  if (outline->residual_px > options.outline_tolerance * radius_px + options.outline_tolerance_px) {
-    return Outcome::kNone;
-  }
-  const auto ellipse = EllipseThrough(workspace_->outline.points);
-  if (!ellipse || IsHole(*ellipse, segment.label)) return Outcome::kNone;
-  // A ring: gray is ambiguous for the sake of digits, so its hole may be part of the segment.
-  if (ColoredShare(*ellipse, 0.4, segment.label) < 0.5) return Outcome::kNone;
-  if (segment.touches_border) {
-    // Replaces the test of circularity of a whole disc.
-    constexpr double kMinFill = 0.8;
-    if (FilledShare(segment, *ellipse, image_.size()) < kMinFill) return Outcome::kNone;
-  }
-  *reached = ObjectStage::kOutline;
-  const double radius_m = object.size_m / 2;
-  const Eigen::Vector3d row_direction =
-      RayAt(start.center + Eigen::Vector2d(1, 0)) - RayAt(start.center - Eigen::Vector2d(1, 0));
-  Eigen::Vector3d position = LocateDisc(outline->cone, radius_m, row_direction, hint_.up_in_camera);
-  const double distance = position.norm();
-  if (!std::isfinite(distance) || !(distance > 0)) return Outcome::kNone;
-  detection->misfit = MisfitOfDisc(*outline, radius_px, segment, shape, *ellipse);
-  // A partial disc must look more like a disc: the corner of a triangle may have an ellipse through
-  // it.
-  constexpr double kMaxMisfitOfPart = 0.6;
-  if (segment.touches_border && detection->misfit > kMaxMisfitOfPart) return Outcome::kNone;
-  Outcome outcome = Outcome::kObject;
-  // A partial outline determines the distance less well, and its shape must fit better.
-  const double tolerance = (segment.touches_border ? 0.7 : 1) * options.ground_tolerance;
-  const double distance_tolerance = (segment.touches_border ? 1.4 : 1) * options.ground_tolerance;
-  if (const auto is_on_ground = IsOnGround(position, object, distance_tolerance)) {
-    const double slack_rad = 1 / detector_.focal_px;
-    const auto looks_like_disc_at = [&](double there) {
-      return LooksLikeDisc(outline->cone, position / distance, there, *hint_.up_in_camera, radius_m,
-                           tolerance, slack_rad);
-    };
-    if (!*is_on_ground || !looks_like_disc_at(*DistanceOnGround(position, object))) {
-      if (!looks_like_disc_at(distance)) return Outcome::kNone;
-      outcome = Outcome::kElsewhere;
-    }
-  }
-  if (outcome == Outcome::kObject) *reached = ObjectStage::kPosition;
-  if (!hint_.up_in_camera) {
-    // The tilt of the disc is unknown: the centre of the ellipse is taken for that of the disc.
-    position = distance * RayAt(ellipse->center);
-  }
-  // The uncertainty grows as less of the outline is seen.
-  const double seen = 1 - outline->gap - outline->outside;
-  const double less = 1 / (seen * seen);
-  SetLocation(position, object, less * options.center_sigma_px,
-              less * options.radius_sigma_px / radius_px, outcome, detection);
-  return outcome;
-}
-
 std::optional<ColorLabel> ObjectExaminer::LabelAt(const Eigen::Vector2d& pixel) const {
   const cv::Point at(cvRound(pixel.x()), cvRound(pixel.y()));
   if (!cv::Rect({}, image_.size()).contains(at)) return std::nullopt;
   return detector_.grid.At(image_.ptr(at.y) + 3 * at.x);
-}
-
-bool ObjectExaminer::IsHole(const Ellipse& outline, ColorLabel label) const {
-  constexpr int kDirections = 16;
-  // In radii of the outline: search from beyond its blur to beyond the strokes of a letter, and
-  // least width of the coloured area. A line is thinner.
-  constexpr double kFirst = 1.3;
-  constexpr double kLast = 4;
-  constexpr double kMinWidth = 0.3;
-  constexpr double kMinWidthPx = 3;
-  constexpr double kMaxShare = 0.5;  // other discs may lie around, but not on all sides
-  int shown = 0;
-  int same = 0;
-  for (int i = 0; i < kDirections; ++i) {
-    const double t = 2 * std::numbers::pi * i / kDirections;
-    const Eigen::Vector2d radius = outline.At(t) - outline.center;
-    const double radius_px = radius.norm();
-    const Eigen::Vector2d outward = radius / radius_px;
-    const double min_width_px = std::max(kMinWidthPx, kMinWidth * radius_px);
-    int width_px = 0;
-    bool is_shown = false;
-    for (double r = kFirst * radius_px; r < kLast * radius_px && width_px < min_width_px; ++r) {
-      const std::optional<ColorLabel> seen = LabelAt(outline.center + r * outward);
-      if (!seen) break;
-      is_shown = true;
-      width_px = seen == label ? width_px + 1 : 0;
-    }
-    shown += is_shown;
-    same += width_px >= min_width_px;
-  }
-  return same > kMaxShare * shown;
-}
-
-double ObjectExaminer::ColoredShare(const Ellipse& outline, double reach, ColorLabel label) const {
-  constexpr int kDirections = 16;
-  constexpr int kSteps = 4;
-  int shown = 0;
-  int same = 0;
-  for (int i = 0; i < kDirections; ++i) {
-    const Eigen::Vector2d radius =
-        outline.At(2 * std::numbers::pi * i / kDirections) - outline.center;
-    for (int step = 1; step <= kSteps; ++step) {
-      const std::optional<ColorLabel> seen =
-          LabelAt(outline.center + reach * step / kSteps * radius);
-      shown += seen.has_value();
-      same += seen == label;
-    }
-  }
-  return static_cast<double>(same) / std::max(1, shown);
-}
-
-double ObjectExaminer::MisfitOfDisc(const DiscOutline& outline, double radius_px,
-                                    const Segment& segment, const SegmentShape& shape,
-                                    const Ellipse& ellipse) const {
-  constexpr double kClearOfBlur = 0.7;
-  constexpr double kMaxUncolored = 0.3;
-  const auto square = [](double x) { return x * x; };
-  const ObjectDetectorOptions& options = detector_.options;
-  const double edge =
-      outline.residual_px / (options.outline_tolerance * radius_px + options.outline_tolerance_px);
-  const double hidden = (1 - (1 - outline.gap) * outline.fit_share) / options.max_gap;
-  const double filling =
-      segment.touches_border ? 0 : (shape.circularity - 1) / options.max_circularity_error;
-  const double uncolored = (1 - ColoredShare(ellipse, kClearOfBlur, segment.label)) / kMaxUncolored;
-  return square(edge) + square(hidden) + square(filling) + square(uncolored);
 }
 
 double ObjectExaminer::ClassProbability(const ObjectClass& object,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 
@@ -22,12 +23,6 @@ constexpr double kAttitudeSigma = Radians(2);
 constexpr double kMaxSlope = Radians(15);
 // The altitude may be above the ground, while the pattern is on a vehicle.
 constexpr double kMaxVehicleHeight_m = 3;
-
-double MedianOf(std::span<double> values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 // Direction out of the pattern's face, in the camera frame.
 Eigen::Vector3d Normal(const RigidTransform& camera_from_pattern) {
@@ -65,7 +60,7 @@ std::optional<Contradiction> ToldContradictions::Latest::Median() const {
   std::array<double, kCapacity> buffer;
   const auto median = [&](const auto& value_of) {
     std::transform(differences_.begin(), differences_.begin() + count, buffer.begin(), value_of);
-    return MedianOf(std::span(buffer).first(count));
+    return MedianInPlace(std::span(buffer).first(count));
   };
   const double value = median([](const Difference& each) { return each.value; });
   const double sigma = median([](const Difference& each) { return each.sigma; });

@@ -81,7 +81,8 @@ double TargetEstimate::position_sigma_m() const {
 }
 
 double TargetEstimate::velocity_sigma_mps() const {
-  return RootMeanVariance(motion.covariance.block<3, 3>(3, 3));
+  return RootMeanVariance(
+      motion.covariance.block<3, 3>(TurnState::kVelocity, TurnState::kVelocity));
 }
 
 std::vector<std::string> TargetTrackerOptions::Validate() const {

@@ -12,9 +12,18 @@ namespace kestrel {
 namespace {
 
 constexpr double kMaxStep_s = 0.05;
-constexpr int kYaw = 12;
 
 using StateMatrix = TurnState::Matrix;
+// Entries of the state.
+constexpr int kPosition = TurnState::kPosition;
+constexpr int kVelocity = TurnState::kVelocity;
+constexpr int kTurnRate = TurnState::kTurnRate;
+constexpr int kTurnChange = TurnState::kTurnChange;
+constexpr int kSway = TurnState::kSway;
+constexpr int kSwayVelocity = TurnState::kSwayVelocity;
+constexpr int kYaw = TurnState::kYaw;
+constexpr int kHeight = kPosition + 2;
+constexpr int kClimb = kVelocity + 2;
 
 double Sinc(double x) { return std::abs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x; }
 
@@ -42,28 +51,32 @@ Eigen::Matrix2d SwayCovariance(const SwayMotion& sway) {
 // chord, which has the direction of the velocity at half time. The change of the chord's length
 // with the turn rate is neglected. Position and velocity include the sway, which does not turn.
 StateMatrix StepJacobian(const TurnState& state, double t, const TurnNoise& noise) {
-  const double angle = t * (state.mean(6) + state.mean(7) * t / 2);
+  const double angle = t * (state.turn_rate() + state.turn_change() * t / 2);
   const double chord = t * Sinc(angle / 2);
-  const Eigen::Vector2d velocity = state.mean.segment<2>(3) - state.mean.segment<2>(10);
+  const Eigen::Vector2d velocity =
+      state.mean.segment<2>(kVelocity) - state.mean.segment<2>(kSwayVelocity);
   const Eigen::Vector2d left(-velocity.y(), velocity.x());
   const Eigen::Matrix2d sway = SwayTransition(noise.sway, t);
   const Eigen::Matrix2d identity = Eigen::Matrix2d::Identity();
   StateMatrix jacobian = StateMatrix::Identity();
-  jacobian.block<2, 2>(0, 3) = chord * Turn(angle / 2);
-  jacobian.block<2, 1>(0, 6) = chord * t / 2 * (Turn(angle / 2) * left);
-  jacobian(2, 5) = t;
-  jacobian.block<2, 2>(3, 3) = Turn(angle);
-  jacobian.block<2, 1>(3, 6) = t * (Turn(angle) * left);
-  jacobian.block<5, 1>(0, 7) = t / 2 * jacobian.block<5, 1>(0, 6);
-  jacobian(6, 7) = t;
-  jacobian(kYaw, 6) = t;
-  jacobian(kYaw, 7) = t * t / 2;
-  jacobian(7, 7) = std::exp(-t / noise.turn_time_s);
+  jacobian.block<2, 2>(kPosition, kVelocity) = chord * Turn(angle / 2);
+  jacobian.block<2, 1>(kPosition, kTurnRate) = chord * t / 2 * (Turn(angle / 2) * left);
+  jacobian(kHeight, kClimb) = t;
+  jacobian.block<2, 2>(kVelocity, kVelocity) = Turn(angle);
+  jacobian.block<2, 1>(kVelocity, kTurnRate) = t * (Turn(angle) * left);
+  jacobian.block<kClimb, 1>(0, kTurnChange) = t / 2 * jacobian.block<kClimb, 1>(0, kTurnRate);
+  jacobian(kTurnRate, kTurnChange) = t;
+  jacobian(kYaw, kTurnRate) = t;
+  jacobian(kYaw, kTurnChange) = t * t / 2;
+  jacobian(kTurnChange, kTurnChange) = std::exp(-t / noise.turn_time_s);
+  constexpr std::array<int, 2> kOfTarget = {kPosition, kVelocity};
+  constexpr std::array<int, 2> kOfSway = {kSway, kSwayVelocity};
   for (int to = 0; to < 2; ++to) {
     for (int from = 0; from < 2; ++from) {
       const Eigen::Matrix2d part = sway(to, from) * identity;
-      jacobian.block<2, 2>(8 + 2 * to, 8 + 2 * from) = part;
-      jacobian.block<2, 2>(3 * to, 8 + 2 * from) = part - jacobian.block<2, 2>(3 * to, 3 * from);
+      jacobian.block<2, 2>(kOfSway[to], kOfSway[from]) = part;
+      jacobian.block<2, 2>(kOfTarget[to], kOfSway[from]) =
+          part - jacobian.block<2, 2>(kOfTarget[to], kOfTarget[from]);
     }
   }
   return jacobian;
@@ -85,7 +98,8 @@ void AddSwayNoise(const SwayMotion& sway, double t, StateMatrix* covariance) {
   const Eigen::Matrix2d steady = SwayCovariance(sway);
   const Eigen::Matrix2d added = steady - transition * steady * transition.transpose();
   for (int axis = 0; axis < 2; ++axis) {
-    const std::array<int, 4> entries = {axis, 3 + axis, 8 + axis, 10 + axis};
+    const std::array<int, 4> entries = {kPosition + axis, kVelocity + axis, kSway + axis,
+                                        kSwayVelocity + axis};
     for (int i = 0; i < 4; ++i) {
       for (int j = 0; j < 4; ++j) (*covariance)(entries[i], entries[j]) += added(i % 2, j % 2);
     }
@@ -96,19 +110,20 @@ void Step(double t, const TurnNoise& noise, TurnState* state) {
   const StateMatrix jacobian = StepJacobian(*state, t, noise);
   StateMatrix& covariance = state->covariance;
   covariance = (jacobian * covariance * jacobian.transpose()).eval();
-  AddNoise(noise.acceleration, t, 0, 3, &covariance);
-  AddNoise(noise.acceleration, t, 1, 4, &covariance);
-  AddNoise(noise.climb, t, 2, 5, &covariance);
-  AddNoise(noise.turn, t, 6, 7, &covariance);
+  AddNoise(noise.acceleration, t, kPosition, kVelocity, &covariance);
+  AddNoise(noise.acceleration, t, kPosition + 1, kVelocity + 1, &covariance);
+  AddNoise(noise.climb, t, kHeight, kClimb, &covariance);
+  AddNoise(noise.turn, t, kTurnRate, kTurnChange, &covariance);
   AddSwayNoise(noise.sway, t, &covariance);
   // The path is not a linear function of the turn rate; the Jacobian's matrices already include it.
   const StateMatrix& by = jacobian;
   const TurnState::Vector now = state->mean;
   TurnState::Vector straight = now;
-  straight.segment<2>(6).setZero();
+  straight.segment<2>(kTurnRate).setZero();
   state->mean = by * straight;
-  state->mean.segment<2>(6) = by.block<2, 2>(6, 6) * now.segment<2>(6);
-  state->mean(kYaw) += by.block<1, 2>(kYaw, 6).dot(now.segment<2>(6));
+  state->mean.segment<2>(kTurnRate) =
+      by.block<2, 2>(kTurnRate, kTurnRate) * now.segment<2>(kTurnRate);
+  state->mean(kYaw) += by.block<1, 2>(kYaw, kTurnRate).dot(now.segment<2>(kTurnRate));
 }
 
 }  // namespace
@@ -121,15 +136,15 @@ TurnState StartState(const Eigen::Vector3d& position, const Eigen::Matrix3d& cov
   TurnState state;
   state.mean.head<3>() = position;
   state.covariance.topLeftCorner<3, 3>() = covariance;
-  state.covariance.diagonal().segment<3>(3) = velocity_sigmas.cwiseAbs2();
-  state.covariance.diagonal().segment<2>(6).setConstant(turn_sigma * turn_sigma);
+  state.covariance.diagonal().segment<3>(kVelocity) = velocity_sigmas.cwiseAbs2();
+  state.covariance.diagonal().segment<2>(kTurnRate).setConstant(turn_sigma * turn_sigma);
   state.covariance(kYaw, kYaw) = std::numbers::pi * std::numbers::pi / 4;
   // The measurement includes the sway, so it says nothing about the sway's size. The velocity is
   // that of the vehicle plus that of the sway.
   const Eigen::Matrix2d sway = SwayCovariance(noise.sway);
-  state.covariance.diagonal().segment<2>(8).setConstant(sway(0, 0));
+  state.covariance.diagonal().segment<2>(kSway).setConstant(sway(0, 0));
   for (int axis = 0; axis < 2; ++axis) {
-    const std::array<int, 2> entries = {3 + axis, 10 + axis};
+    const std::array<int, 2> entries = {kVelocity + axis, kSwayVelocity + axis};
     for (const int i : entries) {
       for (const int j : entries) state.covariance(i, j) += sway(1, 1);
     }

@@ -18,15 +18,23 @@ struct TurnState {
   using Vector = Eigen::Matrix<double, kTurnStateSize, 1>;
   using Matrix = Eigen::Matrix<double, kTurnStateSize, kTurnStateSize>;
 
-  // Position (3), velocity (3), turn rate of the vehicle about z and its derivative; the sway's
-  // part of position and velocity (2 and 2, horizontal); yaw of the load.
+  // Entries: position and velocity (3 each), turn rate of the vehicle about z and its derivative,
+  // the sway's part of position and velocity (2 each, horizontal), yaw of the load.
+  static constexpr int kPosition = 0;
+  static constexpr int kVelocity = 3;
+  static constexpr int kTurnRate = 6;
+  static constexpr int kTurnChange = 7;
+  static constexpr int kSway = 8;
+  static constexpr int kSwayVelocity = 10;
+  static constexpr int kYaw = 12;
+
   Vector mean = Vector::Zero();
   Matrix covariance = Matrix::Zero();
 
-  auto position() const { return mean.head<3>(); }
-  auto velocity() const { return mean.segment<3>(3); }
-  double turn_rate() const { return mean(6); }
-  double turn_change() const { return mean(7); }  // derivative of the turn rate
+  auto position() const { return mean.segment<3>(kPosition); }
+  auto velocity() const { return mean.segment<3>(kVelocity); }
+  double turn_rate() const { return mean(kTurnRate); }
+  double turn_change() const { return mean(kTurnChange); }  // derivative of the turn rate
 };
 
 // Undisturbed sway: standard deviation (m; 0: none), frequency and damping ratio (0 to 1,

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <variant>
+
+#include "kestrel/app/cli/kestrel_options.h"
+#include "kestrel/app/cli/source_arguments.h"
+#include "kestrel/app/console/hunt_view.h"
+#include "kestrel/app/console/landing_view.h"
+#include "kestrel/app/foxglove/mcap_sink.h"
+#include "kestrel/flight/session/observation_sink.h"
+#include "kestrel/flight/session/observation_sinks.h"
+#include "kestrel/flight/session/vision.h"
+#include "kestrel/io/bags/open_recording.h"
+#include "kestrel/vision/objects/object_model.h"
+
+namespace kestrel {
+
+// Adds the sink of --dds, if it is given. 'has_world': results have places in the world. 'model':
+// empty for a landing. Throws InputError when DDS fails.
+void AddDdsSink(const SourceArguments& arguments, const OpenedSource& opened,
+                const KestrelOptions& options, bool has_world, const ObjectModel& model,
+                ObservationSinks* sinks);
+
+// Adds the sink of --mcap, if it is given. Throws InputError as OpenMcapFile does, and when the
+// file is a source.
+void AddMcapSink(const SourceArguments& arguments, const OpenedSource& opened,
+                 const std::variant<LandingView, HuntView>& view, ObservationSinks* sinks);
+
+// Runs a session over a recording, to its end or Ctrl-C, and finishes the sinks. Shows its
+// progress, the first warning and the summary on stderr. When it ends with an InputError the
+// summary is shown all the same and the results are kept. 'on_frame': called before each frame with
+// the number of frames done.
+void RunToEnd(
+    const OpenedSource& opened, Vision* vision, ObservationSinks* sinks,
+    const std::function<void(std::size_t done)>& on_frame = [](std::size_t) {});
+
+}  // namespace kestrel

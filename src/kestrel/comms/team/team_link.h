@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kestrel/comms/dds/team_topic.h"
+#include "kestrel/comms/team/team_fusion.h"
+#include "kestrel/comms/team/team_member.h"
+#include "kestrel/comms/team/team_options.h"
+#include "kestrel/comms/team/team_view.h"
+#include "kestrel/core/base/time.h"
+#include "kestrel/io/recording/output_folder.h"
+#include "kestrel/vision/mapping/object_map.h"
+#include "kestrel/vision/objects/object_model.h"
+
+namespace kestrel {
+
+// Options of a UAV in a team.
+struct TeamLinkOptions {
+  std::string uav;     // name of the UAV; empty: that of the computer
+  std::string key;     // file with the key that the team shares; empty: messages are not signed
+  bool claim = false;  // claim an object and go for it
+  TeamOptions team;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("uav", self.uav, "", "name of this UAV in its team, empty for the computer's");
+    visitor(
+        "key", self.key, "",
+        "file with the team's key (32 bytes or 64 hexadecimal digits): sign, and refuse what is "
+        "not signed; empty for none");
+    visitor("claim", self.claim, "",
+            "claim the object with the most value for its distance that nobody else goes for");
+    TeamOptions::Visit(self.team, visitor);
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// A UAV's part in its team, by DDS: it sends its map, receives those of the others, claims an
+// object if the options say so, and writes the map of the whole team. One thread at a time.
+class TeamLink {
+ public:
+  using Say = std::function<void(const std::string&)>;
+
+  // 'team': name of the team. 'domain': DDS domain. 'map': how the UAVs' maps are fused. 'model':
+  // of the objects. 'say': receives messages for a person, one line each. Throws InputError when
+  // name or options are not valid, the key cannot be read, there is no network, or this build has
+  // no DDS.
+  TeamLink(const std::string& team, int domain, const TeamLinkOptions& options,
+           const ObjectMapOptions& map, const ObjectModel& model, Say say);
+
+  // True when it is time to send the map again.
+  bool IsTimeToTell() const;
+
+  // Sends the objects of this UAV's map.
+  void Tell(std::vector<MappedObject> objects);
+
+  // Sets the position of the UAV in its own world; claims depend on the distance from it.
+  void SetPosition(const Eigen::Vector3d& position) { position_ = position; }
+
+  // Sends and receives what is due; call it often.
+  void Exchange();
+
+  // Sends the objects as this UAV's last. Then waits until all UAVs that are heard have sent their
+  // last, all have everything, and no claim changes any more; or until 'is_stopped'. Without
+  // another UAV it waits for silence_s.
+  void Finish(std::vector<MappedObject> objects, const std::function<bool()>& is_stopped);
+
+  // Returns the team's map in this UAV's own world.
+  std::vector<TeamObject> Map() { return OwnMap(View()); }
+
+  // Writes team_map.csv and, if 'origin' is not empty, team_map.geojson. 'origin': latitude and
+  // longitude of this UAV's world, degrees. Throws InputError when it cannot write.
+  void WriteMap(const std::vector<double>& origin, const OutputFolder& folder);
+
+  // Returns a text for the last line: "team: 3 UAVs, 27 objects".
+  std::string Found();
+
+ private:
+  TeamView View() { return ViewTeam(member_, Now(), &fusion_); }
+  void ChooseAgain();
+  std::vector<std::optional<Claim>> Claims() const;
+  void SayWhoIsAwaited() const;
+
+  TeamLinkOptions options_;
+  TeamMember member_;
+  TeamTopic topic_;
+  TeamFusion fusion_;
+  ObjectModel model_;
+  Say say_;
+  Time map_time_ = Time::min();  // time of the map that was sent last, on its own clock
+  std::optional<Time> told_;
+  std::optional<Eigen::Vector3d> position_;
+  Time next_claim_ = Time::min();
+  std::optional<ObjectRef> claimed_;  // as it was reported
+};
+
+}  // namespace kestrel

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/flight/onboard/exposure_drive.h"
+#include "kestrel/flight/onboard/gstreamer_camera.h"
+#include "kestrel/flight/session/live_source.h"
+#include "kestrel/io/bags/open_recording.h"
+
+namespace kestrel {
+
+// A live source, its calibration, and what a session wants to know about it.
+struct OpenedLiveSource {
+  std::unique_ptr<LiveSource> source;
+  CameraCalibration calibration;
+  double rate_hz = kNominalRateHz;       // of the images, nominal
+  bool has_poses = false;                // the source has poses of its own
+  ExposureActuator* actuator = nullptr;  // view of 'source'; null: its exposure cannot be set
+};
+
+// A live source to be opened: a camera, a recording that is played in real time, or the URI of a
+// scheme.
+struct LiveSourceChoice {
+  RecordingChoice recording;  // its 'sources' has one element, the URI
+  bool is_looped = false;     // a recording begins again after its end
+
+  const std::string& uri() const { return recording.sources.front(); }
+};
+
+// A kind of source that is known by the beginning of its URI.
+struct SourceScheme {
+  std::string prefix;  // "dds:"
+  std::function<OpenedLiveSource(const LiveSourceChoice&)> open;
+};
+
+// Opens what the URI names: a source of a scheme ("dds:/camera/image_raw", "sim:straight"), a
+// camera
+// (/dev/video0, rtsp://..., a GStreamer pipeline), or a recording, which is played in real time.
+// Throws InputError that says what is wrong with the source.
+//
+//   const OpenedLiveSource camera = OpenLiveSource(
+//       {.recording = {.sources = {"/dev/video0"}, .camera = "camera.yaml"}}, {});
+OpenedLiveSource OpenLiveSource(const LiveSourceChoice& choice,
+                                const GstreamerCameraOptions& camera,
+                                const std::vector<SourceScheme>& schemes = {});
+
+// Returns the calibration of the choice's file, with its clock offset, for sources that have none
+// of their own. Throws InputError when the file is not valid.
+CameraCalibration ChosenCalibration(const RecordingChoice& choice);
+
+}  // namespace kestrel

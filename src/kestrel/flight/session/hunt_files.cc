@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/session/hunt_files.h"
+
+#include <variant>
+
+#include "kestrel/io/recording/map_inset.h"
+#include "kestrel/io/recording/object_csv.h"
+#include "kestrel/io/recording/object_map_files.h"
+#include "kestrel/io/recording/object_overlay.h"
+
+namespace kestrel {
+
+HuntFiles::HuntFiles(const OutputOptions& output, const HuntPipeline* pipeline, bool has_map,
+                     const std::vector<double>& origin)
+    : pipeline_(pipeline),
+      results_(output, "object_detections.csv", ObjectCsvHeader()),
+      has_map_(has_map),
+      origin_(origin) {}
+
+void HuntFiles::Take(const Observation& observation) {
+  const Frame& frame = observation.frame;
+  const auto& seen = std::get<HuntObservation>(observation.seen);
+  const ObjectModel& model = pipeline_->detector().model();
+  results_.WriteRows(ObjectCsvRows(frame.name, seen, model));
+  if (!results_.wants_pictures()) return;
+  cv::Mat drawn = DrawObjectOverlay(frame.image, model, seen);
+  if (const auto& pose = seen.world_from_camera) {
+    DrawMapInset(pipeline_->map().Confirmed(), model, pose->translation.head<2>(), &drawn);
+  }
+  results_.WritePicture(frame.name, drawn);
+}
+
+void HuntFiles::Finish() {
+  if (has_map_ && folder() != nullptr) WriteObjectMap(*pipeline_, origin_, *folder());
+}
+
+}  // namespace kestrel

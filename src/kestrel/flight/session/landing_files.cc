@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/session/landing_files.h"
+
+#include <variant>
+
+#include "kestrel/io/recording/landing_csv.h"
+#include "kestrel/io/recording/landing_overlay.h"
+#include "kestrel/io/recording/track_csv.h"
+
+namespace kestrel {
+namespace {
+
+constexpr char kTrack[] = "landing_track.csv";
+constexpr char kPrediction[] = "landing_prediction.csv";
+
+}  // namespace
+
+TrackFiles::TrackFiles(const OutputFolder& folder, const std::vector<double>& horizons_s)
+    : track_(folder.OpenText(kTrack)) {
+  WriteAtOnce(TrackCsvHeader(), kTrack, &track_);
+  if (horizons_s.empty()) return;
+  for (const double horizon_s : horizons_s) horizons_.push_back(DurationFromSeconds(horizon_s));
+  prediction_ = folder.OpenText(kPrediction);
+  WriteAtOnce(PredictionCsvHeader(), kPrediction, &prediction_);
+}
+
+void TrackFiles::Write(const LandingObservation& observation, const TargetTracker& tracker) {
+  has_begun_ = has_begun_ || observation.fate;
+  if (!has_begun_) return;
+  WriteAtOnce(TrackCsvRow(observation), kTrack, &track_);
+  if (observation.track_state == TrackState::kSearching) return;
+  for (const Duration horizon : horizons_) {
+    const auto prediction = tracker.Predict(observation.time + horizon);
+    if (!prediction) continue;
+    WriteAtOnce(PredictionCsvRow(observation.time, *prediction), kPrediction, &prediction_);
+  }
+}
+
+LandingFiles::LandingFiles(const OutputOptions& output, const LandingPipeline* pipeline,
+                           bool has_track, const std::vector<double>& predict_s)
+    : pipeline_(pipeline), results_(output, "landing_detections.csv", LandingCsvHeader()) {
+  if (has_track && results_.folder()) track_.emplace(*results_.folder(), predict_s);
+}
+
+void LandingFiles::Take(const Observation& observation) {
+  const Frame& frame = observation.frame;
+  const auto& seen = std::get<LandingObservation>(observation.seen);
+  results_.WriteRows(LandingCsvRow(frame.name, seen));
+  if (track_) track_->Write(seen, pipeline_->tracker());
+  if (!results_.wants_pictures()) return;
+  const LandingPatternDetector& detector = pipeline_->detector();
+  results_.WritePicture(frame.name, DrawLandingOverlay(frame.image, detector.camera(),
+                                                       detector.options().pattern, seen));
+}
+
+}  // namespace kestrel

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kestrel/flight/session/guarded_sink.h"
+#include "kestrel/flight/session/observation_sink.h"
+
+namespace kestrel {
+
+// Passes everything to several sinks, in the order in which they were added. They finish in the
+// opposite order. A sink that throws is left out from then on, and the others get an event that
+// says so.
+//
+// Example:
+//   std::unique_ptr<ObservationSink> first;  // yours
+//   ObservationSinks sinks;
+//   sinks.Add(std::move(first));
+//   sinks.Take(Observation());  // a session does
+//   sinks.Finish();
+class ObservationSinks : public ObservationSink {
+ public:
+  ObservationSinks() = default;
+  ~ObservationSinks() override {
+    while (!sinks_.empty()) sinks_.pop_back();
+  }
+  ObservationSinks(const ObservationSinks&) = delete;
+  ObservationSinks& operator=(const ObservationSinks&) = delete;
+
+  // Adds a sink before the session begins. Returns the sink.
+  template <class Sink>
+  Sink* Add(std::unique_ptr<Sink> sink) {
+    Sink* const added = sink.get();
+    sinks_.push_back(std::make_unique<OwnedSink>(
+        std::move(sink), [this](const std::string& error) { Tell(error); }));
+    return added;
+  }
+
+  bool IsWanted() const override {
+    for (const auto& sink : sinks_) {
+      if (sink->guarded.IsWanted()) return true;
+    }
+    return false;
+  }
+  void Take(const Observation& observation) override { TakeAll(observation); }
+  void Take(const FlightReport& report) override { TakeAll(report); }
+  void Take(const TeamReport& report) override { TakeAll(report); }
+  void Take(const SessionEvent& event) override { TakeAll(event); }
+  void Finish() override {
+    for (auto sink = sinks_.rbegin(); sink != sinks_.rend(); ++sink) (*sink)->guarded.Finish();
+  }
+
+ private:
+  struct OwnedSink {
+    OwnedSink(std::unique_ptr<ObservationSink> owned_sink,
+              std::function<void(const std::string&)> tell)
+        : owned(std::move(owned_sink)), guarded(owned.get(), std::move(tell)) {}
+
+    std::unique_ptr<ObservationSink> owned;
+    GuardedSink guarded;
+  };
+
+  template <class Value>
+  void TakeAll(const Value& value) {
+    for (const auto& sink : sinks_) sink->guarded.Take(value);
+  }
+
+  void Tell(const std::string& error) {
+    TakeAll(SessionEvent{
+        Now(), EventLevel::kError,
+        "a sink of the results has failed: " + error + ": the flight goes on without it"});
+  }
+
+  std::vector<std::unique_ptr<OwnedSink>> sinks_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/io/bags/bag_source.h"
+#include "kestrel/io/recording/frame_source.h"
+
+namespace kestrel {
+
+// A recording to be read, and how.
+struct RecordingChoice {
+  std::vector<std::string> sources;  // as OpenSourceOrBag takes them
+  PixelFormat format = PixelFormat::kGray;
+  BagChoice bag = {};
+  std::string camera = {};                    // file with the calibration; empty: the source's own
+  std::optional<Duration> clock_offset = {};  // in place of the calibration's
+};
+
+// A recording and the calibration of its camera.
+struct OpenedSource {
+  std::unique_ptr<FrameSource> source;
+  CameraCalibration calibration;
+
+  // True when frames can be placed in the world, by poses and the camera's mount.
+  bool has_world() const { return calibration.body_from_camera && !source->poses().empty(); }
+};
+
+// Opens a recording without looking for its calibration. Throws InputError as OpenSourceOrBag does.
+std::unique_ptr<FrameSource> OpenFrames(const RecordingChoice& choice);
+
+// Opens a recording with the calibration of the file, or its own. A file without a mount gets the
+// source's, and its clock offset. Tells 'bag.tell' when there are poses but no mount. Throws
+// InputError when there is no calibration, or when source or calibration are not valid.
+//
+//   const OpenedSource flight = OpenRecording({.sources = {"flight.bag"}});
+//   Frame frame;
+//   while (flight.source->Next(&frame)) Use(frame.image, frame.time);
+OpenedSource OpenRecording(const RecordingChoice& choice);
+
+}  // namespace kestrel

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/simulation/autopilots/simulated_source.h"
+
+#include <atomic>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "kestrel/core/camera/calibration_reader.h"
+
+namespace kestrel {
+namespace {
+
+constexpr std::string_view kPrefix = "sim:";
+
+// A live source that renders its images.
+class RenderedSource : public LiveSource {
+ public:
+  RenderedSource(const SimulatedCameraOptions& options, VehicleWorld* world, Time start,
+                 std::uint64_t seed)
+      : camera_(options, world, start, seed) {}
+
+  std::optional<Event> Next(Duration timeout) override {
+    Frame frame;
+    if (!camera_.Next(&frame, timeout)) return std::nullopt;
+    ++captured_;
+    return Event(std::move(frame));
+  }
+
+  CaptureCounters counters() const override {
+    return {.captured = captured_, .missed = static_cast<std::uint64_t>(camera_.left_out())};
+  }
+
+  SimulatedCamera& camera() { return camera_; }
+
+ private:
+  SimulatedCamera camera_;
+  std::atomic<std::uint64_t> captured_{0};
+};
+
+// Splits "straight,a=1,b=2" into "straight", "a=1", "b=2".
+std::vector<std::string> Split(std::string_view text) {
+  std::vector<std::string> parts;
+  for (;;) {
+    const std::size_t comma = text.find(',');
+    parts.emplace_back(text.substr(0, comma));
+    if (comma == std::string_view::npos) return parts;
+    text.remove_prefix(comma + 1);
+  }
+}
+
+CameraCalibration CalibrationFor(const RecordingChoice& choice, const CameraCalibration& own) {
+  if (choice.camera.empty()) return own;
+  CameraCalibration calibration = ReadCalibration(choice.camera);
+  CheckImageSize(calibration.intrinsics, own.intrinsics.width_px, own.intrinsics.height_px,
+                 choice.sources.front());
+  if (!calibration.body_from_camera) calibration.body_from_camera = own.body_from_camera;
+  return calibration;
+}
+
+}  // namespace
+
+SourceScheme SimulatedSource::Scheme() {
+  return {std::string(kPrefix), [this](const LiveSourceChoice& choice) { return Open(choice); }};
+}
+
+OpenedLiveSource SimulatedSource::Open(const LiveSourceChoice& choice) {
+  std::vector<std::string> settings = Split(std::string_view(choice.uri()).substr(kPrefix.size()));
+  const std::string scenario = settings.front();
+  settings.erase(settings.begin());
+  const Time start = Now();
+  world_ = std::make_unique<VehicleWorld>(ReadVehicleWorld(scenario, settings), start, seed_);
+  auto source = std::make_unique<RenderedSource>(options_, world_.get(), start, seed_);
+  OpenedLiveSource opened;
+  opened.calibration = CalibrationFor(choice.recording, source->camera().calibration());
+  opened.rate_hz = options_.rate_hz;
+  camera_ = &source->camera();
+  opened.source = std::move(source);
+  return opened;
+}
+
+VehicleWorld* SimulatedSource::World() {
+  if (!world_) {
+    world_ = std::make_unique<VehicleWorld>(ReadVehicleWorld("standing", {}), Now(), seed_);
+  }
+  return world_.get();
+}
+
+void SimulatedSource::TakePose(const PoseSample& pose) {
+  if (camera_ != nullptr && !has_true_poses_) camera_->AddPose(pose);
+}
+
+void SimulatedSource::TakeTruePose(const PoseSample& pose) {
+  has_true_poses_ = true;
+  if (camera_ != nullptr) camera_->AddPose(pose);
+}
+
+AutopilotOptions SimulatedSource::Asking(AutopilotOptions options) const {
+  options.wants_true_pose = options.wants_true_pose || camera_ != nullptr;
+  return options;
+}
+
+std::optional<TruePattern> SimulatedSource::Truth(const Frame& frame) const {
+  if (camera_ == nullptr) return std::nullopt;
+  return camera_->Truth(frame);
+}
+
+}  // namespace kestrel

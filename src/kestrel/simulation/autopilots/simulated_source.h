@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "kestrel/comms/mavlink/autopilot.h"
+#include "kestrel/core/poses/pose_history.h"
+#include "kestrel/flight/onboard/open_live_source.h"
+#include "kestrel/simulation/autopilots/simulated_camera.h"
+#include "kestrel/simulation/autopilots/vehicle_world.h"
+
+namespace kestrel {
+
+// The scheme "sim:SCENARIO" of live sources, with optional settings as
+// "sim:straight,vehicle.speed_mps=4": a camera over a simulated world. It owns the world, which a
+// simulated autopilot shares. Must outlive the scheme and its source.
+class SimulatedSource {
+ public:
+  SimulatedSource(const SimulatedCameraOptions& options, std::uint64_t seed)
+      : options_(options), seed_(seed) {}
+
+  // The source has the simulated camera's calibration, or the one that the user gives; a file
+  // without a mount gets the simulated camera's. It throws InputError for a scenario or settings
+  // that do not exist, and for a calibration of another image size.
+  SourceScheme Scheme();
+
+  // The world; a standing vehicle if no source was opened.
+  VehicleWorld* World();
+
+  // Poses from the autopilot. They place the camera: the true poses, if there are any, else the
+  // estimated ones.
+  void TakePose(const PoseSample& pose);
+  void TakeTruePose(const PoseSample& pose);
+
+  // Returns 'options' with what the camera needs from the autopilot.
+  AutopilotOptions Asking(AutopilotOptions options) const;
+
+  // The true pattern of a frame of the camera; nothing when no source was opened.
+  std::optional<TruePattern> Truth(const Frame& frame) const;
+
+ private:
+  OpenedLiveSource Open(const LiveSourceChoice& choice);
+
+  SimulatedCameraOptions options_;
+  std::uint64_t seed_;
+  std::unique_ptr<VehicleWorld> world_;
+  SimulatedCamera* camera_ = nullptr;  // of the source; null: none was opened
+  bool has_true_poses_ = false;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whole sessions: a source, the vision, a recorder and all sinks that there are.
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/app/console/flight_console.h"
+#include "kestrel/app/console/test_browser.h"
+#include "kestrel/app/foxglove/flight_live.h"
+#include "kestrel/app/foxglove/mcap_sink.h"
+#include "kestrel/app/foxglove/test_protobuf.h"
+#include "kestrel/comms/dds/ros2_node.h"
+#include "kestrel/comms/dds/team_topic.h"
+#include "kestrel/comms/dds/test_dds.h"
+#include "kestrel/comms/team/team_fusion.h"
+#include "kestrel/comms/team/team_member.h"
+#include "kestrel/comms/team/team_view.h"
+#include "kestrel/core/base/test_folder.h"
+#include "kestrel/flight/ros/ros2_result_connection.h"
+#include "kestrel/flight/ros/ros_sink.h"
+#include "kestrel/flight/session/observation_sinks.h"
+#include "kestrel/io/recording/open_source.h"
+#include "test_session.h"
+
+namespace kestrel {
+namespace {
+
+using std::chrono::milliseconds;
+using ::testing::IsEmpty;
+
+FlightView LandingViewOfSession() { return ViewOf(SmallCamera(), LandingPipelineOptions()); }
+
+// All sinks of a flight, as `kestrel fly --console --mcap --dds` has them.
+class AllSinks {
+ public:
+  AllSinks(const std::string& mcap, int domain) {
+    witness = sinks.Add(std::make_unique<Witness>());
+    const CameraIntrinsics camera = SmallCamera().intrinsics;
+    live = sinks.Add(std::make_unique<FlightLive>(camera, LandingViewOfSession(), 30));
+    console = sinks.Add(std::make_unique<FlightConsole>(
+        AnyPort(), "a flight", LandingViewOfSession(), FlightExamination(SmallCamera(), ".", 0),
+        live->channels()));
+    sinks.Add(OpenMcapSink(mcap, /*replace=*/false, camera, LandingViewOfSession(),
+                           [this](const std::string& text) { Say(text); }));
+    if (Ros2Node::Knows("tf2_msgs/TFMessage")) AddRos(domain);
+  }
+
+  int port() const {
+    const std::string url = console->url();
+    return std::stoi(url.substr(url.rfind(':') + 1));
+  }
+
+  ObservationSinks sinks;
+  Witness* witness;
+  FlightLive* live;
+  FlightConsole* console;
+
+ private:
+  void Say(const std::string& text) { sinks.Take(SessionEvent{Now(), EventLevel::kWarning, text}); }
+
+  void AddRos(int domain) {
+    const DdsOptions options;
+    auto connection = std::make_unique<Ros2ResultConnection>(
+        std::make_shared<Ros2Node>(domain, Ros2NodeOptions()), options.node, kLandingTopics);
+    const RosFrames frames{"camera", "map", "base_link", RosTimeAhead()};
+    sinks.Add(MakeRosSink(
+        std::make_unique<RosResults>(std::move(connection), WireFormat::kCdr, options, frames,
+                                     SmallCamera(), LandingPipelineOptions(), DefaultObjectModel()),
+        [this](const std::string& text) { Say(text); }));
+  }
+};
+
+// A node of ROS that counts the detections that it hears, in a thread of its own.
+class Listener {
+ public:
+  explicit Listener(int domain) {
+    if (!Ros2Node::Knows(Detection3DArrayMessage::kType)) return;
+    node_.emplace(domain, Ros2NodeOptions{"listener"});
+    node_->Subscribe("/kestrel/detections", Detection3DArrayMessage::kType, kDefaultQos);
+    thread_ = std::thread([this] {
+      while (!is_over_) {
+        node_->Take(milliseconds(20), [this](std::size_t, std::string_view) { ++heard_; });
+      }
+    });
+  }
+  ~Listener() {
+    is_over_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+
+  bool HasHeard() const { return !node_ || heard_ > 0; }
+
+ private:
+  std::optional<Ros2Node> node_;
+  std::atomic<bool> is_over_{false};
+  std::atomic<int> heard_{0};
+  std::thread thread_;
+};
+
+// A browser that looks at the page as long as it is there.
+class Watcher {
+ public:
+  explicit Watcher(int port) : socket_(port), thread_([this] { Watch(); }) {}
+  ~Watcher() {
+    socket_.Shutdown();
+    thread_.join();
+  }
+  Watcher(const Watcher&) = delete;
+  Watcher& operator=(const Watcher&) = delete;
+
+  int messages() const { return messages_; }
+
+ private:
+  void Watch() {
+    while (socket_.Read()) ++messages_;
+  }
+
+  TestSocket socket_;
+  std::atomic<int> messages_{0};
+  std::thread thread_;
+};
+
+TEST(WholeSession, IsStartedAndStoppedSeveralTimes) {
+  constexpr int kFrames = 60;
+  const TestFolder folder;
+  const int domain = TestDomain();
+  Listener listener(domain);
+  for (const std::string round : {"0", "1", "2"}) {
+    AllSinks all(folder / (round + ".mcap"), domain);
+    const Watcher watcher(all.port());
+    DrawnCamera camera(kFrames, PatternImage, 3);
+    LiveSessionParts parts = LandingParts(&camera, &all.sinks);
+    parts.record = folder / ("first" + round);
+    parts.output = folder / ("tables" + round);
+    LiveSession session(parts, SessionOptions());
+    bool is_restarted = false;
+    const FlightEnd end = session.Run([&] {
+      if (is_restarted || all.witness->seen().frames.size() < kFrames / 3) return false;
+      EXPECT_TRUE(session.recording().Stop());
+      EXPECT_TRUE(session.recording().Start(folder / ("second" + round), /*replace=*/false));
+      return !(is_restarted = true);
+    });
+    all.sinks.Finish();
+    EXPECT_EQ(end, FlightEnd::kSourceEnded);
+    const Witness::Seen seen = all.witness->seen();
+    EXPECT_GT(seen.frames.size(), 10u);
+    EXPECT_GT(seen.found, 5) << "of " << seen.frames.size();
+    EXPECT_GT(seen.reports, 2);
+    EXPECT_THAT(seen.events, IsEmpty());
+    EXPECT_EQ(ReadMessages(folder / (round + ".mcap")).at("/result").size(), seen.frames.size());
+    EXPECT_GT(watcher.messages(), 5);
+    for (const std::string part : {"first", "second"}) {
+      EXPECT_GT(*OpenSource({folder / (part + round)})->frame_count(), 0u) << part;
+    }
+  }
+  EXPECT_TRUE(listener.HasHeard());
+}
+
+TEST(WholeSession, MayBeStoppedAtOnce) {
+  const TestFolder folder;
+  const int domain = TestDomain();
+  for (int round = 0; round < 5; ++round) {
+    AllSinks all(folder / (std::to_string(round) + ".mcap"), domain);
+    DrawnCamera camera(1000, PatternImage, 3);
+    LiveSessionParts parts = LandingParts(&camera, &all.sinks);
+    parts.record = folder / std::to_string(round);
+    LiveSession session(parts, SessionOptions());
+    EXPECT_EQ(session.Run([] { return true; }), FlightEnd::kStopped);
+    all.sinks.Finish();
+  }
+}
+
+// A UAV that hunts and tells its team.
+class TeamUav {
+ public:
+  TeamUav(const std::string& name, int domain)
+      : member_({name, 1}, {}), topic_(domain, "sessions", name), camera_(300, DiscImage, 2) {
+    witness_ = sinks_.Add(std::make_unique<Witness>());
+    LiveSessionParts parts = LandingParts(&camera_, &sinks_);
+    parts.objects = DefaultObjectModel();
+    session_.emplace(parts, SessionOptions());
+    session_->hunt()->ShareMap(milliseconds(50));
+  }
+
+  void Fly() {
+    session_->Run([this] {
+      Exchange();
+      return witness_->seen().team.size() > 0 && member_.Known().size() == 2;
+    });
+    sinks_.Finish();
+  }
+
+  std::size_t known() const { return member_.Known().size(); }
+  Witness::Seen seen() const { return witness_->seen(); }
+
+ private:
+  void Exchange() {
+    if (auto map = session_->hunt()->TakeMap()) member_.Tell(std::move(map->objects), Now());
+    topic_.Receive([this](auto bytes) { member_.Hear(bytes, Now()); });
+    member_.Tick(Now(), [this](auto bytes) { topic_.Send(bytes); });
+    sinks_.Take(TeamReport{Now(), OwnMap(ViewTeam(member_, Now(), &fusion_))});
+  }
+
+  TeamMember member_;
+  TeamTopic topic_;
+  TeamFusion fusion_{TeamOptions(), ObjectMapOptions()};
+  DrawnCamera camera_;
+  ObservationSinks sinks_;
+  Witness* witness_;
+  std::optional<LiveSession> session_;
+};
+
+TEST(WholeSession, ATeamSharesItsMap) {
+  const int domain = TestDomain();
+  if (!Ros2Node::Knows("tf2_msgs/TFMessage")) GTEST_SKIP() << "this build has no DDS";
+  TeamUav a("a", domain);
+  TeamUav b("b", domain);
+  std::thread other([&] { b.Fly(); });
+  a.Fly();
+  other.join();
+  for (const TeamUav* uav : {&a, &b}) {
+    EXPECT_EQ(uav->known(), 2u);
+    EXPECT_FALSE(uav->seen().team.empty());
+    EXPECT_THAT(uav->seen().events, IsEmpty());
+  }
+}
+
+}  // namespace
+}  // namespace kestrel
