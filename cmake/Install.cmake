@@ -36,6 +36,8 @@ foreach(header IN LISTS headers)
   cmake_path(GET header PARENT_PATH folder)
   install(FILES src/kestrel/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kestrel/${folder})
 endforeach()
+install(FILES ${PROJECT_BINARY_DIR}/generated/kestrel/version.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kestrel)
 foreach(component vision calibration io flight simulation console)
   install(EXPORT kestrel_${component} NAMESPACE kestrel:: FILE kestrel_${component}.cmake
           DESTINATION ${package_dir})

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A camera of one's own and a sink of one's own in a LiveSession: finds the landing pattern in the
-// camera's images and writes a line of JSON for each. With an argument, as
-// "serial:///dev/ttyAMA0:921600", it tells an autopilot where the pattern is.
+// A camera of one's own in a LiveSession: finds the landing pattern in its images and writes what
+// was found as JSON lines. With an argument, as "serial:///dev/ttyAMA0:921600", it tells an
+// autopilot where the pattern is.
 #include <chrono>
 #include <iostream>
-#include <memory>
+#include <string>
 #include <thread>
-#include <variant>
 
 #include <opencv2/imgproc.hpp>
 
+#include "json_lines_sink.h"
 #include "kestrel/flight/onboard/live_session.h"
 
 namespace {
@@ -40,24 +40,6 @@ class DrawnCamera : public kestrel::LiveSource {
   std::uint64_t captured_ = 0;
 };
 
-// Writes each frame as a line of JSON.
-class JsonLines : public kestrel::ObservationSink {
- public:
-  void Take(const kestrel::Observation& observation) override {
-    const auto& seen = std::get<kestrel::LandingObservation>(observation.seen);
-    std::cout << R"({"frame": ")" << observation.frame.name << R"(", "detected": )"
-              << (seen.report.detection ? "true" : "false");
-    if (seen.report.detection) {
-      const Eigen::Vector3d& p = seen.report.detection->camera_from_pattern.translation;
-      std::cout << R"(, "position_m": [)" << p.x() << ", " << p.y() << ", " << p.z() << "]";
-      ++found;
-    }
-    std::cout << "}" << std::endl;
-  }
-
-  int found = 0;
-};
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -66,11 +48,11 @@ int main(int argc, char** argv) {
   parts.source = &camera;
   parts.calibration.intrinsics = {
       .width_px = 640, .height_px = 480, .fx_px = 400, .fy_px = 400, .cx_px = 320, .cy_px = 240};
-  JsonLines lines;
-  parts.sink = &lines;
+  JsonLinesSink sink(&std::cout);
+  parts.sink = &sink;
   if (argc > 1) parts.autopilot = argv[1];
-  kestrel::LiveSession session(parts, {});
+  kestrel::LiveSession session(parts);
   session.Run([] { return false; });
   std::cerr << session.Summary();
-  return lines.found > 30 ? 0 : 1;
+  return sink.lines() > 30 ? 0 : 1;
 }

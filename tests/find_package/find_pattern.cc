@@ -2,12 +2,17 @@
 // Draws the landing pattern as seen from 3 m above it, and expects Kestrel to find it there.
 #include <cmath>
 #include <iostream>
+#include <string_view>
 
 #include <opencv2/imgproc.hpp>
 
+#include "kestrel/version.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 
 namespace {
+
+static_assert(std::string_view(kestrel::kVersion) == PACKAGE_VERSION);
+static_assert(KESTREL_VERSION_MAJOR + KESTREL_VERSION_MINOR + KESTREL_VERSION_PATCH > 0);
 
 constexpr double kFocal_px = 400;
 constexpr double kHeight_m = 3;

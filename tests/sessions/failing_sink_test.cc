@@ -22,6 +22,7 @@
 #include "kestrel/flight/ros/ros2_result_connection.h"
 #include "kestrel/flight/ros/ros_sink.h"
 #include "kestrel/flight/session/asynchronous_sink.h"
+#include "kestrel/flight/session/observation_sinks.h"
 #include "test_session.h"
 
 namespace kestrel {

@@ -14,6 +14,7 @@
 
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/flight/onboard/live_session.h"
+#include "kestrel/flight/onboard/live_session_options.h"
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/flight/session/observation_sink.h"
 #include "kestrel/vision/mapping/team_object.h"

@@ -26,6 +26,7 @@
 #include "kestrel/core/base/test_folder.h"
 #include "kestrel/flight/ros/ros2_result_connection.h"
 #include "kestrel/flight/ros/ros_sink.h"
+#include "kestrel/flight/session/observation_sinks.h"
 #include "kestrel/io/recording/open_source.h"
 #include "test_session.h"
 

@@ -21,6 +21,7 @@
 #include "kestrel/app/console/replay_console.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
+#include "kestrel/flight/session/observation_sinks.h"
 #include "kestrel/io/recording/open_source.h"
 #include "kestrel/vision/objects/object_model.h"
 

@@ -22,10 +22,13 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/onboard/camera_automatics.h"
 #include "kestrel/flight/onboard/flight_keeper.h"
+#include "kestrel/flight/onboard/hunt_vision.h"
 #include "kestrel/flight/onboard/live_session.h"
+#include "kestrel/flight/onboard/live_session_options.h"
 #include "kestrel/flight/ros/ros2_result_connection.h"
 #include "kestrel/flight/ros/ros_sink.h"
 #include "kestrel/flight/ros1/ros1_result_connection.h"
+#include "kestrel/flight/session/observation_sinks.h"
 
 namespace kestrel {
 namespace {

@@ -13,10 +13,13 @@
 #include "kestrel/app/cli/recorded_run.h"
 #include "kestrel/app/cli/source_arguments.h"
 #include "kestrel/app/cli/team_arguments.h"
+#include "kestrel/app/console/hunt_view.h"
 #include "kestrel/comms/team/team_link.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/session/hunt_files.h"
 #include "kestrel/flight/session/hunt_run.h"
+#include "kestrel/flight/session/observation_sinks.h"
+#include "kestrel/vision/objects/color_grid.h"
 
 namespace kestrel {
 namespace {

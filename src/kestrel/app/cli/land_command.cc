@@ -10,6 +10,7 @@
 #include "kestrel/app/cli/source_arguments.h"
 #include "kestrel/flight/session/landing_files.h"
 #include "kestrel/flight/session/landing_run.h"
+#include "kestrel/flight/session/observation_sinks.h"
 
 namespace kestrel {
 namespace {

@@ -18,6 +18,7 @@
 #include "kestrel/app/cli/land_command.h"
 #include "kestrel/app/cli/print_command.h"
 #include "kestrel/app/cli/simulate_command.h"
+#include "kestrel/version.h"
 
 namespace {
 
@@ -33,7 +34,7 @@ void SilenceOpenCv() { cv::utils::logging::setLogLevel(cv::utils::logging::LOG_L
 int main(int argc, char** argv) {
   SilenceOpenCv();
   CLI::App app("Kestrel gives UAVs eyes for landing on moving targets.", "kestrel");
-  app.set_version_flag("--version", "kestrel " KESTREL_VERSION);
+  app.set_version_flag("--version", fmt::format("kestrel {}", kestrel::kVersion));
   app.require_subcommand(1);
   kestrel::AddLandCommand(&app);
   kestrel::AddHuntCommand(&app);

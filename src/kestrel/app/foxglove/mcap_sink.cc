@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/app/console/hunt_view.h"
+#include "kestrel/app/console/landing_view.h"
 #include "kestrel/app/foxglove/observation_file.h"
 
 namespace kestrel {
@@ -73,6 +75,22 @@ std::unique_ptr<ObservationSink> OpenMcapFile(const std::string& path, bool repl
                                               const CameraIntrinsics& camera,
                                               const std::variant<LandingView, HuntView>& view) {
   return std::make_unique<McapFileSink>(path, replace, camera, view);
+}
+
+std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
+                                               const CameraCalibration& calibration,
+                                               const LandingPipelineOptions& options,
+                                               std::function<void(const std::string&)> tell) {
+  const std::variant<LandingView, HuntView> view = ViewOf(calibration, options);
+  return OpenMcapSink(path, replace, calibration.intrinsics, view, std::move(tell));
+}
+
+std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
+                                               const CameraCalibration& calibration,
+                                               const ObjectModel& objects,
+                                               std::function<void(const std::string&)> tell) {
+  const std::variant<LandingView, HuntView> view = HuntView{.model = objects};
+  return OpenMcapSink(path, replace, calibration.intrinsics, view, std::move(tell));
 }
 
 }  // namespace kestrel

@@ -6,11 +6,15 @@
 #include <string>
 #include <variant>
 
-#include "kestrel/app/console/hunt_view.h"
-#include "kestrel/app/console/landing_view.h"
+#include "kestrel/core/camera/calibration.h"
 #include "kestrel/flight/session/asynchronous_sink.h"
+#include "kestrel/vision/objects/object_model.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
 
 namespace kestrel {
+
+struct HuntView;
+struct LandingView;
 
 // Returns a sink that writes an MCAP file as ObservationFile does. 'tell' is called by the writing
 // thread with a text: that the file cannot be written any more (the session goes on), or how many
@@ -25,5 +29,21 @@ std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool rep
 std::unique_ptr<ObservationSink> OpenMcapFile(const std::string& path, bool replace,
                                               const CameraIntrinsics& camera,
                                               const std::variant<LandingView, HuntView>& view);
+
+// The same for a landing with these options, and for a hunt for these objects.
+//
+// Example:
+//   const CameraCalibration calibration = ReadCalibration("camera.yaml");
+//   ObservationSinks sinks;
+//   sinks.Add(OpenMcapSink("flight.mcap", /*replace=*/true, calibration, LandingPipelineOptions(),
+//                          [](const std::string& text) { std::cerr << text << "\n"; }));
+std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
+                                               const CameraCalibration& calibration,
+                                               const LandingPipelineOptions& options,
+                                               std::function<void(const std::string&)> tell);
+std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
+                                               const CameraCalibration& calibration,
+                                               const ObjectModel& objects,
+                                               std::function<void(const std::string&)> tell);
 
 }  // namespace kestrel

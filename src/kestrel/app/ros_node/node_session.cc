@@ -9,6 +9,8 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/flight/onboard/hunt_vision.h"
+#include "kestrel/flight/onboard/live_session_options.h"
 #include "kestrel/flight/ros/ros_sink.h"
 #include "kestrel/io/recording/output_folder.h"
 

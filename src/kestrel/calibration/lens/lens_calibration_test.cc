@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/calibration/lens/lens_difference.h"
+#include "kestrel/calibration/lens/lens_projection.h"
 #include "kestrel/calibration/lens/test_lens_views.h"
 #include "kestrel/calibration/lens/unlike_views.h"
 #include "kestrel/core/base/error.h"

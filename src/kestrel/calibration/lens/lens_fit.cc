@@ -10,6 +10,7 @@
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 
+#include "kestrel/calibration/lens/lens_projection.h"
 #include "kestrel/core/base/robust_statistics.h"
 
 namespace kestrel {

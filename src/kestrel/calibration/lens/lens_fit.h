@@ -7,11 +7,14 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/calibration/lens/lens_projection.h"
 #include "kestrel/calibration/lens/lens_view.h"
 #include "kestrel/core/camera/camera_model.h"
 
 namespace kestrel {
+
+// The parameters of a lens in the order of the estimation: fx, fy / fx, cx, cy, and the distortion
+// coefficients as in CameraIntrinsics, at most five.
+enum LensParameter { kFocal, kAspect, kPrincipalX, kPrincipalY, kDistortion, kLensParameters = 9 };
 
 // The parameters of a lens that are estimated; the others keep their values.
 struct LensFreedom {

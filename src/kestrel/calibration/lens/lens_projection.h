@@ -3,13 +3,10 @@
 
 #include <cmath>
 
+#include "kestrel/calibration/lens/lens_fit.h"
 #include "kestrel/core/camera/camera_model.h"
 
 namespace kestrel {
-
-// The parameters of a lens in the order of the estimation: fx, fy / fx, cx, cy, and the distortion
-// coefficients as in CameraIntrinsics, at most five.
-enum LensParameter { kFocal, kAspect, kPrincipalX, kPrincipalY, kDistortion, kLensParameters = 9 };
 
 // Projects a point in the camera frame to a pixel as CameraModel::Project does, for automatic
 // differentiation. 'parameters': kLensParameters values. Returns false when the lens does not show

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kestrel/vision/landing/plane_warp.h"
 #include "kestrel/vision/landing/print_alignment.h"
+#include "kestrel/vision/landing/print_outline.h"
 
 namespace kestrel {
 namespace {
@@ -31,7 +33,11 @@ CameraIntrinsics Recalibrated(CameraIntrinsics camera, const CalibrationEvidence
 
 LensViewFinder::LensViewFinder(const CameraIntrinsics& camera,
                                const LandingPatternDetectorOptions& options)
-    : detector_(CameraModel(camera), options), outline_(options.pattern) {}
+    : detector_(CameraModel(camera), options),
+      outline_(std::make_unique<const PrintOutline>(options.pattern)) {}
+LensViewFinder::~LensViewFinder() = default;
+LensViewFinder::LensViewFinder(LensViewFinder&&) noexcept = default;
+LensViewFinder& LensViewFinder::operator=(LensViewFinder&&) noexcept = default;
 
 std::optional<LensView> LensViewFinder::Find(const std::string& name, const cv::Mat& image) {
   const LandingReport report = detector_.Detect(image, {}, workspace_);
@@ -40,9 +46,9 @@ std::optional<LensView> LensViewFinder::Find(const std::string& name, const cv::
   }
   const LandingDetection& seen = *report.detection;
   const CameraModel camera(Recalibrated(detector_.camera().intrinsics(), seen.calibration));
-  PrintAlignment alignment{PlaneWarp(camera, seen.camera_from_pattern, outline_.radius_m()), {}};
+  PrintAlignment alignment{PlaneWarp(camera, seen.camera_from_pattern, outline_->radius_m()), {}};
   const double reach_px = std::max(kLeastReachPx, kReachShare * 2 * seen.ring_semi_major_px);
-  if (!AlignPrint(image, image, {}, outline_.all(), reach_px, kMinStep, &alignment)) {
+  if (!AlignPrint(image, image, {}, outline_->all(), reach_px, kMinStep, &alignment)) {
     return std::nullopt;
   }
   LensView view{name, {}, seen.camera_from_pattern};

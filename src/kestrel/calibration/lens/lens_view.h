@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,9 +12,10 @@
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/vision/landing/landing_pattern_detector.h"
-#include "kestrel/vision/landing/print_outline.h"
 
 namespace kestrel {
+
+class PrintOutline;
 
 // A point of the print's outline in an image. It tells where the outline is across its direction;
 // along the outline it tells nothing.
@@ -37,6 +39,9 @@ class LensViewFinder {
   // positions of the edges depend on the image alone (AlignPrint). Throws InputError when camera or
   // options are not valid.
   LensViewFinder(const CameraIntrinsics& camera, const LandingPatternDetectorOptions& options);
+  ~LensViewFinder();
+  LensViewFinder(LensViewFinder&&) noexcept;
+  LensViewFinder& operator=(LensViewFinder&&) noexcept;
 
   // 'image': CV_8UC1 of the camera's size. Returns nothing when the pattern is not found, or is too
   // small for its edges to be found.
@@ -44,7 +49,7 @@ class LensViewFinder {
 
  private:
   LandingPatternDetector detector_;
-  PrintOutline outline_;
+  std::unique_ptr<const PrintOutline> outline_;
   LandingWorkspace workspace_;
 };
 

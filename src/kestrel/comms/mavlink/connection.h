@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/comms/mavlink/connection_counters.h"
 #include "kestrel/comms/mavlink/packet.h"
 #include "kestrel/comms/mavlink/packet_parser.h"
 #include "kestrel/comms/mavlink/packet_writer.h"
@@ -39,18 +40,6 @@ struct ConnectionOptions {
             "file with the key of signed packets (mode 0600); empty: not signed");
   }
   std::vector<std::string> Validate() const;
-};
-
-// Counts of a connection since it was made.
-struct ConnectionCounters {
-  std::uint64_t received = 0;          // packets that were passed on
-  std::uint64_t sent = 0;              // packets that the system accepted
-  std::uint64_t unsent = 0;            // packets that it did not accept: line full, or nobody there
-  std::uint64_t bad_checksums = 0;     // damaged frames
-  std::uint64_t garbage_bytes = 0;     // bytes that belong to no packet
-  std::uint64_t unsigned_packets = 0;  // refused by a signed connection, like the next two
-  std::uint64_t forged_packets = 0;
-  std::uint64_t replayed_packets = 0;
 };
 
 // A line to an autopilot that carries messages: transport, parser, writer and signing. It

@@ -12,6 +12,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/parse_number.h"
+#include "kestrel/core/base/read_file.h"
 
 namespace kestrel {
 namespace {
@@ -164,6 +165,10 @@ std::vector<std::string> SplitKey(const std::string& key) {
 }
 
 }  // namespace
+
+void ReadOptionFile(const std::string& path, const OptionFields& fields) {
+  ReadOptionFields(ReadFile(path), path, fields);
+}
 
 void ReadOptionFields(const std::string& yaml, const std::string& file,
                       const OptionFields& fields) {

@@ -8,8 +8,6 @@
 #include <variant>
 #include <vector>
 
-#include "kestrel/core/base/read_file.h"
-
 namespace kestrel {
 
 // Options are plain structs that name their fields once, in
@@ -21,6 +19,13 @@ namespace kestrel {
 //   std::vector<std::string> Validate() const;
 //
 // The functions below read and print such structs. A key is the path of names: "pattern.size_m".
+//
+// Example:
+//   LandingPatternDetectorOptions options;
+//   ReadOptions("detector.yaml", &options);
+//   SetOption("pattern.outer_diameter_m=0.6", &options);
+//   RequireValid(options);
+//   std::cout << PrintOptions(options);
 
 // One field of an options struct; 'value' points into the struct.
 struct OptionField {
@@ -32,6 +37,7 @@ struct OptionField {
 using OptionFields = std::vector<OptionField>;
 
 // The untyped implementations of the functions below.
+void ReadOptionFile(const std::string& path, const OptionFields& fields);
 void ReadOptionFields(const std::string& yaml, const std::string& file, const OptionFields& fields);
 void SetOptionField(const std::string& assignment, const OptionFields& fields);
 std::string PrintOptionFields(const OptionFields& fields);
@@ -71,7 +77,7 @@ OptionFields FieldsOf(Options& options) {
 // type.
 template <class Options>
 void ReadOptions(const std::string& path, Options* options) {
-  ReadOptionFields(ReadFile(path), path, FieldsOf(*options));
+  ReadOptionFile(path, FieldsOf(*options));
 }
 
 // Sets one field by "key=value". Throws InputError as ReadOptions does.

@@ -15,25 +15,12 @@
 #include "kestrel/flight/guidance/flight_limits.h"
 #include "kestrel/flight/guidance/flight_model.h"
 #include "kestrel/flight/guidance/guidance_options.h"
+#include "kestrel/flight/guidance/guidance_phase.h"
 #include "kestrel/flight/guidance/search_path.h"
 #include "kestrel/flight/guidance/target_pursuit.h"
 #include "kestrel/vision/tracking/target_tracker.h"
 
 namespace kestrel {
-
-enum class GuidancePhase {
-  kIdle,      // not begun, refused, or ended: the pilot flies
-  kSearch,    // flies to where the vehicle was last or should pass, waits there, then circles
-              // outwards
-  kApproach,  // flies to above the target
-  kFollow,    // follows above it, at follow_height_m, until it may descend
-  kDescend,   // descends above it
-  kCommit,    // the last bit of the descent
-  kGoAround,  // climbs again
-  kLanded,    // in contact with the deck; stays so until guidance begins anew
-};
-// "idle", "search", "approach", "follow", "descend", "commit", "go-around", "landed"
-const char* ToString(GuidancePhase phase);
 
 // Request to the autopilot beside the set-points. It is repeated for as long as it holds: the
 // caller limits how often it asks.

@@ -6,18 +6,9 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/core/camera/exposure_controller.h"
+#include "kestrel/flight/onboard/exposure_actuator.h"
 
 namespace kestrel {
-
-// Sets the exposure of a camera.
-class ExposureActuator {
- public:
-  virtual ~ExposureActuator() = default;
-
-  // Sets the exposure of the images to come; false when the camera refuses or is away. Does not
-  // throw.
-  virtual bool SetExposure(double exposure_s) = 0;
-};
 
 // Exposure control of a live camera: passes the controller's result to the camera.
 class ExposureDrive {

@@ -23,20 +23,13 @@
 #include "kestrel/flight/onboard/recording_switch.h"
 #include "kestrel/flight/onboard/repeated_image.h"
 #include "kestrel/flight/onboard/target_sender.h"
+#include "kestrel/flight/session/flight_report.h"
 #include "kestrel/flight/session/live_events.h"
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/flight/session/observation_sink.h"
 #include "kestrel/io/recording/truth_rows.h"
 
 namespace kestrel {
-
-// The end of a flight.
-enum class FlightEnd {
-  kStopped,      // by the user
-  kLanded,       // disarmed after it had flown
-  kSourceEnded,  // a recording, to its end
-  kFailed,       // camera or autopilot did not come back
-};
 
 // The parts of a flight; all outlive the program. Null where there is none.
 struct FlightParts {

@@ -11,7 +11,9 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/violations.h"
+#include "kestrel/flight/onboard/exposure_drive.h"
 #include "kestrel/flight/onboard/gstreamer_pipeline.h"
+#include "kestrel/flight/onboard/image_pool.h"
 
 namespace kestrel {
 namespace {
@@ -45,11 +47,11 @@ GstreamerCamera::GstreamerCamera(const std::string& camera, const CameraIntrinsi
       format_(format),
       options_(Checked(options)),
       exposure_s_(options.exposure_s),
-      images_(kPooledImages),
+      images_(std::make_unique<ImagePool>(kPooledImages)),
       back_off_(DurationFromSeconds(options.reopen_s)) {
   constexpr Duration kFirstFrame = std::chrono::seconds(10);
   if (camera.starts_with(kDevice) && options.exposure_property.empty()) {
-    v4l2_exposure_.emplace(camera);
+    v4l2_exposure_ = std::make_unique<V4l2ExposureActuator>(camera);
   }
   Open();
   const Time deadline = Now() + kFirstFrame;
@@ -135,7 +137,7 @@ std::optional<Event> GstreamerCamera::TakeFrame(Duration timeout) {
   const std::uint64_t missed = pipeline_->MissedBefore(sample.get());
   Frame frame;
   frame.image =
-      images_.Take({info.width, info.height}, format_ == PixelFormat::kGray ? CV_8UC1 : CV_8UC3);
+      images_->Take({info.width, info.height}, format_ == PixelFormat::kGray ? CV_8UC1 : CV_8UC3);
   if (!CopyPixels(sample.get(), info, &frame.image)) return std::nullopt;
   last_arrival_ = now;
   back_off_ = DurationFromSeconds(options_.reopen_s);

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "kestrel/core/camera/camera_model.h"
-#include "kestrel/flight/onboard/exposure_drive.h"
-#include "kestrel/flight/onboard/image_pool.h"
+#include "kestrel/flight/onboard/exposure_actuator.h"
 #include "kestrel/flight/session/live_source.h"
 
 namespace kestrel {
 
 class GstreamerPipeline;
+class ImagePool;
 
 struct GstreamerCameraOptions {
   // Time from the middle of the exposure to the driver's time of the frame, without half of the
@@ -56,6 +56,13 @@ struct GstreamerCameraOptions {
 // A camera through GStreamer: a device (/dev/video0), an RTSP address, or any pipeline. Only the
 // newest frame is kept. A frame's time is its buffer's PTS on the pipeline's clock, which is that
 // of Now(), minus half of the exposure and the read-out.
+//
+// Example:
+//   GstreamerCamera camera("/dev/video0", PaperCamera(), PixelFormat::kGray, {});
+//   if (const auto event = camera.Next(std::chrono::seconds(1))) {
+//     if (const auto* frame = std::get_if<Frame>(&*event)) std::cout << frame->image.size() <<
+//     "\n";
+//   }
 class GstreamerCamera : public LiveSource, public ExposureActuator {
  public:
   // 'camera': "/dev/video0", "rtsp://..." or a pipeline ("videotestsrc is-live=true ! ..."), with
@@ -87,9 +94,9 @@ class GstreamerCamera : public LiveSource, public ExposureActuator {
   CameraIntrinsics calibration_;
   PixelFormat format_;
   GstreamerCameraOptions options_;
-  std::optional<V4l2ExposureActuator> v4l2_exposure_;
+  std::unique_ptr<ExposureActuator> v4l2_exposure_;  // null: the camera is no device
   std::atomic<double> exposure_s_;
-  ImagePool images_;
+  std::unique_ptr<ImagePool> images_;
   std::optional<Event> first_;  // the frame that the constructor has waited for
   Time last_time_ = Time::min();
   Time last_arrival_;

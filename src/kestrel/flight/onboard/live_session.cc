@@ -2,6 +2,8 @@
 #include "kestrel/flight/onboard/live_session.h"
 
 #include <cstdint>
+#include <filesystem>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -9,7 +11,19 @@
 #include <fmt/format.h>
 
 #include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/comms/mavlink/target_profile.h"
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
+#include "kestrel/flight/onboard/exposure_drive.h"
+#include "kestrel/flight/onboard/flight_program.h"
+#include "kestrel/flight/onboard/hunt_vision.h"
+#include "kestrel/flight/onboard/landing_vision.h"
+#include "kestrel/flight/onboard/live_session_options.h"
+#include "kestrel/flight/onboard/recording_switch.h"
+#include "kestrel/flight/session/observation_sinks.h"
+#include "kestrel/io/recording/output_folder.h"
+#include "kestrel/io/recording/truth_rows.h"
+#include "kestrel/vision/objects/color_grid.h"
 
 namespace kestrel {
 namespace {
@@ -36,9 +50,81 @@ class RecordedActuator : public ExposureActuator {
   const RecordingSwitch* recording_;
 };
 
+// The options by the names that `kestrel config` gives them.
+struct FlyFields {
+  LiveSessionOptions& options;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    FlightOptions::Visit(self.options.flight, visitor);
+    visitor.Group("link", self.options.link);
+    visitor.Group("autopilot", self.options.autopilot);
+    visitor.Group("recorder", self.options.recorder);
+  }
+};
+struct SessionFields {
+  LiveSessionOptions options;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    FlyFields fly{self.options};
+    visitor.Group("landing", self.options.landing);
+    visitor.Group("hunt", self.options.hunt);
+    visitor.Group("fly", fly);
+  }
+};
+
+LiveSessionOptions OptionsOf(const std::vector<std::string>& settings) {
+  SessionFields fields;
+  for (const std::string& setting : settings) SetOption(setting, &fields);
+  return fields.options;
+}
+
 }  // namespace
 
-LiveSession::LiveSession(LiveSessionParts parts, LiveSessionOptions options)
+class LiveSession::Impl {
+ public:
+  Impl(LiveSessionParts parts, LiveSessionOptions options);
+  ~Impl();
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  FlightEnd Run(const std::function<bool()>& is_stopped);
+  RecordingSwitch& recording() { return recording_; }
+  HuntVision* hunt() { return hunt_; }
+  const OutputFolder* output() const { return output_ ? &*output_ : nullptr; }
+  std::string State() const { return program_->State(); }
+  FlightReport Report() const { return program_->Report(); }
+  std::string Summary() const;
+  void Change(const LiveSessionOptions& options);
+  void BetweenFrames(const std::function<void()>& action) { program_->BetweenFrames(action); }
+
+ private:
+  void OpenVision();
+  void OpenAutopilot();
+  std::optional<ExposureDrive> Exposure();
+  std::unique_ptr<FlightRecorder> OpenRecorder(const std::filesystem::path& folder, bool replace);
+  FlightParts ProgramParts();
+  void Say(const std::string& text, EventLevel level = EventLevel::kInfo);
+  void TakePose(const PoseSample& pose);
+  void TakeTruePose(const PoseSample& pose);
+
+  LiveSessionParts parts_;
+  LiveSessionOptions options_;
+  std::optional<GuardedSink> sink_;
+  std::string sink_error_;  // what the sink has thrown; read after Run only
+  RecordingSwitch recording_;
+  std::optional<OutputFolder> output_;
+  std::unique_ptr<ExposureActuator> actuator_;
+  std::unique_ptr<FlightVision> vision_;
+  LandingVision* landing_ = nullptr;  // one of these is the vision
+  HuntVision* hunt_ = nullptr;
+  std::optional<Connection> connection_;
+  std::optional<Autopilot> autopilot_;
+  std::optional<FlightProgram> program_;
+};
+
+LiveSession::Impl::Impl(LiveSessionParts parts, LiveSessionOptions options)
     : parts_(std::move(parts)),
       options_(std::move(options)),
       recording_([this](const std::filesystem::path& folder, bool replace) {
@@ -57,16 +143,16 @@ LiveSession::LiveSession(LiveSessionParts parts, LiveSessionOptions options)
 }
 
 // The recorder may still give events to the sink, which outlives the session.
-LiveSession::~LiveSession() { recording_.Close(); }
+LiveSession::Impl::~Impl() { recording_.Close(); }
 
-FlightEnd LiveSession::Run(const std::function<bool()>& is_stopped) {
+FlightEnd LiveSession::Impl::Run(const std::function<bool()>& is_stopped) {
   const FlightEnd end = program_->Run(is_stopped);
   recording_.Close();
   if (hunt_ != nullptr && output_) hunt_->WriteMap(*output_);
   return end;
 }
 
-std::string LiveSession::Summary() const {
+std::string LiveSession::Impl::Summary() const {
   std::string summary = program_->Summary();
   if (!sink_error_.empty()) {
     summary += fmt::format("the sink of the results has failed: {}\n", sink_error_);
@@ -74,11 +160,11 @@ std::string LiveSession::Summary() const {
   return summary;
 }
 
-void LiveSession::Say(const std::string& text, EventLevel level) {
+void LiveSession::Impl::Say(const std::string& text, EventLevel level) {
   if (sink_) sink_->Take(SessionEvent{Now(), level, text});
 }
 
-void LiveSession::Change(const LiveSessionOptions& options) {
+void LiveSession::Impl::Change(const LiveSessionOptions& options) {
   BetweenFrames([&] {
     if (hunt_ != nullptr) hunt_->ChangeOptions(options.hunt);
     if (landing_ != nullptr) landing_->ChangeOptions(options.landing);
@@ -86,7 +172,7 @@ void LiveSession::Change(const LiveSessionOptions& options) {
   });
 }
 
-void LiveSession::OpenVision() {
+void LiveSession::Impl::OpenVision() {
   if (!parts_.output.empty()) output_.emplace(parts_.output, parts_.replace);
   if (parts_.objects) {
     const ObjectModel& model = *parts_.objects;
@@ -104,7 +190,7 @@ void LiveSession::OpenVision() {
   vision_->SetAltitude(options_.altitude_m);
 }
 
-std::optional<ExposureDrive> LiveSession::Exposure() {
+std::optional<ExposureDrive> LiveSession::Impl::Exposure() {
   if (!options_.exposure) return std::nullopt;
   if (parts_.camera == nullptr) {
     throw InputError("fly.control_exposure: the source is no camera whose exposure can be set");
@@ -113,14 +199,14 @@ std::optional<ExposureDrive> LiveSession::Exposure() {
   return ExposureDrive(*options_.exposure, options_.exposure->max_exposure_s, actuator_.get());
 }
 
-std::unique_ptr<FlightRecorder> LiveSession::OpenRecorder(const std::filesystem::path& folder,
-                                                          bool replace) {
+std::unique_ptr<FlightRecorder> LiveSession::Impl::OpenRecorder(const std::filesystem::path& folder,
+                                                                bool replace) {
   return std::make_unique<FlightRecorder>(folder, replace, parts_.calibration, parts_.rate_hz,
                                           options_.recorder,
                                           [this](const std::string& text) { Say(text); });
 }
 
-void LiveSession::OpenAutopilot() {
+void LiveSession::Impl::OpenAutopilot() {
   const Connection::Tap tap = [this](std::span<const std::uint8_t> frame, Time time) {
     if (const auto recorder = recording_.Get()) recorder->AddPacket(time, frame);
   };
@@ -137,7 +223,7 @@ void LiveSession::OpenAutopilot() {
                      });
 }
 
-FlightParts LiveSession::ProgramParts() {
+FlightParts LiveSession::Impl::ProgramParts() {
   return {.source = parts_.source,
           .vision = vision_.get(),
           .connection = connection_ ? &*connection_ : nullptr,
@@ -152,14 +238,34 @@ FlightParts LiveSession::ProgramParts() {
           .pattern_size_m = options_.landing.detector.pattern.outer_diameter_m};
 }
 
-void LiveSession::TakePose(const PoseSample& pose) {
+void LiveSession::Impl::TakePose(const PoseSample& pose) {
   program_->TakeAutopilotPose(pose);
   if (parts_.pose) parts_.pose(pose);
 }
 
-void LiveSession::TakeTruePose(const PoseSample& pose) {
+void LiveSession::Impl::TakeTruePose(const PoseSample& pose) {
   if (parts_.true_pose) parts_.true_pose(pose);
   if (const auto recorder = recording_.Get()) recorder->AddTruePose(pose);
+}
+
+LiveSession::LiveSession(LiveSessionParts parts, const std::vector<std::string>& settings)
+    : LiveSession(std::move(parts), OptionsOf(settings)) {}
+LiveSession::LiveSession(LiveSessionParts parts, LiveSessionOptions options)
+    : impl_(std::make_unique<Impl>(std::move(parts), std::move(options))) {}
+LiveSession::~LiveSession() = default;
+
+FlightEnd LiveSession::Run(const std::function<bool()>& is_stopped) {
+  return impl_->Run(is_stopped);
+}
+RecordingSwitch& LiveSession::recording() { return impl_->recording(); }
+HuntVision* LiveSession::hunt() { return impl_->hunt(); }
+const OutputFolder* LiveSession::output() const { return impl_->output(); }
+std::string LiveSession::State() const { return impl_->State(); }
+std::string LiveSession::Summary() const { return impl_->Summary(); }
+FlightReport LiveSession::Report() const { return impl_->Report(); }
+void LiveSession::Change(const LiveSessionOptions& options) { impl_->Change(options); }
+void LiveSession::BetweenFrames(const std::function<void()>& action) {
+  impl_->BetweenFrames(action);
 }
 
 }  // namespace kestrel

@@ -1,47 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "kestrel/comms/mavlink/autopilot.h"
-#include "kestrel/comms/mavlink/connection.h"
-#include "kestrel/comms/mavlink/target_profile.h"
+#include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
-#include "kestrel/core/camera/exposure_controller.h"
-#include "kestrel/flight/onboard/exposure_drive.h"
-#include "kestrel/flight/onboard/flight_program.h"
-#include "kestrel/flight/onboard/flight_recorder.h"
-#include "kestrel/flight/onboard/hunt_vision.h"
-#include "kestrel/flight/onboard/landing_vision.h"
-#include "kestrel/flight/onboard/recording_switch.h"
+#include "kestrel/core/poses/pose_history.h"
+#include "kestrel/flight/session/flight_report.h"
 #include "kestrel/flight/session/live_source.h"
-#include "kestrel/flight/session/observation_sinks.h"
-#include "kestrel/io/recording/output_folder.h"
-#include "kestrel/io/recording/truth_rows.h"
+#include "kestrel/flight/session/observation_sink.h"
+#include "kestrel/io/recording/frame.h"
 #include "kestrel/vision/objects/color_grid.h"
 #include "kestrel/vision/objects/object_model.h"
-#include "kestrel/vision/pipeline/hunt_pipeline.h"
-#include "kestrel/vision/pipeline/landing_pipeline.h"
 
 namespace kestrel {
 
-struct LiveSessionOptions {
-  LandingPipelineOptions landing;
-  HuntPipelineOptions hunt;
-  FlightOptions flight;
-  ConnectionOptions link;
-  AutopilotOptions autopilot;
-  FlightRecorderOptions recorder;
-  // Exposure that keeps the image right; nothing: the camera does that itself.
-  std::optional<ExposureOptions> exposure;
-  // Height of the camera above the target or the ground, where there are no poses.
-  std::optional<double> altitude_m = {};
-};
+class ExposureActuator;
+class HuntVision;
+class OutputFolder;
+class RecordingSwitch;
+enum class LinkProfile;
+struct LiveSessionOptions;
+struct TruePattern;
 
 // Parts of a session. The objects that pointers name must outlive it.
 struct LiveSessionParts {
@@ -76,16 +60,20 @@ struct LiveSessionParts {
 // A flight as a library: a live source, the pipeline, the autopilot, guidance, a recorder and
 // sinks, put together. `kestrel fly` is this with a command line.
 //
-//   ObservationSinks sinks;
-//   sinks.Add(std::make_unique<MySink>());
+// Example:
+//   GstreamerCamera camera("/dev/video0", PaperCamera(), PixelFormat::kGray, {});
+//   ObservationSinks sinks;  // add yours
 //   LiveSession session({.source = &camera, .calibration = ReadCalibration("camera.yaml"),
-//                        .sink = &sinks, .autopilot = "serial:///dev/ttyAMA0:921600"}, {});
+//                        .sink = &sinks, .autopilot = "serial:///dev/ttyAMA0:921600"});
 //   session.Run([] { return false; });
 //   sinks.Finish();
 class LiveSession {
  public:
-  // Opens the files and the connection. Throws InputError when parts or options are not valid, or
-  // something cannot be opened.
+  // Opens the files and the connection. 'settings' change the defaults of the options that `kestrel
+  // config` prints as landing, hunt and fly: "landing.detector.pattern.outer_diameter_m=0.6",
+  // "fly.rate_hz=20". Throws InputError when parts or settings are not valid, or something cannot
+  // be opened.
+  explicit LiveSession(LiveSessionParts parts, const std::vector<std::string>& settings = {});
   LiveSession(LiveSessionParts parts, LiveSessionOptions options);
   // Ends a recording that is on.
   ~LiveSession();
@@ -100,45 +88,25 @@ class LiveSession {
   // the pipelines. Track, map and all other options stay. By any thread.
   void Change(const LiveSessionOptions& options);
   // Calls 'action' between two frames: the vision waits for it. By any thread.
-  void BetweenFrames(const std::function<void()>& action) { program_->BetweenFrames(action); }
+  void BetweenFrames(const std::function<void()>& action);
 
   // Starts and stops recordings. By any thread.
-  RecordingSwitch& recording() { return recording_; }
+  RecordingSwitch& recording();
   // The hunt; null: it looks for the landing pattern.
-  HuntVision* hunt() { return hunt_; }
+  HuntVision* hunt();
   // The folder of the tables; null: none.
-  const OutputFolder* output() const { return output_ ? &*output_ : nullptr; }
+  const OutputFolder* output() const;
 
   // The state as the sinks get it. By any thread.
-  FlightReport Report() const { return program_->Report(); }
+  FlightReport Report() const;
   // One line of how things are now. By any thread.
-  std::string State() const { return program_->State(); }
+  std::string State() const;
   // Latency of each step, what was dropped and what was sent; a few lines. After Run.
   std::string Summary() const;
 
  private:
-  void OpenVision();
-  void OpenAutopilot();
-  std::optional<ExposureDrive> Exposure();
-  std::unique_ptr<FlightRecorder> OpenRecorder(const std::filesystem::path& folder, bool replace);
-  FlightParts ProgramParts();
-  void Say(const std::string& text, EventLevel level = EventLevel::kInfo);
-  void TakePose(const PoseSample& pose);
-  void TakeTruePose(const PoseSample& pose);
-
-  LiveSessionParts parts_;
-  LiveSessionOptions options_;
-  std::optional<GuardedSink> sink_;
-  std::string sink_error_;  // what the sink has thrown; read after Run only
-  RecordingSwitch recording_;
-  std::optional<OutputFolder> output_;
-  std::unique_ptr<ExposureActuator> actuator_;
-  std::unique_ptr<FlightVision> vision_;
-  LandingVision* landing_ = nullptr;  // one of these is the vision
-  HuntVision* hunt_ = nullptr;
-  std::optional<Connection> connection_;
-  std::optional<Autopilot> autopilot_;
-  std::optional<FlightProgram> program_;
+  class Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace kestrel

@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "kestrel/comms/mavlink/connection.h"
+#include "kestrel/comms/mavlink/connection_counters.h"
 #include "kestrel/core/base/time.h"
-#include "kestrel/flight/guidance/landing_guidance.h"
-#include "kestrel/flight/session/live_events.h"
+#include "kestrel/flight/guidance/guidance_phase.h"
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/vision/mapping/team_object.h"
 
@@ -43,13 +42,29 @@ struct RecorderCounters {
 };
 
 // State of a live session, beside the results of its vision. All counts are since it began.
+//
+// Example:
+//   struct Watch : ObservationSink {
+//     void Take(const Observation&) override {}
+//     void Take(const FlightReport& report) override {
+//       if (!report.trouble.empty()) std::cerr << report.trouble << "\n";
+//     }
+//   };
 struct FlightReport {
   std::string trouble;  // why there are no images; empty as long as they come
   CaptureCounters capture;
-  LiveEvents::Counters events;
+  LiveEventCounters events;
   int repeated_frames = 0;
   std::optional<AutopilotState> autopilot;
   std::optional<RecorderCounters> recorder;
+};
+
+// The end of a flight.
+enum class FlightEnd {
+  kStopped,      // by the user
+  kLanded,       // disarmed after it had flown
+  kSourceEnded,  // a recording, to its end
+  kFailed,       // camera or autopilot did not come back
 };
 
 // The knowledge of the UAV's team, in this UAV's world.

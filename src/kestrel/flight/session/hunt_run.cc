@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/vision/objects/color_grid.h"
+#include "kestrel/vision/pipeline/ground_height.h"
+
 namespace kestrel {
 
 HuntRun::HuntRun(const OpenedSource& opened, const ObjectModel& model, const ColorGrid& grid,

@@ -7,6 +7,7 @@
 
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
+#include "kestrel/vision/pipeline/told_contradictions.h"
 
 namespace kestrel {
 namespace {

@@ -3,7 +3,6 @@
 
 #include <condition_variable>
 #include <cstddef>
-#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/flight/session/live_source.h"
 #include "kestrel/io/recording/event_source.h"
 
 namespace kestrel {
@@ -46,12 +46,7 @@ class LiveEvents : public EventSource {
   // given out, or when the wait for it has ended.
   Event Next() override;
 
-  struct Counters {
-    std::uint64_t frames = 0;          // given out
-    std::uint64_t dropped_frames = 0;  // replaced by a newer frame
-    std::uint64_t unposed_frames = 0;  // given out before the pose after them
-    std::uint64_t dropped_poses = 0;   // replaced by newer poses
-  };
+  using Counters = LiveEventCounters;
   Counters counters() const;
 
  private:

@@ -20,8 +20,24 @@ struct CaptureCounters {
   std::uint64_t reopened = 0;  // number of times that the source came back
 };
 
+// Counts of the events of a flight on their way to the vision.
+struct LiveEventCounters {
+  std::uint64_t frames = 0;          // given out
+  std::uint64_t dropped_frames = 0;  // replaced by a newer frame
+  std::uint64_t unposed_frames = 0;  // given out before the pose after them
+  std::uint64_t dropped_poses = 0;   // replaced by newer poses
+};
+
 // Source of live frames (and of poses, from a recording). All times are those of Now(). Next is
 // called by one thread, the other functions by any.
+//
+// Example:
+//   struct Blank : LiveSource {
+//     std::optional<Event> Next(Duration) override {
+//       return Frame{.name = "blank", .time = Now(), .image = cv::Mat::zeros(480, 752, CV_8UC1)};
+//     }
+//     CaptureCounters counters() const override { return {}; }
+//   };
 class LiveSource {
  public:
   virtual ~LiveSource() = default;

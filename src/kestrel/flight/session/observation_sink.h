@@ -12,6 +12,7 @@ namespace kestrel {
 // belongs into an AsynchronousSink. A sink that throws gets nothing any more, and the session goes
 // on.
 //
+// Example:
 //   class Counter : public ObservationSink {
 //    public:
 //     void Take(const Observation&) override { ++frames; }

@@ -15,6 +15,13 @@ namespace kestrel {
 // Passes everything to several sinks, in the order in which they were added. They finish in the
 // opposite order. A sink that throws is left out from then on, and the others get an event that
 // says so.
+//
+// Example:
+//   std::unique_ptr<ObservationSink> first;  // yours
+//   ObservationSinks sinks;
+//   sinks.Add(std::move(first));
+//   sinks.Take(Observation());  // a session does
+//   sinks.Finish();
 class ObservationSinks : public ObservationSink {
  public:
   ObservationSinks() = default;

@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
+#include "kestrel/vision/landing/plane_warp.h"
+
 namespace kestrel {
 namespace {
 

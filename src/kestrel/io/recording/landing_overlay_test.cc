@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "kestrel/vision/landing/plane_warp.h"
+
 namespace kestrel {
 namespace {
 

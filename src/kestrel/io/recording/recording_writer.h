@@ -12,14 +12,9 @@
 #include "kestrel/core/base/folder_lock.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/io/recording/euroc_writer.h"
+#include "kestrel/io/recording/recording_file.h"
 
 namespace kestrel {
-
-// A text file of a recording.
-struct RecordingFile {
-  std::string name;  // path below mav0
-  std::string text;
-};
 
 // Throws InputError when a recording must not replace what is at 'output': a file, a folder with
 // other content, or a recording unless 'replace'.

@@ -75,9 +75,6 @@ struct HuntSimulationOptions {
   std::vector<std::string> Validate() const;
 };
 
-// 1280x720, 77 degrees wide; it looks down, and the top of its image is forward.
-CameraCalibration HuntCalibration();
-
 // Plans the recording: everything is made except the images. 'camera' has a mount (the nominal
 // one). The same arguments give the same recording. Throws InputError when options are not valid.
 RecordingPlan PlanHunt(const HuntSimulationOptions& options, const CameraCalibration& camera,

@@ -30,9 +30,6 @@ struct LandingSimulationOptions : LandingSceneOptions {
   std::vector<std::string> Validate() const;
 };
 
-// The camera of the paper on a UAV: it looks down, and the top of its image is forward.
-CameraCalibration PaperCalibration();
-
 // Plans a flight, or stills, as a recording: everything is made except the images. 'camera' has a
 // mount (the nominal one). The same arguments give the same recording. Throws InputError when
 // options are not valid.

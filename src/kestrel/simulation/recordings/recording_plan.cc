@@ -7,6 +7,8 @@
 #include <mutex>
 #include <thread>
 
+#include "kestrel/io/recording/recording_writer.h"
+
 namespace kestrel {
 namespace {
 

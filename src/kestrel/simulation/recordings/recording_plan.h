@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -10,7 +11,8 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/core/base/time.h"
-#include "kestrel/io/recording/recording_writer.h"
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/io/recording/recording_file.h"
 
 namespace kestrel {
 
@@ -23,6 +25,29 @@ struct RecordingPlan {
   std::string scene;
   std::vector<RecordingFile> files;  // all except scene.yaml and cam0/data.csv
 };
+
+// The camera of the paper on a UAV: it looks down, and the top of its image is forward.
+CameraCalibration PaperCalibration();
+// The colour camera of a hunt: 1280x720, 77 degrees wide, mounted in the same way.
+CameraCalibration HuntCalibration();
+
+// Plans a flight over the landing pattern, or a hunt, by the name of its scenario and "key=value"
+// settings, as `kestrel simulate` does: "calm", "figure8"; its --list names them. The same
+// arguments give the same recording. Throws InputError when the scenario does not exist, or a
+// setting or the camera is not valid.
+//
+// Example:
+//   const RecordingPlan plan = PlanLandingScenario("calm", {}, PaperCalibration(), /*seed=*/1);
+//   LandingPipeline pipeline(PaperCalibration(), {});
+//   const LandingObservation seen = pipeline.Process(plan.render(0), plan.times[0]);
+//   WriteRecording(plan, "flight", /*replace=*/false, /*threads=*/2, [](std::size_t) { return true;
+//   });
+RecordingPlan PlanLandingScenario(const std::string& scenario,
+                                  const std::vector<std::string>& settings,
+                                  const CameraCalibration& camera, std::uint64_t seed);
+RecordingPlan PlanHuntScenario(const std::string& scenario,
+                               const std::vector<std::string>& settings,
+                               const CameraCalibration& camera, std::uint64_t seed);
 
 // Called from one thread at a time with the number of finished images; returns whether to go on.
 using RenderProgress = std::function<bool(std::size_t done)>;

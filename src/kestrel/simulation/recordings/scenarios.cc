@@ -144,4 +144,16 @@ TouchdownSimulationOptions ReadTouchdownSimulation(const std::string& scenario,
                                                     settings);
 }
 
+RecordingPlan PlanLandingScenario(const std::string& scenario,
+                                  const std::vector<std::string>& settings,
+                                  const CameraCalibration& camera, std::uint64_t seed) {
+  return PlanLanding(ReadLandingSimulation(scenario, "", settings), camera, seed);
+}
+
+RecordingPlan PlanHuntScenario(const std::string& scenario,
+                               const std::vector<std::string>& settings,
+                               const CameraCalibration& camera, std::uint64_t seed) {
+  return PlanHunt(ReadHuntSimulation(scenario, "", settings), camera, seed);
+}
+
 }  // namespace kestrel

@@ -8,6 +8,7 @@
 
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/vision/landing/seen_print.h"
 
 namespace kestrel {
 
@@ -66,5 +67,11 @@ class PlaneWarp {
   double radius_m_;
   Coefficients displacement_ = Coefficients::Zero();
 };
+
+inline PlaneWarp SeenPrint::Warp(const CameraModel& camera, double radius_m) const {
+  PlaneWarp warp(camera, near_pose, radius_m);
+  warp.Displace(displacement_px);
+  return warp;
+}
 
 }  // namespace kestrel

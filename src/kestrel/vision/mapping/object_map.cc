@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <utility>
 
 #include <Eigen/Cholesky>
 
 #include "kestrel/core/base/options.h"
+#include "kestrel/vision/mapping/assignment.h"
+#include "kestrel/vision/mapping/motion_filter.h"
 
 namespace kestrel {
 namespace {
@@ -100,7 +103,48 @@ ObjectMotion ObjectMapOptions::motion() const {
           wander_time_s,   clock_sigma_s,           LogOdds(moving_probability)};
 }
 
-ObjectMap::ObjectMap(const ObjectModel& model, const ObjectMapOptions& options)
+class ObjectMap::Impl {
+ public:
+  Impl(const ObjectModel& model, const ObjectMapOptions& options);
+
+  void Update(Time time, std::span<const ObjectMeasurement> measurements, const FieldOfView& view);
+  std::vector<MappedObject> Confirmed() const;
+  std::vector<MappedObject> objects() const;
+
+ private:
+  // An object and, if it may move, its motion filter.
+  struct Entry {
+    MappedObject object;
+    MotionFilter motion;
+  };
+
+  void Predict(Time time, Entry* entry) const;
+  double Cost(const ObjectMeasurement& measurement, const Entry& entry) const;
+  void Fuse(const ObjectMeasurement& measurement, Entry* entry) const;
+  Entry Start(Time time, const ObjectMeasurement& measurement);
+  void Assign(Time time);
+  void FadeUnseen(Time time, const FieldOfView& view);
+  void UnifyNeighbors();
+  void RemoveSurplus();
+
+  ObjectModel model_;
+  ObjectMapOptions options_;
+  double hit_log_odds_;
+  double miss_log_odds_;
+  double new_cost_;  // -2 log of the likelihood that a detection is of a new object
+  double max_log_odds_;
+  double removal_log_odds_;
+  ObjectMotion motion_;
+  std::vector<Entry> entries_;
+  std::vector<Entry> predicted_;  // the entries at the time of the update
+  std::vector<ObjectMeasurement> measurements_;
+  Eigen::MatrixXd costs_;
+  AssignmentSolver solver_;
+  std::int64_t next_id_ = 1;
+  Time last_time_ = Time::min();
+};
+
+ObjectMap::Impl::Impl(const ObjectModel& model, const ObjectMapOptions& options)
     : model_(model),
       options_(Checked(options)),
       hit_log_odds_(std::log(options.detection_probability / options.false_probability)),
@@ -117,8 +161,8 @@ ObjectMap::ObjectMap(const ObjectModel& model, const ObjectMapOptions& options)
   costs_.resize(kMaxMeasurements, static_cast<Eigen::Index>(capacity + kMaxMeasurements));
 }
 
-void ObjectMap::Update(Time time, std::span<const ObjectMeasurement> measurements,
-                       const FieldOfView& view) {
+void ObjectMap::Impl::Update(Time time, std::span<const ObjectMeasurement> measurements,
+                             const FieldOfView& view) {
   if (time < last_time_) return;
   last_time_ = time;
   measurements_.clear();
@@ -134,7 +178,7 @@ void ObjectMap::Update(Time time, std::span<const ObjectMeasurement> measurement
   RemoveSurplus();
 }
 
-std::vector<MappedObject> ObjectMap::Confirmed() const {
+std::vector<MappedObject> ObjectMap::Impl::Confirmed() const {
   std::vector<MappedObject> confirmed;
   for (const auto& [object, motion] : entries_) {
     if (object.detections >= options_.confirm_count && object.log_odds > 0) {
@@ -146,19 +190,19 @@ std::vector<MappedObject> ObjectMap::Confirmed() const {
   return confirmed;
 }
 
-std::vector<MappedObject> ObjectMap::objects() const {
+std::vector<MappedObject> ObjectMap::Impl::objects() const {
   std::vector<MappedObject> objects;
   for (const auto& [object, motion] : entries_) objects.push_back(object);
   return objects;
 }
 
-void ObjectMap::Predict(Time time, Entry* entry) const {
+void ObjectMap::Impl::Predict(Time time, Entry* entry) const {
   const double dt = ToSeconds(time - entry->object.time);
   if (entry->object.may_move && dt > 0) entry->motion.Predict(dt, motion_);
   PredictObject(time, motion_, &entry->object);
 }
 
-double ObjectMap::Cost(const ObjectMeasurement& measurement, const Entry& entry) const {
+double ObjectMap::Impl::Cost(const ObjectMeasurement& measurement, const Entry& entry) const {
   const MappedObject& object = entry.object;
   if (measurement.shape != object.shape) return kImpossibleCost;
   const ExpectedPosition expected =
@@ -176,7 +220,7 @@ double ObjectMap::Cost(const ObjectMeasurement& measurement, const Entry& entry)
          2 * ColorCost(measurement.color_probabilities, object.color_log_likelihoods);
 }
 
-void ObjectMap::Fuse(const ObjectMeasurement& measurement, Entry* entry) const {
+void ObjectMap::Impl::Fuse(const ObjectMeasurement& measurement, Entry* entry) const {
   MappedObject* const object = &entry->object;
   if (object->may_move) {
     entry->motion.Fuse(measurement, motion_);
@@ -192,7 +236,7 @@ void ObjectMap::Fuse(const ObjectMeasurement& measurement, Entry* entry) const {
   ++object->detections;
 }
 
-ObjectMap::Entry ObjectMap::Start(Time time, const ObjectMeasurement& measurement) {
+ObjectMap::Impl::Entry ObjectMap::Impl::Start(Time time, const ObjectMeasurement& measurement) {
   Entry entry;
   MappedObject& object = entry.object;
   object.id = next_id_++;
@@ -213,7 +257,7 @@ ObjectMap::Entry ObjectMap::Start(Time time, const ObjectMeasurement& measuremen
   return entry;
 }
 
-void ObjectMap::Assign(Time time) {
+void ObjectMap::Impl::Assign(Time time) {
   const auto rows = static_cast<Eigen::Index>(measurements_.size());
   const auto known = static_cast<Eigen::Index>(entries_.size());
   if (rows == 0) return;
@@ -236,7 +280,7 @@ void ObjectMap::Assign(Time time) {
   }
 }
 
-void ObjectMap::FadeUnseen(Time time, const FieldOfView& view) {
+void ObjectMap::Impl::FadeUnseen(Time time, const FieldOfView& view) {
   for (std::size_t i = 0; i < predicted_.size(); ++i) {
     MappedObject& object = entries_[i].object;
     if (object.last_seen != time && view.Shows(predicted_[i].object)) {
@@ -247,7 +291,7 @@ void ObjectMap::FadeUnseen(Time time, const FieldOfView& view) {
                 [&](const Entry& entry) { return entry.object.log_odds < removal_log_odds_; });
 }
 
-void ObjectMap::UnifyNeighbors() {
+void ObjectMap::Impl::UnifyNeighbors() {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     for (std::size_t k = entries_.size() - 1; k > i; --k) {
       MappedObject& kept = entries_[i].object;
@@ -263,7 +307,7 @@ void ObjectMap::UnifyNeighbors() {
   }
 }
 
-void ObjectMap::RemoveSurplus() {
+void ObjectMap::Impl::RemoveSurplus() {
   while (entries_.size() > static_cast<std::size_t>(options_.capacity)) {
     const auto is_less_sure = [](const Entry& a, const Entry& b) {
       return std::pair(a.object.log_odds, a.object.last_seen) <
@@ -272,5 +316,18 @@ void ObjectMap::RemoveSurplus() {
     entries_.erase(std::min_element(entries_.begin(), entries_.end(), is_less_sure));
   }
 }
+
+ObjectMap::ObjectMap(const ObjectModel& model, const ObjectMapOptions& options)
+    : impl_(std::make_unique<Impl>(model, options)) {}
+ObjectMap::~ObjectMap() = default;
+ObjectMap::ObjectMap(ObjectMap&&) noexcept = default;
+ObjectMap& ObjectMap::operator=(ObjectMap&&) noexcept = default;
+
+void ObjectMap::Update(Time time, std::span<const ObjectMeasurement> measurements,
+                       const FieldOfView& view) {
+  impl_->Update(time, measurements, view);
+}
+std::vector<MappedObject> ObjectMap::Confirmed() const { return impl_->Confirmed(); }
+std::vector<MappedObject> ObjectMap::objects() const { return impl_->objects(); }
 
 }  // namespace kestrel

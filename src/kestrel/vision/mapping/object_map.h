@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "kestrel/core/base/time.h"
-#include "kestrel/vision/mapping/assignment.h"
 #include "kestrel/vision/mapping/mapped_object.h"
-#include "kestrel/vision/mapping/motion_filter.h"
 
 namespace kestrel {
 
@@ -100,10 +97,23 @@ class FieldOfView {
 // (Mahalanobis distance and similarity of colours). A Kalman filter fuses them, a MotionFilter for
 // objects that may move. An object that should be seen and is not becomes less certain and is
 // finally removed. Bounded memory and time per update.
+//
+// Example:
+//   struct Everywhere : FieldOfView {
+//     bool Shows(const MappedObject&) const override { return true; }
+//   };
+//   ObjectMap map(DefaultObjectModel(), {});
+//   const ObjectMeasurement disc{.position = {3, 1, 0},
+//                                .covariance = 0.01 * Eigen::Matrix3d::Identity()};
+//   map.Update(time, std::array{disc}, Everywhere());
+//   std::cout << map.Confirmed().size() << " objects\n";
 class ObjectMap {
  public:
   // Throws InputError when the options are invalid. 'model' says which objects may move.
   ObjectMap(const ObjectModel& model, const ObjectMapOptions& options);
+  ~ObjectMap();
+  ObjectMap(ObjectMap&&) noexcept;
+  ObjectMap& operator=(ObjectMap&&) noexcept;
 
   // Adds the detections of one frame at 'time'. Times must not decrease: an older frame is ignored.
   // Detections that are not finite are ignored, and so are those beyond kMaxMeasurements.
@@ -119,36 +129,8 @@ class ObjectMap {
   static constexpr std::size_t kMaxMeasurements = 64;
 
  private:
-  // An object and, if it may move, its motion filter.
-  struct Entry {
-    MappedObject object;
-    MotionFilter motion;
-  };
-
-  void Predict(Time time, Entry* entry) const;
-  double Cost(const ObjectMeasurement& measurement, const Entry& entry) const;
-  void Fuse(const ObjectMeasurement& measurement, Entry* entry) const;
-  Entry Start(Time time, const ObjectMeasurement& measurement);
-  void Assign(Time time);
-  void FadeUnseen(Time time, const FieldOfView& view);
-  void UnifyNeighbors();
-  void RemoveSurplus();
-
-  ObjectModel model_;
-  ObjectMapOptions options_;
-  double hit_log_odds_;
-  double miss_log_odds_;
-  double new_cost_;  // -2 log of the likelihood that a detection is of a new object
-  double max_log_odds_;
-  double removal_log_odds_;
-  ObjectMotion motion_;
-  std::vector<Entry> entries_;
-  std::vector<Entry> predicted_;  // the entries at the time of the update
-  std::vector<ObjectMeasurement> measurements_;
-  Eigen::MatrixXd costs_;
-  AssignmentSolver solver_;
-  std::int64_t next_id_ = 1;
-  Time last_time_ = Time::min();
+  class Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace kestrel

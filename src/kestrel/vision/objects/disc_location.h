@@ -9,12 +9,6 @@
 
 namespace kestrel {
 
-// Location of a point of an object, camera frame, m.
-struct ObjectLocation {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-};
-
 // Returns the cone of a circle, given its centre, unit normal and radius in the camera frame.
 Cone ConeOfCircle(const Eigen::Vector3d& center, const Eigen::Vector3d& normal, double radius);
 

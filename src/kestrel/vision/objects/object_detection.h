@@ -12,8 +12,7 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/geometry/ellipse.h"
 #include "kestrel/vision/objects/color_model.h"
-#include "kestrel/vision/objects/digit_classifier.h"
-#include "kestrel/vision/objects/disc_location.h"
+#include "kestrel/vision/objects/digit_likelihoods.h"
 
 namespace kestrel {
 
@@ -33,7 +32,20 @@ struct HeightBySize {
   double sigma_m = 0;  // standard deviation
 };
 
+// Location of a point of an object, camera frame, m.
+struct ObjectLocation {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
 // One object in one image.
+//
+// Example:
+//   const ObjectDetection detection;
+//   if (detection.completeness == Completeness::kWhole && detection.location) {
+//     std::cout << detection.location->position.transpose() << " m in the camera frame\n";
+//   }
+//   if (detection.digits) std::cout << LikeliestDigit(*detection.digits).digit << "\n";
 struct ObjectDetection {
   std::size_t class_index = 0;  // index in the model's classes
   Completeness completeness = Completeness::kWhole;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -66,24 +68,38 @@ std::vector<std::string> ObjectDetectorOptions::Validate() const {
   return violations;
 }
 
+ObjectWorkspace::ObjectWorkspace() : buffers_(std::make_unique<Buffers>()) {}
+ObjectWorkspace::~ObjectWorkspace() = default;
+ObjectWorkspace::ObjectWorkspace(ObjectWorkspace&&) noexcept = default;
+ObjectWorkspace& ObjectWorkspace::operator=(ObjectWorkspace&&) noexcept = default;
+
 ObjectDetector::ObjectDetector(const CameraModel& camera, const ObjectModel& model,
                                const ObjectDetectorOptions& options)
     : ObjectDetector(camera, Checked(model), ColorGrid(model.colors), options) {}
 
 ObjectDetector::ObjectDetector(const CameraModel& camera, const ObjectModel& model,
-                               const ColorGrid& grid, const ObjectDetectorOptions& options)
-    : camera_(Checked(camera)),
-      rays_(camera),
-      model_(Checked(model)),
-      grid_(grid),
-      options_(Checked(options)),
-      digits_(DefaultDigitModel()),
-      focal_px_(0.5 * (camera.intrinsics().fx_px + camera.intrinsics().fy_px)),
-      search_step_(SearchStep(options.min_pixels)) {
-  for (const ObjectClass& object : model_.classes) {
-    if (object.shape == ObjectShape::kCuboid) has_digit_[object.color + 1] = true;
+                               const ColorGrid& grid, const ObjectDetectorOptions& options) {
+  Impl impl{.camera = Checked(camera),
+            .rays = RayTable(camera),
+            .model = Checked(model),
+            .grid = grid,
+            .options = Checked(options),
+            .digits = DigitClassifier(DefaultDigitModel()),
+            .focal_px = 0.5 * (camera.intrinsics().fx_px + camera.intrinsics().fy_px),
+            .search_step = SearchStep(options.min_pixels)};
+  for (const ObjectClass& object : model.classes) {
+    if (object.shape == ObjectShape::kCuboid) impl.has_digit[object.color + 1] = true;
   }
+  impl_ = std::make_unique<const Impl>(std::move(impl));
 }
+ObjectDetector::~ObjectDetector() = default;
+ObjectDetector::ObjectDetector(ObjectDetector&&) noexcept = default;
+ObjectDetector& ObjectDetector::operator=(ObjectDetector&&) noexcept = default;
+
+const CameraModel& ObjectDetector::camera() const { return impl_->camera; }
+const ObjectModel& ObjectDetector::model() const { return impl_->model; }
+const ColorGrid& ObjectDetector::grid() const { return impl_->grid; }
+const ObjectDetectorOptions& ObjectDetector::options() const { return impl_->options; }
 
 void ObjectDetector::Detect(const cv::Mat& image, const ObjectHint& hint,
                             ObjectWorkspace& workspace, ObjectReport* report) const {
@@ -94,8 +110,9 @@ void ObjectDetector::Detect(const cv::Mat& image, const ObjectHint& hint,
   }
   report->passed.fill(0);
   report->segmentation_time = report->test_time = Duration::zero();
-  SegmentSearch search(image, grid_, &workspace.segmentation);
-  ObjectExaminer examiner(*this, image, hint, &workspace, report);
+  const Impl& impl = *impl_;
+  SegmentSearch search(image, impl.grid, &workspace.buffers_->segmentation);
+  ObjectExaminer examiner(impl, image, hint, workspace.buffers_.get(), report);
   Segment segment;
   Clock::time_point last = Clock::now();
   const auto add_time = [&](Duration* time) {
@@ -105,21 +122,22 @@ void ObjectDetector::Detect(const cv::Mat& image, const ObjectHint& hint,
   };
   // Small segments are counted without reading the clock, which would take longer than the count.
   const auto examine = [&] {
-    if (static_cast<int>(segment.pixels.size()) < options_.min_pixels) return examiner.Run(segment);
-    if (has_digit_[segment.label]) search.JoinAmbiguous(&segment);
+    if (static_cast<int>(segment.pixels.size()) < impl.options.min_pixels)
+      return examiner.Run(segment);
+    if (impl.has_digit[segment.label]) search.JoinAmbiguous(&segment);
     add_time(&report->segmentation_time);
     const bool is_object = examiner.Run(segment);
     add_time(&report->test_time);
     return is_object;
   };
   if (hint.track.empty()) {
-    search.SearchAll(search_step_);
+    search.SearchAll(impl.search_step);
     while (search.Next(&segment)) examine();
   }
   for (const TrackedObject& object : hint.track) {
     const Eigen::Vector2i at = object.expected_px.array().round().matrix().cast<int>();
-    const auto label = static_cast<ColorLabel>(model_.classes[object.class_index].color + 1);
-    while (search.FindNear(at.x(), at.y(), options_.track_radius_px, label, &segment)) {
+    const auto label = static_cast<ColorLabel>(impl.model.classes[object.class_index].color + 1);
+    while (search.FindNear(at.x(), at.y(), impl.options.track_radius_px, label, &segment)) {
       if (examine()) break;
     }
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,17 +12,12 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/core/camera/camera_model.h"
-#include "kestrel/core/camera/ray_table.h"
-#include "kestrel/vision/objects/color_grid.h"
-#include "kestrel/vision/objects/cuboid_face.h"
-#include "kestrel/vision/objects/digit_classifier.h"
-#include "kestrel/vision/objects/disc_outline.h"
 #include "kestrel/vision/objects/object_detection.h"
 #include "kestrel/vision/objects/object_model.h"
-#include "kestrel/vision/objects/segment_border.h"
-#include "kestrel/vision/objects/segmentation.h"
 
 namespace kestrel {
+
+class ColorGrid;
 
 struct ObjectDetectorOptions {
   // Segments of fewer pixels are noise. Also determines the step of the search, see SearchStep.
@@ -98,17 +95,32 @@ struct ObjectHint {
   double height_sigma_m = 0.1;
 };
 
-// Memory of ObjectDetector::Detect. It keeps its size from frame to frame.
-struct ObjectWorkspace {
-  SegmentationWorkspace segmentation;
-  DiscOutlineWorkspace outline;
-  CuboidFaceWorkspace face;
-  SegmentBorder border;
-  std::vector<Eigen::Vector2d> inside;  // pixels of the segment, on the ground
+// Memory of one thread's detections. It keeps its size from frame to frame.
+class ObjectWorkspace {
+ public:
+  ObjectWorkspace();
+  ~ObjectWorkspace();
+  ObjectWorkspace(ObjectWorkspace&&) noexcept;
+  ObjectWorkspace& operator=(ObjectWorkspace&&) noexcept;
+
+  struct Buffers;  // of ObjectExaminer
+
+ private:
+  friend class ObjectDetector;
+  std::unique_ptr<Buffers> buffers_;
 };
 
 // Finds the configured objects in a colour image of a camera that looks down (paper, section 3).
 // Immutable and thread-safe, with a workspace and a report for each thread.
+//
+// Example:
+//   const ObjectDetector detector(CameraModel(PaperCamera()), DefaultObjectModel());
+//   ObjectWorkspace workspace;
+//   ObjectReport report;
+//   detector.Detect(color_image, /*hint=*/{}, workspace, &report);
+//   for (const ObjectDetection& detection : report.detections) {
+//     std::cout << detector.model().classes[detection.class_index].name << "\n";
+//   }
 class ObjectDetector {
  public:
   // Throws InputError when the model or the options are invalid, or the image is too large.
@@ -117,30 +129,24 @@ class ObjectDetector {
   // Uses a grid that may differ from the model's own (edited, or from the authors).
   ObjectDetector(const CameraModel& camera, const ObjectModel& model, const ColorGrid& grid,
                  const ObjectDetectorOptions& options = {});
+  ~ObjectDetector();
+  ObjectDetector(ObjectDetector&&) noexcept;
+  ObjectDetector& operator=(ObjectDetector&&) noexcept;
 
   // Searches one image. 'image': CV_8UC3 of the camera's size. Overwrites the report. Does not
   // throw, and does not allocate once workspace and report have their size.
   void Detect(const cv::Mat& image, const ObjectHint& hint, ObjectWorkspace& workspace,
               ObjectReport* report) const;
 
-  const CameraModel& camera() const { return camera_; }
-  const ObjectModel& model() const { return model_; }
-  const ColorGrid& grid() const { return grid_; }
-  const ObjectDetectorOptions& options() const { return options_; }
+  const CameraModel& camera() const;
+  const ObjectModel& model() const;
+  const ColorGrid& grid() const;
+  const ObjectDetectorOptions& options() const;
+
+  struct Impl;  // what ObjectExaminer reads
 
  private:
-  friend class ObjectExaminer;
-
-  CameraModel camera_;
-  RayTable rays_;
-  ObjectModel model_;
-  ColorGrid grid_;
-  ObjectDetectorOptions options_;
-  DigitClassifier digits_;
-  double focal_px_;
-  int search_step_;
-  // True for labels of colours that a class of cuboids has: these have a white digit.
-  std::array<bool, 256> has_digit_{};
+  std::unique_ptr<const Impl> impl_;
 };
 
 }  // namespace kestrel

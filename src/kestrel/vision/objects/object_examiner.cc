@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "kestrel/vision/objects/disc_location.h"
+
 namespace kestrel {
 namespace {
 
@@ -31,7 +33,7 @@ ColorProbabilities ProbabilitiesOf(const ColorModel& model, const Hsv& color) {
 }  // namespace
 
 bool ObjectExaminer::Run(const Segment& segment) {
-  const ObjectDetectorOptions& options = detector_.options_;
+  const ObjectDetectorOptions& options = detector_.options;
   const auto count = [&](ObjectStage stage) { ++report_->passed[static_cast<int>(stage)]; };
   count(ObjectStage::kSegmented);
   if (static_cast<int>(segment.pixels.size()) < options.min_pixels) return false;
@@ -43,14 +45,14 @@ bool ObjectExaminer::Run(const Segment& segment) {
   detection.circularity = shape.circularity;
   detection.pixels = static_cast<int>(segment.pixels.size());
   detection.mean_color = shape.mean_color;
-  detection.color_probabilities = ProbabilitiesOf(detector_.model_.colors, shape.mean_color);
+  detection.color_probabilities = ProbabilitiesOf(detector_.model.colors, shape.mean_color);
   detection.center_px = shape.moments.centroid;
   detection.bearing = RayAt(detection.center_px);
 
   ObjectStage furthest = ObjectStage::kSize;
   Outcome outcome = Outcome::kNone;
   ObjectDetection found;
-  const auto& classes = detector_.model_.classes;
+  const auto& classes = detector_.model.classes;
   for (std::size_t i = 0; i < classes.size() && outcome != Outcome::kObject; ++i) {
     if (classes[i].color + 1 != segment.label) continue;
     ObjectStage reached = ObjectStage::kSize;
@@ -78,11 +80,11 @@ ObjectExaminer::Outcome ObjectExaminer::TestClass(const Segment& segment, const 
                                                   std::size_t class_index,
                                                   ObjectDetection* detection,
                                                   ObjectStage* reached) {
-  const ObjectClass& object = detector_.model_.classes[class_index];
+  const ObjectClass& object = detector_.model.classes[class_index];
   detection->class_index = class_index;
   detection->class_probability = ClassProbability(object, detection->color_probabilities);
   detection->completeness = segment.touches_border ? Completeness::kCutOff : Completeness::kWhole;
-  const bool is_round = std::abs(shape.roundness - 1) <= detector_.options_.max_roundness_error;
+  const bool is_round = std::abs(shape.roundness - 1) <= detector_.options.max_roundness_error;
   if (object.shape != ObjectShape::kBar && !is_round) return Outcome::kNone;
   *reached = ObjectStage::kRoundness;
   switch (object.shape) {
@@ -99,15 +101,15 @@ ObjectExaminer::Outcome ObjectExaminer::TestClass(const Segment& segment, const 
 std::optional<ColorLabel> ObjectExaminer::LabelAt(const Eigen::Vector2d& pixel) const {
   const cv::Point at(cvRound(pixel.x()), cvRound(pixel.y()));
   if (!cv::Rect({}, image_.size()).contains(at)) return std::nullopt;
-  return detector_.grid_.At(image_.ptr(at.y) + 3 * at.x);
+  return detector_.grid.At(image_.ptr(at.y) + 3 * at.x);
 }
 
 double ObjectExaminer::ClassProbability(const ObjectClass& object,
                                         const ColorProbabilities& colors) const {
   double all = 1;  // including the probability of background
-  for (std::size_t i = 0; i < detector_.model_.colors.colors.size(); ++i) {
+  for (std::size_t i = 0; i < detector_.model.colors.colors.size(); ++i) {
     const bool has_class = std::ranges::any_of(
-        detector_.model_.classes,
+        detector_.model.classes,
         [&](const ObjectClass& other) { return other.color == i && other.shape == object.shape; });
     if (!has_class) all -= colors[i];
   }
@@ -125,7 +127,7 @@ std::optional<bool> ObjectExaminer::IsOnGround(const Eigen::Vector3d& position,
   if (!Ground().is_known()) return std::nullopt;
   const auto on_ground = DistanceOnGround(position, object);
   return on_ground && std::abs(position.norm() - *on_ground) <=
-                          tolerance * *on_ground + detector_.options_.ground_tolerance_m;
+                          tolerance * *on_ground + detector_.options.ground_tolerance_m;
 }
 
 void ObjectExaminer::SetLocation(const Eigen::Vector3d& by_size, const ObjectClass& object,
@@ -149,15 +151,15 @@ void ObjectExaminer::SetLocation(const Eigen::Vector3d& by_size, const ObjectCla
     sigma_m *= ground_sigma_m / total;
   }
   detection->bearing = ray;
-  detector_.camera_.Project(ray, &detection->center_px);
-  detection->location = {distance * ray,
-                         LocationCovariance(distance * ray, center_sigma_px / detector_.focal_px_,
-                                            sigma_m / distance)};
+  detector_.camera.Project(ray, &detection->center_px);
+  detection->location = {
+      distance * ray,
+      LocationCovariance(distance * ray, center_sigma_px / detector_.focal_px, sigma_m / distance)};
 }
 
 Eigen::Vector3d ObjectExaminer::RayAt(const Eigen::Vector2d& pixel) const {
   const Eigen::Vector2f at = pixel.cast<float>();
-  return detector_.rays_.Ray(at.x(), at.y()).cast<double>();
+  return detector_.rays.Ray(at.x(), at.y()).cast<double>();
 }
 
 }  // namespace kestrel

@@ -3,21 +3,50 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
+#include "kestrel/core/camera/camera_model.h"
+#include "kestrel/core/camera/ray_table.h"
+#include "kestrel/vision/objects/color_grid.h"
 #include "kestrel/vision/objects/cuboid_face.h"
+#include "kestrel/vision/objects/digit_classifier.h"
+#include "kestrel/vision/objects/disc_outline.h"
 #include "kestrel/vision/objects/ground_plane.h"
 #include "kestrel/vision/objects/object_detector.h"
+#include "kestrel/vision/objects/segment_border.h"
 #include "kestrel/vision/objects/segment_shape.h"
+#include "kestrel/vision/objects/segmentation.h"
 
 namespace kestrel {
+
+struct ObjectWorkspace::Buffers {
+  SegmentationWorkspace segmentation;
+  DiscOutlineWorkspace outline;
+  CuboidFaceWorkspace face;
+  SegmentBorder border;
+  std::vector<Eigen::Vector2d> inside;  // pixels of the segment, on the ground
+};
+
+struct ObjectDetector::Impl {
+  CameraModel camera;
+  RayTable rays;
+  ObjectModel model;
+  ColorGrid grid;
+  ObjectDetectorOptions options;
+  DigitClassifier digits;
+  double focal_px;
+  int search_step;
+  // True for labels of colours that a class of cuboids has: these have a white digit.
+  std::array<bool, 256> has_digit{};
+};
 
 // Runs the tests that turn a segment of an image into a detection.
 class ObjectExaminer {
  public:
-  ObjectExaminer(const ObjectDetector& detector, const cv::Mat& image, const ObjectHint& hint,
-                 ObjectWorkspace* workspace, ObjectReport* report)
+  ObjectExaminer(const ObjectDetector::Impl& detector, const cv::Mat& image, const ObjectHint& hint,
+                 ObjectWorkspace::Buffers* workspace, ObjectReport* report)
       : detector_(detector), image_(image), hint_(hint), workspace_(workspace), report_(report) {}
 
   // Adds a detection to the report when the segment is an object of one of the classes. True when
@@ -98,10 +127,10 @@ class ObjectExaminer {
   }
   Eigen::Vector3d RayAt(const Eigen::Vector2d& pixel) const;
 
-  const ObjectDetector& detector_;
+  const ObjectDetector::Impl& detector_;
   const cv::Mat& image_;
   const ObjectHint& hint_;
-  ObjectWorkspace* workspace_;
+  ObjectWorkspace::Buffers* workspace_;
   ObjectReport* report_;
 };
 

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "kestrel/vision/objects/disc_location.h"
 #include "kestrel/vision/objects/object_examiner.h"
 
 namespace kestrel {
@@ -58,9 +59,9 @@ ObjectExaminer::Outcome ObjectExaminer::TestDisc(const Segment& segment, const S
   if (!start) return Outcome::kNone;
   *reached = ObjectStage::kShape;
   const auto outline =
-      FitDiscOutline(image_, detector_.rays_, detector_.focal_px_, *start, &workspace_->outline);
+      FitDiscOutline(image_, detector_.rays, detector_.focal_px, *start, &workspace_->outline);
   if (!outline) return Outcome::kNone;
-  const double radius_px = detector_.focal_px_ * std::tan(outline->cone.HalfAngles().minCoeff());
+  const double radius_px = detector_.focal_px * std::tan(outline->cone.HalfAngles().minCoeff());
   if (!FitsDisc(*outline, radius_px, segment.touches_border)) return Outcome::kNone;
   const auto ellipse = EllipseThrough(workspace_->outline.points);
   if (!ellipse || !IsFilledDisc(segment, *ellipse)) return Outcome::kNone;
@@ -81,7 +82,7 @@ ObjectExaminer::Outcome ObjectExaminer::TestDisc(const Segment& segment, const S
     position = distance * RayAt(ellipse->center);
   }
   // The uncertainty grows as less of the outline is seen.
-  const ObjectDetectorOptions& options = detector_.options_;
+  const ObjectDetectorOptions& options = detector_.options;
   const double seen = 1 - outline->gap - outline->outside;
   const double less = 1 / (seen * seen);
   SetLocation(position, object, less * options.center_sigma_px,
@@ -96,19 +97,19 @@ std::optional<Ellipse> ObjectExaminer::StartOfDisc(const Segment& segment,
     FindBorder(segment, image_.size(), &workspace_->border);
     return EllipseThrough(workspace_->border.points);
   }
-  const bool is_round = std::abs(shape.circularity - 1) <= detector_.options_.max_circularity_error;
+  const bool is_round = std::abs(shape.circularity - 1) <= detector_.options.max_circularity_error;
   return is_round ? std::optional(shape.ellipse) : std::nullopt;
 }
 
 bool ObjectExaminer::FitsDisc(const DiscOutline& outline, double radius_px, bool is_cut_off) const {
-  const ObjectDetectorOptions& options = detector_.options_;
+  const ObjectDetectorOptions& options = detector_.options;
   return outline.gap <= (is_cut_off ? options.max_cut_off_gap : options.max_gap) &&
          outline.outside <= options.max_outside && outline.fit_share >= options.min_outline_share &&
          outline.residual_px <= OutlineTolerance(radius_px);
 }
 
 double ObjectExaminer::OutlineTolerance(double radius_px) const {
-  const ObjectDetectorOptions& options = detector_.options_;
+  const ObjectDetectorOptions& options = detector_.options;
   return options.outline_tolerance * radius_px + options.outline_tolerance_px;
 }
 
@@ -122,7 +123,7 @@ bool ObjectExaminer::IsFilledDisc(const Segment& segment, const Ellipse& ellipse
 ObjectExaminer::Outcome ObjectExaminer::PlaceDisc(const Cone& cone, const Eigen::Vector3d& position,
                                                   const ObjectClass& object,
                                                   bool is_cut_off) const {
-  const double ground = detector_.options_.ground_tolerance;
+  const double ground = detector_.options.ground_tolerance;
   const double tolerance = (is_cut_off ? kToleranceOfPart : 1) * ground;
   const double distance_tolerance = (is_cut_off ? kDistanceToleranceOfPart : 1) * ground;
   const std::optional<bool> is_on_ground = IsOnGround(position, object, distance_tolerance);
@@ -130,7 +131,7 @@ ObjectExaminer::Outcome ObjectExaminer::PlaceDisc(const Cone& cone, const Eigen:
   const double distance = position.norm();
   const auto looks_like_disc_at = [&](double there) {
     return LooksLikeDisc(cone, position / distance, there, *hint_.up_in_camera, object.size_m / 2,
-                         tolerance, /*slack_rad=*/1 / detector_.focal_px_);
+                         tolerance, /*slack_rad=*/1 / detector_.focal_px);
   };
   if (*is_on_ground && looks_like_disc_at(*DistanceOnGround(position, object))) {
     return Outcome::kObject;
@@ -193,7 +194,7 @@ double ObjectExaminer::MisfitOfDisc(const DiscOutline& outline, double radius_px
   constexpr double kClearOfBlur = 0.7;
   constexpr double kMaxUncolored = 0.3;
   const auto square = [](double x) { return x * x; };
-  const ObjectDetectorOptions& options = detector_.options_;
+  const ObjectDetectorOptions& options = detector_.options;
   const double edge = outline.residual_px / OutlineTolerance(radius_px);
   const double hidden = (1 - (1 - outline.gap) * outline.fit_share) / options.max_gap;
   const double filling =

@@ -69,7 +69,7 @@ ObjectExaminer::Outcome ObjectExaminer::TestSilhouette(const Segment& segment,
   FaceCorners corners;
   for (int i = 0; i < 4; ++i) {
     const Eigen::Vector3d ray = plane.RayTo(fit->corners[i]);
-    if (detector_.camera_.Project(ray, &corners[i]) != ProjectionStatus::kOk) return Outcome::kNone;
+    if (detector_.camera.Project(ray, &corners[i]) != ProjectionStatus::kOk) return Outcome::kNone;
   }
   detection->misfit = std::pow(fit->residual / kMaxResidual, 2);
   return TestFace(corners, object, detection, reached);
@@ -95,7 +95,7 @@ ObjectExaminer::Outcome ObjectExaminer::TestFace(const FaceCorners& found,
     if (located <= outcome) continue;
     outcome = located;
     *detection = candidate;
-    detection->digits = detector_.digits_.Classify(*digit);
+    detection->digits = detector_.digits.Classify(*digit);
     detection->completeness = Completeness::kWhole;  // the upper face is whole
     if (outcome == Outcome::kObject) break;
   }
@@ -135,7 +135,7 @@ double ObjectExaminer::EdgeShift(const RayTo& ray_to, const Eigen::Vector2d& sid
     const double step = 0.01 * ray_to(at).norm();
     Eigen::Vector2d pixel;
     Eigen::Vector2d further;
-    const CameraModel& camera = detector_.camera_;
+    const CameraModel& camera = detector_.camera;
     if (camera.Project(ray_to(at), &pixel) != ProjectionStatus::kOk ||
         camera.Project(ray_to(at + step * outward), &further) != ProjectionStatus::kOk) {
       continue;
@@ -215,7 +215,7 @@ ObjectExaminer::Outcome ObjectExaminer::LocateFace(const std::array<Eigen::Vecto
                                                    ObjectDetection* detection) const {
   constexpr double kMaxSkew = 0.15;
   constexpr double kMaxSideRatio = 1.15;
-  const ObjectDetectorOptions& options = detector_.options_;
+  const ObjectDetectorOptions& options = detector_.options;
   const bool is_bar = object.shape == ObjectShape::kBar;
   const Eigen::Vector3d up = hint_.up_in_camera.value_or(-detection->bearing);
   const auto face = RectangleOnPlane(rays, up);
@@ -234,7 +234,7 @@ ObjectExaminer::Outcome ObjectExaminer::LocateFace(const std::array<Eigen::Vecto
                    (side_ratio * object.width_m / object.size_m - 1) / options.ground_tolerance, 2)
              : std::pow(face->skew / kMaxSkew, 2) +
                    std::pow((side_ratio - 1) / (kMaxSideRatio - 1), 2);
-  const double radius_px = 0.5 * detector_.focal_px_ * object.size_m / position.norm();
+  const double radius_px = 0.5 * detector_.focal_px * object.size_m / position.norm();
   SetLocation(position, object, options.center_sigma_px, options.radius_sigma_px / radius_px,
               outcome, detection);
   return outcome;

@@ -29,7 +29,7 @@ bool ObjectExaminer::TestMerged(const Segment& segment, const SegmentShape& shap
     scale.col(i) = on_plane(center + Eigen::Vector2d::Unit(i)) - on_plane(center);
   }
   const double pixel_area = std::abs(scale.determinant());
-  const auto& classes = detector_.model_.classes;
+  const auto& classes = detector_.model.classes;
   std::optional<double> radius;
   for (std::size_t i = 0; i < classes.size(); ++i) {
     if (classes[i].color + 1 != segment.label || classes[i].shape != ObjectShape::kDisc) continue;
@@ -40,7 +40,7 @@ bool ObjectExaminer::TestMerged(const Segment& segment, const SegmentShape& shap
     if (!(count >= kMinCount && count <= kMaxCount)) continue;
     if (!radius) radius = RadiusOfDiscsIn(segment, on_plane, std::sqrt(pixel_area));
     if (!radius) return false;
-    if (expected && std::abs(*radius / *expected - 1) > detector_.options_.ground_tolerance) {
+    if (expected && std::abs(*radius / *expected - 1) > detector_.options.ground_tolerance) {
       continue;
     }
     detection->class_index = i;

@@ -3,10 +3,14 @@
 
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/violations.h"
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/vision/objects/color_grid.h"
+#include "kestrel/vision/pipeline/camera_poses.h"
+#include "kestrel/vision/pipeline/ground_height.h"
 #include "kestrel/vision/pipeline/object_view.h"
 
 namespace kestrel {
@@ -55,12 +59,54 @@ std::vector<std::string> HuntPipelineOptions::Validate() const {
   return violations;
 }
 
-HuntPipeline::HuntPipeline(const CameraCalibration& calibration, const ObjectModel& model,
-                           const HuntPipelineOptions& options)
-    : HuntPipeline(calibration, model, ColorGrid(model.colors), options) {}
+class HuntPipeline::Impl {
+ public:
+  Impl(const CameraCalibration& calibration, const ObjectModel& model, const ColorGrid& grid,
+       const HuntPipelineOptions& options);
 
-HuntPipeline::HuntPipeline(const CameraCalibration& calibration, const ObjectModel& model,
-                           const ColorGrid& grid, const HuntPipelineOptions& options)
+  PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
+  void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
+  void ChangeOptions(const HuntPipelineOptions& options);
+  const HuntObservation& Process(const cv::Mat& image, Time time);
+
+  const ObjectDetector& detector() const { return detector_; }
+  const ObjectMap& map() const { return map_; }
+  const HuntPipelineOptions& options() const { return options_; }
+  std::optional<GroundHeight> ground_contradiction() const { return ground_.Contradiction(); }
+
+ private:
+  // The told heights of camera and ground, in the world or, with an altitude, in a world whose z =
+  // 0 is the ground.
+  struct ToldHeights {
+    double camera_m;
+    GroundHeight ground;
+  };
+  std::optional<ToldHeights> HeightsTold() const;
+
+  void Detect(const cv::Mat& image);
+  void UpdateGround(const ToldHeights& told);
+  void LocateInWorld();
+  void UpdateMap();
+  void RememberForTracking();
+  Eigen::Vector3d ClockShift(const ObjectDetection& detection) const;
+  Time TimeOfRow(double v_px) const;
+
+  HuntPipelineOptions options_;
+  ObjectDetector detector_;
+  ObjectWorkspace workspace_;
+  CameraPoses poses_;
+  std::optional<double> altitude_m_;
+  HuntObservation observation_;
+  GroundHeightEstimator ground_;
+  std::vector<GroundHeight> ground_sightings_;  // of the current frame
+  std::vector<TrackedObject> track_;
+  bool saw_all_ = true;  // the last frame was searched completely
+  ObjectMap map_;
+  std::vector<ObjectMeasurement> measurements_;
+};
+
+HuntPipeline::Impl::Impl(const CameraCalibration& calibration, const ObjectModel& model,
+                         const ColorGrid& grid, const HuntPipelineOptions& options)
     : options_(Checked(options)),
       detector_(CameraModel(calibration.intrinsics), model, grid, options.detector),
       poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s),
@@ -68,14 +114,14 @@ HuntPipeline::HuntPipeline(const CameraCalibration& calibration, const ObjectMod
              {DurationFromSeconds(options.pose_extrapolation_s), options.unmodelled}),
       map_(model, options.map) {}
 
-void HuntPipeline::ChangeOptions(const HuntPipelineOptions& options) {
+void HuntPipeline::Impl::ChangeOptions(const HuntPipelineOptions& options) {
   RequireValid(options);
   detector_ =
       ObjectDetector(detector_.camera(), detector_.model(), detector_.grid(), options.detector);
   options_ = options;
 }
 
-const HuntObservation& HuntPipeline::Process(const cv::Mat& image, Time time) {
+const HuntObservation& HuntPipeline::Impl::Process(const cv::Mat& image, Time time) {
   observation_.time = time;
   observation_.world_from_camera.reset();
   if (const auto camera = poses_.At(time)) {
@@ -88,7 +134,7 @@ const HuntObservation& HuntPipeline::Process(const cv::Mat& image, Time time) {
   return observation_;
 }
 
-std::optional<HuntPipeline::ToldHeights> HuntPipeline::HeightsTold() const {
+std::optional<HuntPipeline::Impl::ToldHeights> HuntPipeline::Impl::HeightsTold() const {
   if (const auto& world_from_camera = observation_.world_from_camera) {
     return ToldHeights{
         world_from_camera->translation.z(),
@@ -99,7 +145,7 @@ std::optional<HuntPipeline::ToldHeights> HuntPipeline::HeightsTold() const {
                      {0, std::hypot(kAltitudeShare * *altitude_m_, options_.ground_sigma_m)}};
 }
 
-void HuntPipeline::Detect(const cv::Mat& image) {
+void HuntPipeline::Impl::Detect(const cv::Mat& image) {
   ObjectHint hint;
   std::optional<ToldHeights> told = HeightsTold();
   if (const auto& world_from_camera = observation_.world_from_camera) {
@@ -130,7 +176,7 @@ void HuntPipeline::Detect(const cv::Mat& image) {
 }
 
 // Objects that agree on another height of the ground overrule the told height.
-void HuntPipeline::UpdateGround(const ToldHeights& told) {
+void HuntPipeline::Impl::UpdateGround(const ToldHeights& told) {
   ObjectReport& report = observation_.report;
   const auto ground_by = [&](const HeightBySize& height, double share) {
     return GroundHeight{told.camera_m - height.camera_height_m,
@@ -154,7 +200,7 @@ void HuntPipeline::UpdateGround(const ToldHeights& told) {
   });
 }
 
-void HuntPipeline::LocateInWorld() {
+void HuntPipeline::Impl::LocateInWorld() {
   auto& in_world = observation_.in_world;
   in_world.clear();
   for (const ObjectDetection& detection : observation_.report.detections) {
@@ -172,7 +218,7 @@ void HuntPipeline::LocateInWorld() {
   }
 }
 
-void HuntPipeline::UpdateMap() {
+void HuntPipeline::Impl::UpdateMap() {
   if (options_.still || !observation_.world_from_camera) return;
   measurements_.clear();
   const auto& detections = observation_.report.detections;
@@ -200,7 +246,7 @@ void HuntPipeline::UpdateMap() {
 }
 
 // See ObjectMeasurement.
-Eigen::Vector3d HuntPipeline::ClockShift(const ObjectDetection& detection) const {
+Eigen::Vector3d HuntPipeline::Impl::ClockShift(const ObjectDetection& detection) const {
   constexpr double kStep_s = 0.1;  // long enough for the noise of the poses
   const Time time = TimeOfRow(detection.center_px.y());
   const auto camera = poses_.At(time);
@@ -210,7 +256,7 @@ Eigen::Vector3d HuntPipeline::ClockShift(const ObjectDetection& detection) const
   return (camera->world_from_camera * position - before->world_from_camera * position) / kStep_s;
 }
 
-void HuntPipeline::RememberForTracking() {
+void HuntPipeline::Impl::RememberForTracking() {
   track_.clear();
   if (options_.still) return;
   for (const ObjectDetection& detection : observation_.report.detections) {
@@ -221,9 +267,34 @@ void HuntPipeline::RememberForTracking() {
   if (static_cast<int>(track_.size()) < options_.track_count) track_.clear();
 }
 
-Time HuntPipeline::TimeOfRow(double v_px) const {
+Time HuntPipeline::Impl::TimeOfRow(double v_px) const {
   const double share = v_px / (detector_.camera().height_px() - 1) - 0.5;
   return observation_.time + DurationFromSeconds(options_.readout_s * share);
+}
+
+HuntPipeline::HuntPipeline(const CameraCalibration& calibration, const ObjectModel& model,
+                           const HuntPipelineOptions& options)
+    : HuntPipeline(calibration, model, ColorGrid(model.colors), options) {}
+HuntPipeline::HuntPipeline(const CameraCalibration& calibration, const ObjectModel& model,
+                           const ColorGrid& grid, const HuntPipelineOptions& options)
+    : impl_(std::make_unique<Impl>(calibration, model, grid, options)) {}
+HuntPipeline::~HuntPipeline() = default;
+HuntPipeline::HuntPipeline(HuntPipeline&&) noexcept = default;
+HuntPipeline& HuntPipeline::operator=(HuntPipeline&&) noexcept = default;
+
+PoseStatus HuntPipeline::AddPose(const PoseSample& sample) { return impl_->AddPose(sample); }
+void HuntPipeline::SetAltitude(std::optional<double> altitude_m) { impl_->SetAltitude(altitude_m); }
+void HuntPipeline::ChangeOptions(const HuntPipelineOptions& options) {
+  impl_->ChangeOptions(options);
+}
+const HuntObservation& HuntPipeline::Process(const cv::Mat& image, Time time) {
+  return impl_->Process(image, time);
+}
+const ObjectDetector& HuntPipeline::detector() const { return impl_->detector(); }
+const ObjectMap& HuntPipeline::map() const { return impl_->map(); }
+const HuntPipelineOptions& HuntPipeline::options() const { return impl_->options(); }
+std::optional<GroundHeight> HuntPipeline::ground_contradiction() const {
+  return impl_->ground_contradiction();
 }
 
 }  // namespace kestrel

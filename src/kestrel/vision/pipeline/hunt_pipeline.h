@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,12 +12,13 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/pose_history.h"
 #include "kestrel/vision/mapping/object_map.h"
 #include "kestrel/vision/objects/object_detector.h"
-#include "kestrel/vision/pipeline/camera_poses.h"
-#include "kestrel/vision/pipeline/ground_height.h"
 
 namespace kestrel {
+
+struct GroundHeight;
 
 struct HuntPipelineOptions {
   ObjectDetectorOptions detector;
@@ -90,6 +92,13 @@ struct HuntObservation {
 };
 
 // Locates the coloured objects of an image in the world. For use by one thread at a time.
+//
+// Example:
+//   HuntPipeline pipeline(ReadCalibration("camera.yaml"), DefaultObjectModel(), {});
+//   pipeline.AddPose({.time = time, .world_from_body = {}});
+//   const HuntObservation& seen = pipeline.Process(color_image, time);
+//   std::cout << seen.report.detections.size() << " in view\n";
+//   SaveObjects("object_map.json", pipeline.map().Confirmed());
 class HuntPipeline {
  public:
   // Throws InputError when calibration, model or options are invalid.
@@ -98,15 +107,18 @@ class HuntPipeline {
   // Uses a grid that may differ from the model's own.
   HuntPipeline(const CameraCalibration& calibration, const ObjectModel& model,
                const ColorGrid& grid, const HuntPipelineOptions& options);
+  ~HuntPipeline();
+  HuntPipeline(HuntPipeline&&) noexcept;
+  HuntPipeline& operator=(HuntPipeline&&) noexcept;
 
   // Adds a pose from the navigation, on its clock, later than those before. It may be earlier than
   // the last frame. A frame that arrives before the pose after its time has none, or a predicted
   // one.
-  PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
+  PoseStatus AddPose(const PoseSample& sample);
 
   // Sets the height (m) of the camera above the ground for frames without a pose; nothing when not
   // known. The camera is then assumed to look straight down.
-  void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
+  void SetAltitude(std::optional<double> altitude_m);
 
   // Changes the options and keeps the map and the poses. The options in 'map' and 'unmodelled' and
   // those of the poses keep their old effect. Throws InputError and changes nothing when the
@@ -118,44 +130,18 @@ class HuntPipeline {
   // up.
   const HuntObservation& Process(const cv::Mat& image, Time time);
 
-  const ObjectDetector& detector() const { return detector_; }
+  const ObjectDetector& detector() const;
   // The objects in the world; empty without poses and with independent frames.
-  const ObjectMap& map() const { return map_; }
-  const HuntPipelineOptions& options() const { return options_; }
+  const ObjectMap& map() const;
+  const HuntPipelineOptions& options() const;
 
   // Returns how much higher the ground is, by the size of the objects, than told (by the options'
   // height with the navigation's poses, or by the altitude); nothing as long as they agree.
-  std::optional<GroundHeight> ground_contradiction() const { return ground_.Contradiction(); }
+  std::optional<GroundHeight> ground_contradiction() const;
 
  private:
-  // The told heights of camera and ground, in the world or, with an altitude, in a world whose z =
-  // 0 is the ground.
-  struct ToldHeights {
-    double camera_m;
-    GroundHeight ground;
-  };
-  std::optional<ToldHeights> HeightsTold() const;
-
-  void Detect(const cv::Mat& image);
-  void UpdateGround(const ToldHeights& told);
-  void LocateInWorld();
-  void UpdateMap();
-  void RememberForTracking();
-  Eigen::Vector3d ClockShift(const ObjectDetection& detection) const;
-  Time TimeOfRow(double v_px) const;
-
-  HuntPipelineOptions options_;
-  ObjectDetector detector_;
-  ObjectWorkspace workspace_;
-  CameraPoses poses_;
-  std::optional<double> altitude_m_;
-  HuntObservation observation_;
-  GroundHeightEstimator ground_;
-  std::vector<GroundHeight> ground_sightings_;  // of the current frame
-  std::vector<TrackedObject> track_;
-  bool saw_all_ = true;  // the last frame was searched completely
-  ObjectMap map_;
-  std::vector<ObjectMeasurement> measurements_;
+  class Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace kestrel

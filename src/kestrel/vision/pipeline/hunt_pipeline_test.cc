@@ -9,6 +9,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/vision/objects/test_objects.h"
+#include "kestrel/vision/pipeline/ground_height.h"
 
 namespace kestrel {
 namespace {

@@ -2,9 +2,13 @@
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 
 #include <chrono>
+#include <utility>
 
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/violations.h"
+#include "kestrel/vision/pipeline/calibration_monitor.h"
+#include "kestrel/vision/pipeline/camera_poses.h"
+#include "kestrel/vision/pipeline/told_contradictions.h"
 #include "kestrel/vision/pipeline/world_location.h"
 
 namespace kestrel {
@@ -38,8 +42,56 @@ const char* ToString(PositionMethod method) {
   return method == PositionMethod::kSize ? "size" : "altitude";
 }
 
-LandingPipeline::LandingPipeline(const CameraCalibration& calibration,
-                                 const LandingPipelineOptions& options)
+class LandingPipeline::Impl {
+ public:
+  Impl(const CameraCalibration& calibration, const LandingPipelineOptions& options);
+
+  PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
+  void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
+  void LimitSearch(double max_search_ms) { max_search_ms_ = max_search_ms; }
+  void ChangeOptions(const LandingPipelineOptions& options);
+  LandingObservation Process(const cv::Mat& image, Time time);
+
+  const ToldContradictions& contradictions() const { return contradictions_; }
+  const CalibrationMonitor& calibration_monitor() const { return calibration_monitor_; }
+  const TargetTracker& tracker() const { return tracker_; }
+  const LandingPatternDetector& detector() const { return detector_; }
+  const LandingPipelineOptions& options() const { return options_; }
+
+ private:
+  // Last position of the pattern in the camera.
+  struct Sighting {
+    Time time;
+    Eigen::Vector3d center_in_camera;
+  };
+
+  void Detect(const cv::Mat& image, LandingObservation* observation);
+  ToldView WhatIsTold(const LandingObservation& observation) const;
+  double AltitudeExcess() const;
+  void AddErrorOfFocalLength(LandingDetection* detection) const;
+  void AddTrack(const LandingObservation& observation, LandingHint* hint) const;
+  void AddLastSighting(const LandingObservation& observation, LandingHint* hint) const;
+  void LocateInWorld(LandingObservation* observation) const;
+  TargetMeasurement MeasurementOf(const LandingObservation& observation) const;
+  void Track(LandingObservation* observation);
+  void Remember(const LandingObservation& observation);
+
+  LandingPipelineOptions options_;
+  LandingPatternDetector detector_;
+  LandingWorkspace workspace_;
+  CameraPoses poses_;
+  std::optional<double> altitude_m_;
+  TargetTracker tracker_;
+  bool is_track_trusted_ = true;  // the last detection was where the track predicted it
+  std::optional<Sighting> last_;
+  int next_step_ = 0;  // step at which the search of the last frame ran out of time
+  double max_search_ms_ = 0;
+  ToldContradictions contradictions_;
+  CalibrationMonitor calibration_monitor_;
+};
+
+LandingPipeline::Impl::Impl(const CameraCalibration& calibration,
+                            const LandingPipelineOptions& options)
     : options_(Checked(options)),
       detector_(CameraModel(calibration.intrinsics), options.detector),
       poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s),
@@ -47,14 +99,14 @@ LandingPipeline::LandingPipeline(const CameraCalibration& calibration,
              {DurationFromSeconds(options.pose_extrapolation_s), options.unmodelled}),
       tracker_(options.tracker) {}
 
-void LandingPipeline::ChangeOptions(const LandingPipelineOptions& options) {
+void LandingPipeline::Impl::ChangeOptions(const LandingPipelineOptions& options) {
   RequireValid(options);
   detector_ = LandingPatternDetector(detector_.camera(), options.detector);
   workspace_ = LandingWorkspace();
   options_ = options;
 }
 
-LandingObservation LandingPipeline::Process(const cv::Mat& image, Time time) {
+LandingObservation LandingPipeline::Impl::Process(const cv::Mat& image, Time time) {
   LandingObservation observation;
   observation.time = time;
   if (const auto camera = poses_.At(time)) {
@@ -70,7 +122,7 @@ LandingObservation LandingPipeline::Process(const cv::Mat& image, Time time) {
   return observation;
 }
 
-void LandingPipeline::Detect(const cv::Mat& image, LandingObservation* observation) {
+void LandingPipeline::Impl::Detect(const cv::Mat& image, LandingObservation* observation) {
   const ToldView told = WhatIsTold(*observation);
   LandingHint hint;
   const double excess_m = AltitudeExcess();
@@ -94,7 +146,7 @@ void LandingPipeline::Detect(const cv::Mat& image, LandingObservation* observati
 }
 
 // Returns by how much (m) the told altitude is too large, as far as the detections contradict it.
-double LandingPipeline::AltitudeExcess() const {
+double LandingPipeline::Impl::AltitudeExcess() const {
   if (options_.still) return 0;
   const auto excess = contradictions_.Altitude();
   return excess ? excess->difference : 0;
@@ -102,14 +154,14 @@ double LandingPipeline::AltitudeExcess() const {
 
 // A wrong focal length makes every distance wrong by the same share. Views that contradict the
 // calibration themselves were located with their own focal length and are left alone.
-void LandingPipeline::AddErrorOfFocalLength(LandingDetection* detection) const {
+void LandingPipeline::Impl::AddErrorOfFocalLength(LandingDetection* detection) const {
   const auto focal = calibration_monitor_.Contradiction();
   if (!focal || detection->calibration.contradicts) return;
   const Eigen::Vector3d error_m = (focal->factor - 1) * detection->camera_from_pattern.translation;
   detection->covariance.topLeftCorner<3, 3>() += error_m * error_m.transpose();
 }
 
-ToldView LandingPipeline::WhatIsTold(const LandingObservation& observation) const {
+ToldView LandingPipeline::Impl::WhatIsTold(const LandingObservation& observation) const {
   const auto& world_from_camera = observation.world_from_camera;
   if (!world_from_camera) return {altitude_m_, {}};
   ToldView told;
@@ -120,7 +172,8 @@ ToldView LandingPipeline::WhatIsTold(const LandingObservation& observation) cons
   return told;
 }
 
-void LandingPipeline::AddTrack(const LandingObservation& observation, LandingHint* hint) const {
+void LandingPipeline::Impl::AddTrack(const LandingObservation& observation,
+                                     LandingHint* hint) const {
   const auto& world_from_camera = observation.world_from_camera;
   if (!world_from_camera || !is_track_trusted_) return;
   const std::optional<TargetEstimate> target = tracker_.Predict(observation.time);
@@ -134,8 +187,8 @@ void LandingPipeline::AddTrack(const LandingObservation& observation, LandingHin
   if (altitude_m > 0) hint->altitude_m = altitude_m;
 }
 
-void LandingPipeline::AddLastSighting(const LandingObservation& observation,
-                                      LandingHint* hint) const {
+void LandingPipeline::Impl::AddLastSighting(const LandingObservation& observation,
+                                            LandingHint* hint) const {
   if (!last_ || observation.world_from_camera) return;
   const double age_s = ToSeconds(observation.time - last_->time);
   if (age_s < 0 || age_s > options_.hint_age_s) return;
@@ -143,7 +196,7 @@ void LandingPipeline::AddLastSighting(const LandingObservation& observation,
   hint->center_sigma_m = options_.hint_sigma_m + options_.hint_speed_mps * age_s;
 }
 
-void LandingPipeline::LocateInWorld(LandingObservation* observation) const {
+void LandingPipeline::Impl::LocateInWorld(LandingObservation* observation) const {
   const auto& detection = observation->report.detection;
   const auto& world_from_camera = observation->world_from_camera;
   if (!detection || !world_from_camera) return;
@@ -163,7 +216,8 @@ void LandingPipeline::LocateInWorld(LandingObservation* observation) const {
   observation->position_method = PositionMethod::kAltitude;
 }
 
-TargetMeasurement LandingPipeline::MeasurementOf(const LandingObservation& observation) const {
+TargetMeasurement LandingPipeline::Impl::MeasurementOf(
+    const LandingObservation& observation) const {
   const LandingDetection& detection = *observation.report.detection;
   const Eigen::Vector3d& center = detection.camera_from_pattern.translation;
   const Eigen::Quaterniond& rotation = observation.world_from_camera->rotation;
@@ -181,7 +235,7 @@ TargetMeasurement LandingPipeline::MeasurementOf(const LandingObservation& obser
   return measurement;
 }
 
-void LandingPipeline::Track(LandingObservation* observation) {
+void LandingPipeline::Impl::Track(LandingObservation* observation) {
   if (observation->center_in_world) {
     observation->fate = tracker_.Add(MeasurementOf(*observation));
     is_track_trusted_ = observation->fate <= MeasurementFate::kAccepted;
@@ -190,10 +244,38 @@ void LandingPipeline::Track(LandingObservation* observation) {
   observation->target = tracker_.Predict(observation->time);
 }
 
-void LandingPipeline::Remember(const LandingObservation& observation) {
+void LandingPipeline::Impl::Remember(const LandingObservation& observation) {
   last_.reset();
   const auto& detection = observation.report.detection;
   if (detection) last_ = {observation.time, detection->camera_from_pattern.translation};
 }
+
+LandingPipeline::LandingPipeline(const CameraCalibration& calibration,
+                                 const LandingPipelineOptions& options)
+    : impl_(std::make_unique<Impl>(calibration, options)) {}
+LandingPipeline::~LandingPipeline() = default;
+LandingPipeline::LandingPipeline(LandingPipeline&&) noexcept = default;
+LandingPipeline& LandingPipeline::operator=(LandingPipeline&&) noexcept = default;
+
+PoseStatus LandingPipeline::AddPose(const PoseSample& sample) { return impl_->AddPose(sample); }
+void LandingPipeline::SetAltitude(std::optional<double> altitude_m) {
+  impl_->SetAltitude(altitude_m);
+}
+void LandingPipeline::LimitSearch(double max_search_ms) { impl_->LimitSearch(max_search_ms); }
+void LandingPipeline::ChangeOptions(const LandingPipelineOptions& options) {
+  impl_->ChangeOptions(options);
+}
+LandingObservation LandingPipeline::Process(const cv::Mat& image, Time time) {
+  return impl_->Process(image, time);
+}
+const ToldContradictions& LandingPipeline::contradictions() const {
+  return impl_->contradictions();
+}
+const CalibrationMonitor& LandingPipeline::calibration_monitor() const {
+  return impl_->calibration_monitor();
+}
+const TargetTracker& LandingPipeline::tracker() const { return impl_->tracker(); }
+const LandingPatternDetector& LandingPipeline::detector() const { return impl_->detector(); }
+const LandingPipelineOptions& LandingPipeline::options() const { return impl_->options(); }
 
 }  // namespace kestrel

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,14 +12,15 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/pose_history.h"
 #include "kestrel/vision/landing/landing_pattern_detector.h"
-#include "kestrel/vision/pipeline/calibration_monitor.h"
-#include "kestrel/vision/pipeline/camera_poses.h"
 #include "kestrel/vision/pipeline/measurement_noise.h"
-#include "kestrel/vision/pipeline/told_contradictions.h"
 #include "kestrel/vision/tracking/target_tracker.h"
 
 namespace kestrel {
+
+class CalibrationMonitor;
+class ToldContradictions;
 
 struct LandingPipelineOptions {
   LandingPatternDetectorOptions detector;
@@ -111,22 +113,32 @@ struct LandingObservation {
 // Locates the landing pattern of an image in the world and predicts it: pose history, mount and
 // clock offset, detector, and tracker, whose prediction is the next frame's hint. For use by one
 // thread at a time.
+//
+// Example:
+//   LandingPipeline pipeline(ReadCalibration("camera.yaml"), {});
+//   pipeline.AddPose({.time = time, .world_from_body = {}});
+//   const LandingObservation seen = pipeline.Process(image, time);
+//   if (seen.center_in_world) std::cout << seen.center_in_world->transpose() << " m\n";
+//   const auto soon = pipeline.tracker().Predict(time + std::chrono::milliseconds(500));
 class LandingPipeline {
  public:
   // Throws InputError when calibration or options are invalid.
   LandingPipeline(const CameraCalibration& calibration, const LandingPipelineOptions& options);
+  ~LandingPipeline();
+  LandingPipeline(LandingPipeline&&) noexcept;
+  LandingPipeline& operator=(LandingPipeline&&) noexcept;
 
   // Adds a pose from the navigation, on its clock, later than those before. It may be earlier than
   // the last frame. A frame that arrives before the pose after its time has none, or a predicted
   // one.
-  PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
+  PoseStatus AddPose(const PoseSample& sample);
 
   // Sets the height (m) of the camera above the pattern for frames without a pose; nothing when not
   // known.
-  void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
+  void SetAltitude(std::optional<double> altitude_m);
 
   // Sets the time limit (ms) of a frame's search where the options set none; 0: no limit.
-  void LimitSearch(double max_search_ms) { max_search_ms_ = max_search_ms; }
+  void LimitSearch(double max_search_ms);
 
   // Changes the options and keeps the track and the poses. The options in 'tracker' and
   // 'unmodelled' and those of the poses keep their old effect. Throws InputError and changes
@@ -138,46 +150,19 @@ class LandingPipeline {
   LandingObservation Process(const cv::Mat& image, Time time);
 
   // Contradictions between the told height and attitude and the detections.
-  const ToldContradictions& contradictions() const { return contradictions_; }
+  const ToldContradictions& contradictions() const;
 
   // Evidence of the detections about the calibration.
-  const CalibrationMonitor& calibration_monitor() const { return calibration_monitor_; }
+  const CalibrationMonitor& calibration_monitor() const;
 
   // The track. Its times are those of the frames.
-  const TargetTracker& tracker() const { return tracker_; }
-  const LandingPatternDetector& detector() const { return detector_; }
-  const LandingPipelineOptions& options() const { return options_; }
+  const TargetTracker& tracker() const;
+  const LandingPatternDetector& detector() const;
+  const LandingPipelineOptions& options() const;
 
  private:
-  // Last position of the pattern in the camera.
-  struct Sighting {
-    Time time;
-    Eigen::Vector3d center_in_camera;
-  };
-
-  void Detect(const cv::Mat& image, LandingObservation* observation);
-  ToldView WhatIsTold(const LandingObservation& observation) const;
-  double AltitudeExcess() const;
-  void AddErrorOfFocalLength(LandingDetection* detection) const;
-  void AddTrack(const LandingObservation& observation, LandingHint* hint) const;
-  void AddLastSighting(const LandingObservation& observation, LandingHint* hint) const;
-  void LocateInWorld(LandingObservation* observation) const;
-  TargetMeasurement MeasurementOf(const LandingObservation& observation) const;
-  void Track(LandingObservation* observation);
-  void Remember(const LandingObservation& observation);
-
-  LandingPipelineOptions options_;
-  LandingPatternDetector detector_;
-  LandingWorkspace workspace_;
-  CameraPoses poses_;
-  std::optional<double> altitude_m_;
-  TargetTracker tracker_;
-  bool is_track_trusted_ = true;  // the last detection was where the track predicted it
-  std::optional<Sighting> last_;
-  int next_step_ = 0;  // step at which the search of the last frame ran out of time
-  double max_search_ms_ = 0;
-  ToldContradictions contradictions_;
-  CalibrationMonitor calibration_monitor_;
+  class Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace kestrel

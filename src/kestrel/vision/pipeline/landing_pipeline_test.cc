@@ -13,7 +13,9 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/geometry/test_rotation.h"
+#include "kestrel/vision/pipeline/calibration_monitor.h"
 #include "kestrel/vision/pipeline/test_pattern.h"
+#include "kestrel/vision/pipeline/told_contradictions.h"
 
 namespace kestrel {
 namespace {

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace kestrel {
+
+enum class GuidancePhase {
+  kIdle,      // not begun, refused, or ended: the pilot flies
+  kSearch,    // flies to where the vehicle was last or should pass, waits there, then circles
+              // outwards
+  kApproach,  // flies to above the target
+  kFollow,    // follows above it, at follow_height_m, until it may descend
+  kDescend,   // descends above it
+  kCommit,    // the last bit of the descent
+  kGoAround,  // climbs again
+  kLanded,    // in contact with the deck; stays so until guidance begins anew
+};
+// "idle", "search", "approach", "follow", "descend", "commit", "go-around", "landed"
+const char* ToString(GuidancePhase phase);
+
+}  // namespace kestrel
