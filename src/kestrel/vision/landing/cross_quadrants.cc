@@ -10,6 +10,10 @@
 namespace kestrel {
 namespace {
 
+constexpr double kLeastArea = 0.04;    // of a quadrant, share of the disc
+constexpr double kMaxAreaRatio = 2.5;  // of the largest quadrant to the smallest
+constexpr double kRightAngled = 0.6;   // least resultant of the directions, modulo a right angle
+
 // Dilates by the neighbourhood of a pixel: itself and the four that share an edge with it.
 void Dilate(SmallMask* mask) {
   std::uint64_t above = 0;
@@ -83,7 +87,7 @@ std::optional<Cross> FindCrossByQuadrants(const RingInside& inside) {
   for (int y = 0; y < bright.size(); ++y) {
     while (bright.row(y) != 0) {
       const Area area = TakeArea(inside, std::countr_zero(bright.row(y)), y, &bright);
-      if (area.pixels < 0.04 * disc_pixels) continue;
+      if (area.pixels < kLeastArea * disc_pixels) continue;
       if (count == 4) return std::nullopt;
       quadrants[count++] = area;
     }
@@ -92,7 +96,7 @@ std::optional<Cross> FindCrossByQuadrants(const RingInside& inside) {
   const auto [smallest, largest] =
       std::minmax_element(quadrants.begin(), quadrants.end(),
                           [](const Area& a, const Area& b) { return a.pixels < b.pixels; });
-  if (largest->pixels > 2.5 * smallest->pixels) return std::nullopt;
+  if (largest->pixels > kMaxAreaRatio * smallest->pixels) return std::nullopt;
 
   // The quadrants lie between the arms: the mean of their directions, modulo a right angle.
   double cosine = 0, sine = 0;
@@ -101,7 +105,7 @@ std::optional<Cross> FindCrossByQuadrants(const RingInside& inside) {
     cosine += std::cos(4 * angle) / 4;
     sine += std::sin(4 * angle) / 4;
   }
-  if (std::hypot(cosine, sine) < 0.6) return std::nullopt;  // not at right angles
+  if (std::hypot(cosine, sine) < kRightAngled) return std::nullopt;
   return Cross{std::atan2(sine, cosine) / 4 + std::numbers::pi / 4};
 }
 

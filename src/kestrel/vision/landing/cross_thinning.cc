@@ -13,8 +13,16 @@
 namespace kestrel {
 namespace {
 
-constexpr int kBins = 36;       // bins of the histogram of directions, over a right angle
-constexpr double kNear = 0.15;  // inner radii; the two lines are not separate there
+constexpr int kBins = 36;   // bins of the histogram of directions, over a right angle
+constexpr int kFewest = 8;  // pixels in the direction of the arms
+// Inner radii: the two lines are not separate nearer to the middle, and the disc ends.
+constexpr double kNear = 0.15;
+constexpr double kFar = 0.85;
+constexpr int kThinnings = 20;       // more than the widest arm needs
+constexpr double kOffArm = 0.35;     // tangent; pixels farther from an arm's direction are not its
+constexpr double kLeastSeen = 0.35;  // of a half arm, to be asked for
+constexpr double kMaxSkew = 20 * std::numbers::pi / 180;  // of the arms from a right angle
+constexpr double kMaxOffCenter = 1.0 / 3;                 // inner radii: a sixth of the diameter
 
 // Line through the points of one arm and its opposite, by total least squares.
 struct ArmLine {
@@ -60,7 +68,7 @@ std::optional<double> DominantDirection(const RingInside& inside, const SmallMas
       best_count = count;
     }
   }
-  if (best_count < 8) return std::nullopt;
+  if (best_count < kFewest) return std::nullopt;
   return (best + 0.5) / kBins * 0.5 * std::numbers::pi;
 }
 
@@ -69,7 +77,7 @@ double HalfArmSeen(const RingInside& inside, double angle) {
   constexpr int kSamples = 10;
   int seen = 0;
   for (int i = 0; i < kSamples; ++i) {
-    const double radius = kNear + (0.85 - kNear) * i / (kSamples - 1);
+    const double radius = kNear + (kFar - kNear) * i / (kSamples - 1);
     const auto index = [&](double coordinate) {
       return static_cast<int>((radius * coordinate + 1) * 0.5 * inside.disc.size());
     };
@@ -82,7 +90,7 @@ double HalfArmSeen(const RingInside& inside, double angle) {
 
 std::optional<Cross> FindCrossByThinning(const RingInside& inside) {
   SmallMask lines = inside.dark;
-  ThinGuoHall(&lines, 20);
+  ThinGuoHall(&lines, kThinnings);
   const std::optional<double> direction = DominantDirection(inside, lines);
   if (!direction) return std::nullopt;
   const double cosine = std::cos(*direction);
@@ -95,8 +103,8 @@ std::optional<Cross> FindCrossByThinning(const RingInside& inside) {
       const double along = cosine * u + sine * v;
       const double across = cosine * v - sine * u;
       if (u * u + v * v < kNear * kNear) continue;
-      if (std::abs(across) < 0.35 * std::abs(along)) arms[0].Add(u, v, along > 0);
-      if (std::abs(along) < 0.35 * std::abs(across)) arms[1].Add(u, v, across > 0);
+      if (std::abs(across) < kOffArm * std::abs(along)) arms[0].Add(u, v, along > 0);
+      if (std::abs(along) < kOffArm * std::abs(across)) arms[1].Add(u, v, across > 0);
     }
   }
   // A half arm that the image shows leaves about 0.6 inner radii of pixels.
@@ -106,7 +114,7 @@ std::optional<Cross> FindCrossByThinning(const RingInside& inside) {
     for (int side = 0; side < 2; ++side) {
       const double seen =
           HalfArmSeen(inside, *direction + (arm + (side == 0 ? 2 : 0)) * 0.5 * std::numbers::pi);
-      if (seen < 0.35) continue;
+      if (seen < kLeastSeen) continue;
       if (arms[arm].on_side[side] < seen * full) return std::nullopt;
       ++sides[arm];
     }
@@ -117,13 +125,13 @@ std::optional<Cross> FindCrossByThinning(const RingInside& inside) {
   const double a0 = arms[0].angle();
   const double a1 = arms[1].angle();
   const double cross_sine = std::sin(a1 - a0);
-  if (std::abs(cross_sine) < std::cos(20 * std::numbers::pi / 180)) return std::nullopt;
+  if (std::abs(cross_sine) < std::cos(kMaxSkew)) return std::nullopt;
   Eigen::Matrix2d directions;
   directions << std::cos(a0), -std::cos(a1), std::sin(a0), -std::sin(a1);
   const Eigen::Vector2d lengths = directions.inverse() * (arms[1].mean() - arms[0].mean());
   const Eigen::Vector2d crossing =
       arms[0].mean() + lengths(0) * Eigen::Vector2d(std::cos(a0), std::sin(a0));
-  if (crossing.norm() > 1.0 / 3) return std::nullopt;  // a sixth of the diameter
+  if (crossing.norm() > kMaxOffCenter) return std::nullopt;
   const double c4 = std::cos(4 * a0) + std::cos(4 * a1);
   const double s4 = std::sin(4 * a0) + std::sin(4 * a1);
   return Cross{std::atan2(s4, c4) / 4};

@@ -10,6 +10,8 @@
 #include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/image/border_moments.h"
 #include "kestrel/core/image/gray_sampling.h"
+#include "kestrel/vision/landing/image_properties.h"
+#include "kestrel/vision/landing/print_places.h"
 
 namespace kestrel {
 namespace {
@@ -61,8 +63,9 @@ std::optional<DarkArea> TestDarkArea(const BorderTracer& tracer, const Border& b
   const int width = border.max.x - border.min.x;
   const int height = border.max.y - border.min.y;
   if (std::min(width, height) < kMinAxisRatio * std::max(width, height)) return std::nullopt;
+  constexpr double kSmoothLength = 2.6;
   // The border of a convex outline is as long as its bounding box is around; noise may add some.
-  const bool smooth = static_cast<double>(border.count) <= 2.6 * (width + height);
+  const bool smooth = static_cast<double>(border.count) <= kSmoothLength * (width + height);
   RegionMoments moments;
   if (smooth) moments = ComputeBorderMoments(tracer.begin(border), border.count);
   DarkArea area;
@@ -110,11 +113,13 @@ double RingContrast(const cv::Mat& image, const Ellipse& outer_edge,
                     const LandingPattern& pattern) {
   constexpr int kDirections = OutlineSampler::kDirections;
   constexpr float kLeast = 3;  // gray values
+  constexpr float kLeastOfMedian = 0.2f;
+  constexpr double kOutside = 0.7;  // from the ring to the white beside it, ring widths
   const double radius = pattern.outer_radius_m();
   const double ring = 0.5 * (radius + pattern.inner_radius_m()) / radius;
-  const double outside =
-      1 + 0.7 * std::min(pattern.ring_width_m / radius, 0.5 * pattern.board_size_m / radius - 1);
-  const double inside = 0.65 * pattern.inner_radius_m() / radius;
+  const double outside = 1 + kOutside * std::min(pattern.ring_width_m / radius,
+                                                 0.5 * pattern.board_size_m / radius - 1);
+  const double inside = PrintPlaces::kInside * pattern.inner_radius_m() / radius;
   const OutlineSampler sampler(image, outer_edge);
   std::array<float, kDirections> contrast;
   std::array<float, kDirections> inner_contrast;
@@ -133,24 +138,28 @@ double RingContrast(const cv::Mat& image, const Ellipse& outer_edge,
   if (2 * seen < kDirections) return 0;
   std::sort(contrast.begin(), contrast.begin() + seen);
   const float least = contrast[seen / 4];
-  if (least < std::max(kLeast, 0.2f * contrast[seen / 2])) return 0;
+  if (least < std::max(kLeast, kLeastOfMedian * contrast[seen / 2])) return 0;
   // Inside, arms and white quadrants alternate: a quarter of the directions must show white.
   const float upper = RankedInPlace(std::span(inner_contrast).first(seen), seen - seen / 4);
-  if (upper < 0.2f * contrast[seen / 2]) return 0;
+  if (upper < static_cast<float>(PrintPlaces::kLeastInside) * contrast[seen / 2]) return 0;
   return least;
 }
 
 double BoardContrast(const cv::Mat& image, const Ellipse& outer_edge) {
+  // Outer radii of the ring: white of the board, and the ring, whose width and place are not exact.
+  constexpr double kOnBoard = 1.35;
+  constexpr std::array<double, 3> kOnRing{0.8, 0.95, 1.1};
   constexpr int kDirections = OutlineSampler::kDirections;
   const OutlineSampler sampler(image, outer_edge);
   std::array<float, kDirections> contrast;
   for (int i = 0; i < kDirections; ++i) {
-    const float white = sampler.Gray(i, 1.35);
+    const float white = sampler.Gray(i, kOnBoard);
     const auto dark = [&](double scale) { return sampler.Gray(i, scale); };
-    contrast[i] = white < 0 ? 0 : white - std::min({dark(0.8), dark(0.95), dark(1.1)});
+    contrast[i] =
+        white < 0 ? 0 : white - std::min({dark(kOnRing[0]), dark(kOnRing[1]), dark(kOnRing[2])});
   }
   const float median = MedianInPlace(contrast);
-  return median > 2 ? median : 0;
+  return median > GrayContrast::kLeast ? median : 0;
 }
 
 }  // namespace kestrel

@@ -11,6 +11,7 @@
 #include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/image/gray_sampling.h"
 #include "kestrel/vision/landing/gray_doubts.h"
+#include "kestrel/vision/landing/image_properties.h"
 
 namespace kestrel {
 namespace {
@@ -38,8 +39,8 @@ struct Ramp {
   }
 };
 constexpr Ramp kIsInk{0.2f, 0.6f}, kIsDark{0.35f, 0.85f}, kIsInkOnly{0.7f, 0.95f};
-constexpr float kBeyondWhite = 0.15f;     // above lit white, share of the contrast
-constexpr float kLeastContrast = 2;       // gray values
+constexpr float kBeyondWhite = 0.15f;  // above lit white, share of the contrast
+constexpr float kLeastContrast = GrayContrast::kLeast;
 constexpr float kLeastOfContrast = 0.25;  // share of the whole print's contrast, in any direction
 constexpr double kEnoughSeen = 0.25;      // least share of places in view by which a part is judged
 

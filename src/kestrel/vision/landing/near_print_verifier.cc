@@ -5,20 +5,19 @@
 #include <cmath>
 
 #include "kestrel/vision/landing/gray_doubts.h"
+#include "kestrel/vision/landing/image_properties.h"
 #include "kestrel/vision/landing/pattern_pose.h"
+#include "kestrel/vision/landing/print_places.h"
 
 namespace kestrel {
 namespace {
 
-constexpr double kMinRingContrast = 5;    // gray values
-constexpr double kMinInsideContrast = 6;  // gray values
-constexpr double kLinesRingPx = 150;      // above that, lines are tried first (section 2.4)
+constexpr double kLinesRingPx = 150;  // above that, lines are tried first (section 2.4)
 // Least agreement of a pose that is located. A pose beside the print may miss an arm, and the edges
 // may still bring it into place.
 constexpr double kWorthLocating = 0.4;
-// Distance of the centres of two rings that count as the same, as a share of the shorter axis:
-// where one was tested, and where one was seen to be something else.
-constexpr double kSameStart = 0.05;
+// Distance of the centres of two rings that count as the same where one was seen to be something
+// else, as a share of the shorter axis.
 constexpr double kSameSign = 0.12;
 // Search reach for the edges of a ring without a cross, times the usual reach. Where much of the
 // ring is cut off or hidden, the rest tells little about its far side.
@@ -29,8 +28,6 @@ constexpr double kSureReach = 0.02;       // the same, for a ring whose edges ar
 constexpr double kCrossReach = 0.03;      // the same, for a ring that follows from the cross
 constexpr double kLeastReachPx = 2;
 constexpr double kMinStep = 0.12;  // least step of an edge, share of the print's contrast per pixel
-constexpr double kLeastStep = 2;   // the same, gray values per pixel
-constexpr double kWhole = 0.75;  // least share of the print in view for a print that is not partial
 // The middle of a print follows the edges around it only as far as they deviate from the pose by
 // more than this many standard deviations.
 constexpr double kSureCenter = 4;
@@ -80,7 +77,8 @@ void NearPrintVerifier::Test(const RingCandidate& ring) {
   RingPlace place{{}, ring.diameters_px, ring.reach_px};
   if (models_.camera.Project(ring.poses[0].center, &place.center_px) ==
           ProjectionStatus::kOutsideModel ||
-      buffers_.refused.Holds(place, kSameSign) || buffers_.tested.Holds(place, kSameStart)) {
+      buffers_.refused.Holds(place, kSameSign) ||
+      buffers_.tested.Holds(place, RingMemory::kSameStart)) {
     return;
   }
   buffers_.tested.Note(place);
@@ -156,19 +154,20 @@ std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCross(const 
   const PatternView view(models_.camera, PatternPose(ring, 0), models_.matcher.extent_m(), region);
   if (!view.valid()) return std::nullopt;
   const double contrast = models_.matcher.RingContrast(image, view);
-  if (contrast < kMinRingContrast) return std::nullopt;
+  if (contrast < GrayContrast::kLeastRing) return std::nullopt;
   const auto print = [&](const Cross& cross, CrossMethod method) {
     return Hypothesis{PatternPose(ring, cross.arm_angle), method, contrast};
   };
   // Thinning is tried when the lines of a large cross are broken. It is fast on the rectified
   // inside, at any size.
   if (diameter_px > kLinesRingPx) {
-    const auto inside = RectifyInside(image, view, pattern, kLinesSize, kMinInsideContrast);
+    const auto inside = RectifyInside(image, view, pattern, kLinesSize, GrayContrast::kLeastInside);
     const auto cross =
         inside ? FindCrossByLines(*inside, pattern, &buffers_.cross_lines) : std::nullopt;
     if (cross) return print(*cross, CrossMethod::kLines);
   }
-  const auto inside = RectifyInside(image, view, pattern, kThinningSize, kMinInsideContrast);
+  const auto inside =
+      RectifyInside(image, view, pattern, kThinningSize, GrayContrast::kLeastInside);
   const auto cross = inside ? FindCrossByThinning(*inside) : std::nullopt;
   if (cross) return print(*cross, CrossMethod::kThinning);
   return std::nullopt;
@@ -180,7 +179,7 @@ std::optional<RingLocation> NearPrintVerifier::RefineRing(const CirclePose& ring
                                                           int iterations) {
   const SearchLog::Timer timer = log_.Time(LandingStage::kRing);
   return models_.locator.LocateRing(image_.whole(), PatternPose(ring, 0), reach_px,
-                                    kMinRingContrast / 2, iterations,
+                                    GrayContrast::kLeastRing / 2, iterations,
                                     prior_.LevelPrior(ring.normal));
 }
 
@@ -190,11 +189,11 @@ std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCrossInRefin
   const ImageRegion region = image_.RegionAt(ViewLevel(diameter_px));
   const cv::Mat image = image_.At(region.level);
   const PatternView view(models_.camera, ring, models_.matcher.extent_m(), region);
-  if (!view.valid() || models_.matcher.RingContrast(image, view) < kMinRingContrast) {
+  if (!view.valid() || models_.matcher.RingContrast(image, view) < GrayContrast::kLeastRing) {
     return std::nullopt;
   }
   const std::optional<Cross> cross =
-      FindCrossByProfile(image, view, models_.options.pattern, kMinRingContrast / 2);
+      FindCrossByProfile(image, view, models_.options.pattern, GrayContrast::kLeastRing / 2);
   if (!cross) return std::nullopt;
   RigidTransform turned = ring;
   turned.rotation *=
@@ -228,7 +227,7 @@ bool NearPrintVerifier::TestPrint(const Hypothesis& print, const Eigen::Vector2d
   PrintAlignment alignment{
       PlaneWarp(models_.camera, print.camera_from_pattern, models_.locator.outline().radius_m()),
       {}};
-  const double min_step = std::max(kLeastStep, kMinStep * print.contrast);
+  const double min_step = std::max(GrayContrast::kLeastEdge, kMinStep * print.contrast);
   if (!AlignPrint(image_.whole(), image, region, models_.locator.outline().all(), reach_px,
                   min_step, &alignment)) {
     return false;
@@ -238,8 +237,8 @@ bool NearPrintVerifier::TestPrint(const Hypothesis& print, const Eigen::Vector2d
   PrintFinding finding;
   finding.diameters_px = diameters_px;
   const double seen = models_.ink.Doubt(image, view, &finding.doubts);
-  finding.kind = seen < kWhole ? PrintKind::kPart : PrintKind::kByEdges;
-  finding.method = seen < kWhole ? CrossMethod::kPartial : print.method;
+  finding.kind = seen < PrintPlaces::kWhole ? PrintKind::kPart : PrintKind::kByEdges;
+  finding.method = seen < PrintPlaces::kWhole ? CrossMethod::kPartial : print.method;
   finding.doubts[PrintDoubt::kHidden] = 1 - seen;
   DoubtEdges(alignment, &finding);
   bool is_found = false;

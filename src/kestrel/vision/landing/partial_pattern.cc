@@ -18,8 +18,12 @@ constexpr double kMaxPlaneReach = 4;     // radius of the part of the plane that
 constexpr std::size_t kMaxSegments = 60;
 constexpr std::size_t kMaxBars = 16;
 constexpr std::size_t kMaxPoses = 4;
-constexpr double kParallel = 0.99;    // cosine
-constexpr double kRightAngle = 0.14;  // cosine
+constexpr double kLeastBarLength = 0.8;  // in its widths
+constexpr double kMaxBarWidth = 1.5;
+constexpr double kMaxWidthRatio = 1.4;  // of the two bars
+constexpr double kBarReach = 1.2;       // half lengths of an arm from the middle to that of a bar
+constexpr double kParallel = 0.99;      // cosine
+constexpr double kRightAngle = 0.14;    // cosine
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -77,7 +81,7 @@ class Finder {
         const double width = kBlackSide * across.dot(0.5 * (b.start + b.end) - a.start);
         const double low = std::max(0.0, direction.dot(b.end - a.start));
         const double high = std::min(a.length(), direction.dot(b.start - a.start));
-        if (width <= 0 || high - low < 0.8 * width || width > 1.5) continue;
+        if (width <= 0 || high - low < kLeastBarLength * width || width > kMaxBarWidth) continue;
         workspace_.bars.push_back(
             {a.start + 0.5 * (low + high) * direction + 0.5 * kBlackSide * width * across,
              direction, width, high - low});
@@ -118,13 +122,13 @@ class Finder {
 
   void AddCross(const PartialPatternWorkspace::Bar& a, const PartialPatternWorkspace::Bar& b) {
     if (std::abs(a.direction.dot(b.direction)) > kRightAngle) return;
-    if (std::max(a.width, b.width) > 1.4 * std::min(a.width, b.width)) return;
+    if (std::max(a.width, b.width) > kMaxWidthRatio * std::min(a.width, b.width)) return;
     // The point where the axes meet, and its distance from the bars: both bars must be parts of one
     // cross.
     const double along = Cross(b.middle - a.middle, b.direction) / Cross(a.direction, b.direction);
     const Eigen::Vector2d center = a.middle + along * a.direction;
     const double width = 0.5 * (a.width + b.width);
-    const double reach = 1.2 * pattern_.arm_half_length_m / pattern_.arm_width_m * width;
+    const double reach = kBarReach * pattern_.arm_half_length_m / pattern_.arm_width_m * width;
     if (std::abs(along) > reach || (center - b.middle).norm() > reach) return;
     const double height = pattern_.arm_width_m / width;
     RigidTransform pose;

@@ -4,16 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kestrel/vision/landing/image_properties.h"
 #include "kestrel/vision/landing/pattern_locator_equations.h"
 
 namespace kestrel {
 namespace {
 
 constexpr int kLeastSteps = 3;
-// All steps but the last few use every kCoarseEdges-th edge, if there are kFewEdges of those.
-constexpr std::size_t kCoarseEdges = 3;
-constexpr std::size_t kFewEdges = 36;
-constexpr double kBlurSpreadPx2 = 0.3;  // spread over lenses (0.45 to 0.9 px), squared
 // Bright white spreads over the black in overexposed images, and ink runs. Least spread that is
 // accepted, in pixels and in its standard deviations. A smaller one may be noise, or the effect of
 // a narrow stroke's edges on each other.
@@ -61,7 +58,7 @@ PatternLocator::Solution PatternLocator::SolvePose(const Linearized& linearized,
 // Sets covariance and residuals of the location from a solution.
 void PatternLocator::Describe(const Linearized& linearized, const Solution& solution,
                               PatternLocation* location) {
-  const Vector blur = kBlurSpreadPx2 * solution.inverse * linearized.by_blur;
+  const Vector blur = LensBlur::kSquareSpreadPx2 * solution.inverse * linearized.by_blur;
   location->covariance = (solution.Covariance() + blur * blur.transpose())
                              .topLeftCorner<kPoseUnknowns, kPoseUnknowns>();
   location->edge_rms_px = std::sqrt(solution.mean_square);
@@ -75,15 +72,16 @@ std::optional<PatternLocation> PatternLocator::Locate(
   PatternLocation location;
   State state{initial};
   double scale = Linearized::kFarScalePx;
-  if (found.count >= kCoarseEdges * kFewEdges) {
-    if (!Approach(EdgeColumns(found, kCoarseEdges), prior, &state, &scale)) return std::nullopt;
+  if (found.count >= EdgeFit::kCoarseStride * EdgeFit::kFewEdges) {
+    if (!Approach(EdgeColumns(found, EdgeFit::kCoarseStride), prior, &state, &scale))
+      return std::nullopt;
   }
   const EdgeColumns edges(found, 1);
   Linearized linearized(edges);
   const int least_steps = scale < Linearized::kFarScalePx ? 1 : kLeastSteps;
   for (int i = 1; i <= kMaxSteps; ++i) {
     Linearize(state, scale, kUnknowns, &linearized);
-    if (linearized.used < kMinEdges) return std::nullopt;
+    if (linearized.used < EdgeFit::kLeastEdges) return std::nullopt;
     const bool near = i >= least_steps;
     const Solution solution = SolvePose(linearized, state, prior, near && !is_part);
     // The tilt of a pattern seen from straight above moves the edges only by its square, so the
@@ -124,7 +122,7 @@ bool PatternLocator::Approach(const EdgeColumns& edges, const std::optional<Norm
   Linearized linearized(edges);
   for (int i = 1; i <= kMaxSteps; ++i) {
     Linearize(*state, *scale_px, kPoseUnknowns, &linearized);
-    if (linearized.used < kMinEdges) return false;
+    if (linearized.used < EdgeFit::kLeastEdges) return false;
     const Vector step = WithPrior(linearized, *state, prior).PoseStep();
     if (!state->Move(step)) return false;
     *scale_px = linearized.NextScale(*scale_px);

@@ -113,7 +113,6 @@ class PatternLocator {
   using Vector = Eigen::Matrix<double, kUnknowns, 1>;
   using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
-  static constexpr std::size_t kMinEdges = 12;  // least number of edges for a pose
   static constexpr int kMaxSteps = 8;
   static constexpr double kSettledPx = 0.08;  // outlines that move by less have settled
   // Squared Mahalanobis distance of the calibration from the camera's above which it is solved for.

@@ -102,7 +102,7 @@ void PatternLocator::Recalibrate(const EdgeColumns& edges, const std::optional<N
   double scale = Linearized::kFarScalePx;
   for (int i = 1; i <= kMaxSteps; ++i) {
     Linearize(free, scale, kUnknowns, &linearized);
-    if (linearized.used < kMinEdges) return;
+    if (linearized.used < EdgeFit::kLeastEdges) return;
     const Solution solution = SolveCalibration(linearized, free, prior);
     if (i == kMaxSteps || linearized.Movement(solution.step) < kSettledPx) {
       location->calibration = Judge(linearized, solution, free);

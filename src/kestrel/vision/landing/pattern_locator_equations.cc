@@ -152,7 +152,7 @@ double PatternLocator::Linearized::RobustScale() const {
 }
 
 double PatternLocator::Linearized::NextScale(double scale_px) const {
-  const double scale = std::clamp(RobustScale(), kLeastScalePx, scale_px);
+  const double scale = std::clamp(RobustScale(), EdgeFit::kLeastScalePx, scale_px);
   return scale_px == kFarScalePx ? std::max(scale, 1.0) : scale;
 }
 

@@ -116,8 +116,7 @@ struct PatternLocator::Linearized {
   // Returns the motion of the outlines in the image by 'step' (px, root mean square).
   double Movement(const Vector& step) const;
 
-  static constexpr double kFarScalePx = 1000;  // scale of the offsets in the first step
-  static constexpr double kLeastScalePx = 0.25;
+  static constexpr double kFarScalePx = 1000;     // scale of the offsets in the first step
   static constexpr float kOutsideModelPx = 1e6f;  // offset of points that the lens does not show
 
   const EdgeColumns& edges;

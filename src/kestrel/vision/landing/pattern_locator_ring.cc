@@ -9,7 +9,6 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kCoarseStride = 3;  // the first measurement uses every kCoarseStride-th place
 constexpr double kWholeRing = 0.75;  // least share of the places with an edge, for a whole ring
 constexpr double kRingSettledPx = 0.2;
 constexpr double kMaxRingScatterPx = 1.5;  // standard deviation, after two iterations
@@ -24,7 +23,7 @@ std::optional<RingLocation> PatternLocator::LocateRing(
   double scale = std::max(1.0, 0.5 * reach_px);
   double reach = reach_px;
   const std::span<const PrintOutline::Place> places = outline_.ring();
-  const auto whole = static_cast<std::size_t>(kWholeRing * places.size() / kCoarseStride);
+  const auto whole = static_cast<std::size_t>(kWholeRing * places.size() / EdgeFit::kCoarseStride);
   bool is_whole = false;
   PrintEdges found;
   EdgeColumns edges;
@@ -36,13 +35,13 @@ std::optional<RingLocation> PatternLocator::LocateRing(
     Linearize(state, scale, kPoseUnknowns, &linearized);
   };
   for (int i = 0; i < iterations; ++i) {
-    measure(kCoarseStride);
+    measure(EdgeFit::kCoarseStride);
     is_whole = linearized.used >= whole;
     if (!is_whole) {
       measure(1);
-      is_whole = linearized.used >= kCoarseStride * whole;
+      is_whole = linearized.used >= EdgeFit::kCoarseStride * whole;
     }
-    if (linearized.used < kMinEdges) return std::nullopt;
+    if (linearized.used < EdgeFit::kLeastEdges) return std::nullopt;
     // A ring does not determine the turn in its plane, and a short arc hardly its far side.
     Matrix& h = linearized.equations.h;
     h.diagonal() *= 1 + 1e-4;
@@ -50,8 +49,8 @@ std::optional<RingLocation> PatternLocator::LocateRing(
     for (int k = kPoseRotation; k < kPoseUnknowns; ++k) h(k, k) += weight;
     const Vector step = WithPrior(linearized, state, prior).PoseStep();
     if (!state.Move(step)) return std::nullopt;
-    const double before = std::exchange(
-        scale, std::clamp(linearized.RobustScale(), Linearized::kLeastScalePx, scale));
+    const double before =
+        std::exchange(scale, std::clamp(linearized.RobustScale(), EdgeFit::kLeastScalePx, scale));
     reach = std::clamp(3 * scale, 1.5, reach);
     // Edges of anything but a ring stay scattered.
     const bool gathers = scale < kGathering * before && i + 1 < iterations;

@@ -10,6 +10,8 @@
 
 #include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/image/gray_sampling.h"
+#include "kestrel/vision/landing/image_properties.h"
+#include "kestrel/vision/landing/print_places.h"
 
 namespace kestrel {
 namespace {
@@ -20,15 +22,19 @@ constexpr std::size_t kFewestOfRing = kRingPlaces / 6;  // of which a contrast i
 constexpr int kArmPlaces = 10;                          // along half an arm
 static_assert(kQuarters * kArmPlaces <= kRingPlaces);   // they may stand for the ring
 constexpr std::size_t kMaxPlaces = 400;
-constexpr double kLeastPrintContrast = 2;  // gray values
 // A contrast counts when it has at least this share of the print's contrast in its quarter.
 constexpr double kShare = 0.35;
 // Directions of the places in a quadrant, in degrees from the arm before it, and their radii, in
 // inner radii of the ring.
 constexpr std::array<double, 7> kQuadrantAngles{27, 33, 39, 45, 51, 57, 63};
 constexpr std::array<double, 3> kQuadrantRadii{0.45, 0.6, 0.75};
-constexpr double kInsideRadius = 0.65;  // radius of the places inside of the ring, inner radii
-constexpr double kLeastInside = 0.2;    // least contrast there, share of that of the ring
+// Places, in widths of their stroke: of white outside of the ring and beside an arm, from the
+// middle; the first place along an arm is further out, and the last one is before its end.
+constexpr double kOutside = 0.8;
+constexpr double kBesideArmFrom = 1.15;
+constexpr double kBeforeEnd = 0.3;
+constexpr double kBeyondHub_m = 0.02;
+constexpr double kViewMargin = 1.02;  // factor of the view beyond the outermost places
 // A contrast in a shadow counts when its share of the brightness is at least kRatioShare times the
 // print's, or when its brighter side has at least kShareInLight of the print's contrast. It must
 // also exceed noise: kLeastInShadow gray values and kShareInShadow of the print's contrast.
@@ -93,9 +99,9 @@ double PatternMatch::Agreement() const {
 
 PatternMatcher::PatternMatcher(const LandingPattern& pattern) {
   const double margin = 0.5 * pattern.board_size_m - pattern.outer_radius_m();
-  const double outside =
-      pattern.outer_radius_m() + std::min(0.8 * pattern.ring_width_m, 0.6 * margin);
-  extent_m_ = outside * 1.02;
+  const double outside = pattern.outer_radius_m() +
+                         std::min(kOutside * pattern.ring_width_m, PrintPlaces::kMargin * margin);
+  extent_m_ = outside * kViewMargin;
   AddRing(pattern, outside);
   for (int quarter = 0; quarter < kQuarters; ++quarter) {
     AddArm(pattern, quarter);
@@ -106,7 +112,7 @@ PatternMatcher::PatternMatcher(const LandingPattern& pattern) {
 void PatternMatcher::AddRing(const LandingPattern& pattern, double outside_m) {
   const double inner = pattern.inner_radius_m();
   const auto angle = [](int i) { return (i + 0.5) * 2 * std::numbers::pi / kRingPlaces; };
-  for (int i = 0; i < kRingPlaces; ++i) AddPolar(kInsideRadius * inner, angle(i));
+  for (int i = 0; i < kRingPlaces; ++i) AddPolar(PrintPlaces::kInside * inner, angle(i));
   for (int i = 0; i < kRingPlaces; ++i) {
     const int quarter = static_cast<int>(std::floor(angle(i) / (std::numbers::pi / 2) + 0.5));
     const std::size_t dark = AddPolar(MiddleOfRing(pattern), angle(i));
@@ -116,11 +122,11 @@ void PatternMatcher::AddRing(const LandingPattern& pattern, double outside_m) {
 }
 
 void PatternMatcher::AddArm(const LandingPattern& pattern, int quarter) {
-  const double reach =
-      std::min(pattern.arm_half_length_m, pattern.inner_radius_m()) - 0.3 * pattern.arm_width_m;
-  const double side = 1.15 * pattern.arm_width_m;
+  const double reach = std::min(pattern.arm_half_length_m, pattern.inner_radius_m()) -
+                       kBeforeEnd * pattern.arm_width_m;
+  const double side = kBesideArmFrom * pattern.arm_width_m;
   for (int i = 0; i < kArmPlaces; ++i) {
-    const double along = side + 0.02 + (reach - side - 0.02) * i / (kArmPlaces - 1);
+    const double along = side + kBeyondHub_m + (reach - side - kBeyondHub_m) * i / (kArmPlaces - 1);
     const std::size_t dark = AddBeside(quarter, along, 0);
     arms_.push_back({quarter,
                      {dark, dark},
@@ -218,7 +224,7 @@ double PatternMatcher::RingContrast(const cv::Mat& image, const PatternView& vie
   // Inside, arms and white alternate: a quarter of the directions must show white.
   const float white =
       RankedInPlace(std::span(inside.all).first(inside.count), inside.count - inside.count / 4);
-  return white < kLeastInside * contrast ? 0 : contrast;
+  return white < PrintPlaces::kLeastInside * contrast ? 0 : contrast;
 }
 
 // What the image shows at the places of the print, and what follows for the looks of its parts.
@@ -379,7 +385,7 @@ PatternMatch PatternMatcher::Match(const cv::Mat& image, const PatternView& view
   PatternMatch match;
   Comparison comparison(*this, image, view);
   match.contrast = comparison.contrast();
-  if (match.contrast >= kLeastPrintContrast) comparison.Match(&match);
+  if (match.contrast >= GrayContrast::kLeast) comparison.Match(&match);
   return match;
 }
 

@@ -13,11 +13,9 @@ namespace kestrel {
 namespace {
 
 constexpr int kTerms = PlaneWarp::kTerms;
-constexpr std::size_t kMinEdges = 12;
 // Prior standard deviations of the displacement by degree, as shares of the ring's mean radius in
 // the image.
 constexpr std::array<double, PlaneWarp::kDegree + 1> kPriorShare{0.5, 0.3, 0.12, 0.06};
-constexpr double kLeastScalePx = 0.25;
 constexpr double kInPlacePx = 1;  // largest offset of an edge in its place
 constexpr double kLeastReachPx = 1.5;
 constexpr double kFarReachPx = 6;  // least reach of the first steps, pixels of the view
@@ -26,10 +24,6 @@ constexpr double kSpreadSigmaPx = 0.3;  // prior standard deviation of the sprea
 constexpr int kFarSteps = 2;            // most steps on the view
 constexpr int kNearSteps = 3;           // most steps on the image
 constexpr double kSettledPx = 0.1;      // outlines that move by less have settled
-// All steps but the last use every kCoarseStride-th place, when these have at least kFewEdges
-// edges. The stride is odd so that both sides of the arms are used.
-constexpr std::size_t kCoarseStride = 3;
-constexpr std::size_t kFewEdges = 36;
 
 double Squared(double value) { return value * value; }
 
@@ -193,19 +187,19 @@ bool AlignPrint(const cv::Mat& image, const cv::Mat& view, const ImageRegion& re
   const auto make_step = [&](const ImageRegion& seen, bool is_last) {
     // Large offsets are searched for at low resolution, where a pixel is large.
     const bool far = &seen == &region;
-    EdgeSearch search{reach / seen.scale(), min_step, is_last ? 1 : kCoarseStride};
+    EdgeSearch search{reach / seen.scale(), min_step, is_last ? 1 : EdgeFit::kCoarseStride};
     if (far) search.reach_px = std::max(kFarReachPx, search.reach_px);
     const auto look = [&] {
       FindPrintEdges(far ? view : image, seen, alignment->warp, places, search, &alignment->edges);
     };
     look();
-    if (!is_last && alignment->edges.count < kFewEdges) {
+    if (!is_last && alignment->edges.count < EdgeFit::kFewEdges) {
       search.stride = 1;
       look();
     }
-    if (alignment->edges.count < kMinEdges) return false;
+    if (alignment->edges.count < EdgeFit::kLeastEdges) return false;
     const Step step = MakeStep(scale, ring_radius_px, alignment);
-    scale = std::clamp(step.scale_px, kLeastScalePx * seen.scale(), scale);
+    scale = std::clamp(step.scale_px, EdgeFit::kLeastScalePx * seen.scale(), scale);
     reach = std::clamp(4 * scale, kLeastReachPx, reach);
     settled = step.moved_px < kSettledPx * seen.scale();
     return true;

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "kestrel/vision/landing/image_properties.h"
 #include "kestrel/vision/landing/print_edge_kernel.h"
 
 namespace kestrel {
@@ -18,7 +19,7 @@ constexpr int kMaxReach = 12;  // px
 // outwards.
 double ComputeStrokeShift(double width_px) {
   // Interpolation and differences add blur.
-  constexpr double kVariance = kLensBlurPx * kLensBlurPx + 1.0 / 6 + 1.0 / 12;
+  constexpr double kVariance = LensBlur::kGoodPx * LensBlur::kGoodPx + 1.0 / 6 + 1.0 / 12;
   const double away = width_px - 1;
   const double taken = std::exp(-away * away / (2 * kVariance));
   const double fall =
@@ -83,7 +84,7 @@ void FindPrintEdges(const cv::Mat& image, const ImageRegion& region, const Plane
   PlaceColumns columns;
   const std::size_t count = LookFor(image, region, warp, places, search, &columns);
   const double scale = region.scale();
-  const double blur_px = kLensBlurPx * scale;
+  const double blur_px = LensBlur::kGoodPx * scale;
   bool has_edge_before = false;  // the place before this one on its outline
   for (std::size_t i = 0; i < count; ++i) {
     const PrintOutline::Place& place = places[i * search.stride];

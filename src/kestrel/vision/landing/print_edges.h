@@ -14,7 +14,15 @@
 
 namespace kestrel {
 
-inline constexpr double kLensBlurPx = 0.7;  // blur of optics and pixels, standard deviation
+// For fits to the edges of a print.
+struct EdgeFit {
+  static constexpr std::size_t kLeastEdges = 12;  // two for each unknown of a pose
+  static constexpr double kLeastScalePx = 0.25;   // of robust weights; edges are that exact at best
+  // The first steps use every kCoarseStride-th edge or place, when these have at least kFewEdges
+  // edges. The stride is odd so that both sides of the arms are used.
+  static constexpr std::size_t kCoarseStride = 3;
+  static constexpr std::size_t kFewEdges = 36;
+};
 
 // An edge of the image near the expected image of a place of the outline.
 struct PrintEdge {

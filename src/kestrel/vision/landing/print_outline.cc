@@ -6,10 +6,22 @@
 #include <numbers>
 
 namespace kestrel {
+namespace {
+
+// Places around the two circles; the outer one has them nearer together, and none is left out.
+constexpr int kOuterPlaces = 56;
+constexpr int kInnerPlaces = 40;
+// Arm widths: places are that far from where an outline ends or another one begins, as far as blur
+// and a print that is not exact reach.
+constexpr double kClearOfArm = 0.8;  // from its axis
+constexpr double kClearOfHub = 1.6;  // from the middle
+constexpr double kClearOfEnd = 0.8;
+
+}  // namespace
 
 PrintOutline::PrintOutline(const LandingPattern& pattern) {
-  AddCircle(pattern, pattern.outer_radius_m(), 1, 56, 0);
-  AddCircle(pattern, pattern.inner_radius_m(), -1, 40, 0.8 * pattern.arm_width_m);
+  AddCircle(pattern, pattern.outer_radius_m(), 1, kOuterPlaces, 0);
+  AddCircle(pattern, pattern.inner_radius_m(), -1, kInnerPlaces, kClearOfArm * pattern.arm_width_m);
   ring_places_ = places_.size();
   AddArms(pattern);
 }
@@ -31,9 +43,9 @@ void PrintOutline::AddCircle(const LandingPattern& pattern, double radius, doubl
 
 void PrintOutline::AddArms(const LandingPattern& pattern) {
   const double half_width = 0.5 * pattern.arm_width_m;
-  const double first = 1.6 * pattern.arm_width_m;
-  const double last =
-      std::min(pattern.arm_half_length_m, pattern.inner_radius_m()) - 0.8 * pattern.arm_width_m;
+  const double first = kClearOfHub * pattern.arm_width_m;
+  const double last = std::min(pattern.arm_half_length_m, pattern.inner_radius_m()) -
+                      kClearOfEnd * pattern.arm_width_m;
   constexpr int kPerSide = 6;
   for (int arm = 0; arm < kArms; ++arm) {
     const double angle = arm * std::numbers::pi / 2;

@@ -77,8 +77,8 @@ std::optional<CirclePose> PriorKnowledge::PredictedRing() const {
 bool PriorKnowledge::Suits(const SearchStep& step) const {
   const SearchPass& pass = kPasses[step.pass];
   // In the coarsest passes rings seem too small.
-  if (expected_ring_px_ > 0 &&
-      (1.5 * pass.min_ring_px > expected_ring_px_ || expected_ring_px_ > 1.2 * pass.max_ring_px)) {
+  if (expected_ring_px_ > 0 && (1.5 * pass.min_ring_px > expected_ring_px_ ||
+                                expected_ring_px_ > SearchPass::kWidest * pass.max_ring_px)) {
     return false;
   }
   return step.method != SearchMethod::kCross || !hint_.altitude_m ||

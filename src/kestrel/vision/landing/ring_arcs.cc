@@ -22,6 +22,16 @@ constexpr std::size_t kApart = 3;         // smoothed points from a corner to th
 constexpr double kAgainst = -14 * kDegree;  // turn against the bend that ends an arc
 constexpr double kMinTurning = 45 * kDegree;
 constexpr std::size_t kMinPoints = 6;
+// Least shares of the rays that lie near a cone: of the two arcs that it is fitted to, of all arcs
+// on it, and of an arc that lies on it, for which 'near' is kNearby times as far.
+constexpr double kLeastShareOfPair = 0.9;
+constexpr double kLeastShareGrown = 0.85;
+constexpr double kLeastShareOfArc = 0.6;
+constexpr double kNearby = 1.5;
+// Of two arcs of a ring, in lengths of the longer one: distance, and how far one may lie behind the
+// chord of the other.
+constexpr float kApartMost = 4;
+constexpr float kBehind = 0.1f;
 constexpr std::size_t kMaxArcs = 40;  // those that are longest and bend most are kept
 constexpr std::size_t kMaxSeeds = 6;
 constexpr std::size_t kMaxRings = 4;
@@ -184,7 +194,7 @@ class ArcGrouper {
     for (int round = 0; round < 2; ++round) {
       Collect(*best, arc.edge);
       const std::optional<Cone> grown = FitCone(workspace_.selected);
-      if (!grown || ShareNearCone(*grown, workspace_.selected, tolerance_) < 0.85) break;
+      if (!grown || ShareOfSelected(*grown) < kLeastShareGrown) break;
       best = grown;
     }
     Collect(*best, arc.edge);
@@ -206,8 +216,8 @@ class ArcGrouper {
   static bool FaceEachOther(const RingArc& a, const RingArc& b) {
     const Eigen::Vector2f between = b.middle - a.middle;
     const float longest = std::max(a.length, b.length);
-    return between.norm() < 4 * longest && between.dot(a.inward) > -0.1f * longest &&
-           between.dot(b.inward) < 0.1f * longest;
+    return between.norm() < kApartMost * longest && between.dot(a.inward) > -kBehind * longest &&
+           between.dot(b.inward) < kBehind * longest;
   }
 
   std::optional<Cone> Fit(std::array<std::size_t, 2> pair) {
@@ -217,12 +227,17 @@ class ArcGrouper {
       workspace_.selected.insert(workspace_.selected.end(), rays.begin(), rays.end());
     }
     std::optional<Cone> cone = FitCone(workspace_.selected);
-    if (cone && ShareNearCone(*cone, workspace_.selected, tolerance_) < 0.9) cone.reset();
+    if (cone && ShareOfSelected(*cone) < kLeastShareOfPair) cone.reset();
     return cone;
   }
 
+  double ShareOfSelected(const Cone& cone) const {
+    return ShareNearCone(cone, workspace_.selected, tolerance_);
+  }
+
   bool LiesOn(const RingArc& arc, const Cone& cone, RingEdge edge) const {
-    return arc.edge == edge && ShareNearCone(cone, RaysOf(arc), 1.5 * tolerance_) > 0.6;
+    return arc.edge == edge &&
+           ShareNearCone(cone, RaysOf(arc), kNearby * tolerance_) > kLeastShareOfArc;
   }
 
   // Selects the rays near 'cone' of all arcs that lie on it.
@@ -231,7 +246,7 @@ class ArcGrouper {
     for (const RingArc& arc : workspace_.arcs) {
       if (!LiesOn(arc, cone, edge)) continue;
       for (const Eigen::Vector3d& ray : RaysOf(arc)) {
-        if (cone.AngleTo(ray) <= 1.5 * tolerance_) workspace_.selected.push_back(ray);
+        if (cone.AngleTo(ray) <= kNearby * tolerance_) workspace_.selected.push_back(ray);
       }
     }
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kestrel/vision/landing/image_properties.h"
 #include "kestrel/vision/landing/pattern_pose.h"
 
 namespace kestrel {
@@ -21,9 +22,7 @@ constexpr std::size_t kMaxCollected = 512;
 constexpr std::size_t kMaxOutlines = 4;
 constexpr int kMaxCutFits = 16;
 constexpr std::size_t kMaxArcBorders = 8;
-constexpr int kMaxHullExtent = 62;       // px, of borders that need not be convex
-constexpr double kMinSmallContrast = 5;  // gray values
-constexpr std::array<double, 1> kOneScale{1.0};
+constexpr int kMaxHullExtent = 62;  // px, of borders that need not be convex
 // An outline that has grown together with something beside it is larger than the ring.
 constexpr std::array<double, 2> kAreaScales{1.0, 1.12};
 // A print with a dark border shows less white than the board's size.
@@ -111,9 +110,9 @@ void RingFinder::CollectOutlines(const cv::Mat& image, const BorderTracer& trace
   for (std::size_t i = 0; i < tracer.borders().size() && outlines.size() + 2 <= outlines.capacity();
        ++i) {
     const Border& border = tracer.borders()[i];
-    const std::optional<DarkArea> area =
-        TestDarkArea(tracer, border, std::max(4.0, 0.7 * pass.min_ring_px / scale),
-                     pass.image_level == 0 ? kMaxHullExtent : 0);
+    const std::optional<DarkArea> area = TestDarkArea(
+        tracer, border, std::max(4.0, SearchPass::kThinnest * pass.min_ring_px / scale),
+        pass.image_level == 0 ? kMaxHullExtent : 0);
     if (!area) continue;
     log_.Reach(LandingStage::kAreas, "no ring stands out of its surroundings");
     Outline ring{area->outline, area->edge, /*board=*/false, i};
@@ -278,7 +277,8 @@ std::span<const RingCandidate> RingFinder::FindInArcs(SearchedImage* image, std:
 bool RingFinder::StandsOut(const SearchedImage& image, const CirclePose& ring) const {
   const PatternView view(models_.camera, PatternPose(ring, 0), models_.matcher.extent_m(),
                          image.RegionAt(0));
-  return view.valid() && models_.matcher.RingContrast(image.At(0), view) >= kMinSmallContrast;
+  return view.valid() &&
+         models_.matcher.RingContrast(image.At(0), view) >= GrayContrast::kLeastRing;
 }
 
 }  // namespace kestrel

@@ -19,6 +19,9 @@
 
 namespace kestrel {
 
+// Scales of a ring that is as large as it seems.
+inline constexpr std::array<double, 1> kOneScale{1.0};
+
 // Returns the axes (diameters, px, the longer one first) of the image of a ring. They are those of
 // its projection, because a fisheye lens stretches near its rim. Where the lens does not show the
 // ring, they follow from its angles.

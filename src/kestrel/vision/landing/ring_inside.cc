@@ -10,6 +10,9 @@ namespace kestrel {
 namespace {
 
 constexpr int kMax = SmallMask::kMaxSize;
+constexpr double kDiscSquared = 0.81;   // inner radii: the disc ends short of the ring's inner edge
+constexpr double kLeastDiscSeen = 0.2;  // share of the disc in view
+constexpr float kMargin = 0.05f;        // below the local mean, share of the contrast
 
 // Integral images of gray values and of known pixels of a small image.
 class SmallIntegral {
@@ -66,9 +69,8 @@ std::optional<RingInside> RectifyInside(const cv::Mat& image, const PatternView&
     float* const values = &gray[y * kMax];
     std::fill_n(values, size, -1.0f);
     std::fill_n(y_m.begin(), size, x_m[y]);
-    // The disc ends at 0.9 inner radii, short of the ring's inner edge.
     const double v = inside.Coordinate(y);
-    const double half = 0.5 * size * std::sqrt(std::max(0.0, 0.81 - v * v));
+    const double half = 0.5 * size * std::sqrt(std::max(0.0, kDiscSquared - v * v));
     const int count = 2 * static_cast<int>(std::lround(half));
     const int first = (size - count) / 2;
     view.Sample(image, &x_m[first], y_m.data(), count, values + first);
@@ -82,10 +84,10 @@ std::optional<RingInside> RectifyInside(const cv::Mat& image, const PatternView&
     }
     integral.AddRow(y, values);
   }
-  if (seen < 0.2 * in_disc || brightest - darkest < min_contrast) return std::nullopt;
+  if (seen < kLeastDiscSeen * in_disc || brightest - darkest < min_contrast) return std::nullopt;
   // The box of the local threshold reaches across an arm to the white on both of its sides.
   const int radius = std::max(2, size * 5 / 16);
-  const float margin = 0.05f * (brightest - darkest);
+  const float margin = kMargin * (brightest - darkest);
   for (int y = 0; y < size; ++y) {
     std::uint64_t below = 0;
     for (int x = 0; x < size; ++x) {

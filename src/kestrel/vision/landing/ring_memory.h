@@ -20,6 +20,9 @@ struct RingPlace {
 // Does not allocate once it is reserved; further rings are not remembered.
 class RingMemory {
  public:
+  // Distance of the centres of two starts that come to the same, as a share of the shorter axis.
+  static constexpr double kSameStart = 0.05;
+
   void Reserve() { places_.reserve(kMaxPlaces); }
   void Clear() { places_.clear(); }
   void Note(const RingPlace& place) {

@@ -9,6 +9,10 @@ namespace kestrel {
 // A pass: one look at the image at one resolution, with one definition of dark, suited to a range
 // of ring sizes.
 struct SearchPass {
+  // Outlines may be thinner than the rings of the pass, and wider: factors of the extents.
+  static constexpr double kThinnest = 0.7;
+  static constexpr double kWidest = 1.2;
+
   int image_level;          // the image at 1 / 2^level
   int tile_level;           // tiles of 2^tile_level pixels make the threshold's box
   double min_ring_px;       // minor axis, full resolution

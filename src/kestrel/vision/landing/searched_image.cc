@@ -15,9 +15,11 @@ constexpr std::size_t kPixelsPerBorder = 8192;
 BorderLimits LimitsOf(const SearchPass& pass) {
   const double scale = 1 << pass.image_level;
   BorderLimits limits;
-  limits.min_extent = std::max(4, static_cast<int>(0.7 * pass.min_ring_px / scale));
+  limits.min_extent =
+      std::max(4, static_cast<int>(SearchPass::kThinnest * pass.min_ring_px / scale));
   limits.min_count = 4 * static_cast<std::size_t>(limits.min_extent);
-  limits.max_extent = static_cast<int>(std::min(16000.0, 1.2 * pass.max_ring_px / scale));
+  limits.max_extent =
+      static_cast<int>(std::min(16000.0, SearchPass::kWidest * pass.max_ring_px / scale));
   limits.narrow = pass.narrow;
   return limits;
 }

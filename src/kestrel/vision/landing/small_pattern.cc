@@ -11,17 +11,16 @@
 
 #include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/vision/landing/column_products.h"
+#include "kestrel/vision/landing/image_properties.h"
 #include "kestrel/vision/landing/neighbor_correlation.h"
+#include "kestrel/vision/landing/print_places.h"
 #include "kestrel/vision/landing/small_pattern_kernel.h"
 #include "kestrel/vision/landing/small_pattern_model.h"
 
 namespace kestrel {
 namespace {
 
-constexpr double kMinBlurPx = 0.4;
-constexpr double kMaxBlurPx = 1.2;
-constexpr double kBlurSpread = 0.35;  // standard deviation of the blur's logarithm over lenses
-constexpr double kMaxWhite = 600;     // gray value of white under the strongest overexposure
+constexpr double kMaxWhite = 600;  // gray value of white under the strongest overexposure
 // Outliers are residuals beyond kOutlier standard deviations. The standard deviation is at least
 // kLeastNoise of the contrast, because no print is perfect.
 constexpr double kOutlier = 2.5;
@@ -127,7 +126,8 @@ SmallPatternFitter::SmallPatternFitter(const CameraModel& camera, const RayTable
                                        const LandingPattern& pattern)
     : camera_(camera), rays_(rays), pattern_(pattern) {
   const double margin = 0.5 * pattern.board_size_m - pattern.outer_radius_m();
-  extent_m_ = pattern.outer_radius_m() + std::min(1.0 * pattern.ring_width_m, 0.6 * margin);
+  extent_m_ =
+      pattern.outer_radius_m() + std::min(pattern.ring_width_m, PrintPlaces::kMargin * margin);
 }
 
 SmallPatternWorkspace::SmallPatternWorkspace() {
@@ -343,9 +343,9 @@ bool SmallPatternFitter::Improve(const System& system, const std::optional<Norma
   // a small plane.
   Eigen::Matrix<double, kUnknowns, kUnknowns> h = system.h;
   Eigen::Matrix<double, kUnknowns, 1> b = system.b;
-  const double blur_weight = system.variance() / (kBlurSpread * kBlurSpread);
+  const double blur_weight = system.variance() / (LensBlur::kLogSpread * LensBlur::kLogSpread);
   h(kLogBlur, kLogBlur) += blur_weight;
-  b(kLogBlur) -= blur_weight * std::log(state->blur_px / kGoodLensBlurPx);
+  b(kLogBlur) -= blur_weight * std::log(state->blur_px / LensBlur::kGoodPx);
   h.diagonal().head<kPoseUnknowns>() *= 1 + kPoseDamping;
   if (prior) {
     const double variance = system.variance() * Redundancy(workspace, limit);
@@ -362,11 +362,11 @@ bool SmallPatternFitter::Improve(const System& system, const std::optional<Norma
   pose = Moved(pose, shift, turn);
   state->blur_px =
       std::clamp(state->blur_px * std::exp(std::clamp(step(kLogBlur), -kMaxBlurStep, kMaxBlurStep)),
-                 kMinBlurPx, kMaxBlurPx);
+                 LensBlur::kLeastPx, LensBlur::kMostPx);
   state->white += step(kWhite);
   state->contrast += step(kContrast);
   state->slope += step.segment<2>(kSlope);
-  return state->contrast >= kMinContrast && state->white < kMaxWhite &&
+  return state->contrast >= GrayContrast::kLeast && state->white < kMaxWhite &&
          (pose.rotation * Eigen::Vector3d::UnitZ()).dot(pose.translation) < 0;
 }
 
@@ -379,7 +379,7 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   state.pose = initial;
   Predict(state.pose, state.blur_px, workspace);
   MeasureLevels(*workspace, &state);
-  if (state.contrast < kMinContrast) return std::nullopt;
+  if (state.contrast < GrayContrast::kLeast) return std::nullopt;
   if (light == Light::kShadows && !EvenOut(workspace, &state)) return std::nullopt;
   // The first steps start far away, so nothing counts as an outlier.
   double limit = kMaxWhite;

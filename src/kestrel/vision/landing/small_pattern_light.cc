@@ -8,6 +8,7 @@
 #include <span>
 
 #include "kestrel/core/base/robust_statistics.h"
+#include "kestrel/vision/landing/image_properties.h"
 #include "kestrel/vision/landing/small_pattern_model.h"
 
 namespace kestrel {
@@ -149,7 +150,7 @@ bool SmallPatternFitter::EvenOut(SmallPatternWorkspace* workspace, State* state)
   }
   if (Unexplained(*workspace) > kMaxRemaining * before) return false;
   MeasureLevels(*workspace, state);
-  return state->contrast >= kMinContrast;
+  return state->contrast >= GrayContrast::kLeast;
 }
 
 }  // namespace kestrel

@@ -13,13 +13,12 @@
 
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/image/gray_sampling.h"
+#include "kestrel/vision/landing/image_properties.h"
 #include "kestrel/vision/landing/small_pattern.h"
 #include "kestrel/vision/landing/small_pattern_kernel.h"
 
 namespace kestrel {
 
-inline constexpr double kGoodLensBlurPx = 0.7;  // blur of optics and pixels, standard deviation
-inline constexpr double kMinContrast = 2;       // gray values
 // Largest numbers of pixels of a box around a print for which every pixel is used.
 inline constexpr int kEnoughToFit = 1200;
 inline constexpr int kEnoughToStart = 600;
@@ -85,7 +84,7 @@ inline double CorrelatePrint(const SmallPatternWorkspace& workspace) {
 // The unknowns of a fit.
 struct SmallPatternFitter::State {
   RigidTransform pose;
-  double blur_px = kGoodLensBlurPx;
+  double blur_px = LensBlur::kGoodPx;
   double white = 255;   // gray value; the image may saturate below it
   double contrast = 0;  // white minus black
   double noise_variance = 0;

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "kestrel/vision/landing/image_properties.h"
 #include "kestrel/vision/landing/pattern_pose.h"
 #include "kestrel/vision/landing/small_pattern_model.h"
 
@@ -41,7 +42,7 @@ std::optional<double> SmallPatternFitter::FindScale(const cv::Mat& image, const 
   const auto look_at = [&](double scale) {
     const RigidTransform unturned = PatternPose(Shrunk(ring, scale), 0);
     if (!Gather(image, unturned, kEnoughToStart, workspace)) return -1.0;
-    Predict(unturned, kGoodLensBlurPx, workspace);
+    Predict(unturned, LensBlur::kGoodPx, workspace);
     return CorrelateRing(pattern_, *workspace);
   };
   double best = 0, best_correlation = kMinRingCorrelation;
@@ -62,7 +63,7 @@ SmallPatternFitter::Start SmallPatternFitter::FindStart(const CirclePose& ring, 
   Start best{{}, -1};
   for (const double angle : arm_angles) {
     const RigidTransform pose = PatternPose(Shrunk(ring, scale), angle);
-    Predict(pose, kGoodLensBlurPx, workspace);
+    Predict(pose, LensBlur::kGoodPx, workspace);
     const double correlation = CorrelatePrint(*workspace);
     if (correlation > best.correlation) best = {pose, correlation};
   }

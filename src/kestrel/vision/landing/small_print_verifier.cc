@@ -8,34 +8,35 @@
 
 #include "kestrel/vision/landing/cross.h"
 #include "kestrel/vision/landing/gray_doubts.h"
+#include "kestrel/vision/landing/image_properties.h"
 #include "kestrel/vision/landing/pattern_pose.h"
+#include "kestrel/vision/landing/print_places.h"
 
 namespace kestrel {
 namespace {
 
 using Light = SmallPatternFitter::Light;
 
-constexpr double kMinMajorPx = 9;       // longer diameter of the smallest ring
-constexpr double kMinAxisRatio = 0.08;  // axis ratio of the flattest ring
-constexpr double kSmallest = 0.7;  // times the smallest ring searched for: outlines may be too thin
-constexpr double kMinInsideContrast = 6;         // gray values
+constexpr double kMinMajorPx = 9;                // longer diameter of the smallest ring
+constexpr double kFlattestRing = 0.08;           // axis ratio of the flattest ring
 constexpr double kMinCorrelation = 0.35;         // of a start with the image
 constexpr double kSureCorrelation = 0.6;         // of a start by the quadrants
 constexpr double kMinCorrelationOfEither = 0.7;  // else the mirror pose is not tested
-constexpr double kSameStart = 0.05;  // distance of centres of one ring, share of its shorter axis
-constexpr double kWhole = 0.75;  // least share of the print in view for a print that is not partial
 // Explained share of the variance below which shadows are searched for even on a print that is
 // found in even light: they bend the pose.
 constexpr double kWellExplained = 0.85;
 constexpr int kFitIterations = 8;
-constexpr std::array<double, 1> kOneScale{1.0};
+
+// Largest change of the distance and of the place (radii) of the ring by a fit.
+constexpr double kMaxDistanceChange = 0.25;
+constexpr double kMaxMove = 0.4;
 
 // True when a fitted pose still belongs to the ring it started from.
 bool Agrees(const RigidTransform& start, const RigidTransform& fitted, double radius_m) {
   const double distance = start.translation.norm();
-  return std::abs(fitted.translation.norm() - distance) < 0.25 * distance &&
+  return std::abs(fitted.translation.norm() - distance) < kMaxDistanceChange * distance &&
          (fitted.translation.normalized() - start.translation / distance).norm() <
-             0.4 * radius_m / distance;
+             kMaxMove * radius_m / distance;
 }
 
 }  // namespace
@@ -57,7 +58,7 @@ void SmallPrintVerifier::Test(const RingCandidate& ring) {
   RingPlace place{{}, ring.diameters_px};
   if (models_.camera.Project(ring.poses[0].center, &place.center_px) ==
           ProjectionStatus::kOutsideModel ||
-      buffers_.tested.Holds(place, kSameStart)) {
+      buffers_.tested.Holds(place, RingMemory::kSameStart)) {
     return;
   }
   buffers_.tested.Note(place);
@@ -79,8 +80,8 @@ void SmallPrintVerifier::TestPredicted(const CirclePose& ring,
 // True when a ring is too small or seen almost edge-on.
 bool SmallPrintVerifier::IsTooSmall(const Eigen::Vector2d& diameters_px) const {
   return diameters_px.x() < kMinMajorPx ||
-         diameters_px.y() < kSmallest * models_.options.min_ring_px ||
-         diameters_px.y() < kMinAxisRatio * diameters_px.x();
+         diameters_px.y() < SearchPass::kThinnest * models_.options.min_ring_px ||
+         diameters_px.y() < kFlattestRing * diameters_px.x();
 }
 
 SmallPrintVerifier::Outcome SmallPrintVerifier::TestPose(const CirclePose& pose,
@@ -130,7 +131,7 @@ std::optional<PrintFinding> SmallPrintVerifier::FindingOf(const SmallPatternFitt
   const PatternView view(models_.camera, pose, models_.ink.extent_m(), {});
   if (!view.valid()) return std::nullopt;
   const double seen = models_.ink.Doubt(image_.whole(), view, &finding.doubts);
-  finding.method = seen < kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants;
+  finding.method = seen < PrintPlaces::kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants;
   finding.doubts[PrintDoubt::kHidden] = 1 - seen;
   DoubtGrayValues(fit, &finding.doubts);
   DoubtView(finding.diameters_px, finding.relative_sigma(), &finding.doubts);
@@ -162,8 +163,8 @@ std::optional<double> SmallPrintVerifier::ArmAngleByQuadrants(const CirclePose& 
   constexpr int kSize = 24;
   const PatternView view(models_.camera, PatternPose(pose, 0), models_.matcher.extent_m(), {});
   if (!view.valid()) return std::nullopt;
-  const auto inside =
-      RectifyInside(image_.whole(), view, models_.options.pattern, kSize, kMinInsideContrast);
+  const auto inside = RectifyInside(image_.whole(), view, models_.options.pattern, kSize,
+                                    GrayContrast::kLeastInside);
   if (!inside) return std::nullopt;
   const std::optional<Cross> cross = FindCrossByQuadrants(*inside);
   if (!cross) return std::nullopt;

@@ -6,6 +6,8 @@
 
 #include <Eigen/LU>
 
+#include "kestrel/vision/objects/ground_plane.h"
+
 namespace kestrel {
 namespace {
 
@@ -41,7 +43,7 @@ Eigen::Vector3d LocateDisc(const Cone& cone, double radius_m, const Eigen::Vecto
   if (ray.dot(by_cone) < 0) ray = -ray;
   ray.normalize();
   // The plane must be seen from above, and not edge-on.
-  if (!(up->dot(ray) < -0.05)) return by_cone;
+  if (!(up->dot(ray) < -kMinDescent)) return by_cone;
   const double guess = by_cone.norm();
   const Cone horizontal = ConeOfCircle(guess * ray, *up, radius_m);
   const double seen = ChordLength(cone, ray, row_direction);

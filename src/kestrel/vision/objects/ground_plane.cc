@@ -9,17 +9,12 @@
 #include "kestrel/vision/objects/disc_location.h"
 
 namespace kestrel {
-namespace {
-
-constexpr double kMinSine = 0.05;  // of the angle between a ray and the plane
-
-}  // namespace
 
 std::optional<double> GroundPlane::DistanceNear(const Eigen::Vector3d& ray, double distance,
                                                 double min_height, double max_height) const {
   if (!is_known()) return std::nullopt;
   const double descent = -up_in_camera->dot(ray);
-  if (descent < kMinSine) return std::nullopt;
+  if (descent < kMinDescent) return std::nullopt;
   const double nearest = (*camera_height_m - max_height) / descent;
   const double furthest = (*camera_height_m - min_height) / descent;
   if (!(nearest > 0)) return std::nullopt;
@@ -37,7 +32,7 @@ PlaneBelow::PlaneBelow(const Eigen::Vector3d& up)
 
 Eigen::Vector2d PlaneBelow::PointOf(const Eigen::Vector3d& ray) const {
   const Eigen::Vector2d across(x_axis_.dot(ray), y_axis_.dot(ray));
-  return across / std::max(kMinSine, -up_.dot(ray));
+  return across / std::max(kMinDescent, -up_.dot(ray));
 }
 
 Eigen::Vector3d PlaneBelow::RayTo(const Eigen::Vector2d& point) const {
@@ -57,7 +52,7 @@ std::optional<PlaneRectangle> RectangleOnPlane(const std::array<Eigen::Vector3d,
   std::array<Eigen::Vector3d, 4> points;
   for (int i = 0; i < 4; ++i) {
     const double descent = -up.dot(rays[i]);
-    if (descent < kMinSine) return std::nullopt;
+    if (descent < kMinDescent) return std::nullopt;
     points[i] = rays[i] / descent;
   }
   const auto length = [&](int a, int b) { return (points[a] - points[b]).norm(); };

@@ -10,6 +10,10 @@
 
 namespace kestrel {
 
+// Least descent of a ray, the sine of its angle to the ground, at which it has a place there: below
+// that (3 degrees) a small error of the attitude moves the place without bound.
+inline constexpr double kMinDescent = 0.05;
+
 // The ground in the camera frame, as far as attitude and height are known (paper, section 3.5.3:
 // "objects that are not close to the ground are discarded").
 struct GroundPlane {

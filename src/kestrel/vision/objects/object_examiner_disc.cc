@@ -12,6 +12,7 @@
 namespace kestrel {
 namespace {
 
+constexpr int kDirections = 16;  // in which a disc and its surroundings are looked at
 // A ring: gray is ambiguous for the sake of digits, so its hole may be part of the segment. Radius
 // of the middle (of the outline's) and least share of it that has the colour.
 constexpr double kMiddle = 0.4;
@@ -140,7 +141,6 @@ ObjectExaminer::Outcome ObjectExaminer::PlaceDisc(const Cone& cone, const Eigen:
 }
 
 bool ObjectExaminer::IsHole(const Ellipse& outline, ColorLabel label) const {
-  constexpr int kDirections = 16;
   // In radii of the outline: search from beyond its blur to beyond the strokes of a letter, and
   // least width of the coloured area. A line is thinner.
   constexpr double kFirst = 1.3;
@@ -171,7 +171,6 @@ bool ObjectExaminer::IsHole(const Ellipse& outline, ColorLabel label) const {
 }
 
 double ObjectExaminer::ColoredShare(const Ellipse& outline, double reach, ColorLabel label) const {
-  constexpr int kDirections = 16;
   constexpr int kSteps = 4;
   int shown = 0;
   int same = 0;

@@ -153,7 +153,6 @@ double ObjectExaminer::EdgeShift(const RayTo& ray_to, const Eigen::Vector2d& sid
 // half of a long object is larger in the image, so its centroid is not its middle.
 std::array<Eigen::Vector3d, 4> ObjectExaminer::RectangleAround(const Segment& segment,
                                                                const SegmentShape& shape) const {
-  constexpr double kMinDescent = 0.05;
   constexpr double kMiddlePart = 0.1;
   const Eigen::Vector3d up = hint_.up_in_camera.value_or(-RayAt(shape.moments.centroid));
   const auto on_plane = [&](const Eigen::Vector2d& pixel) {
