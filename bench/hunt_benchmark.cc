@@ -12,7 +12,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/core/base/random.h"
-#include "kestrel/vision/objects/color_grid.h"
+#include "kestrel/vision/objects/color/color_grid.h"
 #include "kestrel/vision/objects/object_detector.h"
 
 namespace kestrel {

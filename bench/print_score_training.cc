@@ -264,7 +264,8 @@ std::string ToSource(const PrintScore& score) {
   std::string source =
       "// SPDX-License-Identifier: BSD-3-Clause\n"
       "// Made by bench/train_print_score.\n"
-      "#pragma once\n\n#include <array>\n\n#include \"kestrel/vision/landing/print_doubts.h\"\n\n"
+      "#pragma once\n\n#include <array>\n\n#include "
+      "\"kestrel/vision/landing/score/print_doubts.h\"\n\n"
       "namespace kestrel {\n\n"
       "// clang-format off\n"
       "inline constexpr std::array<PrintWeights, kPrintKinds> kPrintWeights = {{\n";

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "kestrel/vision/landing/print_doubts.h"
-#include "kestrel/vision/landing/print_score_weights.h"
+#include "kestrel/vision/landing/score/print_doubts.h"
+#include "kestrel/vision/landing/score/print_score_weights.h"
 
 namespace kestrel {
 

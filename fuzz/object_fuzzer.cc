@@ -9,8 +9,8 @@
 #include "kestrel/calibration/color_training/color_draft.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/vision/mapping/map_file.h"
-#include "kestrel/vision/objects/color_grid.h"
-#include "kestrel/vision/objects/digit_classifier.h"
+#include "kestrel/vision/objects/color/color_grid.h"
+#include "kestrel/vision/objects/digits/digit_classifier.h"
 #include "kestrel/vision/objects/object_model.h"
 
 namespace {

@@ -23,7 +23,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/base/write_file.h"
-#include "kestrel/vision/objects/digit_classifier.h"
+#include "kestrel/vision/objects/digits/digit_classifier.h"
 
 namespace kestrel {
 namespace {

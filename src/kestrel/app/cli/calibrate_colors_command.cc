@@ -20,8 +20,8 @@
 #include "kestrel/io/recording/color_pictures.h"
 #include "kestrel/io/recording/image_file.h"
 #include "kestrel/io/recording/output_folder.h"
-#include "kestrel/vision/objects/color_grid.h"
-#include "kestrel/vision/objects/color_samples.h"
+#include "kestrel/vision/objects/color/color_grid.h"
+#include "kestrel/vision/objects/color/color_samples.h"
 #include "kestrel/vision/objects/object_model.h"
 
 namespace kestrel {

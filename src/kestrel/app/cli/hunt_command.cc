@@ -19,7 +19,7 @@
 #include "kestrel/flight/session/hunt_files.h"
 #include "kestrel/flight/session/hunt_run.h"
 #include "kestrel/flight/session/observation_sinks.h"
-#include "kestrel/vision/objects/color_grid.h"
+#include "kestrel/vision/objects/color/color_grid.h"
 
 namespace kestrel {
 namespace {

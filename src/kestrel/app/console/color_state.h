@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kestrel/calibration/color_training/color_teaching.h"
-#include "kestrel/vision/objects/color_model.h"
+#include "kestrel/vision/objects/color/color_model.h"
 
 namespace kestrel {
 

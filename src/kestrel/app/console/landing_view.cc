@@ -14,8 +14,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/app/console/map_view.h"
-#include "kestrel/vision/landing/plane_warp.h"
-#include "kestrel/vision/landing/threshold_view.h"
+#include "kestrel/vision/landing/alignment/plane_warp.h"
+#include "kestrel/vision/landing/search/threshold_view.h"
 
 namespace kestrel {
 namespace {

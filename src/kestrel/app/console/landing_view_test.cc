@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/core/camera/paper_camera.h"
-#include "kestrel/vision/landing/plane_warp.h"
+#include "kestrel/vision/landing/alignment/plane_warp.h"
 
 namespace kestrel {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <opencv2/core.hpp>
 
-#include "kestrel/vision/objects/color_grid.h"
+#include "kestrel/vision/objects/color/color_grid.h"
 #include "kestrel/vision/objects/object_detector.h"
 #include "kestrel/vision/objects/object_model.h"
-#include "kestrel/vision/objects/segmentation.h"
+#include "kestrel/vision/objects/segmentation/segmentation.h"
 
 namespace kestrel {
 

@@ -15,7 +15,7 @@
 #include "kestrel/flight/ros/topic_source.h"
 #include "kestrel/flight/session/observation_sink.h"
 #include "kestrel/flight/session/observation_sinks.h"
-#include "kestrel/vision/objects/color_grid.h"
+#include "kestrel/vision/objects/color/color_grid.h"
 #include "kestrel/vision/objects/object_model.h"
 
 namespace kestrel {

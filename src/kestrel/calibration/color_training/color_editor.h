@@ -10,8 +10,8 @@
 #include "kestrel/calibration/color_training/color_draft.h"
 #include "kestrel/calibration/color_training/color_teaching.h"
 #include "kestrel/calibration/color_training/marked_pixels.h"
-#include "kestrel/vision/objects/color_grid.h"
-#include "kestrel/vision/objects/color_samples.h"
+#include "kestrel/vision/objects/color/color_grid.h"
+#include "kestrel/vision/objects/color/color_samples.h"
 #include "kestrel/vision/objects/object_model.h"
 
 namespace kestrel {

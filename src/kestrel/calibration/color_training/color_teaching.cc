@@ -8,7 +8,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/robust_statistics.h"
-#include "kestrel/vision/objects/color_samples.h"
+#include "kestrel/vision/objects/color/color_samples.h"
 
 namespace kestrel {
 namespace {

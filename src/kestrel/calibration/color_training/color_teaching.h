@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "kestrel/calibration/color_training/marked_pixels.h"
-#include "kestrel/vision/objects/color_grid.h"
-#include "kestrel/vision/objects/color_model.h"
+#include "kestrel/vision/objects/color/color_grid.h"
+#include "kestrel/vision/objects/color/color_model.h"
 
 namespace kestrel {
 

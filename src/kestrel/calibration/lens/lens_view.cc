@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kestrel/vision/landing/plane_warp.h"
-#include "kestrel/vision/landing/print_alignment.h"
-#include "kestrel/vision/landing/print_outline.h"
+#include "kestrel/vision/landing/alignment/plane_warp.h"
+#include "kestrel/vision/landing/alignment/print_alignment.h"
+#include "kestrel/vision/landing/alignment/print_outline.h"
 
 namespace kestrel {
 namespace {

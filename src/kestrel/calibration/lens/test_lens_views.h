@@ -12,8 +12,8 @@
 
 #include "kestrel/calibration/lens/lens_view.h"
 #include "kestrel/core/base/random.h"
-#include "kestrel/vision/landing/plane_warp.h"
-#include "kestrel/vision/landing/print_outline.h"
+#include "kestrel/vision/landing/alignment/plane_warp.h"
+#include "kestrel/vision/landing/alignment/print_outline.h"
 #include "kestrel/vision/landing/test_prints.h"
 
 namespace kestrel {

@@ -10,7 +10,7 @@
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/flight/onboard/flight_vision.h"
 #include "kestrel/io/recording/output_folder.h"
-#include "kestrel/vision/objects/color_grid.h"
+#include "kestrel/vision/objects/color/color_grid.h"
 #include "kestrel/vision/objects/object_model.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
 

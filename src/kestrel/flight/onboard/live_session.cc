@@ -23,7 +23,7 @@
 #include "kestrel/flight/session/observation_sinks.h"
 #include "kestrel/io/recording/output_folder.h"
 #include "kestrel/io/recording/truth_rows.h"
-#include "kestrel/vision/objects/color_grid.h"
+#include "kestrel/vision/objects/color/color_grid.h"
 
 namespace kestrel {
 namespace {

@@ -14,7 +14,7 @@
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/flight/session/observation_sink.h"
 #include "kestrel/io/recording/frame.h"
-#include "kestrel/vision/objects/color_grid.h"
+#include "kestrel/vision/objects/color/color_grid.h"
 #include "kestrel/vision/objects/object_model.h"
 
 namespace kestrel {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/vision/objects/color_grid.h"
+#include "kestrel/vision/objects/color/color_grid.h"
 #include "kestrel/vision/pipeline/ground_height.h"
 
 namespace kestrel {

@@ -8,7 +8,7 @@
 
 #include "kestrel/flight/session/vision.h"
 #include "kestrel/io/bags/open_recording.h"
-#include "kestrel/vision/objects/color_grid.h"
+#include "kestrel/vision/objects/color/color_grid.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
 
 namespace kestrel {

@@ -7,7 +7,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "kestrel/vision/objects/hsv.h"
+#include "kestrel/vision/objects/color/hsv.h"
 
 namespace kestrel {
 

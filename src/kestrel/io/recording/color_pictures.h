@@ -3,7 +3,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "kestrel/vision/objects/color_grid.h"
+#include "kestrel/vision/objects/color/color_grid.h"
 
 namespace kestrel {
 

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
-#include "kestrel/vision/landing/plane_warp.h"
+#include "kestrel/vision/landing/alignment/plane_warp.h"
 
 namespace kestrel {
 namespace {

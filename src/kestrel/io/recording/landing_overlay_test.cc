@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "kestrel/vision/landing/plane_warp.h"
+#include "kestrel/vision/landing/alignment/plane_warp.h"
 
 namespace kestrel {
 namespace {

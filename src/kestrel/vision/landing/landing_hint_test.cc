@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "kestrel/vision/landing/search_plan.h"
+#include "kestrel/vision/landing/search/search_plan.h"
 #include "kestrel/vision/landing/test_landing_detector.h"
 
 namespace kestrel {

@@ -2,7 +2,7 @@
 #include "kestrel/vision/landing/landing_pattern_detector.h"
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/vision/landing/landing_search.h"
+#include "kestrel/vision/landing/search/landing_search.h"
 
 namespace kestrel {
 const char* ToString(CrossMethod method) {

@@ -14,9 +14,9 @@
 
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/geometry/rigid_transform.h"
-#include "kestrel/vision/landing/calibration_evidence.h"
 #include "kestrel/vision/landing/landing_pattern.h"
-#include "kestrel/vision/landing/seen_print.h"
+#include "kestrel/vision/landing/location/calibration_evidence.h"
+#include "kestrel/vision/landing/verification/seen_print.h"
 
 namespace kestrel {
 

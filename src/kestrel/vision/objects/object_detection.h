@@ -11,7 +11,7 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/geometry/ellipse.h"
-#include "kestrel/vision/objects/color_model.h"
+#include "kestrel/vision/objects/color/color_model.h"
 #include "kestrel/vision/objects/digit_likelihoods.h"
 
 namespace kestrel {

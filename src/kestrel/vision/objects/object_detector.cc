@@ -10,7 +10,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/vision/objects/object_examiner.h"
+#include "kestrel/vision/objects/examination/object_examiner.h"
 
 namespace kestrel {
 namespace {

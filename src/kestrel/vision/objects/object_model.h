@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kestrel/vision/objects/color_model.h"
+#include "kestrel/vision/objects/color/color_model.h"
 
 namespace kestrel {
 

@@ -10,7 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/core/camera/camera_model.h"
-#include "kestrel/vision/objects/ground_plane.h"
+#include "kestrel/vision/objects/location/ground_plane.h"
 
 namespace kestrel {
 

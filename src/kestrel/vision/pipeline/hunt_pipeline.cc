@@ -8,7 +8,7 @@
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/violations.h"
 #include "kestrel/core/geometry/angles.h"
-#include "kestrel/vision/objects/color_grid.h"
+#include "kestrel/vision/objects/color/color_grid.h"
 #include "kestrel/vision/pipeline/camera_poses.h"
 #include "kestrel/vision/pipeline/ground_height.h"
 #include "kestrel/vision/pipeline/object_view.h"

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/vision/landing/landing_pattern.h"
+#include "kestrel/vision/landing/score/print_doubts.h"
+#include "kestrel/vision/landing/verification/pattern_view.h"
+
+namespace kestrel {
+
+// Compares where an image has ink and white with where the print has them. The result does not
+// depend on shadows: white in a shadow is brighter than ink in full light, so the order of gray
+// values stays. In each of eight directions around the print, the level of its ink and a low
+// quantile of its white are the scale on which a place is dark.
+class InkComparison {
+ public:
+  explicit InkComparison(const LandingPattern& pattern);
+
+  // Half the side of the square that a view must cover, m.
+  double extent_m() const { return extent_m_; }
+
+  // Sets the ink doubts of PrintDoubts. 'view': of the pattern's frame (x along an arm) on 'image'.
+  // Returns the share of ring and cross that is in view, 0 to 1. Does not allocate.
+  double Doubt(const cv::Mat& image, const PatternView& view, PrintDoubts* doubts) const;
+
+ private:
+  static constexpr int kSectors = 8;  // of 45 degrees each; every second one lies around an arm
+  static constexpr int kArms = 4;
+  static constexpr int kLines = 5;  // between two arms: lines on which a spoke may lie
+  static constexpr std::size_t kMaxPlaces = 1024;
+
+  // A run of consecutive places.
+  struct Range {
+    std::size_t begin = 0, end = 0;
+    std::size_t size() const { return end - begin; }
+  };
+  struct Levels;
+  struct Darkness;
+
+  void AddPlaces();
+  void AddInk();
+  void AddWhite();
+  void AddLines(int quadrant);
+  void AddPlace(double x_m, double y_m);
+  template <typename Holds>
+  Range AddGrid(const Holds& holds);
+  Levels MeasureLevels(const std::array<float, kMaxPlaces>& gray) const;
+  Darkness MeasureDarkness(const std::array<float, kMaxPlaces>& gray, const Levels& levels) const;
+  // Set the doubts about arms and the white between them, and about the white around the ring.
+  void DoubtCross(const Darkness& darkness, PrintDoubts* doubts) const;
+  void DoubtBoard(const Darkness& darkness, PrintDoubts* doubts) const;
+
+  LandingPattern pattern_;
+  double extent_m_;
+  std::vector<float> x_m_, y_m_;
+  std::vector<std::uint8_t> sector_;
+  std::array<Range, kArms> arm_;
+  std::size_t ink_end_ = 0;  // the places before this index are on arms and ring
+  // White between two arms: 'hub_' near the middle of the print, 'quadrant_' all of it.
+  std::array<Range, kArms> hub_, quadrant_;
+  std::array<Range, kSectors> board_;                                       // white around the ring
+  std::array<std::array<std::vector<std::uint16_t>, kLines>, kArms> line_;  // indices of places
+};
+
+}  // namespace kestrel

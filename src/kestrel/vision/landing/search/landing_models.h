@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "kestrel/core/camera/camera_model.h"
+#include "kestrel/core/camera/ray_table.h"
+#include "kestrel/vision/landing/alignment/small_pattern.h"
+#include "kestrel/vision/landing/landing_pattern_detector.h"
+#include "kestrel/vision/landing/location/pattern_locator.h"
+#include "kestrel/vision/landing/score/ink_comparison.h"
+#include "kestrel/vision/landing/verification/pattern_match.h"
+
+namespace kestrel {
+
+// The models that the detector computes once for its camera and pattern.
+struct LandingModels {
+  LandingModels(const CameraModel& camera_model, const LandingPatternDetectorOptions& all_options)
+      : camera(camera_model),
+        options(all_options),
+        rays(camera),
+        matcher(options.pattern),
+        locator(camera, options.pattern),
+        ink(options.pattern),
+        small(camera, rays, options.pattern) {}
+  // Not copyable: the parts refer to each other.
+  LandingModels(const LandingModels&) = delete;
+  LandingModels& operator=(const LandingModels&) = delete;
+
+  CameraModel camera;
+  LandingPatternDetectorOptions options;
+  RayTable rays;
+  PatternMatcher matcher;
+  PatternLocator locator;
+  InkComparison ink;
+  SmallPatternFitter small;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/landing/search/search_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+namespace kestrel {
+namespace {
+
+TEST(SearchPlan, NoStepIsTakenTwiceAndNoPassIsIdle) {
+  std::set<std::pair<std::size_t, SearchMethod>> steps;
+  std::set<std::size_t> passes;
+  for (const SearchStep& step : kSteps) {
+    ASSERT_LT(step.pass, kSearchPasses);
+    EXPECT_TRUE(steps.emplace(step.pass, step.method).second);
+    passes.insert(step.pass);
+  }
+  EXPECT_EQ(passes.size(), kSearchPasses);
+}
+
+TEST(SearchPlan, RingsOfAllSizesAreLookedForInEveryWay) {
+  for (const SearchMethod method : {SearchMethod::kAreas, SearchMethod::kArcs}) {
+    for (double ring_px = 6; ring_px < 2000; ring_px *= 1.1) {
+      EXPECT_TRUE(std::any_of(kSteps.begin(), kSteps.end(),
+                              [&](const SearchStep& step) {
+                                const SearchPass& pass = kPasses[step.pass];
+                                return step.method == method && pass.min_ring_px <= ring_px &&
+                                       ring_px <= pass.max_ring_px;
+                              }))
+          << ring_px << " px";
+    }
+  }
+}
+
+// At the resolution of a pass, the smallest ring it searches for still has visible strokes.
+TEST(SearchPlan, PassesSeeTheirSmallestRing) {
+  for (const SearchPass& pass : kPasses) {
+    EXPECT_GE(pass.min_ring_px / std::exp2(pass.image_level), 6);
+    EXPECT_LT(pass.min_ring_px, pass.max_ring_px);
+  }
+}
+
+TEST(SearchPlan, LargeRingsComeFirst) {
+  EXPECT_GE(kPasses[kSteps.front().pass].image_level, 3);
+  EXPECT_EQ(kSteps.front().method, SearchMethod::kAreas);
+}
+
+}  // namespace
+}  // namespace kestrel

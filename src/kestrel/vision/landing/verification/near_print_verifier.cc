@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/landing/verification/near_print_verifier.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kestrel/vision/landing/image_properties.h"
+#include "kestrel/vision/landing/location/pattern_pose.h"
+#include "kestrel/vision/landing/print_places.h"
+#include "kestrel/vision/landing/score/gray_doubts.h"
+
+namespace kestrel {
+namespace {
+
+constexpr double kLinesRingPx = 150;  // above that, lines are tried first (section 2.4)
+// Least agreement of a pose that is located. A pose beside the print may miss an arm, and the edges
+// may still bring it into place.
+constexpr double kWorthLocating = 0.4;
+// Distance of the centres of two rings that count as the same where one was seen to be something
+// else, as a share of the shorter axis.
+constexpr double kSameSign = 0.12;
+// Search reach for the edges of a ring without a cross, times the usual reach. Where much of the
+// ring is cut off or hidden, the rest tells little about its far side.
+constexpr std::array<double, 2> kRefinedReaches{1.5, 2.5};
+constexpr int kRefinements = 4;
+constexpr double kPredictedReach = 0.12;  // share of the diameter, for a predicted ring
+constexpr double kSureReach = 0.02;       // the same, for a ring whose edges are in place
+constexpr double kCrossReach = 0.03;      // the same, for a ring that follows from the cross
+constexpr double kLeastReachPx = 2;
+constexpr double kMinStep = 0.12;  // least step of an edge, share of the print's contrast per pixel
+// The middle of a print follows the edges around it only as far as they deviate from the pose by
+// more than this many standard deviations.
+constexpr double kSureCenter = 4;
+
+// Returns the level of the pyramid at which a ring is about 40 to 80 pixels wide.
+int ViewLevel(double diameter_px) {
+  return std::clamp(static_cast<int>(std::floor(std::log2(diameter_px / 40))), 0, 4);
+}
+
+// Returns the image of the middle of the print: where the pose has it, moved towards where the
+// edges around it have it as far as the difference exceeds chance (James-Stein estimator).
+Eigen::Vector2d CenterPx(const PatternLocation& location, const PrintAlignment& alignment) {
+  Eigen::Vector2d by_edges;
+  if (!alignment.warp.Project(Eigen::Vector2d::Zero(), &by_edges)) return location.center_px;
+  const Eigen::Vector2d shift = by_edges - location.center_px;
+  const double chance = kSureCenter * alignment.center_sigma_px;
+  const double more = 1 - chance * chance / std::max(shift.squaredNorm(), 1e-12);
+  return location.center_px + std::max(0.0, more) * shift;
+}
+
+double MeanDiameter(const PrintFinding& finding) { return std::sqrt(finding.diameters_px.prod()); }
+
+double LogShare(double length_px, double of_px) {
+  constexpr double kLeast = 1e-4;
+  return std::log(std::max(kLeast, length_px / of_px));
+}
+
+}  // namespace
+
+void NearPrintBuffers::Reserve() {
+  cross_lines.Reserve();
+  tested.Reserve();
+  refused.Reserve();
+}
+
+NearPrintVerifier::NearPrintVerifier(const LandingModels& models, const PriorKnowledge& prior,
+                                     SearchedImage* image, NearPrintBuffers* buffers,
+                                     DetectionChoice* choice, SearchLog* log)
+    : models_(models),
+      prior_(prior),
+      image_(*image),
+      buffers_(*buffers),
+      choice_(*choice),
+      log_(*log) {}
+
+void NearPrintVerifier::Test(const RingCandidate& ring) {
+  RingPlace place{{}, ring.diameters_px, ring.reach_px};
+  if (models_.camera.Project(ring.poses[0].center, &place.center_px) ==
+          ProjectionStatus::kOutsideModel ||
+      buffers_.refused.Holds(place, kSameSign) ||
+      buffers_.tested.Holds(place, RingMemory::kSameStart)) {
+    return;
+  }
+  buffers_.tested.Note(place);
+  log_.Reach(LandingStage::kCross, "no cross inside of the ring");
+  const PriorKnowledge::Order order = prior_.OrderOf(ring.poses);
+  const double diameter_px = ring.diameters_px.x();
+  bool has_cross = false;
+  for (const int pose : order.poses) {
+    std::optional<Hypothesis> print = FindCross(ring.poses[pose], diameter_px);
+    if (print) print = Compare(print->camera_from_pattern, print->method, diameter_px);
+    has_cross |= print.has_value();
+    if (print && TestPrint(*print, ring.diameters_px, ring.reach_px, ring.poses, order)) return;
+  }
+  for (const double farther : kRefinedReaches) {
+    if (has_cross) return;
+    bool is_whole = false;
+    for (const int pose : order.poses) {
+      const auto refined = RefineRing(ring.poses[pose], farther * ring.reach_px, kRefinements);
+      if (!refined) continue;
+      is_whole |= refined->is_whole;
+      const std::optional<Hypothesis> print =
+          FindCrossInRefined(refined->camera_from_pattern, diameter_px);
+      has_cross |= print.has_value();
+      if (print && TestPrint(*print, ring.diameters_px, ring.reach_px, ring.poses, order)) return;
+    }
+    // When nearly the whole ring is in place and shows no cross, a wider search shows none either.
+    if (is_whole && !has_cross) {
+      place.reach_px *= kRefinedReaches.back();
+      buffers_.refused.Note(place);
+      return;
+    }
+  }
+}
+
+void NearPrintVerifier::TestPredicted(const CirclePose& predicted,
+                                      const Eigen::Vector2d& predicted_px) {
+  constexpr int kIterations = 3;
+  const auto refined = RefineRing(predicted, kPredictedReach * predicted_px.x(), kIterations);
+  if (!refined) return;
+  const RigidTransform& pose = refined->camera_from_pattern;
+  const CirclePose ring{pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()};
+  const Eigen::Vector2d diameters_px =
+      RingDiametersPx(models_.camera, models_.options.pattern.outer_radius_m(), ring);
+  if (IsSmallRing(diameters_px)) return;
+  image_.Prepare(ViewLevel(diameters_px.x()));
+  const std::optional<Hypothesis> print = FindCross(ring, diameters_px.x());
+  if (!print) return;
+  const double reach_px = std::max(kLeastReachPx, kSureReach * diameters_px.x());
+  TestPrint(*print, diameters_px, reach_px, {&ring, 1}, {});
+}
+
+void NearPrintVerifier::TestCross(const RigidTransform& pose, const ImageRegion& region) {
+  log_.Reach(LandingStage::kCross, "lines of a cross without the pattern around them");
+  const double angle =
+      std::atan2(models_.options.pattern.outer_radius_m(), pose.translation.norm());
+  const double diameter_px = 2 * models_.camera.intrinsics().fx_px * angle;
+  const std::optional<Hypothesis> print = Compare(pose, CrossMethod::kPartial, diameter_px);
+  if (!print) return;
+  const double reach_px = std::max(kLeastReachPx, region.scale() + kCrossReach * diameter_px);
+  const CirclePose ring{pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()};
+  TestPrint(*print, Eigen::Vector2d::Constant(diameter_px), reach_px, {&ring, 1}, {});
+}
+
+// Returns the print whose ring lies as 'ring', turned as the cross inside. Not yet compared with
+// the image.
+std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCross(const CirclePose& ring,
+                                                                          double diameter_px) {
+  constexpr int kThinningSize = 32, kLinesSize = 64;
+  const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
+  const LandingPattern& pattern = models_.options.pattern;
+  const ImageRegion region = image_.RegionAt(ViewLevel(diameter_px));
+  const cv::Mat image = image_.At(region.level);
+  const PatternView view(models_.camera, PatternPose(ring, 0), models_.matcher.extent_m(), region);
+  if (!view.valid()) return std::nullopt;
+  const double contrast = models_.matcher.RingContrast(image, view);
+  if (contrast < GrayContrast::kLeastRing) return std::nullopt;
+  const auto print = [&](const Cross& cross, CrossMethod method) {
+    return Hypothesis{PatternPose(ring, cross.arm_angle), method, contrast};
+  };
+  // Thinning is tried when the lines of a large cross are broken. It is fast on the rectified
+  // inside, at any size.
+  if (diameter_px > kLinesRingPx) {
+    const auto inside = RectifyInside(image, view, pattern, kLinesSize, GrayContrast::kLeastInside);
+    const auto cross =
+        inside ? FindCrossByLines(*inside, pattern, &buffers_.cross_lines) : std::nullopt;
+    if (cross) return print(*cross, CrossMethod::kLines);
+  }
+  const auto inside =
+      RectifyInside(image, view, pattern, kThinningSize, GrayContrast::kLeastInside);
+  const auto cross = inside ? FindCrossByThinning(*inside) : std::nullopt;
+  if (cross) return print(*cross, CrossMethod::kThinning);
+  return std::nullopt;
+}
+
+// Fits a ring to the edges of both of its circles before its inside is examined: where the ring is
+// cut off or broken, its first estimate says little about the far side.
+std::optional<RingLocation> NearPrintVerifier::RefineRing(const CirclePose& ring, double reach_px,
+                                                          int iterations) {
+  const SearchLog::Timer timer = log_.Time(LandingStage::kRing);
+  return models_.locator.LocateRing(image_.whole(), PatternPose(ring, 0), reach_px,
+                                    GrayContrast::kLeastRing / 2, iterations,
+                                    prior_.LevelPrior(ring.normal));
+}
+
+std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCrossInRefined(
+    const RigidTransform& ring, double diameter_px) {
+  const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
+  const ImageRegion region = image_.RegionAt(ViewLevel(diameter_px));
+  const cv::Mat image = image_.At(region.level);
+  const PatternView view(models_.camera, ring, models_.matcher.extent_m(), region);
+  if (!view.valid() || models_.matcher.RingContrast(image, view) < GrayContrast::kLeastRing) {
+    return std::nullopt;
+  }
+  const std::optional<Cross> cross =
+      FindCrossByProfile(image, view, models_.options.pattern, GrayContrast::kLeastRing / 2);
+  if (!cross) return std::nullopt;
+  RigidTransform turned = ring;
+  turned.rotation *=
+      Eigen::Quaterniond(Eigen::AngleAxisd(cross->arm_angle, Eigen::Vector3d::UnitZ()));
+  return Compare(turned, CrossMethod::kThinning, diameter_px);
+}
+
+// Returns nothing for a pose under which the image does not resemble the print at all.
+std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::Compare(const RigidTransform& pose,
+                                                                        CrossMethod method,
+                                                                        double diameter_px) {
+  const SearchLog::Timer timer = log_.Time(LandingStage::kMatch);
+  log_.Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
+  const ImageRegion region = image_.RegionAt(ViewLevel(diameter_px));
+  const PatternView view(models_.camera, pose, models_.matcher.extent_m(), region);
+  if (!view.valid()) return std::nullopt;
+  const PatternMatch match = models_.matcher.Match(image_.At(region.level), view);
+  if (match.Agreement() < kWorthLocating) return std::nullopt;
+  return Hypothesis{pose, method, match.contrast};
+}
+
+// True when the print is accepted as the pattern. Whether it looks like the pattern is decided by
+// the image alone; the lens decides only where it is.
+bool NearPrintVerifier::TestPrint(const Hypothesis& print, const Eigen::Vector2d& diameters_px,
+                                  double reach_px, std::span<const CirclePose> rings,
+                                  const PriorKnowledge::Order& order) {
+  const SearchLog::Timer timer = log_.Time(LandingStage::kLocate);
+  log_.Reach(LandingStage::kLocate, "ring and cross have too few edges");
+  const ImageRegion region = image_.RegionAt(ViewLevel(diameters_px.x()));
+  const cv::Mat image = image_.At(region.level);
+  PrintAlignment alignment{
+      PlaneWarp(models_.camera, print.camera_from_pattern, models_.locator.outline().radius_m()),
+      {}};
+  const double min_step = std::max(GrayContrast::kLeastEdge, kMinStep * print.contrast);
+  if (!AlignPrint(image_.whole(), image, region, models_.locator.outline().all(), reach_px,
+                  min_step, &alignment)) {
+    return false;
+  }
+  const PatternView view(alignment.warp, models_.ink.extent_m(), region);
+  if (!view.valid()) return false;
+  PrintFinding finding;
+  finding.diameters_px = diameters_px;
+  const double seen = models_.ink.Doubt(image, view, &finding.doubts);
+  finding.kind = seen < PrintPlaces::kWhole ? PrintKind::kPart : PrintKind::kByEdges;
+  finding.method = seen < PrintPlaces::kWhole ? CrossMethod::kPartial : print.method;
+  finding.doubts[PrintDoubt::kHidden] = 1 - seen;
+  DoubtEdges(alignment, &finding);
+  bool is_found = false;
+  for (std::size_t i = 0; i < rings.size(); ++i) {
+    if (!choice_.MayAccept(finding.kind, finding.doubts)) break;
+    if (is_found && order.one_is_right) break;
+    const CirclePose& ring = rings[order.poses[i]];
+    is_found |= Locate(alignment, WithArmOf(alignment, ring), finding);
+  }
+  if (!is_found) Refuse(finding, alignment, reach_px);
+  return is_found;
+}
+
+// Returns the print whose ring lies as 'ring', turned so that its arm points as in the image.
+RigidTransform NearPrintVerifier::WithArmOf(const PrintAlignment& alignment,
+                                            const CirclePose& ring) const {
+  RigidTransform pose = PatternPose(ring, 0);
+  Eigen::Vector2d pixel;
+  Eigen::Vector3d ray;
+  if (!alignment.warp.Project({models_.options.pattern.arm_half_length_m, 0}, &pixel) ||
+      models_.camera.Unproject(pixel, &ray) == ProjectionStatus::kOutsideModel) {
+    return alignment.warp.pose();
+  }
+  const double distance = ring.normal.dot(ring.center) / ring.normal.dot(ray);
+  const Eigen::Vector3d arm = pose.rotation.conjugate() * (distance * ray - ring.center);
+  return PatternPose(ring, std::atan2(arm.y(), arm.x()));
+}
+
+// Locates the print near 'initial'. True when it is accepted as the pattern.
+bool NearPrintVerifier::Locate(const PrintAlignment& alignment, const RigidTransform& initial,
+                               PrintFinding finding) {
+  const Eigen::Vector3d normal = initial.rotation * Eigen::Vector3d::UnitZ();
+  const std::optional<PatternLocation> location =
+      models_.locator.Locate(alignment.edges, initial, prior_.LevelPrior(normal));
+  if (!location) return false;
+  finding.location = *location;
+  finding.seen = {alignment.warp.pose(), alignment.warp.displacement()};
+  finding.seen_rms_px = alignment.edge_rms_px;
+  finding.center_px = CenterPx(*location, alignment);
+  finding.doubts[PrintDoubt::kMisfit] = LogShare(location->edge_rms_px, MeanDiameter(finding));
+  DoubtView(finding.diameters_px, finding.relative_sigma(), &finding.doubts);
+  finding.log_odds = PrintLogOdds(finding.kind, finding.doubts);
+  finding.told = prior_.LogOddsOfDistance(location->camera_from_pattern.translation);
+  return choice_.Add(finding);
+}
+
+// Records that a ring whose edges were found is something else.
+void NearPrintVerifier::Refuse(const PrintFinding& finding, const PrintAlignment& alignment,
+                               double reach_px) {
+  log_.Reach(LandingStage::kLocate, MainDoubt(finding.kind, finding.doubts));
+  RingPlace place{{}, finding.diameters_px, reach_px};
+  if (alignment.warp.Project(Eigen::Vector2d::Zero(), &place.center_px)) {
+    buffers_.refused.Note(place);
+  }
+}
+
+void NearPrintVerifier::DoubtEdges(const PrintAlignment& alignment, PrintFinding* finding) {
+  const PartShares edge_shares = alignment.EdgeShares();
+  const PartShares::Means edges = edge_shares.MeansInView();
+  const bool shows_arms = *std::max_element(edge_shares.arm.begin(), edge_shares.arm.end()) >= 0;
+  finding->doubts[PrintDoubt::kArmEdges] = shows_arms ? 1 - edges.arms : 0;
+  finding->doubts[PrintDoubt::kWorstArmEdges] = shows_arms ? 1 - edges.worst_arm : 0;
+  finding->doubts[PrintDoubt::kScatter] = LogShare(alignment.edge_rms_px, MeanDiameter(*finding));
+}
+
+}  // namespace kestrel

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/landing/verification/small_print_verifier.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "kestrel/vision/landing/image_properties.h"
+#include "kestrel/vision/landing/location/pattern_pose.h"
+#include "kestrel/vision/landing/print_places.h"
+#include "kestrel/vision/landing/score/gray_doubts.h"
+#include "kestrel/vision/landing/verification/cross.h"
+
+namespace kestrel {
+namespace {
+
+using Light = SmallPatternFitter::Light;
+
+constexpr double kMinMajorPx = 9;                // longer diameter of the smallest ring
+constexpr double kFlattestRing = 0.08;           // axis ratio of the flattest ring
+constexpr double kMinCorrelation = 0.35;         // of a start with the image
+constexpr double kSureCorrelation = 0.6;         // of a start by the quadrants
+constexpr double kMinCorrelationOfEither = 0.7;  // else the mirror pose is not tested
+// Explained share of the variance below which shadows are searched for even on a print that is
+// found in even light: they bend the pose.
+constexpr double kWellExplained = 0.85;
+constexpr int kFitIterations = 8;
+
+// Largest change of the distance and of the place (radii) of the ring by a fit.
+constexpr double kMaxDistanceChange = 0.25;
+constexpr double kMaxMove = 0.4;
+
+// True when a fitted pose still belongs to the ring it started from.
+bool Agrees(const RigidTransform& start, const RigidTransform& fitted, double radius_m) {
+  const double distance = start.translation.norm();
+  return std::abs(fitted.translation.norm() - distance) < kMaxDistanceChange * distance &&
+         (fitted.translation.normalized() - start.translation / distance).norm() <
+             kMaxMove * radius_m / distance;
+}
+
+}  // namespace
+
+SmallPrintVerifier::SmallPrintVerifier(const LandingModels& models, const PriorKnowledge& prior,
+                                       SearchedImage* image, SmallPrintBuffers* buffers,
+                                       DetectionChoice* choice, SearchLog* log)
+    : models_(models),
+      prior_(prior),
+      image_(*image),
+      buffers_(*buffers),
+      choice_(*choice),
+      log_(*log) {}
+
+void SmallPrintVerifier::Test(const RingCandidate& ring) {
+  if (IsTooSmall(ring.diameters_px)) return;
+  const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
+  log_.Reach(LandingStage::kCross, "no cross inside of the ring");
+  RingPlace place{{}, ring.diameters_px};
+  if (models_.camera.Project(ring.poses[0].center, &place.center_px) ==
+          ProjectionStatus::kOutsideModel ||
+      buffers_.tested.Holds(place, RingMemory::kSameStart)) {
+    return;
+  }
+  buffers_.tested.Note(place);
+  const PriorKnowledge::Order order = prior_.OrderOf(ring.poses);
+  for (const int pose : order.poses) {
+    const Outcome outcome = TestPose(ring.poses[pose], ring.scales);
+    if (outcome == Outcome::kNothing) return;
+    if (outcome == Outcome::kFound && order.one_is_right) return;
+  }
+}
+
+void SmallPrintVerifier::TestPredicted(const CirclePose& ring,
+                                       const Eigen::Vector2d& diameters_px) {
+  if (IsTooSmall(diameters_px)) return;
+  const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
+  TestPose(ring, kOneScale);
+}
+
+// True when a ring is too small or seen almost edge-on.
+bool SmallPrintVerifier::IsTooSmall(const Eigen::Vector2d& diameters_px) const {
+  return diameters_px.x() < kMinMajorPx ||
+         diameters_px.y() < SearchPass::kThinnest * models_.options.min_ring_px ||
+         diameters_px.y() < kFlattestRing * diameters_px.x();
+}
+
+SmallPrintVerifier::Outcome SmallPrintVerifier::TestPose(const CirclePose& pose,
+                                                         std::span<const double> scales) {
+  const SmallPatternFitter::Start start = FindStart(pose, scales);
+  // The two poses of a small ring look much the same: when one does not fit, neither does the
+  // other.
+  if (start.correlation < kMinCorrelation) return Outcome::kNothing;
+  log_.Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
+  const std::optional<NormalPrior> level = prior_.LevelPrior(pose.normal);
+  const auto fit = [&](const RigidTransform& initial, Light light) {
+    return models_.small.Refine(image_.whole(), initial, light, kFitIterations,
+                                &buffers_.gray_values, level);
+  };
+  const auto in_even = fit(start.camera_from_pattern, Light::kEven);
+  if (!in_even || in_even->correlation < kMinCorrelationOfEither) return Outcome::kNothing;
+  const RigidTransform& fitted = in_even->location.camera_from_pattern;
+  if (!Agrees(start.camera_from_pattern, fitted, models_.options.pattern.outer_radius_m())) {
+    return Outcome::kOtherPose;
+  }
+  log_.Reach(LandingStage::kLocate, "it is too small to tell");
+  std::optional<PrintFinding> finding = FindingOf(*in_even, Light::kEven);
+  if (!finding || !choice_.Accepts(*finding) || in_even->explained < kWellExplained) {
+    const auto in_shadows = fit(fitted, Light::kShadows);
+    const auto evened = in_shadows ? FindingOf(*in_shadows, Light::kShadows) : std::nullopt;
+    if (evened && (!finding || evened->log_odds > finding->log_odds)) finding = evened;
+  }
+  return finding && choice_.Add(*finding) ? Outcome::kFound : Outcome::kOtherPose;
+}
+
+// Returns nothing for a print smaller than the smallest searched for.
+std::optional<PrintFinding> SmallPrintVerifier::FindingOf(const SmallPatternFitter::Fit& fit,
+                                                          Light light) const {
+  constexpr double kTolerance = 0.75;  // of the size, which so few pixels hardly determine
+  const RigidTransform& pose = fit.location.camera_from_pattern;
+  PrintFinding finding;
+  finding.kind = PrintKind::kAsAWhole;
+  finding.location = fit.location;
+  finding.diameters_px =
+      RingDiametersPx(models_.camera, models_.options.pattern.outer_radius_m(),
+                      {pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()});
+  if (finding.diameters_px.y() < kTolerance * models_.options.min_ring_px ||
+      models_.camera.Project(pose.translation, &finding.center_px) ==
+          ProjectionStatus::kOutsideModel) {
+    return std::nullopt;
+  }
+  const PatternView view(models_.camera, pose, models_.ink.extent_m(), {});
+  if (!view.valid()) return std::nullopt;
+  const double seen = models_.ink.Doubt(image_.whole(), view, &finding.doubts);
+  finding.method = seen < PrintPlaces::kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants;
+  finding.doubts[PrintDoubt::kHidden] = 1 - seen;
+  DoubtGrayValues(fit, &finding.doubts);
+  DoubtView(finding.diameters_px, finding.relative_sigma(), &finding.doubts);
+  finding.doubts[PrintDoubt::kShadows] = light == Light::kShadows ? 1 : 0;
+  finding.log_odds = PrintLogOdds(finding.kind, finding.doubts);
+  finding.told = prior_.LogOddsOfDistance(pose.translation);
+  return finding;
+}
+
+// Returns the best start for a small pattern whose ring lies as 'pose'; its correlation is -1 when
+// there is none.
+SmallPatternFitter::Start SmallPrintVerifier::FindStart(const CirclePose& pose,
+                                                        std::span<const double> scales) {
+  const std::optional<double> scale =
+      models_.small.FindScale(image_.whole(), pose, scales, &buffers_.gray_values);
+  if (!scale) return {{}, -1};
+  if (const std::optional<double> angle = ArmAngleByQuadrants(pose)) {
+    auto start = models_.small.FindStart(pose, *scale, {&*angle, 1}, &buffers_.gray_values);
+    if (start.correlation >= kSureCorrelation) return start;
+  }
+  // At most 7.5 degrees from any direction.
+  constexpr double kStep = std::numbers::pi / 12;
+  constexpr std::array<double, 6> kTurns{0, kStep, 2 * kStep, 3 * kStep, 4 * kStep, 5 * kStep};
+  return models_.small.FindStart(pose, *scale, kTurns, &buffers_.gray_values);
+}
+
+// Returns the direction of an arm of a small cross from its quadrants.
+std::optional<double> SmallPrintVerifier::ArmAngleByQuadrants(const CirclePose& pose) {
+  constexpr int kSize = 24;
+  const PatternView view(models_.camera, PatternPose(pose, 0), models_.matcher.extent_m(), {});
+  if (!view.valid()) return std::nullopt;
+  const auto inside = RectifyInside(image_.whole(), view, models_.options.pattern, kSize,
+                                    GrayContrast::kLeastInside);
+  if (!inside) return std::nullopt;
+  const std::optional<Cross> cross = FindCrossByQuadrants(*inside);
+  if (!cross) return std::nullopt;
+  return cross->arm_angle;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "kestrel/vision/landing/alignment/small_pattern.h"
+#include "kestrel/vision/landing/candidates/ring_candidates.h"
+#include "kestrel/vision/landing/candidates/ring_memory.h"
+#include "kestrel/vision/landing/location/detection_choice.h"
+#include "kestrel/vision/landing/search/landing_models.h"
+#include "kestrel/vision/landing/search/prior_knowledge.h"
+#include "kestrel/vision/landing/search/searched_image.h"
+
+namespace kestrel {
+
+// Memory of SmallPrintVerifier. Does not allocate once it is reserved.
+struct SmallPrintBuffers {
+  SmallPatternWorkspace gray_values;
+  RingMemory tested;
+
+  void Reserve() { tested.Reserve(); }
+};
+
+// Tests whether a ring whose strokes are no wider than the blur is that of the print, and locates
+// it, by fitting the whole print to the gray values (docs/small_pattern.md).
+class SmallPrintVerifier {
+ public:
+  // The arguments must outlive the verifier.
+  SmallPrintVerifier(const LandingModels& models, const PriorKnowledge& prior, SearchedImage* image,
+                     SmallPrintBuffers* buffers, DetectionChoice* choice, SearchLog* log);
+
+  void Test(const RingCandidate& ring);
+
+  // Tests a ring near its predicted pose. 'diameters_px': the longer one first.
+  void TestPredicted(const CirclePose& ring, const Eigen::Vector2d& diameters_px);
+
+ private:
+  // Result of testing one pose of a ring: kOtherPose means the other pose may still fit.
+  enum class Outcome { kFound, kOtherPose, kNothing };
+
+  bool IsTooSmall(const Eigen::Vector2d& diameters_px) const;
+  Outcome TestPose(const CirclePose& pose, std::span<const double> scales);
+  SmallPatternFitter::Start FindStart(const CirclePose& pose, std::span<const double> scales);
+  std::optional<double> ArmAngleByQuadrants(const CirclePose& pose);
+  std::optional<PrintFinding> FindingOf(const SmallPatternFitter::Fit& fit,
+                                        SmallPatternFitter::Light light) const;
+
+  const LandingModels& models_;
+  const PriorKnowledge& prior_;
+  SearchedImage& image_;
+  SmallPrintBuffers& buffers_;
+  DetectionChoice& choice_;
+  SearchLog& log_;
+};
+
+}  // namespace kestrel
