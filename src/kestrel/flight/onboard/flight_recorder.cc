@@ -37,11 +37,6 @@ fs::path MadeFolder(const fs::path& folder, bool replace, const FlightRecorderOp
   return folder;
 }
 
-const std::vector<EurocTable> kTables{EurocTable::kImages,        EurocTable::kExposures,
-                                      EurocTable::kDroppedImages, EurocTable::kPoses,
-                                      EurocTable::kTruePoses,     EurocTable::kTruePatterns,
-                                      EurocTable::kPackets};
-
 // Returns the folder without the recording that may be in it.
 fs::path Emptied(const fs::path& folder) {
   std::error_code error;
@@ -81,7 +76,7 @@ FlightRecorder::FlightRecorder(const fs::path& folder, bool replace,
       lock_(folder_.string()),
       tell_(std::move(tell)),
       utc_offset_(UtcOffset()),
-      writer_(Emptied(folder_), kTables),
+      writer_(Emptied(folder_), kEurocTables),
       images_(static_cast<std::size_t>(options.queue_frames)),
       records_(kRecords) {
   if (options_.compression == "jpg") jpeg_encoder_.emplace(options_.jpg_quality);

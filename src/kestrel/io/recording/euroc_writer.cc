@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/io/recording/euroc_writer.h"
 
-#include <array>
 #include <cstddef>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -17,11 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kRoot[] = "mav0";
-
-constexpr std::array kEurocTables{EurocTable::kImages,        EurocTable::kExposures,
-                                  EurocTable::kDroppedImages, EurocTable::kPoses,
-                                  EurocTable::kTruePoses,     EurocTable::kTruePatterns,
-                                  EurocTable::kPackets};
 
 // The file's path in a recording and its first row.
 RecordedFiles::File FileOf(EurocTable table) {
@@ -56,7 +51,7 @@ std::vector<RecordedFiles::File> FilesIn(const fs::path& folder) {
 }
 
 // Returns the folder with the folders of the tables in it.
-fs::path WithFolders(const fs::path& folder, const std::vector<EurocTable>& tables) {
+fs::path WithFolders(const fs::path& folder, std::span<const EurocTable> tables) {
   std::error_code error;
   for (const EurocTable table : tables) {
     const bool is_images = table == EurocTable::kImages;
@@ -78,7 +73,7 @@ fs::path RecordedImagePath(Time time, std::string_view extension) {
 
 fs::path PathOf(EurocTable table) { return FileOf(table).path; }
 
-EurocWriter::EurocWriter(const fs::path& folder, const std::vector<EurocTable>& tables)
+EurocWriter::EurocWriter(const fs::path& folder, std::span<const EurocTable> tables)
     : folder_(WithFolders(folder, tables)), files_(folder_, FilesIn(folder_)) {}
 
 EurocWriter::~EurocWriter() { Commit(); }

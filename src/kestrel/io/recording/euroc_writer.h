@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
@@ -30,6 +30,11 @@ enum class EurocTable {
   kPackets
 };
 
+inline constexpr std::array kEurocTables{EurocTable::kImages,        EurocTable::kExposures,
+                                         EurocTable::kDroppedImages, EurocTable::kPoses,
+                                         EurocTable::kTruePoses,     EurocTable::kTruePatterns,
+                                         EurocTable::kPackets};
+
 // Returns the table's path in a recording.
 std::filesystem::path PathOf(EurocTable table);
 
@@ -43,7 +48,7 @@ class EurocWriter {
  public:
   // Makes the folders of 'tables', the only ones that may be given rows. Throws InputError when
   // 'folder' cannot be written.
-  EurocWriter(const std::filesystem::path& folder, const std::vector<EurocTable>& tables);
+  EurocWriter(const std::filesystem::path& folder, std::span<const EurocTable> tables);
   // Commits.
   ~EurocWriter();
   EurocWriter(const EurocWriter&) = delete;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/io/recording/euroc_writer.h"
 
+#include <array>
 #include <filesystem>
 #include <string>
 
@@ -31,7 +32,7 @@ void WriteNoise(int ms, EurocWriter* writer) {
 // What a program that dies leaves is what it has committed.
 TEST(EurocWriter, WhatIsCommittedIsARecordingAtAnyTime) {
   const TestFolder folder;
-  EurocWriter writer(folder.path(), {EurocTable::kImages, EurocTable::kPoses});
+  EurocWriter writer(folder.path(), std::array{EurocTable::kImages, EurocTable::kPoses});
   for (int i = 1; i <= 3; ++i) {
     WriteNoise(10 * i, &writer);
     writer.AddPose({At(10 * i), {}});
@@ -47,7 +48,7 @@ TEST(EurocWriter, WhatIsCommittedIsARecordingAtAnyTime) {
 TEST(EurocWriter, MakesTheFilesThatItHasRowsFor) {
   const TestFolder folder;
   {
-    EurocWriter writer(folder.path(), {EurocTable::kImages, EurocTable::kDroppedImages});
+    EurocWriter writer(folder.path(), std::array{EurocTable::kImages, EurocTable::kDroppedImages});
     writer.AddDroppedImage(At(1), "a reason");
   }
   EXPECT_EQ(ReadFile(folder / "mav0/cam0/dropped.csv"),
@@ -58,7 +59,7 @@ TEST(EurocWriter, MakesTheFilesThatItHasRowsFor) {
 
 TEST(EurocWriter, KeepsManyRowsOnTheWay) {
   const TestFolder folder;
-  EurocWriter writer(folder.path(), {EurocTable::kPoses});
+  EurocWriter writer(folder.path(), std::array{EurocTable::kPoses});
   const std::string file = folder / "mav0/nav0/data.csv";
   writer.AddPose({At(0), {}});
   writer.CommitMany();
@@ -73,9 +74,9 @@ TEST(EurocWriter, KeepsManyRowsOnTheWay) {
 TEST(EurocWriter, WhatCannotBeWrittenIsSaid) {
   const TestFolder folder;
   const std::string file = folder.Write("file", "");
-  EXPECT_THAT(InputErrorOf([&] { EurocWriter(file, {EurocTable::kImages}); }),
+  EXPECT_THAT(InputErrorOf([&] { EurocWriter(file, std::array{EurocTable::kImages}); }),
               HasSubstr("file: cannot be written"));
-  EurocWriter writer(folder.path(), {EurocTable::kImages});
+  EurocWriter writer(folder.path(), std::array{EurocTable::kImages});
   std::filesystem::remove_all(folder / "mav0");
   EXPECT_THAT(InputErrorOf([&] { writer.WriteImage(At(1), "png", "bytes"); }),
               HasSubstr("data/1000000.png: cannot be written"));

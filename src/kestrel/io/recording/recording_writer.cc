@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/io/recording/recording_writer.h"
 
+#include <array>
 #include <cstdint>
 
 #include <fmt/format.h>
@@ -62,7 +63,7 @@ RecordingWriter::RecordingWriter(const fs::path& output, bool replace, const std
     }
     WriteText(scene_file, scene);
   }
-  writer_ = std::make_unique<EurocWriter>(part_, std::vector{EurocTable::kImages});
+  writer_ = std::make_unique<EurocWriter>(part_, std::array{EurocTable::kImages});
 }
 
 // A power loss may have left an empty file.
