@@ -24,6 +24,8 @@
 #include "kestrel/comms/team/team_member.h"
 #include "kestrel/comms/team/team_view.h"
 #include "kestrel/core/base/test_folder.h"
+#include "kestrel/flight/onboard/hunt_vision.h"
+#include "kestrel/flight/onboard/recording_switch.h"
 #include "kestrel/flight/ros/ros2_result_connection.h"
 #include "kestrel/flight/ros/ros_sink.h"
 #include "kestrel/flight/session/observation_sinks.h"
