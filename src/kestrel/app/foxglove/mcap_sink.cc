@@ -77,18 +77,17 @@ std::unique_ptr<ObservationSink> OpenMcapFile(const std::string& path, bool repl
   return std::make_unique<McapFileSink>(path, replace, camera, view);
 }
 
-std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
-                                               const CameraCalibration& calibration,
-                                               const LandingPipelineOptions& options,
-                                               std::function<void(const std::string&)> tell) {
+std::unique_ptr<AsynchronousSink> OpenLandingMcapSink(
+    const std::string& path, bool replace, const CameraCalibration& calibration,
+    const LandingPipelineOptions& options, std::function<void(const std::string&)> tell) {
   const std::variant<LandingView, HuntView> view = ViewOf(calibration, options);
   return OpenMcapSink(path, replace, calibration.intrinsics, view, std::move(tell));
 }
 
-std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
-                                               const CameraCalibration& calibration,
-                                               const ObjectModel& objects,
-                                               std::function<void(const std::string&)> tell) {
+std::unique_ptr<AsynchronousSink> OpenHuntMcapSink(const std::string& path, bool replace,
+                                                   const CameraCalibration& calibration,
+                                                   const ObjectModel& objects,
+                                                   std::function<void(const std::string&)> tell) {
   const std::variant<LandingView, HuntView> view = HuntView{.model = objects};
   return OpenMcapSink(path, replace, calibration.intrinsics, view, std::move(tell));
 }

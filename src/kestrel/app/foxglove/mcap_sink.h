@@ -30,20 +30,21 @@ std::unique_ptr<ObservationSink> OpenMcapFile(const std::string& path, bool repl
                                               const CameraIntrinsics& camera,
                                               const std::variant<LandingView, HuntView>& view);
 
-// The same for a landing with these options, and for a hunt for these objects.
+// Return sinks as OpenMcapSink does, of a landing with these options and of a hunt for these
+// objects.
 //
 // Example:
 //   const CameraCalibration calibration = ReadCalibration("camera.yaml");
 //   ObservationSinks sinks;
-//   sinks.Add(OpenMcapSink("flight.mcap", /*replace=*/true, calibration, LandingPipelineOptions(),
-//                          [](const std::string& text) { std::cerr << text << "\n"; }));
-std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
-                                               const CameraCalibration& calibration,
-                                               const LandingPipelineOptions& options,
-                                               std::function<void(const std::string&)> tell);
-std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
-                                               const CameraCalibration& calibration,
-                                               const ObjectModel& objects,
-                                               std::function<void(const std::string&)> tell);
+//   sinks.Add(OpenLandingMcapSink("flight.mcap", /*replace=*/true, calibration, {},
+//                                 [](const std::string& text) { std::cerr << text << "\n"; }));
+std::unique_ptr<AsynchronousSink> OpenLandingMcapSink(const std::string& path, bool replace,
+                                                      const CameraCalibration& calibration,
+                                                      const LandingPipelineOptions& options,
+                                                      std::function<void(const std::string&)> tell);
+std::unique_ptr<AsynchronousSink> OpenHuntMcapSink(const std::string& path, bool replace,
+                                                   const CameraCalibration& calibration,
+                                                   const ObjectModel& objects,
+                                                   std::function<void(const std::string&)> tell);
 
 }  // namespace kestrel

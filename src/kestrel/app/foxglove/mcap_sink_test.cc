@@ -11,6 +11,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/app/console/hunt_view.h"
+#include "kestrel/app/console/landing_view.h"
 #include "kestrel/app/foxglove/test_observations.h"
 #include "kestrel/app/foxglove/test_protobuf.h"
 #include "kestrel/core/base/test_folder.h"
