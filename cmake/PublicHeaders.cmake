@@ -30,14 +30,20 @@ set(KESTREL_PUBLIC_HEADERS
     io/recording/landing_overlay.h
     io/recording/object_overlay.h
     io/recording/open_source.h
+    io/bags/open_recording.h
     flight/session/asynchronous_sink.h
     flight/session/flight_report.h
+    flight/session/hunt_run.h
+    flight/session/landing_run.h
     flight/session/live_source.h
     flight/session/observation.h
     flight/session/observation_sink.h
     flight/session/observation_sinks.h
+    flight/session/recorded_session.h
+    flight/session/vision.h
     flight/onboard/gstreamer_camera.h
     flight/onboard/live_session.h
+    flight/onboard/open_live_source.h
     flight/onboard/realtime_replay.h
     simulation/recordings/recording_plan.h
     app/foxglove/mcap_sink.h)

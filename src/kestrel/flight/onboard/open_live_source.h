@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kestrel/core/camera/calibration.h"
-#include "kestrel/flight/onboard/exposure_drive.h"
+#include "kestrel/flight/onboard/exposure_actuator.h"
 #include "kestrel/flight/onboard/gstreamer_camera.h"
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/io/bags/open_recording.h"
@@ -43,8 +43,11 @@ struct SourceScheme {
 // (/dev/video0, rtsp://..., a GStreamer pipeline), or a recording, which is played in real time.
 // Throws InputError that says what is wrong with the source.
 //
+// Example:
 //   const OpenedLiveSource camera = OpenLiveSource(
 //       {.recording = {.sources = {"/dev/video0"}, .camera = "camera.yaml"}}, {});
+//   LiveSession session({.source = camera.source.get(), .calibration = camera.calibration});
+//   session.Run([] { return false; });
 OpenedLiveSource OpenLiveSource(const LiveSourceChoice& choice,
                                 const GstreamerCameraOptions& camera,
                                 const std::vector<SourceScheme>& schemes = {});

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "kestrel/io/bags/bag_choice.h"
 #include "kestrel/io/bags/bag_poses.h"
 #include "kestrel/io/bags/bag_reader.h"
 #include "kestrel/io/bags/bag_topics.h"
@@ -15,15 +15,6 @@
 #include "kestrel/io/recording/frame_source.h"
 
 namespace kestrel {
-
-// Options for reading a bag.
-struct BagChoice {
-  std::vector<std::string> topics = {};  // where the types leave a choice
-  bool use_arrival_times = false;        // instead of the stamps in the headers
-  // Called with what the user should know: what was cut off or left out, one line each. May be
-  // empty.
-  std::function<void(const std::string&)> tell = {};
-};
 
 // The images of a bag, with the calibration of their camera (from camera_info, the mount from tf)
 // and the poses. A frame's name is its topic with its time below it:

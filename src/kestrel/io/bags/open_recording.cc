@@ -3,6 +3,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/io/bags/bag_source.h"
 
 namespace kestrel {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
-#include "kestrel/io/bags/bag_source.h"
+#include "kestrel/io/bags/bag_choice.h"
 #include "kestrel/io/recording/frame_source.h"
 
 namespace kestrel {
@@ -38,9 +38,11 @@ std::unique_ptr<FrameSource> OpenFrames(const RecordingChoice& choice);
 // source's, and its clock offset. Tells 'bag.tell' when there are poses but no mount. Throws
 // InputError when there is no calibration, or when source or calibration are not valid.
 //
+// Example:
 //   const OpenedSource flight = OpenRecording({.sources = {"flight.bag"}});
-//   Frame frame;
-//   while (flight.source->Next(&frame)) Use(frame.image, frame.time);
+//   for (Frame frame; flight.source->Next(&frame);) {
+//     std::cout << frame.name << (flight.has_world() ? " has a place\n" : "\n");
+//   }
 OpenedSource OpenRecording(const RecordingChoice& choice);
 
 }  // namespace kestrel

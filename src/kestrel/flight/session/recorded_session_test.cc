@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/session/recorded_session.h"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/test_folder.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr int kWidth_px = 8;
+constexpr int kHeight_px = 6;
+
+Time At(double seconds) { return Time(DurationFromSeconds(seconds)); }
+
+// Frames at 1, 2, 3 s; poses at 0.5, 1.5, 2.5 s.
+class ThreeFrames : public FrameSource {
+ public:
+  bool Next(Frame* frame) override {
+    if (next_ == 3) return false;
+    ++next_;
+    *frame = {"frame " + std::to_string(next_), At(next_),
+              cv::Mat::zeros(kHeight_px, width_px, CV_8UC1)};
+    return true;
+  }
+  std::optional<std::size_t> frame_count() const override { return 3; }
+  double rate_hz() const override { return 1; }
+  std::vector<PoseSample> poses() const override {
+    std::vector<PoseSample> poses(3);
+    for (int i = 0; i < 3; ++i) poses[i].time = At(0.5 + i);
+    return poses;
+  }
+
+  int width_px = kWidth_px;
+
+ private:
+  int next_ = 0;
+};
+
+// Writes down what it gets, and when.
+class LoggedVision : public Vision {
+ public:
+  void AddPose(const PoseSample& pose) override {
+    log.push_back("pose " + std::to_string(ToNanoseconds(pose.time) / 100'000'000));
+  }
+  Duration pose_lead() const override { return Duration::zero(); }
+  Observation Process(const Frame& frame) override {
+    log.push_back(frame.name);
+    return {frame, LandingObservation()};
+  }
+  void Finish() override { log.emplace_back("finish"); }
+  std::string Found() const override { return ""; }
+
+  std::vector<std::string> log;
+};
+
+class FrameNames : public ObservationSink {
+ public:
+  void Take(const Observation& observation) override { names.push_back(observation.frame.name); }
+  std::vector<std::string> names;
+};
+
+class RecordedSessionTest : public ::testing::Test {
+ protected:
+  RecordedSessionTest() {
+    auto source = std::make_unique<ThreeFrames>();
+    source_ = source.get();
+    opened_.source = std::move(source);
+    opened_.calibration.intrinsics.width_px = kWidth_px;
+    opened_.calibration.intrinsics.height_px = kHeight_px;
+  }
+
+  OpenedSource opened_;
+  ThreeFrames* source_;
+  LoggedVision vision_;
+  FrameNames sink_;
+};
+
+TEST_F(RecordedSessionTest, AFrameComesAfterThePosesThatItNeeds) {
+  EXPECT_TRUE(RunRecording(opened_, &vision_, &sink_, [](std::size_t) { return true; }));
+  EXPECT_THAT(vision_.log, ElementsAre("pose 5", "pose 15", "frame 1", "pose 25", "frame 2",
+                                       "frame 3", "finish"));
+  EXPECT_THAT(sink_.names, ElementsAre("frame 1", "frame 2", "frame 3"));
+}
+
+TEST_F(RecordedSessionTest, StopsBeforeTheNextFrame) {
+  EXPECT_FALSE(RunRecording(opened_, &vision_, &sink_, [](std::size_t done) { return done < 2; }));
+  EXPECT_THAT(sink_.names, ElementsAre("frame 1", "frame 2"));
+  EXPECT_NE(vision_.log.back(), "finish");
+}
+
+TEST_F(RecordedSessionTest, NamesTheFrameOfAnotherSize) {
+  source_->width_px = kWidth_px + 1;
+  const std::string error = InputErrorOf(
+      [&] { RunRecording(opened_, &vision_, &sink_, [](std::size_t) { return true; }); });
+  EXPECT_THAT(error, HasSubstr("frame 1"));
+  EXPECT_TRUE(sink_.names.empty());
+}
+
+}  // namespace
+}  // namespace kestrel
