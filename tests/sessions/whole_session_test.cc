@@ -63,9 +63,7 @@ class AllSinks {
   FlightConsole* console;
 
  private:
-  void Say(const std::string& text) {
-    sinks.Take(SessionEvent{Now(), EventLevel::kWarning, text});
-  }
+  void Say(const std::string& text) { sinks.Take(SessionEvent{Now(), EventLevel::kWarning, text}); }
 
   void AddRos(int domain) {
     const DdsOptions options;
@@ -131,6 +129,14 @@ class Watcher {
   std::thread thread_;
 };
 
+// Returns the number of frames that the MCAP file lacks by its own words: on a busy computer it
+// may.
+std::size_t LeftOutByMcap(const std::string& events) {
+  const std::string_view said = "--mcap: ";
+  const std::size_t at = events.find(said);
+  return at == std::string::npos ? 0 : std::stoul(events.substr(at + said.size()));
+}
+
 TEST(WholeSession, IsStartedAndStoppedSeveralTimes) {
   constexpr int kFrames = 60;
   const TestFolder folder;
@@ -157,8 +163,9 @@ TEST(WholeSession, IsStartedAndStoppedSeveralTimes) {
     EXPECT_GT(seen.frames.size(), 10u);
     EXPECT_GT(seen.found, 5) << "of " << seen.frames.size();
     EXPECT_GT(seen.reports, 2);
-    EXPECT_THAT(seen.events, IsEmpty());
-    EXPECT_EQ(ReadMessages(folder / (round + ".mcap")).at("/result").size(), seen.frames.size());
+    const std::size_t written = ReadMessages(folder / (round + ".mcap")).at("/result").size();
+    EXPECT_GT(written, 5u);
+    EXPECT_EQ(written + LeftOutByMcap(seen.events), seen.frames.size()) << seen.events;
     EXPECT_GT(watcher.messages(), 5);
     for (const std::string part : {"first", "second"}) {
       EXPECT_GT(*OpenSource({folder / (part + round)})->frame_count(), 0u) << part;

@@ -63,9 +63,9 @@ class ObservationSinks : public ObservationSink {
   }
 
   void Tell(const std::string& error) {
-    TakeAll(SessionEvent{Now(), EventLevel::kError,
-                         "a sink of the results has failed: " + error +
-                             ": the flight goes on without it"});
+    TakeAll(SessionEvent{
+        Now(), EventLevel::kError,
+        "a sink of the results has failed: " + error + ": the flight goes on without it"});
   }
 
   std::vector<std::unique_ptr<OwnedSink>> sinks_;
