@@ -188,7 +188,9 @@ TEST_F(FailingSink, TheDiskOfAnMcapFileIsFull) {
 TEST_F(FailingSink, TheDiskOfARecordingFails) {
   LiveSessionParts parts;
   parts.record = folder_ / "flight";
-  Fly([&](LiveSession*) { std::filesystem::remove_all(folder_ / "flight/mav0"); }, parts);
+  // At once, as the recorder goes on writing into it.
+  Fly([&](LiveSession*) { std::filesystem::rename(folder_ / "flight/mav0", folder_ / "gone"); },
+      parts);
   ExpectAllResults();
   EXPECT_THAT(Told(), HasSubstr("no more images, the flight goes on"));
 }

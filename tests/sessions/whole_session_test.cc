@@ -132,8 +132,16 @@ class Watcher {
   std::thread thread_;
 };
 
+// Returns the number of frames that the MCAP file lacks by its own words: on a busy computer it
+// may.
+std::size_t LeftOutByMcap(const std::string& events) {
+  const std::string_view said = "--mcap: ";
+  const std::size_t at = events.find(said);
+  return at == std::string::npos ? 0 : std::stoul(events.substr(at + said.size()));
+}
+
 TEST(WholeSession, IsStartedAndStoppedSeveralTimes) {
-  constexpr int kFrames = 60;
+  constexpr int kFrames = 3000;  // half a minute; it is stopped before
   const TestFolder folder;
   const int domain = TestDomain();
   Listener listener(domain);
@@ -147,19 +155,22 @@ TEST(WholeSession, IsStartedAndStoppedSeveralTimes) {
     LiveSession session(parts, SessionOptions());
     bool is_restarted = false;
     const FlightEnd end = session.Run([&] {
-      if (is_restarted || all.witness->seen().frames.size() < kFrames / 3) return false;
+      if (session.recording().Get()->counters().images < 10) return false;
+      if (is_restarted) return true;
       EXPECT_TRUE(session.recording().Stop());
       EXPECT_TRUE(session.recording().Start(folder / ("second" + round), /*replace=*/false));
-      return !(is_restarted = true);
+      is_restarted = true;
+      return false;
     });
     all.sinks.Finish();
-    EXPECT_EQ(end, FlightEnd::kSourceEnded);
+    EXPECT_EQ(end, FlightEnd::kStopped);
     const Witness::Seen seen = all.witness->seen();
     EXPECT_GT(seen.frames.size(), 10u);
     EXPECT_GT(seen.found, 5) << "of " << seen.frames.size();
     EXPECT_GT(seen.reports, 2);
-    EXPECT_THAT(seen.events, IsEmpty());
-    EXPECT_EQ(ReadMessages(folder / (round + ".mcap")).at("/result").size(), seen.frames.size());
+    const std::size_t written = ReadMessages(folder / (round + ".mcap")).at("/result").size();
+    EXPECT_GT(written, 5u);
+    EXPECT_EQ(written + LeftOutByMcap(seen.events), seen.frames.size()) << seen.events;
     EXPECT_GT(watcher.messages(), 5);
     for (const std::string part : {"first", "second"}) {
       EXPECT_GT(*OpenSource({folder / (part + round)})->frame_count(), 0u) << part;
