@@ -92,7 +92,7 @@ void RunConsole(const ConsoleArguments& arguments) {
   fmt::print(stderr, "console: {}\n", console.url());
   if (has_colors) fmt::print(stderr, "colors that are taught: {}\n", arguments.output);
   const auto start = arguments.result.empty() ? search->Detect({}) : search->Show(arguments.result);
-  ObservationSinks sinks;
+  ObservationSinks sinks(SinkErrors::kThrow);
   ReplayRun* const run = sinks.Add(start(opened));
   RunToEnd(opened, run->vision(), &sinks, [&](std::size_t done) {
     if (done % kFramesPerReport != 0) return;

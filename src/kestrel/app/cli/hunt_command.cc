@@ -108,7 +108,7 @@ void RunHunt(const HuntArguments& arguments) {
   std::unique_ptr<TeamLink> team = OpenTeam(arguments, opened, all_options, options.still, model);
   HuntRun hunt(opened, model, grid, options, arguments.source.altitude_m);
   const HuntPipeline& pipeline = hunt.pipeline();
-  ObservationSinks sinks;
+  ObservationSinks sinks(SinkErrors::kThrow);
   auto files = std::make_unique<HuntFiles>(arguments.source.Output(opened), &pipeline, has_map,
                                            arguments.origin);
   AddDdsSink(arguments.source, opened, all_options, has_map, model, &sinks);

@@ -32,7 +32,7 @@ void RunLand(const LandArguments& arguments) {
                "--still\n");
   }
   LandingRun landing(opened, options, arguments.source.altitude_m);
-  ObservationSinks sinks;
+  ObservationSinks sinks(SinkErrors::kThrow);
   AddDdsSink(arguments.source, opened, all_options, has_track, /*model=*/{}, &sinks);
   AddMcapSink(arguments.source, opened, ViewOf(opened.calibration, options), &sinks);
   sinks.Add(std::make_unique<LandingFiles>(arguments.source.Output(opened), &landing.pipeline(),

@@ -10,7 +10,6 @@
 #include "kestrel/app/console/hunt_view.h"
 #include "kestrel/app/console/landing_view.h"
 #include "kestrel/app/foxglove/mcap_sink.h"
-#include "kestrel/flight/session/observation_sink.h"
 #include "kestrel/flight/session/observation_sinks.h"
 #include "kestrel/flight/session/vision.h"
 #include "kestrel/io/bags/open_recording.h"

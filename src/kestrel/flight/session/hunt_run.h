@@ -21,7 +21,7 @@ namespace kestrel {
 //   const ObjectModel model = DefaultObjectModel();
 //   HuntRun hunt(opened, model, ColorGrid(model.colors), HuntPipelineOptions(),
 //                /*altitude_m=*/std::nullopt);
-//   ObservationSinks sinks;
+//   ObservationSinks sinks(SinkErrors::kThrow);
 //   RunRecording(opened, &hunt, &sinks, [](std::size_t done) { return done < 100; });
 //   std::cout << hunt.pipeline().map().Confirmed().size() << " objects\n";
 class HuntRun : public Vision {

@@ -12,9 +12,14 @@
 
 namespace kestrel {
 
+// What becomes of an error that a sink throws.
+enum class SinkErrors {
+  kLeaveOut,  // a flight goes on: the sink is left out, and the others get an event that says so
+  kThrow,     // a session over a recording ends: its caller gets the error
+};
+
 // Passes everything to several sinks, in the order in which they were added. They finish in the
-// opposite order. A sink that throws is left out from then on, and the others get an event that
-// says so.
+// opposite order.
 //
 // Example:
 //   std::unique_ptr<ObservationSink> first;  // yours
@@ -24,7 +29,7 @@ namespace kestrel {
 //   sinks.Finish();
 class ObservationSinks : public ObservationSink {
  public:
-  ObservationSinks() = default;
+  explicit ObservationSinks(SinkErrors errors = SinkErrors::kLeaveOut) : errors_(errors) {}
   ~ObservationSinks() override {
     while (!sinks_.empty()) sinks_.pop_back();
   }
@@ -36,13 +41,13 @@ class ObservationSinks : public ObservationSink {
   Sink* Add(std::unique_ptr<Sink> sink) {
     Sink* const added = sink.get();
     sinks_.push_back(std::make_unique<OwnedSink>(
-        std::move(sink), [this](const std::string& error) { Tell(error); }));
+        std::move(sink), errors_, [this](const std::string& error) { Tell(error); }));
     return added;
   }
 
   bool IsWanted() const override {
     for (const auto& sink : sinks_) {
-      if (sink->guarded.IsWanted()) return true;
+      if (sink->used->IsWanted()) return true;
     }
     return false;
   }
@@ -51,22 +56,25 @@ class ObservationSinks : public ObservationSink {
   void Take(const TeamReport& report) override { TakeAll(report); }
   void Take(const SessionEvent& event) override { TakeAll(event); }
   void Finish() override {
-    for (auto sink = sinks_.rbegin(); sink != sinks_.rend(); ++sink) (*sink)->guarded.Finish();
+    for (auto sink = sinks_.rbegin(); sink != sinks_.rend(); ++sink) (*sink)->used->Finish();
   }
 
  private:
   struct OwnedSink {
-    OwnedSink(std::unique_ptr<ObservationSink> owned_sink,
+    OwnedSink(std::unique_ptr<ObservationSink> owned_sink, SinkErrors errors,
               std::function<void(const std::string&)> tell)
-        : owned(std::move(owned_sink)), guarded(owned.get(), std::move(tell)) {}
+        : owned(std::move(owned_sink)), guarded(owned.get(), std::move(tell)) {
+      if (errors == SinkErrors::kLeaveOut) used = &guarded;
+    }
 
     std::unique_ptr<ObservationSink> owned;
     GuardedSink guarded;
+    ObservationSink* used = owned.get();
   };
 
   template <class Value>
   void TakeAll(const Value& value) {
-    for (const auto& sink : sinks_) sink->guarded.Take(value);
+    for (const auto& sink : sinks_) sink->used->Take(value);
   }
 
   void Tell(const std::string& error) {
@@ -75,6 +83,7 @@ class ObservationSinks : public ObservationSink {
         "a sink of the results has failed: " + error + ": the flight goes on without it"});
   }
 
+  SinkErrors errors_;
   std::vector<std::unique_ptr<OwnedSink>> sinks_;
 };
 

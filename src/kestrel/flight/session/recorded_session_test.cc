@@ -9,6 +9,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/test_folder.h"
+#include "kestrel/flight/session/observation_sinks.h"
 
 namespace kestrel {
 namespace {
@@ -103,6 +104,19 @@ TEST_F(RecordedSessionTest, NamesTheFrameOfAnotherSize) {
       [&] { RunRecording(opened_, &vision_, &sink_, [](std::size_t) { return true; }); });
   EXPECT_THAT(error, HasSubstr("frame 1"));
   EXPECT_TRUE(sink_.names.empty());
+}
+
+TEST_F(RecordedSessionTest, ASinkThatFailsEndsIt) {
+  struct FullDisk : ObservationSink {
+    void Take(const Observation&) override { throw InputError("the disk is full"); }
+  };
+  ObservationSinks sinks(SinkErrors::kThrow);
+  const FrameNames* const others = sinks.Add(std::make_unique<FrameNames>());
+  sinks.Add(std::make_unique<FullDisk>());
+  EXPECT_EQ(InputErrorOf(
+                [&] { RunRecording(opened_, &vision_, &sinks, [](std::size_t) { return true; }); }),
+            "the disk is full");
+  EXPECT_THAT(others->names, ElementsAre("frame 1"));
 }
 
 }  // namespace
