@@ -77,6 +77,7 @@ std::unique_ptr<ReplaySearch> MakeSearch(const ConsoleArguments& arguments,
 }
 
 void RunConsole(const ConsoleArguments& arguments) {
+  CatchInterrupts();  // the page can be asked, and ended, before the first run begins
   const KestrelOptions options = arguments.source.options.Read();
   RequireEnd(arguments.source.sources);
   const std::unique_ptr<ReplaySearch> search = MakeSearch(arguments, options);
