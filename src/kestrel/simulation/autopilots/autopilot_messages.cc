@@ -31,13 +31,13 @@ EulerAngles EulerAnglesOf(const Eigen::Quaterniond& q) {
                                         1 - 2 * (q.y() * q.y() + q.z() * q.z())))};
 }
 
-struct GlobalPosition {
+struct GeoPoint {
   std::int32_t latitude;  // 1e-7 deg
   std::int32_t longitude;
   double altitude_m;
 };
 
-GlobalPosition GlobalPositionAt(const Vector3d& in_world, const GlobalOrigin& origin) {
+GeoPoint GeoPointAt(const Vector3d& in_world, const GlobalOrigin& origin) {
   constexpr double kEarthRadius_m = 6378137;
   const double latitude_deg = origin.latitude_deg + Degrees(in_world.y() / kEarthRadius_m);
   const double longitude_deg =
@@ -115,7 +115,7 @@ mavlink::LocalPositionNed LocalPositionOf(const PoseSample& pose, std::uint32_t 
 mavlink::GlobalPositionInt GlobalPositionOf(const PoseSample& pose, const GlobalOrigin& origin,
                                             std::uint32_t boot_ms) {
   const Vector3d& position = pose.world_from_body.translation;
-  const GlobalPosition at = GlobalPositionAt(position, origin);
+  const GeoPoint at = GeoPointAt(position, origin);
   const Vector3d v = NedFromEnu(pose.motion->velocity_in_world);
   const double yaw = EulerAnglesOf(NedFrdFromEnuFlu(pose.world_from_body.rotation)).yaw;
   constexpr int kFullTurn_cdeg = 36000;
@@ -137,7 +137,7 @@ mavlink::SimState SimStateOf(const PoseSample& pose, const GlobalOrigin& origin)
   const Eigen::Quaternionf q = rotation.cast<float>();
   const Eigen::Vector3f rate = FrdFromFlu(pose.motion->rate_in_body).cast<float>();
   const Eigen::Vector3f v = NedFromEnu(pose.motion->velocity_in_world).cast<float>();
-  const GlobalPosition at = GlobalPositionAt(pose.world_from_body.translation, origin);
+  const GeoPoint at = GeoPointAt(pose.world_from_body.translation, origin);
   mavlink::SimState state;
   state.q1 = q.w();
   state.q2 = q.x();
@@ -162,7 +162,7 @@ mavlink::SimState SimStateOf(const PoseSample& pose, const GlobalOrigin& origin)
 }
 
 mavlink::GpsGlobalOrigin GlobalOriginOf(const GlobalOrigin& origin, std::int64_t boot_us) {
-  const GlobalPosition at = GlobalPositionAt(Vector3d::Zero(), origin);
+  const GeoPoint at = GeoPointAt(Vector3d::Zero(), origin);
   return {.latitude = at.latitude,
           .longitude = at.longitude,
           .altitude = static_cast<std::int32_t>(std::lround(1000 * at.altitude_m)),
@@ -171,7 +171,7 @@ mavlink::GpsGlobalOrigin GlobalOriginOf(const GlobalOrigin& origin, std::int64_t
 
 // Home is at the local frame's origin.
 mavlink::HomePosition HomePositionOf(const GlobalOrigin& origin, std::int64_t boot_us) {
-  const GlobalPosition at = GlobalPositionAt(Vector3d::Zero(), origin);
+  const GeoPoint at = GeoPointAt(Vector3d::Zero(), origin);
   mavlink::HomePosition message;
   message.latitude = at.latitude;
   message.longitude = at.longitude;

@@ -16,8 +16,8 @@ namespace {
 constexpr int kBins = 36;   // bins of the histogram of directions, over a right angle
 constexpr int kFewest = 8;  // pixels in the direction of the arms
 // Inner radii: the two lines are not separate nearer to the middle, and the disc ends.
-constexpr double kNear = 0.15;
-constexpr double kFar = 0.85;
+constexpr double kNearRadius = 0.15;
+constexpr double kFarRadius = 0.85;
 constexpr int kThinnings = 20;       // more than the widest arm needs
 constexpr double kOffArm = 0.35;     // tangent; pixels farther from an arm's direction are not its
 constexpr double kLeastSeen = 0.35;  // of a half arm, to be asked for
@@ -54,7 +54,7 @@ std::optional<double> DominantDirection(const RingInside& inside, const SmallMas
     for (std::uint64_t row = lines.row(y); row != 0; row &= row - 1) {
       const double u = inside.Coordinate(std::countr_zero(row));
       const double v = inside.Coordinate(y);
-      if (u * u + v * v < kNear * kNear) continue;
+      if (u * u + v * v < kNearRadius * kNearRadius) continue;
       const double turn = std::atan2(v, u) / (0.5 * std::numbers::pi) + 2;
       ++histogram[static_cast<int>((turn - std::floor(turn)) * kBins) % kBins];
     }
@@ -77,7 +77,7 @@ double HalfArmSeen(const RingInside& inside, double angle) {
   constexpr int kSamples = 10;
   int seen = 0;
   for (int i = 0; i < kSamples; ++i) {
-    const double radius = kNear + (kFar - kNear) * i / (kSamples - 1);
+    const double radius = kNearRadius + (kFarRadius - kNearRadius) * i / (kSamples - 1);
     const auto index = [&](double coordinate) {
       return static_cast<int>((radius * coordinate + 1) * 0.5 * inside.disc.size());
     };
@@ -102,7 +102,7 @@ std::optional<Cross> FindCrossByThinning(const RingInside& inside) {
       const double v = inside.Coordinate(y);
       const double along = cosine * u + sine * v;
       const double across = cosine * v - sine * u;
-      if (u * u + v * v < kNear * kNear) continue;
+      if (u * u + v * v < kNearRadius * kNearRadius) continue;
       if (std::abs(across) < kOffArm * std::abs(along)) arms[0].Add(u, v, along > 0);
       if (std::abs(along) < kOffArm * std::abs(across)) arms[1].Add(u, v, across > 0);
     }

@@ -132,7 +132,7 @@ ObjectExaminer::Outcome ObjectExaminer::PlaceDisc(const Cone& cone, const Eigen:
   const double distance = position.norm();
   const auto looks_like_disc_at = [&](double there) {
     return LooksLikeDisc(cone, position / distance, there, *hint_.up_in_camera, object.size_m / 2,
-                         tolerance, /*slack_rad=*/1 / detector_.focal_px);
+                         tolerance, /*slack=*/1 / detector_.focal_px);
   };
   if (*is_on_ground && looks_like_disc_at(*DistanceOnGround(position, object))) {
     return Outcome::kObject;
