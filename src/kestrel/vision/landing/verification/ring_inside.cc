@@ -12,7 +12,7 @@ namespace {
 constexpr int kMax = SmallMask::kMaxSize;
 constexpr double kDiscSquared = 0.81;   // inner radii: the disc ends short of the ring's inner edge
 constexpr double kLeastDiscSeen = 0.2;  // share of the disc in view
-constexpr float kMargin = 0.05f;        // below the local mean, share of the contrast
+constexpr float kDarkMargin = 0.05f;    // below the local mean, share of the contrast
 
 // Integral images of gray values and of known pixels of a small image.
 class SmallIntegral {
@@ -87,7 +87,7 @@ std::optional<RingInside> RectifyInside(const cv::Mat& image, const PatternView&
   if (seen < kLeastDiscSeen * in_disc || brightest - darkest < min_contrast) return std::nullopt;
   // The box of the local threshold reaches across an arm to the white on both of its sides.
   const int radius = std::max(2, size * 5 / 16);
-  const float margin = kMargin * (brightest - darkest);
+  const float margin = kDarkMargin * (brightest - darkest);
   for (int y = 0; y < size; ++y) {
     std::uint64_t below = 0;
     for (int x = 0; x < size; ++x) {
