@@ -51,7 +51,8 @@ constexpr std::array<std::string_view, 26> kChangeable = {
 };
 constexpr std::string_view kPattern = "landing.detector.pattern";
 
-// What `kestrel config` has for its commands alone, but for the parts of it that a node has, too.
+// Groups of `kestrel config` that only the commands use, and the parts of them that a node uses
+// too.
 constexpr std::array<std::string_view, 4> kOfCommands = {"console", "team", "dds", "fly"};
 constexpr std::array<std::string_view, 2> kOfNodes = {"fly.events", "fly.vision_thread"};
 

@@ -101,7 +101,7 @@ class FlightRecorder {
   bool is_recording_images() const { return !are_images_stopped_; }
 
  private:
-  // What must come in order of time.
+  // Kinds of records; those of one kind must come in order of time.
   enum Kind : std::size_t { kImages, kExposures, kPoses, kTruePoses, kKindCount };
   struct RecordedImage {
     Frame frame;

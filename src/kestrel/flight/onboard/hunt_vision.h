@@ -45,7 +45,7 @@ class HuntVision : public FlightVision {
   // Returns the newest copy, if it was not taken yet. Called by any thread.
   std::optional<SharedMap> TakeMap() { return shared_.TryPop(); }
 
-  // What follows is called after the last frame, or between two frames.
+  // The functions below are called after the last frame, or between two frames.
 
   // As of HuntPipeline.
   void ChangeOptions(const HuntPipelineOptions& options) { pipeline_.ChangeOptions(options); }

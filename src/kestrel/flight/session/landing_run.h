@@ -32,7 +32,8 @@ class LandingRun : public Vision {
   // Says how the detections contradict the given height and attitude.
   std::string Warning() const override;
   std::string Found() const override;
-  // What the detections say against the calibration; frames without a pose where others have one.
+  // Contradictions between detections and calibration; the number of frames without a pose, where
+  // others have one.
   std::string Remarks() const override;
 
   const LandingPipeline& pipeline() const { return pipeline_; }

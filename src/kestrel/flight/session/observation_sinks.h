@@ -12,7 +12,7 @@
 
 namespace kestrel {
 
-// What becomes of an error that a sink throws.
+// Effect of an error that a sink throws.
 enum class SinkErrors {
   kLeaveOut,  // a flight goes on: the sink is left out, and the others get an event that says so
   kThrow,     // a session over a recording ends: its caller gets the error

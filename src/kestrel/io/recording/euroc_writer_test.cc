@@ -29,7 +29,7 @@ void WriteNoise(int ms, EurocWriter* writer) {
   writer->ListImage(At(ms), "png");
 }
 
-// What a program that dies leaves is what it has committed.
+// A program that dies leaves what it has committed.
 TEST(EurocWriter, WhatIsCommittedIsARecordingAtAnyTime) {
   const TestFolder folder;
   EurocWriter writer(folder.path(), std::array{EurocTable::kImages, EurocTable::kPoses});

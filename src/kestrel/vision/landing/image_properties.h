@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// What lens and sensor do to the image of a print: numbers that several stages share, and where
-// each of them comes from.
+// Effects of lens and sensor on the image of a print: numbers that several stages share, and their
+// origin.
 
 namespace kestrel {
 
@@ -10,7 +10,7 @@ namespace kestrel {
 // 0.9 px (docs/location.md).
 struct LensBlur {
   static constexpr double kGoodPx = 0.7;  // the middle of that range
-  // What a fit may make of it: a little beyond that range on either side.
+  // Limits of a fit: a little beyond that range on either side.
   static constexpr double kLeastPx = 0.4;
   static constexpr double kMostPx = 1.2;
   // Standard deviation over lenses, of its logarithm and of its square: half of that range.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Where a print is compared with an image: numbers that several stages share, and where each of
-// them comes from.
+// Places where a print is compared with an image: numbers that several stages share, and their
+// origin.
 
 namespace kestrel {
 

@@ -422,7 +422,7 @@ struct SmallPatternFitter::Parts {
   static constexpr int kQuadrant = 8;
   static constexpr int kLight = 12;
   static constexpr int kParts = 15;
-  // Of these parts a pixel has one of each kind.
+  // Number of parts with a share in one pixel: a ring, an arm, a quadrant, three of the light.
   static constexpr std::size_t kOfPixel = 6;
   using Vector = Eigen::Matrix<double, kParts, 1>;
   using Matrix = Eigen::Matrix<double, kParts, kParts>;

@@ -62,7 +62,7 @@ HWY_INLINE Vector InverseBlur(float blur_px, Vector m_per_px) {
   return hn::Div(Of(1), hn::Max(hn::Mul(Of(blur_px), m_per_px), Of(1e-9f)));
 }
 
-// Where a pixel's ray meets the plane of the print, m, and how that moves over a pixel.
+// The point where a pixel's ray meets the plane of the print, m, and its derivatives by the pixel.
 struct PlanePoint {
   Vector x, y;
   Vector x_by_u, x_by_v, y_by_u, y_by_v;

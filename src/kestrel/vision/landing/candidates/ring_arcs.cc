@@ -28,8 +28,8 @@ constexpr double kLeastShareOfPair = 0.9;
 constexpr double kLeastShareGrown = 0.85;
 constexpr double kLeastShareOfArc = 0.6;
 constexpr double kNearby = 1.5;
-// Of two arcs of a ring, in lengths of the longer one: distance, and how far one may lie behind the
-// chord of the other.
+// Limits for two arcs of a ring, in lengths of the longer one: their distance, and how far one may
+// lie behind the chord of the other.
 constexpr float kApartMost = 4;
 constexpr float kBehind = 0.1f;
 constexpr std::size_t kMaxArcs = 40;  // those that are longest and bend most are kept

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the edges say of the camera's calibration.
+// Evidence of the edges about the camera's calibration.
 #include <cmath>
 
 #include <Eigen/Cholesky>

@@ -82,7 +82,7 @@ struct PatternLocator::EdgeColumns {
   std::array<bool, PrintOutline::kMaxPlaces> follows;
 };
 
-// What the state's calibration makes of a pixel of the camera's own lens.
+// The map from a pixel of the camera's own lens to one of the state's calibration.
 struct PatternLocator::Lens {
   Eigen::Vector2f principal;  // px, of the camera
   Eigen::Vector2f shown;      // px, where the state has it
@@ -90,7 +90,7 @@ struct PatternLocator::Lens {
   float per_focal_squared;    // 1/px^2
 };
 
-// Where a pose puts the places of the edges.
+// The places of the edges under a pose.
 struct PatternLocator::Outlines {
   std::array<Column, 3> from_center;  // camera frame, m
   Column x_px, y_px;               // through the camera's own lens; NaN where it does not show it

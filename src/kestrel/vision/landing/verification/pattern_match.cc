@@ -180,7 +180,7 @@ struct PatternMatcher::Seen {
   bool known() const { return difference != kUnseen; }
 };
 
-// Of the contrasts of a part.
+// Counts of the contrasts of a part.
 struct PatternMatcher::Tally {
   static constexpr int kSeenOf = 5;  // one in kSeenOf must be in view
   int agreed = 0;
@@ -227,7 +227,7 @@ double PatternMatcher::RingContrast(const cv::Mat& image, const PatternView& vie
   return white < PrintPlaces::kLeastInside * contrast ? 0 : contrast;
 }
 
-// What the image shows at the places of the print, and what follows for the looks of its parts.
+// The gray values of the image at the places of the print, and the looks of its parts from them.
 class PatternMatcher::Comparison {
  public:
   Comparison(const PatternMatcher& print, const cv::Mat& image, const PatternView& view)

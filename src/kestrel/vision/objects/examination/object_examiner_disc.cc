@@ -17,8 +17,8 @@ constexpr int kDirections = 16;  // in which a disc and its surroundings are loo
 // of the middle (of the outline's) and least share of it that has the colour.
 constexpr double kMiddle = 0.4;
 constexpr double kMinColoredMiddle = 0.5;
-// Of a disc that the image border cuts off. The filling replaces the test of circularity, and it
-// must look more like a disc: the corner of a triangle may have an ellipse through it.
+// Limits for a disc that the image border cuts off. The filling replaces the test of circularity,
+// and the disc must fit better: the corner of a triangle may have an ellipse through it.
 constexpr double kMinFillOfPart = 0.8;
 constexpr double kMaxMisfitOfPart = 0.6;
 // Its outline determines the distance less well, and its shape must fit better: factors of the
