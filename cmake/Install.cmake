@@ -1,6 +1,6 @@
-# `cmake --install` puts the command, the rooms as static libraries, the public headers and the
-# package that `find_package(kestrel COMPONENTS ...)` finds. A component is what a user wants, and
-# asks only for the libraries that it needs: cmake/kestrelConfig.cmake.in.
+# `cmake --install` puts the command, the rooms as static libraries, the public headers, the internal
+# ones behind them, and the package that `find_package(kestrel COMPONENTS ...)` finds. A component is
+# what a user wants, and asks only for the libraries that it needs: cmake/kestrelConfig.cmake.in.
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/kestrel)
@@ -31,13 +31,15 @@ foreach(floor IN LISTS floors)
   endforeach()
 endforeach()
 include(PublicHeaders)
-kestrel_included_headers(headers ${KESTREL_PUBLIC_HEADERS})
-foreach(header IN LISTS headers)
+list(TRANSFORM KESTREL_PUBLIC_HEADERS PREPEND include/kestrel/ OUTPUT_VARIABLE public_headers)
+install(FILES ${public_headers} ${PROJECT_BINARY_DIR}/generated/kestrel/version.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kestrel)
+kestrel_exported_headers(exported_headers)
+kestrel_included_headers(internal_headers ${exported_headers})
+foreach(header IN LISTS internal_headers)
   cmake_path(GET header PARENT_PATH folder)
   install(FILES src/kestrel/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kestrel/${folder})
 endforeach()
-install(FILES ${PROJECT_BINARY_DIR}/generated/kestrel/version.h
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kestrel)
 foreach(component vision calibration io flight simulation console)
   install(EXPORT kestrel_${component} NAMESPACE kestrel:: FILE kestrel_${component}.cmake
           DESTINATION ${package_dir})

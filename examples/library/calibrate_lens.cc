@@ -5,9 +5,9 @@
 #include <iostream>
 #include <vector>
 
-#include "kestrel/calibration/lens/lens_calibration.h"
-#include "kestrel/core/base/error.h"
-#include "kestrel/io/recording/open_source.h"
+#include "kestrel/error.h"
+#include "kestrel/lens_calibration.h"
+#include "kestrel/open_source.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

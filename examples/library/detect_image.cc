@@ -4,9 +4,9 @@
 //   detect_image camera.yaml image.png
 #include <iostream>
 
-#include "kestrel/core/camera/calibration_reader.h"
-#include "kestrel/io/recording/open_source.h"
-#include "kestrel/vision/landing/landing_pattern_detector.h"
+#include "kestrel/calibration_reader.h"
+#include "kestrel/landing_pattern_detector.h"
+#include "kestrel/open_source.h"
 
 int main(int argc, char** argv) {
   if (argc != 3) {

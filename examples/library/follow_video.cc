@@ -7,10 +7,10 @@
 #include <iostream>
 #include <variant>
 
-#include "kestrel/core/camera/calibration_reader.h"
-#include "kestrel/io/recording/event_source.h"
-#include "kestrel/io/recording/open_source.h"
-#include "kestrel/vision/pipeline/landing_pipeline.h"
+#include "kestrel/calibration_reader.h"
+#include "kestrel/event_source.h"
+#include "kestrel/landing_pipeline.h"
+#include "kestrel/open_source.h"
 
 namespace {
 

@@ -5,9 +5,9 @@
 #include <iostream>
 #include <variant>
 
-#include "kestrel/io/recording/event_source.h"
-#include "kestrel/io/recording/open_source.h"
-#include "kestrel/vision/pipeline/hunt_pipeline.h"
+#include "kestrel/event_source.h"
+#include "kestrel/hunt_pipeline.h"
+#include "kestrel/open_source.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

@@ -6,10 +6,10 @@
 #include <iostream>
 
 #include "json_lines_sink.h"
-#include "kestrel/core/base/error.h"
-#include "kestrel/flight/onboard/live_session.h"
-#include "kestrel/flight/onboard/realtime_replay.h"
-#include "kestrel/io/recording/open_source.h"
+#include "kestrel/error.h"
+#include "kestrel/live_session.h"
+#include "kestrel/open_source.h"
+#include "kestrel/realtime_replay.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

@@ -4,7 +4,7 @@
 #include <ostream>
 #include <variant>
 
-#include "kestrel/flight/session/observation_sink.h"
+#include "kestrel/observation_sink.h"
 
 // Writes each frame with a detection of the landing pattern as one line of JSON: name and time of
 // the frame, centre of the pattern in the camera frame (m) and, with poses, in the world (m).

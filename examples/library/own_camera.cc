@@ -10,7 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "json_lines_sink.h"
-#include "kestrel/flight/onboard/live_session.h"
+#include "kestrel/live_session.h"
 
 namespace {
 

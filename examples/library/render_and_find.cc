@@ -2,8 +2,8 @@
 // Renders one view of a simulated flight and finds the landing pattern in it.
 #include <iostream>
 
-#include "kestrel/simulation/recordings/recording_plan.h"
-#include "kestrel/vision/landing/landing_pattern_detector.h"
+#include "kestrel/landing_pattern_detector.h"
+#include "kestrel/recording_plan.h"
 
 int main() {
   const kestrel::CameraCalibration calibration = kestrel::PaperCalibration();

@@ -6,8 +6,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "kestrel/landing_pipeline.h"
 #include "kestrel/version.h"
-#include "kestrel/vision/pipeline/landing_pipeline.h"
 
 namespace {
 

@@ -32,12 +32,6 @@ std::unique_ptr<ObservationSink> OpenMcapFile(const std::string& path, bool repl
 
 // Return sinks as OpenMcapSink does, of a landing with these options and of a hunt for these
 // objects.
-//
-// Example:
-//   const CameraCalibration calibration = ReadCalibration("camera.yaml");
-//   ObservationSinks sinks;
-//   sinks.Add(OpenLandingMcapSink("flight.mcap", /*replace=*/true, calibration, {},
-//                                 [](const std::string& text) { std::cerr << text << "\n"; }));
 std::unique_ptr<AsynchronousSink> OpenLandingMcapSink(const std::string& path, bool replace,
                                                       const CameraCalibration& calibration,
                                                       const LandingPipelineOptions& options,

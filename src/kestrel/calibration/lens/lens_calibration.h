@@ -56,13 +56,6 @@ struct LensCalibrationOptions {
 // the lens, estimates the lens from the pattern's edges, and detects the pattern again with that
 // lens. Throws InputError as EstimateLens does, and when the sizes of the images differ from each
 // other or from that of 'start'.
-//
-// Example:
-//   std::vector<LensImage> images;
-//   const auto source = OpenSource({"views/"});
-//   for (Frame frame; source->Next(&frame);) images.push_back({frame.name, frame.image.clone()});
-//   const LensCalibration lens = CalibrateLens(images, {});
-//   std::cout << lens.intrinsics.fx_px << " px, " << lens.fit.RootMeanSquare() << " px left\n";
 LensCalibration CalibrateLens(std::span<const LensImage> images,
                               const LensCalibrationOptions& options);
 

@@ -67,13 +67,6 @@ struct FlightCalibration {
 // fit one path best (paper, section 2.6): a grid search, then least squares over all of them
 // without the sightings that do not fit. Throws InputError when too few sightings have poses around
 // them.
-//
-// Example:
-//   std::vector<TargetSighting> sightings;  // of the detections of a flight
-//   std::vector<PoseSample> poses;          // of its navigation
-//   const MountAndClock given{.body_from_camera = {}};
-//   const FlightCalibration found = CalibrateFlight(sightings, poses, given, {});
-//   std::cout << found.estimate.clock_offset_s << " s\n";
 FlightCalibration CalibrateFlight(const std::vector<TargetSighting>& sightings,
                                   const std::vector<PoseSample>& poses, const MountAndClock& given,
                                   const FlightCalibrationOptions& options);

@@ -8,13 +8,6 @@ namespace kestrel {
 
 // An error in the user's input: a file, a key, a row, an option. The message is one line that names
 // it and says what was expected. Thrown only at construction, configuration and I/O.
-//
-// Example:
-//   try {
-//     const CameraCalibration calibration = ReadCalibration("camera.yaml");
-//   } catch (const InputError& error) {
-//     std::cerr << error.what() << "\n";  // one line: file, line, what was expected
-//   }
 class InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& message) : std::runtime_error(message) {}

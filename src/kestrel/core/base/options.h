@@ -19,13 +19,6 @@ namespace kestrel {
 //   std::vector<std::string> Validate() const;
 //
 // The functions below read and print such structs. A key is the path of names: "pattern.size_m".
-//
-// Example:
-//   LandingPatternDetectorOptions options;
-//   ReadOptions("detector.yaml", &options);
-//   SetOption("pattern.outer_diameter_m=0.6", &options);
-//   RequireValid(options);
-//   std::cout << PrintOptions(options);
 
 // One field of an options struct; 'value' points into the struct.
 struct OptionField {

@@ -23,10 +23,6 @@ struct SensorClock {
 // never its arrival.
 using Time = SensorClock::time_point;
 
-// Example:
-//   const Time captured = TimeFromNanoseconds(1'500'000'000);
-//   const Time used = captured + DurationFromSeconds(0.25);
-//   const double late_s = ToSeconds(used - captured);  // 0.25
 inline constexpr Time TimeFromNanoseconds(std::int64_t ns) { return Time(Duration(ns)); }
 inline constexpr std::int64_t ToNanoseconds(Time time) { return time.time_since_epoch().count(); }
 

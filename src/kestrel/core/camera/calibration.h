@@ -11,12 +11,6 @@
 namespace kestrel {
 
 // The content of a camera's calibration file. Missing entries are empty, never defaults.
-//
-// Example:
-//   CameraCalibration calibration;
-//   calibration.intrinsics = {
-//       .width_px = 640, .height_px = 480, .fx_px = 400, .fy_px = 400, .cx_px = 320, .cy_px = 240};
-//   calibration.clock_offset = std::chrono::milliseconds(20);
 struct CameraCalibration {
   CameraIntrinsics intrinsics;
   std::optional<RigidTransform> body_from_camera;  // the mount

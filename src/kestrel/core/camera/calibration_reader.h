@@ -24,11 +24,6 @@ namespace kestrel {
 // Throws InputError with file, line, key and what was expected: file missing, not YAML or
 // truncated, key missing or of the wrong type, NaN, wrong number of coefficients, unsupported lens
 // (omni, eucm, ds, fov), T_BS that is not rigid, and all violations of CameraIntrinsics::Validate.
-//
-// Example:
-//   const CameraCalibration calibration = ReadCalibration("camchain.yaml", "cam1");
-//   const CameraModel camera(calibration.intrinsics);
-//   if (!calibration.body_from_camera) std::cerr << "the file has no mount\n";
 CameraCalibration ReadCalibration(const std::filesystem::path& file,
                                   const std::string& camera = "");
 

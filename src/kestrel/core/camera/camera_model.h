@@ -54,14 +54,6 @@ void CheckImageSize(const CameraIntrinsics& camera, int width_px, int height_px,
 
 // Projects points in the camera frame (x right, y down, z along the optical axis) to pixels and
 // pixels to rays. Immutable, thread-safe; Project and Unproject neither allocate nor throw.
-//
-// Example:
-//   const CameraModel camera(PaperCamera());
-//   Eigen::Vector3d ray_in_camera;
-//   if (camera.Unproject({700, 240}, &ray_in_camera) == ProjectionStatus::kOk) {
-//     const double from_axis_rad = std::acos(ray_in_camera.z());
-//     std::cout << from_axis_rad << " rad\n";
-//   }
 class CameraModel {
  public:
   // Throws InputError with all violations of Validate().

@@ -55,10 +55,6 @@ struct ExposureOptions {
 // saturated or black. After each change the controller waits until the change must be visible. An
 // image with an older exposure is thus never taken for the effect of the new one, which prevents
 // oscillation. Does not allocate.
-//
-// Example:
-//   ExposureController exposure({.max_exposure_s = 0.004}, /*exposure_s=*/0.001);
-//   std::cout << exposure.Update(image) << " s for the following images\n";
 class ExposureController {
  public:
   // Starts with 'exposure_s', clamped to the camera's range. Throws InputError when the options are

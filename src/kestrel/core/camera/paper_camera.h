@@ -6,11 +6,6 @@
 namespace kestrel {
 
 // The fisheye camera of the paper (section 2.1): 752x480, equidistant, 185 degrees (DSL215).
-//
-// Example:
-//   const CameraModel camera(PaperCamera());
-//   Eigen::Vector2d pixel;
-//   camera.Project({0, 0, 1}, &pixel);  // (376, 240)
 inline CameraIntrinsics PaperCamera() {
   return {.width_px = 752,
           .height_px = 480,

@@ -10,12 +10,6 @@ namespace kestrel {
 
 // Rigid transform that maps coordinates in frame A to frame B: p_in_b = rotation * p_in_a +
 // translation. Named by cancellation: c_from_a = c_from_b * b_from_a. Metres.
-//
-// Example:
-//   const RigidTransform world_from_body{RotationBy({0, 0, 1.57}), {0, 0, 10}};
-//   const RigidTransform body_from_camera{RotationBy({3.14159, 0, 0}), {0.1, 0, 0}};
-//   const RigidTransform world_from_camera = world_from_body * body_from_camera;
-//   const Eigen::Vector3d point_in_world = world_from_camera * Eigen::Vector3d(0, 0, 10);
 struct RigidTransform {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();

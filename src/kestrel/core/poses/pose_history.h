@@ -79,14 +79,6 @@ const char* ToString(PoseLookup lookup);
 
 // The latest poses of the UAV, in order of time, with interpolation. Bounded: the newest sample
 // replaces the oldest. Allocates at construction only and never throws afterwards.
-//
-// Example:
-//   PoseHistory poses(/*capacity=*/1000, /*max_gap=*/std::chrono::milliseconds(500));
-//   poses.Add({.time = time - std::chrono::milliseconds(10), .world_from_body = {}});
-//   poses.Add({.time = time + std::chrono::milliseconds(10), .world_from_body = {}});
-//   if (const auto world_from_body = poses.Lookup(time)) {
-//     std::cout << world_from_body->translation.transpose() << "\n";
-//   }
 class PoseHistory {
  public:
   // Keeps up to 'capacity' samples (at least 1). Between two samples farther apart than 'max_gap'

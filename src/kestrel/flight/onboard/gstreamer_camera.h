@@ -56,13 +56,6 @@ struct GstreamerCameraOptions {
 // A camera through GStreamer: a device (/dev/video0), an RTSP address, or any pipeline. Only the
 // newest frame is kept. A frame's time is its buffer's PTS on the pipeline's clock, which is that
 // of Now(), minus half of the exposure and the read-out.
-//
-// Example:
-//   GstreamerCamera camera("/dev/video0", PaperCamera(), PixelFormat::kGray, {});
-//   if (const auto event = camera.Next(std::chrono::seconds(1))) {
-//     if (const auto* frame = std::get_if<Frame>(&*event)) std::cout << frame->image.size() <<
-//     "\n";
-//   }
 class GstreamerCamera : public LiveSource, public ExposureActuator {
  public:
   // 'camera': "/dev/video0", "rtsp://..." or a pipeline ("videotestsrc is-live=true ! ..."), with

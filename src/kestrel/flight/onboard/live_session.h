@@ -59,14 +59,6 @@ struct LiveSessionParts {
 
 // A flight as a library: a live source, the pipeline, the autopilot, guidance, a recorder and
 // sinks, put together. `kestrel fly` is this with a command line.
-//
-// Example:
-//   GstreamerCamera camera("/dev/video0", PaperCamera(), PixelFormat::kGray, {});
-//   ObservationSinks sinks;  // add yours
-//   LiveSession session({.source = &camera, .calibration = ReadCalibration("camera.yaml"),
-//                        .sink = &sinks, .autopilot = "serial:///dev/ttyAMA0:921600"});
-//   session.Run([] { return false; });
-//   sinks.Finish();
 class LiveSession {
  public:
   // Opens the files and the connection. 'settings' change the defaults of the options that `kestrel

@@ -42,12 +42,6 @@ struct SourceScheme {
 // camera
 // (/dev/video0, rtsp://..., a GStreamer pipeline), or a recording, which is played in real time.
 // Throws InputError that says what is wrong with the source.
-//
-// Example:
-//   const OpenedLiveSource camera = OpenLiveSource(
-//       {.recording = {.sources = {"/dev/video0"}, .camera = "camera.yaml"}}, {});
-//   LiveSession session({.source = camera.source.get(), .calibration = camera.calibration});
-//   session.Run([] { return false; });
 OpenedLiveSource OpenLiveSource(const LiveSourceChoice& choice,
                                 const GstreamerCameraOptions& camera,
                                 const std::vector<SourceScheme>& schemes = {});

@@ -17,12 +17,6 @@ namespace kestrel {
 // Replays a recording at the pace at which it was flown: frames and poses come when they are due,
 // with their times moved to the clock of Now(). If it cannot be read fast enough, it is played
 // slower, in jerks.
-//
-// Example:
-//   RealtimeReplay replay([] { return OpenSource({"flight"}); }, /*clock_offset=*/Duration::zero(),
-//                         /*is_looped=*/false);
-//   LiveSession session({.source = &replay, .calibration = ReadCalibration("camera.yaml")});
-//   session.Run([] { return false; });
 class RealtimeReplay : public LiveSource {
  public:
   using Open = std::function<std::unique_ptr<FrameSource>()>;

@@ -50,16 +50,6 @@ struct AsynchronousSinkOptions {
 // A sink that works in a thread of its own. The caller never waits: when too many frames wait the
 // oldest is dropped; of reports only the newest is kept. When the writer throws, the sink takes
 // nothing any more.
-//
-// Example:
-//   struct Printer : SinkWriter {
-//     void Write(const Observation& observation, std::size_t waiting) override {
-//       std::cout << observation.frame.name << ", " << waiting << " wait\n";
-//     }
-//   };
-//   ObservationSinks sinks;
-//   sinks.Add(std::make_unique<AsynchronousSink>(AsynchronousSinkOptions{.thread_name = "printer"},
-//                                                std::make_unique<Printer>()));
 class AsynchronousSink : public ObservationSink {
  public:
   AsynchronousSink(AsynchronousSinkOptions options, std::unique_ptr<SinkWriter> writer);

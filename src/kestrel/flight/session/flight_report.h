@@ -42,14 +42,6 @@ struct RecorderCounters {
 };
 
 // State of a live session, beside the results of its vision. All counts are since it began.
-//
-// Example:
-//   struct Watch : ObservationSink {
-//     void Take(const Observation&) override {}
-//     void Take(const FlightReport& report) override {
-//       if (!report.trouble.empty()) std::cerr << report.trouble << "\n";
-//     }
-//   };
 struct FlightReport {
   std::string trouble;  // why there are no images; empty as long as they come
   CaptureCounters capture;

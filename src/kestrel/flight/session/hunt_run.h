@@ -14,16 +14,6 @@
 namespace kestrel {
 
 // The pipeline of coloured objects over a recording.
-//
-// Example:
-//   const OpenedSource opened =
-//       OpenRecording({.sources = {"flight"}, .format = PixelFormat::kBgr});
-//   const ObjectModel model = DefaultObjectModel();
-//   HuntRun hunt(opened, model, ColorGrid(model.colors), HuntPipelineOptions(),
-//                /*altitude_m=*/std::nullopt);
-//   ObservationSinks sinks(SinkErrors::kThrow);
-//   RunRecording(opened, &hunt, &sinks, [](std::size_t done) { return done < 100; });
-//   std::cout << hunt.pipeline().map().Confirmed().size() << " objects\n";
 class HuntRun : public Vision {
  public:
   // 'altitude_m': height of the camera above the ground, where the source has no poses. Throws

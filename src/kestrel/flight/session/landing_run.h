@@ -13,11 +13,6 @@
 namespace kestrel {
 
 // The landing pipeline over a recording.
-//
-// Example:
-//   const OpenedSource opened = OpenRecording({.sources = {"flight.mp4"}, .camera =
-//   "camera.yaml"}); LandingRun landing(opened, LandingPipelineOptions(), /*altitude_m=*/5); Frame
-//   frame; opened.source->Next(&frame); const Observation first = landing.Process(frame);
 class LandingRun : public Vision {
  public:
   // 'altitude_m': height of the camera above the pattern, where the source has no poses. Throws

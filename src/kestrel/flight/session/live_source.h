@@ -30,14 +30,6 @@ struct LiveEventCounters {
 
 // Source of live frames (and of poses, from a recording). All times are those of Now(). Next is
 // called by one thread, the other functions by any.
-//
-// Example:
-//   struct Blank : LiveSource {
-//     std::optional<Event> Next(Duration) override {
-//       return Frame{.name = "blank", .time = Now(), .image = cv::Mat::zeros(480, 752, CV_8UC1)};
-//     }
-//     CaptureCounters counters() const override { return {}; }
-//   };
 class LiveSource {
  public:
   virtual ~LiveSource() = default;

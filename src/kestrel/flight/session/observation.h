@@ -12,12 +12,6 @@
 namespace kestrel {
 
 // A frame and a pipeline's result for it: a landing pattern, or coloured objects.
-//
-// Example:
-//   const Observation observation;
-//   if (const auto* landing = std::get_if<LandingObservation>(&observation.seen)) {
-//     std::cout << (landing->report.detection ? "found" : landing->report.reason) << "\n";
-//   }
 struct Observation {
   Frame frame;  // its pixels do not change any more
   std::variant<LandingObservation, HuntObservation> seen;

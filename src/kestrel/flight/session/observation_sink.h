@@ -11,13 +11,6 @@ namespace kestrel {
 // for the results that it needs. The session's threads call Take, which must not wait: slow work
 // belongs into an AsynchronousSink. A sink that throws gets nothing any more, and the session goes
 // on.
-//
-// Example:
-//   class Counter : public ObservationSink {
-//    public:
-//     void Take(const Observation&) override { ++frames; }
-//     int frames = 0;
-//   };
 class ObservationSink {
  public:
   virtual ~ObservationSink() = default;

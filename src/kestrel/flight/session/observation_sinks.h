@@ -20,13 +20,6 @@ enum class SinkErrors {
 
 // Passes everything to several sinks, in the order in which they were added. They finish in the
 // opposite order.
-//
-// Example:
-//   std::unique_ptr<ObservationSink> first;  // yours
-//   ObservationSinks sinks;
-//   sinks.Add(std::move(first));
-//   sinks.Take(Observation());  // a session does
-//   sinks.Finish();
 class ObservationSinks : public ObservationSink {
  public:
   explicit ObservationSinks(SinkErrors errors = SinkErrors::kLeaveOut) : errors_(errors) {}

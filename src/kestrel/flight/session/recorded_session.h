@@ -15,17 +15,6 @@ namespace kestrel {
 // with the number of frames that are done; false stops the session. Returns whether the end was
 // reached. The sink is not finished. Throws InputError when the source, the vision or the sink
 // does, or when a frame does not have the calibration's size.
-//
-// Example:
-//   struct Counter : ObservationSink {
-//     void Take(const Observation&) override { ++frames; }
-//     int frames = 0;
-//   };
-//   const OpenedSource opened = OpenRecording({.sources = {"flight.bag"}});
-//   LandingRun landing(opened, LandingPipelineOptions(), /*altitude_m=*/std::nullopt);
-//   Counter counter;
-//   RunRecording(opened, &landing, &counter, [](std::size_t) { return true; });
-//   std::cout << counter.frames << " frames, " << landing.Found() << "\n";
 bool RunRecording(const OpenedSource& opened, Vision* vision, ObservationSink* sink,
                   const std::function<bool(std::size_t done)>& go_on);
 

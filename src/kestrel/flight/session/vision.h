@@ -12,14 +12,6 @@ namespace kestrel {
 
 // The vision of a session over a recording: a pipeline, or its earlier results. Called by one
 // thread.
-//
-// Example:
-//   struct FrameCounter : Vision {
-//     void AddPose(const PoseSample&) override {}
-//     Duration pose_lead() const override { return Duration::zero(); }
-//     Observation Process(const Frame& frame) override { return {frame, LandingObservation()}; }
-//     std::string Found() const override { return "frames only"; }
-//   };
 class Vision {
  public:
   virtual ~Vision() = default;

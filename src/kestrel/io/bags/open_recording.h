@@ -37,12 +37,6 @@ std::unique_ptr<FrameSource> OpenFrames(const RecordingChoice& choice);
 // Opens a recording with the calibration of the file, or its own. A file without a mount gets the
 // source's, and its clock offset. Tells 'bag.tell' when there are poses but no mount. Throws
 // InputError when there is no calibration, or when source or calibration are not valid.
-//
-// Example:
-//   const OpenedSource flight = OpenRecording({.sources = {"flight.bag"}});
-//   for (Frame frame; flight.source->Next(&frame);) {
-//     std::cout << frame.name << (flight.has_world() ? " has a place\n" : "\n");
-//   }
 OpenedSource OpenRecording(const RecordingChoice& choice);
 
 }  // namespace kestrel

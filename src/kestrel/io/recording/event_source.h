@@ -22,14 +22,6 @@ using Event = std::variant<EndOfStream, Frame, PoseSample>;
 // Frames and poses as one stream, the same for a recording as for a camera beside an autopilot.
 // Poses are in order of time, and so are frames. A frame comes after the poses that it needs,
 // except for poses that are late: these come after it.
-//
-// Example:
-//   const auto source = OpenSource({"flight"});
-//   RecordingEvents events(source.get(), source->poses(), /*lead=*/Duration::zero());
-//   for (Event event = events.Next(); !std::holds_alternative<EndOfStream>(event);
-//        event = events.Next()) {
-//     if (const auto* frame = std::get_if<Frame>(&event)) std::cout << frame->name << "\n";
-//   }
 class EventSource {
  public:
   virtual ~EventSource() = default;

@@ -16,10 +16,6 @@ enum class PixelFormat {
 };
 
 // An image of a source.
-//
-// Example:
-//   const Frame frame{.name = "cam0/0001.png", .time = Now(), .image = image};
-//   std::cout << frame.name << ": " << frame.image.cols << " x " << frame.image.rows << "\n";
 struct Frame {
   std::string name;  // path of the image, as given or relative to the source
   Time time;         // middle of the exposure, on the clock of the images

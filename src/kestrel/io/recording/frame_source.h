@@ -24,13 +24,6 @@ struct CameraMount {
 };
 
 // A source of frames, one after the other.
-//
-// Example:
-//   const std::unique_ptr<FrameSource> source = OpenSource({"flight.mp4"});
-//   source->set_format(PixelFormat::kBgr);
-//   for (Frame frame; source->Next(&frame);) {
-//     std::cout << frame.name << " at " << ToNanoseconds(frame.time) << " ns\n";
-//   }
 class FrameSource {
  public:
   virtual ~FrameSource() = default;

@@ -14,12 +14,6 @@ namespace kestrel {
 // centre, the axes (x red, y green, z blue), and in words method, distance and quality. Otherwise:
 // the stage at which the best candidate was rejected, and why. For a misfit also the print where it
 // is seen, in another colour, and a legend of the colours.
-//
-// Example:
-//   LandingPipeline pipeline(ReadCalibration("camera.yaml"), {});
-//   const LandingObservation seen = pipeline.Process(image, time);
-//   const cv::Mat drawn = DrawLandingOverlay(image, pipeline.detector().camera(),
-//                                            pipeline.options().detector.pattern, seen);
 cv::Mat DrawLandingOverlay(const cv::Mat& image, const CameraModel& camera,
                            const LandingPattern& pattern, const LandingObservation& observation);
 

@@ -9,11 +9,6 @@ namespace kestrel {
 
 // Returns a copy of the frame (CV_8UC3) with the detections drawn in: whole objects in white, cut
 // off and merged ones in gray, each with its class, digit and distance.
-//
-// Example:
-//   HuntPipeline pipeline(ReadCalibration("camera.yaml"), DefaultObjectModel(), {});
-//   const HuntObservation& seen = pipeline.Process(color_image, time);
-//   const cv::Mat drawn = DrawObjectOverlay(color_image, pipeline.detector().model(), seen);
 cv::Mat DrawObjectOverlay(const cv::Mat& image, const ObjectModel& model,
                           const HuntObservation& observation);
 

@@ -35,13 +35,6 @@ CameraCalibration HuntCalibration();
 // settings, as `kestrel simulate` does: "calm", "figure8"; its --list names them. The same
 // arguments give the same recording. Throws InputError when the scenario does not exist, or a
 // setting or the camera is not valid.
-//
-// Example:
-//   const RecordingPlan plan = PlanLandingScenario("calm", {}, PaperCalibration(), /*seed=*/1);
-//   LandingPipeline pipeline(PaperCalibration(), {});
-//   const LandingObservation seen = pipeline.Process(plan.render(0), plan.times[0]);
-//   WriteRecording(plan, "flight", /*replace=*/false, /*threads=*/2, [](std::size_t) { return true;
-//   });
 RecordingPlan PlanLandingScenario(const std::string& scenario,
                                   const std::vector<std::string>& settings,
                                   const CameraCalibration& camera, std::uint64_t seed);

@@ -10,14 +10,6 @@ namespace kestrel {
 // arms at right angles, on a white board. The defaults are the MBZIRC 2017 board.
 //
 // Frame P: origin where the arms meet, x along one arm, z up out of the printed face.
-//
-// Example:
-//   const LandingPattern small{.outer_diameter_m = 0.6,
-//                              .ring_width_m = 0.06,
-//                              .arm_width_m = 0.06,
-//                              .arm_half_length_m = 0.23,
-//                              .board_size_m = 0.9};
-//   for (const std::string& violation : small.Validate()) std::cerr << violation << "\n";
 struct LandingPattern {
   double outer_diameter_m = 1.0;    // outer diameter of the ring
   double ring_width_m = 0.1;        // outer minus inner radius of the ring

@@ -141,16 +141,6 @@ class LandingWorkspace {
 };
 
 // Finds the landing pattern in one image (paper, sections 2.1 to 2.5).
-//
-// Example:
-//   const LandingPatternDetector detector(CameraModel(PaperCamera()), {});
-//   LandingWorkspace workspace;
-//   const LandingReport report = detector.Detect(image, /*hint=*/{}, workspace);
-//   if (report.detection) {
-//     std::cout << report.detection->camera_from_pattern.translation.transpose() << " m\n";
-//   } else {
-//     std::cout << ToString(report.reached) << ": " << report.reason << "\n";
-//   }
 class LandingPatternDetector {
  public:
   // Throws InputError when the options or the camera are not valid.

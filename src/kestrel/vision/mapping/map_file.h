@@ -16,11 +16,6 @@ std::string PrintObjects(const std::vector<MappedObject>& objects);
 std::vector<MappedObject> ParseObjects(const std::string& text, const std::string& file);
 
 // SaveObjects replaces the file atomically; both throw InputError.
-//
-// Example:
-//   const std::vector<MappedObject> objects = LoadObjects("object_map.json");
-//   const GeoOrigin origin{.latitude_deg = 24.4, .longitude_deg = 54.4};
-//   std::ofstream("map.geojson") << PrintGeoJson(objects, DefaultObjectModel(), origin);
 void SaveObjects(const std::string& path, const std::vector<MappedObject>& objects);
 std::vector<MappedObject> LoadObjects(const std::string& path);
 

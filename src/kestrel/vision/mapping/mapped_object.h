@@ -37,13 +37,6 @@ struct ExpectedPosition {
 
 // The map's knowledge of an object. It keeps likelihoods instead of a choice, because the next
 // detection may change it.
-//
-// Example:
-//   const ObjectModel model = DefaultObjectModel();
-//   for (const MappedObject& object : LoadObjects("object_map.json")) {
-//     std::cout << object.position().transpose() << ", score " << ScoreOf(object, model)
-//               << (object.moves ? ", moves\n" : "\n");
-//   }
 struct MappedObject {
   static constexpr int kStateSize = 9;
   using State = Eigen::Matrix<double, kStateSize, 1>;

@@ -97,16 +97,6 @@ class FieldOfView {
 // (Mahalanobis distance and similarity of colours). A Kalman filter fuses them, a MotionFilter for
 // objects that may move. An object that should be seen and is not becomes less certain and is
 // finally removed. Bounded memory and time per update.
-//
-// Example:
-//   struct Everywhere : FieldOfView {
-//     bool Shows(const MappedObject&) const override { return true; }
-//   };
-//   ObjectMap map(DefaultObjectModel(), {});
-//   const ObjectMeasurement disc{.position = {3, 1, 0},
-//                                .covariance = 0.01 * Eigen::Matrix3d::Identity()};
-//   map.Update(time, std::array{disc}, Everywhere());
-//   std::cout << map.Confirmed().size() << " objects\n";
 class ObjectMap {
  public:
   // Throws InputError when the options are invalid. 'model' says which objects may move.

@@ -39,13 +39,6 @@ struct ObjectLocation {
 };
 
 // One object in one image.
-//
-// Example:
-//   const ObjectDetection detection;
-//   if (detection.completeness == Completeness::kWhole && detection.location) {
-//     std::cout << detection.location->position.transpose() << " m in the camera frame\n";
-//   }
-//   if (detection.digits) std::cout << LikeliestDigit(*detection.digits).digit << "\n";
 struct ObjectDetection {
   std::size_t class_index = 0;  // index in the model's classes
   Completeness completeness = Completeness::kWhole;

@@ -112,15 +112,6 @@ class ObjectWorkspace {
 
 // Finds the configured objects in a colour image of a camera that looks down (paper, section 3).
 // Immutable and thread-safe, with a workspace and a report for each thread.
-//
-// Example:
-//   const ObjectDetector detector(CameraModel(PaperCamera()), DefaultObjectModel());
-//   ObjectWorkspace workspace;
-//   ObjectReport report;
-//   detector.Detect(color_image, /*hint=*/{}, workspace, &report);
-//   for (const ObjectDetection& detection : report.detections) {
-//     std::cout << detector.model().classes[detection.class_index].name << "\n";
-//   }
 class ObjectDetector {
  public:
   // Throws InputError when the model or the options are invalid, or the image is too large.

@@ -30,11 +30,6 @@ struct ObjectClass {
 };
 
 // The objects to find: the colours, and the classes that have them.
-//
-// Example:
-//   ObjectModel model = ReadObjectModel("objects.yaml");
-//   std::erase_if(model.classes, [](const ObjectClass& c) { return c.shape != ObjectShape::kDisc;
-//   }); std::cout << PrintObjectModel(model);
 struct ObjectModel {
   ColorModel colors;
   std::vector<ObjectClass> classes;

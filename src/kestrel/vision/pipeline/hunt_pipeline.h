@@ -92,13 +92,6 @@ struct HuntObservation {
 };
 
 // Locates the coloured objects of an image in the world. For use by one thread at a time.
-//
-// Example:
-//   HuntPipeline pipeline(ReadCalibration("camera.yaml"), DefaultObjectModel(), {});
-//   pipeline.AddPose({.time = time, .world_from_body = {}});
-//   const HuntObservation& seen = pipeline.Process(color_image, time);
-//   std::cout << seen.report.detections.size() << " in view\n";
-//   SaveObjects("object_map.json", pipeline.map().Confirmed());
 class HuntPipeline {
  public:
   // Throws InputError when calibration, model or options are invalid.

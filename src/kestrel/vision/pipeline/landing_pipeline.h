@@ -113,13 +113,6 @@ struct LandingObservation {
 // Locates the landing pattern of an image in the world and predicts it: pose history, mount and
 // clock offset, detector, and tracker, whose prediction is the next frame's hint. For use by one
 // thread at a time.
-//
-// Example:
-//   LandingPipeline pipeline(ReadCalibration("camera.yaml"), {});
-//   pipeline.AddPose({.time = time, .world_from_body = {}});
-//   const LandingObservation seen = pipeline.Process(image, time);
-//   if (seen.center_in_world) std::cout << seen.center_in_world->transpose() << " m\n";
-//   const auto soon = pipeline.tracker().Predict(time + std::chrono::milliseconds(500));
 class LandingPipeline {
  public:
   // Throws InputError when calibration or options are invalid.

@@ -122,15 +122,6 @@ struct TargetTrackerOptions {
 // and sections 1 and 5 of the paper). Measurements may be late and out of order: each is inserted
 // at its time, and those after it are filtered again. Bounded memory and time. Allocates at
 // construction only, never throws afterwards, and never returns values that are not finite.
-//
-// Example:
-//   TargetTracker tracker{TargetTrackerOptions()};
-//   tracker.Add({.time = time,
-//                .position_in_world = {4, 2, 1.5},
-//                .covariance = 0.01 * Eigen::Matrix3d::Identity()});
-//   if (const auto soon = tracker.Predict(time + std::chrono::milliseconds(500))) {
-//     std::cout << soon->motion.position().transpose() << ", " << soon->speed() << " m/s\n";
-//   }
 class TargetTracker {
  public:
   // Throws InputError when the options are invalid.

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Sinks that write an MCAP file for Foxglove, Lichtblick and Rerun.
+//
+// Example:
+//   const CameraCalibration calibration = ReadCalibration("camera.yaml");
+//   ObservationSinks sinks;
+//   sinks.Add(OpenLandingMcapSink("flight.mcap", /*replace=*/true, calibration, {},
+//                                 [](const std::string& text) { std::cerr << text << "\n"; }));
+
+#include "kestrel/app/foxglove/mcap_sink.h"  // IWYU pragma: export
