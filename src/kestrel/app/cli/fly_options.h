@@ -36,16 +36,16 @@ struct FlyOptions {
     FlightOptions::Visit(self.flight, visitor);
     visitor.Group("camera", self.camera);
     visitor("control_exposure", self.control_exposure, "",
-            "set the camera's exposure by the brightness of its images");
+            "the camera's exposure is set by the brightness of its images");
     visitor.Group("exposure", self.exposure);
     visitor.Group("link", self.link);
     visitor.Group("autopilot", self.autopilot);
     visitor.Group("recorder", self.recorder);
     visitor.Group("sim_camera", self.sim_camera);
     visitor.Group("sim_autopilot", self.sim_autopilot);
-    visitor("sim_seed", self.sim_seed, "", "of what a simulated world and autopilot draw");
+    visitor("sim_seed", self.sim_seed, "", "seed of the simulated world and autopilot");
     visitor("keep_folder", self.keep_folder, "",
-            "where recordings and snapshots that the console's page asks for go");
+            "folder for the recordings and snapshots that the console's page asks for");
   }
   std::vector<std::string> Validate() const;
 };

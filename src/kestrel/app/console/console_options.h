@@ -32,17 +32,21 @@ struct ConsoleOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("address", self.address, "", "address that the page is served at");
-    visitor("port", self.port, "1", "port of it, 0 for any free one");
-    visitor("token", self.token, "", "what a browser must know, 16 to 128 of A-Z a-z 0-9 - _");
-    visitor("host_names", self.host_names, "", "names of this computer, with commas between them");
+    visitor("address", self.address, "", "address of the page");
+    visitor("port", self.port, "1", "port of the page; 0: any free one");
+    visitor("token", self.token, "",
+            "secret that a browser must present, 16 to 128 of A-Z a-z 0-9 - _");
+    visitor("host_names", self.host_names, "", "names of this computer, separated by commas");
     visitor("viewer_origins", self.viewer_origins, "",
-            "pages that may look on by /foxglove, with commas between them");
-    visitor("max_connections", self.max_connections, "1", "at a time; others are refused");
-    visitor("max_image_rate_hz", self.max_image_rate_hz, "Hz", "of the live image");
-    visitor("jpeg_quality", self.jpeg_quality, "1", "of the live image, 1 to 100");
-    visitor("message_queue", self.message_queue, "1", "messages that wait for a slow browser");
-    visitor("idle_timeout_s", self.idle_timeout_s, "s", "after which a silent browser is gone");
+            "origins of the pages that may connect to /foxglove, separated by commas");
+    visitor("max_connections", self.max_connections, "1",
+            "number of simultaneous connections; others are refused");
+    visitor("max_image_rate_hz", self.max_image_rate_hz, "Hz", "largest rate of the live image");
+    visitor("jpeg_quality", self.jpeg_quality, "1", "JPEG quality of the live image, 1 to 100");
+    visitor("message_queue", self.message_queue, "1",
+            "number of messages that may wait for a slow browser");
+    visitor("idle_timeout_s", self.idle_timeout_s, "s",
+            "time after which a silent browser is disconnected");
   }
   std::vector<std::string> Validate() const;
 

@@ -39,19 +39,20 @@ struct NodeOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("task", self.task, "", "what is looked for: landing or hunt");
+    visitor("task", self.task, "", "target of the search: landing or hunt");
     visitor("camera", self.camera, "", "calibration file; empty: camera_info");
     visitor("config", self.config, "", "file of options, as kestrel config prints it");
     visitor("image_transport", self.image_transport, "", "raw or compressed");
-    visitor("poses", self.poses, "", "where the UAV's poses come from: topic, tf or none");
-    visitor("world_frame", self.world_frame, "", "for tf; empty: the root of the body's frames");
+    visitor("poses", self.poses, "", "source of the UAV's poses: topic, tf or none");
+    visitor("world_frame", self.world_frame, "",
+            "world frame of tf; empty: the root of the body's frames");
     RosResultOptions::Visit(self.ros, visitor);
     visitor("altitude_m", self.altitude_m, "m",
-            "of the camera above the pattern where there are no poses; 0: not known");
+            "height of the camera above the pattern where there are no poses; 0: not known");
     visitor("model", self.model, "", "hunt: file of objects and their colours");
     visitor("grid", self.grid, "", "hunt: file of the color grid");
-    visitor("output", self.output, "", "hunt: folder that the map is saved in");
-    visitor("force", self.force, "", "hunt: replace a map that is there");
+    visitor("output", self.output, "", "hunt: folder for the map");
+    visitor("force", self.force, "", "hunt: an existing map is replaced");
     visitor("origin", self.origin, "", "hunt: latitude and longitude of the world's origin");
     visitor.Group("landing", self.landing);
     visitor.Group("hunt", self.hunt);

@@ -50,22 +50,26 @@ struct AutopilotOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("system_id", self.system_id, "", "system of the autopilot; 0: the first heard");
-    visitor("attitude_rate_hz", self.attitude_rate_hz, "Hz", "asked of attitudes; 0: not asked");
-    visitor("position_rate_hz", self.position_rate_hz, "Hz", "asked of positions");
-    visitor("landed_rate_hz", self.landed_rate_hz, "Hz", "asked of the landed state");
-    visitor("range_rate_hz", self.range_rate_hz, "Hz", "asked of distance sensors");
+    visitor("system_id", self.system_id, "",
+            "MAVLink system of the autopilot; 0: the first that is heard");
+    visitor("attitude_rate_hz", self.attitude_rate_hz, "Hz",
+            "requested rate of attitudes; 0: not requested");
+    visitor("position_rate_hz", self.position_rate_hz, "Hz", "requested rate of positions");
+    visitor("landed_rate_hz", self.landed_rate_hz, "Hz", "requested rate of the landed state");
+    visitor("range_rate_hz", self.range_rate_hz, "Hz", "requested rate of distance sensors");
     visitor("status_rate_hz", self.status_rate_hz, "Hz",
-            "asked of the battery and of the health of its estimate");
+            "requested rate of the battery's state and of the estimate's health");
     visitor("mode_rate_hz", self.mode_rate_hz, "Hz",
-            "asked of the mode; 0: once a second, by heartbeats");
+            "requested rate of the mode; 0: once a second, by heartbeats");
     visitor("wants_true_pose", self.wants_true_pose, "",
-            "ask a simulated vehicle for its true pose");
-    visitor("true_pose_rate_hz", self.true_pose_rate_hz, "Hz", "how often");
-    visitor("away_after_s", self.away_after_s, "s", "without heartbeat for so long: away");
-    visitor("position_age_s", self.position_age_s, "s", "oldest position that makes a pose");
+            "the true pose of a simulated vehicle is requested");
+    visitor("true_pose_rate_hz", self.true_pose_rate_hz, "Hz", "requested rate of the true pose");
+    visitor("away_after_s", self.away_after_s, "s",
+            "time without a heartbeat after which the autopilot is away");
+    visitor("position_age_s", self.position_age_s, "s",
+            "largest age of a position that is used in a pose");
     visitor("poses_as_ground_station", self.poses_as_ground_station, "",
-            "send a ground station's heartbeats too, for PX4's texts");
+            "heartbeats of a ground station are sent, too, so that PX4 sends its texts");
   }
   std::vector<std::string> Validate() const;
 };

@@ -33,9 +33,10 @@ struct ConnectionOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("system_id", self.system_id, "", "this program's system, 0: the autopilot's, to 255");
+    visitor("system_id", self.system_id, "",
+            "MAVLink system of this program, up to 255; 0: the autopilot's");
     visitor("component_id", self.component_id, "",
-            "this program's component, 1 to 255; 191 is an on-board computer");
+            "MAVLink component of this program, 1 to 255; 191 is an on-board computer");
     visitor("signing_key", self.signing_key, "",
             "file with the key of signed packets (mode 0600); empty: not signed");
   }

@@ -72,10 +72,11 @@ struct TargetMessageOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("sends_distance", self.sends_distance, "",
-            "also DISTANCE_SENSOR: the height above the target, as a rangefinder's");
-    visitor("max_distance_m", self.max_distance_m, "m", "largest distance of that");
+            "DISTANCE_SENSOR is sent, too: the height above the target, as a rangefinder's");
+    visitor("max_distance_m", self.max_distance_m, "m",
+            "largest height that DISTANCE_SENSOR reports");
     visitor("sends_follow_target", self.sends_follow_target, "",
-            "also FOLLOW_TARGET, once the autopilot has told its origin");
+            "FOLLOW_TARGET is sent, too, once the autopilot has reported its origin");
   }
   std::vector<std::string> Validate() const;
 };

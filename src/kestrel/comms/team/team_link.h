@@ -30,13 +30,12 @@ struct TeamLinkOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("uav", self.uav, "", "name of this UAV in its team, empty for the computer's");
-    visitor(
-        "key", self.key, "",
-        "file with the team's key (32 bytes or 64 hexadecimal digits): sign, and refuse what is "
-        "not signed; empty for none");
+    visitor("uav", self.uav, "", "name of this UAV in its team; empty: the computer's name");
+    visitor("key", self.key, "",
+            "file with the team's key (32 bytes or 64 hexadecimal digits): messages are signed, "
+            "and unsigned ones refused; empty: none");
     visitor("claim", self.claim, "",
-            "claim the object with the most value for its distance that nobody else goes for");
+            "the UAV claims the unclaimed object with the most value for its distance");
     TeamOptions::Visit(self.team, visitor);
   }
   std::vector<std::string> Validate() const;

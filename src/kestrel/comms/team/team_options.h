@@ -24,11 +24,13 @@ struct TeamOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("tell_period_s", self.tell_period_s, "s", "between two tellings of the own map");
-    visitor("digest_period_s", self.digest_period_s, "s", "between two tellings of what was heard");
-    visitor("resend_s", self.resend_s, "s", "before the same is told again");
-    visitor("silence_s", self.silence_s, "s", "after which a UAV's claims are free");
-    visitor("rate_bytes_per_s", self.rate_bytes_per_s, "B/s", "that a UAV sends, at most");
+    visitor("tell_period_s", self.tell_period_s, "s",
+            "interval at which the UAV sends its own map");
+    visitor("digest_period_s", self.digest_period_s, "s",
+            "interval at which the UAV sends what it has received");
+    visitor("resend_s", self.resend_s, "s", "interval before the same is sent again");
+    visitor("silence_s", self.silence_s, "s", "silence after which the claims of a UAV end");
+    visitor("rate_bytes_per_s", self.rate_bytes_per_s, "B/s", "largest data rate of a UAV");
     visitor("world_sigma_m", self.world_sigma_m, "m",
             "error of a UAV's navigation, standard deviation per axis");
     visitor("world_yaw_sigma_deg", self.world_yaw_sigma_deg, "deg",

@@ -13,8 +13,8 @@ struct ThreadOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("cpu", self.cpu, "", "processor that the thread stays on, -1 for any");
-    visitor("priority", self.priority, "1", "of SCHED_FIFO, 1 to 99, 0 for a usual thread");
+    visitor("cpu", self.cpu, "", "processor on which the thread stays; -1: any");
+    visitor("priority", self.priority, "1", "priority of SCHED_FIFO, 1 to 99; 0: a normal thread");
   }
   // Also reports a processor that this computer does not have.
   std::vector<std::string> Validate() const;

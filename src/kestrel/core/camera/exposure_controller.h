@@ -33,14 +33,16 @@ struct ExposureOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("low_gray", self.low_gray, "", "the brightest part of the image is no darker");
-    visitor("high_gray", self.high_gray, "", "and no brighter");
+    visitor("low_gray", self.low_gray, "",
+            "lower limit of the gray value of the image's brightest part");
+    visitor("high_gray", self.high_gray, "",
+            "upper limit of the gray value of the image's brightest part");
     visitor("image_share", self.image_share, "1", "share of an image that may be brighter");
     visitor("area_share", self.area_share, "1", "share of the pattern's area that may be brighter");
     visitor("gamma", self.gamma, "1", "exponent of the camera's curve; 1 is linear");
     visitor("black_gray", self.black_gray, "", "gray value without light, before gamma");
     visitor("delay_frames", self.delay_frames, "1",
-            "images after a change that may still have the old exposure");
+            "number of images after a change that may still have the old exposure");
     visitor("min_exposure_s", self.min_exposure_s, "s", "shortest exposure");
     visitor("max_exposure_s", self.max_exposure_s, "s", "longest exposure");
     visitor("largest_step", self.largest_step, "1", "largest factor of one change");

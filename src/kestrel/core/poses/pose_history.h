@@ -36,13 +36,14 @@ struct UnmodelledMotion {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("acceleration_mps2", self.acceleration_mps2, "m/s^2", "that nothing tells, per axis");
+    visitor("acceleration_mps2", self.acceleration_mps2, "m/s^2",
+            "acceleration that no sample reports, standard deviation per axis");
     visitor("angular_acceleration_radps2", self.angular_acceleration_radps2, "rad/s^2",
-            "that nothing tells, per axis");
+            "angular acceleration that no sample reports, standard deviation per axis");
     visitor("velocity_sigma_mps", self.velocity_sigma_mps, "m/s",
-            "of the velocity that the navigation tells, per axis");
+            "error of the navigation's velocity, standard deviation per axis");
     visitor("rate_sigma_radps", self.rate_sigma_radps, "rad/s",
-            "of the angular velocity that the navigation tells, per axis");
+            "error of the navigation's angular velocity, standard deviation per axis");
   }
   std::vector<std::string> Validate() const;
 };

@@ -28,13 +28,13 @@ struct FlightOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("rate_hz", self.rate_hz, "Hz", "of landing targets or set-points");
+    visitor("rate_hz", self.rate_hz, "Hz", "rate of landing targets or set-points");
     visitor("link_delay_s", self.link_delay_s, "s",
-            "from sending to the autopilot's use; negative: as measured");
+            "delay from sending to the autopilot's use; negative: as measured");
     visitor("source_timeout_s", self.source_timeout_s, "s",
-            "without an image for so long the flight ends");
+            "time without an image after which the flight ends");
     visitor("autopilot_timeout_s", self.autopilot_timeout_s, "s",
-            "without a heartbeat for so long the flight ends");
+            "time without a heartbeat after which the flight ends");
     visitor.Group("target", self.target);
     visitor.Group("messages", self.messages);
     visitor.Group("guidance", self.guidance);

@@ -46,13 +46,15 @@ struct FlightRecorderOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("compression", self.compression, "", "of images: png or jpg");
-    visitor("png_level", self.png_level, "1", "0, as it is and quick, to 9, smallest and slow");
-    visitor("jpg_quality", self.jpg_quality, "1", "1 to 100");
-    visitor("queue_frames", self.queue_frames, "1", "frames that may wait for the disk");
-    visitor("free_space_mb", self.free_space_mb, "MB", "room on the disk that images leave");
-    visitor("commit_period_s", self.commit_period_s, "s",
-            "at most so much is lost when the power goes");
+    visitor("compression", self.compression, "", "format of the images: png or jpg");
+    visitor("png_level", self.png_level, "1",
+            "compression of PNG: 0, none and fast, to 9, smallest and slow");
+    visitor("jpg_quality", self.jpg_quality, "1", "quality of JPEG, 1 to 100");
+    visitor("queue_frames", self.queue_frames, "1", "number of frames that may wait for the disk");
+    visitor("free_space_mb", self.free_space_mb, "MB", "free space on the disk that images leave");
+    visitor(
+        "commit_period_s", self.commit_period_s, "s",
+        "interval at which files are committed to the disk: the most that a power failure loses");
     visitor.Group("thread", self.thread);
   }
   std::vector<std::string> Validate() const;

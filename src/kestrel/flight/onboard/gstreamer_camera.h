@@ -39,16 +39,20 @@ struct GstreamerCameraOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("readout_s", self.readout_s, "s", "from the end of the exposure to the driver's time");
-    visitor("exposure_s", self.exposure_s, "s", "length of the exposure, until it is controlled");
+    visitor("readout_s", self.readout_s, "s",
+            "time from the end of the exposure to the driver's time stamp");
+    visitor("exposure_s", self.exposure_s, "s",
+            "length of the exposure, as long as it is not controlled");
     visitor("exposure_property", self.exposure_property, "",
-            "GStreamer's element.property that sets the exposure, empty for V4L2's control");
-    visitor("exposure_unit_s", self.exposure_unit_s, "s", "unit of that property");
+            "GStreamer's element.property that sets the exposure; empty: the control of V4L2");
+    visitor("exposure_unit_s", self.exposure_unit_s, "s", "unit of exposure_property");
     visitor("device_caps", self.device_caps, "",
-            "what /dev/videoN is asked for, empty for raw images of the calibration's size");
-    visitor("stall_s", self.stall_s, "s", "without a frame for so long the camera is gone");
-    visitor("reopen_s", self.reopen_s, "s", "between the first attempts to get it back");
-    visitor("max_reopen_s", self.max_reopen_s, "s", "and between the last");
+            "caps that are requested of /dev/videoN; empty: raw images of the calibration's size");
+    visitor("stall_s", self.stall_s, "s", "time without a frame after which the camera is lost");
+    visitor("reopen_s", self.reopen_s, "s",
+            "first interval between attempts to open a lost camera");
+    visitor("max_reopen_s", self.max_reopen_s, "s",
+            "longest interval between attempts to open a lost camera");
   }
   std::vector<std::string> Validate() const;
 };

@@ -40,12 +40,12 @@ struct TargetReporterOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("max_sigma_m", self.max_sigma_m, "m",
-            "a target known no better than this, standard deviation per axis, is not sent");
+            "largest standard deviation per axis of a target that is sent");
     visitor("max_pose_age_s", self.max_pose_age_s, "s",
-            "without a pose for so long nothing is sent");
+            "age of the newest pose after which nothing is sent");
     visitor.Group("contact", self.contact);
     visitor("contact_below_m", self.contact_below_m, "m",
-            "after contact the target is said to be so far below the body");
+            "distance below the body that is sent as the target's after contact");
   }
   std::vector<std::string> Validate() const;
 };

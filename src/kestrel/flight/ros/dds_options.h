@@ -17,12 +17,13 @@ struct RosResultOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("body_frame", self.body_frame, "", "of the UAV, which the camera is fixed to");
-    visitor("pattern_frame", self.pattern_frame, "", "name of the detected pattern in tf");
-    visitor("target_frame", self.target_frame, "", "name of the frame that moves with the target");
-    visitor("publish_tf", self.publish_tf, "", "whether tf is told of pattern, UAV and mount");
-    visitor("prediction_s", self.prediction_s, "s", "how far ahead the prediction goes");
-    visitor("prediction_step_s", self.prediction_step_s, "s", "between its poses");
+    visitor("body_frame", self.body_frame, "", "frame of the UAV, to which the camera is fixed");
+    visitor("pattern_frame", self.pattern_frame, "", "frame of the detected pattern");
+    visitor("target_frame", self.target_frame, "", "frame that moves with the target");
+    visitor("publish_tf", self.publish_tf, "", "pattern, UAV and mount are published on tf");
+    visitor("prediction_s", self.prediction_s, "s", "horizon of the prediction");
+    visitor("prediction_step_s", self.prediction_step_s, "s",
+            "interval between the poses of the prediction");
   }
   std::vector<std::string> Validate() const;
 };
@@ -40,11 +41,14 @@ struct DdsOptions : RosResultOptions {
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("node", self.node, "", "name of the node; its topics are below it");
     visitor("distribution", self.distribution, "",
-            "of ROS 2 that is to list the node: humble or a later one");
-    visitor("camera_frame", self.camera_frame, "", "of the camera, where it is no dds: source");
-    visitor("world_frame", self.world_frame, "", "of the world, where it is no dds: source");
+            "distribution of ROS 2 that lists the node: humble or a later one");
+    visitor("camera_frame", self.camera_frame, "",
+            "frame of the camera, if it is not a dds: source");
+    visitor("world_frame", self.world_frame, "",
+            "frame of the world, if the camera is not a dds: source");
     RosResultOptions::Visit(self, visitor);
-    visitor("wait_s", self.wait_s, "s", "for the images, camera_info and mount of a dds: source");
+    visitor("wait_s", self.wait_s, "s",
+            "longest wait for the images, camera_info and mount of a dds: source");
   }
   std::vector<std::string> Validate() const;
 

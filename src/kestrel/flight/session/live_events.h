@@ -23,7 +23,7 @@ struct LiveEventsOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("pose_wait_s", self.pose_wait_s, "s",
-            "how long a frame waits for the pose after its time");
+            "longest wait of a frame for the pose after its time");
   }
   std::vector<std::string> Validate() const;
 };

@@ -43,9 +43,10 @@ struct GlobalOrigin {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("latitude_deg", self.latitude_deg, "deg", "of the local frame's origin");
-    visitor("longitude_deg", self.longitude_deg, "deg", "of the local frame's origin");
-    visitor("altitude_m", self.altitude_m, "m", "of the local frame's origin above the sea");
+    visitor("latitude_deg", self.latitude_deg, "deg", "latitude of the local frame's origin");
+    visitor("longitude_deg", self.longitude_deg, "deg", "longitude of the local frame's origin");
+    visitor("altitude_m", self.altitude_m, "m",
+            "altitude of the local frame's origin above the sea");
   }
 };
 

@@ -24,14 +24,14 @@ struct EstimateFaultOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("silent_after_s", self.silent_after_s, "s",
-            "when it stops to tell attitude and position; negative: never");
-    visitor("silent_for_s", self.silent_for_s, "s", "for so long");
+            "time at which attitude and position are not sent any more; negative: never");
+    visitor("silent_for_s", self.silent_for_s, "s", "duration of that silence");
     visitor("jump_after_s", self.jump_after_s, "s",
-            "when its position jumps to the east; negative: never");
-    visitor("jump_m", self.jump_m, "m", "by so much");
+            "time at which the position jumps to the east; negative: never");
+    visitor("jump_m", self.jump_m, "m", "length of the jump");
     visitor("lost_after_s", self.lost_after_s, "s",
-            "when it loses its position for good; negative: never");
-    visitor("has_home", self.has_home, "", "it has a home to return to");
+            "time at which the position is lost for good; negative: never");
+    visitor("has_home", self.has_home, "", "the autopilot has a home position to return to");
   }
   std::vector<std::string> Validate() const;
 };
@@ -52,12 +52,13 @@ struct AutopilotModelOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("system_id", self.system_id, "1", "its MAVLink system id");
+    visitor("system_id", self.system_id, "1", "MAVLink system of the autopilot");
     visitor("vehicle_type", self.vehicle_type, "",
             "MAV_TYPE in its heartbeat: 2 quadrotor, 1 plane, 11 boat");
-    visitor("uptime_s", self.uptime_s, "s", "its own clock at the start");
-    visitor("drift_ppm", self.drift_ppm, "ppm", "by which its clock is fast");
-    visitor("parameters", self.parameters, "", "NAME=value,NAME=value: other than the defaults");
+    visitor("uptime_s", self.uptime_s, "s", "time on its own clock at the start");
+    visitor("drift_ppm", self.drift_ppm, "ppm", "drift of its clock; positive: fast");
+    visitor("parameters", self.parameters, "",
+            "parameters that differ from the defaults: NAME=value,NAME=value");
     visitor.Group("uav", self.uav);
     visitor.Group("navigation", self.navigation);
     visitor.Group("estimate", self.estimate);

@@ -24,9 +24,10 @@ struct CameraFaultOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("kind", self.kind, "", "none, frozen, black, bright, slow, stopped or beside");
-    visitor("after_s", self.after_s, "s", "from the start");
-    visitor("for_s", self.for_s, "s", "for so long");
+    visitor("kind", self.kind, "",
+            "kind of fault: none, frozen, black, bright, slow, stopped or beside");
+    visitor("after_s", self.after_s, "s", "time from the start to the fault");
+    visitor("for_s", self.for_s, "s", "duration of the fault");
   }
   std::vector<std::string> Validate() const;
 

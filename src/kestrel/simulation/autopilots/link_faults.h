@@ -28,13 +28,13 @@ struct LinkFaultOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("delay_s", self.delay_s, "s", "of each message, one way");
-    visitor("jitter_s", self.jitter_s, "s", "by which the delay varies to both sides");
-    visitor("loss", self.loss, "1", "part of the messages that get lost");
+    visitor("delay_s", self.delay_s, "s", "delay of each message, one way");
+    visitor("jitter_s", self.jitter_s, "s", "variation of the delay to both sides");
+    visitor("loss", self.loss, "1", "part of the messages that is lost");
     visitor("down_after_s", self.down_after_s, "s",
-            "silence in both directions from so long after the start on; negative: never");
-    visitor("down_for_s", self.down_for_s, "s", "for so long");
-    visitor("down_every_s", self.down_every_s, "s", "and again so often; 0: once");
+            "time from the start to a silence in both directions; negative: never");
+    visitor("down_for_s", self.down_for_s, "s", "duration of the silence");
+    visitor("down_every_s", self.down_every_s, "s", "period of the silence; 0: once");
   }
   std::vector<std::string> Validate() const {
     std::vector<std::string> violations;

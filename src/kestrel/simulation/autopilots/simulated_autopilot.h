@@ -28,7 +28,7 @@ struct SimulatedAutopilotOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("firmware", self.firmware, "", "ardupilot or px4");
+    visitor("firmware", self.firmware, "", "simulated firmware: ardupilot or px4");
     visitor("signing_key", self.signing_key, "", "file with the key of signed packets");
     AutopilotModelOptions::Visit(self.model, visitor);
     visitor.Group("link", self.link);

@@ -42,9 +42,9 @@ struct SimulatedCameraOptions {
     visitor("rate_hz", self.rate_hz, "Hz", "images per second");
     visitor("scale", self.scale, "1", "size of the image; the paper's 752x480 is 1");
     visitor("clock_offset_s", self.clock_offset_s, "s",
-            "to add to an image's stamp to get when it was taken; stamps that are late: negative");
+            "time of an image minus its stamp; negative: stamps that are late");
     visitor("pose_wait_s", self.pose_wait_s, "s",
-            "how long an image waits for its pose before the pose is extrapolated");
+            "longest wait of an image for its pose, after which the pose is extrapolated");
     visitor.Group("lens", self.lens);
     visitor.Group("shutter", self.shutter);
     visitor.Group("sensor", self.sensor);

@@ -31,18 +31,21 @@ struct PilotOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("start_altitude_m", self.start_altitude_m, "m",
-            "above the pattern at the start; 0: disarmed on the ground at the origin");
-    visitor("offset_east_m", self.offset_east_m, "m", "of the UAV from the pattern at the start");
-    visitor("offset_north_m", self.offset_north_m, "m", "of the UAV from the pattern at the start");
-    visitor("heading_deg", self.heading_deg, "deg", "of its nose, clockwise from north");
+            "height above the pattern at the start; 0: disarmed on the ground at the origin");
+    visitor("offset_east_m", self.offset_east_m, "m",
+            "distance of the UAV east of the pattern at the start");
+    visitor("offset_north_m", self.offset_north_m, "m",
+            "distance of the UAV north of the pattern at the start");
+    visitor("heading_deg", self.heading_deg, "deg", "heading of the UAV, clockwise from north");
     visitor("land_after_s", self.land_after_s, "s",
-            "when the pilot switches to the mode that lands; negative: never");
+            "time at which the pilot switches to the mode that lands; negative: never");
     visitor("guide_after_s", self.guide_after_s, "s",
-            "when the pilot switches to GUIDED or OFFBOARD, instead; negative: never");
-    visitor("take_back_after_s", self.take_back_after_s, "s",
-            "when the pilot switches to LOITER or POSCTL, and stays there; negative: never");
+            "time at which the pilot switches to GUIDED or OFFBOARD instead; negative: never");
+    visitor(
+        "take_back_after_s", self.take_back_after_s, "s",
+        "time at which the pilot switches to LOITER or POSCTL and stays there; negative: never");
     visitor("battery_failsafe_after_s", self.battery_failsafe_after_s, "s",
-            "when the battery is low and the autopilot returns, or lands; negative: never");
+            "time at which the battery is low and the autopilot returns or lands; negative: never");
     visitor("follows_vehicle", self.follows_vehicle, "",
             "the pilot flies along with the vehicle until then; else the UAV hovers");
   }

@@ -30,12 +30,13 @@ struct HuntFlightOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("path", self.path, "", "sweep: to and fro over the area; descend: down on an object");
-    visitor("altitude_m", self.altitude_m, "m", "of the sweep, or at the start of the descent");
-    visitor("end_altitude_m", self.end_altitude_m, "m", "at the end of the descent");
-    visitor("speed_mps", self.speed_mps, "m/s", "of the sweep");
-    visitor("length_m", self.length_m, "m", "of the area, along the lanes");
-    visitor("width_m", self.width_m, "m", "of the area, across the lanes");
-    visitor("lane_m", self.lane_m, "m", "from one lane to the next");
+    visitor("altitude_m", self.altitude_m, "m",
+            "height of the sweep, or at the start of the descent");
+    visitor("end_altitude_m", self.end_altitude_m, "m", "height at the end of the descent");
+    visitor("speed_mps", self.speed_mps, "m/s", "speed of the sweep");
+    visitor("length_m", self.length_m, "m", "length of the area, along the lanes");
+    visitor("width_m", self.width_m, "m", "width of the area, across the lanes");
+    visitor("lane_m", self.lane_m, "m", "distance from one lane to the next");
     visitor("first_lane", self.first_lane, "1", "lane with which the sweep begins");
     visitor("attitude_noise_deg", self.attitude_noise_deg, "deg", "errors of the attitude control");
   }
@@ -67,7 +68,7 @@ struct HuntSimulationOptions {
     visitor.Group("ground", self.ground);
     visitor.Group("light", self.light);
     visitor("field_seed", self.field_seed, "",
-            "what lies around is drawn by it, for several flights over one field; 0: by --seed");
+            "seed of what lies around, for several flights over one field; 0: that of --seed");
     visitor("banners", self.banners, "1", "banners around");
     visitor("vehicles", self.vehicles, "1", "parked vehicles");
     visitor("uav_shadow", self.uav_shadow, "", "the UAV's shadow");

@@ -23,11 +23,11 @@ struct StillsOptions {
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("show", self.show, "",
             "pattern or lookalikes: single images instead of a flight; nothing: a flight");
-    visitor("min_altitude_m", self.min_altitude_m, "m", "least height of the camera");
+    visitor("min_altitude_m", self.min_altitude_m, "m", "smallest height of the camera");
     visitor("max_altitude_m", self.max_altitude_m, "m", "largest height of the camera");
     visitor("max_tilt_deg", self.max_tilt_deg, "deg", "largest tilt of the camera");
     visitor("min_visible_fraction", self.min_visible_fraction, "1",
-            "least part of the pattern that is in view");
+            "smallest part of the pattern that is in view");
   }
   std::vector<std::string> Validate() const;
 };

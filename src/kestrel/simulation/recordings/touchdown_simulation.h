@@ -56,7 +56,7 @@ struct TouchdownOptions {
     visitor("leg_m", self.leg_m, "m", "from the body's origin down to its feet");
     visitor("feet_radius_m", self.feet_radius_m, "m", "room that the feet need on the board");
     visitor("max_slip_mps", self.max_slip_mps, "m/s", "horizontal speed at which it stays there");
-    visitor("max_sink_mps", self.max_sink_mps, "m/s", "vertical speed that the legs stand");
+    visitor("max_sink_mps", self.max_sink_mps, "m/s", "largest vertical speed that the legs stand");
   }
   std::vector<std::string> Validate() const;
 };

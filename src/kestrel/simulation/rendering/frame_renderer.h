@@ -25,8 +25,9 @@ struct ShutterOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("exposure_s", self.exposure_s, "s", "exposure time of a row");
-    visitor("readout_s", self.readout_s, "s",
-            "from the first row's exposure to the last's (rolling shutter); 0 is a global shutter");
+    visitor(
+        "readout_s", self.readout_s, "s",
+        "time from the first row's exposure to the last's (rolling shutter); 0: a global shutter");
     visitor("rays_per_pixel", self.rays_per_pixel, "1",
             "rays per pixel, spread over its area and over the exposure");
   }

@@ -31,11 +31,11 @@ struct SensorOptions {
     visitor("white_level", self.white_level, "",
             "gray value of a white horizontal surface in full light; more than 255 overexposes");
     visitor("gain_variation", self.gain_variation, "1",
-            "by how much exposure control wanders to both sides");
+            "variation of the exposure by its control, to both sides");
     visitor("gamma", self.gamma, "1", "exponent of the camera's curve; 1 is linear");
     visitor("read_noise", self.read_noise, "", "standard deviation in gray values, before gamma");
     visitor("shot_noise", self.shot_noise, "",
-            "the same at gray 100; grows with the root of light");
+            "standard deviation at gray 100, before gamma; it grows with the root of light");
     visitor("blur_sigma_px", self.blur_sigma_px, "px", "standard deviation of the optics' blur");
     visitor("sharpening", self.sharpening, "1", "part of the detail that is added once more");
     visitor("jpeg_quality", self.jpeg_quality, "1", "below 100 the images are compressed by JPEG");

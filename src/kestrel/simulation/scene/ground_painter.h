@@ -33,7 +33,7 @@ struct GroundOptions {
     visitor("curb", self.curb, "", "a curb around, another material behind it");
     visitor("shadows", self.shadows, "", "shadows of trees and houses");
     visitor("map_size_m", self.map_size_m, "m", "side of the ground's map, which repeats");
-    visitor("map_px", self.map_px, "px", "the same in pixels, a power of two: how fine it is");
+    visitor("map_px", self.map_px, "px", "side of the ground's map in pixels, a power of two");
   }
   std::vector<std::string> Validate() const;
 };

@@ -34,20 +34,20 @@ struct HuntObjectsOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("shape", self.shape, "",
-            "of the red, green and blue objects: disc, or cuboid with digit");
+            "shape of the red, green and blue objects: disc, or cuboid with digit");
     visitor("size_m", self.size_m, "m", "diameter of the discs, side of the cuboids");
     visitor("red", self.red, "1", "red objects");
     visitor("green", self.green, "1", "green objects");
     visitor("blue", self.blue, "1", "blue objects");
     visitor("yellow", self.yellow, "1", "yellow discs, which move");
-    visitor("yellow_speed_mps", self.yellow_speed_mps, "m/s", "how fast these move, about");
+    visitor("yellow_speed_mps", self.yellow_speed_mps, "m/s", "typical speed of the yellow discs");
     visitor("yellow_path", self.yellow_path, "",
             "wander: about a place, at about that speed; straight: from there, at that speed");
     visitor("orange", self.orange, "1", "large orange discs, 0.5 m");
     visitor("orange_bars", self.orange_bars, "1", "orange bars, 2 m long");
     visitor("distractors", self.distractors, "1", "things of the same colours and other shapes");
-    visitor("fading", self.fading, "1", "most by which paint is bleached");
-    visitor("gloss", self.gloss, "1", "most of the sun's mirror image in the paint");
+    visitor("fading", self.fading, "1", "largest bleaching of the paint");
+    visitor("gloss", self.gloss, "1", "largest strength of the sun's mirror image in the paint");
   }
   std::vector<std::string> Validate() const;
 };

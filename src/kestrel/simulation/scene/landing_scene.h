@@ -28,7 +28,7 @@ struct BoardOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("carrier", self.carrier, "",
-            "what carries the board: pickup, car, box, or none: it slides over the ground");
+            "carrier of the board: pickup, car, box, or none: the board slides over the ground");
     visitor("border_m", self.border_m, "m", "dark frame around the white board");
     visitor("arm_variation_m", self.arm_variation_m, "m",
             "the arms may be this much shorter or longer");

@@ -24,10 +24,11 @@ struct LightOptions {
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("sun_elevation_deg", self.sun_elevation_deg, "deg", "height of the sun");
     visitor("direct", self.direct, "1", "part of the light that comes straight from the sun");
-    visitor("sky_radiance", self.sky_radiance, "1", "of the sky near the horizon; white is 1");
+    visitor("sky_radiance", self.sky_radiance, "1",
+            "light of the sky near the horizon; white is 1");
     visitor("visibility_m", self.visibility_m, "m",
             "distance at which haze or dust leaves 5 % of the light; 0 is clear air");
-    visitor("dust_clouds", self.dust_clouds, "1", "by how much the density of the dust varies");
+    visitor("dust_clouds", self.dust_clouds, "1", "variation of the density of the dust");
     visitor("flare", self.flare, "1", "light that the lens scatters around the sun; white is 1");
     visitor("haze_radiance", self.haze_radiance, "1", "light of the haze; white is 1");
   }
@@ -47,8 +48,9 @@ struct LensViewOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("half_angle_deg", self.half_angle_deg, "deg", "of the lens circle, black beyond");
-    visitor("vignette", self.vignette, "1", "part of the light that is lost at that angle");
+    visitor("half_angle_deg", self.half_angle_deg, "deg",
+            "half angle of the lens circle; black beyond");
+    visitor("vignette", self.vignette, "1", "part of the light that is lost at half_angle_deg");
   }
   std::vector<std::string> Validate() const;
 };

@@ -21,7 +21,7 @@ struct VehicleMotionOptions {
     visitor("path", self.path, "", "standing, straight, circle or figure8");
     visitor("speed_mps", self.speed_mps, "m/s", "speed; the contest's 15 km/h are 4.2");
     visitor("radius_m", self.radius_m, "m",
-            "of the circle; half the length of the figure of eight");
+            "radius of the circle; half the length of the figure of eight");
     visitor("shake_deg", self.shake_deg, "deg", "roll and pitch on its springs");
   }
   std::vector<std::string> Validate() const;

@@ -27,9 +27,10 @@ struct LandingFlightOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("start_altitude_m", self.start_altitude_m, "m", "above the pattern at the beginning");
-    visitor("end_altitude_m", self.end_altitude_m, "m", "above the pattern at the end");
-    visitor("offset_m", self.offset_m, "m/m", "how far beside the pattern, per metre of altitude");
+    visitor("start_altitude_m", self.start_altitude_m, "m",
+            "height above the pattern at the beginning");
+    visitor("end_altitude_m", self.end_altitude_m, "m", "height above the pattern at the end");
+    visitor("offset_m", self.offset_m, "m/m", "distance beside the pattern, per metre of altitude");
     visitor("sway_acceleration", self.sway_acceleration, "m/s^2",
             "largest acceleration of its swaying; 8 tilts the UAV by 40 deg");
     visitor("sway_period_s", self.sway_period_s, "s", "period of its swaying");

@@ -28,10 +28,10 @@ struct MulticopterOptions {
     visitor("max_tilt_deg", self.max_tilt_deg, "deg", "largest tilt");
     visitor("max_acceleration", self.max_acceleration, "m/s^2", "largest horizontal acceleration");
     visitor("max_speed_mps", self.max_speed_mps, "m/s", "largest horizontal speed");
-    visitor("max_climb_mps", self.max_climb_mps, "m/s", "largest speed up and down");
+    visitor("max_climb_mps", self.max_climb_mps, "m/s", "largest vertical speed, up and down");
     visitor("attitude_lag_s", self.attitude_lag_s, "s",
-            "of each of two lags in a row between the command and the thrust");
-    visitor("drag", self.drag, "1/s", "acceleration by the air, per m/s of speed through it");
+            "time constant of each of two lags in a row between the command and the thrust");
+    visitor("drag", self.drag, "1/s", "deceleration by the air, per m/s of speed through it");
     visitor("velocity_gain", self.velocity_gain, "1/s", "gain of its velocity control");
     visitor("max_turn_dps", self.max_turn_dps, "deg/s", "largest rate of turn");
   }

@@ -38,10 +38,12 @@ struct NavigationOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("rate_hz", self.rate_hz, "Hz", "poses per second");
-    visitor("origin_x_m", self.origin_x_m, "m", "the world's origin in the navigation's world");
-    visitor("origin_y_m", self.origin_y_m, "m", "the same, y");
+    visitor("origin_x_m", self.origin_x_m, "m",
+            "x of the world's origin in the navigation's world");
+    visitor("origin_y_m", self.origin_y_m, "m",
+            "y of the world's origin in the navigation's world");
     visitor("world_yaw_deg", self.world_yaw_deg, "deg",
-            "where the world's x axis points in the navigation's world, from x to y");
+            "direction of the world's x axis in the navigation's world, from x to y");
     visitor("position_noise_m", self.position_noise_m, "m", "noise of the position, per axis");
     visitor("position_drift_m", self.position_drift_m, "m", "slow error of the position, per axis");
     visitor("position_bias_m", self.position_bias_m, "m",
@@ -49,8 +51,10 @@ struct NavigationOptions {
     visitor("attitude_noise_deg", self.attitude_noise_deg, "deg",
             "noise of the attitude, per axis");
     visitor("attitude_bias_deg", self.attitude_bias_deg, "deg", "constant error of the attitude");
-    visitor("clock_offset_min_s", self.clock_offset_min_s, "s", "least clock offset to be drawn");
-    visitor("clock_offset_max_s", self.clock_offset_max_s, "s", "largest clock offset to be drawn");
+    visitor("clock_offset_min_s", self.clock_offset_min_s, "s",
+            "smallest clock offset that is drawn");
+    visitor("clock_offset_max_s", self.clock_offset_max_s, "s",
+            "largest clock offset that is drawn");
     visitor("mount_error_deg", self.mount_error_deg, "deg",
             "error of the mount's roll, pitch, yaw");
     visitor("vibration_deg", self.vibration_deg, "deg", "vibration of the camera on its mount");

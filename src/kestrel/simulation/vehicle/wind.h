@@ -19,10 +19,10 @@ struct WindOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("min_mps", self.min_mps, "m/s", "least steady speed to be drawn");
-    visitor("max_mps", self.max_mps, "m/s", "largest steady speed to be drawn");
+    visitor("min_mps", self.min_mps, "m/s", "smallest steady speed that is drawn");
+    visitor("max_mps", self.max_mps, "m/s", "largest steady speed that is drawn");
     visitor("gusts", self.gusts, "1", "spread of the gusts, as a part of the steady speed");
-    visitor("gust_period_s", self.gust_period_s, "s", "how long gusts last, about");
+    visitor("gust_period_s", self.gust_period_s, "s", "typical duration of a gust");
   }
   std::vector<std::string> Validate() const;
 };

@@ -26,9 +26,9 @@ struct LandingPattern {
     visitor("outer_diameter_m", self.outer_diameter_m, "m", "outer diameter of the black ring");
     visitor("ring_width_m", self.ring_width_m, "m", "width of the black ring");
     visitor("arm_width_m", self.arm_width_m, "m", "width of an arm of the cross");
-    visitor(
-        "arm_half_length_m", self.arm_half_length_m, "m",
-        "from the centre to the end of an arm; the inner radius or more if it touches the ring");
+    visitor("arm_half_length_m", self.arm_half_length_m, "m",
+            "length from the centre to the end of an arm; at least the inner radius where the arm "
+            "touches the ring");
     visitor("board_size_m", self.board_size_m, "m", "side of the white board");
   }
   // Returns every violation in words; empty when the dimensions are consistent.

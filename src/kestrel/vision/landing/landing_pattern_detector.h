@@ -111,16 +111,17 @@ struct LandingPatternDetectorOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor.Group("pattern", self.pattern);
-    visitor("min_ring_px", self.min_ring_px, "px", "smallest minor axis of a ring searched for");
+    visitor("min_ring_px", self.min_ring_px, "px",
+            "smallest minor axis of a ring that is searched for");
     visitor("min_quality", self.min_quality, "1",
             "smallest probability of the pattern that is accepted, 0 to 1");
     visitor("level_sigma_deg", self.level_sigma_deg, "deg",
-            "how far from level the pattern may lie, standard deviation");
+            "tilt of the pattern from level, standard deviation");
     visitor("max_partial_altitude_m", self.max_partial_altitude_m, "m",
-            "height up to which a pattern that is cut off by the image border is searched for");
+            "largest height at which a pattern cut off by the image border is searched for");
     visitor("max_search_ms", self.max_search_ms, "ms",
-            "time after which a search goes on in the next frame; 0: no limit, in flight what "
-            "the camera's period leaves");
+            "longest search in one frame, which the next frame continues; 0: no limit, in flight "
+            "the rest of the camera's period");
   }
   std::vector<std::string> Validate() const;
 };

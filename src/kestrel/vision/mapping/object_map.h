@@ -51,34 +51,41 @@ struct ObjectMapOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("gate", self.gate, "1", "squared Mahalanobis distance of the furthest detection");
-    visitor("new_density", self.new_density, "1/m^3", "objects that are not in the map yet");
-    visitor("min_separation_m", self.min_separation_m, "m", "nearer ones of a kind become one");
-    visitor("drift_noise", self.drift_noise, "m/sqrt(s)", "of the position of standing objects");
+    visitor("gate", self.gate, "1",
+            "largest squared Mahalanobis distance of a detection that belongs to an object");
+    visitor("new_density", self.new_density, "1/m^3",
+            "density of objects that are not in the map yet");
+    visitor("min_separation_m", self.min_separation_m, "m",
+            "distance below which two objects of one kind are merged");
+    visitor("drift_noise", self.drift_noise, "m/sqrt(s)",
+            "growth of the position error of standing objects");
     visitor("acceleration_sigma_mps2", self.acceleration_sigma_mps2, "m/s^2",
             "acceleration of moving objects, standard deviation per axis");
     visitor("acceleration_time_s", self.acceleration_time_s, "s",
-            "how long an acceleration is kept, about");
-    visitor("velocity_time_s", self.velocity_time_s, "s", "how long a velocity is kept, about");
+            "typical duration of an acceleration");
+    visitor("velocity_time_s", self.velocity_time_s, "s", "typical duration of a velocity");
     visitor("start_speed_sigma_mps", self.start_speed_sigma_mps, "m/s",
             "speed of a new object that may move, standard deviation per axis");
     visitor("wander_sigma_m", self.wander_sigma_m, "m",
-            "error that detections share and that wanders, standard deviation per axis");
-    visitor("wander_time_s", self.wander_time_s, "s", "how long that error stays, about");
-    visitor("clock_sigma_s", self.clock_sigma_s, "s", "of the clock offset, standard deviation");
+            "slowly changing error that detections share, standard deviation per axis");
+    visitor("wander_time_s", self.wander_time_s, "s", "typical duration of that error");
+    visitor("clock_sigma_s", self.clock_sigma_s, "s",
+            "error of the clock offset, standard deviation");
     visitor("moving_probability", self.moving_probability, "1",
-            "from which on an object is said to move");
+            "probability of motion from which on an object is reported as moving");
     visitor("shared_sigma_m", self.shared_sigma_m, "m",
-            "error that detections in a row share, per axis");
+            "error that consecutive detections share, standard deviation per axis");
     visitor("detection_probability", self.detection_probability, "1",
-            "that an object in view is detected");
+            "probability that an object in view is detected");
     visitor("false_probability", self.false_probability, "1",
-            "that something is detected where there is nothing");
-    visitor("max_probability", self.max_probability, "1", "no object is surer than this");
+            "probability of a detection where there is no object");
+    visitor("max_probability", self.max_probability, "1",
+            "largest probability that an object exists");
     visitor("removal_probability", self.removal_probability, "1",
-            "an object that is less sure is removed");
-    visitor("confirm_count", self.confirm_count, "1", "detections that make an object");
-    visitor("capacity", self.capacity, "1", "objects that are kept");
+            "probability of existence below which an object is removed");
+    visitor("confirm_count", self.confirm_count, "1",
+            "number of detections that confirm an object");
+    visitor("capacity", self.capacity, "1", "largest number of objects that are kept");
   }
   std::vector<std::string> Validate() const;
 

@@ -52,26 +52,29 @@ struct ObjectDetectorOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("min_pixels", self.min_pixels, "px", "smaller segments are noise");
+    visitor("min_pixels", self.min_pixels, "px", "size of the smallest segment that is not noise");
     visitor("max_roundness_error", self.max_roundness_error, "1", "largest |roundness - 1|");
     visitor("max_circularity_error", self.max_circularity_error, "1",
             "largest |circularity - 1| of a disc");
     visitor("outline_tolerance", self.outline_tolerance, "1",
-            "edge of a disc: distance from an ellipse, share of the shorter semi-axis");
-    visitor("outline_tolerance_px", self.outline_tolerance_px, "px", "added to that");
+            "distance of a disc's edge from an ellipse, share of the shorter semi-axis");
+    visitor("outline_tolerance_px", self.outline_tolerance_px, "px",
+            "constant part of that distance, added to outline_tolerance");
     visitor("max_gap", self.max_gap, "1", "share of a disc's outline that may be hidden");
     visitor("max_cut_off_gap", self.max_cut_off_gap, "1",
-            "the same where the image's border cuts it off");
-    visitor("max_outside", self.max_outside, "1", "share of it that may be outside of the image");
+            "share of the outline that may be hidden where the image's border cuts the disc off");
+    visitor("max_outside", self.max_outside, "1",
+            "share of a disc that may be outside of the image");
     visitor("min_outline_share", self.min_outline_share, "1",
-            "share of the rest of its outline that must fit");
+            "share of the visible outline that must fit the ellipse");
     visitor("ground_tolerance", self.ground_tolerance, "1",
-            "how far size and distance may be from those of an object on the ground, share");
-    visitor("ground_tolerance_m", self.ground_tolerance_m, "m", "the same, always forgiven");
+            "deviation of size and distance from those of an object on the ground, share");
+    visitor("ground_tolerance_m", self.ground_tolerance_m, "m",
+            "constant part of that deviation, added to ground_tolerance");
     visitor("center_sigma_px", self.center_sigma_px, "px", "standard deviation of a centre");
     visitor("radius_sigma_px", self.radius_sigma_px, "px", "standard deviation of a radius");
     visitor("track_radius_px", self.track_radius_px, "px",
-            "tracking: how far from its last place an object is looked for");
+            "radius around the last place of a followed object in which it is searched for");
   }
   std::vector<std::string> Validate() const;
 };

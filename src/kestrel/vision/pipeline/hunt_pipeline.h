@@ -57,25 +57,28 @@ struct HuntPipelineOptions {
   static void Visit(Self& self, Visitor&& visitor) {
     visitor.Group("detector", self.detector);
     visitor.Group("map", self.map);
-    visitor("still", self.still, "", "frames have nothing to do with each other");
+    visitor("still", self.still, "",
+            "independent frames: no state is carried from one to the next");
     visitor("ground_height_m", self.ground_height_m, "m", "height of the ground in the world");
     visitor("is_ground_flat", self.is_ground_flat, "",
-            "discard objects that are not on the ground, where there are poses");
+            "objects that are not on the ground are discarded, where there are poses");
     visitor("ground_sigma_m", self.ground_sigma_m, "m", "unevenness of the ground");
     visitor("readout_s", self.readout_s, "s",
-            "rolling shutter: time from the first row to the last, 0 for a global shutter");
+            "time from the first row of a rolling shutter to the last; 0: a global shutter");
     visitor("track_count", self.track_count, "1",
-            "follow so many objects and look at nothing else, 0 to search the whole image");
-    visitor("pose_sigma_m", self.pose_sigma_m, "m", "of the navigation's position, per axis");
+            "number of objects that are followed, and the rest of the image ignored; 0: the whole "
+            "image is searched");
+    visitor("pose_sigma_m", self.pose_sigma_m, "m",
+            "error of the navigation's position, standard deviation per axis");
     visitor("attitude_sigma_deg", self.attitude_sigma_deg, "deg",
-            "of the navigation's attitude, per axis");
-    visitor("pose_capacity", self.pose_capacity, "1", "how many poses are kept");
+            "error of the navigation's attitude, standard deviation per axis");
+    visitor("pose_capacity", self.pose_capacity, "1", "number of poses that are kept");
     visitor("pose_gap_s", self.pose_gap_s, "s", "longest gap between poses that is interpolated");
     visitor("pose_extrapolation_s", self.pose_extrapolation_s, "s",
-            "how far after the newest pose it is predicted, 0 for not at all");
+            "longest prediction of the pose beyond the newest one; 0: none");
     visitor.Group("unmodelled", self.unmodelled);
     visitor("pose_smoothing_s", self.pose_smoothing_s, "s",
-            "poses this long before (and after, if there) are averaged, 0 for none");
+            "time before (and after, if poses are there) over which poses are averaged; 0: none");
   }
   std::vector<std::string> Validate() const;
 };

@@ -62,25 +62,27 @@ struct LandingPipelineOptions {
     visitor.Group("detector", self.detector);
     visitor.Group("tracker", self.tracker);
     visitor.Group("noise", self.noise);
-    visitor("still", self.still, "", "frames have nothing to do with each other");
+    visitor("still", self.still, "",
+            "independent frames: no state is carried from one to the next");
     visitor("position_by_altitude", self.position_by_altitude, "",
             "world position from the altitude instead of from the pattern's size");
     visitor("target_height_m", self.target_height_m, "m",
             "height of the pattern above the world's z = 0");
     visitor("track_yaw", self.track_yaw, "",
-            "the pattern turns with the vehicle: its yaw tells how the path bends");
+            "the pattern turns with the vehicle, so that its yaw shows how the path bends");
     visitor("altitude_hint", self.altitude_hint, "",
-            "tell the detector the height that the navigation reports");
+            "the detector gets the height that the navigation reports");
     visitor("hint_sigma_m", self.hint_sigma_m, "m",
-            "how far from where it should be the pattern is searched for first");
+            "error of the predicted position that the first search covers, in addition to the "
+            "track's, standard deviation per axis");
     visitor("hint_speed_mps", self.hint_speed_mps, "m/s",
-            "growth of that with the age of the last detection, where there are no poses");
+            "growth of that error with the age of the last detection, where there are no poses");
     visitor("hint_age_s", self.hint_age_s, "s",
-            "a detection older than this is no hint, where there are no poses");
-    visitor("pose_capacity", self.pose_capacity, "1", "how many poses are kept");
+            "largest age of a detection that serves as a hint, where there are no poses");
+    visitor("pose_capacity", self.pose_capacity, "1", "number of poses that are kept");
     visitor("pose_gap_s", self.pose_gap_s, "s", "longest gap between poses that is interpolated");
     visitor("pose_extrapolation_s", self.pose_extrapolation_s, "s",
-            "how far after the newest pose it is predicted, 0 for not at all");
+            "longest prediction of the pose beyond the newest one; 0: none");
     visitor.Group("unmodelled", self.unmodelled);
   }
   std::vector<std::string> Validate() const;

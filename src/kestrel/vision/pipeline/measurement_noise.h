@@ -30,7 +30,7 @@ struct MeasurementNoise {
     visitor("attitude_bias_deg", self.attitude_bias_deg, "deg",
             "error of attitude and mount that all frames share, per axis");
     visitor("scale_bias", self.scale_bias, "1",
-            "error of the pattern's size and the focal length, as a part of them");
+            "relative error of the pattern's size and of the focal length");
   }
   std::vector<std::string> Validate() const;
 };

@@ -91,27 +91,35 @@ struct TargetTrackerOptions {
     visitor("acceleration_noise", self.acceleration_noise, "m/s^2/sqrt(Hz)",
             "horizontal acceleration that the turn does not explain");
     visitor("climb_noise", self.climb_noise, "m/s^2/sqrt(Hz)", "vertical acceleration");
-    visitor("turn_noise", self.turn_noise, "rad/s^3/sqrt(Hz)",
-            "how the change of the turn rate varies; 0, and so start_turn_sigma_radps: no turns");
+    visitor(
+        "turn_noise", self.turn_noise, "rad/s^3/sqrt(Hz)",
+        "variation of the turn rate's change; 0, together with start_turn_sigma_radps: no turns");
     visitor("turn_time_s", self.turn_time_s, "s",
-            "after which a change of the turn rate ends, left alone");
+            "time constant with which a change of the turn rate decays");
     visitor("sway_sigma_m", self.sway_sigma_m, "m",
             "swaying of the board on the vehicle, standard deviation; 0: none");
-    visitor("sway_frequency_hz", self.sway_frequency_hz, "Hz", "frequency of that");
-    visitor("sway_damping", self.sway_damping, "1", "damping ratio of that, between 0 and 1");
+    visitor("sway_frequency_hz", self.sway_frequency_hz, "Hz", "frequency of the swaying");
+    visitor("sway_damping", self.sway_damping, "1",
+            "damping ratio of the swaying, between 0 and 1");
     visitor("start_speed_sigma_mps", self.start_speed_sigma_mps, "m/s",
             "speed of a new track, standard deviation");
     visitor("start_turn_sigma_radps", self.start_turn_sigma_radps, "rad/s",
             "turn rate of a new track, standard deviation");
-    visitor("gate", self.gate, "1", "squared Mahalanobis distance of the furthest measurement");
+    visitor("gate", self.gate, "1",
+            "largest squared Mahalanobis distance of a measurement of the target");
     visitor("restart_count", self.restart_count, "1",
-            "measurements in a row outside of the gate that start a new track");
-    visitor("max_speed_mps", self.max_speed_mps, "m/s", "of the fastest target");
-    visitor("confirm_count", self.confirm_count, "1", "measurements that make a track");
-    visitor("predict_after_s", self.predict_after_s, "s", "not seen for so long: predicting");
-    visitor("lost_after_s", self.lost_after_s, "s", "not seen for so long: lost");
-    visitor("lost_sigma_m", self.lost_sigma_m, "m", "known no better than this: lost");
-    visitor("history", self.history, "1", "measurements remembered for late ones");
+            "number of consecutive measurements outside of the gate that start a new track");
+    visitor("max_speed_mps", self.max_speed_mps, "m/s", "speed of the fastest target");
+    visitor("confirm_count", self.confirm_count, "1",
+            "number of measurements that confirm a track");
+    visitor("predict_after_s", self.predict_after_s, "s",
+            "time without a measurement after which the track is predicting");
+    visitor("lost_after_s", self.lost_after_s, "s",
+            "time without a measurement after which the track is lost");
+    visitor("lost_sigma_m", self.lost_sigma_m, "m",
+            "standard deviation of the position at which the track is lost");
+    visitor("history", self.history, "1",
+            "number of past measurements that are kept, so that late ones can be inserted");
   }
   std::vector<std::string> Validate() const;
 
