@@ -34,8 +34,8 @@ LandingSearch::LandingSearch(const LandingModels& models, const cv::Mat& image,
       image_(image, &buffers->image, &log_),
       choice_(models.options.min_quality, observer, &log_),
       rings_(models, &buffers->rings, &log_),
-      near_prints_(models, prior_, &image_, &buffers->near_prints, &choice_, &log_),
-      small_prints_(models, prior_, &image_, &buffers->small_prints, &choice_, &log_) {
+      near_prints_({models, prior_, image_, choice_, log_}, &buffers->near_prints),
+      small_prints_({models, prior_, image_, choice_, log_}, &buffers->small_prints) {
   buffers_.Reserve(image);
   buffers_.near_prints.tested.Clear();
   buffers_.near_prints.refused.Clear();

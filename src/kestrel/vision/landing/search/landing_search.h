@@ -10,6 +10,7 @@
 #include "kestrel/vision/landing/location/detection_choice.h"
 #include "kestrel/vision/landing/search/landing_models.h"
 #include "kestrel/vision/landing/search/prior_knowledge.h"
+#include "kestrel/vision/landing/search/search_context.h"
 #include "kestrel/vision/landing/search/search_log.h"
 #include "kestrel/vision/landing/search/search_plan.h"
 #include "kestrel/vision/landing/search/searched_image.h"

@@ -63,27 +63,17 @@ void NearPrintBuffers::Reserve() {
   refused.Reserve();
 }
 
-NearPrintVerifier::NearPrintVerifier(const LandingModels& models, const PriorKnowledge& prior,
-                                     SearchedImage* image, NearPrintBuffers* buffers,
-                                     DetectionChoice* choice, SearchLog* log)
-    : models_(models),
-      prior_(prior),
-      image_(*image),
-      buffers_(*buffers),
-      choice_(*choice),
-      log_(*log) {}
-
 void NearPrintVerifier::Test(const RingCandidate& ring) {
   RingPlace place{{}, ring.diameters_px, ring.reach_px};
-  if (models_.camera.Project(ring.poses[0].center, &place.center_px) ==
+  if (search_.models.camera.Project(ring.poses[0].center, &place.center_px) ==
           ProjectionStatus::kOutsideModel ||
       buffers_.refused.Holds(place, kSameSign) ||
       buffers_.tested.Holds(place, RingMemory::kSameStart)) {
     return;
   }
   buffers_.tested.Note(place);
-  log_.Reach(LandingStage::kCross, "no cross inside of the ring");
-  const PriorKnowledge::Order order = prior_.OrderOf(ring.poses);
+  search_.log.Reach(LandingStage::kCross, "no cross inside of the ring");
+  const PriorKnowledge::Order order = search_.prior.OrderOf(ring.poses);
   const double diameter_px = ring.diameters_px.x();
   bool has_cross = false;
   for (const int pose : order.poses) {
@@ -121,9 +111,9 @@ void NearPrintVerifier::TestPredicted(const CirclePose& predicted,
   const RigidTransform& pose = refined->camera_from_pattern;
   const CirclePose ring{pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()};
   const Eigen::Vector2d diameters_px =
-      RingDiametersPx(models_.camera, models_.options.pattern.outer_radius_m(), ring);
+      RingDiametersPx(search_.models.camera, search_.models.options.pattern.outer_radius_m(), ring);
   if (IsSmallRing(diameters_px)) return;
-  image_.Prepare(ViewLevel(diameters_px.x()));
+  search_.image.Prepare(ViewLevel(diameters_px.x()));
   const std::optional<Hypothesis> print = FindCross(ring, diameters_px.x());
   if (!print) return;
   const double reach_px = std::max(kLeastReachPx, kSureReach * diameters_px.x());
@@ -131,10 +121,10 @@ void NearPrintVerifier::TestPredicted(const CirclePose& predicted,
 }
 
 void NearPrintVerifier::TestCross(const RigidTransform& pose, const ImageRegion& region) {
-  log_.Reach(LandingStage::kCross, "lines of a cross without the pattern around them");
+  search_.log.Reach(LandingStage::kCross, "lines of a cross without the pattern around them");
   const double angle =
-      std::atan2(models_.options.pattern.outer_radius_m(), pose.translation.norm());
-  const double diameter_px = 2 * models_.camera.intrinsics().fx_px * angle;
+      std::atan2(search_.models.options.pattern.outer_radius_m(), pose.translation.norm());
+  const double diameter_px = 2 * search_.models.camera.intrinsics().fx_px * angle;
   const std::optional<Hypothesis> print = Compare(pose, CrossMethod::kPartial, diameter_px);
   if (!print) return;
   const double reach_px = std::max(kLeastReachPx, region.scale() + kCrossReach * diameter_px);
@@ -147,13 +137,14 @@ void NearPrintVerifier::TestCross(const RigidTransform& pose, const ImageRegion&
 std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCross(const CirclePose& ring,
                                                                           double diameter_px) {
   constexpr int kThinningSize = 32, kLinesSize = 64;
-  const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
-  const LandingPattern& pattern = models_.options.pattern;
-  const ImageRegion region = image_.RegionAt(ViewLevel(diameter_px));
-  const cv::Mat image = image_.At(region.level);
-  const PatternView view(models_.camera, PatternPose(ring, 0), models_.matcher.extent_m(), region);
+  const SearchLog::Timer timer = search_.log.Time(LandingStage::kCross);
+  const LandingPattern& pattern = search_.models.options.pattern;
+  const ImageRegion region = search_.image.RegionAt(ViewLevel(diameter_px));
+  const cv::Mat image = search_.image.At(region.level);
+  const PatternView view(search_.models.camera, PatternPose(ring, 0),
+                         search_.models.matcher.extent_m(), region);
   if (!view.valid()) return std::nullopt;
-  const double contrast = models_.matcher.RingContrast(image, view);
+  const double contrast = search_.models.matcher.RingContrast(image, view);
   if (contrast < GrayContrast::kLeastRing) return std::nullopt;
   const auto print = [&](const Cross& cross, CrossMethod method) {
     return Hypothesis{PatternPose(ring, cross.arm_angle), method, contrast};
@@ -177,23 +168,24 @@ std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCross(const 
 // cut off or broken, its first estimate says little about the far side.
 std::optional<RingLocation> NearPrintVerifier::RefineRing(const CirclePose& ring, double reach_px,
                                                           int iterations) {
-  const SearchLog::Timer timer = log_.Time(LandingStage::kRing);
-  return models_.locator.LocateRing(image_.whole(), PatternPose(ring, 0), reach_px,
-                                    GrayContrast::kLeastRing / 2, iterations,
-                                    prior_.LevelPrior(ring.normal));
+  const SearchLog::Timer timer = search_.log.Time(LandingStage::kRing);
+  return search_.models.locator.LocateRing(search_.image.whole(), PatternPose(ring, 0), reach_px,
+                                           GrayContrast::kLeastRing / 2, iterations,
+                                           search_.prior.LevelPrior(ring.normal));
 }
 
 std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCrossInRefined(
     const RigidTransform& ring, double diameter_px) {
-  const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
-  const ImageRegion region = image_.RegionAt(ViewLevel(diameter_px));
-  const cv::Mat image = image_.At(region.level);
-  const PatternView view(models_.camera, ring, models_.matcher.extent_m(), region);
-  if (!view.valid() || models_.matcher.RingContrast(image, view) < GrayContrast::kLeastRing) {
+  const SearchLog::Timer timer = search_.log.Time(LandingStage::kCross);
+  const ImageRegion region = search_.image.RegionAt(ViewLevel(diameter_px));
+  const cv::Mat image = search_.image.At(region.level);
+  const PatternView view(search_.models.camera, ring, search_.models.matcher.extent_m(), region);
+  if (!view.valid() ||
+      search_.models.matcher.RingContrast(image, view) < GrayContrast::kLeastRing) {
     return std::nullopt;
   }
   const std::optional<Cross> cross =
-      FindCrossByProfile(image, view, models_.options.pattern, GrayContrast::kLeastRing / 2);
+      FindCrossByProfile(image, view, search_.models.options.pattern, GrayContrast::kLeastRing / 2);
   if (!cross) return std::nullopt;
   RigidTransform turned = ring;
   turned.rotation *=
@@ -205,12 +197,12 @@ std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCrossInRefin
 std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::Compare(const RigidTransform& pose,
                                                                         CrossMethod method,
                                                                         double diameter_px) {
-  const SearchLog::Timer timer = log_.Time(LandingStage::kMatch);
-  log_.Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
-  const ImageRegion region = image_.RegionAt(ViewLevel(diameter_px));
-  const PatternView view(models_.camera, pose, models_.matcher.extent_m(), region);
+  const SearchLog::Timer timer = search_.log.Time(LandingStage::kMatch);
+  search_.log.Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
+  const ImageRegion region = search_.image.RegionAt(ViewLevel(diameter_px));
+  const PatternView view(search_.models.camera, pose, search_.models.matcher.extent_m(), region);
   if (!view.valid()) return std::nullopt;
-  const PatternMatch match = models_.matcher.Match(image_.At(region.level), view);
+  const PatternMatch match = search_.models.matcher.Match(search_.image.At(region.level), view);
   if (match.Agreement() < kWorthLocating) return std::nullopt;
   return Hypothesis{pose, method, match.contrast};
 }
@@ -220,30 +212,30 @@ std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::Compare(const Ri
 bool NearPrintVerifier::TestPrint(const Hypothesis& print, const Eigen::Vector2d& diameters_px,
                                   double reach_px, std::span<const CirclePose> rings,
                                   const PriorKnowledge::Order& order) {
-  const SearchLog::Timer timer = log_.Time(LandingStage::kLocate);
-  log_.Reach(LandingStage::kLocate, "ring and cross have too few edges");
-  const ImageRegion region = image_.RegionAt(ViewLevel(diameters_px.x()));
-  const cv::Mat image = image_.At(region.level);
-  PrintAlignment alignment{
-      PlaneWarp(models_.camera, print.camera_from_pattern, models_.locator.outline().radius_m()),
-      {}};
+  const SearchLog::Timer timer = search_.log.Time(LandingStage::kLocate);
+  search_.log.Reach(LandingStage::kLocate, "ring and cross have too few edges");
+  const ImageRegion region = search_.image.RegionAt(ViewLevel(diameters_px.x()));
+  const cv::Mat image = search_.image.At(region.level);
+  PrintAlignment alignment{PlaneWarp(search_.models.camera, print.camera_from_pattern,
+                                     search_.models.locator.outline().radius_m()),
+                           {}};
   const double min_step = std::max(GrayContrast::kLeastEdge, kMinStep * print.contrast);
-  if (!AlignPrint(image_.whole(), image, region, models_.locator.outline().all(), reach_px,
-                  min_step, &alignment)) {
+  if (!AlignPrint(search_.image.whole(), image, region, search_.models.locator.outline().all(),
+                  reach_px, min_step, &alignment)) {
     return false;
   }
-  const PatternView view(alignment.warp, models_.ink.extent_m(), region);
+  const PatternView view(alignment.warp, search_.models.ink.extent_m(), region);
   if (!view.valid()) return false;
   PrintFinding finding;
   finding.diameters_px = diameters_px;
-  const double seen = models_.ink.Doubt(image, view, &finding.doubts);
+  const double seen = search_.models.ink.Doubt(image, view, &finding.doubts);
   finding.kind = seen < PrintPlaces::kWhole ? PrintKind::kPart : PrintKind::kByEdges;
   finding.method = seen < PrintPlaces::kWhole ? CrossMethod::kPartial : print.method;
   finding.doubts[PrintDoubt::kHidden] = 1 - seen;
   DoubtEdges(alignment, &finding);
   bool is_found = false;
   for (std::size_t i = 0; i < rings.size(); ++i) {
-    if (!choice_.MayAccept(finding.kind, finding.doubts)) break;
+    if (!search_.choice.MayAccept(finding.kind, finding.doubts)) break;
     if (is_found && order.one_is_right) break;
     const CirclePose& ring = rings[order.poses[i]];
     is_found |= Locate(alignment, WithArmOf(alignment, ring), finding);
@@ -258,8 +250,8 @@ RigidTransform NearPrintVerifier::WithArmOf(const PrintAlignment& alignment,
   RigidTransform pose = PatternPose(ring, 0);
   Eigen::Vector2d pixel;
   Eigen::Vector3d ray;
-  if (!alignment.warp.Project({models_.options.pattern.arm_half_length_m, 0}, &pixel) ||
-      models_.camera.Unproject(pixel, &ray) == ProjectionStatus::kOutsideModel) {
+  if (!alignment.warp.Project({search_.models.options.pattern.arm_half_length_m, 0}, &pixel) ||
+      search_.models.camera.Unproject(pixel, &ray) == ProjectionStatus::kOutsideModel) {
     return alignment.warp.pose();
   }
   const double distance = ring.normal.dot(ring.center) / ring.normal.dot(ray);
@@ -272,7 +264,7 @@ bool NearPrintVerifier::Locate(const PrintAlignment& alignment, const RigidTrans
                                PrintFinding finding) {
   const Eigen::Vector3d normal = initial.rotation * Eigen::Vector3d::UnitZ();
   const std::optional<PatternLocation> location =
-      models_.locator.Locate(alignment.edges, initial, prior_.LevelPrior(normal));
+      search_.models.locator.Locate(alignment.edges, initial, search_.prior.LevelPrior(normal));
   if (!location) return false;
   finding.location = *location;
   finding.seen = {alignment.warp.pose(), alignment.warp.displacement()};
@@ -281,14 +273,14 @@ bool NearPrintVerifier::Locate(const PrintAlignment& alignment, const RigidTrans
   finding.doubts[PrintDoubt::kMisfit] = LogShare(location->edge_rms_px, MeanDiameter(finding));
   DoubtView(finding.diameters_px, finding.relative_sigma(), &finding.doubts);
   finding.log_odds = PrintLogOdds(finding.kind, finding.doubts);
-  finding.told = prior_.LogOddsOfDistance(location->camera_from_pattern.translation);
-  return choice_.Add(finding);
+  finding.told = search_.prior.LogOddsOfDistance(location->camera_from_pattern.translation);
+  return search_.choice.Add(finding);
 }
 
 // Records that a ring whose edges were found is something else.
 void NearPrintVerifier::Refuse(const PrintFinding& finding, const PrintAlignment& alignment,
                                double reach_px) {
-  log_.Reach(LandingStage::kLocate, MainDoubt(finding.kind, finding.doubts));
+  search_.log.Reach(LandingStage::kLocate, MainDoubt(finding.kind, finding.doubts));
   RingPlace place{{}, finding.diameters_px, reach_px};
   if (alignment.warp.Project(Eigen::Vector2d::Zero(), &place.center_px)) {
     buffers_.refused.Note(place);

@@ -7,10 +7,7 @@
 #include "kestrel/vision/landing/alignment/print_alignment.h"
 #include "kestrel/vision/landing/candidates/ring_candidates.h"
 #include "kestrel/vision/landing/candidates/ring_memory.h"
-#include "kestrel/vision/landing/location/detection_choice.h"
-#include "kestrel/vision/landing/search/landing_models.h"
-#include "kestrel/vision/landing/search/prior_knowledge.h"
-#include "kestrel/vision/landing/search/searched_image.h"
+#include "kestrel/vision/landing/search/search_context.h"
 #include "kestrel/vision/landing/verification/cross.h"
 
 namespace kestrel {
@@ -29,9 +26,9 @@ struct NearPrintBuffers {
 // the doubts and finds the pose (paper, sections 2.3 to 2.5).
 class NearPrintVerifier {
  public:
-  // The arguments must outlive the verifier.
-  NearPrintVerifier(const LandingModels& models, const PriorKnowledge& prior, SearchedImage* image,
-                    NearPrintBuffers* buffers, DetectionChoice* choice, SearchLog* log);
+  // 'buffers' must outlive the verifier.
+  NearPrintVerifier(const SearchContext& search, NearPrintBuffers* buffers)
+      : search_(search), buffers_(*buffers) {}
 
   void Test(const RingCandidate& ring);
 
@@ -61,12 +58,8 @@ class NearPrintVerifier {
   void Refuse(const PrintFinding& finding, const PrintAlignment& alignment, double reach_px);
   static void DoubtEdges(const PrintAlignment& alignment, PrintFinding* finding);
 
-  const LandingModels& models_;
-  const PriorKnowledge& prior_;
-  SearchedImage& image_;
+  SearchContext search_;
   NearPrintBuffers& buffers_;
-  DetectionChoice& choice_;
-  SearchLog& log_;
 };
 
 }  // namespace kestrel

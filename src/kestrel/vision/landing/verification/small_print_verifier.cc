@@ -41,28 +41,18 @@ bool Agrees(const RigidTransform& start, const RigidTransform& fitted, double ra
 
 }  // namespace
 
-SmallPrintVerifier::SmallPrintVerifier(const LandingModels& models, const PriorKnowledge& prior,
-                                       SearchedImage* image, SmallPrintBuffers* buffers,
-                                       DetectionChoice* choice, SearchLog* log)
-    : models_(models),
-      prior_(prior),
-      image_(*image),
-      buffers_(*buffers),
-      choice_(*choice),
-      log_(*log) {}
-
 void SmallPrintVerifier::Test(const RingCandidate& ring) {
   if (IsTooSmall(ring.diameters_px)) return;
-  const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
-  log_.Reach(LandingStage::kCross, "no cross inside of the ring");
+  const SearchLog::Timer timer = search_.log.Time(LandingStage::kCross);
+  search_.log.Reach(LandingStage::kCross, "no cross inside of the ring");
   RingPlace place{{}, ring.diameters_px};
-  if (models_.camera.Project(ring.poses[0].center, &place.center_px) ==
+  if (search_.models.camera.Project(ring.poses[0].center, &place.center_px) ==
           ProjectionStatus::kOutsideModel ||
       buffers_.tested.Holds(place, RingMemory::kSameStart)) {
     return;
   }
   buffers_.tested.Note(place);
-  const PriorKnowledge::Order order = prior_.OrderOf(ring.poses);
+  const PriorKnowledge::Order order = search_.prior.OrderOf(ring.poses);
   for (const int pose : order.poses) {
     const Outcome outcome = TestPose(ring.poses[pose], ring.scales);
     if (outcome == Outcome::kNothing) return;
@@ -73,14 +63,14 @@ void SmallPrintVerifier::Test(const RingCandidate& ring) {
 void SmallPrintVerifier::TestPredicted(const CirclePose& ring,
                                        const Eigen::Vector2d& diameters_px) {
   if (IsTooSmall(diameters_px)) return;
-  const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
+  const SearchLog::Timer timer = search_.log.Time(LandingStage::kCross);
   TestPose(ring, kOneScale);
 }
 
 // True when a ring is too small or seen almost edge-on.
 bool SmallPrintVerifier::IsTooSmall(const Eigen::Vector2d& diameters_px) const {
   return diameters_px.x() < kMinMajorPx ||
-         diameters_px.y() < SearchPass::kThinnest * models_.options.min_ring_px ||
+         diameters_px.y() < SearchPass::kThinnest * search_.models.options.min_ring_px ||
          diameters_px.y() < kFlattestRing * diameters_px.x();
 }
 
@@ -90,26 +80,26 @@ SmallPrintVerifier::Outcome SmallPrintVerifier::TestPose(const CirclePose& pose,
   // The two poses of a small ring look much the same: when one does not fit, neither does the
   // other.
   if (start.correlation < kMinCorrelation) return Outcome::kNothing;
-  log_.Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
-  const std::optional<NormalPrior> level = prior_.LevelPrior(pose.normal);
+  search_.log.Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
+  const std::optional<NormalPrior> level = search_.prior.LevelPrior(pose.normal);
   const auto fit = [&](const RigidTransform& initial, Light light) {
-    return models_.small.Refine(image_.whole(), initial, light, kFitIterations,
-                                &buffers_.gray_values, level);
+    return search_.models.small.Refine(search_.image.whole(), initial, light, kFitIterations,
+                                       &buffers_.gray_values, level);
   };
   const auto in_even = fit(start.camera_from_pattern, Light::kEven);
   if (!in_even || in_even->correlation < kMinCorrelationOfEither) return Outcome::kNothing;
   const RigidTransform& fitted = in_even->location.camera_from_pattern;
-  if (!Agrees(start.camera_from_pattern, fitted, models_.options.pattern.outer_radius_m())) {
+  if (!Agrees(start.camera_from_pattern, fitted, search_.models.options.pattern.outer_radius_m())) {
     return Outcome::kOtherPose;
   }
-  log_.Reach(LandingStage::kLocate, "it is too small to tell");
+  search_.log.Reach(LandingStage::kLocate, "it is too small to tell");
   std::optional<PrintFinding> finding = FindingOf(*in_even, Light::kEven);
-  if (!finding || !choice_.Accepts(*finding) || in_even->explained < kWellExplained) {
+  if (!finding || !search_.choice.Accepts(*finding) || in_even->explained < kWellExplained) {
     const auto in_shadows = fit(fitted, Light::kShadows);
     const auto evened = in_shadows ? FindingOf(*in_shadows, Light::kShadows) : std::nullopt;
     if (evened && (!finding || evened->log_odds > finding->log_odds)) finding = evened;
   }
-  return finding && choice_.Add(*finding) ? Outcome::kFound : Outcome::kOtherPose;
+  return finding && search_.choice.Add(*finding) ? Outcome::kFound : Outcome::kOtherPose;
 }
 
 // Returns nothing for a print smaller than the smallest searched for.
@@ -121,23 +111,23 @@ std::optional<PrintFinding> SmallPrintVerifier::FindingOf(const SmallPatternFitt
   finding.kind = PrintKind::kAsAWhole;
   finding.location = fit.location;
   finding.diameters_px =
-      RingDiametersPx(models_.camera, models_.options.pattern.outer_radius_m(),
+      RingDiametersPx(search_.models.camera, search_.models.options.pattern.outer_radius_m(),
                       {pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()});
-  if (finding.diameters_px.y() < kTolerance * models_.options.min_ring_px ||
-      models_.camera.Project(pose.translation, &finding.center_px) ==
+  if (finding.diameters_px.y() < kTolerance * search_.models.options.min_ring_px ||
+      search_.models.camera.Project(pose.translation, &finding.center_px) ==
           ProjectionStatus::kOutsideModel) {
     return std::nullopt;
   }
-  const PatternView view(models_.camera, pose, models_.ink.extent_m(), {});
+  const PatternView view(search_.models.camera, pose, search_.models.ink.extent_m(), {});
   if (!view.valid()) return std::nullopt;
-  const double seen = models_.ink.Doubt(image_.whole(), view, &finding.doubts);
+  const double seen = search_.models.ink.Doubt(search_.image.whole(), view, &finding.doubts);
   finding.method = seen < PrintPlaces::kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants;
   finding.doubts[PrintDoubt::kHidden] = 1 - seen;
   DoubtGrayValues(fit, &finding.doubts);
   DoubtView(finding.diameters_px, finding.relative_sigma(), &finding.doubts);
   finding.doubts[PrintDoubt::kShadows] = light == Light::kShadows ? 1 : 0;
   finding.log_odds = PrintLogOdds(finding.kind, finding.doubts);
-  finding.told = prior_.LogOddsOfDistance(pose.translation);
+  finding.told = search_.prior.LogOddsOfDistance(pose.translation);
   return finding;
 }
 
@@ -146,25 +136,26 @@ std::optional<PrintFinding> SmallPrintVerifier::FindingOf(const SmallPatternFitt
 SmallPatternFitter::Start SmallPrintVerifier::FindStart(const CirclePose& pose,
                                                         std::span<const double> scales) {
   const std::optional<double> scale =
-      models_.small.FindScale(image_.whole(), pose, scales, &buffers_.gray_values);
+      search_.models.small.FindScale(search_.image.whole(), pose, scales, &buffers_.gray_values);
   if (!scale) return {{}, -1};
   if (const std::optional<double> angle = ArmAngleByQuadrants(pose)) {
-    auto start = models_.small.FindStart(pose, *scale, {&*angle, 1}, &buffers_.gray_values);
+    auto start = search_.models.small.FindStart(pose, *scale, {&*angle, 1}, &buffers_.gray_values);
     if (start.correlation >= kSureCorrelation) return start;
   }
   // At most 7.5 degrees from any direction.
   constexpr double kStep = std::numbers::pi / 12;
   constexpr std::array<double, 6> kTurns{0, kStep, 2 * kStep, 3 * kStep, 4 * kStep, 5 * kStep};
-  return models_.small.FindStart(pose, *scale, kTurns, &buffers_.gray_values);
+  return search_.models.small.FindStart(pose, *scale, kTurns, &buffers_.gray_values);
 }
 
 // Returns the direction of an arm of a small cross from its quadrants.
 std::optional<double> SmallPrintVerifier::ArmAngleByQuadrants(const CirclePose& pose) {
   constexpr int kSize = 24;
-  const PatternView view(models_.camera, PatternPose(pose, 0), models_.matcher.extent_m(), {});
+  const PatternView view(search_.models.camera, PatternPose(pose, 0),
+                         search_.models.matcher.extent_m(), {});
   if (!view.valid()) return std::nullopt;
-  const auto inside = RectifyInside(image_.whole(), view, models_.options.pattern, kSize,
-                                    GrayContrast::kLeastInside);
+  const auto inside = RectifyInside(search_.image.whole(), view, search_.models.options.pattern,
+                                    kSize, GrayContrast::kLeastInside);
   if (!inside) return std::nullopt;
   const std::optional<Cross> cross = FindCrossByQuadrants(*inside);
   if (!cross) return std::nullopt;

@@ -7,10 +7,7 @@
 #include "kestrel/vision/landing/alignment/small_pattern.h"
 #include "kestrel/vision/landing/candidates/ring_candidates.h"
 #include "kestrel/vision/landing/candidates/ring_memory.h"
-#include "kestrel/vision/landing/location/detection_choice.h"
-#include "kestrel/vision/landing/search/landing_models.h"
-#include "kestrel/vision/landing/search/prior_knowledge.h"
-#include "kestrel/vision/landing/search/searched_image.h"
+#include "kestrel/vision/landing/search/search_context.h"
 
 namespace kestrel {
 
@@ -26,9 +23,9 @@ struct SmallPrintBuffers {
 // it, by fitting the whole print to the gray values (docs/small_pattern.md).
 class SmallPrintVerifier {
  public:
-  // The arguments must outlive the verifier.
-  SmallPrintVerifier(const LandingModels& models, const PriorKnowledge& prior, SearchedImage* image,
-                     SmallPrintBuffers* buffers, DetectionChoice* choice, SearchLog* log);
+  // 'buffers' must outlive the verifier.
+  SmallPrintVerifier(const SearchContext& search, SmallPrintBuffers* buffers)
+      : search_(search), buffers_(*buffers) {}
 
   void Test(const RingCandidate& ring);
 
@@ -46,12 +43,8 @@ class SmallPrintVerifier {
   std::optional<PrintFinding> FindingOf(const SmallPatternFitter::Fit& fit,
                                         SmallPatternFitter::Light light) const;
 
-  const LandingModels& models_;
-  const PriorKnowledge& prior_;
-  SearchedImage& image_;
+  SearchContext search_;
   SmallPrintBuffers& buffers_;
-  DetectionChoice& choice_;
-  SearchLog& log_;
 };
 
 }  // namespace kestrel
