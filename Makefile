@@ -39,8 +39,8 @@ dds: deps  ## ROS 2 and the team's map over DDS, and their tests
 ros: deps  ## the node of ROS 1 and its tests, and bags of ROS 1 against its rosbag
 	scripts/install-deps --ros
 	cmake --preset release
-	cmake --build --preset release --target kestrel kestrel_node kestrel_ros_node_test
-	ctest --preset release -R ^ros_node/ --no-tests=error --verbose
+	cmake --build --preset release --target kestrel kestrel_node kestrel_ros_test kestrel_ros_node_test
+	ctest --preset release -R "^ros(_node)?/" --no-tests=error --verbose
 
 interop: deps  ## MAVLink, MCAP, live flights, bags and ROS 2 against implementations of others, which npm installs
 	scripts/install-deps --interop

@@ -8,11 +8,11 @@ namespace kestrel {
 void BagArguments::AddTo(CLI::App* command) {
   command
       ->add_option("--topic", topics,
-                   "Topic of a bag to read: the images, where it has several cameras, or the poses")
+                   "Topic of a bag: the images, where it has several cameras, or the poses")
       ->type_name("NAME")
       ->take_all();
   command->add_flag("--arrival-times", use_arrival_times,
-                    "Time what a bag has by when it was recorded, not by the stamps in it");
+                    "Take the times at which a bag recorded its messages instead of their stamps");
 }
 
 RecordingChoice BagArguments::Recording(const std::vector<std::string>& sources,

@@ -1,9 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/cli/calibrate_colors_command.h"
-
-#include <algorithm>
-#include <cstddef>
-#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -11,8 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/app/cli/commands.h"
 #include "kestrel/calibration/color_training/color_teaching.h"
-#include "kestrel/core/base/error.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/core/base/write_file.h"
 #include "kestrel/core/codec/image_codec.h"
@@ -21,7 +16,6 @@
 #include "kestrel/io/recording/image_file.h"
 #include "kestrel/io/recording/output_folder.h"
 #include "kestrel/vision/objects/color/color_grid.h"
-#include "kestrel/vision/objects/color/color_samples.h"
 #include "kestrel/vision/objects/object_model.h"
 
 namespace kestrel {
@@ -35,31 +29,6 @@ struct ColorsArguments {
   bool force = false;
 };
 
-// Replaces the model's colours by the fitted ones with the same names.
-void ReplaceColors(const std::map<std::string, std::vector<Hsv>>& samples, int components,
-                   ObjectModel* model) {
-  std::vector<ColorMixture>& colors = model->colors.colors;
-  for (const auto& entry : samples) {
-    const std::string& name = entry.first;
-    const auto found = std::find_if(colors.begin(), colors.end(),
-                                    [&](const ColorMixture& color) { return color.name == name; });
-    if (found == colors.end()) {
-      throw InputError(fmt::format("'{}' is none of the model's colors", name));
-    }
-    *found = ChooseColorMixture(name, entry.second, components).mixture;
-    fmt::print(stderr, "{}: {} Gaussians fitted to {} pixels\n", name, found->components.size(),
-               entry.second.size());
-    for (const std::string& warning : SampleWarnings(entry.second)) {
-      fmt::print(stderr, "{}: {}\n", name, warning);
-    }
-  }
-  const std::vector<std::string> violations = model->Validate();
-  if (!violations.empty()) throw InputError(fmt::format("{}", fmt::join(violations, "; ")));
-  for (std::size_t i = 0; i < colors.size(); ++i) {
-    if (samples.contains(colors[i].name)) RequireDistinct(model->colors, i);
-  }
-}
-
 void WritePicture(const OutputFolder& folder, const std::string& name, const cv::Mat& picture) {
   WriteImage(folder.NewFile(name).string(), picture);
 }
@@ -68,8 +37,10 @@ void RunColors(const ColorsArguments& arguments) {
   const std::vector<ColorMark> marks = ParseColorMarks(ReadFile(arguments.marks), arguments.marks);
   ObjectModel model =
       arguments.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments.model);
-  const auto samples = ReadMarkedColors(marks);
-  ReplaceColors(samples, arguments.components, &model);
+  for (const std::string& line :
+       ReplaceColors(ReadMarkedColors(marks), arguments.components, &model)) {
+    fmt::print(stderr, "{}\n", line);
+  }
   const ColorGrid grid(model.colors);
   const OutputFolder folder(arguments.output, arguments.force);
   WriteFile(folder.NewFile("objects.yaml").string(), PrintObjectModel(model));
@@ -107,8 +78,7 @@ void AddCalibrateColorsCommand(CLI::App* calibrate) {
   command
       ->add_option(
           "--components", arguments->components,
-          "Gaussians of a colour, at most; as many as the Bayesian information criterion asks "
-          "for")
+          "Largest number of Gaussians of a colour; the Bayesian information criterion chooses")
       ->type_name("N")
       ->check(CLI::Range(1, 8));
   command->add_flag("--force", arguments->force, "Replace files that exist");

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/cli/calibrate_command.h"
-
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,16 +7,16 @@
 #include <fmt/format.h>
 
 #include "kestrel/app/cli/bag_arguments.h"
-#include "kestrel/app/cli/calibrate_colors_command.h"
-#include "kestrel/app/cli/calibrate_lens_command.h"
-#include "kestrel/app/cli/calibration_output.h"
-#include "kestrel/app/cli/flight_sightings.h"
-#include "kestrel/app/cli/frame_loop.h"
+#include "kestrel/app/cli/commands.h"
+#include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/option_arguments.h"
+#include "kestrel/app/cli/progress_bar.h"
 #include "kestrel/calibration/mount/flight_calibration.h"
+#include "kestrel/calibration/mount/flight_sightings.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/camera/calibration_reader.h"
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/io/recording/calibration_output.h"
 
 namespace kestrel {
 namespace {
@@ -73,10 +71,16 @@ void RunCalibrate(const CalibrateArguments& arguments, FlightCalibrationOptions 
   CameraCalibration calibration = ReadGiven(arguments, *source);
   const MountAndClock given = GivenMountAndClock(
       calibration, arguments.camera.empty() ? arguments.recording : arguments.camera);
-  const std::vector<PoseSample> poses = FlightPoses(*source, arguments.recording);
+  const std::vector<PoseSample> poses = RequirePoses(*source, arguments.recording);
   FlightSightings flight(calibration.intrinsics, landing);
-  ForEachFrame(source.get(), calibration.intrinsics,
-               [&](const Frame& frame) { flight.Add(frame); });
+  CatchInterrupts();
+  ProgressBar progress(source->frame_count());
+  std::size_t done = 0;
+  for (Frame frame; !WasInterrupted() && source->Next(&frame); progress.Show(++done)) {
+    const cv::Mat& image = frame.image;
+    CheckImageSize(calibration.intrinsics, image.cols, image.rows, frame.name);
+    flight.Add(image, frame.time);
+  }
   const FlightCalibration result = CalibrateFlight(flight.sightings(), poses, given, options);
   PrintResult(result, options);
   SetMountAndClock(result.estimate, &calibration);
@@ -99,9 +103,9 @@ void AddFlightCalibration(CLI::App* parent, const std::string& name, const std::
   arguments->options.AddTo(command);
   command
       ->add_option("--output", arguments->output,
-                   "File for the calibration, which --camera reads (else stdout)")
+                   "File for the calibration, as --camera reads it (default: stdout)")
       ->type_name("FILE");
-  command->add_flag("--both", arguments->both, "Mount and clock together");
+  command->add_flag("--both", arguments->both, "Estimate mount and clock together");
   command->add_flag("--moving", arguments->moving, "The pattern moves, on a smooth path");
   command->add_flag("--force", arguments->force, "Replace a file that exists");
   command->callback([arguments, options] { RunCalibrate(*arguments, options); });

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/cli/calibrate_lens_command.h"
-
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,14 +9,15 @@
 #include <fmt/format.h>
 
 #include "kestrel/app/cli/bag_arguments.h"
-#include "kestrel/app/cli/calibration_output.h"
-#include "kestrel/app/cli/even_sample.h"
+#include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/option_arguments.h"
 #include "kestrel/app/cli/progress_bar.h"
 #include "kestrel/app/evaluation/lens_plots.h"
+#include "kestrel/calibration/lens/even_sample.h"
 #include "kestrel/calibration/lens/lens_calibration.h"
 #include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/io/recording/calibration_output.h"
 #include "kestrel/io/recording/euroc_text.h"
 #include "kestrel/io/recording/output_folder.h"
 
@@ -65,7 +64,7 @@ LensSources ReadSources(const std::vector<std::string>& arguments, const BagArgu
     EvenSample sample;
     std::size_t frames = 0;
     for (Frame frame; !WasInterrupted() && source->Next(&frame); progress.Show(++frames)) {
-      sample.Add(frame);
+      sample.Add(frame.name, frame.image);
     }
     for (LensImage& image : sample.Take()) sources.images.push_back(std::move(image));
   }
@@ -131,25 +130,24 @@ void AddCalibrateLensCommand(CLI::App* calibrate) {
       "lens", "Focal length, principal point and distortion from views of the landing pattern");
   const auto arguments = std::make_shared<LensArguments>();
   command
-      ->add_option(
-          "SOURCE", arguments->sources,
-          "Recording folders (EuRoC), bags, folders of images, image files or videos of "
-          "one camera, that show the pattern near and far, tilted, and in all of the image")
+      ->add_option("SOURCE", arguments->sources,
+                   "Recording folders (EuRoC), bags, folders of images, image files or videos of "
+                   "one camera, with the pattern near and far, tilted, and all over the image")
       ->required();
   arguments->bag.AddTo(command);
   command
       ->add_option("--camera", arguments->camera,
-                   "Calibration to start from; without it several guesses are tried")
+                   "Calibration to start from (default: several guesses are tried)")
       ->type_name("FILE");
   command
       ->add_option("--model", arguments->model,
-                   "Kind of distortion, else the one that the views choose")
+                   "Distortion model (default: the one that fits the views best)")
       ->type_name("NAME")
       ->check(CLI::IsMember(Models()));
   arguments->options.AddTo(command);
   command
       ->add_option("--output", arguments->output,
-                   "File for the calibration, which --camera reads (else stdout)")
+                   "File for the calibration, as --camera reads it (default: stdout)")
       ->type_name("FILE");
   command
       ->add_option("--plots", arguments->plots,

@@ -39,17 +39,13 @@ class CalibrateLensCommandTest : public CommandTest {
 TEST_F(CalibrateLensCommandTest, FindsTheFisheyeFromNothingButImages) {
   const CameraIntrinsics truth = PaperCamera();
   const std::string views = folder_ / "views";
-  const Outcome simulated =
-      Run("simulate landing --scenario stills --seed 8 --set frames=60 --set "
-          "stills.min_altitude_m=0.7 --set stills.max_altitude_m=2.2 --set stills.max_tilt_deg=50 "
-          "--output " +
-          views);
-  EXPECT_EQ(simulated.status, 0) << simulated.err;
+  Succeed("simulate landing --scenario stills --seed 8 --set frames=60 --output " + views +
+          " --set stills.min_altitude_m=0.7 --set stills.max_altitude_m=2.2"
+          " --set stills.max_tilt_deg=50");
   const std::string camera = folder_ / "camera.yaml";
   const std::string plots = folder_ / "plots";
   const Outcome outcome =
-      Run("calibrate lens " + views + " --output " + camera + " --plots " + plots);
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
+      Succeed("calibrate lens " + views + " --output " + camera + " --plots " + plots);
   EXPECT_THAT(outcome.err, HasSubstr("distortion: equidistant: "));
   EXPECT_THAT(outcome.err, HasSubstr(" of 60 images, "));
   EXPECT_THAT(outcome.err, HasSubstr("fields of the image, to "));

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/cli/config_command.h"
-
 #include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "kestrel/app/cli/kestrel_options.h"
+#include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/option_arguments.h"
+#include "kestrel/app/options/kestrel_options.h"
 #include "kestrel/core/base/options.h"
 
 namespace kestrel {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/cli/console_command.h"
-
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -10,11 +8,12 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/app/cli/console_calibration.h"
+#include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/recorded_run.h"
 #include "kestrel/app/cli/result_argument.h"
 #include "kestrel/app/cli/source_arguments.h"
+#include "kestrel/app/console/calibration_tools.h"
 #include "kestrel/app/console/find_colors.h"
 #include "kestrel/app/console/hunt_replay.h"
 #include "kestrel/app/console/landing_replay.h"
@@ -49,8 +48,8 @@ void RequireEnd(const std::vector<std::string>& sources) {
   for (const std::string& source : sources) {
     if (!IsCamera(source)) continue;
     throw InputError(source +
-                     ": the page goes to and fro, expected a recording, a bag, images or a video; "
-                     "`kestrel fly --console` shows a camera");
+                     ": the page needs any frame at any time, expected a recording, a bag, images "
+                     "or a video; `kestrel fly --console` shows a camera");
   }
 }
 
@@ -91,7 +90,7 @@ void RunConsole(const ConsoleArguments& arguments) {
   }
   ReplayConsole console(arguments.Options(options), name, search->Subject(), std::move(colors));
   fmt::print(stderr, "console: {}\n", console.url());
-  if (has_colors) fmt::print(stderr, "colors that are taught: {}\n", arguments.output);
+  if (has_colors) fmt::print(stderr, "folder for taught colors: {}\n", arguments.output);
   const auto start = arguments.result.empty() ? search->Detect({}) : search->Show(arguments.result);
   ObservationSinks sinks(SinkErrors::kThrow);
   ReplayRun* const run = sinks.Add(start(opened));
@@ -110,20 +109,21 @@ void RunConsole(const ConsoleArguments& arguments) {
 }  // namespace
 
 void AddConsoleCommand(CLI::App* app) {
-  CLI::App* command =
-      app->add_subcommand("console", "The web page on a recording: replay it, teach its colors");
+  CLI::App* command = app->add_subcommand(
+      "console", "Serve the web page for a recording: replay, calibration, teaching of colours");
   const auto arguments = std::make_shared<ConsoleArguments>();
   arguments->source.AddReadingTo(command);
   command
       ->add_option("--address", arguments->address,
-                   "Where the page is served (127.0.0.1:8080); port 0: any free one")
+                   "Address of the page (127.0.0.1:8080); port 0: any free one")
       ->type_name("ADDRESS:PORT");
-  command->add_flag("--hunt", arguments->is_hunt,
-                    "Look for coloured objects, as `kestrel hunt`, not for the landing pattern");
+  command->add_flag(
+      "--hunt", arguments->is_hunt,
+      "Search for coloured objects, as `kestrel hunt` does, instead of the landing pattern");
   command
       ->add_option("--model", arguments->model,
                    "Objects (YAML) whose colours the page teaches, in place of those saved before "
-                   "or the built-in ones; with --hunt also those that are looked for")
+                   "or the built-in ones; with --hunt also the objects of the search")
       ->type_name("FILE");
   command
       ->add_option("--output", arguments->output,

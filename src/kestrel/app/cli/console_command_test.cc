@@ -14,13 +14,7 @@ class ConsoleCommandTest : public CommandTest {
  protected:
   // A short flight with truth.
   std::string Recording() const {
-    const std::string flight = folder_ / "flight";
-    EXPECT_EQ(Run("simulate landing --scenario calm --seed 2 --output " + flight +
-                  " --set frames=10 --set rate_hz=10 --set ground.map_px=256"
-                  " --set shutter.rays_per_pixel=4")
-                  .status,
-              0);
-    return flight;
+    return Simulate("landing", "--scenario calm --seed 2 --set frames=10 --set rate_hz=10");
   }
   static void ExpectPage(int port) {
     TestBrowser browser(port);
@@ -38,21 +32,17 @@ TEST_F(ConsoleCommandTest, AFlightIsSeen) {
   ExpectPage(port);
   TestSocket socket(port);
   socket.Send(R"({"images": true})");
-  const auto hello = socket.Next("hello");
-  ASSERT_TRUE(hello);
-  EXPECT_EQ((*hello)["title"], "sim:standing");
-  EXPECT_EQ((*hello)["live"], true);
-  const auto image = socket.Next("image");
-  ASSERT_TRUE(image);
-  EXPECT_GT((*image)["width"], 100);
-  EXPECT_LT((*image)["age_ms"], 5000);
-  const auto sample = socket.Next("sample");
-  ASSERT_TRUE(sample);
-  EXPECT_EQ((*sample)["values"].size(), (*hello)["series"].size());
-  EXPECT_TRUE(socket.Next("map"));
-  const auto health = socket.Next("health");
-  ASSERT_TRUE(health);
-  EXPECT_THAT(health->dump(), HasSubstr("autopilot"));
+  const nlohmann::json hello = socket.Await("hello");
+  EXPECT_EQ(hello["title"], "sim:standing");
+  EXPECT_EQ(hello["live"], true);
+  const nlohmann::json image = socket.Await("image");
+  EXPECT_GT(image["width"], 100);
+  EXPECT_LT(image["age_ms"], 5000);
+  const nlohmann::json sample = socket.Await("sample");
+  EXPECT_EQ(sample["values"].size(), hello["series"].size());
+  socket.Await("map");
+  const nlohmann::json health = socket.Await("health");
+  EXPECT_THAT(health.dump(), HasSubstr("autopilot"));
   EXPECT_EQ(fly.End(), 0) << fly.Log();
 }
 
@@ -74,7 +64,7 @@ TEST_F(ConsoleCommandTest, AFlightIsRecordedWhenThePageAsks) {
   };
   // Waits for an image: the snapshot needs one.
   socket.Send(R"({"images": true})");
-  ASSERT_TRUE(socket.Next("image"));
+  socket.Await("image");
   socket.Send(R"({"command": "snapshot"})");
   socket.Send(R"({"command": "record", "value": 1})");
   ASSERT_TRUE(is_recording(true));
@@ -95,57 +85,42 @@ TEST_F(ConsoleCommandTest, ARecordingIsReplayed) {
   const int port = console.Port();
   ExpectPage(port);
   TestSocket socket(port);
-  const auto timeline = socket.Next("timeline");
-  ASSERT_TRUE(timeline);
-  EXPECT_EQ((*timeline)["marks"], std::string(10, 'f'));
+  const nlohmann::json timeline = socket.Await("timeline");
+  EXPECT_EQ(timeline["marks"], std::string(10, 'f'));
   socket.Send(R"({"command": "step", "value": 3})");
-  for (;;) {
-    const auto playback = socket.Next("playback");
-    ASSERT_TRUE(playback);
-    if ((*playback)["frame"] == 3) break;
-  }
+  while (socket.Await("playback")["frame"] != 3) continue;
   socket.Send(R"({"images": true})");
-  const auto image = socket.Next("image");
-  ASSERT_TRUE(image);
-  EXPECT_EQ((*image)["age_ms"], nullptr);
-  EXPECT_EQ((*image)["shapes"][0]["layer"], "prediction");
+  const nlohmann::json image = socket.Await("image");
+  EXPECT_EQ(image["age_ms"], nullptr);
+  EXPECT_EQ(image["shapes"][0]["layer"], "prediction");
   TestBrowser browser(port);
   EXPECT_THAT(browser.Send(browser.Get("/export/detections-1.csv")).body(),
               ::testing::StartsWith("frame,timestamp_ns,detected,"));
   EXPECT_THAT(browser.Send(browser.Get("/export/overlays-3.png")).body(), HasSubstr("PNG"));
   // No detection is as sure as this: the second run finds none.
   socket.Send(R"({"command": "detect", "settings": ["landing.detector.min_quality=1"]})");
-  nlohmann::json second;
-  do {
-    const auto message = socket.Next("second");
-    ASSERT_TRUE(message);
-    second = *message;
-  } while (second["state"] == "running");
+  nlohmann::json second = socket.Await("second");
+  while (second["state"] == "running") second = socket.Await("second");
   EXPECT_EQ(second["state"], "done") << second;
   EXPECT_EQ(second["marks"], std::string(10, 'l'));
   EXPECT_EQ(console.End(), 0) << console.Log();
 }
 
 TEST_F(ConsoleCommandTest, ColoursAreTaughtAndSaved) {
-  const std::string hunt = folder_ / "hunt";
+  const std::string hunt =
+      Simulate("hunt", "--seed 4 --set frames=2 --set shutter.rays_per_pixel=1");
   const std::string taught = folder_ / "taught";
-  ASSERT_EQ(Run("simulate hunt --seed 4 --output " + hunt +
-                " --set frames=2 --set ground.map_px=256 --set shutter.rays_per_pixel=1")
-                .status,
-            0);
   RunningCommand console("console " + hunt + " --address 127.0.0.1:0 --output " + taught, folder_);
   const int port = console.Port();
   TestSocket socket(port);
-  const auto hello = socket.Next("hello");
-  ASSERT_TRUE(hello);
-  EXPECT_EQ((*hello)["colors"], true);
+  const nlohmann::json hello = socket.Await("hello");
+  EXPECT_EQ(hello["colors"], true);
   const auto ask = [&](const std::string& message) {
     socket.Send(message);
     return socket.Next("colors").value_or(nlohmann::json());
   };
-  const auto state = socket.Next("colors");
-  ASSERT_TRUE(state);
-  EXPECT_EQ((*state)["frames"], 2);
+  const nlohmann::json state = socket.Await("colors");
+  EXPECT_EQ(state["frames"], 2);
   // Teaches the colour of the ground as green: the model does not matter here.
   ask(R"({"colors": "mark", "frame": 1, "color": "green", "tool": "rectangle", "size": 0,)"
       R"( "points": [600, 300, 700, 400]})");
@@ -153,16 +128,13 @@ TEST_F(ConsoleCommandTest, ColoursAreTaughtAndSaved) {
   EXPECT_EQ(ask(R"({"colors": "save"})")["refused"], false);
   EXPECT_EQ(console.End(), 0) << console.Log();
   EXPECT_TRUE(std::filesystem::exists(taught + "/draft.yaml"));
-  EXPECT_EQ(Run("hunt " + hunt + " --model " + taught + "/objects.yaml").status, 0);
+  Succeed("hunt " + hunt + " --model " + taught + "/objects.yaml");
 }
 
 TEST_F(ConsoleCommandTest, ColoursAreTaughtInFlightAndAfterIt) {
-  const std::string hunt = folder_ / "hunt";
+  const std::string hunt =
+      Simulate("hunt", "--seed 4 --set frames=2 --set shutter.rays_per_pixel=1");
   const std::string kept = folder_ / "kept";
-  ASSERT_EQ(Run("simulate hunt --seed 4 --output " + hunt +
-                " --set frames=2 --set ground.map_px=256 --set shutter.rays_per_pixel=1")
-                .status,
-            0);
   RunningCommand fly(
       "fly " + hunt + " --hunt --loop --console 127.0.0.1:0" + " --set fly.keep_folder=" + kept,
       folder_);
@@ -173,9 +145,9 @@ TEST_F(ConsoleCommandTest, ColoursAreTaughtInFlightAndAfterIt) {
   };
   {
     TestSocket socket(port);
-    ASSERT_TRUE(socket.Next("colors"));
+    socket.Await("colors");
     socket.Send(R"({"images": true})");
-    ASSERT_TRUE(socket.Next("image"));
+    socket.Await("image");
     EXPECT_EQ(ask(&socket, R"({"colors": "keep"})")["frames"], 1);
     const auto state =
         ask(&socket, R"({"colors": "mark", "frame": 0, "color": "green", "tool": "rectangle",)"
@@ -193,20 +165,15 @@ TEST_F(ConsoleCommandTest, ColoursAreTaughtInFlightAndAfterIt) {
                              "/taught",
                          folder_);
   TestSocket socket(console.Port());
-  const auto state = socket.Next("colors");
-  ASSERT_TRUE(state);
-  EXPECT_EQ((*state)["frames"], 1);
-  EXPECT_EQ((*state)["strokes"], 1) << "goes on with the marks of the flight";
+  const nlohmann::json state = socket.Await("colors");
+  EXPECT_EQ(state["frames"], 1);
+  EXPECT_EQ(state["strokes"], 1) << "goes on with the marks of the flight";
   EXPECT_EQ(console.End(), 0) << console.Log();
 }
 
 TEST_F(ConsoleCommandTest, APageCalibratesAsTheCommandAndReplacesNothing) {
-  const std::string flight = folder_ / "flight";
-  ASSERT_EQ(Run("simulate landing --scenario aggressive --seed 11 --output " + flight +
-                " --set frames=60 --set rate_hz=15 --set ground.map_px=256"
-                " --set shutter.rays_per_pixel=4")
-                .status,
-            0);
+  const std::string flight =
+      Simulate("landing", "--scenario aggressive --seed 11 --set frames=60 --set rate_hz=15");
   const std::string saved = folder_ / "saved";
   RunningCommand console("console " + flight + " --address 127.0.0.1:0 --output " + saved, folder_);
   const int port = console.Port();
@@ -230,7 +197,7 @@ TEST_F(ConsoleCommandTest, APageCalibratesAsTheCommandAndReplacesNothing) {
   socket.Send(R"({"command": "calibrate-save"})");
   EXPECT_EQ(next("done")["saved"], saved + "/mount_clock_2.yaml");
   const std::string by_command = folder_ / "command.yaml";
-  ASSERT_EQ(Run("calibrate clock --both --moving " + flight + " --output " + by_command).status, 0);
+  Succeed("calibrate clock --both --moving " + flight + " --output " + by_command);
   EXPECT_EQ(ReadFile(saved + "/mount_clock.yaml"), ReadFile(by_command));
   EXPECT_EQ(ReadFile(saved + "/mount_clock_2.yaml"), ReadFile(by_command));
   TestBrowser browser(port);
@@ -239,14 +206,13 @@ TEST_F(ConsoleCommandTest, APageCalibratesAsTheCommandAndReplacesNothing) {
 
 TEST_F(ConsoleCommandTest, ABagIsPlayedAndRefusedInTheWordsOfTheCommand) {
   const std::string bag = folder_ / "flight.mcap";
-  ASSERT_EQ(Run("convert " + Recording() + " " + bag).status, 0);
+  Succeed("convert " + Recording() + " " + bag);
   RunningCommand console("console " + bag + " --topic /camera/image_raw --address 127.0.0.1:0",
                          folder_);
   const int port = console.Port();
   TestSocket socket(port);
-  const auto timeline = socket.Next("timeline");
-  ASSERT_TRUE(timeline);
-  EXPECT_EQ((*timeline)["times_ms"].size(), 10u);
+  const nlohmann::json timeline = socket.Await("timeline");
+  EXPECT_EQ(timeline["times_ms"].size(), 10u);
   TestBrowser browser(port);
   const auto frame = [&browser](int number) {
     return browser.Send(browser.Get(fmt::format("/export/frame-{}.png", number))).body();
@@ -256,12 +222,8 @@ TEST_F(ConsoleCommandTest, ABagIsPlayedAndRefusedInTheWordsOfTheCommand) {
   EXPECT_NE(frame(2), last) << "a bag is wound back";
   const std::string too_few = "images with poses around them, expected at least 20";
   socket.Send(R"({"command": "calibrate", "settings": ["mount"]})");
-  nlohmann::json refused;
-  do {
-    const auto message = socket.Next("calibration");
-    ASSERT_TRUE(message);
-    refused = *message;
-  } while (refused["state"] != "refused");
+  nlohmann::json refused = socket.Await("calibration");
+  while (refused["state"] != "refused") refused = socket.Await("calibration");
   EXPECT_THAT(refused["error"].dump(), HasSubstr(too_few));
   EXPECT_THAT(refused["coverage"].dump(), HasSubstr("of 10 images"));
   ExpectInputError("calibrate mount " + bag, too_few);
@@ -271,16 +233,15 @@ TEST_F(ConsoleCommandTest, ABagIsPlayedAndRefusedInTheWordsOfTheCommand) {
 TEST_F(ConsoleCommandTest, AResultIsShownOverItsRecording) {
   const std::string flight = Recording();
   const std::string result = folder_ / "result";
-  ASSERT_EQ(Run("land " + flight + " --output " + result).status, 0);
+  Succeed("land " + flight + " --output " + result);
   // A run with these options would find nothing: the page shows the result.
   RunningCommand console("console " + flight + " " + result +
                              " --address 127.0.0.1:0 --set landing.detector.min_quality=1",
                          folder_);
   const int port = console.Port();
   TestSocket socket(port);
-  const auto timeline = socket.Next("timeline");
-  ASSERT_TRUE(timeline);
-  EXPECT_EQ((*timeline)["marks"], std::string(10, 'f'));
+  const nlohmann::json timeline = socket.Await("timeline");
+  EXPECT_EQ(timeline["marks"], std::string(10, 'f'));
   TestBrowser browser(port);
   const std::string table = ReadFile(result + "/landing_detections.csv");
   EXPECT_EQ(browser.Send(browser.Get("/export/detections-1.csv")).body(), table);
@@ -290,7 +251,7 @@ TEST_F(ConsoleCommandTest, AResultIsShownOverItsRecording) {
       Run("console --address 127.0.0.1:0 " + flight + " " + folder_.Write("one.csv", row));
   EXPECT_EQ(one_row.status, 1);
   EXPECT_THAT(one_row.err, HasSubstr("row 2 is not of the recording's frame at"));
-  ExpectInputError("console " + result, "expected the recording that it is of beside it");
+  ExpectInputError("console " + result, "expected its recording, too");
   ExpectInputError("console " + flight + " " + result + " " + result, "is a second result");
 }
 

@@ -14,13 +14,9 @@ using ::testing::StartsWith;
 class ConsoleHuntTest : public CommandTest {
  protected:
   // A short flight over objects, with truth.
-  std::string Recording(const std::string& name = "hunt") const {
-    const std::string flight = folder_ / name;
-    EXPECT_EQ(Run("simulate hunt --seed 4 --output " + flight +
-                  " --set frames=6 --set ground.map_px=512 --set shutter.rays_per_pixel=1")
-                  .status,
-              0);
-    return flight;
+  std::string Recording() const {
+    return Simulate(
+        "hunt", "--seed 4 --set frames=6 --set ground.map_px=512 --set shutter.rays_per_pixel=1");
   }
   static std::string Get(int port, const std::string& path) {
     TestBrowser browser(port);
@@ -37,32 +33,25 @@ TEST_F(ConsoleHuntTest, AHuntIsReplayedAndRunAgain) {
   RunningCommand console("console --hunt " + flight + " --address 127.0.0.1:0", folder_);
   const int port = console.Port();
   TestSocket socket(port);
-  const auto hello = socket.Next("hello");
-  ASSERT_TRUE(hello);
-  EXPECT_THAT((*hello)["layers"].dump(), HasSubstr("truth"));
-  EXPECT_EQ((*hello)["series"].back()["name"], "error");
-  const auto timeline = socket.Next("timeline");
-  ASSERT_TRUE(timeline);
-  const std::string marks = (*timeline)["marks"];
+  const nlohmann::json hello = socket.Await("hello");
+  EXPECT_THAT(hello["layers"].dump(), HasSubstr("truth"));
+  EXPECT_EQ(hello["series"].back()["name"], "error");
+  const nlohmann::json timeline = socket.Await("timeline");
+  const std::string marks = timeline["marks"];
   ASSERT_EQ(marks.size(), 6u);
   ASSERT_NE(marks.find('f'), std::string::npos) << marks;
   // In a frame where everything was found, the page shows the errors of the detections.
   socket.Send(fmt::format(R"({{"command": "step", "value": {}}})", marks.find('f')));
-  nlohmann::json findings;
-  do {
-    const auto message = socket.Next("findings");
-    ASSERT_TRUE(message);
-    findings = *message;
-  } while (findings["frame"] != marks.find('f'));
+  nlohmann::json findings = socket.Await("findings");
+  while (findings["frame"] != marks.find('f')) findings = socket.Await("findings");
   EXPECT_THAT(findings["runs"][0].dump(), HasSubstr(" px"));
   // The picture of the frame before may still be on its way.
   std::string shapes = "[]";
   while (shapes == "[]") {
     socket.Send(R"({"images": true})");
-    const auto image = socket.Next("image");
-    ASSERT_TRUE(image);
-    shapes = (*image)["shapes"].dump();
-    socket.Send(fmt::format(R"({{"ack": {}}})", (*image)["sequence"].get<int>()));
+    const nlohmann::json image = socket.Await("image");
+    shapes = image["shapes"].dump();
+    socket.Send(fmt::format(R"({{"ack": {}}})", image["sequence"].get<int>()));
   }
   EXPECT_THAT(shapes, HasSubstr("detection"));
   EXPECT_THAT(shapes, HasSubstr("truth"));
@@ -71,12 +60,8 @@ TEST_F(ConsoleHuntTest, AHuntIsReplayedAndRunAgain) {
   EXPECT_EQ(WithoutTimes(Get(port, "/export/detections-1.csv")), WithoutTimes(hunt.out));
   // No segment is as large as this.
   socket.Send(R"({"command": "detect", "settings": ["hunt.detector.min_pixels=100000"]})");
-  nlohmann::json second;
-  do {
-    const auto message = socket.Next("second");
-    ASSERT_TRUE(message);
-    second = *message;
-  } while (second["state"] == "running");
+  nlohmann::json second = socket.Await("second");
+  while (second["state"] == "running") second = socket.Await("second");
   EXPECT_EQ(second["state"], "done") << second;
   const std::string others = second["marks"];
   EXPECT_EQ(others.find_first_of("fx"), std::string::npos) << others;
@@ -87,19 +72,18 @@ TEST_F(ConsoleHuntTest, AHuntIsReplayedAndRunAgain) {
 TEST_F(ConsoleHuntTest, AResultIsShownOverItsRecording) {
   const std::string flight = Recording();
   const std::string result = folder_ / "result";
-  ASSERT_EQ(Run("hunt " + flight + " --output " + result).status, 0);
+  Succeed("hunt " + flight + " --output " + result);
   // A run with these options would find nothing: the page shows the result.
   RunningCommand console("console --hunt " + flight + " " + result +
                              " --address 127.0.0.1:0 --set hunt.detector.min_pixels=100000",
                          folder_);
   const int port = console.Port();
   TestSocket socket(port);
-  const auto timeline = socket.Next("timeline");
-  ASSERT_TRUE(timeline);
-  EXPECT_THAT((*timeline)["marks"].dump(), HasSubstr("f"));
+  const nlohmann::json timeline = socket.Await("timeline");
+  EXPECT_THAT(timeline["marks"].dump(), HasSubstr("f"));
   EXPECT_EQ(Get(port, "/export/detections-1.csv"), ReadFile(result + "/object_detections.csv"));
   EXPECT_EQ(console.End(), 0) << console.Log();
-  ExpectInputError("console --hunt " + result, "expected the recording that it is of beside it");
+  ExpectInputError("console --hunt " + result, "expected its recording, too");
   const std::string table = ReadFile(result + "/object_detections.csv");
   const std::string header = table.substr(0, table.find('\n') + 1);
   const auto empty =
@@ -112,7 +96,7 @@ TEST_F(ConsoleHuntTest, AClipIsGivenAway) {
   RunningCommand console("console --hunt " + Recording() + " --address 127.0.0.1:0", folder_);
   const int port = console.Port();
   TestSocket socket(port);
-  ASSERT_TRUE(socket.Next("timeline"));
+  socket.Await("timeline");
   const std::string clip = Get(port, "/export/overlays-1-4.mp4");
   EXPECT_TRUE(clip.substr(4, 4) == "ftyp" || clip.starts_with("RIFF"));
   EXPECT_GT(clip.size(), 10'000u);

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/cli/convert_command.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <memory>
@@ -11,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/app/cli/bag_arguments.h"
+#include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/progress_bar.h"
 #include "kestrel/app/cli/source_arguments.h"
@@ -50,12 +49,12 @@ void SayWhatIsLost(const ConvertArguments& arguments, const RecordingHead& head)
   if (!head.calibration) fmt::print(stderr, "kestrel: no calibration: the source has none\n");
   if (is_bag && head.calibration && head.calibration->clock_offset) {
     fmt::print(stderr,
-               "kestrel: a bag has no place for the clock offset: give --clock-offset {} with it\n",
+               "kestrel: a bag cannot hold the clock offset: use it with --clock-offset {}\n",
                ToSeconds(*head.calibration->clock_offset));
   }
   if ((!is_bag || arguments.for_foxglove) && head.has_motion) {
-    fmt::print(stderr, "kestrel: {} no place for velocities: they are left out\n",
-               is_bag ? "Foxglove's poses have" : "a EuRoC folder has");
+    fmt::print(stderr, "kestrel: {} velocities: they are left out\n",
+               is_bag ? "Foxglove's poses cannot hold" : "a EuRoC folder cannot hold");
   }
 }
 
@@ -113,11 +112,11 @@ void AddConvertCommand(CLI::App* app) {
   CLI::Option* compression =
       command
           ->add_option("--compression", arguments->compression,
-                       "Of the bag: none; bz2, lz4 (.bag); lz4, zstd (.mcap)")
+                       "Compression of the bag: none; bz2, lz4 (.bag); lz4, zstd (.mcap)")
           ->check(CLI::IsMember({"none", "bz2", "lz4", "zstd"}));
   command
       ->add_flag("--foxglove", arguments->for_foxglove,
-                 "An .mcap with Foxglove's messages, images as JPEG, in place of ROS 2's")
+                 "Write Foxglove's messages, with JPEG images, into an .mcap, in place of ROS 2's")
       ->excludes(compression);
   command->add_flag("--force", arguments->force, "Replace files that exist");
   command->callback([arguments] { RunConvert(*arguments); });

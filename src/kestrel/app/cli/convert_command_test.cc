@@ -37,19 +37,11 @@ std::string Comparable(const std::string& csv) {
 
 class ConvertCommandTest : public CommandTest {
  protected:
-  // A flight of three frames that renders quickly.
-  std::string Simulate(const std::string& what) const {
-    const std::string flight = folder_ / "flight";
-    const Outcome outcome = Run("simulate " + what + " --seed 2 --output " + flight +
-                                " --set frames=3 --set rate_hz=2 --set ground.map_px=256"
-                                " --set shutter.rays_per_pixel=4");
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return flight;
-  }
+  static constexpr const char* kLanding = "--scenario calm --seed 2 --set frames=3 --set rate_hz=2";
+
   std::string Convert(const std::string& source, const std::string& arguments) const {
     const std::string destination = folder_ / arguments;
-    const Outcome outcome = Run("convert " + source + " " + destination);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const Outcome outcome = Succeed("convert " + source + " " + destination);
     EXPECT_THAT(outcome.err, HasSubstr("3 frames, "));
     return destination.substr(0, destination.find(' '));
   }
@@ -57,14 +49,13 @@ class ConvertCommandTest : public CommandTest {
   std::string Result(const std::string& command, const std::string& source,
                      const std::string& file) const {
     const std::string output = source + "." + command;
-    const Outcome outcome = Run(command + " " + source + " --output " + output + " --force");
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    Succeed(command + " " + source + " --output " + output + " --force");
     return ReadFile(output + "/" + file);
   }
 };
 
 TEST_F(ConvertCommandTest, LandFindsInABagWhatItFindsInTheRecording) {
-  const std::string flight = Simulate("landing --scenario calm");
+  const std::string flight = Simulate("landing", kLanding);
   const std::string detections = Result("land", flight, "landing_detections.csv");
   const std::string track = Result("land", flight, "landing_track.csv");
   EXPECT_EQ(Lines(detections), 4);
@@ -82,13 +73,13 @@ TEST_F(ConvertCommandTest, LandFindsInABagWhatItFindsInTheRecording) {
   // The cut bag is read up to the cut, and the command says so.
   const std::string cut = Convert(flight, "cut.mcap");
   TestFolder::CutOff(cut, 0.8);
-  const Outcome outcome = Run("land " + cut);
-  EXPECT_EQ(outcome.status, 0);
+  const Outcome outcome = Succeed("land " + cut);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("cut.mcap: was not closed"), HasSubstr("2 frames")));
 }
 
 TEST_F(ConvertCommandTest, HuntFindsInABagWhatItFindsInTheRecording) {
-  const std::string flight = Simulate("hunt --scenario descend");
+  const std::string flight =
+      Simulate("hunt", "--scenario descend --seed 2 --set frames=3 --set rate_hz=2");
   const std::string detections = Result("hunt", flight, "object_detections.csv");
   const std::string bag = Convert(flight, "hunt.bag --compression bz2");
   EXPECT_EQ(Comparable(Result("hunt", bag, "object_detections.csv")), Comparable(detections));
@@ -96,21 +87,16 @@ TEST_F(ConvertCommandTest, HuntFindsInABagWhatItFindsInTheRecording) {
 }
 
 TEST_F(ConvertCommandTest, CalibrateFindsInABagWhatItFindsInTheRecording) {
-  const std::string flight = folder_ / "flight";
-  ASSERT_EQ(Run("simulate landing --scenario aggressive --seed 11 --output " + flight +
-                " --set frames=60 --set rate_hz=15 --set ground.map_px=256"
-                " --set shutter.rays_per_pixel=4")
-                .status,
-            0);
+  const std::string flight =
+      Simulate("landing", "--scenario aggressive --seed 11 --set frames=60 --set rate_hz=15");
   const std::string bag = folder_ / "flight.mcap";
-  ASSERT_EQ(Run("convert " + flight + " " + bag).status, 0);
+  Succeed("convert " + flight + " " + bag);
   // A bag cannot hold a clock offset to start from.
   const std::string calibrate =
       "calibrate clock --both --moving --camera " + flight + "/mav0/cam0/sensor.yaml ";
   const auto result = [&](const std::string& source) {
     const std::string file = folder_ / "camera.yaml";
-    const Outcome outcome = Run(calibrate + source + " --force --output " + file);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    Succeed(calibrate + source + " --force --output " + file);
     return ReadCalibration(file);
   };
   const CameraCalibration of_flight = result(flight);
@@ -126,7 +112,7 @@ TEST_F(ConvertCommandTest, CalibrateFindsInABagWhatItFindsInTheRecording) {
 }
 
 TEST_F(ConvertCommandTest, WritesFoxglovesMessages) {
-  const std::string flight = Simulate("landing --scenario calm");
+  const std::string flight = Simulate("landing", kLanding);
   const auto messages = ReadMessages(Convert(flight, "flight.mcap --foxglove"));
   ASSERT_EQ(messages.at("/camera/image").size(), 3u);
   EXPECT_EQ(messages.at("/camera/calibration").size(), 3u);
@@ -141,7 +127,7 @@ TEST_F(ConvertCommandTest, WritesFoxglovesMessages) {
 }
 
 TEST_F(ConvertCommandTest, FaultsAreNamed) {
-  const std::string flight = Simulate("landing --scenario calm");
+  const std::string flight = Simulate("landing", kLanding);
   const std::string bag = Convert(flight, "flight.bag");
   const std::string convert = "convert " + flight + " ";
   ExpectInputError(convert + bag, "flight.bag: is there already; --force replaces it");
@@ -153,7 +139,7 @@ TEST_F(ConvertCommandTest, FaultsAreNamed) {
   ExpectInputError("convert " + (folder_ / "none") + " " + (folder_ / "new.bag"), "none: no such");
   EXPECT_EQ(Run(convert + (folder_ / "new.bag") + " --compression zip").status, 2);
   EXPECT_FALSE(fs::exists(folder_ / "new.bag"));
-  EXPECT_EQ(Run(convert + bag + " --force").status, 0);
+  Succeed(convert + bag + " --force");
 
   ExpectInputError("land " + bag + " --topic /camera/up",
                    "flight.bag: has no topic /camera/up, expected one of /camera/image_raw");

@@ -13,8 +13,8 @@ void DdsArguments::AddTo(CLI::App* command) {
   command
       ->add_option_function<std::string>(
           "--dds", [this](const std::string& domain) { told = domain; },
-          "Publish the results as messages of ROS 2, in this DDS domain (else ROS_DOMAIN_ID, else "
-          "0)")
+          "Publish the results as messages of ROS 2 in this DDS domain (default: ROS_DOMAIN_ID, "
+          "else 0)")
       ->type_name("[DOMAIN]")
       ->expected(0, 1);
 }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/cli/doctor_command.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -17,6 +15,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/fly_arguments.h"
 #include "kestrel/app/cli/fly_autopilot.h"
 #include "kestrel/app/cli/fly_source.h"
@@ -200,7 +199,7 @@ void RunDoctor(const DoctorArguments& arguments) {
   }
   if (arguments.flight.source.sources.empty()) throw CLI::RequiredError("SOURCE");
   DoctorVisit visit(arguments);
-  fmt::print(stderr, "looking for {:g} s\n", arguments.duration_s);
+  fmt::print(stderr, "observing for {:g} s\n", arguments.duration_s);
   std::vector<Finding> findings = visit.Look();
   const bool has_colors = isatty(STDOUT_FILENO) != 0;
   if (arguments.fix) {
@@ -219,26 +218,26 @@ void RunDoctor(const DoctorArguments& arguments) {
 
 void AddDoctorCommand(CLI::App* app) {
   constexpr double kFastest_mps = 40;
-  CLI::App* command = app->add_subcommand(
-      "doctor", "Says what is wrong with camera, calibration, mount, autopilot and computer");
+  CLI::App* command =
+      app->add_subcommand("doctor", "Check camera, calibration, mount, autopilot and computer");
   const auto arguments = std::make_shared<DoctorArguments>();
   arguments->flight.AddTo(command);
   command->get_option("SOURCE")->required(false);  // not needed for --explain
   command
       ->add_flag("--moving{4.2}", arguments->moving_mps,
-                 "Check for a target that moves, with 4.2 m/s or --moving=SPEED")
+                 "Check the set-up for a moving target, at 4.2 m/s or --moving=SPEED")
       ->check(InRange(0, kFastest_mps, "a speed in m/s, up to 40"));
-  command->add_option("--duration", arguments->duration_s, "How long to look (8 s)")
+  command->add_option("--duration", arguments->duration_s, "Duration of the observation (8 s)")
       ->type_name("S")
       ->check(InRange(0.999, 600.001, "1 to 600 seconds"));
-  CLI::Option* explain = command->add_flag(
-      "--explain", arguments->explain,
-      "Only print what is sent for a pattern 2 m ahead, 1 m right, 5 m below, and "
-      "where the autopilots will think it is");
+  CLI::Option* explain =
+      command->add_flag("--explain", arguments->explain,
+                        "Only print the messages for a pattern 2 m ahead, 1 m right, 5 m below, "
+                        "and the position that each autopilot computes from them");
   command->add_flag("--json", arguments->json, "The findings as JSON")->excludes(explain);
   command
       ->add_flag("--fix", arguments->fix,
-                 "Set the parameters that are not good, after asking for each")
+                 "Set the parameters that are not good, after a question for each")
       ->excludes(explain);
   command->callback([arguments] { RunDoctor(*arguments); });
 }

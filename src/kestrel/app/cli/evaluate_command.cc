@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/cli/evaluate_command.h"
-
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -9,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/app/cli/commands.h"
 #include "kestrel/app/evaluation/evaluate_hunt.h"
 #include "kestrel/app/evaluation/evaluate_landing.h"
 #include "kestrel/app/evaluation/report.h"
@@ -31,7 +30,7 @@ Report Evaluate(const EvaluateArguments& arguments) {
   const fs::path output(arguments.output);
   if (!fs::is_directory(output)) {
     throw InputError(arguments.output +
-                     ": no folder, expected what `kestrel land` or `hunt` wrote");
+                     ": no folder, expected the output of `kestrel land` or `hunt`");
   }
   if (fs::exists(output / "object_detections.csv")) {
     return EvaluateHunt(arguments.recording, arguments.output);
@@ -58,11 +57,11 @@ void AddEvaluateCommand(CLI::App* app) {
       ->required();
   command
       ->add_option("OUTPUT", arguments->output,
-                   "What `kestrel land` or `kestrel hunt` wrote of it by --output")
+                   "Folder that `kestrel land` or `kestrel hunt` wrote for it by --output")
       ->required();
   command
       ->add_option("--report", arguments->report,
-                   "Folder for the tables and plots (else OUTPUT/evaluation)")
+                   "Folder for the tables and plots (default: OUTPUT/evaluation)")
       ->type_name("DIR");
   command->add_flag("--force", arguments->force, "Replace files that exist");
   command->callback([arguments] { RunEvaluate(*arguments); });

@@ -57,12 +57,13 @@ void FlyArguments::AddTo(CLI::App* command) {
   source.AddTo(command);
   command
       ->add_option("--autopilot", autopilot,
-                   "serial:///dev/ttyAMA0:921600, udpin://0.0.0.0:14550, udpout://HOST:PORT, "
-                   "tcpout://HOST:PORT, tcpin://HOST:PORT; sim:ardupilot, sim:px4: a simulated one")
+                   "Connection to the autopilot: serial:///dev/ttyAMA0:921600, "
+                   "udpin://0.0.0.0:14550, udpout://HOST:PORT, tcpout://HOST:PORT, "
+                   "tcpin://HOST:PORT; sim:ardupilot, sim:px4: a simulated one")
       ->type_name("URL");
   command
       ->add_option("--profile", profile,
-                   "What the autopilot is told: auto (by its heartbeat), ardupilot, px4, px4-vte")
+                   "Messages for the autopilot: auto (by its heartbeat), ardupilot, px4, px4-vte")
       ->type_name("NAME")
       ->check(CLI::IsMember({"auto", "ardupilot", "px4", "px4-vte"}));
   command->add_option("--rate", rate_hz, "Landing targets or set-points per second (50)")
@@ -70,33 +71,33 @@ void FlyArguments::AddTo(CLI::App* command) {
       ->check(InRange(0.999, 400.001, "1 to 400 per second"));
   command
       ->add_option("--link-delay", link_delay,
-                   "From sending to the autopilot's use; auto: half of the round trip")
+                   "Delay from sending to the autopilot's use; auto: half of the round trip")
       ->type_name("S");
   command
       ->add_option("--signing-key", signing_key,
-                   "MAVLink 2 signing: sign, and refuse what is not signed")
+                   "Key for MAVLink 2 signing: packets are signed, and unsigned ones refused")
       ->type_name("FILE");
   command
       ->add_option("--record", record,
-                   "Record the flight: a EuRoC folder with images and poses, and mavlink.tlog")
+                   "Folder for a recording of the flight: EuRoC images and poses, and mavlink.tlog")
       ->type_name("DIR");
   command
       ->add_option_function<std::string>(
           "--console", [this](const std::string& address) { console = address; },
-          "Serve the web page, at 127.0.0.1:8080 unless told otherwise")
+          "Serve the web page (default address 127.0.0.1:8080)")
       ->type_name("[ADDRESS:PORT]")
       ->expected(0, 1);
   command->add_flag("--ros", ros, "Publish the results as a node of ROS 1; --dds: of ROS 2");
   CLI::Option* guide_flag = command->add_flag(
       "--guide", guide, "Fly the UAV by set-points when the pilot gives it GUIDED or OFFBOARD");
-  CLI::Option* hunt_flag =
-      command->add_flag("--hunt", hunt, "Coloured objects instead of the landing pattern");
+  CLI::Option* hunt_flag = command->add_flag(
+      "--hunt", hunt, "Search for coloured objects instead of the landing pattern");
   command->add_option("--model", model, "Objects and their colours (YAML), with --hunt")
       ->type_name("FILE")
       ->needs(hunt_flag);
   guide_flag->excludes(hunt_flag);
   team.AddTo(command)->needs(hunt_flag);
-  command->add_flag("--loop", loop, "Play a recording again and again");
+  command->add_flag("--loop", loop, "Play a recording in a loop");
 }
 
 KestrelOptions FlyArguments::ReadOptions() const {

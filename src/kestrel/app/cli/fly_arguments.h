@@ -6,9 +6,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "kestrel/app/cli/kestrel_options.h"
 #include "kestrel/app/cli/source_arguments.h"
 #include "kestrel/app/cli/team_arguments.h"
+#include "kestrel/app/options/kestrel_options.h"
 
 namespace kestrel {
 

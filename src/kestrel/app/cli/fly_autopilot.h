@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "kestrel/app/cli/fly_options.h"
+#include "kestrel/app/options/fly_options.h"
 #include "kestrel/simulation/autopilots/simulated_autopilot.h"
 #include "kestrel/simulation/autopilots/simulated_source.h"
 

@@ -56,47 +56,38 @@ class FlyCommandTest : public CommandTest {
 TEST_F(FlyCommandTest, ASimulatedArduPilotLandsByWhatItIsTold) {
   const std::string flight = folder_ / "flight";
   const Outcome outcome =
-      Run("fly sim:standing --autopilot sim:ardupilot --record " + flight + " --output " +
-          folder_ / "out" + " --mcap " + folder_ / "flight.mcap" + kNear);
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
+      Succeed("fly sim:standing --autopilot sim:ardupilot --record " + flight + " --output " +
+              folder_ / "out" + " --mcap " + folder_ / "flight.mcap" + kNear);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("pattern found"), HasSubstr("landed")));
   EXPECT_LT(MissOf(outcome), 0.15) << outcome.err;
   EXPECT_TRUE(fs::exists(folder_ / "out/landing_track.csv"));
   EXPECT_GT(fs::file_size(flight + "/mavlink.tlog"), 10'000u);
   ExpectSameTimes(folder_ / "flight.mcap", folder_ / "out/landing_detections.csv");
   // The flight's record is a recording with truth.
-  const Outcome again = Run("land " + flight + " --output " + folder_ / "again");
-  EXPECT_EQ(again.status, 0) << again.err;
-  const Outcome compared = Run("evaluate " + flight + " " + folder_ / "again");
-  EXPECT_EQ(compared.status, 0) << compared.err;
+  Succeed("land " + flight + " --output " + folder_ / "again");
+  Succeed("evaluate " + flight + " " + folder_ / "again");
 }
 
 TEST_F(FlyCommandTest, ASimulatedPx4LandsByBothProfiles) {
   for (const std::string arguments :
        {"px4", "px4-vte --set fly.sim_autopilot.parameters=VTE_EN=1"}) {
     const Outcome outcome =
-        Run("fly sim:standing --autopilot sim:px4 --profile " + arguments + kNear);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
+        Succeed("fly sim:standing --autopilot sim:px4 --profile " + arguments + kNear);
     EXPECT_LT(MissOf(outcome), 0.15) << arguments << "\n" << outcome.err;
   }
 }
 
 TEST_F(FlyCommandTest, GuidesASimulatedPx4OntoACar) {
-  const Outcome outcome = Run(std::string("fly sim:figure8 --autopilot sim:px4 --guide") + kNear);
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const Outcome outcome =
+      Succeed(std::string("fly sim:figure8 --autopilot sim:px4 --guide") + kNear);
   EXPECT_LT(MissOf(outcome), 0.5) << outcome.err;
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("descend: "), HasSubstr("landed: contact")));
 }
 
 TEST_F(FlyCommandTest, PlaysARecordingInRealTime) {
-  const std::string flight = folder_ / "flight";
-  ASSERT_EQ(Run("simulate landing --scenario calm --seed 2 --output " + flight +
-                " --set frames=10 --set rate_hz=10 --set ground.map_px=256"
-                " --set shutter.rays_per_pixel=4")
-                .status,
-            0);
-  const Outcome outcome = Run("fly " + flight + " --output " + folder_ / "out");
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const std::string flight =
+      Simulate("landing", "--scenario calm --seed 2 --set frames=10 --set rate_hz=10");
+  const Outcome outcome = Succeed("fly " + flight + " --output " + folder_ / "out");
   EXPECT_THAT(outcome.err, HasSubstr("10 frames, pattern found in 10"));
   EXPECT_EQ(Lines(ReadFile(folder_ / "out/landing_detections.csv")), 11);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "kestrel/app/cli/kestrel_options.h"
 #include "kestrel/app/cli/source_arguments.h"
+#include "kestrel/app/options/kestrel_options.h"
 #include "kestrel/flight/onboard/open_live_source.h"
 #include "kestrel/flight/ros/dds_source.h"
 #include "kestrel/simulation/autopilots/simulated_source.h"

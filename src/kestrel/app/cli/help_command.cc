@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/cli/help_command.h"
-
 #include <iostream>
 #include <memory>
 #include <string>
+
+#include "kestrel/app/cli/commands.h"
 
 namespace kestrel {
 namespace {

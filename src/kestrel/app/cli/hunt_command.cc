@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/cli/hunt_command.h"
-
 #include <memory>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/recorded_run.h"
 #include "kestrel/app/cli/source_arguments.h"
@@ -19,6 +17,7 @@
 #include "kestrel/flight/session/hunt_files.h"
 #include "kestrel/flight/session/hunt_run.h"
 #include "kestrel/flight/session/observation_sinks.h"
+#include "kestrel/flight/session/team_sharing.h"
 #include "kestrel/vision/objects/color/color_grid.h"
 
 namespace kestrel {
@@ -32,47 +31,9 @@ struct HuntArguments {
   std::vector<double> origin;  // latitude, longitude, degrees; or empty
 };
 
-// Shares the map of a hunt with its team, and passes what the team knows on to the other sinks.
-class TeamSharing : public ObservationSink {
- public:
-  TeamSharing(std::unique_ptr<TeamLink> team, const ObjectMap* map,
-              const std::vector<double>& origin, const OutputFolder* folder,
-              ObservationSink* others)
-      : team_(std::move(team)), map_(map), origin_(origin), folder_(folder), others_(others) {}
-
-  void Take(const Observation& observation) override {
-    const auto& seen = std::get<HuntObservation>(observation.seen);
-    if (seen.world_from_camera) team_->SetPosition(seen.world_from_camera->translation);
-    seen_ = seen.time;
-    if (team_->IsTimeToTell()) {
-      team_->Tell(map_->Confirmed());
-      Publish();
-    }
-    team_->Exchange();
-  }
-
-  void Finish() override {
-    team_->Finish(map_->Confirmed(), WasInterrupted);
-    Publish();
-    if (folder_ != nullptr) team_->WriteMap(origin_, *folder_);
-  }
-
-  std::string Found() { return team_->Found(); }
-
- private:
-  void Publish() { others_->Take(TeamReport{seen_, team_->Map()}); }
-
-  std::unique_ptr<TeamLink> team_;
-  const ObjectMap* map_;
-  std::vector<double> origin_;
-  const OutputFolder* folder_;  // null: no file is written
-  ObservationSink* others_;
-  Time seen_{};  // time of the last frame
-};
-
 // A team shares maps, so there must be one.
 void RequireMap(const OpenedSource& opened, bool is_still) {
-  if (is_still) throw InputError("--team: expected a source that is no --still");
+  if (is_still) throw InputError("--team: expected a source without --still");
   if (!opened.has_world()) {
     throw InputError("--team: expected a source with poses, and the camera's mount");
   }
@@ -115,8 +76,9 @@ void RunHunt(const HuntArguments& arguments) {
   // The team finishes after the files are written: that may be a long wait.
   TeamSharing* sharing = nullptr;
   if (team) {
-    sharing = sinks.Add(std::make_unique<TeamSharing>(std::move(team), &pipeline.map(),
-                                                      arguments.origin, files->folder(), &sinks));
+    sharing =
+        sinks.Add(std::make_unique<TeamSharing>(std::move(team), &pipeline.map(), arguments.origin,
+                                                files->folder(), &sinks, WasInterrupted));
   }
   AddMcapSink(arguments.source, opened, HuntView{model}, &sinks);
   sinks.Add(std::move(files));
@@ -135,14 +97,12 @@ void AddHuntCommand(CLI::App* app) {
       ->add_option("--model", arguments->model,
                    "Objects and their colours (YAML) in place of the built-in ones")
       ->type_name("FILE");
-  command
-      ->add_option("--grid", arguments->grid,
-                   "Color grid (64^3 bytes) in place of the one that the model gives")
+  command->add_option("--grid", arguments->grid, "Colour grid (64^3 bytes) in place of the model's")
       ->type_name("FILE");
   command
       ->add_option("--origin", arguments->origin,
-                   "Latitude and longitude (degrees) of the world's origin, as 50.1,14.4: also "
-                   "write the map as GeoJSON")
+                   "Latitude and longitude (degrees) of the world's origin, as 50.1,14.4: the map "
+                   "is written as GeoJSON, too")
       ->type_name("LAT,LON")
       ->delimiter(',')
       ->allow_extra_args(false)

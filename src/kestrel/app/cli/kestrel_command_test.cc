@@ -85,47 +85,19 @@ TEST_F(KestrelCommandTest, LandSaysOnceThatTheAltitudeIsWrong) {
   const std::size_t first = wrong.find("set --altitude 3.0");
   EXPECT_NE(first, std::string::npos) << wrong;
   EXPECT_EQ(wrong.find("set --altitude", first + 1), std::string::npos) << "said twice";
-  EXPECT_THAT(Run(land + "3").err, Not(HasSubstr("altitude told")));
-}
-
-// The frames come from a lens with a focal length of 400 px.
-TEST_F(KestrelCommandTest, LandSaysThatTheLensIsAnother) {
-  const CameraModel camera({640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}});
-  Random random(1);
-  for (int i = 0; i < 30; ++i) {
-    WriteTestImage(folder_, fmt::format("images/{:02}.png", i),
-                   DrawRandomView(camera, LandingPattern(), &random));
-  }
-  const std::string output = folder_ / "out";
-  const auto land = [&](const std::string& focal_px) {
-    std::string sensor = kSensor;
-    const std::string right = "400, 400";
-    sensor.replace(sensor.find(right), right.size(), focal_px + ", " + focal_px);
-    return Run(fmt::format("land {} --still --camera {} --output {} --force", folder_ / "images",
-                           folder_.Write("sensor.yaml", sensor), output));
-  };
-  const auto misfit_of_last = [&] {
-    const std::string csv = ReadFile(output + "/landing_detections.csv");
-    return std::stod(csv.substr(csv.rfind(',') + 1));
-  };
-  EXPECT_THAT(land("400").err, Not(HasSubstr("the pattern says")));
-  EXPECT_LT(misfit_of_last(), 0.5);
-  EXPECT_THAT(land("540").err, HasSubstr("px, the calibration 540: kestrel calibrate lens"));
+  EXPECT_THAT(Run(land + "3").err, Not(HasSubstr("given altitude")));
 }
 
 TEST_F(KestrelCommandTest, HelpAndVersion) {
   for (const char* arguments : {"help", "--help"}) {
-    const Outcome outcome = Run(arguments);
-    EXPECT_EQ(outcome.status, 0);
+    const Outcome outcome = Succeed(arguments);
     EXPECT_THAT(outcome.out, HasSubstr("Run the landing pipeline"));
   }
   for (const char* arguments : {"help land", "land --help"}) {
-    const Outcome outcome = Run(arguments);
-    EXPECT_EQ(outcome.status, 0);
+    const Outcome outcome = Succeed(arguments);
     EXPECT_THAT(outcome.out, HasSubstr("--altitude"));
   }
-  const Outcome version = Run("--version");
-  EXPECT_EQ(version.status, 0);
+  const Outcome version = Succeed("--version");
   EXPECT_THAT(version.out, StartsWith("kestrel 0."));
 }
 
@@ -150,8 +122,7 @@ TEST_F(KestrelCommandTest, UnknownCommandIsNamed) {
 }
 
 TEST_F(KestrelCommandTest, ConfigReadsBackToItself) {
-  const Outcome first = Run("config --set landing.detector.min_ring_px=9.5");
-  EXPECT_EQ(first.status, 0);
+  const Outcome first = Succeed("config --set landing.detector.min_ring_px=9.5");
   const Outcome again = Run("config --config " + folder_.Write("c.yaml", first.out));
   EXPECT_EQ(again.out, first.out);
   EXPECT_THAT(again.out, HasSubstr("min_ring_px: 9.5 "));
@@ -160,8 +131,7 @@ TEST_F(KestrelCommandTest, ConfigReadsBackToItself) {
 TEST_F(KestrelCommandTest, LandsOnARecording) {
   const std::string output = folder_ / "out";
   const Outcome outcome =
-      Run("land " + WriteRecording() + " --output " + output + " --annotate=images");
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
+      Succeed("land " + WriteRecording() + " --output " + output + " --annotate=images");
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_THAT(outcome.err, HasSubstr("2 frames, pattern found in 1, detect_ms median"));
   const std::string csv = ReadFile(output + "/landing_detections.csv");
@@ -175,8 +145,7 @@ TEST_F(KestrelCommandTest, LandsOnARecording) {
 }
 
 TEST_F(KestrelCommandTest, SaysWhereThePatternIsInTheWorld) {
-  const Outcome outcome = Run("land --still " + WriteRecording());
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Outcome outcome = Succeed("land --still " + WriteRecording());
   std::string row = outcome.out.substr(outcome.out.find('\n') + 1);
   std::vector<std::string> cells;
   for (std::size_t end = 0; (end = row.find(',')) != std::string::npos; row.erase(0, end + 1)) {
@@ -193,25 +162,23 @@ TEST_F(KestrelCommandTest, SaysWhereThePatternIsInTheWorld) {
 
 TEST_F(KestrelCommandTest, WritesAnAnnotatedVideo) {
   const std::string output = folder_ / "out";
-  const Outcome outcome = Run("land --annotate " + WriteRecording() + " --output " + output);
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  Succeed("land --annotate " + WriteRecording() + " --output " + output);
   EXPECT_NE(std::filesystem::exists(output + "/annotated.mp4"),
             std::filesystem::exists(output + "/annotated.avi"));
 }
 
 TEST_F(KestrelCommandTest, ReplacesResultsOnlyWithForce) {
   const std::string arguments = "land " + WriteRecording() + " --output " + (folder_ / "out");
-  EXPECT_EQ(Run(arguments).status, 0);
+  Succeed(arguments);
   ExpectInputError(arguments, "landing_detections.csv: exists already");
-  EXPECT_EQ(Run(arguments + " --force").status, 0);
+  Succeed(arguments + " --force");
 }
 
 TEST_F(KestrelCommandTest, LandAndHuntWriteMcap) {
   const std::string recording = WriteRecording();
   const std::string mcap = folder_ / "flight.mcap";
   for (const std::string command : {"land", "hunt"}) {
-    const Outcome outcome = Run(command + " --force " + recording + " --mcap " + mcap);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    Succeed(command + " --force " + recording + " --mcap " + mcap);
     const auto messages = ReadMessages(mcap);
     EXPECT_EQ(messages.at("/camera/image").size(), 2u);
     ASSERT_EQ(messages.at("/result").size(), 2u);
@@ -231,13 +198,13 @@ TEST_F(KestrelCommandTest, NothingIsWrittenWhereAnMcapFileIsThere) {
   EXPECT_EQ(ReadFile(mcap), "mine");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
   // The reverse case: no file is left behind.
-  ASSERT_EQ(Run("land " + recording + " --output " + (folder_ / "out")).status, 0);
+  Succeed("land " + recording + " --output " + (folder_ / "out"));
   ExpectInputError(
       "land " + recording + " --mcap " + (folder_ / "new.mcap") + " --output " + (folder_ / "out"),
       "landing_detections.csv: exists already");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "new.mcap"));
   const std::string bag = folder_ / "bag.mcap";
-  ASSERT_EQ(Run("convert " + recording + " " + bag).status, 0);
+  Succeed("convert " + recording + " " + bag);
   const std::string bytes = ReadFile(bag);
   ExpectInputError("land --force " + bag + " --mcap " + bag, "bag.mcap: is the source");
   EXPECT_EQ(ReadFile(bag), bytes);
@@ -334,9 +301,8 @@ TEST_F(KestrelCommandTest, EvaluateComparesALandingWithItsTruth) {
       "[],v_WP_W_x [m s^-1],v_WP_W_y [m s^-1],v_WP_W_z [m s^-1],u [px],v [px],altitude "
       "[m],visible_fraction []\n100000000,4.8,5.7,0,1,0,0,0,0,0,0,359.5,266.17,3,1\n");
   const std::string output = folder_ / "o";
-  ASSERT_EQ(Run("land " + flight + " --output " + output).status, 0);
-  const Outcome outcome = Run("evaluate " + flight + " " + output);
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  Succeed("land " + flight + " --output " + output);
+  const Outcome outcome = Succeed("evaluate " + flight + " " + output);
   EXPECT_THAT(outcome.out, HasSubstr("| all | 2 to 6 | 1 | 1 | 100.0 |"));
   EXPECT_TRUE(std::filesystem::exists(output + "/evaluation/report.md"));
   EXPECT_TRUE(std::filesystem::exists(output + "/evaluation/error.png"));
@@ -348,11 +314,11 @@ TEST_F(KestrelCommandTest, EvaluateComparesALandingWithItsTruth) {
 TEST_F(KestrelCommandTest, LandWritesTrackAndPrediction) {
   const std::string flight = WriteRecording();
   const std::string output = folder_ / "o";
-  ASSERT_EQ(Run("land " + flight + " --output " + output + " --predict 0.5,1.0").status, 0);
+  Succeed("land " + flight + " --output " + output + " --predict 0.5,1.0");
   EXPECT_THAT(ReadFile(output + "/landing_track.csv"), HasSubstr("\n100000000,searching,"));
   EXPECT_THAT(ReadFile(output + "/landing_prediction.csv"), StartsWith("timestamp_ns,horizon_s"));
   const std::string still = folder_ / "still";
-  ASSERT_EQ(Run("land --still " + flight + " --output " + still).status, 0);
+  Succeed("land --still " + flight + " --output " + still);
   EXPECT_FALSE(std::filesystem::exists(still + "/landing_track.csv"));
 }
 

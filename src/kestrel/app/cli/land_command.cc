@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/cli/land_command.h"
-
 #include <memory>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/recorded_run.h"
 #include "kestrel/app/cli/source_arguments.h"
 #include "kestrel/flight/session/landing_files.h"
@@ -48,7 +47,7 @@ void AddLandCommand(CLI::App* app) {
   arguments->source.AddTo(command);
   command
       ->add_option("--predict", arguments->predict_s,
-                   "Also write where the target will be after these times (s), as 0.5,1.0")
+                   "Horizons (s) of predictions of the target that are written, too, as 0.5,1.0")
       ->type_name("S,...")
       ->delimiter(',')
       ->allow_extra_args(false)

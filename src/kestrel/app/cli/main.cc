@@ -6,18 +6,8 @@
 #include <fmt/format.h>
 #include <opencv2/core/utils/logger.hpp>
 
-#include "kestrel/app/cli/calibrate_command.h"
-#include "kestrel/app/cli/config_command.h"
-#include "kestrel/app/cli/console_command.h"
-#include "kestrel/app/cli/convert_command.h"
-#include "kestrel/app/cli/doctor_command.h"
-#include "kestrel/app/cli/evaluate_command.h"
+#include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/fly_command.h"
-#include "kestrel/app/cli/help_command.h"
-#include "kestrel/app/cli/hunt_command.h"
-#include "kestrel/app/cli/land_command.h"
-#include "kestrel/app/cli/print_command.h"
-#include "kestrel/app/cli/simulate_command.h"
 #include "kestrel/version.h"
 
 namespace {

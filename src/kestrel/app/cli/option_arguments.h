@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "kestrel/app/cli/kestrel_options.h"
+#include "kestrel/app/options/kestrel_options.h"
 
 namespace kestrel {
 
@@ -19,7 +19,7 @@ struct OptionArguments {
   void AddTo(CLI::App* command) {
     command->add_option("--config", config, "Options from a YAML file (see `kestrel config`)")
         ->type_name("FILE");
-    command->add_option("--set", settings, "One option, as key=value; may be given again")
+    command->add_option("--set", settings, "One option, as key=value; can be given several times")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
   }

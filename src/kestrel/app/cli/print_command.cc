@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/cli/print_command.h"
-
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -10,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/option_arguments.h"
 #include "kestrel/app/cli/source_arguments.h"
 #include "kestrel/calibration/print/pattern_print.h"
@@ -110,41 +109,6 @@ std::optional<PrintScale> ScaleOf(const PrintArguments& arguments, const Landing
   return std::nullopt;
 }
 
-void ShowDimensions(const std::vector<CheckedDimension>& dimensions) {
-  fmt::print("{:<18} {:>13} {:>13} {:>12}\n", "", "configured", "measured", "tolerance");
-  for (const CheckedDimension& dimension : dimensions) {
-    const std::string configured = fmt::format("{:.1f} mm", 1000 * dimension.configured_m);
-    const std::string measured = dimension.measured
-                                     ? fmt::format("{:.1f} mm", 1000 * dimension.measured->value_m)
-                                     : "no end";
-    const std::string tolerance =
-        dimension.measured ? fmt::format("{:.1f} mm", 1000 * dimension.tolerance_m()) : "";
-    fmt::print("{:<18} {:>13} {:>13} {:>12}  {}\n", dimension.option, configured, measured,
-               tolerance, ToString(dimension.verdict));
-  }
-}
-
-// Throws InputError when a dimension is not as configured or cannot be measured.
-void RequireGood(const std::string& photo, const std::vector<CheckedDimension>& dimensions) {
-  std::string wrong, settings;
-  bool is_coarse = false;
-  for (const CheckedDimension& dimension : dimensions) {
-    is_coarse = is_coarse || dimension.verdict == PrintVerdict::kTooCoarse;
-    if (dimension.verdict != PrintVerdict::kWrong) continue;
-    wrong += (wrong.empty() ? "" : ", ") + dimension.option;
-    if (!dimension.measured) continue;
-    settings += fmt::format(" --set landing.detector.pattern.{}={:.4f}", dimension.option,
-                            dimension.measured->value_m);
-  }
-  if (!wrong.empty()) {
-    throw InputError(fmt::format("{}: not as configured: {}; print again at 100 %{}", photo, wrong,
-                                 settings.empty() ? "" : ", or say what is there:" + settings));
-  }
-  if (is_coarse) {
-    throw InputError(photo + ": too coarse to tell: photograph the print from nearer");
-  }
-}
-
 void CheckPhoto(const PrintArguments& arguments) {
   const LandingPatternDetectorOptions detector = arguments.options.Read().landing.detector;
   const PrintMeasurement print = Measure(arguments, detector);
@@ -152,14 +116,14 @@ void CheckPhoto(const PrintArguments& arguments) {
   fmt::print("{}: the ring is {:.0f} px wide, {:.2f} mm a pixel\n", arguments.photo, print.ring_px,
              1000 * print.pixel_m);
   const std::vector<CheckedDimension> dimensions = CheckPrint(detector.pattern, print, scale);
-  ShowDimensions(dimensions);
+  fmt::print("{}", DimensionsTable(dimensions));
   if (!scale) {
     fmt::print(
         "All in proportion to the ring's outer diameter: a photograph has no scale, --ruler or "
         "--distance give it one.\n");
   }
   std::fflush(stdout);
-  RequireGood(arguments.photo, dimensions);
+  RequireAsConfigured(arguments.photo, dimensions);
 }
 
 void RunPrint(const PrintArguments& arguments) {
@@ -183,28 +147,25 @@ void RunPrint(const PrintArguments& arguments) {
 }
 
 CLI::Option* AddCheckOptions(CLI::App* command, PrintArguments* arguments) {
-  CLI::Option* const check =
-      command
-          ->add_option("--check", arguments->photo,
-                       "Print nothing, but say whether the print in this photograph has the "
-                       "configured dimensions")
-          ->type_name("IMAGE");
+  CLI::Option* const check = command
+                                 ->add_option("--check", arguments->photo,
+                                              "Photograph of a print: compare its dimensions with "
+                                              "the configured ones, and print nothing")
+                                 ->type_name("IMAGE");
   CLI::Option* const camera =
       command
           ->add_option("--camera", arguments->camera,
-                       "Calibration of the photograph's camera; without it one without distortion "
-                       "is assumed")
+                       "Calibration of the photograph's camera (default: no distortion)")
           ->type_name("FILE")
           ->needs(check);
   CLI::Option* const ruler =
-      command
-          ->add_option("--ruler", arguments->ruler_m, "Length of the printed ruler, measured (m)")
+      command->add_option("--ruler", arguments->ruler_m, "Measured length of the printed ruler (m)")
           ->type_name("M")
           ->check(InRange(0, 10, "a positive length in m"))
           ->needs(check);
   command
       ->add_option("--distance", arguments->distance_m,
-                   "From the camera to the middle of the print, measured (m)")
+                   "Measured distance from the camera to the middle of the print (m)")
       ->type_name("M")
       ->check(InRange(0, 1000, "a positive length in m"))
       ->needs(camera)
@@ -219,18 +180,17 @@ void AddPrintCommand(CLI::App* app) {
       app->add_subcommand("print", "The configured landing pattern as PDF and SVG, true to scale");
   const auto arguments = std::make_shared<PrintArguments>();
   arguments->options.AddTo(command);
-  CLI::Option* const paper =
-      command
-          ->add_option("--paper", arguments->paper,
-                       "Cut into tiles for sheets of this size (a0 to a4), else one page as large "
-                       "as the board")
-          ->type_name("SIZE")
-          ->check(CLI::IsMember(PaperNames()));
+  CLI::Option* const paper = command
+                                 ->add_option("--paper", arguments->paper,
+                                              "Size of the sheets (a0 to a4) that the print is cut "
+                                              "into (default: one page as large as the board)")
+                                 ->type_name("SIZE")
+                                 ->check(CLI::IsMember(PaperNames()));
   CLI::Option* const output =
       command
-          ->add_option("--output", arguments->output,
-                       "A folder for both formats (else this one), or a file that ends in .pdf or "
-                       ".svg")
+          ->add_option(
+              "--output", arguments->output,
+              "Folder for both formats (default: this one), or a file that ends in .pdf or .svg")
           ->type_name("FILE|DIR");
   command->add_flag("--force", arguments->force, "Replace files that exist");
   AddCheckOptions(command, arguments.get())->excludes(paper)->excludes(output);

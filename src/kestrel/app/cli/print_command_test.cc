@@ -56,20 +56,18 @@ TEST_F(PrintCommandTest, WhatIsPrintedIsDetectedAndRight) {
   ASSERT_EQ(std::system("command -v pdftoppm >/dev/null"), 0)
       << "pdftoppm is not there: scripts/install-deps";
   const std::string pdf = folder_ / "pattern.pdf";
-  EXPECT_EQ(Run("print --output " + pdf).status, 0);
+  Succeed("print --output " + pdf);
   const std::string photo = WriteTestImage(folder_, "photo.png", Photograph(pdf, 1.5));
   const std::string camera = " --camera " + WriteCamera();
   EXPECT_THAT(Run("land " + photo + camera).err, HasSubstr("pattern found in 1"));
 
   const std::string check = "print --check " + photo + camera;
-  const Outcome right = Run(check);
-  EXPECT_EQ(right.status, 0) << right.out << right.err;
+  const Outcome right = Succeed(check);
   EXPECT_THAT(right.out, HasSubstr("no scale"));
   EXPECT_THAT(right.out, Not(HasSubstr("WRONG")));
-  EXPECT_EQ(Run("print --check " + photo).status, 0) << "without a calibration";
+  Succeed("print --check " + photo);
   const double distance = std::sqrt(0.2 * 0.2 + 0.3 * 0.3 + 1.79 * 1.79);
-  const Outcome scaled = Run(check + fmt::format(" --distance {}", distance));
-  EXPECT_EQ(scaled.status, 0) << scaled.out << scaled.err;
+  const Outcome scaled = Succeed(check + fmt::format(" --distance {}", distance));
   EXPECT_THAT(scaled.out, HasSubstr("outer_diameter_m"));
 
   ExpectInputError(check + fmt::format(" --distance {}", 0.93 * distance), "outer_diameter_m=0.9");
@@ -81,18 +79,16 @@ TEST_F(PrintCommandTest, WhatIsPrintedIsDetectedAndRight) {
 
 TEST_F(PrintCommandTest, WritesWhatItNamesAndReplacesNothing) {
   const std::string first = folder_ / "first", second = folder_ / "second";
-  const Outcome whole = Run("print --output " + first);
-  EXPECT_EQ(whole.status, 0) << whole.err;
+  const Outcome whole = Succeed("print --output " + first);
   EXPECT_THAT(whole.err, HasSubstr("first/landing_pattern.pdf\n"));
-  const Outcome tiled = Run("print --paper a3 --output " + first);
-  EXPECT_EQ(tiled.status, 0) << tiled.err;
+  const Outcome tiled = Succeed("print --paper a3 --output " + first);
   EXPECT_THAT(tiled.err, HasSubstr("24 sheets, 4 rows of 6"));
   EXPECT_TRUE(std::filesystem::exists(first + "/landing_pattern_a3/sheet_4.6.svg"));
   ExpectInputError("print --output " + first, "landing_pattern.pdf: exists already");
-  EXPECT_EQ(Run("print --force --output " + first).status, 0);
+  Succeed("print --force --output " + first);
 
-  EXPECT_EQ(Run("print --output " + second).status, 0);
-  EXPECT_EQ(Run("print --paper a3 --output " + second).status, 0);
+  Succeed("print --output " + second);
+  Succeed("print --paper a3 --output " + second);
   for (const auto& file : std::filesystem::recursive_directory_iterator(first)) {
     if (!file.is_regular_file()) continue;
     const auto other = second / std::filesystem::relative(file.path(), first);
@@ -102,7 +98,7 @@ TEST_F(PrintCommandTest, WritesWhatItNamesAndReplacesNothing) {
 
 TEST_F(PrintCommandTest, OneFileIsOneFormat) {
   const std::string svg = folder_ / "mine.svg";
-  EXPECT_EQ(Run("print --output " + svg).status, 0);
+  Succeed("print --output " + svg);
   EXPECT_THAT(ReadFile(svg), HasSubstr("width=\"4251.96"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "mine.pdf"));
 }

@@ -5,11 +5,11 @@
 #include <functional>
 #include <variant>
 
-#include "kestrel/app/cli/kestrel_options.h"
 #include "kestrel/app/cli/source_arguments.h"
 #include "kestrel/app/console/hunt_view.h"
 #include "kestrel/app/console/landing_view.h"
 #include "kestrel/app/foxglove/mcap_sink.h"
+#include "kestrel/app/options/kestrel_options.h"
 #include "kestrel/flight/session/observation_sinks.h"
 #include "kestrel/flight/session/vision.h"
 #include "kestrel/io/bags/open_recording.h"

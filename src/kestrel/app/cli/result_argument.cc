@@ -29,13 +29,13 @@ std::optional<std::string> TakeResult(const std::string& table_name,
     if (!table) {
       others.push_back(source);
     } else if (result) {
-      throw InputError(source + ": is a second result, expected one beside its recording");
+      throw InputError(source + ": is a second result, expected one result and its recording");
     } else {
       result = table;
     }
   }
   if (result && others.empty()) {
-    throw InputError(*result + ": is a result, expected the recording that it is of beside it");
+    throw InputError(*result + ": is a result, expected its recording, too");
   }
   *sources = others;
   return result;

@@ -10,13 +10,16 @@ namespace kestrel {
 void SimulateArguments::AddTo(CLI::App* command) {
   CLI::Option* output_option =
       command->add_option("--output", output, "Folder for the recording")->type_name("DIR");
-  command->add_option("--seed", seed, "Same seed, same recording (default 1)")->type_name("N");
+  command
+      ->add_option("--seed", seed,
+                   "Seed of all random numbers; the same seed gives the same recording (default 1)")
+      ->type_name("N");
   command->add_option("--scenario", scenario, "A named flight, see --list")->type_name("NAME");
   command
       ->add_option("--config", config,
                    "Options from a YAML file (see --print-config), over the scenario's")
       ->type_name("FILE");
-  command->add_option("--set", settings, "One option, as key=value; may be given again")
+  command->add_option("--set", settings, "One option, as key=value; can be given several times")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   command->add_option("--camera", camera, "Calibration of the camera to simulate")

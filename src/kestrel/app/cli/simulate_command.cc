@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/cli/simulate_command.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -13,10 +11,10 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/progress_bar.h"
 #include "kestrel/app/cli/simulate_arguments.h"
-#include "kestrel/app/cli/touchdown_command.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
 #include "kestrel/simulation/recordings/hunt_simulation.h"
@@ -80,7 +78,8 @@ void AddKind(CLI::App* command, const char* name, const char* meaning, const Kin
   const auto arguments = std::make_shared<SimulateArguments>();
   const auto threads = std::make_shared<int>(0);
   arguments->AddTo(subcommand);
-  subcommand->add_option("--threads", *threads, "Default: as many as there are cores")
+  subcommand
+      ->add_option("--threads", *threads, "Number of threads (default: as many as there are cores)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
   subcommand->callback([=] { Run(kind, *arguments, *threads); });

@@ -28,14 +28,11 @@ class SimulateCommandTest : public CommandTest {
 TEST_F(SimulateCommandTest, LandsOnWhatItSimulates) {
   const std::string flight = folder_ / "flight";
   const Outcome simulated =
-      Run("simulate landing --scenario calm --seed 2 --output " + flight + kSmall);
-  EXPECT_EQ(simulated.status, 0) << simulated.err;
+      Succeed("simulate landing --scenario calm --seed 2 --output " + flight + kSmall);
   EXPECT_THAT(simulated.err, HasSubstr("2 images"));
-  const Outcome landed = Run("land " + flight);
-  EXPECT_EQ(landed.status, 0) << landed.err;
+  const Outcome landed = Succeed("land " + flight);
   EXPECT_THAT(landed.err, HasSubstr("2 frames, pattern found in 2"));
-  const Outcome kept = Run("land " + flight + " --output " + folder_ / "out");
-  EXPECT_EQ(kept.status, 0) << kept.err;
+  Succeed("land " + flight + " --output " + folder_ / "out");
   EXPECT_THAT(Run("evaluate " + flight + " " + folder_ / "out").out,
               HasSubstr("| calm | all | 2 | 2 | 100.0 |"));
   ExpectInputError("simulate landing --scenario calm --seed 2 --output " + flight + kSmall,
@@ -49,8 +46,7 @@ TEST_F(SimulateCommandTest, SimulatesAHuntWithTheUsersCamera) {
                                            "camera_matrix: [100, 0, 80, 0, 100, 45, 0, 0, 1]\n"
                                            "distortion_coefficients: [0, 0, 0, 0, 0]\n");
   const std::string flight = folder_ / "hunt";
-  const Outcome outcome = Run("simulate hunt --output " + flight + " --camera " + camera + kSmall);
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  Succeed("simulate hunt --output " + flight + " --camera " + camera + kSmall);
   const cv::Mat image = ReadImage(flight + "/mav0/cam0/data/100000000000.png");
   EXPECT_EQ(image.size(), cv::Size(160, 90));
   EXPECT_EQ(image.channels(), 3);
@@ -58,11 +54,10 @@ TEST_F(SimulateCommandTest, SimulatesAHuntWithTheUsersCamera) {
 
 TEST_F(SimulateCommandTest, HuntSaysOnceThatTheGroundIsElsewhere) {
   const std::string flight = folder_ / "hunt";
-  const Outcome simulated = Run("simulate hunt --scenario descend --output " + flight + kSmall +
-                                " --set frames=8 --set rate_hz=10"
-                                " --set navigation.clock_offset_min_s=0"
-                                " --set navigation.clock_offset_max_s=0");
-  ASSERT_EQ(simulated.status, 0) << simulated.err;
+  Succeed("simulate hunt --scenario descend --output " + flight + kSmall +
+          " --set frames=8 --set rate_hz=10"
+          " --set navigation.clock_offset_min_s=0"
+          " --set navigation.clock_offset_max_s=0");
   EXPECT_THAT(Run("hunt " + flight).err, Not(HasSubstr("by the size of the objects")));
   const std::string told = Run("hunt " + flight + " --set hunt.ground_height_m=-5").err;
   const std::string said = "by the size of the objects the ground is at z = ";
@@ -75,9 +70,8 @@ TEST_F(SimulateCommandTest, HuntSaysOnceThatTheGroundIsElsewhere) {
 
 TEST_F(SimulateCommandTest, FliesATouchdownThatCanBeRunAgain) {
   const std::string flight = folder_ / "flight";
-  const Outcome flown = Run("simulate touchdown --seed 4 --annotate=images --output " + flight +
-                            kSmall + " --set frames=4 --set rate_hz=10");
-  EXPECT_EQ(flown.status, 0) << flown.err;
+  const Outcome flown = Succeed("simulate touchdown --seed 4 --annotate=images --output " + flight +
+                                kSmall + " --set frames=4 --set rate_hz=10");
   EXPECT_THAT(flown.out, HasSubstr("still in the air after 0.3 s"));
   for (const char* file :
        {"touchdown.csv", "touchdown_path.csv", "touchdown.png", "summary.txt", "landing_track.csv",
@@ -85,8 +79,7 @@ TEST_F(SimulateCommandTest, FliesATouchdownThatCanBeRunAgain) {
     EXPECT_TRUE(std::filesystem::exists(flight + "/" + file)) << file;
   }
   EXPECT_FALSE(std::filesystem::exists(flight + ".part"));
-  const Outcome landed = Run("land " + flight);
-  EXPECT_EQ(landed.status, 0) << landed.err;
+  const Outcome landed = Succeed("land " + flight);
   EXPECT_EQ(InCamera(landed.out), InCamera(ReadFile(flight + "/landing_detections.csv")));
 }
 

@@ -37,7 +37,7 @@ void RequireNoSource(const std::string& file, const std::vector<std::string>& so
 CLI::Option* AddAnnotateFlag(CLI::App* command, std::string* annotate) {
   return command
       ->add_flag("--annotate{video}", *annotate,
-                 "Also write the frames with what was found: a video, or --annotate=images")
+                 "Frames with the results drawn on them, too: a video, or --annotate=images")
       ->check(CLI::IsMember({"video", "images"}));
 }
 
@@ -55,7 +55,8 @@ void SourceArguments::AddReadingTo(CLI::App* command) {
                    "OpenCV YAML; overrides the source's")
       ->type_name("FILE");
   options.AddTo(command);
-  command->add_flag("--still", still, "The frames have nothing to do with each other");
+  command->add_flag("--still", still,
+                    "Independent frames: no state is carried from one to the next");
   command
       ->add_option("--altitude", altitude_m,
                    "Height of the camera above the pattern or the ground (m), where the source has "
@@ -64,7 +65,7 @@ void SourceArguments::AddReadingTo(CLI::App* command) {
       ->check(InRange(0, 1e5, "a positive height in m"));
   command
       ->add_option("--clock-offset", clock_offset,
-                   "Seconds to add to an image's time to get the navigation's")
+                   "Navigation's time minus image's time of the same instant (s)")
       ->type_name("S")
       ->check(InRange(-kMaxClockOffset, kMaxClockOffset, "seconds"));
 }
@@ -72,12 +73,12 @@ void SourceArguments::AddReadingTo(CLI::App* command) {
 void SourceArguments::AddTo(CLI::App* command) {
   AddReadingTo(command);
   CLI::Option* folder =
-      command->add_option("--output", output, "Folder for the results (else stdout)")
+      command->add_option("--output", output, "Folder for the results (default: stdout)")
           ->type_name("DIR");
   AddAnnotateFlag(command, &annotate)->needs(folder);
   command
       ->add_option("--mcap", mcap,
-                   "Also write images and results as MCAP, for Foxglove, Lichtblick and Rerun")
+                   "MCAP file of images and results, too, for Foxglove, Lichtblick and Rerun")
       ->type_name("FILE");
   dds.AddTo(command);
   command->add_flag("--force", force, "Replace files that exist");

@@ -15,8 +15,8 @@ struct TeamArguments {
   CLI::Option* AddTo(CLI::App* command) {
     return command
         ->add_option("--team", team,
-                     "Share the map with the UAVs of this team and write what all know together: "
-                     "team_map.csv; in the DDS domain of --dds (else ROS_DOMAIN_ID, else 0)")
+                     "Team that shares one map, which is written to team_map.csv; in the DDS "
+                     "domain of --dds (else ROS_DOMAIN_ID, else 0)")
         ->type_name("NAME");
   }
 };

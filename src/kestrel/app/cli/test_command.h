@@ -36,6 +36,21 @@ class CommandTest : public ::testing::Test {
         fmt::format("{} {} >'{}' 2>'{}' <'{}'", KESTREL_COMMAND, arguments, out, err, in).c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadFile(out), ReadFile(err)};
   }
+  // The same, and expects exit status 0.
+  Outcome Succeed(const std::string& arguments) const {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 0) << arguments << "\n" << outcome.err;
+    return outcome;
+  }
+  // Simulates a flight or a hunt that renders quickly. 'arguments': more of `kestrel simulate`.
+  // Returns its folder.
+  std::string Simulate(const std::string& what, const std::string& arguments) const {
+    Succeed(
+        fmt::format("simulate {} --output {} --set ground.map_px=256"
+                    " --set shutter.rays_per_pixel=4 {}",
+                    what, folder_ / what, arguments));
+    return folder_ / what;
+  }
   // Expects exit status 1 and one line on stderr that contains 'words'.
   void ExpectInputError(const std::string& arguments, const std::string& words) const {
     const Outcome outcome = Run(arguments);

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/cli/touchdown_command.h"
-
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -9,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/progress_bar.h"
 #include "kestrel/app/cli/simulate_arguments.h"

@@ -11,6 +11,7 @@
 
 #include "kestrel/calibration/lens/lens_calibration.h"
 #include "kestrel/calibration/mount/flight_calibration.h"
+#include "kestrel/calibration/mount/flight_sightings.h"
 #include "kestrel/core/camera/calibration.h"
 
 namespace kestrel {
@@ -71,12 +72,6 @@ struct ConsoleCalibration {
   bool can_save = false;   // the user gave a folder
   std::string saved;       // path of the saved file
   std::string save_error;  // why it was not saved
-};
-
-// A place of the pattern in one image of a flight.
-struct PatternPlace {
-  cv::Point2f pixel;  // its centre
-  double height_m;    // height of the camera above it
 };
 
 // Returns the part of the report that says what a flight covers. 'images': in the whole flight.

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -87,6 +88,13 @@ class TestSocket {
 
   // Returns the next message of a kind; images are "image". Nothing when the connection has ended.
   std::optional<nlohmann::json> Next(const std::string& kind);
+
+  // The same, and throws when the connection has ended.
+  nlohmann::json Await(const std::string& kind) {
+    const std::optional<nlohmann::json> message = Next(kind);
+    if (!message) throw std::runtime_error("no message of kind " + kind);
+    return *message;
+  }
 
   // Ends the connection; a Read in another thread then returns.
   void Shutdown();

@@ -9,10 +9,11 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/app/ros_node/node_connection.h"
-#include "kestrel/app/ros_node/node_options.h"
-#include "kestrel/app/ros_node/ros_node.h"
+#include "kestrel/app/ros_node/node_parameters.h"
 #include "kestrel/core/base/error.h"
+#include "kestrel/flight/ros/node_connection.h"
+#include "kestrel/flight/ros/node_options.h"
+#include "kestrel/flight/ros/ros_node.h"
 #include "kestrel/flight/ros1/ros1_result_connection.h"
 #include "kestrel/flight/ros1/ros1_subscriptions.h"
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/robust_statistics.h"
@@ -109,6 +110,32 @@ ColorMixture TeachColor(const std::string& color, std::span<const FrameMarks> ma
                        scale * component.sigma.value};
   }
   return mixture;
+}
+
+std::vector<std::string> ReplaceColors(const std::map<std::string, std::vector<Hsv>>& samples,
+                                       int components, ObjectModel* model) {
+  std::vector<std::string> report;
+  std::vector<ColorMixture>& colors = model->colors.colors;
+  for (const auto& [name, pixels] : samples) {
+    const auto found =
+        std::find_if(colors.begin(), colors.end(),
+                     [&name = name](const auto& color) { return color.name == name; });
+    if (found == colors.end()) {
+      throw InputError(fmt::format("'{}' is none of the model's colors", name));
+    }
+    *found = ChooseColorMixture(name, pixels, components).mixture;
+    report.push_back(fmt::format("{}: {} Gaussians fitted to {} pixels", name,
+                                 found->components.size(), pixels.size()));
+    for (const std::string& warning : SampleWarnings(pixels)) {
+      report.push_back(fmt::format("{}: {}", name, warning));
+    }
+  }
+  const std::vector<std::string> violations = model->Validate();
+  if (!violations.empty()) throw InputError(fmt::format("{}", fmt::join(violations, "; ")));
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    if (samples.contains(colors[i].name)) RequireDistinct(model->colors, i);
+  }
+  return report;
 }
 
 std::vector<ColorOverlap> ColorOverlaps(const ColorModel& model, std::size_t color) {

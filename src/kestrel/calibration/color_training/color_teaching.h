@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "kestrel/calibration/color_training/marked_pixels.h"
 #include "kestrel/vision/objects/color/color_grid.h"
 #include "kestrel/vision/objects/color/color_model.h"
+#include "kestrel/vision/objects/object_model.h"
 
 namespace kestrel {
 
@@ -18,6 +20,13 @@ namespace kestrel {
 // for fewer than ten wanted pixels.
 ColorMixture TeachColor(const std::string& color, std::span<const FrameMarks> marks,
                         double max_distance);
+
+// Replaces colours of a model by mixtures (ChooseColorMixture) of samples, which are given by the
+// colour's name. Returns a line for people about each, and about what its samples lack. Throws
+// InputError for a name that the model does not have, for too few samples, and when the new model
+// is not valid or its colours cannot be distinguished.
+std::vector<std::string> ReplaceColors(const std::map<std::string, std::vector<Hsv>>& samples,
+                                       int components, ObjectModel* model);
 
 // The overlap of two colours of a model; a pixel's colour is uncertain there.
 struct ColorOverlap {

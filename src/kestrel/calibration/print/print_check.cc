@@ -3,7 +3,10 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "kestrel/calibration/print/pattern_print.h"
+#include "kestrel/core/base/error.h"
 
 namespace kestrel {
 namespace {
@@ -82,6 +85,41 @@ std::vector<CheckedDimension> CheckPrint(const LandingPattern& configured,
     dimensions.push_back(CheckArmsWithoutEnds(configured, print.pixel_m));
   }
   return dimensions;
+}
+
+std::string DimensionsTable(const std::vector<CheckedDimension>& dimensions) {
+  std::string table =
+      fmt::format("{:<18} {:>13} {:>13} {:>12}\n", "", "configured", "measured", "tolerance");
+  const auto millimetres = [](double length_m) { return fmt::format("{:.1f} mm", 1e3 * length_m); };
+  for (const CheckedDimension& dimension : dimensions) {
+    const bool is_measured = dimension.measured.has_value();
+    table += fmt::format(
+        "{:<18} {:>13} {:>13} {:>12}  {}\n", dimension.option, millimetres(dimension.configured_m),
+        is_measured ? millimetres(dimension.measured->value_m) : "no end",
+        is_measured ? millimetres(dimension.tolerance_m()) : "", ToString(dimension.verdict));
+  }
+  return table;
+}
+
+void RequireAsConfigured(const std::string& photo,
+                         const std::vector<CheckedDimension>& dimensions) {
+  std::string wrong, settings;
+  bool is_coarse = false;
+  for (const CheckedDimension& dimension : dimensions) {
+    is_coarse = is_coarse || dimension.verdict == PrintVerdict::kTooCoarse;
+    if (dimension.verdict != PrintVerdict::kWrong) continue;
+    wrong += (wrong.empty() ? "" : ", ") + dimension.option;
+    if (!dimension.measured) continue;
+    settings += fmt::format(" --set landing.detector.pattern.{}={:.4f}", dimension.option,
+                            dimension.measured->value_m);
+  }
+  if (!wrong.empty()) {
+    throw InputError(fmt::format("{}: not as configured: {}; print again at 100 %{}", photo, wrong,
+                                 settings.empty() ? "" : ", or say what is there:" + settings));
+  }
+  if (is_coarse) {
+    throw InputError(photo + ": too coarse to tell: photograph the print from nearer");
+  }
 }
 
 }  // namespace kestrel

@@ -44,4 +44,11 @@ std::vector<CheckedDimension> CheckPrint(const LandingPattern& configured,
                                          const PrintMeasurement& print,
                                          const std::optional<PrintScale>& scale);
 
+// Returns a table of the dimensions for people, a line each, in mm.
+std::string DimensionsTable(const std::vector<CheckedDimension>& dimensions);
+
+// Throws InputError when a dimension is not as configured or cannot be measured. The message names
+// it and the settings that describe the print. 'photo': name of the photograph.
+void RequireAsConfigured(const std::string& photo, const std::vector<CheckedDimension>& dimensions);
+
 }  // namespace kestrel

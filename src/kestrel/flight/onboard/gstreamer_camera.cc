@@ -56,7 +56,7 @@ GstreamerCamera::GstreamerCamera(const std::string& camera, const CameraIntrinsi
   Open();
   const Time deadline = Now() + kFirstFrame;
   while (!first_ && Now() < deadline) first_ = TakeFrame(deadline - Now());
-  if (!first_) throw InputError(camera + ": no frame came within 10 s");
+  if (!first_) throw InputError(camera + ": no frame within 10 s");
 }
 
 GstreamerCamera::~GstreamerCamera() = default;
@@ -131,7 +131,7 @@ std::optional<Event> GstreamerCamera::TakeFrame(Duration timeout) {
   }
   GstVideoInfo info;
   if (gst_video_info_from_caps(&info, gst_sample_get_caps(sample.get())) == FALSE) {
-    throw InputError(camera_ + ": gives no images");
+    throw InputError(camera_ + ": no images received");
   }
   CheckImageSize(calibration_, info.width, info.height, camera_);
   const std::uint64_t missed = pipeline_->MissedBefore(sample.get());

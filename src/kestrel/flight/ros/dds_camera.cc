@@ -52,7 +52,8 @@ DdsCamera::DdsCamera(std::shared_ptr<Ros2Node> node, DdsCameraOptions options,
   source_->Begin(options_.camera ? *options_.camera : calibration_->intrinsics);
   has_poses_ = source_->has_poses();
   if (std::chrono::abs(-to_stamps() + RosTimeAhead()) > kLiveStamps) {
-    tell(fmt::format("{}: the stamps are not of now: they count from the first one on", name_));
+    tell(fmt::format(
+        "{}: the stamps are not of the present time: times are counted from the first one", name_));
   }
 }
 
@@ -83,9 +84,8 @@ std::vector<BagTopic> DdsCamera::FindTopics() const {
       std::vector<std::string> names;
       names.reserve(topics.size());
       for (const BagTopic& topic : topics) names.push_back(topic.name);
-      throw InputError(fmt::format("{}: nobody publishes that in this domain, expected one of: {}",
-                                   name_,
-                                   names.empty() ? "(nobody publishes anything that can be read)"
+      throw InputError(fmt::format("{}: no publisher in this domain, expected one of: {}", name_,
+                                   names.empty() ? "(there is no topic that can be read)"
                                                  : fmt::format("{}", fmt::join(names, ", "))));
     }
     std::this_thread::sleep_for(kTick);
@@ -101,11 +101,12 @@ bool DdsCamera::HasAll(const BagTopics& chosen) const {
 
 void DdsCamera::RequireAll(const BagTopics& chosen) const {
   if (!source_->has_images()) {
-    throw InputError(error().empty() ? name_ + ": no image came, expected some" : error());
+    throw InputError(error().empty() ? name_ + ": no images received" : error());
   }
   if (source_->has_camera_info() || options_.camera) return;
   if (chosen.camera_info) {
-    throw InputError(name_ + ": no camera_info came, expected the calibration; or --camera FILE");
+    throw InputError(name_ +
+                     ": no camera_info received, expected the calibration; or --camera FILE");
   }
   throw InputError(name_ +
                    ": no topic of sensor_msgs/CameraInfo goes with it, expected one beside "

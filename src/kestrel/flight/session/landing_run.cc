@@ -43,8 +43,8 @@ std::string LandingRun::Warning() const {
   const auto excess = pipeline_.contradictions().Altitude();
   if (!excess) return "";
   const std::string what = fmt::format(
-      "the altitude told is {:.1f} m {} what the pattern shows (median of {} frames, standard "
-      "deviation {:.1f} m): ",
+      "the given altitude is {:.1f} m {} the one that the pattern shows (median of {} frames, "
+      "standard deviation {:.1f} m): ",
       std::abs(excess->difference), excess->difference > 0 ? "above" : "below", excess->detections,
       excess->sigma);
   if (has_world_) {

@@ -39,6 +39,12 @@ std::unique_ptr<FrameSource> OpenFrames(const RecordingChoice& choice) {
   return OpenSourceOrBag(choice.sources, choice.format, choice.bag);
 }
 
+std::vector<PoseSample> RequirePoses(const FrameSource& source, const std::string& name) {
+  std::vector<PoseSample> poses = source.poses();
+  if (!poses.empty()) return poses;
+  throw InputError(name + ": has no poses of the UAV, expected nav0/data.csv or a topic");
+}
+
 OpenedSource OpenRecording(const RecordingChoice& choice) {
   OpenedSource opened{OpenFrames(choice), {}};
   opened.calibration = FindCalibration(*opened.source, choice);

@@ -34,6 +34,10 @@ struct OpenedSource {
 // Opens a recording without looking for its calibration. Throws InputError as OpenSourceOrBag does.
 std::unique_ptr<FrameSource> OpenFrames(const RecordingChoice& choice);
 
+// Returns the poses of the UAV in a recording. Throws InputError when there are none. 'name': of
+// the recording, for the error.
+std::vector<PoseSample> RequirePoses(const FrameSource& source, const std::string& name);
+
 // Opens a recording with the calibration of the file, or its own. A file without a mount gets the
 // source's, and its clock offset. Tells 'bag.tell' when there are poses but no mount. Throws
 // InputError when there is no calibration, or when source or calibration are not valid.

@@ -33,7 +33,7 @@ struct SimulatedUavOptions {
   static void Visit(Self& self, Visitor&& visitor) {
     visitor.Group("multicopter", self.multicopter);
     visitor.Group("wind", self.wind);
-    visitor("leg_m", self.leg_m, "m", "from the body's origin down to its feet");
+    visitor("leg_m", self.leg_m, "m", "length from the body's origin down to its feet");
   }
   std::vector<std::string> Validate() const;
 };

@@ -48,12 +48,12 @@ struct TouchdownOptions {
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("start_altitude_m", self.start_altitude_m, "m", "height above ground at the start");
     visitor("start_distance_m", self.start_distance_m, "m",
-            "from the start to the place where the vehicle passes");
+            "distance from the start to the place where the vehicle passes");
     visitor("pass_min_s", self.pass_min_s, "s", "earliest time at which it passes there");
     visitor("pass_max_s", self.pass_max_s, "s", "latest time at which it passes there");
     visitor("processing_delay_s", self.processing_delay_s, "s",
-            "from the middle of an exposure to the result");
-    visitor("leg_m", self.leg_m, "m", "from the body's origin down to its feet");
+            "delay from the middle of an exposure to the result");
+    visitor("leg_m", self.leg_m, "m", "length from the body's origin down to its feet");
     visitor("feet_radius_m", self.feet_radius_m, "m", "room that the feet need on the board");
     visitor("max_slip_mps", self.max_slip_mps, "m/s", "horizontal speed at which it stays there");
     visitor("max_sink_mps", self.max_sink_mps, "m/s", "largest vertical speed that the legs stand");

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kestrel/app/console/console_options.h"
+#include "kestrel/app/options/fly_options.h"
+#include "kestrel/comms/team/team_link.h"
+#include "kestrel/flight/ros/dds_options.h"
+#include "kestrel/vision/pipeline/hunt_pipeline.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
+
+namespace kestrel {
+
+// The options of all subcommands, as `kestrel config` prints and --config reads them.
+struct KestrelOptions {
+  LandingPipelineOptions landing;
+  HuntPipelineOptions hunt;
+  FlyOptions fly;
+  ConsoleOptions console;
+  TeamLinkOptions team;
+  DdsOptions dds;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor.Group("landing", self.landing);
+    visitor.Group("hunt", self.hunt);
+    visitor.Group("fly", self.fly);
+    visitor.Group("console", self.console);
+    visitor.Group("team", self.team);
+    visitor.Group("dds", self.dds);
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// Returns the defaults, changed first by the file (if not empty) and then by the settings
+// "key=value". Throws InputError when one of them or the result is not valid.
+KestrelOptions ReadKestrelOptions(const std::string& config_file,
+                                  const std::vector<std::string>& settings);
+
+}  // namespace kestrel

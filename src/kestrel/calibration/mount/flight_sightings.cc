@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/calibration/mount/flight_sightings.h"
+
+#include <cmath>
+
+#include "kestrel/core/base/error.h"
+
+namespace kestrel {
+
+MountAndClock GivenMountAndClock(const CameraCalibration& calibration, const std::string& file) {
+  if (!calibration.body_from_camera) {
+    throw InputError(file +
+                     ": the calibration has no mount, expected T_BS, T_cam_imu or, in a bag, tf to "
+                     "start from");
+  }
+  return {*calibration.body_from_camera,
+          ToSeconds(calibration.clock_offset.value_or(Duration::zero()))};
+}
+
+void SetMountAndClock(const MountAndClock& estimate, CameraCalibration* calibration) {
+  calibration->body_from_camera = estimate.body_from_camera;
+  calibration->clock_offset = DurationFromSeconds(estimate.clock_offset_s);
+}
+
+FlightSightings::FlightSightings(const CameraIntrinsics& camera,
+                                 const LandingPipelineOptions& options)
+    : detector_(CameraModel(camera), options.detector), noise_(options.noise) {}
+
+void FlightSightings::Add(const cv::Mat& image, Time time) {
+  const LandingReport report = detector_.Detect(image, {}, workspace_);
+  if (!report.detection) return;
+  const RigidTransform& pose = report.detection->camera_from_pattern;
+  const Eigen::Matrix3d covariance =
+      CovarianceInWorld(report.detection->covariance.topLeftCorner<3, 3>(), pose.translation,
+                        Eigen::Quaterniond::Identity(), noise_);
+  sightings_.push_back({time, pose.translation, std::sqrt(covariance.trace() / 3)});
+  places_.push_back({{static_cast<float>(report.detection->center_px.x()),
+                      static_cast<float>(report.detection->center_px.y())},
+                     pose.Inverse().translation.z()});
+}
+
+}  // namespace kestrel

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/io/recording/calibration_output.h"
+
+#include <filesystem>
+#include <iostream>
+
+#include "kestrel/io/recording/euroc_text.h"
+#include "kestrel/io/recording/output_folder.h"
+
+namespace kestrel {
+
+void WriteCalibration(const CameraCalibration& calibration, double rate_hz, const std::string& file,
+                      bool force) {
+  const std::string text = EurocCalibrationText(calibration, rate_hz);
+  if (file.empty()) {
+    std::cout << text << std::flush;
+    return;
+  }
+  const std::filesystem::path path(file);
+  OutputFolder(path.has_parent_path() ? path.parent_path() : ".", force).OpenText(path.filename())
+      << text;
+}
+
+}  // namespace kestrel
