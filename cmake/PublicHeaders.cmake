@@ -32,6 +32,7 @@ set(KESTREL_PUBLIC_HEADERS
     io/recording/open_source.h
     io/bags/open_recording.h
     flight/session/asynchronous_sink.h
+    flight/session/flight_end.h
     flight/session/flight_report.h
     flight/session/hunt_run.h
     flight/session/landing_run.h
