@@ -132,7 +132,7 @@ TEST_F(FailingSink, TheOnlySinkThrowsAndTheSummarySaysIt) {
   ThrowingSink sink(ThrowingSink::kFrame);
   DrawnCamera camera(kSessionFrames, PatternImage, 3);
   LiveSession session(LandingParts(&camera, &sink), SessionOptions());
-  EXPECT_EQ(session.Run([] { return false; }), FlightEnd::kSourceEnded);
+  EXPECT_EQ(session.Run([] { return false; }).outcome, FlightOutcome::kSourceEnded);
   EXPECT_GT(std::stoul(session.State()), kFailsAt);
   EXPECT_THAT(session.Summary(), HasSubstr("has failed: the sink is broken"));
 }

@@ -163,7 +163,7 @@ TEST(WholeSession, IsStartedAndStoppedSeveralTimes) {
       return false;
     });
     all.sinks.Finish();
-    EXPECT_EQ(end, FlightEnd::kStopped);
+    EXPECT_EQ(end.outcome, FlightOutcome::kStopped);
     const Witness::Seen seen = all.witness->seen();
     EXPECT_GT(seen.frames.size(), 10u);
     EXPECT_GT(seen.found, 5) << "of " << seen.frames.size();
@@ -188,7 +188,7 @@ TEST(WholeSession, MayBeStoppedAtOnce) {
     LiveSessionParts parts = LandingParts(&camera, &all.sinks);
     parts.record = folder / std::to_string(round);
     LiveSession session(parts, SessionOptions());
-    EXPECT_EQ(session.Run([] { return true; }), FlightEnd::kStopped);
+    EXPECT_EQ(session.Run([] { return true; }).outcome, FlightOutcome::kStopped);
     all.sinks.Finish();
   }
 }

@@ -75,6 +75,10 @@ export interface Status {
   state: string;
   reason: string;
   recording: boolean;
+  /** The flight has ended; the reason says how. */
+  over: boolean;
+  /** Folder in which an ended flight is recorded; empty: none. */
+  replay: string;
 }
 
 /** World frame: x east, y north, m; the covariance is xx, xy, yy. */
@@ -122,6 +126,16 @@ export interface Check {
 export interface Health {
   kind: "health";
   checks: Check[];
+}
+
+/** The vehicle, for the head of the page, and the used parts of the limits (0 to 1). */
+export interface Vehicle {
+  kind: "vehicle";
+  facts: Check[];
+  /** Empty while guidance does not fly. */
+  limits: { limit: string; share: number }[];
+  /** Why the target cannot be followed; empty: it can. */
+  cannot_follow: string;
 }
 
 /** The checks of `kestrel doctor` that can be made in flight. */
@@ -208,6 +222,7 @@ export type ServerMessage =
   | Status
   | MapMessage
   | TeamMessage
+  | Vehicle
   | Health
   | Doctor
   | EventMessage

@@ -20,6 +20,7 @@ import type {
   Status,
   TeamMessage,
   Timeline,
+  Vehicle,
 } from "./protocol";
 import { SeriesBuffer } from "./series_buffer";
 
@@ -38,6 +39,7 @@ export interface State {
   map: MapMessage | null;
   team: TeamMessage | null;
   health: Health | null;
+  vehicle: Vehicle | null;
   doctor: Doctor | null;
   events: EventMessage[];
   timeline: Timeline | null;
@@ -80,6 +82,7 @@ export function initialState(): State {
     map: null,
     team: null,
     health: null,
+    vehicle: null,
     doctor: null,
     events: [],
     timeline: null,
@@ -119,6 +122,8 @@ export function withMessage(state: State, message: ServerMessage): State {
         track: [],
         map: null,
         team: null,
+        status: null,
+        vehicle: null,
         health: null,
         doctor: null,
         timeline: null,
@@ -144,6 +149,8 @@ export function withMessage(state: State, message: ServerMessage): State {
       return { ...state, team: message };
     case "health":
       return { ...state, health: message };
+    case "vehicle":
+      return { ...state, vehicle: message };
     case "doctor":
       return { ...state, doctor: message };
     case "event":

@@ -31,6 +31,14 @@ function mapAt(x: number): MapMessage {
 }
 
 describe("store", () => {
+  test("what a flight said last stays until another server begins", () => {
+    const over = { kind: "status", state: "flight over", reason: "landed", recording: false, over: true, replay: "" } as const;
+    let state = withMessage(withMessage(initialState(), hello), over);
+    state = { ...state, connection: "lost" };
+    expect(state.status?.over).toBe(true);
+    expect(withMessage(state, hello).status).toBeNull();
+  });
+
   test("a server that comes back begins anew", () => {
     let state = withMessage(initialState(), hello);
     state = withMessage(state, { kind: "event", time: "1", level: "info", text: "old" });

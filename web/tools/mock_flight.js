@@ -55,12 +55,12 @@ export function shapesAt(flight, hasSecond) {
   ];
   if (flight.t > 3) shapes.push({ layer: "prediction", label: "", outline: circle(u + 4, v - 3, 0.65 * scale) });
   if (flight.isSeen) {
-    shapes.push({ layer: "detection", label: "quadrants 0.93", outline: circle(u, v, 0.5 * scale) });
+    shapes.push({ layer: "detection", label: "whole pattern, 93 %", outline: circle(u, v, 0.5 * scale) });
     shapes.push({ layer: "detection", label: "", outline: [u, v] });
   }
   const first = shapes.map((shape) => ({ ...shape, run: 1 }));
   if (!hasSecond || !flight.isSeen) return first;
-  const second = { layer: "detection", label: "lines 0.91", outline: circle(u + 3, v + 2, 0.47 * scale), run: 2 };
+  const second = { layer: "detection", label: "pattern, by the edges of its cross, 91 %", outline: circle(u + 3, v + 2, 0.47 * scale), run: 2 };
   return [...first, second];
 }
 

@@ -129,7 +129,7 @@ class Client {
   findings(flight) {
     const facts = (isSeen, quality) => [
       { name: "found", value: isSeen ? "yes" : "no, ring: not round" },
-      { name: "method", value: isSeen ? "quadrants" : "" },
+      { name: "method", value: isSeen ? "whole pattern" : "" },
       { name: "quality", value: isSeen ? quality : "" },
     ];
     const runs = [facts(flight.isSeen, "0.93"), facts(flight.isSeen && this.frame % 60 >= 12, "0.91")];
@@ -194,7 +194,8 @@ class Client {
     const flight = flightAt(this.frame / framesPerSecond);
     const [state, reason] = stateAt(flight);
     const offset = Math.hypot(...flight.offset);
-    this.send({ kind: "status", state, reason, recording: this.isRecording });
+    this.send({ kind: "status", state, reason, recording: this.isRecording, over: false, replay: "" });
+    if (!this.isReplay) this.send(vehicleAt(flight));
     const quality = flight.isSeen ? 0.93 + 0.03 * Math.sin(3 * flight.t) : null;
     const detect = 1.6 + 0.4 * Math.sin(7 * flight.t);
     const values = [flight.altitude, offset, 0.8, quality, detect, 31 + 4 * Math.sin(flight.t)];
@@ -253,6 +254,27 @@ function mapOf(flight) {
 }
 
 // What a UAV of a team that hunts for objects would hear; the landing has it on its map as well.
+/** A multicopter that guidance flies down. */
+function vehicleAt(flight) {
+  const fact = (name, measured, verdict = "good") => ({ name, verdict, measured, advice: "" });
+  return {
+    kind: "vehicle",
+    facts: [
+      fact("mode", "GUIDED"),
+      fact("motors", "armed"),
+      fact("battery", "14.9 V, 22 %", "doubtful"),
+      fact("GPS", "fix, 14 satellites"),
+      fact("position", "trusted"),
+    ],
+    limits: [
+      { limit: "lean", share: Math.min(1, 0.3 + flight.offset[0] ** 2 / 6) },
+      { limit: "speed", share: 0.42 },
+      { limit: "climb", share: 0.6 },
+    ],
+    cannot_follow: flight.t > 14 && flight.t < 16 ? "cannot keep up: needs 54 deg of lean, the limit is 35" : "",
+  };
+}
+
 function team() {
   const known = (label, position, uavs, holder) => ({
     label,

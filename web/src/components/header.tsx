@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { nextTheme, takeSnapshot, toggleHelp, toggleRecording } from "../actions";
+import type { Status } from "../protocol";
 import type { ConnectionState } from "../store";
 import { useClock, useStore } from "../use_store";
 
@@ -10,11 +11,12 @@ const connectionInWords: Record<ConnectionState, string> = {
   refused: "The token is not known any more: open the link that the program prints",
 };
 
-/** State in words (the last of them is what the vision says), the newest number of each series, and what can be done. */
+/** State in words (the last of them is what the vision says), the vehicle, the newest number of each series, and what can be done. */
 export function Header() {
   return (
     <header>
       <State />
+      <VehicleFacts />
       <Numbers />
       <Actions />
     </header>
@@ -26,6 +28,8 @@ function State() {
   const title = useStore((state) => state.hello?.title);
   const status = useStore((state) => state.status);
   const isOpen = connection === "open";
+  // The program ends with the flight: what is gone then is no fault.
+  if (status?.over) return <FlightOver title={title ?? "Kestrel"} status={status} />;
   return (
     <div class="state" data-state={isOpen ? status?.state.split(", ").at(-1) : "offline"}>
       <h1>{title ?? "Kestrel"}</h1>
@@ -33,6 +37,50 @@ function State() {
         {isOpen ? (status?.state ?? "waiting") : connectionInWords[connection]}
       </p>
       <p class="state-reason">{isOpen ? status?.reason : ""}</p>
+    </div>
+  );
+}
+
+function FlightOver({ title, status }: { title: string; status: Status }) {
+  return (
+    <div class="state" data-state="over">
+      <h1>{title}</h1>
+      <p class="state-word" role="status">
+        Flight over: {status.reason}
+      </p>
+      <p class="state-reason">
+        {status.replay === "" ? (
+          "It was not recorded: fly with --record to see it again"
+        ) : (
+          <>
+            See it again: <code>kestrel console {status.replay}</code>, then <a href="/">open its replay</a>
+          </>
+        )}
+      </p>
+    </div>
+  );
+}
+
+/** Mode, battery and so on as the autopilot reports them, and how much of the limits guidance uses. */
+function VehicleFacts() {
+  const vehicle = useStore((state) => state.vehicle);
+  if (!vehicle) return null;
+  return (
+    <div class="vehicle" role="group" aria-label="Vehicle">
+      <ul>
+        {vehicle.facts.map((fact) => (
+          <li key={fact.name} data-verdict={fact.verdict}>
+            {fact.name} <b>{fact.measured}</b>
+            {fact.verdict !== "good" && <span class="unseen"> ({fact.verdict})</span>}
+          </li>
+        ))}
+        {vehicle.limits.map(({ limit, share }) => (
+          <li key={limit} data-verdict={share < 0.95 ? "good" : "doubtful"}>
+            {limit} <b>{Math.round(100 * share)} %</b> <meter min={0} max={1} high={0.95} value={share} aria-label={`${limit}, part of the limit`} />
+          </li>
+        ))}
+      </ul>
+      {vehicle.cannot_follow !== "" && <p role="alert">{vehicle.cannot_follow}</p>}
     </div>
   );
 }

@@ -98,6 +98,7 @@ class DoctorVisit {
     if (flight.profile != "auto") use.profile = ParseLinkProfile(flight.profile);
     use.guides = arguments_.flight.guide;
     if (arguments_.moving_mps > 0) use.target_mps = arguments_.moving_mps;
+    use.tilt_deg = options_.fly.flight.guidance.limits.max_tilt_deg;
     use.sends_distance = options_.fly.flight.messages.sends_distance;
     use.attitude_rate_hz = options_.fly.autopilot.attitude_rate_hz;
     use.position_rate_hz = options_.fly.autopilot.position_rate_hz;

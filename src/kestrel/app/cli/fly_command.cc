@@ -63,6 +63,7 @@ class Flight {
         options_(arguments.ReadOptions()),
         source_(arguments_.source, options_) {
     source_.Open(arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray, arguments.loop);
+    RequireAutopilot();
     log_ = sinks_.Add(std::make_unique<FlightLog>());
     OpenConsole();
     OpenTeam();
@@ -87,7 +88,7 @@ class Flight {
     if (console_ != nullptr) console_->Answer(Requests());
     if (autopilot_.simulated) autopilot_.simulated->Start();
     Time next_state = Now();
-    const FlightEnd end = session_->Run([&] {
+    FlightEnd end = session_->Run([&] {
       log_->Show();
       if (team_) ShareMap();
       if (Now() >= next_state) {
@@ -97,11 +98,18 @@ class Flight {
       return WasInterrupted();
     });
     if (autopilot_.simulated) autopilot_.simulated->Stop();
-    Finish(end);
+    Finish();
     return end;
   }
 
  private:
+  // A simulated camera renders where the autopilot says that the UAV is: without one, nothing.
+  void RequireAutopilot() const {
+    const std::string& source = arguments_.source.sources.front();
+    if (!source.starts_with("sim:") || !arguments_.autopilot.empty()) return;
+    throw WrongUsage(source + ": expected --autopilot URL, as sim:ardupilot or sim:px4");
+  }
+
   void Say(const std::string& text, EventLevel level = EventLevel::kInfo) {
     sinks_.Take(SessionEvent{Now(), level, text});
   }
@@ -269,13 +277,12 @@ class Flight {
   }
 
   // Everything that waits is written; then all that is known is said.
-  void Finish(FlightEnd end) {
+  void Finish() {
     if (team_) LeaveTeam();
     sinks_.Finish();
     log_->Show();
     fmt::print(stderr, "{}", session_->Summary());
     if (autopilot_.simulated) fmt::print(stderr, "{}", InWords(autopilot_.simulated->result()));
-    if (end == FlightEnd::kLanded) fmt::print(stderr, "landed\n");
     if (team_) fmt::print(stderr, "{}\n", team_->Found());
   }
 
@@ -294,9 +301,9 @@ class Flight {
 
 void RunFly(const FlyArguments& arguments) {
   Flight flight(arguments);
-  if (flight.Run() == FlightEnd::kFailed) {
-    throw FlightFailed("the flight ended because camera or autopilot failed for good");
-  }
+  const FlightEnd end = flight.Run();
+  if (ExitStatus(end) != 0) throw BadFlightEnd(end);
+  fmt::print(stderr, "{}\n", InWords(end));
 }
 
 }  // namespace

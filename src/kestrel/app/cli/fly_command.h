@@ -5,16 +5,30 @@
 
 #include <CLI/CLI.hpp>
 
+#include "kestrel/flight/session/flight_end.h"
+
 namespace kestrel {
 
-// `kestrel fly`: reads camera and autopilot, reports the landing target and records everything. The
-// exit status is 3 (see FlightFailed) when camera or autopilot failed for good.
+// `kestrel fly`: reads camera and autopilot, reports the landing target and records everything. Its
+// callback throws BadFlightEnd when the flight did not end as it should.
 void AddFlyCommand(CLI::App* app);
 
-// Ends a flight because something failed for good; what() says what.
-class FlightFailed : public std::runtime_error {
+// Arguments that are valid alone but not together; what() is one line.
+class WrongUsage : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+// A flight that did not end on the pattern; what() is its end in words.
+class BadFlightEnd : public std::runtime_error {
+ public:
+  explicit BadFlightEnd(const FlightEnd& end)
+      : std::runtime_error(InWords(end)), status_(ExitStatus(end)) {}
+
+  int status() const { return status_; }  // exit status of the program
+
+ private:
+  int status_;
 };
 
 }  // namespace kestrel

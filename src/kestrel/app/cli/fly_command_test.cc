@@ -61,6 +61,8 @@ TEST_F(FlyCommandTest, ASimulatedArduPilotLandsByWhatItIsTold) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("pattern found"), HasSubstr("landed")));
   EXPECT_LT(MissOf(outcome), 0.15) << outcome.err;
   EXPECT_TRUE(fs::exists(folder_ / "out/landing_track.csv"));
+  EXPECT_THAT(ReadFile(folder_ / "out/flight_end.csv"),
+              AllOf(HasSubstr("on pattern,0."), HasSubstr("from the centre\"")));
   EXPECT_GT(fs::file_size(flight + "/mavlink.tlog"), 10'000u);
   ExpectSameTimes(folder_ / "flight.mcap", folder_ / "out/landing_detections.csv");
   // The flight's record is a recording with truth.
@@ -82,6 +84,13 @@ TEST_F(FlyCommandTest, GuidesASimulatedPx4OntoACar) {
       Succeed(std::string("fly sim:figure8 --autopilot sim:px4 --guide") + kNear);
   EXPECT_LT(MissOf(outcome), 0.5) << outcome.err;
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("descend: "), HasSubstr("landed: contact")));
+}
+
+// ArduPilot's own landing trails behind what drives in a curve.
+TEST_F(FlyCommandTest, LandedBesideThePatternIsNoSuccess) {
+  const Outcome outcome = Run(std::string("fly sim:figure8 --autopilot sim:ardupilot") + kNear);
+  EXPECT_EQ(outcome.status, 4) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("drive straight"), HasSubstr("kestrel: ")));
 }
 
 TEST_F(FlyCommandTest, PlaysARecordingInRealTime) {
@@ -109,6 +118,17 @@ TEST_F(FlyCommandTest, FaultsAreNamed) {
   fs::permissions(key, fs::perms::owner_read | fs::perms::others_read);
   ExpectInputError(source + "sim:ardupilot --signing-key " + key, key);
   EXPECT_EQ(Run(source + "sim:ardupilot --profile betaflight").status, 2);
+  const Outcome blind = Run("fly sim:standing");
+  EXPECT_EQ(blind.status, 2);
+  EXPECT_THAT(blind.err, HasSubstr("expected --autopilot URL"));
+  EXPECT_EQ(Lines(blind.err), 1);
+  const std::string camera = folder_.Write("camera.yaml",
+                                           "camera_model: pinhole\nintrinsics: [90, 90, 32, 24]\n"
+                                           "resolution: [64, 48]\ndistortion_model: equidistant\n"
+                                           "distortion_coefficients: [0, 0, 0, 0]\n");
+  const Outcome pipeline = Run("fly 'udpsrc port=99999 ! filesrc' --camera " + camera);
+  EXPECT_EQ(pipeline.status, 1);
+  EXPECT_EQ(Lines(pipeline.err), 1) << pipeline.err;
 }
 
 }  // namespace

@@ -8,21 +8,24 @@
 
 #include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/fly_command.h"
+#include "kestrel/io/recording/silence_gstreamer.h"
 #include "kestrel/version.h"
 
 namespace {
 
 constexpr int kInputAtFault = 1;
 constexpr int kWrongUsage = 2;
-constexpr int kFlightFailed = 3;
 
-// Errors are reported once and in our words; those of OpenCV would bury them.
-void SilenceOpenCv() { cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); }
+// Errors are reported once and in our words; those of OpenCV and GStreamer would bury them.
+void SilenceLibraries() {
+  kestrel::SilenceGstreamer();
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  SilenceOpenCv();
+  SilenceLibraries();
   CLI::App app("Kestrel gives UAVs eyes for landing on moving targets.", "kestrel");
   app.set_version_flag("--version", fmt::format("kestrel {}", kestrel::kVersion));
   app.require_subcommand(1);
@@ -50,9 +53,12 @@ int main(int argc, char** argv) {
     }
     app.exit(error);
     return kWrongUsage;
-  } catch (const kestrel::FlightFailed& failure) {
-    fmt::print(stderr, "kestrel: {}\n", failure.what());
-    return kFlightFailed;
+  } catch (const kestrel::WrongUsage& error) {
+    fmt::print(stderr, "kestrel: {}\n", error.what());
+    return kWrongUsage;
+  } catch (const kestrel::BadFlightEnd& end) {
+    fmt::print(stderr, "kestrel: {}\n", end.what());
+    return end.status();
   } catch (const std::exception& error) {
     fmt::print(stderr, "kestrel: {}\n", error.what());
     return kInputAtFault;

@@ -71,6 +71,8 @@ struct ConsoleStatus {
   std::string state;   // as "searching", "tracking", "landing"
   std::string reason;  // why the state is no better; empty where there is nothing to say
   bool is_recording = false;
+  bool is_over = false;     // the flight has ended; 'reason' says how
+  std::string replay = {};  // folder in which an ended flight is recorded; empty: none
 
   bool operator==(const ConsoleStatus&) const = default;
 };
@@ -108,9 +110,25 @@ struct ConsoleCheck {
   std::string verdict;      // "good", "doubtful", "wrong", "not checked"
   std::string measured;     // in words
   std::string advice = {};  // what to do; empty when all is well
+
+  bool operator==(const ConsoleCheck&) const = default;
 };
 struct ConsoleHealth {
   std::vector<ConsoleCheck> checks;
+};
+// The vehicle, for the head of the page: mode, battery and so on, and the used parts of the limits.
+struct ConsoleVehicle {
+  struct Use {
+    std::string limit;  // as "lean"
+    double share = 0;   // 0 to 1
+
+    bool operator==(const Use&) const = default;
+  };
+  std::vector<ConsoleCheck> facts;
+  std::vector<Use> limits;    // empty while guidance does not fly
+  std::string cannot_follow;  // why the target cannot be followed; empty: it can
+
+  bool operator==(const ConsoleVehicle&) const = default;
 };
 // The checks of `kestrel doctor` that are possible in flight.
 struct ConsoleDoctor {
@@ -131,7 +149,7 @@ struct ConsolePlayback {
   double speed = 0;
 };
 
-// A fact about a frame in words, as "method": "quadrants".
+// A fact about a frame in words, as "method": "whole pattern".
 struct ConsoleFact {
   std::string name;
   std::string value;
@@ -174,7 +192,7 @@ using ConsoleUpdate =
     std::variant<ConsoleSample, ConsoleStatus, ConsoleMap, ConsoleHealth, SessionEvent,
                  ConsoleTimeline, ConsolePlayback, ConsoleDoctor, ConsoleOptionList,
                  ConsoleSecondRun, ConsoleFindings, ConsoleClip, ConsoleColors, ConsoleColorScores,
-                 ConsoleCalibration, ConsoleTeam>;
+                 ConsoleCalibration, ConsoleTeam, ConsoleVehicle>;
 
 // A task of the page of colours.
 using ColorJob = std::variant<ColorRequest, PendingExport>;

@@ -61,10 +61,9 @@ Json Message(const ConsoleSample& sample) {
 }
 
 Json Message(const ConsoleStatus& status) {
-  return {{"kind", "status"},
-          {"state", status.state},
-          {"reason", status.reason},
-          {"recording", status.is_recording}};
+  return {{"kind", "status"},        {"state", status.state},
+          {"reason", status.reason}, {"recording", status.is_recording},
+          {"over", status.is_over},  {"replay", status.replay}};
 }
 
 Json Message(const ConsoleMap& map) {
@@ -102,6 +101,17 @@ Json Checks(const std::vector<ConsoleCheck>& checks) {
 
 Json Message(const ConsoleHealth& health) {
   return {{"kind", "health"}, {"checks", Checks(health.checks)}};
+}
+
+Json Message(const ConsoleVehicle& vehicle) {
+  Json limits = Json::array();
+  for (const ConsoleVehicle::Use& use : vehicle.limits) {
+    limits.push_back({{"limit", use.limit}, {"share", use.share}});
+  }
+  return {{"kind", "vehicle"},
+          {"facts", Checks(vehicle.facts)},
+          {"limits", std::move(limits)},
+          {"cannot_follow", vehicle.cannot_follow}};
 }
 
 Json Message(const ConsoleDoctor& doctor) {

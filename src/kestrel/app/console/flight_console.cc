@@ -17,6 +17,7 @@ constexpr std::size_t kFrames = 2;
 constexpr std::size_t kArrivals = 256;
 constexpr Duration kCheckInterval = std::chrono::seconds(2);
 constexpr Duration kAnswerInterval = std::chrono::milliseconds(50);
+constexpr Duration kLastWords = std::chrono::milliseconds(300);
 
 ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightView& view,
                                        bool has_colors) {
@@ -62,6 +63,7 @@ class FlightConsole::Page : public SinkWriter {
     if (const auto health = health_.Update(report, Now())) feed_.Add(*health);
     report_ = report;
     ShowStatus();
+    ShowVehicle();
   }
 
   void Write(const TeamReport& report) override {
@@ -105,6 +107,13 @@ class FlightConsole::Page : public SinkWriter {
     feed_.Add(status);
   }
 
+  void ShowVehicle() {
+    const auto vehicle = VehicleOf(report_);
+    if (!vehicle || *vehicle == told_vehicle_) return;
+    told_vehicle_ = *vehicle;
+    feed_.Add(*vehicle);
+  }
+
   void ShowChecks() {
     const Time now = Now();
     if (!feed_.IsWatched() || now - examined_ < kCheckInterval) return;
@@ -127,6 +136,7 @@ class FlightConsole::Page : public SinkWriter {
   FlightReport report_;   // the newest
   ConsoleStatus vision_;  // status from the newest frame
   ConsoleStatus told_;    // the last status that the page got
+  ConsoleVehicle told_vehicle_;
 };
 
 FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& title,
@@ -163,9 +173,12 @@ void FlightConsole::TeachColors(const FlightColors& colors, const FlightView& vi
       &feed_);
 }
 
+// A page that is open gets the end of the flight before the server goes.
 void FlightConsole::Finish() {
-  is_over_ = true;
+  if (is_over_.exchange(true)) return;
   if (answering_thread_.joinable()) answering_thread_.join();
+  pictures_.Finish();
+  if (feed_.IsWatched()) std::this_thread::sleep_for(kLastWords);
 }
 
 void FlightConsole::Take(const Observation& observation) {

@@ -254,5 +254,42 @@ TEST(FlightStatusTest, SaysWhatMattersMost) {
   EXPECT_EQ(FlightStatus(state, vision), (ConsoleStatus{"blind", "the camera is gone", true}));
 }
 
+TEST(FlightStatusTest, AnEndIsTheLastWord) {
+  FlightReport report;
+  report.trouble = "the camera is gone";
+  report.recording = "flight";
+  report.end = FlightEnd{FlightOutcome::kOnPattern, 0.05};
+  const ConsoleStatus status = FlightStatus(report, {.state = "tracking", .reason = ""});
+  EXPECT_TRUE(status.is_over);
+  EXPECT_EQ(status.reason, "landed 0.05 m from the centre");
+  EXPECT_EQ(status.replay, "flight");
+}
+
+TEST(VehicleTest, ShowsWhatItsAutopilotReports) {
+  FlightReport report;
+  EXPECT_FALSE(VehicleOf(report));
+  AutopilotState& autopilot = report.autopilot.emplace();
+  EXPECT_EQ(VehicleOf(report)->facts[0], (ConsoleCheck{"mode", "wrong", "no heartbeat"}));
+  EXPECT_EQ(VehicleOf(report)->facts.size(), 2u) << "what is not reported is not shown";
+  autopilot.is_here = autopilot.is_armed = true;
+  autopilot.mode = "GUIDED";
+  autopilot.battery_v = 14.9;
+  autopilot.battery_remaining = 0.2;
+  autopilot.gnss_fix = 1;
+  autopilot.satellites = 4;
+  autopilot.has_good_position = false;
+  autopilot.limits = LimitsInUse{0.5, 0.25, 1, "needs 54 deg of lean, the limit is 35"};
+  const ConsoleVehicle vehicle = *VehicleOf(report);
+  EXPECT_THAT(vehicle.facts,
+              testing::ElementsAre(ConsoleCheck{"mode", "good", "GUIDED"},
+                                   ConsoleCheck{"motors", "good", "armed"},
+                                   ConsoleCheck{"battery", "doubtful", "14.9 V, 20 %"},
+                                   ConsoleCheck{"GPS", "wrong", "no fix, 4 satellites"},
+                                   ConsoleCheck{"position", "wrong", "not trusted"}));
+  ASSERT_EQ(vehicle.limits.size(), 3u);
+  EXPECT_EQ(vehicle.limits[2], (ConsoleVehicle::Use{"climb", 1}));
+  EXPECT_EQ(vehicle.cannot_follow, "needs 54 deg of lean, the limit is 35");
+}
+
 }  // namespace
 }  // namespace kestrel

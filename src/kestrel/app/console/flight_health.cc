@@ -65,7 +65,57 @@ ConsoleCheck RecorderCheck(const RecorderCounters& now,
                       static_cast<double>(now.bytes) / 1e6, now.dropped)};
 }
 
+ConsoleCheck BatteryFact(const AutopilotState& autopilot) {
+  constexpr double kLow = 0.25;
+  constexpr double kEmpty = 0.1;
+  ConsoleCheck fact{"battery", "good", ""};
+  if (autopilot.battery_v) fact.measured = fmt::format("{:.1f} V", *autopilot.battery_v);
+  if (!autopilot.battery_remaining) return fact;
+  const double remaining = *autopilot.battery_remaining;
+  fact.measured += fmt::format("{}{:.0f} %", autopilot.battery_v ? ", " : "", 100 * remaining);
+  if (remaining < kLow) fact.verdict = remaining < kEmpty ? "wrong" : "doubtful";
+  return fact;
+}
+
+ConsoleCheck GnssFact(const AutopilotState& autopilot) {
+  constexpr int kFlat = 2;
+  constexpr int kWithHeight = 3;
+  const int fix = *autopilot.gnss_fix;
+  ConsoleCheck fact{"GPS", "good",
+                    fix < kFlat         ? "no fix"
+                    : fix < kWithHeight ? "no height"
+                                        : "fix"};
+  if (fix < kWithHeight) fact.verdict = fix < kFlat ? "wrong" : "doubtful";
+  if (autopilot.satellites) fact.measured += fmt::format(", {} satellites", *autopilot.satellites);
+  return fact;
+}
+
 }  // namespace
+
+std::optional<ConsoleVehicle> VehicleOf(const FlightReport& report) {
+  if (!report.autopilot) return std::nullopt;
+  const AutopilotState& autopilot = *report.autopilot;
+  ConsoleVehicle vehicle;
+  vehicle.facts = {{"mode", autopilot.is_here ? "good" : "wrong",
+                    autopilot.is_here ? autopilot.mode : "no heartbeat"},
+                   {"motors", "good", autopilot.is_armed ? "armed" : "disarmed"}};
+  if (autopilot.battery_v || autopilot.battery_remaining) {
+    vehicle.facts.push_back(BatteryFact(autopilot));
+  }
+  if (autopilot.gnss_fix) vehicle.facts.push_back(GnssFact(autopilot));
+  if (autopilot.has_good_position) {
+    const bool is_good = *autopilot.has_good_position;
+    vehicle.facts.push_back(
+        {"position", is_good ? "good" : "wrong", is_good ? "trusted" : "not trusted"});
+  }
+  if (const auto& limits = autopilot.limits) {
+    vehicle.limits = {{"lean", limits->lean_share},
+                      {"speed", limits->speed_share},
+                      {"climb", limits->climb_share}};
+    vehicle.cannot_follow = limits->cannot_follow;
+  }
+  return vehicle;
+}
 
 std::optional<ConsoleHealth> FlightHealth::Update(const FlightReport& report, Time now) {
   if (checked_ && now - *checked_ < kInterval) return std::nullopt;
@@ -95,7 +145,10 @@ ConsoleHealth FlightHealth::Compare(const FlightReport& report, double interval_
 ConsoleStatus FlightStatus(const FlightReport& report, const ConsoleStatus& vision) {
   ConsoleStatus status = vision;
   status.is_recording = report.recorder.has_value();
-  if (!report.trouble.empty()) {
+  if (report.end) {
+    status = {.state = "flight over", .reason = InWords(*report.end), .is_over = true};
+    status.replay = report.recording;
+  } else if (!report.trouble.empty()) {
     status.state = "blind";
     status.reason = report.trouble;
   } else if (report.autopilot && report.autopilot->target == TargetPhase::kContact) {

@@ -29,6 +29,9 @@ class FlightHealth {
   std::optional<double> link_rate_hz_;
 };
 
+// Returns the vehicle as its autopilot reports it; nothing in a flight without an autopilot.
+std::optional<ConsoleVehicle> VehicleOf(const FlightReport& report);
+
 // Returns the state of a flight and what is in its way, in words for a pilot. 'vision': status from
 // the newest frame.
 ConsoleStatus FlightStatus(const FlightReport& report, const ConsoleStatus& vision);

@@ -75,6 +75,21 @@ std::vector<cv::Point2f> TrackOutline(const CameraModel& camera,
   });
 }
 
+// What of the pattern was recognised.
+const char* InWords(CrossMethod method) {
+  switch (method) {
+    case CrossMethod::kQuadrants:
+      return "whole pattern";
+    case CrossMethod::kThinning:
+      return "pattern, by the arms of its cross";
+    case CrossMethod::kLines:
+      return "pattern, by the edges of its cross";
+    case CrossMethod::kPartial:
+      return "part of the pattern";
+  }
+  return "";
+}
+
 std::string WhyNot(const LandingReport& report) {
   return fmt::format("{}: {}", ToString(report.reached), report.reason);
 }
@@ -139,8 +154,9 @@ std::vector<OverlayShape> LandingShapes(const LandingView& view,
   const LandingDetection& found = *observation.report.detection;
   const bool is_rejected = observation.fate == MeasurementFate::kFarFromTrack;
   const OverlayLayer layer = is_rejected ? OverlayLayer::kRejected : OverlayLayer::kDetection;
-  const std::string label = fmt::format("{} {:.2f}{}", ToString(found.method), found.quality,
-                                        is_rejected ? ", far from the track" : "");
+  const std::string label =
+      fmt::format("{}, {:.0f} %{}", InWords(found.method), 100 * found.quality,
+                  is_rejected ? ", far from the track" : "");
   const double outer_m = view.pattern.outer_radius_m();
   const double inner_m = view.pattern.inner_radius_m();
   const bool is_seen_elsewhere = found.is_misfit() && found.seen;
@@ -203,7 +219,7 @@ std::vector<ConsoleFact> LandingFacts(const LandingObservation& observation) {
             {"misfit", ""}};
   const bool is_far = observation.fate == MeasurementFate::kFarFromTrack;
   return {{"found", is_far ? "yes, but far from the track" : "yes"},
-          {"method", ToString(detection->method)},
+          {"method", InWords(detection->method)},
           {"quality", fmt::format("{:.2f}", detection->quality)},
           {"misfit", MisfitInWords(*detection)}};
 }

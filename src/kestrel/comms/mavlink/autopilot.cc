@@ -25,6 +25,14 @@ bool IsArmed(const mavlink::Heartbeat& heartbeat) {
   return (heartbeat.base_mode & mavlink::kModeFlagArmed) != 0;
 }
 
+std::optional<std::uint32_t> BootTimeIn(const mavlink::Packet& packet) {
+  if (const auto message = packet.As<mavlink::AttitudeQuaternion>()) return message->time_boot_ms;
+  if (const auto message = packet.As<mavlink::Attitude>()) return message->time_boot_ms;
+  if (const auto message = packet.As<mavlink::LocalPositionNed>()) return message->time_boot_ms;
+  if (const auto message = packet.As<mavlink::SystemTime>()) return message->time_boot_ms;
+  return std::nullopt;
+}
+
 bool IsInFailsafe(const mavlink::Heartbeat& heartbeat) {
   return heartbeat.system_status == mavlink::kStateCritical ||
          heartbeat.system_status == mavlink::kStateEmergency;
@@ -138,6 +146,9 @@ void Autopilot::HandleHeartbeat(const mavlink::Packet& packet, const mavlink::He
   Tell(is_first ? AutopilotEventKind::kHeard : AutopilotEventKind::kBack,
        fmt::format("{} (system {}) {}, {}, {}", ToString(kind_), system_,
                    is_first ? "heard" : "is back", mode_name(), is_armed() ? "armed" : "disarmed"));
+  if (is_in_failsafe()) {
+    Tell(AutopilotEventKind::kFailsafe, FailsafeInWords(kind_, heartbeat_.custom_mode));
+  }
 }
 
 void Autopilot::TellChange(const mavlink::Heartbeat& before) {
@@ -149,8 +160,7 @@ void Autopilot::TellChange(const mavlink::Heartbeat& before) {
          fmt::format("mode {}, {}", mode_name(), is_armed() ? "armed" : "disarmed"));
   }
   if (is_in_failsafe() && !IsInFailsafe(before)) {
-    Tell(AutopilotEventKind::kFailsafe,
-         fmt::format("the autopilot reports a failsafe, mode {}", mode_name()));
+    Tell(AutopilotEventKind::kFailsafe, FailsafeInWords(kind_, heartbeat_.custom_mode));
   }
 }
 
@@ -173,6 +183,7 @@ void Autopilot::HandleFromAutopilot(const mavlink::Packet& packet, Time received
   received_ = received;
   CountLost(packet);
   streams_.Count(packet.id);
+  WatchBoot(packet, received);
   if (const auto mode = packet.As<mavlink::CurrentMode>()) {
     const mavlink::Heartbeat before = heartbeat_;
     heartbeat_.custom_mode = mode->custom_mode;
@@ -284,6 +295,22 @@ void Autopilot::CountLost(const mavlink::Packet& packet) {
   sequence_ = packet.sequence;
 }
 
+// An autopilot that has started again since the message before has run for no longer than the time
+// between the two.
+void Autopilot::WatchBoot(const mavlink::Packet& packet, Time received) {
+  constexpr double kMargin_s = 2;
+  constexpr double kPerSecond = 1000;
+  const auto boot_ms = BootTimeIn(packet);
+  if (!boot_ms) return;
+  const double uptime_s = *boot_ms / kPerSecond;
+  const double before_s = boot_ms_ / kPerSecond;
+  if (uptime_s + kMargin_s < before_s && uptime_s < ToSeconds(received - stamped_) + kMargin_s) {
+    ++reboots_;
+  }
+  boot_ms_ = *boot_ms;
+  stamped_ = received;
+}
+
 // Target id 0 addresses everybody.
 bool Autopilot::IsForThis(std::uint8_t target_system, std::uint8_t target_component) const {
   return (target_system == 0 || target_system == connection_->system()) &&
@@ -374,6 +401,7 @@ void Autopilot::WantStreams() {
   streams_.WantIfThere(is_px4 ? mavlink::EstimatorStatus::kId : mavlink::EkfStatusReport::kId,
                        options_.status_rate_hz);
   streams_.WantIfThere(mavlink::SysStatus::kId, options_.status_rate_hz);
+  streams_.WantIfThere(mavlink::GpsRawInt::kId, options_.status_rate_hz);
   if (options_.wants_true_pose) {
     streams_.Want(is_px4 ? mavlink::HilStateQuaternion::kId : mavlink::SimState::kId,
                   options_.true_pose_rate_hz);
@@ -490,7 +518,20 @@ void Autopilot::SendStreamRequest(const StreamRequests::Request& request) {
   if (!is_attitude && request.id != mavlink::LocalPositionNed::kId) return;
   if (request.is_unanswered) SendOldStreamRequest(is_attitude, request.rate_hz);
   constexpr int kManyRequests = 6;
-  if (request.requests < kManyRequests) return;
+  if (request.requests >= kManyRequests) TellSlowStream(request);
+}
+
+// An autopilot without a position sends none, however fast the line is.
+void Autopilot::TellSlowStream(const StreamRequests::Request& request) {
+  const bool is_attitude = request.id == mavlink::AttitudeQuaternion::kId;
+  if (!is_attitude && request.is_unanswered && !origin()) {
+    return TellOnce(AutopilotEventKind::kNoPosition, [] {
+      return std::string(
+          "the autopilot has no position yet: its estimator has no origin; it needs GNSS or "
+          "another "
+          "source of position, and some time");
+    });
+  }
   TellOnce(AutopilotEventKind::kSlowStream, [&] {
     return fmt::format(
         "the autopilot tells its {} {:.0f} times a second, asked {} times for {:.0f}: is the line "

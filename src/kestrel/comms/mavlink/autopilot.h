@@ -92,6 +92,7 @@ enum class AutopilotEventKind {
   kTimeBackwards,      // a message is older than the one before
   kNoTimeSync,         // it does not answer TIMESYNC: its clock is known only roughly
   kSlowStream,         // it sends more slowly than requested
+  kNoPosition,         // it sends no position, because it has none
 };
 
 // An event that a pilot should know, in words. Each kind from kOtherAutopilot on is reported once.
@@ -176,7 +177,11 @@ class Autopilot {
   const ParameterReader& parameters() const { return parameters_; }
   const ParameterWriter& parameter_writes() const { return writes_; }
   const AutopilotCounters& counters() const { return counters_; }
-  int restarts() const { return restarts_; }
+  int restarts() const { return restarts_; }  // its clock began anew, or was set
+  // Number of times that it has started again: its time since boot began anew. A clock that was
+  // only set back does not count.
+  int reboots() const { return reboots_; }
+  Time stamped() const { return stamped_; }  // newest message with its time since boot
 
   // Requests this mode until an answer comes, which an event reports; the reported mode shows
   // whether it was entered. Stops at once when the autopilot enters another mode: somebody else
@@ -211,6 +216,7 @@ class Autopilot {
   void HandleTimesync(const mavlink::Timesync& message, Time received);
   void HandleAck(const mavlink::CommandAck& message);
   void CountLost(const mavlink::Packet& packet);
+  void WatchBoot(const mavlink::Packet& packet, Time received);
   void TellNotFinite(const char* what);
   void Restart();
   void CheckPresence(Time now);
@@ -218,6 +224,7 @@ class Autopilot {
   void SendRequests(Time now);
   void WantStreams();
   void WantTimesync();
+  void TellSlowStream(const StreamRequests::Request& request);
   void SendStreamRequest(const StreamRequests::Request& request);
   void SendOldStreamRequest(bool is_attitude, double rate_hz);
   void SendInterval(std::uint32_t id, double rate_hz);
@@ -261,6 +268,9 @@ class Autopilot {
   std::uint16_t text_id_ = 0;
   AutopilotCounters counters_;
   int restarts_ = 0;
+  int reboots_ = 0;
+  std::uint32_t boot_ms_ = 0;  // its time since boot at stamped_
+  Time stamped_{};
   std::uint32_t told_ = 0;  // one bit for each kind that is reported once
 };
 

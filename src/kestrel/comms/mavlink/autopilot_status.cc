@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 
 namespace kestrel {
@@ -57,6 +59,18 @@ const char* ToString(LandedState state) {
   return "";
 }
 
+std::string FailsafeInWords(AutopilotKind kind, std::uint32_t custom_mode) {
+  const std::string mode = ModeName(kind, custom_mode);
+  if (kind == AutopilotKind::kPx4) {
+    return fmt::format(
+        "the autopilot is still in its failsafe (mode {}): give another mode, e.g. Hold, then "
+        "OFFBOARD",
+        mode);
+  }
+  return fmt::format(
+      "the autopilot is in a failsafe (mode {}): see to its cause, then give GUIDED again", mode);
+}
+
 std::int64_t NanosecondsOfBoot(std::uint32_t boot_ms) {
   constexpr double kNsPerMs = 1e6;
   constexpr double kHalf_ms = 0.5;
@@ -71,6 +85,8 @@ void AutopilotStatus::Handle(const mavlink::Packet& packet, const TimeSync& cloc
     HandleRange(*range, clock);
   } else if (const auto system = packet.As<mavlink::SysStatus>()) {
     HandleSystem(*system);
+  } else if (const auto gnss = packet.As<mavlink::GpsRawInt>()) {
+    HandleGnss(*gnss);
   } else if (const auto ekf = packet.As<mavlink::EkfStatusReport>()) {
     constexpr std::uint16_t kBad = mavlink::kEstimatorConstantPosition |
                                    mavlink::kEkfUninitialized | mavlink::kEkfGpsGlitching;
@@ -98,6 +114,14 @@ void AutopilotStatus::HandleSystem(const mavlink::SysStatus& message) {
   sensors_ = AutopilotSensors{message.onboard_control_sensors_present,
                               message.onboard_control_sensors_enabled,
                               message.onboard_control_sensors_health};
+}
+
+void AutopilotStatus::HandleGnss(const mavlink::GpsRawInt& message) {
+  AutopilotGnss gnss{message.fix_type, {}};
+  if (message.satellites_visible != std::numeric_limits<std::uint8_t>::max()) {
+    gnss.satellites = message.satellites_visible;
+  }
+  gnss_ = gnss;
 }
 
 void AutopilotStatus::HandleRange(const mavlink::DistanceSensor& message, const TimeSync& clock) {

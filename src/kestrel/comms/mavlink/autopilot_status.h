@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
+#include "kestrel/comms/mavlink/autopilot_kind.h"
 #include "kestrel/comms/mavlink/global_position.h"
 #include "kestrel/comms/mavlink/messages.h"
 #include "kestrel/comms/mavlink/packet.h"
@@ -32,6 +34,12 @@ struct AutopilotBattery {
   std::optional<double> voltage_v;
   std::optional<double> current_a;
   std::optional<double> remaining;  // 0 to 1
+};
+
+// The autopilot's first GNSS receiver.
+struct AutopilotGnss {
+  int fix = 0;  // GPS_FIX_TYPE: 2: 2-D, 3: 3-D, 4: DGPS, 5 and 6: RTK; less: none
+  std::optional<int> satellites;
 };
 
 // Bits of MAV_SYS_STATUS_SENSOR.
@@ -65,11 +73,13 @@ class AutopilotStatus {
   const std::optional<GlobalPosition>& origin() const { return origin_; }  // of the local frame
   const std::optional<GlobalPosition>& home() const { return home_; }
   const std::optional<AutopilotBattery>& battery() const { return battery_; }
+  const std::optional<AutopilotGnss>& gnss() const { return gnss_; }
   const std::optional<AutopilotSensors>& sensors() const { return sensors_; }
   const std::optional<EstimatorHealth>& estimator() const { return estimator_; }
 
  private:
   void HandleSystem(const mavlink::SysStatus& message);
+  void HandleGnss(const mavlink::GpsRawInt& message);
   void HandleRange(const mavlink::DistanceSensor& message, const TimeSync& clock);
 
   std::optional<AutopilotVersion> version_;
@@ -78,9 +88,15 @@ class AutopilotStatus {
   std::optional<GlobalPosition> origin_;
   std::optional<GlobalPosition> home_;
   std::optional<AutopilotBattery> battery_;
+  std::optional<AutopilotGnss> gnss_;
   std::optional<AutopilotSensors> sensors_;
   std::optional<EstimatorHealth> estimator_;
 };
+
+// Returns why an autopilot that reports a failsafe in this mode is not flown by set-points, and
+// what the pilot has to do. PX4 stays in its failsafe, and refuses OFFBOARD, until another mode is
+// given.
+std::string FailsafeInWords(AutopilotKind kind, std::uint32_t custom_mode);
 
 // Returns the nanoseconds of a time in truncated milliseconds: half of one is added for the mean
 // loss.

@@ -119,6 +119,26 @@ TEST_F(AutopilotTest, AsksOlderAutopilotsInTheOldWay) {
   EXPECT_EQ(EventsOf(AutopilotEventKind::kSlowStream), 1);
 }
 
+TEST_F(AutopilotTest, SaysThatThereIsNoPositionYet) {
+  Start();
+  for (int i = 0; i < 2500; ++i) {
+    Pass(0.01, i % 100 == 0);
+    Say(AttitudeAt(BootMs()));
+  }
+  EXPECT_EQ(EventsOf(AutopilotEventKind::kSlowStream), 0);
+  EXPECT_EQ(EventsOf(AutopilotEventKind::kNoPosition), 1);
+  EXPECT_THAT(TextOfEvent(AutopilotEventKind::kNoPosition), HasSubstr("has no origin"));
+}
+
+TEST_F(AutopilotTest, SaysWhatAPilotHasToDoInAFailsafe) {
+  Start();
+  Say(mavlink::Heartbeat{mavlink::kTypeQuadrotor, kind_, 0, mode_, mavlink::kStateCritical, 3});
+  EXPECT_THAT(TextOfEvent(AutopilotEventKind::kFailsafe), HasSubstr("GUIDED"));
+  EXPECT_THAT(FailsafeInWords(AutopilotKind::kPx4, Px4CustomMode(4, 3)),
+              testing::AllOf(HasSubstr("LOITER"),
+                             HasSubstr("give another mode, e.g. Hold, then OFFBOARD")));
+}
+
 TEST_F(AutopilotTest, HurriesPx4ToTrustItsStamps) {
   kind_ = mavlink::kAutopilotPx4;
   Start();
@@ -172,6 +192,20 @@ TEST_F(AutopilotTest, NoticesThatItStartedAgain) {
   ASSERT_EQ(poses_.size(), 1u);
   EXPECT_NEAR(ToSeconds(poses_[0].time - now_), 0.1, 0.002);
   EXPECT_EQ(autopilot_->restarts(), 1);
+  EXPECT_EQ(autopilot_->reboots(), 1);
+}
+
+TEST_F(AutopilotTest, AClockThatIsSetBackIsNoReboot) {
+  Start();
+  Pass(3);
+  SayPose();
+  boot_ += std::chrono::seconds(20);
+  for (int i = 0; i < 5; ++i) {
+    now_ += milliseconds(20);
+    SayPose();
+  }
+  EXPECT_EQ(autopilot_->restarts(), 1);
+  EXPECT_EQ(autopilot_->reboots(), 0);
 }
 
 TEST_F(AutopilotTest, NoticesByItsStampsThatItStartedAgain) {
@@ -185,6 +219,7 @@ TEST_F(AutopilotTest, NoticesByItsStampsThatItStartedAgain) {
     SayPose();
   }
   EXPECT_EQ(autopilot_->restarts(), 1);
+  EXPECT_EQ(autopilot_->reboots(), 1);
 }
 
 TEST_F(AutopilotTest, IgnoresAMessageFromThePast) {
@@ -281,6 +316,16 @@ TEST_F(AutopilotTest, KnowsHowItsVehicleIs) {
   EXPECT_NEAR(*autopilot_->battery()->voltage_v, 15.2, 1e-9);
   EXPECT_FALSE(autopilot_->battery()->current_a);
   EXPECT_NEAR(*autopilot_->battery()->remaining, 0.41, 1e-9);
+  EXPECT_FALSE(autopilot_->status().gnss());
+  mavlink::GpsRawInt gnss;
+  gnss.fix_type = 3;
+  gnss.satellites_visible = 14;
+  Say(gnss);
+  EXPECT_EQ(autopilot_->status().gnss()->fix, 3);
+  EXPECT_EQ(autopilot_->status().gnss()->satellites, 14);
+  gnss.satellites_visible = 255;  // not known
+  Say(gnss);
+  EXPECT_FALSE(autopilot_->status().gnss()->satellites);
   mavlink::HomePosition home;
   home.latitude = 5;
   home.altitude = 584000;

@@ -62,9 +62,13 @@ class Connection {
     return SendFrame(writer_.Write(message, signing_.has_value()));
   }
 
-  // Waits at most 'timeout' for data from the other end, and passes the packets to 'handler'.
+  // Waits at most 'timeout' for data from the other end or for Wake, and passes the packets to
+  // 'handler'.
   // However much comes in, it returns soon after 'timeout'.
   void Receive(Duration timeout, const Handler& handler);
+
+  // Ends the present wait of Receive, or else the next one. Any thread.
+  void Wake() { transport_->Wake(); }
 
   // Sets the system id of this program (see ConnectionOptions::system_id).
   void SetSystem(std::uint8_t system);

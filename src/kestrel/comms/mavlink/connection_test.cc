@@ -319,5 +319,14 @@ TEST_F(SignedConnectionTest, SaysWhatIsWrongWithTheKey) {
   EXPECT_THAT(error(), testing::HasSubstr(path_));
 }
 
+// A thread that has news for the line does not let it wait for the line's patience.
+TEST(ConnectionTest, WakeEndsAWait) {
+  Connection connection("udpin://127.0.0.1:" + std::to_string(FreeLoopbackPort()), {});
+  connection.Wake();
+  const Time start = Now();
+  connection.Receive(std::chrono::seconds(30), [](const auto&, Time) {});
+  EXPECT_LT(ToSeconds(Now() - start), 15);
+}
+
 }  // namespace
 }  // namespace kestrel

@@ -18,7 +18,7 @@ constexpr auto MakeTable() {
 
 constexpr auto kTable =
     MakeTable<Heartbeat, SysStatus, SystemTime, SetMode, ParamRequestRead, ParamRequestList,
-              ParamValue, ParamSet, Attitude, AttitudeQuaternion, LocalPositionNed,
+              ParamValue, ParamSet, GpsRawInt, Attitude, AttitudeQuaternion, LocalPositionNed,
               GlobalPositionInt, GpsGlobalOrigin, RcChannels, RequestDataStream, CommandLong,
               CommandAck, SetPositionTargetLocalNed, SimState, Timesync, HilStateQuaternion,
               DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget, EkfStatusReport,
@@ -47,6 +47,7 @@ static_assert(Is<ParamRequestRead>(214, 20, 20));
 static_assert(Is<ParamRequestList>(159, 2, 2));
 static_assert(Is<ParamValue>(220, 25, 25));
 static_assert(Is<ParamSet>(168, 23, 23));
+static_assert(Is<GpsRawInt>(24, 30, 52));
 static_assert(Is<Attitude>(39, 28, 28));
 static_assert(Is<AttitudeQuaternion>(246, 32, 48));
 static_assert(Is<LocalPositionNed>(185, 28, 28));

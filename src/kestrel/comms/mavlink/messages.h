@@ -176,6 +176,48 @@ struct ParamSet {
   }
 };
 
+struct GpsRawInt {
+  static constexpr std::uint32_t kId = 24;
+  static constexpr std::string_view kName = "GPS_RAW_INT";
+  std::uint64_t time_usec = 0;
+  std::uint8_t fix_type = 0;
+  std::int32_t lat = 0;
+  std::int32_t lon = 0;
+  std::int32_t alt = 0;
+  std::uint16_t eph = 0;
+  std::uint16_t epv = 0;
+  std::uint16_t vel = 0;
+  std::uint16_t cog = 0;
+  std::uint8_t satellites_visible = 0;
+  std::int32_t alt_ellipsoid = 0;
+  std::uint32_t h_acc = 0;
+  std::uint32_t v_acc = 0;
+  std::uint32_t vel_acc = 0;
+  std::uint32_t hdg_acc = 0;
+  std::uint16_t yaw = 0;
+
+  template <class Self, class Visitor>
+  static constexpr void Visit(Self& self, Visitor&& visitor) {
+    visitor("time_usec", self.time_usec, "us");
+    visitor("fix_type", self.fix_type, "");
+    visitor("lat", self.lat, "degE7");
+    visitor("lon", self.lon, "degE7");
+    visitor("alt", self.alt, "mm");
+    visitor("eph", self.eph, "");
+    visitor("epv", self.epv, "");
+    visitor("vel", self.vel, "cm/s");
+    visitor("cog", self.cog, "cdeg");
+    visitor("satellites_visible", self.satellites_visible, "");
+    visitor.Extensions();
+    visitor("alt_ellipsoid", self.alt_ellipsoid, "mm");
+    visitor("h_acc", self.h_acc, "mm");
+    visitor("v_acc", self.v_acc, "mm");
+    visitor("vel_acc", self.vel_acc, "mm");
+    visitor("hdg_acc", self.hdg_acc, "degE5");
+    visitor("yaw", self.yaw, "cdeg");
+  }
+};
+
 struct Attitude {
   static constexpr std::uint32_t kId = 30;
   static constexpr std::string_view kName = "ATTITUDE";

@@ -41,8 +41,10 @@ std::size_t StreamTransport::Receive(Duration timeout, std::span<std::uint8_t> b
     AwaitConnection(timeout);
     return 0;
   }
-  std::array<pollfd, 2> files = {{{file_.number(), POLLIN, 0}, {listener(), POLLIN, 0}}};
+  std::array<pollfd, 3> files = {
+      {{file_.number(), POLLIN, 0}, {listener(), POLLIN, 0}, {bell().file(), POLLIN, 0}}};
   if (WaitForAny(files, timeout) <= 0) return 0;
+  if (files[2].revents != 0) bell().Silence();
   if (files[1].revents != 0) Replace();
   if (files[0].revents == 0 || !file_.is_open()) return 0;
   const ssize_t size = read(file_.number(), buffer.data(), buffer.size());

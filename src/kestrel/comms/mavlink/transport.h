@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 
+#include "kestrel/comms/mavlink/bell.h"
 #include "kestrel/comms/mavlink/link_url.h"
 #include "kestrel/core/base/time.h"
 
@@ -18,9 +19,12 @@ class Transport {
  public:
   virtual ~Transport() = default;
 
-  // Waits at most 'timeout' for bytes, and returns the number written to 'buffer': one datagram
-  // where the line has datagrams. 0: none came.
+  // Waits at most 'timeout' for bytes or for Wake, and returns the number written to 'buffer': one
+  // datagram where the line has datagrams. 0: none came.
   virtual std::size_t Receive(Duration timeout, std::span<std::uint8_t> buffer) = 0;
+
+  // Ends the present wait of Receive, or else the next one. Any thread.
+  void Wake() { bell_.Ring(); }
 
   // The bytes of the last Receive were MAVLink: their sender is the other end.
   virtual void Confirm() {}
@@ -32,6 +36,12 @@ class Transport {
   // True when connected, as far as this end can know.
   virtual bool is_connected() const = 0;
   virtual bool has_datagrams() const = 0;
+
+ protected:
+  Bell& bell() { return bell_; }
+
+ private:
+  Bell bell_;
 };
 
 // Throws InputError with one line when the device does not exist or is not a serial line, when its

@@ -2,6 +2,7 @@
 #include "kestrel/comms/mavlink/udp_transport.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 
 #include "kestrel/comms/mavlink/wait_readable.h"
@@ -30,7 +31,10 @@ UdpTransport::UdpTransport(const LinkUrl& url) {
 }
 
 std::size_t UdpTransport::Receive(Duration timeout, std::span<std::uint8_t> buffer) {
-  if (!WaitReadable(socket_.number(), timeout)) return 0;
+  std::array<pollfd, 2> files = {{{socket_.number(), POLLIN, 0}, {bell().file(), POLLIN, 0}}};
+  if (WaitForAny(files, timeout) <= 0) return 0;
+  if (files[1].revents != 0) bell().Silence();
+  if (files[0].revents == 0) return 0;
   SocketAddress sender;
   const ssize_t size =
       recvfrom(socket_.number(), buffer.data(), buffer.size(), 0, sender.get(), &sender.size);

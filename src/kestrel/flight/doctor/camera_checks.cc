@@ -208,6 +208,10 @@ Finding CheckExposure(const CameraObservations& camera) {
       "longer exposure (up to 5 ms) or more gain: is the cap off, the iris "
       "open? (fly.control_exposure=true does it)";
   if (saturated > kMuchSaturated) return Wrong(check, measured + ": saturated", darker);
+  if (bright < kDim && camera.is_on_ground) {
+    return NotChecked(check, measured + ": dark, as it is below a UAV that stands",
+                      "lift it above the pattern, 1 m or more");
+  }
   if (bright < kDark) return Wrong(check, measured + ": dark", brighter);
   if (saturated > kSaturated) return Doubtful(check, measured + ": saturated", darker);
   if (bright < kDim) return Doubtful(check, measured + ": dim", brighter);

@@ -294,16 +294,44 @@ std::vector<Fault> ParameterFaults() {
       {"height by range finder", Setup::kGuidedArduPilot, Parameter("EK3_SRC1_POSZ", 2),
        "EK3_SRC1_POSZ", Verdict::kWrong, "deck"},
       {"GUID_TIMEOUT", Setup::kGuidedArduPilot, Parameter("GUID_TIMEOUT", 3), "GUID_TIMEOUT",
-       Verdict::kWrong, "param set GUID_TIMEOUT 1"},
+       Verdict::kWrong, "param set GUID_TIMEOUT 0.3"},
+      {"GUID_TIMEOUT of a second", Setup::kGuidedArduPilot, Parameter("GUID_TIMEOUT", 1),
+       "GUID_TIMEOUT", Verdict::kWrong, "flown on"},
+      {"GUID_TIMEOUT of half a second", Setup::kGuidedArduPilot, Parameter("GUID_TIMEOUT", 0.5),
+       "GUID_TIMEOUT", Verdict::kDoubtful, "flown on"},
+      {"GUID_TIMEOUT of a blink", Setup::kGuidedArduPilot, Parameter("GUID_TIMEOUT", 0.05),
+       "GUID_TIMEOUT", Verdict::kDoubtful, "whenever the link is slow"},
+      {"FS_GCS_ENABLE that lands", Setup::kGuidedArduPilot, Parameter("FS_GCS_ENABLE", 5),
+       "FS_GCS_ENABLE", Verdict::kDoubtful, "lands where it is"},
+      {"ATC_ANGLE_MAX below what guidance may lean", Setup::kGuidedArduPilot,
+       Parameter("ATC_ANGLE_MAX", 20), "ATC_ANGLE_MAX", Verdict::kWrong,
+       "param set ATC_ANGLE_MAX 30"},
       {"another ground station only", Setup::kArduPilot,
        [](DoctorObservations* all) {
          all->parameters["MAV_OPTIONS"] = {1, "MAV_OPTIONS", 1};
+         all->link.own_system = 42;
        },
-       "MAV_GCS_SYSID", Verdict::kWrong, "listened"},
-      {"COM_OF_LOSS_T", Setup::kGuidedPx4, Parameter("COM_OF_LOSS_T", 5), "COM_OF_LOSS_T",
-       Verdict::kWrong, "param set COM_OF_LOSS_T 1"},
-      {"COM_OBL_RC_ACT with NAV_RCL_ACT 0", Setup::kGuidedPx4, Parameter("NAV_RCL_ACT", 0),
+       "MAV_GCS_SYSID", Verdict::kWrong, "fly.link.system_id=0"},
+      {"COM_OF_LOSS_T", Setup::kGuidedPx4, Parameter("COM_OF_LOSS_T", 1), "COM_OF_LOSS_T",
+       Verdict::kWrong, "param set COM_OF_LOSS_T 0.3"},
+      {"COM_OBL_RC_ACT with NAV_RCL_ACT 0", Setup::kGuidedPx4,
+       [](DoctorObservations* all) {
+         Parameter("COM_OBL_RC_ACT", 0)(all);
+         Parameter("NAV_RCL_ACT", 0)(all);
+       },
        "COM_OBL_RC_ACT", Verdict::kWrong, "for ever"},
+      {"COM_OBL_RC_ACT that waits for the sticks", Setup::kGuidedPx4,
+       Parameter("COM_OBL_RC_ACT", 0), "COM_OBL_RC_ACT", Verdict::kDoubtful, "drifts"},
+      {"COM_OBL_RC_ACT that returns", Setup::kGuidedPx4, Parameter("COM_OBL_RC_ACT", 3),
+       "COM_OBL_RC_ACT", Verdict::kDoubtful, "returns"},
+      {"COM_OBL_RC_ACT that lands", Setup::kGuidedPx4, Parameter("COM_OBL_RC_ACT", 4),
+       "COM_OBL_RC_ACT", Verdict::kDoubtful, "lands where it is"},
+      {"MPC_TILTMAX_AIR below what guidance may lean", Setup::kGuidedPx4,
+       [](DoctorObservations* all) {
+         all->use.tilt_deg = 35;
+         Parameter("MPC_TILTMAX_AIR", 20)(all);
+       },
+       "MPC_TILTMAX_AIR", Verdict::kWrong, "param set MPC_TILTMAX_AIR 35"},
       {"COM_OBL_RC_ACT that stops the motors", Setup::kGuidedPx4, Parameter("COM_OBL_RC_ACT", 7),
        "COM_OBL_RC_ACT", Verdict::kWrong, "motors"},
       {"LNDMC_XY_VEL_MAX", Setup::kGuidedPx4, Parameter("LNDMC_XY_VEL_MAX", 1.5),
@@ -369,6 +397,41 @@ TEST(DoctorTest, AMountIsNotJudgedByAUavThatStandsStill) {
     EXPECT_THAT(Flagged(findings), IsEmpty());
     const auto motion = std::ranges::find(findings, "mount against motion", &Finding::check);
     EXPECT_EQ(motion->verdict, Verdict::kNotChecked);
+  }
+}
+
+TEST(DoctorTest, ADarkImageBelowAUavThatStandsIsNoFault) {
+  DoctorObservations all = GoodSetup(AutopilotKind::kPx4);
+  all.camera.is_on_ground = true;
+  for (ImageQuality& quality : all.camera.qualities) quality.bright_gray = 30;
+  const std::vector<Finding> findings = Check(all);
+  EXPECT_THAT(Flagged(findings), IsEmpty());
+  EXPECT_EQ(std::ranges::find(findings, "exposure", &Finding::check)->verdict,
+            Verdict::kNotChecked);
+}
+
+// ArduPilot listens to its own system always: the ground station's number is left alone.
+TEST(DoctorTest, TheGroundStationKeepsItsPlace) {
+  DoctorObservations all = GoodGuidedSetup(AutopilotKind::kArduPilot);
+  all.parameters["MAV_OPTIONS"] = {1, "MAV_OPTIONS", 1};
+  all.parameters["MAV_GCS_SYSID"] = {255, "MAV_GCS_SYSID", 1};
+  EXPECT_THAT(Flagged(Check(all)), IsEmpty());
+  all.link.own_system = 42;
+  for (const Finding& finding : Check(all)) {
+    EXPECT_NE(finding.fix.value_or(ParameterFix()).name, "MAV_GCS_SYSID");
+  }
+}
+
+TEST(DoctorTest, ALossTimeoutWithinTheRangeIsGood) {
+  for (const double s : {0.1, 0.2, 0.3}) {
+    DoctorObservations all = GoodGuidedSetup(AutopilotKind::kArduPilot);
+    all.parameters["GUID_TIMEOUT"].value = s;
+    EXPECT_THAT(Flagged(Check(all)), IsEmpty()) << s;
+  }
+  for (const double s : {0.1, 0.3, 0.5}) {
+    DoctorObservations all = GoodGuidedSetup(AutopilotKind::kPx4);
+    all.parameters["COM_OF_LOSS_T"].value = s;
+    EXPECT_THAT(Flagged(Check(all)), IsEmpty()) << s;
   }
 }
 

@@ -187,6 +187,8 @@ void Examination::Summarize(Time start, Time end, DoctorObservations* observatio
     SummarizeVision(&observations->vision);
   }
   if (parts_.autopilot == nullptr) return;
+  observations->camera.is_on_ground =
+      !parts_.autopilot->is_armed() && parts_.autopilot->landed_state() == LandedState::kOnGround;
   SummarizeLink(end, &observations->link);
   SummarizeParameters(&observations->parameters);
 }
@@ -208,6 +210,7 @@ void Examination::SummarizeLink(Time end, LinkObservations* link) const {
   const Autopilot& autopilot = *parts_.autopilot;
   link->counters = parts_.connection->counters();
   link->own_system = parts_.connection->system();
+  link->autopilot_system = autopilot.system();
   link->hears_signed = hears_signed_;
   link->is_heard = autopilot.is_here();
   link->kind = autopilot.kind();

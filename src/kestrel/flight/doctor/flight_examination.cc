@@ -72,6 +72,8 @@ std::vector<Finding> FlightExamination::Check(const FlightReport& report) const 
   all.camera.frames = ListOf(frames_);
   all.camera.qualities = ListOf(qualities_);
   all.camera.counters = report.capture;
+  all.camera.is_on_ground =
+      report.autopilot && report.autopilot->is_here && !report.autopilot->is_armed;
   if (!frames_.empty()) {
     all.camera.duration_s = ToSeconds(frames_.back().arrival - frames_.front().arrival);
   }

@@ -27,6 +27,7 @@ struct DoctorUse {
   std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
   bool guides = false;                 // Kestrel flies the UAV by set-points
   std::optional<double> target_mps;    // speed of a target that moves; nothing: it stands
+  double tilt_deg = 30;                // by which guidance may lean
   bool sends_distance = false;         // DISTANCE_SENSOR too
   double attitude_rate_hz = 100;       // requested from the autopilot
   double position_rate_hz = 50;        //
@@ -43,6 +44,7 @@ struct FrameSample {
 struct CameraObservations {
   std::string open_error;       // why it could not be opened; empty: it could be
   bool has_other_size = false;  // the reason was the size of its images
+  bool is_on_ground = false;    // the UAV stands, by what its autopilot says
   std::string error;            // its last error
   double duration_s = 0;        // time for which it was watched
   int width_px = 0;             // of its images; 0: there were none
@@ -105,6 +107,7 @@ struct LinkObservations {
   int restarts = 0;
   std::vector<std::string> events;  // events that a pilot should know
   int own_system = 0;               // system number of this program
+  int autopilot_system = 0;
 };
 
 struct ComputerObservations {

@@ -17,11 +17,12 @@
 namespace kestrel {
 namespace {
 
-constexpr std::array<std::string_view, 20> kOfArduPilot = {
+constexpr std::array<std::string_view, 21> kOfArduPilot = {
     "PLND_ENABLED", "PLND_TYPE",     "PLND_EST_TYPE",  "PLND_OPTIONS",   "PLND_LAG",
     "PLND_STRICT",  "PLND_RET_MAX",  "PLND_ORIENT",    "PLND_YAW_ALIGN", "PLND_XY_DIST_MAX",
     "RNGFND1_TYPE", "EK3_SRC1_POSZ", "EK3_SRC1_VELXY", "WP_SPD",         "ATC_ANGLE_MAX",
-    "GUID_TIMEOUT", "MAV_GCS_SYSID", "MAV_OPTIONS",    "WP_ACC",         "PSC_JERK_NE"};
+    "GUID_TIMEOUT", "MAV_GCS_SYSID", "MAV_OPTIONS",    "WP_ACC",         "PSC_JERK_NE",
+    "FS_GCS_ENABLE"};
 
 constexpr std::array<std::string_view, 18> kOfPx4 = {
     "VTE_EN",          "VTE_AID_MASK",     "LTEST_MODE",      "PLD_HACC_RAD",   "EKF2_HGT_REF",
@@ -100,6 +101,24 @@ class ParameterRules {
   std::vector<Finding> findings_;
 };
 
+// Checks the autopilot's largest lean. Guidance refuses where it may lean more by its own limits
+// than the autopilot allows.
+void CheckTilt(std::string_view name, ParameterRules* rules) {
+  constexpr double kLeast_deg = 20;
+  constexpr double kUsual_deg = 30;
+  const DoctorUse& use = rules->all().use;
+  if (use.guides) {
+    const std::string why = fmt::format(
+        "guidance may lean by {:g} deg (fly.guidance.limits.max_tilt_deg), and refuses "
+        "where the autopilot does not",
+        use.tilt_deg);
+    rules->WantAtLeast(name, Verdict::kWrong, use.tilt_deg, {use.tilt_deg, why});
+    return;
+  }
+  rules->WantAtLeast(name, Verdict::kDoubtful, kLeast_deg,
+                     {kUsual_deg, "too little tilt to follow in wind"});
+}
+
 // --- ArduPilot ---
 
 void CheckPrecisionLandingOfArduPilot(ParameterRules* rules) {
@@ -143,13 +162,10 @@ void CheckMovingTargetOfArduPilot(ParameterRules* rules) {
 }
 
 void CheckSpeedsOfArduPilot(ParameterRules* rules) {
-  constexpr double kLeastTilt_deg = 20;
-  constexpr double kTilt_deg = 30;
   const double speed_mps = std::ceil(rules->wanted_mps());
   rules->WantAtLeast("WP_SPD", Verdict::kWrong, rules->target_mps() + 1,
                      {speed_mps, "slower than the target and a margin: it falls behind"});
-  rules->WantAtLeast("ATC_ANGLE_MAX", Verdict::kDoubtful, kLeastTilt_deg,
-                     {kTilt_deg, "too little tilt to follow in wind"});
+  CheckTilt("ATC_ANGLE_MAX", rules);
 }
 
 void CheckEstimatorOfArduPilot(ParameterRules* rules) {
@@ -162,27 +178,55 @@ void CheckEstimatorOfArduPilot(ParameterRules* rules) {
               [](double source) { return source != kOpticalFlow; });
 }
 
+// Who is listened to, where MAV_OPTIONS bit 0 lets in the ground station only: it, and whoever
+// sends with the autopilot's own system, as Kestrel does unless told otherwise. The ground
+// station's place is not Kestrel's to take.
 void CheckTrustOfArduPilot(ParameterRules* rules) {
   const auto ground_station = rules->Find("MAV_GCS_SYSID");
-  const bool is_enforced = rules->IsSet("MAV_OPTIONS", 0);
-  if (!ground_station || !is_enforced) return;
-  const int own = rules->all().link.own_system;
-  rules->WantExactly("MAV_GCS_SYSID", Verdict::kWrong,
-                     {static_cast<double>(own),
-                      "only this system is listened to (MAV_OPTIONS bit "
-                      "0), and Kestrel is another"});
+  if (!ground_station || !rules->IsSet("MAV_OPTIONS", 0)) return;
+  const LinkObservations& link = rules->all().link;
+  const std::string measured =
+      fmt::format("MAV_OPTIONS bit 0: only the systems {:g} and {} are listened to, Kestrel is {}",
+                  *ground_station, link.autopilot_system, link.own_system);
+  if (link.own_system == link.autopilot_system || link.own_system == *ground_station) {
+    return rules->Add(Good("MAV_GCS_SYSID", measured));
+  }
+  rules->Add(
+      Wrong("MAV_GCS_SYSID", measured,
+            "--set fly.link.system_id=0: Kestrel then sends with the autopilot's own system; "
+            "leave MAV_GCS_SYSID to the ground station"));
+}
+
+// --- When set-points stop ---
+
+// For so long an autopilot flies on with the last set-point when this program or the link fails.
+struct LossTimeout {
+  std::string_view name;
+  double shortest_s;
+  double longest_s;
+};
+
+void CheckLossTimeout(const LossTimeout& timeout, ParameterRules* rules) {
+  constexpr double kWanted_s = 0.3;
+  constexpr double kMetres = 0.6;  // beyond it a UAV that descends hits the ground
+  const double told_s = rules->Find(timeout.name).value_or(0);
+  rules->Want(timeout.name, told_s > kMetres ? Verdict::kWrong : Verdict::kDoubtful,
+              {kWanted_s, told_s < timeout.shortest_s
+                              ? "it stops whenever the link is slow"
+                              : "so long the last velocity and acceleration are flown on when "
+                                "set-points stop"},
+              [&](double s) { return s >= timeout.shortest_s && s <= timeout.longest_s; });
 }
 
 void CheckGuidanceOfArduPilot(ParameterRules* rules) {
-  constexpr double kLongest_s = 1;
-  constexpr double kShortest_s = 0.3;
-  constexpr double kFarTooLong_s = 2;
-  const double timeout_s = rules->Find("GUID_TIMEOUT").value_or(0);
-  rules->Want("GUID_TIMEOUT", timeout_s > kFarTooLong_s ? Verdict::kWrong : Verdict::kDoubtful,
-              {kLongest_s, timeout_s < kShortest_s
-                               ? "it stops whenever the link is slow"
-                               : "so long the last velocity is flown when the link is lost"},
-              [](double s) { return s >= kShortest_s && s <= kLongest_s; });
+  constexpr double kLand = 5;
+  constexpr double kReturn = 1;
+  CheckLossTimeout({"GUID_TIMEOUT", 0.1, 0.3}, rules);
+  rules->Want("FS_GCS_ENABLE", Verdict::kDoubtful,
+              {kReturn,
+               "when the ground station is lost it lands where it is, beside a pattern that "
+               "moves; 1 returns, 0 leaves it to Kestrel"},
+              [](double action) { return action != kLand; });
 }
 
 // Checks how fast it turns into the curve of the vehicle that it is guided to.
@@ -265,27 +309,27 @@ void CheckEstimatorOfPx4(ParameterRules* rules) {
                      {0, "speed by optical flow is the deck's"});
 }
 
+// The reaction of PX4 when set-points stop has to be one that holds. Without a transmitter
+// NAV_RCL_ACT says what comes after the modes that need one (0 to 2).
 void CheckLossOfPx4(ParameterRules* rules) {
-  constexpr double kLongest_s = 1;
-  constexpr double kFarTooLong_s = 2;
+  constexpr int kReturn = 3;
+  constexpr int kLand = 4;
   constexpr double kHold = 5;
-  const double timeout_s = rules->Find("COM_OF_LOSS_T").value_or(0);
-  rules->Want("COM_OF_LOSS_T", timeout_s > kFarTooLong_s ? Verdict::kWrong : Verdict::kDoubtful,
-              {kLongest_s, "so long the last set-point is flown when the link is lost"},
-              [](double s) { return s <= kLongest_s; });
-  const double on_radio_loss = rules->Find("NAV_RCL_ACT").value_or(2);
-  const double on_loss = rules->Find("COM_OBL_RC_ACT").value_or(0);
-  const bool flies_on = on_loss == 0 && on_radio_loss == 0;
-  constexpr int kTerminate = 6;
-  const bool falls = on_loss >= kTerminate;
+  CheckLossTimeout({"COM_OF_LOSS_T", 0.1, 0.5}, rules);
+  const int action = static_cast<int>(rules->Find("COM_OBL_RC_ACT").value_or(0));
+  const bool flies_on = action < kReturn && rules->Find("NAV_RCL_ACT").value_or(2) == 0;
+  const bool falls = action > kHold;
+  const char* const why =
+      flies_on            ? "with NAV_RCL_ACT 0 the last velocity is flown on for ever when "
+                            "set-points stop"
+      : falls             ? "the motors stop in the air when set-points stop"
+      : action == kReturn ? "it climbs and returns when set-points stop; 5 holds"
+      : action == kLand
+          ? "it lands where it is when set-points stop; 5 holds"
+          : "when set-points stop it waits for the sticks, and drifts without a pilot; "
+            "5 holds";
   rules->Want("COM_OBL_RC_ACT", flies_on || falls ? Verdict::kWrong : Verdict::kDoubtful,
-              {kHold, flies_on ? "with NAV_RCL_ACT 0 the last velocity is flown on for ever when "
-                                 "set-points stop"
-                      : falls  ? "the motors stop in the air when set-points stop"
-                               : "it drifts when set-points stop"},
-              [&](double action) {
-                return !flies_on && !falls && (action == 0 || (action >= 3 && action <= kHold));
-              });
+              {kHold, why}, [](double told) { return told == kHold; });
 }
 
 void CheckPilotOfPx4(ParameterRules* rules) {
@@ -302,8 +346,6 @@ void CheckPilotOfPx4(ParameterRules* rules) {
 
 void CheckGuidanceOfPx4(ParameterRules* rules) {
   constexpr double kLandingMargin = 1.2;
-  constexpr double kLeastTilt_deg = 20;
-  constexpr double kTilt_deg = 45;
   CheckLossOfPx4(rules);
   CheckPilotOfPx4(rules);
   const double landing_mps = std::max(1.5, std::ceil(kLandingMargin * rules->target_mps()));
@@ -315,8 +357,7 @@ void CheckGuidanceOfPx4(ParameterRules* rules) {
                      {std::ceil(rules->wanted_mps()),
                       "slower than the target and a margin: it "
                       "falls behind"});
-  rules->WantAtLeast("MPC_TILTMAX_AIR", Verdict::kDoubtful, kLeastTilt_deg,
-                     {kTilt_deg, "too little tilt to follow in wind"});
+  CheckTilt("MPC_TILTMAX_AIR", rules);
 }
 
 void CheckPx4(ParameterRules* rules) {

@@ -99,6 +99,7 @@ inline LinkObservations GoodLink(AutopilotKind kind) {
   link.drift = 1e-5;
   link.clock_sigma_s = 0.001;
   link.own_system = 1;
+  link.autopilot_system = 1;
   return link;
 }
 
@@ -144,6 +145,8 @@ inline DoctorObservations GoodGuidedSetup(AutopilotKind kind) {
     set("COM_RC_OVERRIDE", 3);
     set("LNDMC_XY_VEL_MAX", 6);
     set("MAN_OVERRIDE_SPD", 1);
+    set("COM_OF_LOSS_T", 0.3);
+    set("COM_OBL_RC_ACT", 5);
   } else {
     set("WP_ACC", 6);
     set("PSC_JERK_NE", 20);
@@ -151,7 +154,7 @@ inline DoctorObservations GoodGuidedSetup(AutopilotKind kind) {
     set("PLND_STRICT", 0);
     set("PLND_RET_MAX", 0);
     set("PLND_XY_DIST_MAX", 0);
-    set("GUID_TIMEOUT", 1);
+    set("GUID_TIMEOUT", 0.3);
   }
   return all;
 }

@@ -87,6 +87,8 @@ class LandingGuidance {
   void SetFenceCenter(const Eigen::Vector2d& center);
 
   GuidancePhase phase() const { return phase_; }
+  // True from when it gives up, or refuses to begin in the air, until the mode is left.
+  bool has_given_up() const { return has_given_up_; }
   int go_arounds() const { return go_arounds_; }  // number of times it climbed again
   // Wind, drag and the autopilot's answer, as learnt in flight.
   const FlightModel& model() const { return model_; }

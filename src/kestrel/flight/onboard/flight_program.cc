@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/onboard/flight_program.h"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <thread>
@@ -9,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/core/base/options.h"
 
 namespace kestrel {
@@ -19,6 +21,7 @@ constexpr Duration kLinkPatience = std::chrono::milliseconds(2);
 constexpr Duration kOutputPeriod = std::chrono::milliseconds(50);
 constexpr std::size_t kPoses = 512;  // from the link: some seconds
 constexpr Duration kPoseGap = std::chrono::milliseconds(500);
+constexpr Duration kLandingPeriod = std::chrono::milliseconds(20);
 
 }  // namespace
 
@@ -30,10 +33,12 @@ FlightProgram::FlightProgram(const FlightOptions& options, const TargetTrackerOp
       events_(options.events, parts.vision->pose_lead()),
       poses_(kPoses, kPoseGap),
       latency_({"capture to arrival", "capture to vision", "detection", "capture to message",
-                "capture to set-point"}) {
+                "capture to set-point"}),
+      noise_(tracker.Noise()),
+      landing_(parts.pattern_size_m / 2) {
   if (parts.connection == nullptr) return;
-  sender_.emplace(options, tracker, parts.profile, parts.pattern_size_m, parts.autopilot,
-                  parts.connection, say_);
+  sender_.emplace(options, tracker, parts.profile, parts.pattern_size_m, parts.guides,
+                  parts.autopilot, parts.connection, say_);
   if (parts.guides) guided_.emplace(options, tracker, parts.autopilot, parts.connection, say_);
 }
 
@@ -48,25 +53,31 @@ FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
     Watch(is_stopped);
   } catch (...) {
     error = std::current_exception();
-    End(FlightEnd::kFailed);
+    End({FlightOutcome::kNotLanded, {}, "the program failed"});
   }
   events_.Close();
   for (std::thread& thread : threads) thread.join();
   parts_.vision->WriteResults();  // rows of the last frames
+  TellEnd();
   if (error) std::rethrow_exception(error);
   return end_;
 }
 
+void FlightProgram::TellEnd() {
+  say_(InWords(end_));
+  if (parts_.sink != nullptr) parts_.sink->Take(Report());
+}
+
 void FlightProgram::Watch(const std::function<bool()>& is_stopped) {
   while (!is_over_) {
-    if (is_stopped()) End(FlightEnd::kStopped);
+    if (is_stopped()) End({FlightOutcome::kStopped});
     if (parts_.sink != nullptr) parts_.sink->Take(Report());
     std::this_thread::sleep_for(kPatience);
   }
 }
 
 // Only the first reason counts.
-void FlightProgram::End(FlightEnd end) {
+void FlightProgram::End(const FlightEnd& end) {
   std::call_once(ended_, [&] {
     end_ = end;
     is_over_ = true;
@@ -84,7 +95,7 @@ void FlightProgram::Capture() {
     if (event && std::holds_alternative<EndOfStream>(*event)) {
       // The last frame may still wait for its pose.
       std::this_thread::sleep_for(DurationFromSeconds(options_.events.pose_wait_s) + kPatience);
-      return End(FlightEnd::kSourceEnded);
+      return End({FlightOutcome::kSourceEnded});
     }
     if (event) {
       last = Now();
@@ -95,8 +106,9 @@ void FlightProgram::Capture() {
       trouble = error;
     }
     if (ToSeconds(Now() - last) < options_.source_timeout_s) continue;
-    say_(fmt::format("no image for {:g} s: the flight's vision ends", options_.source_timeout_s));
-    return End(FlightEnd::kFailed);
+    return End({FlightOutcome::kNotLanded,
+                {},
+                fmt::format("no image for {:g} s", options_.source_timeout_s)});
   }
 }
 
@@ -141,6 +153,7 @@ void FlightProgram::See() {
     frames_ = snapshot.frames;
     detections_ = snapshot.detections;
     track_.Set(snapshot);
+    if (parts_.connection != nullptr) parts_.connection->Wake();
     WarnOnce();
   }
 }
@@ -199,6 +212,8 @@ void FlightProgram::Communicate() {
     TellTarget(now);
     WatchFlight(now);
   }
+  const auto severity = ExitStatus(end_) == 0 ? mavlink::kSeverityInfo : mavlink::kSeverityWarning;
+  parts_.autopilot->Announce(severity, "Kestrel: " + InWords(end_));
 }
 
 void FlightProgram::TellTarget(Time now) {
@@ -215,25 +230,74 @@ void FlightProgram::TellTarget(Time now) {
 }
 
 void FlightProgram::TakeAutopilotPose(const PoseSample& pose) {
-  newest_pose_ = pose;
   if (parts_.source_has_poses) return;
   poses_.Add(pose);
   TakePose(pose);
 }
 
 void FlightProgram::WatchFlight(Time now) {
-  is_autopilot_here_ = parts_.autopilot->is_here();
-  is_landing_ = parts_.autopilot->is_armed() && parts_.autopilot->is_landing_mode();
+  if (now < landing_due_) return;
+  landing_due_ = now + kLandingPeriod;
+  ShowAutopilot(now);
   if (parts_.autopilot->is_here()) {
     heard_ = now;
-    const double z = newest_pose_ ? newest_pose_->world_from_body.translation.z() : 0;
-    landing_.Observe(parts_.autopilot->is_armed(), parts_.autopilot->landed_state(), z);
-    if (landing_.has_landed()) End(FlightEnd::kLanded);
+    landing_.Observe(LandingInput(now));
+    if (landing_.end()) End(*landing_.end());
     return;
   }
   if (ToSeconds(now - heard_) < options_.autopilot_timeout_s) return;
-  say_(fmt::format("no heartbeat of the autopilot for {:g} s", options_.autopilot_timeout_s));
-  End(FlightEnd::kFailed);
+  End({FlightOutcome::kLinkLost,
+       {},
+       fmt::format("no heartbeat of the autopilot for {:g} s", options_.autopilot_timeout_s)});
+}
+
+void FlightProgram::ShowAutopilot(Time now) {
+  const Autopilot& autopilot = *parts_.autopilot;
+  const std::lock_guard lock(autopilot_mutex_);
+  AutopilotState& state = autopilot_state_;
+  state.is_here = autopilot.is_here();
+  state.is_armed = autopilot.is_armed();
+  state.is_landing = state.is_armed && autopilot.is_landing_mode();
+  if (state.is_here) state.mode = autopilot.mode_name();
+  if (const auto battery = autopilot.battery()) {
+    state.battery_v = battery->voltage_v;
+    state.battery_remaining = battery->remaining;
+  }
+  if (const auto& gnss = autopilot.status().gnss()) {
+    state.gnss_fix = gnss->fix;
+    state.satellites = gnss->satellites;
+  }
+  state.has_good_position = autopilot.is_position_good(now);
+}
+
+LandingWatchInput FlightProgram::LandingInput(Time now) {
+  const Autopilot& autopilot = *parts_.autopilot;
+  LandingWatchInput input{.now = now,
+                          .is_armed = autopilot.is_armed(),
+                          .state = autopilot.landed_state(),
+                          .reboots = autopilot.reboots(),
+                          .stamped = autopilot.stamped(),
+                          .body = {},
+                          .pattern = {},
+                          .has_contact = phase_ == TargetPhase::kContact,
+                          .gave_up = {}};
+  if (const auto pose = poses_.Predict(now, kPoseGap, {})) {
+    const Eigen::Vector3d leg(0, 0, options_.guidance.leg_m);
+    input.body = {pose->world_from_body.translation - pose->world_from_body.rotation * leg,
+                  pose->motion.velocity_in_world};
+  }
+  const TrackSnapshot& track = track_.Get();
+  if (track.target && track.state != TrackState::kSearching) {
+    const double ahead_s = std::max(ToSeconds(now - track.captured), 0.0);
+    const TurnState target = Propagate(track.target->motion, ahead_s, noise_);
+    input.pattern = {target.position(), target.covariance.topLeftCorner<3, 3>()};
+  }
+  if (!guided_) return input;
+  input.has_contact = input.has_contact || guided_->phase() == GuidancePhase::kLanded;
+  if (guided_->is_flying()) gave_up_.clear();
+  if (const std::string& reason = guided_->gave_up(); !reason.empty()) gave_up_ = reason;
+  input.gave_up = gave_up_;
+  return input;
 }
 
 // --- How it is ---
@@ -248,12 +312,20 @@ FlightReport FlightProgram::Report() const {
                       .events = events_.counters(),
                       .repeated_frames = repeated_frames_,
                       .autopilot = {},
-                      .recorder = {}};
-  if (const auto recorder = Recorder()) report.recorder = recorder->counters();
+                      .recorder = {},
+                      .recording = {},
+                      .end = {}};
+  if (is_over_) report.end = end_;
+  if (const auto recorder = Recorder()) {
+    report.recorder = recorder->counters();
+    report.recording = recorder->folder().string();
+  }
   if (parts_.connection == nullptr) return report;
   AutopilotState& autopilot = report.autopilot.emplace();
-  autopilot.is_here = is_autopilot_here_;
-  autopilot.is_landing = is_landing_;
+  {
+    const std::lock_guard lock(autopilot_mutex_);
+    autopilot = autopilot_state_;
+  }
   if (guided_) autopilot.guidance = guidance_phase_.load();
   autopilot.target = phase_;
   autopilot.link = parts_.connection->counters();

@@ -45,7 +45,7 @@ struct FlightParts {
   std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
   // Returns the true pattern at the time of a frame, in a simulation that knows it.
   std::function<std::optional<TruePattern>(const Frame&)> truth;
-  double pattern_size_m = 1;  // outer diameter of the pattern
+  double pattern_size_m = 1;  // outer diameter of the pattern; 0: it looks for none
 };
 
 // The program that flies: capture, vision, link and output have a thread each. Nobody waits at the
@@ -59,8 +59,8 @@ class FlightProgram {
                 const FlightParts& parts, std::function<void(const std::string&)> say);
 
   // Flies until the UAV has landed, the source ends or 'is_stopped', which is called ten times a
-  // second, returns true. Throws what 'is_stopped' throws, once the threads have ended. Call it
-  // once only.
+  // second, returns true. The end is also said to the user, the ground station and the sink. Throws
+  // what 'is_stopped' throws, once the threads have ended. Call it once only.
   FlightEnd Run(const std::function<bool()>& is_stopped);
 
   // Returns the present state in one line. Called by any thread.
@@ -95,7 +95,10 @@ class FlightProgram {
   void TakePose(const PoseSample& pose);
   void TellTarget(Time now);
   void WatchFlight(Time now);
-  void End(FlightEnd end);
+  LandingWatchInput LandingInput(Time now);
+  void ShowAutopilot(Time now);
+  void End(const FlightEnd& end);
+  void TellEnd();
   std::shared_ptr<FlightRecorder> Recorder() const;  // null: nothing is recorded
 
   FlightOptions options_;
@@ -108,14 +111,16 @@ class FlightProgram {
   LatencyStatistics latency_;
   std::once_flag ended_;
   std::atomic<bool> is_over_{false};
-  FlightEnd end_ = FlightEnd::kStopped;  // valid once the flight is over
+  FlightEnd end_;  // valid once the flight is over
 
   // Used by the link's thread only.
   std::optional<TargetSender> sender_;
   std::optional<GuidedFlight> guided_;
+  TurnNoise noise_;  // of the predicted track
   LandingWatch landing_;
-  Time heard_;  // the newest time at which the autopilot was heard
-  std::optional<PoseSample> newest_pose_;
+  Time landing_due_{};   // when the landing is looked at next
+  std::string gave_up_;  // why guidance gave up last; empty: it flies, or has not
+  Time heard_;           // the newest time at which the autopilot was heard
 
   std::mutex vision_mutex_;  // held while the vision works
 
@@ -127,7 +132,8 @@ class FlightProgram {
   std::atomic<TargetPhase> phase_{TargetPhase::kSearching};
   std::atomic<GuidancePhase> guidance_phase_{GuidancePhase::kIdle};
   std::atomic<int> set_points_{0};
-  std::atomic<bool> is_autopilot_here_{false}, is_landing_{false};
+  mutable std::mutex autopilot_mutex_;
+  AutopilotState autopilot_state_;  // guarded by autopilot_mutex_
   std::atomic<double> height_m_{0};
 };
 

@@ -100,6 +100,7 @@ class FlightRecorder {
   void AddPacket(Time time, std::span<const std::uint8_t> bytes);
 
   RecorderCounters counters() const;
+  const std::filesystem::path& folder() const { return folder_; }
   bool is_recording_images() const { return !are_images_stopped_; }
 
  private:

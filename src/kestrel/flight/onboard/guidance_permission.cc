@@ -76,7 +76,9 @@ std::string WhyNotGuide(const Autopilot& autopilot, const FlightLimitsOptions& l
     return fmt::format("the vehicle is {}, expected a multicopter",
                        VehicleName(autopilot.vehicle_type()));
   }
-  if (autopilot.is_in_failsafe()) return "the autopilot is in a failsafe";
+  if (autopilot.is_in_failsafe()) {
+    return FailsafeInWords(autopilot.kind(), autopilot.custom_mode());
+  }
   if (!autopilot.is_position_good(now).value_or(true)) {
     return "the autopilot has no good estimate of its position";
   }

@@ -64,6 +64,14 @@ bool GuidedFlight::Fly(Time now, const TrackSnapshot& track, const PoseHistory& 
   return is_news && is_begun_;
 }
 
+std::string GuidedFlight::gave_up() const {
+  if (!guidance_->has_given_up()) return "";
+  constexpr std::string_view kEnding = ": gave up";
+  std::string reason = said_reason_;
+  if (reason.ends_with(kEnding)) reason.resize(reason.size() - kEnding.size());
+  return reason;
+}
+
 // Prepares guidance for the autopilot once it is heard. A mode that is already on then was not
 // given to this program.
 void GuidedFlight::KnowAutopilot(Time now) {

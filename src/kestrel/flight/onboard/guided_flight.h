@@ -35,6 +35,8 @@ class GuidedFlight {
   bool is_flying() const { return is_begun_ && phase() != GuidancePhase::kLanded; }
   GuidancePhase phase() const { return guidance_->phase(); }
   int set_points() const { return set_points_; }  // sent
+  // Why guidance gave up; empty: it flies, the pilot has taken over since, or it has not begun.
+  std::string gave_up() const;
 
  private:
   void KnowAutopilot(Time now);

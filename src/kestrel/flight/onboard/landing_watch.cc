@@ -1,25 +1,98 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/onboard/landing_watch.h"
 
+#include <chrono>
 #include <cmath>
+
+#include <fmt/format.h>
 
 namespace kestrel {
 namespace {
 
-constexpr double kFlownHeight_m = 1;  // a UAV that has risen or sunk by this has flown
+constexpr double kFlownHeight_m = 1;     // a UAV that has risen or sunk by this has flown
+constexpr double kAtRest_mps = 0.2;      // it neither rises nor sinks
+constexpr double kLargestSigma_m = 0.5;  // a pattern known no better is not known to be below
+constexpr double kStandingHeight_m = 0.6;
+constexpr Duration kShortestProof = std::chrono::milliseconds(500);
+constexpr Duration kLongestProof = std::chrono::seconds(10);
 
 }  // namespace
 
-void LandingWatch::Observe(bool is_armed, LandedState state, double z_m) {
-  if (!is_armed) {
-    has_landed_ = has_landed_ || (was_armed_ && has_flown_);
-    was_armed_ = has_flown_ = false;
+void LandingWatch::Observe(const LandingWatchInput& input) {
+  if (end_) return;
+  if (has_flown_ && input.reboots > reboots_) {
+    end_ = FlightEnd{FlightOutcome::kRestarted};
     return;
   }
-  if (!was_armed_) armed_z_m_ = z_m;
-  was_armed_ = true;
-  has_flown_ = has_flown_ || std::abs(z_m - armed_z_m_) > kFlownHeight_m ||
-               state == LandedState::kInAir || state == LandedState::kLanding;
+  if (input.is_armed) {
+    disarmed_.reset();
+    Fly(input);
+  } else if (has_flown_) {
+    if (!disarmed_) disarmed_ = input.now;
+    if (IsCertain(input)) end_ = Judge(input);
+  } else {
+    armed_z_m_.reset();
+    reboots_ = input.reboots;
+  }
+}
+
+void LandingWatch::Fly(const LandingWatchInput& input) {
+  has_flown_ =
+      has_flown_ || input.state == LandedState::kInAir || input.state == LandedState::kLanding;
+  has_seen_ = has_seen_ || input.pattern.has_value();
+  if (!input.body) return;
+  if (!armed_z_m_) armed_z_m_ = input.body->feet.z();
+  has_flown_ = has_flown_ || std::abs(input.body->feet.z() - *armed_z_m_) > kFlownHeight_m;
+  const bool is_at_rest = input.has_contact || std::abs(input.body->velocity.z()) < kAtRest_mps;
+  if (is_at_rest) return;
+  place_.reset();
+  if (!input.pattern) return;
+  const Eigen::Vector3d from_pattern = input.body->feet - input.pattern->position;
+  const Eigen::Matrix3d& covariance = input.pattern->covariance;
+  place_ =
+      Place{from_pattern.head<2>().norm(), from_pattern.z(),
+            std::sqrt(covariance.topLeftCorner<2, 2>().trace() / 2), std::sqrt(covariance(2, 2))};
+}
+
+// The first heartbeats of an autopilot that has restarted say "disarmed" as those of one that has
+// landed; its time since boot tells them apart.
+bool LandingWatch::IsCertain(const LandingWatchInput& input) const {
+  const Duration waited = input.now - *disarmed_;
+  return input.stamped > *disarmed_ + kShortestProof || waited > kLongestProof;
+}
+
+FlightEnd LandingWatch::Judge(const LandingWatchInput& input) const {
+  if (pattern_radius_m_ == 0) return {FlightOutcome::kLanded};
+  FlightEnd end = JudgePlace();
+  if (end.outcome == FlightOutcome::kOnPattern || input.gave_up.empty()) return end;
+  end.outcome = FlightOutcome::kGaveUp;
+  end.reason = input.gave_up;
+  return end;
+}
+
+FlightEnd LandingWatch::JudgePlace() const {
+  constexpr double kSure = 2;  // standard deviations
+  if (!place_) {
+    return {FlightOutcome::kDownSomewhere,
+            {},
+            has_seen_ ? "the pattern was not in sight any more" : "the pattern was never seen"};
+  }
+  const double sigma_m = place_->offset_sigma_m;
+  if (place_->offset_m - kSure * sigma_m > pattern_radius_m_) {
+    return {FlightOutcome::kBesidePattern, place_->offset_m};
+  }
+  if (place_->offset_m > pattern_radius_m_ || sigma_m > kLargestSigma_m) {
+    return {FlightOutcome::kDownSomewhere,
+            {},
+            fmt::format("the pattern's place is known to {:.1f} m only", kSure * sigma_m)};
+  }
+  if (std::abs(place_->height_m) > kStandingHeight_m + kSure * place_->height_sigma_m) {
+    return {FlightOutcome::kDownSomewhere,
+            {},
+            fmt::format("disarmed {:.1f} m {} the pattern", std::abs(place_->height_m),
+                        place_->height_m > 0 ? "above" : "below")};
+  }
+  return {FlightOutcome::kOnPattern, place_->offset_m};
 }
 
 }  // namespace kestrel

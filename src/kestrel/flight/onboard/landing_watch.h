@@ -1,23 +1,78 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "kestrel/comms/mavlink/autopilot.h"
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "kestrel/comms/mavlink/autopilot_status.h"
+#include "kestrel/core/base/time.h"
+#include "kestrel/flight/session/flight_end.h"
 
 namespace kestrel {
 
-// Detects that the UAV has landed: it is disarmed after it was in the air.
+// What shows at an instant whether the UAV flies, and where it is. World frame, m and m/s.
+struct LandingWatchInput {
+  Time now;
+  bool is_armed = false;
+  LandedState state = LandedState::kUnknown;
+  int reboots = 0;  // of the autopilot, since the program began
+  Time stamped;     // when the newest message with the autopilot's time since boot came
+
+  struct Body {
+    Eigen::Vector3d feet;
+    Eigen::Vector3d velocity;
+  };
+  std::optional<Body> body;  // nothing: no pose is known
+  struct Pattern {
+    Eigen::Vector3d position;  // predicted to now
+    Eigen::Matrix3d covariance;
+  };
+  std::optional<Pattern> pattern;  // nothing: never seen, or lost for good
+
+  bool has_contact = false;  // somebody has felt the pattern under the feet
+  std::string gave_up;       // why guidance has given up; empty: it has not
+};
+
+// Judges how a flight ends: the UAV is down when it is disarmed after it was in the air, unless the
+// autopilot has restarted, after which it is disarmed wherever it is. Where it is down follows from
+// the feet and the predicted pattern at touch-down, the last moment at which the UAV still rose or
+// sank: later the camera sees nothing any more, and a pattern on a vehicle drives on.
 class LandingWatch {
  public:
-  // Call it often. 'z_m': height of the body in the world.
-  void Observe(bool is_armed, LandedState state, double z_m);
+  // 'pattern_radius_m': so far from its centre it is still on the pattern; 0: there is no pattern.
+  explicit LandingWatch(double pattern_radius_m) : pattern_radius_m_(pattern_radius_m) {}
 
-  bool has_landed() const { return has_landed_; }
+  // Call it often, in order of time, while the autopilot is heard.
+  void Observe(const LandingWatchInput& input);
+
+  // The end of the flight, once it is certain: a moment after the disarming, in which the autopilot
+  // must show that it has not restarted.
+  const std::optional<FlightEnd>& end() const { return end_; }
 
  private:
-  bool was_armed_ = false;
+  // Feet relative to the pattern; standard deviations per axis.
+  struct Place {
+    double offset_m = 0;
+    double height_m = 0;
+    double offset_sigma_m = 0;
+    double height_sigma_m = 0;
+  };
+
+  void Fly(const LandingWatchInput& input);
+  bool IsCertain(const LandingWatchInput& input) const;
+  FlightEnd Judge(const LandingWatchInput& input) const;
+  FlightEnd JudgePlace() const;
+
+  double pattern_radius_m_;
   bool has_flown_ = false;
-  bool has_landed_ = false;
-  double armed_z_m_ = 0;
+  std::optional<double> armed_z_m_;  // height of the feet at arming; nothing: not armed
+  int reboots_ = 0;                  // before the flight
+  bool has_seen_ = false;            // the pattern, in this flight
+  std::optional<Place> place_;       // at touch-down
+  std::optional<Time> disarmed_;
+  std::optional<FlightEnd> end_;
 };
 
 }  // namespace kestrel

@@ -1,35 +1,188 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/onboard/landing_watch.h"
 
+#include <chrono>
+#include <optional>
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace kestrel {
 namespace {
 
-TEST(LandingWatchTest, DisarmedAfterFlightHasLanded) {
-  LandingWatch watch;
-  watch.Observe(false, LandedState::kOnGround, 0);
-  watch.Observe(true, LandedState::kOnGround, 0);
-  watch.Observe(true, LandedState::kInAir, 5);
-  EXPECT_FALSE(watch.has_landed());
-  watch.Observe(false, LandedState::kOnGround, 2);
-  EXPECT_TRUE(watch.has_landed());
+using std::chrono_literals::operator""ms;
+using ::testing::HasSubstr;
+
+constexpr double kRadius_m = 0.5;
+
+// A UAV over a pattern at the origin; time is simulated, in steps of 20 ms.
+class LandingWatchTest : public ::testing::Test {
+ protected:
+  void Pass(double seconds, double climb_mps = 0) {
+    for (int i = 0; i < 50 * seconds; ++i) {
+      input_.now += 20ms;
+      if (stamps_) input_.stamped = input_.now;
+      if (input_.body) {
+        input_.body->velocity.z() = climb_mps;
+        input_.body->feet.z() += 0.02 * climb_mps;
+      }
+      watch_.Observe(input_);
+    }
+  }
+  void SeePattern(double sigma_m) {
+    input_.pattern = {Eigen::Vector3d::Zero(), sigma_m * sigma_m * Eigen::Matrix3d::Identity()};
+  }
+  // Flies beside the centre by 'offset_m', and sinks to the pattern's height.
+  void ComeDown(double offset_m, double sigma_m = 0.02) {
+    input_.is_armed = true;
+    input_.state = LandedState::kInAir;
+    input_.body = {{offset_m, 0, 2}, Eigen::Vector3d::Zero()};
+    SeePattern(sigma_m);
+    Pass(1);
+    Pass(4, -0.5);
+    Pass(1);
+  }
+  void Disarm() {
+    input_.is_armed = false;
+    input_.state = LandedState::kOnGround;
+    Pass(1);
+  }
+
+  LandingWatchInput input_{.now = TimeFromNanoseconds(1'000'000'000'000),
+                           .stamped = {},
+                           .body = {},
+                           .pattern = {},
+                           .gave_up = {}};
+  bool stamps_ = true;
+  LandingWatch watch_{kRadius_m};
+};
+
+TEST_F(LandingWatchTest, LandedOnThePatternWithItsOffset) {
+  ComeDown(0.12);
+  EXPECT_FALSE(watch_.end());
+  Disarm();
+  ASSERT_TRUE(watch_.end());
+  EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kOnPattern);
+  EXPECT_NEAR(*watch_.end()->offset_m, 0.12, 1e-6);
 }
 
-TEST(LandingWatchTest, ArmedAndDisarmedOnTheGroundHasNotFlown) {
-  LandingWatch watch;
-  watch.Observe(true, LandedState::kOnGround, 0);
-  watch.Observe(true, LandedState::kUnknown, 0.3);
-  watch.Observe(false, LandedState::kOnGround, 0.3);
-  EXPECT_FALSE(watch.has_landed());
+TEST_F(LandingWatchTest, LandedBesideIt) {
+  ComeDown(10.8, 1.5);
+  Disarm();
+  ASSERT_TRUE(watch_.end());
+  EXPECT_EQ(InWords(*watch_.end()), "landed 10.8 m beside the pattern");
 }
 
-TEST(LandingWatchTest, KnowsTheAirByHeightWhereTheAutopilotDoesNotTell) {
-  LandingWatch watch;
-  watch.Observe(true, LandedState::kUnknown, 10);  // the program begins in the air
-  watch.Observe(true, LandedState::kUnknown, 8.5);
-  watch.Observe(false, LandedState::kUnknown, 0);
-  EXPECT_TRUE(watch.has_landed());
+// The pattern drives on below a UAV that stands beside it, and is not seen any more.
+TEST_F(LandingWatchTest, JudgesByTheMomentOfTouchDown) {
+  ComeDown(0.2);
+  input_.pattern->position = {30, 0, 0};
+  input_.pattern->covariance *= 1e6;
+  Pass(5);
+  Disarm();
+  EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kOnPattern);
+}
+
+TEST_F(LandingWatchTest, ADeckThatHeavesChangesNothingAfterContact) {
+  ComeDown(0.2);
+  input_.has_contact = true;
+  input_.pattern.reset();
+  Pass(3, 0.5);
+  Disarm();
+  EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kOnPattern);
+}
+
+TEST_F(LandingWatchTest, DownAndNotKnownWhere) {
+  ComeDown(1.2, 0.9);  // on it or beside it
+  Disarm();
+  EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kDownSomewhere);
+  EXPECT_FALSE(watch_.end()->offset_m);
+}
+
+TEST_F(LandingWatchTest, APatternThatWasNeverSeenIsNotLandedOn) {
+  input_.is_armed = true;
+  input_.state = LandedState::kInAir;
+  input_.body = {{0, 0, 2}, Eigen::Vector3d::Zero()};
+  Pass(4, -0.5);
+  Disarm();
+  EXPECT_THAT(InWords(*watch_.end()), HasSubstr("never seen"));
+}
+
+TEST_F(LandingWatchTest, DisarmedHighAboveItHasNotLandedOnIt) {
+  input_.is_armed = true;
+  input_.state = LandedState::kInAir;
+  input_.body = {{0, 0, 5}, Eigen::Vector3d::Zero()};
+  SeePattern(0.02);
+  Pass(2, -0.5);
+  Disarm();
+  EXPECT_THAT(InWords(*watch_.end()), HasSubstr("disarmed 4.0 m above"));
+}
+
+TEST_F(LandingWatchTest, GuidanceThatGaveUpIsTheReasonUnlessItStandsOnThePattern) {
+  input_.gave_up = "no new images";
+  ComeDown(3);
+  Disarm();
+  EXPECT_EQ(InWords(*watch_.end()),
+            "guidance gave up (no new images); down 3.0 m from the pattern");
+  watch_ = LandingWatch(kRadius_m);
+  ComeDown(0.1);
+  Disarm();
+  EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kOnPattern);
+}
+
+// The first heartbeat after a restart says "disarmed"; the new stamps come later.
+TEST_F(LandingWatchTest, AnAutopilotThatRestartsHasNotLanded) {
+  ComeDown(0.1);
+  stamps_ = false;
+  Disarm();
+  EXPECT_FALSE(watch_.end()) << "too early to tell";
+  Pass(2);
+  input_.reboots = 1;
+  Pass(0.1);
+  ASSERT_TRUE(watch_.end());
+  EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kRestarted);
+}
+
+TEST_F(LandingWatchTest, ARestartOnTheGroundIsForgotten) {
+  input_.reboots = 1;
+  Pass(1);
+  ComeDown(0.1);
+  Disarm();
+  EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kOnPattern);
+}
+
+TEST_F(LandingWatchTest, EndsInTheEndWithoutStamps) {
+  ComeDown(0.1);
+  stamps_ = false;
+  Disarm();
+  Pass(11);
+  EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kOnPattern);
+}
+
+TEST_F(LandingWatchTest, ArmedAndDisarmedOnTheGroundHasNotFlown) {
+  input_.is_armed = true;
+  input_.state = LandedState::kOnGround;
+  input_.body = {{0, 0, 0}, Eigen::Vector3d::Zero()};
+  Pass(2, 0.1);
+  Disarm();
+  Pass(20);
+  EXPECT_FALSE(watch_.end());
+}
+
+TEST_F(LandingWatchTest, KnowsTheAirByHeightWhereTheAutopilotDoesNotTell) {
+  input_.is_armed = true;
+  input_.body = {{0, 0, 10}, Eigen::Vector3d::Zero()};
+  SeePattern(0.02);
+  Pass(20, -0.5);
+  Disarm();
+  ASSERT_TRUE(watch_.end());
+}
+
+TEST_F(LandingWatchTest, WithoutAPatternToLandOnItHasJustLanded) {
+  watch_ = LandingWatch(0);
+  ComeDown(4);
+  Disarm();
+  EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kLanded);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -115,6 +116,7 @@ class LiveSession::Impl {
   std::string sink_error_;  // what the sink has thrown; read after Run only
   RecordingSwitch recording_;
   std::optional<OutputFolder> output_;
+  std::ofstream end_file_;
   std::unique_ptr<ExposureActuator> actuator_;
   std::unique_ptr<FlightVision> vision_;
   LandingVision* landing_ = nullptr;  // one of these is the vision
@@ -149,6 +151,7 @@ FlightEnd LiveSession::Impl::Run(const std::function<bool()>& is_stopped) {
   const FlightEnd end = program_->Run(is_stopped);
   recording_.Close();
   if (hunt_ != nullptr && output_) hunt_->WriteMap(*output_);
+  if (output_) WriteAtOnce(FlightEndCsv(end), "flight_end.csv", &end_file_);
   return end;
 }
 
@@ -173,7 +176,10 @@ void LiveSession::Impl::Change(const LiveSessionOptions& options) {
 }
 
 void LiveSession::Impl::OpenVision() {
-  if (!parts_.output.empty()) output_.emplace(parts_.output, parts_.replace);
+  if (!parts_.output.empty()) {
+    output_.emplace(parts_.output, parts_.replace);
+    end_file_ = output_->OpenText("flight_end.csv");
+  }
   if (parts_.objects) {
     const ObjectModel& model = *parts_.objects;
     auto hunt = std::make_unique<HuntVision>(parts_.calibration, model,
@@ -224,18 +230,19 @@ void LiveSession::Impl::OpenAutopilot() {
 }
 
 FlightParts LiveSession::Impl::ProgramParts() {
-  return {.source = parts_.source,
-          .vision = vision_.get(),
-          .connection = connection_ ? &*connection_ : nullptr,
-          .autopilot = autopilot_ ? &*autopilot_ : nullptr,
-          .recording = &recording_,
-          .sink = sink_ ? &*sink_ : nullptr,
-          .guides = parts_.guides,
-          .source_has_poses = parts_.has_poses,
-          .sees_repeated = parts_.sees_repeated,
-          .profile = parts_.profile,
-          .truth = parts_.truth,
-          .pattern_size_m = options_.landing.detector.pattern.outer_diameter_m};
+  return {
+      .source = parts_.source,
+      .vision = vision_.get(),
+      .connection = connection_ ? &*connection_ : nullptr,
+      .autopilot = autopilot_ ? &*autopilot_ : nullptr,
+      .recording = &recording_,
+      .sink = sink_ ? &*sink_ : nullptr,
+      .guides = parts_.guides,
+      .source_has_poses = parts_.has_poses,
+      .sees_repeated = parts_.sees_repeated,
+      .profile = parts_.profile,
+      .truth = parts_.truth,
+      .pattern_size_m = hunt_ != nullptr ? 0 : options_.landing.detector.pattern.outer_diameter_m};
 }
 
 void LiveSession::Impl::TakePose(const PoseSample& pose) {

@@ -41,6 +41,7 @@ bool RealtimeReplay::ReadFrame() {
 
 std::optional<Event> RealtimeReplay::Next(Duration timeout) {
   constexpr Duration kMaxLate = std::chrono::milliseconds(250);
+  if (!has_ended_ && IsRoundOver()) EndOnFault([this] { BeginAgainOrEnd(); });
   if (has_ended_) return EndOfStream{};
   const Time now = Now();
   if (!std::exchange(is_started_, true)) shift_ = now + kPosesAhead - frame_->time;
@@ -55,8 +56,14 @@ std::optional<Event> RealtimeReplay::Next(Duration timeout) {
   return TakeFrame();
 }
 
+// The last frame of a round is followed by the pose after it, for which it waits, if the recording
+// has one soon.
 bool RealtimeReplay::IsPoseNext() const {
-  return next_pose_ < poses_.size() && DueOf(poses_[next_pose_]) <= DueOf(*frame_);
+  if (next_pose_ == poses_.size()) return false;
+  const Time due = DueOf(poses_[next_pose_]);
+  if (frame_) return due <= DueOf(*frame_);
+  const bool has_pose_after = last_pose_ && *last_pose_ >= *last_frame_ + clock_offset_;
+  return !has_pose_after && due <= *last_frame_ + DurationFromSeconds(1 / source_->rate_hz());
 }
 
 // In a further round the first poses may be earlier than the last one of the round before.
@@ -76,14 +83,19 @@ Event RealtimeReplay::TakeFrame() {
     const std::lock_guard lock(mutex_);
     ++counters_.captured;
   }
+  EndOnFault([this] { ReadFrame(); });
+  return frame;
+}
+
+template <class Step>
+void RealtimeReplay::EndOnFault(const Step& step) {
   try {
-    if (!ReadFrame()) BeginAgainOrEnd();
+    step();
   } catch (const InputError& fault) {
     has_ended_ = true;
     const std::lock_guard lock(mutex_);
     error_ = fault.what();
   }
-  return frame;
 }
 
 void RealtimeReplay::BeginAgainOrEnd() {

@@ -37,9 +37,12 @@ class RealtimeReplay : public LiveSource {
   Time DueOf(const Frame& frame) const { return frame.time + shift_; }
   Time DueOf(const PoseSample& pose) const { return pose.time - clock_offset_ + shift_; }
   bool IsPoseNext() const;
+  bool IsRoundOver() const { return !frame_ && !IsPoseNext(); }
   std::optional<Event> TakePose();
   Event TakeFrame();
   void BeginAgainOrEnd();
+  template <class Step>
+  void EndOnFault(const Step& step);
 
   Open open_;
   Duration clock_offset_;
@@ -47,7 +50,7 @@ class RealtimeReplay : public LiveSource {
   std::unique_ptr<FrameSource> source_;
   std::vector<PoseSample> poses_;
   std::size_t next_pose_ = 0;
-  std::optional<Frame> frame_;      // the next one
+  std::optional<Frame> frame_;      // the next one; nothing after the last
   std::optional<Time> last_frame_;  // times last given out, of a frame and of a pose
   std::optional<Time> last_pose_;
   Duration shift_{};  // Now() minus the recording's time

@@ -118,6 +118,31 @@ TEST_F(RealtimeReplayTest, ALoopGoesOnInTime) {
   }
 }
 
+// Otherwise the last frame of each round would wait for it in vain.
+TEST_F(RealtimeReplayTest, EachFrameIsFollowedByThePoseAfterIt) {
+  constexpr Duration kOffset = milliseconds(5);  // poses lie between the frames
+  for (const bool is_looped : {true, false}) {
+    RealtimeReplay replay = Replay(is_looped, kOffset);
+    Time waiting;
+    bool is_waiting = false;
+    int frames = 0;
+    while (frames < 3 * kFrames) {
+      const Event event = Wait(&replay);
+      if (std::holds_alternative<EndOfStream>(event)) break;
+      if (const auto* pose = std::get_if<PoseSample>(&event)) {
+        is_waiting = is_waiting && pose->time < waiting + kOffset;
+        continue;
+      }
+      EXPECT_FALSE(is_waiting) << "frame " << frames;
+      is_waiting = true;
+      waiting = std::get<Frame>(event).time;
+      ++frames;
+    }
+    EXPECT_FALSE(is_waiting && !is_looped);
+    EXPECT_EQ(frames, is_looped ? 3 * kFrames : kFrames);
+  }
+}
+
 TEST_F(RealtimeReplayTest, ReturnsWithoutAnEventWhenNoneIsDue) {
   RealtimeReplay replay = Replay(false);
   for (int i = 0; i < 40; ++i) replay.Next(milliseconds(1));

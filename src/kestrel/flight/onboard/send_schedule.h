@@ -1,30 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
-#include <chrono>
-
 #include "kestrel/core/base/time.h"
 
 namespace kestrel {
 
-// Schedule of a stream of messages at a steady rate. News are sent at once if the next message is
-// nearly due.
+// Schedule of a stream of messages: news are sent at once, and a beat fills the time between them.
 class SendSchedule {
  public:
   explicit SendSchedule(double rate_hz) : period_(DurationFromSeconds(1 / rate_hz)) {}
 
-  // True when a message is to be sent at 'now'; it then counts as sent.
+  // True when a message is to be sent at 'now'; it then counts as sent. A source of news that is
+  // faster than twice the rate is thinned out.
   bool IsDue(Time now, bool is_news) {
-    if (now < due_ - (is_news ? period_ / 2 : Duration::zero())) return false;
-    // Missed messages are not made up for.
-    due_ = std::max(due_ + period_, now + period_ / 2);
+    const Time due = is_news ? news_ + period_ / 2 : sent_ + period_;
+    if (now < due) return false;
+    sent_ = now;
+    if (is_news) news_ = now;
     return true;
   }
 
  private:
   Duration period_;
-  Time due_{};
+  Time sent_{}, news_{};  // the last message, and the last one with news
 };
 
 }  // namespace kestrel

@@ -29,11 +29,13 @@ Duration LinkDelay(const FlightOptions& options, const Autopilot& autopilot) {
 }
 
 TargetSender::TargetSender(const FlightOptions& options, const TargetTrackerOptions& tracker,
-                           std::optional<LinkProfile> profile, double size_m, Autopilot* autopilot,
-                           Connection* connection, std::function<void(const std::string&)> say)
+                           std::optional<LinkProfile> profile, double size_m, bool is_guided,
+                           Autopilot* autopilot, Connection* connection,
+                           std::function<void(const std::string&)> say)
     : options_(options),
       profile_(profile),
       size_m_(size_m),
+      is_guided_(is_guided),
       autopilot_(*autopilot),
       connection_(connection),
       say_(std::move(say)),
@@ -51,7 +53,7 @@ bool TargetSender::Tell(Time now, const TrackSnapshot& track, const PoseHistory&
   // PX4's target estimator filters by itself, and corrects the UAV's velocity by the messages. A
   // track contains the UAV's own estimate: sending it would close a loop. It gets the measurement
   // of each frame, with its time.
-  if (report && profile != LinkProfile::kArduPilot) WarnOfSpeed(report->velocity_in_world);
+  if (report && !is_guided_) WarnOfSpeed(report->velocity_in_world);
   if (profile == LinkProfile::kPx4Vte) report = is_news ? track.sighting : std::nullopt;
   told_frame_ = track.captured;
   if (!report) return false;
@@ -94,12 +96,16 @@ void TargetSender::WarnOfSpeed(const Eigen::Vector3d& velocity) {
   moving_messages_ = speed_mps > kStanding_mps ? moving_messages_ + 1 : 0;
   if (moving_messages_ != kSure || is_warned_) return;
   is_warned_ = true;
-  say_(
-      fmt::format("the pattern moves at {:.1f} m/s: PX4's own precision landing is for patterns "
-                  "that stand, and trails behind this one",
-                  speed_mps));
+  const bool is_px4 = autopilot_.kind() == AutopilotKind::kPx4;
+  say_(fmt::format(
+      "the pattern moves at {:.1f} m/s: {}; kestrel fly --guide lands on it", speed_mps,
+      is_px4
+          ? "PX4's own precision landing is for patterns that stand, and trails behind this one"
+          : "ArduPilot's own precision landing is for patterns that stand or drive straight, and "
+            "comes down beside one in a curve"));
   autopilot_.Announce(mavlink::kSeverityWarning,
-                      "Kestrel: the pattern moves, PX4 will not land on it");
+                      is_px4 ? "Kestrel: the pattern moves, PX4 will not land on it"
+                             : "Kestrel: pattern moves, LAND misses it in a curve");
 }
 
 // Tells the user and the ground station when the target is found, lost, or stood on.

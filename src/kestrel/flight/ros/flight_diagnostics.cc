@@ -34,6 +34,11 @@ DiagnosticStatusMessage DiagnosticsOf(const std::string& name, double rate_hz,
   const bool is_running = report.trouble.empty() && rate_hz > 0;
   status.level = is_running ? DiagnosticStatusMessage::kOk : DiagnosticStatusMessage::kWarn;
   status.message = !report.trouble.empty() ? report.trouble : is_running ? "running" : "no images";
+  if (report.end) {
+    status.level = ExitStatus(*report.end) == 0 ? DiagnosticStatusMessage::kOk
+                                                : DiagnosticStatusMessage::kWarn;
+    status.message = InWords(*report.end);
+  }
   const CaptureCounters& capture = report.capture;
   status.values = {{"image rate", fmt::format("{:.1f} Hz", rate_hz)},
                    Value("images captured", capture.captured),

@@ -32,7 +32,7 @@ class RosWriter : public SinkWriter {
   }
   void Write(const FlightReport& report) override {
     const Time now = Now();
-    if (now < next_report_) return;
+    if (now < next_report_ && !report.end) return;
     next_report_ = now + kReportPeriod;
     results_->Publish(report);
   }

@@ -9,6 +9,7 @@
 #include "kestrel/comms/mavlink/connection_counters.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/flight/guidance/guidance_phase.h"
+#include "kestrel/flight/session/flight_end.h"
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/vision/mapping/team_object.h"
 
@@ -23,11 +24,28 @@ enum class TargetPhase {
 };
 const char* ToString(TargetPhase phase);  // "searching", "found", "lost", "contact"
 
-// State of the autopilot and of what Kestrel sends to it.
+// Used parts of the limits of guidance, 0 to 1.
+struct LimitsInUse {
+  double lean_share = 0;
+  double speed_share = 0;
+  double climb_share = 0;     // of climb or descent
+  std::string cannot_follow;  // why the target cannot be followed; empty: it can
+};
+
+// State of the autopilot and of what Kestrel sends to it. A value is nothing while the autopilot
+// does not report it.
 struct AutopilotState {
   bool is_here = false;     // its heartbeats come
   bool is_landing = false;  // armed, in a mode that lands
+  bool is_armed = false;
+  std::string mode;  // as "LAND"; empty before its first heartbeat
+  std::optional<double> battery_v;
+  std::optional<double> battery_remaining;  // 0 to 1
+  std::optional<int> gnss_fix;              // GPS_FIX_TYPE; 3 and more: a position with a height
+  std::optional<int> satellites;
+  std::optional<bool> has_good_position;  // by its own estimator
   std::optional<GuidancePhase> guidance;
+  std::optional<LimitsInUse> limits;  // while guidance flies
   TargetPhase target = TargetPhase::kSearching;
   ConnectionCounters link;
 };
@@ -49,14 +67,8 @@ struct FlightReport {
   int repeated_frames = 0;
   std::optional<AutopilotState> autopilot;
   std::optional<RecorderCounters> recorder;
-};
-
-// The end of a flight.
-enum class FlightEnd {
-  kStopped,      // by the user
-  kLanded,       // disarmed after it had flown
-  kSourceEnded,  // a recording, to its end
-  kFailed,       // camera or autopilot did not come back
+  std::string recording;         // folder of the recording that is on; empty: none
+  std::optional<FlightEnd> end;  // once the flight is over: in the last report
 };
 
 // The knowledge of the UAV's team, in this UAV's world.

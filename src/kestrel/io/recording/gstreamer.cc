@@ -20,6 +20,8 @@ void InitialiseGstreamer() {
   throw InputError(fmt::format("GStreamer does not start: {}", error ? error->message : "unknown"));
 }
 
+std::string FirstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
+
 GstClockTime Nanoseconds(Duration timeout) {
   return static_cast<GstClockTime>(std::max<std::int64_t>(timeout.count(), 0));
 }
@@ -45,7 +47,8 @@ GstElementPointer ParsePipeline(const std::string& text, const std::string& name
   GstElementPointer pipeline(
       gst_parse_launch_full(text.c_str(), nullptr, GST_PARSE_FLAG_FATAL_ERRORS, &error));
   const GstErrorPointer owner(error);
-  if (error != nullptr) throw InputError(fmt::format("{}: GStreamer: {}", name, error->message));
+  if (error != nullptr)
+    throw InputError(fmt::format("{}: GStreamer: {}", name, FirstLine(error->message)));
   if (!GST_IS_PIPELINE(pipeline.get())) {
     throw InputError(name + ": is no GStreamer pipeline, expected elements joined by '!'");
   }
@@ -111,7 +114,7 @@ void GstWatch::Take(GstMessage* message) {
   GError* error = nullptr;
   gst_message_parse_error(message, &error, nullptr);
   const GstErrorPointer owner(error);
-  fault_ = missing_.empty() ? error->message
+  fault_ = missing_.empty() ? FirstLine(error->message)
                             : fmt::format(
                                   "GStreamer has no {}: install the plugins that have it "
                                   "(gstreamer1.0-libav, -plugins-bad or -plugins-ugly)",

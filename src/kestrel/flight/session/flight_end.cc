@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/session/flight_end.h"
+
+#include <fmt/format.h>
+
+namespace kestrel {
+namespace {
+
+// Where it came down, for an end at which it may be anywhere.
+std::string PlaceOf(const FlightEnd& end) {
+  return end.offset_m ? fmt::format("down {:.1f} m from the pattern", *end.offset_m)
+                      : "down, and not known where";
+}
+
+std::string WithReason(const std::string& words, const std::string& reason) {
+  return reason.empty() ? words : words + ": " + reason;
+}
+
+}  // namespace
+
+const char* ToString(FlightOutcome outcome) {
+  switch (outcome) {
+    case FlightOutcome::kStopped:
+      return "stopped";
+    case FlightOutcome::kSourceEnded:
+      return "source ended";
+    case FlightOutcome::kLanded:
+      return "landed";
+    case FlightOutcome::kOnPattern:
+      return "on pattern";
+    case FlightOutcome::kBesidePattern:
+      return "beside pattern";
+    case FlightOutcome::kDownSomewhere:
+      return "down somewhere";
+    case FlightOutcome::kGaveUp:
+      return "gave up";
+    case FlightOutcome::kNotLanded:
+      return "not landed";
+    case FlightOutcome::kRestarted:
+      return "restarted";
+    case FlightOutcome::kLinkLost:
+      return "link lost";
+  }
+  return "";
+}
+
+std::string InWords(const FlightEnd& end) {
+  switch (end.outcome) {
+    case FlightOutcome::kStopped:
+      return "ended by the user";
+    case FlightOutcome::kSourceEnded:
+      return "the source has ended";
+    case FlightOutcome::kLanded:
+      return "landed";
+    case FlightOutcome::kOnPattern:
+      return end.offset_m ? fmt::format("landed {:.2f} m from the centre", *end.offset_m)
+                          : "landed on the pattern";
+    case FlightOutcome::kBesidePattern:
+      return fmt::format("landed {:.1f} m beside the pattern", end.offset_m.value_or(0));
+    case FlightOutcome::kDownSomewhere:
+      return WithReason("down, and not known where", end.reason);
+    case FlightOutcome::kGaveUp:
+      return fmt::format("guidance gave up ({}); {}", end.reason, PlaceOf(end));
+    case FlightOutcome::kNotLanded:
+      return WithReason("not landed", end.reason);
+    case FlightOutcome::kRestarted:
+      return "the autopilot restarted in flight";
+    case FlightOutcome::kLinkLost:
+      return WithReason("link lost", end.reason);
+  }
+  return "";
+}
+
+std::string FlightEndCsv(const FlightEnd& end) {
+  return fmt::format("end,offset_m,words\n{},{},\"{}\"\n", ToString(end.outcome),
+                     end.offset_m ? fmt::format("{:.4f}", *end.offset_m) : "", InWords(end));
+}
+
+int ExitStatus(const FlightEnd& end) {
+  constexpr int kDone = 0;
+  constexpr int kFailed = 3;
+  constexpr int kNotOnPattern = 4;
+  switch (end.outcome) {
+    case FlightOutcome::kStopped:
+    case FlightOutcome::kSourceEnded:
+    case FlightOutcome::kLanded:
+    case FlightOutcome::kOnPattern:
+      return kDone;
+    case FlightOutcome::kBesidePattern:
+    case FlightOutcome::kDownSomewhere:
+    case FlightOutcome::kGaveUp:
+      return kNotOnPattern;
+    case FlightOutcome::kNotLanded:
+    case FlightOutcome::kRestarted:
+    case FlightOutcome::kLinkLost:
+      return kFailed;
+  }
+  return kFailed;
+}
+
+}  // namespace kestrel

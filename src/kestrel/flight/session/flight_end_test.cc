@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/session/flight_end.h"
+
+#include <gtest/gtest.h>
+
+namespace kestrel {
+namespace {
+
+TEST(FlightEndTest, EachEndHasItsWordsAndItsStatus) {
+  struct Case {
+    FlightEnd end;
+    const char* words;
+    int status;
+  };
+  const Case cases[] = {
+      {{FlightOutcome::kOnPattern, 0.054}, "landed 0.05 m from the centre", 0},
+      {{FlightOutcome::kOnPattern}, "landed on the pattern", 0},
+      {{FlightOutcome::kStopped}, "ended by the user", 0},
+      {{FlightOutcome::kSourceEnded}, "the source has ended", 0},
+      {{FlightOutcome::kLanded}, "landed", 0},
+      {{FlightOutcome::kBesidePattern, 10.83}, "landed 10.8 m beside the pattern", 4},
+      {{FlightOutcome::kDownSomewhere, {}, "the pattern was never seen"},
+       "down, and not known where: the pattern was never seen",
+       4},
+      {{FlightOutcome::kGaveUp, 3.2, "no new images"},
+       "guidance gave up (no new images); down 3.2 m from the pattern",
+       4},
+      {{FlightOutcome::kGaveUp, {}, "no new images"},
+       "guidance gave up (no new images); down, and not known where",
+       4},
+      {{FlightOutcome::kNotLanded, {}, "no image for 60 s"}, "not landed: no image for 60 s", 3},
+      {{FlightOutcome::kRestarted}, "the autopilot restarted in flight", 3},
+      {{FlightOutcome::kLinkLost, {}, "no heartbeat of the autopilot for 60 s"},
+       "link lost: no heartbeat of the autopilot for 60 s",
+       3},
+  };
+  for (const Case& one : cases) {
+    EXPECT_EQ(InWords(one.end), one.words);
+    EXPECT_EQ(ExitStatus(one.end), one.status) << one.words;
+  }
+}
+
+TEST(FlightEndTest, ATableHasOneRow) {
+  EXPECT_EQ(FlightEndCsv({FlightOutcome::kBesidePattern, 10.83}),
+            "end,offset_m,words\n"
+            "beside pattern,10.8300,\"landed 10.8 m beside the pattern\"\n");
+  EXPECT_EQ(FlightEndCsv({FlightOutcome::kStopped}),
+            "end,offset_m,words\nstopped,,\"ended by the user\"\n");
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/io/recording/silence_gstreamer.h"
+
+#include <cstdlib>
+#include <gst/gst.h>
+
+namespace kestrel {
+
+void SilenceGstreamer() {
+  if (std::getenv("GST_DEBUG") != nullptr) return;
+  gst_debug_set_active(FALSE);
+  g_log_set_default_handler([](const gchar*, GLogLevelFlags, const gchar*, gpointer) {}, nullptr);
+}
+
+}  // namespace kestrel
