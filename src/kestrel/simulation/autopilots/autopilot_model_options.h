@@ -18,7 +18,8 @@ struct EstimateFaultOptions {
   double silent_for_s = 2;
   double jump_after_s = -1;  // of the position, to the east
   double jump_m = 5;
-  double lost_after_s = -1;  // of the position, for good
+  double lost_after_s = -1;   // of the position, for good
+  double rest_climb_mps = 0;  // error of its vertical speed from touch-down on; its height drifts
   bool has_home = true;
 
   template <class Self, class Visitor>
@@ -31,6 +32,8 @@ struct EstimateFaultOptions {
     visitor("jump_m", self.jump_m, "m", "by so much");
     visitor("lost_after_s", self.lost_after_s, "s",
             "when it loses its position for good; negative: never");
+    visitor("rest_climb_mps", self.rest_climb_mps, "m/s",
+            "error of its vertical speed while it stands; its height drifts by it");
     visitor("has_home", self.has_home, "", "it has a home to return to");
   }
   std::vector<std::string> Validate() const;
