@@ -103,10 +103,10 @@ void ForEachMessage(const Visitor& visitor) {
   ForEachOf<Visitor, Heartbeat, SysStatus, SystemTime, SetMode, ParamRequestRead, ParamRequestList,
             ParamValue, ParamSet, Attitude, AttitudeQuaternion, LocalPositionNed, GlobalPositionInt,
             GpsGlobalOrigin, RcChannels, RequestDataStream, CommandLong, CommandAck,
-            SetPositionTargetLocalNed, SimState, Timesync, HilStateQuaternion, DistanceSensor,
-            FollowTarget, AutopilotVersion, LandingTarget, EkfStatusReport, EstimatorStatus,
-            HomePosition, MessageInterval, ExtendedSysState, Statustext, CurrentMode,
-            TargetRelative>(visitor);
+            SetAttitudeTarget, SetPositionTargetLocalNed, SimState, Timesync, HilStateQuaternion,
+            DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget, EkfStatusReport,
+            EstimatorStatus, HomePosition, MessageInterval, ExtendedSysState, Statustext,
+            CurrentMode, TargetRelative>(visitor);
 }
 
 void Print(std::uint32_t id, std::string_view name, const std::string& fields,

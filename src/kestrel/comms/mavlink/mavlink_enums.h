@@ -69,6 +69,11 @@ inline constexpr std::uint16_t kForceNotAcceleration = 0x200;
 inline constexpr std::uint16_t kIgnoreYaw = 0x400;
 inline constexpr std::uint16_t kIgnoreYawRate = 0x800;
 
+// ATTITUDE_TARGET_TYPEMASK.
+inline constexpr std::uint8_t kIgnoreBodyRates = 7;
+inline constexpr std::uint8_t kIgnoreThrust = 64;
+inline constexpr std::uint8_t kIgnoreAttitude = 128;
+
 // ESTIMATOR_STATUS_FLAGS; flags of EKF_STATUS_FLAGS with the same names have the same values.
 inline constexpr std::uint16_t kEstimatorAttitude = 1;
 inline constexpr std::uint16_t kEstimatorVelocityHorizontal = 2;

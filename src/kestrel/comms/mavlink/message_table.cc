@@ -20,10 +20,10 @@ constexpr auto kTable =
     MakeTable<Heartbeat, SysStatus, SystemTime, SetMode, ParamRequestRead, ParamRequestList,
               ParamValue, ParamSet, GpsRawInt, Attitude, AttitudeQuaternion, LocalPositionNed,
               GlobalPositionInt, GpsGlobalOrigin, RcChannels, RequestDataStream, CommandLong,
-              CommandAck, SetPositionTargetLocalNed, SimState, Timesync, HilStateQuaternion,
-              DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget, EkfStatusReport,
-              EstimatorStatus, HomePosition, MessageInterval, ExtendedSysState, Statustext,
-              CurrentMode, TargetRelative>();
+              CommandAck, SetAttitudeTarget, SetPositionTargetLocalNed, SimState, Timesync,
+              HilStateQuaternion, DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget,
+              EkfStatusReport, EstimatorStatus, HomePosition, MessageInterval, ExtendedSysState,
+              Statustext, CurrentMode, TargetRelative>();
 
 constexpr bool IsSortedById() {
   return std::is_sorted(kTable.begin(), kTable.end(),
@@ -57,6 +57,7 @@ static_assert(Is<RcChannels>(118, 42, 42));
 static_assert(Is<RequestDataStream>(148, 6, 6));
 static_assert(Is<CommandLong>(152, 33, 33));
 static_assert(Is<CommandAck>(143, 3, 10));
+static_assert(Is<SetAttitudeTarget>(49, 39, 51));
 static_assert(Is<SetPositionTargetLocalNed>(143, 53, 53));
 static_assert(Is<SimState>(32, 84, 92));
 static_assert(Is<Timesync>(34, 16, 18));

@@ -460,6 +460,36 @@ struct CommandAck {
   }
 };
 
+struct SetAttitudeTarget {
+  static constexpr std::uint32_t kId = 82;
+  static constexpr std::string_view kName = "SET_ATTITUDE_TARGET";
+  std::uint32_t time_boot_ms = 0;
+  std::uint8_t target_system = 0;
+  std::uint8_t target_component = 0;
+  std::uint8_t type_mask = 0;
+  std::array<float, 4> q{};
+  float body_roll_rate = 0;
+  float body_pitch_rate = 0;
+  float body_yaw_rate = 0;
+  float thrust = 0;
+  std::array<float, 3> thrust_body{};
+
+  template <class Self, class Visitor>
+  static constexpr void Visit(Self& self, Visitor&& visitor) {
+    visitor("time_boot_ms", self.time_boot_ms, "ms");
+    visitor("target_system", self.target_system, "");
+    visitor("target_component", self.target_component, "");
+    visitor("type_mask", self.type_mask, "");
+    visitor("q", self.q, "");
+    visitor("body_roll_rate", self.body_roll_rate, "rad/s");
+    visitor("body_pitch_rate", self.body_pitch_rate, "rad/s");
+    visitor("body_yaw_rate", self.body_yaw_rate, "rad/s");
+    visitor("thrust", self.thrust, "");
+    visitor.Extensions();
+    visitor("thrust_body", self.thrust_body, "");
+  }
+};
+
 struct SetPositionTargetLocalNed {
   static constexpr std::uint32_t kId = 84;
   static constexpr std::string_view kName = "SET_POSITION_TARGET_LOCAL_NED";

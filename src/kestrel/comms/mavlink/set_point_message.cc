@@ -9,6 +9,15 @@
 #include "kestrel/comms/mavlink/ned.h"
 
 namespace kestrel {
+namespace {
+
+// The heading of NED, clockwise from north, of a yaw from east to north; rad.
+float HeadingOfYaw(double yaw) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  return static_cast<float>(std::remainder(kTurn / 4 - yaw, kTurn));
+}
+
+}  // namespace
 
 mavlink::SetPositionTargetLocalNed SetPointMessage(const SetPoint& set_point, AutopilotKind kind,
                                                    std::uint8_t system, std::uint8_t component,
@@ -28,13 +37,25 @@ mavlink::SetPositionTargetLocalNed SetPointMessage(const SetPoint& set_point, Au
   message.afy = acceleration.y();
   message.afz = acceleration.z();
   if (set_point.yaw) {
-    constexpr double kTurn = 2 * std::numbers::pi;
     message.type_mask |= mavlink::kIgnoreYawRate;
-    message.yaw = static_cast<float>(std::remainder(kTurn / 4 - *set_point.yaw, kTurn));
+    message.yaw = HeadingOfYaw(*set_point.yaw);
   } else {
     message.type_mask |= mavlink::kIgnoreYaw;
     if (kind != AutopilotKind::kArduPilot) message.type_mask |= mavlink::kIgnoreYawRate;
   }
+  return message;
+}
+
+mavlink::SetAttitudeTarget CarriedMessage(const SetPoint& set_point, std::uint8_t system,
+                                          std::uint8_t component, std::uint32_t boot_ms) {
+  const float half = 0.5F * HeadingOfYaw(set_point.yaw.value_or(0));
+  mavlink::SetAttitudeTarget message;
+  message.time_boot_ms = boot_ms;
+  message.target_system = system;
+  message.target_component = component;
+  message.type_mask = mavlink::kIgnoreBodyRates;
+  message.q = {std::cos(half), 0, 0, std::sin(half)};
+  message.thrust = 0;  // a climb rate: the fastest sink rate
   return message;
 }
 
@@ -46,10 +67,14 @@ bool SendSetPoint(const SetPoint& set_point, const Autopilot& autopilot, Time no
     return false;
   }
   const TimeSync& clock = autopilot.time_sync();
-  const std::int64_t boot_ms = clock.is_known() ? clock.ToRemote(now) / kNsPerMs : 0;
-  return connection->Send(
-      SetPointMessage(set_point, autopilot.kind(), autopilot.system(), autopilot.component(),
-                      static_cast<std::uint32_t>(std::max<std::int64_t>(boot_ms, 0))));
+  const std::int64_t remote_ms = clock.is_known() ? clock.ToRemote(now) / kNsPerMs : 0;
+  const auto boot_ms = static_cast<std::uint32_t>(std::max<std::int64_t>(remote_ms, 0));
+  if (set_point.is_carried && autopilot.kind() == AutopilotKind::kArduPilot) {
+    return connection->Send(
+        CarriedMessage(set_point, autopilot.system(), autopilot.component(), boot_ms));
+  }
+  return connection->Send(SetPointMessage(set_point, autopilot.kind(), autopilot.system(),
+                                          autopilot.component(), boot_ms));
 }
 
 }  // namespace kestrel

@@ -19,7 +19,14 @@ mavlink::SetPositionTargetLocalNed SetPointMessage(const SetPoint& set_point, Au
                                                    std::uint8_t system, std::uint8_t component,
                                                    std::uint32_t boot_ms);
 
-// Sends it. False when it was not sent: it is not finite, or the line did not accept it.
+// Returns the form of a set-point for a UAV that a deck carries, for ArduPilot's GUIDED: level, the
+// heading, and down as fast as it may. Where it controls a velocity against the deck, it leans ever
+// more, and its land detector never finds that it has landed.
+mavlink::SetAttitudeTarget CarriedMessage(const SetPoint& set_point, std::uint8_t system,
+                                          std::uint8_t component, std::uint32_t boot_ms);
+
+// Sends it, in the form that suits the autopilot. False when it was not sent: it is not finite, or
+// the line did not accept it.
 bool SendSetPoint(const SetPoint& set_point, const Autopilot& autopilot, Time now,
                   Connection* connection);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/comms/mavlink/set_point_message.h"
 
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -36,6 +37,20 @@ TEST(SetPointMessageTest, TheNoseStaysWithoutAYaw) {
   const auto message = SetPointMessage({}, AutopilotKind::kArduPilot, 1, 1, 0);
   EXPECT_EQ(message.type_mask, 0x407) << "else ArduPilot turns it along the velocity";
   EXPECT_EQ(message.yaw_rate, 0);
+}
+
+TEST(SetPointMessageTest, OnADeckArduPilotIsLevelAndGoesDown) {
+  SetPoint set_point;
+  set_point.yaw = 0;  // east
+  set_point.velocity = {4, 0, -0.7};
+  const auto message = CarriedMessage(set_point, 7, 1, 1234);
+  EXPECT_EQ(message.target_system, 7);
+  EXPECT_EQ(message.type_mask, 7) << "attitude and thrust, no rates";
+  EXPECT_FLOAT_EQ(message.q[0], std::sqrt(0.5F));
+  EXPECT_EQ(message.q[1], 0);
+  EXPECT_EQ(message.q[2], 0);
+  EXPECT_FLOAT_EQ(message.q[3], std::sqrt(0.5F));
+  EXPECT_EQ(message.thrust, 0);
 }
 
 TEST(SetPointMessageTest, WhatIsNotFiniteIsNotSent) {

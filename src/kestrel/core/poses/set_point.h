@@ -14,6 +14,8 @@ struct SetPoint {
   Eigen::Vector3d velocity{0, 0, 0};
   Eigen::Vector3d acceleration{0, 0, 0};
   std::optional<double> yaw = std::nullopt;
+  // The UAV stands on a deck that carries it: its horizontal motion is not to be controlled.
+  bool is_carried = false;
 };
 
 }  // namespace kestrel

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/guidance/contact_detector.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "kestrel/core/base/violations.h"
@@ -18,6 +19,8 @@ std::vector<std::string> ContactOptions::Validate() const {
 
 bool ContactDetector::Update(Time now, const Eigen::Vector3d& feet, const Eigen::Vector3d& velocity,
                              const std::optional<Deck>& deck) {
+  if (contact_z_m_) FollowDeck(now, feet.z());
+  last_ = now;
   if (contact_z_m_ && feet.z() > *contact_z_m_ + 2 * options_.height_m) Reset();
   if (contact_z_m_) return true;
   if (!deck || !RestsOn(*deck, feet, velocity)) {
@@ -28,6 +31,13 @@ bool ContactDetector::Update(Time now, const Eigen::Vector3d& feet, const Eigen:
   if (now - *resting_since_ < DurationFromSeconds(options_.time_s)) return false;
   contact_z_m_ = feet.z();
   return true;
+}
+
+// The deck heaves or drives uphill, and the estimated height drifts.
+void ContactDetector::FollowDeck(Time now, double feet_z_m) {
+  constexpr double kCarried_mps = 1;
+  const double most_m = kCarried_mps * ToSeconds(now - last_);
+  *contact_z_m_ += std::clamp(feet_z_m - *contact_z_m_, -most_m, most_m);
 }
 
 bool ContactDetector::RestsOn(const Deck& deck, const Eigen::Vector3d& feet,

@@ -13,11 +13,12 @@ namespace kestrel {
 
 // Contact: the feet are near the deck and at rest against it, as when the legs stand on it.
 struct ContactOptions {
-  // speed_mps is below the sink rate of an autopilot near the ground; time_s is longer than the
-  // bottom of a bounce.
+  // speed_mps is below the sink rate of an autopilot near the ground, and more than an estimate is
+  // wrong after the shock of touch-down (0.12 m/s was seen); time_s is longer than the bottom of a
+  // bounce.
   double height_m = 0.25;  // largest height of the feet above the deck, by the track
   double reach_m = 0.6;    // largest horizontal distance of the feet from the deck's middle
-  double speed_mps = 0.1;
+  double speed_mps = 0.25;
   double time_s = 0.5;
 
   template <class Self, class Visitor>
@@ -31,7 +32,8 @@ struct ContactOptions {
 };
 
 // Decides whether the UAV stands on the deck. After contact the camera sees nothing any more:
-// contact therefore lasts until the feet have risen by twice height_m.
+// contact therefore lasts until the feet have risen by twice height_m, faster than a deck carries
+// them or an estimate of the height drifts.
 class ContactDetector {
  public:
   explicit ContactDetector(const ContactOptions& options) : options_(options) {}
@@ -49,12 +51,14 @@ class ContactDetector {
   void Reset();
 
  private:
+  void FollowDeck(Time now, double feet_z_m);
   bool RestsOn(const Deck& deck, const Eigen::Vector3d& feet,
                const Eigen::Vector3d& velocity) const;
 
   ContactOptions options_;
   std::optional<Time> resting_since_;
-  std::optional<double> contact_z_m_;  // height of the feet at contact
+  std::optional<double> contact_z_m_;  // height of the deck below the feet
+  Time last_;                          // of the last update
 };
 
 }  // namespace kestrel

@@ -37,6 +37,19 @@ TEST(ContactDetectorTest, RestOnTheDeckForAMomentIsContact) {
   EXPECT_TRUE(contacts.Update(0.2, {0.1, 0, 0.05}, 0));
 }
 
+// The shock of touch-down leaves the estimate wrong: by 0.12 m/s, up or down, was seen.
+TEST(ContactDetectorTest, AnEstimateThatIsWrongAfterTouchDownIsContactAndLasts) {
+  for (const double sink_mps : {0.12, -0.12}) {
+    Contacts contacts;
+    EXPECT_TRUE(contacts.Update(0.6, {0.1, 0, 0.05}, sink_mps));
+    for (int i = 0; i < 60; ++i) {
+      ASSERT_TRUE(contacts.Update(1, {0.1, 0, 0.05 - i * sink_mps}, sink_mps)) << i << " s";
+    }
+  }
+  Contacts slow;
+  EXPECT_FALSE(slow.Update(2, {0.1, 0, 0.05}, 0.3)) << "still sinks";
+}
+
 TEST(ContactDetectorTest, LastsWithoutTheDeckUntilItRises) {
   Contacts contacts;
   ASSERT_TRUE(contacts.Update(1, {0.1, 0, 0.05}, 0));

@@ -250,7 +250,7 @@ GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
   } else {
     wanted = input.target ? Pursue(input, now) : Search(input, now);
   }
-  wanted.yaw = yaw_;
+  if (!wanted.yaw) wanted.yaw = yaw_;
   const Vector3d& position = input.uav->world_from_body.translation;
   const bool is_flying = phase_ != GuidancePhase::kLanded;
   const SetPoint limited =
@@ -409,13 +409,15 @@ GuidanceRequest LandingGuidance::RequestInContact(const GuidanceInput& input) co
   return options_.land_in_contact && may_land ? GuidanceRequest::kLand : GuidanceRequest::kNone;
 }
 
-// On the deck: goes on down and along with the deck. The autopilot then finds that it has landed,
-// and does not lean against the motion of the deck.
+// On the deck: goes on down, and is carried. The autopilot then finds that it has landed: it does
+// not lean against the motion of the deck. One that needs a velocity gets the deck's.
 SetPoint LandingGuidance::Rest(const GuidanceInput& input, const Situation& now) {
   ride_.Observe(input.now, now.velocity.head<2>());
   SetPoint command;
   command.velocity << ride_.Velocity(model_.delay_s()), -options_.touchdown_sink_mps;
   command.acceleration.head<2>() = ride_.acceleration();
+  command.yaw = HeadingOf(input.uav->world_from_body.rotation);  // a deck that turns turns it
+  command.is_carried = true;
   return command;
 }
 

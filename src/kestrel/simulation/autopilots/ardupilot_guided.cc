@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/core/poses/gravity.h"
-#include "kestrel/simulation/autopilots/set_point_reading.h"
 
 namespace kestrel {
 namespace {
@@ -30,6 +30,7 @@ void ArduPilotGuided::Handle(const mavlink::SetPositionTargetLocalNed& message,
                              const FlightState& state, bool is_guided) {
   constexpr double kFastest_mps = 1000;
   if (!is_guided) return;
+  if (std::exchange(attitude_, std::nullopt)) Start(state);
   told_.reset();
   const bool has_place = (message.type_mask & mavlink::kIgnorePosition) != mavlink::kIgnorePosition;
   if (!IsFrameOfGuided(message.coordinate_frame) || has_place) return;
@@ -40,8 +41,22 @@ void ArduPilotGuided::Handle(const mavlink::SetPositionTargetLocalNed& message,
   told_ = state.time;
 }
 
+// What it does not take stops it, as above.
+void ArduPilotGuided::Handle(const mavlink::SetAttitudeTarget& message, const FlightState& state,
+                             bool is_guided) {
+  if (!is_guided) return;
+  attitude_ = AttitudeOrderOf(message, parameters_["WP_SPD_UP"], parameters_["WP_SPD_DN"]);
+  told_.reset();
+  if (attitude_) {
+    told_ = state.time;
+  } else {
+    Start(state);
+  }
+}
+
 void ArduPilotGuided::Start(const FlightState& state) {
   told_.reset();
+  attitude_.reset();
   limit_ = {};
   horizontal_.Start(state.position().head<2>(), state.velocity().head<2>());
   vertical_.Start(state.position().tail<1>(), state.velocity().tail<1>());
@@ -51,6 +66,7 @@ FlightCommand ArduPilotGuided::Fly(const FlightState& state) {
   constexpr double kLeastTimeout_s = 0.1;
   const double timeout_s = std::max(parameters_["GUID_TIMEOUT"], kLeastTimeout_s);
   if (told_ && ToSeconds(state.time - *told_) > timeout_s) told_.reset();
+  if (attitude_) return FlyAttitude(state);
   if (!told_) {
     wanted_ = {};
     turn_rate_ = 0;
@@ -74,6 +90,20 @@ FlightCommand ArduPilotGuided::Fly(const FlightState& state) {
   return command;
 }
 
+// Without messages it is level, and neither climbs nor sinks.
+FlightCommand ArduPilotGuided::FlyAttitude(const FlightState& state) {
+  constexpr double kClimbGain = 5;
+  if (!told_) *attitude_ = {};
+  FlightCommand command;
+  command.is_thrust = true;
+  command.set_point.velocity = state.velocity();
+  command.set_point.velocity.z() = attitude_->climb_mps;
+  command.set_point.acceleration << attitude_->acceleration,
+      kClimbGain * (attitude_->climb_mps - state.velocity().z());
+  command.set_point.yaw = attitude_->yaw;
+  return command;
+}
+
 // Returns the limit where the velocity control asks for more tilt than allowed.
 ShapedPath<2>::Limit ArduPilotGuided::LimitOf(const Vector2d& way,
                                               const Vector2d& velocity_error) const {
@@ -89,8 +119,7 @@ void ArduPilotGuided::Follow(const FlightState& state) {
   vertical_.Step(Vector1d(wanted_.velocity.z()), Vector1d(wanted_.acceleration.z()),
                  parameters_["WP_ACC_Z"], parameters_["PSC_JERK_D"], state.step_s);
   if (!state.is_standing) return;
-  // The surface that carries it moves the path along.
-  horizontal_.MoveTo(state.position().head<2>());
+  // Rotors at their lower limit hold the path's height.
   vertical_.MoveTo(state.position().tail<1>());
 }
 

@@ -6,11 +6,13 @@
 #include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/simulation/autopilots/guided_rules.h"
+#include "kestrel/simulation/autopilots/set_point_reading.h"
 #include "kestrel/simulation/autopilots/shaped_path.h"
 
 namespace kestrel {
 
-// ArduCopter's GUIDED mode with velocities, with or without accelerations. Position set-points are
+// ArduCopter's GUIDED mode with velocities, with or without accelerations, and with an attitude and
+// a climb rate. Position set-points are
 // not modelled: it stops, as for a set-point that it refuses.
 class ArduPilotGuided : public GuidedRules {
  public:
@@ -18,6 +20,8 @@ class ArduPilotGuided : public GuidedRules {
   explicit ArduPilotGuided(const AutopilotParameters& parameters) : parameters_(parameters) {}
 
   void Handle(const mavlink::SetPositionTargetLocalNed& message, const FlightState& state,
+              bool is_guided) override;
+  void Handle(const mavlink::SetAttitudeTarget& message, const FlightState& state,
               bool is_guided) override;
   bool IsAvailable(const FlightState& /*state*/) const override { return true; }
   void Start(const FlightState& state) override;
@@ -32,7 +36,10 @@ class ArduPilotGuided : public GuidedRules {
                                const Eigen::Vector2d& velocity_error) const;
   void Follow(const FlightState& state);
 
+  FlightCommand FlyAttitude(const FlightState& state);
+
   const AutopilotParameters& parameters_;
+  std::optional<AttitudeOrder> attitude_;  // nothing: it flies by velocities
   SetPoint wanted_;
   std::optional<double> turn_rate_;  // ENU, rad/s
   std::optional<Time> told_;         // time of the last one; nothing: it has to stop

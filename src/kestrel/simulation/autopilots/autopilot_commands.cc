@@ -52,7 +52,16 @@ void AutopilotModel::Receive(const mavlink::TargetRelative& message, Time /*now*
   landing_->Handle(message, state_);
 }
 
+void AutopilotModel::Receive(const mavlink::SetAttitudeTarget& message, Time now) {
+  ReceiveSetPoint(message, now);
+}
+
 void AutopilotModel::Receive(const mavlink::SetPositionTargetLocalNed& message, Time now) {
+  ReceiveSetPoint(message, now);
+}
+
+template <class Message>
+void AutopilotModel::ReceiveSetPoint(const Message& message, Time now) {
   if (!IsForIt(message.target_system)) return;
   const bool is_guided = IsIn(FlightMode::kGuided);
   if (is_guided) {

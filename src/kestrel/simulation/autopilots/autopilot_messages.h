@@ -30,7 +30,8 @@ using AutopilotMessage =
 using CompanionMessage =
     std::variant<mavlink::Heartbeat, mavlink::CommandLong, mavlink::SetMode, mavlink::Timesync,
                  mavlink::LandingTarget, mavlink::TargetRelative, mavlink::ParamRequestRead,
-                 mavlink::ParamRequestList, mavlink::ParamSet, mavlink::SetPositionTargetLocalNed>;
+                 mavlink::ParamRequestList, mavlink::ParamSet, mavlink::SetAttitudeTarget,
+                 mavlink::SetPositionTargetLocalNed>;
 
 // Returns the message of a packet, if the autopilot handles it.
 std::optional<CompanionMessage> CompanionMessageOf(const mavlink::Packet& packet);

@@ -140,10 +140,10 @@ void AutopilotModel::Step(Time now) {
 void AutopilotModel::StepOnce(Time now) {
   const FlightCommand command = Fly();
   uav_.Step(now, command, is_armed_);
-  world_.ObserveUav(now, uav_.pose().world_from_body.translation);
+  world_.TellPose(uav_.pose());
   ObserveFlight(now);
   landing_->Estimate(state_);
-  detector_.Observe(state_, command.set_point);
+  detector_.Observe(state_, command);
   if (IsIn(FlightMode::kGuided)) result_.guided_s += state_.step_s;
   FollowPilot(now);
   WatchSetPoints(now);
@@ -167,6 +167,16 @@ void AutopilotModel::ObserveFlight(Time now) {
   // It knows when its estimate was reset: the held place moves along.
   if (jumps && !std::exchange(has_jumped_, true)) hold_.x() += faults.jump_m;
   state_.is_standing = uav_.is_standing();
+  DriftAtRest();
+}
+
+// Its vertical speed is wrong while it stands, and its height with it.
+void AutopilotModel::DriftAtRest() {
+  const bool drifts = state_.is_standing && is_armed_;
+  const double error_mps = drifts ? options_.estimate.rest_climb_mps : 0;
+  rest_drift_m_ = drifts ? rest_drift_m_ + state_.step_s * error_mps : 0;
+  state_.pose.motion->velocity_in_world.z() += error_mps;
+  state_.pose.world_from_body.translation.z() += rest_drift_m_;
 }
 
 void AutopilotModel::FollowPilot(Time now) {
@@ -283,7 +293,7 @@ void AutopilotModel::ObserveContact(Time now) {
 }
 
 void AutopilotModel::DisarmAfterLanding(Time now) {
-  if (!is_armed_ || !detector_.has_landed() || detector_.landed_s() < 0) return;
+  if (!is_armed_ || detector_.landed_s() < 0) return;
   const bool lands = MayComeDown() && !IsIn(FlightMode::kGuided);
   // ArduPilot's landing modes do not wait.
   double wait_s = parameters_[is_px4() ? "COM_DISARM_LAND" : "DISARM_DELAY"];

@@ -71,6 +71,7 @@ class AutopilotModel {
   // autopilot_model.cc: flight.
   void StepOnce(Time now);
   void ObserveFlight(Time now);
+  void DriftAtRest();
   FlightCommand Fly();
   SetPoint Hold() const;
   void FollowPilot(Time now);
@@ -110,7 +111,10 @@ class AutopilotModel {
   void Receive(const mavlink::Timesync& message, Time now);
   void Receive(const mavlink::LandingTarget& message, Time now);
   void Receive(const mavlink::TargetRelative& message, Time now);
+  void Receive(const mavlink::SetAttitudeTarget& message, Time now);
   void Receive(const mavlink::SetPositionTargetLocalNed& message, Time now);
+  template <class Message>
+  void ReceiveSetPoint(const Message& message, Time now);
   void Receive(const mavlink::ParamRequestRead& message, Time now);
   void Receive(const mavlink::ParamRequestList& message, Time now);
   void Receive(const mavlink::ParamSet& message, Time now);
@@ -143,6 +147,7 @@ class AutopilotModel {
   Duration clock_jump_{0};
   FlightState state_;
   bool has_jumped_ = false;        // of the estimated position
+  double rest_drift_m_ = 0;        // of the estimated height while it stands
   Eigen::Vector3d hold_{0, 0, 0};  // place where it hovers unless something else moves it
   std::uint32_t custom_mode_ = 0;
   bool is_armed_ = false;

@@ -12,6 +12,7 @@ std::vector<std::string> EstimateFaultOptions::Validate() const {
   RequireIn(silent_for_s, 0, kLongest_s, "silent_for_s", &violations);
   RequireIn(jump_after_s, -1, kLongest_s, "jump_after_s", &violations);
   RequireIn(jump_m, -1000, 1000, "jump_m", &violations);
+  RequireIn(rest_climb_mps, -5, 5, "rest_climb_mps", &violations);
   RequireIn(lost_after_s, -1, kLongest_s, "lost_after_s", &violations);
   return violations;
 }

@@ -18,7 +18,8 @@ struct EstimateFaultOptions {
   double silent_for_s = 2;
   double jump_after_s = -1;  // of the position, to the east
   double jump_m = 5;
-  double lost_after_s = -1;  // of the position, for good
+  double lost_after_s = -1;   // of the position, for good
+  double rest_climb_mps = 0;  // error of its vertical speed from touch-down on; its height drifts
   bool has_home = true;
 
   template <class Self, class Visitor>
@@ -31,6 +32,8 @@ struct EstimateFaultOptions {
     visitor("jump_m", self.jump_m, "m", "length of the jump");
     visitor("lost_after_s", self.lost_after_s, "s",
             "time at which the position is lost for good; negative: never");
+    visitor("rest_climb_mps", self.rest_climb_mps, "m/s",
+            "error of the vertical speed while the UAV stands; its height drifts by it");
     visitor("has_home", self.has_home, "", "the autopilot has a home position to return to");
   }
   std::vector<std::string> Validate() const;

@@ -19,6 +19,10 @@ class GuidedRules {
   virtual void Handle(const mavlink::SetPositionTargetLocalNed& message, const FlightState& state,
                       bool is_guided) = 0;
 
+  // Takes an attitude with a climb rate, in any mode.
+  virtual void Handle(const mavlink::SetAttitudeTarget& message, const FlightState& state,
+                      bool is_guided) = 0;
+
   // True when the mode may begin.
   virtual bool IsAvailable(const FlightState& state) const = 0;
   // Called when the mode begins.

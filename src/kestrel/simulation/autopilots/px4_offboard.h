@@ -21,6 +21,9 @@ class Px4Offboard : public GuidedRules {
 
   void Handle(const mavlink::SetPositionTargetLocalNed& message, const FlightState& state,
               bool is_guided) override;
+  // Attitudes are not modelled: they are dropped.
+  void Handle(const mavlink::SetAttitudeTarget& /*message*/, const FlightState& /*state*/,
+              bool /*is_guided*/) override {}
   bool IsAvailable(const FlightState& state) const override;
   void Start(const FlightState& state) override;
   FlightCommand Fly(const FlightState& state) override;

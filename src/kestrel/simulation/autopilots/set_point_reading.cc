@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/simulation/autopilots/set_point_reading.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -8,6 +9,7 @@
 
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/ned.h"
+#include "kestrel/core/poses/gravity.h"
 
 namespace kestrel {
 namespace {
@@ -22,6 +24,26 @@ bool IsOfBody(std::uint8_t frame) {
 
 double HeadingOf(const FlightState& state) {
   return HeadingOf(state.pose.world_from_body.rotation);
+}
+
+std::optional<AttitudeOrder> AttitudeOrderOf(const mavlink::SetAttitudeTarget& message,
+                                             double max_climb_mps, double max_sink_mps) {
+  constexpr double kUnitTolerance = 1e-3;
+  constexpr int kNeeded = mavlink::kIgnoreThrust | mavlink::kIgnoreAttitude;
+  const auto& [w, x, y, z] = message.q;
+  const Eigen::Quaterniond in_ned(w, x, y, z);
+  const bool is_unit = std::abs(in_ned.norm() - 1) < kUnitTolerance;
+  if ((message.type_mask & kNeeded) != 0 || !is_unit || !std::isfinite(message.thrust)) {
+    return std::nullopt;
+  }
+  const Eigen::Quaterniond rotation = EnuFluFromNedFrd(in_ned.normalized());
+  const Eigen::Vector3d up = rotation * Eigen::Vector3d::UnitZ();
+  const double part = 2 * std::clamp<double>(message.thrust, 0, 1) - 1;
+  AttitudeOrder order;
+  order.acceleration = kGravity * up.head<2>() / std::max(up.z(), 0.1);
+  order.climb_mps = part * (part > 0 ? max_climb_mps : max_sink_mps);
+  order.yaw = HeadingOf(rotation);
+  return order;
 }
 
 std::optional<VelocityOrder> VelocityOrderOf(const mavlink::SetPositionTargetLocalNed& message,

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <optional>
 
+#include <Eigen/Core>
+
 #include "kestrel/comms/autopilot_rules/landing_rules.h"
 #include "kestrel/comms/mavlink/messages.h"
 #include "kestrel/core/poses/set_point.h"
@@ -21,6 +23,18 @@ struct VelocityOrder {
 // heading.
 std::optional<VelocityOrder> VelocityOrderOf(const mavlink::SetPositionTargetLocalNed& message,
                                              const FlightState& state);
+
+// The attitude in a SET_ATTITUDE_TARGET.
+struct AttitudeOrder {
+  Eigen::Vector2d acceleration{0, 0};  // by its lean, m/s^2, in the world (ENU)
+  double climb_mps = 0;
+  std::optional<double> yaw = std::nullopt;  // rad from east to north
+};
+
+// Returns nothing when the message has no attitude or no thrust, or one that is not valid. The
+// thrust is a climb rate: 0 is the fastest sink rate, 0.5 none, 1 the fastest climb rate.
+std::optional<AttitudeOrder> AttitudeOrderOf(const mavlink::SetAttitudeTarget& message,
+                                             double max_climb_mps, double max_sink_mps);
 
 // Returns the heading of a UAV, rad from east to north.
 double HeadingOf(const FlightState& state);

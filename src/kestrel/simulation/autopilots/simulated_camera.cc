@@ -77,16 +77,23 @@ SimulatedCamera::SimulatedCamera(const SimulatedCameraOptions& options, VehicleW
   camera_ = std::make_unique<FlightCamera>(
       CameraModel(calibration_.intrinsics), lens, options.shutter, options.sensor, drawn_,
       [this](double time_s) { return BodyAt(time_s) * *calibration_.body_from_camera; });
+  world_.ListenToPoses([this](const PoseSample& pose) { Place(pose, true); });
 }
 
 void SimulatedCamera::AddPose(const PoseSample& pose) {
+  Place(pose, false);
+  world_.ObserveUav(pose.time, pose.world_from_body.translation);
+}
+
+void SimulatedCamera::Place(const PoseSample& pose, bool is_true) {
   {
     const std::lock_guard lock(mutex_);
+    if (has_true_poses_ && !is_true) return;
+    has_true_poses_ = is_true;
     if (poses_.Add(pose) != PoseStatus::kOk) return;
     newest_pose_ = pose;
   }
   pose_came_.notify_one();
-  world_.ObserveUav(pose.time, pose.world_from_body.translation);
 }
 
 bool SimulatedCamera::Next(Frame* frame, Duration timeout) {

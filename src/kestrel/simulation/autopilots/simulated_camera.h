@@ -31,7 +31,7 @@ struct SimulatedCameraOptions {
   double rate_hz = 20;
   double scale = 0.5;         // of the paper's image of 752x480
   double clock_offset_s = 0;  // t_nav = t_image + clock_offset_s; negative for a late stamp
-  double pose_wait_s = 0.3;   // longest wait of an image for its pose, which is then extrapolated
+  double pose_wait_s = 0.03;  // longest wait of an image for its pose, which is then extrapolated
   LensViewOptions lens;
   ShutterOptions shutter;
   SensorOptions sensor;
@@ -53,18 +53,21 @@ struct SimulatedCameraOptions {
   std::vector<std::string> Validate() const;
 };
 
-// A live camera that is rendered: the view from the pose that the autopilot reports for the UAV,
-// over a vehicle that drives in real time.
+// A live camera that is rendered: the view from the UAV over a vehicle that drives in real time.
+// The UAV is where the world's simulated autopilot truly is; with another autopilot where its
+// reported pose, extrapolated to the image, says.
 class SimulatedCamera {
  public:
   // The world must outlive this. The first image is taken at 'start' on the local clock. Throws
   // InputError when the options are not valid.
   SimulatedCamera(const SimulatedCameraOptions& options, VehicleWorld* world, Time start,
                   std::uint64_t seed);
+  ~SimulatedCamera() { world_.ListenToPoses(nullptr); }
   SimulatedCamera(const SimulatedCamera&) = delete;  // the renderer refers to it
   SimulatedCamera& operator=(const SimulatedCamera&) = delete;
 
-  // Adds a pose of the UAV, on the local clock. Thread-safe; wakes Next.
+  // Adds a reported pose of the UAV, on the local clock; without effect where the world has true
+  // ones. Thread-safe; wakes Next.
   void AddPose(const PoseSample& pose);
 
   // Waits for the next image of the rate and for its pose, and renders it; images whose time has
@@ -95,6 +98,7 @@ class SimulatedCamera {
     BodyMotion motion;
   };
 
+  void Place(const PoseSample& pose, bool is_true);
   CameraFault FaultAt(Time capture) const;
   bool IsLeftOut(Time capture) const;
   Time NextCapture();
@@ -119,6 +123,7 @@ class SimulatedCamera {
   std::mutex mutex_;  // guards what follows
   std::condition_variable pose_came_;
   PoseHistory poses_;
+  bool has_true_poses_ = false;
   std::optional<PoseSample> newest_pose_;
 };
 

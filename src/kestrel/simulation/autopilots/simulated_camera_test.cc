@@ -134,6 +134,23 @@ TEST_F(SimulatedCameraTest, LiveFramesComeAtTheirTimesWithPosesOfThen) {
   EXPECT_EQ((frame.time - start - 100ms) % Duration(50ms), Duration(0));
 }
 
+TEST_F(SimulatedCameraTest, TruePosesPlaceItThoughTheReportedOnesAreLateOrWrong) {
+  SimulatedCamera informed({}, &world_, kStart, /*seed=*/5);
+  VehicleWorld other(ReadVehicleWorld("circle", {}), kStart, /*seed=*/3);
+  SimulatedCamera reported({}, &other, kStart, /*seed=*/5);
+  const Vector3d start = world_.PatternAt(kStart).translation + Vector3d(-0.2, 0.3, 3);
+  for (int i = 0; i < 25; ++i) {
+    const PoseSample pose = PoseOver(start, kStart + i * 20ms);
+    world_.TellPose(pose);
+    reported.AddPose(pose);
+    informed.AddPose(PoseOver(start + Vector3d(5, 0, 0), kStart + (i - 10) * 20ms));
+  }
+  const auto by_truth = informed.Capture(kStart + 300ms);
+  const auto by_report = reported.Capture(kStart + 300ms);
+  ASSERT_TRUE(by_truth && by_report);
+  EXPECT_EQ(cv::countNonZero(by_truth->image != by_report->image), 0);
+}
+
 TEST(VehicleWorldTest, AVehicleMayWaitForTheUav) {
   VehicleWorldOptions options =
       ReadVehicleWorld("straight", {"drive_altitude_m=5", "drive_delay_s=2", "ground.map_px=64"});
@@ -156,7 +173,7 @@ TEST(VehicleWorldTest, UnknownScenariosAreNamed) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
                  "there is no scenario 'sim:figure9', expected standing, straight, circle, "
-                 "figure8");
+                 "figure8, road, lanes, motorway, ship, stops");
   }
 }
 

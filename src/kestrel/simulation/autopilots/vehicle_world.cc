@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,8 +22,8 @@ constexpr double kWaiting = std::numeric_limits<double>::infinity();
 // Duration of the track that is painted on the ground and kept free of things.
 constexpr double kTrackDuration_s = 60;
 
-const std::vector<SitlScenario>& AllSitlScenarios() {
-  static const std::vector<SitlScenario> scenarios = {
+std::vector<VehicleScenario> MakeSitlScenarios() {
+  std::vector<VehicleScenario> scenarios = {
       {"standing", "a vehicle that stands at the origin", {"vehicle.path=standing"}},
       {"straight",
        "waits at the origin until the UAV has been 5 m high, then drives straight on at 2 m/s",
@@ -34,12 +35,18 @@ const std::vector<SitlScenario>& AllSitlScenarios() {
        "the contest: 15 km/h on a figure of eight through the origin",
        {"vehicle.path=figure8", "vehicle.speed_mps=4.2"}},
   };
+  std::ranges::copy(HardVehicles(), std::back_inserter(scenarios));
   return scenarios;
 }
 
-const SitlScenario& FindSitlScenario(const std::string& name) {
+const std::vector<VehicleScenario>& AllSitlScenarios() {
+  static const std::vector<VehicleScenario> scenarios = MakeSitlScenarios();
+  return scenarios;
+}
+
+const VehicleScenario& FindSitlScenario(const std::string& name) {
   std::vector<const char*> names;
-  for (const SitlScenario& scenario : AllSitlScenarios()) {
+  for (const VehicleScenario& scenario : AllSitlScenarios()) {
     if (name == scenario.name) return scenario;
     names.push_back(scenario.name);
   }
@@ -69,7 +76,7 @@ std::vector<std::string> VehicleWorldOptions::Validate() const {
   return violations;
 }
 
-std::span<const SitlScenario> SitlScenarios() { return AllSitlScenarios(); }
+std::span<const VehicleScenario> SitlScenarios() { return AllSitlScenarios(); }
 
 VehicleWorldOptions ReadVehicleWorld(const std::string& scenario,
                                      const std::vector<std::string>& settings) {
@@ -114,6 +121,17 @@ void VehicleWorld::ObserveUav(Time time, const Eigen::Vector3d& position_in_worl
   if (position_in_world.z() < options_.drive_altitude_m) return;
   double waiting = kWaiting;
   departure_s_.compare_exchange_strong(waiting, SceneTime(time) + options_.drive_delay_s);
+}
+
+void VehicleWorld::ListenToPoses(PoseListener listener) {
+  const std::lock_guard lock(listener_mutex_);
+  listener_ = std::move(listener);
+}
+
+void VehicleWorld::TellPose(const PoseSample& pose) {
+  ObserveUav(pose.time, pose.world_from_body.translation);
+  const std::lock_guard lock(listener_mutex_);
+  if (listener_) listener_(pose);
 }
 
 // Returns how long it would have driven at full speed to be where it is.

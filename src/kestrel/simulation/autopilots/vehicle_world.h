@@ -3,6 +3,8 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,7 +14,9 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/pose_history.h"
 #include "kestrel/simulation/scene/landing_scene.h"
+#include "kestrel/simulation/scene/vehicle_scenarios.h"
 #include "kestrel/vision/landing/landing_pattern.h"
 
 namespace kestrel {
@@ -38,17 +42,12 @@ struct VehicleWorldOptions : LandingSceneOptions {
   std::vector<std::string> Validate() const;
 };
 
-// A named vehicle of `sim:SCENARIO`.
-struct SitlScenario {
-  const char* name;
-  const char* meaning;
-  std::vector<const char*> settings;  // "key=value"
-};
-std::span<const SitlScenario> SitlScenarios();
+// The vehicles of `sim:SCENARIO`.
+std::span<const VehicleScenario> SitlScenarios();
 
-// Returns the options of a scenario (standing, straight, circle, figure8), changed by the settings
-// "key=value". Throws InputError when the scenario does not exist, a setting is wrong, or the
-// result is not valid.
+// Returns the options of a scenario (standing, straight, circle, figure8, ...), changed by the
+// settings "key=value". Throws InputError when the scenario does not exist, a setting is wrong, or
+// the result is not valid.
 VehicleWorldOptions ReadVehicleWorld(const std::string& scenario,
                                      const std::vector<std::string>& settings);
 
@@ -74,6 +73,12 @@ class VehicleWorld {
   // Reports the position of a UAV, for a vehicle that waits for it.
   void ObserveUav(Time time, const Eigen::Vector3d& position_in_world);
 
+  // The true poses of a UAV that is simulated beside this world, from the autopilot to the camera:
+  // they take no time. One listener at a time; nothing: none.
+  using PoseListener = std::function<void(const PoseSample& pose)>;
+  void ListenToPoses(PoseListener listener);
+  void TellPose(const PoseSample& pose);
+
   const LandingScene& scene() const { return scene_; }
   const VehicleWorldOptions& options() const { return options_; }
 
@@ -84,6 +89,8 @@ class VehicleWorld {
   Time start_;
   std::atomic<double> departure_s_;  // scene time; infinite while it waits
   LandingScene scene_;
+  std::mutex listener_mutex_;
+  PoseListener listener_;
 };
 
 }  // namespace kestrel

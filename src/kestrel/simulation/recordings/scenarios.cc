@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/simulation/recordings/scenarios.h"
 
+#include <array>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
+#include "kestrel/simulation/scene/vehicle_scenarios.h"
 
 namespace kestrel {
 namespace {
@@ -80,14 +83,36 @@ const std::vector<Scenario>& AllHuntScenarios() {
   return scenarios;
 }
 
-const std::vector<Scenario>& AllTouchdownScenarios() {
-  static const std::vector<Scenario> scenarios = {
+// The airframe, the limits and the tracker for a vehicle at 80 km/h or on waves; the UAV flies
+// behind the vehicle already when that is faster than the UAV could come up with.
+constexpr std::array kSwift = {
+    "touchdown.starts_behind=true",     "touchdown.start_distance_m=8",
+    "multicopter.max_speed_mps=30",     "multicopter.drag=0.1",
+    "guidance.limits.max_speed_mps=30", "guidance.limits.geofence_radius_m=3000",
+    "tracker.max_speed_mps=40",         "tracker.climb_noise=0.5"};
+
+std::vector<Scenario> MakeTouchdownScenarios() {
+  std::vector<Scenario> scenarios = {
       {"figure8", "the contest: onto a pick-up at 15 km/h on a figure of eight", {}},
       {"fast",
        "onto a car at 30 km/h on a wide figure of eight",
        {"vehicle.speed_mps=8.33", "vehicle.radius_m=26", "board.carrier=car",
         "ground.material=concrete"}},
+      {"gusts",
+       "the contest in a wind of 8 m/s with gusts to 12",
+       {"wind.min_mps=8", "wind.max_mps=8", "wind.gusts=0.25", "multicopter.max_tilt_deg=45",
+        "multicopter.max_acceleration=10", "guidance.limits.max_tilt_deg=45"}},
   };
+  for (const VehicleScenario& vehicle : HardVehicles()) {
+    scenarios.push_back({vehicle.name, vehicle.meaning, vehicle.settings});
+    auto& settings = scenarios.back().settings;
+    settings.insert(settings.end(), kSwift.begin(), kSwift.end());
+  }
+  return scenarios;
+}
+
+const std::vector<Scenario>& AllTouchdownScenarios() {
+  static const std::vector<Scenario> scenarios = MakeTouchdownScenarios();
   return scenarios;
 }
 

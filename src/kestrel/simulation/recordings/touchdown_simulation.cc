@@ -29,9 +29,10 @@ CameraCalibration WithClockOffset(CameraCalibration camera, Duration clock_offse
   return camera;
 }
 
-LandingPipelineOptions PipelineOptions(const LandingPattern& pattern) {
+LandingPipelineOptions PipelineOptions(const TouchdownSimulationOptions& simulation) {
   LandingPipelineOptions options;
-  options.detector.pattern = pattern;
+  options.detector.pattern = simulation.pattern;
+  options.tracker = simulation.tracker;
   return options;
 }
 
@@ -73,6 +74,7 @@ std::vector<std::string> TouchdownSimulationOptions::Validate() const {
   AddViolations("multicopter", multicopter.Validate(), &violations);
   AddViolations("wind", wind.Validate(), &violations);
   AddViolations("guidance", guidance.Validate(), &violations);
+  AddViolations("tracker", tracker.Validate(), &violations);
   AddViolations("exposure", exposure.Validate(), &violations);
   std::ranges::copy(LandingSceneOptions::Validate(), std::back_inserter(violations));
   return violations;
@@ -88,19 +90,33 @@ TouchdownSimulation::TouchdownSimulation(const TouchdownSimulationOptions& optio
           MakeLandingScene(options, options.recording.duration_s(), /*channels=*/1, seed),
           [this](double time_s) { return path_.At(time_s); }, seed),
       start_(DrawStart()),
-      multicopter_(options.multicopter, start_.position, start_.heading),
+      multicopter_(options.multicopter, start_.position, start_.heading, start_.velocity),
       guidance_(options.guidance, start_.place),
       navigation_(landing_.flight().navigation()),
       clock_offset_(DurationFromSeconds(landing_.flight().errors().clock_offset_s)),
-      pipeline_(WithClockOffset(camera, clock_offset_), PipelineOptions(options.pattern)),
+      pipeline_(WithClockOffset(camera, clock_offset_), PipelineOptions(options)),
       exposure_(options.exposure, options.recording.shutter.exposure_s),
       exposures_s_(kExposureDelay + 1, exposure_.exposure_s()) {
   Random random = RandomOf(seed, LandingPart::kWind);
   wind_ = MakeWind(options.wind, &random);
 }
 
+TouchdownSimulation::Start TouchdownSimulation::StartBehind() const {
+  const RigidTransform vehicle = landing_.world_from_pattern()(0);
+  Start start;
+  start.velocity = VelocityOf(landing_.world_from_pattern(), 0);
+  start.velocity.z() = 0;
+  start.heading = std::atan2(start.velocity.y(), start.velocity.x());
+  start.place = vehicle.translation.head<2>();
+  const Vector2d along(std::cos(start.heading), std::sin(start.heading));
+  start.position << start.place - options_.touchdown.start_distance_m * along,
+      options_.touchdown.start_altitude_m;
+  return start;
+}
+
 TouchdownSimulation::Start TouchdownSimulation::DrawStart() const {
   const TouchdownOptions& options = options_.touchdown;
+  if (options.starts_behind) return StartBehind();
   Random random = RandomOf(seed_, LandingPart::kStart);
   const double pass_s = random.Uniform(options.pass_min_s, options.pass_max_s);
   const Vector2d place = landing_.world_from_pattern()(pass_s).translation.head<2>();

@@ -31,6 +31,8 @@ namespace kestrel {
 struct TouchdownOptions {
   double start_altitude_m = 10;  // above ground
   double start_distance_m = 20;  // from the place where the vehicle should pass
+  // It starts so far behind the vehicle instead, as fast as that.
+  bool starts_behind = false;
   // The vehicle passes that place at a random time between these. The UAV knows the place, but not
   // the time. The vehicle is never nearer to the start than that place.
   double pass_min_s = 4;
@@ -49,6 +51,8 @@ struct TouchdownOptions {
     visitor("start_altitude_m", self.start_altitude_m, "m", "height above ground at the start");
     visitor("start_distance_m", self.start_distance_m, "m",
             "distance from the start to the place where the vehicle passes");
+    visitor("starts_behind", self.starts_behind, "",
+            "the UAV starts so far behind the vehicle instead, as fast as it drives");
     visitor("pass_min_s", self.pass_min_s, "s", "earliest time at which it passes there");
     visitor("pass_max_s", self.pass_max_s, "s", "latest time at which it passes there");
     visitor("processing_delay_s", self.processing_delay_s, "s",
@@ -70,6 +74,7 @@ struct TouchdownSimulationOptions : LandingSceneOptions {
   MulticopterOptions multicopter;
   WindOptions wind;
   GuidanceOptions guidance;
+  TargetTrackerOptions tracker;
   ExposureOptions exposure;
 
   template <class Self, class Visitor>
@@ -79,6 +84,7 @@ struct TouchdownSimulationOptions : LandingSceneOptions {
     visitor.Group("multicopter", self.multicopter);
     visitor.Group("wind", self.wind);
     visitor.Group("guidance", self.guidance);
+    visitor.Group("tracker", self.tracker);
     visitor.Group("exposure", self.exposure);
     LandingSceneOptions::Visit(self, visitor);
   }
@@ -115,6 +121,7 @@ class TouchdownSimulation {
     Eigen::Vector3d position;
     double heading;         // rad, towards the place
     Eigen::Vector2d place;  // where the vehicle will pass
+    Eigen::Vector3d velocity{0, 0, 0};
   };
   struct TakenImage {
     cv::Mat image;
@@ -122,6 +129,7 @@ class TouchdownSimulation {
   };
 
   Start DrawStart() const;
+  Start StartBehind() const;
   void ReportPoses(double time_s);
   void TakeImage(double time_s);
   bool ProcessImages(double until_s, const FrameSink& sink, TouchdownResult* result);
