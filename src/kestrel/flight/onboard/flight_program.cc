@@ -34,7 +34,10 @@ FlightProgram::FlightProgram(const FlightOptions& options, const TargetTrackerOp
   if (parts.connection == nullptr) return;
   sender_.emplace(options, tracker, parts.profile, parts.pattern_size_m, parts.autopilot,
                   parts.connection, say_);
-  if (parts.guides) guided_.emplace(options, tracker, parts.autopilot, parts.connection, say_);
+  if (parts.guides) {
+    guided_.emplace(options, tracker, !parts.source_has_poses, parts.autopilot, parts.connection,
+                    say_);
+  }
 }
 
 FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {

@@ -22,10 +22,11 @@ namespace kestrel {
 // Used by the link's thread only.
 class GuidedFlight {
  public:
-  // 'tracker': options of the predicted track. 'say': receives lines for the user. Throws
-  // InputError when the options are not valid, or the rate is too low for flying.
+  // 'tracker': options of the predicted track. 'is_in_its_frame': the world is the autopilot's
+  // local frame. 'say': receives lines for the user. Throws InputError when the options are not
+  // valid, or the rate is too low for flying.
   GuidedFlight(const FlightOptions& options, const TargetTrackerOptions& tracker,
-               Autopilot* autopilot, Connection* connection,
+               bool is_in_its_frame, Autopilot* autopilot, Connection* connection,
                std::function<void(const std::string&)> say);
 
   // Sends what is due at 'now'; true when it was the first set-point of a new frame.
@@ -35,6 +36,8 @@ class GuidedFlight {
   bool is_flying() const { return is_begun_ && phase() != GuidancePhase::kLanded; }
   GuidancePhase phase() const { return guidance_->phase(); }
   int set_points() const { return set_points_; }  // sent
+  // Part of the limits that following the target takes.
+  const FollowingDemand& demand() const { return guidance_->demand(); }
 
  private:
   void KnowAutopilot(Time now);
@@ -44,10 +47,12 @@ class GuidedFlight {
   std::optional<TargetEstimate> Target(Time now, const TrackSnapshot& track) const;
   void Ask(Time now, GuidanceRequest request);
   void SayPhase(const GuidanceOutput& output);
+  void SayWhetherItKeepsUp(const GuidanceOutput& output);
   void Tell(std::uint8_t severity, const std::string& text);
 
   FlightOptions options_;
   TurnNoise noise_;
+  bool is_in_its_frame_;
   Autopilot& autopilot_;
   Connection* connection_;
   std::function<void(const std::string&)> say_;
@@ -68,6 +73,7 @@ class GuidedFlight {
   Time asked_{};     // when the autopilot was last asked for a mode or to disarm
   GuidancePhase said_phase_ = GuidancePhase::kIdle;
   const char* said_reason_ = "";
+  bool said_cannot_follow_ = false;
   int set_points_ = 0;
 };
 
