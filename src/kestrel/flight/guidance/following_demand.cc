@@ -61,8 +61,8 @@ const FollowingDemand& DemandWatch::Update(Time now, const Vector3d& velocity,
   time_ = now;
   Vector2d needed = acceleration.head<2>();
   if (air) needed += air->drag * (velocity.head<2>() - air->wind);
-  acceleration_ += part * (needed - acceleration_);
-  KeepPeak(acceleration_.norm(), seconds, &acceleration_peak_);
+  acceleration_ += part * (needed.norm() - acceleration_);
+  KeepPeak(acceleration_, seconds, &acceleration_peak_);
   KeepPeak(velocity.head<2>().norm(), seconds, &speed_peak_);
   KeepPeak(std::abs(velocity.z()), seconds, &climb_peak_);
   demand_ = {.lean_deg = Degrees(std::atan(acceleration_peak_ / kGravity)),
@@ -76,8 +76,7 @@ const FollowingDemand& DemandWatch::Update(Time now, const Vector3d& velocity,
 
 void DemandWatch::Reset() {
   time_.reset();
-  acceleration_.setZero();
-  acceleration_peak_ = speed_peak_ = climb_peak_ = 0;
+  acceleration_ = acceleration_peak_ = speed_peak_ = climb_peak_ = 0;
   demand_ = {};
 }
 

@@ -46,8 +46,8 @@ class DemandWatch {
  private:
   FlightLimitsOptions limits_;
   std::optional<Time> time_;
-  Eigen::Vector2d acceleration_{0, 0};  // smoothed, m/s^2
-  double acceleration_peak_ = 0;        // m/s^2
+  double acceleration_ = 0;       // smoothed, m/s^2: its direction turns with the target
+  double acceleration_peak_ = 0;  // m/s^2
   double speed_peak_ = 0, climb_peak_ = 0;
   FollowingDemand demand_;
 };

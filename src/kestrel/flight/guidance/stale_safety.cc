@@ -9,8 +9,10 @@
 namespace kestrel {
 namespace {
 
-// Height that is left at rest: errors of the deck's height, and the overshoot of the control.
-constexpr double kMargin_m = 0.1;
+// The UAV comes to rest above this part of its height, and above this height: errors of the deck's
+// height, and the overshoot of the control.
+constexpr double kRestPart = 0.4;
+constexpr double kMargin_m = 0.15;
 
 }  // namespace
 
@@ -25,7 +27,7 @@ std::vector<std::string> StaleOptions::Validate() const {
 }
 
 double StaleSafety::MaxSink(double height_m, double link_delay_s) const {
-  const double room_m = std::max(height_m - kMargin_m, 0.0);
+  const double room_m = std::max(std::min((1 - kRestPart) * height_m, height_m - kMargin_m), 0.0);
   if (options_.sends_places()) return options_.height_gain * room_m;
   const double braking = options_.vertical_braking;
   const double lead_s = options_.timeout_s + link_delay_s + braking / (2 * options_.vertical_jerk);

@@ -46,9 +46,9 @@ inline VehicleWorld& TestWorld(const VehicleWorldOptions& vehicle) {
 class TestAutopilot {
  public:
   TestAutopilot(AutopilotFirmware firmware, const AutopilotModelOptions& options,
-                const VehicleWorldOptions& vehicle)
+                const VehicleWorldOptions& vehicle, std::uint64_t seed = 1)
       : world(TestWorld(vehicle)),
-        model(firmware, options, &world, kTestStart, /*seed=*/1,
+        model(firmware, options, &world, kTestStart, seed,
               [this](const AutopilotMessage& message) { sent.push_back(message); }) {}
 
   void Tell(const CompanionMessage& message) {
