@@ -11,7 +11,8 @@
 namespace kestrel {
 namespace {
 
-// Names and units of ArduCopter 4.7, with precision landing enabled.
+// Names, units and defaults of ArduCopter 4.7, with precision landing enabled, and with what doctor
+// asks for: GUID_TIMEOUT is 3 as it comes.
 std::vector<AutopilotParameter> ArduPilotDefaults() {
   return {{"ATC_ANGLE_MAX", 30, false},     {"BATT_FS_CRT_ACT", 0, true},
           {"BATT_FS_LOW_ACT", 0, true},     {"DISARM_DELAY", 10, true},
@@ -22,7 +23,7 @@ std::vector<AutopilotParameter> ArduPilotDefaults() {
           {"FENCE_TYPE", 7, true},          {"FS_EKF_ACTION", 1, true},
           {"FS_EKF_THRESH", 0.8, false},    {"FS_GCS_ENABLE", 0, true},
           {"FS_THR_ENABLE", 1, true},       {"GUID_OPTIONS", 0, true},
-          {"GUID_TIMEOUT", 3, false},       {"LAND_ALT_LOW_M", 10, false},
+          {"GUID_TIMEOUT", 0.3, false},     {"LAND_ALT_LOW_M", 10, false},
           {"LAND_SPD_HIGH_MS", 0, false},   {"LAND_SPD_MS", 0.5, false},
           {"MAV1_OPTIONS", 0, true},        {"MAV_GCS_SYSID", 255, true},
           {"MAV_OPTIONS", 0, true},         {"MAV_SYSID", 1, true},
@@ -45,12 +46,13 @@ std::vector<AutopilotParameter> ArduPilotDefaults() {
           {"WP_YAW_BEHAVIOR", 2, true}};
 }
 
+// Likewise: COM_OBL_RC_ACT is 0 as it comes.
 std::vector<AutopilotParameter> Px4Defaults() {
   return {{"COM_DISARM_LAND", 2, false},
           {"COM_DL_LOSS_T", 10, true},
           {"COM_FAIL_ACT_T", 5, false},
           {"COM_LOW_BAT_ACT", 0, true},
-          {"COM_OBL_RC_ACT", 0, true},
+          {"COM_OBL_RC_ACT", 5, true},
           {"COM_OF_LOSS_T", 1, false},
           {"COM_RCL_EXCEPT", 0, true},
           {"COM_RC_IN_MODE", 3, true},
@@ -84,6 +86,7 @@ std::vector<AutopilotParameter> Px4Defaults() {
           {"MPC_XY_VEL_MAX", 12, false},
           {"MPC_XY_VEL_P_ACC", 1.8, false},
           {"MPC_YAWRAUTO_MAX", 60, false},
+          {"MPC_Z_P", 1, false},
           {"MPC_Z_VEL_D_ACC", 0, false},
           {"MPC_Z_VEL_I_ACC", 2, false},
           {"MPC_Z_VEL_MAX_DN", 1.5, false},

@@ -7,7 +7,7 @@ namespace {
 // ArduCopter 4.7 changed from centimetres and hundredths of a degree to metres and degrees.
 constexpr double kCenti = 0.01;
 
-constexpr std::array<ParameterNames, 19> kRenamed = {{
+constexpr std::array<ParameterNames, 20> kRenamed = {{
     {{{{"ATC_ANGLE_MAX"}, {"ANGLE_MAX", kCenti}}}},
     {{{{"LAND_ALT_LOW_M"}, {"LAND_ALT_LOW", kCenti}}}},
     {{{{"LAND_SPD_HIGH_MS"}, {"LAND_SPEED_HIGH", kCenti}}}},
@@ -16,6 +16,7 @@ constexpr std::array<ParameterNames, 19> kRenamed = {{
     {{{{"MAV_SYSID"}, {"SYSID_THISMAV"}}}},
     {{{{"PILOT_SPD_DN"}, {"PILOT_SPEED_DN", kCenti}}}},
     {{{{"PILOT_SPD_UP"}, {"PILOT_SPEED_UP", kCenti}}}},
+    {{{{"PSC_JERK_D"}, {"PSC_D_JERK"}, {"PSC_JERK_Z"}}}},
     {{{{"PSC_JERK_NE"}, {"PSC_NE_JERK"}, {"PSC_JERK_XY"}}}},
     {{{{"PSC_NE_POS_P"}, {"PSC_POSXY_P"}}}},
     {{{{"PSC_NE_VEL_I"}, {"PSC_VELXY_I"}}}},

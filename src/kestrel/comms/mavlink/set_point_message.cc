@@ -29,10 +29,18 @@ mavlink::SetPositionTargetLocalNed SetPointMessage(const SetPoint& set_point, Au
   message.target_system = system;
   message.target_component = component;
   message.coordinate_frame = mavlink::kFrameLocalNed;
-  message.type_mask = mavlink::kIgnorePosition;
-  message.vx = velocity.x();
-  message.vy = velocity.y();
-  message.vz = velocity.z();
+  if (set_point.place) {
+    const Eigen::Vector3f place = NedFromEnu(*set_point.place).cast<float>();
+    message.type_mask = mavlink::kIgnoreVelocity;
+    message.x = place.x();
+    message.y = place.y();
+    message.z = place.z();
+  } else {
+    message.type_mask = mavlink::kIgnorePosition;
+    message.vx = velocity.x();
+    message.vy = velocity.y();
+    message.vz = velocity.z();
+  }
   message.afx = acceleration.x();
   message.afy = acceleration.y();
   message.afz = acceleration.z();
@@ -63,7 +71,8 @@ bool SendSetPoint(const SetPoint& set_point, const Autopilot& autopilot, Time no
                   Connection* connection) {
   constexpr std::int64_t kNsPerMs = 1'000'000;
   if (!set_point.velocity.allFinite() || !set_point.acceleration.allFinite() ||
-      !std::isfinite(set_point.yaw.value_or(0))) {
+      !std::isfinite(set_point.yaw.value_or(0)) ||
+      !set_point.place.value_or(Eigen::Vector3d::Zero()).allFinite()) {
     return false;
   }
   const TimeSync& clock = autopilot.time_sync();

@@ -11,8 +11,9 @@
 
 namespace kestrel {
 
-// Returns a set-point in a form that ArduPilot's GUIDED and PX4's OFFBOARD treat alike: velocity,
-// acceleration and heading in the frame LOCAL_NED, nothing else. Without a yaw the heading stays:
+// Returns a set-point as a message in the frame LOCAL_NED: velocity (which ArduPilot's GUIDED and
+// PX4's OFFBOARD treat alike) or place, acceleration and heading. A place is for PX4 only; the
+// world's origin has to be that of the autopilot's local frame. Without a yaw the heading stays:
 // ArduPilot, which would turn along the velocity, gets a yaw rate of zero. 'boot_ms': the present
 // time on the autopilot's clock.
 mavlink::SetPositionTargetLocalNed SetPointMessage(const SetPoint& set_point, AutopilotKind kind,

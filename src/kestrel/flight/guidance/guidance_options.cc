@@ -12,6 +12,9 @@ std::vector<std::string> GuidanceOptions::Validate() const {
   RequireIn(search_wait_s, 0, 3600, "search_wait_s", &violations);
   RequireIn(search_radius_m, 0, 1000, "search_radius_m", &violations);
   RequireIn(search_speed_mps, 0.5, 20, "search_speed_mps", &violations);
+  RequireIn(search_distance_m, 1, 10000, "search_distance_m", &violations);
+  RequireIn(search_limit_s, 1, 3600, "search_limit_s", &violations);
+  RequireIn(cannot_follow_s, 0, 3600, "cannot_follow_s", &violations);
   RequireIn(follow_height_m, 0.1, 100, "follow_height_m", &violations);
   RequireIn(glide, 0, 10, "glide", &violations);
   RequireIn(position_gain, 0.1, 5, "position_gain", &violations);
@@ -37,6 +40,7 @@ std::vector<std::string> GuidanceOptions::Validate() const {
   RequireIn(disobey_s, 1, 60, "disobey_s", &violations);
   RequireIn(disarm_after_s, 0, 60, "disarm_after_s", &violations);
   AddViolations("contact", contact.Validate(), &violations);
+  AddViolations("stale", stale.Validate(), &violations);
   AddViolations("limits", limits.Validate(), &violations);
   AddViolations("model", model.Validate(), &violations);
   if (search_altitude_m < limits.floor_m || search_altitude_m > limits.ceiling_m) {

@@ -7,6 +7,7 @@
 #include "kestrel/flight/guidance/contact_detector.h"
 #include "kestrel/flight/guidance/flight_limits.h"
 #include "kestrel/flight/guidance/flight_model.h"
+#include "kestrel/flight/guidance/stale_safety.h"
 
 namespace kestrel {
 
@@ -19,6 +20,13 @@ struct GuidanceOptions {
   double search_wait_s = 15;
   double search_radius_m = 0;
   double search_speed_mps = 4;
+  // Search for a target that was lost: no further than search_distance_m from where it was lost,
+  // and no longer than search_limit_s; guidance then gives up.
+  double search_distance_m = 100;
+  double search_limit_s = 60;
+  // The target's motion and the wind may demand more than the limits: guidance gives up after so
+  // long (0: never).
+  double cannot_follow_s = 0;
   // Height of the feet above the board at which it follows the vehicle before the descent; further
   // away it flies higher, by 'glide' metres per metre of horizontal distance.
   double follow_height_m = 2.5;
@@ -76,7 +84,10 @@ struct GuidanceOptions {
   // after disarm_after_s (0: never).
   bool land_in_contact = false;
   double disarm_after_s = 0;
+  // Flies although the autopilot's own reaction to the loss of set-points does not hold the UAV.
+  bool accept_unsafe_loss = false;
   ContactOptions contact;
+  StaleOptions stale;
   FlightLimitsOptions limits;
   FlightModelOptions model;
 
@@ -87,6 +98,12 @@ struct GuidanceOptions {
     visitor("search_wait_s", self.search_wait_s, "s", "waits so long before it circles outwards");
     visitor("search_radius_m", self.search_radius_m, "m", "circles so far out; 0: it stays");
     visitor("search_speed_mps", self.search_speed_mps, "m/s", "speed of that");
+    visitor("search_distance_m", self.search_distance_m, "m",
+            "distance to which a lost target is searched for");
+    visitor("search_limit_s", self.search_limit_s, "s",
+            "time after which the search for a lost target is given up");
+    visitor("cannot_follow_s", self.cannot_follow_s, "s",
+            "gives up after so long beyond the limits; 0: never");
     visitor("follow_height_m", self.follow_height_m, "m", "height above the board to follow in");
     visitor("glide", self.glide, "m/m", "height in approach, per metre of distance");
     visitor("position_gain", self.position_gain, "1/s", "speed towards the target per metre");
@@ -123,7 +140,10 @@ struct GuidanceOptions {
     visitor("land_in_contact", self.land_in_contact, "", "asks for the LAND mode in contact");
     visitor("disarm_after_s", self.disarm_after_s, "s",
             "disarms by force after so long in contact; 0: never");
+    visitor("accept_unsafe_loss", self.accept_unsafe_loss, "",
+            "flies although the autopilot does not hold when set-points stop");
     visitor.Group("contact", self.contact);
+    visitor.Group("stale", self.stale);
     visitor.Group("limits", self.limits);
     visitor.Group("model", self.model);
   }

@@ -27,6 +27,7 @@ constexpr double kCommitAcceleration = 0.2;  // m/s^2, downwards
 // Obedience: the change of the velocity over this time, and the least change (m/s^2) that counts.
 constexpr double kTrend_s = 1;
 constexpr double kLeastObedience = 0.5;
+constexpr double kBeyondLimits_s = 1;     // a demand beyond the limits counts after so long
 constexpr double kLeastAcceleration = 1;  // m/s^2; every autopilot is set up for more
 
 constexpr const char* kWaits = "waits for the pilot to give the mode";
@@ -98,8 +99,10 @@ LandingGuidance::LandingGuidance(const GuidanceOptions& options,
       has_place_(place.has_value()),
       limits_(options.limits, place.value_or(Vector2d::Zero())),
       model_(options.model),
+      stale_(options.stale),
       pursuit_(options),
       search_(options),
+      demand_(options.limits),
       contact_(options.contact),
       reason_(kWaits),
       may_stream_(options.stream_before_start),
@@ -126,6 +129,7 @@ GuidanceOutput LandingGuidance::Update(const GuidanceInput& input) {
     return Output(std::nullopt, GuidanceRequest::kNone);
   }
   FollowMode(input);
+  WatchDemand(input);
   GuidanceOutput output;
   if (!is_active_) {
     output = Idle(input);
@@ -195,7 +199,9 @@ void LandingGuidance::Start(const GuidanceInput& input) {
   velocity_trend_ = input.uav->velocity_in_world;
   contact_.Reset();
   contact_since_.reset();
+  beyond_since_.reset();
   pursuit_.Reset();
+  road_.Reset();
   search_.Start(place_);
   Enter(GuidancePhase::kSearch, "the pilot has given the mode");
 }
@@ -206,7 +212,12 @@ void LandingGuidance::End(const char* reason) {
   reason_ = reason;
 }
 
-GuidanceOutput LandingGuidance::Idle(const GuidanceInput& input) const {
+GuidanceOutput LandingGuidance::Idle(const GuidanceInput& input) {
+  if (input.uav && IsFinite(*input.uav)) {
+    model_.Observe(input.now, input.uav->velocity_in_world,
+                   input.uav->world_from_body.rotation * Vector3d::UnitZ(), std::nullopt,
+                   input.link_delay_s);
+  }
   if (has_given_up_) return Output(std::nullopt, GuidanceRequest::kHold);
   if (!may_stream_ || input.is_guided || !input.uav) {
     return Output(std::nullopt, GuidanceRequest::kNone);
@@ -227,9 +238,10 @@ GuidanceOutput LandingGuidance::Blind(const GuidanceInput& input) {
   }
   SetPoint on = sent_.value_or(SetPoint());
   on.acceleration.setZero();
-  if (phase_ != GuidancePhase::kLanded) on.velocity.z() = std::max(on.velocity.z(), 0.0);
+  if (phase_ != GuidancePhase::kLanded) on = stale_.Level(on);
   if (IsLongerThan(options_.hold_pose_s, poses_lost_, input.now)) {
     on.velocity.setZero();
+    on.place.reset();
     reason_ = "the poses have stopped";
   }
   return Output(on, GuidanceRequest::kNone);
@@ -253,8 +265,9 @@ GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
   if (!wanted.yaw) wanted.yaw = yaw_;
   const Vector3d& position = input.uav->world_from_body.translation;
   const bool is_flying = phase_ != GuidancePhase::kLanded;
-  const SetPoint limited =
-      limits_.Limited(wanted, position, input.target.has_value() || !is_flying);
+  SetPoint limited = limits_.Limited(wanted, position, input.target.has_value() || !is_flying);
+  // On the deck both autopilots look for a velocity downwards.
+  if (is_flying) stale_.SetPlace(position, now.velocity, input.link_delay_s, &limited);
   model_.Observe(input.now, now.velocity, input.uav->world_from_body.rotation * Vector3d::UnitZ(),
                  is_flying ? std::optional(limited) : std::nullopt, input.link_delay_s);
   return Output(limited, RequestInContact(input));
@@ -273,6 +286,13 @@ bool LandingGuidance::GivesUp(const GuidanceInput& input) {
     reason = "no new images: gave up";
   }
   if (!Obeys(input)) reason = "the autopilot does not obey the set-points: gave up";
+  if (phase_ == GuidancePhase::kSearch && search_.IsOver(input.now)) {
+    reason = "the target was not found again: gave up";
+  }
+  if (options_.cannot_follow_s > 0 &&
+      IsLongerThan(options_.cannot_follow_s, beyond_since_, input.now)) {
+    reason = "cannot keep up with the target: gave up";
+  }
   if (!reason) return false;
   has_given_up_ = true;
   End(reason);
@@ -291,6 +311,29 @@ bool LandingGuidance::Obeys(const GuidanceInput& input) {
   const bool disobeys = size > options_.disobey_mps && nearer < least;
   Remember(disobeys, input.now, &disobeys_since_);
   return !IsLongerThan(options_.disobey_s, disobeys_since_, input.now);
+}
+
+// What the target and the wind demand of the UAV, whether or not guidance flies. A UAV that is
+// above the target keeps up with it, whatever the estimate says.
+void LandingGuidance::WatchDemand(const GuidanceInput& input) {
+  if (!input.target) {
+    demand_.Reset();
+    beyond_since_.reset();
+    return;
+  }
+  const TurnState& motion = input.target->motion;
+  const FollowingDemand& demand =
+      demand_.Update(input.now, motion.velocity(), AccelerationAhead(motion, 0), model_.air());
+  bool is_behind = true;
+  if (is_active_ && input.uav && IsFinite(*input.uav)) {
+    const Situation now = Look(input);
+    is_behind = now.off_m > 2 * Cone(now.height_m) || now.slip_mps > 2 * kMaxClosing_mps;
+  }
+  Remember(demand.is_beyond_limits() && is_behind, input.now, &beyond_since_);
+}
+
+bool LandingGuidance::CannotFollow() const {
+  return IsLongerThan(kBeyondLimits_s, beyond_since_, last_);
 }
 
 LandingGuidance::Situation LandingGuidance::Look(const GuidanceInput& input) const {
@@ -316,13 +359,17 @@ void LandingGuidance::ChoosePhase(const GuidanceInput& input, const Situation& n
   if (!input.target) {
     if (IsLow()) ++go_arounds_;
     if (phase_ != GuidancePhase::kSearch) {
-      search_.Start(place_);
+      search_.StartAfterLoss(input.now, road_, place_);
       pursuit_.Reset();
-      Enter(GuidancePhase::kSearch, "the target is lost");
+      Enter(GuidancePhase::kSearch, search_.step());
     }
     return;
   }
-  place_ = input.target->motion.position().head<2>();
+  const TurnState& target = input.target->motion;
+  place_ = target.position().head<2>();
+  if (now.is_in_sight) {
+    road_.Add(input.now, place_, target.velocity().head<2>(), target.turn_rate());
+  }
   if (phase_ == GuidancePhase::kSearch) Enter(GuidancePhase::kApproach, "the target is found");
   if (phase_ == GuidancePhase::kGoAround && now.height_m >= options_.sight_height_m) {
     Enter(GuidancePhase::kApproach, "high enough to come again");
@@ -423,7 +470,8 @@ SetPoint LandingGuidance::Rest(const GuidanceInput& input, const Situation& now)
 
 SetPoint LandingGuidance::Search(const GuidanceInput& input, const Situation& now) {
   const double seconds = std::clamp(ToSeconds(input.now - last_), 0.0, kLongestStep_s);
-  const Vector2d place = search_.Advance(now.feet.head<2>(), seconds);
+  const Vector2d place = search_.Advance(input.now, road_, now.feet.head<2>(), seconds);
+  if (*search_.step() != '\0') reason_ = search_.step();
   SetPoint command = pursuit_.To(place, {now.feet.head<2>(), now.velocity.head<2>()}, model_,
                                  options_.limits.max_speed_mps);
   command.velocity.z() = kHeightGain * (options_.search_altitude_m - now.feet.z());
@@ -434,6 +482,10 @@ SetPoint LandingGuidance::Pursue(const GuidanceInput& input, const Situation& no
   SetPoint command =
       pursuit_.Above(*input.target, {now.feet.head<2>(), now.velocity.head<2>()}, model_);
   command.velocity.z() = ClimbRate(input, now);
+  if (phase_ != GuidancePhase::kCommit) {
+    const double most = stale_.MaxSink(now.height_m, input.link_delay_s);
+    command.velocity.z() = std::max(command.velocity.z(), -most);
+  }
   // Out of sight only the last bit goes down. Near the deck the descent stops early, because a UAV
   // takes a while to stop; it goes around when that has lasted.
   const double patience_s =
@@ -480,7 +532,7 @@ bool LandingGuidance::IsLow() const {
 
 GuidanceOutput LandingGuidance::Output(const std::optional<SetPoint>& set_point,
                                        GuidanceRequest request) const {
-  return {set_point, phase_, request, reason_};
+  return {set_point, phase_, request, reason_, CannotFollow()};
 }
 
 }  // namespace kestrel

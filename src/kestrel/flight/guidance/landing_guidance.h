@@ -14,10 +14,13 @@
 #include "kestrel/flight/guidance/deck_ride.h"
 #include "kestrel/flight/guidance/flight_limits.h"
 #include "kestrel/flight/guidance/flight_model.h"
+#include "kestrel/flight/guidance/following_demand.h"
 #include "kestrel/flight/guidance/guidance_options.h"
 #include "kestrel/flight/guidance/guidance_phase.h"
-#include "kestrel/flight/guidance/search_path.h"
+#include "kestrel/flight/guidance/road_memory.h"
+#include "kestrel/flight/guidance/stale_safety.h"
 #include "kestrel/flight/guidance/target_pursuit.h"
+#include "kestrel/flight/guidance/target_search.h"
 #include "kestrel/vision/tracking/target_tracker.h"
 
 namespace kestrel {
@@ -60,6 +63,8 @@ struct GuidanceOutput {
   GuidancePhase phase = GuidancePhase::kIdle;
   GuidanceRequest request = GuidanceRequest::kNone;
   const char* reason = "";  // reason for the phase, for the user; a literal
+  // Following the target demands more than the limits: the UAV falls behind, or would.
+  bool cannot_follow = false;
 };
 
 // Flies a multicopter to a moving target and down onto it by set-points. A state machine without
@@ -90,6 +95,8 @@ class LandingGuidance {
   // True from when it gives up, or refuses to begin in the air, until the mode is left.
   bool has_given_up() const { return has_given_up_; }
   int go_arounds() const { return go_arounds_; }  // number of times it climbed again
+  // Part of the limits that following the target takes, the largest of the last seconds.
+  const FollowingDemand& demand() const { return demand_.demand(); }
   // Wind, drag and the autopilot's answer, as learnt in flight.
   const FlightModel& model() const { return model_; }
 
@@ -113,9 +120,11 @@ class LandingGuidance {
   bool HasLink(const GuidanceInput& input);
   bool GivesUp(const GuidanceInput& input);
   bool Obeys(const GuidanceInput& input);
+  void WatchDemand(const GuidanceInput& input);
+  bool CannotFollow() const;
 
   // Set-points.
-  GuidanceOutput Idle(const GuidanceInput& input) const;
+  GuidanceOutput Idle(const GuidanceInput& input);
   GuidanceOutput Blind(const GuidanceInput& input);
   GuidanceOutput Fly(const GuidanceInput& input);
   SetPoint Search(const GuidanceInput& input, const Situation& now);
@@ -141,8 +150,11 @@ class LandingGuidance {
   bool has_fence_center_ = false;
   FlightLimits limits_;
   FlightModel model_;
+  StaleSafety stale_;
   TargetPursuit pursuit_;
-  SearchPath search_;
+  RoadMemory road_;
+  TargetSearch search_;
+  DemandWatch demand_;
   ContactDetector contact_;
   DeckRide ride_;
 
@@ -160,6 +172,7 @@ class LandingGuidance {
   std::optional<Time> poses_lost_;
   std::optional<Time> camera_lost_;
   std::optional<Time> disobeys_since_;
+  std::optional<Time> beyond_since_;         // following demands more than the limits
   Eigen::Vector3d velocity_trend_{0, 0, 0};  // the UAV's velocity through a low pass
   std::optional<Time> contact_since_;
   Eigen::Vector2d place_{0, 0};  // where the vehicle was last, or should pass

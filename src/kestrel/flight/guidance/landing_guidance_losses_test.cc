@@ -177,6 +177,33 @@ TEST(LandingGuidanceLossesTest, GivesUpWhenTheAutopilotDoesNotObey) {
   EXPECT_THAT(flight.output.reason, testing::HasSubstr("does not obey"));
 }
 
+TEST(LandingGuidanceLossesTest, GivesUpATargetThatIsNotFoundAgain) {
+  TestFlight flight = InPhase(Phase::kFollow);
+  const auto lost = [](GuidanceInput& input) { input.target.reset(); };
+  flight.Step(lost);
+  EXPECT_EQ(flight.output.phase, Phase::kSearch);
+  EXPECT_THAT(flight.output.reason, testing::HasSubstr("the target is lost: flies"));
+  flight.FlyUntil([] { return false; }, 59, lost);
+  EXPECT_TRUE(flight.output.set_point);
+  flight.FlyUntil([] { return false; }, 2, lost);
+  EXPECT_FALSE(flight.output.set_point);
+  EXPECT_EQ(flight.output.request, GuidanceRequest::kHold);
+  EXPECT_THAT(flight.output.reason, testing::HasSubstr("not found again"));
+}
+
+TEST(LandingGuidanceLossesTest, SaysThatItCannotKeepUpAndGivesUpWhenTold) {
+  GuidanceOptions options;
+  options.cannot_follow_s = 10;
+  TestFlight flight(options, {}, {.path = "straight", .speed_mps = 14});
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.output.cannot_follow; }, 5));
+  EXPECT_THAT(flight.guidance.demand().InWords(), testing::HasSubstr("m/s, the limit is 10"));
+  flight.FlyUntil([&] { return flight.output.request == GuidanceRequest::kHold; }, 15);
+  EXPECT_THAT(flight.output.reason, testing::HasSubstr("cannot keep up"));
+  TestFlight slow({}, {}, {.path = "figure8", .speed_mps = 4.2});
+  slow.FlyUntil([&] { return slow.output.cannot_follow; }, 20);
+  EXPECT_FALSE(slow.output.cannot_follow);
+}
+
 TEST(LandingGuidanceLossesTest, NothingThatIsNotFiniteIsSent) {
   TestFlight flight = InPhase(Phase::kDescend);
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -17,8 +17,9 @@ constexpr double kSpacing = 1;
 
 }  // namespace
 
-void SearchPath::Start(const Vector2d& place) {
+void SearchPath::Start(const Vector2d& place, const Extent& extent) {
   place_ = place;
+  extent_ = extent;
   waited_s_ = 0;
   angle_ = 0;
 }
@@ -26,15 +27,15 @@ void SearchPath::Start(const Vector2d& place) {
 Vector2d SearchPath::Advance(const Vector2d& uav, double seconds) {
   Vector2d point = Point();
   const bool keeps_up = (point - uav).norm() < kReached_m;
-  if (options_.search_radius_m == 0 || !keeps_up) return point;
-  if (waited_s_ < options_.search_wait_s) {
+  if (extent_.radius_m == 0 || !keeps_up) return point;
+  if (waited_s_ < extent_.wait_s) {
     waited_s_ += seconds;
     return point;
   }
   const double widening = kSpacing * options_.search_altitude_m / (2 * std::numbers::pi);
   const double radius_m = widening * angle_;
   angle_ += options_.search_speed_mps * seconds / std::hypot(radius_m, widening);
-  if (widening * angle_ > options_.search_radius_m) Start(place_);
+  if (widening * angle_ > extent_.radius_m) Start(place_, extent_);
   return Point();
 }
 

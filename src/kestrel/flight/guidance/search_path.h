@@ -13,8 +13,12 @@ class SearchPath {
  public:
   explicit SearchPath(const GuidanceOptions& options) : options_(options) {}
 
+  struct Extent {
+    double wait_s;    // at the place, before the spiral
+    double radius_m;  // of the spiral; 0: it stays at the place
+  };
   // Begins anew at 'place', m in the world.
-  void Start(const Eigen::Vector2d& place);
+  void Start(const Eigen::Vector2d& place, const Extent& extent);
 
   // Returns the place to be at 'seconds' after the last call. The path advances only while the UAV
   // keeps up with it.
@@ -25,6 +29,7 @@ class SearchPath {
 
   GuidanceOptions options_;
   Eigen::Vector2d place_{0, 0};
+  Extent extent_{0, 0};
   double waited_s_ = 0;
   double angle_ = 0;  // angle on the spiral, rad
 };

@@ -31,13 +31,14 @@ Vector3d Turned(const TurnState& motion, const Vector3d& vector, double ahead_s)
   const double angle = (motion.turn_rate() + 0.5 * ahead_s * motion.turn_change()) * ahead_s;
   return Eigen::AngleAxisd(angle, Vector3d::UnitZ()) * vector;
 }
+
+}  // namespace
+
 Vector3d AccelerationAhead(const TurnState& motion, double ahead_s) {
   const Vector3d velocity = Turned(motion, motion.velocity(), ahead_s);
   const double turn_rate = motion.turn_rate() + ahead_s * motion.turn_change();
   return turn_rate * Vector3d(-velocity.y(), velocity.x(), 0);
 }
-
-}  // namespace
 
 Closing ClosingSpeed(double distance_m, double gain, double braking) {
   const double reach = braking / (gain * gain);  // where the straight line touches the parabola

@@ -22,6 +22,9 @@ struct Closing {
 };
 Closing ClosingSpeed(double distance_m, double gain, double braking);
 
+// Returns the acceleration of a target in its curve 'ahead_s' from now, m/s^2.
+Eigen::Vector3d AccelerationAhead(const TurnState& motion, double ahead_s);
+
 // Horizontal set-points to a place or to above a moving target. The wanted velocity is the target's
 // smoothed velocity plus a velocity towards it. Both, and the accelerations that they need (the
 // target's in its curve, that of closing in), are those of the moment at which the set-point takes

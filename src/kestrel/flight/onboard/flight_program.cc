@@ -39,7 +39,10 @@ FlightProgram::FlightProgram(const FlightOptions& options, const TargetTrackerOp
   if (parts.connection == nullptr) return;
   sender_.emplace(options, tracker, parts.profile, parts.pattern_size_m, parts.guides,
                   parts.autopilot, parts.connection, say_);
-  if (parts.guides) guided_.emplace(options, tracker, parts.autopilot, parts.connection, say_);
+  if (parts.guides) {
+    guided_.emplace(options, tracker, !parts.source_has_poses, parts.autopilot, parts.connection,
+                    say_);
+  }
 }
 
 FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
@@ -268,6 +271,13 @@ void FlightProgram::ShowAutopilot(Time now) {
     state.satellites = gnss->satellites;
   }
   state.has_good_position = autopilot.is_position_good(now);
+  if (!guided_) return;
+  const FollowingDemand& demand = guided_->demand();
+  LimitsInUse& limits = state.limits.emplace();
+  limits.lean_share = demand.lean_share();
+  limits.speed_share = demand.speed_share();
+  limits.climb_share = demand.climb_share();
+  if (guided_->cannot_follow()) limits.cannot_follow = "needs " + demand.InWords();
 }
 
 LandingWatchInput FlightProgram::LandingInput(Time now) {

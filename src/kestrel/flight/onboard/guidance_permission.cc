@@ -2,6 +2,8 @@
 #include "kestrel/flight/onboard/guidance_permission.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -19,10 +21,18 @@ struct LimitNames {
 constexpr LimitNames kArduPilotLimits{"WP_SPD", "WP_SPD_UP", "WP_SPD_DN", "ATC_ANGLE_MAX"};
 constexpr LimitNames kPx4Limits{"MPC_XY_VEL_MAX", "MPC_Z_VEL_MAX_UP", "MPC_Z_VEL_MAX_DN",
                                 "MPC_TILTMAX_AIR"};
-constexpr std::string_view kArduPilotJerk = "PSC_JERK_NE";  // m/s^3
-constexpr double kSlowestJerk = 1;                          // below it no flight is possible
+// Shaping of ArduPilot's velocities: jerk (m/s^3), vertical acceleration and jerk; and the time for
+// which it flies on without set-points (s).
+constexpr std::string_view kArduPilotJerk = "PSC_JERK_NE", kArduPilotBraking = "WP_ACC_Z",
+                           kArduPilotVerticalJerk = "PSC_JERK_D",
+                           kArduPilotTimeout = "GUID_TIMEOUT";
+constexpr double kSlowestJerk = 1;     // below it no flight is possible
+constexpr double kMaxTimeout_s = 0.5;  // a UAV at 5 m/s flies on by 2.5 m before it brakes
 // PX4's actions when set-points stop: without a transmitter, and with its pilot ignored.
 constexpr std::string_view kPx4LossAction = "COM_OBL_RC_ACT", kPx4RadioLossAction = "NAV_RCL_ACT";
+constexpr std::string_view kPx4Timeout = "COM_OF_LOSS_T";
+constexpr double kMaxPx4Timeout_s = 1;  // it is on its way to rest already
+constexpr std::string_view kPx4PositionGain = "MPC_XY_P", kPx4HeightGain = "MPC_Z_P";
 
 const LimitNames& NamesFor(AutopilotKind kind) {
   return kind == AutopilotKind::kPx4 ? kPx4Limits : kArduPilotLimits;
@@ -31,16 +41,20 @@ const LimitNames& NamesFor(AutopilotKind kind) {
 }  // namespace
 
 void WantGuidanceParameters(Autopilot* autopilot) {
+  ParameterReader& parameters = autopilot->parameters();
   const LimitNames& names = NamesFor(autopilot->kind());
   for (const std::string_view name : {names.speed, names.climb, names.sink, names.tilt}) {
-    autopilot->parameters().Want(name);
+    parameters.Want(name);
   }
-  if (autopilot->kind() != AutopilotKind::kPx4) {
-    autopilot->parameters().Want(kArduPilotJerk);
-    return;
+  const bool is_px4 = autopilot->kind() == AutopilotKind::kPx4;
+  const std::array<std::string_view, 5> px4 = {kPx4LossAction, kPx4RadioLossAction, kPx4Timeout,
+                                               kPx4PositionGain, kPx4HeightGain};
+  const std::array<std::string_view, 4> ardupilot = {kArduPilotJerk, kArduPilotBraking,
+                                                     kArduPilotVerticalJerk, kArduPilotTimeout};
+  for (const std::string_view name : is_px4 ? std::span<const std::string_view>(px4)
+                                            : std::span<const std::string_view>(ardupilot)) {
+    parameters.Want(name);
   }
-  autopilot->parameters().Want(kPx4LossAction);
-  autopilot->parameters().Want(kPx4RadioLossAction);
 }
 
 AutopilotLimits LimitsOf(const Autopilot& autopilot) {
@@ -50,14 +64,29 @@ AutopilotLimits LimitsOf(const Autopilot& autopilot) {
           parameters.Find(names.tilt)};
 }
 
-GuidanceOptions OptionsFor(const Autopilot& autopilot, GuidanceOptions options) {
+GuidanceOptions OptionsFor(const Autopilot& autopilot, GuidanceOptions options,
+                           bool is_in_its_frame) {
   const bool is_px4 = autopilot.kind() == AutopilotKind::kPx4;
   options.stream_before_start = options.stream_before_start || is_px4;
   // PX4's LAND would brake on a moving deck.
   options.land_in_contact = options.land_in_contact || !is_px4;
-  if (const auto jerk = autopilot.parameters().Find(kArduPilotJerk);
-      jerk && options.autopilot_jerk == 0) {
-    options.autopilot_jerk = std::max(*jerk, kSlowestJerk);
+  // A value beyond what guidance counts on is as good as the last that it counts on.
+  const auto read = [&](std::string_view name, double least, double most, double* value) {
+    const auto found = autopilot.parameters().Find(name);
+    if (found) *value = std::clamp(*found, least, most);
+  };
+  if (options.autopilot_jerk == 0)
+    read(kArduPilotJerk, kSlowestJerk, 1000, &options.autopilot_jerk);
+  StaleOptions& stale = options.stale;
+  if (!is_px4) {
+    read(kArduPilotTimeout, 0.1, 60, &stale.timeout_s);
+    read(kArduPilotBraking, 0.1, 20, &stale.vertical_braking);
+    read(kArduPilotVerticalJerk, 0.1, 1000, &stale.vertical_jerk);
+  } else if (is_in_its_frame) {
+    read(kPx4PositionGain, 0, 2, &stale.position_gain);
+    read(kPx4HeightGain, 0, 2, &stale.height_gain);
+  } else {
+    read(kPx4Timeout, 0, 60, &stale.timeout_s);
   }
   return options;
 }
@@ -67,8 +96,9 @@ std::optional<Eigen::Vector2d> HomeOf(const Autopilot& autopilot) {
   return LocalFromGlobal(autopilot.kind(), *autopilot.origin(), *autopilot.home()).head<2>();
 }
 
-std::string WhyNotGuide(const Autopilot& autopilot, const FlightLimitsOptions& limits,
+std::string WhyNotGuide(const Autopilot& autopilot, const GuidanceOptions& options,
                         const Eigen::Vector3d& position, Time now) {
+  const FlightLimitsOptions& limits = options.limits;
   if (autopilot.kind() != AutopilotKind::kArduPilot && autopilot.kind() != AutopilotKind::kPx4) {
     return "the autopilot is neither ArduPilot nor PX4";
   }
@@ -89,17 +119,40 @@ std::string WhyNotGuide(const Autopilot& autopilot, const FlightLimitsOptions& l
       !beyond.empty()) {
     return fmt::format("{}", fmt::join(beyond, "; "));
   }
+  if (const std::string unsafe = UnsafeLoss(autopilot);
+      !unsafe.empty() && !options.accept_unsafe_loss) {
+    return unsafe + " (`kestrel doctor --fix` sets it; guidance.accept_unsafe_loss true flies so)";
+  }
   return FlightLimits(limits, *home).WhyNot(position);
 }
 
-std::string DangerOfGuidance(const Autopilot& autopilot) {
+std::string UnsafeLoss(const Autopilot& autopilot) {
   const ParameterReader& parameters = autopilot.parameters();
-  if (autopilot.kind() != AutopilotKind::kPx4 || parameters.Find(kPx4LossAction) != 0 ||
-      parameters.Find(kPx4RadioLossAction) != 0) {
-    return "";
+  const auto value = [&](std::string_view name) { return parameters.Find(name).value_or(0); };
+  if (autopilot.kind() == AutopilotKind::kArduPilot) {
+    const double timeout_s = value(kArduPilotTimeout);
+    if (timeout_s <= kMaxTimeout_s) return "";
+    return fmt::format(
+        "GUID_TIMEOUT is {:g} s, expected at most {:g}: without this computer ArduPilot flies on "
+        "for so long, down as well",
+        timeout_s, kMaxTimeout_s);
   }
-  return "COM_OBL_RC_ACT 0 with NAV_RCL_ACT 0: should this computer fail, PX4 flies on with the "
-         "last velocity for ever; set COM_OBL_RC_ACT to 5 (Hold)";
+  if (const double timeout_s = value(kPx4Timeout); timeout_s > kMaxPx4Timeout_s) {
+    return fmt::format("COM_OF_LOSS_T is {:g} s, expected at most {:g}", timeout_s,
+                       kMaxPx4Timeout_s);
+  }
+  const int action = static_cast<int>(value(kPx4LossAction));
+  const int without_radio = static_cast<int>(value(kPx4RadioLossAction));
+  constexpr int kPosition = 0, kReturn = 3, kHold = 5;  // COM_OBL_RC_ACT
+  constexpr int kRadioHold = 1, kRadioReturn = 2;       // NAV_RCL_ACT
+  if (action == kHold || action == kReturn) return "";
+  const bool holds_without_radio = without_radio == kRadioHold || without_radio == kRadioReturn;
+  if (action == kPosition && holds_without_radio) return "";
+  return fmt::format(
+      "COM_OBL_RC_ACT is {} with NAV_RCL_ACT {}: without this computer PX4 {}; expected "
+      "COM_OBL_RC_ACT 5 (Hold)",
+      action, without_radio,
+      action == kPosition ? "flies on for ever if there is no transmitter" : "does not hold");
 }
 
 }  // namespace kestrel

@@ -20,18 +20,21 @@ void WantGuidanceParameters(Autopilot* autopilot);
 AutopilotLimits LimitsOf(const Autopilot& autopilot);
 
 // The options of guidance for this autopilot, as far as its parameters are known.
-GuidanceOptions OptionsFor(const Autopilot& autopilot, GuidanceOptions options);
+// 'is_in_its_frame': the world is the autopilot's local frame, in which it takes places.
+GuidanceOptions OptionsFor(const Autopilot& autopilot, GuidanceOptions options,
+                           bool is_in_its_frame);
 
 // The autopilot's home position in the world, if it has reported one.
 std::optional<Eigen::Vector2d> HomeOf(const Autopilot& autopilot);
 
 // Returns one line that says why guidance must not begin with this autopilot and the body at
-// 'position' at 'now': not a multicopter, no position estimate, no home, limits beyond its own, out
-// of the geofence around home. Empty when it may.
-std::string WhyNotGuide(const Autopilot& autopilot, const FlightLimitsOptions& limits,
+// 'position' at 'now': not a multicopter, no position estimate, no home, limits beyond its own, an
+// unsafe reaction to the loss of set-points, out of the geofence around home. Empty when it may.
+std::string WhyNotGuide(const Autopilot& autopilot, const GuidanceOptions& options,
                         const Eigen::Vector3d& position, Time now);
 
-// Returns one line on a setting that makes it dangerous to lose this program; empty: none.
-std::string DangerOfGuidance(const Autopilot& autopilot);
+// Returns one line on a reaction to the loss of set-points that does not hold the UAV; empty: it
+// does.
+std::string UnsafeLoss(const Autopilot& autopilot);
 
 }  // namespace kestrel

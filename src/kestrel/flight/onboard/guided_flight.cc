@@ -34,10 +34,11 @@ const FlightOptions& CheckedRate(const FlightOptions& options) {
 }  // namespace
 
 GuidedFlight::GuidedFlight(const FlightOptions& options, const TargetTrackerOptions& tracker,
-                           Autopilot* autopilot, Connection* connection,
+                           bool is_in_its_frame, Autopilot* autopilot, Connection* connection,
                            std::function<void(const std::string&)> say)
     : options_(CheckedRate(options)),
       noise_(tracker.Noise()),
+      is_in_its_frame_(is_in_its_frame),
       autopilot_(*autopilot),
       connection_(connection),
       say_(std::move(say)),
@@ -55,6 +56,7 @@ bool GuidedFlight::Fly(Time now, const TrackSnapshot& track, const PoseHistory& 
   input.is_guided = is_begun_;
   const GuidanceOutput output = guidance_->Update(input);
   SayPhase(output);
+  SayWhetherItKeepsUp(output);
   Ask(now, output.request);
   told_frame_ = track.captured;
   const bool is_allowed = is_begun_ || may_begin_;
@@ -109,16 +111,16 @@ void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
 
 void GuidedFlight::CheckPermission(const GuidanceInput& input, Time now) {
   permission_due_ = now + kPermissionPeriod;
-  refusal_ = input.uav ? WhyNotGuide(autopilot_, options_.guidance.limits,
+  refusal_ = input.uav ? WhyNotGuide(autopilot_, options_.guidance,
                                      input.uav->world_from_body.translation, now)
                        : "no position is told";
   may_begin_ = refusal_.empty();
   if (knows_parameters_ || !autopilot_.parameters().is_done()) return;
   knows_parameters_ = true;
-  guidance_.emplace(OptionsFor(autopilot_, options_.guidance));
+  guidance_.emplace(OptionsFor(autopilot_, options_.guidance, is_in_its_frame_));
   guidance_->Update(input);  // guidance has not begun
-  if (const std::string danger = DangerOfGuidance(autopilot_); !danger.empty()) {
-    Tell(mavlink::kSeverityWarning, danger);
+  if (const std::string unsafe = UnsafeLoss(autopilot_); !unsafe.empty()) {
+    Tell(mavlink::kSeverityWarning, unsafe);
   }
 }
 
@@ -177,6 +179,15 @@ void GuidedFlight::SayPhase(const GuidanceOutput& output) {
   said_reason_ = output.reason;
   Tell(mavlink::kSeverityInfo, fmt::format("{}{}{}", ToString(output.phase),
                                            *output.reason == '\0' ? "" : ": ", output.reason));
+}
+
+// Says before the mode is given, too, that the target is too fast for the UAV.
+void GuidedFlight::SayWhetherItKeepsUp(const GuidanceOutput& output) {
+  if (output.cannot_follow == said_cannot_follow_) return;
+  said_cannot_follow_ = output.cannot_follow;
+  if (!output.cannot_follow) return Tell(mavlink::kSeverityInfo, "can keep up with the target");
+  Tell(mavlink::kSeverityWarning,
+       "cannot keep up with the target: it needs " + guidance_->demand().InWords());
 }
 
 void GuidedFlight::Tell(std::uint8_t severity, const std::string& text) {

@@ -22,10 +22,11 @@ namespace kestrel {
 // Used by the link's thread only.
 class GuidedFlight {
  public:
-  // 'tracker': options of the predicted track. 'say': receives lines for the user. Throws
-  // InputError when the options are not valid, or the rate is too low for flying.
+  // 'tracker': options of the predicted track. 'is_in_its_frame': the world is the autopilot's
+  // local frame. 'say': receives lines for the user. Throws InputError when the options are not
+  // valid, or the rate is too low for flying.
   GuidedFlight(const FlightOptions& options, const TargetTrackerOptions& tracker,
-               Autopilot* autopilot, Connection* connection,
+               bool is_in_its_frame, Autopilot* autopilot, Connection* connection,
                std::function<void(const std::string&)> say);
 
   // Sends what is due at 'now'; true when it was the first set-point of a new frame.
@@ -37,6 +38,10 @@ class GuidedFlight {
   int set_points() const { return set_points_; }  // sent
   // Why guidance gave up; empty: it flies, the pilot has taken over since, or it has not begun.
   std::string gave_up() const;
+  // Part of the limits that following the target takes.
+  const FollowingDemand& demand() const { return guidance_->demand(); }
+  // True while that is more than there is.
+  bool cannot_follow() const { return said_cannot_follow_; }
 
  private:
   void KnowAutopilot(Time now);
@@ -46,10 +51,12 @@ class GuidedFlight {
   std::optional<TargetEstimate> Target(Time now, const TrackSnapshot& track) const;
   void Ask(Time now, GuidanceRequest request);
   void SayPhase(const GuidanceOutput& output);
+  void SayWhetherItKeepsUp(const GuidanceOutput& output);
   void Tell(std::uint8_t severity, const std::string& text);
 
   FlightOptions options_;
   TurnNoise noise_;
+  bool is_in_its_frame_;
   Autopilot& autopilot_;
   Connection* connection_;
   std::function<void(const std::string&)> say_;
@@ -70,6 +77,7 @@ class GuidedFlight {
   Time asked_{};     // when the autopilot was last asked for a mode or to disarm
   GuidancePhase said_phase_ = GuidancePhase::kIdle;
   const char* said_reason_ = "";
+  bool said_cannot_follow_ = false;
   int set_points_ = 0;
 };
 

@@ -2,6 +2,7 @@
 #include "kestrel/flight/onboard/guided_flight.h"
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,7 +34,7 @@ class GuidedFlightTest : public testing::Test {
     autopilot_ =
         std::make_unique<Autopilot>(AutopilotOptions(), connection_.get(), AutopilotListener());
     guided_ = std::make_unique<GuidedFlight>(
-        options, TargetTrackerOptions(), autopilot_.get(), connection_.get(),
+        options, TargetTrackerOptions(), true, autopilot_.get(), connection_.get(),
         [this](const std::string& text) { said_ += text + "\n"; });
   }
 
@@ -43,7 +44,8 @@ class GuidedFlightTest : public testing::Test {
     if (const auto question = packet.As<mavlink::ParamRequestRead>()) {
       mavlink::ParamValue value;
       value.param_id = question->param_id;
-      value.param_value = limit_;
+      const auto known = parameters_.find(std::string(question->param_id.data()));
+      value.param_value = known != parameters_.end() ? known->second : limit_;
       value.param_type = mavlink::kParamReal32;
       answers_.push_back(value);
     }
@@ -106,6 +108,9 @@ class GuidedFlightTest : public testing::Test {
   bool has_home_ = true;
   mavlink::HomePosition home_{.latitude = 473977420, .longitude = 85455940, .altitude = 488000};
   float limit_ = 50;  // value of all limits of the autopilot
+  std::map<std::string, float> parameters_ = {{"GUID_TIMEOUT", 0.3f}, {"COM_OF_LOSS_T", 0.3f},
+                                              {"COM_OBL_RC_ACT", 5},  {"NAV_RCL_ACT", 0},
+                                              {"MPC_XY_P", 0.95f},    {"MPC_Z_P", 1.0f}};
   TrackSnapshot track_;
   PoseHistory poses_{512, 500ms};
   mavlink::PacketParser parser_;
@@ -178,8 +183,10 @@ TEST_F(GuidedFlightTest, RefusesInOneLineBeforeAnythingMoves) {
       {"no home position", [&] { has_home_ = false; }},
       {"limits.max_speed_mps is 10 m/s, the autopilot's own limit is 9 m/s", [&] { limit_ = 9; }},
       {"from the", [&] { home_.latitude += 20000; }},  // 222 m north
-      {"in a failsafe", [&] { heartbeat_.system_status = 5; }},
+      {"in a failsafe: give another mode first", [&] { heartbeat_.system_status = 5; }},
+      {"GUID_TIMEOUT is 3 s", [&] { parameters_["GUID_TIMEOUT"] = 3; }},
   };
+  const auto parameters = parameters_;
   const auto good = heartbeat_;
   const auto home = home_;
   for (const auto& [words, fault] : refusals) {
@@ -188,6 +195,7 @@ TEST_F(GuidedFlightTest, RefusesInOneLineBeforeAnythingMoves) {
     ekf_flags_ = 0x3f;
     has_home_ = true;
     limit_ = 50;
+    parameters_ = parameters;
     fault();
     said_.clear();
     Start(mavlink::kAutopilotArduPilot);

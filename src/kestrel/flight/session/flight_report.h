@@ -24,7 +24,7 @@ enum class TargetPhase {
 };
 const char* ToString(TargetPhase phase);  // "searching", "found", "lost", "contact"
 
-// Used parts of the limits of guidance, 0 to 1.
+// Parts of the limits of guidance that following the target takes; 1 is all of it.
 struct LimitsInUse {
   double lean_share = 0;
   double speed_share = 0;
@@ -45,7 +45,7 @@ struct AutopilotState {
   std::optional<int> satellites;
   std::optional<bool> has_good_position;  // by its own estimator
   std::optional<GuidancePhase> guidance;
-  std::optional<LimitsInUse> limits;  // while guidance flies
+  std::optional<LimitsInUse> limits;  // with guidance
   TargetPhase target = TargetPhase::kSearching;
   ConnectionCounters link;
 };

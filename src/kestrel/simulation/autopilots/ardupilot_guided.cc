@@ -34,7 +34,7 @@ void ArduPilotGuided::Handle(const mavlink::SetPositionTargetLocalNed& message,
   told_.reset();
   const bool has_place = (message.type_mask & mavlink::kIgnorePosition) != mavlink::kIgnorePosition;
   if (!IsFrameOfGuided(message.coordinate_frame) || has_place) return;
-  const auto order = VelocityOrderOf(message, state);
+  const auto order = FlightOrderOf(message, state);
   if (!order || order->set_point.velocity.norm() > kFastest_mps) return;
   wanted_ = order->set_point;
   turn_rate_ = order->turn_rate;

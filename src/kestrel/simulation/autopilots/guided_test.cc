@@ -8,6 +8,7 @@
 
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/set_point_message.h"
+#include "kestrel/flight/guidance/stale_safety.h"
 #include "kestrel/simulation/autopilots/test_autopilot.h"
 
 namespace kestrel {
@@ -283,19 +284,45 @@ TEST(Px4OffboardTest, DoesByItsParametersWhenSetPointsEnd) {
   };
   const auto number = [](FlightMode mode) { return CustomModeOf(AutopilotKind::kPx4, mode); };
   EXPECT_EQ(mode_after("", 1.1), number(FlightMode::kGuided));
-  EXPECT_EQ(mode_after("", 1.5), number(FlightMode::kReturn));
-  EXPECT_EQ(mode_after("COM_OF_LOSS_T=0.2", 0.7), number(FlightMode::kReturn));
+  EXPECT_EQ(mode_after("", 1.5), number(FlightMode::kHold));
+  EXPECT_EQ(mode_after("COM_OF_LOSS_T=0.2", 0.7), number(FlightMode::kHold));
   EXPECT_EQ(mode_after("COM_OBL_RC_ACT=4", 1.5), number(FlightMode::kLand));
-  EXPECT_EQ(mode_after("COM_OBL_RC_ACT=5", 1.5), number(FlightMode::kHold));
+  EXPECT_EQ(mode_after("COM_OBL_RC_ACT=0", 1.5), number(FlightMode::kReturn));
   EXPECT_EQ(mode_after("COM_OBL_RC_ACT=0,NAV_RCL_ACT=1", 1.5), number(FlightMode::kHold));
-  EXPECT_EQ(mode_after("NAV_RCL_ACT=0", 20), number(FlightMode::kGuided));
+  EXPECT_EQ(mode_after("COM_OBL_RC_ACT=0,NAV_RCL_ACT=0", 20), number(FlightMode::kGuided));
 }
 
 TEST(Px4OffboardTest, WithoutAnyFailsafeItFliesOn) {
-  GuidedAutopilot autopilot(AutopilotFirmware::kPx4, Guided("NAV_RCL_ACT=0"));
+  GuidedAutopilot autopilot(AutopilotFirmware::kPx4, Guided("COM_OBL_RC_ACT=0,NAV_RCL_ACT=0"));
   autopilot.Guide(4, {2, 0, 0});
   autopilot.Run(20);
   EXPECT_NEAR(autopilot.Velocity().x(), 2, 0.1);
+}
+
+// On the way to a place it flies as if it were given the velocity, and stops there when nothing
+// follows: 4.2 m/s / MPC_XY_P.
+TEST(Px4OffboardTest, ComesToRestAtThePlaceThatItWasSentTo) {
+  GuidedAutopilot autopilot(AutopilotFirmware::kPx4, Guided("COM_OBL_RC_ACT=0,NAV_RCL_ACT=0"));
+  const StaleSafety safety({.position_gain = 0.95, .height_gain = 1});
+  SetPoint last;
+  autopilot.Run(6, [&] {
+    last = {.velocity = {4.2, 0, 0}};
+    if (autopilot.Position().z() > 6) last.velocity.z() = -0.5;
+    safety.SetPlace(autopilot.Position(), autopilot.Velocity(), 0, &last);
+    autopilot.Tell(SetPointMessage(last, AutopilotKind::kPx4, 1, 1, 0));
+  });
+  EXPECT_NEAR(autopilot.Velocity().x(), 4.2, 0.2);
+  const Vector3d where = autopilot.Position();
+  double farthest = 0, lowest = where.z();
+  for (int i = 0; i < 200; ++i) {
+    autopilot.Run(0.1);
+    farthest = std::max(farthest, (autopilot.Position() - where).head<2>().norm());
+    lowest = std::min(lowest, autopilot.Position().z());
+  }
+  EXPECT_LT(autopilot.Velocity().norm(), 0.1);
+  EXPECT_LT((autopilot.Position() - *last.place).norm(), 0.2);
+  EXPECT_LT(farthest, 5.2);
+  EXPECT_GT(lowest, where.z() - 0.6);
 }
 
 TEST(Px4OffboardTest, ReEntersTheModeByItselfWhenSetPointsComeAgain) {

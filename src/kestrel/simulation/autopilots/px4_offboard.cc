@@ -37,7 +37,7 @@ void Px4Offboard::Handle(const mavlink::SetPositionTargetLocalNed& message,
               fmt::format("SET_POSITION_TARGET_LOCAL_NED coordinate frame {} unsupported", frame));
     return;
   }
-  const auto order = VelocityOrderOf(message, state);
+  const auto order = FlightOrderOf(message, state);
   if (!order) return;
   if (!first_told_ || SilentFor(state) > kSlowest_s) first_told_ = state.time;
   told_ = state.time;
@@ -59,6 +59,13 @@ void Px4Offboard::Start(const FlightState& state) {
   last_velocity_ = state.velocity();
 }
 
+// The velocity to the place, if there is one, and the one that is fed forward.
+Vector3d Px4Offboard::WantedVelocity(const FlightState& state) const {
+  if (!wanted_.place) return wanted_.velocity;
+  const Vector3d gain(parameters_["MPC_XY_P"], parameters_["MPC_XY_P"], parameters_["MPC_Z_P"]);
+  return wanted_.velocity + gain.cwiseProduct(*wanted_.place - state.position());
+}
+
 Vector3d Px4Offboard::WithinLimits(const Vector3d& velocity) const {
   const double speed = velocity.head<2>().norm();
   const double most = parameters_["MPC_XY_VEL_MAX"];
@@ -73,7 +80,7 @@ Vector3d Px4Offboard::WithinLimits(const Vector3d& velocity) const {
 FlightCommand Px4Offboard::Fly(const FlightState& state) {
   FlightCommand command;
   command.is_thrust = true;
-  command.set_point.velocity = WithinLimits(wanted_.velocity);
+  command.set_point.velocity = WithinLimits(WantedVelocity(state));
   command.set_point.acceleration =
       wanted_.acceleration + ControlVelocity(state, command.set_point.velocity);
   command.set_point.yaw = wanted_.yaw;

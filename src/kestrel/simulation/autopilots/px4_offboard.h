@@ -11,9 +11,9 @@
 
 namespace kestrel {
 
-// PX4's OFFBOARD mode with velocities, without a transmitter. It needs a stream of set-points
-// before it begins, and its failsafe parameters decide its end. It does not compensate the air's
-// drag: its velocity control has to. Position set-points are not modelled: they are dropped.
+// PX4's OFFBOARD mode with velocities and places, without a transmitter. It needs a stream of
+// set-points before it begins, and its failsafe parameters decide its end. It does not compensate
+// the air's drag: its velocity control has to.
 class Px4Offboard : public GuidedRules {
  public:
   // The parameters must outlive this.
@@ -31,6 +31,7 @@ class Px4Offboard : public GuidedRules {
 
  private:
   double SilentFor(const FlightState& state) const;
+  Eigen::Vector3d WantedVelocity(const FlightState& state) const;
   Eigen::Vector3d WithinLimits(const Eigen::Vector3d& velocity) const;
   Eigen::Vector3d ControlVelocity(const FlightState& state, const Eigen::Vector3d& velocity);
 

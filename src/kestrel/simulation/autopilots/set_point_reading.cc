@@ -46,15 +46,20 @@ std::optional<AttitudeOrder> AttitudeOrderOf(const mavlink::SetAttitudeTarget& m
   return order;
 }
 
-std::optional<VelocityOrder> VelocityOrderOf(const mavlink::SetPositionTargetLocalNed& message,
-                                             const FlightState& state) {
-  // If one axis is ignored, all three are.
-  if ((message.type_mask & mavlink::kIgnoreVelocity) != 0) return std::nullopt;
+std::optional<FlightOrder> FlightOrderOf(const mavlink::SetPositionTargetLocalNed& message,
+                                         const FlightState& state) {
   const bool is_of_body = IsOfBody(message.coordinate_frame);
+  // If one axis is ignored, all three are.
+  const bool has_velocity = (message.type_mask & mavlink::kIgnoreVelocity) == 0;
+  const bool has_place = (message.type_mask & mavlink::kIgnorePosition) == 0 && !is_of_body;
+  if (!has_velocity && !has_place) return std::nullopt;
   const Eigen::AngleAxisd turn(is_of_body ? HeadingOf(state) - kNorth : 0,
                                Eigen::Vector3d::UnitZ());
-  VelocityOrder order;
-  order.set_point.velocity = turn * EnuFromNed({message.vx, message.vy, message.vz});
+  FlightOrder order;
+  if (has_velocity) {
+    order.set_point.velocity = turn * EnuFromNed({message.vx, message.vy, message.vz});
+  }
+  if (has_place) order.set_point.place = EnuFromNed({message.x, message.y, message.z});
   if ((message.type_mask & mavlink::kIgnoreAcceleration) == 0) {
     order.set_point.acceleration = turn * EnuFromNed({message.afx, message.afy, message.afz});
   }
@@ -63,7 +68,9 @@ std::optional<VelocityOrder> VelocityOrderOf(const mavlink::SetPositionTargetLoc
   } else if ((message.type_mask & mavlink::kIgnoreYawRate) == 0) {
     order.turn_rate = -message.yaw_rate;
   }
-  if (!order.set_point.velocity.allFinite() || !order.set_point.acceleration.allFinite() ||
+  if (!order.set_point.velocity.allFinite() ||
+      !order.set_point.place.value_or(Eigen::Vector3d::Zero()).allFinite() ||
+      !order.set_point.acceleration.allFinite() ||
       !std::isfinite(order.set_point.yaw.value_or(0)) ||
       !std::isfinite(order.turn_rate.value_or(0))) {
     return std::nullopt;

@@ -12,17 +12,17 @@
 
 namespace kestrel {
 
-// The velocity in a SET_POSITION_TARGET_LOCAL_NED, in the world (ENU).
-struct VelocityOrder {
+// The velocity or the place in a SET_POSITION_TARGET_LOCAL_NED, in the world (ENU).
+struct FlightOrder {
   SetPoint set_point;
   std::optional<double> turn_rate;  // rad/s, from east to north
 };
 
-// Returns nothing when the message has no velocity, or any of its values is not finite. In the
-// frames MAV_FRAME_BODY_NED and BODY_OFFSET_NED, velocity and acceleration are rotated by the
-// heading.
-std::optional<VelocityOrder> VelocityOrderOf(const mavlink::SetPositionTargetLocalNed& message,
-                                             const FlightState& state);
+// Returns nothing when the message has neither a velocity nor a place, or any of its values is not
+// finite. In the frames MAV_FRAME_BODY_NED and BODY_OFFSET_NED, velocity and acceleration are
+// rotated by the heading, and a place is not read.
+std::optional<FlightOrder> FlightOrderOf(const mavlink::SetPositionTargetLocalNed& message,
+                                         const FlightState& state);
 
 // The attitude in a SET_ATTITUDE_TARGET.
 struct AttitudeOrder {

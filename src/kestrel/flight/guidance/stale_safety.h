@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kestrel/core/poses/set_point.h"
+
+namespace kestrel {
+
+// Behaviour of the autopilot with a set-point after which no other comes. `fly` reads it from the
+// autopilot's parameters.
+struct StaleOptions {
+  double timeout_s = 0.3;       // the last set-point is flown on for so long
+  double vertical_braking = 1;  // m/s^2, after that
+  double vertical_jerk = 5;     // m/s^3
+  // Gains of a position control that takes places as set-points, 1/s; 0: velocities are sent.
+  double position_gain = 0;  // horizontal
+  double height_gain = 0;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("timeout_s", self.timeout_s, "s", "time for which the last set-point is flown on");
+    visitor("vertical_braking", self.vertical_braking, "m/s^2", "deceleration after that");
+    visitor("vertical_jerk", self.vertical_jerk, "m/s^3", "jerk of that deceleration");
+    visitor("position_gain", self.position_gain, "1/s",
+            "the autopilot's speed per metre to a place; 0: velocities are sent");
+    visitor("height_gain", self.height_gain, "1/s", "the same for the height");
+  }
+  std::vector<std::string> Validate() const;
+
+  bool sends_places() const { return position_gain > 0 && height_gain > 0; }
+};
+
+// Makes every set-point one that may be the last: the UAV then stops, above the deck.
+//
+// Velocities (ArduCopter's GUIDED): the autopilot flies the velocity v on for the time-out T and
+// then brakes with the deceleration a and the jerk j. The way down is v T + v^2 / 2 a + v a / 2 j.
+//
+// Places (PX4's OFFBOARD): the position control flies with v = K (place - position). Whatever
+// velocity and place add up to v, the UAV comes to rest at v / K from where it is, time-out or not.
+// A place without a velocity says so openly, and nothing is flown on.
+class StaleSafety {
+ public:
+  explicit StaleSafety(const StaleOptions& options) : options_(options) {}
+
+  // Returns the fastest descent (m/s, positive) at 'height_m' of the feet above the deck from which
+  // the UAV comes to rest above the deck. 'link_delay_s': time from sending to the effect.
+  double MaxSink(double height_m, double link_delay_s) const;
+
+  // Sets the place of a set-point whose velocity is wanted, for a body at 'position' with
+  // 'velocity', where the autopilot takes places.
+  void SetPlace(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
+                double link_delay_s, SetPoint* set_point) const;
+
+  // Returns 'set_point' without its descent, and without acceleration.
+  SetPoint Level(SetPoint set_point) const;
+
+ private:
+  StaleOptions options_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/guidance/target_search.h"
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector2d;
+
+// The camera sees the target within so many metres per metre of altitude. A target is expected
+// within two standard deviations.
+constexpr double kView = 1;
+constexpr double kSigmas = 2;
+constexpr double kLapsOnRoad = 1;  // follows a lap in the mind for no longer
+
+}  // namespace
+
+void TargetSearch::Start(const Vector2d& place) {
+  lost_.reset();
+  is_on_road_ = false;
+  step_ = "";
+  spiral_.Start(place, {.wait_s = options_.search_wait_s, .radius_m = options_.search_radius_m});
+}
+
+void TargetSearch::StartAfterLoss(Time now, const RoadMemory& road, const Vector2d& uav) {
+  Start(uav);
+  lost_ = now;
+  lost_at_ = uav;
+  const auto target = road.Predict(now);
+  is_on_road_ = target.has_value();
+  if (!is_on_road_) return;
+  step_ = target->is_by_lap ? "the target is lost: flies where its last lap leads"
+                            : "the target is lost: flies on as it drove";
+}
+
+Vector2d TargetSearch::Advance(Time now, const RoadMemory& road, const Vector2d& uav,
+                               double seconds) {
+  if (is_on_road_) {
+    const auto target = road.Predict(now);
+    if (target && !IsTooUncertain(now, *target, road)) return target->position;
+    is_on_road_ = false;
+    if (target && target->is_by_lap) {
+      step_ = "waits for the target on its road";
+      spiral_.Start(target->position,
+                    {.wait_s = *road.Lap_s(), .radius_m = options_.search_radius_m});
+    } else {
+      step_ = "searches around the place where it would be";
+      spiral_.Start(uav, {.wait_s = 0, .radius_m = options_.search_distance_m});
+    }
+  }
+  return spiral_.Advance(uav, seconds);
+}
+
+bool TargetSearch::IsTooUncertain(Time now, const RoadMemory::Prediction& target,
+                                  const RoadMemory& road) const {
+  if (target.is_by_lap && ToSeconds(now - *lost_) > kLapsOnRoad * *road.Lap_s()) return true;
+  return kSigmas * target.sigma_m > kView * options_.search_altitude_m ||
+         (target.position - lost_at_).norm() > options_.search_distance_m;
+}
+
+bool TargetSearch::IsOver(Time now) const {
+  return lost_ && ToSeconds(now - *lost_) > options_.search_limit_s;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/guidance/target_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/core/geometry/angles.h"
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector2d;
+using testing::HasSubstr;
+
+constexpr Time kStart = TimeFromNanoseconds(1'000'000'000);
+Time At(double time_s) { return kStart + DurationFromSeconds(time_s); }
+
+using Way = std::function<Vector2d(double time_s)>;
+Vector2d VelocityOf(const Way& way, double time_s) {
+  return (way(time_s + 0.05) - way(time_s - 0.05)) / 0.1;
+}
+double TurnRateOf(const Way& way, double time_s) {
+  const Vector2d before = VelocityOf(way, time_s - 0.05);
+  const Vector2d after = VelocityOf(way, time_s + 0.05);
+  const double cross = before.x() * after.y() - before.y() * after.x();
+  return cross / before.squaredNorm() / 0.1;
+}
+
+RoadMemory Driven(const Way& way, double seconds) {
+  RoadMemory road;
+  for (double time_s = 0; time_s <= seconds; time_s += 0.05) {
+    road.Add(At(time_s), way(time_s), VelocityOf(way, time_s), TurnRateOf(way, time_s));
+  }
+  return road;
+}
+
+// 15 km/h on a lemniscate of some 25 m, as the paper's car.
+Vector2d Eight(double time_s) {
+  const double angle = 4.17 / 12 * time_s;
+  return {12 * std::sin(angle), 6 * std::sin(2 * angle)};
+}
+Vector2d Circle(double time_s) {
+  const double angle = 4.17 / 8 * time_s;
+  return 8 * Vector2d(std::cos(angle), std::sin(angle));
+}
+Vector2d Straight(double time_s) { return {4.17 * time_s, 0}; }
+
+double WorstError(const RoadMemory& road, const Way& way, double from_s, double ahead_s) {
+  double worst_m = 0;
+  for (double s = 0; s <= ahead_s; s += 0.5) {
+    worst_m = std::max(worst_m, (road.Predict(At(from_s + s))->position - way(from_s + s)).norm());
+  }
+  return worst_m;
+}
+
+TEST(RoadMemoryTest, GoesOnAsItDidALapAgo) {
+  for (const Way& way : {Way(Eight), Way(Circle)}) {
+    const RoadMemory road = Driven(way, 40);
+    ASSERT_TRUE(road.Lap_s());
+    EXPECT_TRUE(road.Predict(At(41))->is_by_lap);
+    EXPECT_LT(WorstError(road, way, 40, 15), 2.5);
+  }
+}
+
+TEST(RoadMemoryTest, GoesOnStraightOrInItsCurveWithoutALap) {
+  EXPECT_LT(WorstError(Driven(Straight, 20), Straight, 20, 10), 0.1);
+  const RoadMemory curve = Driven(Circle, 4);
+  EXPECT_FALSE(curve.Predict(At(5))->is_by_lap);
+  EXPECT_LT(WorstError(curve, Circle, 4, 2), 0.3);
+}
+
+TEST(RoadMemoryTest, KnowsHowLittleItKnows) {
+  const RoadMemory road = Driven(Straight, 20);
+  EXPECT_LT(road.Predict(At(21))->sigma_m, 1.5);
+  EXPECT_GT(road.Predict(At(30))->sigma_m, 10);
+  EXPECT_FALSE(RoadMemory().Predict(kStart));
+}
+
+TEST(RoadMemoryTest, OneThatStandsHasNoLap) {
+  const RoadMemory road = Driven([](double) { return Vector2d(3, 4); }, 30);
+  EXPECT_FALSE(road.Lap_s());
+  EXPECT_LT((road.Predict(At(60))->position - Vector2d(3, 4)).norm(), 1e-6);
+}
+
+// Flies to where the search wants it, and tells all its steps.
+std::string StepsOf(const Way& way, double driven_s, double search_s, double* nearest_m) {
+  const RoadMemory road = Driven(way, driven_s);
+  TargetSearch search{GuidanceOptions()};
+  search.StartAfterLoss(At(driven_s), road, way(driven_s));
+  std::string steps = search.step();
+  Vector2d uav = way(driven_s);
+  *nearest_m = 1e9;
+  for (double s = 0; s < search_s && !search.IsOver(At(driven_s + s)); s += 0.1) {
+    const std::string before = search.step();
+    uav = search.Advance(At(driven_s + s), road, uav, 0.1);
+    if (search.step() != before) steps += std::string("; ") + search.step();
+    if (s > 5) *nearest_m = std::min(*nearest_m, (uav - way(driven_s + s)).norm());
+  }
+  return steps;
+}
+
+TEST(TargetSearchTest, FollowsALapAndThenWaitsOnTheRoad) {
+  double nearest_m = 0;
+  EXPECT_THAT(StepsOf(Eight, 40, 40, &nearest_m),
+              testing::AllOf(HasSubstr("last lap"), HasSubstr("waits for the target on its road")));
+  EXPECT_LT(nearest_m, 2);
+}
+
+TEST(TargetSearchTest, FliesOnThenSearchesAround) {
+  double nearest_m = 0;
+  EXPECT_THAT(
+      StepsOf(Straight, 20, 40, &nearest_m),
+      testing::AllOf(HasSubstr("flies on as it drove"), HasSubstr("searches around the place")));
+}
+
+TEST(TargetSearchTest, EndsAfterItsLimitOnlyAfterALoss) {
+  TargetSearch search{GuidanceOptions()};
+  search.Start({0, 0});
+  EXPECT_FALSE(search.IsOver(At(1000)));
+  search.StartAfterLoss(At(1000), Driven(Straight, 5), {0, 0});
+  EXPECT_FALSE(search.IsOver(At(1059)));
+  EXPECT_TRUE(search.IsOver(At(1061)));
+}
+
+}  // namespace
+}  // namespace kestrel
