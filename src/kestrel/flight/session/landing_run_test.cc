@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -54,14 +55,14 @@ TEST(LandingRun, SaysThatTheGivenAltitudeIsWrong) {
 }
 
 TEST(LandingRun, RemarksThatTheLensIsAnother) {
-  const auto remarks = [](double focal_px) {
+  Random random(1);
+  std::vector<cv::Mat> images;
+  for (int i = 0; i < 30; ++i) {
+    images.push_back(DrawRandomView(CameraModel(Camera(kFocal_px)), LandingPattern(), &random));
+  }
+  const auto remarks = [&](double focal_px) {
     LandingRun run = RunWith(focal_px, /*altitude_m=*/std::nullopt, /*is_still=*/true);
-    Random random(1);
-    for (int i = 0; i < 30; ++i) {
-      const cv::Mat image =
-          DrawRandomView(CameraModel(Camera(kFocal_px)), LandingPattern(), &random);
-      run.Process({"image", Time(DurationFromSeconds(0.1 * i)), image});
-    }
+    for (const cv::Mat& image : images) run.Process({"image", Time(), image});
     return run.Remarks();
   };
   EXPECT_THAT(remarks(kFocal_px), Not(HasSubstr("the pattern says")));
