@@ -44,6 +44,15 @@ class DeckMotion {
   // is not known.
   std::optional<DeckForecast> Ahead(double ahead_s) const;
 
+  // Largest motion within a time.
+  struct Swing {
+    double climb_mps = 0;                  // up or down
+    double least_tilt = 0, most_tilt = 0;  // rad
+  };
+  // Returns the largest motion within 'horizon_s' by its expectation; nothing while the deck is not
+  // known.
+  std::optional<Swing> SwingWithin(double horizon_s) const;
+
   // A time span, s after the last observation.
   struct Window {
     double begin_s = 0;

@@ -202,6 +202,7 @@ void LandingGuidance::Start(const GuidanceInput& input) {
   beyond_since_.reset();
   pursuit_.Reset();
   road_.Reset();
+  timing_.Reset();
   search_.Start(place_);
   Enter(GuidancePhase::kSearch, "the pilot has given the mode");
 }
@@ -253,6 +254,9 @@ GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
   }
   poses_lost_.reset();
   if (GivesUp(input)) return Idle(input);
+  if (input.deck) {
+    timing_.Observe(input.deck->time, input.deck->height_m, input.deck->normal);
+  }
   const Situation now = Look(input);
   ChoosePhase(input, now);
   if (!is_active_) return Idle(input);
@@ -481,7 +485,7 @@ SetPoint LandingGuidance::Search(const GuidanceInput& input, const Situation& no
 SetPoint LandingGuidance::Pursue(const GuidanceInput& input, const Situation& now) {
   SetPoint command =
       pursuit_.Above(*input.target, {now.feet.head<2>(), now.velocity.head<2>()}, model_);
-  command.velocity.z() = ClimbRate(input, now);
+  command.velocity.z() = ClimbRate(input, now) + timing_.Climb(input.now, model_.delay_s());
   if (phase_ != GuidancePhase::kCommit) {
     const double most = stale_.MaxSink(now.height_m, input.link_delay_s);
     command.velocity.z() = std::max(command.velocity.z(), -most);
@@ -497,13 +501,17 @@ SetPoint LandingGuidance::Pursue(const GuidanceInput& input, const Situation& no
   return command;
 }
 
-double LandingGuidance::ClimbRate(const GuidanceInput& input, const Situation& now) const {
+double LandingGuidance::ClimbRate(const GuidanceInput& input, const Situation& now) {
   const double sink = std::max(options_.sink_gain * now.height_m, options_.touchdown_sink_mps);
   if (phase_ == GuidancePhase::kCommit) {
     // Ever faster: the autopilot then does not mistake the stop by the deck for its own braking.
     return -sink - kCommitAcceleration * ToSeconds(input.now - entered_);
   }
-  if (phase_ == GuidancePhase::kDescend) return now.off_m < Cone(now.height_m) ? -sink : 0;
+  if (phase_ == GuidancePhase::kDescend) {
+    if (now.off_m >= Cone(now.height_m)) return 0;
+    if (!timing_.Waits(input.now, now.height_m)) return -sink;
+    return std::max(-sink, kHeightGain * (TouchdownTiming::kWaitHeight_m - now.height_m));
+  }
   const double top_m = options_.search_altitude_m - input.target->motion.position().z();
   const bool is_unknown = input.target->position_sigma_m() > 2 * options_.max_sigma_m;
   const double wanted_m =
@@ -519,6 +527,7 @@ void LandingGuidance::Enter(GuidancePhase phase, const char* reason) {
 
 void LandingGuidance::GoAround(const char* reason) {
   ++go_arounds_;
+  timing_.Reset();
   Enter(GuidancePhase::kGoAround, reason);
 }
 

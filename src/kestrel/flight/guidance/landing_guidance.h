@@ -21,6 +21,7 @@
 #include "kestrel/flight/guidance/stale_safety.h"
 #include "kestrel/flight/guidance/target_pursuit.h"
 #include "kestrel/flight/guidance/target_search.h"
+#include "kestrel/flight/guidance/touchdown_timing.h"
 #include "kestrel/vision/tracking/target_tracker.h"
 
 namespace kestrel {
@@ -42,6 +43,13 @@ struct UavState {
   std::optional<double> position_sigma_m = {};  // per axis, where it is known
 };
 
+// The deck in one frame.
+struct DeckSighting {
+  Time time;
+  double height_m = 0;              // world
+  Eigen::Vector3d normal{0, 0, 1};  // in the world
+};
+
 // All inputs of guidance at an instant.
 struct GuidanceInput {
   Time now;                              // never earlier than the one before
@@ -49,6 +57,7 @@ struct GuidanceInput {
   std::optional<TargetEstimate> target;  // predicted to now; nothing while there is none, or lost
   // Time since the newest frame that showed the target was taken, s.
   double target_age_s = std::numeric_limits<double>::infinity();
+  std::optional<DeckSighting> deck;  // the newest frame that showed it
   bool is_guided = false;  // the mode in which the autopilot obeys set-points, by its heartbeat
   bool is_armed = false;
   bool is_landed = false;    // the autopilot says that it is on the ground
@@ -130,7 +139,7 @@ class LandingGuidance {
   SetPoint Search(const GuidanceInput& input, const Situation& now);
   SetPoint Pursue(const GuidanceInput& input, const Situation& now);
   SetPoint Rest(const GuidanceInput& input, const Situation& now);
-  double ClimbRate(const GuidanceInput& input, const Situation& now) const;
+  double ClimbRate(const GuidanceInput& input, const Situation& now);
   GuidanceRequest RequestInContact(const GuidanceInput& input) const;
   GuidanceOutput Output(const std::optional<SetPoint>& set_point, GuidanceRequest request) const;
 
@@ -157,6 +166,7 @@ class LandingGuidance {
   DemandWatch demand_;
   ContactDetector contact_;
   DeckRide ride_;
+  TouchdownTiming timing_;
 
   GuidancePhase phase_ = GuidancePhase::kIdle;
   const char* reason_;

@@ -134,6 +134,9 @@ class TestTarget {
     return motion_(time_s).translation + kTestBoard_m * Eigen::Vector3d::UnitZ();
   }
   Eigen::Vector3d Velocity(double time_s) const { return VelocityOf(motion_, time_s); }
+  Eigen::Vector3d Normal(double time_s) const {
+    return motion_(time_s).rotation * Eigen::Vector3d::UnitZ();
+  }
 
   TargetEstimate Estimate(Time time, double time_s, double sigma_m = 0.03) const {
     TargetEstimate target;
@@ -179,6 +182,7 @@ struct TestFlight {
     input.uav = uav.State();
     input.target = target.Estimate(input.now, time_s);
     input.target_age_s = 0.05;
+    input.deck = DeckSighting{input.now, target.Position(time_s).z(), target.Normal(time_s)};
     input.is_guided = time_s > 0;
     input.is_armed = true;
     if (is_on_deck) {

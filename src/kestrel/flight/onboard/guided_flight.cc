@@ -135,6 +135,10 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
                          pose->uncertainty.position_m};
   }
   input.target = Target(now, track);
+  if (track.sighting) {
+    input.deck = DeckSighting{track.sighting->time, track.sighting->position_in_world.z(),
+                              track.sighting->normal_in_world};
+  }
   if (track.seen) input.target_age_s = ToSeconds(now - *track.seen);
   input.is_armed = autopilot_.is_armed();
   input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;

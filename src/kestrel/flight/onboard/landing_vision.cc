@@ -85,6 +85,8 @@ std::optional<TargetReport> LandingVision::Sighting(const LandingObservation& ob
   report.time = snapshot_.captured;
   report.world_from_body = world_from_camera * *camera_from_body_;
   report.position_in_world = world_from_camera * center;
+  report.normal_in_world = world_from_camera.rotation *
+                           (detection->camera_from_pattern.rotation * Eigen::Vector3d::UnitZ());
   report.covariance = CovarianceInWorld(detection->covariance.topLeftCorner<3, 3>(), center,
                                         world_from_camera.rotation, noise) +
                       SharedCovarianceInWorld(center, world_from_camera.rotation, noise);

@@ -34,7 +34,8 @@ struct VehicleMotionOptions {
     visitor("lane_period_s", self.lane_period_s, "s", "period of two lane changes");
     visitor("heave_m", self.heave_m, "m", "height of the waves, from trough to crest");
     visitor("heave_period_s", self.heave_period_s, "s", "period of the waves");
-    visitor("roll_deg", self.roll_deg, "deg", "roll on the waves, to either side; half of it pitch");
+    visitor("roll_deg", self.roll_deg, "deg",
+            "roll on the waves, to either side; half of it pitch");
     visitor("shake_deg", self.shake_deg, "deg", "roll and pitch on its springs");
   }
   std::vector<std::string> Validate() const;
