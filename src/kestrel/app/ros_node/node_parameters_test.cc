@@ -35,8 +35,8 @@ TEST(NodeParameters, NameTheOptionsOfTheConfigurationAndOfTheNode) {
 
 TEST(NodeParameters, AFileOfOptionsIsReadBeforeTheParameters) {
   const TestFolder folder;
-  const std::string file = folder.Write(
-      "options.yaml", "hunt:\n  detector:\n    min_pixels: 7\nteam:\n  uav: falcon\n");
+  const std::string file =
+      folder.Write("options.yaml", "hunt:\n  detector:\n    min_pixels: 7\nteam:\n  uav: falcon\n");
   EXPECT_EQ(ReadNodeOptions({{"config", file}}).hunt.detector.min_pixels, 7);
   EXPECT_EQ(ReadNodeOptions({{"hunt.detector.min_pixels", "8"}, {"config", file}})
                 .hunt.detector.min_pixels,
