@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Simulates many touchdowns in closed loop, and prints how many land, how long they take and how
-// far from the centre. Usage: touchdown_accuracy [--scenario NAME] [--flights N] [--first-seed N]
+// far from the centre. Usage: touchdown_accuracy [--scenario NAME]... [--flights N] [--first-seed
+// N]
 // [--set K=V]...
 #include <cstdint>
 #include <iostream>
@@ -23,7 +24,7 @@ namespace kestrel {
 namespace {
 
 struct Arguments {
-  std::string scenario;
+  std::vector<std::string> scenarios = {"figure8", "fast"};
   std::vector<std::string> settings;
   int flights = 20;
   std::uint64_t first_seed = 1;
@@ -65,10 +66,8 @@ std::string Summary(const std::string& scenario, const std::vector<TouchdownResu
 }
 
 void Run(const Arguments& arguments) {
-  const auto scenarios = arguments.scenario.empty() ? std::vector<std::string>{"figure8", "fast"}
-                                                    : std::vector<std::string>{arguments.scenario};
   std::string summaries;
-  for (const std::string& scenario : scenarios) {
+  for (const std::string& scenario : arguments.scenarios) {
     const auto options = ReadTouchdownSimulation(scenario, "", arguments.settings);
     fmt::print("== {}\n{}", scenario, TouchdownCsvHeader());
     std::cout << std::flush;
@@ -88,7 +87,9 @@ void Run(const Arguments& arguments) {
 int main(int argc, char** argv) {
   CLI::App app{"Many simulated touchdowns and how well they hit"};
   kestrel::Arguments arguments;
-  app.add_option("--scenario", arguments.scenario, "Of `kestrel simulate touchdown` (all)");
+  app.add_option("--scenario", arguments.scenarios,
+                 "Of `kestrel simulate touchdown`; may be given again (figure8, fast)")
+      ->allow_extra_args(false);
   app.add_option("--flights", arguments.flights, "How many, each with the next seed (20)")
       ->check(CLI::Range(1, 100000));
   app.add_option("--first-seed", arguments.first_seed, "Seed of the first flight (1)");
