@@ -101,12 +101,12 @@ template <class Visitor>
 void ForEachMessage(const Visitor& visitor) {
   using namespace kestrel::mavlink;  // NOLINT(google-build-using-namespace)
   ForEachOf<Visitor, Heartbeat, SysStatus, SystemTime, SetMode, ParamRequestRead, ParamRequestList,
-            ParamValue, ParamSet, Attitude, AttitudeQuaternion, LocalPositionNed, GlobalPositionInt,
-            GpsGlobalOrigin, RcChannels, RequestDataStream, CommandLong, CommandAck,
-            SetAttitudeTarget, SetPositionTargetLocalNed, SimState, Timesync, HilStateQuaternion,
-            DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget, EkfStatusReport,
-            EstimatorStatus, HomePosition, MessageInterval, ExtendedSysState, Statustext,
-            CurrentMode, TargetRelative>(visitor);
+            ParamValue, ParamSet, GpsRawInt, Attitude, AttitudeQuaternion, LocalPositionNed,
+            GlobalPositionInt, GpsGlobalOrigin, RcChannels, RequestDataStream, CommandLong,
+            CommandAck, SetAttitudeTarget, SetPositionTargetLocalNed, SimState, Timesync,
+            HilStateQuaternion, DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget,
+            EkfStatusReport, EstimatorStatus, HomePosition, MessageInterval, ExtendedSysState,
+            Statustext, CurrentMode, TargetRelative>(visitor);
 }
 
 void Print(std::uint32_t id, std::string_view name, const std::string& fields,

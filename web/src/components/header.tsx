@@ -109,7 +109,7 @@ export function numberText(value: number | null): string {
 }
 
 function Actions() {
-  const offers = useStore((state) => state.hello?.offers);
+  const offers = useStore((state) => (state.status?.over ? undefined : state.hello?.offers));
   const isRecording = useStore((state) => state.status?.recording ?? false);
   const theme = useStore((state) => state.theme);
   return (

@@ -127,7 +127,7 @@ TEST_F(GuidedFlightTest, FliesWhileThePilotGivesTheMode) {
   Start(mavlink::kAutopilotArduPilot);
   EXPECT_EQ(SetPointsDuring(2), 0);
   heartbeat_.custom_mode = kGuided;
-  EXPECT_NEAR(SetPointsDuring(2), 100, 15);
+  EXPECT_NEAR(SetPointsDuring(2), 120, 15) << "a beat, and each frame at once";
   EXPECT_NE(guided_->phase(), GuidancePhase::kIdle) << said_;
   heartbeat_.custom_mode = kLoiter;
   EXPECT_LE(SetPointsDuring(0.1), 6) << "until the heartbeat";

@@ -39,12 +39,12 @@ void LandingWatch::Observe(const LandingWatchInput& input) {
 void LandingWatch::Fly(const LandingWatchInput& input) {
   has_flown_ =
       has_flown_ || input.state == LandedState::kInAir || input.state == LandedState::kLanding;
-  has_seen_ = has_seen_ || input.pattern.has_value();
   if (!input.body) return;
   if (!armed_z_m_) armed_z_m_ = input.body->feet.z();
   has_flown_ = has_flown_ || std::abs(input.body->feet.z() - *armed_z_m_) > kFlownHeight_m;
   const bool is_at_rest = input.has_contact || std::abs(input.body->velocity.z()) < kAtRest_mps;
   if (is_at_rest) return;
+  touched_down_ = input.now;
   place_.reset();
   if (!input.pattern) return;
   const Eigen::Vector3d from_pattern = input.body->feet - input.pattern->position;
@@ -52,6 +52,9 @@ void LandingWatch::Fly(const LandingWatchInput& input) {
   place_ =
       Place{from_pattern.head<2>().norm(), from_pattern.z(),
             std::sqrt(covariance.topLeftCorner<2, 2>().trace() / 2), std::sqrt(covariance(2, 2))};
+  if (place_->offset_sigma_m > kLargestSigma_m) return;
+  seen_ = input.now;
+  seen_offset_m_ = place_->offset_m;
 }
 
 // The first heartbeats of an autopilot that has restarted say "disarmed" as those of one that has
@@ -72,10 +75,12 @@ FlightEnd LandingWatch::Judge(const LandingWatchInput& input) const {
 
 FlightEnd LandingWatch::JudgePlace() const {
   constexpr double kSure = 2;  // standard deviations
+  if (!seen_) return {FlightOutcome::kDownSomewhere, {}, "the pattern was never seen"};
   if (!place_) {
     return {FlightOutcome::kDownSomewhere,
             {},
-            has_seen_ ? "the pattern was not in sight any more" : "the pattern was never seen"};
+            fmt::format("{:.0f} s before touch-down the pattern was {:.1f} m away, and then lost",
+                        ToSeconds(touched_down_ - *seen_), seen_offset_m_)};
   }
   const double sigma_m = place_->offset_sigma_m;
   if (place_->offset_m - kSure * sigma_m > pattern_radius_m_) {

@@ -69,8 +69,10 @@ class LandingWatch {
   bool has_flown_ = false;
   std::optional<double> armed_z_m_;  // height of the feet at arming; nothing: not armed
   int reboots_ = 0;                  // before the flight
-  bool has_seen_ = false;            // the pattern, in this flight
+  std::optional<Time> seen_;         // when the pattern's place was known last
+  double seen_offset_m_ = 0;         // at that time
   std::optional<Place> place_;       // at touch-down
+  Time touched_down_{};
   std::optional<Time> disarmed_;
   std::optional<FlightEnd> end_;
 };

@@ -99,6 +99,20 @@ TEST_F(LandingWatchTest, DownAndNotKnownWhere) {
   EXPECT_FALSE(watch_.end()->offset_m);
 }
 
+TEST_F(LandingWatchTest, APatternThatWasLostBeforeWasSomewhere) {
+  input_.is_armed = true;
+  input_.state = LandedState::kInAir;
+  input_.body = {{3.1, 0, 5}, Eigen::Vector3d::Zero()};
+  SeePattern(0.02);
+  Pass(2, -0.5);
+  input_.pattern.reset();
+  Pass(8, -0.5);
+  Disarm();
+  EXPECT_EQ(InWords(*watch_.end()),
+            "down, and not known where: 8 s before touch-down the pattern was 3.1 m away, and then "
+            "lost");
+}
+
 TEST_F(LandingWatchTest, APatternThatWasNeverSeenIsNotLandedOn) {
   input_.is_armed = true;
   input_.state = LandedState::kInAir;
