@@ -10,6 +10,7 @@
 #include <signal.h>
 
 #include "kestrel/comms/guard/guard_link.h"
+#include "kestrel/comms/guard/life_of.h"
 #include "kestrel/comms/mavlink/autopilot.h"
 #include "kestrel/comms/mavlink/connection.h"
 #include "kestrel/comms/mavlink/set_point_message.h"
@@ -42,7 +43,8 @@ class Flyer {
       const Time now = Now();
       autopilot_->Tick(now);
       Fly(now);
-      guard_->TellLife(Life(), now);
+      const GuardTask task = is_flying_ ? GuardTask::kStop : GuardTask::kNothing;
+      guard_->TellLife(LifeOf(task, *autopilot_, *connection_), now);
     }
     return guard_->state();
   }
@@ -57,18 +59,6 @@ class Flyer {
     if (is_flying_) set_point.velocity = {4.2, 0, -1};
     // PX4 gets them before it gives the mode, and never after it was left.
     if (is_flying_ || !has_flown_) SendSetPoint(set_point, *autopilot_, now, connection_.get());
-  }
-
-  GuardLife Life() const {
-    GuardLife life;
-    life.task = is_flying_ ? GuardTask::kStop : GuardTask::kNothing;
-    life.kind = autopilot_->kind();
-    life.autopilot_system = autopilot_->system();
-    life.autopilot_component = autopilot_->component();
-    life.system = connection_->system();
-    life.component = connection_->component();
-    life.signing_timestamp = connection_->signing_timestamp();
-    return life;
   }
 
   GuardLink* guard_;

@@ -35,6 +35,9 @@ FlightProgram::FlightProgram(const FlightOptions& options, const TargetTrackerOp
   sender_.emplace(options, tracker, parts.profile, parts.pattern_size_m, parts.autopilot,
                   parts.connection, say_);
   if (parts.guides) guided_.emplace(options, tracker, parts.autopilot, parts.connection, say_);
+  if (parts.guard != nullptr) {
+    guard_.emplace(parts.guard, parts.autopilot, parts.connection, options.guard, say_);
+  }
 }
 
 FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
@@ -58,10 +61,25 @@ FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
 }
 
 void FlightProgram::Watch(const std::function<bool()>& is_stopped) {
+  service_manager_.Tell("READY=1");
   while (!is_over_) {
+    TellServiceManager(Now());
     if (is_stopped()) End(FlightEnd::kStopped);
     if (parts_.sink != nullptr) parts_.sink->Take(Report());
     std::this_thread::sleep_for(kPatience);
+  }
+  // To write what waits may take a while.
+  service_manager_.Tell("WATCHDOG_USEC=60000000");
+}
+
+// A thread that hangs keeps the sign of life from systemd's watchdog, which then kills the program;
+// the guard sees to the UAV.
+void FlightProgram::TellServiceManager(Time now) {
+  constexpr Duration kLinkLimit = std::chrono::seconds(1);
+  constexpr Duration kLimit = std::chrono::seconds(5);
+  if (link_life_.IsAlive(now, kLinkLimit) && vision_life_.IsAlive(now, kLimit) &&
+      capture_life_.IsAlive(now, kLimit)) {
+    service_manager_.Tell("WATCHDOG=1");
   }
 }
 
@@ -80,6 +98,7 @@ void FlightProgram::Capture() {
   std::string trouble;
   Time last = Now();
   while (!is_over_) {
+    capture_life_.Give(Now());
     std::optional<Event> event = parts_.source->Next(kPatience);
     if (event && std::holds_alternative<EndOfStream>(*event)) {
       // The last frame may still wait for its pose.
@@ -126,7 +145,9 @@ void FlightProgram::See() {
     say_(problem);
   }
   for (;;) {
+    vision_life_.Rest();
     const Event event = events_.Next();
+    vision_life_.Give(Now());
     if (std::holds_alternative<EndOfStream>(event)) return;
     const std::lock_guard lock(vision_mutex_);
     if (const auto* pose = std::get_if<PoseSample>(&event)) {
@@ -190,6 +211,7 @@ void FlightProgram::Communicate() {
   SetUpThisThread("link", {});
   heard_ = Now();
   while (!is_over_) {
+    link_life_.Give(Now());
     parts_.connection->Receive(kLinkPatience, [this](const mavlink::Packet& packet, Time received) {
       parts_.autopilot->Handle(packet, received);
     });
@@ -198,7 +220,9 @@ void FlightProgram::Communicate() {
     parts_.autopilot->Tick(now);
     TellTarget(now);
     WatchFlight(now);
+    if (guard_ && !guard_->Watch(now, *guided_)) End(FlightEnd::kFailed);
   }
+  if (parts_.guard != nullptr) parts_.guard->SayGoodbye();
 }
 
 void FlightProgram::TellTarget(Time now) {
