@@ -90,6 +90,10 @@ void FlyArguments::AddTo(CLI::App* command) {
   command->add_flag("--ros", ros, "Publish the results as a node of ROS 1; --dds: of ROS 2");
   CLI::Option* guide_flag = command->add_flag(
       "--guide", guide, "Fly the UAV by set-points when the pilot gives it GUIDED or OFFBOARD");
+  command
+      ->add_flag("--no-guard", no_guard,
+                 "No guard: if Kestrel dies in flight, only the autopilot's own time-out acts")
+      ->needs(guide_flag);
   CLI::Option* hunt_flag = command->add_flag(
       "--hunt", hunt, "Search for coloured objects instead of the landing pattern");
   command->add_option("--model", model, "Objects and their colours (YAML), with --hunt")
@@ -108,6 +112,7 @@ KestrelOptions FlyArguments::ReadOptions() const {
   if (link_delay != "auto") options.fly.flight.link_delay_s = ParseLinkDelay(link_delay);
   if (guide && autopilot.empty()) throw InputError("--guide: expected --autopilot URL");
   if (guide) PrepareGuidance(autopilot, &options.fly);
+  if (no_guard) options.fly.flight.guard.enabled = false;
   if (console && !console->empty()) {
     options.console = WithAddress(options.console, *console, "--console");
     RequireValid(options.console);

@@ -24,6 +24,7 @@ struct FlyArguments {
   bool ros = false;
   std::optional<std::string> console;  // ADDRESS:PORT; empty: as in the options
   bool guide = false;
+  bool no_guard = false;
   bool hunt = false;
   std::string model;  // file with the model of the objects
   TeamArguments team;

@@ -221,6 +221,8 @@ class Flight {
                                .recorder = fly.recorder,
                                .exposure = {}};
     if (fly.control_exposure) options.exposure = fly.exposure;
+    // A simulated autopilot ends with this process.
+    if (autopilot_.simulated) options.flight.guard.enabled = false;
     return options;
   }
 

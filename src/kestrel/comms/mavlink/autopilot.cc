@@ -454,16 +454,10 @@ void Autopilot::SetParameter(std::string_view name, double value) {
 }
 
 bool Autopilot::RequestMode(FlightMode mode) {
-  constexpr std::uint32_t kByte = 0xff;
   const std::uint32_t custom_mode = CustomModeOf(kind_, mode);
   if (custom_mode == 0) return false;
   requested_mode_ = custom_mode;
-  const bool is_px4 = kind_ == AutopilotKind::kPx4;
-  mavlink::CommandLong command =
-      MakeCommand(mavlink::kCommandDoSetMode, mavlink::kModeFlagCustom,
-                  static_cast<float>(is_px4 ? custom_mode >> 16 & kByte : custom_mode));
-  if (is_px4) command.param3 = static_cast<float>(custom_mode >> 24);
-  commands_.Want(command);
+  commands_.Want(ModeCommand(kind_, custom_mode, system_, component_));
   return true;
 }
 

@@ -7,6 +7,20 @@
 
 namespace kestrel {
 
+mavlink::CommandLong ModeCommand(AutopilotKind kind, std::uint32_t custom_mode, std::uint8_t system,
+                                 std::uint8_t component) {
+  constexpr std::uint32_t kByte = 0xff;
+  const bool is_px4 = kind == AutopilotKind::kPx4;
+  mavlink::CommandLong command;
+  command.command = mavlink::kCommandDoSetMode;
+  command.target_system = system;
+  command.target_component = component;
+  command.param1 = mavlink::kModeFlagCustom;
+  command.param2 = static_cast<float>(is_px4 ? custom_mode >> 16 & kByte : custom_mode);
+  if (is_px4) command.param3 = static_cast<float>(custom_mode >> 24);
+  return command;
+}
+
 bool CommandRequests::Ending::is_accepted() const { return result == mavlink::kResultAccepted; }
 
 void CommandRequests::Want(const mavlink::CommandLong& command) {

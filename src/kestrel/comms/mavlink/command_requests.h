@@ -5,10 +5,15 @@
 #include <cstdint>
 #include <optional>
 
+#include "kestrel/comms/mavlink/autopilot_kind.h"
 #include "kestrel/comms/mavlink/messages.h"
 #include "kestrel/core/base/time.h"
 
 namespace kestrel {
+
+// The command that asks an autopilot with these ids for a mode (HEARTBEAT.custom_mode).
+mavlink::CommandLong ModeCommand(AutopilotKind kind, std::uint32_t custom_mode, std::uint8_t system,
+                                 std::uint8_t component);
 
 // Commands whose answer matters: each is repeated until the autopilot answers it. The answer does
 // not prove that the command was carried out.

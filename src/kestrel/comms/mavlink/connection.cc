@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/comms/mavlink/connection.h"
 
-#include <chrono>
 #include <utility>
 
 #include "kestrel/core/base/options.h"
@@ -13,12 +12,6 @@ namespace {
 constexpr std::size_t kLargestDatagram = 65536;
 constexpr std::uint8_t kFirstSystem = 1;
 
-std::uint64_t UnixNanoseconds() {
-  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                        std::chrono::system_clock::now().time_since_epoch())
-                                        .count());
-}
-
 }  // namespace
 
 std::vector<std::string> ConnectionOptions::Validate() const {
@@ -29,10 +22,12 @@ std::vector<std::string> ConnectionOptions::Validate() const {
   return violations;
 }
 
-Connection::Connection(const std::string& url, const ConnectionOptions& options, Tap tap)
+Connection::Connection(const std::string& url, const ConnectionOptions& options, Tap tap,
+                       std::unique_ptr<Transport> transport)
     : url_(url),
       takes_system_(options.system_id == 0),
       component_(static_cast<std::uint8_t>(options.component_id)),
+      transport_(std::move(transport)),
       tap_(std::move(tap)),
       buffer_(kLargestDatagram),
       writer_(takes_system_ ? kFirstSystem : static_cast<std::uint8_t>(options.system_id),
@@ -43,12 +38,12 @@ Connection::Connection(const std::string& url, const ConnectionOptions& options,
     timestamp_file_ = std::make_unique<TimestampFile>(options.signing_key + ".timestamp");
     signing_.emplace(key, timestamp_file_->stored());
   }
-  transport_ = OpenTransport(ParseLinkUrl(url));
+  if (!transport_) transport_ = OpenTransport(ParseLinkUrl(url));
 }
 
 bool Connection::SendFrame(std::span<const std::uint8_t> frame) {
   if (signing_) {
-    frame = signing_->Sign(frame, writer_.memory(), UnixNanoseconds());
+    frame = signing_->Sign(frame, writer_.memory(), mavlink::UnixNanoseconds());
     timestamp_file_->Set(signing_->timestamp());
   }
   const bool is_sent = transport_->Send(frame);
@@ -60,7 +55,7 @@ bool Connection::SendFrame(std::span<const std::uint8_t> frame) {
 bool Connection::IsTrusted(const mavlink::Packet& packet) {
   if (!signing_) return true;
   const std::lock_guard lock(send_mutex_);
-  switch (signing_->Check(packet, UnixNanoseconds())) {
+  switch (signing_->Check(packet, mavlink::UnixNanoseconds())) {
     case mavlink::Signing::Verdict::kGood:
       return true;
     case mavlink::Signing::Verdict::kUnsigned:
@@ -113,6 +108,11 @@ void Connection::SetSystem(std::uint8_t system) {
 std::uint8_t Connection::system() const {
   const std::lock_guard lock(send_mutex_);
   return writer_.system();
+}
+
+mavlink::Signing::Timestamp Connection::signing_timestamp() const {
+  const std::lock_guard lock(send_mutex_);
+  return signing_ ? signing_->timestamp() : 0;
 }
 
 ConnectionCounters Connection::counters() const {

@@ -52,8 +52,10 @@ class Connection {
   // Receives every frame on the line, in the thread that sends or receives it.
   using Tap = std::function<void(std::span<const std::uint8_t> frame, Time time)>;
 
-  // Throws InputError as ParseLinkUrl, OpenTransport and ReadSigningKey do.
-  Connection(const std::string& url, const ConnectionOptions& options, Tap tap = {});
+  // 'transport': the line to 'url'; null: it is opened. Throws InputError as ParseLinkUrl,
+  // OpenTransport and ReadSigningKey do.
+  Connection(const std::string& url, const ConnectionOptions& options, Tap tap = {},
+             std::unique_ptr<Transport> transport = nullptr);
 
   // False when it was not sent: see ConnectionCounters::unsent.
   template <class Message>
@@ -75,6 +77,8 @@ class Connection {
   bool takes_system_of_autopilot() const { return takes_system_; }
   std::uint8_t system() const;
   std::uint8_t component() const { return component_; }
+  // Timestamp of the newest signed packet; 0: nothing is signed.
+  mavlink::Signing::Timestamp signing_timestamp() const;
 
   bool is_connected() const { return transport_->is_connected(); }
   const std::string& url() const { return url_; }

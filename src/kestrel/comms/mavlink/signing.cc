@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <cstring>
 #include <nettle/memops.h>
 #include <nettle/sha2.h>
@@ -77,6 +78,12 @@ SigningKey ReadSigningKey(const std::string& path) {
         fmt::format("signing key {}: is all zeros, which autopilots take for no key", path));
   }
   return key;
+}
+
+std::uint64_t UnixNanoseconds() {
+  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                        std::chrono::system_clock::now().time_since_epoch())
+                                        .count());
 }
 
 Signing::Timestamp Signing::TimestampOf(std::uint64_t unix_ns) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -17,6 +18,9 @@ using SigningKey = std::array<std::uint8_t, 32>;
 // does not exist, when others than its owner may read or write it, or when it holds no key; a key
 // of zeros is not valid, because it means "do not sign" to autopilots.
 SigningKey ReadSigningKey(const std::string& path);
+
+// The computer's clock, ns since 1970.
+std::uint64_t UnixNanoseconds();
 
 // Signs packets and verifies those of others, as in mavlink.io/en/guide/message_signing. A signed
 // packet carries a timestamp that only increases, which prevents replay. Neither throws nor
@@ -47,6 +51,8 @@ class Signing {
 
   // The latest timestamp: the next run has to begin after it.
   Timestamp timestamp() const { return timestamp_; }
+  // Another program has signed with this key: new timestamps are later than its newest.
+  void Continue(Timestamp newest) { timestamp_ = std::max(timestamp_, newest); }
 
  private:
   using Signature = std::array<std::uint8_t, 6>;

@@ -19,6 +19,7 @@ class StreamTransport : public Transport {
   bool Send(std::span<const std::uint8_t> frame) override;
   bool is_connected() const override { return is_connected_; }
   bool has_datagrams() const override { return false; }
+  std::array<int, 2> files() const override { return {file_.number(), listener()}; }
 
  protected:
   struct Line {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -36,6 +37,10 @@ class Transport {
   // True when connected, as far as this end can know.
   virtual bool is_connected() const = 0;
   virtual bool has_datagrams() const = 0;
+
+  // The files on which Receive waits, for a thread that also waits for others; -1: none at this
+  // moment. Called by the receiving thread.
+  virtual std::array<int, 2> files() const = 0;
 
  protected:
   Bell& bell() { return bell_; }

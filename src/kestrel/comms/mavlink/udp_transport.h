@@ -22,6 +22,7 @@ class UdpTransport : public Transport {
   bool Send(std::span<const std::uint8_t> frame) override;
   bool is_connected() const override;
   bool has_datagrams() const override { return true; }
+  std::array<int, 2> files() const override { return {socket_.number(), -1}; }
 
  private:
   struct Peer {

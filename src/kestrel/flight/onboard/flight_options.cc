@@ -14,6 +14,7 @@ std::vector<std::string> FlightOptions::Validate() const {
   AddViolations("target", target.Validate(), &violations);
   AddViolations("messages", messages.Validate(), &violations);
   AddViolations("guidance", guidance.Validate(), &violations);
+  AddViolations("guard", guard.Validate(), &violations);
   AddViolations("events", events.Validate(), &violations);
   AddViolations("vision_thread", vision_thread.Validate(), &violations);
   return violations;

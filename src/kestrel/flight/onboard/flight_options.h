@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/comms/guard/guard_options.h"
 #include "kestrel/comms/mavlink/target_profile.h"
 #include "kestrel/core/base/thread_setup.h"
 #include "kestrel/flight/guidance/guidance_options.h"
@@ -23,6 +24,7 @@ struct FlightOptions {
   TargetReporterOptions target;
   TargetMessageOptions messages;
   GuidanceOptions guidance;
+  GuardOptions guard;  // used where guidance flies
   LiveEventsOptions events;
   ThreadOptions vision_thread;
 
@@ -38,6 +40,7 @@ struct FlightOptions {
     visitor.Group("target", self.target);
     visitor.Group("messages", self.messages);
     visitor.Group("guidance", self.guidance);
+    visitor.Group("guard", self.guard);
     visitor.Group("events", self.events);
     visitor.Group("vision_thread", self.vision_thread);
   }

@@ -18,6 +18,7 @@ namespace {
 
 constexpr Duration kPatience = std::chrono::milliseconds(100);  // longest wait of a thread
 constexpr Duration kLinkPatience = std::chrono::milliseconds(2);
+constexpr int kLinkPriority = 24;  // with a guard, whose own is 25
 constexpr Duration kOutputPeriod = std::chrono::milliseconds(50);
 constexpr std::size_t kPoses = 512;  // from the link: some seconds
 constexpr Duration kPoseGap = std::chrono::milliseconds(500);
@@ -42,6 +43,9 @@ FlightProgram::FlightProgram(const FlightOptions& options, const TargetTrackerOp
   if (parts.guides) {
     guided_.emplace(options, tracker, !parts.source_has_poses, parts.autopilot, parts.connection,
                     say_);
+  }
+  if (parts.guard != nullptr) {
+    guard_.emplace(parts.guard, parts.autopilot, parts.connection, options.guard, say_);
   }
 }
 
@@ -72,10 +76,25 @@ void FlightProgram::TellEnd() {
 }
 
 void FlightProgram::Watch(const std::function<bool()>& is_stopped) {
+  service_manager_.Tell("READY=1");
   while (!is_over_) {
+    TellServiceManager(Now());
     if (is_stopped()) End({FlightOutcome::kStopped});
     if (parts_.sink != nullptr) parts_.sink->Take(Report());
     std::this_thread::sleep_for(kPatience);
+  }
+  // To write what waits may take a while.
+  service_manager_.Tell("WATCHDOG_USEC=60000000");
+}
+
+// A thread that hangs keeps the sign of life from systemd's watchdog, which then kills the program;
+// the guard sees to the UAV.
+void FlightProgram::TellServiceManager(Time now) {
+  constexpr Duration kLinkLimit = std::chrono::seconds(1);
+  constexpr Duration kLimit = std::chrono::seconds(5);
+  if (link_life_.IsAlive(now, kLinkLimit) && vision_life_.IsAlive(now, kLimit) &&
+      capture_life_.IsAlive(now, kLimit)) {
+    service_manager_.Tell("WATCHDOG=1");
   }
 }
 
@@ -94,6 +113,7 @@ void FlightProgram::Capture() {
   std::string trouble;
   Time last = Now();
   while (!is_over_) {
+    capture_life_.Give(Now());
     std::optional<Event> event = parts_.source->Next(kPatience);
     if (event && std::holds_alternative<EndOfStream>(*event)) {
       // The last frame may still wait for its pose.
@@ -141,7 +161,9 @@ void FlightProgram::See() {
     say_(problem);
   }
   for (;;) {
+    vision_life_.Rest();
     const Event event = events_.Next();
+    vision_life_.Give(Now());
     if (std::holds_alternative<EndOfStream>(event)) return;
     const std::lock_guard lock(vision_mutex_);
     if (const auto* pose = std::get_if<PoseSample>(&event)) {
@@ -203,9 +225,14 @@ void FlightProgram::WriteResults() {
 // --- The link thread ---
 
 void FlightProgram::Communicate() {
-  SetUpThisThread("link", {});
+  // A sign of life must not be late because others keep the processors busy. Where the system does
+  // not permit the priority it stays as usual.
+  ThreadOptions setup;
+  if (guard_) setup.priority = kLinkPriority;
+  SetUpThisThread("link", setup);
   heard_ = Now();
   while (!is_over_) {
+    link_life_.Give(Now());
     parts_.connection->Receive(kLinkPatience, [this](const mavlink::Packet& packet, Time received) {
       parts_.autopilot->Handle(packet, received);
     });
@@ -214,9 +241,13 @@ void FlightProgram::Communicate() {
     parts_.autopilot->Tick(now);
     TellTarget(now);
     WatchFlight(now);
+    if (guard_ && !guard_->Watch(now, *guided_)) {
+      End({FlightOutcome::kNotLanded, {}, guard_->reason()});
+    }
   }
   const auto severity = ExitStatus(end_) == 0 ? mavlink::kSeverityInfo : mavlink::kSeverityWarning;
   parts_.autopilot->Announce(severity, "Kestrel: " + InWords(end_));
+  if (parts_.guard != nullptr) parts_.guard->SayGoodbye();
 }
 
 void FlightProgram::TellTarget(Time now) {

@@ -13,15 +13,18 @@
 #include "kestrel/comms/mavlink/connection.h"
 #include "kestrel/comms/mavlink/target_profile.h"
 #include "kestrel/core/base/latest_value.h"
+#include "kestrel/core/base/service_manager.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/flight/onboard/flight_options.h"
 #include "kestrel/flight/onboard/flight_vision.h"
+#include "kestrel/flight/onboard/guard_watch.h"
 #include "kestrel/flight/onboard/guided_flight.h"
 #include "kestrel/flight/onboard/landing_watch.h"
 #include "kestrel/flight/onboard/latency_statistics.h"
 #include "kestrel/flight/onboard/recording_switch.h"
 #include "kestrel/flight/onboard/repeated_image.h"
+#include "kestrel/flight/onboard/sign_of_life.h"
 #include "kestrel/flight/onboard/target_sender.h"
 #include "kestrel/flight/session/flight_report.h"
 #include "kestrel/flight/session/live_events.h"
@@ -37,6 +40,7 @@ struct FlightParts {
   FlightVision* vision = nullptr;
   Connection* connection = nullptr;
   Autopilot* autopilot = nullptr;  // on the connection
+  GuardLink* guard = nullptr;      // below the connection
   RecordingSwitch* recording = nullptr;
   ObservationSink* sink = nullptr;
   bool guides = false;                 // flies by set-points when the pilot gives the mode
@@ -84,6 +88,7 @@ class FlightProgram {
   enum Step { kArrival, kVision, kDetection, kMessage, kSetPoint };
 
   void Watch(const std::function<bool()>& is_stopped);
+  void TellServiceManager(Time now);
   void Capture();
   void See();
   void Communicate();
@@ -109,6 +114,8 @@ class FlightProgram {
   LatestValue<PoseSample> source_pose_;
   PoseHistory poses_;  // from the link
   LatencyStatistics latency_;
+  ServiceManager service_manager_;
+  SignOfLife capture_life_, vision_life_, link_life_;
   std::once_flag ended_;
   std::atomic<bool> is_over_{false};
   FlightEnd end_;  // valid once the flight is over
@@ -117,6 +124,7 @@ class FlightProgram {
   std::optional<TargetSender> sender_;
   std::optional<GuidedFlight> guided_;
   TurnNoise noise_;  // of the predicted track
+  std::optional<GuardWatch> guard_;
   LandingWatch landing_;
   Time landing_due_{};   // when the landing is looked at next
   std::string gave_up_;  // why guidance gave up last; empty: it flies, or has not

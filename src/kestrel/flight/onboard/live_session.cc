@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/comms/guard/guard_link.h"
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/target_profile.h"
 #include "kestrel/core/base/error.h"
@@ -121,6 +122,7 @@ class LiveSession::Impl {
   std::unique_ptr<FlightVision> vision_;
   LandingVision* landing_ = nullptr;  // one of these is the vision
   HuntVision* hunt_ = nullptr;
+  GuardLink* guard_ = nullptr;  // of the connection; null: none
   std::optional<Connection> connection_;
   std::optional<Autopilot> autopilot_;
   std::optional<FlightProgram> program_;
@@ -216,7 +218,13 @@ void LiveSession::Impl::OpenAutopilot() {
   const Connection::Tap tap = [this](std::span<const std::uint8_t> frame, Time time) {
     if (const auto recorder = recording_.Get()) recorder->AddPacket(time, frame);
   };
-  connection_.emplace(parts_.autopilot, options_.link, tap);
+  std::unique_ptr<GuardLink> guard;
+  if (parts_.guides && options_.flight.guard.enabled) {
+    guard = std::make_unique<GuardLink>(parts_.autopilot, options_.flight.guard,
+                                        options_.link.signing_key);
+  }
+  guard_ = guard.get();
+  connection_.emplace(parts_.autopilot, options_.link, tap, std::move(guard));
   autopilot_.emplace(options_.autopilot, &*connection_,
                      AutopilotListener{
                          .pose = [this](const PoseSample& pose) { TakePose(pose); },
@@ -235,6 +243,7 @@ FlightParts LiveSession::Impl::ProgramParts() {
       .vision = vision_.get(),
       .connection = connection_ ? &*connection_ : nullptr,
       .autopilot = autopilot_ ? &*autopilot_ : nullptr,
+      .guard = guard_,
       .recording = &recording_,
       .sink = sink_ ? &*sink_ : nullptr,
       .guides = parts_.guides,

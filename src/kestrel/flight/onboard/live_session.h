@@ -44,7 +44,9 @@ struct LiveSessionParts {
 
   std::string autopilot;               // URL as of Connection; empty: none
   std::optional<LinkProfile> profile;  // nothing: by the autopilot's heartbeat
-  bool guides = false;                 // flies by set-points when the pilot gives the mode
+  // Flies by set-points when the pilot gives the mode. A guard, a process of its own, then has the
+  // line (docs/guard.md), unless the setting fly.guard.enabled says otherwise.
+  bool guides = false;
 
   std::string output;  // folder of the tables; empty: none
   std::string record;  // folder of a recording that begins at once; empty: none

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/comms/guard/flight_guard.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace kestrel {
+namespace {
+
+constexpr Duration kSetPointPeriod = std::chrono::milliseconds(20);
+constexpr Duration kAskPeriod = std::chrono::milliseconds(300);
+// Shorter than the shortest time after which PX4 takes a stream of set-points for broken off.
+constexpr Duration kPause = std::chrono::milliseconds(250);
+// PX4's Hold brakes more softly than a set-point: it is asked for once the UAV stands, or after so
+// long if no speed is told.
+constexpr Duration kLongestStop = std::chrono::seconds(3);
+constexpr double kStands_mps = 0.5;
+constexpr Duration kListening = std::chrono::seconds(1);
+// An autopilot that is silent for so long is gone.
+constexpr Duration kSilence = std::chrono::seconds(10);
+
+const char* TakeOverText(GuardTask task, AutopilotKind kind, bool has_ended) {
+  if (task == GuardTask::kLand) {
+    return has_ended ? "Kestrel is gone, on the deck: LAND" : "Kestrel hangs, on the deck: LAND";
+  }
+  if (kind == AutopilotKind::kPx4) {
+    return has_ended ? "Kestrel is gone: stopping, then Hold"
+                     : "Kestrel hangs: stopping, then Hold";
+  }
+  return has_ended ? "Kestrel is gone: stopping, then BRAKE"
+                   : "Kestrel hangs: stopping, then BRAKE";
+}
+
+}  // namespace
+
+void FlightGuard::TakeLife(GuardTask task, AutopilotKind kind, Time sent) {
+  if (state_ != State::kWatches) return;
+  task_ = task;
+  kind_ = kind;
+  life_ = sent;
+}
+
+void FlightGuard::TakeMode(bool is_guided, Time now) {
+  is_guided_ = is_guided;
+  mode_told_ = now;
+}
+
+void FlightGuard::TakeRefusal() {
+  if (state_ == State::kWorks) is_refused_ = !is_refused_;
+}
+
+GuardAction FlightGuard::Update(Time now) {
+  switch (state_) {
+    case State::kWatches:
+      if (task_ == GuardTask::kNothing || !is_armed_) {
+        if (has_ended_) state_ = State::kDone;
+        return {};
+      }
+      if (has_ended_ || now - life_ > patience_) return TakeOver(now);
+      return {};
+    case State::kWorks:
+      return Work(now);
+    case State::kListens:
+      if (now - since_ > kListening) state_ = State::kDone;
+      return {};
+    case State::kDone:
+      return {};
+  }
+  return {};
+}
+
+// The mode may have been left before: then nothing is sent to the autopilot but words.
+GuardAction FlightGuard::TakeOver(Time now) {
+  has_taken_over_ = true;
+  since_ = now;
+  mode_told_ = std::max(mode_told_, life_);
+  if (!is_guided_) return HandBack("Kestrel is gone, the mode was left before", now);
+  state_ = State::kWorks;
+  GuardAction action = Work(now);
+  action.text = TakeOverText(task_, kind_, has_ended_);
+  return action;
+}
+
+GuardAction FlightGuard::Work(Time now) {
+  if (!is_armed_) return HandBack("Kestrel's guard: the motors are off", now);
+  if (!is_guided_) return HandBack("Kestrel's guard has handed back: take over", now);
+  if (now - mode_told_ > kSilence) return HandBack("Kestrel's guard: the autopilot is silent", now);
+  GuardAction action;
+  if (task_ == GuardTask::kStop && now >= set_point_due_) {
+    set_point_due_ = now + kSetPointPeriod;
+    action.stands_still = true;
+  }
+  if (now < mode_due_) return action;
+  action.mode = ModeToAsk(now);
+  if (!action.mode) return action;
+  mode_due_ = now + kAskPeriod;
+  // PX4 reports its mode late, and must not get a set-point once it has left OFFBOARD.
+  if (kind_ == AutopilotKind::kPx4) set_point_due_ = now + kPause;
+  return action;
+}
+
+// ArduCopter's BRAKE brakes at once, as hard as it can.
+std::optional<FlightMode> FlightGuard::ModeToAsk(Time now) const {
+  if (task_ == GuardTask::kLand) return FlightMode::kLand;
+  if (kind_ != AutopilotKind::kPx4) return is_refused_ ? FlightMode::kPilot : FlightMode::kHold;
+  const bool is_stopped = speed_mps_ && *speed_mps_ < kStands_mps;
+  if (!is_stopped && now - since_ < kLongestStop) return std::nullopt;
+  return FlightMode::kHold;
+}
+
+GuardAction FlightGuard::HandBack(const char* text, Time now) {
+  state_ = State::kListens;
+  since_ = now;
+  return {.stands_still = false, .mode = std::nullopt, .text = text};
+}
+
+}  // namespace kestrel

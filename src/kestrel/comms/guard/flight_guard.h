@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "kestrel/comms/mavlink/autopilot_kind.h"
+#include "kestrel/core/base/time.h"
+
+namespace kestrel {
+
+// What the guard does when the program that flies is gone.
+enum class GuardTask : std::uint8_t {
+  kNothing,  // guidance does not fly
+  kStop,     // guidance flies: the UAV is stopped and handed back
+  kLand,     // guidance holds it on the deck: the autopilot is asked to land
+};
+
+// What the guard sends now.
+struct GuardAction {
+  bool stands_still = false;       // a set-point of standing still
+  std::optional<FlightMode> mode;  // a request for this mode
+  const char* text = nullptr;      // to the ground station, up to 50 characters
+};
+
+// Decides what the guard does. A state machine without clock or socket: everything that happens is
+// told to it. Neither throws nor allocates. docs/guard.md says what it does in which case.
+class FlightGuard {
+ public:
+  // 'patience': after so long without a sign of life the program that flies is taken for dead.
+  explicit FlightGuard(Duration patience) : patience_(patience) {}
+
+  // A sign of life of the program that flies, with what is to be done if it is the last one.
+  // 'sent': when the program sent it, which counts where the guard itself was late.
+  void TakeLife(GuardTask task, AutopilotKind kind, Time sent);
+  // The program has ended, by itself or not: no more signs of life come.
+  void TakeEnd() { has_ended_ = true; }
+  // The autopilot says whether it flies by set-points, and whether its motors run.
+  void TakeMode(bool is_guided, Time now);
+  void TakeArmed(bool is_armed) { is_armed_ = is_armed; }
+  void TakeSpeed(double speed_mps) { speed_mps_ = speed_mps; }  // horizontal
+  void TakeRefusal();                                           // of a mode
+
+  // Call it every 20 ms at most.
+  GuardAction Update(Time now);
+
+  // True from when the program is taken for dead while it flew: nothing of it is sent any more.
+  bool has_taken_over() const { return has_taken_over_; }
+  // True when the guard has nothing more to do.
+  bool is_done() const { return state_ == State::kDone; }
+
+ private:
+  enum class State { kWatches, kWorks, kListens, kDone };
+
+  GuardAction TakeOver(Time now);
+  GuardAction Work(Time now);
+  std::optional<FlightMode> ModeToAsk(Time now) const;
+  GuardAction HandBack(const char* text, Time now);
+
+  Duration patience_;
+  State state_ = State::kWatches;
+  GuardTask task_ = GuardTask::kNothing;
+  AutopilotKind kind_ = AutopilotKind::kUnknown;
+  Time life_{};  // the newest sign of life
+  bool has_ended_ = false;
+  bool has_taken_over_ = false;
+  bool is_guided_ = true;  // it is where guidance flies, until the autopilot says otherwise
+  bool is_armed_ = true;
+  Time mode_told_{};
+  std::optional<double> speed_mps_;
+  bool is_refused_ = false;  // the mode wanted first
+  Time since_{};             // beginning of the state
+  Time set_point_due_{};
+  Time mode_due_{};
+};
+
+}  // namespace kestrel

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "kestrel/comms/guard/guard_link.h"
+#include "kestrel/comms/guard/guard_options.h"
+#include "kestrel/comms/mavlink/autopilot.h"
+#include "kestrel/comms/mavlink/connection.h"
+#include "kestrel/core/base/time.h"
+#include "kestrel/flight/onboard/guided_flight.h"
+
+namespace kestrel {
+
+// Gives the guard its signs of life, and tells the user and the ground station what becomes of it.
+// Used by the link's thread only.
+class GuardWatch {
+ public:
+  // All that pointers name outlives this. 'say': receives lines for the user.
+  GuardWatch(GuardLink* guard, Autopilot* autopilot, const Connection* connection,
+             const GuardOptions& options, std::function<void(const std::string&)> say);
+
+  // Called after each set-point that was due. False: the guard has the UAV, or the line cannot be
+  // opened, and the flight has to end.
+  bool Watch(Time now, const GuidedFlight& guided);
+
+  // Why the flight has to end; empty: it goes on.
+  const std::string& reason() const { return reason_; }
+
+ private:
+  GuardLife Life(const GuidedFlight& guided) const;
+  void TellGone();
+
+  GuardLink* guard_;
+  Autopilot* autopilot_;
+  const Connection* connection_;
+  GuardOptions options_;
+  std::function<void(const std::string&)> say_;
+  std::string reason_;
+  GuardState told_ = GuardState::kWatches;
+};
+
+}  // namespace kestrel
