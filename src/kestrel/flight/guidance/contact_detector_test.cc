@@ -24,7 +24,7 @@ struct Contacts {
     }
     return has_contact;
   }
-  ContactDetector detector{{}};
+  ContactDetector detector{ContactOptions()};
   double time_s = 0;
 };
 
