@@ -183,7 +183,7 @@ TEST_F(GuidedFlightTest, RefusesInOneLineBeforeAnythingMoves) {
       {"no home position", [&] { has_home_ = false; }},
       {"limits.max_speed_mps is 10 m/s, the autopilot's own limit is 9 m/s", [&] { limit_ = 9; }},
       {"from the", [&] { home_.latitude += 20000; }},  // 222 m north
-      {"in a failsafe: give another mode first", [&] { heartbeat_.system_status = 5; }},
+      {"see to its cause, then give GUIDED again", [&] { heartbeat_.system_status = 5; }},
       {"GUID_TIMEOUT is 3 s", [&] { parameters_["GUID_TIMEOUT"] = 3; }},
   };
   const auto parameters = parameters_;

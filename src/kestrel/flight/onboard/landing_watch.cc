@@ -75,7 +75,7 @@ FlightEnd LandingWatch::Judge(const LandingWatchInput& input) const {
 
 FlightEnd LandingWatch::JudgePlace() const {
   constexpr double kSure = 2;  // standard deviations
-  if (!seen_) return {FlightOutcome::kDownSomewhere, {}, "the pattern was never seen"};
+  if (!place_ && !seen_) return {FlightOutcome::kDownSomewhere, {}, "the pattern was never seen"};
   if (!place_) {
     return {FlightOutcome::kDownSomewhere,
             {},
