@@ -86,7 +86,7 @@ class DeathFlight {
     SimulatedAutopilotOptions options;
     options.firmware = arguments.autopilot;
     options.model.pilot.land_after_s = -1;
-    options.model.pilot.guide_after_s = 4;
+    options.model.pilot.guide_after_s = 10;  // Kestrel is there by then, on a loaded machine too
     if (arguments.autopilot == "px4") {
       // As docs/guidance.md asks for: without these PX4 refuses, or flies on for good.
       options.model.parameters = "LNDMC_XY_VEL_MAX=12,COM_OBL_RC_ACT=5,NAV_RCL_ACT=1";

@@ -256,7 +256,7 @@ TEST_F(ConsoleCommandTest, AResultIsShownOverItsRecording) {
 }
 
 TEST_F(ConsoleCommandTest, FaultsAreNamed) {
-  const std::string fly = "fly sim:standing --console ";
+  const std::string fly = "fly sim:standing --autopilot sim:px4 --console ";
   ExpectInputError(fly + "8080", "--console '8080': expected ADDRESS:PORT");
   ExpectInputError(fly + "0.0.0.0:8080", "token is empty, expected one");
   ExpectInputError(fly + "192.0.2.1:8080 --set console.token=0123456789abcdef",

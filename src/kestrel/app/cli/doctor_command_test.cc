@@ -73,7 +73,7 @@ TEST_F(DoctorCommandTest, FaultsOfParametersAreNamed) {
       << "set-points land without targets";
   const Outcome px4 = Look(
       "--json --guide --moving --autopilot sim:px4"
-      " --set fly.sim_autopilot.parameters=COM_OF_LOSS_T=5,NAV_RCL_ACT=0");
+      " --set fly.sim_autopilot.parameters=COM_OF_LOSS_T=5,COM_OBL_RC_ACT=0,NAV_RCL_ACT=0");
   EXPECT_EQ(px4.status, 1);
   EXPECT_THAT(Checks(px4, "wrong"), AllOf(Contains("COM_OF_LOSS_T"), Contains("COM_OBL_RC_ACT"),
                                           Contains("LNDMC_XY_VEL_MAX")))

@@ -11,7 +11,7 @@ namespace {
 constexpr Oscillation::Spread kHeight = {.swing = 0.4, .measurement = 0.03, .level_per_s = 0.02};
 constexpr Oscillation::Spread kNormal = {.swing = 0.07, .measurement = 0.02, .level_per_s = 0.002};
 
-constexpr double kStep_s = 0.1;  // of the forecast
+constexpr double kForecastStep_s = 0.1;  // of the forecast
 
 }  // namespace
 
@@ -51,7 +51,7 @@ std::optional<DeckMotion::Swing> DeckMotion::SwingWithin(double horizon_s) const
   const auto now = Ahead(0);
   if (!now) return std::nullopt;
   Swing swing{std::abs(now->climb_mps), now->tilt, now->tilt};
-  for (double ahead_s = kStep_s; ahead_s <= horizon_s; ahead_s += kStep_s) {
+  for (double ahead_s = kForecastStep_s; ahead_s <= horizon_s; ahead_s += kForecastStep_s) {
     const DeckForecast deck = *Ahead(ahead_s);
     swing.climb_mps = std::max(swing.climb_mps, std::abs(deck.climb_mps));
     swing.least_tilt = std::min(swing.least_tilt, deck.tilt);
@@ -63,7 +63,7 @@ std::optional<DeckMotion::Swing> DeckMotion::SwingWithin(double horizon_s) const
 std::optional<DeckMotion::Window> DeckMotion::NextWindow(double max_tilt, double max_climb_mps,
                                                          double horizon_s) const {
   std::optional<Window> window;
-  for (double ahead_s = 0; ahead_s <= horizon_s; ahead_s += kStep_s) {
+  for (double ahead_s = 0; ahead_s <= horizon_s; ahead_s += kForecastStep_s) {
     const auto deck = Ahead(ahead_s);
     if (!deck) return std::nullopt;
     const bool is_good = deck->tilt < max_tilt && std::abs(deck->climb_mps) < max_climb_mps;

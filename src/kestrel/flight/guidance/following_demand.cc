@@ -15,8 +15,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kSmoothing_s = 0.5;  // of the acceleration: a track's turn rate is noisy
-constexpr double kMemory_s = 8;       // about a lobe of a figure of eight
+constexpr double kSmoothing_s = 0.5;   // of the acceleration: a track's turn rate is noisy
+constexpr double kDemandMemory_s = 8;  // about a lobe of a figure of eight
 // Share of a limit from which the UAV falls behind for sure. The estimates of wind and curve are
 // good to some per cent.
 constexpr double kBeyond = 1.05;
@@ -25,7 +25,7 @@ double Share(double part, double whole) { return whole > 0 ? part / whole : 0; }
 
 // The larger of a value and the fading maximum of those before.
 void KeepPeak(double value, double seconds, double* peak) {
-  *peak = std::max(value, *peak * std::exp(-seconds / kMemory_s));
+  *peak = std::max(value, *peak * std::exp(-seconds / kDemandMemory_s));
 }
 
 }  // namespace

@@ -485,11 +485,12 @@ SetPoint LandingGuidance::Search(const GuidanceInput& input, const Situation& no
 SetPoint LandingGuidance::Pursue(const GuidanceInput& input, const Situation& now) {
   SetPoint command =
       pursuit_.Above(*input.target, {now.feet.head<2>(), now.velocity.head<2>()}, model_);
-  command.velocity.z() = ClimbRate(input, now) + timing_.Climb(input.now, model_.delay_s());
+  command.velocity.z() = ClimbRate(input, now);
   if (phase_ != GuidancePhase::kCommit) {
     const double most = stale_.MaxSink(now.height_m, input.link_delay_s);
     command.velocity.z() = std::max(command.velocity.z(), -most);
   }
+  command.velocity.z() += timing_.Climb(input.now, model_.delay_s());
   // Out of sight only the last bit goes down. Near the deck the descent stops early, because a UAV
   // takes a while to stop; it goes around when that has lasted.
   const double patience_s =

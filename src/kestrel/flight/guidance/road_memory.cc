@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kStep_s = 0.2;  // between samples: 200 s in all
+constexpr double kSampleStep_s = 0.2;  // between samples: 200 s in all
 // The same place on the road: no further apart, the velocity no more different, and so long ago.
 constexpr double kSamePlace_m = 2.5;
 constexpr double kSameVelocity = 0.3;  // of the speed
@@ -28,7 +28,7 @@ constexpr double kBaseSigma_m = 0.5;
 
 void RoadMemory::Add(Time time, const Vector2d& position, const Vector2d& velocity,
                      double turn_rate) {
-  if (count_ > 0 && ToSeconds(time - At(count_ - 1).time) < kStep_s) return;
+  if (count_ > 0 && ToSeconds(time - At(count_ - 1).time) < kSampleStep_s) return;
   samples_[count_ % kSamples] = {time, position, velocity};
   ++count_;
   turn_rate_ = turn_rate;
@@ -62,7 +62,7 @@ std::optional<RoadMemory::Prediction> RoadMemory::Predict(Time time) const {
   if (count_ == 0) return std::nullopt;
   const double ahead_s = std::max(ToSeconds(time - At(count_ - 1).time), 0.0);
   if (lap_s_) {
-    if (const auto by_lap = PredictByLap(ahead_s)) return by_lap;
+    if (auto by_lap = PredictByLap(ahead_s)) return by_lap;
   }
   return PredictByCurve(ahead_s);
 }

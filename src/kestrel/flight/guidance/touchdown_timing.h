@@ -28,10 +28,18 @@ class TouchdownTiming {
   static constexpr double kWaitHeight_m = 0.8;
 
  private:
-  bool IsOnWaves() const;
+  // Heights and tilts since the first sighting.
+  struct Range {
+    double least = 0, most = 0;
+    void Add(double value);
+    double span() const { return most - least; }
+  };
+  // On waves, as far as is known; nothing while the deck moves and it is not known how.
+  std::optional<bool> IsOnWaves() const;
 
   DeckMotion deck_;
-  Time seen_;
+  Range height_, tilt_;
+  std::optional<Time> seen_;
   std::optional<Time> waiting_since_;
   bool goes_down_ = false;
 };

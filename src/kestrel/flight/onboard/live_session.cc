@@ -150,7 +150,7 @@ LiveSession::Impl::Impl(LiveSessionParts parts, LiveSessionOptions options)
 LiveSession::Impl::~Impl() { recording_.Close(); }
 
 FlightEnd LiveSession::Impl::Run(const std::function<bool()>& is_stopped) {
-  const FlightEnd end = program_->Run(is_stopped);
+  FlightEnd end = program_->Run(is_stopped);
   recording_.Close();
   if (hunt_ != nullptr && output_) hunt_->WriteMap(*output_);
   if (output_) WriteAtOnce(FlightEndCsv(end), "flight_end.csv", &end_file_);

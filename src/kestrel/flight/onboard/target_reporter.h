@@ -34,7 +34,7 @@ struct TargetReporterOptions {
   double max_sigma_m = 0.5;
   double max_pose_age_s = 0.3;
   // Contact of the body, whose origin is above the deck by the length of the legs.
-  ContactOptions contact = {.height_m = 0.6, .reach_m = 0.6};
+  ContactOptions contact = {.height_m = 0.6, .reach_m = 0.6, .speed_mps = 0.1};
   double contact_below_m = 0.2;
 
   template <class Self, class Visitor>

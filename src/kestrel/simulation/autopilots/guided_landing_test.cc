@@ -30,6 +30,7 @@ GuidanceOptions GuidanceFor(AutopilotFirmware firmware) {
   const bool is_px4 = firmware == AutopilotFirmware::kPx4;
   options.stream_before_start = is_px4;
   options.land_in_contact = !is_px4;
+  if (!is_px4) options.autopilot_jerk = 5;  // PSC_JERK_NE
   return options;
 }
 
