@@ -36,7 +36,8 @@ bool ContactDetector::Update(Time now, const Eigen::Vector3d& feet, const Eigen:
 // The deck heaves or drives uphill, and the estimated height drifts.
 void ContactDetector::FollowDeck(Time now, double feet_z_m) {
   constexpr double kCarried_mps = 1;
-  const double most_m = kCarried_mps * ToSeconds(now - last_);
+  constexpr double kSeen_s = 0.2;  // what happened in a longer gap was not seen
+  const double most_m = kCarried_mps * std::min(ToSeconds(now - last_), kSeen_s);
   *contact_z_m_ += std::clamp(feet_z_m - *contact_z_m_, -most_m, most_m);
 }
 
