@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/session/live_events.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "kestrel/core/base/options.h"
@@ -10,6 +12,8 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kWaitingPoses = 256;  // several seconds of poses of any autopilot
+constexpr double kDelayMemory_s = 5;        // a large delay of a pose counts for so long
+constexpr double kLongestDelay_s = 0.3;     // a pose that is later is of no use
 
 Duration PoseWaitOf(const LiveEventsOptions& options) {
   RequireValid(options);
@@ -28,9 +32,10 @@ LiveEvents::LiveEvents(const LiveEventsOptions& options, Duration lead)
     : pose_wait_(PoseWaitOf(options)), lead_(lead), poses_(kWaitingPoses) {}
 
 void LiveEvents::Push(Frame frame) {
-  std::optional<WaitingFrame> arrived(WaitingFrame{std::move(frame), Now() + pose_wait_});
+  std::optional<WaitingFrame> arrived(WaitingFrame{std::move(frame), Time()});
   {
     const std::lock_guard lock(mutex_);
+    arrived->deadline = DeadlineOf(arrived->frame, Now());
     // The frame that waits for its pose stays. If every newer frame replaced it, and poses took
     // longer than the time between frames, no frame would ever get through.
     std::swap(waiting_ ? newest_ : waiting_, arrived);
@@ -39,9 +44,23 @@ void LiveEvents::Push(Frame frame) {
   changed_.notify_one();
 }
 
+Time LiveEvents::DeadlineOf(const Frame& frame, Time now) const {
+  if (pose_wait_ == Duration::zero()) return now;
+  const Time pose_due = frame.time + lead_ + DurationFromSeconds(pose_delay_s_);
+  return std::max(now, pose_due) + pose_wait_;
+}
+
+void LiveEvents::LearnDelay(const PoseSample& pose, Time now) {
+  const double seconds = std::max(ToSeconds(now - delay_learnt_), 0.0);
+  const double delay_s = std::clamp(ToSeconds(now - pose.time), 0.0, kLongestDelay_s);
+  pose_delay_s_ = std::max(delay_s, pose_delay_s_ * std::exp(-seconds / kDelayMemory_s));
+  delay_learnt_ = now;
+}
+
 void LiveEvents::Push(const PoseSample& pose) {
   {
     const std::lock_guard lock(mutex_);
+    LearnDelay(pose, Now());
     if (pose_count_ == poses_.size()) {
       first_pose_ = (first_pose_ + 1) % poses_.size();
       --pose_count_;

@@ -16,14 +16,15 @@
 namespace kestrel {
 
 struct LiveEventsOptions {
-  // Longest time that a frame waits for the pose after it. More than the delay of the poses on the
-  // link; 0: a frame never waits, and its pose is predicted.
+  // Longest time that a frame waits for the pose after it, beyond the time at which the pose should
+  // come: poses that are late on the link are waited for. 0: a frame never waits, and its pose is
+  // predicted.
   double pose_wait_s = 0.03;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("pose_wait_s", self.pose_wait_s, "s",
-            "longest wait of a frame for the pose after its time");
+            "longest wait of a frame for the pose after its time, beyond the poses' usual delay");
   }
   std::vector<std::string> Validate() const;
 };
@@ -54,6 +55,8 @@ class LiveEvents : public EventSource {
     Frame frame;
     Time deadline;  // time at which the frame goes without a pose
   };
+  Time DeadlineOf(const Frame& frame, Time now) const;
+  void LearnDelay(const PoseSample& pose, Time now);
   bool HasPoseAfter(const Frame& frame) const;
   bool IsReady(const std::optional<WaitingFrame>& frame, Time now) const;
   Event TakePose();
@@ -67,7 +70,9 @@ class LiveEvents : public EventSource {
   std::vector<PoseSample> poses_;  // a ring
   std::size_t first_pose_ = 0;
   std::size_t pose_count_ = 0;
-  std::optional<Time> newest_pose_;      // that was given out
+  std::optional<Time> newest_pose_;  // that was given out
+  double pose_delay_s_ = 0;          // the largest of the last seconds
+  Time delay_learnt_;
   std::optional<WaitingFrame> waiting_;  // the next frame to be given out
   std::optional<WaitingFrame> newest_;   // the newest frame that came after it
   Counters counters_;

@@ -56,6 +56,23 @@ TEST(LiveEvents, AFrameWaitsNoLongerThanAsked) {
   EXPECT_EQ(events.counters().unposed_frames, 1u);
 }
 
+// Over a slow link every pose comes 100 ms late.
+TEST(LiveEvents, AFrameWaitsForPosesThatAreAlwaysLate) {
+  LiveEvents events({.pose_wait_s = 0.03}, Duration::zero());
+  events.Push(PoseSample{Now() - milliseconds(100), {}});
+  events.Next();
+  const Time captured = Now();
+  events.Push(Frame{"", captured, {}});
+  std::thread link([&] {
+    std::this_thread::sleep_for(milliseconds(100));
+    events.Push(PoseSample{captured, {}});
+  });
+  EXPECT_EQ(InWords(events.Next()).front(), 'p');
+  EXPECT_EQ(InWords(events.Next()).front(), 'f');
+  link.join();
+  EXPECT_EQ(events.counters().unposed_frames, 0u);
+}
+
 TEST(LiveEvents, TheNewestFrameWinsWhileTheReaderIsBusy) {
   LiveEvents events({.pose_wait_s = 1}, Duration::zero());
   for (int ms = 0; ms < 100; ms += 10) events.Push(EmptyFrame(ms));
