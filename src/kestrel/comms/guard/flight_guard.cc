@@ -11,10 +11,15 @@ constexpr Duration kSetPointPeriod = std::chrono::milliseconds(20);
 constexpr Duration kAskPeriod = std::chrono::milliseconds(300);
 // Shorter than the shortest time after which PX4 takes a stream of set-points for broken off.
 constexpr Duration kPause = std::chrono::milliseconds(250);
-// PX4's Hold brakes more softly than a set-point: it is asked for once the UAV stands, or after so
-// long if no speed is told.
+// PX4's Hold and ArduCopter's BRAKE brake more softly than a set-point, and BRAKE lets a UAV that
+// sinks sink on for seconds: they are asked for once the UAV stands, or after so long.
 constexpr Duration kLongestStop = std::chrono::seconds(3);
-constexpr double kStands_mps = 0.5;
+constexpr double kStands_mps = 0.4;
+constexpr Duration kVelocityAge = std::chrono::milliseconds(300);  // an older one is not used
+// ArduCopter shapes a wanted velocity gently (2.5 m/s^2, 1 m/s^2 down), and adds a wanted
+// acceleration as it is: the velocity is to end within kBraking_s.
+constexpr double kBraking_s = 0.5;
+constexpr double kMaxBraking = 4, kMaxVerticalBraking = 2;  // m/s^2
 constexpr Duration kListening = std::chrono::seconds(1);
 // An autopilot that is silent for so long is gone.
 constexpr Duration kSilence = std::chrono::seconds(10);
@@ -43,6 +48,30 @@ void FlightGuard::TakeLife(GuardTask task, AutopilotKind kind, Time sent) {
 void FlightGuard::TakeMode(bool is_guided, Time now) {
   is_guided_ = is_guided;
   mode_told_ = now;
+}
+
+void FlightGuard::TakeVelocity(const Eigen::Vector3d& velocity, Time now) {
+  if (!velocity.allFinite()) return;
+  velocity_ = velocity;
+  velocity_told_ = now;
+}
+
+std::optional<Eigen::Vector3d> FlightGuard::Velocity(Time now) const {
+  if (!velocity_told_ || now - *velocity_told_ > kVelocityAge) return std::nullopt;
+  return velocity_;
+}
+
+// The heading is kept.
+SetPoint FlightGuard::Stop(Time now) const {
+  SetPoint stop;
+  const auto velocity = Velocity(now);
+  if (kind_ == AutopilotKind::kPx4 || !velocity) return stop;
+  stop.acceleration = -*velocity / kBraking_s;
+  const double braking = stop.acceleration.head<2>().norm();
+  if (braking > kMaxBraking) stop.acceleration.head<2>() *= kMaxBraking / braking;
+  stop.acceleration.z() =
+      std::clamp(stop.acceleration.z(), -kMaxVerticalBraking, kMaxVerticalBraking);
+  return stop;
 }
 
 void FlightGuard::TakeRefusal() {
@@ -88,7 +117,7 @@ GuardAction FlightGuard::Work(Time now) {
   GuardAction action;
   if (task_ == GuardTask::kStop && now >= set_point_due_) {
     set_point_due_ = now + kSetPointPeriod;
-    action.stands_still = true;
+    action.stop = Stop(now);
   }
   if (now < mode_due_) return action;
   action.mode = ModeToAsk(now);
@@ -99,19 +128,18 @@ GuardAction FlightGuard::Work(Time now) {
   return action;
 }
 
-// ArduCopter's BRAKE brakes at once, as hard as it can.
 std::optional<FlightMode> FlightGuard::ModeToAsk(Time now) const {
   if (task_ == GuardTask::kLand) return FlightMode::kLand;
-  if (kind_ != AutopilotKind::kPx4) return is_refused_ ? FlightMode::kPilot : FlightMode::kHold;
-  const bool is_stopped = speed_mps_ && *speed_mps_ < kStands_mps;
+  const auto velocity = Velocity(now);
+  const bool is_stopped = velocity && velocity->norm() < kStands_mps;
   if (!is_stopped && now - since_ < kLongestStop) return std::nullopt;
-  return FlightMode::kHold;
+  return kind_ != AutopilotKind::kPx4 && is_refused_ ? FlightMode::kPilot : FlightMode::kHold;
 }
 
 GuardAction FlightGuard::HandBack(const char* text, Time now) {
   state_ = State::kListens;
   since_ = now;
-  return {.stands_still = false, .mode = std::nullopt, .text = text};
+  return {.stop = std::nullopt, .mode = std::nullopt, .text = text};
 }
 
 }  // namespace kestrel

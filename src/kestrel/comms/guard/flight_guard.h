@@ -4,8 +4,11 @@
 #include <cstdint>
 #include <optional>
 
+#include <Eigen/Core>
+
 #include "kestrel/comms/mavlink/autopilot_kind.h"
 #include "kestrel/core/base/time.h"
+#include "kestrel/core/poses/set_point.h"
 
 namespace kestrel {
 
@@ -18,7 +21,7 @@ enum class GuardTask : std::uint8_t {
 
 // What the guard sends now.
 struct GuardAction {
-  bool stands_still = false;       // a set-point of standing still
+  std::optional<SetPoint> stop;    // a set-point that stops the UAV
   std::optional<FlightMode> mode;  // a request for this mode
   const char* text = nullptr;      // to the ground station, up to 50 characters
 };
@@ -38,8 +41,8 @@ class FlightGuard {
   // The autopilot says whether it flies by set-points, and whether its motors run.
   void TakeMode(bool is_guided, Time now);
   void TakeArmed(bool is_armed) { is_armed_ = is_armed; }
-  void TakeSpeed(double speed_mps) { speed_mps_ = speed_mps; }  // horizontal
-  void TakeRefusal();                                           // of a mode
+  void TakeVelocity(const Eigen::Vector3d& velocity, Time now);  // ENU, m/s
+  void TakeRefusal();                                            // of a mode
 
   // Call it every 20 ms at most.
   GuardAction Update(Time now);
@@ -54,6 +57,8 @@ class FlightGuard {
 
   GuardAction TakeOver(Time now);
   GuardAction Work(Time now);
+  SetPoint Stop(Time now) const;
+  std::optional<Eigen::Vector3d> Velocity(Time now) const;
   std::optional<FlightMode> ModeToAsk(Time now) const;
   GuardAction HandBack(const char* text, Time now);
 
@@ -67,7 +72,8 @@ class FlightGuard {
   bool is_guided_ = true;  // it is where guidance flies, until the autopilot says otherwise
   bool is_armed_ = true;
   Time mode_told_{};
-  std::optional<double> speed_mps_;
+  Eigen::Vector3d velocity_{0, 0, 0};
+  std::optional<Time> velocity_told_;
   bool is_refused_ = false;  // the mode wanted first
   Time since_{};             // beginning of the state
   Time set_point_due_{};

@@ -20,6 +20,7 @@ class FlightGuardTest : public ::testing::Test {
     int set_points = 0;
     std::vector<FlightMode> modes;
     std::string text;
+    SetPoint stop;  // the last
   };
 
   // The program flies for 'ms', with a sign of life every 20 ms.
@@ -29,7 +30,7 @@ class FlightGuardTest : public ::testing::Test {
       if (i % 20 == 0) guard_.TakeLife(task, kind, now_);
       guard_.TakeMode(is_guided_, now_);
       const GuardAction action = guard_.Update(now_);
-      EXPECT_FALSE(action.stands_still || action.mode || action.text);
+      EXPECT_FALSE(action.stop || action.mode || action.text);
     }
   }
 
@@ -39,8 +40,10 @@ class FlightGuardTest : public ::testing::Test {
     for (int i = 0; i < ms; i += kStep_ms) {
       now_ += milliseconds(kStep_ms);
       guard_.TakeMode(is_guided_, now_);
+      if (velocity_) guard_.TakeVelocity(*velocity_, now_);
       const GuardAction action = guard_.Update(now_);
-      sent.set_points += action.stands_still ? 1 : 0;
+      sent.set_points += action.stop ? 1 : 0;
+      if (action.stop) sent.stop = *action.stop;
       if (action.mode) sent.modes.push_back(*action.mode);
       if (action.text != nullptr) sent.text += std::string(action.text) + "\n";
     }
@@ -50,6 +53,7 @@ class FlightGuardTest : public ::testing::Test {
   static constexpr int kStep_ms = 5;
   Time now_ = TimeFromNanoseconds(1'000'000'000);
   bool is_guided_ = true;
+  std::optional<Eigen::Vector3d> velocity_;
   FlightGuard guard_{milliseconds(200)};
 };
 
@@ -60,20 +64,33 @@ TEST_F(FlightGuardTest, DoesNothingWhileTheProgramLives) {
   EXPECT_FALSE(guard_.has_taken_over());
 }
 
+// Its BRAKE would let it sink on: it is stopped by set-points first.
 TEST_F(FlightGuardTest, StopsAnArduCopterThatIsLeftAlone) {
   Fly(GuardTask::kStop, AutopilotKind::kArduPilot, 100);
+  velocity_ = {0, -4.2, -1.4};
   EXPECT_EQ(BeSilent(170).set_points, 0);
   const Sent sent = BeSilent(1000);
   EXPECT_NEAR(sent.set_points, 48, 2);
-  EXPECT_THAT(sent.modes, ::testing::Each(FlightMode::kHold));
-  EXPECT_GE(sent.modes.size(), 3u);
+  EXPECT_THAT(sent.modes, ::testing::IsEmpty());
   EXPECT_THAT(sent.text, HasSubstr("Kestrel hangs: stopping, then BRAKE"));
+  EXPECT_EQ(sent.stop.velocity.norm(), 0);
+  EXPECT_NEAR(sent.stop.acceleration.y(), 4, 1e-9) << "against its velocity";
+  EXPECT_NEAR(sent.stop.acceleration.z(), 2, 1e-9);
   EXPECT_TRUE(guard_.has_taken_over());
+  velocity_ = {0, 0.1, 0.1};
+  EXPECT_THAT(BeSilent(20).modes, ::testing::ElementsAre(FlightMode::kHold));
+}
+
+TEST_F(FlightGuardTest, AVelocityThatIsOldIsNotBrakedAgainst) {
+  Fly(GuardTask::kStop, AutopilotKind::kArduPilot, 100);
+  guard_.TakeVelocity({3, 0, 0}, now_);
+  EXPECT_EQ(BeSilent(1000).stop.acceleration.norm(), 0);
 }
 
 TEST_F(FlightGuardTest, AsksForLoiterWhereBrakeIsRefused) {
   Fly(GuardTask::kStop, AutopilotKind::kArduPilot, 100);
   guard_.TakeEnd();
+  velocity_ = {0, 0, 0};
   EXPECT_THAT(BeSilent(100).modes, ::testing::ElementsAre(FlightMode::kHold));
   guard_.TakeRefusal();
   EXPECT_THAT(BeSilent(300).modes, ::testing::ElementsAre(FlightMode::kPilot));
@@ -82,11 +99,12 @@ TEST_F(FlightGuardTest, AsksForLoiterWhereBrakeIsRefused) {
 TEST_F(FlightGuardTest, GivesPx4HoldOnlyOnceItStands) {
   Fly(GuardTask::kStop, AutopilotKind::kPx4, 100);
   guard_.TakeEnd();
-  guard_.TakeSpeed(4.2);
+  velocity_ = {4.2, 0, 0};
   const Sent moving = BeSilent(1500);
   EXPECT_THAT(moving.modes, ::testing::IsEmpty());
   EXPECT_NEAR(moving.set_points, 75, 2);
-  guard_.TakeSpeed(0.2);
+  EXPECT_EQ(moving.stop.acceleration.norm(), 0) << "it brakes hard enough by itself";
+  velocity_ = {0.2, 0, 0};
   EXPECT_THAT(BeSilent(20).modes, ::testing::ElementsAre(FlightMode::kHold));
   EXPECT_EQ(BeSilent(200).set_points, 0);  // its answer may be late
   EXPECT_GT(BeSilent(200).set_points, 0);  // there was none

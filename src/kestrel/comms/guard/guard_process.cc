@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <string_view>
@@ -14,6 +13,7 @@
 #include "kestrel/comms/mavlink/command_requests.h"
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/messages.h"
+#include "kestrel/comms/mavlink/ned.h"
 #include "kestrel/comms/mavlink/parameter_reader.h"
 #include "kestrel/comms/mavlink/set_point_message.h"
 #include "kestrel/comms/mavlink/wait_readable.h"
@@ -152,7 +152,7 @@ void GuardProcess::Read(const mavlink::Packet& packet) {
   } else if (const auto mode = packet.As<mavlink::CurrentMode>()) {
     guard_.TakeMode(IsGuidedMode(life_.kind, mode->custom_mode), now);
   } else if (const auto position = packet.As<mavlink::LocalPositionNed>()) {
-    guard_.TakeSpeed(std::hypot(position->vx, position->vy));
+    guard_.TakeVelocity(EnuFromNed({position->vx, position->vy, position->vz}), now);
   } else if (const auto ack = packet.As<mavlink::CommandAck>()) {
     const bool is_mode = ack->command == mavlink::kCommandDoSetMode;
     const bool is_open =
@@ -168,18 +168,15 @@ void GuardProcess::Act(const GuardAction& action) {
     if (signing_) signing_->Continue(life_.signing_timestamp);
     SendTo(program_, GuardMessage::kTakenOver);
   }
-  if (action.stands_still) StandStill();
+  if (action.stop) {
+    Send(SetPointMessage(*action.stop, life_.kind, life_.autopilot_system,
+                         life_.autopilot_component, /*boot_ms=*/0));
+  }
   if (action.mode) {
     Send(ModeCommand(life_.kind, CustomModeOf(life_.kind, *action.mode), life_.autopilot_system,
                      life_.autopilot_component));
   }
   if (action.text != nullptr) Say(action.text);
-}
-
-// The heading is kept.
-void GuardProcess::StandStill() {
-  Send(SetPointMessage({}, life_.kind, life_.autopilot_system, life_.autopilot_component,
-                       /*boot_ms=*/0));
 }
 
 void GuardProcess::Say(const char* text) {
