@@ -28,8 +28,8 @@ async function watchFlight(t) {
   await page.waitForTimeout(1000);
   await t.takePicture(page, "console_live");
   await page.getByText("landed: contact with the deck").first().waitFor({ timeout: 90_000 });
-  // The program ends with the flight.
-  await t.waitForState(page, /lost/);
+  // The program ends with the flight, and the page says how.
+  await t.waitForState(page, /Flight over: landed/);
   await t.stop(program);
   t.expect(program.exitCode === 0, `the flight ended with status ${program.exitCode}`);
 }
@@ -94,12 +94,12 @@ async function restartProgram(t) {
   const page = await t.openPage(first.link);
   await waitForNextPicture(page, t);
   await t.stop(first.program);
-  await t.waitForState(page, /Connection lost/);
+  await t.waitForState(page, /Flight over: ended by the user/);
   const { port } = new URL(first.link);
   const second = await t.start([...flight, `127.0.0.1:${port}`]);
   await waitForNextPicture(page, t);
   await t.stop(second.program);
-  await t.waitForState(page, /Connection lost/);
+  await t.waitForState(page, /Flight over: ended by the user/);
   // With a token now, which this browser does not know.
   const secret = ["--set", "console.token=0123456789abcdef"];
   await t.start([...flight, `127.0.0.1:${port}`, ...secret]);
@@ -141,7 +141,7 @@ function simulateFlight(t, rate_hz) {
 
 async function comeWithTokens(t) {
   const { link } = await t.start(
-    "fly sim:standing --console 127.0.0.1:0 --set console.token=0123456789abcdef".split(" "),
+    "fly sim:standing --autopilot sim:px4 --console 127.0.0.1:0 --set console.token=0123456789abcdef".split(" "),
   );
   const page = await t.openPage(link.replace("abcdef", "abcdee"));
   await page.getByText("who has its token").waitFor();

@@ -28,8 +28,8 @@ function State() {
   const title = useStore((state) => state.hello?.title);
   const status = useStore((state) => state.status);
   const isOpen = connection === "open";
-  // The program ends with the flight: what is gone then is no fault.
-  if (status?.over) return <FlightOver title={title ?? "Kestrel"} status={status} />;
+  // The program ends with the flight: what is gone then is no fault. Another may come at its address.
+  if (status?.over && connection !== "refused") return <FlightOver title={title ?? "Kestrel"} status={status} />;
   return (
     <div class="state" data-state={isOpen ? status?.state.split(", ").at(-1) : "offline"}>
       <h1>{title ?? "Kestrel"}</h1>
