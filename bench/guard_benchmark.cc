@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How long a frame takes through the guard, there and back, beside the same way without it. The
+// Time of a frame through the guard, there and back, beside the same way without it. The
 // other end of the line answers every datagram at once. With as many bytes as 921600 baud carry in
 // the background, too.
 #include <array>

@@ -75,7 +75,7 @@ std::vector<cv::Point2f> TrackOutline(const CameraModel& camera,
   });
 }
 
-// What of the pattern was recognised.
+// The recognised parts of the pattern.
 const char* InWords(CrossMethod method) {
   switch (method) {
     case CrossMethod::kQuadrants:

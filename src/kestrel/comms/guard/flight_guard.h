@@ -12,14 +12,14 @@
 
 namespace kestrel {
 
-// What the guard does when the program that flies is gone.
+// Task of the guard when the program that flies is gone.
 enum class GuardTask : std::uint8_t {
   kNothing,  // guidance does not fly
   kStop,     // guidance flies: the UAV is stopped and handed back
   kLand,     // guidance holds it on the deck: the autopilot is asked to land
 };
 
-// What the guard sends now.
+// Messages that the guard sends now.
 struct GuardAction {
   std::optional<SetPoint> stop;    // a set-point that stops the UAV
   std::optional<FlightMode> mode;  // a request for this mode

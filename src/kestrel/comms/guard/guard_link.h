@@ -46,7 +46,7 @@ class GuardLink : public Transport {
   void SayGoodbye();
 
   GuardState state() const { return state_; }
-  // What has happened to the guard, where the state is kGone or kFailed. By the receiving thread.
+  // Reason in words, where the state is kGone or kFailed. Called by the receiving thread.
   const std::string& error() const { return error_; }
 
   std::size_t Receive(Duration timeout, std::span<std::uint8_t> buffer) override;

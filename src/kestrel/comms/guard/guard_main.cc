@@ -20,8 +20,8 @@
 namespace kestrel {
 namespace {
 
-// What a terminal or systemd sends to all processes of the program is not meant for the guard: it
-// ends when the program has ended.
+// Signals that a terminal or systemd sends to all processes of the program are not meant for the
+// guard: it ends when the program has ended.
 void IgnoreSignals() {
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGABRT, SIGPIPE}) {
     signal(number, SIG_IGN);

@@ -62,7 +62,7 @@ class Program {
   pid_t process_;
 };
 
-// What the UAV did after the death of the program.
+// Flight of the UAV after the death of the program.
 struct Aftermath {
   double farthest_m = 0;
   double lowest_m = 1000;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// What the guard and the program that starts it agree upon, beside guard_messages.h.
+// Conventions of the guard and the program that starts it, beside guard_messages.h.
 namespace kestrel {
 
 inline constexpr int kGuardFile = 3;      // the guard's socket

@@ -10,7 +10,7 @@
 
 namespace kestrel {
 
-// How a deck will lie and move.
+// Attitude and motion of a deck at a later time.
 struct DeckForecast {
   double height_m = 0;  // world
   double climb_mps = 0;

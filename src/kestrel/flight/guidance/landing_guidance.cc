@@ -317,8 +317,8 @@ bool LandingGuidance::Obeys(const GuidanceInput& input) {
   return !IsLongerThan(options_.disobey_s, disobeys_since_, input.now);
 }
 
-// What the target and the wind demand of the UAV, whether or not guidance flies. A UAV that is
-// above the target keeps up with it, whatever the estimate says.
+// Compares the demand of target and wind with the limits, whether or not guidance flies. A UAV that
+// is above the target keeps up with it, whatever the estimate says.
 void LandingGuidance::WatchDemand(const GuidanceInput& input) {
   if (!input.target) {
     demand_.Reset();

@@ -21,10 +21,10 @@ void TargetSearch::Start(const Vector2d& place) {
   spiral_.Start(place, {.wait_s = options_.search_wait_s, .radius_m = options_.search_radius_m});
 }
 
-void TargetSearch::StartAfterLoss(Time now, const RoadMemory& road, const Vector2d& uav) {
-  Start(uav);
+void TargetSearch::StartAfterLoss(Time now, const RoadMemory& road, const Vector2d& place) {
+  Start(place);
   lost_ = now;
-  lost_at_ = uav;
+  lost_at_ = place;
   const auto target = road.Predict(now);
   is_on_road_ = target.has_value();
   if (!is_on_road_) return;

@@ -21,8 +21,8 @@ class TargetSearch {
 
   // Begins for a target that was never seen and should pass at 'place' (m, world).
   void Start(const Eigen::Vector2d& place);
-  // Begins for a target that was lost: 'road' is its way until now. The UAV is at 'uav'.
-  void StartAfterLoss(Time now, const RoadMemory& road, const Eigen::Vector2d& uav);
+  // Begins for a target that was lost at 'place': 'road' is its way until now.
+  void StartAfterLoss(Time now, const RoadMemory& road, const Eigen::Vector2d& place);
 
   // Returns the place to be at now. 'seconds': since the last call.
   Eigen::Vector2d Advance(Time now, const RoadMemory& road, const Eigen::Vector2d& uav,
@@ -38,9 +38,9 @@ class TargetSearch {
 
   GuidanceOptions options_;
   SearchPath spiral_;
-  std::optional<Time> lost_;       // nothing: the target was never seen
-  Eigen::Vector2d lost_at_{0, 0};  // the UAV then
-  bool is_on_road_ = false;        // expects the target where its road leads
+  std::optional<Time> lost_;  // nothing: the target was never seen
+  Eigen::Vector2d lost_at_{0, 0};
+  bool is_on_road_ = false;  // expects the target where its road leads
   const char* step_ = "";
 };
 

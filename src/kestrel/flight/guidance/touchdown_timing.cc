@@ -14,8 +14,8 @@ constexpr double kHorizon_s = 5;
 constexpr double kCalmClimb_mps = 0.25;
 constexpr double kCalmSwing = Radians(5);  // of the tilt
 constexpr double kCalmHeight_m = 0.25;     // until the motion is known
-// What is asked of the deck at touch-down: vertical speed, and tilt above the least tilt. The
-// limits double every kPatience_s of waiting.
+// Limits of the deck at touch-down: vertical speed, and tilt above the least tilt. They grow by
+// their own size every kPatience_s of waiting.
 constexpr double kMaxClimb_mps = 0.2;
 constexpr double kMaxTilt = Radians(2);
 constexpr double kPatience_s = 10;

@@ -12,7 +12,7 @@
 
 namespace kestrel {
 
-// What shows at an instant whether the UAV flies, and where it is. World frame, m and m/s.
+// State at an instant that shows whether the UAV flies, and where it is. World frame, m and m/s.
 struct LandingWatchInput {
   Time now;
   bool is_armed = false;

@@ -6,7 +6,7 @@
 namespace kestrel {
 namespace {
 
-// Where it came down, for an end at which it may be anywhere.
+// Place of the landing, for an end at which the UAV may be anywhere.
 std::string PlaceOf(const FlightEnd& end) {
   return end.offset_m ? fmt::format("down {:.1f} m from the pattern", *end.offset_m)
                       : "down, and not known where";

@@ -41,7 +41,7 @@ void ArduPilotGuided::Handle(const mavlink::SetPositionTargetLocalNed& message,
   told_ = state.time;
 }
 
-// What it does not take stops it, as above.
+// A message that it does not accept stops it, as above.
 void ArduPilotGuided::Handle(const mavlink::SetAttitudeTarget& message, const FlightState& state,
                              bool is_guided) {
   if (!is_guided) return;

@@ -14,6 +14,7 @@
 #include "kestrel/comms/mavlink/set_point_message.h"
 #include "kestrel/flight/guidance/landing_guidance.h"
 #include "kestrel/simulation/autopilots/test_autopilot.h"
+#include "kestrel/simulation/autopilots/test_guidance.h"
 
 namespace kestrel {
 namespace {
@@ -24,15 +25,6 @@ struct Deck {
   const char* path;
   double speed_mps;
 };
-
-GuidanceOptions GuidanceFor(AutopilotFirmware firmware) {
-  GuidanceOptions options;
-  const bool is_px4 = firmware == AutopilotFirmware::kPx4;
-  options.stream_before_start = is_px4;
-  options.land_in_contact = !is_px4;
-  if (!is_px4) options.autopilot_jerk = 5;  // PSC_JERK_NE
-  return options;
-}
 
 AutopilotModelOptions ModelFor(AutopilotFirmware firmware, double guide_after_s) {
   AutopilotModelOptions options;
@@ -101,34 +93,12 @@ class GuidedLanding : public TestAutopilot {
     GuidanceInput input;
     input.now = now;
     input.uav = uav_;
-    input.target = Target();
+    input.target = TrueTarget(world, now);
     input.target_age_s = 0.05;
     input.is_guided = IsGuidedMode(kind_, model.custom_mode());
     input.is_armed = true;
     input.is_landed = is_landed_;
     return input;
-  }
-
-  TargetEstimate Target() const {
-    constexpr double kStep_s = 0.1;
-    constexpr double kSigma_m = 0.03;
-    TargetEstimate target;
-    target.time = now;
-    target.motion.mean.head<3>() = world.PatternAt(now).translation;
-    target.motion.mean.segment<3>(TurnState::kVelocity) = world.VelocityAt(now);
-    target.motion.mean(TurnState::kTurnRate) = TurnRateAt(0);
-    target.motion.mean(TurnState::kTurnChange) =
-        (TurnRateAt(kStep_s) - TurnRateAt(-kStep_s)) / (2 * kStep_s);
-    target.motion.covariance.diagonal().head<3>().setConstant(kSigma_m * kSigma_m);
-    return target;
-  }
-
-  double TurnRateAt(double after_s) const {
-    constexpr double kStep_s = 0.05;
-    const Vector3d before = world.VelocityAt(now + DurationFromSeconds(after_s - kStep_s));
-    const Vector3d after = world.VelocityAt(now + DurationFromSeconds(after_s + kStep_s));
-    if (before.norm() < 0.1) return 0;
-    return before.cross(after).z() / before.squaredNorm() / (2 * kStep_s);
   }
 
   void Command(std::uint16_t command, float p1, float p2) {
@@ -192,7 +162,7 @@ TEST_P(GuidedLandingTest, DisarmsOnEveryDeckByItself) {
   }
 }
 
-// By velocities ArduPilot leans against the deck until its detector refuses.
+// ArduPilot leans against the deck by velocities until its detector refuses.
 TEST(ArduPilotGuidedLandingTest, VelocitiesAgainstADrivingDeckKeepArduPilotArmed) {
   const Deck deck{"figure8", 4.2};
   EXPECT_LT(Fly(AutopilotFirmware::kArduPilot, deck, {.says_carried = false}).flights, 10);

@@ -12,6 +12,7 @@
 #include "kestrel/core/base/random.h"
 #include "kestrel/flight/guidance/landing_guidance.h"
 #include "kestrel/simulation/autopilots/test_autopilot.h"
+#include "kestrel/simulation/autopilots/test_guidance.h"
 
 namespace kestrel {
 namespace {
@@ -34,20 +35,16 @@ AutopilotModelOptions InWind() {
   return options;
 }
 
-GuidanceOptions GuidanceOf(const FlightCase& landing) {
-  GuidanceOptions options;
-  options.limits.floor_m = 0;
-  options.stream_before_start = true;
-  if (landing.firmware == AutopilotFirmware::kArduPilot) {
-    options.autopilot_jerk = 5;
-  } else if (landing.form == Form::kPlace) {
+GuidanceOptions GuidanceOf(const FlightCase& flight) {
+  GuidanceOptions options = GuidanceFor(flight.firmware);
+  if (flight.firmware == AutopilotFirmware::kPx4 && flight.form == Form::kPlace) {
     options.stale.position_gain = 0.95;
     options.stale.height_gain = 1;
   }
   return options;
 }
 
-// Guidance flies a simulated autopilot by a track with the errors of a good camera.
+// Guidance flies a simulated autopilot.
 class TrackedFlight {
  public:
   TrackedFlight(const FlightCase& landing, std::uint64_t seed)
@@ -101,27 +98,11 @@ class TrackedFlight {
 
   Vector3d Position() const { return autopilot_.model.truth().world_from_body.translation; }
 
+  // A track with the errors of a good camera.
   TargetEstimate Target() {
-    constexpr double kStep_s = 0.1;
-    const Duration step = DurationFromSeconds(kStep_s);
-    const VehicleWorld& world = autopilot_.world;
-    const Time now = autopilot_.now;
-    const auto turn_rate = [&](Time time) {
-      const Vector3d velocity = world.VelocityAt(time);
-      const Vector3d change = world.VelocityAt(time + step) - world.VelocityAt(time - step);
-      const double cross = velocity.x() * change.y() - velocity.y() * change.x();
-      return cross / std::max(velocity.squaredNorm(), 1e-3) / (2 * kStep_s);
-    };
-    TargetEstimate target;
-    target.time = now;
-    target.motion.mean.head<3>() = world.PatternAt(now).translation;
-    target.motion.mean.segment<3>(TurnState::kVelocity) = world.VelocityAt(now);
-    target.motion.mean(TurnState::kTurnRate) = turn_rate(now);
-    target.motion.mean(TurnState::kTurnChange) =
-        (turn_rate(now + step) - turn_rate(now - step)) / (2 * kStep_s);
+    TargetEstimate target = TrueTarget(autopilot_.world, autopilot_.now);
     for (int axis = 0; axis < 3; ++axis) target.motion.mean(axis) += 0.02 * random_.Normal();
     for (int axis = 3; axis < 5; ++axis) target.motion.mean(axis) += 0.05 * random_.Normal();
-    target.motion.covariance.diagonal().head<3>().setConstant(0.03 * 0.03);
     return target;
   }
 

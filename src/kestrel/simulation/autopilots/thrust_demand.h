@@ -8,9 +8,9 @@
 
 namespace kestrel {
 
-// What an autopilot asks of its rotors while something carries the UAV. Its velocity control works
-// against what does not yield: errors add up until it leans as far as it may, and until the rotors
-// are at their lower limit.
+// Thrust that an autopilot asks of its rotors while something carries the UAV. Its velocity control
+// works against what does not yield: errors add up until it leans as far as it may, and until the
+// rotors are at their lower limit.
 class ThrustDemand {
  public:
   // The parameters must outlive this.
