@@ -141,7 +141,7 @@ async function replayHunt(t) {
   await page.getByRole("button", { name: "truth" }).waitFor();
   const map = await page.getByRole("img", { name: /^map/ }).getAttribute("aria-label");
   t.expect(/[1-9]\d* objects in the map/.test(map), `map: ${map}`);
-  await runAgain(page, "hunt.detector.min_pixels", /smaller segments/, "100000");
+  await runAgain(page, "hunt.detector.min_pixels", /smallest segment/, "100000");
   await page.keyboard.press("b");
   await says(page, "Second run", /objects\s*0/);
   await page.keyboard.press("d");
