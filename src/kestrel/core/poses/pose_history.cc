@@ -170,7 +170,18 @@ std::optional<PredictedPose> PoseHistory::Predict(Time time, Duration max_ahead,
        pose.translation + ahead * motion.velocity_in_world},
       {Growth(unmodelled.velocity_sigma_mps, unmodelled.acceleration_mps2, ahead, age),
        Growth(unmodelled.rate_sigma_radps, unmodelled.angular_acceleration_radps2, ahead, age)},
-      motion};
+      motion,
+      ahead};
+}
+
+Eigen::Vector3d PoseHistory::Acceleration() const {
+  constexpr Duration kBaseline = std::chrono::milliseconds(100);
+  if (size_ < 2) return Eigen::Vector3d::Zero();
+  const PoseSample& newest = At(size_ - 1);
+  const PoseSample& earlier = At(std::min(FirstNotBefore(newest.time - kBaseline), size_ - 2));
+  const Duration span = newest.time - earlier.time;
+  if (!newest.motion || !earlier.motion || span > max_gap_) return Eigen::Vector3d::Zero();
+  return (newest.motion->velocity_in_world - earlier.motion->velocity_in_world) / ToSeconds(span);
 }
 
 }  // namespace kestrel

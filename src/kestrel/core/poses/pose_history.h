@@ -58,6 +58,7 @@ struct PredictedPose {
   RigidTransform world_from_body;
   PoseUncertainty uncertainty;  // 0 between the samples
   BodyMotion motion;            // at the newest sample; 0 where it is unknown
+  double ahead_s = 0;           // time since the newest sample; 0 between the samples
 };
 
 enum class PoseStatus {
@@ -109,6 +110,10 @@ class PoseHistory {
   // uses the mean motion over the last 50 ms. Nothing when no motion is known.
   std::optional<PredictedPose> Predict(Time time, Duration max_ahead,
                                        const UnmodelledMotion& unmodelled) const;
+
+  // Returns the acceleration in the world (m/s^2) at the newest sample: the change of the reported
+  // velocity over the last 100 ms. 0 when no velocities are reported.
+  Eigen::Vector3d Acceleration() const;
 
   std::size_t size() const { return size_; }
   std::size_t capacity() const { return ring_.size(); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/core/poses/pose_history.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -195,6 +196,20 @@ TEST(PoseHistory, PredictsWithoutAToldMotionFromTheLastSamples) {
   EXPECT_LT(history.Predict(At(1.1), kAhead, {})->uncertainty.position_m,
             pose->uncertainty.position_m)
       << "a motion that is told is newer than a mean one";
+}
+
+TEST(PoseHistory, AccelerationIsTheChangeOfTheToldVelocity) {
+  PoseHistory history(100, kMaxGap);
+  EXPECT_EQ(history.Acceleration(), Eigen::Vector3d(0, 0, 0));
+  for (int i = 0; i <= 50; ++i) {
+    PoseSample sample = Sample(0.02 * i, 0);
+    const double braked_s = std::max(0.02 * i - 0.5, 0.0);  // begins to brake halfway
+    sample.motion = BodyMotion{{4 - 3 * braked_s, 0, 0}, {0, 0, 0}};
+    history.Add(sample);
+  }
+  EXPECT_NEAR(history.Acceleration().x(), -3, 1e-9);
+  history.Add(Sample(1.02, 0));  // tells no motion
+  EXPECT_EQ(history.Acceleration(), Eigen::Vector3d(0, 0, 0));
 }
 
 TEST(PoseHistory, RefusesAMotionThatIsNone) {

@@ -31,6 +31,16 @@ const FlightOptions& CheckedRate(const FlightOptions& options) {
   return options;
 }
 
+// A late link tells where the UAV was. In curves the velocity has changed by metres per second
+// since.
+UavState StateOf(const PredictedPose& pose, const Eigen::Vector3d& acceleration) {
+  UavState uav{pose.world_from_body, pose.motion.velocity_in_world, pose.uncertainty.position_m};
+  const Eigen::Vector3d change = pose.ahead_s * acceleration;
+  uav.velocity_in_world += change;
+  uav.world_from_body.translation += 0.5 * pose.ahead_s * change;
+  return uav;
+}
+
 }  // namespace
 
 GuidedFlight::GuidedFlight(const FlightOptions& options, const TargetTrackerOptions& tracker,
@@ -130,10 +140,7 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
   input.now = now;
   const auto pose =
       poses.Predict(now, DurationFromSeconds(options_.target.max_pose_age_s), UnmodelledMotion());
-  if (pose) {
-    input.uav = UavState{pose->world_from_body, pose->motion.velocity_in_world,
-                         pose->uncertainty.position_m};
-  }
+  if (pose) input.uav = StateOf(*pose, poses.Acceleration());
   input.target = Target(now, track);
   if (track.sighting) {
     input.deck = DeckSighting{track.sighting->time, track.sighting->position_in_world.z(),
