@@ -223,8 +223,25 @@ FlightCommand AutopilotModel::Fly() {
   } else if (pilot_flies_ && pilot_.follows_vehicle()) {
     command.set_point = pilot_.FollowVehicle(state_.time, truth().world_from_body.translation);
   } else {
-    command.set_point = Hold();
+    constexpr double kAtRest_mps = 0.02;
+    const bool stops = IsIn(FlightMode::kHold) && stopping_.velocity().norm() > kAtRest_mps;
+    command.set_point = stops ? Stop() : Hold();
   }
+  return command;
+}
+
+// ArduPilot's BRAKE and PX4's Hold come to rest, and hold the place that they have reached.
+SetPoint AutopilotModel::Stop() {
+  constexpr StoppingLimits kPx4{.acceleration = 3, .horizontal_jerk = 4, .vertical_jerk = 4};
+  constexpr double kBrakeAcceleration = 7.5;
+  const StoppingLimits limits = is_px4()
+                                    ? kPx4
+                                    : StoppingLimits{kBrakeAcceleration, parameters_["PSC_JERK_NE"],
+                                                     parameters_["PSC_JERK_D"]};
+  stopping_.Step(limits, state_.step_s);
+  hold_ = stopping_.position();
+  SetPoint command = Hold();
+  command.velocity += stopping_.velocity();
   return command;
 }
 
@@ -251,6 +268,7 @@ bool AutopilotModel::EnterMode(std::uint32_t custom_mode, Wish wish, Time now) {
   LeaveMode(now);
   custom_mode_ = custom_mode;
   hold_ = state_.position();
+  stopping_.Start(state_);
   if (MayComeDown() && !landing_since_) {
     landing_since_ = now;
     result_.contact.reset();

@@ -25,6 +25,7 @@
 #include "kestrel/simulation/autopilots/simulated_pilot.h"
 #include "kestrel/simulation/autopilots/simulated_uav.h"
 #include "kestrel/simulation/autopilots/sitl_result.h"
+#include "kestrel/simulation/autopilots/stopping_path.h"
 #include "kestrel/simulation/autopilots/vehicle_world.h"
 #include "kestrel/simulation/vehicle/navigation_model.h"
 
@@ -73,6 +74,7 @@ class AutopilotModel {
   void ObserveFlight(Time now);
   void DriftAtRest();
   FlightCommand Fly();
+  SetPoint Stop();
   SetPoint Hold() const;
   void FollowPilot(Time now);
   void WatchSetPoints(Time now);
@@ -149,6 +151,7 @@ class AutopilotModel {
   bool has_jumped_ = false;        // of the estimated position
   double rest_drift_m_ = 0;        // of the estimated height while it stands
   Eigen::Vector3d hold_{0, 0, 0};  // place where it hovers unless something else moves it
+  StoppingPath stopping_;          // of the mode that holds, from the last change of mode
   std::uint32_t custom_mode_ = 0;
   bool is_armed_ = false;
   bool pilot_flies_ = true;      // the script flies, not the link

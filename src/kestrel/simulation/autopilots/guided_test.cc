@@ -82,6 +82,13 @@ class GuidedAutopilot : public TestAutopilot {
     Tell(message);
     return Sent<mavlink::CommandAck>().back().result;
   }
+  void EnterHold() {
+    mavlink::SetMode message;
+    message.target_system = 1;
+    message.base_mode = mavlink::kModeFlagCustom;
+    message.custom_mode = CustomModeOf(kind_, FlightMode::kHold);
+    Tell(message);
+  }
 
  private:
   AutopilotKind kind_;
@@ -112,6 +119,21 @@ TEST_P(GuidedTest, TurnsItsNose) {
   });
   const Vector3d nose = autopilot.model.truth().world_from_body.rotation * Vector3d::UnitX();
   EXPECT_NEAR(std::atan2(nose.x(), nose.y()), 2, 0.02) << "clockwise from north";
+}
+
+// As the real ones do: the mode that holds bounds the jerk, so that the UAV goes on for a while.
+TEST_P(GuidedTest, AModeThatHoldsStopsItLate) {
+  GuidedAutopilot autopilot(GetParam(), Guided());
+  autopilot.Guide(6, {4, 0, -1.2});
+  const Vector3d begin = autopilot.Position();
+  autopilot.EnterHold();
+  autopilot.Run(6, [] {});
+  const Vector3d way = autopilot.Position() - begin;
+  EXPECT_GT(way.x(), 2.5);
+  EXPECT_LT(way.x(), 9);
+  EXPECT_LT(way.z(), -0.4);
+  EXPECT_GT(way.z(), -2);
+  EXPECT_LT(autopilot.Velocity().norm(), 0.1);
 }
 
 TEST_P(GuidedTest, CountsWhatComesAfterThePilotTookItBack) {
