@@ -67,6 +67,7 @@ bool GuidedFlight::Fly(Time now, const TrackSnapshot& track, const PoseHistory& 
   const GuidanceOutput output = guidance_->Update(input);
   SayPhase(output);
   SayWhetherItKeepsUp(output);
+  SayWhenContactIsUnseen(input);
   Ask(now, output.request);
   told_frame_ = track.captured;
   const bool is_allowed = is_begun_ || may_begin_;
@@ -199,6 +200,23 @@ void GuidedFlight::SayWhetherItKeepsUp(const GuidanceOutput& output) {
   if (!output.cannot_follow) return Tell(mavlink::kSeverityInfo, "can keep up with the target");
   Tell(mavlink::kSeverityWarning,
        "cannot keep up with the target: it needs " + guidance_->demand().InWords());
+}
+
+// The land detectors of autopilots take no deck that turns fast for ground: the rotors go on.
+void GuidedFlight::SayWhenContactIsUnseen(const GuidanceInput& input) {
+  constexpr double kPatience_s = 8;
+  if (phase() != GuidancePhase::kLanded || input.is_landed) {
+    in_contact_since_.reset();
+    said_unseen_contact_ = false;
+    return;
+  }
+  if (!in_contact_since_) in_contact_since_ = input.now;
+  if (said_unseen_contact_ || ToSeconds(input.now - *in_contact_since_) < kPatience_s) return;
+  said_unseen_contact_ = true;
+  Tell(mavlink::kSeverityWarning,
+       fmt::format("on the deck for {:g} s, and the autopilot does not see it: disarm by hand, or "
+                   "set guidance.disarm_after_s",
+                   kPatience_s));
 }
 
 void GuidedFlight::Tell(std::uint8_t severity, const std::string& text) {

@@ -52,6 +52,7 @@ class GuidedFlight {
   void Ask(Time now, GuidanceRequest request);
   void SayPhase(const GuidanceOutput& output);
   void SayWhetherItKeepsUp(const GuidanceOutput& output);
+  void SayWhenContactIsUnseen(const GuidanceInput& input);
   void Tell(std::uint8_t severity, const std::string& text);
 
   FlightOptions options_;
@@ -78,6 +79,8 @@ class GuidedFlight {
   GuidancePhase said_phase_ = GuidancePhase::kIdle;
   const char* said_reason_ = "";
   bool said_cannot_follow_ = false;
+  std::optional<Time> in_contact_since_;
+  bool said_unseen_contact_ = false;
   int set_points_ = 0;
 };
 
