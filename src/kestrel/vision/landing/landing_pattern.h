@@ -11,6 +11,8 @@ namespace kestrel {
 //
 // Frame P: origin where the arms meet, x along one arm, z up out of the printed face.
 struct LandingPattern {
+  static constexpr int kArms = 4;  // half arms of the X, from the centre to an end
+
   double outer_diameter_m = 1.0;    // outer diameter of the ring
   double ring_width_m = 0.1;        // outer minus inner radius of the ring
   double arm_width_m = 0.1;         // across the arm

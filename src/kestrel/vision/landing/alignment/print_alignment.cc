@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "kestrel/vision/landing/alignment/column_products.h"
 #include "kestrel/vision/landing/alignment/positive_solver.h"
@@ -99,7 +100,7 @@ class Columns {
       squares += Squared(root_[i] * offset_[i]);
       sum += Squared(root_[i]);
     }
-    return std::sqrt(squares / std::max(sum, 1e-9));
+    return std::sqrt(squares / std::max(sum, std::numeric_limits<double>::min()));
   }
   double RobustScale() const { return kestrel::RobustScale(std::span(offset_).first(count_)); }
 
@@ -151,7 +152,8 @@ Step MakeStep(double scale_px, double ring_radius_px, PrintAlignment* alignment)
   alignment->edge_rms_px = columns.Rms();
   alignment->center_sigma_px = std::max(alignment->edge_rms_px, kLeastRmsPx) *
                                std::sqrt(0.5 * (solutions(0, 1) + solutions(kTerms, 2)));
-  const double moved = std::max(0.0, step.dot(sides.col(0))) / std::max(weights, 1e-9);
+  const double moved =
+      std::max(0.0, step.dot(sides.col(0))) / std::max(weights, std::numeric_limits<double>::min());
   return {std::sqrt(moved), columns.RobustScale()};
 }
 

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "kestrel/core/image/gray_sampling-inl.h"
+#include "kestrel/vision/landing/image_properties.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace kestrel {
@@ -18,7 +19,7 @@ namespace HWY_NAMESPACE {
 using Floats = hn::CappedTag<float, 16>;
 using Vector = hn::Vec<Floats>;
 
-constexpr float kLeastEdgeStep = 2;    // least rise of an edge, gray values per pixel
+constexpr float kLeastEdgeStep = GrayContrast::kLeastEdge;
 constexpr float kStepInShadow = 0.3f;  // in a shadow: share of the gray value of its white
 constexpr float kLeastShare = 0.12f;   // least rise of the neighbours, share of the steepest rise
 

@@ -15,7 +15,7 @@ namespace kestrel {
 class PrintOutline {
  public:
   // Parts of the print: 0 to 3 are the arms, 4 to 7 the quarters of the ring around them.
-  static constexpr int kArms = 4;
+  static constexpr int kArms = LandingPattern::kArms;
   static constexpr int kParts = 2 * kArms;
   static constexpr std::size_t kMaxPlaces = 160;
 

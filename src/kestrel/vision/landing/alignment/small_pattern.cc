@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include <Eigen/Cholesky>
@@ -141,7 +142,8 @@ struct SmallPatternFitter::System {
   double unexplained(double noise_variance) const {
     const double noise = noise_variance * count;
     const double about_mean = sum_squares - sum * sum / count - noise;
-    return std::clamp((squares - noise) / std::max(about_mean, 1e-9), 0.0, 1.0);
+    return std::clamp((squares - noise) / std::max(about_mean, std::numeric_limits<double>::min()),
+                      0.0, 1.0);
   }
   double correlation(double noise_variance) const {
     return std::sqrt(1 - unexplained(noise_variance));

@@ -25,10 +25,10 @@ namespace kestrel {
 struct SmallPatternWorkspace {
   // The unknowns after those of the pose, and the column of the residual after them.
   static constexpr int kLogBlur = kPoseUnknowns;
-  static constexpr int kWhite = 7;
-  static constexpr int kContrast = 8;
-  static constexpr int kSlope = 9;  // of the light, along both axes of the print
-  static constexpr int kUnknowns = 11;
+  static constexpr int kWhite = kLogBlur + 1;
+  static constexpr int kContrast = kWhite + 1;
+  static constexpr int kSlope = kContrast + 1;  // of the light, along both axes of the print
+  static constexpr int kUnknowns = kSlope + 2;
   static constexpr int kResidual = kUnknowns;
   using Column = std::vector<float>;
 

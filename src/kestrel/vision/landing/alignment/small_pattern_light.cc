@@ -37,7 +37,8 @@ class Disc {
       for (int x = -kReach; x <= kReach; ++x) {
         const Eigen::Vector2d step_px(stride * x, stride * y);
         const double length_px = step_px.norm();
-        const double px_per_m = length_px / std::max(1e-9, (metres_per_px * step_px).norm());
+        const double px_per_m = length_px / std::max(std::numeric_limits<double>::min(),
+                                                     (metres_per_px * step_px).norm());
         if (length_px <= radius_m * px_per_m + radius_px) offsets_[count_++] = {x, y};
       }
     }

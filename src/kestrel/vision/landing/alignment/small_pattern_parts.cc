@@ -17,11 +17,12 @@ constexpr double kMaxHighlight = 0.25;  // largest share around a visible arm
 // Sums over the pixels for the parts of a print: 4 quarters of the ring, 4 half arms, 4 quadrants,
 // then white and its slopes.
 struct SmallPatternFitter::Parts {
+  static constexpr int kArms = LandingPattern::kArms;
   static constexpr int kRing = 0;
-  static constexpr int kArm = 4;
-  static constexpr int kQuadrant = 8;
-  static constexpr int kLight = 12;
-  static constexpr int kParts = 15;
+  static constexpr int kArm = kRing + kArms;
+  static constexpr int kQuadrant = kArm + kArms;
+  static constexpr int kLight = kQuadrant + kArms;
+  static constexpr int kParts = kLight + 3;
   // Number of parts with a share in one pixel: a ring, an arm, a quadrant, three of the light.
   static constexpr std::size_t kOfPixel = 6;
   using Vector = Eigen::Matrix<double, kParts, 1>;

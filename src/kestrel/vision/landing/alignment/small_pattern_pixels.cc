@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Geometry>
+
 #include "kestrel/vision/landing/alignment/small_pattern_model.h"
 
 namespace kestrel {
@@ -38,7 +40,7 @@ std::optional<SmallPatternFitter::PixelBox> SmallPatternFitter::BoxAround(
   constexpr double kCornerRadius = 1.0823922;  // of the circle's radius
   constexpr int kMinSide = 4;
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
-  Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
+  Eigen::AlignedBox2d around;
   for (int i = 0; i < kCorners; ++i) {
     const double angle = i * (2 * std::numbers::pi / kCorners);
     const double reach = extent_m_ * kCornerRadius;
@@ -48,9 +50,9 @@ std::optional<SmallPatternFitter::PixelBox> SmallPatternFitter::BoxAround(
                         &pixel) == ProjectionStatus::kOutsideModel) {
       return std::nullopt;
     }
-    low = low.cwiseMin(pixel);
-    high = high.cwiseMax(pixel);
+    around.extend(pixel);
   }
+  const Eigen::Vector2d low = around.min(), high = around.max();
   const PixelBox box{std::max(0, static_cast<int>(std::floor(low.x()))),
                      std::max(0, static_cast<int>(std::floor(low.y()))),
                      std::min(image.width - 1, static_cast<int>(std::ceil(high.x()))),

@@ -6,21 +6,23 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 
 #include <Eigen/Eigenvalues>
 
+#include "kestrel/core/geometry/angles.h"
+
 namespace kestrel {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::size_t kStride = 3;        // border points per smoothed point
-constexpr std::size_t kChord = 2;         // smoothed points over which a direction is taken
-constexpr double kCorner = 45 * kDegree;  // turn from one direction to the next that makes a corner
-constexpr double kSharpness = 3;          // if it is so many times the turn before and after it
-constexpr std::size_t kApart = 3;         // smoothed points from a corner to the turns beside it
-constexpr double kAgainst = -14 * kDegree;  // turn against the bend that ends an arc
-constexpr double kMinTurning = 45 * kDegree;
+constexpr std::size_t kStride = 3;       // border points per smoothed point
+constexpr std::size_t kChord = 2;        // smoothed points over which a direction is taken
+constexpr double kCorner = Radians(45);  // turn from one direction to the next that makes a corner
+constexpr double kSharpness = 3;         // if it is so many times the turn before and after it
+constexpr std::size_t kApart = 3;        // smoothed points from a corner to the turns beside it
+constexpr double kAgainst = -Radians(14);  // turn against the bend that ends an arc
+constexpr double kMinTurning = Radians(45);
 constexpr std::size_t kMinPoints = 6;
 // Least shares of the rays that lie near a cone: of the two arcs that it is fitted to, of all arcs
 // on it, and of an arc that lies on it, for which 'near' is kNearby times as far.
@@ -64,7 +66,7 @@ void SmoothBorder(const GridPoint* points, std::size_t count,
 // Returns the angle (rad) from one direction to another, to 0.3 degrees.
 float Turn(const Eigen::Vector2f& from, const Eigen::Vector2f& to) {
   const float degrees = cv::fastAtan2(from.x() * to.y() - from.y() * to.x(), from.dot(to));
-  return static_cast<float>(kDegree) * (degrees > 180 ? degrees - 360 : degrees);
+  return static_cast<float>(Radians(1)) * (degrees > 180 ? degrees - 360 : degrees);
 }
 
 class ArcCutter {
@@ -257,21 +259,23 @@ class ArcGrouper {
     }
   }
 
-  // Returns the share of 32 directions around the cone's axis that have a selected ray.
+  // Returns the share of directions around the cone's axis, one for each bit, that have a selected
+  // ray.
   double Coverage(const ArcRing& ring) const {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(ring.cone.matrix);
     const Eigen::Vector3d wide = solver.eigenvectors().col(1) / std::sqrt(solver.eigenvalues()(1));
     const Eigen::Vector3d narrow =
         solver.eigenvectors().col(2) / std::sqrt(solver.eigenvalues()(2));
+    constexpr int kBins = std::numeric_limits<std::uint32_t>::digits;
     std::uint32_t bins = 0;
     for (const Eigen::Vector3d& ray : workspace_.selected) {
       // Dividing by the half axes (1 / sqrt of the eigenvalues) makes the ellipse a circle.
       const double x = ray.dot(wide) / wide.squaredNorm();
       const double y = ray.dot(narrow) / narrow.squaredNorm();
       const double turn = std::atan2(y, x) / (2 * std::numbers::pi) + 0.5;
-      bins |= std::uint32_t{1} << (static_cast<int>(turn * 32) & 31);
+      bins |= std::uint32_t{1} << (static_cast<int>(turn * kBins) % kBins);
     }
-    return std::popcount(bins) / 32.0;
+    return static_cast<double>(std::popcount(bins)) / kBins;
   }
 
   double tolerance_;

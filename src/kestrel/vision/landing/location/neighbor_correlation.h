@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 namespace kestrel {
 
@@ -18,7 +19,8 @@ class NeighborCorrelation {
   // Returns how many residuals count as one: (1 + r) / (1 - r) with their correlation r, clamped to
   // 0 to 'most'.
   double Redundancy(double most) const {
-    const double r = std::clamp(products_ / std::max(squares_, 1e-12), 0.0, most);
+    const double r =
+        std::clamp(products_ / std::max(squares_, std::numeric_limits<double>::min()), 0.0, most);
     return (1 + r) / (1 - r);
   }
 

@@ -21,7 +21,7 @@ namespace kestrel {
 // rotation vector in the camera frame about the pattern's centre.
 inline constexpr int kPoseTranslation = 0;
 inline constexpr int kPoseRotation = 3;
-inline constexpr int kPoseUnknowns = 6;
+inline constexpr int kPoseUnknowns = kPoseRotation + 3;
 
 // Pose of the pattern that explains the image best.
 struct PatternLocation {
@@ -99,15 +99,15 @@ class PatternLocator {
   // the principal point: distortion times its cube, in focal lengths). A single view determines the
   // distortion too poorly to solve for it, but its information is reported.
   static constexpr int kSpread = kPoseUnknowns;
-  static constexpr int kFocal = 7;
-  static constexpr int kPrincipal = 8;
-  static constexpr int kDistortion = 10;
-  static constexpr int kUnknowns = 11;
+  static constexpr int kFocal = kSpread + 1;
+  static constexpr int kPrincipal = kFocal + 1;
+  static constexpr int kDistortion = kPrincipal + 2;
+  static constexpr int kUnknowns = kDistortion + 1;
   static constexpr int kCalibrationUnknowns = kUnknowns - kFocal;
   // Further columns: the offsets, and their derivatives by the square of the blur.
   static constexpr int kOffset = kUnknowns;
-  static constexpr int kBlur = 12;
-  static constexpr int kEdgeColumns = 13;
+  static constexpr int kBlur = kOffset + 1;
+  static constexpr int kEdgeColumns = kBlur + 1;
   using Column = std::array<float, PrintOutline::kMaxPlaces>;
   using PoseVector = Eigen::Matrix<double, kPoseUnknowns, 1>;
   using Vector = Eigen::Matrix<double, kUnknowns, 1>;

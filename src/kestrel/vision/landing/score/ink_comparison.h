@@ -30,9 +30,9 @@ class InkComparison {
   double Doubt(const cv::Mat& image, const PatternView& view, PrintDoubts* doubts) const;
 
  private:
-  static constexpr int kSectors = 8;  // of 45 degrees each; every second one lies around an arm
-  static constexpr int kArms = 4;
-  static constexpr int kLines = 5;  // between two arms: lines on which a spoke may lie
+  static constexpr int kArms = LandingPattern::kArms;
+  static constexpr int kSectors = 2 * kArms;  // every second one lies around an arm
+  static constexpr int kLines = 5;            // between two arms: lines on which a spoke may lie
   static constexpr std::size_t kMaxPlaces = 1024;
 
   // A run of consecutive places.

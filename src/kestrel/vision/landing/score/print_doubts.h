@@ -11,7 +11,7 @@ namespace kestrel {
 // Kind of examination of a print: by its edges, whole (kByEdges) or cut off (kPart); or fitted as a
 // whole (kAsAWhole) because its strokes are no wider than the blur.
 enum class PrintKind { kByEdges, kPart, kAsAWhole };
-inline constexpr std::size_t kPrintKinds = 3;
+inline constexpr std::size_t kPrintKinds = static_cast<std::size_t>(PrintKind::kAsAWhole) + 1;
 
 // Doubts: numbers that speak against a located print. The larger a number, the less the print looks
 // like the pattern. A doubt that was not measured does not count.
@@ -44,7 +44,7 @@ enum class PrintDoubt {
   kFlat,       // minus the logarithm of the ring's axis ratio
   kHidden,     // share of ring and arms that is not in view
 };
-inline constexpr std::size_t kPrintDoubts = 23;
+inline constexpr std::size_t kPrintDoubts = static_cast<std::size_t>(PrintDoubt::kHidden) + 1;
 
 class PrintDoubts {
  public:

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kestrel/vision/landing/image_properties.h"
 #include "kestrel/vision/landing/location/pattern_pose.h"
@@ -44,7 +45,8 @@ Eigen::Vector2d CenterPx(const PatternLocation& location, const PrintAlignment& 
   if (!alignment.warp.Project(Eigen::Vector2d::Zero(), &by_edges)) return location.center_px;
   const Eigen::Vector2d shift = by_edges - location.center_px;
   const double chance = kSureCenter * alignment.center_sigma_px;
-  const double more = 1 - chance * chance / std::max(shift.squaredNorm(), 1e-12);
+  const double more =
+      1 - chance * chance / std::max(shift.squaredNorm(), std::numeric_limits<double>::min());
   return location.center_px + std::max(0.0, more) * shift;
 }
 

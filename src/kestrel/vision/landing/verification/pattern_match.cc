@@ -16,7 +16,7 @@
 namespace kestrel {
 namespace {
 
-constexpr int kQuarters = 4;
+constexpr int kQuarters = LandingPattern::kArms;
 constexpr int kRingPlaces = 48;
 constexpr std::size_t kFewestOfRing = kRingPlaces / 6;  // of which a contrast is known
 constexpr int kArmPlaces = 10;                          // along half an arm
