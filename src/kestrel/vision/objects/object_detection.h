@@ -63,7 +63,8 @@ struct ObjectDetection {
 
 // The tests of a segment, in order, for which the report counts passes (paper, Table 3).
 enum class ObjectStage { kSegmented, kSize, kRoundness, kShape, kOutline, kPosition };
-inline constexpr std::size_t kObjectStageCount = 6;
+inline constexpr std::size_t kObjectStageCount =
+    static_cast<std::size_t>(ObjectStage::kPosition) + 1;
 const char* ToString(ObjectStage stage);
 
 // The result of one image.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -112,23 +113,18 @@ const char* ToString(ObjectShape shape) {
 }
 
 std::vector<std::string> ObjectModel::Validate() const {
-  constexpr std::size_t kMaxClasses = 64;
   std::vector<std::string> violations = colors.Validate();
   if (classes.empty()) violations.emplace_back("there must be at least one class");
-  if (classes.size() > kMaxClasses) {
-    violations.push_back(
-        fmt::format("there are {} classes, at most {}", classes.size(), kMaxClasses));
-  }
   for (std::size_t i = 0; i < classes.size(); ++i) {
     const ObjectClass& c = classes[i];
     const auto require = [&](bool holds, const char* rule) {
       if (!holds) violations.push_back(fmt::format("class {} ({}): {}", i + 1, c.name, rule));
     };
     require(c.color < colors.colors.size(), "its color must be one of the colors");
-    require(c.size_m > 0 && c.size_m < 1e3, "size_m must be positive and below 1000");
+    require(c.size_m > 0 && std::isfinite(c.size_m), "size_m must be positive");
     require(c.shape != ObjectShape::kBar || (c.width_m > 0 && c.width_m < c.size_m),
             "width_m must be positive and less than size_m");
-    require(c.height_m >= 0 && c.height_m <= c.max_height_m && c.max_height_m < 1e3,
+    require(c.height_m >= 0 && c.height_m <= c.max_height_m && std::isfinite(c.max_height_m),
             "height_m must not be negative, nor more than max_height_m");
   }
   return violations;

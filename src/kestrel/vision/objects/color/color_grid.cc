@@ -74,8 +74,12 @@ std::size_t ColorGrid::ClearRegion(const HueSaturationRegion& region, ColorLabel
 }
 
 Hsv ColorGrid::CellColor(std::size_t cell) {
-  const auto middle = [](std::size_t index) { return 4.0F * static_cast<float>(index) + 1.5F; };
-  return HsvFromBgr(middle(cell & 63), middle(cell >> 6 & 63), middle(cell >> 12));
+  constexpr std::size_t kSide = kCellsPerChannel;
+  const auto middle = [width = 256.0F / kSide](std::size_t index) {
+    return width * static_cast<float>(index) + 0.5F * (width - 1);
+  };
+  return HsvFromBgr(middle(cell % kSide), middle(cell / kSide % kSide),
+                    middle(cell / (kSide * kSide)));
 }
 
 }  // namespace kestrel

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,7 @@ namespace kestrel {
 using ColorLabel = std::uint8_t;
 inline constexpr ColorLabel kBackgroundLabel = 0;
 // A pixel with this label joins a segment when the pixels around it belong to the segment.
-inline constexpr ColorLabel kAmbiguousLabel = 255;
+inline constexpr ColorLabel kAmbiguousLabel = std::numeric_limits<ColorLabel>::max();
 
 // A part of the hue-saturation plane, at every value. Hues run from 'min_hue_deg' upwards around
 // the circle to 'max_hue_deg', both 0 to 360 (350 to 10 is red); saturations are 0 to 1.
@@ -32,7 +33,8 @@ struct HueSaturationRegion {
 class ColorGrid {
  public:
   static constexpr int kCellsPerChannel = 64;
-  static constexpr std::size_t kCells = 64 * 64 * 64;  // 262,144
+  static constexpr std::size_t kCells =
+      std::size_t{kCellsPerChannel} * kCellsPerChannel * kCellsPerChannel;  // 262,144
 
   ColorGrid() : labels_(kCells, kBackgroundLabel) {}  // all background
   explicit ColorGrid(const ColorModel& model);

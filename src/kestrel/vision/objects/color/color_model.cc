@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/geometry/angles.h"
 
 namespace kestrel {
 namespace {
@@ -21,19 +21,20 @@ constexpr double kMaxCorrelation = 0.99;
 
 bool IsPart(float x) { return x >= 0 && x <= 1; }
 
+bool IsPositive(double x) { return x > 0 && std::isfinite(x); }
+
 void ValidateComponent(const ColorComponent& component, const std::string& where,
                        std::vector<std::string>* violations) {
   const auto require = [&](bool holds, const char* rule) {
     if (!holds) violations->push_back(fmt::format("{}: {}", where, rule));
   };
-  require(component.weight > 0 && component.weight < 1e6, "weight must be positive");
+  require(IsPositive(component.weight), "weight must be positive");
   require(component.mean.hue_deg >= 0 && component.mean.hue_deg < 360,
           "the mean's hue must be in 0 to 360");
   require(IsPart(component.mean.saturation), "the mean's saturation must be in 0 to 1");
   require(IsPart(component.mean.value), "the mean's value must be in 0 to 1");
-  const auto is_sigma = [](float x) { return x > 0 && x < 1e4F; };
-  require(is_sigma(component.sigma.hue_deg) && is_sigma(component.sigma.saturation) &&
-              is_sigma(component.sigma.value),
+  require(IsPositive(component.sigma.hue_deg) && IsPositive(component.sigma.saturation) &&
+              IsPositive(component.sigma.value),
           "the sigmas must be positive");
   require(std::abs(component.correlation) <= kMaxCorrelation,
           "the correlation must be in -0.99 to 0.99");
@@ -64,7 +65,6 @@ struct Moments {
 };
 
 Moments WeightedMoments(std::span<const Hsv> samples, std::span<const double> weights) {
-  constexpr double kRadians = std::numbers::pi / 180;
   double sum = 0;
   double x = 0;
   double y = 0;
@@ -72,13 +72,13 @@ Moments WeightedMoments(std::span<const Hsv> samples, std::span<const double> we
   double value = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     sum += weights[i];
-    x += weights[i] * std::cos(kRadians * samples[i].hue_deg);
-    y += weights[i] * std::sin(kRadians * samples[i].hue_deg);
+    x += weights[i] * std::cos(Radians(samples[i].hue_deg));
+    y += weights[i] * std::sin(Radians(samples[i].hue_deg));
     saturation += weights[i] * samples[i].saturation;
     value += weights[i] * samples[i].value;
   }
   Moments moments{sum / static_cast<double>(samples.size()), {}, Eigen::Matrix3d::Zero()};
-  const auto hue = static_cast<float>(std::atan2(y, x) / kRadians);
+  const auto hue = static_cast<float>(Degrees(std::atan2(y, x)));
   moments.mean = {hue < 0 ? std::fmod(hue + 360, 360.0F) : hue,
                   static_cast<float>(saturation / sum), static_cast<float>(value / sum)};
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -179,9 +179,7 @@ std::vector<std::string> ColorModel::Validate() const {
   if (colors.size() > kMaxColors) {
     violations.push_back(fmt::format("there are {} colors, at most {}", colors.size(), kMaxColors));
   }
-  if (!(max_distance > 0 && max_distance < 100)) {
-    violations.emplace_back("max_distance must be positive and below 100");
-  }
+  if (!IsPositive(max_distance)) violations.emplace_back("max_distance must be positive");
   std::set<std::string> names;
   for (const ColorMixture& color : colors) {
     if (!names.insert(color.name).second) violations.push_back(color.name + ": is given twice");
@@ -215,7 +213,7 @@ ColorMixture FitColorMixture(const std::string& name, std::span<const Hsv> sampl
   std::vector<std::vector<double>> shares(components.size(), std::vector<double>(samples.size()));
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      double sum = 1e-300;
+      double sum = std::numeric_limits<double>::min();
       for (std::size_t k = 0; k < components.size(); ++k) {
         sum += shares[k][i] = std::exp(components[k].LogDensity(samples[i]));
       }

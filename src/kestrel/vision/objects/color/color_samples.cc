@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -15,7 +16,7 @@ constexpr double kBin_deg = 360.0 / HueSaturationHistogram::kHues;
 double LogLikelihood(const ColorMixture& mixture, std::span<const Hsv> samples) {
   double sum = 0;
   for (const Hsv& sample : samples) {
-    double density = 1e-300;
+    double density = std::numeric_limits<double>::min();
     for (const ColorComponent& component : mixture.components) {
       density += std::exp(component.LogDensity(sample));
     }

@@ -71,8 +71,8 @@ class ObjectExaminer {
   double OutlineTolerance(double radius_px) const;
   bool IsFilledDisc(const Segment& segment, const Ellipse& ellipse) const;
   // 'position': by the disc's size.
-  Outcome PlaceDisc(const Cone& cone, const Eigen::Vector3d& position, const ObjectClass& object,
-                    bool is_cut_off) const;
+  Outcome PlaceDisc(const Cone& cone, const Eigen::Vector3d& position,
+                    const ObjectClass& object) const;
   Outcome TestCuboid(const Segment& segment, const ObjectClass& object, ObjectDetection* detection,
                      ObjectStage* reached);
   // Tests whether a quadrilateral, right to about 2 px, is the upper face of a cuboid.

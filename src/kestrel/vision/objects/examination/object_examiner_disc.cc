@@ -21,10 +21,6 @@ constexpr double kMinColoredMiddle = 0.5;
 // and the disc must fit better: the corner of a triangle may have an ellipse through it.
 constexpr double kMinFillOfPart = 0.8;
 constexpr double kMaxMisfitOfPart = 0.6;
-// Its outline determines the distance less well, and its shape must fit better: factors of the
-// tolerance.
-constexpr double kToleranceOfPart = 0.7;
-constexpr double kDistanceToleranceOfPart = 1.4;
 
 // Returns the share of the ellipse's pixels in the image that belong to the segment.
 double FilledShare(const Segment& segment, const Ellipse& ellipse, const cv::Size& image) {
@@ -75,7 +71,7 @@ ObjectExaminer::Outcome ObjectExaminer::TestDisc(const Segment& segment, const S
   if (!std::isfinite(distance) || !(distance > 0)) return Outcome::kNone;
   detection->misfit = MisfitOfDisc(*outline, radius_px, segment, shape, *ellipse);
   if (segment.touches_border && detection->misfit > kMaxMisfitOfPart) return Outcome::kNone;
-  const Outcome outcome = PlaceDisc(outline->cone, position, object, segment.touches_border);
+  const Outcome outcome = PlaceDisc(outline->cone, position, object);
   if (outcome == Outcome::kNone) return outcome;
   if (outcome == Outcome::kObject) *reached = ObjectStage::kPosition;
   if (!hint_.up_in_camera) {
@@ -122,12 +118,9 @@ bool ObjectExaminer::IsFilledDisc(const Segment& segment, const Ellipse& ellipse
 
 // Compares the disc's place by its size with the ground.
 ObjectExaminer::Outcome ObjectExaminer::PlaceDisc(const Cone& cone, const Eigen::Vector3d& position,
-                                                  const ObjectClass& object,
-                                                  bool is_cut_off) const {
-  const double ground = detector_.options.ground_tolerance;
-  const double tolerance = (is_cut_off ? kToleranceOfPart : 1) * ground;
-  const double distance_tolerance = (is_cut_off ? kDistanceToleranceOfPart : 1) * ground;
-  const std::optional<bool> is_on_ground = IsOnGround(position, object, distance_tolerance);
+                                                  const ObjectClass& object) const {
+  const double tolerance = detector_.options.ground_tolerance;
+  const std::optional<bool> is_on_ground = IsOnGround(position, object, tolerance);
   if (!is_on_ground) return Outcome::kObject;
   const double distance = position.norm();
   const auto looks_like_disc_at = [&](double there) {
@@ -146,7 +139,6 @@ bool ObjectExaminer::IsHole(const Ellipse& outline, ColorLabel label) const {
   constexpr double kFirst = 1.3;
   constexpr double kLast = 4;
   constexpr double kMinWidth = 0.3;
-  constexpr double kMinWidthPx = 3;
   constexpr double kMaxShare = 0.5;  // other discs may lie around, but not on all sides
   int shown = 0;
   int same = 0;
@@ -155,7 +147,7 @@ bool ObjectExaminer::IsHole(const Ellipse& outline, ColorLabel label) const {
     const Eigen::Vector2d radius = outline.At(t) - outline.center;
     const double radius_px = radius.norm();
     const Eigen::Vector2d outward = radius / radius_px;
-    const double min_width_px = std::max(kMinWidthPx, kMinWidth * radius_px);
+    const double min_width_px = kMinWidth * radius_px;
     int width_px = 0;
     bool is_shown = false;
     for (double r = kFirst * radius_px; r < kLast * radius_px && width_px < min_width_px; ++r) {

@@ -25,10 +25,9 @@ ObjectExaminer::Outcome ObjectExaminer::TestCuboid(const Segment& segment,
   // Share of white pixels in a visible cuboid, those of its digit: a fiftieth to a third, more
   // where the paint is bleached.
   constexpr double kMinDigitShare = 0.015;
-  constexpr double kMaxDigitShare = 0.7;
   const auto pixels = static_cast<double>(segment.pixels.size());
   const double digit_share = segment.ambiguous_pixels / pixels;
-  if (digit_share < kMinDigitShare || digit_share > kMaxDigitShare) return Outcome::kNone;
+  if (digit_share < kMinDigitShare) return Outcome::kNone;
   if (!hint_.up_in_camera) {
     const auto found = FindCuboidFace(image_, segment, &workspace_->face);
     return found ? TestFace(*found, object, detection, reached) : Outcome::kNone;
@@ -113,7 +112,7 @@ ObjectExaminer::Outcome ObjectExaminer::TestBar(const Segment& segment, const Se
   const Ellipse& ellipse = shape.ellipse;
   const double box_px = 3 * ellipse.semi_major * ellipse.semi_minor;
   if (shape.moments.area < kMinFill * box_px) return Outcome::kNone;
-  const double aspect = ellipse.semi_major / std::max(ellipse.semi_minor, 0.1);
+  const double aspect = ellipse.semi_major / ellipse.semi_minor;
   if (!IsWithin(aspect, object.size_m / object.width_m, kMaxAspectFactor)) return Outcome::kNone;
   *reached = ObjectStage::kOutline;
   const Outcome outcome = LocateFace(RectangleAround(segment, shape), object, detection);

@@ -14,11 +14,8 @@ namespace kestrel {
 bool ObjectExaminer::TestMerged(const Segment& segment, const SegmentShape& shape,
                                 ObjectDetection* detection) {
   constexpr double kMaxCircularityError = 0.4;  // three discs in a row have 0.35
-  constexpr double kMaxAspect = 4;              // three discs in a row have 3
   constexpr double kMinCount = 1.5;             // two discs that seem to overlap
-  constexpr double kMaxCount = 9;
-  if (segment.touches_border || std::abs(shape.circularity - 1) > kMaxCircularityError ||
-      shape.ellipse.semi_major > kMaxAspect * shape.ellipse.semi_minor) {
+  if (segment.touches_border || std::abs(shape.circularity - 1) > kMaxCircularityError) {
     return false;
   }
   const PlaneBelow plane(hint_.up_in_camera.value_or(-detection->bearing));
@@ -37,7 +34,7 @@ bool ObjectExaminer::TestMerged(const Segment& segment, const SegmentShape& shap
     const double count =
         expected ? shape.moments.area * pixel_area / (std::numbers::pi * *expected * *expected)
                  : kMinCount;
-    if (!(count >= kMinCount && count <= kMaxCount)) continue;
+    if (!(count >= kMinCount)) continue;
     if (!radius) radius = RadiusOfDiscsIn(segment, on_plane, std::sqrt(pixel_area));
     if (!radius) return false;
     if (expected && std::abs(*radius / *expected - 1) > detector_.options.ground_tolerance) {

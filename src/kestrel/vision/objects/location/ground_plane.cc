@@ -57,7 +57,7 @@ std::optional<PlaneRectangle> RectangleOnPlane(const std::array<Eigen::Vector3d,
   }
   const auto length = [&](int a, int b) { return (points[a] - points[b]).norm(); };
   PlaneRectangle rectangle;
-  rectangle.center = 0.25 * (points[0] + points[1] + points[2] + points[3]);
+  rectangle.center = (points[0] + points[1] + points[2] + points[3]) / 4;
   rectangle.sides = {0.5 * (length(0, 1) + length(2, 3)), 0.5 * (length(1, 2) + length(3, 0))};
   const double first = length(0, 2);
   const double second = length(1, 3);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -50,8 +51,8 @@ class SegmentationWorkspace {
   std::vector<Extent> columns_;
 };
 
-// Largest side of an image, because positions have 16 bits.
-inline constexpr int kMaxImageSide = 32767;
+// Largest side of an image, which PixelPosition can hold.
+inline constexpr int kMaxImageSide = std::numeric_limits<std::int16_t>::max();
 
 // Finds the segments of one image (paper, Algorithms 3 and 4). The grid labels pixels when they are
 // visited; no image of labels is made.

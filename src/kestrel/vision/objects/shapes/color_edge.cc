@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 
 namespace kestrel {
@@ -65,8 +66,8 @@ Eigen::Vector3f ColorAt(const Profile& profile, double index) {
 Eigen::Vector3f AxisBetween(const Eigen::Vector3f& inside, const Eigen::Vector3f& outside) {
   constexpr float kMinShare = 0.4F;
   const Eigen::Vector3f difference = inside - outside;
-  const Eigen::Vector3f hue =
-      inside - inside.dot(outside) / std::max(outside.squaredNorm(), 1e-9F) * outside;
+  const float norm = std::max(outside.squaredNorm(), std::numeric_limits<float>::min());
+  const Eigen::Vector3f hue = inside - inside.dot(outside) / norm * outside;
   return hue.norm() > kMinShare * difference.norm() ? hue : difference;
 }
 

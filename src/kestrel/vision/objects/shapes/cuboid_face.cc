@@ -18,6 +18,9 @@ namespace {
 // The kinds of pixels in a segment's bounding box.
 enum Mark : std::uint8_t { kOutside, kColored, kDigit };
 
+// The kinds of pixels of a mask while a connected part of it is searched.
+enum Part : std::uint8_t { kUnset, kSet, kKept };
+
 // The bounding box with a margin of one pixel.
 struct Box {
   explicit Box(const Segment& segment)
@@ -156,17 +159,16 @@ void FilterMask(const Box& box, const std::vector<std::uint8_t>& mask,
 // so that thin bridges do not connect.
 void KeepDigitsPart(const Box& box, CuboidFaceWorkspace* workspace) {
   constexpr int kMinNeighbors = 8;
-  constexpr std::uint8_t kKept = 2;
   std::vector<std::uint8_t>& filtered = workspace->filtered;
   const auto is_core = [&](std::size_t i) {
     int sum = 0;
-    for (const std::size_t near : box.Neighborhood(i)) sum += filtered[near] != 0;
+    for (const std::size_t near : box.Neighborhood(i)) sum += filtered[near] != kUnset;
     return sum >= kMinNeighbors;
   };
   std::vector<std::size_t>& queue = workspace->queue;
   queue.clear();
   const auto push = [&](std::size_t i) {
-    if (filtered[i] != 1) return;
+    if (filtered[i] != kSet) return;
     filtered[i] = kKept;
     queue.push_back(i);
   };
@@ -175,7 +177,7 @@ void KeepDigitsPart(const Box& box, CuboidFaceWorkspace* workspace) {
     if (!is_core(queue[start])) continue;
     for (const std::size_t near : box.Neighborhood(queue[start])) push(near);
   }
-  for (std::uint8_t& pixel : filtered) pixel = pixel == kKept ? 1 : 0;
+  for (std::uint8_t& pixel : filtered) pixel = pixel == kKept ? kSet : kUnset;
 }
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -218,7 +220,7 @@ std::optional<Eigen::Vector2d> Intersection(const Eigen::Vector2d& a, const Eige
                                             const Eigen::Vector2d& b,
                                             const Eigen::Vector2d& other) {
   const double turn = Cross(along, other);
-  if (std::abs(turn) < 1e-6 * along.norm() * other.norm()) return std::nullopt;
+  if (turn == 0) return std::nullopt;
   return a + Cross(b - a, other) / turn * along;
 }
 
@@ -260,14 +262,15 @@ struct Line {
 Line FitSide(const cv::Mat& image, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
              const Eigen::Vector2d& center) {
   constexpr int kPoints = 13;
+  // Share of a side at either end that is left out: there the profile crosses two edges.
+  constexpr double kClear = 0.15;
   Line side{0.5 * (a + b), (b - a).normalized()};
   Eigen::Vector2d outward(side.direction.y(), -side.direction.x());
   if (outward.dot(side.point - center) < 0) outward = -outward;
   std::array<Eigen::Vector2d, kPoints> points;
   int count = 0;
   for (int i = 0; i < kPoints; ++i) {
-    // Avoids the corners, where the profile crosses two edges.
-    const double t = 0.15 + 0.7 * i / (kPoints - 1);
+    const double t = kClear + (1 - 2 * kClear) * i / (kPoints - 1);
     const Eigen::Vector2d start = a + t * (b - a);
     if (const auto edge = FindColorEdge(image, start, outward)) {
       points[count++] = start + edge->offset_px * outward;
@@ -276,7 +279,7 @@ Line FitSide(const cv::Mat& image, const Eigen::Vector2d& a, const Eigen::Vector
   if (count < kPoints / 2) return side;
   // Least squares, then again without outliers.
   Line line = side;
-  for (const double limit_px : {1e9, 0.7}) {
+  for (const double limit_px : {std::numeric_limits<double>::infinity(), 0.7}) {
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
     Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
     double used = 0;
@@ -319,7 +322,7 @@ double QuadrilateralArea(const FaceCorners& corners) {
 
 std::optional<FaceCorners> RefineCorners(const cv::Mat& image,
                                          std::span<const Eigen::Vector2d> polygon) {
-  const Eigen::Vector2d center = 0.25 * (polygon[0] + polygon[1] + polygon[2] + polygon[3]);
+  const Eigen::Vector2d center = (polygon[0] + polygon[1] + polygon[2] + polygon[3]) / 4;
   std::array<Line, 4> sides;
   for (int i = 0; i < 4; ++i) {
     sides[i] = FitSide(image, polygon[i], polygon[(i + 1) % 4], center);

@@ -140,7 +140,7 @@ std::optional<CuboidFit> FitCuboid(const CuboidSilhouette& silhouette) {
   // For each set of coloured side faces that can be visible, refines the best start direction.
   double best_sum = std::numeric_limits<double>::infinity();
   Parameters best = Parameters::Zero();
-  for (int choice = 0; choice < 16; ++choice) {
+  for (int choice = 0; choice < 1 << 4; ++choice) {
     SideFaces sides{};
     for (int k = 0; k < 4; ++k) sides[k] = (choice >> k & 1) != 0;
     double start_sum = std::numeric_limits<double>::infinity();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <Eigen/Geometry>
@@ -21,7 +22,7 @@ constexpr int kEdgeDirections = 32;  // directions in which the edge is searched
 double DistanceToCone(const Cone& cone, const Eigen::Vector3d& ray) {
   const Eigen::Vector3d gradient = 2 * cone.matrix * ray;
   const double slope = (gradient - gradient.dot(ray) * ray).norm();
-  return ray.dot(cone.matrix * ray) / std::max(slope, 1e-12);
+  return ray.dot(cone.matrix * ray) / std::max(slope, std::numeric_limits<double>::min());
 }
 
 void MeasureDistances(const Cone& cone, double focal_px, DiscOutlineWorkspace* workspace) {
