@@ -14,8 +14,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/app/console/map_view.h"
-#include "kestrel/vision/landing/alignment/plane_warp.h"
 #include "kestrel/vision/landing/search/threshold_view.h"
+#include "kestrel/vision/target/plane_warp.h"
 
 namespace kestrel {
 namespace {
@@ -38,9 +38,9 @@ std::vector<cv::Point2f> Outline(const CameraModel& camera,
 }
 
 // The image of a circle around the pattern's centre, where the pattern is seen.
-std::vector<cv::Point2f> SeenOutline(const CameraModel& camera, const LandingPattern& pattern,
-                                     const SeenPrint& seen, double radius_m) {
-  const PlaneWarp warp = seen.Warp(camera, pattern.outer_radius_m());
+std::vector<cv::Point2f> SeenOutline(const CameraModel& camera, const SeenPrint& seen,
+                                     double radius_m) {
+  const PlaneWarp warp = seen.Warp(camera);
   std::vector<cv::Point2f> outline;
   for (int i = 0; i < kPiecesPerCircle; ++i) {
     const double angle = 2 * std::numbers::pi * i / kPiecesPerCircle;
@@ -76,16 +76,24 @@ std::vector<cv::Point2f> TrackOutline(const CameraModel& camera,
 }
 
 // The recognised parts of the pattern.
-const char* InWords(CrossMethod method) {
+const char* InWords(DetectionMethod method) {
   switch (method) {
-    case CrossMethod::kQuadrants:
+    case DetectionMethod::kQuadrants:
       return "whole pattern";
-    case CrossMethod::kThinning:
+    case DetectionMethod::kThinning:
       return "pattern, by the arms of its cross";
-    case CrossMethod::kLines:
+    case DetectionMethod::kLines:
       return "pattern, by the edges of its cross";
-    case CrossMethod::kPartial:
+    case DetectionMethod::kPartial:
       return "part of the pattern";
+    case DetectionMethod::kTags:
+      return "pad, by its tags";
+    case DetectionMethod::kLetter:
+      return "pad, by its letter";
+    case DetectionMethod::kFollowed:
+      return "pad, by its appearance";
+    case DetectionMethod::kOther:
+      return "pad";
   }
   return "";
 }
@@ -161,9 +169,8 @@ std::vector<OverlayShape> LandingShapes(const LandingView& view,
   const double inner_m = view.pattern.inner_radius_m();
   const bool is_seen_elsewhere = found.is_misfit() && found.seen;
   if (is_seen_elsewhere) {
-    shapes.push_back(
-        {layer, SeenOutline(view.camera, view.pattern, *found.seen, outer_m), label + ", as seen"});
-    shapes.push_back({layer, SeenOutline(view.camera, view.pattern, *found.seen, inner_m), ""});
+    shapes.push_back({layer, SeenOutline(view.camera, *found.seen, outer_m), label + ", as seen"});
+    shapes.push_back({layer, SeenOutline(view.camera, *found.seen, inner_m), ""});
   }
   const OverlayLayer of_pose = is_seen_elsewhere ? OverlayLayer::kRejected : layer;
   shapes.push_back({of_pose, RingOutline(view.camera, found.camera_from_pattern, outer_m),

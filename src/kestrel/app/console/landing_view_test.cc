@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/core/camera/paper_camera.h"
-#include "kestrel/vision/landing/alignment/plane_warp.h"
+#include "kestrel/vision/target/plane_warp.h"
 
 namespace kestrel {
 namespace {
@@ -80,7 +80,7 @@ TEST(LandingViewTest, WhatTheTrackDoesNotTakeIsRejected) {
 TEST(LandingViewTest, OfAMisfitBothOutlinesAreShown) {
   LandingObservation observation = Seen();
   LandingDetection& detection = *observation.report.detection;
-  detection.seen = SeenPrint{detection.camera_from_pattern, PlaneWarp::Coefficients::Zero()};
+  detection.seen = SeenPrint{detection.camera_from_pattern, PlaneWarp::Coefficients::Zero(), 0.5};
   detection.seen->displacement_px(1, 0) = 25;
   detection.misfit_px = 20;
   detection.misfit_bound_px = 1;

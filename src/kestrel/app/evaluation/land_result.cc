@@ -2,9 +2,9 @@
 #include "kestrel/app/evaluation/land_result.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
-#include <initializer_list>
 #include <limits>
 #include <system_error>
 #include <utility>
@@ -23,10 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // Returns the value whose name is in the cell.
-template <class Kind>
-Kind KindIn(const CsvTable& table, std::size_t row, std::size_t column,
-            std::initializer_list<Kind> kinds) {
-  for (const Kind kind : kinds) {
+template <class Kinds>
+auto KindIn(const CsvTable& table, std::size_t row, std::size_t column, const Kinds& kinds) {
+  for (const auto kind : kinds) {
     if (table.Text(row, column) == ToString(kind)) return kind;
   }
   table.Fail(row, fmt::format("'{}' is none that `kestrel land` writes", table.Text(row, column)));
@@ -73,13 +72,12 @@ LandResult::LandResult(const std::string& table) : file_(table), text_(ReadFile(
     row.detect_time = DurationFromSeconds(1e-3 * cells.OptionalNumber(index, time).value_or(0));
     if (misfit) row.misfit_px = cells.OptionalNumber(index, *misfit).value_or(0);
     if (detection.pattern) {
-      row.method = KindIn(cells, index, method,
-                          {CrossMethod::kQuadrants, CrossMethod::kThinning, CrossMethod::kLines,
-                           CrossMethod::kPartial});
+      row.method = KindIn(cells, index, method, kDetectionMethods);
       row.quality = cells.Number(index, quality);
     } else {
-      row.reached = KindIn(cells, index, rejected,
-                           {LandingStage::kBinarize, LandingStage::kAreas, LandingStage::kRing,
+      row.reached =
+          KindIn(cells, index, rejected,
+                 std::array{LandingStage::kBinarize, LandingStage::kAreas, LandingStage::kRing,
                             LandingStage::kCross, LandingStage::kMatch, LandingStage::kLocate});
     }
     row.detection = std::move(detection);

@@ -34,7 +34,7 @@ class LandResult {
  private:
   struct Row {
     DetectionRow detection;
-    CrossMethod method = CrossMethod::kQuadrants;
+    DetectionMethod method = DetectionMethod::kQuadrants;
     double quality = 0;
     double misfit_px = 0;
     LandingStage reached = LandingStage::kFound;

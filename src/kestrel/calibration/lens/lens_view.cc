@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kestrel/vision/landing/alignment/plane_warp.h"
 #include "kestrel/vision/landing/alignment/print_alignment.h"
 #include "kestrel/vision/landing/alignment/print_outline.h"
+#include "kestrel/vision/target/plane_warp.h"
 
 namespace kestrel {
 namespace {
@@ -41,13 +41,13 @@ LensViewFinder& LensViewFinder::operator=(LensViewFinder&&) noexcept = default;
 
 std::optional<LensView> LensViewFinder::Find(const std::string& name, const cv::Mat& image) {
   const LandingReport report = detector_.Detect(image, {}, workspace_);
-  if (!report.detection || 2 * report.detection->ring_semi_major_px < kMinRingPx) {
+  if (!report.detection || 2 * report.detection->semi_major_px < kMinRingPx) {
     return std::nullopt;
   }
   const LandingDetection& seen = *report.detection;
   const CameraModel camera(Recalibrated(detector_.camera().intrinsics(), seen.calibration));
   PrintAlignment alignment{PlaneWarp(camera, seen.camera_from_pattern, outline_->radius_m()), {}};
-  const double reach_px = std::max(kLeastReachPx, kReachShare * 2 * seen.ring_semi_major_px);
+  const double reach_px = std::max(kLeastReachPx, kReachShare * 2 * seen.semi_major_px);
   if (!AlignPrint(image, image, {}, outline_->all(), reach_px, kMinStep, &alignment)) {
     return std::nullopt;
   }

@@ -12,9 +12,9 @@
 
 #include "kestrel/calibration/lens/lens_view.h"
 #include "kestrel/core/base/random.h"
-#include "kestrel/vision/landing/alignment/plane_warp.h"
 #include "kestrel/vision/landing/alignment/print_outline.h"
 #include "kestrel/vision/landing/test_prints.h"
+#include "kestrel/vision/target/plane_warp.h"
 
 namespace kestrel {
 

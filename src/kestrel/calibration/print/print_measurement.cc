@@ -80,7 +80,7 @@ class PrintSearch {
     const LandingPatternDetector detector(CameraModel(Scaled(camera, small_.size())), options);
     const LandingReport report = detector.Detect(small_, {}, workspace_);
     if (!report.detection) return std::nullopt;
-    const double ring_px = 2 * report.detection->ring_semi_major_px * image_.cols / small_.cols;
+    const double ring_px = 2 * report.detection->semi_major_px * image_.cols / small_.cols;
     const FoundPrint found{camera, report.detection->camera_from_pattern, options.pattern,
                            options.pattern.outer_diameter_m / ring_px};
     // Repeated with the measured pattern, whose lines cross the outlines better.

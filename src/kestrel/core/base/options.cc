@@ -2,7 +2,6 @@
 #include "kestrel/core/base/options.h"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -10,6 +9,7 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
+#include "kestrel/core/base/edit_distance.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/parse_number.h"
 #include "kestrel/core/base/read_file.h"
@@ -55,21 +55,6 @@ std::string Expected(const OptionField& field) {
 void AssignText(const std::string& text, const std::string& where, const OptionField& field) {
   if (std::visit(Assigner{text}, field.value)) return;
   throw InputError(fmt::format("{}: {} is '{}', {}", where, field.key, text, Expected(field)));
-}
-
-// Levenshtein's distance: the number of letters to insert, delete or replace.
-int EditDistance(std::string_view a, std::string_view b) {
-  std::vector<int> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    int diagonal = std::exchange(row[0], static_cast<int>(i) + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const int replaced = diagonal + (a[i] != b[j]);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
-    }
-  }
-  return row.back();
 }
 
 std::pair<std::string_view, std::string_view> SplitLast(std::string_view key) {

@@ -253,7 +253,7 @@ PatternSample PatternSampleOf(const LandingDetection& detection) {
   PatternSample sample;
   sample.camera_from_pattern = detection.camera_from_pattern;
   sample.mirror_camera_from_pattern = detection.mirror_camera_from_pattern;
-  sample.ring_px = 2 * detection.ring_semi_minor_px;
+  sample.ring_px = 2 * detection.semi_minor_px;
   sample.misfit_px = detection.misfit_px;
   sample.contradicts = detection.calibration.contradicts;
   return sample;

@@ -39,7 +39,7 @@ class FlightExaminationTest : public ::testing::Test {
     observation.world_from_camera = world_from_body * *calibration_.body_from_camera;
     LandingDetection& detection = observation.report.detection.emplace();
     detection.camera_from_pattern = (world_from_body * true_mount).Inverse();
-    detection.ring_semi_minor_px = 50;
+    detection.semi_minor_px = 50;
     detection.misfit_px = 0.2;
     return observation;
   }

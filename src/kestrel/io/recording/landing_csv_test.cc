@@ -14,7 +14,7 @@ LandingObservation Found() {
   detection.camera_from_pattern.translation = {0.1, -0.2, 3};
   detection.covariance.setZero();
   detection.covariance.diagonal().head<3>() = Eigen::Vector3d(0.0001, 0.0004, 0.0009);
-  detection.method = CrossMethod::kLines;
+  detection.method = DetectionMethod::kLines;
   detection.quality = 0.875;
   detection.misfit_px = 0.125;
   LandingObservation observation;

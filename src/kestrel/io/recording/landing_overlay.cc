@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
-#include "kestrel/vision/landing/alignment/plane_warp.h"
+#include "kestrel/vision/target/plane_warp.h"
 
 namespace kestrel {
 namespace {
@@ -135,7 +135,7 @@ void DrawPrint(const LandingPattern& pattern, const Projection& project, const c
 // Draws the print at its edges in the image, and as pose and lens project it.
 void DrawMisfit(const LandingDetection& detection, const CameraModel& camera,
                 const LandingPattern& pattern, Canvas* canvas) {
-  const PlaneWarp seen = detection.seen->Warp(camera, pattern.outer_radius_m());
+  const PlaneWarp seen = detection.seen->Warp(camera);
   const auto project = [&](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
     return seen.Project(point.head<2>(), pixel);
   };

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "kestrel/vision/landing/alignment/plane_warp.h"
+#include "kestrel/vision/target/plane_warp.h"
 
 namespace kestrel {
 namespace {
@@ -52,7 +52,7 @@ bool IsMagenta(const cv::Mat& image, int x, int y) {
 TEST(LandingOverlay, OfAMisfitBothOutlinesAreDrawn) {
   LandingObservation observation = FoundAt({0.0, 0.0, 2.0});
   LandingDetection& detection = *observation.report.detection;
-  detection.seen = SeenPrint{detection.camera_from_pattern, PlaneWarp::Coefficients::Zero()};
+  detection.seen = SeenPrint{detection.camera_from_pattern, PlaneWarp::Coefficients::Zero(), 0.5};
   detection.seen->displacement_px(0, 0) = 40;
   detection.misfit_px = 28;
   detection.misfit_bound_px = 30;

@@ -1,11 +1,52 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/vision/landing/landing_pattern.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 namespace kestrel {
+namespace {
+
+using Polyline = std::vector<Eigen::Vector3d>;
+
+// A lens bends lines; therefore an edge has this number of pieces.
+constexpr int kPiecesPerEdge = 12;
+constexpr int kPiecesPerCircle = 96;
+
+Polyline Circle(double radius) {
+  Polyline points;
+  for (int i = 0; i <= kPiecesPerCircle; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kPiecesPerCircle;
+    points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
+  }
+  return points;
+}
+
+// Outline of both arms: one corner between two arms and two at each end, four times.
+Polyline CrossOutline(const LandingPattern& pattern) {
+  const double half_width = 0.5 * pattern.arm_width_m;
+  const double length = std::min(pattern.arm_half_length_m, pattern.inner_radius_m());
+  Polyline corners;
+  for (int quarter = 0; quarter <= 4; ++quarter) {
+    const Eigen::AngleAxisd turn(quarter * std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
+    corners.emplace_back(turn * Eigen::Vector3d(half_width, -half_width, 0));
+    corners.emplace_back(turn * Eigen::Vector3d(length, -half_width, 0));
+    corners.emplace_back(turn * Eigen::Vector3d(length, half_width, 0));
+  }
+  Polyline outline;
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    for (int k = 0; k <= kPiecesPerEdge; ++k) {
+      outline.emplace_back(corners[i - 1] + (corners[i] - corners[i - 1]) * k / kPiecesPerEdge);
+    }
+  }
+  return outline;
+}
+
+}  // namespace
 
 // Each comparison is written so that NaN violates it.
 std::vector<std::string> LandingPattern::Validate() const {
@@ -29,6 +70,13 @@ std::vector<std::string> LandingPattern::Validate() const {
   require(board_size_m >= outer_diameter_m && std::isfinite(board_size_m), "board_size_m",
           board_size_m, fmt::format("at least the outer diameter, {}", outer_diameter_m));
   return violations;
+}
+
+TargetShape ShapeOf(const LandingPattern& pattern) {
+  return {
+      pattern.outer_diameter_m,
+      pattern.board_size_m,
+      {Circle(pattern.outer_radius_m()), Circle(pattern.inner_radius_m()), CrossOutline(pattern)}};
 }
 
 }  // namespace kestrel

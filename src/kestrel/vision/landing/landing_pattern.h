@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/vision/target/target_shape.h"
+
 namespace kestrel {
 
 // Dimensions of the landing pattern, in metres: a black ring and, inside of it, a black X of two
@@ -36,5 +38,8 @@ struct LandingPattern {
   // Returns every violation in words; empty when the dimensions are consistent.
   std::vector<std::string> Validate() const;
 };
+
+// Returns the pattern as a pad: the edges of ring and cross.
+TargetShape ShapeOf(const LandingPattern& pattern);
 
 }  // namespace kestrel

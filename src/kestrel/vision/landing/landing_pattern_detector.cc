@@ -1,43 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/vision/landing/landing_pattern_detector.h"
 
+#include <string_view>
+
 #include "kestrel/core/base/error.h"
 #include "kestrel/vision/landing/search/landing_search.h"
 
 namespace kestrel {
-const char* ToString(CrossMethod method) {
-  switch (method) {
-    case CrossMethod::kQuadrants:
-      return "quadrants";
-    case CrossMethod::kThinning:
-      return "thinning";
-    case CrossMethod::kLines:
-      return "lines";
-    case CrossMethod::kPartial:
-      return "partial";
-  }
-  return "";
-}
-
-const char* ToString(LandingStage stage) {
-  switch (stage) {
-    case LandingStage::kBinarize:
-      return "binarize";
-    case LandingStage::kAreas:
-      return "areas";
-    case LandingStage::kRing:
-      return "ring";
-    case LandingStage::kCross:
-      return "cross";
-    case LandingStage::kMatch:
-      return "match";
-    case LandingStage::kLocate:
-      return "locate";
-    case LandingStage::kFound:
-      return "found";
-  }
-  return "";
-}
 
 std::vector<std::string> LandingPatternDetectorOptions::Validate() const {
   std::vector<std::string> violations;
@@ -66,7 +35,10 @@ LandingWorkspace::LandingWorkspace(LandingWorkspace&&) noexcept = default;
 LandingWorkspace& LandingWorkspace::operator=(LandingWorkspace&&) noexcept = default;
 
 struct LandingPatternDetector::Impl : LandingModels {
-  using LandingModels::LandingModels;
+  Impl(const CameraModel& camera_model, const LandingPatternDetectorOptions& all_options)
+      : LandingModels(camera_model, all_options), shape(ShapeOf(all_options.pattern)) {}
+
+  TargetShape shape;
 };
 
 LandingPatternDetector::LandingPatternDetector(const CameraModel& camera,
@@ -86,19 +58,29 @@ LandingPatternDetector::LandingPatternDetector(LandingPatternDetector&&) noexcep
 LandingPatternDetector& LandingPatternDetector::operator=(LandingPatternDetector&&) noexcept =
     default;
 const CameraModel& LandingPatternDetector::camera() const { return impl_->camera; }
+const TargetShape& LandingPatternDetector::shape() const { return impl_->shape; }
 const LandingPatternDetectorOptions& LandingPatternDetector::options() const {
   return impl_->options;
 }
 
+std::unique_ptr<TargetWorkspace> LandingPatternDetector::MakeWorkspace() const {
+  return std::make_unique<LandingWorkspace>();
+}
+
 LandingReport LandingPatternDetector::Detect(const cv::Mat& image, const LandingHint& hint,
-                                             LandingWorkspace& workspace) const {
+                                             TargetWorkspace& workspace) const {
+  const auto failure = [](std::string_view reason) {
+    LandingReport report;
+    report.reason = reason;
+    return report;
+  };
+  auto* const memory = dynamic_cast<LandingWorkspace*>(&workspace);
+  if (memory == nullptr) return failure("the workspace is another detector's");
   if (image.type() != CV_8UC1 || image.cols != camera().width_px() ||
       image.rows != camera().height_px()) {
-    LandingReport report;
-    report.reason = "the image is not 8-bit gray or not of the camera's size";
-    return report;
+    return failure("the image is not 8-bit gray or not of the camera's size");
   }
-  return LandingSearch(*impl_, image, hint, workspace.buffers_.get()).Run();
+  return LandingSearch(*impl_, image, hint, memory->buffers_.get()).Run();
 }
 
 }  // namespace kestrel

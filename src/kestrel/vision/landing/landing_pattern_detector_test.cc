@@ -96,10 +96,10 @@ TEST_F(LandingPatternDetectorTest, PutsPrintsThatAreCutOffWhereTheyAre) {
 TEST_F(LandingPatternDetectorTest, FindsThePatternAtAllSizes) {
   struct Case {
     double distance;
-    CrossMethod method;
+    DetectionMethod method;
   };
-  for (const Case& c : {Case{1.1, CrossMethod::kLines}, Case{3, CrossMethod::kThinning},
-                        Case{9, CrossMethod::kQuadrants}}) {
+  for (const Case& c : {Case{1.1, DetectionMethod::kLines}, Case{3, DetectionMethod::kThinning},
+                        Case{9, DetectionMethod::kQuadrants}}) {
     const RigidTransform truth =
         PrintPose({0.03 * c.distance, 0.02 * c.distance, c.distance}, 0.1, 2, 0.5);
     const LandingReport report = Detect(Draw(SpokedPrint(pattern_, 4), truth));
@@ -112,7 +112,7 @@ TEST_F(LandingPatternDetectorTest, FindsThePatternAtAllSizes) {
     Eigen::Vector2d center;
     camera_.Project(truth.translation, &center);
     EXPECT_LT((detection.center_px - center).norm(), 0.2);
-    EXPECT_NEAR(detection.ring_semi_major_px, 110 / c.distance, 0.08 * 110 / c.distance + 0.7);
+    EXPECT_NEAR(detection.semi_major_px, 110 / c.distance, 0.08 * 110 / c.distance + 0.7);
     EXPECT_GT(detection.quality, 0.8);
     EXPECT_LE(detection.quality, 1);
   }
@@ -202,9 +202,8 @@ TEST_F(LandingPatternDetectorTest, TheSizeOfARingIsThatOfItsImage) {
   const LandingReport report = detector.Detect(image, {}, workspace_);
   ASSERT_TRUE(report.detection) << report.reason;
   const double by_angle = 230 * std::atan2(pattern_.outer_radius_m(), 3);
-  EXPECT_NEAR(report.detection->ring_semi_minor_px, by_angle, 0.03 * by_angle);
-  EXPECT_NEAR(report.detection->ring_semi_major_px, angle / std::sin(angle) * by_angle,
-              0.03 * by_angle);
+  EXPECT_NEAR(report.detection->semi_minor_px, by_angle, 0.03 * by_angle);
+  EXPECT_NEAR(report.detection->semi_major_px, angle / std::sin(angle) * by_angle, 0.03 * by_angle);
 }
 
 TEST_F(LandingPatternDetectorTest, AFlatImageFallsAtTheFirstStages) {
@@ -337,11 +336,11 @@ TEST(LandingPatternDetectorOptions, EveryViolationIsNamed) {
   }
 }
 
-TEST(LandingStage, HasANameEach) {
-  EXPECT_STREQ(ToString(LandingStage::kBinarize), "binarize");
-  EXPECT_STREQ(ToString(LandingStage::kFound), "found");
-  EXPECT_STREQ(ToString(CrossMethod::kPartial), "partial");
-  EXPECT_STREQ(ToString(CrossMethod::kQuadrants), "quadrants");
+TEST_F(LandingPatternDetectorTest, AWorkspaceOfAnotherDetectorIsRefused) {
+  TargetWorkspace other;
+  const LandingReport report = detector_.Detect(image_, {}, other);
+  EXPECT_FALSE(report.detection);
+  EXPECT_EQ(report.reason, "the workspace is another detector's");
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ void CalibrationMonitor::AddEvidence(const LandingDetection& detection) {
   if (side == nullptr) return;
   side->information += evidence.information;
   side->pull += evidence.pull;
-  const double shared_px = kSharedShare * 2 * detection.ring_semi_major_px;
+  const double shared_px = kSharedShare * 2 * detection.semi_major_px;
   side->shared += shared_px * shared_px / evidence.edge_variance;
   // Regularization of the directions that the side hardly determines.
   constexpr double kWeak = 1e-3;

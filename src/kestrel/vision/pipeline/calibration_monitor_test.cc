@@ -26,7 +26,7 @@ struct Views {
     detection.camera_from_pattern.rotation = Eigen::AngleAxisd(
         turn * random->Uniform(0.5, 1.5), Eigen::Vector3d(std::cos(angle), std::sin(angle), 0));
     detection.camera_from_pattern.translation = {0, 0, 3};
-    detection.ring_semi_major_px = 50;
+    detection.semi_major_px = 50;
     CalibrationEvidence& evidence = detection.calibration;
     evidence.edge_variance = 0.01;
     const bool is_outlier = random->Chance(outliers);

@@ -8,9 +8,9 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
-#include "kestrel/vision/landing/alignment/plane_warp.h"
 #include "kestrel/vision/landing/alignment/print_outline.h"
 #include "kestrel/vision/landing/search/image_region.h"
+#include "kestrel/vision/target/plane_warp.h"
 
 namespace kestrel {
 

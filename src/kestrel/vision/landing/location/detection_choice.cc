@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "kestrel/vision/landing/alignment/print_outline.h"
+
 namespace kestrel {
 namespace {
 
@@ -107,8 +109,10 @@ std::optional<LandingDetection> DetectionChoice::Detection() const {
   detection.covariance = best_->location.covariance;
   detection.method = best_->method;
   detection.quality = ProbabilityOf(best_->log_odds);
-  detection.ring_semi_major_px = 0.5 * best_->diameters_px.x();
-  detection.ring_semi_minor_px = 0.5 * best_->diameters_px.y();
+  detection.semi_major_px = 0.5 * best_->diameters_px.x();
+  detection.semi_minor_px = 0.5 * best_->diameters_px.y();
+  detection.heading_symmetry = PrintOutline::kArms;
+  detection.parts.Add({"ring and cross", std::nullopt, best_->diameters_px.x()});
   detection.misfit_px = best_->location.misfit_px;
   detection.misfit_bound_px = MisfitBoundPx(*best_);
   detection.seen = best_->seen;

@@ -28,7 +28,7 @@ class DetectionChoiceTest : public ::testing::Test {
 PrintFinding FindingAt(const Eigen::Vector2d& center_px, double log_odds) {
   PrintFinding finding;
   finding.kind = PrintKind::kByEdges;
-  finding.method = CrossMethod::kThinning;
+  finding.method = DetectionMethod::kThinning;
   finding.location.camera_from_pattern = PrintPose({0.1, 0, 5}, 0.3, 1, 0.2);
   finding.location.covariance = 1e-4 * Eigen::Matrix<double, 6, 6>::Identity();
   finding.location.edge_rms_px = 0.3;
@@ -105,7 +105,7 @@ TEST_F(DetectionChoiceTest, TheMostProbableIsTaken) {
     if (!detection) continue;
     EXPECT_EQ(detection->center_px, best->center_px);
     EXPECT_DOUBLE_EQ(detection->quality, ProbabilityOf(best->log_odds));
-    EXPECT_EQ(detection->ring_semi_major_px, 20);
+    EXPECT_EQ(detection->semi_major_px, 20);
     EXPECT_EQ(detection->misfit_px, best->location.misfit_px);
     EXPECT_FALSE(detection->mirror_camera_from_pattern);
   }
@@ -176,7 +176,7 @@ TEST_F(DetectionChoiceTest, APartThatHardlyFixesThePoseIsNotSure) {
   whole.Add(FindingAt({0, 0}, 2));
   EXPECT_TRUE(whole.IsSure());
   PrintFinding part = FindingAt({0, 0}, 2);
-  part.method = CrossMethod::kPartial;
+  part.method = DetectionMethod::kPartial;
   part.location.covariance *= 100;  // 0.1 m of 5 m per axis
   DetectionChoice vague = Choice(0.5);
   vague.Add(part);

@@ -13,7 +13,7 @@
 #include "kestrel/vision/landing/alignment/print_edges.h"
 #include "kestrel/vision/landing/alignment/print_outline.h"
 #include "kestrel/vision/landing/landing_pattern.h"
-#include "kestrel/vision/landing/location/calibration_evidence.h"
+#include "kestrel/vision/target/calibration_evidence.h"
 
 namespace kestrel {
 

@@ -127,7 +127,7 @@ void NearPrintVerifier::TestCross(const RigidTransform& pose, const ImageRegion&
   const double angle =
       std::atan2(search_.models.options.pattern.outer_radius_m(), pose.translation.norm());
   const double diameter_px = 2 * search_.models.camera.intrinsics().fx_px * angle;
-  const std::optional<Hypothesis> print = Compare(pose, CrossMethod::kPartial, diameter_px);
+  const std::optional<Hypothesis> print = Compare(pose, DetectionMethod::kPartial, diameter_px);
   if (!print) return;
   const double reach_px = std::max(kLeastReachPx, region.scale() + kCrossReach * diameter_px);
   const CirclePose ring{pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()};
@@ -148,7 +148,7 @@ std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCross(const 
   if (!view.valid()) return std::nullopt;
   const double contrast = search_.models.matcher.RingContrast(image, view);
   if (contrast < GrayContrast::kLeastRing) return std::nullopt;
-  const auto print = [&](const Cross& cross, CrossMethod method) {
+  const auto print = [&](const Cross& cross, DetectionMethod method) {
     return Hypothesis{PatternPose(ring, cross.arm_angle), method, contrast};
   };
   // Thinning is tried when the lines of a large cross are broken. It is fast on the rectified
@@ -157,12 +157,12 @@ std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCross(const 
     const auto inside = RectifyInside(image, view, pattern, kLinesSize, GrayContrast::kLeastInside);
     const auto cross =
         inside ? FindCrossByLines(*inside, pattern, &buffers_.cross_lines) : std::nullopt;
-    if (cross) return print(*cross, CrossMethod::kLines);
+    if (cross) return print(*cross, DetectionMethod::kLines);
   }
   const auto inside =
       RectifyInside(image, view, pattern, kThinningSize, GrayContrast::kLeastInside);
   const auto cross = inside ? FindCrossByThinning(*inside) : std::nullopt;
-  if (cross) return print(*cross, CrossMethod::kThinning);
+  if (cross) return print(*cross, DetectionMethod::kThinning);
   return std::nullopt;
 }
 
@@ -192,12 +192,12 @@ std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCrossInRefin
   RigidTransform turned = ring;
   turned.rotation *=
       Eigen::Quaterniond(Eigen::AngleAxisd(cross->arm_angle, Eigen::Vector3d::UnitZ()));
-  return Compare(turned, CrossMethod::kThinning, diameter_px);
+  return Compare(turned, DetectionMethod::kThinning, diameter_px);
 }
 
 // Returns nothing for a pose under which the image does not resemble the print at all.
 std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::Compare(const RigidTransform& pose,
-                                                                        CrossMethod method,
+                                                                        DetectionMethod method,
                                                                         double diameter_px) {
   const SearchLog::Timer timer = search_.log.Time(LandingStage::kMatch);
   search_.log.Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
@@ -232,7 +232,7 @@ bool NearPrintVerifier::TestPrint(const Hypothesis& print, const Eigen::Vector2d
   finding.diameters_px = diameters_px;
   const double seen = search_.models.ink.Doubt(image, view, &finding.doubts);
   finding.kind = seen < PrintPlaces::kWhole ? PrintKind::kPart : PrintKind::kByEdges;
-  finding.method = seen < PrintPlaces::kWhole ? CrossMethod::kPartial : print.method;
+  finding.method = seen < PrintPlaces::kWhole ? DetectionMethod::kPartial : print.method;
   finding.doubts[PrintDoubt::kHidden] = 1 - seen;
   DoubtEdges(alignment, &finding);
   bool is_found = false;
@@ -269,7 +269,7 @@ bool NearPrintVerifier::Locate(const PrintAlignment& alignment, const RigidTrans
       search_.models.locator.Locate(alignment.edges, initial, search_.prior.LevelPrior(normal));
   if (!location) return false;
   finding.location = *location;
-  finding.seen = {alignment.warp.pose(), alignment.warp.displacement()};
+  finding.seen = {alignment.warp.pose(), alignment.warp.displacement(), alignment.warp.radius_m()};
   finding.seen_rms_px = alignment.edge_rms_px;
   finding.center_px = CenterPx(*location, alignment);
   finding.doubts[PrintDoubt::kMisfit] = LogShare(location->edge_rms_px, MeanDiameter(finding));

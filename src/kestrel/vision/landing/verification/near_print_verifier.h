@@ -42,14 +42,14 @@ class NearPrintVerifier {
   // A possible print: a ring with a cross inside, or a cross alone.
   struct Hypothesis {
     RigidTransform camera_from_pattern;
-    CrossMethod method;
+    DetectionMethod method;
     double contrast;  // of ring and white, gray values
   };
 
   std::optional<Hypothesis> FindCross(const CirclePose& ring, double diameter_px);
   std::optional<Hypothesis> FindCrossInRefined(const RigidTransform& ring, double diameter_px);
   std::optional<RingLocation> RefineRing(const CirclePose& ring, double reach_px, int iterations);
-  std::optional<Hypothesis> Compare(const RigidTransform& pose, CrossMethod method,
+  std::optional<Hypothesis> Compare(const RigidTransform& pose, DetectionMethod method,
                                     double diameter_px);
   bool TestPrint(const Hypothesis& print, const Eigen::Vector2d& diameters_px, double reach_px,
                  std::span<const CirclePose> rings, const PriorKnowledge::Order& order);

@@ -8,8 +8,8 @@
 
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/geometry/rigid_transform.h"
-#include "kestrel/vision/landing/alignment/plane_warp.h"
 #include "kestrel/vision/landing/search/image_region.h"
+#include "kestrel/vision/target/plane_warp.h"
 
 namespace kestrel {
 

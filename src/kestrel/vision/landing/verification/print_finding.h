@@ -8,14 +8,14 @@
 #include "kestrel/vision/landing/landing_pattern_detector.h"
 #include "kestrel/vision/landing/location/pattern_locator.h"
 #include "kestrel/vision/landing/score/print_doubts.h"
-#include "kestrel/vision/landing/verification/seen_print.h"
+#include "kestrel/vision/target/seen_print.h"
 
 namespace kestrel {
 
 // A finding: a print that was located, whether it is the pattern or not.
 struct PrintFinding {
   PrintKind kind;
-  CrossMethod method;
+  DetectionMethod method;
   PatternLocation location;
   std::optional<SeenPrint> seen;  // location in the image by its edges
   double seen_rms_px = 0;         // root mean square offset of the edges from 'seen'
@@ -25,7 +25,7 @@ struct PrintFinding {
   double log_odds = 0;  // that it is the pattern, by the doubts alone
   double told = 0;      // log odds that the hint adds to that; at most 0
 
-  bool is_part() const { return method == CrossMethod::kPartial; }
+  bool is_part() const { return method == DetectionMethod::kPartial; }
   // Standard deviation of the position, as a share of the distance.
   double relative_sigma() const;
 };

@@ -121,7 +121,8 @@ std::optional<PrintFinding> SmallPrintVerifier::FindingOf(const SmallPatternFitt
   const PatternView view(search_.models.camera, pose, search_.models.ink.extent_m(), {});
   if (!view.valid()) return std::nullopt;
   const double seen = search_.models.ink.Doubt(search_.image.whole(), view, &finding.doubts);
-  finding.method = seen < PrintPlaces::kWhole ? CrossMethod::kPartial : CrossMethod::kQuadrants;
+  finding.method =
+      seen < PrintPlaces::kWhole ? DetectionMethod::kPartial : DetectionMethod::kQuadrants;
   finding.doubts[PrintDoubt::kHidden] = 1 - seen;
   DoubtGrayValues(fit, &finding.doubts);
   DoubtView(finding.diameters_px, finding.relative_sigma(), &finding.doubts);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/landing/alignment/plane_warp.h"
+#include "kestrel/vision/target/plane_warp.h"
 
 #include <cmath>
 #include <vector>

@@ -15,9 +15,10 @@ class PlaneWarp;
 struct SeenPrint {
   RigidTransform near_pose;  // pose to which the displacement is added
   Eigen::Matrix<double, 2, 8> displacement_px;
+  double radius_m;  // unit of length of the displacement's polynomial
 
-  // 'camera': the detector's, which must outlive the result. 'radius_m': outer radius of the ring.
-  PlaneWarp Warp(const CameraModel& camera, double radius_m) const;
+  // 'camera': the detector's, which must outlive the result.
+  PlaneWarp Warp(const CameraModel& camera) const;
 };
 
 }  // namespace kestrel

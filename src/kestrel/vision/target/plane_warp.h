@@ -8,7 +8,7 @@
 
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/geometry/rigid_transform.h"
-#include "kestrel/vision/landing/verification/seen_print.h"
+#include "kestrel/vision/target/seen_print.h"
 
 namespace kestrel {
 
@@ -68,7 +68,7 @@ class PlaneWarp {
   Coefficients displacement_ = Coefficients::Zero();
 };
 
-inline PlaneWarp SeenPrint::Warp(const CameraModel& camera, double radius_m) const {
+inline PlaneWarp SeenPrint::Warp(const CameraModel& camera) const {
   PlaneWarp warp(camera, near_pose, radius_m);
   warp.Displace(displacement_px);
   return warp;

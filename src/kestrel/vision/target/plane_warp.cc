@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/landing/alignment/plane_warp.h"
+#include "kestrel/vision/target/plane_warp.h"
 
 #include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kestrel/vision/landing/alignment/plane_warp.cc"
+#define HWY_TARGET_INCLUDE "kestrel/vision/target/plane_warp.cc"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for every instruction set.
 #include <hwy/highway.h>
 
-#ifndef KESTREL_LANDING_PLANE_WARP_CC_
-#define KESTREL_LANDING_PLANE_WARP_CC_
+#ifndef KESTREL_TARGET_PLANE_WARP_CC_
+#define KESTREL_TARGET_PLANE_WARP_CC_
 namespace kestrel {
 
 // A warp in single precision.
@@ -30,7 +30,7 @@ struct ShownPoints {
 };
 
 }  // namespace kestrel
-#endif  // KESTREL_LANDING_PLANE_WARP_CC_
+#endif  // KESTREL_TARGET_PLANE_WARP_CC_
 
 HWY_BEFORE_NAMESPACE();
 namespace kestrel {

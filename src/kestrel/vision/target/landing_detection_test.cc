@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/target/landing_detection.h"
+
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace kestrel {
+namespace {
+
+TEST(DetectionMethod, EachHasAWordOfItsOwn) {
+  EXPECT_STREQ(ToString(DetectionMethod::kQuadrants), "quadrants");
+  EXPECT_STREQ(ToString(DetectionMethod::kPartial), "partial");
+  std::set<std::string> words;
+  for (const DetectionMethod method : kDetectionMethods) words.insert(ToString(method));
+  EXPECT_EQ(words.size(), kDetectionMethods.size());
+  EXPECT_EQ(words.count(""), 0u);
+}
+
+TEST(LandingStage, TheWordsAreThoseOfTheTables) {
+  EXPECT_STREQ(ToString(LandingStage::kBinarize), "binarize");
+  EXPECT_STREQ(ToString(LandingStage::kLocate), "locate");
+  EXPECT_STREQ(ToString(LandingStage::kFound), "found");
+}
+
+TEST(SeenParts, KeepsAsManyAsThereIsRoomFor) {
+  SeenParts parts;
+  EXPECT_TRUE(parts.all().empty());
+  for (int id = 0; id < 2 * static_cast<int>(SeenParts::kMost); ++id) parts.Add({"tag", id, 10});
+  ASSERT_EQ(parts.all().size(), SeenParts::kMost);
+  EXPECT_EQ(parts.all().front().id, 0);
+  EXPECT_EQ(parts.all().back().id, static_cast<int>(SeenParts::kMost) - 1);
+}
+
+}  // namespace
+}  // namespace kestrel

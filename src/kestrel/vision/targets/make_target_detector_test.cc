@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/targets/make_target_detector.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
+#include "kestrel/vision/landing/test_landing_detector.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::HasSubstr;
+using MakeTargetDetectorTest = LandingPatternDetectorTest;
+
+TEST_F(MakeTargetDetectorTest, TheRingIsTheDefault) {
+  const auto detector = MakeTargetDetector(camera_, TargetOptions(), {});
+  const auto workspace = detector->MakeWorkspace();
+  const LandingReport report = detector->Detect(image_, {}, *workspace);
+  ExpectSame(report, Detect(image_));
+  ASSERT_TRUE(report.detection);
+  EXPECT_EQ(report.detection->heading_symmetry, 4);
+  EXPECT_FALSE(report.detection->id);
+  EXPECT_EQ(detector->shape().diameter_m, pattern_.outer_diameter_m);
+}
+
+TEST_F(MakeTargetDetectorTest, TheOptionsOfTheRingAreUsed) {
+  LandingPatternDetectorOptions ring;
+  ring.pattern.outer_diameter_m = 0.8;
+  ring.pattern.arm_half_length_m = 0.3;
+  EXPECT_EQ(MakeTargetDetector(camera_, {}, ring)->shape().diameter_m, 0.8);
+  ring.min_quality = 2;
+  EXPECT_THROW(MakeTargetDetector(camera_, {}, ring), InputError);
+}
+
+TEST_F(MakeTargetDetectorTest, AnUnknownKindIsAnErrorThatNamesTheKinds) {
+  TargetOptions target;
+  SetOption("kind=ring-cros", &target);
+  try {
+    MakeTargetDetector(camera_, target, {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("'ring-cros', expected one of ring-cross"));
+    EXPECT_THAT(error.what(), HasSubstr("did you mean 'ring-cross'?"));
+  }
+}
+
+}  // namespace
+}  // namespace kestrel
