@@ -7,6 +7,6 @@
 //   LandingPipeline pipeline(ReadCalibration("camera.yaml"), {});
 //   const LandingObservation seen = pipeline.Process(image, time);
 //   const cv::Mat drawn = DrawLandingOverlay(image, pipeline.detector().camera(),
-//                                            pipeline.options().detector.pattern, seen);
+//                                            pipeline.detector().shape(), seen);
 
 #include "kestrel/io/recording/landing_overlay.h"  // IWYU pragma: export

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
@@ -37,28 +38,33 @@ std::vector<cv::Point2f> Outline(const CameraModel& camera,
   return outline;
 }
 
-// The image of a circle around the pattern's centre, where the pattern is seen.
-std::vector<cv::Point2f> SeenOutline(const CameraModel& camera, const SeenPrint& seen,
-                                     double radius_m) {
-  const PlaneWarp warp = seen.Warp(camera);
-  std::vector<cv::Point2f> outline;
-  for (int i = 0; i < kPiecesPerCircle; ++i) {
-    const double angle = 2 * std::numbers::pi * i / kPiecesPerCircle;
-    Eigen::Vector2d pixel;
-    if (!warp.Project(radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)), &pixel)) {
-      continue;
-    }
-    if (pixel.allFinite()) outline.emplace_back(pixel.x(), pixel.y());
-  }
-  return outline;
+// Projects a point of the pad (m) to its pixel; false when the lens does not show it.
+using PadProjection = std::function<bool(const Eigen::Vector3d& point, Eigen::Vector2d* pixel)>;
+
+PadProjection ByPose(const CameraModel& camera, const RigidTransform& camera_from_pattern) {
+  return [&](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
+    return camera.Project(camera_from_pattern * point, pixel) != ProjectionStatus::kOutsideModel;
+  };
 }
 
-std::vector<cv::Point2f> RingOutline(const CameraModel& camera,
-                                     const RigidTransform& camera_from_pattern, double radius_m) {
-  return Outline(camera, [&](double angle) {
-    return Eigen::Vector3d(camera_from_pattern * Eigen::Vector3d(radius_m * std::cos(angle),
-                                                                 radius_m * std::sin(angle), 0));
-  });
+PadProjection AsSeen(const PlaneWarp& warp) {
+  return [&](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
+    return warp.Project(point.head<2>(), pixel);
+  };
+}
+
+// Adds the outlines of the pad; the first one has the label.
+void AddOutlines(const TargetShape& pad, const PadProjection& project, OverlayLayer layer,
+                 std::string label, std::vector<OverlayShape>* shapes) {
+  for (const std::vector<Eigen::Vector3d>& line : pad.outlines) {
+    OverlayShape& shape = shapes->emplace_back(OverlayShape{layer, {}, std::exchange(label, {})});
+    for (const Eigen::Vector3d& point : line) {
+      Eigen::Vector2d pixel;
+      if (project(point, &pixel) && pixel.allFinite()) {
+        shape.outline.emplace_back(pixel.x(), pixel.y());
+      }
+    }
+  }
 }
 
 std::vector<cv::Point2f> TrackOutline(const CameraModel& camera,
@@ -120,7 +126,8 @@ ConsoleMapObject MapObject(const std::string& label, const TurnState& motion) {
 }  // namespace
 
 LandingView ViewOf(const CameraCalibration& calibration, const LandingPipelineOptions& options) {
-  return {CameraModel(calibration.intrinsics), options.detector.pattern, options.tracker.Noise()};
+  return {CameraModel(calibration.intrinsics), ShapeOfTarget(options.target, options.detector),
+          options.tracker.Noise()};
 }
 
 std::vector<SeriesDescription> LandingSeries() {
@@ -165,19 +172,17 @@ std::vector<OverlayShape> LandingShapes(const LandingView& view,
   const std::string label =
       fmt::format("{}, {:.0f} %{}", InWords(found.method), 100 * found.quality,
                   is_rejected ? ", far from the track" : "");
-  const double outer_m = view.pattern.outer_radius_m();
-  const double inner_m = view.pattern.inner_radius_m();
   const bool is_seen_elsewhere = found.is_misfit() && found.seen;
   if (is_seen_elsewhere) {
-    shapes.push_back({layer, SeenOutline(view.camera, *found.seen, outer_m), label + ", as seen"});
-    shapes.push_back({layer, SeenOutline(view.camera, *found.seen, inner_m), ""});
+    const PlaneWarp warp = found.seen->Warp(view.camera);
+    AddOutlines(view.shape, AsSeen(warp), layer, label + ", as seen", &shapes);
   }
-  const OverlayLayer of_pose = is_seen_elsewhere ? OverlayLayer::kRejected : layer;
-  shapes.push_back({of_pose, RingOutline(view.camera, found.camera_from_pattern, outer_m),
-                    is_seen_elsewhere
-                        ? fmt::format("by the calibration: {:.1f} px beside", found.misfit_px)
-                        : label});
-  shapes.push_back({of_pose, RingOutline(view.camera, found.camera_from_pattern, inner_m), ""});
+  AddOutlines(view.shape, ByPose(view.camera, found.camera_from_pattern),
+              is_seen_elsewhere ? OverlayLayer::kRejected : layer,
+              is_seen_elsewhere
+                  ? fmt::format("by the calibration: {:.1f} px beside", found.misfit_px)
+                  : label,
+              &shapes);
   shapes.push_back(
       {layer,
        {{static_cast<float>(found.center_px.x()), static_cast<float>(found.center_px.y())}},

@@ -6,8 +6,8 @@
 #include "kestrel/app/console/console_feed.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/camera/camera_model.h"
-#include "kestrel/vision/landing/landing_pattern.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
+#include "kestrel/vision/target/target_shape.h"
 #include "kestrel/vision/tracking/turn_motion.h"
 
 namespace kestrel {
@@ -17,7 +17,7 @@ namespace kestrel {
 // Data that are the same for all frames.
 struct LandingView {
   CameraModel camera;
-  LandingPattern pattern;
+  TargetShape shape;
   TurnNoise noise;  // noise of the track's motion
 };
 LandingView ViewOf(const CameraCalibration& calibration, const LandingPipelineOptions& options);
@@ -27,8 +27,8 @@ LandingView ViewOf(const CameraCalibration& calibration, const LandingPipelineOp
 std::vector<SeriesDescription> LandingSeries();
 ConsoleSample LandingSample(const LandingObservation& observation);
 
-// Returns the outlines of the ring and the centre of the cross where they were found (layer
-// kRejected if the detection is far from the track), and the track's centre as an ellipse of two
+// Returns the outlines of the pad and its centre where they were found (layer kRejected if the
+// detection is far from the track), and the track's centre as an ellipse of two
 // standard deviations. For a misfit: the outlines as seen, and as kRejected those that pose and
 // calibration predict. A line ends where the lens model does.
 std::vector<OverlayLayer> LandingLayers();

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/core/camera/paper_camera.h"
+#include "kestrel/vision/landing/landing_pattern.h"
 #include "kestrel/vision/target/plane_warp.h"
 
 namespace kestrel {
@@ -38,7 +39,9 @@ LandingObservation Seen() {
   return observation;
 }
 
-LandingView View() { return {CameraModel(PaperCamera()), {}, TargetTrackerOptions().Noise()}; }
+LandingView View() {
+  return {CameraModel(PaperCamera()), ShapeOf(LandingPattern()), TargetTrackerOptions().Noise()};
+}
 
 cv::Point2f Middle(const OverlayShape& shape) {
   cv::Point2f sum(0, 0);
@@ -58,7 +61,7 @@ double Width(const OverlayShape& shape, bool is_vertical) {
 
 TEST(LandingViewTest, TheTracksEllipseLiesWhereTheRingIs) {
   const auto shapes = LandingShapes(View(), Seen());
-  ASSERT_EQ(shapes.size(), 4U);
+  ASSERT_EQ(shapes.size(), 5U);
   EXPECT_EQ(shapes[0].layer, OverlayLayer::kPrediction);
   EXPECT_EQ(shapes[1].layer, OverlayLayer::kDetection);
   EXPECT_NEAR(cv::norm(Middle(shapes[0]) - Middle(shapes[1])), 0, 2);
@@ -72,8 +75,8 @@ TEST(LandingViewTest, WhatTheTrackDoesNotTakeIsRejected) {
   LandingObservation observation = Seen();
   observation.fate = MeasurementFate::kFarFromTrack;
   const auto shapes = LandingShapes(View(), observation);
-  ASSERT_EQ(shapes.size(), 4U);
-  for (int i = 1; i < 4; ++i) EXPECT_EQ(shapes[i].layer, OverlayLayer::kRejected);
+  ASSERT_EQ(shapes.size(), 5U);
+  for (int i = 1; i < 5; ++i) EXPECT_EQ(shapes[i].layer, OverlayLayer::kRejected);
   EXPECT_NE(LandingStatus(observation).reason, "");
 }
 
@@ -85,18 +88,18 @@ TEST(LandingViewTest, OfAMisfitBothOutlinesAreShown) {
   detection.misfit_px = 20;
   detection.misfit_bound_px = 1;
   const auto shapes = LandingShapes(View(), observation);
-  ASSERT_EQ(shapes.size(), 6U);
+  ASSERT_EQ(shapes.size(), 8U);
   EXPECT_EQ(shapes[1].layer, OverlayLayer::kDetection);
-  EXPECT_EQ(shapes[3].layer, OverlayLayer::kRejected);
-  const cv::Point2f beside = Middle(shapes[1]) - Middle(shapes[3]);
+  EXPECT_EQ(shapes[4].layer, OverlayLayer::kRejected);
+  const cv::Point2f beside = Middle(shapes[1]) - Middle(shapes[4]);
   EXPECT_NEAR(beside.x, 0, 0.1);
   EXPECT_NEAR(beside.y, 25, 0.1);
-  EXPECT_NE(shapes[3].label.find("20.0 px beside"), std::string::npos) << shapes[3].label;
+  EXPECT_NE(shapes[4].label.find("20.0 px beside"), std::string::npos) << shapes[4].label;
   EXPECT_NE(LandingStatus(observation).reason.find("20.0 px beside"), std::string::npos);
   EXPECT_EQ(LandingFacts(observation).back().value, "20.00 px, at most 1.00 expected");
   EXPECT_EQ(LandingFacts(LandingObservation()).size(), LandingFacts(observation).size());
   detection.misfit_bound_px = 30;
-  EXPECT_EQ(LandingShapes(View(), observation).size(), 4U) << "no more than should be";
+  EXPECT_EQ(LandingShapes(View(), observation).size(), 5U) << "no more than should be";
 }
 
 TEST(LandingViewTest, NumbersAreThoseOfTheTrack) {

@@ -40,6 +40,8 @@ std::optional<double> MotionDuringExposure(const FlightTruth& flight, const True
   return (*end - *begin).norm();
 }
 
+constexpr int kQuarters = 4;  // turns after which the ring with a cross looks the same
+
 // Reduces 'angle' by quarter turns to at most an eighth of a turn.
 double WithinAnEighth(double angle) { return std::remainder(angle, std::numbers::pi / 2); }
 
@@ -96,7 +98,8 @@ LandingErrors MeasureErrors(const DetectionRow::Pattern& detected, const TruePat
   errors.nees = error.cwiseQuotient(detected.sigma_in_camera).squaredNorm();
   if (detected.center_in_world) errors.in_world = *detected.center_in_world - true_in_world;
   if (detected.yaw_in_world) {
-    errors.yaw = WithinAnEighth(*detected.yaw_in_world - PatternYaw(truth.world_from_pattern));
+    errors.yaw =
+        WithinAnEighth(*detected.yaw_in_world - PatternYaw(truth.world_from_pattern, kQuarters));
   }
   return errors;
 }

@@ -255,7 +255,7 @@ foxglove::SceneUpdate FoxgloveScene(const LandingView& view,
   foxglove::SceneEntity& target = scene.entities.emplace_back(EntityOf(observation.time, "target"));
   target.spheres.push_back(
       Ellipsoid(motion.position(), motion.covariance.topLeftCorner<3, 3>(), kGreen));
-  target.lines.push_back(RingLine(motion.position(), view.pattern.outer_radius_m()));
+  target.lines.push_back(RingLine(motion.position(), view.shape.radius_m()));
   target.lines.push_back(PathLine(motion, view.noise));
   target.texts.push_back(
       TextAt(motion.position(), fmt::format("{} {:.1f} m/s", ToString(observation.track_state),

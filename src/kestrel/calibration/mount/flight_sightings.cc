@@ -24,10 +24,12 @@ void SetMountAndClock(const MountAndClock& estimate, CameraCalibration* calibrat
 
 FlightSightings::FlightSightings(const CameraIntrinsics& camera,
                                  const LandingPipelineOptions& options)
-    : detector_(CameraModel(camera), options.detector), noise_(options.noise) {}
+    : detector_(MakeTargetDetector(CameraModel(camera), options.target, options.detector)),
+      workspace_(detector_->MakeWorkspace()),
+      noise_(options.noise) {}
 
 void FlightSightings::Add(const cv::Mat& image, Time time) {
-  const LandingReport report = detector_.Detect(image, {}, workspace_);
+  const LandingReport report = detector_->Detect(image, {}, *workspace_);
   if (!report.detection) return;
   const RigidTransform& pose = report.detection->camera_from_pattern;
   const Eigen::Matrix3d covariance =

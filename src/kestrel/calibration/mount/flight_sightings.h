@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,9 +10,9 @@
 #include "kestrel/calibration/mount/flight_calibration.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
-#include "kestrel/vision/landing/landing_pattern_detector.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 #include "kestrel/vision/pipeline/measurement_noise.h"
+#include "kestrel/vision/target/target_detector.h"
 
 namespace kestrel {
 
@@ -43,8 +44,8 @@ class FlightSightings {
   const std::vector<PatternPlace>& places() const { return places_; }
 
  private:
-  LandingPatternDetector detector_;
-  LandingWorkspace workspace_;
+  std::unique_ptr<const TargetDetector> detector_;
+  std::unique_ptr<TargetWorkspace> workspace_;
   MeasurementNoise noise_;
   std::vector<TargetSighting> sightings_;
   std::vector<PatternPlace> places_;  // one for each sighting

@@ -162,7 +162,8 @@ std::optional<TargetEstimate> GuidedFlight::Target(Time now, const TrackSnapshot
     return std::nullopt;
   }
   const double ahead_s = ToSeconds(now - track.captured);
-  return TargetEstimate{now, Propagate(track.target->motion, std::max(ahead_s, 0.0), noise_)};
+  return TargetEstimate{now, Propagate(track.target->motion, std::max(ahead_s, 0.0), noise_),
+                        track.target->has_yaw};
 }
 
 void GuidedFlight::Ask(Time now, GuidanceRequest request) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/onboard/landing_vision.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
@@ -90,15 +92,18 @@ std::optional<TargetReport> LandingVision::Sighting(const LandingObservation& ob
   report.covariance = CovarianceInWorld(detection->covariance.topLeftCorner<3, 3>(), center,
                                         world_from_camera.rotation, noise) +
                       SharedCovarianceInWorld(center, world_from_camera.rotation, noise);
+  if (detection->heading_symmetry != 1) return report;
+  report.yaw = observation.yaw_in_world;
+  report.yaw_sigma = std::sqrt(YawVarianceInWorld(detection->covariance.bottomRightCorner<3, 3>(),
+                                                  world_from_camera.rotation, noise));
   return report;
 }
 
 void LandingVision::ControlExposure(const cv::Mat& image, const LandingObservation& observation) {
-  const LandingPatternDetector& detector = pipeline_.detector();
+  const TargetDetector& detector = pipeline_.detector();
   const auto& detection = observation.report.detection;
   exposure_->Update(
-      image, detection ? PatternArea(*detection, detector.options().pattern, detector.camera())
-                       : cv::Rect());
+      image, detection ? PatternArea(*detection, detector.shape(), detector.camera()) : cv::Rect());
 }
 
 std::string LandingVision::Warning() const {

@@ -238,20 +238,22 @@ void LiveSession::Impl::OpenAutopilot() {
 }
 
 FlightParts LiveSession::Impl::ProgramParts() {
-  return {
-      .source = parts_.source,
-      .vision = vision_.get(),
-      .connection = connection_ ? &*connection_ : nullptr,
-      .autopilot = autopilot_ ? &*autopilot_ : nullptr,
-      .guard = guard_,
-      .recording = &recording_,
-      .sink = sink_ ? &*sink_ : nullptr,
-      .guides = parts_.guides,
-      .source_has_poses = parts_.has_poses,
-      .sees_repeated = parts_.sees_repeated,
-      .profile = parts_.profile,
-      .truth = parts_.truth,
-      .pattern_size_m = hunt_ != nullptr ? 0 : options_.landing.detector.pattern.outer_diameter_m};
+  return {.source = parts_.source,
+          .vision = vision_.get(),
+          .connection = connection_ ? &*connection_ : nullptr,
+          .autopilot = autopilot_ ? &*autopilot_ : nullptr,
+          .guard = guard_,
+          .recording = &recording_,
+          .sink = sink_ ? &*sink_ : nullptr,
+          .guides = parts_.guides,
+          .source_has_poses = parts_.has_poses,
+          .sees_repeated = parts_.sees_repeated,
+          .profile = parts_.profile,
+          .truth = parts_.truth,
+          .pattern_size_m =
+              hunt_ != nullptr
+                  ? 0
+                  : ShapeOfTarget(options_.landing.target, options_.landing.detector).diameter_m};
 }
 
 void LiveSession::Impl::TakePose(const PoseSample& pose) {

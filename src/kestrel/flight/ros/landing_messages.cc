@@ -47,7 +47,7 @@ MarkerMessage Marker(const std::string& name, Time stamp, const std::string& fra
   return marker;
 }
 
-MarkerMessage PatternMarker(const LandingObservation& observation, const LandingPattern& pattern,
+MarkerMessage PatternMarker(const LandingObservation& observation, const TargetShape& shape,
                             const std::string& camera_frame) {
   MarkerMessage marker =
       Marker("pattern", observation.time, camera_frame, MarkerMessage::kCylinder);
@@ -56,7 +56,7 @@ MarkerMessage PatternMarker(const LandingObservation& observation, const Landing
     return marker;
   }
   marker.pose = PoseMessageOf(observation.report.detection->camera_from_pattern);
-  marker.scale = {pattern.outer_diameter_m, pattern.outer_diameter_m, kBoardThickness_m};
+  marker.scale = {shape.diameter_m, shape.diameter_m, kBoardThickness_m};
   marker.color = {0, 1, 0, 0.6F};
   return marker;
 }
@@ -94,8 +94,7 @@ MarkerMessage UncertaintyMarker(const LandingObservation& observation, const std
 }  // namespace
 
 Detection3DArrayMessage DetectionsOf(const LandingObservation& observation,
-                                     const std::string& camera_frame,
-                                     const LandingPattern& pattern) {
+                                     const std::string& camera_frame, const TargetShape& shape) {
   Detection3DArrayMessage message;
   message.header = HeaderOf(observation.time, camera_frame);
   const auto& detection = observation.report.detection;
@@ -104,7 +103,7 @@ Detection3DArrayMessage DetectionsOf(const LandingObservation& observation,
   found.header = message.header;
   found.source_cloud.header = message.header;
   found.box_center = PoseMessageOf(detection->camera_from_pattern);
-  found.box_size = {pattern.board_size_m, pattern.board_size_m, kBoardThickness_m};
+  found.box_size = {shape.board_size_m, shape.board_size_m, kBoardThickness_m};
   ObjectHypothesisMessage& result = found.results.emplace_back();
   result.class_id = "landing_pattern";
   result.score = detection->quality;
@@ -170,11 +169,11 @@ PathMessage PredictionOf(const TargetEstimate& target, const TurnNoise& noise, D
   return message;
 }
 
-MarkerArrayMessage MarkersOf(const LandingObservation& observation, const LandingPattern& pattern,
+MarkerArrayMessage MarkersOf(const LandingObservation& observation, const TargetShape& shape,
                              const std::string& camera_frame,
                              const std::optional<std::string>& world_frame) {
   MarkerArrayMessage message;
-  message.markers.push_back(PatternMarker(observation, pattern, camera_frame));
+  message.markers.push_back(PatternMarker(observation, shape, camera_frame));
   if (!world_frame) return message;
   message.markers.push_back(VelocityMarker(observation, *world_frame));
   message.markers.push_back(UncertaintyMarker(observation, *world_frame));

@@ -8,9 +8,9 @@
 
 #include "kestrel/io/bags/messages.h"
 #include "kestrel/io/bags/result_messages.h"
-#include "kestrel/vision/landing/landing_pattern.h"
-#include "kestrel/vision/landing/landing_pattern_detector.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
+#include "kestrel/vision/target/landing_detection.h"
+#include "kestrel/vision/target/target_shape.h"
 #include "kestrel/vision/tracking/target_tracker.h"
 #include "kestrel/vision/tracking/turn_motion.h"
 
@@ -22,8 +22,7 @@ namespace kestrel {
 // The detection in the camera's frame; an empty list when there is none. The box is the board's,
 // the score is the detection's quality.
 Detection3DArrayMessage DetectionsOf(const LandingObservation& observation,
-                                     const std::string& camera_frame,
-                                     const LandingPattern& pattern);
+                                     const std::string& camera_frame, const TargetShape& shape);
 
 // The pose of the pattern in the camera's frame, with its covariance.
 PoseWithCovarianceStampedMessage TargetPoseOf(const LandingDetection& detection, Time stamp,
@@ -44,9 +43,9 @@ OdometryMessage TrackOf(const TargetEstimate& target, const std::string& world_f
 PathMessage PredictionOf(const TargetEstimate& target, const TurnNoise& noise, Duration horizon,
                          Duration step, const std::string& world_frame);
 
-// For RViz: the pattern's ring in the camera's frame; in the world's frame, where it is known, the
+// For RViz: the pad in the camera's frame; in the world's frame, where it is known, the
 // target's path within the next second and the ellipsoid of three standard deviations around it.
-MarkerArrayMessage MarkersOf(const LandingObservation& observation, const LandingPattern& pattern,
+MarkerArrayMessage MarkersOf(const LandingObservation& observation, const TargetShape& shape,
                              const std::string& camera_frame,
                              const std::optional<std::string>& world_frame);
 

@@ -59,10 +59,10 @@ TEST(LandingMessages, OfATargetThatStandsTheHeadingIsNotKnown) {
 TEST(LandingMessages, NothingFoundIsAnEmptyListAndDeletesTheMarker) {
   LandingObservation observation;
   observation.time = kTrackTime;
-  const auto detections = DetectionsOf(observation, "camera", LandingPattern());
+  const auto detections = DetectionsOf(observation, "camera", ShapeOf(LandingPattern()));
   EXPECT_TRUE(detections.detections.empty());
   EXPECT_EQ(detections.header.frame_id, "camera");
-  const auto markers = MarkersOf(observation, LandingPattern(), "camera", "map").markers;
+  const auto markers = MarkersOf(observation, ShapeOf(LandingPattern()), "camera", "map").markers;
   ASSERT_EQ(markers.size(), 3);
   for (const MarkerMessage& marker : markers) EXPECT_EQ(marker.action, MarkerMessage::kDelete);
 }

@@ -13,7 +13,7 @@ LandingResults::LandingResults(LandingResultsOptions options, ResultConnection* 
 
 void LandingResults::PublishDetection(const LandingObservation& observation) {
   Publish(ResultTopic::kDetections,
-          DetectionsOf(observation, options_.camera_frame, options_.pattern));
+          DetectionsOf(observation, options_.camera_frame, options_.shape));
   const auto& detection = observation.report.detection;
   if (!detection) return;
   Publish(ResultTopic::kTargetPose,
@@ -27,7 +27,7 @@ void LandingResults::PublishDetection(const LandingObservation& observation) {
 void LandingResults::PublishTrack(const LandingObservation& observation) {
   if (connection_->HasSubscribers(ResultTopic::kMarkers)) {
     Publish(ResultTopic::kMarkers,
-            MarkersOf(observation, options_.pattern, options_.camera_frame, options_.world_frame));
+            MarkersOf(observation, options_.shape, options_.camera_frame, options_.world_frame));
   }
   if (!options_.world_frame || !observation.target) return;
   Publish(ResultTopic::kTrack,
@@ -41,7 +41,7 @@ void LandingResults::PublishTrack(const LandingObservation& observation) {
 void LandingResults::PublishImage(const cv::Mat& image, const CameraModel& camera,
                                   const LandingObservation& observation) {
   if (!connection_->HasSubscribers(ResultTopic::kAnnotatedImage)) return;
-  const cv::Mat annotated = DrawLandingOverlay(image, camera, options_.pattern, observation);
+  const cv::Mat annotated = DrawLandingOverlay(image, camera, options_.shape, observation);
   Publish(ResultTopic::kAnnotatedImage,
           ImageMessageOf(annotated, observation.time, options_.camera_frame));
 }

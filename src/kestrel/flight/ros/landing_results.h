@@ -10,8 +10,8 @@
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/flight/ros/result_connection.h"
 #include "kestrel/io/bags/serialization.h"
-#include "kestrel/vision/landing/landing_pattern.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
+#include "kestrel/vision/target/target_shape.h"
 #include "kestrel/vision/tracking/turn_motion.h"
 
 namespace kestrel {
@@ -26,7 +26,7 @@ struct LandingResultsOptions {
   bool publish_tf = true;
   Duration horizon{};  // of the prediction
   Duration step{};     // between its poses, above 0
-  LandingPattern pattern;
+  TargetShape shape;
   TurnNoise noise;  // of the track's motion
 };
 

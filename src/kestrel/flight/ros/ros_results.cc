@@ -22,7 +22,7 @@ LandingResultsOptions ResultsOf(WireFormat format, const RosResultOptions& optio
           .publish_tf = options.publish_tf,
           .horizon = DurationFromSeconds(options.prediction_s),
           .step = DurationFromSeconds(options.prediction_step_s),
-          .pattern = landing.detector.pattern,
+          .shape = ShapeOfTarget(landing.target, landing.detector),
           .noise = landing.tracker.Noise()};
 }
 

@@ -48,9 +48,9 @@ void LandingFiles::Take(const Observation& observation) {
   results_.WriteRows(LandingCsvRow(frame.name, seen));
   if (track_) track_->Write(seen, pipeline_->tracker());
   if (!results_.wants_pictures()) return;
-  const LandingPatternDetector& detector = pipeline_->detector();
-  results_.WritePicture(frame.name, DrawLandingOverlay(frame.image, detector.camera(),
-                                                       detector.options().pattern, seen));
+  const TargetDetector& detector = pipeline_->detector();
+  results_.WritePicture(frame.name,
+                        DrawLandingOverlay(frame.image, detector.camera(), detector.shape(), seen));
 }
 
 }  // namespace kestrel

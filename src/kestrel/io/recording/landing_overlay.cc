@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -30,16 +29,6 @@ const cv::Scalar kOutline(0, 0, 0);
 
 // A lens bends lines; therefore an edge is drawn in this number of pieces.
 constexpr int kPiecesPerEdge = 12;
-constexpr int kPiecesPerCircle = 96;
-
-Polyline Circle(double radius) {
-  Polyline points;
-  for (int i = 0; i <= kPiecesPerCircle; ++i) {
-    const double angle = 2 * std::numbers::pi * i / kPiecesPerCircle;
-    points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
-  }
-  return points;
-}
 
 Polyline LineBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   Polyline points;
@@ -47,25 +36,6 @@ Polyline LineBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
     points.push_back(from + (to - from) * i / kPiecesPerEdge);
   }
   return points;
-}
-
-// Outline of both arms: one corner between two arms and two at each end, four times.
-Polyline Cross(const LandingPattern& pattern) {
-  const double half_width = 0.5 * pattern.arm_width_m;
-  const double length = std::min(pattern.arm_half_length_m, pattern.inner_radius_m());
-  Polyline corners;
-  for (int quarter = 0; quarter <= 4; ++quarter) {
-    const Eigen::AngleAxisd turn(quarter * std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
-    corners.push_back(turn * Eigen::Vector3d(half_width, -half_width, 0));
-    corners.push_back(turn * Eigen::Vector3d(length, -half_width, 0));
-    corners.push_back(turn * Eigen::Vector3d(length, half_width, 0));
-  }
-  Polyline outline;
-  for (std::size_t i = 1; i < corners.size(); ++i) {
-    const Polyline edge = LineBetween(corners[i - 1], corners[i]);
-    outline.insert(outline.end(), edge.begin(), edge.end());
-  }
-  return outline;
 }
 
 class Canvas {
@@ -125,21 +95,19 @@ class Canvas {
   double scale_;  // of lines and letters, by the width of the image
 };
 
-void DrawPrint(const LandingPattern& pattern, const Projection& project, const cv::Scalar& color,
-               Canvas* canvas) {
-  canvas->DrawLine(Circle(pattern.outer_radius_m()), project, color);
-  canvas->DrawLine(Circle(pattern.inner_radius_m()), project, color);
-  canvas->DrawLine(Cross(pattern), project, color);
+void DrawOutlines(const TargetShape& shape, const Projection& project, const cv::Scalar& color,
+                  Canvas* canvas) {
+  for (const Polyline& outline : shape.outlines) canvas->DrawLine(outline, project, color);
 }
 
 // Draws the print at its edges in the image, and as pose and lens project it.
 void DrawMisfit(const LandingDetection& detection, const CameraModel& camera,
-                const LandingPattern& pattern, Canvas* canvas) {
+                const TargetShape& shape, Canvas* canvas) {
   const PlaneWarp seen = detection.seen->Warp(camera);
   const auto project = [&](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
     return seen.Project(point.head<2>(), pixel);
   };
-  DrawPrint(pattern, project, kMagenta, canvas);
+  DrawOutlines(shape, project, kMagenta, canvas);
   canvas->Write("magenta: where it is seen", kMagenta, 1);
   canvas->Write(fmt::format("yellow: where pose and calibration have it, {:.1f} px beside",
                             detection.misfit_px),
@@ -147,18 +115,18 @@ void DrawMisfit(const LandingDetection& detection, const CameraModel& camera,
 }
 
 void DrawDetection(const LandingDetection& detection, const CameraModel& camera,
-                   const LandingPattern& pattern, Canvas* canvas) {
+                   const TargetShape& shape, Canvas* canvas) {
   const RigidTransform& pose = detection.camera_from_pattern;
   const auto project = [&](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
     return camera.Project(pose * point, pixel) != ProjectionStatus::kOutsideModel;
   };
-  DrawPrint(pattern, project, kYellow, canvas);
+  DrawOutlines(shape, project, kYellow, canvas);
   const std::array<cv::Scalar, 3> colors = {kRed, kGreen, kBlue};
   for (int axis = 0; axis < 3; ++axis) {
-    const Eigen::Vector3d end = pattern.outer_radius_m() * Eigen::Vector3d::Unit(axis);
+    const Eigen::Vector3d end = shape.radius_m() * Eigen::Vector3d::Unit(axis);
     canvas->DrawLine(LineBetween(Eigen::Vector3d::Zero(), end), project, colors[axis]);
   }
-  if (detection.is_misfit() && detection.seen) DrawMisfit(detection, camera, pattern, canvas);
+  if (detection.is_misfit() && detection.seen) DrawMisfit(detection, camera, shape, canvas);
   canvas->DrawCenter(detection.center_px);
   canvas->Write(fmt::format("{}  {:.2f} m  quality {:.2f}", ToString(detection.method),
                             pose.translation.norm(), detection.quality),
@@ -168,11 +136,11 @@ void DrawDetection(const LandingDetection& detection, const CameraModel& camera,
 }  // namespace
 
 cv::Mat DrawLandingOverlay(const cv::Mat& image, const CameraModel& camera,
-                           const LandingPattern& pattern, const LandingObservation& observation) {
+                           const TargetShape& shape, const LandingObservation& observation) {
   Canvas canvas(image);
   const LandingReport& report = observation.report;
   if (report.detection) {
-    DrawDetection(*report.detection, camera, pattern, &canvas);
+    DrawDetection(*report.detection, camera, shape, &canvas);
   } else {
     canvas.Write(fmt::format("not found: {}: {}", ToString(report.reached), report.reason), kRed);
   }

@@ -4,17 +4,17 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/core/camera/camera_model.h"
-#include "kestrel/vision/landing/landing_pattern.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
+#include "kestrel/vision/target/target_shape.h"
 
 namespace kestrel {
 
-// Returns the frame (CV_8UC1) with the result drawn in, as CV_8UC3 (BGR). With a detection: both
-// edges of the ring and the outline of the cross as the pose projects them through the lens, the
-// centre, the axes (x red, y green, z blue), and in words method, distance and quality. Otherwise:
-// the stage at which the best candidate was rejected, and why. For a misfit also the print where it
-// is seen, in another colour, and a legend of the colours.
+// Returns the frame (CV_8UC1) with the result drawn in, as CV_8UC3 (BGR). With a detection: the
+// outlines of the pad as the pose projects them through the lens, the centre, the axes (x red, y
+// green, z blue), and in words method, distance and quality. Otherwise: the stage at which the best
+// candidate was rejected, and why. For a misfit also the print where it is seen, in another colour,
+// and a legend of the colours.
 cv::Mat DrawLandingOverlay(const cv::Mat& image, const CameraModel& camera,
-                           const LandingPattern& pattern, const LandingObservation& observation);
+                           const TargetShape& shape, const LandingObservation& observation);
 
 }  // namespace kestrel

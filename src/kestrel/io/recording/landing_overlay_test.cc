@@ -6,12 +6,14 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "kestrel/vision/landing/landing_pattern.h"
 #include "kestrel/vision/target/plane_warp.h"
 
 namespace kestrel {
 namespace {
 
 const CameraModel kCamera({640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}});
+const TargetShape kShape = ShapeOf(LandingPattern());
 const cv::Mat kGray(480, 640, CV_8UC1, 128);
 
 LandingObservation FoundAt(const Eigen::Vector3d& center_in_camera) {
@@ -33,8 +35,7 @@ bool IsYellow(const cv::Mat& image, int x, int y) {
 }
 
 TEST(LandingOverlay, DrawsTheRingWhereThePoseSaysIt) {
-  const cv::Mat drawn =
-      DrawLandingOverlay(kGray, kCamera, LandingPattern(), FoundAt({0.0, 0.0, 2.0}));
+  const cv::Mat drawn = DrawLandingOverlay(kGray, kCamera, kShape, FoundAt({0.0, 0.0, 2.0}));
   ASSERT_EQ(drawn.type(), CV_8UC3);
   ASSERT_EQ(drawn.size(), kGray.size());
   // At 2 m the outer radius of 0.5 m is 100 px and the inner one of 0.4 m is 80 px; off the axes.
@@ -56,9 +57,7 @@ TEST(LandingOverlay, OfAMisfitBothOutlinesAreDrawn) {
   detection.seen->displacement_px(0, 0) = 40;
   detection.misfit_px = 28;
   detection.misfit_bound_px = 30;
-  const auto drawn = [&] {
-    return DrawLandingOverlay(kGray, kCamera, LandingPattern(), observation);
-  };
+  const auto drawn = [&] { return DrawLandingOverlay(kGray, kCamera, kShape, observation); };
   EXPECT_FALSE(IsMagenta(drawn(), 359 + 60, 239 + 80)) << "no more than should be";
   detection.misfit_bound_px = 1;
   EXPECT_TRUE(IsYellow(drawn(), 319 + 60, 239 + 80));
@@ -73,7 +72,7 @@ TEST(LandingOverlay, OfAMisfitBothOutlinesAreDrawn) {
 
 TEST(LandingOverlay, SurvivesAPatternNextToOrBehindTheCamera) {
   for (const double z : {1e-9, 0.01, -1.0}) {
-    EXPECT_EQ(DrawLandingOverlay(kGray, kCamera, LandingPattern(), FoundAt({0.2, 0.1, z})).size(),
+    EXPECT_EQ(DrawLandingOverlay(kGray, kCamera, kShape, FoundAt({0.2, 0.1, z})).size(),
               kGray.size());
   }
 }
@@ -82,7 +81,7 @@ TEST(LandingOverlay, SaysWhyNothingWasFound) {
   LandingObservation observation;
   observation.report.reached = LandingStage::kCross;
   observation.report.reason = "no arms";
-  const cv::Mat drawn = DrawLandingOverlay(kGray, kCamera, LandingPattern(), observation);
+  const cv::Mat drawn = DrawLandingOverlay(kGray, kCamera, kShape, observation);
   cv::Mat channels[3];
   cv::split(drawn, channels);
   EXPECT_GT(cv::norm(channels[2], kGray, cv::NORM_INF), 100);

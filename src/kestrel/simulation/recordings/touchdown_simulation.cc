@@ -201,7 +201,8 @@ bool TouchdownSimulation::ProcessImages(double until_s, const FrameSink& sink,
     pattern_area_ = {};
     if (detection) {
       last_seen_ = time;
-      pattern_area_ = PatternArea(*detection, options_.pattern, pipeline_.detector().camera());
+      pattern_area_ =
+          PatternArea(*detection, pipeline_.detector().shape(), pipeline_.detector().camera());
       if (!result->first_seen_s) result->first_seen_s = image_s;
     }
     TouchdownMoment moment{time, guidance_.phase(), FeetAt(image_s),

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/vision/landing/landing_pattern_detector.h"
+#include "kestrel/vision/target/landing_detection.h"
 
 namespace kestrel {
 

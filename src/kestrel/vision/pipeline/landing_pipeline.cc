@@ -15,15 +15,10 @@ namespace kestrel {
 
 std::vector<std::string> LandingPipelineOptions::Validate() const {
   std::vector<std::string> violations;
-  for (const std::string& violation : detector.Validate()) {
-    violations.push_back("detector." + violation);
-  }
-  for (const std::string& violation : tracker.Validate()) {
-    violations.push_back("tracker." + violation);
-  }
-  for (const std::string& violation : noise.Validate()) {
-    violations.push_back("noise." + violation);
-  }
+  AddViolations("target", target.Validate(), &violations);
+  AddViolations("detector", detector.Validate(), &violations);
+  AddViolations("tracker", tracker.Validate(), &violations);
+  AddViolations("noise", noise.Validate(), &violations);
   const auto require = [&](bool holds, const char* rule) {
     if (!holds) violations.push_back(rule);
   };
@@ -44,7 +39,9 @@ const char* ToString(PositionMethod method) {
 
 class LandingPipeline::Impl {
  public:
-  Impl(const CameraCalibration& calibration, const LandingPipelineOptions& options);
+  // 'own_detector': null for the one that the options describe.
+  Impl(const CameraCalibration& calibration, std::unique_ptr<const TargetDetector> own_detector,
+       const LandingPipelineOptions& options);
 
   PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
   void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
@@ -55,14 +52,22 @@ class LandingPipeline::Impl {
   const ToldContradictions& contradictions() const { return contradictions_; }
   const CalibrationMonitor& calibration_monitor() const { return calibration_monitor_; }
   const TargetTracker& tracker() const { return tracker_; }
-  const LandingPatternDetector& detector() const { return detector_; }
+  const TargetDetector& detector() const { return *detector_; }
   const LandingPipelineOptions& options() const { return options_; }
 
  private:
-  // Last position of the pattern in the camera.
+  // Last detection in the camera.
   struct Sighting {
     Time time;
     Eigen::Vector3d center_in_camera;
+    std::optional<Eigen::Quaterniond> rotation_in_camera;  // where the pad has one heading
+    std::optional<std::int32_t> id;
+  };
+  // Last detection of a pad with one heading in the world.
+  struct Heading {
+    Time time;
+    Eigen::Quaterniond rotation_in_world;
+    std::optional<std::int32_t> id;
   };
 
   void Detect(const cv::Mat& image, LandingObservation* observation);
@@ -77,13 +82,15 @@ class LandingPipeline::Impl {
   void Remember(const LandingObservation& observation);
 
   LandingPipelineOptions options_;
-  LandingPatternDetector detector_;
-  LandingWorkspace workspace_;
+  bool is_detector_own_;  // it does not come from the options
+  std::unique_ptr<const TargetDetector> detector_;
+  std::unique_ptr<TargetWorkspace> workspace_;
   CameraPoses poses_;
   std::optional<double> altitude_m_;
   TargetTracker tracker_;
   bool is_track_trusted_ = true;  // the last detection was where the track predicted it
   std::optional<Sighting> last_;
+  std::optional<Heading> heading_;
   int next_step_ = 0;  // step at which the search of the last frame ran out of time
   double max_search_ms_ = 0;
   ToldContradictions contradictions_;
@@ -91,9 +98,14 @@ class LandingPipeline::Impl {
 };
 
 LandingPipeline::Impl::Impl(const CameraCalibration& calibration,
+                            std::unique_ptr<const TargetDetector> own_detector,
                             const LandingPipelineOptions& options)
     : options_(Checked(options)),
-      detector_(CameraModel(calibration.intrinsics), options.detector),
+      is_detector_own_(own_detector != nullptr),
+      detector_(is_detector_own_ ? std::move(own_detector)
+                                 : MakeTargetDetector(CameraModel(calibration.intrinsics),
+                                                      options.target, options.detector)),
+      workspace_(detector_->MakeWorkspace()),
       poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s),
              Duration::zero(),
              {DurationFromSeconds(options.pose_extrapolation_s), options.unmodelled}),
@@ -101,8 +113,10 @@ LandingPipeline::Impl::Impl(const CameraCalibration& calibration,
 
 void LandingPipeline::Impl::ChangeOptions(const LandingPipelineOptions& options) {
   RequireValid(options);
-  detector_ = LandingPatternDetector(detector_.camera(), options.detector);
-  workspace_ = LandingWorkspace();
+  if (!is_detector_own_) {
+    detector_ = MakeTargetDetector(detector_->camera(), options.target, options.detector);
+    workspace_ = detector_->MakeWorkspace();
+  }
   options_ = options;
 }
 
@@ -135,7 +149,7 @@ void LandingPipeline::Impl::Detect(const cv::Mat& image, LandingObservation* obs
     hint.max_search_ms = max_search_ms_;
   }
   const auto start = std::chrono::steady_clock::now();
-  observation->report = detector_.Detect(image, hint, workspace_);
+  observation->report = detector_->Detect(image, hint, *workspace_);
   observation->detect_time = std::chrono::steady_clock::now() - start;
   next_step_ = observation->report.next_step;
   auto& detection = observation->report.detection;
@@ -185,6 +199,12 @@ void LandingPipeline::Impl::AddTrack(const LandingObservation& observation,
                          pose.attitude_rad * center.norm();
   const double altitude_m = world_from_camera->translation.z() - target->motion.position().z();
   if (altitude_m > 0) hint->altitude_m = altitude_m;
+  if (!heading_) return;
+  const double turned = target->motion.turn_rate() * ToSeconds(observation.time - heading_->time);
+  hint->rotation_in_camera = world_from_camera->rotation.conjugate() *
+                             Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitZ()) *
+                             heading_->rotation_in_world;
+  hint->id = heading_->id;
 }
 
 void LandingPipeline::Impl::AddLastSighting(const LandingObservation& observation,
@@ -194,6 +214,8 @@ void LandingPipeline::Impl::AddLastSighting(const LandingObservation& observatio
   if (age_s < 0 || age_s > options_.hint_age_s) return;
   hint->center_in_camera = last_->center_in_camera;
   hint->center_sigma_m = options_.hint_sigma_m + options_.hint_speed_mps * age_s;
+  hint->rotation_in_camera = last_->rotation_in_camera;
+  hint->id = last_->id;
 }
 
 void LandingPipeline::Impl::LocateInWorld(LandingObservation* observation) const {
@@ -201,11 +223,13 @@ void LandingPipeline::Impl::LocateInWorld(LandingObservation* observation) const
   const auto& world_from_camera = observation->world_from_camera;
   if (!detection || !world_from_camera) return;
   const RigidTransform world_from_pattern = *world_from_camera * detection->camera_from_pattern;
-  observation->yaw_in_world = PatternYaw(world_from_pattern);
+  if (detection->heading_symmetry > 0) {
+    observation->yaw_in_world = PatternYaw(world_from_pattern, detection->heading_symmetry);
+  }
   observation->center_in_world = world_from_pattern.translation;
   if (!options_.position_by_altitude) return;
   Eigen::Vector3d ray_in_camera;
-  if (detector_.camera().Unproject(detection->center_px, &ray_in_camera) ==
+  if (detector_->camera().Unproject(detection->center_px, &ray_in_camera) ==
       ProjectionStatus::kOutsideModel) {
     return;
   }
@@ -228,10 +252,11 @@ TargetMeasurement LandingPipeline::Impl::MeasurementOf(
   measurement.covariance =
       CovarianceInWorld(detection.covariance.topLeftCorner<3, 3>(), center, rotation, noise);
   measurement.shared_covariance = SharedCovarianceInWorld(center, rotation, noise);
-  if (!options_.track_yaw) return measurement;
+  if (!options_.track_yaw || !observation.yaw_in_world) return measurement;
   measurement.yaw = observation.yaw_in_world;
   measurement.yaw_variance =
       YawVarianceInWorld(detection.covariance.bottomRightCorner<3, 3>(), rotation, noise);
+  measurement.yaw_period = kFullTurn / detection.heading_symmetry;
   return measurement;
 }
 
@@ -246,13 +271,25 @@ void LandingPipeline::Impl::Track(LandingObservation* observation) {
 
 void LandingPipeline::Impl::Remember(const LandingObservation& observation) {
   last_.reset();
+  if (observation.fate == MeasurementFate::kStarted) heading_.reset();
   const auto& detection = observation.report.detection;
-  if (detection) last_ = {observation.time, detection->camera_from_pattern.translation};
+  if (!detection) return;
+  const RigidTransform& pose = detection->camera_from_pattern;
+  last_ = {observation.time, pose.translation, {}, detection->id};
+  if (detection->heading_symmetry != 1) return;
+  last_->rotation_in_camera = pose.rotation;
+  if (!observation.world_from_camera || !is_track_trusted_) return;
+  heading_ = {observation.time, observation.world_from_camera->rotation * pose.rotation,
+              detection->id};
 }
 
 LandingPipeline::LandingPipeline(const CameraCalibration& calibration,
                                  const LandingPipelineOptions& options)
-    : impl_(std::make_unique<Impl>(calibration, options)) {}
+    : impl_(std::make_unique<Impl>(calibration, nullptr, options)) {}
+LandingPipeline::LandingPipeline(const CameraCalibration& calibration,
+                                 std::unique_ptr<const TargetDetector> detector,
+                                 const LandingPipelineOptions& options)
+    : impl_(std::make_unique<Impl>(calibration, std::move(detector), options)) {}
 LandingPipeline::~LandingPipeline() = default;
 LandingPipeline::LandingPipeline(LandingPipeline&&) noexcept = default;
 LandingPipeline& LandingPipeline::operator=(LandingPipeline&&) noexcept = default;
@@ -275,7 +312,7 @@ const CalibrationMonitor& LandingPipeline::calibration_monitor() const {
   return impl_->calibration_monitor();
 }
 const TargetTracker& LandingPipeline::tracker() const { return impl_->tracker(); }
-const LandingPatternDetector& LandingPipeline::detector() const { return impl_->detector(); }
+const TargetDetector& LandingPipeline::detector() const { return impl_->detector(); }
 const LandingPipelineOptions& LandingPipeline::options() const { return impl_->options(); }
 
 }  // namespace kestrel

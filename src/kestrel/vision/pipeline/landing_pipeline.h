@@ -15,6 +15,8 @@
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/vision/landing/landing_pattern_detector.h"
 #include "kestrel/vision/pipeline/measurement_noise.h"
+#include "kestrel/vision/target/target_detector.h"
+#include "kestrel/vision/targets/make_target_detector.h"
 #include "kestrel/vision/tracking/target_tracker.h"
 
 namespace kestrel {
@@ -23,7 +25,8 @@ class CalibrationMonitor;
 class ToldContradictions;
 
 struct LandingPipelineOptions {
-  LandingPatternDetectorOptions detector;
+  TargetOptions target;                    // what is landed on
+  LandingPatternDetectorOptions detector;  // of a ring with a cross
   TargetTrackerOptions tracker;
   MeasurementNoise noise;  // of the tracker's measurements, besides the detector's own
   // Independent frames: no state is carried from one to the next.
@@ -59,6 +62,7 @@ struct LandingPipelineOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
+    visitor.Group("target", self.target);
     visitor.Group("detector", self.detector);
     visitor.Group("tracker", self.tracker);
     visitor.Group("noise", self.noise);
@@ -100,7 +104,7 @@ struct LandingObservation {
   PoseLookup pose = PoseLookup::kEmpty;             // whether there is a pose, or why not
   PoseUncertainty pose_uncertainty;                 // of a predicted pose
   // With a detection and a pose: the pattern's centre in the world (ENU, m), the method, and the
-  // yaw of the pattern, see PatternYaw.
+  // yaw of the pattern, see PatternYaw, if it has one.
   std::optional<Eigen::Vector3d> center_in_world;
   PositionMethod position_method = PositionMethod::kSize;
   std::optional<double> yaw_in_world;
@@ -109,16 +113,21 @@ struct LandingObservation {
   std::optional<MeasurementFate> fate;
   TrackState track_state = TrackState::kSearching;
   std::optional<TargetEstimate> target;
-  Duration detect_time{};  // of LandingPatternDetector::Detect alone
+  Duration detect_time{};  // of TargetDetector::Detect alone
 };
 
-// Locates the landing pattern of an image in the world and predicts it: pose history, mount and
-// clock offset, detector, and tracker, whose prediction is the next frame's hint. For use by one
-// thread at a time.
+// Locates the pad of an image in the world and predicts it: pose history, mount and clock offset,
+// detector, and tracker, whose prediction is the next frame's hint. For use by one thread at a
+// time.
 class LandingPipeline {
  public:
   // Throws InputError when calibration or options are invalid.
   LandingPipeline(const CameraCalibration& calibration, const LandingPipelineOptions& options);
+  // The same for a detector of one's own, of this calibration's camera. The options 'target' and
+  // 'detector' have no effect.
+  LandingPipeline(const CameraCalibration& calibration,
+                  std::unique_ptr<const TargetDetector> detector,
+                  const LandingPipelineOptions& options);
   ~LandingPipeline();
   LandingPipeline(LandingPipeline&&) noexcept;
   LandingPipeline& operator=(LandingPipeline&&) noexcept;
@@ -152,7 +161,7 @@ class LandingPipeline {
 
   // The track. Its times are those of the frames.
   const TargetTracker& tracker() const;
-  const LandingPatternDetector& detector() const;
+  const TargetDetector& detector() const;
   const LandingPipelineOptions& options() const;
 
  private:

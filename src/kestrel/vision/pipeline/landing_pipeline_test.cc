@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -378,7 +379,9 @@ TEST_F(LandingPipelineTest, OptionsAndCalibrationAreChecked) {
   options_.detector.min_quality = 2;
   EXPECT_THAT(options_.Validate(), Contains(HasSubstr("hint_sigma_m")));
   EXPECT_THAT(options_.Validate(), Contains(HasSubstr("pose_gap_s")));
+  options_.target.kind = "ring";
   EXPECT_THAT(options_.Validate(), Contains(HasSubstr("detector.min_quality")));
+  EXPECT_THAT(options_.Validate(), Contains(HasSubstr("target.kind is 'ring'")));
   EXPECT_THROW(LandingPipeline(calibration_, options_), InputError);
   calibration_.intrinsics.fx_px = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(LandingPipeline(calibration_, LandingPipelineOptions()), InputError);
@@ -411,6 +414,110 @@ TEST_F(LandingPipelineTest, OtherOptionsKeepTheTrack) {
   EXPECT_LT((observation.target->motion.position() - world_from_pattern_.translation).norm(), 0.1);
   options_.detector.min_quality = 2;
   EXPECT_THROW(pipeline.ChangeOptions(options_), InputError);
+}
+
+// Finds a pad in every image, at a given place, and remembers the hint.
+class FakeDetector : public TargetDetector {
+ public:
+  FakeDetector(const CameraModel& camera, const RigidTransform& camera_from_pattern, int symmetry,
+               LandingHint* hint)
+      : camera_(camera), hint_(hint) {
+    detection_.camera_from_pattern = camera_from_pattern;
+    detection_.covariance = 1e-4 * Eigen::Matrix<double, 6, 6>::Identity();
+    detection_.heading_symmetry = symmetry;
+    detection_.id = 7;
+  }
+
+  LandingReport Detect(const cv::Mat& /*image*/, const LandingHint& hint,
+                       TargetWorkspace& /*workspace*/) const override {
+    *hint_ = hint;
+    LandingReport report;
+    report.detection = detection_;
+    return report;
+  }
+  std::unique_ptr<TargetWorkspace> MakeWorkspace() const override {
+    return std::make_unique<TargetWorkspace>();
+  }
+  const CameraModel& camera() const override { return camera_; }
+  const TargetShape& shape() const override { return shape_; }
+
+ private:
+  CameraModel camera_;
+  TargetShape shape_;
+  LandingDetection detection_{};
+  LandingHint* hint_;
+};
+
+class OwnDetectorTest : public LandingPipelineTest {
+ protected:
+  LandingPipeline PipelineOf(int symmetry) {
+    return {calibration_,
+            std::make_unique<FakeDetector>(CameraModel(calibration_.intrinsics),
+                                           CameraFromPattern(), symmetry, &hint_),
+            options_};
+  }
+  // Eight frames, with poses or without.
+  LandingObservation Fly(LandingPipeline* pipeline, bool has_poses = true) const {
+    LandingObservation last;
+    for (int i = 0; i < 8; ++i) {
+      const Time time = kTime + std::chrono::milliseconds(100 * i);
+      if (has_poses) pipeline->AddPose({time, world_from_body_});
+      last = pipeline->Process(cv::Mat(), time);
+    }
+    return last;
+  }
+
+  static constexpr double kYaw = 2.5;
+  LandingHint hint_;
+};
+
+TEST_F(OwnDetectorTest, TheHeadingIsKnownAndComesBackAsAHint) {
+  world_from_pattern_.rotation = Rotation(kYaw, Eigen::Vector3d::UnitZ());
+  LandingPipeline pipeline = PipelineOf(/*symmetry=*/1);
+  const LandingObservation seen = Fly(&pipeline);
+  ASSERT_TRUE(seen.yaw_in_world);
+  EXPECT_NEAR(*seen.yaw_in_world, kYaw, 1e-6);
+  ASSERT_TRUE(seen.target);
+  EXPECT_TRUE(seen.target->has_yaw);
+  EXPECT_NEAR(std::remainder(seen.target->motion.yaw() - kYaw, kFullTurn), 0, 0.02);
+  ASSERT_TRUE(hint_.rotation_in_camera);
+  EXPECT_LT(hint_.rotation_in_camera->angularDistance(CameraFromPattern().rotation), 0.02);
+  EXPECT_EQ(hint_.id, 7);
+}
+
+TEST_F(OwnDetectorTest, WithoutPosesTheLastOrientationIsTheHint) {
+  LandingPipeline pipeline = PipelineOf(/*symmetry=*/1);
+  EXPECT_FALSE(Fly(&pipeline, /*has_poses=*/false).yaw_in_world);
+  ASSERT_TRUE(hint_.rotation_in_camera);
+  EXPECT_LT(hint_.rotation_in_camera->angularDistance(CameraFromPattern().rotation), 1e-9);
+  EXPECT_EQ(hint_.id, 7);
+}
+
+TEST_F(OwnDetectorTest, AHeadingIsKnownUpToTheTurnsOfThePad) {
+  world_from_pattern_.rotation = Rotation(kYaw, Eigen::Vector3d::UnitZ());
+  LandingPipeline pipeline = PipelineOf(/*symmetry=*/2);
+  const LandingObservation seen = Fly(&pipeline);
+  ASSERT_TRUE(seen.yaw_in_world);
+  EXPECT_NEAR(*seen.yaw_in_world, kYaw - std::numbers::pi, 1e-6);
+  EXPECT_FALSE(seen.target->has_yaw);
+  EXPECT_FALSE(hint_.rotation_in_camera);
+}
+
+TEST_F(OwnDetectorTest, ADiscHasNoYaw) {
+  LandingPipeline pipeline = PipelineOf(/*symmetry=*/0);
+  const LandingObservation seen = Fly(&pipeline);
+  EXPECT_FALSE(seen.yaw_in_world);
+  ASSERT_TRUE(seen.target);
+  EXPECT_FALSE(seen.target->has_yaw);
+}
+
+TEST_F(OwnDetectorTest, OtherOptionsKeepTheDetector) {
+  LandingPipeline pipeline = PipelineOf(/*symmetry=*/1);
+  const TargetDetector* const own = &pipeline.detector();
+  options_.detector.min_quality = 1;
+  pipeline.ChangeOptions(options_);
+  EXPECT_EQ(&pipeline.detector(), own);
+  EXPECT_TRUE(Fly(&pipeline).report.detection);
 }
 
 }  // namespace

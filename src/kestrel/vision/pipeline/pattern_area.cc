@@ -7,7 +7,7 @@
 
 namespace kestrel {
 
-cv::Rect PatternArea(const LandingDetection& detection, const LandingPattern& pattern,
+cv::Rect PatternArea(const LandingDetection& detection, const TargetShape& shape,
                      const CameraModel& camera) {
   constexpr int kPoints = 24;
   Eigen::Vector2d low(camera.width_px(), camera.height_px());
@@ -15,7 +15,7 @@ cv::Rect PatternArea(const LandingDetection& detection, const LandingPattern& pa
   for (int i = 0; i < kPoints; ++i) {
     const double angle = 2 * std::numbers::pi * i / kPoints;
     const Eigen::Vector3d point =
-        pattern.outer_radius_m() * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
+        shape.radius_m() * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
     Eigen::Vector2d pixel;
     const ProjectionStatus status = camera.Project(detection.camera_from_pattern * point, &pixel);
     if (status == ProjectionStatus::kOutsideModel) continue;

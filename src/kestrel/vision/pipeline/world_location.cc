@@ -17,10 +17,10 @@ std::optional<Eigen::Vector3d> LocateByAltitude(const Eigen::Vector3d& ray_in_ca
   return world_from_camera.translation + distance * ray;
 }
 
-double PatternYaw(const RigidTransform& world_from_pattern) {
-  constexpr double kQuarterTurn = std::numbers::pi / 2;
+double PatternYaw(const RigidTransform& world_from_pattern, int symmetry) {
+  const double period = 2 * std::numbers::pi / symmetry;
   const double yaw = HeadingOf(world_from_pattern.rotation);
-  return yaw - kQuarterTurn * std::ceil(yaw / kQuarterTurn - 0.5);
+  return yaw - period * std::ceil(yaw / period - 0.5);
 }
 
 }  // namespace kestrel

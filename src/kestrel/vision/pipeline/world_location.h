@@ -21,8 +21,9 @@ std::optional<Eigen::Vector3d> LocateByAltitude(const Eigen::Vector3d& ray_in_ca
                                                 const RigidTransform& world_from_camera,
                                                 double target_height_m);
 
-// Returns the yaw of the pattern's x axis in the world (rad), in (-pi/4, pi/4]. The pattern looks
-// the same after a quarter turn, so its yaw is known only up to multiples of pi/2.
-double PatternYaw(const RigidTransform& world_from_pattern);
+// Returns the yaw of the pad's x axis in the world (rad) for a pad that looks the same under
+// 'symmetry' headings (1 or more): in (-pi/symmetry, pi/symmetry], as it is known only up to
+// multiples of 2 pi/symmetry.
+double PatternYaw(const RigidTransform& world_from_pattern, int symmetry);
 
 }  // namespace kestrel

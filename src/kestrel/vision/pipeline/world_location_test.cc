@@ -42,12 +42,15 @@ TEST(LocateByAltitude, NothingWhereTheRayDoesNotMeetThePlane) {
   EXPECT_FALSE(LocateByAltitude(-Eigen::Vector3d::UnitZ(), world_from_camera, 10));
 }
 
-TEST(PatternYaw, IsTheSameAfterQuarterTurnsAndLiesWithinAnEighth) {
-  for (const double yaw : {-0.7, -0.1, 0.0, 0.3, 0.78}) {
-    for (int quarter = -4; quarter <= 4; ++quarter) {
-      const RigidTransform pose = {Rotation(yaw + quarter * kPi / 2, Eigen::Vector3d::UnitZ()),
-                                   {1, 2, 3}};
-      EXPECT_NEAR(PatternYaw(pose), yaw, 1e-9) << yaw << " " << quarter;
+TEST(PatternYaw, IsTheSameAfterTheTurnsOfThePadAndLiesWithinHalfOfOne) {
+  for (const int symmetry : {1, 2, 4}) {
+    for (const double share : {-0.45, -0.1, 0.0, 0.2, 0.49}) {
+      const double yaw = share * 2 * kPi / symmetry;
+      for (int turn = -symmetry; turn <= symmetry; ++turn) {
+        const RigidTransform pose = {
+            Rotation(yaw + turn * 2 * kPi / symmetry, Eigen::Vector3d::UnitZ()), {1, 2, 3}};
+        EXPECT_NEAR(PatternYaw(pose, symmetry), yaw, 1e-9) << symmetry << " " << turn;
+      }
     }
   }
 }

@@ -107,7 +107,7 @@ struct LandingDetection {
   double semi_minor_px;
   std::optional<std::int32_t> id;  // which pad, where pads of this kind differ
   // Number of headings under which the pad looks the same: 4 for the ring with a cross, 2 for an H,
-  // 1 where the heading is known.
+  // 1 where the heading is known, 0 for a disc, which has none.
   int heading_symmetry = 1;
   SeenParts parts;
   // Root mean square distance (px) of the edges from where pose and lens predict them, and the

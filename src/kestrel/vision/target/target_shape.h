@@ -11,8 +11,8 @@ namespace kestrel {
 // or tell its size. Frame P of the pad: origin in the middle of what is detected, z up out of the
 // printed face; what x is, its detector says.
 struct TargetShape {
-  double diameter_m;    // of the circle around all that is detected
-  double board_size_m;  // side of the square board with its margin
+  double diameter_m = 0;    // of the circle around all that is detected
+  double board_size_m = 0;  // side of the square board with its margin
   // The edges of the print in frame P, m. The first one is the outermost. A lens bends lines:
   // straight edges therefore have points in between.
   std::vector<std::vector<Eigen::Vector3d>> outlines;

@@ -14,24 +14,27 @@
 namespace kestrel {
 namespace {
 
-// What a detector is made from.
-struct TargetParts {
-  const CameraModel& camera;
+// The options of all kinds.
+struct KindOptions {
   const TargetOptions& target;
   const LandingPatternDetectorOptions& ring;
 };
 
 struct TargetKind {
   std::string_view name;
-  std::unique_ptr<const TargetDetector> (*make)(const TargetParts& parts);
+  std::unique_ptr<const TargetDetector> (*make)(const CameraModel&, const KindOptions&);
+  TargetShape (*shape)(const KindOptions&);
 };
+
+std::unique_ptr<const TargetDetector> MakeRingCross(const CameraModel& camera,
+                                                    const KindOptions& options) {
+  return std::make_unique<LandingPatternDetector>(camera, options.ring);
+}
+TargetShape ShapeOfRingCross(const KindOptions& options) { return ShapeOf(options.ring.pattern); }
 
 // All kinds of pads, a line each.
 constexpr TargetKind kTargetKinds[] = {
-    {"ring-cross",
-     [](const TargetParts& parts) -> std::unique_ptr<const TargetDetector> {
-       return std::make_unique<LandingPatternDetector>(parts.camera, parts.ring);
-     }},
+    {"ring-cross", MakeRingCross, ShapeOfRingCross},
 };
 
 const TargetKind* FindKind(std::string_view name) {
@@ -58,7 +61,12 @@ std::unique_ptr<const TargetDetector> MakeTargetDetector(
     const CameraModel& camera, const TargetOptions& target,
     const LandingPatternDetectorOptions& ring) {
   RequireValid(target);
-  return FindKind(target.kind)->make({camera, target, ring});
+  return FindKind(target.kind)->make(camera, {target, ring});
+}
+
+TargetShape ShapeOfTarget(const TargetOptions& target, const LandingPatternDetectorOptions& ring) {
+  RequireValid(target);
+  return FindKind(target.kind)->shape({target, ring});
 }
 
 }  // namespace kestrel

@@ -28,4 +28,8 @@ std::unique_ptr<const TargetDetector> MakeTargetDetector(const CameraModel& came
                                                          const TargetOptions& target,
                                                          const LandingPatternDetectorOptions& ring);
 
+// Returns the shape of that detector's pad. Throws InputError when the options of the target are
+// not valid.
+TargetShape ShapeOfTarget(const TargetOptions& target, const LandingPatternDetectorOptions& ring);
+
 }  // namespace kestrel

@@ -30,6 +30,7 @@ TEST_F(MakeTargetDetectorTest, TheOptionsOfTheRingAreUsed) {
   ring.pattern.outer_diameter_m = 0.8;
   ring.pattern.arm_half_length_m = 0.3;
   EXPECT_EQ(MakeTargetDetector(camera_, {}, ring)->shape().diameter_m, 0.8);
+  EXPECT_EQ(ShapeOfTarget({}, ring).diameter_m, 0.8);
   ring.min_quality = 2;
   EXPECT_THROW(MakeTargetDetector(camera_, {}, ring), InputError);
 }

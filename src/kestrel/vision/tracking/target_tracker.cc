@@ -25,13 +25,8 @@ bool IsValid(const TargetMeasurement& measurement) {
   if (!(measurement.shared_covariance.cwiseAbs().array() <= kMaxVariance_m2).all()) return false;
   constexpr double kMaxYawVariance = 1e3;
   return !measurement.yaw || (std::isfinite(*measurement.yaw) && measurement.yaw_variance > 0 &&
-                              measurement.yaw_variance < kMaxYawVariance);
-}
-
-TurnState WithYaw(const TurnState& state, const TargetMeasurement& measurement) {
-  constexpr double kGate = 16;  // four standard deviations; beyond, the arm was mistaken
-  if (!measurement.yaw) return state;
-  return UpdateByYaw(state, *measurement.yaw, measurement.yaw_variance, kGate);
+                              measurement.yaw_variance < kMaxYawVariance &&
+                              measurement.yaw_period > 0 && measurement.yaw_period <= kFullTurn);
 }
 
 double RootMeanVariance(const Eigen::Matrix3d& covariance) {
@@ -152,7 +147,8 @@ MeasurementFate TargetTracker::Start(const TargetMeasurement& measurement) {
       StartState(measurement.position_in_world, measurement.covariance,
                  {speed, speed, kSteepest * speed}, options_.start_turn_sigma_radps, noise_);
   entries_.clear();
-  entries_.push_back({measurement, WithYaw(state, measurement)});
+  entries_.push_back({measurement, state});
+  UpdateYaw(&entries_.back());
   accepted_ = 1;
   outlier_.reset();
   outliers_ = 0;
@@ -174,7 +170,7 @@ MeasurementFate TargetTracker::Reject(const TargetMeasurement& measurement, Meas
 }
 
 void TargetTracker::Insert(std::size_t index, const TargetMeasurement& measurement) {
-  entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(index), {measurement, {}});
+  entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(index), {measurement, {}, 0});
   accepted_ = std::min(accepted_ + 1, options_.confirm_count);
   outlier_.reset();
   outliers_ = 0;
@@ -186,8 +182,9 @@ bool TargetTracker::FilterFrom(std::size_t index) {
     const TargetMeasurement& measurement = entries_[i].measurement;
     const TurnState predicted = PredictFrom(entries_[i - 1], measurement.time);
     entries_[i].filtered =
-        WithYaw(UpdateByPosition(predicted, measurement.position_in_world, measurement.covariance),
-                measurement);
+        UpdateByPosition(predicted, measurement.position_in_world, measurement.covariance);
+    entries_[i].yaw_period = entries_[i - 1].yaw_period;
+    UpdateYaw(&entries_[i]);
     if (!entries_[i].filtered.mean.allFinite() || !entries_[i].filtered.covariance.allFinite()) {
       return false;
     }
@@ -196,6 +193,20 @@ bool TargetTracker::FilterFrom(std::size_t index) {
     entries_.erase(entries_.begin());
   }
   return true;
+}
+
+void TargetTracker::UpdateYaw(Entry* entry) {
+  constexpr double kGate = 16;  // four standard deviations; beyond, the yaw was mistaken
+  const TargetMeasurement& measurement = entry->measurement;
+  if (!measurement.yaw) return;
+  // A pad that looks the same less often says which of the turns so far was the right one.
+  if (entry->yaw_period > 0 && measurement.yaw_period > entry->yaw_period) {
+    double& yaw = entry->filtered.mean(TurnState::kYaw);
+    yaw = *measurement.yaw - std::remainder(*measurement.yaw - yaw, entry->yaw_period);
+  }
+  entry->yaw_period = std::max(entry->yaw_period, measurement.yaw_period);
+  entry->filtered = UpdateByYaw(entry->filtered, *measurement.yaw, measurement.yaw_variance,
+                                measurement.yaw_period, kGate);
 }
 
 std::size_t TargetTracker::CountUntil(Time time) const {
@@ -223,7 +234,7 @@ std::optional<TargetEstimate> TargetTracker::Predict(Time time) const {
   if (count == 0) return std::nullopt;
   const Entry& entry = entries_[count - 1];
   if (ToSeconds(time - entry.measurement.time) > options_.lost_after_s) return std::nullopt;
-  TargetEstimate estimate{time, PredictFrom(entry, time)};
+  TargetEstimate estimate{time, PredictFrom(entry, time), entry.yaw_period == kFullTurn};
   estimate.motion.covariance.topLeftCorner<3, 3>() += entry.measurement.shared_covariance;
   const bool is_known =
       estimate.motion.mean.allFinite() && estimate.position_sigma_m() <= options_.lost_sigma_m;

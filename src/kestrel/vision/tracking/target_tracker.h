@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@
 
 namespace kestrel {
 
+inline constexpr double kFullTurn = 2 * std::numbers::pi;  // rad
+
 // A measured position of the target at the time of an image's exposure.
 struct TargetMeasurement {
   Time time;
@@ -20,10 +23,11 @@ struct TargetMeasurement {
   // Covariance of the error that all measurements share, like the navigation's bias, m^2. It is not
   // filtered, but included in the covariance of every estimate.
   Eigen::Matrix3d shared_covariance = Eigen::Matrix3d::Zero();
-  // Yaw of the target (rad), modulo quarter turns, and its variance (rad^2). Where the target is
-  // seen to turn, the track knows the curve.
+  // Yaw of the target (rad) and its variance (rad^2), and the turn (rad) after which the target
+  // looks the same. Where the target is seen to turn, the track knows the curve.
   std::optional<double> yaw = std::nullopt;
   double yaw_variance = 0;
+  double yaw_period = kFullTurn;
 };
 
 // Result of adding a measurement.
@@ -48,6 +52,9 @@ const char* ToString(TrackState state);  // "searching", "tracking", "predicting
 struct TargetEstimate {
   Time time;
   TurnState motion;
+  // True when motion.yaw() is the target's heading in the world, not only modulo the turn after
+  // which it looks the same.
+  bool has_yaw = false;
 
   double heading() const;  // of the velocity, rad from x (east) to y
   double speed() const;    // horizontal, m/s
@@ -146,7 +153,8 @@ class TargetTracker {
  private:
   struct Entry {
     TargetMeasurement measurement;
-    TurnState filtered;  // state with all measurements up to this one
+    TurnState filtered;     // state with all measurements up to this one
+    double yaw_period = 0;  // turn (rad) modulo which its yaw is known; 0: not measured yet
   };
 
   MeasurementFate Start(const TargetMeasurement& measurement);
@@ -154,6 +162,7 @@ class TargetTracker {
   void Insert(std::size_t index, const TargetMeasurement& measurement);
   bool FilterFrom(std::size_t index);
   std::size_t CountUntil(Time time) const;
+  static void UpdateYaw(Entry* entry);
   TurnState PredictFrom(const Entry& entry, Time time) const;
 
   TargetTrackerOptions options_;

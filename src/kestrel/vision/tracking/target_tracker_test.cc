@@ -70,6 +70,7 @@ class Sensor {
     const double heading = std::atan2(velocity.y(), velocity.x());
     measurement.yaw = std::remainder(heading + kMounted + kYawSigma * random_.Normal(), kQuarter);
     measurement.yaw_variance = kYawSigma * kYawSigma;
+    measurement.yaw_period = kQuarter;
     return measurement;
   }
 
@@ -193,6 +194,29 @@ TEST(TargetTracker, AWrongYawDoesNotTurnIt) {
     EXPECT_LE(tracker.Add(measurement), MeasurementFate::kAccepted);
     if (t < 2) continue;
     EXPECT_LT((tracker.Predict(At(t + 1))->motion.position() - Circle(t + 1)).norm(), 0.4) << t;
+  }
+}
+
+// A pad of which first only the part is seen that looks the same after quarter turns.
+TEST(TargetTracker, TheHeadingIsKnownOnceItWasSeen) {
+  for (const double true_yaw : {-3.0, -1.2, 0.4, 1.7, 3.1}) {
+    TargetTracker tracker({});
+    Sensor sensor(Standing);
+    for (int i = 0; i < 60; ++i) {
+      const double t = i / 30.0;
+      TargetMeasurement measurement = sensor.Measure(t);
+      const bool is_heading_seen = i >= 20 && i < 40;
+      measurement.yaw_period = is_heading_seen ? kFullTurn : kQuarter;
+      measurement.yaw = std::remainder(true_yaw, measurement.yaw_period);
+      measurement.yaw_variance = 1e-4;
+      EXPECT_LE(tracker.Add(measurement), MeasurementFate::kAccepted);
+      const auto target = tracker.Predict(At(t));
+      ASSERT_TRUE(target);
+      EXPECT_EQ(target->has_yaw, i >= 20) << i;
+      if (!target->has_yaw) continue;
+      EXPECT_NEAR(std::remainder(target->motion.yaw() - true_yaw, kFullTurn), 0, 0.02)
+          << true_yaw << " " << i;
+    }
   }
 }
 
@@ -324,6 +348,9 @@ TEST(TargetTracker, WhatIsNotFiniteIsRefused) {
     measurement.shared_covariance(1, 1) = bad;
     EXPECT_EQ(tracker.Add(measurement), MeasurementFate::kInvalid);
     measurement = sensor.MeasureWithYaw(0);
+    measurement.yaw_period = bad;
+    EXPECT_EQ(tracker.Add(measurement), MeasurementFate::kInvalid);
+    measurement = sensor.MeasureWithYaw(0);
     measurement.yaw_variance = bad;
     EXPECT_EQ(tracker.Add(measurement), MeasurementFate::kInvalid);
   }
@@ -345,7 +372,8 @@ TEST(TargetTracker, NeverReturnsWhatIsNotFinite) {
                      scale * Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()),
                  .covariance = sigma * sigma * Eigen::Matrix3d::Identity(),
                  .yaw = scale * random.Normal(),
-                 .yaw_variance = sigma * sigma / 1e3});
+                 .yaw_variance = sigma * sigma / 1e3,
+                 .yaw_period = kFullTurn / (1 + i % 4)});
     if (const auto estimate = tracker.Predict(At(t + random.Uniform(0, 3)))) {
       ASSERT_TRUE(estimate->motion.mean.allFinite());
       ASSERT_TRUE(estimate->motion.covariance.allFinite());

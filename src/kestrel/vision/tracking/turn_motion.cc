@@ -174,8 +174,9 @@ TurnState UpdateByPosition(const TurnState& state, const Eigen::Vector3d& positi
   return updated;
 }
 
-TurnState UpdateByYaw(const TurnState& state, double yaw, double variance, double gate) {
-  const double offset = std::remainder(yaw - state.mean(kYaw), std::numbers::pi / 2);
+TurnState UpdateByYaw(const TurnState& state, double yaw, double variance, double period,
+                      double gate) {
+  const double offset = std::remainder(yaw - state.mean(kYaw), period);
   const double innovation = state.covariance(kYaw, kYaw) + variance;
   if (!(offset * offset <= gate * innovation)) return state;
   const TurnState::Vector gain = state.covariance.col(kYaw) / innovation;

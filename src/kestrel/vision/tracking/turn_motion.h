@@ -35,6 +35,7 @@ struct TurnState {
   auto velocity() const { return mean.segment<3>(kVelocity); }
   double turn_rate() const { return mean(kTurnRate); }
   double turn_change() const { return mean(kTurnChange); }  // derivative of the turn rate
+  double yaw() const { return mean(kYaw); }
 };
 
 // Undisturbed sway: standard deviation (m; 0: none), frequency and damping ratio (0 to 1,
@@ -71,9 +72,10 @@ TurnState Propagate(const TurnState& state, double seconds, const TurnNoise& noi
 TurnState UpdateByPosition(const TurnState& state, const Eigen::Vector3d& position,
                            const Eigen::Matrix3d& covariance);
 
-// Returns the state updated by a measured yaw (rad) of a load that looks the same after a quarter
-// turn. Ignores a yaw farther than 'gate' (squared, in variances) from the expected one.
-TurnState UpdateByYaw(const TurnState& state, double yaw, double variance, double gate);
+// Returns the state updated by a measured yaw (rad) of a load that looks the same after a turn by
+// 'period' (rad). Ignores a yaw farther than 'gate' (squared, in variances) from the expected one.
+TurnState UpdateByYaw(const TurnState& state, double yaw, double variance, double period,
+                      double gate);
 
 // Returns the squared Mahalanobis distance of a measured position from the state's: chi-square with
 // 3 degrees of freedom when both covariances are right.

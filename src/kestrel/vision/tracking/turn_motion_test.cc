@@ -109,18 +109,20 @@ TEST(UpdateByPosition, WeighsBothByTheirCovariance) {
   EXPECT_NEAR(updated.covariance(6, 6), 1, 1e-12);
 }
 
-TEST(UpdateByYaw, IsUpToQuarterTurns) {
+TEST(UpdateByYaw, IsUpToTheTurnsOfThePad) {
   TurnState state = State({0, 0, 0}, 0);
   state.covariance *= 0.01;
   const double quarter = std::numbers::pi / 2;
-  EXPECT_NEAR(UpdateByYaw(state, 3 * quarter + 0.1, 0.01, 16).mean(12), 0.05, 1e-12);
-  EXPECT_NEAR(UpdateByYaw(state, 0.1 - quarter, 0.01, 16).covariance(12, 12), 0.005, 1e-12);
+  EXPECT_NEAR(UpdateByYaw(state, 3 * quarter + 0.1, 0.01, quarter, 16).mean(12), 0.05, 1e-12);
+  EXPECT_NEAR(UpdateByYaw(state, 0.1 - quarter, 0.01, quarter, 16).covariance(12, 12), 0.005,
+              1e-12);
+  EXPECT_NEAR(UpdateByYaw(state, 4 * quarter - 0.1, 0.01, 4 * quarter, 16).mean(12), -0.05, 1e-12);
 }
 
 TEST(UpdateByYaw, BeyondTheGateItChangesNothing) {
   TurnState state = State({0, 0, 0}, 0);
   state.covariance *= 1e-4;
-  EXPECT_EQ(UpdateByYaw(state, 0.5, 1e-4, 16).mean, state.mean);
+  EXPECT_EQ(UpdateByYaw(state, 0.5, 1e-4, std::numbers::pi / 2, 16).mean, state.mean);
 }
 
 TEST(SquaredDistance, IsThatOfBothCovariances) {
