@@ -65,7 +65,9 @@ LandResult::LandResult(const std::string& table) : file_(table), text_(ReadFile(
   const CsvTable cells(text_, file_);
   const std::size_t method = cells.Column("method"), quality = cells.Column("quality"),
                     rejected = cells.Column("rejected_at"), time = cells.Column("detect_ms");
-  const std::optional<std::size_t> misfit = cells.FindColumn("misfit_px");  // not in older tables
+  // Not in older tables.
+  const std::optional<std::size_t> misfit = cells.FindColumn("misfit_px"),
+                                   id = cells.FindColumn("target_id");
   for (DetectionRow& detection : ParseDetectionRows(text_, file_)) {
     const std::size_t index = rows_.size();
     Row& row = rows_.emplace_back();
@@ -74,6 +76,9 @@ LandResult::LandResult(const std::string& table) : file_(table), text_(ReadFile(
     if (detection.pattern) {
       row.method = KindIn(cells, index, method, kDetectionMethods);
       row.quality = cells.Number(index, quality);
+      if (id && !cells.IsEmpty(index, *id)) {
+        row.id = static_cast<std::int32_t>(cells.Integer(index, *id));
+      }
     } else {
       row.reached =
           KindIn(cells, index, rejected,
@@ -107,6 +112,7 @@ LandingObservation LandResult::Next(Time time,
     detection.method = row.method;
     detection.quality = row.quality;
     detection.misfit_px = row.misfit_px;
+    detection.id = row.id;
     // The table does not have the bound of the misfit.
     detection.misfit_bound_px = std::numeric_limits<double>::infinity();
     observation.center_in_world = pattern->center_in_world;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,7 @@ class LandResult {
     DetectionMethod method = DetectionMethod::kQuadrants;
     double quality = 0;
     double misfit_px = 0;
+    std::optional<std::int32_t> id;
     LandingStage reached = LandingStage::kFound;
     Duration detect_time{};
   };

@@ -29,6 +29,10 @@ std::string MisfitCell(const std::optional<LandingDetection>& detection) {
   return fmt::format("{:.3f}", detection->misfit_px);
 }
 
+std::string IdCell(const std::optional<LandingDetection>& detection) {
+  return detection && detection->id ? std::to_string(*detection->id) : "";
+}
+
 std::string SigmaCells(const std::optional<LandingDetection>& detection) {
   if (!detection) return ",,";
   return Position(detection->covariance.diagonal().head<3>().cwiseSqrt().eval());
@@ -39,18 +43,19 @@ std::string SigmaCells(const std::optional<LandingDetection>& detection) {
 std::string LandingCsvHeader() {
   return "frame,timestamp_ns,detected,u_px,v_px,method,quality,p_CP_C_x_m,p_CP_C_y_m,p_CP_C_z_m,"
          "p_WP_W_x_m,p_WP_W_y_m,p_WP_W_z_m,yaw_WP_rad,sigma_x_m,sigma_y_m,sigma_z_m,rejected_at,"
-         "detect_ms,misfit_px\n";
+         "detect_ms,misfit_px,target_id\n";
 }
 
 std::string LandingCsvRow(const std::string& frame_name, const LandingObservation& observation) {
   const LandingReport& report = observation.report;
   const auto& yaw = observation.yaw_in_world;
-  return fmt::format("{},{},{},{},{},{},{},{},{:.4f},{}\n", CsvCell(frame_name),
+  return fmt::format("{},{},{},{},{},{},{},{},{:.4f},{},{}\n", CsvCell(frame_name),
                      ToNanoseconds(observation.time), report.detection ? 1 : 0,
                      ImageCells(report.detection), Position(observation.center_in_world),
                      yaw ? fmt::format("{:.6f}", *yaw) : "", SigmaCells(report.detection),
                      report.detection ? "" : ToString(report.reached),
-                     1e3 * ToSeconds(observation.detect_time), MisfitCell(report.detection));
+                     1e3 * ToSeconds(observation.detect_time), MisfitCell(report.detection),
+                     IdCell(report.detection));
 }
 
 }  // namespace kestrel

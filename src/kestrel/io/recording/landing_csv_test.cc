@@ -30,7 +30,7 @@ auto Commas(const std::string& line) { return std::count(line.begin(), line.end(
 TEST(LandingCsv, RowOfADetectionWithoutPose) {
   EXPECT_EQ(LandingCsvRow("a/b.png", Found()),
             "a/b.png,1234567890123456789,1,320.250,239.500,lines,0.8750,0.100000,-0.200000,3.000000"
-            ",,,,,0.010000,0.020000,0.030000,,1.2500,0.125\n");
+            ",,,,,0.010000,0.020000,0.030000,,1.2500,0.125,\n");
 }
 
 TEST(LandingCsv, RowOfADetectionInTheWorld) {
@@ -39,26 +39,35 @@ TEST(LandingCsv, RowOfADetectionInTheWorld) {
   observation.yaw_in_world = -0.25;
   EXPECT_EQ(LandingCsvRow("b", observation),
             "b,1234567890123456789,1,320.250,239.500,lines,0.8750,0.100000,-0.200000,3.000000,"
-            "10.000000,20.000000,0.500000,-0.250000,0.010000,0.020000,0.030000,,1.2500,0.125\n");
+            "10.000000,20.000000,0.500000,-0.250000,0.010000,0.020000,0.030000,,1.2500,0.125,\n");
 }
 
 TEST(LandingCsv, OfAPrintWithoutEdgesTheMisfitIsNotKnown) {
   LandingObservation observation = Found();
   observation.report.detection->misfit_px = 0;
-  EXPECT_TRUE(LandingCsvRow("b", observation).ends_with(",1.2500,\n"));
+  EXPECT_TRUE(LandingCsvRow("b", observation).ends_with(",1.2500,,\n"));
+}
+
+TEST(LandingCsv, SaysWhichPadItIs) {
+  LandingObservation observation = Found();
+  observation.report.detection->method = DetectionMethod::kTags;
+  observation.report.detection->id = 17;
+  const std::string row = LandingCsvRow("b", observation);
+  EXPECT_TRUE(row.ends_with(",0.125,17\n")) << row;
+  EXPECT_NE(row.find(",tags,"), std::string::npos) << row;
 }
 
 TEST(LandingCsv, RowOfAMissSaysWhereItFell) {
   LandingObservation observation;
   observation.time = TimeFromNanoseconds(5);
   observation.report.reached = LandingStage::kCross;
-  EXPECT_EQ(LandingCsvRow("b", observation), "b,5,0,,,,,,,,,,,,,,,cross,0.0000,\n");
+  EXPECT_EQ(LandingCsvRow("b", observation), "b,5,0,,,,,,,,,,,,,,,cross,0.0000,,\n");
 }
 
 TEST(LandingCsv, EveryRowIsAsWideAsTheHeader) {
-  EXPECT_EQ(Commas(LandingCsvHeader()), 19);
-  EXPECT_EQ(Commas(LandingCsvRow("b", Found())), 19);
-  EXPECT_EQ(Commas(LandingCsvRow("b", LandingObservation())), 19);
+  EXPECT_EQ(Commas(LandingCsvHeader()), 20);
+  EXPECT_EQ(Commas(LandingCsvRow("b", Found())), 20);
+  EXPECT_EQ(Commas(LandingCsvRow("b", LandingObservation())), 20);
 }
 
 TEST(LandingCsv, NameWithACommaIsQuoted) {
