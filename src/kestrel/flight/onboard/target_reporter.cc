@@ -58,6 +58,10 @@ bool TargetReporter::PredictTarget(const TrackSnapshot& track, TargetReport* rep
   report->position_in_world = target.position();
   report->velocity_in_world = target.velocity();
   report->covariance = target.covariance.topLeftCorner<3, 3>();
+  if (track.target->has_yaw) {
+    report->yaw = target.yaw();
+    report->yaw_sigma = std::sqrt(target.covariance(TurnState::kYaw, TurnState::kYaw));
+  }
   // Written so that values that are not finite are refused.
   return report->covariance.trace() <= 3 * std::pow(options_.max_sigma_m, 2) &&
          report->position_in_world.allFinite();

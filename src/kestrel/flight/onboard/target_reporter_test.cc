@@ -70,6 +70,19 @@ TEST(TargetReporterTest, PredictsBothToTheTimeOfUse) {
   EXPECT_EQ(reporter.phase(), TargetPhase::kFound);
 }
 
+TEST(TargetReporterTest, TellsTheHeadingThatTheTrackKnows) {
+  TargetReporter reporter = MakeReporter();
+  TrackSnapshot track = TrackAt(1, {0, 0, 0}, {0, 0, 0});
+  track.target->motion.mean(TurnState::kYaw) = 2.5;
+  track.target->motion.covariance(TurnState::kYaw, TurnState::kYaw) = 0.0004;
+  EXPECT_FALSE(reporter.Report(At(1), kAtOnce, track, Uav().PosesUntil(1))->yaw);
+  track.target->has_yaw = true;
+  const auto report = reporter.Report(At(1), kAtOnce, track, Uav().PosesUntil(1));
+  ASSERT_TRUE(report && report->yaw);
+  EXPECT_NEAR(*report->yaw, 2.5, 1e-9);
+  EXPECT_NEAR(report->yaw_sigma, 0.02, 1e-9);
+}
+
 TEST(TargetReporterTest, IsSilentWhenThePredictionIsWorseThanTheLimit) {
   TargetReporter reporter = MakeReporter();
   const Vector3d still = Vector3d::Zero();
