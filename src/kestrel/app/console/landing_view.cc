@@ -104,6 +104,11 @@ const char* InWords(DetectionMethod method) {
   return "";
 }
 
+std::string InWords(const LandingDetection& found) {
+  return found.id ? fmt::format("{}, id {}", InWords(found.method), *found.id)
+                  : InWords(found.method);
+}
+
 std::string WhyNot(const LandingReport& report) {
   return fmt::format("{}: {}", ToString(report.reached), report.reason);
 }
@@ -169,9 +174,8 @@ std::vector<OverlayShape> LandingShapes(const LandingView& view,
   const LandingDetection& found = *observation.report.detection;
   const bool is_rejected = observation.fate == MeasurementFate::kFarFromTrack;
   const OverlayLayer layer = is_rejected ? OverlayLayer::kRejected : OverlayLayer::kDetection;
-  const std::string label =
-      fmt::format("{}, {:.0f} %{}", InWords(found.method), 100 * found.quality,
-                  is_rejected ? ", far from the track" : "");
+  const std::string label = fmt::format("{}, {:.0f} %{}", InWords(found), 100 * found.quality,
+                                        is_rejected ? ", far from the track" : "");
   const bool is_seen_elsewhere = found.is_misfit() && found.seen;
   if (is_seen_elsewhere) {
     const PlaneWarp warp = found.seen->Warp(view.camera);
@@ -231,7 +235,7 @@ std::vector<ConsoleFact> LandingFacts(const LandingObservation& observation) {
             {"misfit", ""}};
   const bool is_far = observation.fate == MeasurementFate::kFarFromTrack;
   return {{"found", is_far ? "yes, but far from the track" : "yes"},
-          {"method", InWords(detection->method)},
+          {"method", InWords(*detection)},
           {"quality", fmt::format("{:.2f}", detection->quality)},
           {"misfit", MisfitInWords(*detection)}};
 }

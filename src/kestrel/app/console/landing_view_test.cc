@@ -102,6 +102,14 @@ TEST(LandingViewTest, OfAMisfitBothOutlinesAreShown) {
   EXPECT_EQ(LandingShapes(View(), observation).size(), 5U) << "no more than should be";
 }
 
+TEST(LandingViewTest, SaysWhichPadItIs) {
+  LandingObservation observation = Seen();
+  observation.report.detection->method = DetectionMethod::kTags;
+  observation.report.detection->id = 17;
+  EXPECT_EQ(LandingShapes(View(), observation)[1].label, "pad, by its tags, id 17, 90 %");
+  EXPECT_EQ(LandingFacts(observation)[1].value, "pad, by its tags, id 17");
+}
+
 TEST(LandingViewTest, NumbersAreThoseOfTheTrack) {
   const ConsoleSample sample = LandingSample(Seen());
   ASSERT_EQ(sample.values.size(), LandingSeries().size());

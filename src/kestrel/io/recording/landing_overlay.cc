@@ -128,7 +128,8 @@ void DrawDetection(const LandingDetection& detection, const CameraModel& camera,
   }
   if (detection.is_misfit() && detection.seen) DrawMisfit(detection, camera, shape, canvas);
   canvas->DrawCenter(detection.center_px);
-  canvas->Write(fmt::format("{}  {:.2f} m  quality {:.2f}", ToString(detection.method),
+  const std::string id = detection.id ? fmt::format(" {}", *detection.id) : "";
+  canvas->Write(fmt::format("{}{}  {:.2f} m  quality {:.2f}", ToString(detection.method), id,
                             pose.translation.norm(), detection.quality),
                 kGreen);
 }

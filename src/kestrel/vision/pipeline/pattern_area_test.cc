@@ -23,6 +23,8 @@ CameraModel Pinhole() {
                       .distortion = {}});
 }
 
+const TargetShape kShape = {.diameter_m = 1, .board_size_m = 1.5, .outlines = {}};
+
 // A detection of the pattern (1 m) straight ahead, facing the camera.
 LandingDetection At(const Vector3d& center_in_camera) {
   LandingDetection detection{};
@@ -32,13 +34,13 @@ LandingDetection At(const Vector3d& center_in_camera) {
 }
 
 TEST(PatternAreaTest, IsAroundTheRing) {
-  EXPECT_EQ(PatternArea(At({0, 0, 2}), {}, Pinhole()), cv::Rect(75, 25, 51, 51));
+  EXPECT_EQ(PatternArea(At({0, 0, 2}), kShape, Pinhole()), cv::Rect(75, 25, 51, 51));
 }
 
 TEST(PatternAreaTest, IsCutOffAtTheImagesBorder) {
-  EXPECT_EQ(PatternArea(At({2, 0, 2}), {}, Pinhole()), cv::Rect(175, 25, 25, 51));
-  EXPECT_TRUE(PatternArea(At({9, 0, 2}), {}, Pinhole()).empty()) << "beside the image";
-  EXPECT_TRUE(PatternArea(At({0, 0, -2}), {}, Pinhole()).empty()) << "behind the camera";
+  EXPECT_EQ(PatternArea(At({2, 0, 2}), kShape, Pinhole()), cv::Rect(175, 25, 25, 51));
+  EXPECT_TRUE(PatternArea(At({9, 0, 2}), kShape, Pinhole()).empty()) << "beside the image";
+  EXPECT_TRUE(PatternArea(At({0, 0, -2}), kShape, Pinhole()).empty()) << "behind the camera";
 }
 
 }  // namespace
