@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/tags/tag_family.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string_view>
+
+#include <apriltag/apriltag.h>
+#include <apriltag/tag16h5.h>
+#include <apriltag/tag25h9.h>
+#include <apriltag/tag36h10.h>
+#include <apriltag/tag36h11.h>
+#include <apriltag/tagCircle21h7.h>
+#include <apriltag/tagCircle49h12.h>
+#include <apriltag/tagCustom48h12.h>
+#include <apriltag/tagStandard41h12.h>
+#include <apriltag/tagStandard52h13.h>
+#include <fmt/format.h>
+
+#include "kestrel/core/base/edit_distance.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/shown.h"
+#include "kestrel/vision/tags/aruco_dictionary.h"
+
+namespace kestrel {
+namespace {
+
+struct AprilTagFamily {
+  std::string_view name;
+  apriltag_family_t* (*create)();
+  void (*destroy)(apriltag_family_t*);
+};
+
+constexpr std::array<AprilTagFamily, 9> kAprilTagFamilies{{
+    {"tag36h11", tag36h11_create, tag36h11_destroy},
+    {"tag25h9", tag25h9_create, tag25h9_destroy},
+    {"tag16h5", tag16h5_create, tag16h5_destroy},
+    {"tag36h10", tag36h10_create, tag36h10_destroy},
+    {"tagStandard41h12", tagStandard41h12_create, tagStandard41h12_destroy},
+    {"tagStandard52h13", tagStandard52h13_create, tagStandard52h13_destroy},
+    {"tagCircle21h7", tagCircle21h7_create, tagCircle21h7_destroy},
+    {"tagCircle49h12", tagCircle49h12_create, tagCircle49h12_destroy},
+    {"tagCustom48h12", tagCustom48h12_create, tagCustom48h12_destroy},
+}};
+
+struct ArucoFamily {
+  std::string_view name;
+  int dictionary;  // OpenCV's number
+};
+
+constexpr std::array<ArucoFamily, 17> kArucoFamilies{{
+    {"aruco_4x4_50", cv::aruco::DICT_4X4_50},
+    {"aruco_4x4_100", cv::aruco::DICT_4X4_100},
+    {"aruco_4x4_250", cv::aruco::DICT_4X4_250},
+    {"aruco_4x4_1000", cv::aruco::DICT_4X4_1000},
+    {"aruco_5x5_50", cv::aruco::DICT_5X5_50},
+    {"aruco_5x5_100", cv::aruco::DICT_5X5_100},
+    {"aruco_5x5_250", cv::aruco::DICT_5X5_250},
+    {"aruco_5x5_1000", cv::aruco::DICT_5X5_1000},
+    {"aruco_6x6_50", cv::aruco::DICT_6X6_50},
+    {"aruco_6x6_100", cv::aruco::DICT_6X6_100},
+    {"aruco_6x6_250", cv::aruco::DICT_6X6_250},
+    {"aruco_6x6_1000", cv::aruco::DICT_6X6_1000},
+    {"aruco_7x7_50", cv::aruco::DICT_7X7_50},
+    {"aruco_7x7_100", cv::aruco::DICT_7X7_100},
+    {"aruco_7x7_250", cv::aruco::DICT_7X7_250},
+    {"aruco_7x7_1000", cv::aruco::DICT_7X7_1000},
+    {"aruco_original", cv::aruco::DICT_ARUCO_ORIGINAL},
+}};
+
+// Paints the cells on the edge of a centred square.
+void PaintSquare(int side, TagCell cell, TagGrid* grid) {
+  const int first = (grid->width - side) / 2;
+  const int last = first + side - 1;
+  for (int i = first; i <= last; ++i) {
+    for (const int edge : {first, last}) {
+      grid->cells[edge * grid->width + i] = cell;
+      grid->cells[i * grid->width + edge] = cell;
+    }
+  }
+}
+
+const std::string& NearestFamily(std::string_view name) {
+  const std::vector<std::string>& names = TagFamily::Names();
+  return *std::min_element(names.begin(), names.end(),
+                           [&](const std::string& a, const std::string& b) {
+                             return EditDistance(name, a) < EditDistance(name, b);
+                           });
+}
+
+}  // namespace
+
+const std::vector<std::string>& TagFamily::Names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const AprilTagFamily& family : kAprilTagFamilies) all.emplace_back(family.name);
+    for (const ArucoFamily& family : kArucoFamilies) all.emplace_back(family.name);
+    return all;
+  }();
+  return names;
+}
+
+TagFamily::TagFamily(const std::string& name) : name_(name) {
+  const auto aruco = std::find_if(kArucoFamilies.begin(), kArucoFamilies.end(),
+                                  [&](const ArucoFamily& family) { return family.name == name; });
+  if (aruco != kArucoFamilies.end()) {
+    ReadAruco(aruco->dictionary);
+  } else {
+    ReadAprilTag();
+  }
+}
+
+void TagFamily::ReadAprilTag() {
+  const auto known =
+      std::find_if(kAprilTagFamilies.begin(), kAprilTagFamilies.end(),
+                   [this](const AprilTagFamily& family) { return family.name == name_; });
+  if (known == kAprilTagFamilies.end()) {
+    throw InputError(fmt::format("unknown family of tags '{}', did you mean '{}'?", Shown(name_),
+                                 NearestFamily(name_)));
+  }
+  const std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> family(known->create(),
+                                                                                known->destroy);
+  width_ = family->total_width;
+  border_width_ = family->width_at_border;
+  white_inside_ = family->reversed_border;
+  min_distance_ = static_cast<int>(family->h);
+  const int margin = (width_ - border_width_) / 2;
+  for (std::uint32_t i = 0; i < family->nbits; ++i) {
+    // The places count from the edge of the square, and may be negative.
+    bits_.push_back(
+        {static_cast<int>(family->bit_x[i]) + margin, static_cast<int>(family->bit_y[i]) + margin});
+  }
+  codes_.assign(family->codes, family->codes + family->ncodes);
+}
+
+void TagFamily::ReadAruco(int dictionary) {
+  const cv::aruco::Dictionary read = ArucoDictionary(dictionary);
+  border_width_ = read.markerSize + 2;
+  width_ = border_width_ + 2;
+  // What OpenCV says is how many bits it corrects: fewer than half of those that differ.
+  min_distance_ = 2 * read.maxCorrectionBits + 1;
+  for (int row = 0; row < read.markerSize; ++row) {
+    for (int column = 0; column < read.markerSize; ++column) bits_.push_back({column + 2, row + 2});
+  }
+  for (int id = 0; id < read.bytesList.rows; ++id) {
+    const cv::Mat bits =
+        cv::aruco::Dictionary::getBitsFromByteList(read.bytesList.row(id), read.markerSize);
+    std::uint64_t code = 0;
+    for (int i = 0; i < static_cast<int>(bits.total()); ++i) {
+      code = code << 1 | bits.at<std::uint8_t>(i / read.markerSize, i % read.markerSize);
+    }
+    codes_.push_back(code);
+  }
+}
+
+TagGrid TagFamily::Grid(int id) const {
+  if (id < 0 || id >= id_count()) {
+    throw InputError(fmt::format("{} has no id {}, expected 0 to {}", name_, id, id_count() - 1));
+  }
+  TagGrid grid{width_, border_width_, std::vector<TagCell>(width_ * width_, TagCell::kNone)};
+  PaintSquare(border_width_, white_inside_ ? TagCell::kWhite : TagCell::kBlack, &grid);
+  PaintSquare(border_width_ + 2, white_inside_ ? TagCell::kBlack : TagCell::kWhite, &grid);
+  for (std::size_t i = 0; i < bits_.size(); ++i) {
+    const bool white = codes_[id] >> (bits_.size() - 1 - i) & 1;
+    grid.cells[bits_[i].row * width_ + bits_[i].column] = white ? TagCell::kWhite : TagCell::kBlack;
+  }
+  return grid;
+}
+
+}  // namespace kestrel
