@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/tags/board_alignment.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include "kestrel/core/base/robust_statistics.h"
+#include "kestrel/core/image/gray_sampling.h"
+#include "kestrel/vision/tags/board_samples.h"
+
+namespace kestrel {
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+constexpr int kProfile = 11;        // gray values across an edge
+constexpr double kReach = 0.5;      // of the cell, on either side of an edge
+constexpr double kMostReachPx = 6;  // at last; four times as far at first
+constexpr int kFarSteps = 2;        // steps in which the reach is halved
+constexpr double kLeastReachPx = 1.2;
+constexpr double kFineCellPx = 8;  // cells with more than one point at an edge
+constexpr float kLeastStep = 6;    // gray values across an edge
+constexpr std::size_t kLeastEdges = 12;
+constexpr double kFloorPx = 0.06;    // noise of an edge's place that stays however sharp it is
+constexpr double kOutlier = 4;       // standard deviations
+constexpr double kMostTurn = 0.3;    // of a step, rad
+constexpr double kConverged = 1e-5;  // rad
+constexpr int kIterations = 8;
+
+// Returns the place of a rising edge in a profile over -reach to reach: the centroid of the
+// gradient around its steepest place. NaN where there is none.
+double EdgePlace(std::span<const float, kProfile> gray, double reach) {
+  std::array<float, kProfile - 2> gradient;
+  for (int i = 0; i + 2 < kProfile; ++i) {
+    if (gray[i] < 0 || gray[i + 2] < 0) return NAN;
+    gradient[i] = gray[i + 2] - gray[i];
+  }
+  const int steepest =
+      static_cast<int>(std::max_element(gradient.begin(), gradient.end()) - gradient.begin());
+  constexpr int kMiddle = static_cast<int>(gradient.size()) / 2;
+  const int around =
+      std::min(kMiddle, std::min(steepest, static_cast<int>(gradient.size()) - 1 - steepest));
+  double sum = 0, moment = 0;
+  for (int i = steepest - around; i <= steepest + around; ++i) {
+    const double weight = std::max(0.0f, gradient[i]);
+    sum += weight;
+    moment += weight * (i - kMiddle);
+  }
+  if (sum < kLeastStep) return NAN;
+  return moment / sum * 2 * reach / (kProfile - 1);
+}
+
+// The normal equations of one step.
+struct NormalEquations {
+  Matrix6 information = Matrix6::Zero();
+  Vector6 gradient = Vector6::Zero();
+  double cost = 0;
+
+  void Add(const Eigen::Matrix<double, 1, 6>& derivative, double residual, double weight) {
+    information += weight * derivative.transpose() * derivative;
+    gradient += weight * residual * derivative.transpose();
+    cost += 0.5 * weight * residual * residual;
+  }
+};
+
+void AddPrior(const RigidTransform& pose, const LevelPrior& prior, NormalEquations* equations) {
+  if (!prior.up_in_camera) return;
+  const Eigen::Vector3d face = pose.rotation * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d first = prior.up_in_camera->unitOrthogonal();
+  const double weight = 1 / (prior.sigma * prior.sigma);
+  for (const Eigen::Vector3d& axis : {first, Eigen::Vector3d(prior.up_in_camera->cross(first))}) {
+    Eigen::Matrix<double, 1, 6> derivative = Eigen::Matrix<double, 1, 6>::Zero();
+    derivative.tail<3>() = face.cross(axis).transpose();
+    equations->Add(derivative, -axis.dot(face), weight);
+  }
+}
+
+}  // namespace
+
+double CostAbove(const AlignedBoard& best, const AlignedBoard& other) {
+  const double sigma = std::max(kFloorPx, best.rms_px);
+  const double squares =
+      (other.rms_px * other.rms_px - best.rms_px * best.rms_px) / (sigma * sigma);
+  return 0.5 * best.edges * squares + other.prior_cost - best.prior_cost;
+}
+
+void BoardAlignmentBuffers::Reserve(const BoardModel& board) {
+  const std::size_t most = board.most_edges;
+  edges.reserve(most);
+  for (std::vector<float>* column : {&x, &y, &z, &u, &v}) column->resize(most);
+  for (std::vector<float>& column : derivative) column.resize(most);
+  for (std::vector<float>* column : {&profile_u, &profile_v, &gray}) {
+    column->resize(most * kProfile);
+  }
+  equations.reserve(most);
+  magnitudes.reserve(most);
+}
+
+void BoardAlignment::CollectEdges(const RigidTransform& pose, const TagModel* only,
+                                  BoardAlignmentBuffers* buffers) const {
+  buffers->edges.clear();
+  for (const TagModel& tag : board_.tags) {
+    if (only != nullptr && &tag != only) continue;
+    const double cell_px = CellPx(camera_, pose, tag);
+    if (cell_px < kLeastCellPx) continue;
+    for (const BoardEdge& edge : tag.edges) {
+      if (!edge.fine || cell_px >= kFineCellPx) buffers->edges.push_back(&edge);
+    }
+  }
+}
+
+void BoardAlignment::Predict(const RigidTransform& pose, double most_reach_px,
+                             BoardAlignmentBuffers* buffers) const {
+  BoardAlignmentBuffers& b = *buffers;
+  const std::size_t count = b.edges.size();
+  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector2d& place = b.edges[i]->place;
+    const Eigen::Vector3f point = (rotation.leftCols<2>() * place + pose.translation).cast<float>();
+    b.x[i] = point.x();
+    b.y[i] = point.y();
+    b.z[i] = point.z();
+  }
+  std::array<float*, 6> columns;
+  for (std::size_t k = 0; k < columns.size(); ++k) columns[k] = b.derivative[k].data();
+  camera_.ProjectMany({b.x.data(), b.y.data(), b.z.data()}, count, b.u.data(), b.v.data(),
+                      &columns);
+  b.equations.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    const BoardEdge& edge = *b.edges[i];
+    Eigen::Matrix<double, 2, 3> by_point;
+    for (int k = 0; k < 6; ++k) by_point(k / 3, k % 3) = b.derivative[k][i];
+    const Eigen::Matrix2d by_place = by_point * rotation.leftCols<2>();
+    const Eigen::Vector2d along = by_place * Eigen::Vector2d(-edge.to_white.y(), edge.to_white.x());
+    Eigen::Vector2d normal = Eigen::Vector2d(-along.y(), along.x()).normalized();
+    double cell_px = normal.dot(by_place * edge.to_white) * edge.cell_m;
+    if (cell_px < 0) {
+      normal = -normal;
+      cell_px = -cell_px;
+    }
+    const double reach = std::clamp(kReach * cell_px, kLeastReachPx, most_reach_px);
+    const Eigen::RowVector3d by_translation = normal.transpose() * by_point;
+    const Eigen::Vector3d arm = rotation.leftCols<2>() * edge.place;
+    BoardAlignmentBuffers::Equation equation;
+    equation.derivative << by_translation, arm.cross(by_translation.transpose()).transpose();
+    equation.reach_px = static_cast<float>(reach);
+    equation.residual_px = NAN;
+    b.equations.push_back(equation);
+    for (int k = 0; k < kProfile; ++k) {
+      const double offset = reach * (2.0 * k / (kProfile - 1) - 1);
+      b.profile_u[i * kProfile + k] = static_cast<float>(b.u[i] + offset * normal.x());
+      b.profile_v[i * kProfile + k] = static_cast<float>(b.v[i] + offset * normal.y());
+    }
+  }
+}
+
+void BoardAlignment::Measure(const cv::Mat& image, BoardAlignmentBuffers* buffers) const {
+  BoardAlignmentBuffers& b = *buffers;
+  SampleGrays(image, b.profile_u.data(), b.profile_v.data(), b.edges.size() * kProfile,
+              b.gray.data());
+  b.magnitudes.clear();
+  for (std::size_t i = 0; i < b.equations.size(); ++i) {
+    BoardAlignmentBuffers::Equation& equation = b.equations[i];
+    equation.residual_px =
+        EdgePlace(std::span<const float, kProfile>(b.gray.data() + i * kProfile, kProfile),
+                  equation.reach_px);
+    if (!std::isnan(equation.residual_px)) b.magnitudes.push_back(std::abs(equation.residual_px));
+  }
+}
+
+std::optional<AlignedBoard> BoardAlignment::Align(const cv::Mat& image, const RigidTransform& start,
+                                                  const LevelPrior& prior, const TagModel* only,
+                                                  BoardAlignmentBuffers* buffers) const {
+  AlignedBoard aligned;
+  aligned.camera_from_board = start;
+  CollectEdges(start, only, buffers);
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    RigidTransform& pose = aligned.camera_from_board;
+    Predict(pose, kMostReachPx * (1 << std::max(0, kFarSteps - iteration)), buffers);
+    Measure(image, buffers);
+    if (buffers->magnitudes.size() < kLeastEdges) return std::nullopt;
+    const double sigma = std::max(kFloorPx, RobustSigmaInPlace(buffers->magnitudes));
+    NormalEquations equations;
+    AddPrior(pose, prior, &equations);
+    aligned.prior_cost = equations.cost;
+    aligned.edges = 0;
+    double squares = 0;
+    for (const BoardAlignmentBuffers::Equation& equation : buffers->equations) {
+      // Tukey's weights: what is far off is no edge of the board.
+      const double share = equation.residual_px / (kOutlier * sigma);
+      if (!(std::abs(share) < 1)) continue;
+      const double weight = (1 - share * share) * (1 - share * share) / (sigma * sigma);
+      equations.Add(equation.derivative, equation.residual_px, weight);
+      squares += equation.residual_px * equation.residual_px;
+      ++aligned.edges;
+    }
+    if (aligned.edges < static_cast<int>(kLeastEdges)) return std::nullopt;
+    aligned.rms_px = std::sqrt(squares / aligned.edges);
+    const Eigen::LDLT<Matrix6> solver(equations.information);
+    Vector6 step = solver.solve(equations.gradient);
+    if (!step.allFinite()) return std::nullopt;
+    // The image hardly shows the tilt of a far board: what it suggests at first is no guide.
+    step *= kMostTurn / std::max(kMostTurn, step.tail<3>().norm());
+    aligned.covariance = solver.solve(Matrix6::Identity());
+    pose = Moved(pose, step.head<3>(), step.tail<3>());
+    const double moved = step.head<3>().norm() / pose.translation.norm() + step.tail<3>().norm();
+    if (moved < kConverged && iteration >= kFarSteps) break;
+  }
+  return aligned;
+}
+
+RigidTransform MirrorPose(const RigidTransform& camera_from_board) {
+  const Eigen::Vector3d sight = camera_from_board.translation.normalized();
+  const Eigen::Vector3d face = camera_from_board.rotation * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d mirrored = 2 * face.dot(sight) * sight - face;
+  return {Eigen::Quaterniond::FromTwoVectors(face, mirrored) * camera_from_board.rotation,
+          camera_from_board.translation};
+}
+
+}  // namespace kestrel

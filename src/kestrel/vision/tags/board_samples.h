@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "kestrel/core/camera/camera_model.h"
+#include "kestrel/vision/tags/board_model.h"
+
+namespace kestrel {
+
+// Smaller cells in the image are not looked at.
+inline constexpr double kLeastCellPx = 1;
+
+// Points of a board, their places in the image and gray values there. Memory that is kept.
+class BoardSamples {
+ public:
+  void Reserve(std::size_t most);
+
+  void Clear() { count_ = 0; }
+  // Adds a point in the camera frame. There must be room.
+  void Add(const Eigen::Vector3d& point_in_camera);
+
+  // Computes the places of all points; NaN where the lens does not see them.
+  void Project(const CameraModel& camera);
+  // Reads the gray values at the places, moved by (dx, dy) px; negative outside of the image.
+  std::span<const float> Read(const cv::Mat& image, float dx = 0, float dy = 0);
+  // The same where the points are the cells of a grid, row by row, of 'cell_px' each: small cells
+  // are sharpened, because lens and pixels mix them with their neighbours.
+  std::span<const float> ReadCells(const cv::Mat& image, int grid_width, double cell_px);
+
+  std::size_t count() const { return count_; }
+  float u(std::size_t i) const { return u_[i]; }
+  float v(std::size_t i) const { return v_[i]; }
+
+ private:
+  std::size_t count_ = 0;
+  std::vector<float> x_, y_, z_, u_, v_, moved_u_, moved_v_, gray_;
+};
+
+// Side of a tag's cell in the image across its shorter direction, px, as far as its distance and
+// slant tell. 0 when its face is turned away.
+double CellPx(const CameraModel& camera, const RigidTransform& camera_from_board,
+              const TagModel& tag);
+
+// How well gray values of a tag's cells agree with its bits.
+struct TagAgreement {
+  double evidence = 0;  // natural logarithm of how much likelier the tag is than other bits
+  int seen = 0;         // number of data cells in view
+  int wrong = 0;        // of them, those that look like the other colour
+};
+
+// Compares gray values of all cells of a tag, negative where out of view, with its bits. A cell is
+// held against the white and the black cells around it, so that the edge of a shadow over the tag
+// does not matter.
+TagAgreement CompareCells(const TagModel& tag, std::span<const float> gray);
+
+}  // namespace kestrel

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/core/camera/camera_model.h"
+#include "kestrel/vision/tags/tag_board.h"
+#include "kestrel/vision/target/target_detector.h"
+
+namespace kestrel {
+
+struct TagBoardDetectorOptions {
+  // Smallest accepted quality, 0 to 1: the probability that it is the board.
+  double min_quality = 0.7;
+  // Standard deviation per axis of the board's tilt from level. The image hardly shows the tilt of
+  // a far tag, and which of two poses it has depends on the tilt. Used where the hint has
+  // up_in_camera. Larger for a deck that rolls, smaller for a floor.
+  double level_sigma_deg = 3;
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("min_quality", self.min_quality, "1",
+            "smallest probability of the board that is accepted, 0 to 1");
+    visitor("level_sigma_deg", self.level_sigma_deg, "deg",
+            "tilt of the board from level, standard deviation");
+  }
+  std::vector<std::string> Validate() const;
+};
+
+// Returns the shape of a board: the squares of its tags, the largest first. The board must be
+// valid.
+TargetShape ShapeOf(const TagBoard& board);
+
+// Finds a board of AprilTags and ArUco markers in the raw image of any lens.
+//
+// Borders of the image whose sides are straight in space may be tags: their cells are sampled along
+// rays and held against the bits of the board's tags. From one tag all edges between black and
+// white cells of all tags in view give the pose, by least squares in the image. Where the hint has
+// the orientation, the board is first looked for by its appearance at the expected place, which
+// works on a part of a tag as well.
+//
+// Does not decode other tags than the board's. libapriltag and OpenCV give the bits of the families
+// at construction; the search itself uses neither, so it does not allocate.
+class TagBoardDetector final : public TargetDetector {
+ public:
+  // Throws InputError when the board, the options or the camera are not valid.
+  TagBoardDetector(const CameraModel& camera, const TagBoard& board,
+                   const TagBoardDetectorOptions& options);
+  ~TagBoardDetector() override;
+  TagBoardDetector(TagBoardDetector&&) noexcept;
+  TagBoardDetector& operator=(TagBoardDetector&&) noexcept;
+
+  // As of TargetDetector. The detection's id is that of the board's first tag.
+  LandingReport Detect(const cv::Mat& image, const LandingHint& hint,
+                       TargetWorkspace& workspace) const override;
+  std::unique_ptr<TargetWorkspace> MakeWorkspace() const override;
+  const CameraModel& camera() const override;
+  const TargetShape& shape() const override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/tags/tag_board_detector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/random.h"
+#include "kestrel/core/camera/paper_camera.h"
+#include "kestrel/core/geometry/angles.h"
+#include "kestrel/vision/tags/test_tag_images.h"
+
+namespace kestrel {
+namespace {
+
+BoardTag OneTag(const std::string& family, int id, double size_m) {
+  BoardTag tag;
+  tag.family = family;
+  tag.id = id;
+  tag.size_m = size_m;
+  return tag;
+}
+
+// Errors of a detection against the true pose.
+struct PoseError {
+  double place;    // of the true distance
+  double angle;    // rad
+  double squared;  // by the covariance: chi-squared with six degrees of freedom
+};
+
+PoseError ErrorOf(const LandingDetection& detection, const RigidTransform& truth) {
+  const RigidTransform& found = detection.camera_from_pattern;
+  Eigen::Matrix<double, 6, 1> error;
+  error.head<3>() = found.translation - truth.translation;
+  error.tail<3>() = RotationVector(found.rotation * truth.rotation.conjugate());
+  return {error.head<3>().norm() / truth.translation.norm(), error.tail<3>().norm(),
+          error.dot(detection.covariance.ldlt().solve(error))};
+}
+
+class TagBoardDetectorTest : public testing::Test {
+ protected:
+  void Use(const TagBoard& board) {
+    board_ = board;
+    detector_ = std::make_unique<TagBoardDetector>(camera_, board, TagBoardDetectorOptions());
+    workspace_ = detector_->MakeWorkspace();
+  }
+  cv::Mat Image(const RigidTransform& pose, std::uint64_t seed) const {
+    return renderer_.Render(board_.Printed(), pose, taken_, seed);
+  }
+  LandingReport Detect(const cv::Mat& image, const LandingHint& hint = {}) {
+    return detector_->Detect(image, hint, *workspace_);
+  }
+  // A hint by a track: near the true place.
+  static LandingHint Expected(const RigidTransform& pose, double sigma_m, Random* random) {
+    LandingHint hint;
+    const double x = random->Normal();
+    const double y = random->Normal();
+    const double z = random->Normal();
+    hint.center_in_camera = pose.translation + sigma_m * Eigen::Vector3d(x, y, z);
+    hint.center_sigma_m = sigma_m;
+    hint.up_in_camera = pose.rotation * Eigen::Vector3d::UnitZ();
+    return hint;
+  }
+
+  const CameraModel camera_{PaperCamera()};
+  const TagRenderer renderer_{camera_};
+  TagImageOptions taken_;
+  TagBoard board_;
+  std::unique_ptr<TagBoardDetector> detector_;
+  std::unique_ptr<TargetWorkspace> workspace_;
+};
+
+struct FamilyCase {
+  const char* family;
+  int id;
+  double farthest;  // m, with 0.5 m and 261 px per rad
+};
+
+class FamilyTest : public TagBoardDetectorTest, public testing::WithParamInterface<FamilyCase> {};
+
+TEST_P(FamilyTest, IsFoundWithoutAHintAtAnyHeight) {
+  Use({{OneTag(GetParam().family, GetParam().id, 0.5)}});
+  Random random(3);
+  int found = 0, frames = 0;
+  for (double height = 0.6; height < GetParam().farthest; height *= 1.25) {
+    const RigidTransform pose = RandomBoardBelow(height, 0.35, 0.15, &random);
+    const LandingReport report = Detect(Image(pose, random.Bits()));
+    ++frames;
+    if (!report.detection) {
+      continue;
+    }
+    ++found;
+    const PoseError error = ErrorOf(*report.detection, pose);
+    EXPECT_LT(error.place, 0.03) << height;
+    EXPECT_EQ(report.detection->id, GetParam().id);
+    EXPECT_EQ(report.detection->heading_symmetry, 1);
+    EXPECT_EQ(report.detection->method, DetectionMethod::kTags);
+  }
+  EXPECT_GE(found, frames - 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, FamilyTest,
+                         testing::Values(FamilyCase{"tag36h11", 7, 5}, FamilyCase{"tag16h5", 3, 7},
+                                         FamilyCase{"tagStandard41h12", 9, 4},
+                                         FamilyCase{"tagCircle21h7", 5, 4},
+                                         FamilyCase{"tagCustom48h12", 100, 4},
+                                         FamilyCase{"aruco_4x4_50", 7, 7},
+                                         FamilyCase{"aruco_6x6_250", 23, 5}),
+                         [](const auto& test) { return std::string(test.param.family); });
+
+TEST_F(TagBoardDetectorTest, ErrorsAreWhatTheCovarianceSays) {
+  Use({{OneTag("tag36h11", 7, 0.5)}});
+  Random random(11);
+  std::vector<double> squared;
+  for (int i = 0; i < 40; ++i) {
+    const double height = random.Uniform(0.8, 4);
+    const RigidTransform pose = RandomBoardBelow(height, 0.3, 0.1, &random);
+    const LandingHint hint = Expected(pose, 0.1, &random);
+    const LandingReport report = Detect(Image(pose, random.Bits()), hint);
+    if (report.detection) squared.push_back(ErrorOf(*report.detection, pose).squared);
+  }
+  ASSERT_GE(squared.size(), 39u);
+  const double nees = std::accumulate(squared.begin(), squared.end(), 0.0) / (6 * squared.size());
+  EXPECT_GT(nees, 0.3);
+  EXPECT_LT(nees, 1.5);
+}
+
+TEST_F(TagBoardDetectorTest, AnotherIdIsNeverTaken) {
+  for (const char* family : {"tag36h11", "aruco_4x4_50"}) {
+    Use({{OneTag(family, 7, 0.5)}});
+    Random random(5);
+    for (int i = 0; i < 40; ++i) {
+      const double height = random.Uniform(0.7, 4);
+      const int id = random.Integer(8, 40 - 12 * (family[0] == 't'));
+      const RigidTransform pose = RandomBoardBelow(height, 0.3, 0.1, &random);
+      const TagBoard other{{OneTag(family, id, 0.5)}};
+      const cv::Mat image = renderer_.Render(other.Printed(), pose, taken_, random.Bits());
+      LandingHint hint = Expected(pose, 0.02, &random);
+      EXPECT_FALSE(Detect(image).detection) << family << " " << id;
+      hint.rotation_in_camera = pose.rotation;
+      EXPECT_FALSE(Detect(image, hint).detection) << family << " " << id;
+    }
+  }
+}
+
+// A large tag, a small one in its empty centre, and an inverted one beside it.
+TagBoard NestedBoard() {
+  BoardTag beside = OneTag("aruco_4x4_50", 4, 0.12);
+  beside.inverted = true;
+  beside.board_from_tag.translation = {0.62, 0.2, 0};
+  return {{OneTag("tagCustom48h12", 0, 0.6), OneTag("tag36h11", 1, 0.15), beside}};
+}
+
+TEST_F(TagBoardDetectorTest, ANestedBoardIsFoundFromFarToNearWithoutAJump) {
+  Use(NestedBoard());
+  const Eigen::Vector3d tilt(0.05, -0.03, 0);
+  std::optional<RigidTransform> last;
+  for (double height = 4; height > 0.12; height *= 0.85) {
+    const RigidTransform pose = BoardBelow(height, {0.05 * height, 0.02 * height}, 0.4, tilt);
+    LandingHint hint;
+    if (last) {
+      const double error = std::min(0.01, 0.03 * height);
+      hint.center_in_camera = pose.translation + Eigen::Vector3d(error, -error, error);
+      hint.center_sigma_m = 2 * error;
+      hint.rotation_in_camera = last->rotation;
+      hint.up_in_camera = pose.rotation * Eigen::Vector3d::UnitZ();
+    }
+    const LandingReport report = Detect(Image(pose, 1), hint);
+    ASSERT_TRUE(report.detection) << height << " " << report.reason;
+    const PoseError error = ErrorOf(*report.detection, pose);
+    EXPECT_LT(error.place, 0.01) << height;
+    EXPECT_LT(error.angle, 0.05) << height;
+    EXPECT_EQ(report.detection->id, 0);
+    last = report.detection->camera_from_pattern;
+  }
+}
+
+TEST_F(TagBoardDetectorTest, AQuarterOfATagIsFollowed) {
+  Use({{OneTag("tag36h11", 7, 0.5)}});
+  Random random(8);
+  int found = 0;
+  constexpr int kFrames = 20;
+  for (int i = 0; i < kFrames; ++i) {
+    // One corner of the tag is in view: its middle is near the corner of the image.
+    const double heading = random.Uniform(-kPi, kPi);
+    const double x = random.Uniform(0.3, 0.42);
+    const RigidTransform pose = BoardBelow(0.35, {x, 0.3}, heading, Eigen::Vector3d::Zero());
+    LandingHint hint = Expected(pose, 0.01, &random);
+    hint.rotation_in_camera = pose.rotation;
+    const LandingReport report = Detect(Image(pose, random.Bits()), hint);
+    if (!report.detection) {
+      continue;
+    }
+    ++found;
+    EXPECT_LT(ErrorOf(*report.detection, pose).place, 0.02);
+    EXPECT_EQ(report.detection->method, DetectionMethod::kFollowed);
+  }
+  EXPECT_GE(found, kFrames - 2);
+}
+
+TEST_F(TagBoardDetectorTest, ATagIsFollowedThroughBlurAndAShadow) {
+  Use({{OneTag("tag36h11", 7, 0.5)}});
+  Random random(9);
+  taken_.motion_px = 5;
+  taken_.shadow = true;
+  int found = 0;
+  constexpr int kFrames = 20;
+  for (int i = 0; i < kFrames; ++i) {
+    const double height = random.Uniform(1, 2.5);
+    const RigidTransform pose = RandomBoardBelow(height, 0.3, 0.1, &random);
+    LandingHint hint = Expected(pose, 0.02, &random);
+    hint.rotation_in_camera = pose.rotation;
+    const LandingReport report = Detect(Image(pose, random.Bits()), hint);
+    if (!report.detection) {
+      continue;
+    }
+    ++found;
+    EXPECT_LT(ErrorOf(*report.detection, pose).place, 0.03);
+  }
+  EXPECT_GE(found, kFrames - 2);
+}
+
+TEST(WideLensTest, ATagIsFoundBeyondNinetyDegreesFromTheAxis) {
+  // TUM VI's lens: 108 degrees from the axis in the corners of the image.
+  const CameraModel camera({512,
+                            512,
+                            190.978,
+                            190.973,
+                            254.932,
+                            256.897,
+                            DistortionModel::kEquidistant,
+                            {0.0034824, 0.0007150, -0.0020532, 0.0002029}});
+  const TagBoard board{{OneTag("tag36h11", 7, 0.5)}};
+  const TagBoardDetector detector(camera, board, {});
+  const double angle = Radians(93);
+  const double diagonal = std::sin(angle) * M_SQRT1_2;
+  const RigidTransform turn{
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(),
+                                         Eigen::Vector3d(diagonal, diagonal, std::cos(angle))),
+      Eigen::Vector3d::Zero()};
+  const RigidTransform pose = turn * BoardBelow(2.6, {0, 0}, 0.3, {0.1, 0.05, 0});
+  const cv::Mat image = TagRenderer(camera).Render(board.Printed(), pose, {}, 4);
+  const LandingReport report = detector.Detect(image, {}, *detector.MakeWorkspace());
+  ASSERT_TRUE(report.detection) << report.reason;
+  EXPECT_LT(ErrorOf(*report.detection, pose).place, 0.01);
+}
+
+TEST_F(TagBoardDetectorTest, UpDecidesBetweenTheTwoPosesOfAFarTag) {
+  Use({{OneTag("tag36h11", 7, 0.5)}});
+  Random random(21);
+  for (int i = 0; i < 20; ++i) {
+    const RigidTransform pose = RandomBoardBelow(4, 0.5, 0.1, &random);
+    LandingHint hint = Expected(pose, 0.1, &random);
+    const LandingReport report = Detect(Image(pose, random.Bits()), hint);
+    if (!report.detection) continue;
+    EXPECT_LT(ErrorOf(*report.detection, pose).angle, Radians(8));
+  }
+}
+
+TEST_F(TagBoardDetectorTest, AnImageOfAnotherSizeIsReported) {
+  Use({{OneTag("tag36h11", 7, 0.5)}});
+  const LandingReport report = Detect(cv::Mat(100, 100, CV_8UC1, cv::Scalar(0)));
+  EXPECT_FALSE(report.detection);
+  EXPECT_EQ(report.reason, "the image is not CV_8UC1 of the camera's size");
+}
+
+TEST_F(TagBoardDetectorTest, TheShapeIsThatOfTheBoard) {
+  Use(NestedBoard());
+  const TargetShape& shape = detector_->shape();
+  ASSERT_EQ(shape.outlines.size(), 3u);
+  EXPECT_NEAR(shape.outlines[0][0].norm(), 0.3 * M_SQRT2, 1e-9);
+  EXPECT_GT(shape.diameter_m, 2 * 0.68);
+}
+
+TEST_F(TagBoardDetectorTest, BadInputIsAnError) {
+  EXPECT_THROW(TagBoardDetector(camera_, TagBoard(), {}), InputError);
+  TagBoardDetectorOptions options;
+  options.min_quality = 2;
+  EXPECT_THROW(TagBoardDetector(camera_, TagBoard{{BoardTag()}}, options), InputError);
+}
+
+}  // namespace
+}  // namespace kestrel
