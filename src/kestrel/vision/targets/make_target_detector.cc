@@ -10,6 +10,7 @@
 
 #include "kestrel/core/base/edit_distance.h"
 #include "kestrel/core/base/options.h"
+#include "kestrel/core/base/violations.h"
 
 namespace kestrel {
 namespace {
@@ -24,6 +25,8 @@ struct TargetKind {
   std::string_view name;
   std::unique_ptr<const TargetDetector> (*make)(const CameraModel&, const KindOptions&);
   TargetShape (*shape)(const KindOptions&);
+  // Violations of the kind's group of TargetOptions.
+  std::vector<std::string> (*validate)(const TargetOptions&);
 };
 
 std::unique_ptr<const TargetDetector> MakeRingCross(const CameraModel& camera,
@@ -31,10 +34,42 @@ std::unique_ptr<const TargetDetector> MakeRingCross(const CameraModel& camera,
   return std::make_unique<LandingPatternDetector>(camera, options.ring);
 }
 TargetShape ShapeOfRingCross(const KindOptions& options) { return ShapeOf(options.ring.pattern); }
+std::vector<std::string> ValidateRingCross(const TargetOptions& /*target*/) { return {}; }
+
+// The kinds that are boards of tags differ in their group of options.
+TagTargetOptions Apriltag(const TargetOptions& target) { return target.apriltag; }
+TagTargetOptions Aruco(const TargetOptions& target) { return target.aruco; }
+TagTargetOptions Nested(const TargetOptions& target) { return {.board = target.nested.board}; }
+
+using TagsOf = TagTargetOptions (*)(const TargetOptions&);
+
+template <TagsOf kTagsOf>
+std::unique_ptr<const TargetDetector> MakeTags(const CameraModel& camera,
+                                               const KindOptions& options) {
+  return std::make_unique<TagBoardDetector>(camera, kTagsOf(options.target).Board(),
+                                            options.target.tags);
+}
+template <TagsOf kTagsOf>
+TargetShape ShapeOfTags(const KindOptions& options) {
+  return ShapeOf(kTagsOf(options.target).Board());
+}
+template <TagsOf kTagsOf>
+std::vector<std::string> ValidateTags(const TargetOptions& target) {
+  std::vector<std::string> violations = kTagsOf(target).Validate();
+  AddViolations("tags", target.tags.Validate(), &violations);
+  return violations;
+}
+std::vector<std::string> ValidateNested(const TargetOptions& target) {
+  if (target.nested.board.empty()) return {"nested.board is empty, expected the file of a board"};
+  return ValidateTags<Nested>(target);
+}
 
 // All kinds of pads, a line each.
 constexpr TargetKind kTargetKinds[] = {
-    {"ring-cross", MakeRingCross, ShapeOfRingCross},
+    {"ring-cross", MakeRingCross, ShapeOfRingCross, ValidateRingCross},
+    {"apriltag", MakeTags<Apriltag>, ShapeOfTags<Apriltag>, ValidateTags<Apriltag>},
+    {"aruco", MakeTags<Aruco>, ShapeOfTags<Aruco>, ValidateTags<Aruco>},
+    {"nested", MakeTags<Nested>, ShapeOfTags<Nested>, ValidateNested},
 };
 
 const TargetKind* FindKind(std::string_view name) {
@@ -46,9 +81,9 @@ const TargetKind* FindKind(std::string_view name) {
 }  // namespace
 
 std::vector<std::string> TargetOptions::Validate() const {
-  if (FindKind(kind) != nullptr) return {};
+  if (const TargetKind* known = FindKind(kind)) return known->validate(*this);
   std::vector<std::string_view> names;
-  for (const TargetKind& known : kTargetKinds) names.push_back(known.name);
+  for (const TargetKind& other : kTargetKinds) names.push_back(other.name);
   const auto nearest =
       std::min_element(names.begin(), names.end(), [&](std::string_view a, std::string_view b) {
         return EditDistance(kind, a) < EditDistance(kind, b);

@@ -7,17 +7,39 @@
 
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/vision/landing/landing_pattern_detector.h"
+#include "kestrel/vision/tags/tag_board.h"
+#include "kestrel/vision/tags/tag_board_detector.h"
 #include "kestrel/vision/target/target_detector.h"
 
 namespace kestrel {
 
-// What the target is. The options of the ring with a cross are LandingPatternDetectorOptions.
-struct TargetOptions {
-  std::string kind = "ring-cross";
+// A board of tags of any families, as a target.
+struct NestedTargetOptions {
+  std::string board;  // path of its file: ParseTagBoard
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("kind", self.kind, "", "what the target is: ring-cross");
+    visitor("board", self.board, "",
+            "YAML file of a board of tags of any families and sizes, inside each other or beside "
+            "each other");
+  }
+};
+
+// What the target is. The options of the ring with a cross are LandingPatternDetectorOptions.
+struct TargetOptions {
+  std::string kind = "ring-cross";
+  TagTargetOptions apriltag;
+  TagTargetOptions aruco{.family = "aruco_4x4_50", .board = ""};
+  NestedTargetOptions nested;
+  TagBoardDetectorOptions tags;  // how any of the three is found
+
+  template <class Self, class Visitor>
+  static void Visit(Self& self, Visitor&& visitor) {
+    visitor("kind", self.kind, "", "what the target is: ring-cross, apriltag, aruco, nested");
+    visitor.Group("apriltag", self.apriltag);
+    visitor.Group("aruco", self.aruco);
+    visitor.Group("nested", self.nested);
+    visitor.Group("tags", self.tags);
   }
   std::vector<std::string> Validate() const;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/vision/targets/make_target_detector.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +13,7 @@
 namespace kestrel {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using MakeTargetDetectorTest = LandingPatternDetectorTest;
 
@@ -45,6 +48,23 @@ TEST_F(MakeTargetDetectorTest, AnUnknownKindIsAnErrorThatNamesTheKinds) {
     EXPECT_THAT(error.what(), HasSubstr("'ring-cros', expected one of ring-cross"));
     EXPECT_THAT(error.what(), HasSubstr("did you mean 'ring-cross'?"));
   }
+}
+
+TEST_F(MakeTargetDetectorTest, BoardsOfTagsAreKinds) {
+  TargetOptions target;
+  SetOption("kind=apriltag", &target);
+  SetOption("apriltag.size_m=0.3", &target);
+  EXPECT_NEAR(MakeTargetDetector(camera_, target, {})->shape().outlines[0][0].norm(),
+              0.15 * M_SQRT2, 1e-9);
+  SetOption("kind=aruco", &target);
+  EXPECT_NEAR(ShapeOfTarget(target, {}).outlines[0][0].norm(), 0.25 * M_SQRT2, 1e-9);
+  SetOption("aruco.id=50", &target);
+  EXPECT_THAT(target.Validate(), ElementsAre("aruco_4x4_50 has no id 50, expected 0 to 49"));
+  SetOption("kind=nested", &target);
+  EXPECT_THAT(target.Validate(), ElementsAre(HasSubstr("nested.board is empty")));
+  // The options of other kinds do not matter.
+  SetOption("kind=ring-cross", &target);
+  EXPECT_TRUE(target.Validate().empty());
 }
 
 }  // namespace
