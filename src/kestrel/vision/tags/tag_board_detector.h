@@ -43,8 +43,8 @@ TargetShape ShapeOf(const TagBoard& board);
 // the orientation, the board is first looked for by its appearance at the expected place, which
 // works on a part of a tag as well.
 //
-// Does not decode other tags than the board's. libapriltag and OpenCV give the bits of the families
-// at construction; the search itself uses neither, so it does not allocate.
+// Does not decode other tags than the board's. libapriltag gives the bits of its families
+// at construction; the search itself does not use it, so it does not allocate.
 class TagBoardDetector final : public TargetDetector {
  public:
   // Throws InputError when the board, the options or the camera are not valid.

@@ -21,7 +21,7 @@
 #include "kestrel/core/base/edit_distance.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/shown.h"
-#include "kestrel/vision/tags/aruco_dictionary.h"
+#include "kestrel/vision/tags/aruco_codes.h"
 
 namespace kestrel {
 namespace {
@@ -46,27 +46,30 @@ constexpr std::array<AprilTagFamily, 9> kAprilTagFamilies{{
 
 struct ArucoFamily {
   std::string_view name;
-  int dictionary;  // OpenCV's number
+  int side;  // bits
+  int id_count;
+  int corrected_bits;  // as OpenCV says: fewer than half of those that differ
 };
 
+constexpr std::string_view kArucoOriginal = "aruco_original";
 constexpr std::array<ArucoFamily, 17> kArucoFamilies{{
-    {"aruco_4x4_50", cv::aruco::DICT_4X4_50},
-    {"aruco_4x4_100", cv::aruco::DICT_4X4_100},
-    {"aruco_4x4_250", cv::aruco::DICT_4X4_250},
-    {"aruco_4x4_1000", cv::aruco::DICT_4X4_1000},
-    {"aruco_5x5_50", cv::aruco::DICT_5X5_50},
-    {"aruco_5x5_100", cv::aruco::DICT_5X5_100},
-    {"aruco_5x5_250", cv::aruco::DICT_5X5_250},
-    {"aruco_5x5_1000", cv::aruco::DICT_5X5_1000},
-    {"aruco_6x6_50", cv::aruco::DICT_6X6_50},
-    {"aruco_6x6_100", cv::aruco::DICT_6X6_100},
-    {"aruco_6x6_250", cv::aruco::DICT_6X6_250},
-    {"aruco_6x6_1000", cv::aruco::DICT_6X6_1000},
-    {"aruco_7x7_50", cv::aruco::DICT_7X7_50},
-    {"aruco_7x7_100", cv::aruco::DICT_7X7_100},
-    {"aruco_7x7_250", cv::aruco::DICT_7X7_250},
-    {"aruco_7x7_1000", cv::aruco::DICT_7X7_1000},
-    {"aruco_original", cv::aruco::DICT_ARUCO_ORIGINAL},
+    {"aruco_4x4_50", 4, 50, 1},
+    {"aruco_4x4_100", 4, 100, 1},
+    {"aruco_4x4_250", 4, 250, 1},
+    {"aruco_4x4_1000", 4, 1000, 0},
+    {"aruco_5x5_50", 5, 50, 3},
+    {"aruco_5x5_100", 5, 100, 3},
+    {"aruco_5x5_250", 5, 250, 2},
+    {"aruco_5x5_1000", 5, 1000, 2},
+    {"aruco_6x6_50", 6, 50, 6},
+    {"aruco_6x6_100", 6, 100, 5},
+    {"aruco_6x6_250", 6, 250, 5},
+    {"aruco_6x6_1000", 6, 1000, 4},
+    {"aruco_7x7_50", 7, 50, 9},
+    {"aruco_7x7_100", 7, 100, 8},
+    {"aruco_7x7_250", 7, 250, 8},
+    {"aruco_7x7_1000", 7, 1000, 6},
+    {kArucoOriginal, 5, 1024, 0},
 }};
 
 // Paints the cells on the edge of a centred square.
@@ -105,7 +108,7 @@ TagFamily::TagFamily(const std::string& name) : name_(name) {
   const auto aruco = std::find_if(kArucoFamilies.begin(), kArucoFamilies.end(),
                                   [&](const ArucoFamily& family) { return family.name == name; });
   if (aruco != kArucoFamilies.end()) {
-    ReadAruco(aruco->dictionary);
+    ReadAruco(aruco->side, aruco->id_count, aruco->corrected_bits);
   } else {
     ReadAprilTag();
   }
@@ -134,23 +137,16 @@ void TagFamily::ReadAprilTag() {
   codes_.assign(family->codes, family->codes + family->ncodes);
 }
 
-void TagFamily::ReadAruco(int dictionary) {
-  const cv::aruco::Dictionary read = ArucoDictionary(dictionary);
-  border_width_ = read.markerSize + 2;
+void TagFamily::ReadAruco(int side, int id_count, int corrected_bits) {
+  border_width_ = side + 2;
   width_ = border_width_ + 2;
-  // What OpenCV says is how many bits it corrects: fewer than half of those that differ.
-  min_distance_ = 2 * read.maxCorrectionBits + 1;
-  for (int row = 0; row < read.markerSize; ++row) {
-    for (int column = 0; column < read.markerSize; ++column) bits_.push_back({column + 2, row + 2});
+  min_distance_ = 2 * corrected_bits + 1;
+  for (int row = 0; row < side; ++row) {
+    for (int column = 0; column < side; ++column) bits_.push_back({column + 2, row + 2});
   }
-  for (int id = 0; id < read.bytesList.rows; ++id) {
-    const cv::Mat bits =
-        cv::aruco::Dictionary::getBitsFromByteList(read.bytesList.row(id), read.markerSize);
-    std::uint64_t code = 0;
-    for (int i = 0; i < static_cast<int>(bits.total()); ++i) {
-      code = code << 1 | bits.at<std::uint8_t>(i / read.markerSize, i % read.markerSize);
-    }
-    codes_.push_back(code);
+  const bool is_original = name_ == kArucoOriginal;
+  for (int id = 0; id < id_count; ++id) {
+    codes_.push_back(is_original ? OriginalArucoCode(id) : ArucoCodes(side)[id]);
   }
 }
 

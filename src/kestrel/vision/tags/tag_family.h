@@ -55,7 +55,7 @@ class TagFamily {
   };
 
   void ReadAprilTag();
-  void ReadAruco(int dictionary);
+  void ReadAruco(int side, int id_count, int corrected_bits);
 
   std::string name_;
   int width_ = 0;

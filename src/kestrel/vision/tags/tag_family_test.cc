@@ -16,7 +16,7 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/vision/tags/aruco_dictionary.h"
+#include "kestrel/vision/tags/test_aruco_dictionary.h"
 
 namespace kestrel {
 namespace {
@@ -109,32 +109,54 @@ INSTANTIATE_TEST_SUITE_P(
                                  tagStandard41h12_destroy}),
     [](const auto& test) { return std::string(test.param.name); });
 
-TEST(TagFamilyTest, ArucoIsReadByOpenCvUpright) {
-  struct Case {
-    const char* name;
-    int dictionary;
-  };
-  for (const Case& test : {Case{"aruco_4x4_50", cv::aruco::DICT_4X4_50},
-                           Case{"aruco_6x6_250", cv::aruco::DICT_6X6_250},
-                           Case{"aruco_original", cv::aruco::DICT_ARUCO_ORIGINAL}}) {
-    const cv::aruco::Dictionary dictionary = ArucoDictionary(test.dictionary);
-    const TagFamily family(test.name);
-    for (const int id : {0, 23, family.id_count() - 1}) {
-      const TagGrid grid = family.Grid(id);
-      cv::Mat bits(dictionary.markerSize, dictionary.markerSize, CV_8UC1);
-      for (int row = 0; row < bits.rows; ++row) {
-        for (int column = 0; column < bits.cols; ++column) {
-          bits.at<std::uint8_t>(row, column) = grid.at(column + 2, row + 2) == TagCell::kWhite;
-        }
+struct ArucoCase {
+  const char* name;
+  int dictionary;
+};
+
+class ArucoFamilyTest : public testing::TestWithParam<ArucoCase> {};
+
+TEST_P(ArucoFamilyTest, EveryIdIsReadByOpenCvUpright) {
+  const cv::aruco::Dictionary dictionary = ArucoDictionary(GetParam().dictionary);
+  const TagFamily family(GetParam().name);
+  ASSERT_EQ(family.id_count(), dictionary.bytesList.rows);
+  EXPECT_EQ(family.min_distance(), 2 * dictionary.maxCorrectionBits + 1);
+  for (int id = 0; id < family.id_count(); ++id) {
+    const TagGrid grid = family.Grid(id);
+    cv::Mat bits(dictionary.markerSize, dictionary.markerSize, CV_8UC1);
+    for (int row = 0; row < bits.rows; ++row) {
+      for (int column = 0; column < bits.cols; ++column) {
+        bits.at<std::uint8_t>(row, column) = grid.at(column + 2, row + 2) == TagCell::kWhite;
       }
-      int found = -1;
-      int turned = -1;
-      ASSERT_TRUE(dictionary.identify(bits, found, turned, 0)) << test.name << " " << id;
-      EXPECT_EQ(found, id);
-      EXPECT_EQ(turned, 0);
     }
+    int found = -1;
+    int turned = -1;
+    ASSERT_TRUE(dictionary.identify(bits, found, turned, 0)) << id;
+    ASSERT_EQ(found, id);
+    ASSERT_EQ(turned, 0) << id;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(
+    Families, ArucoFamilyTest,
+    testing::Values(ArucoCase{"aruco_4x4_50", cv::aruco::DICT_4X4_50},
+                    ArucoCase{"aruco_4x4_100", cv::aruco::DICT_4X4_100},
+                    ArucoCase{"aruco_4x4_250", cv::aruco::DICT_4X4_250},
+                    ArucoCase{"aruco_4x4_1000", cv::aruco::DICT_4X4_1000},
+                    ArucoCase{"aruco_5x5_50", cv::aruco::DICT_5X5_50},
+                    ArucoCase{"aruco_5x5_100", cv::aruco::DICT_5X5_100},
+                    ArucoCase{"aruco_5x5_250", cv::aruco::DICT_5X5_250},
+                    ArucoCase{"aruco_5x5_1000", cv::aruco::DICT_5X5_1000},
+                    ArucoCase{"aruco_6x6_50", cv::aruco::DICT_6X6_50},
+                    ArucoCase{"aruco_6x6_100", cv::aruco::DICT_6X6_100},
+                    ArucoCase{"aruco_6x6_250", cv::aruco::DICT_6X6_250},
+                    ArucoCase{"aruco_6x6_1000", cv::aruco::DICT_6X6_1000},
+                    ArucoCase{"aruco_7x7_50", cv::aruco::DICT_7X7_50},
+                    ArucoCase{"aruco_7x7_100", cv::aruco::DICT_7X7_100},
+                    ArucoCase{"aruco_7x7_250", cv::aruco::DICT_7X7_250},
+                    ArucoCase{"aruco_7x7_1000", cv::aruco::DICT_7X7_1000},
+                    ArucoCase{"aruco_original", cv::aruco::DICT_ARUCO_ORIGINAL}),
+    [](const auto& test) { return std::string(test.param.name); });
 
 TEST(TagFamilyTest, EveryFamilyHasItsBorders) {
   for (const std::string& name : TagFamily::Names()) {
