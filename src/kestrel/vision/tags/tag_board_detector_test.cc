@@ -247,7 +247,7 @@ TEST(WideLensTest, ATagIsFoundBeyondNinetyDegreesFromTheAxis) {
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(),
                                          Eigen::Vector3d(diagonal, diagonal, std::cos(angle))),
       Eigen::Vector3d::Zero()};
-  const RigidTransform pose = turn * BoardBelow(2.6, {0, 0}, 0.3, {0.1, 0.05, 0});
+  const RigidTransform pose = turn * BoardBelow(2.6, {0, 0}, 0.3, Eigen::Vector3d::Zero());
   const cv::Mat image = TagRenderer(camera).Render(board.Printed(), pose, {}, 4);
   const LandingReport report = detector.Detect(image, {}, *detector.MakeWorkspace());
   ASSERT_TRUE(report.detection) << report.reason;

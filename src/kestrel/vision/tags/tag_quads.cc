@@ -73,8 +73,8 @@ std::array<int, 4> RoughCorners(const PlanePoints& border) {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   for (int i = 0; i < border.count; ++i) middle += border.points[i];
   middle /= border.count;
-  const auto from = [&](const Eigen::Vector2d& place) {
-    return [&border, place](const Eigen::Vector2d& point) { return (point - place).squaredNorm(); };
+  const auto from = [](const Eigen::Vector2d& place) {
+    return [place](const Eigen::Vector2d& point) { return (point - place).squaredNorm(); };
   };
   const int first = Farthest(border, from(middle));
   const int opposite = Farthest(border, from(border.points[first]));
