@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/option_arguments.h"
@@ -18,6 +19,7 @@
 #include "kestrel/core/camera/calibration_reader.h"
 #include "kestrel/io/recording/image_file.h"
 #include "kestrel/io/recording/output_folder.h"
+#include "kestrel/vision/targets/make_target_detector.h"
 
 namespace kestrel {
 namespace {
@@ -33,6 +35,13 @@ struct PrintArguments {
   std::string camera;
   std::optional<double> distance_m;
   std::optional<double> ruler_m;
+  std::string target;  // kind, over the configured one
+
+  KestrelOptions ReadOptions() const {
+    OptionArguments with_target = options;
+    if (!target.empty()) with_target.settings.push_back("landing.target.kind=" + target);
+    return with_target.Read();
+  }
 };
 
 // New files in one folder. The command prints the name of each when it is written.
@@ -52,12 +61,12 @@ class PrintFiles {
   OutputFolder folder_;
 };
 
-void PrintWhole(const LandingPattern& pattern, const std::string& name, const std::string& kind,
+void PrintWhole(const TargetPrint& print, const std::string& name, const std::string& kind,
                 const PrintFiles& files) {
-  using Write = void (*)(const LandingPattern&, const std::string&);
+  using Write = void (*)(const TargetPrint&, const std::string&);
   const auto add = [&](const char* end, Write write) {
     const std::string path =
-        files.Add(name + end, [&](const std::string& file) { write(pattern, file); });
+        files.Add(name + end, [&](const std::string& file) { write(print, file); });
     fmt::print(stderr, "{}\n", path);
   };
   if (kind != kSvg) add(kPdf, PrintPatternPdf);
@@ -65,22 +74,22 @@ void PrintWhole(const LandingPattern& pattern, const std::string& name, const st
 }
 
 // Writes the SVGs, of one page each, to a folder.
-void PrintTiled(const LandingPattern& pattern, const Tiling& tiling, const std::string& name,
+void PrintTiled(const TargetPrint& print, const Tiling& tiling, const std::string& name,
                 const std::string& kind, const PrintFiles& files) {
   if (kind != kSvg) {
     const std::string path = files.Add(
-        name + kPdf, [&](const std::string& file) { PrintTilesPdf(pattern, tiling, file); });
+        name + kPdf, [&](const std::string& file) { PrintTilesPdf(print, tiling, file); });
     fmt::print(stderr, "{}: {} sheets, {} rows of {}\n", path, tiling.count(), tiling.rows,
                tiling.columns);
   }
   if (kind == kPdf) return;
   const std::string overview = files.Add(name + "/overview" + kSvg, [&](const std::string& file) {
-    PrintOverviewSvg(pattern, tiling, file);
+    PrintOverviewSvg(print, tiling, file);
   });
   for (int row = 0; row < tiling.rows; ++row) {
     for (int column = 0; column < tiling.columns; ++column) {
       files.Add(fmt::format("{}/sheet_{}.{}{}", name, row + 1, column + 1, kSvg),
-                [&](const std::string& file) { PrintTileSvg(pattern, tiling, row, column, file); });
+                [&](const std::string& file) { PrintTileSvg(print, tiling, row, column, file); });
     }
   }
   fmt::print(stderr, "{}, and its sheets beside it\n", overview);
@@ -131,19 +140,20 @@ void RunPrint(const PrintArguments& arguments) {
     CheckPhoto(arguments);
     return;
   }
-  const LandingPattern pattern = arguments.options.Read().landing.detector.pattern;
+  const LandingPipelineOptions landing = arguments.ReadOptions().landing;
+  const TargetPrint print = PrintOfTarget(landing.target, landing.detector.pattern);
   const std::filesystem::path output(arguments.output);
   const std::string kind = output.extension().string();
   const bool is_file = kind == kPdf || kind == kSvg;
   const PrintFiles files(is_file ? output.parent_path() / "." : output, arguments.force);
   if (arguments.paper.empty()) {
     const std::string name = is_file ? output.stem().string() : "landing_pattern";
-    PrintWhole(pattern, name, is_file ? kind : "", files);
+    PrintWhole(print, name, is_file ? kind : "", files);
     return;
   }
-  const Tiling tiling = TileBoard(pattern.board_size_m, *PaperSize(arguments.paper));
+  const Tiling tiling = TileBoard(print.board_size_m, *PaperSize(arguments.paper));
   const std::string name = is_file ? output.stem().string() : "landing_pattern_" + arguments.paper;
-  PrintTiled(pattern, tiling, name, is_file ? kind : "", files);
+  PrintTiled(print, tiling, name, is_file ? kind : "", files);
 }
 
 CLI::Option* AddCheckOptions(CLI::App* command, PrintArguments* arguments) {
@@ -177,9 +187,14 @@ CLI::Option* AddCheckOptions(CLI::App* command, PrintArguments* arguments) {
 
 void AddPrintCommand(CLI::App* app) {
   CLI::App* command =
-      app->add_subcommand("print", "The configured landing pattern as PDF and SVG, true to scale");
+      app->add_subcommand("print", "The configured pad as PDF and SVG, true to scale");
   const auto arguments = std::make_shared<PrintArguments>();
   arguments->options.AddTo(command);
+  command
+      ->add_option("--target", arguments->target,
+                   fmt::format("What is printed: {} (default: as configured)",
+                               fmt::join(TargetKinds(), ", ")))
+      ->type_name("KIND");
   CLI::Option* const paper = command
                                  ->add_option("--paper", arguments->paper,
                                               "Size of the sheets (a0 to a4) that the print is cut "

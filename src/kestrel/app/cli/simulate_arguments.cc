@@ -2,8 +2,10 @@
 #include "kestrel/app/cli/simulate_arguments.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/vision/targets/make_target_detector.h"
 
 namespace kestrel {
 
@@ -33,6 +35,20 @@ void SimulateArguments::AddTo(CLI::App* command) {
       throw CLI::RequiredError("--output");
     }
   });
+}
+
+void SimulateArguments::AddTargetTo(CLI::App* command) {
+  command
+      ->add_option(
+          "--target", target,
+          fmt::format("What is landed on: {} (default ring-cross)", fmt::join(TargetKinds(), ", ")))
+      ->type_name("KIND");
+}
+
+std::vector<std::string> SimulateArguments::AllSettings() const {
+  std::vector<std::string> all = settings;
+  if (!target.empty()) all.push_back("target.kind=" + target);
+  return all;
 }
 
 CameraCalibration SimulateArguments::FindCamera(const CameraCalibration& by_default) const {

@@ -20,12 +20,17 @@ struct SimulateArguments {
   std::string config;
   std::vector<std::string> settings;
   std::string camera;
+  std::string target;  // kind; not of a hunt
   std::uint64_t seed = 1;
   bool list = false;
   bool print_config = false;
   bool force = false;
 
   void AddTo(CLI::App* command);
+  // Adds --target, for simulations of a landing.
+  void AddTargetTo(CLI::App* command);
+  // Returns the settings, that of the target among them.
+  std::vector<std::string> AllSettings() const;
 
   // Returns the calibration of the file, with the default's mount if it has none; without a file
   // the default.

@@ -61,7 +61,7 @@ struct Kind {
 template <class Options>
 void Run(const Kind<Options>& kind, const SimulateArguments& arguments, int threads) {
   if (arguments.list) return PrintScenarios(kind.scenarios);
-  const Options options = kind.read(arguments.scenario, arguments.config, arguments.settings);
+  const Options options = kind.read(arguments.scenario, arguments.config, arguments.AllSettings());
   if (arguments.print_config) {
     std::cout << PrintOptions(options);
     return;
@@ -73,7 +73,8 @@ void Run(const Kind<Options>& kind, const SimulateArguments& arguments, int thre
 }
 
 template <class Options>
-void AddKind(CLI::App* command, const char* name, const char* meaning, const Kind<Options>& kind) {
+std::shared_ptr<SimulateArguments> AddKind(CLI::App* command, const char* name, const char* meaning,
+                                           const Kind<Options>& kind) {
   CLI::App* subcommand = command->add_subcommand(name, meaning);
   const auto arguments = std::make_shared<SimulateArguments>();
   const auto threads = std::make_shared<int>(0);
@@ -83,6 +84,7 @@ void AddKind(CLI::App* command, const char* name, const char* meaning, const Kin
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
   subcommand->callback([=] { Run(kind, *arguments, *threads); });
+  return arguments;
 }
 
 }  // namespace
@@ -90,10 +92,10 @@ void AddKind(CLI::App* command, const char* name, const char* meaning, const Kin
 void AddSimulateCommand(CLI::App* app) {
   CLI::App* command = app->add_subcommand("simulate", "Render a flight with truth, as a recording");
   command->require_subcommand(1);
-  AddKind(command, "landing",
-          "A flight over the landing pattern on a vehicle (gray fisheye camera)",
+  AddKind(command, "landing", "A flight over a pad on a vehicle (gray fisheye camera)",
           Kind<LandingSimulationOptions>{LandingScenarios(), ReadLandingSimulation, PlanLanding,
-                                         PaperCalibration()});
+                                         PaperCalibration()})
+      ->AddTargetTo(command->get_subcommand("landing"));
   AddKind(command, "hunt", "A flight over coloured objects (colour camera, rolling shutter)",
           Kind<HuntSimulationOptions>{HuntScenarios(), ReadHuntSimulation, PlanHunt,
                                       HuntCalibration()});

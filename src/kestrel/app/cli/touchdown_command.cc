@@ -78,7 +78,8 @@ void Simulate(const TouchdownSimulationOptions& options, const TouchdownArgument
 void RunTouchdown(const TouchdownArguments& arguments) {
   const SimulateArguments& shared = arguments.shared;
   if (shared.list) return PrintScenarios(TouchdownScenarios());
-  const auto options = ReadTouchdownSimulation(shared.scenario, shared.config, shared.settings);
+  const auto options =
+      ReadTouchdownSimulation(shared.scenario, shared.config, shared.AllSettings());
   if (shared.print_config) {
     std::cout << PrintOptions(options);
     return;
@@ -93,6 +94,7 @@ void AddTouchdownCommand(CLI::App* simulate) {
       "touchdown", "A simulated UAV lands on a moving vehicle by what the landing pipeline sees");
   const auto arguments = std::make_shared<TouchdownArguments>();
   arguments->shared.AddTo(command);
+  arguments->shared.AddTargetTo(command);
   AddAnnotateFlag(command, &arguments->annotate);
   command->callback([arguments] { RunTouchdown(*arguments); });
 }

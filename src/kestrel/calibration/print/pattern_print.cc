@@ -5,13 +5,13 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "kestrel/calibration/print/canvas.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/core/base/options.h"
 #include "kestrel/core/geometry/angles.h"
 
 namespace kestrel {
@@ -21,37 +21,55 @@ using Eigen::Vector2d;
 
 constexpr double kMaxPage_m = 14400 * 0.0254 / 72;
 constexpr Canvas::Ink kBlack{0, 0, 0};
-constexpr Canvas::Ink kGray{0.5, 0.5, 0.5};  // for what is on the board but not part of the pattern
+constexpr Canvas::Ink kGray{0.5, 0.5, 0.5};  // for what is on the board but not part of the pad
 constexpr Canvas::Ink kBlue{0.2, 0.5, 1};
 constexpr double kTextHeight_m = 0.004;
 constexpr double kThinLine_m = 0.0002;
 
-// The origin is the centre of the board.
-void DrawRingAndCross(const LandingPattern& pattern, Canvas* canvas) {
+// Adds the area of a shape to the path. P has y up, a canvas down.
+void AddArea(const PrintRing& ring, Canvas* canvas) {
   cairo_t* const cairo = canvas->cairo();
-  canvas->SetInk(kBlack);
-  cairo_new_path(cairo);
-  cairo_arc(cairo, 0, 0, pattern.outer_radius_m(), 0, 2 * kPi);
-  cairo_close_path(cairo);
+  const Vector2d center(ring.center.x(), -ring.center.y());
+  constexpr double kFrom = 0.5 * kPi, kTo = 2.5 * kPi;
   cairo_new_sub_path(cairo);
-  cairo_arc_negative(cairo, 0, 0, pattern.inner_radius_m(), 2 * kPi, 0);
+  cairo_arc(cairo, center.x(), center.y(), ring.outer_radius_m, kFrom, kTo);
   cairo_close_path(cairo);
-  canvas->Fill();
-  const Vector2d half_arm(pattern.arm_half_length_m, 0.5 * pattern.arm_width_m);
-  if (half_arm.norm() > pattern.outer_radius_m()) {  // the ring cuts off the corners of the arms
-    cairo_arc(cairo, 0, 0, pattern.outer_radius_m(), 0, 2 * kPi);
-    cairo_clip(cairo);
+  if (ring.inner_radius_m <= 0) return;
+  cairo_new_sub_path(cairo);
+  cairo_arc_negative(cairo, center.x(), center.y(), ring.inner_radius_m, kTo, kFrom);
+  cairo_close_path(cairo);
+}
+
+void AddArea(const PrintPolygon& polygon, Canvas* canvas) {
+  cairo_t* const cairo = canvas->cairo();
+  for (const std::vector<Vector2d>& loop : polygon.loops) {
+    cairo_move_to(cairo, loop[0].x(), -loop[0].y());
+    for (std::size_t i = 1; i < loop.size(); ++i) {
+      const Vector2d side = loop[i] - loop[i - 1];
+      cairo_rel_line_to(cairo, side.x(), -side.y());
+    }
+    cairo_close_path(cairo);
   }
-  for (const Vector2d& half : {half_arm, Vector2d(half_arm.reverse())}) {
-    canvas->Rectangle(-half, 2 * half);
+}
+
+// The origin is the centre of the board.
+void DrawShapes(const TargetPrint& print, Canvas* canvas) {
+  for (const PrintShape& shape : print.shapes) {
+    canvas->SetInk({shape.gray, shape.gray, shape.gray});
+    std::visit([&](const auto& area) { AddArea(area, canvas); }, shape.area);
     canvas->Fill();
   }
 }
 
 // The origin is the upper left corner of the board.
-void DrawBoard(const LandingPattern& pattern, Canvas* canvas) {
-  canvas->Within(Vector2d::Constant(0.5 * pattern.board_size_m), 0.25 * kPi, 1,
-                 [&] { DrawRingAndCross(pattern, canvas); });
+void DrawBoard(const TargetPrint& print, Canvas* canvas) {
+  const Vector2d size = Vector2d::Constant(print.board_size_m);
+  if (print.board_gray < 1) {
+    canvas->SetInk({print.board_gray, print.board_gray, print.board_gray});
+    canvas->Rectangle({0, 0}, size);
+    canvas->Fill();
+  }
+  canvas->Within(0.5 * size, -print.board_heading, 1, [&] { DrawShapes(print, canvas); });
 }
 
 // Draws to the right from the origin, with ticks upwards. 'scale': of ticks and text.
@@ -68,14 +86,6 @@ void DrawRuler(double length_m, double scale, Canvas* canvas) {
                fmt::format("{:.0f} mm", 1000 * length_m));
 }
 
-std::vector<std::string> DimensionLines(const LandingPattern& pattern) {
-  return {fmt::format("ring: outer diameter {:g} mm, width {:g} mm",
-                      1000 * pattern.outer_diameter_m, 1000 * pattern.ring_width_m),
-          fmt::format("cross: arms {:g} mm wide, {:g} mm from the centre to their ends",
-                      1000 * pattern.arm_width_m, 1000 * pattern.arm_half_length_m),
-          fmt::format("board: {0:g} x {0:g} mm, white", 1000 * pattern.board_size_m)};
-}
-
 void DrawLines(const std::vector<std::string>& lines, const Vector2d& first, double height_m,
                double align, Canvas* canvas) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -85,17 +95,17 @@ void DrawLines(const std::vector<std::string>& lines, const Vector2d& first, dou
 }
 
 // Draws rulers in the lower left corner of the board and text in the lower right one.
-void DrawNotes(const LandingPattern& pattern, Canvas* canvas) {
-  const double size = pattern.board_size_m;
+void DrawNotes(const TargetPrint& print, Canvas* canvas) {
+  const double size = print.board_size_m;
   const double scale = std::min(1.0, size / 0.75);
   const double border = 0.006 * scale;
   canvas->SetInk(kGray);
-  const double ruler = RulerLength(pattern);
+  const double ruler = RulerLength(print.board_size_m);
   const Vector2d corner(border, size - border);
   canvas->Within(corner + Vector2d(border, 0), 0, 1, [&] { DrawRuler(ruler, scale, canvas); });
   canvas->Within(corner - Vector2d(0, border), -0.5 * kPi, 1,
                  [&] { DrawRuler(ruler, scale, canvas); });
-  std::vector<std::string> lines = DimensionLines(pattern);
+  std::vector<std::string> lines = print.dimensions;
   lines.insert(lines.begin(), "Kestrel landing pattern");
   lines.push_back("Print at 100 %, matt, on a flat, stiff board; measure both rulers.");
   const double height = 0.75 * scale * kTextHeight_m;
@@ -110,9 +120,9 @@ void DrawNotes(const LandingPattern& pattern, Canvas* canvas) {
   for (int i = 0; i < 4; ++i) canvas->Line(corner_of(i), corner_of((i + 1) % 4), line);
 }
 
-void DrawWholeBoard(const LandingPattern& pattern, Canvas* canvas) {
-  DrawBoard(pattern, canvas);
-  DrawNotes(pattern, canvas);
+void DrawWholeBoard(const TargetPrint& print, Canvas* canvas) {
+  DrawBoard(print, canvas);
+  DrawNotes(print, canvas);
 }
 
 // Draws marks at the four corners of the tile, outside of it.
@@ -130,12 +140,11 @@ void DrawCutMarks(const Tiling& tiling, Canvas* canvas) {
   }
 }
 
-void DrawTile(const LandingPattern& pattern, const Tiling& tiling, int row, int column,
-              Canvas* canvas) {
+void DrawTile(const TargetPrint& print, const Tiling& tiling, int row, int column, Canvas* canvas) {
   canvas->Within(tiling.tile_on_sheet, 0, 1, [&] {
     canvas->Rectangle({0, 0}, tiling.tile);
     cairo_clip(canvas->cairo());
-    canvas->Within(-tiling.TileOnBoard(row, column), 0, 1, [&] { DrawBoard(pattern, canvas); });
+    canvas->Within(-tiling.TileOnBoard(row, column), 0, 1, [&] { DrawBoard(print, canvas); });
   });
   canvas->SetInk(kBlack);
   DrawCutMarks(tiling, canvas);
@@ -145,7 +154,7 @@ void DrawTile(const LandingPattern& pattern, const Tiling& tiling, int row, int 
                fmt::format("Sheet {}.{}: row {} of {}, column {} of {}. Print at 100 %, cut at the "
                            "marks, glue edge to edge.",
                            row + 1, column + 1, row + 1, tiling.rows, column + 1, tiling.columns));
-  const double ruler = RulerLength(pattern);
+  const double ruler = RulerLength(print.board_size_m);
   constexpr double kRoom_m = 0.02;  // for the ruler's label
   if (tiling.sheet.x() >= 2 * 0.01 + ruler + kRoom_m) {
     canvas->Within({left + 0.002, bottom - 0.005}, 0, 1, [&] { DrawRuler(ruler, 1, canvas); });
@@ -155,8 +164,8 @@ void DrawTile(const LandingPattern& pattern, const Tiling& tiling, int row, int 
   }
 }
 
-void DrawGrid(const LandingPattern& pattern, const Tiling& tiling, double line, Canvas* canvas) {
-  const double size = pattern.board_size_m;
+void DrawGrid(const TargetPrint& print, const Tiling& tiling, double line, Canvas* canvas) {
+  const double size = print.board_size_m;
   canvas->SetInk(kBlue);
   for (int row = 0; row <= tiling.rows; ++row) {
     canvas->Line({0, row * tiling.tile.y()}, {size, row * tiling.tile.y()}, line);
@@ -174,8 +183,8 @@ void DrawGrid(const LandingPattern& pattern, const Tiling& tiling, double line, 
   }
 }
 
-void DrawOverview(const LandingPattern& pattern, const Tiling& tiling, Canvas* canvas) {
-  std::vector<std::string> lines = DimensionLines(pattern);
+void DrawOverview(const TargetPrint& print, const Tiling& tiling, Canvas* canvas) {
+  std::vector<std::string> lines = print.dimensions;
   lines.insert(lines.begin(), fmt::format("Kestrel landing pattern: {} sheets, {} rows of {}",
                                           tiling.count(), tiling.rows, tiling.columns));
   lines.insert(
@@ -183,37 +192,37 @@ void DrawOverview(const LandingPattern& pattern, const Tiling& tiling, Canvas* c
       {"1. Print at 100 % (not \"fit to page\") on matt paper: gloss mirrors the sun.",
        fmt::format("2. Measure the ruler of a sheet: {:.1f} mm. If it is not, the printer scaled: "
                    "print again.",
-                   1000 * RulerLength(pattern)),
+                   1000 * RulerLength(print.board_size_m)),
        "3. Cut at the marks. Sheet 2.3 is the third of the second row, seen from the front.",
-       "4. Glue edge to edge (nothing overlaps) on a flat, stiff, white board.",
-       "5. Photograph it, all of it in view, and run: kestrel print --check PHOTO"});
+       "4. Glue edge to edge (nothing overlaps) on a flat, stiff, white board."});
+  if (print.can_be_checked) {
+    lines.emplace_back("5. Photograph it, all of it in view, and run: kestrel print --check PHOTO");
+  }
   constexpr double kBorder_m = 0.015;
   const double height = kTextHeight_m * std::min(tiling.sheet.x() / 0.21, 3.0);
   const double text = 1.4 * height * static_cast<double>(lines.size());
   const double side =
       std::min(tiling.sheet.x() - 2 * kBorder_m, tiling.sheet.y() - 2 * kBorder_m - text - height);
-  const double scale = side / pattern.board_size_m;
+  const double scale = side / print.board_size_m;
   canvas->Within({0.5 * (tiling.sheet.x() - side), kBorder_m}, 0, scale, [&] {
-    DrawBoard(pattern, canvas);
-    DrawGrid(pattern, tiling, 1.5 * kThinLine_m / scale, canvas);
+    DrawBoard(print, canvas);
+    DrawGrid(print, tiling, 1.5 * kThinLine_m / scale, canvas);
   });
   canvas->SetInk(kBlack);
   DrawLines(lines, {kBorder_m, kBorder_m + side + 2 * height}, height, 0, canvas);
 }
 
-Canvas OnePage(Canvas::Format format, const LandingPattern& pattern, const std::string& file) {
-  RequireValid(pattern);
-  if (format == Canvas::Format::kPdf && pattern.board_size_m > kMaxPage_m) {
+Canvas OnePage(Canvas::Format format, const TargetPrint& print, const std::string& file) {
+  if (format == Canvas::Format::kPdf && print.board_size_m > kMaxPage_m) {
     throw InputError(
         fmt::format("a board of {} m is more than a page can have, {} m: tile it (--paper)",
-                    pattern.board_size_m, kMaxPage_m));
+                    print.board_size_m, kMaxPage_m));
   }
-  return Canvas(format, file, Vector2d::Constant(pattern.board_size_m));
+  return Canvas(format, file, Vector2d::Constant(print.board_size_m));
 }
 
-void PrintSvg(const LandingPattern& pattern, const Tiling& tiling, const std::string& file,
+void PrintSvg(const Tiling& tiling, const std::string& file,
               const std::function<void(Canvas*)>& draw) {
-  RequireValid(pattern);
   Canvas canvas(Canvas::Format::kSvg, file, tiling.sheet);
   draw(&canvas);
   canvas.Finish();
@@ -221,9 +230,9 @@ void PrintSvg(const LandingPattern& pattern, const Tiling& tiling, const std::st
 
 }  // namespace
 
-double RulerLength(const LandingPattern& pattern) {
+double RulerLength(double board_size_m) {
   constexpr double kLongest_m = 0.2;
-  const double room = 0.25 * pattern.board_size_m;
+  const double room = 0.25 * board_size_m;
   if (room >= kLongest_m) return kLongest_m;
   // Returns the largest of ... 0.01, 0.02, 0.05, 0.1 ... m that fits.
   const double decade = std::pow(10, std::floor(std::log10(room)));
@@ -233,40 +242,37 @@ double RulerLength(const LandingPattern& pattern) {
   return decade;
 }
 
-void PrintPatternPdf(const LandingPattern& pattern, const std::string& file) {
-  Canvas canvas = OnePage(Canvas::Format::kPdf, pattern, file);
-  DrawWholeBoard(pattern, &canvas);
+void PrintPatternPdf(const TargetPrint& print, const std::string& file) {
+  Canvas canvas = OnePage(Canvas::Format::kPdf, print, file);
+  DrawWholeBoard(print, &canvas);
   canvas.Finish();
 }
 
-void PrintPatternSvg(const LandingPattern& pattern, const std::string& file) {
-  Canvas canvas = OnePage(Canvas::Format::kSvg, pattern, file);
-  DrawWholeBoard(pattern, &canvas);
+void PrintPatternSvg(const TargetPrint& print, const std::string& file) {
+  Canvas canvas = OnePage(Canvas::Format::kSvg, print, file);
+  DrawWholeBoard(print, &canvas);
   canvas.Finish();
 }
 
-void PrintTilesPdf(const LandingPattern& pattern, const Tiling& tiling, const std::string& file) {
-  RequireValid(pattern);
+void PrintTilesPdf(const TargetPrint& print, const Tiling& tiling, const std::string& file) {
   Canvas canvas(Canvas::Format::kPdf, file, tiling.sheet);
-  DrawOverview(pattern, tiling, &canvas);
+  DrawOverview(print, tiling, &canvas);
   for (int row = 0; row < tiling.rows; ++row) {
     for (int column = 0; column < tiling.columns; ++column) {
       canvas.NextPage();
-      DrawTile(pattern, tiling, row, column, &canvas);
+      DrawTile(print, tiling, row, column, &canvas);
     }
   }
   canvas.Finish();
 }
 
-void PrintOverviewSvg(const LandingPattern& pattern, const Tiling& tiling,
-                      const std::string& file) {
-  PrintSvg(pattern, tiling, file, [&](Canvas* canvas) { DrawOverview(pattern, tiling, canvas); });
+void PrintOverviewSvg(const TargetPrint& print, const Tiling& tiling, const std::string& file) {
+  PrintSvg(tiling, file, [&](Canvas* canvas) { DrawOverview(print, tiling, canvas); });
 }
 
-void PrintTileSvg(const LandingPattern& pattern, const Tiling& tiling, int row, int column,
+void PrintTileSvg(const TargetPrint& print, const Tiling& tiling, int row, int column,
                   const std::string& file) {
-  PrintSvg(pattern, tiling, file,
-           [&](Canvas* canvas) { DrawTile(pattern, tiling, row, column, canvas); });
+  PrintSvg(tiling, file, [&](Canvas* canvas) { DrawTile(print, tiling, row, column, canvas); });
 }
 
 }  // namespace kestrel

@@ -4,28 +4,27 @@
 #include <string>
 
 #include "kestrel/calibration/print/tiling.h"
-#include "kestrel/vision/landing/landing_pattern.h"
+#include "kestrel/vision/target/target_print.h"
 
 namespace kestrel {
 
-// Writes the landing pattern as a file to be printed true to scale, with its arms on the diagonals
-// of the board. All functions throw InputError when the pattern is not valid or the file cannot be
-// written. The same input gives the same bytes.
+// Writes a pad as a file to be printed true to scale. All functions throw InputError when the file
+// cannot be written. The same input gives the same bytes.
 
-// Returns the length (m) of the ruler that is printed beside the pattern.
-double RulerLength(const LandingPattern& pattern);
+// Returns the length (m) of the ruler that is printed beside the pad.
+double RulerLength(double board_size_m);
 
 // Write one page of the board's size, with small gray dimensions and rulers in its corners. A page
 // of a PDF is at most 5.08 m: a larger board is an InputError.
-void PrintPatternPdf(const LandingPattern& pattern, const std::string& file);
-void PrintPatternSvg(const LandingPattern& pattern, const std::string& file);
+void PrintPatternPdf(const TargetPrint& print, const std::string& file);
+void PrintPatternSvg(const TargetPrint& print, const std::string& file);
 
 // Write first an overview with the dimensions and instructions, then one page per tile, row by row,
 // with cut marks, the tile's place and a ruler. An SVG has one page: the overview, or a tile (row
 // and column from 0).
-void PrintTilesPdf(const LandingPattern& pattern, const Tiling& tiling, const std::string& file);
-void PrintOverviewSvg(const LandingPattern& pattern, const Tiling& tiling, const std::string& file);
-void PrintTileSvg(const LandingPattern& pattern, const Tiling& tiling, int row, int column,
+void PrintTilesPdf(const TargetPrint& print, const Tiling& tiling, const std::string& file);
+void PrintOverviewSvg(const TargetPrint& print, const Tiling& tiling, const std::string& file);
+void PrintTileSvg(const TargetPrint& print, const Tiling& tiling, int row, int column,
                   const std::string& file);
 
 }  // namespace kestrel

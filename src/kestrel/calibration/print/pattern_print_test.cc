@@ -17,6 +17,7 @@
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/io/recording/image_file.h"
 #include "kestrel/io/recording/test_files.h"
+#include "kestrel/vision/landing/landing_pattern.h"
 
 namespace kestrel {
 namespace {
@@ -111,12 +112,12 @@ TEST_F(PatternPrintTest, APageHasThePatternsDimensions) {
                              .board_size_m = 0.4};
   for (const LandingPattern& pattern : {large, small}) {
     const double scale = 3000;  // px/m
-    PrintPatternPdf(pattern, folder_ / "p.pdf");
+    PrintPatternPdf(PrintOf(pattern), folder_ / "p.pdf");
     const cv::Mat pdf = RenderPdf(folder_ / "p.pdf", 1, scale);
     ASSERT_NEAR(pdf.cols, scale * pattern.board_size_m, 1);
     ASSERT_NEAR(pdf.rows, scale * pattern.board_size_m, 1);
     ExpectDimensions(pdf, scale, pattern, 0.00015);
-    PrintPatternSvg(pattern, folder_ / "p.svg");
+    PrintPatternSvg(PrintOf(pattern), folder_ / "p.svg");
     const cv::Mat svg = RenderSvg(folder_ / "p.svg", scale);
     ASSERT_NEAR(svg.cols, scale * pattern.board_size_m, 1);
     ExpectDimensions(svg, scale, pattern, 0.00015);
@@ -125,7 +126,7 @@ TEST_F(PatternPrintTest, APageHasThePatternsDimensions) {
 
 TEST_F(PatternPrintTest, ArmsThatReachTheRingEndWithIt) {
   const LandingPattern pattern{.arm_half_length_m = 0.5};
-  PrintPatternPdf(pattern, folder_ / "p.pdf");
+  PrintPatternPdf(PrintOf(pattern), folder_ / "p.pdf");
   const double scale = 4000;
   const cv::Mat page = RenderPdf(folder_ / "p.pdf", 1, scale);
   const Vector2d center = Vector2d::Constant(0.5 * pattern.board_size_m);
@@ -190,7 +191,7 @@ cv::Mat Assemble(const std::vector<std::string>& sheets, double scale, const Til
 TEST_F(PatternPrintTest, TilesMeet) {
   const LandingPattern pattern;
   const double scale = 2000;  // a pixel is half a millimetre
-  PrintPatternPdf(pattern, folder_ / "p.pdf");
+  PrintPatternPdf(PrintOf(pattern), folder_ / "p.pdf");
   const int side = static_cast<int>(scale * pattern.board_size_m);
   const cv::Mat page = RenderPdf(folder_ / "p.pdf", 1, scale);
   const cv::Mat black = page(cv::Rect(0, 0, side, side)) < 100;  // the notes are lighter
@@ -199,7 +200,7 @@ TEST_F(PatternPrintTest, TilesMeet) {
   cv::dilate(black, thicker, cv::Mat::ones(3, 3, CV_8U));
   for (const char* paper : {"a4", "a2"}) {
     const Tiling tiling = TileBoard(pattern.board_size_m, *PaperSize(paper));
-    PrintTilesPdf(pattern, tiling, folder_ / "tiles.pdf");
+    PrintTilesPdf(PrintOf(pattern), tiling, folder_ / "tiles.pdf");
     const std::string command = fmt::format("pdftoppm -r {} -gray -f 2 '{}' '{}'", scale * kInch_m,
                                             folder_ / "tiles.pdf", folder_ / paper);
     ASSERT_EQ(std::system(command.c_str()), 0);
@@ -215,10 +216,10 @@ TEST_F(PatternPrintTest, TilesMeet) {
 
 TEST_F(PatternPrintTest, RulersAreTrue) {
   const LandingPattern pattern;
-  EXPECT_DOUBLE_EQ(RulerLength(pattern), 0.2);
-  EXPECT_DOUBLE_EQ(RulerLength({.outer_diameter_m = 0.3, .board_size_m = 0.43}), 0.1);
+  EXPECT_DOUBLE_EQ(RulerLength(pattern.board_size_m), 0.2);
+  EXPECT_DOUBLE_EQ(RulerLength(0.43), 0.1);
   const double scale = 2000;
-  PrintPatternSvg(pattern, folder_ / "p.svg");
+  PrintPatternSvg(PrintOf(pattern), folder_ / "p.svg");
   const cv::Mat page = RenderSvg(folder_ / "p.svg", scale);
   // The long ticks at the ends of the lower ruler are longer than those between.
   const double base = 1.5 - 0.006, tick = 0.00325;
@@ -230,10 +231,10 @@ TEST_F(PatternPrintTest, RulersAreTrue) {
 }
 
 TEST_F(PatternPrintTest, WhatCannotBePrintedIsRefused) {
-  EXPECT_THROW(PrintPatternPdf({.ring_width_m = 0.6}, folder_ / "p.pdf"), InputError);
-  EXPECT_THROW(PrintPatternPdf({.board_size_m = 6}, folder_ / "p.pdf"), InputError);
-  EXPECT_THROW(PrintPatternPdf({}, folder_ / "none/p.pdf"), InputError);
-  EXPECT_THROW(PrintPatternSvg({}, folder_ / "none/p.svg"), InputError);
+  const TargetPrint print = PrintOf(LandingPattern());
+  EXPECT_THROW(PrintPatternPdf(PrintOf({.board_size_m = 6}), folder_ / "p.pdf"), InputError);
+  EXPECT_THROW(PrintPatternPdf(print, folder_ / "none/p.pdf"), InputError);
+  EXPECT_THROW(PrintPatternSvg(print, folder_ / "none/p.svg"), InputError);
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ PrintScale ScaleByDistance(double distance_m, const PrintMeasurement& print) {
 
 PrintScale ScaleByRuler(double ruler_m, const LandingPattern& configured) {
   constexpr double kReadingSigma_m = 0.0002;
-  const double printed_m = RulerLength(configured);
+  const double printed_m = RulerLength(configured.board_size_m);
   return {ruler_m / printed_m, kReadingSigma_m / printed_m};
 }
 

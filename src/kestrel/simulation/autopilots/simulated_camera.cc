@@ -222,7 +222,7 @@ RigidTransform SimulatedCamera::PatternAt(Time stamp) const {
 
 std::optional<TruePattern> SimulatedCamera::Truth(const Frame& frame) const {
   return SeenPattern(frame.time, world_.SceneTime(CaptureOf(frame.time)), *camera_,
-                     world_.scene().pattern, world_.scene().world_from_pattern);
+                     world_.scene().print, world_.scene().world_from_pattern);
 }
 
 }  // namespace kestrel

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -111,10 +110,8 @@ Eigen::Vector3d VehicleWorld::VelocityAt(Time time) const {
 }
 
 bool VehicleWorld::IsOnBoard(const Eigen::Vector3d& point_in_pattern) const {
-  // The arms, which are the pattern's axes, point to the corners of the board.
-  const double diagonal =
-      std::numbers::sqrt2 * (0.5 * scene_.pattern.board_size_m + options_.board.border_m);
-  return std::abs(point_in_pattern.x()) + std::abs(point_in_pattern.y()) <= diagonal;
+  const double half = 0.5 * scene_.print.board_size_m + options_.board.border_m;
+  return ReachOnBoard(scene_.print, point_in_pattern.head<2>()) <= half;
 }
 
 void VehicleWorld::ObserveUav(Time time, const Eigen::Vector3d& position_in_world) {

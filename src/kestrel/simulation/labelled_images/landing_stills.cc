@@ -241,7 +241,8 @@ std::optional<LandingStill> TruthOf(const LandingStillOptions& options,
       ProjectionStatus::kOutsideModel) {
     return std::nullopt;
   }
-  const double visible_fraction = VisibleFraction(pattern, camera_from_pattern, renderer.lens());
+  const double visible_fraction =
+      VisibleFraction(PrintOf(pattern), camera_from_pattern, renderer.lens());
   if (visible_fraction < options.min_visible_fraction) return std::nullopt;
   return LandingStill{.image = {},
                       .pattern = pattern,
@@ -376,7 +377,7 @@ LandingStill LandingStillMaker::PreparePattern(std::uint64_t seed, View* view) c
   still.center_px = CenterPx(camera_, still.camera_from_pattern, view->scene.relief, view->imaging);
 
   const double beside_legs =
-      VisibleFraction(still.pattern, still.camera_from_pattern, with_legs_.lens());
+      VisibleFraction(PrintOf(still.pattern), still.camera_from_pattern, with_legs_.lens());
   const bool legs = random.Chance(0.3) && beside_legs > 0.9 * still.visible_fraction;
   if (legs) still.visible_fraction = beside_legs;
   view->renderer = legs ? &with_legs_ : &plain_;

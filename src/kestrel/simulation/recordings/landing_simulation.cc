@@ -46,6 +46,10 @@ std::vector<std::string> LandingSimulationOptions::Validate() const {
   AddViolations("flight", flight.Validate(), &violations);
   std::ranges::copy(LandingSceneOptions::Validate(), std::back_inserter(violations));
   const bool flies = stills.show == "nothing";
+  if (!flies && target.kind != TargetOptions().kind) {
+    violations.push_back(fmt::format("target.kind is '{}', expected {} where stills are shown",
+                                     target.kind, TargetOptions().kind));
+  }
   if (flies && violations.empty()) RequireTime(flight, recording.duration_s(), &violations);
   return violations;
 }

@@ -32,23 +32,22 @@ SimulatedLanding::SimulatedLanding(const FlightRecordingOptions& options,
                                    const SurroundingsOptions& surroundings,
                                    const CameraCalibration& camera, LandingScene scene,
                                    const Motion& world_from_uav, std::uint64_t seed)
-    : pattern_(scene.pattern),
+    : print_(std::move(scene.print)),
+      drawn_(fmt::format("drawn_arm_half_length_m: {}\n", scene.pattern.arm_half_length_m)),
       world_from_pattern_(std::move(scene.world_from_pattern)),
       flight_(options, camera, AirframeOf(surroundings, camera),
               WithUav(std::move(scene.world), surroundings, world_from_uav), world_from_uav, seed) {
 }
 
 std::string SimulatedLanding::SceneText(const std::string& kind, const std::string& options) const {
-  return flight_.SceneText(kind) +
-         fmt::format("drawn_arm_half_length_m: {}\n", pattern_.arm_half_length_m) + "options:\n" +
-         Indented(options);
+  return flight_.SceneText(kind) + drawn_ + "options:\n" + Indented(options);
 }
 
 std::vector<RecordingFile> SimulatedLanding::Files() const {
   std::string rows = LandingTruthHeader();
   for (const double time_s : flight_.times_s()) {
     const auto seen =
-        SeenPattern(TimeOfFlight(time_s), time_s, flight_.camera(), pattern_, world_from_pattern_);
+        SeenPattern(TimeOfFlight(time_s), time_s, flight_.camera(), print_, world_from_pattern_);
     if (seen) rows += LandingTruthRow(*seen);
   }
   std::vector<RecordingFile> files = flight_.Files();

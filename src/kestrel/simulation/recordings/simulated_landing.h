@@ -20,6 +20,7 @@ class SimulatedLanding {
                    const Motion& world_from_uav, std::uint64_t seed);
 
   const SimulatedFlight& flight() const { return flight_; }
+  const TargetPrint& print() const { return print_; }  // of the pad, as drawn
   const Motion& world_from_pattern() const { return world_from_pattern_; }
 
   // Leaves out the images from 'index' on: the flight has ended.
@@ -32,7 +33,8 @@ class SimulatedLanding {
   std::vector<RecordingFile> Files() const;
 
  private:
-  LandingPattern pattern_;
+  TargetPrint print_;
+  std::string drawn_;  // what chance has drawn of it, a line of YAML
   Motion world_from_pattern_;
   SimulatedFlight flight_;
 };

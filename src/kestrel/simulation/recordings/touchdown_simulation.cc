@@ -31,6 +31,7 @@ CameraCalibration WithClockOffset(CameraCalibration camera, Duration clock_offse
 
 LandingPipelineOptions PipelineOptions(const TouchdownSimulationOptions& simulation) {
   LandingPipelineOptions options;
+  options.target = simulation.target;
   options.detector.pattern = simulation.pattern;
   options.tracker = simulation.tracker;
   return options;
@@ -250,10 +251,8 @@ bool TouchdownSimulation::HasEnded(double time_s, TouchdownResult* result) const
 TouchdownOutcome TouchdownSimulation::OutcomeOf(const Vector3d& feet_on_board,
                                                 const TouchdownResult& result) const {
   const TouchdownOptions& options = options_.touchdown;
-  // The arms, which are the axes of the pattern, point to the corners of the board.
-  const double to_side_m =
-      (std::abs(feet_on_board.x()) + std::abs(feet_on_board.y())) / std::numbers::sqrt2;
-  if (to_side_m > 0.5 * options_.pattern.board_size_m - options.feet_radius_m) {
+  const double to_side_m = ReachOnBoard(landing_.print(), feet_on_board.head<2>());
+  if (to_side_m > 0.5 * landing_.print().board_size_m - options.feet_radius_m) {
     return TouchdownOutcome::kBesideBoard;
   }
   const bool is_slow =

@@ -47,8 +47,7 @@ std::string TrueStateText(const std::vector<PoseSample>& poses) {
 }
 
 std::optional<TruePattern> SeenPattern(Time stamp, double time_s, const FlightCamera& camera,
-                                       const LandingPattern& pattern,
-                                       const Motion& world_from_pattern) {
+                                       const TargetPrint& print, const Motion& world_from_pattern) {
   const RigidTransform pose = world_from_pattern(time_s);
   const auto pixel = camera.Project(
       time_s, [&](double row_time_s) { return world_from_pattern(row_time_s).translation; });
@@ -59,7 +58,7 @@ std::optional<TruePattern> SeenPattern(Time stamp, double time_s, const FlightCa
                      VelocityOf(world_from_pattern, time_s),
                      *pixel,
                      pattern_from_camera.translation.z(),
-                     VisibleFraction(pattern, pattern_from_camera.Inverse(), camera.lens())};
+                     VisibleFraction(print, pattern_from_camera.Inverse(), camera.lens())};
 }
 
 }  // namespace kestrel

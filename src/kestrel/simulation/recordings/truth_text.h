@@ -12,7 +12,7 @@
 #include "kestrel/simulation/rendering/flight_camera.h"
 #include "kestrel/simulation/scene/motion.h"
 #include "kestrel/simulation/scene/world.h"
-#include "kestrel/vision/landing/landing_pattern.h"
+#include "kestrel/vision/target/target_print.h"
 
 namespace kestrel {
 
@@ -24,11 +24,10 @@ std::string TrueStateText(const Motion& world_from_body, double begin_s, double 
 // The same for unrelated poses: without velocities.
 std::string TrueStateText(const std::vector<PoseSample>& poses);
 
-// Returns the pattern in the image that 'camera' takes at 'time_s', whose stamp is 'stamp'; nothing
-// where the camera model does not cover the pattern's centre.
+// Returns the pad in the image that 'camera' takes at 'time_s', whose stamp is 'stamp'; nothing
+// where the camera model does not cover the pad's centre.
 std::optional<TruePattern> SeenPattern(Time stamp, double time_s, const FlightCamera& camera,
-                                       const LandingPattern& pattern,
-                                       const Motion& world_from_pattern);
+                                       const TargetPrint& print, const Motion& world_from_pattern);
 
 // Returns lines of text as a part of a YAML map: with two blanks before each.
 std::string Indented(const std::string& lines);

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/core/camera/paper_camera.h"
+#include "kestrel/vision/landing/landing_pattern.h"
 
 namespace kestrel {
 namespace {
@@ -23,7 +24,7 @@ RigidTransform NadirPose(const Vector3d& ray, double altitude_m) {
 TEST(VisibleFractionTest, KnowsWhatTheBorderCutsOff) {
   const CameraModel camera(PaperCamera());
   const Lens lens(camera);
-  const LandingPattern pattern;
+  const TargetPrint pattern = PrintOf(LandingPattern());
   EXPECT_EQ(VisibleFraction(pattern, NadirPose({0, 0, 1}, 3), lens), 1);
   Vector3d ray;
   ASSERT_NE(camera.Unproject({376, 479.5}, &ray), ProjectionStatus::kOutsideModel);
@@ -36,7 +37,7 @@ TEST(VisibleFractionTest, KnowsTheLensCircleAndTheAirframe) {
   const CameraModel camera(PaperCamera());
   LensOptions options;
   options.half_angle_deg = 30;
-  const LandingPattern pattern;
+  const TargetPrint pattern = PrintOf(LandingPattern());
   const Vector3d rim(std::sin(std::numbers::pi / 6), 0, std::cos(std::numbers::pi / 6));
   const Lens narrow(camera, options);
   EXPECT_NEAR(VisibleFraction(pattern, NadirPose(rim, 6), narrow), 0.5, 0.04);

@@ -35,24 +35,60 @@ Drawing::Edge EdgeOf(const Drawing::Bar& bar, const Eigen::Vector2d& point) {
   return to_end > to_side ? Drawing::Edge{to_end, end_normal} : Drawing::Edge{to_side, side_normal};
 }
 
-double BoundRadius(const Drawing::Ring& ring) { return ring.outer_radius; }
-double BoundRadius(const Drawing::Bar& bar) { return std::hypot(bar.half_length, bar.half_width); }
+// Calls 'visit' with the ends of each side.
+template <class Visit>
+void ForEachSide(const Drawing::Polygon& polygon, const Visit& visit) {
+  for (const auto& loop : polygon.loops) {
+    for (std::size_t i = 0; i < loop.size(); ++i) visit(loop[i], loop[(i + 1) % loop.size()]);
+  }
+}
+
+Drawing::Edge EdgeOf(const Drawing::Polygon& polygon, const Eigen::Vector2d& point) {
+  bool inside = false;
+  double nearest2 = std::numeric_limits<double>::infinity();
+  Eigen::Vector2d outward(1, 0);
+  ForEachSide(polygon, [&](const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+    const Eigen::Vector2d side = to - from;
+    const Eigen::Vector2d offset = point - from;
+    // The side crosses the ray from the point along x.
+    if ((from.y() > point.y()) != (to.y() > point.y()) &&
+        (offset.x() * side.y() < side.x() * offset.y()) == (side.y() > 0)) {
+      inside = !inside;
+    }
+    const double along = std::clamp(offset.dot(side) / side.squaredNorm(), 0.0, 1.0);
+    const Eigen::Vector2d away = offset - along * side;
+    if (away.squaredNorm() >= nearest2) return;
+    nearest2 = away.squaredNorm();
+    outward = away;
+  });
+  const double distance = std::sqrt(nearest2);
+  if (distance > 0) outward /= distance;
+  return inside ? Drawing::Edge{-distance, -outward} : Drawing::Edge{distance, outward};
+}
 
 }  // namespace
 
 Drawing& Drawing::Add(const Shape& shape) {
-  std::visit(
-      [this](const auto& s) {
-        if (steps_.empty()) bound_center_ = s.center;
-        bound_radius_ = std::max(bound_radius_, (s.center - bound_center_).norm() + BoundRadius(s));
-      },
-      shape);
-  steps_.push_back({shape, false});
+  if (const auto* const ring = std::get_if<Ring>(&shape)) {
+    Bound(ring->center, ring->outer_radius);
+  } else if (const auto* const bar = std::get_if<Bar>(&shape)) {
+    Bound(bar->center, std::hypot(bar->half_length, bar->half_width));
+  } else {
+    for (const auto& loop : std::get<Polygon>(shape).loops) {
+      for (const Eigen::Vector2d& corner : loop) Bound(corner, 0);
+    }
+  }
+  steps_.emplace_back(shape, /*is_erased=*/false);
   return *this;
 }
 
+void Drawing::Bound(const Eigen::Vector2d& center, double radius) {
+  if (bound_radius_ < 0) bound_center_ = center;
+  bound_radius_ = std::max(bound_radius_, (center - bound_center_).norm() + radius);
+}
+
 Drawing& Drawing::Erase(const Shape& shape) {
-  steps_.push_back({shape, true});
+  steps_.emplace_back(shape, /*is_erased=*/true);
   return *this;
 }
 

@@ -8,9 +8,9 @@
 
 namespace kestrel {
 
-// A shape in a plane: rings, discs and bars that are added and erased in order. It is stored by the
-// signed distance to its edge instead of by pixels, and can be painted at any scale with exact
-// edges. Lengths are metres in general; any unit when the whole drawing uses the same.
+// A shape in a plane: rings, discs, bars and polygons that are added and erased in order. It is
+// stored by the signed distance to its edge instead of by pixels, and can be painted at any scale
+// with exact edges. Lengths are metres in general; any unit when the whole drawing uses the same.
 class Drawing {
  public:
   struct Ring {
@@ -25,7 +25,12 @@ class Drawing {
     double half_length;
     double half_width;
   };
-  using Shape = std::variant<Ring, Bar>;
+  // The area within closed lines: outlines and holes in them. The last corner of each line is
+  // joined to the first.
+  struct Polygon {
+    std::vector<std::vector<Eigen::Vector2d>> loops;
+  };
+  using Shape = std::variant<Ring, Bar, Polygon>;
 
   struct Edge {
     double distance;         // to the edge, negative inside; never larger than the true distance
@@ -43,9 +48,12 @@ class Drawing {
 
  private:
   struct Step {
+    Step(const Shape& what, bool is_erased) : shape(what), erase(is_erased) {}
     Shape shape;
     bool erase;
   };
+
+  void Bound(const Eigen::Vector2d& center, double radius);
 
   std::vector<Step> steps_;
   // Circle around everything that was added.

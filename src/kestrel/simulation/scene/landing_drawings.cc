@@ -463,17 +463,26 @@ Drawing SquareBoard(const Vector2d& center, double size_m, double yaw) {
   return Drawing().Add(Drawing::Bar{center, Direction(yaw), 0.5 * size_m, 0.5 * size_m});
 }
 
-void WearInk(const Vector2d& center, double radius_m, int patches, Random* random, Drawing* ink) {
+std::vector<Drawing::Shape> WornPlaces(const Vector2d& center, double radius_m, int patches,
+                                       Random* random) {
+  std::vector<Drawing::Shape> places;
   for (int i = 0; i < patches; ++i) {
     const Vector2d place =
         center + radius_m * std::sqrt(random->Uniform()) * Direction(random->Uniform(0, 2 * kPi));
     if (random->Chance(0.5)) {
-      ink->Erase(Drawing::Ring{place, radius_m * random->Uniform(0.01, 0.06)});
+      places.emplace_back(Drawing::Ring{place, radius_m * random->Uniform(0.01, 0.06)});
     } else {
-      ink->Erase(Drawing::Bar{place, Direction(random->Uniform(0, kPi)),
-                              radius_m * random->Uniform(0.05, 0.2),
-                              radius_m * random->Uniform(0.005, 0.015)});
+      places.emplace_back(Drawing::Bar{place, Direction(random->Uniform(0, kPi)),
+                                       radius_m * random->Uniform(0.05, 0.2),
+                                       radius_m * random->Uniform(0.005, 0.015)});
     }
+  }
+  return places;
+}
+
+void WearInk(const Vector2d& center, double radius_m, int patches, Random* random, Drawing* ink) {
+  for (const Drawing::Shape& place : WornPlaces(center, radius_m, patches, random)) {
+    ink->Erase(place);
   }
 }
 

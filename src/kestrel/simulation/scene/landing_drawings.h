@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "kestrel/core/base/random.h"
 #include "kestrel/simulation/scene/drawing.h"
@@ -17,7 +18,11 @@ Drawing LandingPatternInk(const LandingPattern& pattern, const Eigen::Vector2d& 
 // A square around 'center' of a plane, rotated by 'yaw' (rad).
 Drawing SquareBoard(const Eigen::Vector2d& center, double size_m, double yaw);
 
-// Erases up to 'patches' small discs and scratches at random within 'radius_m' of 'center'.
+// Returns 'patches' small discs and scratches at random within 'radius_m' of 'center'.
+std::vector<Drawing::Shape> WornPlaces(const Eigen::Vector2d& center, double radius_m, int patches,
+                                       Random* random);
+
+// Erases such places.
 void WearInk(const Eigen::Vector2d& center, double radius_m, int patches, Random* random,
              Drawing* ink);
 

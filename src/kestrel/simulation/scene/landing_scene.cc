@@ -13,6 +13,7 @@
 #include "kestrel/core/base/hash.h"
 #include "kestrel/core/base/violations.h"
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/simulation/scene/board_paint.h"
 #include "kestrel/simulation/scene/direction.h"
 #include "kestrel/simulation/scene/landing_drawings.h"
 #include "kestrel/simulation/scene/solids.h"
@@ -23,7 +24,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kBoardPaint_px = 2048;
 constexpr int kLookalikePaint_px = 512;
 
 Color CarColor(Random* random) {
@@ -40,24 +40,8 @@ LandingPattern DrawnPattern(const LandingSceneOptions& options, Random* random) 
   return pattern;
 }
 
-std::shared_ptr<const Texture> BoardPaint(const LandingPattern& pattern,
-                                          const BoardOptions& options, int channels,
-                                          Random* random) {
-  const double size = pattern.board_size_m + 2 * options.border_m;
-  SquarePaint paint(kBoardPaint_px, size, Gray(0.035));
-  paint.Draw(SquareBoard({0, 0}, pattern.board_size_m, 0), {0.78, 0.82, 0.84});
-  // The arms point to the corners of the board.
-  Drawing ink = LandingPatternInk(pattern, {0, 0}, kPi / 4);
-  if (options.scratches > 0) {
-    WearInk({0, 0}, pattern.outer_radius_m(), options.scratches, random, &ink);
-  }
-  paint.Draw(ink, Gray(random->Uniform(0.03, 0.06)));
-  if (options.dirt > 0) paint.Soil(options.dirt, random->Bits());
-  return paint.ToTexture(channels);
-}
-
-// Puts the board on its carrier. Returns the pattern's pose on the vehicle.
-RigidTransform AddBoard(int vehicle, const LandingPattern& pattern, const BoardOptions& options,
+// Puts the board on its carrier. Returns the pad's pose on the vehicle.
+RigidTransform AddBoard(int vehicle, const TargetPrint& print, const BoardOptions& options,
                         Random* random, World* world) {
   const Color color = CarColor(random);
   double height = options.carrier == "box" ? 0.25 : 0;
@@ -66,18 +50,21 @@ RigidTransform AddBoard(int vehicle, const LandingPattern& pattern, const BoardO
   constexpr double kThickness_m = 0.04;
   // Distance from the roof to the board on its rack.
   const double gap = options.carrier == "none" ? 0 : 0.1;
-  const double half = 0.5 * pattern.board_size_m + options.border_m;
+  const double half = 0.5 * print.board_size_m + options.border_m;
   const double top = height + gap + kThickness_m;
   const auto dark = PlainPaint(Gray(0.04), world->channels);
   const std::size_t plate = world->surfaces.size();
   AddBox(vehicle, {{0, 0, top - 0.5 * kThickness_m}, {half, half, 0.5 * kThickness_m}},
-         BoardPaint(pattern, options, world->channels, random), dark, world);
+         BoardPaint(print, {options.border_m, options.dirt, options.scratches}, world->channels,
+                    random),
+         dark, world);
   world->surfaces[plate].gloss = static_cast<float>(options.gloss);
   world->surfaces[plate].gloss_width = static_cast<float>(options.gloss_width_deg * kPi / 180);
   if (options.carrier == "box") {
     AddBox(vehicle, {{0, 0, 0.5 * height}, {0.6, 0.6, 0.5 * height}}, dark, dark, world);
   }
-  return {Eigen::Quaterniond(Eigen::AngleAxisd(kPi / 4, Vector3d::UnitZ())), {0, 0, top}};
+  return {Eigen::Quaterniond(Eigen::AngleAxisd(print.board_heading, Vector3d::UnitZ())),
+          {0, 0, top}};
 }
 
 // Returns the vehicle's path during the flight and for some time before and after.
@@ -174,6 +161,7 @@ std::vector<std::string> SurroundingsOptions::Validate() const {
 std::vector<std::string> LandingSceneOptions::Validate() const {
   std::vector<std::string> violations;
   AddViolations("vehicle", vehicle.Validate(), &violations);
+  AddViolations("target", target.Validate(), &violations);
   AddViolations("pattern", pattern.Validate(), &violations);
   AddViolations("board", board.Validate(), &violations);
   AddViolations("ground", ground.Validate(), &violations);
@@ -193,8 +181,9 @@ LandingScene MakeLandingScene(const LandingSceneOptions& options, double duratio
   world.bodies.push_back(vehicle);
   Random board_random = RandomOf(seed, LandingPart::kBoard);
   scene.pattern = DrawnPattern(options, &board_random);
+  scene.print = PrintOfTarget(options.target, scene.pattern);
   const RigidTransform vehicle_from_pattern =
-      AddBoard(1, scene.pattern, options.board, &board_random, &world);
+      AddBoard(1, scene.print, options.board, &board_random, &world);
   scene.world_from_pattern = [=](double time_s) { return vehicle(time_s) * vehicle_from_pattern; };
 
   const Vector3d above(0, 0, vehicle_from_pattern.translation.z());

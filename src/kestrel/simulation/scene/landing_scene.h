@@ -12,10 +12,12 @@
 #include "kestrel/simulation/scene/vehicle_motion.h"
 #include "kestrel/simulation/scene/world.h"
 #include "kestrel/vision/landing/landing_pattern.h"
+#include "kestrel/vision/target/target_print.h"
+#include "kestrel/vision/targets/make_target_detector.h"
 
 namespace kestrel {
 
-// The board with the pattern, and the vehicle that carries it.
+// The board with the pad, and the vehicle that carries it.
 struct BoardOptions {
   std::string carrier = "pickup";  // pickup, car, box (0.4 m high) or none: on the ground
   double border_m = 0.08;          // dark frame around the white board
@@ -62,7 +64,8 @@ struct SurroundingsOptions {
 // Scene under a landing.
 struct LandingSceneOptions {
   VehicleMotionOptions vehicle;
-  LandingPattern pattern;
+  TargetOptions target;
+  LandingPattern pattern;  // of the kinds of target with a ring
   BoardOptions board;
   GroundOptions ground;
   SurroundingsOptions surroundings;
@@ -71,6 +74,7 @@ struct LandingSceneOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor.Group("vehicle", self.vehicle);
+    visitor.Group("target", self.target);
     visitor.Group("pattern", self.pattern);
     visitor.Group("board", self.board);
     visitor.Group("ground", self.ground);
@@ -80,12 +84,13 @@ struct LandingSceneOptions {
   std::vector<std::string> Validate() const;
 };
 
-// A world with the landing pattern on a vehicle.
+// A world with a pad on a vehicle.
 struct LandingScene {
   World world;
-  LandingPattern pattern;  // as drawn
+  LandingPattern pattern;  // as drawn, where the pad has one
+  TargetPrint print;       // of the pad, as drawn
   Motion world_from_pattern;
-  Path target;  // the pattern's centre without the vehicle's shaking, which a UAV follows
+  Path target;  // the pad's centre without the vehicle's shaking, which a UAV follows
 };
 
 // Each part of a simulated landing has its own random numbers: options of one part do not change

@@ -79,4 +79,25 @@ TargetShape ShapeOf(const LandingPattern& pattern) {
       {Circle(pattern.outer_radius_m()), Circle(pattern.inner_radius_m()), CrossOutline(pattern)}};
 }
 
+TargetPrint PrintOf(const LandingPattern& pattern) {
+  const double width = pattern.arm_width_m;
+  const double radius = pattern.outer_radius_m();
+  // The corners of an arm end in the ring.
+  const double longest = std::sqrt(radius * radius - 0.25 * width * width);
+  const double length = 2 * std::min(pattern.arm_half_length_m, longest);
+  TargetPrint print;
+  print.board_size_m = pattern.board_size_m;
+  print.board_heading = std::numbers::pi / 4;
+  print.shapes = {{PrintRing{{0, 0}, radius, pattern.inner_radius_m()}},
+                  {Rectangle({0, 0}, {width, length})},
+                  {Rectangle({0, 0}, {length, width})}};
+  print.dimensions = {fmt::format("ring: outer diameter {:g} mm, width {:g} mm",
+                                  1000 * pattern.outer_diameter_m, 1000 * pattern.ring_width_m),
+                      fmt::format("cross: arms {:g} mm wide, {:g} mm from the centre to their ends",
+                                  1000 * width, 1000 * pattern.arm_half_length_m),
+                      fmt::format("board: {0:g} x {0:g} mm, white", 1000 * pattern.board_size_m)};
+  print.can_be_checked = true;
+  return print;
+}
+
 }  // namespace kestrel

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/vision/target/target_print.h"
 #include "kestrel/vision/target/target_shape.h"
 
 namespace kestrel {
@@ -41,5 +42,8 @@ struct LandingPattern {
 
 // Returns the pattern as a pad: the edges of ring and cross.
 TargetShape ShapeOf(const LandingPattern& pattern);
+
+// Returns the print, whose arms point to the corners of the board.
+TargetPrint PrintOf(const LandingPattern& pattern);
 
 }  // namespace kestrel

@@ -38,6 +38,7 @@ struct TagModel {
 
 // All that a detector reads of a board, computed once.
 struct BoardModel {
+  BoardModel() = default;  // no tag
   // 'board' must be valid.
   explicit BoardModel(const TagBoard& board);
 

@@ -64,7 +64,7 @@ struct TagTargetOptions {
   std::string family = "tag36h11";
   int id = 0;
   double size_m = 0.5;
-  std::string board;  // path of a file of several tags (ParseTagBoard); empty: one tag
+  std::string board{};  // path of a file of several tags (ParseTagBoard); empty: one tag
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {

@@ -11,6 +11,7 @@
 #include "kestrel/core/base/edit_distance.h"
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/violations.h"
+#include "kestrel/vision/tags/tag_print.h"
 
 namespace kestrel {
 namespace {
@@ -25,6 +26,7 @@ struct TargetKind {
   std::string_view name;
   std::unique_ptr<const TargetDetector> (*make)(const CameraModel&, const KindOptions&);
   TargetShape (*shape)(const KindOptions&);
+  TargetPrint (*print)(const TargetOptions&, const LandingPattern&);
   // Violations of the kind's group of TargetOptions.
   std::vector<std::string> (*validate)(const TargetOptions&);
 };
@@ -64,12 +66,42 @@ std::vector<std::string> ValidateNested(const TargetOptions& target) {
   return ValidateTags<Nested>(target);
 }
 
+TargetPrint PrintOfRingCross(const TargetOptions& /*target*/, const LandingPattern& ring) {
+  return PrintOf(ring);
+}
+template <TagsOf kTagsOf>
+TargetPrint PrintOfTags(const TargetOptions& target, const LandingPattern& /*ring*/) {
+  return PrintOf(kTagsOf(target).Board());
+}
+// The tags have their places in the ring's frame.
+TargetPrint PrintOfRingWithTags(const TargetOptions& target, const LandingPattern& ring) {
+  TargetPrint print = PrintOf(ring);
+  PrintOver(PrintOf(Nested(target).Board()), &print);
+  print.can_be_checked = false;
+  return print;
+}
+
+std::unique_ptr<const TargetDetector> MakeHelipad(const CameraModel& camera,
+                                                  const KindOptions& options) {
+  return std::make_unique<HelipadDetector>(camera, options.target.helipad);
+}
+TargetShape ShapeOfHelipad(const KindOptions& options) { return ShapeOf(options.target.helipad); }
+TargetPrint PrintOfHelipad(const TargetOptions& target, const LandingPattern& /*ring*/) {
+  return PrintOf(target.helipad);
+}
+std::vector<std::string> ValidateHelipad(const TargetOptions& target) {
+  return target.helipad.Validate();
+}
+
 // All kinds of pads, a line each.
 constexpr TargetKind kTargetKinds[] = {
-    {"ring-cross", MakeRingCross, ShapeOfRingCross, ValidateRingCross},
-    {"apriltag", MakeTags<Apriltag>, ShapeOfTags<Apriltag>, ValidateTags<Apriltag>},
-    {"aruco", MakeTags<Aruco>, ShapeOfTags<Aruco>, ValidateTags<Aruco>},
-    {"nested", MakeTags<Nested>, ShapeOfTags<Nested>, ValidateNested},
+    {"ring-cross", MakeRingCross, ShapeOfRingCross, PrintOfRingCross, ValidateRingCross},
+    {"ring-with-tags", MakeRingCross, ShapeOfRingCross, PrintOfRingWithTags, ValidateNested},
+    {"apriltag", MakeTags<Apriltag>, ShapeOfTags<Apriltag>, PrintOfTags<Apriltag>,
+     ValidateTags<Apriltag>},
+    {"aruco", MakeTags<Aruco>, ShapeOfTags<Aruco>, PrintOfTags<Aruco>, ValidateTags<Aruco>},
+    {"nested", MakeTags<Nested>, ShapeOfTags<Nested>, PrintOfTags<Nested>, ValidateNested},
+    {"helipad", MakeHelipad, ShapeOfHelipad, PrintOfHelipad, ValidateHelipad},
 };
 
 const TargetKind* FindKind(std::string_view name) {
@@ -80,10 +112,15 @@ const TargetKind* FindKind(std::string_view name) {
 
 }  // namespace
 
+std::vector<std::string> TargetKinds() {
+  std::vector<std::string> names;
+  for (const TargetKind& kind : kTargetKinds) names.emplace_back(kind.name);
+  return names;
+}
+
 std::vector<std::string> TargetOptions::Validate() const {
   if (const TargetKind* known = FindKind(kind)) return known->validate(*this);
-  std::vector<std::string_view> names;
-  for (const TargetKind& other : kTargetKinds) names.push_back(other.name);
+  const std::vector<std::string> names = TargetKinds();
   const auto nearest =
       std::min_element(names.begin(), names.end(), [&](std::string_view a, std::string_view b) {
         return EditDistance(kind, a) < EditDistance(kind, b);
@@ -102,6 +139,12 @@ std::unique_ptr<const TargetDetector> MakeTargetDetector(
 TargetShape ShapeOfTarget(const TargetOptions& target, const LandingPatternDetectorOptions& ring) {
   RequireValid(target);
   return FindKind(target.kind)->shape({target, ring});
+}
+
+TargetPrint PrintOfTarget(const TargetOptions& target, const LandingPattern& ring) {
+  RequireValid(target);
+  RequireValid(ring);
+  return FindKind(target.kind)->print(target, ring);
 }
 
 }  // namespace kestrel

@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "kestrel/core/camera/camera_model.h"
+#include "kestrel/vision/helipad/helipad_detector.h"
 #include "kestrel/vision/landing/landing_pattern_detector.h"
 #include "kestrel/vision/tags/tag_board.h"
 #include "kestrel/vision/tags/tag_board_detector.h"
 #include "kestrel/vision/target/target_detector.h"
+#include "kestrel/vision/target/target_print.h"
 
 namespace kestrel {
 
@@ -32,17 +34,25 @@ struct TargetOptions {
   TagTargetOptions aruco{.family = "aruco_4x4_50", .board = ""};
   NestedTargetOptions nested;
   TagBoardDetectorOptions tags;  // how any of the three is found
+  HelipadDetectorOptions helipad;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("kind", self.kind, "", "what the target is: ring-cross, apriltag, aruco, nested");
+    visitor(
+        "kind", self.kind, "",
+        "what the target is: ring-cross, ring-with-tags (of nested.board, in the ring's frame), "
+        "apriltag, aruco, nested, helipad");
     visitor.Group("apriltag", self.apriltag);
     visitor.Group("aruco", self.aruco);
     visitor.Group("nested", self.nested);
     visitor.Group("tags", self.tags);
+    visitor.Group("helipad", self.helipad);
   }
   std::vector<std::string> Validate() const;
 };
+
+// Returns the names of all kinds.
+std::vector<std::string> TargetKinds();
 
 // Returns the detector of the target. 'ring': options of the kind "ring-cross". Throws InputError
 // when the options or the camera are not valid.
@@ -53,5 +63,8 @@ std::unique_ptr<const TargetDetector> MakeTargetDetector(const CameraModel& came
 // Returns the shape of that detector's pad. Throws InputError when the options of the target are
 // not valid.
 TargetShape ShapeOfTarget(const TargetOptions& target, const LandingPatternDetectorOptions& ring);
+
+// Returns what is printed on its board. Throws InputError when the options are not valid.
+TargetPrint PrintOfTarget(const TargetOptions& target, const LandingPattern& ring);
 
 }  // namespace kestrel

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/helipad/helipad_detector.h"
+
+#include <utility>
+
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/base/violations.h"
+#include "kestrel/vision/helipad/helipad_candidates.h"
+#include "kestrel/vision/helipad/helipad_model.h"
+#include "kestrel/vision/helipad/helipad_search.h"
+#include "kestrel/vision/tags/board_alignment.h"
+
+namespace kestrel {
+namespace {
+
+class HelipadWorkspace final : public TargetWorkspace {
+ public:
+  HelipadSearchBuffers buffers;
+};
+
+}  // namespace
+
+std::vector<std::string> HelipadDetectorOptions::Validate() const {
+  std::vector<std::string> violations = Helipad::Validate();
+  RequireIn(min_quality, 0, 1, "min_quality", &violations);
+  RequirePositive(level_sigma_deg, "level_sigma_deg", &violations);
+  return violations;
+}
+
+struct HelipadDetector::Impl {
+  Impl(const CameraModel& of_image, const HelipadDetectorOptions& how)
+      : camera(of_image),
+        options(Checked(how)),
+        pad(options),
+        finder(camera, pad),
+        alignment(camera, pad.edges),
+        shape(ShapeOf(options)) {}
+
+  CameraModel camera;
+  HelipadDetectorOptions options;
+  HelipadModel pad;
+  HelipadFinder finder;
+  BoardAlignment alignment;
+  TargetShape shape;
+};
+
+HelipadDetector::HelipadDetector(const CameraModel& camera, const HelipadDetectorOptions& options)
+    : impl_(std::make_unique<const Impl>(camera, options)) {}
+HelipadDetector::~HelipadDetector() = default;
+HelipadDetector::HelipadDetector(HelipadDetector&&) noexcept = default;
+HelipadDetector& HelipadDetector::operator=(HelipadDetector&&) noexcept = default;
+
+LandingReport HelipadDetector::Detect(const cv::Mat& image, const LandingHint& hint,
+                                      TargetWorkspace& workspace) const {
+  const CameraModel& camera = impl_->camera;
+  if (image.type() != CV_8UC1 || image.cols != camera.width_px() ||
+      image.rows != camera.height_px()) {
+    LandingReport report;
+    report.reason = "the image is not CV_8UC1 of the camera's size";
+    return report;
+  }
+  const HelipadSearchModels models{camera, impl_->pad, impl_->options, impl_->finder,
+                                   impl_->alignment};
+  auto& buffers = dynamic_cast<HelipadWorkspace&>(workspace).buffers;
+  return HelipadSearch(models, image, hint, &buffers).Run();
+}
+
+std::unique_ptr<TargetWorkspace> HelipadDetector::MakeWorkspace() const {
+  auto workspace = std::make_unique<HelipadWorkspace>();
+  workspace->buffers.samples.Reserve(impl_->pad.samples.size());
+  workspace->buffers.alignment.Reserve(impl_->pad.edges);
+  return workspace;
+}
+
+const CameraModel& HelipadDetector::camera() const { return impl_->camera; }
+const TargetShape& HelipadDetector::shape() const { return impl_->shape; }
+
+}  // namespace kestrel

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/helipad/helipad_detector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/random.h"
+#include "kestrel/core/camera/paper_camera.h"
+#include "kestrel/core/geometry/angles.h"
+#include "kestrel/vision/helipad/test_helipad_images.h"
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// A straight stroke of a letter, in half heights of the letter.
+struct Stroke {
+  Vector2d from, to;
+};
+
+// Letters, arrows, crosses, road markings, a window.
+const std::vector<std::vector<Stroke>>& Figures() {
+  static const std::vector<std::vector<Stroke>> figures = {
+      {{{-.5, -1}, {-.5, 1}}, {{-.5, 1}, {.5, -1}}, {{.5, -1}, {.5, 1}}},                   // N
+      {{{-.6, -1}, {-.6, 1}}, {{-.6, 1}, {0, 0}}, {{0, 0}, {.6, 1}}, {{.6, 1}, {.6, -1}}},  // M
+      {{{-.5, -1}, {0, 1}}, {{0, 1}, {.5, -1}}, {{-.3, -.2}, {.3, -.2}}},                   // A
+      {{{-.5, -1}, {-.5, 1}},
+       {{-.5, 1}, {.5, 1}},
+       {{-.5, 0}, {.4, 0}},
+       {{-.5, -1}, {.5, -1}}},                                              // E
+      {{{-.5, -1}, {-.5, 1}}, {{-.5, 1}, {.5, 1}}, {{-.5, 0}, {.4, 0}}},    // F
+      {{{-.5, -1}, {-.5, 1}}, {{-.5, 0}, {.5, 1}}, {{-.5, 0}, {.5, -1}}},   // K
+      {{{0, -1}, {0, 1}}, {{-.6, 1}, {.6, 1}}},                             // T
+      {{{-.5, -1}, {.5, 1}}, {{-.5, 1}, {.5, -1}}},                         // X
+      {{{-.5, 1}, {.5, 1}}, {{.5, 1}, {-.5, -1}}, {{-.5, -1}, {.5, -1}}},   // Z
+      {{{-.5, 1}, {-.5, -1}}, {{-.5, -1}, {.5, -1}}, {{.5, -1}, {.5, 1}}},  // U
+      {{{0, -1}, {0, 1}}, {{-.5, .5}, {0, 1}}, {{0, 1}, {.5, .5}}},         // arrow
+      {{{0, -1}, {0, 1}}, {{-1, 0}, {1, 0}}},                               // cross
+      {{{-.5, -1}, {-.5, 1}}, {{.5, -1}, {.5, 1}}},                         // lines
+      {{{-.5, -1}, {-.5, 1}},
+       {{.5, -1}, {.5, 1}},
+       {{-.5, 1}, {.5, 1}},
+       {{-.5, -1}, {.5, -1}},
+       {{-.5, 0}, {.5, 0}}},  // window
+      {{{-.5, -1}, {-.5, 1}}, {{.5, -1}, {.5, 1}}, {{-.5, .6}, {.5, .6}}, {{-.5, -.6}, {.5, -.6}}},
+      {{{0, -1}, {0, 1}}, {{-.5, 1}, {.5, 1}}, {{-.5, -1}, {.5, -1}}},   // I
+      {{{-.5, 1}, {-.5, 0}}, {{-.5, 0}, {.5, 0}}, {{.5, 1}, {.5, -1}}},  // 4
+  };
+  return figures;
+}
+
+PrintPolygon StrokeArea(const Stroke& stroke, double width) {
+  const Vector2d along = (stroke.to - stroke.from).normalized();
+  const Vector2d side = 0.5 * width * Vector2d(-along.y(), along.x());
+  const Vector2d end = 0.5 * width * along;
+  return {{{stroke.from - end + side, stroke.to + end + side, stroke.to + end - side,
+            stroke.from - end - side}}};
+}
+
+// Nine figures of random sizes, widths, slants and turns on one board.
+TargetPrint LookalikeBoard(bool white, Random* random) {
+  TargetPrint print;
+  print.board_size_m = 4.5;
+  print.board_gray = white ? 0 : 1;
+  for (int cell = 0; cell < 9; ++cell) {
+    const Vector2d place(1.5 * (cell % 3 - 1), 1.5 * (cell / 3 - 1));
+    const int last = static_cast<int>(Figures().size()) - 1;
+    const auto& figure = Figures()[random->Integer(0, last)];
+    const double half = random->Uniform(0.25, 0.55);
+    const double width = random->Uniform(0.18, 0.34);
+    const double wide = random->Uniform(0.8, 1.2);
+    const double turn = random->Uniform(0, 2 * kPi);
+    for (const Stroke& stroke : figure) {
+      const Vector2d scale(half * wide, half);
+      const Stroke sized{scale.cwiseProduct(stroke.from), scale.cwiseProduct(stroke.to)};
+      const PrintShape shape{StrokeArea(sized, width * half), white ? 1.0 : 0.0};
+      print.shapes.push_back(Moved(shape, turn, place));
+    }
+  }
+  return print;
+}
+
+class HelipadDetectorTest : public ::testing::Test {
+ protected:
+  void Use(const HelipadDetectorOptions& options) {
+    options_ = options;
+    detector_ = std::make_unique<HelipadDetector>(camera_, options);
+    workspace_ = detector_->MakeWorkspace();
+  }
+  // A camera that looks down from 'altitude' with some tilt, the pad somewhere near its middle.
+  static RigidTransform RandomPose(double altitude, Random* random) {
+    const double yaw = random->Uniform(0, 2 * kPi);
+    const double tilt = random->Uniform(0, Radians(15));
+    const double way = random->Uniform(0, 2 * kPi);
+    const double x = random->Uniform(-0.3, 0.3) * altitude;
+    const double y = random->Uniform(-0.2, 0.2) * altitude;
+    const Eigen::Quaterniond down(Eigen::AngleAxisd(kPi, Vector3d::UnitX()));
+    const Vector3d axis(std::cos(way), std::sin(way), 0);
+    const Eigen::AngleAxisd tilted(tilt, axis), turned(yaw, Vector3d::UnitZ());
+    return {tilted * down * turned, tilted * Vector3d(x, y, altitude)};
+  }
+  cv::Mat Image(const RigidTransform& pose, std::uint64_t seed) const {
+    return renderer_.Render(PrintOf(options_), pose, taken_, seed);
+  }
+  LandingReport Detect(const cv::Mat& image, const LandingHint& hint = {}) {
+    return detector_->Detect(image, hint, *workspace_);
+  }
+  // Returns the number of 'count' random views in which the pad is found at its place. The hint is
+  // that of a track where 'sigma_m' is not 0.
+  int Found(double altitude, int count, double sigma_m, std::uint64_t seed) {
+    int found = 0;
+    Random random(seed);
+    for (int i = 0; i < count; ++i) {
+      const RigidTransform pose = RandomPose(altitude, &random);
+      LandingHint hint;
+      hint.up_in_camera = pose.rotation * Vector3d::UnitZ();
+      if (sigma_m > 0) {
+        const double x = random.Normal();
+        const double y = random.Normal();
+        const double z = random.Normal();
+        hint.center_in_camera = pose.translation + sigma_m * Vector3d(x, y, z);
+        hint.center_sigma_m = sigma_m;
+        hint.rotation_in_camera =
+            Eigen::Quaterniond(Eigen::AngleAxisd(0.03, Vector3d::UnitZ())) * pose.rotation;
+      }
+      const LandingReport report = Detect(Image(pose, seed + i), hint);
+      if (!report.detection) continue;
+      const RigidTransform& seen = report.detection->camera_from_pattern;
+      const double off = (seen.translation - pose.translation).norm();
+      const double turn = seen.rotation.angularDistance(pose.rotation);
+      const bool right = off < 0.1 * altitude && std::min(turn, kPi - turn) < Radians(12);
+      found += right;
+    }
+    return found;
+  }
+
+  const CameraModel camera_{PaperCamera()};
+  const PadRenderer renderer_{camera_};
+  PadImageOptions taken_;
+  HelipadDetectorOptions options_;
+  std::unique_ptr<HelipadDetector> detector_;
+  std::unique_ptr<TargetWorkspace> workspace_;
+};
+
+TEST_F(HelipadDetectorTest, IsFoundWithoutAHint) {
+  Use({});
+  for (const double altitude : {0.7, 2.0, 4.0, 11.0})
+    EXPECT_EQ(Found(altitude, 3, 0, 1), 3) << altitude;
+}
+
+TEST_F(HelipadDetectorTest, IsFollowedNearAndFar) {
+  Use({});
+  for (const double altitude : {0.5, 1.0, 4.0, 15.0}) {
+    EXPECT_EQ(Found(altitude, 3, 0.02 + 0.03 * altitude, 1), 3) << altitude;
+  }
+}
+
+TEST_F(HelipadDetectorTest, FindsEachKindOfPad) {
+  for (const char* frame : {"circle", "square", "none"}) {
+    for (const bool white : {true, false}) {
+      HelipadDetectorOptions options;
+      options.frame = frame;
+      options.white = white;
+      Use(options);
+      EXPECT_EQ(Found(3, 2, 0, 7), 2) << frame << ", white " << white;
+    }
+  }
+}
+
+TEST_F(HelipadDetectorTest, StandsMotionAndDust) {
+  Use({});
+  taken_ = {.motion_px = 5};
+  EXPECT_EQ(Found(3, 3, 0.1, 5), 3) << "motion";
+  taken_ = {.noise = 5, .contrast = 0.35};
+  EXPECT_EQ(Found(5, 3, 0, 5), 3) << "dust";
+}
+
+TEST_F(HelipadDetectorTest, TheCovarianceIsThatOfTheErrors) {
+  Use({});
+  Random random(9);
+  double sum = 0;
+  constexpr int kViews = 12;
+  for (int i = 0; i < kViews; ++i) {
+    const double altitude = random.Uniform(1.5, 5);
+    const RigidTransform pose = RandomPose(altitude, &random);
+    LandingHint hint;
+    hint.up_in_camera = pose.rotation * Vector3d::UnitZ();
+    const LandingReport report = Detect(Image(pose, 100 + i), hint);
+    ASSERT_TRUE(report.detection);
+    const RigidTransform& seen = report.detection->camera_from_pattern;
+    EXPECT_EQ(report.detection->heading_symmetry, 2);
+    Eigen::Quaterniond turn = seen.rotation * pose.rotation.conjugate();
+    if (Eigen::AngleAxisd(turn).angle() > kPi / 2) {
+      turn = seen.rotation * Eigen::Quaterniond(0, 0, 0, 1) * pose.rotation.conjugate();
+    }
+    Eigen::Matrix<double, 6, 1> error;
+    error << seen.translation - pose.translation, RotationVector(turn);
+    sum += error.dot(report.detection->covariance.ldlt().solve(error));
+  }
+  // Six degrees of freedom: 6 on average for errors that are as large as they are said to be.
+  EXPECT_GT(sum / kViews, 1);
+  EXPECT_LT(sum / kViews, 14);
+}
+
+TEST_F(HelipadDetectorTest, TheHintTellsTheHeading) {
+  Use({});
+  Random random(4);
+  const RigidTransform pose = RandomPose(2, &random);
+  const cv::Mat image = Image(pose, 1);
+  for (const bool turned : {false, true}) {
+    LandingHint hint;
+    hint.center_in_camera = pose.translation;
+    hint.center_sigma_m = 0.05;
+    hint.rotation_in_camera =
+        turned ? pose.rotation * Eigen::Quaterniond(0, 0, 0, 1) : pose.rotation;
+    const LandingReport report = Detect(image, hint);
+    ASSERT_TRUE(report.detection);
+    EXPECT_EQ(report.detection->method, DetectionMethod::kFollowed);
+    EXPECT_LT(
+        report.detection->camera_from_pattern.rotation.angularDistance(*hint.rotation_in_camera),
+        Radians(2));
+  }
+}
+
+TEST_F(HelipadDetectorTest, RefusesWhatIsNotAnImageOfItsCamera) {
+  Use({});
+  EXPECT_FALSE(Detect(cv::Mat(10, 10, CV_8UC1, cv::Scalar(0))).detection);
+  EXPECT_FALSE(Detect(cv::Mat(10, 10, CV_8UC1, cv::Scalar(0))).reason.empty());
+  HelipadDetectorOptions wrong;
+  wrong.min_quality = 2;
+  EXPECT_THROW(HelipadDetector(camera_, wrong), InputError);
+}
+
+TEST_F(HelipadDetectorTest, NoLookalikeIsAccepted) {
+  constexpr int kBoards = 12;  // of nine each
+  for (const bool white : {true, false}) {
+    HelipadDetectorOptions options;
+    options.white = white;
+    Use(options);
+    Random random(3);
+    for (int i = 0; i < kBoards; ++i) {
+      const TargetPrint board = LookalikeBoard(white, &random);
+      const double altitude = random.Uniform(1.5, 8);
+      const RigidTransform pose = RandomPose(altitude, &random);
+      const LandingReport report = Detect(renderer_.Render(board, pose, taken_, i));
+      EXPECT_FALSE(report.detection) << "board " << i << ", white " << white;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kestrel/vision/helipad/helipad.h"
+#include "kestrel/vision/tags/board_model.h"
+
+namespace kestrel {
+
+// The parts of an H and of its surroundings that are examined one by one: no part may be wrong.
+enum class HelipadPart { kLeftLeg, kRightLeg, kBar, kUpperGap, kLowerGap, kOutside };
+inline constexpr std::size_t kHelipadParts = 6;
+
+// A point whose gray value is examined.
+struct HelipadSample {
+  Eigen::Vector2d place;  // frame P
+  HelipadPart part;
+  bool ink;                            // on the H
+  std::vector<std::size_t> neighbors;  // indices of the samples that it is held against
+};
+
+// Area and second moments of a plane figure about its centroid.
+struct FigureMoments {
+  double area = 0;  // of either sign, as the border goes around
+  Eigen::Vector2d centroid = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+
+  // The same for all affine images of a figure: 1 for an ellipse, less for what is less compact.
+  double Compactness() const;
+};
+FigureMoments MomentsOf(std::span<const Eigen::Vector2d> corners);
+
+// How gray values of the samples agree with the H.
+struct HelipadAgreement {
+  double evidence = 0;     // natural logarithm of how much likelier the H is than chance
+  double worst_share = 1;  // of the samples of a part, those that agree, in the worst part
+  int parts = 0;           // number of parts in view
+};
+
+// All that a detector reads of a helipad, computed once.
+struct HelipadModel {
+  // 'helipad' must be valid.
+  explicit HelipadModel(const Helipad& helipad);
+
+  // Compares gray values of all samples, negative where out of view, with the H. A sample is held
+  // against the ink and the ground around it, so that the edge of a shadow does not matter.
+  HelipadAgreement Compare(std::span<const float> gray) const;
+
+  // Mean of the ink minus mean of the ground, over the spread of all: how much gray values look
+  // like the H; negative when there are few.
+  double Likeness(std::span<const float> gray) const;
+
+  bool white = true;  // the ink
+  BoardModel edges;   // its first tag is the H, its second one the frame where there is one
+  std::vector<HelipadSample> samples;
+  FigureMoments moments;  // of the H
+};
+
+}  // namespace kestrel
